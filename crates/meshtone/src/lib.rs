@@ -1,0 +1,4 @@
+//! Vibration of a spur gear pair, sound or damaged.
+#![deny(missing_docs)]
+
+pub mod scenario;
