@@ -1,4 +1,19 @@
 //! Vibration of a spur gear pair, sound or damaged.
 #![deny(missing_docs)]
 
+pub mod dynamics;
+pub mod fault;
+pub mod interpolation;
+pub mod quality;
+mod random;
+pub mod sampling;
 pub mod scenario;
+pub mod signal;
+mod simulate;
+pub mod solver;
+pub mod stiffness;
+pub mod tooth;
+mod trace;
+
+pub use simulate::{Simulation, StageTime, Stages, simulate, stages};
+pub use trace::{Trace, TraceField, trace};

@@ -1,0 +1,166 @@
+//! Stage 6, the right-hand side: motor, brake and the profile errors' force in the mesh.
+
+use std::f64::consts::PI;
+
+use super::mesh_load::MeshLoad;
+use crate::fault::{Displacement, FaultGeometry};
+use crate::interpolation::{NotAKnotSpline, Pchip};
+use crate::sampling::{CycleGrid, FINE_PER_COARSE};
+use crate::scenario::{Convention, ProfileErrors, Scenario};
+use crate::stiffness::{PairCurve, PairStiffness};
+
+/// Force that deviations of the flanks put on the mesh: stiffness × deviation, `k e`, summed over all pairs in
+/// contact.
+pub struct ErrorForce<'a> {
+    grid: CycleGrid,
+    convention: Convention,
+    healthy: PairCurve<'a>,
+    first: PairCurve<'a>,
+    has_fault: bool,
+    fine_pitch: usize,
+    fine_points: usize,
+    pinion_errors: Vec<NotAKnotSpline<'a>>,
+    gear_errors: Vec<NotAKnotSpline<'a>>,
+    pinion_teeth: usize,
+    gear_teeth: usize,
+    pair_displacement: Option<Pchip<'a>>,
+    fault: Option<&'a FaultGeometry>,
+    mesh: &'a MeshLoad,
+    eccentricity_mm: f64,
+    ratio: f64,
+}
+
+impl<'a> ErrorForce<'a> {
+    /// The force of one pair of wheels.
+    ///
+    /// # Arguments
+    /// * `scenario` - tooth counts, eccentricity, convention
+    /// * `pair` - stiffness of healthy and faulty pair
+    /// * `errors` - profile errors of all teeth
+    /// * `fault` - the fault, for its displacement
+    /// * `mesh` - mesh stiffness over the cycle
+    /// * `grid` - division of the cycle
+    pub fn new(
+        scenario: &Scenario,
+        pair: &'a PairStiffness,
+        errors: Option<&'a ProfileErrors>,
+        fault: Option<&'a FaultGeometry>,
+        mesh: &'a MeshLoad,
+        grid: CycleGrid,
+    ) -> Self {
+        let splines = |matrix: &'a nalgebra::DMatrix<f64>| {
+            let rows = matrix.nrows();
+            let step = pair.span_rev / (rows - 1) as f64;
+            matrix.as_slice().chunks_exact(rows).map(|tooth| NotAKnotSpline::uniform(0.0, step, tooth)).collect()
+        };
+        let pair_displacement = match fault.map(|fault| &fault.displacement) {
+            Some(Displacement::Pair { displacement_mm }) => {
+                let step = pair.span_rev / (displacement_mm.len() - 1) as f64;
+                Some(Pchip::uniform(0.0, step, displacement_mm))
+            }
+            _ => None,
+        };
+        let fine_pitch = FINE_PER_COARSE * grid.points_per_pitch;
+        let all_points = grid.fine_points_in(pair.span_rev);
+        let gears = &scenario.gears;
+        Self {
+            convention: scenario.convention,
+            healthy: pair.healthy_curve(),
+            first: pair.faulty_curve(),
+            has_fault: fault.is_some(),
+            fine_pitch,
+            fine_points: match scenario.convention {
+                Convention::Published => all_points.min(2 * fine_pitch),
+                Convention::Corrected => all_points,
+            },
+            pinion_errors: errors.map_or_else(Vec::new, |e| splines(&e.pinion_profile_errors_mm)),
+            gear_errors: errors.map_or_else(Vec::new, |e| splines(&e.gear_profile_errors_mm)),
+            pinion_teeth: gears.pinion_teeth as usize,
+            gear_teeth: gears.gear_teeth as usize,
+            pair_displacement,
+            fault,
+            mesh,
+            eccentricity_mm: scenario.rig.eccentricity_mm,
+            ratio: f64::from(gears.gear_teeth) / f64::from(gears.pinion_teeth),
+            grid,
+        }
+    }
+
+    /// (N) The force.
+    ///
+    /// # Arguments
+    /// * `revolutions` - (rev) of the motor
+    /// * `position_rev` - (rev) those since the gear's first tooth last entered contact
+    /// * `coarse_point` - coarse point of the cycle nearest to `position_rev`
+    pub fn at(&self, revolutions: f64, position_rev: f64, coarse_point: usize) -> f64 {
+        let mut force = 0.0;
+        if self.pair_displacement.is_some() || !self.gear_errors.is_empty() {
+            let fine = (revolutions / self.grid.fine_step_rev).round().max(0.0) as usize;
+            force += self.pairs_at(fine);
+        }
+        if let Some(Displacement::Rolling(rolling)) = self.fault.map(|fault| &fault.displacement) {
+            force += rolling.displacement_mm(position_rev) * self.mesh_n_per_mm(coarse_point);
+        }
+        if self.eccentricity_mm != 0.0 {
+            let angle = 2.0 * PI * revolutions;
+            let pressure_angle = self.mesh.nominal.pressure_angle_rad;
+            let displacement = (pressure_angle + angle / self.ratio).sin() - (pressure_angle + angle).sin();
+            force += self.mesh_n_per_mm(coarse_point) * self.eccentricity_mm * displacement;
+        }
+        force
+    }
+
+    fn mesh_n_per_mm(&self, coarse_point: usize) -> f64 {
+        self.mesh.stiffness_n_per_m[coarse_point] * 1e-3
+    }
+
+    /// Profile errors and a destroyed flank, over the pairs in contact at fine point `fine`.
+    fn pairs_at(&self, fine: usize) -> f64 {
+        let (latest, since) = (fine / self.fine_pitch, fine % self.fine_pitch);
+        // Before the first revolutions are complete, the pairs of the cycle before are in contact.
+        let turns = self.pinion_teeth * self.gear_teeth;
+        let mut force = 0.0;
+        for (age, point) in (since..self.fine_points).step_by(self.fine_pitch).enumerate() {
+            let pair = latest + turns - age;
+            let (pinion_tooth, gear_tooth) = (pair % self.pinion_teeth, pair % self.gear_teeth);
+            let position = point as f64 * self.grid.fine_step_rev;
+            let is_faulty = self.has_fault && gear_tooth == 0;
+            let gear_stiffness = if is_faulty { self.first.at(position) } else { self.healthy.at(position) };
+            if let Some(errors) = self.gear_errors.get(gear_tooth) {
+                force += gear_stiffness * errors.at(position);
+            }
+            if let Some(errors) = self.pinion_errors.get(pinion_tooth) {
+                // Convention: the published code takes the faulty stiffness for the pinion's first tooth in every
+                // pinion revolution, not only when it meets the faulty gear tooth.
+                let stiffness = match self.convention {
+                    Convention::Corrected => gear_stiffness,
+                    Convention::Published if self.has_fault && pinion_tooth == 0 => self.first.at(position),
+                    Convention::Published => self.healthy.at(position),
+                };
+                force += stiffness * errors.at(position);
+            }
+            if let Some(displacement) = self.pair_displacement.as_ref().filter(|_| is_faulty) {
+                force += gear_stiffness * displacement.at(position);
+            }
+        }
+        force
+    }
+}
+
+/// Excitation of one sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Excitation {
+    /// (rad) Angle of the motor.
+    pub motor_angle_rad: f64,
+    /// (rad/s) Angular speed of the motor.
+    pub motor_speed_rad_per_s: f64,
+    /// (N m) Torque of the brake.
+    pub brake_torque_nm: f64,
+    /// (N) Force of the profile errors along the line of action.
+    pub error_force_n: f64,
+    /// (rev) Motor revolutions since the gear's first tooth last entered contact, if the pinion followed the
+    /// motor exactly.
+    pub position_rev: f64,
+    /// Coarse point of the cycle nearest to `position_rev`.
+    pub coarse_point: usize,
+}

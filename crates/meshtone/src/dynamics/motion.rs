@@ -1,0 +1,115 @@
+//! What motor and brake do, sample by sample.
+
+use crate::random::{Draws, Purpose};
+use crate::sampling::TimeGrid;
+use crate::scenario::{Convention, Profile, Scenario};
+
+/// The motor's angle and speed and the brake's torque at successive samples: an iterator without end.
+pub struct Motion<'a> {
+    scenario: &'a Scenario,
+    step_s: f64,
+    samples_per_revolution: f64,
+    sample: usize,
+    revolutions: f64,
+    speed_hz: f64,
+    speed_draws: Option<Draws>,
+    torque_draws: Option<Draws>,
+}
+
+/// Motor and brake at one sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MotionSample {
+    /// (rev) Revolutions of the motor since the start.
+    pub revolutions: f64,
+    /// (Hz) Speed of the motor.
+    pub speed_hz: f64,
+    /// (N m) Torque of the brake.
+    pub torque_nm: f64,
+}
+
+impl<'a> Motion<'a> {
+    /// Motion from the start of the simulation.
+    ///
+    /// # Arguments
+    /// * `scenario` - speed, load, their profiles and fluctuations, seed
+    /// * `time` - division of time
+    pub fn new(scenario: &'a Scenario, time: &TimeGrid) -> Self {
+        let operation = &scenario.operation;
+        let draws = |half_width: f64, purpose| {
+            (half_width > 0.0).then(|| Draws::new(scenario.seed, purpose, 0))
+        };
+        let mut motion = Self {
+            scenario,
+            step_s: time.step_s(),
+            samples_per_revolution: time.samples_per_pinion_revolution as f64,
+            sample: 0,
+            revolutions: 0.0,
+            speed_hz: 0.0,
+            speed_draws: draws(operation.speed_fluctuation_hz, Purpose::SpeedFluctuation),
+            torque_draws: draws(operation.torque_fluctuation_nm, Purpose::TorqueFluctuation),
+        };
+        motion.speed_hz = motion.draw_speed();
+        motion
+    }
+
+    fn draw_speed(&mut self) -> f64 {
+        let operation = &self.scenario.operation;
+        let nominal = match &operation.speed_profile_hz {
+            Some(profile) => profile_at(profile, self.sample as f64 * self.step_s),
+            None => operation.pinion_speed_hz,
+        };
+        let fluctuation = operation.speed_fluctuation_hz;
+        nominal + self.speed_draws.as_mut().map_or(0.0, |draws| draws.uniform(0.0, fluctuation))
+    }
+
+    fn draw_torque(&mut self) -> f64 {
+        let operation = &self.scenario.operation;
+        let nominal = match &operation.torque_profile_nm {
+            Some(profile) => profile_at(profile, self.sample as f64 * self.step_s),
+            None => operation.brake_torque_nm,
+        };
+        let fluctuation = operation.torque_fluctuation_nm;
+        nominal + self.torque_draws.as_mut().map_or(0.0, |draws| draws.uniform(0.0, fluctuation))
+    }
+
+    fn is_steady(&self) -> bool {
+        self.speed_draws.is_none() && self.scenario.operation.speed_profile_hz.is_none()
+    }
+}
+
+impl Iterator for Motion<'_> {
+    type Item = MotionSample;
+
+    fn next(&mut self) -> Option<MotionSample> {
+        let here = MotionSample {
+            revolutions: self.revolutions,
+            speed_hz: self.speed_hz,
+            torque_nm: self.draw_torque(),
+        };
+        self.sample += 1;
+        self.speed_hz = self.draw_speed();
+        self.revolutions = match self.scenario.convention {
+            // Convention: the published code adds up sample by sample, and its rounding errors decide which
+            // of two equally near grid points a sample is given.
+            Convention::Published => self.revolutions + here.speed_hz * self.step_s,
+            Convention::Corrected if self.is_steady() => self.sample as f64 / self.samples_per_revolution,
+            Convention::Corrected => self.revolutions + 0.5 * (here.speed_hz + self.speed_hz) * self.step_s,
+        };
+        Some(here)
+    }
+}
+
+/// The profile at `time_s`: straight lines between its points, constant outside.
+fn profile_at(profile: &Profile, time_s: f64) -> f64 {
+    let (time, value) = (&profile.time_s, &profile.value);
+    let after = time.partition_point(|&t| t <= time_s);
+    if after == 0 {
+        value[0]
+    } else if after == time.len() {
+        value[after - 1]
+    } else {
+        let before = after - 1;
+        let t = (time_s - time[before]) / (time[after] - time[before]);
+        value[before] + t * (value[after] - value[before])
+    }
+}

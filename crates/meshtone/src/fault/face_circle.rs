@@ -1,0 +1,175 @@
+//! The circle that a pit cuts into the flank.
+
+use std::f64::consts::PI;
+
+use super::Pit;
+use crate::scenario::{Convention, PitCircle, ScenarioError};
+use crate::tooth::{Teeth, ToothProfile, first_minimum};
+
+/// A pit's place and the flank with the pit cut into it.
+pub(super) struct CutFlank {
+    pub(super) pit: Pit,
+    pub(super) flank_y_mm: Vec<f64>,
+}
+
+struct Circle {
+    x_mm: f64,
+    y_mm: f64,
+    radius_mm: f64,
+}
+
+impl Circle {
+    /// (mm) y of the lower half at `x_mm`.
+    fn lower_y_mm(&self, x_mm: f64) -> f64 {
+        self.y_mm - (self.radius_mm.powi(2) - (x_mm - self.x_mm).powi(2)).max(0.0).sqrt()
+    }
+}
+
+/// Number of points of the lower half circle among which the pit's edges are sought.
+const CIRCLE_SAMPLES: usize = 10_000;
+
+/// Cuts the circle into the gear's flank.
+///
+/// # Errors
+/// A circle that does not cut the contact part of the flank in two points, or reaches through the tooth.
+pub(super) fn cut_flank(circle: &PitCircle, teeth: &Teeth, convention: Convention) -> Result<CutFlank, ScenarioError> {
+    let profile = &teeth.gear_profile;
+    let contact = &teeth.contact;
+    let (key, value) = match circle {
+        PitCircle::Fractions { start, end, depth } => ("fault", format!("start {start}, end {end}, depth {depth}")),
+        PitCircle::Circle { x_mm, y_mm, radius_mm } => {
+            ("fault.circle", format!("{{ x_mm = {x_mm}, y_mm = {y_mm}, radius_mm = {radius_mm} }}"))
+        }
+    };
+    let refuse = |problem: String| ScenarioError::new(key, &value, problem);
+    let circle = resolve(circle, profile, contact.initial_contact_index);
+    let (start_y, end_y) = edges(&circle, profile, contact.initial_contact_index, convention)
+        .ok_or_else(|| refuse(misses_flank(profile, contact.initial_contact_index)))?;
+
+    // The flank falls with x, so "above an edge's y" is "before it".
+    let above = |y_mm: f64| profile.y_mm.iter().rposition(|&y| y > y_mm);
+    let (start, end) = above(start_y)
+        .zip(above(end_y).and_then(|i| i.checked_sub(1)))
+        .map(|(before, end)| (before + 1, end))
+        .filter(|&(start, end)| start >= contact.initial_contact_index && end > start + 1)
+        .ok_or_else(|| refuse(misses_flank(profile, contact.initial_contact_index)))?;
+
+    let mut flank_y_mm = profile.y_mm.clone();
+    for i in start..=end {
+        flank_y_mm[i] = circle.lower_y_mm(profile.x_mm[i]);
+        if flank_y_mm[i] <= -profile.y_mm[i] {
+            return Err(refuse(format!(
+                "must be less deep than the tooth, which is {:.3} mm thick at x = {:.3} mm",
+                2.0 * profile.y_mm[i],
+                profile.x_mm[i]
+            )));
+        }
+    }
+    let chord = |a: usize, b: usize| {
+        (profile.x_mm[a] - profile.x_mm[b]).hypot(profile.y_mm[a] - profile.y_mm[b])
+    };
+    let length_mm = chord(start, end);
+    let (x_contact, x_tip) = (profile.x_mm[contact.initial_contact_index], profile.tip_x_mm());
+    let position = |i: usize| contact.span_rev * (profile.x_mm[i] - x_tip) / (x_contact - x_tip);
+    Ok(CutFlank {
+        pit: Pit {
+            start_index: start,
+            mid_index: (start + end) / 2,
+            end_index: end,
+            length_mm,
+            length_fraction: length_mm / chord(contact.initial_contact_index, profile.len() - 1),
+            start_rev: position(end),
+            end_rev: position(start),
+        },
+        flank_y_mm,
+    })
+}
+
+fn misses_flank(profile: &ToothProfile, initial_contact: usize) -> String {
+    format!(
+        "must cut the contact part of the flank in two points; it runs from x = {:.3}, y = {:.3} mm to \
+         x = {:.3}, y = {:.3} mm",
+        profile.x_mm[initial_contact],
+        profile.y_mm[initial_contact],
+        profile.tip_x_mm(),
+        profile.y_mm[profile.len() - 1]
+    )
+}
+
+/// Centre and radius, where the pit is given by fractions of the flank.
+fn resolve(circle: &PitCircle, profile: &ToothProfile, initial_contact: usize) -> Circle {
+    match *circle {
+        PitCircle::Circle { x_mm, y_mm, radius_mm } => Circle { x_mm, y_mm, radius_mm },
+        PitCircle::Fractions { start, end, depth } => {
+            let point = |fraction: f64| {
+                let i = flank_index(fraction, profile, initial_contact);
+                (profile.x_mm[i], profile.y_mm[i])
+            };
+            let ((x1, y1), (x2, y2)) = (point(start), point(end));
+            let chord = (x2 - x1).hypot(y2 - y1);
+            let radius_mm = chord / 4.0 * (depth + 1.0 / depth);
+            let rise = (radius_mm * radius_mm - chord * chord / 4.0).max(0.0).sqrt();
+            // The flank falls with x: its normal towards larger x and y.
+            let (normal_x, normal_y) = ((y1 - y2) / chord, (x2 - x1) / chord);
+            Circle {
+                x_mm: (x1 + x2) / 2.0 + rise * normal_x,
+                y_mm: (y1 + y2) / 2.0 + rise * normal_y,
+                radius_mm,
+            }
+        }
+    }
+}
+
+/// Profile index at a fraction of the flank's contact part, from its root side.
+pub(super) fn flank_index(fraction: f64, profile: &ToothProfile, initial_contact: usize) -> usize {
+    let last = profile.len() - 1;
+    let offset = (fraction * (last - initial_contact) as f64).round();
+    (initial_contact as f64 + offset).clamp(0.0, last as f64) as usize
+}
+
+/// (mm) y of the flank at the two points where the lower half circle meets it, the root side's first.
+fn edges(
+    circle: &Circle,
+    profile: &ToothProfile,
+    initial_contact: usize,
+    convention: Convention,
+) -> Option<(f64, f64)> {
+    let first = profile.nearest_to_x(circle.x_mm - circle.radius_mm).max(initial_contact);
+    let last = profile.nearest_to_x(circle.x_mm + circle.radius_mm);
+    if last < first + 2 {
+        return None;
+    }
+    let (x, y) = (&profile.x_mm[first..=last], &profile.y_mm[first..=last]);
+    let samples: Vec<(f64, f64)> = (0..CIRCLE_SAMPLES)
+        .map(|k| {
+            let angle = PI + PI * k as f64 / (CIRCLE_SAMPLES - 1) as f64;
+            (circle.x_mm + circle.radius_mm * angle.cos(), circle.y_mm + circle.radius_mm * angle.sin())
+        })
+        .collect();
+    let above: Vec<f64> = samples.iter().map(|&(sx, sy)| sy - linear(x, y, sx)).collect();
+    // A circle that meets the flank dips below it between the two edges.
+    let deepest = first_minimum(above.iter().copied());
+    if above[deepest] >= 0.0 || above[0] < 0.0 || above[CIRCLE_SAMPLES - 1] < 0.0 {
+        return None;
+    }
+    let (a, b) = match convention {
+        Convention::Corrected => {
+            let distance = |range: &[f64]| first_minimum(range.iter().map(|d| d.abs()));
+            (distance(&above[..deepest]), deepest + distance(&above[deepest..]))
+        }
+        Convention::Published => {
+            let mut order: Vec<usize> = (0..CIRCLE_SAMPLES).collect();
+            order.sort_by(|&i, &j| above[i].abs().total_cmp(&above[j].abs()));
+            let pair = if order[1] == order[0] + 1 { (order[1], order[2]) } else { (order[0], order[1]) };
+            (pair.0.min(pair.1), pair.0.max(pair.1))
+        }
+    };
+    let flank_y = |k: usize| samples[k].1 - above[k];
+    Some((flank_y(a), flank_y(b)))
+}
+
+/// Straight lines through (x, y), x uniform; the end pieces extrapolate.
+fn linear(x: &[f64], y: &[f64], at: f64) -> f64 {
+    let step = (x[x.len() - 1] - x[0]) / (x.len() - 1) as f64;
+    crate::interpolation::UniformLinear::uniform(x[0], step, y).at(at)
+}

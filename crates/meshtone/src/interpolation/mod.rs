@@ -1,0 +1,20 @@
+//! Interpolation of sampled curves.
+
+mod cubic_spline;
+mod linear;
+mod natural_spline;
+mod pchip;
+
+pub use cubic_spline::NotAKnotSpline;
+pub use linear::UniformLinear;
+pub use natural_spline::NaturalSpline;
+pub use pchip::Pchip;
+
+/// Interval of a uniform grid that holds `x`, and the position within it.
+///
+/// Outside the grid the nearest interval is used, so that the curve's end piece extrapolates.
+pub(crate) fn locate(x: f64, start: f64, step: f64, points: usize) -> (usize, f64) {
+    let position = (x - start) / step;
+    let interval = (position.max(0.0) as usize).min(points - 2);
+    (interval, position - interval as f64)
+}

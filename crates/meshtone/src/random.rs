@@ -1,0 +1,47 @@
+//! Random draws that depend on nothing but what they are for.
+//!
+//! Every draw is keyed by (seed, purpose, index): a counter-based generator (ChaCha with 8 rounds)
+//! is started at that key, so that results do not depend on threads, lanes or on which other
+//! draws were made.
+
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// What a random number is used for; draws for different purposes are independent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u64)]
+pub(crate) enum Purpose {
+    /// Profile errors of the pinion's teeth; index: tooth.
+    PinionProfileErrors = 1,
+    /// Profile errors of the gear's teeth; index: tooth.
+    GearProfileErrors = 2,
+    /// Roughness of a destroyed flank; index: 0.
+    DestructionNoise = 3,
+    /// Error of the motor's speed, sample by sample; index: 0.
+    SpeedFluctuation = 4,
+    /// Error of the brake's torque, sample by sample; index: 0.
+    TorqueFluctuation = 5,
+}
+
+/// A sequence of uniform numbers.
+pub(crate) struct Draws {
+    generator: ChaCha8Rng,
+}
+
+impl Draws {
+    /// The sequence for `purpose` and `index` under `seed`.
+    pub(crate) fn new(seed: u64, purpose: Purpose, index: u64) -> Self {
+        let mut key = [0; 32];
+        key[..8].copy_from_slice(&seed.to_le_bytes());
+        key[8..16].copy_from_slice(&(purpose as u64).to_le_bytes());
+        key[16..24].copy_from_slice(&index.to_le_bytes());
+        Self { generator: ChaCha8Rng::from_seed(key) }
+    }
+
+    /// Next number, uniform in `centre` ± `half_width`.
+    pub(crate) fn uniform(&mut self, centre: f64, half_width: f64) -> f64 {
+        // 53 random bits: every multiple of 2⁻⁵³ in [0, 1).
+        let unit = (self.generator.next_u64() >> 11) as f64 * 2f64.powi(-53);
+        centre + half_width * (2.0 * unit - 1.0)
+    }
+}

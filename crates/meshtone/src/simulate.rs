@@ -1,0 +1,237 @@
+//! The eight stages, in order.
+
+use std::time::{Duration, Instant};
+
+use crate::dynamics::coordinates::CoordinateVector;
+use crate::dynamics::{ErrorForce, Excitation, MeshLoad, Motion, System};
+use crate::fault::{FaultGeometry, fault_geometry};
+use crate::quality::profile_errors;
+use crate::sampling::{CycleGrid, TimeGrid};
+use crate::scenario::{Convention, ProfileErrors, Scenario, ScenarioError};
+use crate::signal::{ChannelRecorder, Channels};
+use crate::solver::{Recorder, ReducedModel, integrate};
+use crate::stiffness::{MeshStiffness, PairStiffness};
+use crate::tooth::{Teeth, teeth};
+
+/// Results of every stage before the time loop.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stages {
+    /// Stage 1: what is simulated. Under the published convention the keys that the published code ignores are
+    /// at their defaults.
+    pub scenario: Scenario,
+    /// Division of time.
+    pub time: TimeGrid,
+    /// Division of the mesh cycle.
+    pub cycle: CycleGrid,
+    /// Stage 2: healthy teeth and their contact.
+    pub teeth: Teeth,
+    /// Stage 3: profile errors; none for ideal teeth.
+    pub profile_errors: Option<ProfileErrors>,
+    /// Stage 4: the faulty pair; none for a healthy gear.
+    pub fault: Option<FaultGeometry>,
+    /// Stage 5: stiffness of a tooth pair.
+    pub pair: PairStiffness,
+    /// Stage 5: stiffness of the mesh.
+    pub mesh: MeshStiffness,
+    /// Stage 6: the equations of motion.
+    pub system: System,
+    /// Time that each stage took.
+    pub timings: Vec<StageTime>,
+}
+
+/// Time that a stage took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StageTime {
+    /// The stage's name.
+    pub stage: &'static str,
+    /// Wall time.
+    pub elapsed: Duration,
+}
+
+/// A simulation: every stage's results and the signals.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Simulation {
+    /// Stages 1 to 6.
+    pub stages: Stages,
+    /// Stage 8: the kept signals.
+    pub channels: Channels,
+    /// Time that each stage took, the time loop included.
+    pub timings: Vec<StageTime>,
+}
+
+/// Simulates a scenario.
+///
+/// # Arguments
+/// * `scenario` - what is simulated
+///
+/// # Errors
+/// A scenario that is not valid, or a fault that does not fit the tooth.
+///
+/// ```
+/// use meshtone::scenario::Scenario;
+///
+/// let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+/// scenario.solver.sampling_rate_hz = 2e4;
+/// let simulation = meshtone::simulate(&scenario)?;
+/// let force = &simulation.channels.mesh_force_n;
+/// let mean = force.iter().sum::<f64>() / force.len() as f64;
+/// assert!((mean / 187.0 - 1.0).abs() < 0.01);
+/// # Ok::<(), meshtone::scenario::ScenarioError>(())
+/// ```
+pub fn simulate(scenario: &Scenario) -> Result<Simulation, ScenarioError> {
+    let stages = stages(scenario)?;
+    let mut clock = Clock::default();
+    let model = stages.reduced_model();
+    let mut recorder = ChannelRecorder::new(&model, &stages.time);
+    stages.integrate(&model, &mut recorder);
+    let channels = recorder.finish();
+    clock.lap("time integration");
+    let timings = stages.timings.iter().copied().chain(clock.laps).collect();
+    Ok(Simulation { stages, channels, timings })
+}
+
+/// Runs stages 1 to 6: everything before the time loop.
+///
+/// # Arguments
+/// * `scenario` - what is simulated
+///
+/// # Errors
+/// As [`simulate`].
+pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
+    let mut clock = Clock::default();
+    let scenario = honoured(scenario);
+    let (gears, convention) = (&scenario.gears, scenario.convention);
+    let time = TimeGrid::new(&scenario);
+    let cycle = CycleGrid::new(gears.pinion_teeth, gears.gear_teeth, time.sampling_rate_hz);
+    clock.lap("scenario");
+
+    let teeth = teeth(gears, &scenario.rig, convention);
+    clock.lap("tooth profiles");
+
+    let profile_errors = profile_errors(&scenario.quality, &teeth, scenario.seed);
+    clock.lap("profile errors");
+
+    let fault = match &scenario.fault {
+        Some(fault) => Some(fault_geometry(fault, &teeth, convention, scenario.seed)?),
+        None => None,
+    };
+    clock.lap("fault");
+
+    let pair = PairStiffness::new(gears, &teeth, fault.as_ref());
+    let mesh = MeshStiffness::new(&pair, &cycle, convention);
+    clock.lap("mesh stiffness");
+
+    let angle = teeth.gear.pressure_angle_rad;
+    let load = MeshLoad::new(&mesh, fault.as_ref(), &cycle, gears.face_width_mm, angle, convention);
+    let system = System::new(&scenario, &teeth, load);
+    clock.lap("equations of motion");
+    Ok(Stages {
+        time,
+        cycle,
+        teeth,
+        profile_errors,
+        fault,
+        pair,
+        mesh,
+        system,
+        timings: clock.laps,
+        scenario,
+    })
+}
+
+/// The scenario with what its convention does not honour at its default.
+///
+/// Convention: the published code accepts and ignores these, or fails.
+fn honoured(scenario: &Scenario) -> Scenario {
+    let mut honoured = scenario.clone();
+    if scenario.convention == Convention::Published {
+        let default = Scenario::new(1.0, 20, 20, 10.0, 1.0, 1.0);
+        honoured.gears.tip_relief = default.gears.tip_relief;
+        honoured.gears.foundation = default.gears.foundation;
+        honoured.rig.eccentricity_mm = default.rig.eccentricity_mm;
+        honoured.rig.bearing_stiffness_n_per_m = default.rig.bearing_stiffness_n_per_m;
+        honoured.operation.speed_profile_hz = None;
+    }
+    honoured
+}
+
+impl Stages {
+    /// (rev) Simulated revolutions of the pinion at the nominal speed, settling included.
+    pub fn pinion_revolutions(&self) -> f64 {
+        self.time.samples as f64 / self.time.samples_per_pinion_revolution as f64
+    }
+
+    /// Stage 6, the right-hand side: motor, brake and the profile errors' force, sample by sample from the start.
+    pub fn excitation(&self) -> impl Iterator<Item = Excitation> {
+        let errors = ErrorForce::new(
+            &self.scenario,
+            &self.pair,
+            self.profile_errors.as_ref(),
+            self.fault.as_ref(),
+            &self.system.mesh,
+            self.cycle,
+        );
+        Motion::new(&self.scenario, &self.time).map(move |motion| {
+            let nearest = (motion.revolutions / self.cycle.coarse_step_rev).round() as i64;
+            let coarse_point = nearest.rem_euclid(self.cycle.points_per_gear_revolution as i64) as usize;
+            let position_rev = motion.revolutions.rem_euclid(self.system.ratio);
+            Excitation {
+                motor_angle_rad: std::f64::consts::TAU * motion.revolutions,
+                motor_speed_rad_per_s: std::f64::consts::TAU * motion.speed_hz,
+                brake_torque_nm: motion.torque_nm,
+                error_force_n: errors.at(motion.revolutions, position_rev, coarse_point),
+                position_rev,
+                coarse_point,
+            }
+        })
+    }
+
+    /// The equations of motion in the modes that take part in the motion.
+    pub fn reduced_model(&self) -> ReducedModel {
+        let solver = &self.scenario.solver;
+        let displacement = solver.initial_displacement.map_or_else(CoordinateVector::zeros, Into::into);
+        let speed = self.initial_motor_speed_rad_per_s();
+        let velocity = match solver.initial_velocity {
+            Some(given) => given.into(),
+            None => self.system.rigid_rotation() * speed,
+        };
+        ReducedModel::new(&self.system, &displacement, &velocity)
+    }
+
+    fn initial_motor_speed_rad_per_s(&self) -> f64 {
+        let operation = &self.scenario.operation;
+        let speed_hz =
+            operation.speed_profile_hz.as_ref().map_or(operation.pinion_speed_hz, |profile| profile.value[0]);
+        std::f64::consts::TAU * speed_hz
+    }
+
+    /// Stage 7: solves the equations of motion and hands every sample's state to `recorder`.
+    ///
+    /// # Arguments
+    /// * `model` - from [`Self::reduced_model`]
+    /// * `recorder` - takes the states
+    pub fn integrate(&self, model: &ReducedModel, recorder: &mut impl Recorder) {
+        let convention = self.scenario.convention;
+        integrate(model, &self.system, &self.time, &self.cycle, self.excitation(), convention, recorder);
+    }
+}
+
+/// Takes the time of stages.
+struct Clock {
+    last: Instant,
+    laps: Vec<StageTime>,
+}
+
+impl Default for Clock {
+    fn default() -> Self {
+        Self { last: Instant::now(), laps: Vec::new() }
+    }
+}
+
+impl Clock {
+    fn lap(&mut self, stage: &'static str) {
+        let now = Instant::now();
+        self.laps.push(StageTime { stage, elapsed: now - self.last });
+        self.last = now;
+    }
+}

@@ -1,0 +1,148 @@
+//! The equations of motion in modal coordinates, without what stays at rest.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::dynamics::System;
+use crate::dynamics::coordinates::*;
+
+/// Which of the five constant mesh directions one column of `B` stands for, and its vector.
+struct Column {
+    direction: usize,
+    vector: CoordinateVector,
+}
+
+/// The system in the modes that take part in the motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReducedModel {
+    /// Mass-normalised shapes of the active modes in the 13 coordinates.
+    pub shapes: Vec<CoordinateVector>,
+    /// (1/s²) ω² of the active modes.
+    pub stiffness: Vec<f64>,
+    /// (1/s) 2ζω of the active modes.
+    pub damping: Vec<f64>,
+    /// Columns of `ΦᵀB`: the mesh's directions in modal coordinates.
+    pub mesh: Vec<DVector<f64>>,
+    /// Which of the five constant mesh directions each column stands for.
+    pub directions: Vec<usize>,
+    /// (N/m) Mean over the cycle of `S`.
+    pub mean_mesh_stiffness: DMatrix<f64>,
+    /// Modal force per rad of motor angle.
+    pub motor: Vec<f64>,
+    /// Modal force per N m of brake torque.
+    pub brake: Vec<f64>,
+    /// Modal velocity of the rigid rotation at 1 rad/s.
+    pub rigid_velocity: Vec<f64>,
+    /// Modal displacement at the start.
+    pub initial_displacement: Vec<f64>,
+    /// Modal velocity at the start.
+    pub initial_velocity: Vec<f64>,
+}
+
+/// Below this part of the largest entry a modal entry is rounding.
+const ROUNDING: f64 = 1e-13;
+
+impl ReducedModel {
+    /// Leaves out the modes and mesh directions that nothing sets in motion.
+    ///
+    /// # Arguments
+    /// * `system` - the equations of motion
+    /// * `initial_displacement`, `initial_velocity` - initial state in the 13 coordinates
+    pub fn new(
+        system: &System,
+        initial_displacement: &CoordinateVector,
+        initial_velocity: &CoordinateVector,
+    ) -> Self {
+        let turn = &system.directions.turn;
+        let modal = |turned: &CoordinateVector| clean(system.modes.shapes.transpose() * turned);
+        let mass = CoordinateVector::from(system.mass_diagonal);
+        let modal_motion =
+            |motion: &CoordinateVector| modal(&(turn.transpose() * motion).component_mul(&mass));
+        let columns = columns(system);
+        let mesh: Vec<CoordinateVector> = columns.iter().map(|column| modal(&column.vector)).collect();
+        let mut unit = CoordinateVector::zeros();
+        unit[THETA_PINION] = system.shaft_stiffness_nm_per_rad[0];
+        let motor = modal(&unit);
+        unit = CoordinateVector::zeros();
+        unit[THETA_BRAKE] = 1.0;
+        let brake = modal(&unit);
+        let displacement = modal_motion(initial_displacement);
+        let velocity = modal_motion(initial_velocity);
+        let rigid = modal_motion(&system.rigid_rotation());
+
+        let moved = |n: usize| {
+            [&motor, &brake, &displacement, &velocity, &rigid].iter().any(|vector| vector[n] != 0.0)
+        };
+        let mut active_modes: Vec<bool> = (0..COORDINATES).map(moved).collect();
+        let mut active_columns = vec![false; columns.len()];
+        loop {
+            let before = (active_modes.clone(), active_columns.clone());
+            for (c, column) in mesh.iter().enumerate() {
+                let reached = (0..COORDINATES).any(|n| active_modes[n] && column[n] != 0.0)
+                    || (0..columns.len()).any(|d| active_columns[d] && coupled(system, &columns, c, d));
+                active_columns[c] |= reached;
+                for n in 0..COORDINATES {
+                    active_modes[n] |= active_columns[c] && column[n] != 0.0;
+                }
+            }
+            if before == (active_modes.clone(), active_columns.clone()) {
+                break;
+            }
+        }
+
+        let modes: Vec<usize> = (0..COORDINATES).filter(|&n| active_modes[n]).collect();
+        let kept: Vec<usize> = (0..columns.len()).filter(|&c| active_columns[c]).collect();
+        let pick = |vector: &CoordinateVector| modes.iter().map(|&n| vector[n]).collect::<Vec<f64>>();
+        let directions: Vec<usize> = kept.iter().map(|&c| columns[c].direction).collect();
+        let mean = system.mesh.mean_stiffness();
+        Self {
+            shapes: modes.iter().map(|&n| turn * system.modes.shapes.column(n)).collect(),
+            stiffness: modes.iter().map(|&n| system.modes.angular_frequencies[n].powi(2)).collect(),
+            damping: modes.iter().map(|&n| system.modal_damping(n)).collect(),
+            mesh: kept.iter().map(|&c| DVector::from_vec(pick(&mesh[c]))).collect(),
+            mean_mesh_stiffness: DMatrix::from_fn(kept.len(), kept.len(), |r, c| {
+                mean[(directions[r], directions[c])]
+            }),
+            directions,
+            motor: pick(&motor),
+            brake: pick(&brake),
+            rigid_velocity: pick(&rigid),
+            initial_displacement: pick(&displacement),
+            initial_velocity: pick(&velocity),
+        }
+    }
+
+    /// Number of active modes.
+    pub fn modes(&self) -> usize {
+        self.shapes.len()
+    }
+}
+
+/// The directions that the line of action takes. At a constant pressure angle two are enough: the line
+/// itself and its tilt.
+fn columns(system: &System) -> Vec<Column> {
+    let turned = &system.directions.turned;
+    let nominal = system.mesh.nominal.pressure_angle_rad;
+    let constant_angle = system.mesh.faulty.iter().all(|state| state.pressure_angle_rad == nominal);
+    if constant_angle {
+        vec![
+            Column { direction: 0, vector: turned[0] + turned[2] },
+            Column { direction: 3, vector: turned[3] },
+        ]
+    } else {
+        (0..turned.len()).map(|direction| Column { direction, vector: turned[direction] }).collect()
+    }
+}
+
+/// Whether the mesh couples two columns at any point of the cycle beyond the mean, which the modes hold.
+fn coupled(system: &System, columns: &[Column], c: usize, d: usize) -> bool {
+    let nominal = system.mesh.nominal.pressure_angle_rad;
+    let (c, d) = (columns[c].direction, columns[d].direction);
+    std::iter::once(&system.mesh.nominal)
+        .chain(&system.mesh.faulty)
+        .any(|state| state.mean_square(nominal)[(c, d)] != 0.0)
+}
+
+fn clean(vector: CoordinateVector) -> CoordinateVector {
+    let largest = vector.amax();
+    vector.map(|entry| if entry.abs() < ROUNDING * largest { 0.0 } else { entry })
+}

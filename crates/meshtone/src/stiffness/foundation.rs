@@ -1,0 +1,43 @@
+//! Deflection of the wheel's body under the tooth (fillet foundation).
+//!
+//! `(cos²α/(E W)) (L u² + M u + P (1 + Q tan²α))`, `u = (x − Rd − y tan α)/S_f`, `S_f = 2 θ_f Rd`.
+//! Source: P. Sainsot, P. Velex, O. Duverger, Journal of Mechanical Design 126 (2004).
+
+use crate::scenario::FoundationCoefficients;
+use crate::tooth::{ToothProfile, Wheel};
+
+/// The polynomials of one wheel.
+pub(super) struct Foundation {
+    l: f64,
+    m: f64,
+    p: f64,
+    q: f64,
+    root_radius_mm: f64,
+    root_thickness_mm: f64,
+}
+
+impl Foundation {
+    pub(super) fn new(wheel: &Wheel, profile: &ToothProfile, coefficients: &FoundationCoefficients) -> Self {
+        let theta = (profile.y_mm[0] / profile.x_mm[0]).atan();
+        let h = wheel.root_radius_mm / wheel.bore_radius_mm;
+        let polynomial = |[a, b, c, d, e, f]: [f64; 6]| {
+            a / (theta * theta) + b * h * h + c * h / theta + d / theta + e * h + f
+        };
+        Self {
+            l: polynomial(coefficients.l),
+            m: polynomial(coefficients.m),
+            p: polynomial(coefficients.p),
+            q: polynomial(coefficients.q),
+            root_radius_mm: wheel.root_radius_mm,
+            root_thickness_mm: 2.0 * theta * wheel.root_radius_mm,
+        }
+    }
+
+    /// (mm/N) Compliance of a load at (x, y) over `width_mm`, at pressure angle `alpha`.
+    pub(super) fn compliance(&self, (x, y): (f64, f64), alpha: f64, width_mm: f64, youngs_mpa: f64) -> f64 {
+        let (cos, tan) = (alpha.cos(), alpha.tan());
+        let u = (x - self.root_radius_mm - y * tan) / self.root_thickness_mm;
+        cos * cos / (youngs_mpa * width_mm)
+            * (self.l * u * u + self.m * u + self.p * (1.0 + self.q * tan * tan))
+    }
+}

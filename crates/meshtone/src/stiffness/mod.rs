@@ -1,0 +1,21 @@
+//! Stage 5: mesh stiffness by strain energy.
+//!
+//! One file per compliance. A compliance is the displacement along the line of action under a unit
+//! force there, at each point of contact; a tooth's is their sum ([`ToothCompliance`]), a pair's
+//! stiffness the inverse of both teeth's and the contact's ([`PairStiffness`]), and the mesh's the sum of the pairs in
+//! contact ([`MeshStiffness`]).
+
+mod axial;
+mod bending;
+mod energy;
+mod foundation;
+mod hertz;
+mod mesh;
+mod pair;
+mod shear;
+mod tooth;
+
+pub use hertz::hertz_compliance_mm_per_n;
+pub use mesh::MeshStiffness;
+pub use pair::{PairCurve, PairStiffness};
+pub use tooth::ToothCompliance;

@@ -1,0 +1,283 @@
+//! The profile of a healthy tooth: fillet, involute, crowning, tip relief.
+
+use super::wheel::{Wheel, involute};
+use crate::interpolation::NaturalSpline;
+use crate::scenario::{Convention, ReliefShape, TipRelief};
+
+/// Working flank of a tooth in its own plane: x along the tooth's centre line from the wheel's
+/// centre, y towards the flank. Points are uniform in x from root to tip.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ToothProfile {
+    /// (mm) Distance from the wheel's centre along the tooth's centre line, rising.
+    pub x_mm: Vec<f64>,
+    /// (mm) Half thickness of the tooth.
+    pub y_mm: Vec<f64>,
+    /// Index of the point where the tip relief starts.
+    pub tip_relief_index: Option<usize>,
+}
+
+impl ToothProfile {
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.x_mm.len()
+    }
+
+    /// Whether there are no points.
+    pub fn is_empty(&self) -> bool {
+        self.x_mm.is_empty()
+    }
+
+    /// (mm) Distance of point `index` from the wheel's centre.
+    pub fn radius_mm(&self, index: usize) -> f64 {
+        self.x_mm[index].hypot(self.y_mm[index])
+    }
+
+    /// (mm) x of the tip.
+    pub fn tip_x_mm(&self) -> f64 {
+        self.x_mm[self.len() - 1]
+    }
+
+    /// Index of the point nearest to `radius_mm` from the wheel's centre (the first of equals).
+    pub fn nearest_to_radius(&self, radius_mm: f64) -> usize {
+        first_minimum((0..self.len()).map(|i| (self.radius_mm(i) - radius_mm).abs()))
+    }
+
+    /// Index of the point whose x is nearest to `x_mm` (the first of equals).
+    pub fn nearest_to_x(&self, x_mm: f64) -> usize {
+        first_minimum(self.x_mm.iter().map(|x| (x - x_mm).abs()))
+    }
+}
+
+/// Index of the first smallest value.
+pub(crate) fn first_minimum(values: impl Iterator<Item = f64>) -> usize {
+    let mut best = (0, f64::INFINITY);
+    for (index, value) in values.enumerate() {
+        if value < best.1 {
+            best = (index, value);
+        }
+    }
+    best.0
+}
+
+/// Generates the working flank of a healthy tooth.
+///
+/// # Arguments
+/// * `wheel` - the tooth's wheel
+/// * `points` - (≥ 2) number of points, uniform in x
+/// * `crowning_mm` - (mm) constant reduction of y
+/// * `relief` - tip relief, or none
+/// * `convention` - how fillet and involute are joined
+pub fn tooth_profile(
+    wheel: &Wheel,
+    points: usize,
+    crowning_mm: f64,
+    relief: Option<TipRelief>,
+    convention: Convention,
+) -> ToothProfile {
+    let flank = Flank::new(wheel, convention);
+    let start = flank.start_x_mm();
+    let step = (flank.tip_x_mm() - start) / (points - 1) as f64;
+    let mut x_mm: Vec<f64> = (0..points).map(|i| start + step * i as f64).collect();
+    x_mm[points - 1] = flank.tip_x_mm();
+    let mut roll = RollAngle::default();
+    let y_mm = x_mm.iter().map(|&x| flank.half_thickness_mm(x, &mut roll) - crowning_mm).collect();
+    let mut profile = ToothProfile { x_mm, y_mm, tip_relief_index: None };
+    if let Some(relief) = relief {
+        relieve_tip(&mut profile, relief);
+    }
+    profile
+}
+
+/// The exact curve that the profile samples.
+///
+/// With the roll angle `u = tan a` and `β = θ0 + inv α − u` the involute `r = Rb/cos a`,
+/// `θ = θ0 + inv α − inv a` reads `x = Rb (cos β − u sin β)`, `y = Rb (sin β + u cos β)`.
+struct Flank {
+    base_radius_mm: f64,
+    /// (rad) `θ0 + inv α`: polar angle of the involute's foot on the base circle.
+    foot_angle_rad: f64,
+    /// Roll angle where the sampled part of the involute starts.
+    first_roll: f64,
+    last_roll: f64,
+    fillet: Option<Fillet>,
+    bridge: Option<NaturalSpline>,
+}
+
+/// A circular arc from the root circle, mid-way between two teeth, to the foot of the involute.
+///
+/// Along the ray at angle γ from the arc's centre the near intersection is
+/// `r = c − √(c² − Rd (Rd + 2ρ))`, `c = (Rd + ρ) cos γ`: a circle of radius ρ round the point
+/// (Rd + ρ, 2 θ0) in polar coordinates.
+struct Fillet {
+    radius_mm: f64,
+    centre_x_mm: f64,
+    centre_y_mm: f64,
+    start_x_mm: f64,
+    end_x_mm: f64,
+    /// (rad) γ of the involute's foot, `ψ`.
+    foot_gamma_rad: f64,
+}
+
+/// Number of points on the fillet of the published code.
+const FILLET_SAMPLES: usize = 5_000;
+/// Number of points on either side of the joint between fillet and involute that a spline through it still
+/// feels: the effect of a point shrinks by 0.27 from one to the next.
+const BRIDGE_KNOTS: usize = 60;
+/// Number of points on the involute among which the published code seeks the root circle.
+const INVOLUTE_SAMPLES: usize = 15_001;
+
+impl Flank {
+    fn new(wheel: &Wheel, convention: Convention) -> Self {
+        let (base, root) = (wheel.base_radius_mm, wheel.root_radius_mm);
+        let half_thickness = wheel.half_thickness_angle_rad();
+        let foot_angle_rad = half_thickness + involute(wheel.pressure_angle_rad);
+        let tip_angle = (base / wheel.tip_radius_mm).acos();
+        let fillet = Fillet::new(wheel, half_thickness, foot_angle_rad);
+        let angle = |k: usize| tip_angle * k as f64 / (INVOLUTE_SAMPLES - 1) as f64;
+        let first_roll = if fillet.is_some() {
+            0.0
+        } else {
+            let k = first_minimum(
+                (0..INVOLUTE_SAMPLES).map(|k| ((base / angle(k).cos()).powi(2) - root * root).abs()),
+            );
+            angle(k).tan()
+        };
+        let mut flank = Self {
+            base_radius_mm: base,
+            foot_angle_rad,
+            first_roll,
+            last_roll: tip_angle.tan(),
+            fillet,
+            bridge: None,
+        };
+        // Convention: the published code takes the fillet's nearer intersection with each ray. Where the involute's
+        // foot lies on the arc's farther side (small tooth counts) that leaves a gap, which its resampling
+        // bridges by a cubic spline through both curves' points.
+        if let (Convention::Published, Some(fillet)) = (convention, &flank.fillet) {
+            let (mut x, mut y) = fillet.last_published_points();
+            for k in 0..BRIDGE_KNOTS {
+                let (involute_x, involute_y) = flank.involute_point_mm(angle(k).tan());
+                x.push(involute_x);
+                y.push(involute_y);
+            }
+            flank.bridge = Some(NaturalSpline::new(x, y));
+        }
+        flank
+    }
+
+    fn involute_point_mm(&self, roll: f64) -> (f64, f64) {
+        let (sin, cos) = (self.foot_angle_rad - roll).sin_cos();
+        (self.base_radius_mm * (cos - roll * sin), self.base_radius_mm * (sin + roll * cos))
+    }
+
+    fn start_x_mm(&self) -> f64 {
+        self.fillet.as_ref().map_or_else(|| self.involute_point_mm(self.first_roll).0, |f| f.start_x_mm)
+    }
+
+    fn tip_x_mm(&self) -> f64 {
+        self.involute_point_mm(self.last_roll).0
+    }
+
+    /// y at `x`; `roll` carries the solution from one point to the next, rising x.
+    fn half_thickness_mm(&self, x: f64, roll: &mut RollAngle) -> f64 {
+        if let Some(bridge) = &self.bridge
+            && x > bridge.range().0
+            && x < bridge.range().1
+        {
+            return bridge.at(x);
+        }
+        if let Some(fillet) = &self.fillet
+            && x < fillet.end_x_mm
+        {
+            return fillet.y_mm(x);
+        }
+        // dx/d(u²) = Rb cos β / 2 does not vanish at the base circle, dx/du does: solve for u².
+        let mut squared = roll.squared.max(self.first_roll * self.first_roll);
+        for _ in 0..MAX_NEWTON_STEPS {
+            let u = squared.sqrt();
+            let (sin, cos) = (self.foot_angle_rad - u).sin_cos();
+            let step = 2.0 * (x / self.base_radius_mm - (cos - u * sin)) / cos;
+            squared = (squared + step).max(0.0);
+            // The step is quadratic in the last one: below 1e-9 the next is below rounding.
+            if step.abs() < 1e-9 * (1e-6 + squared) {
+                break;
+            }
+        }
+        roll.squared = squared;
+        self.involute_point_mm(squared.sqrt()).1
+    }
+}
+
+const MAX_NEWTON_STEPS: usize = 20;
+
+/// Square of the roll angle at the last point that was solved for.
+#[derive(Default)]
+struct RollAngle {
+    squared: f64,
+}
+
+impl Fillet {
+    /// None where the root circle lies outside the base circle or leaves no room for an arc.
+    fn new(wheel: &Wheel, half_thickness: f64, foot_angle: f64) -> Option<Self> {
+        let (base, root) = (wheel.base_radius_mm, wheel.root_radius_mm);
+        // ψ = θ0 − inv α: from the middle of the tooth space to the foot of the involute.
+        let psi = 2.0 * half_thickness - foot_angle;
+        let room = 2.0 * base * psi.cos() - 2.0 * root;
+        if root >= base || room <= 0.0 || psi <= 0.0 {
+            return None;
+        }
+        let radius_mm = (root * root + base * base - 2.0 * root * base * psi.cos()) / room;
+        let (sin, cos) = (2.0 * half_thickness).sin_cos();
+        Some(Self {
+            radius_mm,
+            centre_x_mm: (root + radius_mm) * cos,
+            centre_y_mm: (root + radius_mm) * sin,
+            start_x_mm: root * cos,
+            end_x_mm: base * foot_angle.cos(),
+            foot_gamma_rad: psi,
+        })
+    }
+
+    /// The published code's points nearest to the joint; its very last one is left to the involute.
+    fn last_published_points(&self) -> (Vec<f64>, Vec<f64>) {
+        let distance = self.centre_x_mm.hypot(self.centre_y_mm);
+        let centre_angle = self.centre_y_mm.atan2(self.centre_x_mm);
+        let last = FILLET_SAMPLES - 1;
+        (last - BRIDGE_KNOTS..last)
+            .map(|k| {
+                let gamma = self.foot_gamma_rad * k as f64 / last as f64;
+                let c = distance * gamma.cos();
+                let squared = self.radius_mm.powi(2) - (distance * gamma.sin()).powi(2);
+                let r = c - squared.max(0.0).sqrt();
+                let theta = centre_angle - gamma;
+                (r * theta.cos(), r * theta.sin())
+            })
+            .unzip()
+    }
+
+    fn y_mm(&self, x: f64) -> f64 {
+        let dx = x - self.centre_x_mm;
+        self.centre_y_mm - (self.radius_mm * self.radius_mm - dx * dx).max(0.0).sqrt()
+    }
+}
+
+fn relieve_tip(profile: &mut ToothProfile, relief: TipRelief) {
+    let tip = profile.tip_x_mm();
+    let edge = profile.nearest_to_x(tip - relief.length_mm);
+    let (x_edge, y_edge) = (profile.x_mm[edge], profile.y_mm[edge]);
+    let slope = if edge == 0 {
+        0.0
+    } else {
+        (y_edge - profile.y_mm[edge - 1]) / (x_edge - profile.x_mm[edge - 1])
+    };
+    let reach = tip - x_edge;
+    let (linear, quadratic) = match relief.shape {
+        ReliefShape::Linear => (-relief.depth_mm / relief.length_mm, 0.0),
+        ReliefShape::Parabolic => (slope, (-relief.depth_mm - slope * reach) / (reach * reach)),
+    };
+    for (x, y) in profile.x_mm.iter().zip(&mut profile.y_mm).skip(edge) {
+        let dx = x - x_edge;
+        *y = y_edge + dx * (linear + quadratic * dx);
+    }
+    profile.tip_relief_index = Some(edge);
+}

@@ -1,0 +1,161 @@
+//! Fields of the time loop.
+
+use super::{Trace, static_stages};
+use crate::dynamics::coordinates::{COORDINATES, CoordinateVector};
+use crate::scenario::{Scenario, ScenarioError};
+use crate::signal::{ChannelRecorder, Channels};
+use crate::simulate::{Simulation, Stages, stages};
+use crate::solver::{Projection, Recorder, ReducedModel, StateView};
+
+/// How many samples of each quantity a trace holds.
+const FIRST_FORCES: usize = 200;
+const KEPT_FORCES: usize = 500;
+const ERROR_FORCES: usize = 2000;
+const ACCELERATIONS: usize = 4000;
+const STATES: usize = 200;
+const LAST_ACCELERATIONS: usize = 200;
+const LAST_DISPLACEMENTS: usize = 20;
+
+/// Simulates a scenario and returns every stage's output by name, beside the simulation itself.
+///
+/// # Arguments
+/// * `scenario` - what is simulated
+///
+/// # Errors
+/// As [`crate::simulate`].
+pub fn trace(scenario: &Scenario) -> Result<(Simulation, Trace), ScenarioError> {
+    let stages = stages(scenario)?;
+    let mut trace = Trace::default();
+    static_stages(&mut trace, &stages);
+    forces(&mut trace, &stages);
+    let model = stages.reduced_model();
+    let mut recorder = StateRecorder::new(&model, &stages);
+    stages.integrate(&model, &mut recorder);
+    let channels = recorder.finish(&mut trace);
+    let timings = stages.timings.clone();
+    Ok((Simulation { stages, channels, timings }, trace))
+}
+
+fn forces(trace: &mut Trace, stages: &Stages) {
+    let system = &stages.system;
+    let kept = stages.time.first_kept_sample;
+    let mut first = Vec::with_capacity(FIRST_FORCES);
+    let mut of_kept = Vec::with_capacity(KEPT_FORCES);
+    let mut errors = Vec::with_capacity(ERROR_FORCES);
+    for (sample, excitation) in stages.excitation().take(stages.time.samples).enumerate() {
+        let force = || system.force(&excitation, stages.scenario.convention);
+        if sample < FIRST_FORCES {
+            first.push(force());
+        }
+        if sample >= kept {
+            errors.push(excitation.error_force_n);
+            if sample < kept + KEPT_FORCES {
+                of_kept.push(force());
+            }
+            if sample + 1 == kept + ERROR_FORCES {
+                break;
+            }
+        }
+    }
+    let by_coordinate = |trace: &mut Trace, name: &str, forces: &[CoordinateVector]| {
+        trace.matrix(name, COORDINATES, forces.len(), |coordinate, sample| forces[sample][coordinate]);
+    };
+    by_coordinate(trace, "force_first_200", &first);
+    by_coordinate(trace, "force_kept_first_500", &of_kept);
+    trace.vector("mesh_error_force_n", errors);
+}
+
+/// Records channels and, in windows, the state in all 13 coordinates.
+struct StateRecorder {
+    channels: ChannelRecorder,
+    coordinates: Vec<Projection>,
+    kept: usize,
+    samples: usize,
+    acceleration: Vec<[f64; COORDINATES]>,
+    velocity: Vec<[f64; COORDINATES]>,
+    displacement: Vec<[f64; COORDINATES]>,
+    last_acceleration: Vec<[f64; COORDINATES]>,
+    last_displacement: Vec<[f64; COORDINATES]>,
+    square_sum: [f64; COORDINATES],
+    velocity_sum: [f64; COORDINATES],
+}
+
+impl StateRecorder {
+    fn new(model: &ReducedModel, stages: &Stages) -> Self {
+        let coordinates = (0..COORDINATES)
+            .map(|coordinate| {
+                let mut weights = [0.0; COORDINATES];
+                weights[coordinate] = 1.0;
+                Projection::new(model, &weights)
+            })
+            .collect();
+        Self {
+            channels: ChannelRecorder::new(model, &stages.time),
+            coordinates,
+            kept: stages.time.first_kept_sample,
+            samples: stages.time.samples,
+            acceleration: Vec::new(),
+            velocity: Vec::new(),
+            displacement: Vec::new(),
+            last_acceleration: Vec::new(),
+            last_displacement: Vec::new(),
+            square_sum: [0.0; COORDINATES],
+            velocity_sum: [0.0; COORDINATES],
+        }
+    }
+
+    fn all(&self, of: impl Fn(&Projection) -> f64) -> [f64; COORDINATES] {
+        std::array::from_fn(|coordinate| of(&self.coordinates[coordinate]))
+    }
+
+    fn finish(self, trace: &mut Trace) -> Channels {
+        let states = |trace: &mut Trace, name: &str, rows: &[[f64; COORDINATES]]| {
+            trace.matrix(name, rows.len(), COORDINATES, |sample, coordinate| rows[sample][coordinate]);
+        };
+        let count = (self.samples - self.kept) as f64;
+        let rms = |values: &[f64]| (values.iter().map(|v| v * v).sum::<f64>() / count).sqrt();
+        states(trace, "acceleration", &self.acceleration);
+        states(trace, "velocity", &self.velocity);
+        states(trace, "displacement", &self.displacement);
+        states(trace, "acceleration_last_200", &self.last_acceleration);
+        states(trace, "displacement_last_20", &self.last_displacement);
+        trace.vector("acceleration_rms", self.square_sum.map(|sum| (sum / count).sqrt()));
+        trace.vector("velocity_mean", self.velocity_sum.map(|sum| sum / count));
+        let channels = self.channels.finish();
+        trace.vector(
+            "rms_g_horizontal_vertical_axial",
+            [rms(&channels.horizontal_g), rms(&channels.vertical_g), rms(&channels.axial_g)],
+        );
+        channels
+    }
+}
+
+impl Recorder for StateRecorder {
+    fn record(&mut self, sample: usize, state: &StateView) {
+        self.channels.record(sample, state);
+        if sample < self.kept {
+            return;
+        }
+        let since = sample - self.kept;
+        let until = self.samples - sample;
+        let acceleration = self.all(|coordinate| coordinate.acceleration(state));
+        let velocity = self.all(|coordinate| coordinate.velocity(state));
+        for coordinate in 0..COORDINATES {
+            self.square_sum[coordinate] += acceleration[coordinate] * acceleration[coordinate];
+            self.velocity_sum[coordinate] += velocity[coordinate];
+        }
+        if since < ACCELERATIONS {
+            self.acceleration.push(acceleration);
+        }
+        if since < STATES {
+            self.velocity.push(velocity);
+            self.displacement.push(self.all(|coordinate| coordinate.displacement(state)));
+        }
+        if until <= LAST_ACCELERATIONS {
+            self.last_acceleration.push(acceleration);
+        }
+        if until <= LAST_DISPLACEMENTS {
+            self.last_displacement.push(self.all(|coordinate| coordinate.displacement(state)));
+        }
+    }
+}
