@@ -2,3 +2,4 @@
 #![deny(missing_docs)]
 
 pub mod scenario;
+pub mod toml_reader;

@@ -14,7 +14,7 @@ mod quality;
 mod rig;
 mod solver;
 
-pub use error::ScenarioError;
+pub use error::{ScenarioError, ScenarioWarning};
 pub use fault::{
     DestructionLine, Fault, PartialFace, PitCircle, ThroughFace, ToothBreakage, ToothDestruction,
 };
