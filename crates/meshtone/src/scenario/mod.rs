@@ -13,6 +13,7 @@ mod operation;
 mod quality;
 mod rig;
 mod solver;
+mod validate;
 
 pub use error::{ScenarioError, ScenarioWarning};
 pub use fault::{
@@ -24,6 +25,7 @@ pub use operation::{Operation, Profile};
 pub use quality::{ERROR_POINTS, ProfileErrors, Quality};
 pub use rig::{DampingRatio, Rig, Shaft, WheelInertia};
 pub use solver::Solver;
+pub use validate::MEMORY_LIMIT_BYTES;
 
 /// Which of two readings of the model is simulated.
 ///
