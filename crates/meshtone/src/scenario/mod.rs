@@ -7,6 +7,7 @@
 
 mod error;
 mod fault;
+mod from_toml;
 mod gears;
 mod material;
 mod operation;
@@ -19,6 +20,7 @@ pub use error::{ScenarioError, ScenarioWarning};
 pub use fault::{
     DestructionLine, Fault, PartialFace, PitCircle, ThroughFace, ToothBreakage, ToothDestruction,
 };
+pub use from_toml::{FileProblem, ScenarioFiles, line_of_key};
 pub use gears::{FoundationCoefficients, Gears, ReliefShape, TipRelief};
 pub use material::Material;
 pub use operation::{Operation, Profile};
