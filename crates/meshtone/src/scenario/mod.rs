@@ -14,6 +14,7 @@ mod operation;
 mod quality;
 mod rig;
 mod solver;
+mod to_toml;
 mod validate;
 
 pub use error::{ScenarioError, ScenarioWarning};
