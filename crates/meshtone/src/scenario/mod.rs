@@ -14,6 +14,7 @@ mod operation;
 mod quality;
 mod rig;
 mod solver;
+mod template;
 mod to_toml;
 mod validate;
 
@@ -28,6 +29,7 @@ pub use operation::{Operation, Profile};
 pub use quality::{ERROR_POINTS, ProfileErrors, Quality};
 pub use rig::{DampingRatio, Rig, Shaft, WheelInertia};
 pub use solver::Solver;
+pub use template::{TEMPLATE_KINDS, template};
 pub use validate::MEMORY_LIMIT_BYTES;
 
 /// Which of two readings of the model is simulated.
