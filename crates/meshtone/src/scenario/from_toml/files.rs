@@ -13,7 +13,8 @@ pub trait ScenarioFiles {
     /// * `name` - as written in the scenario file
     ///
     /// # Errors
-    /// What is wrong with the file. Shape and values are checked by [`super::super::Scenario::validate`].
+    /// What is wrong with the file. Shape and values are checked by
+    /// [`Scenario::validate`](crate::scenario::Scenario::validate).
     fn profile_errors(&self, name: &str) -> Result<ProfileErrors, FileProblem>;
 
     /// The profile in a file named by `operation.speed_profile_hz` or `operation.torque_profile_nm`.
@@ -23,7 +24,7 @@ pub trait ScenarioFiles {
     ///
     /// # Errors
     /// What is wrong with the file. Order of times and values are checked by
-    /// [`super::super::Scenario::validate`].
+    /// [`Scenario::validate`](crate::scenario::Scenario::validate).
     fn profile(&self, name: &str) -> Result<Profile, FileProblem>;
 }
 
