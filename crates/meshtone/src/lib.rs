@@ -12,6 +12,7 @@ pub mod signal;
 mod simulate;
 pub mod solver;
 pub mod stiffness;
+pub mod toml_reader;
 pub mod tooth;
 mod trace;
 

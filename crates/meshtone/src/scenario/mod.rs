@@ -7,23 +7,30 @@
 
 mod error;
 mod fault;
+mod from_toml;
 mod gears;
 mod material;
 mod operation;
 mod quality;
 mod rig;
 mod solver;
+mod template;
+mod to_toml;
+mod validate;
 
-pub use error::ScenarioError;
+pub use error::{ScenarioError, ScenarioWarning};
 pub use fault::{
     DestructionLine, Fault, PartialFace, PitCircle, ThroughFace, ToothBreakage, ToothDestruction,
 };
+pub use from_toml::{FileProblem, ScenarioFiles, line_of_key};
 pub use gears::{FoundationCoefficients, Gears, ReliefShape, TipRelief};
 pub use material::Material;
 pub use operation::{Operation, Profile};
 pub use quality::{ERROR_POINTS, ProfileErrors, Quality};
 pub use rig::{DampingRatio, Rig, Shaft, WheelInertia};
 pub use solver::Solver;
+pub use template::{TEMPLATE_KINDS, template};
+pub use validate::MEMORY_LIMIT_BYTES;
 
 /// Which of two readings of the model is simulated.
 ///

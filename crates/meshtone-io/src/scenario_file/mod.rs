@@ -1,0 +1,102 @@
+//! Scenario files, with the files that they name.
+
+mod profile_csv;
+mod profile_errors_npz;
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use meshtone::scenario::{FileProblem, Profile, ProfileErrors, Scenario, ScenarioError, ScenarioFiles};
+
+pub use profile_errors_npz::write_profile_errors_npz;
+
+/// A scenario file that could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadScenarioError {
+    /// The file itself cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Unreadable {
+        /// The scenario file.
+        path: PathBuf,
+        /// Why it cannot be read.
+        source: io::Error,
+    },
+    /// What it says is wrong, or what a file that it names says.
+    #[error("{}: {error}", path.display())]
+    Invalid {
+        /// The scenario file.
+        path: PathBuf,
+        /// Its text, to show the line.
+        text: String,
+        /// What is wrong, with key and line.
+        error: Box<ScenarioError>,
+    },
+}
+
+/// Reads and validates a scenario file, and the files that it names.
+///
+/// # Arguments
+/// * `path` - the scenario file; names of other files in it are relative to its directory
+///
+/// # Errors
+/// The file cannot be read or is not UTF-8 text, or [`Scenario::from_toml_with_files`] refuses it.
+///
+/// ```
+/// use meshtone::scenario::template;
+/// use meshtone_io::scenario_file::read_scenario;
+///
+/// let directory = tempfile::tempdir()?;
+/// let path = directory.path().join("healthy.toml");
+/// std::fs::write(&path, template("healthy").unwrap())?;
+/// assert_eq!(read_scenario(&path)?.gears.pinion_teeth, 17);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn read_scenario(path: &Path) -> Result<Scenario, ReadScenarioError> {
+    let unreadable = |source| ReadScenarioError::Unreadable { path: path.to_path_buf(), source };
+    let text = std::fs::read_to_string(path).map_err(unreadable)?;
+    let files = FilesBeside::new(path.parent().unwrap_or(Path::new("")));
+    match Scenario::from_toml_with_files(&text, &files) {
+        Ok(scenario) => Ok(scenario),
+        Err(error) => {
+            Err(ReadScenarioError::Invalid { path: path.to_path_buf(), text, error: Box::new(error) })
+        }
+    }
+}
+
+/// The files that a scenario names, relative to a directory.
+#[derive(Debug, Clone)]
+pub struct FilesBeside {
+    directory: PathBuf,
+}
+
+impl FilesBeside {
+    /// Files relative to a directory.
+    ///
+    /// # Arguments
+    /// * `directory` - where relative names start
+    pub fn new(directory: impl Into<PathBuf>) -> Self {
+        Self { directory: directory.into() }
+    }
+}
+
+impl ScenarioFiles for FilesBeside {
+    fn profile_errors(&self, name: &str) -> Result<ProfileErrors, FileProblem> {
+        profile_errors_npz::read(&self.directory.join(name))
+    }
+
+    fn profile(&self, name: &str) -> Result<Profile, FileProblem> {
+        profile_csv::read(&self.directory.join(name))
+    }
+}
+
+/// A file that cannot be opened or read.
+fn unreadable(path: &Path, error: &io::Error) -> FileProblem {
+    let shown = path.display();
+    match error.kind() {
+        io::ErrorKind::NotFound => FileProblem::new(
+            format!("there is no file {shown}"),
+            "check the name; it is relative to the scenario file's directory",
+        ),
+        _ => FileProblem::new(format!("cannot read {shown}: {error}"), "check the file and its permissions"),
+    }
+}

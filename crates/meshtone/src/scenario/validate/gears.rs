@@ -1,0 +1,178 @@
+//! Rules for `[gears]`.
+
+use std::f64::consts::PI;
+
+use super::super::{Gears, ScenarioError, ScenarioWarning, TipRelief};
+use super::rules::{Check, below, finite, positive_up_to, require};
+
+const FEWEST_TEETH: u32 = 6;
+const MOST_TEETH: u32 = 10_000;
+const PRESSURE_ANGLES_DEG: [f64; 2] = [10.0, 35.0];
+const POINTS_PER_TOOTH: [usize; 2] = [500, 1_000_000];
+
+impl Gears {
+    /// (-) Contact ratio: how many tooth pairs are in contact, on average.
+    ///
+    /// For teeth of standard addendum, without regard to undercut.
+    pub fn contact_ratio(&self) -> f64 {
+        let angle = self.pressure_angle_deg.to_radians();
+        let (z1, z2) = (f64::from(self.pinion_teeth), f64::from(self.gear_teeth));
+        let to_tip = |z: f64| ((z + 2.0).powi(2) - (z * angle.cos()).powi(2)).sqrt();
+        (to_tip(z1) + to_tip(z2) - (z1 + z2) * angle.sin()) / (2.0 * PI * angle.cos())
+    }
+}
+
+pub(super) fn check(gears: &Gears) -> Check {
+    positive_up_to("gears.module_mm", gears.module_mm, 100.0, "mm")?;
+    teeth("gears.pinion_teeth", gears.pinion_teeth)?;
+    teeth("gears.gear_teeth", gears.gear_teeth)?;
+    positive_up_to("gears.face_width_mm", gears.face_width_mm, 10_000.0, "mm")?;
+    pressure_angle(gears)?;
+    contact_ratio(gears)?;
+    gears.tip_relief.map_or(Ok(()), |relief| tip_relief(&relief, gears.module_mm))?;
+    let thickness = half_thickness_mm(gears.module_mm);
+    below("gears.crowning_mm", gears.crowning_mm, thickness, HALF_THICKNESS)?;
+    points_per_tooth(gears.points_per_tooth)?;
+    foundation(gears)
+}
+
+/// What [`half_thickness_mm`] is, in words for a message.
+pub(super) const HALF_THICKNESS: &str = "half the tooth's thickness at the pitch circle";
+
+/// (mm) Half a tooth's thickness at the pitch circle.
+pub(super) fn half_thickness_mm(module_mm: f64) -> f64 {
+    PI * module_mm / 4.0
+}
+
+/// (mm) Height of a tooth of standard proportions, from root to tip.
+pub(super) fn tooth_height_mm(module_mm: f64) -> f64 {
+    2.25 * module_mm
+}
+
+/// Undercut, by the rule `z < 2/sin²α`. Its limit is rounded down, as in the textbooks: for 20° it
+/// is 17.1, and 17 teeth are made without undercut to speak of.
+pub(super) fn warnings(gears: &Gears) -> Vec<ScenarioWarning> {
+    let limit = (2.0 / gears.pressure_angle_deg.to_radians().sin().powi(2)).floor();
+    [("gears.pinion_teeth", gears.pinion_teeth), ("gears.gear_teeth", gears.gear_teeth)]
+        .into_iter()
+        .filter(|(_, teeth)| f64::from(*teeth) < limit)
+        .map(|(key, teeth)| {
+            let angle = gears.pressure_angle_deg;
+            let message = format!(
+                "{teeth} teeth are undercut at a pressure angle of {angle}° (fewer than {limit}), which \
+                 the tooth profile of this model does not show; use at least {limit} teeth, or a larger \
+                 pressure angle"
+            );
+            ScenarioWarning::new(key, message)
+        })
+        .collect()
+}
+
+fn teeth(key: &str, teeth: u32) -> Check {
+    if (FEWEST_TEETH..=MOST_TEETH).contains(&teeth) {
+        return Ok(());
+    }
+    Err(ScenarioError::new(key, teeth, format!("must be from {FEWEST_TEETH} to {MOST_TEETH} teeth")))
+}
+
+fn pressure_angle(gears: &Gears) -> Check {
+    const KEY: &str = "gears.pressure_angle_deg";
+    let angle = gears.pressure_angle_deg;
+    let [least, most] = PRESSURE_ANGLES_DEG;
+    require(KEY, angle, (least..=most).contains(&angle), format!("must be from {least}° to {most}°"))
+        .map_err(|error| error.with_help("usual pressure angles are 14.5°, 20° and 25°"))?;
+    let fewest = gears.pinion_teeth.min(gears.gear_teeth);
+    require(
+        KEY,
+        angle,
+        tip_half_angle(f64::from(fewest), angle.to_radians()) > 0.0,
+        format!(
+            "must be smaller for a wheel of {fewest} teeth, whose tips would be pointed below full height"
+        ),
+    )
+    .map_err(|error| error.with_help("lower gears.pressure_angle_deg, or use more teeth"))
+}
+
+/// (rad) Half the angle that a tooth's tip subtends at the wheel's centre.
+fn tip_half_angle(teeth: f64, pressure_angle: f64) -> f64 {
+    let involute = |angle: f64| angle.tan() - angle;
+    let at_tip = (teeth * pressure_angle.cos() / (teeth + 2.0)).acos();
+    PI / (2.0 * teeth) + involute(pressure_angle) - involute(at_tip)
+}
+
+fn contact_ratio(gears: &Gears) -> Check {
+    let ratio = gears.contact_ratio();
+    if ratio >= 1.0 {
+        return Ok(());
+    }
+    let problem =
+        format!("the contact ratio is {ratio:.3}; it must be at least 1, or the teeth lose contact");
+    Err(ScenarioError::new("gears", format!("contact ratio {ratio:.3}"), problem)
+        .with_help("raise gears.pinion_teeth or gears.gear_teeth, or lower gears.pressure_angle_deg"))
+}
+
+fn tip_relief(relief: &TipRelief, module_mm: f64) -> Check {
+    const LENGTH: &str = "gears.tip_relief.length_mm";
+    let longest = 2.0 * module_mm;
+    require(
+        LENGTH,
+        relief.length_mm,
+        relief.length_mm > 0.0 && relief.length_mm < longest,
+        format!("must be more than 0 and less than {longest:.4} mm, the height of the working flank"),
+    )
+    .and_then(|()| {
+        let deepest = half_thickness_mm(module_mm);
+        below("gears.tip_relief.depth_mm", relief.depth_mm, deepest, HALF_THICKNESS)
+    })
+    .map_err(|error| error.with_help("for no relief, write tip_relief = false; its default is 1 mm × 1 mm"))
+}
+
+fn points_per_tooth(points: usize) -> Check {
+    let [fewest, most] = POINTS_PER_TOOTH;
+    if (fewest..=most).contains(&points) {
+        return Ok(());
+    }
+    Err(ScenarioError::new(
+        "gears.points_per_tooth",
+        points,
+        format!("must be from {fewest} to {most}; the default is 10000"),
+    ))
+}
+
+fn foundation(gears: &Gears) -> Check {
+    let foundation = &gears.foundation;
+    for (name, row) in [("L", foundation.l), ("M", foundation.m), ("P", foundation.p), ("Q", foundation.q)] {
+        for (index, coefficient) in row.into_iter().enumerate() {
+            finite(&format!("gears.foundation.{name}[{index}]"), coefficient)?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // The published model's numbers.
+    #[test]
+    fn contact_ratios_of_the_reference_pairs() {
+        for (pinion, gear, expected) in [(17, 38, 1.6090998696667), (18, 35, 1.608198199494087)] {
+            let ratio = Gears::new(3.0, pinion, gear, 15.0).contact_ratio();
+            assert!((ratio - expected).abs() < 1e-12, "{ratio}");
+        }
+    }
+
+    // No pair that passes the other rules gets there: it takes a wheel of a single tooth.
+    #[test]
+    fn contact_ratio_below_one_names_what_to_change() {
+        let mut gears = Gears::new(3.0, 1, 1, 15.0);
+        gears.pressure_angle_deg = 40.0;
+        let error = contact_ratio(&gears).unwrap_err();
+        assert_eq!(error.key, "gears");
+        assert!(error.problem.contains("contact ratio is 0.938"), "{}", error.problem);
+        let help = error.help.unwrap();
+        for key in ["gears.pinion_teeth", "gears.gear_teeth", "gears.pressure_angle_deg"] {
+            assert!(help.contains(key), "{help}");
+        }
+    }
+}

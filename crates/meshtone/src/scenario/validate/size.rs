@@ -1,0 +1,102 @@
+//! How large a simulation is.
+
+use super::super::{Scenario, ScenarioError};
+use super::rules::Check;
+
+/// (bytes) Most memory that one simulation may need: 16 GiB. What needs more is a slip in a speed
+/// or a sampling rate rather than a wish.
+pub const MEMORY_LIMIT_BYTES: u64 = 16 << 30;
+
+/// Signals that are kept of every sample after settling.
+const KEPT_CHANNELS: f64 = 8.0;
+/// Numbers that are held for every simulated sample: motor angle and brake torque.
+const EXCITATION_CHANNELS: f64 = 2.0;
+/// Numbers that are tabulated for every point of the coarse grid over a gear revolution.
+const GRID_CHANNELS: f64 = 16.0;
+/// Numbers that are held for every profile point of either wheel.
+const PROFILE_CHANNELS: f64 = 64.0;
+const BYTES_PER_NUMBER: f64 = 8.0;
+const GIBIBYTE: f64 = (1u64 << 30) as f64;
+
+impl Scenario {
+    /// (S/s) The actual sampling rate `⌈f_nom/(L f_p) + 6⌉ L f_p`, with `L` the least common
+    /// multiple of the tooth counts: a whole number of samples for each revolution of either shaft
+    /// and each tooth.
+    ///
+    /// ```
+    /// use meshtone::scenario::Scenario;
+    ///
+    /// let scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    /// assert_eq!(scenario.actual_sampling_rate_hz(), 258_400.0);
+    /// ```
+    pub fn actual_sampling_rate_hz(&self) -> f64 {
+        self.samples_per_pinion_revolution() * self.operation.pinion_speed_hz
+    }
+
+    /// (bytes) Estimate of the memory that the simulation needs: 8 signals of every kept sample,
+    /// the excitation of every sample, the tables over a gear revolution and the tooth profiles,
+    /// in double precision.
+    ///
+    /// `u64::MAX` stands for anything above it.
+    ///
+    /// ```
+    /// use meshtone::scenario::Scenario;
+    ///
+    /// let scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    /// assert_eq!(scenario.memory_estimate_bytes() / 1_000_000, 39);
+    /// ```
+    pub fn memory_estimate_bytes(&self) -> u64 {
+        let samples = 2.0 * f64::from(self.gears.gear_teeth) * self.samples_per_pinion_revolution();
+        let kept = samples * (1.0 - self.solver.settle_fraction);
+        let numbers = kept * KEPT_CHANNELS
+            + samples * EXCITATION_CHANNELS
+            + self.coarse_grid_points() * GRID_CHANNELS
+            + 2.0 * self.gears.points_per_tooth as f64 * PROFILE_CHANNELS;
+        (numbers * BYTES_PER_NUMBER) as u64
+    }
+
+    fn samples_per_pinion_revolution(&self) -> f64 {
+        let common = self.common_teeth();
+        (self.solver.sampling_rate_hz / (common * self.operation.pinion_speed_hz) + 6.0).ceil() * common
+    }
+
+    fn coarse_grid_points(&self) -> f64 {
+        let common = self.common_teeth();
+        let per_revolution = (self.actual_sampling_rate_hz().max(1e6) / (50.0 * common)).ceil() * common;
+        per_revolution * f64::from(self.gears.gear_teeth) / f64::from(self.gears.pinion_teeth)
+    }
+
+    fn common_teeth(&self) -> f64 {
+        let (pinion, gear) = (u64::from(self.gears.pinion_teeth), u64::from(self.gears.gear_teeth));
+        (pinion / greatest_common_divisor(pinion, gear).max(1) * gear) as f64
+    }
+}
+
+fn greatest_common_divisor(mut left: u64, mut right: u64) -> u64 {
+    while right != 0 {
+        (left, right) = (right, left % right);
+    }
+    left
+}
+
+pub(super) fn check(scenario: &Scenario, memory_limit_bytes: u64) -> Check {
+    let needed = scenario.memory_estimate_bytes();
+    if needed <= memory_limit_bytes {
+        return Ok(());
+    }
+    let (needed_gib, limit_gib) = (needed as f64 / GIBIBYTE, memory_limit_bytes as f64 / GIBIBYTE);
+    let actual = scenario.actual_sampling_rate_hz();
+    let problem = format!(
+        "the simulation would need {needed_gib:.1} GiB of memory at its actual sampling rate of {actual:.4e} S/s; \
+         at most {limit_gib:.1} GiB are allowed"
+    );
+    let help = "lower solver.sampling_rate_hz or raise operation.pinion_speed_hz; the actual rate is at least 7 times \
+                the least common multiple of the tooth counts times the speed, so tooth counts with a common factor \
+                help too";
+    Err(ScenarioError::new(
+        "solver.sampling_rate_hz",
+        format!("{:?}", scenario.solver.sampling_rate_hz),
+        problem,
+    )
+    .with_help(help))
+}

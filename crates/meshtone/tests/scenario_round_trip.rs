@@ -1,0 +1,227 @@
+//! Whatever scenario is valid is written as a scenario file that is read back exactly.
+
+use meshtone::scenario::{
+    Convention, DampingRatio, DestructionLine, Fault, FoundationCoefficients, Gears, Material, Operation,
+    PartialFace, PitCircle, Profile, ProfileErrors, Quality, ReliefShape, Rig, Scenario, Shaft, Solver,
+    ThroughFace, TipRelief, ToothBreakage, ToothDestruction, WheelInertia,
+};
+use nalgebra::DMatrix;
+use proptest::array::{uniform4, uniform6, uniform13};
+use proptest::option;
+use proptest::prelude::*;
+
+fn gears() -> impl Strategy<Value = Gears> {
+    let relief = option::of((any::<bool>(), 0.01..1.9, 0.0..0.7).prop_map(|(parabolic, length, depth)| {
+        let shape = if parabolic { ReliefShape::Parabolic } else { ReliefShape::Linear };
+        TipRelief { shape, length_mm: length, depth_mm: depth }
+    }));
+    let foundation =
+        uniform4(uniform6(-1e3..1e3)).prop_map(|[l, m, p, q]| FoundationCoefficients { l, m, p, q });
+    let wheels = (1.0..10.0, 17u32..80, 17u32..80, 1.0..100.0, 15.0..30.0);
+    let rest = (0usize..6, relief, 0.0..0.5, 500usize..100_000, foundation);
+    (wheels, rest).prop_map(|(wheels, (material, relief, crowning_mm, points_per_tooth, foundation))| {
+        let (module_mm, pinion_teeth, gear_teeth, face_width_mm, pressure_angle_deg) = wheels;
+        let scaled = |relief: TipRelief| TipRelief {
+            length_mm: relief.length_mm * module_mm,
+            depth_mm: relief.depth_mm * module_mm,
+            ..relief
+        };
+        Gears {
+            pressure_angle_deg,
+            material: Material::ALL[material],
+            tip_relief: relief.map(scaled),
+            crowning_mm,
+            points_per_tooth,
+            foundation,
+            ..Gears::new(module_mm, pinion_teeth, gear_teeth, face_width_mm)
+        }
+    })
+}
+
+fn profile() -> impl Strategy<Value = Option<Profile>> {
+    let points = prop::collection::vec((1e-3..2.0, 5.0..100.0), 2..20);
+    option::of(points.prop_map(|points| {
+        let (steps, value): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
+        let mut time = -1.0;
+        let elapsed = |step| {
+            time += step;
+            time
+        };
+        Profile { time_s: steps.into_iter().map(elapsed).collect(), value }
+    }))
+}
+
+fn operation() -> impl Strategy<Value = Operation> {
+    (5.0..100.0, 5.0..1e3, 0.0..4.9, 0.0..4.9, profile(), profile()).prop_map(
+        |(
+            speed,
+            torque,
+            speed_fluctuation_hz,
+            torque_fluctuation_nm,
+            speed_profile_hz,
+            torque_profile_nm,
+        )| {
+            Operation {
+                speed_fluctuation_hz,
+                torque_fluctuation_nm,
+                speed_profile_hz,
+                torque_profile_nm,
+                ..Operation::new(speed, torque)
+            }
+        },
+    )
+}
+
+fn quality(pinion_teeth: u32, gear_teeth: u32) -> impl Strategy<Value = Quality> {
+    // Every draw of the 100 × teeth errors would be slow; their digits matter, not their spread.
+    let drawn = move |first: f64, step: f64| {
+        let errors = |teeth: u32| {
+            DMatrix::from_fn(100, teeth as usize, |row, column| {
+                first + step * (row as f64 + 0.1).sqrt() / (column as f64 + 0.3)
+            })
+        };
+        ProfileErrors {
+            pinion_profile_errors_mm: errors(pinion_teeth),
+            gear_profile_errors_mm: errors(gear_teeth),
+        }
+    };
+    prop_oneof![
+        (0u8..=12).prop_map(|din_grade| Quality { din_grade, profile_errors: None }),
+        (-0.01..0.01, -1e-3..1e-3).prop_map(move |(first, step)| Quality {
+            din_grade: 0,
+            profile_errors: Some(drawn(first, step))
+        }),
+    ]
+}
+
+fn pit() -> impl Strategy<Value = PitCircle> {
+    let fractions = (0.0..0.5, 0.5001..1.0, 1e-6..1.0);
+    let circle = (1.0..1e3, -1e3..1e3, 1e-3..1e3);
+    prop_oneof![
+        fractions.prop_map(|(start, end, depth)| PitCircle::Fractions { start, end, depth }),
+        circle.prop_map(|(x_mm, y_mm, radius_mm)| PitCircle::Circle { x_mm, y_mm, radius_mm }),
+    ]
+}
+
+fn fault(module_mm: f64, face_width_mm: f64) -> impl Strategy<Value = Option<Fault>> {
+    let breakage = (0.01..2.24, 0.01..=1.0, 0.0..2.24).prop_map(move |(height, width, loss)| ToothBreakage {
+        chip_height_mm: height * module_mm,
+        chip_width_mm: width * face_width_mm,
+        tip_loss_mm: loss * module_mm,
+    });
+    let partial = (0.01..0.99, pit())
+        .prop_map(move |(width, pit)| PartialFace { width_mm: width * face_width_mm, pit });
+    let line = prop_oneof![
+        (0.51..=1.0).prop_map(DestructionLine::End),
+        (0.01..89.9).prop_map(DestructionLine::SlopeDeg),
+    ];
+    let destruction = (-0.99..0.5, line, 0.0..0.7, 0.0..0.7).prop_map(move |(start, line, offset, noise)| {
+        ToothDestruction { start, line, offset_mm: offset * module_mm, noise_mm: noise * module_mm }
+    });
+    prop_oneof![
+        Just(None),
+        Just(Some(Fault::MissingTooth)),
+        breakage.prop_map(|breakage| Some(Fault::ToothBreakage(breakage))),
+        partial.prop_map(|face| Some(Fault::PartialFace(face))),
+        pit().prop_map(|pit| Some(Fault::ThroughFace(ThroughFace { pit }))),
+        destruction.prop_map(|destruction| Some(Fault::ToothDestruction(destruction))),
+    ]
+}
+
+fn rig() -> impl Strategy<Value = Rig> {
+    let damping = prop_oneof![
+        (0.0..1.0).prop_map(DampingRatio::Uniform),
+        uniform13(0.0..1.0).prop_map(DampingRatio::PerMode),
+    ];
+    let inertia = || {
+        let part = || option::of(1e-9..1e3);
+        (part(), part(), part()).prop_map(|(mass_kg, polar, transverse)| WheelInertia {
+            mass_kg,
+            polar_inertia_kgm2: polar,
+            transverse_inertia_kgm2: transverse,
+        })
+    };
+    let shaft = || (1.0..1e4, 0.1..7.0).prop_map(|(length_mm, radius_mm)| Shaft { length_mm, radius_mm });
+    let numbers = (1e3..1e12, 1e3..1e12, 1e-6..1e3, 0.0..0.9);
+    (numbers, damping, shaft(), shaft(), inertia(), inertia()).prop_map(
+        |(
+            (bearing, rotational, brake, eccentricity_mm),
+            damping_ratio,
+            pinion_shaft,
+            gear_shaft,
+            pinion,
+            gear,
+        )| Rig {
+            bearing_stiffness_n_per_m: bearing,
+            wheel_rotational_stiffness_nm_per_rad: rotational,
+            brake_inertia_kgm2: brake,
+            damping_ratio,
+            eccentricity_mm,
+            pinion_shaft,
+            gear_shaft,
+            pinion_inertia: pinion,
+            gear_inertia: gear,
+        },
+    )
+}
+
+fn solver() -> impl Strategy<Value = Solver> {
+    let state = || option::of(uniform13(-1e3..1e3));
+    (1.0..2e5, 0.0..1.0, state(), state()).prop_map(
+        |(sampling_rate_hz, settle_fraction, initial_displacement, initial_velocity)| Solver {
+            sampling_rate_hz,
+            settle_fraction,
+            initial_displacement,
+            initial_velocity,
+        },
+    )
+}
+
+fn scenario() -> impl Strategy<Value = Scenario> {
+    let convention = prop_oneof![Just(Convention::Corrected), Just(Convention::Published)];
+    gears().prop_flat_map(move |gears| {
+        let quality = quality(gears.pinion_teeth, gears.gear_teeth);
+        let fault = fault(gears.module_mm, gears.face_width_mm);
+        let parts = (Just(gears), operation(), quality, fault, rig(), solver());
+        (convention.clone(), any::<u64>(), parts).prop_map(
+            |(convention, seed, (gears, operation, quality, fault, rig, solver))| Scenario {
+                convention,
+                seed,
+                gears,
+                operation,
+                quality,
+                fault,
+                rig,
+                solver,
+            },
+        )
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn scenarios_survive_being_written_and_read(scenario in scenario()) {
+        let text = scenario.to_toml();
+        let read = Scenario::from_toml(&text);
+        prop_assert_eq!(read.as_ref(), Ok(&scenario), "{}", text);
+    }
+}
+
+#[test]
+fn sections_come_in_the_order_of_the_documentation() {
+    let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    scenario.fault = Some(Fault::MissingTooth);
+    let text = scenario.to_toml();
+    let headers: Vec<&str> = text.lines().filter(|line| line.starts_with('[')).collect();
+    assert_eq!(headers, ["[gears]", "[operation]", "[quality]", "[fault]", "[rig]", "[solver]"]);
+}
+
+#[test]
+fn a_number_that_is_none_is_written_and_refused() {
+    let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    scenario.rig.eccentricity_mm = f64::NAN;
+    let error = Scenario::from_toml(&scenario.to_toml()).unwrap_err();
+    assert_eq!((error.key.as_str(), error.value.as_str()), ("rig.eccentricity_mm", "nan"));
+}

@@ -1,0 +1,104 @@
+//! The commented scenario files to start from.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use meshtone::scenario::{DestructionLine, Fault, PitCircle, Scenario, TEMPLATE_KINDS, template};
+
+fn all() -> impl Iterator<Item = (&'static str, String)> {
+    TEMPLATE_KINDS.into_iter().map(|kind| (kind, template(kind).unwrap()))
+}
+
+/// The file with every key that is commented out as optional set.
+fn uncommented(text: &str) -> String {
+    let strip = |line: &str| match line.strip_prefix('#') {
+        Some(key) if key.starts_with(|first: char| first.is_ascii_lowercase()) => format!("{key}\n"),
+        _ => format!("{line}\n"),
+    };
+    text.lines().map(strip).collect()
+}
+
+#[test]
+fn templates_are_valid_and_of_their_kind() {
+    for (kind, text) in all() {
+        let scenario = Scenario::from_toml(&text).unwrap_or_else(|error| panic!("{kind}: {error}"));
+        assert_eq!(scenario.fault.as_ref().map_or("healthy", Fault::kind), kind);
+        assert_eq!(scenario.validate().unwrap(), [], "{kind}");
+    }
+}
+
+#[test]
+fn templates_are_of_the_two_machines() {
+    for (kind, text) in all() {
+        let scenario = Scenario::from_toml(&text).unwrap();
+        let mut expected = match kind {
+            "tooth-destruction" => Scenario::new(3.0, 18, 35, 30.0, 45.0, 15.0),
+            _ => Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0),
+        };
+        expected.quality.din_grade = if kind == "tooth-destruction" { 8 } else { 7 };
+        expected.fault = scenario.fault.clone();
+        assert_eq!(scenario, expected, "{kind}");
+    }
+}
+
+#[test]
+fn keys_that_are_commented_out_show_their_defaults() {
+    for (kind, text) in all() {
+        let set = uncommented(&text);
+        assert!(set.lines().count() == text.lines().count() && set != text);
+        let with_profiles =
+            Scenario::from_toml(&set).unwrap_or_else(|error| panic!("{kind}: {error}\n{set}"));
+        let mut scenario = with_profiles.clone();
+        assert!(scenario.operation.speed_profile_hz.take().is_some());
+        assert!(scenario.operation.torque_profile_nm.take().is_some());
+        assert_eq!(scenario.solver.initial_displacement.take(), Some([0.0; 13]));
+        assert_eq!(scenario, Scenario::from_toml(&text).unwrap(), "{kind}");
+    }
+}
+
+#[test]
+fn alternatives_are_valid_in_place_of_what_they_replace() {
+    let inertias = template("healthy").unwrap().replace("# pinion_inertia", "pinion_inertia");
+    let rig = Scenario::from_toml(&inertias.replace("# gear_inertia", "gear_inertia")).unwrap().rig;
+    assert_eq!((rig.pinion_inertia.mass_kg, rig.gear_inertia.mass_kg), (Some(0.24), Some(1.2)));
+
+    for kind in ["partial-face", "through-face"] {
+        let text = template(kind).unwrap();
+        let text =
+            text.replace("start = 0.2\nend = 0.8\ndepth = 0.5\n", "").replace("# circle =", "circle =");
+        let pit = match Scenario::from_toml(&text).unwrap().fault {
+            Some(Fault::PartialFace(face)) => face.pit,
+            Some(Fault::ThroughFace(face)) => face.pit,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(pit, PitCircle::Circle { x_mm: 57.5, y_mm: 3.66, radius_mm: 2.5 });
+    }
+
+    let text = template("tooth-destruction").unwrap();
+    let text = text.replace("\nend = 0.9286", "").replace("# slope_deg", "slope_deg");
+    let Some(Fault::ToothDestruction(destruction)) = Scenario::from_toml(&text).unwrap().fault else {
+        panic!("{text}");
+    };
+    assert_eq!(destruction.line, DestructionLine::SlopeDeg(22.0));
+}
+
+/// Every key that the library writes, and so knows, is explained in some template.
+#[test]
+fn every_key_is_in_the_templates() {
+    let explained: String = all().map(|(_, text)| text).collect();
+    for (_, text) in all() {
+        let written = Scenario::from_toml(&uncommented(&text)).unwrap().to_toml();
+        for line in written.lines().filter(|line| !line.starts_with('[')) {
+            let key = line.split([' ', '.']).next().unwrap_or_default();
+            assert!(explained.contains(key), "{key}");
+        }
+    }
+    for key in
+        ["errors_file", "pinion_profile_errors_mm", "gear_profile_errors_mm", "file =", "initial_velocity"]
+    {
+        assert!(explained.contains(key), "{key}");
+    }
+}
+
+#[test]
+fn other_kinds_have_no_template() {
+    assert_eq!(template("wear"), None);
+}
