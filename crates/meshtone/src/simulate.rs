@@ -99,6 +99,7 @@ pub fn simulate(scenario: &Scenario) -> Result<Simulation, ScenarioError> {
 /// As [`simulate`].
 pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
     let mut clock = Clock::default();
+    scenario.validate()?;
     let scenario = honoured(scenario);
     let (gears, convention) = (&scenario.gears, scenario.convention);
     let time = TimeGrid::new(&scenario);

@@ -22,7 +22,9 @@ fn reference(name: &str) -> Reference {
             let values = npz
                 .by_name::<ndarray::OwnedRepr<f64>, IxDyn>(&entry)
                 .or_else(|_| npz.by_name::<ndarray::OwnedRepr<f32>, IxDyn>(&entry).map(|a| a.mapv(f64::from)))
-                .or_else(|_| npz.by_name::<ndarray::OwnedRepr<i64>, IxDyn>(&entry).map(|a| a.mapv(|v| v as f64)))
+                .or_else(|_| {
+                    npz.by_name::<ndarray::OwnedRepr<i64>, IxDyn>(&entry).map(|a| a.mapv(|v| v as f64))
+                })
                 .unwrap();
             (entry.trim_end_matches(".npy").to_owned(), values)
         })
@@ -90,7 +92,10 @@ fn measure(field: &str, partial_face: bool) -> Measure {
     match field {
         "first_kept_sample" | "kept_samples" | "pinion_revolutions" | "fault_indices" => Measure::Equal,
         _ if field.ends_with("_index") || field.ends_with("_len") => Measure::Equal,
-        _ if field.starts_with("acceleration") || field.starts_with("velocity") || field.starts_with("displacement") => {
+        _ if field.starts_with("acceleration")
+            || field.starts_with("velocity")
+            || field.starts_with("displacement") =>
+        {
             Measure::RmsOfColumns(if partial_face { 1e-5 } else { 1e-6 })
         }
         "rms_g_horizontal_vertical_axial" => Measure::Largest(if partial_face { 1e-5 } else { 1e-6 }),

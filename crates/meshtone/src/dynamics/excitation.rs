@@ -51,7 +51,11 @@ impl<'a> ErrorForce<'a> {
         let splines = |matrix: &'a nalgebra::DMatrix<f64>| {
             let rows = matrix.nrows();
             let step = pair.span_rev / (rows - 1) as f64;
-            matrix.as_slice().chunks_exact(rows).map(|tooth| NotAKnotSpline::uniform(0.0, step, tooth)).collect()
+            matrix
+                .as_slice()
+                .chunks_exact(rows)
+                .map(|tooth| NotAKnotSpline::uniform(0.0, step, tooth))
+                .collect()
         };
         let pair_displacement = match fault.map(|fault| &fault.displacement) {
             Some(Displacement::Pair { displacement_mm }) => {

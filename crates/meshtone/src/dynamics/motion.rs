@@ -35,9 +35,8 @@ impl<'a> Motion<'a> {
     /// * `time` - division of time
     pub fn new(scenario: &'a Scenario, time: &TimeGrid) -> Self {
         let operation = &scenario.operation;
-        let draws = |half_width: f64, purpose| {
-            (half_width > 0.0).then(|| Draws::new(scenario.seed, purpose, 0))
-        };
+        let draws =
+            |half_width: f64, purpose| (half_width > 0.0).then(|| Draws::new(scenario.seed, purpose, 0));
         let mut motion = Self {
             scenario,
             step_s: time.step_s(),

@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 
 use super::body::WheelBody;
 use super::coordinates::*;
+use super::excitation::Excitation;
 use super::mesh_directions::{DIRECTIONS, MeshDirections};
 use super::mesh_load::MeshLoad;
-use super::excitation::Excitation;
 use super::modes::Modes;
 use crate::scenario::{Convention, Gears, Rig, Scenario, Shaft};
 use crate::tooth::Teeth;
@@ -130,7 +130,7 @@ impl System {
     /// * `convention` - published or corrected
     pub fn force(&self, excitation: &Excitation, convention: Convention) -> CoordinateVector {
         let mut force = CoordinateVector::zeros();
-        let direction = 
+        let direction =
             self.mesh.error_direction(excitation.position_rev, excitation.coarse_point, convention);
         for (vector, weight) in self.directions.turned.iter().zip(direction.iter()) {
             force -= self.directions.turn * vector * (weight * excitation.error_force_n);

@@ -32,11 +32,17 @@ const CIRCLE_SAMPLES: usize = 10_000;
 ///
 /// # Errors
 /// A circle that does not cut the contact part of the flank in two points, or reaches through the tooth.
-pub(super) fn cut_flank(circle: &PitCircle, teeth: &Teeth, convention: Convention) -> Result<CutFlank, ScenarioError> {
+pub(super) fn cut_flank(
+    circle: &PitCircle,
+    teeth: &Teeth,
+    convention: Convention,
+) -> Result<CutFlank, ScenarioError> {
     let profile = &teeth.gear_profile;
     let contact = &teeth.contact;
     let (key, value) = match circle {
-        PitCircle::Fractions { start, end, depth } => ("fault", format!("start {start}, end {end}, depth {depth}")),
+        PitCircle::Fractions { start, end, depth } => {
+            ("fault", format!("start {start}, end {end}, depth {depth}"))
+        }
         PitCircle::Circle { x_mm, y_mm, radius_mm } => {
             ("fault.circle", format!("{{ x_mm = {x_mm}, y_mm = {y_mm}, radius_mm = {radius_mm} }}"))
         }
@@ -65,9 +71,8 @@ pub(super) fn cut_flank(circle: &PitCircle, teeth: &Teeth, convention: Conventio
             )));
         }
     }
-    let chord = |a: usize, b: usize| {
-        (profile.x_mm[a] - profile.x_mm[b]).hypot(profile.y_mm[a] - profile.y_mm[b])
-    };
+    let chord =
+        |a: usize, b: usize| (profile.x_mm[a] - profile.x_mm[b]).hypot(profile.y_mm[a] - profile.y_mm[b]);
     let length_mm = chord(start, end);
     let (x_contact, x_tip) = (profile.x_mm[contact.initial_contact_index], profile.tip_x_mm());
     let position = |i: usize| contact.span_rev * (profile.x_mm[i] - x_tip) / (x_contact - x_tip);

@@ -70,7 +70,9 @@ impl ContactWidth {
             Self::Chip { width_mm, exit_rev } if position_rev < exit_rev => {
                 width_mm * (1.0 - position_rev / exit_rev)
             }
-            Self::Pit { width_mm, start_rev, end_rev } if (start_rev..=end_rev).contains(&position_rev) => width_mm,
+            Self::Pit { width_mm, start_rev, end_rev } if (start_rev..=end_rev).contains(&position_rev) => {
+                width_mm
+            }
             _ => 0.0,
         }
     }

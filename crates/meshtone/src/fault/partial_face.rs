@@ -2,7 +2,9 @@
 
 use super::face_circle::{CutFlank, cut_flank};
 use super::section::mate_range;
-use super::{ContactWidth, Displacement, FaultDescription, FaultGeometry, LateralBending, Pivot, ToothSection};
+use super::{
+    ContactWidth, Displacement, FaultDescription, FaultGeometry, LateralBending, Pivot, ToothSection,
+};
 use crate::scenario::{Convention, PartialFace, ScenarioError};
 use crate::tooth::Teeth;
 
@@ -110,9 +112,7 @@ fn shear_flexibility(lower_width: f64, upper_width: f64, [bottom, step, top]: [f
     let piece = |width: f64, from: f64, to: f64, beyond: f64| {
         // Q²/b with Q = a − b y²/2.
         let a = beyond + width * to * to / 2.0;
-        let integral = |y: f64| {
-            a * a * y / width - a * y.powi(3) / 3.0 + width * y.powi(5) / 20.0
-        };
+        let integral = |y: f64| a * a * y / width - a * y.powi(3) / 3.0 + width * y.powi(5) / 20.0;
         integral(to) - integral(from)
     };
     let upper_moment = upper_width * (top * top - step * step) / 2.0;

@@ -114,9 +114,8 @@ impl ToothSection {
     /// A tooth whose working flank has been cut back to `flank_y_mm` over the whole width.
     pub(super) fn cut_flank(width_mm: f64, profile: &ToothProfile, flank_y_mm: &[f64]) -> Self {
         let mut section = Self::between_flanks(width_mm, &profile.y_mm, flank_y_mm);
-        section.yc_mm = Some(
-            profile.y_mm.iter().zip(flank_y_mm).map(|(back, flank)| (flank - back) / 2.0).collect(),
-        );
+        section.yc_mm =
+            Some(profile.y_mm.iter().zip(flank_y_mm).map(|(back, flank)| (flank - back) / 2.0).collect());
         section
     }
 }

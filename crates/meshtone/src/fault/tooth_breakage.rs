@@ -15,7 +15,11 @@ pub(super) fn geometry(fault: &ToothBreakage, teeth: &Teeth) -> Result<FaultGeom
         [("fault.chip_height_mm", fault.chip_height_mm), ("fault.tip_loss_mm", fault.tip_loss_mm)]
     {
         if value >= height {
-            return Err(ScenarioError::new(key, value, format!("must be below the tooth's height, {height:.3} mm")));
+            return Err(ScenarioError::new(
+                key,
+                value,
+                format!("must be below the tooth's height, {height:.3} mm"),
+            ));
         }
     }
     if fault.chip_width_mm > face_width {

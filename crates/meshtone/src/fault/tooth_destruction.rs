@@ -66,7 +66,9 @@ pub(super) fn geometry(
             let flank_angle = if i == 0 {
                 0.0
             } else {
-                ((profile.y_mm[i] - profile.y_mm[i - 1]) / (profile.x_mm[i] - profile.x_mm[i - 1])).atan().abs()
+                ((profile.y_mm[i] - profile.y_mm[i - 1]) / (profile.x_mm[i] - profile.x_mm[i - 1]))
+                    .atan()
+                    .abs()
             };
             -(profile.y_mm[i] - flank_y_mm[i]) * slope_rad.cos() / (flank_angle + slope_rad).cos()
         })

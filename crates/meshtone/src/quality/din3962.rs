@@ -78,9 +78,8 @@ impl Grade {
                 let s = (path(k) - path_start) / (path_end - path_start);
                 let wave = (2.0 * std::f64::consts::PI * waves * s + phase).sin();
                 let row = if order == Order::RootToTip { k } else { ERROR_POINTS - 1 - k };
-                column[row] = angle_deviation * s
-                    + 0.5 * form_deviation * wave
-                    + draws.uniform(0.0, self.roughness_mm);
+                column[row] =
+                    angle_deviation * s + 0.5 * form_deviation * wave + draws.uniform(0.0, self.roughness_mm);
             }
         }
         errors

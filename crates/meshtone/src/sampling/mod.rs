@@ -38,9 +38,7 @@ impl TimeGrid {
         let revolutions = nominal_revolutions(gears.gear_teeth) as usize;
         let nominal_samples = revolutions * samples_per_pinion_revolution;
         let samples = match &scenario.operation.speed_profile_hz {
-            Some(profile) => {
-                (profile.time_s[profile.time_s.len() - 1] * sampling_rate_hz).round() as usize
-            }
+            Some(profile) => (profile.time_s[profile.time_s.len() - 1] * sampling_rate_hz).round() as usize,
             None => nominal_samples,
         };
         let settling = (solver.settle_fraction * nominal_samples as f64).round() as usize;

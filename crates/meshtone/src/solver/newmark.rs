@@ -89,12 +89,7 @@ fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
 }
 
 impl<'a, const N: usize, const R: usize> Stepper<'a, N, R> {
-    fn new(
-        model: &'a ReducedModel,
-        system: &'a System,
-        time: &TimeGrid,
-        cycle: &CycleGrid,
-    ) -> Self {
+    fn new(model: &'a ReducedModel, system: &'a System, time: &TimeGrid, cycle: &CycleGrid) -> Self {
         let dt = time.step_s();
         let (stiffness, damping) = (padded::<N>(&model.stiffness), padded::<N>(&model.damping));
         let mut inverse = [0.0; N];
@@ -105,9 +100,8 @@ impl<'a, const N: usize, const R: usize> Stepper<'a, N, R> {
         for (column, source) in mesh.iter_mut().zip(&model.mesh) {
             *column = padded(source.as_slice());
         }
-        let pinion_angle: Vec<f64> = (model.shapes.iter())
-            .map(|shape| shape[crate::dynamics::coordinates::THETA_PINION])
-            .collect();
+        let pinion_angle: Vec<f64> =
+            (model.shapes.iter()).map(|shape| shape[crate::dynamics::coordinates::THETA_PINION]).collect();
         Self {
             load: &system.mesh,
             directions: &model.directions,
@@ -212,9 +206,8 @@ fn cycle_points<const N: usize, const R: usize>(
     let load = &system.mesh;
     let nominal = load.nominal.pressure_angle_rad;
     let weight = DVector::from_fn(model.modes(), |n, _| inverse[n]);
-    let compliance = DMatrix::from_fn(columns, columns, |r, c| {
-        model.mesh[r].component_mul(&weight).dot(&model.mesh[c])
-    });
+    let compliance =
+        DMatrix::from_fn(columns, columns, |r, c| model.mesh[r].component_mul(&weight).dot(&model.mesh[c]));
     let identity = DMatrix::<f64>::identity(columns, columns);
     (0..load.stiffness_n_per_m.len())
         .map(|point| {
@@ -228,11 +221,8 @@ fn cycle_points<const N: usize, const R: usize>(
             // K̂ is positive definite, so 1 + G S' is never singular.
             let inverted = (&identity + &compliance * &deviation).try_inverse();
             let correction = inverted.map_or_else(|| deviation.clone(), |inverted| &deviation * inverted);
-            let mut entry = CyclePoint {
-                deviation: [[0.0; R]; R],
-                correction: [[0.0; R]; R],
-                load: [0.0; R],
-            };
+            let mut entry =
+                CyclePoint { deviation: [[0.0; R]; R], correction: [[0.0; R]; R], load: [0.0; R] };
             for r in 0..columns {
                 for c in 0..columns {
                     entry.deviation[r][c] = deviation[(r, c)];
@@ -270,19 +260,15 @@ fn run<const N: usize, const R: usize>(
     stepper.add_mesh(&mut a, -1.0, &amplitude);
 
     for sample in 0..time.samples {
-        let mesh_force_n =
-            dot(&stepper.points[point].load, &stepper.deflection(&u)) + now.error_force_n;
-        recorder.record(
-            sample,
-            &StateView { displacement: &u, velocity: &v, acceleration: &a, mesh_force_n },
-        );
+        let mesh_force_n = dot(&stepper.points[point].load, &stepper.deflection(&u)) + now.error_force_n;
+        recorder
+            .record(sample, &StateView { displacement: &u, velocity: &v, acceleration: &a, mesh_force_n });
         let Some(next) = excitation.next() else { return };
         let next_force = stepper.force(&next, convention);
         let mut increment = [0.0; N];
         for n in 0..N {
-            increment[n] = next_force[n] - force[n]
-                + (2.0 * two_per_dt + 2.0 * stepper.damping[n]) * v[n]
-                + 2.0 * a[n];
+            increment[n] =
+                next_force[n] - force[n] + (2.0 * two_per_dt + 2.0 * stepper.damping[n]) * v[n] + 2.0 * a[n];
         }
         let angle = dot(&stepper.pinion_angle, &u);
         let deflection = stepper.deflection(&u);

@@ -59,9 +59,21 @@ fn about_both(tooth: &LoadedTooth, lateral: &LateralBending) -> Vec<EnergyCoeffi
             let (x, yc, zc) = (tooth.depth_mm(i), centre_y(i), lateral.zc_mm[i]);
             let [m0, m1, m2, m3, m4, m5] = main_integrands(main, x, yc);
             [
-                m0, m1, m2, m3, m4, m5,
-                cross, cross * x, cross * yc, cross * zc, cross * x * zc, cross * yc * zc,
-                side, side * zc, side * zc * zc,
+                m0,
+                m1,
+                m2,
+                m3,
+                m4,
+                m5,
+                cross,
+                cross * x,
+                cross * yc,
+                cross * zc,
+                cross * x * zc,
+                cross * yc * zc,
+                side,
+                side * zc,
+                side * zc * zc,
             ]
         },
         |i, &[m0, m1, m2, m3, m4, m5, c, cx, cy, cz, cxz, cyz, s, sz, szz]| {

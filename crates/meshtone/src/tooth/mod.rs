@@ -38,9 +38,8 @@ pub struct Teeth {
 pub fn teeth(gears: &Gears, rig: &Rig, convention: Convention) -> Teeth {
     let pinion = Wheel::new(gears, gears.pinion_teeth, rig.pinion_shaft.radius_mm);
     let gear = Wheel::new(gears, gears.gear_teeth, rig.gear_shaft.radius_mm);
-    let profile = |wheel| {
-        tooth_profile(wheel, gears.points_per_tooth, gears.crowning_mm, gears.tip_relief, convention)
-    };
+    let profile =
+        |wheel| tooth_profile(wheel, gears.points_per_tooth, gears.crowning_mm, gears.tip_relief, convention);
     let gear_profile = profile(&gear);
     let (contact, pinion_profile) = contact_line(&pinion, &profile(&pinion), &gear, &gear_profile);
     Teeth { pinion, gear, pinion_profile, gear_profile, contact }

@@ -118,8 +118,10 @@ struct Fillet {
     foot_gamma_rad: f64,
 }
 
-/// Number of points on the fillet of the published code.
-const FILLET_SAMPLES: usize = 5_000;
+/// Number of points on the fillet of the published code, and of steps from base to tip circle on its
+/// involute near the base circle. Inferred from the published profiles, which they reproduce to 1e-10 mm.
+const FILLET_SAMPLES: usize = 5_001;
+const INVOLUTE_STEPS: f64 = 14_800.0;
 /// Number of points on either side of the joint between fillet and involute that a spline through it still
 /// feels: the effect of a point shrinks by 0.27 from one to the next.
 const BRIDGE_KNOTS: usize = 60;
@@ -156,7 +158,8 @@ impl Flank {
         if let (Convention::Published, Some(fillet)) = (convention, &flank.fillet) {
             let (mut x, mut y) = fillet.last_published_points();
             for k in 0..BRIDGE_KNOTS {
-                let (involute_x, involute_y) = flank.involute_point_mm(angle(k).tan());
+                let knot = tip_angle * k as f64 / INVOLUTE_STEPS;
+                let (involute_x, involute_y) = flank.involute_point_mm(knot.tan());
                 x.push(involute_x);
                 y.push(involute_y);
             }
@@ -265,11 +268,8 @@ fn relieve_tip(profile: &mut ToothProfile, relief: TipRelief) {
     let tip = profile.tip_x_mm();
     let edge = profile.nearest_to_x(tip - relief.length_mm);
     let (x_edge, y_edge) = (profile.x_mm[edge], profile.y_mm[edge]);
-    let slope = if edge == 0 {
-        0.0
-    } else {
-        (y_edge - profile.y_mm[edge - 1]) / (x_edge - profile.x_mm[edge - 1])
-    };
+    let slope =
+        if edge == 0 { 0.0 } else { (y_edge - profile.y_mm[edge - 1]) / (x_edge - profile.x_mm[edge - 1]) };
     let reach = tip - x_edge;
     let (linear, quadratic) = match relief.shape {
         ReliefShape::Linear => (-relief.depth_mm / relief.length_mm, 0.0),

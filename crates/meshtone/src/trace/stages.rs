@@ -38,30 +38,31 @@ pub(crate) fn static_stages(trace: &mut Trace, stages: &Stages) {
 
 fn wheels(trace: &mut Trace, stages: &Stages) {
     let teeth = &stages.teeth;
-    let wheel = |trace: &mut Trace, name: &str, wheel: &Wheel, profile: &ToothProfile, contact_radius: f64| {
-        let every = |values: &[f64]| values.iter().copied().step_by(PROFILE_STRIDE).collect::<Vec<_>>();
-        let last = profile.len() - 1;
-        trace.vector(&format!("{name}_profile_x_mm"), every(&profile.x_mm));
-        trace.vector(&format!("{name}_profile_y_mm"), every(&profile.y_mm));
-        trace.vector(&format!("{name}_tip_xy_mm"), [profile.x_mm[last], profile.y_mm[last]]);
-        trace.vector(
-            &format!("{name}_radii_mm"),
-            [
-                wheel.pitch_radius_mm,
-                wheel.tip_radius_mm,
-                wheel.root_radius_mm,
-                wheel.base_radius_mm,
-                contact_radius,
-            ],
-        );
-        if let Some(index) = profile.tip_relief_index {
-            trace.scalar(&format!("{name}_tip_relief_index"), (index + FIRST_INDEX) as f64);
-        }
-        trace.scalar(
-            &format!("{name}_initial_contact_index"),
-            (teeth.contact.initial_contact_index + FIRST_INDEX) as f64,
-        );
-    };
+    let wheel =
+        |trace: &mut Trace, name: &str, wheel: &Wheel, profile: &ToothProfile, contact_radius: f64| {
+            let every = |values: &[f64]| values.iter().copied().step_by(PROFILE_STRIDE).collect::<Vec<_>>();
+            let last = profile.len() - 1;
+            trace.vector(&format!("{name}_profile_x_mm"), every(&profile.x_mm));
+            trace.vector(&format!("{name}_profile_y_mm"), every(&profile.y_mm));
+            trace.vector(&format!("{name}_tip_xy_mm"), [profile.x_mm[last], profile.y_mm[last]]);
+            trace.vector(
+                &format!("{name}_radii_mm"),
+                [
+                    wheel.pitch_radius_mm,
+                    wheel.tip_radius_mm,
+                    wheel.root_radius_mm,
+                    wheel.base_radius_mm,
+                    contact_radius,
+                ],
+            );
+            if let Some(index) = profile.tip_relief_index {
+                trace.scalar(&format!("{name}_tip_relief_index"), (index + FIRST_INDEX) as f64);
+            }
+            trace.scalar(
+                &format!("{name}_initial_contact_index"),
+                (teeth.contact.initial_contact_index + FIRST_INDEX) as f64,
+            );
+        };
     let contact = &teeth.contact;
     wheel(trace, "pinion", &teeth.pinion, &teeth.pinion_profile, contact.pinion_initial_radius_mm);
     wheel(trace, "gear", &teeth.gear, &teeth.gear_profile, contact.gear_initial_radius_mm);
@@ -74,7 +75,9 @@ fn wheels(trace: &mut Trace, stages: &Stages) {
         for (name, matrix) in
             [("pinion", &errors.pinion_profile_errors_mm), ("gear", &errors.gear_profile_errors_mm)]
         {
-            trace.matrix(&format!("{name}_profile_errors_mm"), matrix.nrows(), matrix.ncols(), |r, c| matrix[(r, c)]);
+            trace.matrix(&format!("{name}_profile_errors_mm"), matrix.nrows(), matrix.ncols(), |r, c| {
+                matrix[(r, c)]
+            });
         }
     }
 }
@@ -132,7 +135,9 @@ fn fault_geometry(trace: &mut Trace, stages: &Stages, fault: &FaultGeometry) {
     }
     match &fault.displacement {
         Displacement::None => {}
-        Displacement::Pair { displacement_mm } => trace.vector("fault_displacement_mm", every(displacement_mm)),
+        Displacement::Pair { displacement_mm } => {
+            trace.vector("fault_displacement_mm", every(displacement_mm))
+        }
         Displacement::Rolling(rolling) => {
             trace.vector("fault_mate_radii_mm", rolling.mate_radii_mm);
             trace.scalar("fault_deviation_mm", rolling.deviation_mm);
