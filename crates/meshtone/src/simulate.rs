@@ -196,7 +196,8 @@ impl Stages {
             Some(given) => given.into(),
             None => self.system.rigid_rotation() * speed,
         };
-        ReducedModel::new(&self.system, &displacement, &velocity)
+        let nominal_speed = std::f64::consts::TAU * self.scenario.operation.pinion_speed_hz;
+        ReducedModel::new(&self.system, nominal_speed, &displacement, &velocity)
     }
 
     fn initial_motor_speed_rad_per_s(&self) -> f64 {

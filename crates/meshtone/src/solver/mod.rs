@@ -13,11 +13,16 @@ pub use reduce::ReducedModel;
 
 use crate::dynamics::coordinates::{COORDINATES, CoordinateVector};
 
-/// State of the system at one sample, as a [`Recorder`] sees it.
+/// State of the system at one sample, as a [`Recorder`] sees it: a motion of the modes on top of the rigid
+/// rotation at the nominal speed.
 pub struct StateView<'a> {
     pub(crate) displacement: &'a [f64],
     pub(crate) velocity: &'a [f64],
     pub(crate) acceleration: &'a [f64],
+    /// (rad) Angle of the rigid rotation.
+    pub(crate) rotation_rad: f64,
+    /// (rad/s) Its speed.
+    pub(crate) rotation_rad_per_s: f64,
     /// (N) Force with which the mesh presses the flanks together; negative: the linear mesh pulls.
     pub mesh_force_n: f64,
 }
@@ -36,6 +41,7 @@ pub trait Recorder {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Projection {
     weights: Vec<f64>,
+    rotation: f64,
 }
 
 impl Projection {
@@ -46,7 +52,10 @@ impl Projection {
     /// * `weights` - weight of each of the 13 coordinates
     pub fn new(model: &ReducedModel, weights: &[f64; COORDINATES]) -> Self {
         let row = CoordinateVector::from(*weights);
-        Self { weights: model.shapes.iter().map(|shape| shape.dot(&row)).collect() }
+        Self {
+            weights: model.shapes.iter().map(|shape| shape.dot(&row)).collect(),
+            rotation: model.rigid_rotation.dot(&row),
+        }
     }
 
     fn apply(&self, modal: &[f64]) -> f64 {
@@ -55,12 +64,12 @@ impl Projection {
 
     /// (m or rad) The combination of displacements.
     pub fn displacement(&self, state: &StateView) -> f64 {
-        self.apply(state.displacement)
+        self.apply(state.displacement) + self.rotation * state.rotation_rad
     }
 
     /// (m/s or rad/s) The combination of velocities.
     pub fn velocity(&self, state: &StateView) -> f64 {
-        self.apply(state.velocity)
+        self.apply(state.velocity) + self.rotation * state.rotation_rad_per_s
     }
 
     /// (m/s² or rad/s²) The combination of accelerations.

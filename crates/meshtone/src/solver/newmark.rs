@@ -1,5 +1,9 @@
 //! Newmark's method, γ = ½ and β = ¼, on the reduced model.
 //!
+//! The modes' motion is computed on top of the rigid rotation at the nominal speed, in which the mesh does not
+//! deflect: Newmark's method carries a uniform motion exactly, so nothing changes but the rounding, which would
+//! otherwise grow with the angle turned.
+//!
 //! Source: N. M. Newmark, "A method of computation for structural dynamics", Journal of the Engineering
 //! Mechanics Division 85 (1959); the iteration on the angle-dependent stiffness is the paper's (section 4, item 3).
 
@@ -67,6 +71,10 @@ struct Stepper<'a, const N: usize, const R: usize> {
     motor: [f64; N],
     brake: [f64; N],
     rigid: [f64; N],
+    rotation_rad_per_s: f64,
+    /// The rigid rotation's part of a step's displacement and of its right-hand side, for the published energy norm.
+    rigid_displacement: [f64; N],
+    rigid_increment: [f64; N],
     pinion_angle: [f64; N],
     points: Vec<CyclePoint<R>>,
     coarse_points_per_rad: f64,
@@ -102,7 +110,21 @@ impl<'a, const N: usize, const R: usize> Stepper<'a, N, R> {
         }
         let pinion_angle: Vec<f64> =
             (model.shapes.iter()).map(|shape| shape[crate::dynamics::coordinates::THETA_PINION]).collect();
+        let motor: [f64; N] = padded(&model.motor);
+        let rigid: [f64; N] = padded(&model.rigid_velocity);
+        let rotation = model.rotation_rad_per_s;
+        let mut rigid_displacement = [0.0; N];
+        let mut rigid_increment = [0.0; N];
+        for n in 0..N {
+            rigid_displacement[n] = rigid[n] * rotation * dt;
+            // K̂ r = k_p e_θp + (2/dt) C r + (4/dt²) M r, whatever the mesh stiffness.
+            rigid_increment[n] =
+                motor[n] * rotation * dt + (2.0 * damping[n] + 4.0 / dt) * rigid[n] * rotation;
+        }
         Self {
+            rotation_rad_per_s: rotation,
+            rigid_displacement,
+            rigid_increment,
             load: &system.mesh,
             directions: &model.directions,
             points: cycle_points(model, system, &inverse),
@@ -110,9 +132,9 @@ impl<'a, const N: usize, const R: usize> Stepper<'a, N, R> {
             damping,
             inverse,
             mesh,
-            motor: padded(&model.motor),
+            motor,
             brake: padded(&model.brake),
-            rigid: padded(&model.rigid_velocity),
+            rigid,
             pinion_angle: padded(&pinion_angle),
             coarse_points_per_rad: 1.0 / (2.0 * PI * cycle.coarse_step_rev),
             step_s: dt,
@@ -162,18 +184,25 @@ impl<'a, const N: usize, const R: usize> Stepper<'a, N, R> {
         solution
     }
 
-    /// Modal force of an excitation.
-    fn force(&self, excitation: &Excitation, convention: Convention) -> [f64; N] {
+    /// (rad) Angle of the rigid rotation at a sample.
+    fn rotation(&self, sample: usize) -> f64 {
+        self.rotation_rad_per_s * (sample as f64 * self.step_s)
+    }
+
+    /// Modal force of an excitation at a sample, on top of what the rigid rotation needs.
+    fn force(&self, sample: usize, excitation: &Excitation, convention: Convention) -> [f64; N] {
         let mut force = [0.0; N];
-        // Convention: under `corrected` damping acts on the velocity relative to the motor's rigid rotation.
-        let rigid_speed = match convention {
+        // Convention: under `corrected` damping acts on the velocity relative to the motor's rigid rotation, under
+        // `published` on the whole velocity.
+        let undamped_speed = match convention {
             Convention::Published => 0.0,
             Convention::Corrected => excitation.motor_speed_rad_per_s,
         };
+        let motor_lead = excitation.motor_angle_rad - self.rotation(sample);
         for n in 0..N {
-            force[n] = self.motor[n] * excitation.motor_angle_rad
+            force[n] = self.motor[n] * motor_lead
                 + self.brake[n] * excitation.brake_torque_nm
-                + self.damping[n] * self.rigid[n] * rigid_speed;
+                + self.damping[n] * self.rigid[n] * (undamped_speed - self.rotation_rad_per_s);
         }
         if excitation.error_force_n != 0.0 {
             let direction =
@@ -250,7 +279,7 @@ fn run<const N: usize, const R: usize>(
 
     let mut u: [f64; N] = padded(&model.initial_displacement);
     let mut v: [f64; N] = padded(&model.initial_velocity);
-    let mut force = stepper.force(&now, convention);
+    let mut force = stepper.force(0, &now, convention);
     let mut point = stepper.point(dot(&stepper.pinion_angle, &u));
     let mut a = [0.0; N];
     for n in 0..N {
@@ -261,16 +290,25 @@ fn run<const N: usize, const R: usize>(
 
     for sample in 0..time.samples {
         let mesh_force_n = dot(&stepper.points[point].load, &stepper.deflection(&u)) + now.error_force_n;
-        recorder
-            .record(sample, &StateView { displacement: &u, velocity: &v, acceleration: &a, mesh_force_n });
+        recorder.record(
+            sample,
+            &StateView {
+                displacement: &u,
+                velocity: &v,
+                acceleration: &a,
+                rotation_rad: stepper.rotation(sample),
+                rotation_rad_per_s: stepper.rotation_rad_per_s,
+                mesh_force_n,
+            },
+        );
         let Some(next) = excitation.next() else { return };
-        let next_force = stepper.force(&next, convention);
+        let next_force = stepper.force(sample + 1, &next, convention);
         let mut increment = [0.0; N];
         for n in 0..N {
             increment[n] =
                 next_force[n] - force[n] + (2.0 * two_per_dt + 2.0 * stepper.damping[n]) * v[n] + 2.0 * a[n];
         }
-        let angle = dot(&stepper.pinion_angle, &u);
+        let angle = dot(&stepper.pinion_angle, &u) + stepper.rotation(sample + 1);
         let deflection = stepper.deflection(&u);
         let (displacement, at) = match convention {
             Convention::Published => published_step(&stepper, &increment, angle, point, &deflection),
@@ -321,12 +359,18 @@ fn published_step<const N: usize, const R: usize>(
     let mut displacement = [0.0; N];
     let mut residual = *increment;
     let mut point = start;
-    for _ in 0..MOST_ITERATIONS {
+    for iteration in 0..MOST_ITERATIONS {
         let change = stepper.solve(&stepper.points[point], &residual);
         for n in 0..N {
             displacement[n] += change[n];
         }
-        let error = (dot(&residual, &change) / dot(increment, &displacement)).abs();
+        let mut whole = 0.0;
+        for n in 0..N {
+            whole += (increment[n] + stepper.rigid_increment[n])
+                * (displacement[n] + stepper.rigid_displacement[n]);
+        }
+        // The first change is the whole displacement, so its norm is 1.
+        let error = if iteration == 0 { 1.0 } else { (dot(&residual, &change) / whole).abs() };
         point = stepper.point(angle + dot(&stepper.pinion_angle, &displacement));
         for n in 0..N {
             residual[n] = increment[n] - displacement[n] / stepper.inverse[n];

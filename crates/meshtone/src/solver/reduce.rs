@@ -32,9 +32,13 @@ pub struct ReducedModel {
     pub brake: Vec<f64>,
     /// Modal velocity of the rigid rotation at 1 rad/s.
     pub rigid_velocity: Vec<f64>,
-    /// Modal displacement at the start.
+    /// The rigid rotation in the 13 coordinates.
+    pub rigid_rotation: CoordinateVector,
+    /// (rad/s) Speed of the rigid rotation on top of which the modes move: the nominal one.
+    pub rotation_rad_per_s: f64,
+    /// Modal displacement at the start, relative to the rigid rotation.
     pub initial_displacement: Vec<f64>,
-    /// Modal velocity at the start.
+    /// Modal velocity at the start, relative to the rigid rotation.
     pub initial_velocity: Vec<f64>,
 }
 
@@ -46,9 +50,11 @@ impl ReducedModel {
     ///
     /// # Arguments
     /// * `system` - the equations of motion
+    /// * `rotation_rad_per_s` - nominal speed of the motor
     /// * `initial_displacement`, `initial_velocity` - initial state in the 13 coordinates
     pub fn new(
         system: &System,
+        rotation_rad_per_s: f64,
         initial_displacement: &CoordinateVector,
         initial_velocity: &CoordinateVector,
     ) -> Self {
@@ -66,8 +72,9 @@ impl ReducedModel {
         unit[THETA_BRAKE] = 1.0;
         let brake = modal(&unit);
         let displacement = modal_motion(initial_displacement);
-        let velocity = modal_motion(initial_velocity);
-        let rigid = modal_motion(&system.rigid_rotation());
+        let rigid_rotation = system.rigid_rotation();
+        let velocity = modal_motion(&(initial_velocity - rigid_rotation * rotation_rad_per_s));
+        let rigid = modal_motion(&rigid_rotation);
 
         let moved = |n: usize| {
             [&motor, &brake, &displacement, &velocity, &rigid].iter().any(|vector| vector[n] != 0.0)
@@ -106,6 +113,8 @@ impl ReducedModel {
             motor: pick(&motor),
             brake: pick(&brake),
             rigid_velocity: pick(&rigid),
+            rigid_rotation,
+            rotation_rad_per_s,
             initial_displacement: pick(&displacement),
             initial_velocity: pick(&velocity),
         }
