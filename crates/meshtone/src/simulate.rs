@@ -3,13 +3,13 @@
 use std::time::{Duration, Instant};
 
 use crate::dynamics::coordinates::CoordinateVector;
-use crate::dynamics::{ErrorForce, Excitation, MeshLoad, Motion, System};
+use crate::dynamics::{ErrorForce, Excitation, MeshLoad, Motion, MotionSample, System};
 use crate::fault::{FaultGeometry, fault_geometry};
 use crate::quality::profile_errors;
 use crate::sampling::{CycleGrid, TimeGrid};
 use crate::scenario::{Convention, ProfileErrors, Scenario, ScenarioError};
-use crate::signal::{ChannelRecorder, Channels};
-use crate::solver::{Recorder, ReducedModel, integrate};
+use crate::signal::{Channels, channel_outputs};
+use crate::solver::{Output, Problem, Recorder, ReducedModel, integrate};
 use crate::stiffness::{MeshStiffness, PairStiffness};
 use crate::tooth::{Teeth, teeth};
 
@@ -82,9 +82,8 @@ pub fn simulate(scenario: &Scenario) -> Result<Simulation, ScenarioError> {
     let stages = stages(scenario)?;
     let mut clock = Clock::default();
     let model = stages.reduced_model();
-    let mut recorder = ChannelRecorder::new(&model, &stages.time);
-    stages.integrate(&model, &mut recorder);
-    let channels = recorder.finish();
+    let mut channels = Channels::new(&stages.time);
+    stages.integrate(&model, &channel_outputs(), stages.time.first_kept_sample, &mut channels);
     clock.lap("time integration");
     let timings = stages.timings.iter().copied().chain(clock.laps).collect();
     Ok(Simulation { stages, channels, timings })
@@ -164,27 +163,38 @@ impl Stages {
 
     /// Stage 6, the right-hand side: motor, brake and the profile errors' force, sample by sample from the start.
     pub fn excitation(&self) -> impl Iterator<Item = Excitation> {
-        let errors = ErrorForce::new(
+        let errors = self.error_force();
+        Motion::new(&self.scenario, &self.time).map(move |motion| self.excite(&motion, &errors))
+    }
+
+    pub(crate) fn error_force(&self) -> ErrorForce<'_> {
+        ErrorForce::new(
             &self.scenario,
             &self.pair,
             self.profile_errors.as_ref(),
             self.fault.as_ref(),
             &self.system.mesh,
             self.cycle,
-        );
-        Motion::new(&self.scenario, &self.time).map(move |motion| {
-            let nearest = (motion.revolutions / self.cycle.coarse_step_rev).round() as i64;
-            let coarse_point = nearest.rem_euclid(self.cycle.points_per_gear_revolution as i64) as usize;
-            let position_rev = motion.revolutions.rem_euclid(self.system.ratio);
-            Excitation {
-                motor_angle_rad: std::f64::consts::TAU * motion.revolutions,
-                motor_speed_rad_per_s: std::f64::consts::TAU * motion.speed_hz,
-                brake_torque_nm: motion.torque_nm,
-                error_force_n: errors.at(motion.revolutions, position_rev, coarse_point),
-                position_rev,
-                coarse_point,
-            }
-        })
+        )
+    }
+
+    pub(crate) fn excite(&self, motion: &MotionSample, errors: &ErrorForce) -> Excitation {
+        let (position_rev, coarse_point) = self.position(motion.revolutions);
+        Excitation {
+            motor_angle_rad: std::f64::consts::TAU * motion.revolutions,
+            motor_speed_rad_per_s: std::f64::consts::TAU * motion.speed_hz,
+            brake_torque_nm: motion.torque_nm,
+            error_force_n: errors.at(motion.revolutions, position_rev, coarse_point),
+            position_rev,
+            coarse_point,
+        }
+    }
+
+    /// Motor revolutions since the gear's first tooth last entered contact, and the coarse point nearest to them.
+    pub(crate) fn position(&self, revolutions: f64) -> (f64, usize) {
+        let nearest = (revolutions / self.cycle.coarse_step_rev).round() as i64;
+        let coarse_point = nearest.rem_euclid(self.cycle.points_per_gear_revolution as i64) as usize;
+        (revolutions.rem_euclid(self.system.ratio), coarse_point)
     }
 
     /// The equations of motion in the modes that take part in the motion.
@@ -207,14 +217,21 @@ impl Stages {
         std::f64::consts::TAU * speed_hz
     }
 
-    /// Stage 7: solves the equations of motion and hands every sample's state to `recorder`.
+    /// Stage 7: solves the equations of motion and hands the outputs of every sample to `recorder`.
     ///
     /// # Arguments
     /// * `model` - from [`Self::reduced_model`]
-    /// * `recorder` - takes the states
-    pub fn integrate(&self, model: &ReducedModel, recorder: &mut impl Recorder) {
-        let convention = self.scenario.convention;
-        integrate(model, &self.system, &self.time, &self.cycle, self.excitation(), convention, recorder);
+    /// * `outputs` - what is read off the solution
+    /// * `first_sample` - first sample that is recorded; those before are computed all the same
+    /// * `recorder` - takes the outputs, in the same order
+    pub fn integrate(
+        &self,
+        model: &ReducedModel,
+        outputs: &[Output],
+        first_sample: usize,
+        recorder: &mut dyn Recorder,
+    ) {
+        integrate(&Problem { stages: self, model, outputs, first_sample }, recorder);
     }
 }
 

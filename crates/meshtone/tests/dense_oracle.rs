@@ -3,7 +3,7 @@
 use meshtone::dynamics::Excitation;
 use meshtone::dynamics::coordinates::{COORDINATES, CoordinateMatrix, CoordinateVector, THETA_PINION};
 use meshtone::scenario::*;
-use meshtone::solver::{Projection, Recorder, StateView};
+use meshtone::solver::{Block, Output, Recorder};
 use meshtone::{Stages, stages};
 
 const MOST_ITERATIONS: usize = 11;
@@ -112,7 +112,9 @@ impl<'a> Dense<'a> {
         point: &mut usize,
     ) -> CoordinateVector {
         let start_stiffness = self.stiffness(*point);
-        let mut p = self.inverse(*point) * increment;
+        // Where the rigid rotation leads.
+        *point = self.point(angle);
+        let mut p = self.inverse(*point) * (increment + (start_stiffness - self.stiffness(*point)) * u);
         for _ in 0..MOST_ITERATIONS {
             let next = self.point(angle + p[THETA_PINION]);
             if next == *point {
@@ -163,29 +165,26 @@ impl<'a> Dense<'a> {
     }
 }
 
-struct Accelerations {
-    rows: Vec<Projection>,
-    all: Vec<CoordinateVector>,
-}
+struct Accelerations(Vec<CoordinateVector>);
 
 impl Recorder for Accelerations {
-    fn record(&mut self, _: usize, state: &StateView) {
-        self.all.push(CoordinateVector::from_fn(|n, _| self.rows[n].acceleration(state)));
+    fn record(&mut self, block: &Block) {
+        let rows = (0..block.len()).map(|k| CoordinateVector::from_fn(|n, _| block.output(n)[k]));
+        self.0.extend(rows);
     }
 }
 
 fn modal(stages: &Stages) -> Vec<CoordinateVector> {
-    let model = stages.reduced_model();
-    let rows = (0..COORDINATES)
+    let outputs: Vec<Output> = (0..COORDINATES)
         .map(|coordinate| {
             let mut weights = [0.0; COORDINATES];
             weights[coordinate] = 1.0;
-            Projection::new(&model, &weights)
+            Output::Acceleration(weights)
         })
         .collect();
-    let mut recorder = Accelerations { rows, all: Vec::new() };
-    stages.integrate(&model, &mut recorder);
-    recorder.all
+    let mut recorder = Accelerations(Vec::new());
+    stages.integrate(&stages.reduced_model(), &outputs, 0, &mut recorder);
+    recorder.0
 }
 
 /// Rms of the difference over rms, the largest over all coordinates that move.

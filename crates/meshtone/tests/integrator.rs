@@ -2,7 +2,7 @@
 
 use meshtone::dynamics::coordinates::*;
 use meshtone::scenario::{DampingRatio, Scenario};
-use meshtone::solver::{Projection, Recorder, StateView};
+use meshtone::solver::{Block, Output, Recorder};
 use meshtone::{Stages, stages};
 
 const PINION_SPEED_HZ: f64 = 1.0;
@@ -23,30 +23,32 @@ fn constant_stiffness(sampling_rate_hz: f64, damping_ratio: f64, torque_nm: f64,
 }
 
 /// Displacement and velocity of all coordinates at every sample.
+#[derive(Default)]
 struct States {
-    rows: Vec<Projection>,
     displacement: Vec<CoordinateVector>,
     velocity: Vec<CoordinateVector>,
 }
 
 impl Recorder for States {
-    fn record(&mut self, _: usize, state: &StateView) {
-        self.displacement.push(CoordinateVector::from_fn(|n, _| self.rows[n].displacement(state)));
-        self.velocity.push(CoordinateVector::from_fn(|n, _| self.rows[n].velocity(state)));
+    fn record(&mut self, block: &Block) {
+        for k in 0..block.len() {
+            self.displacement.push(CoordinateVector::from_fn(|n, _| block.output(n)[k]));
+            self.velocity.push(CoordinateVector::from_fn(|n, _| block.output(COORDINATES + n)[k]));
+        }
     }
 }
 
 fn solve(stages: &Stages) -> States {
-    let model = stages.reduced_model();
-    let rows = (0..COORDINATES)
-        .map(|coordinate| {
+    let each = |output: fn([f64; COORDINATES]) -> Output| {
+        (0..COORDINATES).map(move |coordinate| {
             let mut weights = [0.0; COORDINATES];
             weights[coordinate] = 1.0;
-            Projection::new(&model, &weights)
+            output(weights)
         })
-        .collect();
-    let mut states = States { rows, displacement: Vec::new(), velocity: Vec::new() };
-    stages.integrate(&model, &mut states);
+    };
+    let outputs: Vec<Output> = each(Output::Displacement).chain(each(Output::Velocity)).collect();
+    let mut states = States::default();
+    stages.integrate(&stages.reduced_model(), &outputs, 0, &mut states);
     states
 }
 

@@ -9,6 +9,9 @@ use crate::sampling::{CycleGrid, FINE_PER_COARSE};
 use crate::scenario::{Convention, ProfileErrors, Scenario};
 use crate::stiffness::{PairCurve, PairStiffness};
 
+/// In fine points: more than rounding does to an angle, less than any two samples' difference.
+const ANGLE_ROUNDING: f64 = 1e-6;
+
 /// Force that deviations of the flanks put on the mesh: stiffness × deviation, `k e`, summed over all pairs in
 /// contact.
 pub struct ErrorForce<'a> {
@@ -97,11 +100,39 @@ impl<'a> ErrorForce<'a> {
     /// * `position_rev` - (rev) those since the gear's first tooth last entered contact
     /// * `coarse_point` - coarse point of the cycle nearest to `position_rev`
     pub fn at(&self, revolutions: f64, position_rev: f64, coarse_point: usize) -> f64 {
-        let mut force = 0.0;
-        if self.pair_displacement.is_some() || !self.gear_errors.is_empty() {
-            let fine = (revolutions / self.grid.fine_step_rev).round().max(0.0) as usize;
-            force += self.pairs_at(fine);
+        self.pairs_after(revolutions) + self.mesh_terms(revolutions, position_rev, coarse_point)
+    }
+
+    /// (N) The part that the pairs' own deviations make.
+    pub(crate) fn pairs_after(&self, revolutions: f64) -> f64 {
+        if !self.has_pairs() {
+            return 0.0;
         }
+        let fine = revolutions / self.grid.fine_step_rev;
+        let nearest = match self.convention {
+            Convention::Published => fine.round(),
+            // Half way between two points the later one is taken, whatever rounding has done to the angle.
+            Convention::Corrected => (fine + 0.5 + ANGLE_ROUNDING).floor(),
+        };
+        self.pairs_at(nearest.max(0.0) as usize)
+    }
+
+    /// Whether any pair's flanks deviate.
+    pub(crate) fn has_pairs(&self) -> bool {
+        self.pair_displacement.is_some() || !self.gear_errors.is_empty()
+    }
+
+    /// Whether the force depends on the position in the cycle beyond the pairs' own deviations.
+    pub(crate) fn depends_on_position(&self) -> bool {
+        self.fault.is_some_and(|fault| {
+            matches!(fault.displacement, Displacement::Rolling(_))
+                || fault.contact_width != crate::fault::ContactWidth::Whole
+        })
+    }
+
+    /// (N) The part that acts on the mesh as a whole: a through fault's displacement and eccentricity.
+    pub(crate) fn mesh_terms(&self, revolutions: f64, position_rev: f64, coarse_point: usize) -> f64 {
+        let mut force = 0.0;
         if let Some(Displacement::Rolling(rolling)) = self.fault.map(|fault| &fault.displacement) {
             force += rolling.displacement_mm(position_rev) * self.mesh_n_per_mm(coarse_point);
         }
@@ -112,6 +143,69 @@ impl<'a> ErrorForce<'a> {
             force += self.mesh_n_per_mm(coarse_point) * self.eccentricity_mm * displacement;
         }
         force
+    }
+
+    /// Fine points of the successive samples while a pair is in contact.
+    pub(crate) fn fine_points(&self, samples_per_revolution: usize) -> Vec<usize> {
+        let per_revolution = self.fine_pitch * self.pinion_teeth;
+        (0..)
+            .map(|sample: usize| {
+                (2 * sample * per_revolution + samples_per_revolution) / (2 * samples_per_revolution)
+            })
+            .take_while(|&fine| fine < self.fine_points)
+            .collect()
+    }
+
+    /// Whether each sample of a pitch falls half way between two fine points, so that rounding errors decide which one
+    /// it is given.
+    pub(crate) fn half_way(&self, samples_per_revolution: usize) -> Vec<bool> {
+        let per_revolution = self.fine_pitch * self.pinion_teeth;
+        (0..samples_per_revolution / self.pinion_teeth)
+            .map(|sample| {
+                let twice = 2 * sample * per_revolution;
+                twice.is_multiple_of(samples_per_revolution)
+                    && !(twice / samples_per_revolution).is_multiple_of(2)
+            })
+            .collect()
+    }
+
+    /// (N) Force of each tooth's deviations at `fine` points since it entered contact.
+    pub(crate) fn tooth_tables(&self, fine: &[usize]) -> ToothForces {
+        let positions: Vec<f64> = fine.iter().map(|&point| point as f64 * self.grid.fine_step_rev).collect();
+        let sample = |curve: &PairCurve| -> Vec<f64> { positions.iter().map(|&x| curve.at(x)).collect() };
+        let healthy = sample(&self.healthy);
+        let first = sample(&self.first);
+        let deviations = |errors: &[NotAKnotSpline], tooth: usize, stiffness: &[f64]| -> Vec<f64> {
+            errors.get(tooth).map_or_else(
+                || vec![0.0; positions.len()],
+                |spline| positions.iter().zip(stiffness).map(|(&x, k)| k * spline.at(x)).collect(),
+            )
+        };
+        let is_first = |tooth: usize| self.has_fault && tooth == 0;
+        let pinion = (0..self.pinion_teeth)
+            .map(|tooth| {
+                let faulty = is_first(tooth) && self.convention == Convention::Published;
+                deviations(&self.pinion_errors, tooth, if faulty { &first } else { &healthy })
+            })
+            .collect();
+        let pinion_at_fault = if self.has_fault && self.convention == Convention::Corrected {
+            (0..self.pinion_teeth).map(|tooth| deviations(&self.pinion_errors, tooth, &first)).collect()
+        } else {
+            Vec::new()
+        };
+        let gear = (0..self.gear_teeth)
+            .map(|tooth| {
+                let stiffness = if is_first(tooth) { &first } else { &healthy };
+                let mut force = deviations(&self.gear_errors, tooth, stiffness);
+                if let Some(displacement) = self.pair_displacement.as_ref().filter(|_| is_first(tooth)) {
+                    for ((force, k), &x) in force.iter_mut().zip(stiffness).zip(&positions) {
+                        *force += k * displacement.at(x);
+                    }
+                }
+                force
+            })
+            .collect();
+        ToothForces { pinion, pinion_at_fault, gear }
     }
 
     fn mesh_n_per_mm(&self, coarse_point: usize) -> f64 {
@@ -149,6 +243,16 @@ impl<'a> ErrorForce<'a> {
         }
         force
     }
+}
+
+/// Force of each tooth's deviations, at every sample while its pair is in contact; one row per tooth.
+pub(crate) struct ToothForces {
+    /// (N) Pinion.
+    pub(crate) pinion: Vec<Vec<f64>>,
+    /// (N) Pinion, where it meets the faulty gear tooth; empty where that makes no difference.
+    pub(crate) pinion_at_fault: Vec<Vec<f64>>,
+    /// (N) Gear, the faulty tooth's own displacement included.
+    pub(crate) gear: Vec<Vec<f64>>,
 }
 
 /// Excitation of one sample.

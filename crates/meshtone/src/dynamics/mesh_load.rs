@@ -56,6 +56,10 @@ pub struct MeshLoad {
     pub nominal: LoadState,
     /// Load state at the first points of the cycle, while the fault is in contact.
     pub faulty: Vec<LoadState>,
+    /// Number of points from one tooth to the next.
+    pub points_per_pitch: usize,
+    /// Number of points, from the start of the cycle, at which the mesh is not that of a healthy gear.
+    pub disturbed_points: usize,
     /// (m) Half the face width.
     half_width_m: f64,
     contact_width: ContactWidth,
@@ -125,6 +129,12 @@ impl MeshLoad {
         }
         Self {
             stiffness_n_per_m: mesh.mesh_n_per_mm.iter().map(|k| k * 1e3).collect(),
+            points_per_pitch: grid.points_per_pitch,
+            disturbed_points: if fault.is_some() {
+                mesh.first_pair_n_per_mm.len().max(faulty.len()).min(grid.points_per_gear_revolution)
+            } else {
+                0
+            },
             nominal,
             faulty,
             half_width_m: half_width,

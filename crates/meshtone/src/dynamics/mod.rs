@@ -6,6 +6,7 @@
 mod body;
 pub mod coordinates;
 mod excitation;
+mod forcing;
 mod mesh_directions;
 mod mesh_load;
 mod modes;
@@ -14,8 +15,9 @@ mod system;
 
 pub use body::WheelBody;
 pub use excitation::{ErrorForce, Excitation};
+pub(crate) use forcing::{Forcing, ForcingBlock};
 pub use mesh_directions::MeshDirections;
 pub use mesh_load::{LoadState, MeshLoad};
 pub use modes::Modes;
-pub use motion::Motion;
+pub use motion::{Motion, MotionSample};
 pub use system::System;

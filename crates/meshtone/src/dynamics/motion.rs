@@ -71,8 +71,14 @@ impl<'a> Motion<'a> {
         nominal + self.torque_draws.as_mut().map_or(0.0, |draws| draws.uniform(0.0, fluctuation))
     }
 
-    fn is_steady(&self) -> bool {
+    /// Whether the motor's speed is constant.
+    pub(crate) fn is_steady(&self) -> bool {
         self.speed_draws.is_none() && self.scenario.operation.speed_profile_hz.is_none()
+    }
+
+    /// Whether the brake's torque is constant.
+    pub(crate) fn has_constant_torque(&self) -> bool {
+        self.torque_draws.is_none() && self.scenario.operation.torque_profile_nm.is_none()
     }
 }
 

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use crate::dynamics::coordinates::*;
 use crate::sampling::TimeGrid;
-use crate::solver::{Projection, Recorder, ReducedModel, StateView};
+use crate::solver::{Block, Output, Recorder};
 
 /// (m/s²) One g, as the published model has it.
 pub const GRAVITY_M_PER_S2: f64 = 9.81;
@@ -31,6 +31,24 @@ pub struct Channels {
 }
 
 impl Channels {
+    /// Empty channels, with room for the kept samples.
+    ///
+    /// # Arguments
+    /// * `time` - division of time
+    pub fn new(time: &TimeGrid) -> Self {
+        let empty = || Vec::with_capacity(time.kept_samples());
+        Self {
+            sampling_rate_hz: time.sampling_rate_hz,
+            start_s: time.first_kept_sample as f64 * time.step_s(),
+            horizontal_g: empty(),
+            vertical_g: empty(),
+            axial_g: empty(),
+            pinion_speed_hz: empty(),
+            gear_speed_hz: empty(),
+            mesh_force_n: empty(),
+        }
+    }
+
     /// Number of samples.
     pub fn len(&self) -> usize {
         self.vertical_g.len()
@@ -53,70 +71,33 @@ impl Channels {
     }
 }
 
-/// Records the channels of the kept samples.
-pub struct ChannelRecorder {
-    first_kept_sample: usize,
-    horizontal: Projection,
-    vertical: Projection,
-    axial: Projection,
-    pinion_speed: Projection,
-    gear_speed: Projection,
-    channels: Channels,
+/// What [`Channels`] reads off the solution, in the order of its fields.
+pub fn channel_outputs() -> [Output; 6] {
+    let weighted = |terms: &[(usize, f64)]| {
+        let mut weights = [0.0; COORDINATES];
+        for &(coordinate, weight) in terms {
+            weights[coordinate] = weight;
+        }
+        weights
+    };
+    let per_g = 1.0 / GRAVITY_M_PER_S2;
+    [
+        Output::Acceleration(weighted(&[(X_GEAR, per_g), (X_PINION, per_g)])),
+        Output::Acceleration(weighted(&[(Y_GEAR, per_g), (Y_PINION, per_g)])),
+        Output::Acceleration(weighted(&[(Z_GEAR, per_g), (Z_PINION, per_g)])),
+        Output::Velocity(weighted(&[(THETA_PINION, 1.0 / TAU)])),
+        Output::Velocity(weighted(&[(THETA_GEAR, -1.0 / TAU)])),
+        Output::MeshForce,
+    ]
 }
 
-impl ChannelRecorder {
-    /// A recorder for one solution.
-    ///
-    /// # Arguments
-    /// * `model` - the model that is integrated
-    /// * `time` - division of time
-    pub fn new(model: &ReducedModel, time: &TimeGrid) -> Self {
-        let weighted = |terms: &[(usize, f64)]| {
-            let mut weights = [0.0; COORDINATES];
-            for &(coordinate, weight) in terms {
-                weights[coordinate] = weight;
-            }
-            Projection::new(model, &weights)
-        };
-        let per_g = 1.0 / GRAVITY_M_PER_S2;
-        let empty = || Vec::with_capacity(time.kept_samples());
-        Self {
-            first_kept_sample: time.first_kept_sample,
-            horizontal: weighted(&[(X_GEAR, per_g), (X_PINION, per_g)]),
-            vertical: weighted(&[(Y_GEAR, per_g), (Y_PINION, per_g)]),
-            axial: weighted(&[(Z_GEAR, per_g), (Z_PINION, per_g)]),
-            pinion_speed: weighted(&[(THETA_PINION, 1.0 / TAU)]),
-            gear_speed: weighted(&[(THETA_GEAR, -1.0 / TAU)]),
-            channels: Channels {
-                sampling_rate_hz: time.sampling_rate_hz,
-                start_s: time.first_kept_sample as f64 * time.step_s(),
-                horizontal_g: empty(),
-                vertical_g: empty(),
-                axial_g: empty(),
-                pinion_speed_hz: empty(),
-                gear_speed_hz: empty(),
-                mesh_force_n: empty(),
-            },
-        }
-    }
-
-    /// The recorded channels.
-    pub fn finish(self) -> Channels {
-        self.channels
-    }
-}
-
-impl Recorder for ChannelRecorder {
-    fn record(&mut self, sample: usize, state: &StateView) {
-        if sample < self.first_kept_sample {
-            return;
-        }
-        let channels = &mut self.channels;
-        channels.horizontal_g.push(self.horizontal.acceleration(state));
-        channels.vertical_g.push(self.vertical.acceleration(state));
-        channels.axial_g.push(self.axial.acceleration(state));
-        channels.pinion_speed_hz.push(self.pinion_speed.velocity(state));
-        channels.gear_speed_hz.push(self.gear_speed.velocity(state));
-        channels.mesh_force_n.push(state.mesh_force_n);
+impl Recorder for Channels {
+    fn record(&mut self, block: &Block) {
+        self.horizontal_g.extend_from_slice(block.output(0));
+        self.vertical_g.extend_from_slice(block.output(1));
+        self.axial_g.extend_from_slice(block.output(2));
+        self.pinion_speed_hz.extend_from_slice(block.output(3));
+        self.gear_speed_hz.extend_from_slice(block.output(4));
+        self.mesh_force_n.extend_from_slice(block.output(5));
     }
 }

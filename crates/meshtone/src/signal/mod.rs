@@ -4,4 +4,4 @@ mod average;
 mod channels;
 
 pub use average::revolution_average;
-pub use channels::{ChannelRecorder, Channels, GRAVITY_M_PER_S2};
+pub use channels::{Channels, GRAVITY_M_PER_S2, channel_outputs};

@@ -42,6 +42,10 @@ pub struct ReducedModel {
     pub initial_velocity: Vec<f64>,
 }
 
+/// Numbers of two of the constant mesh directions.
+const ALONG: usize = 0;
+const ROTATION: usize = 2;
+
 /// Below this part of the largest entry a modal entry is rounding.
 const ROUNDING: f64 = 1e-13;
 
@@ -118,6 +122,13 @@ impl ReducedModel {
             initial_displacement: pick(&displacement),
             initial_velocity: pick(&velocity),
         }
+    }
+
+    /// Column of [`Self::mesh`] whose direction has weight 1 in every line of action, so that its component of the
+    /// mesh's force is the whole force.
+    pub(crate) fn whole_force_column(&self) -> Option<usize> {
+        let rotation = self.directions.iter().position(|&direction| direction == ROTATION);
+        rotation.or_else(|| self.directions.iter().position(|&direction| direction == ALONG))
     }
 
     /// Number of active modes.

@@ -3,9 +3,9 @@
 use super::{Trace, static_stages};
 use crate::dynamics::coordinates::{COORDINATES, CoordinateVector};
 use crate::scenario::{Scenario, ScenarioError};
-use crate::signal::{ChannelRecorder, Channels};
+use crate::signal::{Channels, channel_outputs};
 use crate::simulate::{Simulation, Stages, stages};
-use crate::solver::{Projection, Recorder, ReducedModel, StateView};
+use crate::solver::{Block, Output, Recorder};
 
 /// How many samples of each quantity a trace holds.
 const FIRST_FORCES: usize = 200;
@@ -29,8 +29,9 @@ pub fn trace(scenario: &Scenario) -> Result<(Simulation, Trace), ScenarioError> 
     static_stages(&mut trace, &stages);
     forces(&mut trace, &stages);
     let model = stages.reduced_model();
-    let mut recorder = StateRecorder::new(&model, &stages);
-    stages.integrate(&model, &mut recorder);
+    let mut recorder = StateRecorder::new(&stages);
+    let outputs: Vec<Output> = channel_outputs().into_iter().chain(state_outputs()).collect();
+    stages.integrate(&model, &outputs, stages.time.first_kept_sample, &mut recorder);
     let channels = recorder.finish(&mut trace);
     let timings = stages.timings.clone();
     Ok((Simulation { stages, channels, timings }, trace))
@@ -65,10 +66,21 @@ fn forces(trace: &mut Trace, stages: &Stages) {
     trace.vector("mesh_error_force_n", errors);
 }
 
+/// What is recorded beside the channels: the 13 coordinates' accelerations, velocities and displacements.
+fn state_outputs() -> Vec<Output> {
+    let each = |output: fn([f64; COORDINATES]) -> Output| {
+        (0..COORDINATES).map(move |coordinate| {
+            let mut weights = [0.0; COORDINATES];
+            weights[coordinate] = 1.0;
+            output(weights)
+        })
+    };
+    each(Output::Acceleration).chain(each(Output::Velocity)).chain(each(Output::Displacement)).collect()
+}
+
 /// Records channels and, in windows, the state in all 13 coordinates.
 struct StateRecorder {
-    channels: ChannelRecorder,
-    coordinates: Vec<Projection>,
+    channels: Channels,
     kept: usize,
     samples: usize,
     acceleration: Vec<[f64; COORDINATES]>,
@@ -81,17 +93,9 @@ struct StateRecorder {
 }
 
 impl StateRecorder {
-    fn new(model: &ReducedModel, stages: &Stages) -> Self {
-        let coordinates = (0..COORDINATES)
-            .map(|coordinate| {
-                let mut weights = [0.0; COORDINATES];
-                weights[coordinate] = 1.0;
-                Projection::new(model, &weights)
-            })
-            .collect();
+    fn new(stages: &Stages) -> Self {
         Self {
-            channels: ChannelRecorder::new(model, &stages.time),
-            coordinates,
+            channels: Channels::new(&stages.time),
             kept: stages.time.first_kept_sample,
             samples: stages.time.samples,
             acceleration: Vec::new(),
@@ -102,10 +106,6 @@ impl StateRecorder {
             square_sum: [0.0; COORDINATES],
             velocity_sum: [0.0; COORDINATES],
         }
-    }
-
-    fn all(&self, of: impl Fn(&Projection) -> f64) -> [f64; COORDINATES] {
-        std::array::from_fn(|coordinate| of(&self.coordinates[coordinate]))
     }
 
     fn finish(self, trace: &mut Trace) -> Channels {
@@ -121,7 +121,7 @@ impl StateRecorder {
         states(trace, "displacement_last_20", &self.last_displacement);
         trace.vector("acceleration_rms", self.square_sum.map(|sum| (sum / count).sqrt()));
         trace.vector("velocity_mean", self.velocity_sum.map(|sum| sum / count));
-        let channels = self.channels.finish();
+        let channels = self.channels;
         trace.vector(
             "rms_g_horizontal_vertical_axial",
             [rms(&channels.horizontal_g), rms(&channels.vertical_g), rms(&channels.axial_g)],
@@ -131,31 +131,33 @@ impl StateRecorder {
 }
 
 impl Recorder for StateRecorder {
-    fn record(&mut self, sample: usize, state: &StateView) {
-        self.channels.record(sample, state);
-        if sample < self.kept {
-            return;
-        }
-        let since = sample - self.kept;
-        let until = self.samples - sample;
-        let acceleration = self.all(|coordinate| coordinate.acceleration(state));
-        let velocity = self.all(|coordinate| coordinate.velocity(state));
-        for coordinate in 0..COORDINATES {
-            self.square_sum[coordinate] += acceleration[coordinate] * acceleration[coordinate];
-            self.velocity_sum[coordinate] += velocity[coordinate];
-        }
-        if since < ACCELERATIONS {
-            self.acceleration.push(acceleration);
-        }
-        if since < STATES {
-            self.velocity.push(velocity);
-            self.displacement.push(self.all(|coordinate| coordinate.displacement(state)));
-        }
-        if until <= LAST_ACCELERATIONS {
-            self.last_acceleration.push(acceleration);
-        }
-        if until <= LAST_DISPLACEMENTS {
-            self.last_displacement.push(self.all(|coordinate| coordinate.displacement(state)));
+    fn record(&mut self, block: &Block) {
+        self.channels.record(block);
+        let states = channel_outputs().len();
+        for k in 0..block.len() {
+            let sample = block.first_sample + k;
+            let (since, until) = (sample - self.kept, self.samples - sample);
+            let all = |kind: usize| -> [f64; COORDINATES] {
+                std::array::from_fn(|n| block.output(states + kind * COORDINATES + n)[k])
+            };
+            let (acceleration, velocity) = (all(0), all(1));
+            for coordinate in 0..COORDINATES {
+                self.square_sum[coordinate] += acceleration[coordinate] * acceleration[coordinate];
+                self.velocity_sum[coordinate] += velocity[coordinate];
+            }
+            if since < ACCELERATIONS {
+                self.acceleration.push(acceleration);
+            }
+            if since < STATES {
+                self.velocity.push(velocity);
+                self.displacement.push(all(2));
+            }
+            if until <= LAST_ACCELERATIONS {
+                self.last_acceleration.push(acceleration);
+            }
+            if until <= LAST_DISPLACEMENTS {
+                self.last_displacement.push(all(2));
+            }
         }
     }
 }

@@ -1,0 +1,367 @@
+//! The time loop: one simulation, or several side by side.
+
+use super::cycle_table::{CycleTable, StepFactors};
+use super::lanes::Lanes;
+use super::outputs::{EXTERNALS, Output, OutputRow, Scales};
+use super::reduce::ReducedModel;
+use super::step::{Coefficients, Group, Norm, State};
+use crate::dynamics::coordinates::THETA_PINION;
+use crate::dynamics::{Forcing, ForcingBlock};
+use crate::scenario::Convention;
+use crate::simulate::Stages;
+
+/// Samples that are forced, solved and handed out at a time.
+const BLOCK_SAMPLES: usize = 512;
+
+/// Successive samples of all outputs of one simulation.
+pub struct Block<'a> {
+    /// Number of the first sample, 0 at the start of the simulation.
+    pub first_sample: usize,
+    outputs: &'a [Vec<f64>],
+}
+
+impl Block<'_> {
+    /// The samples of output `index`, in the order in which the outputs were asked for.
+    pub fn output(&self, index: usize) -> &[f64] {
+        &self.outputs[index]
+    }
+
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.outputs.first().map_or(0, Vec::len)
+    }
+
+    /// Whether there are no samples.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// Takes the outputs of a solution as they are computed.
+pub trait Recorder {
+    /// Called for successive blocks of samples, in order.
+    ///
+    /// # Arguments
+    /// * `block` - the outputs
+    fn record(&mut self, block: &Block);
+}
+
+/// One simulation to integrate.
+pub(crate) struct Problem<'a> {
+    pub(crate) stages: &'a Stages,
+    pub(crate) model: &'a ReducedModel,
+    pub(crate) outputs: &'a [Output],
+    /// Samples before it are computed, but not recorded.
+    pub(crate) first_sample: usize,
+}
+
+/// Integrates one simulation.
+pub(crate) fn integrate(problem: &Problem, recorder: &mut dyn Recorder) {
+    let (modes, rank) = (problem.model.modes(), problem.model.directions.len());
+    // Fixed sizes let the compiler unroll the step and keep it in registers.
+    match (modes, rank) {
+        (0..=5, 0..=1) => by_convention::<5, 1>(problem, recorder),
+        (0..=7, 0..=2) => by_convention::<7, 2>(problem, recorder),
+        (0..=7, 3) => by_convention::<7, 3>(problem, recorder),
+        _ => by_convention::<13, 5>(problem, recorder),
+    }
+}
+
+fn by_convention<const N: usize, const R: usize>(problem: &Problem, recorder: &mut dyn Recorder) {
+    let forcing = Forcing::new(problem.stages, &problem.model.directions);
+    let published = problem.stages.scenario.convention == Convention::Published;
+    let simulations = [(problem, forcing)];
+    match (published, simulations[0].1.is_steady()) {
+        (true, true) => run::<1, N, R, true, true>(simulations, [recorder]),
+        (true, false) => run::<1, N, R, true, false>(simulations, [recorder]),
+        (false, true) => run::<1, N, R, false, true>(simulations, [recorder]),
+        (false, false) => run::<1, N, R, false, false>(simulations, [recorder]),
+    }
+}
+
+fn run<const L: usize, const N: usize, const R: usize, const PUBLISHED: bool, const STEADY: bool>(
+    simulations: [(&Problem, Forcing); L],
+    recorders: [&mut dyn Recorder; L],
+) {
+    solve::<L, false, N, R, PUBLISHED, STEADY>(simulations, recorders);
+}
+
+/// Everything about one simulation that does not change from step to step.
+struct Prepared<const R: usize> {
+    factors: StepFactors,
+    scales: Scales,
+    table: CycleTable<R>,
+    rows: Vec<OutputRow>,
+}
+
+impl<const R: usize> Prepared<R> {
+    fn new(problem: &Problem) -> Self {
+        let (model, stages) = (problem.model, problem.stages);
+        let half_step_s = stages.time.step_s() / 2.0;
+        let factors = StepFactors::new(model, half_step_s);
+        let published = stages.scenario.convention == Convention::Published;
+        let drag: Vec<f64> =
+            model.damping.iter().zip(&model.rigid_velocity).map(|(damping, rigid)| damping * rigid).collect();
+        let torque = stages.scenario.operation.brake_torque_nm;
+        let static_displacement = (0..model.modes())
+            .map(|n| {
+                // Convention: under `published` damping brakes the rigid rotation too, under `corrected` it acts on the
+                // velocity relative to the motor's.
+                let brake = if published { drag[n] * model.rotation_rad_per_s } else { 0.0 };
+                (model.brake[n] * torque - brake) / model.stiffness[n]
+            })
+            .collect();
+        let followed_speed = if published { vec![0.0; model.modes()] } else { drag };
+        let scales = Scales {
+            half_step_s,
+            static_displacement,
+            external: [model.motor.clone(), model.brake.clone(), followed_speed],
+        };
+        Self {
+            table: CycleTable::new(model, &stages.system, &factors.compliance),
+            rows: problem.outputs.iter().map(|output| output.row(model, &scales)).collect(),
+            factors,
+            scales,
+        }
+    }
+}
+
+fn lanes<const L: usize, const FUSED: bool>(f: impl FnMut(usize) -> f64) -> Lanes<L, FUSED> {
+    Lanes::from_fn(f)
+}
+
+fn modal<const L: usize, const FUSED: bool, const N: usize>(
+    mut of: impl FnMut(usize) -> Vec<f64>,
+) -> [Lanes<L, FUSED>; N] {
+    let values: [Vec<f64>; L] = std::array::from_fn(&mut of);
+    std::array::from_fn(|n| lanes(|l| values[l].get(n).copied().unwrap_or(0.0)))
+}
+
+fn coefficients<const L: usize, const FUSED: bool, const N: usize, const R: usize>(
+    problems: &[&Problem; L],
+    prepared: &[Prepared<R>; L],
+) -> Coefficients<L, FUSED, N, R> {
+    let model = |l: usize| problems[l].model;
+    let share = |l: usize, force: &[f64]| -> Vec<f64> {
+        prepared[l].factors.share.iter().zip(force).map(|(share, force)| share * force).collect()
+    };
+    let column = |l: usize, r: usize| -> Vec<f64> {
+        model(l).mesh.get(r).map_or_else(Vec::new, |column| column.as_slice().to_vec())
+    };
+    let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let points_per_rad = |l: usize| 1.0 / (std::f64::consts::TAU * problems[l].stages.cycle.coarse_step_rev);
+    let angle = |l: usize| -> Vec<f64> {
+        model(l).shapes.iter().map(|shape| shape[THETA_PINION] * points_per_rad(l)).collect()
+    };
+    let rotation = |l: usize| model(l).rotation_rad_per_s;
+    let half_step = |l: usize| prepared[l].scales.half_step_s;
+    Coefficients {
+        keep: modal(|l| prepared[l].factors.keep.clone()),
+        restore: modal(|l| prepared[l].factors.restore.clone()),
+        push: std::array::from_fn(|r| modal(|l| share(l, &column(l, r)))),
+        external_push: std::array::from_fn(|x| modal(|l| share(l, &prepared[l].scales.external[x]))),
+        mesh: std::array::from_fn(|r| modal(|l| column(l, r))),
+        angle: modal(angle),
+        angle_push: std::array::from_fn(|r| lanes(|l| sum(&angle(l), &share(l, &column(l, r))))),
+        compliance: std::array::from_fn(|r| {
+            std::array::from_fn(|c| {
+                lanes(|l| prepared[l].factors.compliance.get((r, c)).copied().unwrap_or(0.0))
+            })
+        }),
+        static_deflection: std::array::from_fn(|r| {
+            lanes(|l| sum(&column(l, r), &prepared[l].scales.static_displacement))
+        }),
+        static_angle: lanes(|l| sum(&angle(l), &prepared[l].scales.static_displacement) + 0.5),
+        points_per_sample: lanes(|l| {
+            let (time, cycle) = (&problems[l].stages.time, &problems[l].stages.cycle);
+            cycle.points_per_pinion_revolution as f64 / time.samples_per_pinion_revolution as f64
+        }),
+        cycle: lanes(|l| prepared[l].table.cycle as f64),
+        per_cycle: lanes(|l| 1.0 / prepared[l].table.cycle as f64),
+        pitch: lanes(|l| prepared[l].table.pitch as f64),
+        per_pitch: lanes(|l| 1.0 / prepared[l].table.pitch as f64),
+        window: lanes(|l| prepared[l].table.window as f64),
+        norm: Norm {
+            rigid_displacement: modal(|l| {
+                model(l).rigid_velocity.iter().map(|rigid| rigid * rotation(l) * 2.0 * half_step(l)).collect()
+            }),
+            // K̂ r = k_p e_θp + (2/dt) C r + (4/dt²) M r, whatever the mesh stiffness.
+            rigid_increment: modal(|l| {
+                (0..model(l).modes())
+                    .map(|n| {
+                        let (h, rigid) = (half_step(l), model(l).rigid_velocity[n]);
+                        rotation(l)
+                            * (model(l).motor[n] * 2.0 * h + (2.0 * model(l).damping[n] + 2.0 / h) * rigid)
+                    })
+                    .collect()
+            }),
+            external: std::array::from_fn(|x| modal(|l| prepared[l].scales.external[x].clone())),
+            twice_stiffness: modal(|l| model(l).stiffness.iter().map(|stiffness| 2.0 * stiffness).collect()),
+            two_per_h2: lanes(|l| 2.0 / (half_step(l) * half_step(l))),
+        },
+    }
+}
+
+/// An output row of all simulations side by side.
+struct Row<const L: usize, const FUSED: bool, const N: usize, const R: usize> {
+    displacement: [Lanes<L, FUSED>; N],
+    scaled_velocity: [Lanes<L, FUSED>; N],
+    force: [Lanes<L, FUSED>; R],
+    external: [Lanes<L, FUSED>; EXTERNALS],
+    constant: Lanes<L, FUSED>,
+    per_sample: Lanes<L, FUSED>,
+}
+
+impl<const L: usize, const FUSED: bool, const N: usize, const R: usize> Row<L, FUSED, N, R> {
+    fn new(rows: [&OutputRow; L]) -> Self {
+        Self {
+            displacement: modal(|l| rows[l].displacement.clone()),
+            scaled_velocity: modal(|l| rows[l].scaled_velocity.clone()),
+            force: std::array::from_fn(|r| lanes(|l| rows[l].force.get(r).copied().unwrap_or(0.0))),
+            external: std::array::from_fn(|x| lanes(|l| rows[l].external[x])),
+            constant: lanes(|l| rows[l].constant),
+            per_sample: lanes(|l| rows[l].per_sample),
+        }
+    }
+
+    #[inline(always)]
+    fn at<const STEADY: bool>(&self, state: &State<L, FUSED, N, R>, sample: usize) -> Lanes<L, FUSED> {
+        let mut value = self.per_sample.mul_add(Lanes::splat(sample as f64), self.constant);
+        let mut other = Lanes::splat(0.0);
+        for n in 0..N {
+            value = self.displacement[n].mul_add(state.displacement[n], value);
+            other = self.scaled_velocity[n].mul_add(state.scaled_velocity[n], other);
+        }
+        for r in 0..R {
+            other = self.force[r].mul_add(state.force[r], other);
+        }
+        if !STEADY {
+            for x in 0..EXTERNALS {
+                other = self.external[x].mul_add(state.external[x], other);
+            }
+        }
+        value.add(other)
+    }
+}
+
+/// Forcing of one block, side by side.
+struct SharedBlock<const L: usize, const FUSED: bool, const R: usize> {
+    errors: Vec<[Lanes<L, FUSED>; R]>,
+    external: Vec<[Lanes<L, FUSED>; EXTERNALS]>,
+    scratch: ForcingBlock,
+}
+
+impl<const L: usize, const FUSED: bool, const R: usize> SharedBlock<L, FUSED, R> {
+    fn new() -> Self {
+        Self {
+            errors: vec![[Lanes::splat(0.0); R]; BLOCK_SAMPLES],
+            external: vec![[Lanes::splat(0.0); EXTERNALS]; BLOCK_SAMPLES],
+            scratch: ForcingBlock::default(),
+        }
+    }
+
+    fn fill<const STEADY: bool>(&mut self, forcings: &mut [Forcing; L], samples: usize) {
+        for (l, forcing) in forcings.iter_mut().enumerate() {
+            forcing.next_block(samples, &mut self.scratch);
+            for (r, errors) in self.scratch.errors.iter().enumerate() {
+                for (shared, error) in self.errors.iter_mut().zip(errors) {
+                    shared[r].0[l] = *error;
+                }
+            }
+            if !STEADY {
+                let parts = [
+                    &self.scratch.motor_lead_rad,
+                    &self.scratch.torque_deviation_nm,
+                    &self.scratch.speed_deviation_rad_per_s,
+                ];
+                for (x, part) in parts.into_iter().enumerate() {
+                    for (shared, value) in self.external.iter_mut().zip(part) {
+                        shared[x].0[l] = *value;
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn solve<
+    const L: usize,
+    const FUSED: bool,
+    const N: usize,
+    const R: usize,
+    const PUBLISHED: bool,
+    const STEADY: bool,
+>(
+    simulations: [(&Problem, Forcing); L],
+    recorders: [&mut dyn Recorder; L],
+) {
+    let problems: [&Problem; L] = std::array::from_fn(|l| simulations[l].0);
+    let mut forcings: [Forcing; L] = simulations.map(|(_, forcing)| forcing);
+    let prepared: [Prepared<R>; L] = std::array::from_fn(|l| Prepared::new(problems[l]));
+    let coefficients = coefficients::<L, FUSED, N, R>(&problems, &prepared);
+    let group = Group { coefficients: &coefficients, tables: std::array::from_fn(|l| &prepared[l].table) };
+    let rows: Vec<Row<L, FUSED, N, R>> = (0..prepared[0].rows.len())
+        .map(|row| Row::new(std::array::from_fn(|l| &prepared[l].rows[row])))
+        .collect();
+    let samples: [usize; L] = std::array::from_fn(|l| problems[l].stages.time.samples);
+    let last = samples.iter().copied().max().unwrap_or(0);
+    let first_recorded = problems.iter().map(|problem| problem.first_sample).min().unwrap_or(0);
+
+    let mut block = SharedBlock::<L, FUSED, R>::new();
+    block.fill::<STEADY>(&mut forcings, 1);
+    let mut state = initial_state::<L, FUSED, N, R>(&problems, &prepared, &group, &block);
+    let mut values = vec![Lanes::<L, FUSED>::splat(0.0); BLOCK_SAMPLES * rows.len()];
+    let mut outputs = vec![Vec::with_capacity(BLOCK_SAMPLES); rows.len()];
+
+    let mut start = 0;
+    while start < last {
+        let length = BLOCK_SAMPLES.min(last - start);
+        block.fill::<STEADY>(&mut forcings, length);
+        let recorded = start + length > first_recorded;
+        for k in 0..length {
+            if recorded {
+                for (row, value) in rows.iter().zip(&mut values[k * rows.len()..]) {
+                    *value = row.at::<STEADY>(&state, start + k);
+                }
+            }
+            group.step::<PUBLISHED, STEADY>(&mut state, start + k + 1, &block.errors[k], &block.external[k]);
+        }
+        for l in 0..L {
+            let from = problems[l].first_sample.saturating_sub(start).min(length);
+            let until = samples[l].saturating_sub(start).min(length);
+            if from >= until {
+                continue;
+            }
+            for (row, output) in outputs.iter_mut().enumerate() {
+                output.clear();
+                output.extend((from..until).map(|k| values[k * rows.len() + row].0[l]));
+            }
+            recorders[l].record(&Block { first_sample: start + from, outputs: &outputs });
+        }
+        start += length;
+    }
+}
+
+fn initial_state<const L: usize, const FUSED: bool, const N: usize, const R: usize>(
+    problems: &[&Problem; L],
+    prepared: &[Prepared<R>; L],
+    group: &Group<L, FUSED, N, R>,
+    block: &SharedBlock<L, FUSED, R>,
+) -> State<L, FUSED, N, R> {
+    let displacement: [Lanes<L, FUSED>; N] = modal(|l| {
+        let given = problems[l].model.initial_displacement.iter();
+        given.zip(&prepared[l].scales.static_displacement).map(|(given, at_rest)| given - at_rest).collect()
+    });
+    let scaled_velocity = modal(|l| {
+        let half_step = prepared[l].scales.half_step_s;
+        problems[l].model.initial_velocity.iter().map(|velocity| velocity * half_step).collect()
+    });
+    let mut angle = group.coefficients.static_angle;
+    for n in 0..N {
+        angle = group.coefficients.angle[n].mul_add(displacement[n], angle);
+    }
+    let entry = group.entries(angle);
+    let force = group.force_of_state(&displacement, &entry, &block.errors[0]);
+    State { displacement, scaled_velocity, force, external: block.external[0], angle, entry }
+}

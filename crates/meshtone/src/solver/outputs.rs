@@ -1,0 +1,108 @@
+//! What is read off the solution.
+
+use super::reduce::ReducedModel;
+use crate::dynamics::coordinates::{COORDINATES, CoordinateVector};
+
+/// A signal that is read off the solution.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Output {
+    /// (m or rad) Linear combination of the displacements, by the weight of each of the 13 coordinates.
+    Displacement([f64; COORDINATES]),
+    /// (m/s or rad/s) Likewise of the velocities.
+    Velocity([f64; COORDINATES]),
+    /// (m/s² or rad/s²) Likewise of the accelerations.
+    Acceleration([f64; COORDINATES]),
+    /// (N) Force with which the mesh presses the flanks together; negative: the linear mesh pulls.
+    MeshForce,
+}
+
+/// A linear combination of the step's own variables: `constant + sample·per_sample + u·displacement + s·velocity +
+/// w·force + x·external`.
+#[derive(Debug, Clone, Default)]
+pub(super) struct OutputRow {
+    pub(super) displacement: Vec<f64>,
+    pub(super) scaled_velocity: Vec<f64>,
+    pub(super) force: Vec<f64>,
+    pub(super) external: [f64; EXTERNALS],
+    pub(super) constant: f64,
+    pub(super) per_sample: f64,
+}
+
+/// Motor lead, brake torque deviation, motor speed deviation.
+pub(super) const EXTERNALS: usize = 3;
+
+/// What an [`OutputRow`] is made from, beside the model.
+pub(super) struct Scales {
+    pub(super) half_step_s: f64,
+    /// Modal displacement under the constant loads.
+    pub(super) static_displacement: Vec<f64>,
+    /// Modal force of each external.
+    pub(super) external: [Vec<f64>; EXTERNALS],
+}
+
+impl Output {
+    pub(super) fn row(&self, model: &ReducedModel, scales: &Scales) -> OutputRow {
+        let (h, modes) = (scales.half_step_s, model.modes());
+        let zeros = || vec![0.0; modes];
+        let weights = |weights: &[f64; COORDINATES]| -> (Vec<f64>, f64) {
+            let row = CoordinateVector::from(*weights);
+            (model.shapes.iter().map(|shape| shape.dot(&row)).collect(), model.rigid_rotation.dot(&row))
+        };
+        let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let no_force = vec![0.0; model.directions.len()];
+        match self {
+            Self::Displacement(by_coordinate) => {
+                let (row, rigid) = weights(by_coordinate);
+                OutputRow {
+                    constant: sum(&row, &scales.static_displacement),
+                    per_sample: rigid * model.rotation_rad_per_s * 2.0 * h,
+                    displacement: row,
+                    scaled_velocity: zeros(),
+                    force: no_force,
+                    ..OutputRow::default()
+                }
+            }
+            Self::Velocity(by_coordinate) => {
+                let (row, rigid) = weights(by_coordinate);
+                OutputRow {
+                    displacement: zeros(),
+                    scaled_velocity: row.iter().map(|weight| weight / h).collect(),
+                    force: no_force,
+                    constant: rigid * model.rotation_rad_per_s,
+                    ..OutputRow::default()
+                }
+            }
+            Self::Acceleration(by_coordinate) => {
+                let (row, _) = weights(by_coordinate);
+                OutputRow {
+                    displacement: (0..modes).map(|n| -row[n] * model.stiffness[n]).collect(),
+                    scaled_velocity: (0..modes).map(|n| -row[n] * model.damping[n] / h).collect(),
+                    force: model.mesh.iter().map(|column| sum(&row, column.as_slice())).collect(),
+                    external: std::array::from_fn(|x| sum(&row, &scales.external[x])),
+                    ..OutputRow::default()
+                }
+            }
+            Self::MeshForce => {
+                // The direction that has weight 1 in every line of action carries the whole force.
+                let whole = model.whole_force_column();
+                let mut force = no_force;
+                let mut displacement = zeros();
+                if let Some(whole) = whole {
+                    force[whole] = -1.0;
+                    for (column, mesh) in model.mesh.iter().enumerate() {
+                        for n in 0..modes {
+                            displacement[n] += model.mean_mesh_stiffness[(whole, column)] * mesh[n];
+                        }
+                    }
+                }
+                OutputRow {
+                    constant: sum(&displacement, &scales.static_displacement),
+                    displacement,
+                    scaled_velocity: zeros(),
+                    force,
+                    ..OutputRow::default()
+                }
+            }
+        }
+    }
+}

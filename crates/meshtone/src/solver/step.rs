@@ -1,0 +1,357 @@
+//! One step of Newmark's method (γ = ½, β = ¼), for several simulations side by side.
+//!
+//! Each mode obeys `q̈ + 2ζω q̇ + ω² q = p`, with `p = B w + external` the modal force. Over a step of `2h`, with
+//! `E = 1/(1 + 2ζω h + ω² h²)` and `s = h q̇`, the method reads
+//! `S = 2E s₀ − 2h²ω²E q₀ + h²E (p₀ + p₁)`, `q₁ = q₀ + S`, `s₁ = S − s₀`. It is implicit only through the mesh's
+//! force `w₁`, which has as many components as the mesh has directions: [`Group::solve`].
+//!
+//! `q` is taken relative to the rigid rotation at the nominal speed, in which the mesh does not deflect, and to the
+//! displacement under the constant loads.
+//!
+//! Source: N. M. Newmark, "A method of computation for structural dynamics", Journal of the Engineering Mechanics
+//! Division 85 (1959); the iteration on the angle-dependent stiffness is the paper's (section 4, item 3).
+
+use super::cycle_table::CycleTable;
+use super::lanes::{Lanes, dot};
+use super::outputs::EXTERNALS;
+
+/// Most iterations of a step.
+const MOST_ITERATIONS: usize = 11;
+/// Energy norm at which the published iteration stops.
+const PUBLISHED_TOLERANCE: f64 = 1e-5;
+
+/// Constants of one simulation (`L` = 1) or of several side by side.
+pub(super) struct Coefficients<const L: usize, const FUSED: bool, const N: usize, const R: usize> {
+    /// (-) `2E`.
+    pub(super) keep: [Lanes<L, FUSED>; N],
+    /// (-) `2 h² ω² E`.
+    pub(super) restore: [Lanes<L, FUSED>; N],
+    /// (s²…) `h² E B`.
+    pub(super) push: [[Lanes<L, FUSED>; N]; R],
+    /// `h² E` times the modal force of each external.
+    pub(super) external_push: [[Lanes<L, FUSED>; N]; EXTERNALS],
+    /// `B`.
+    pub(super) mesh: [[Lanes<L, FUSED>; N]; R],
+    /// Angle of the pinion in coarse points of the cycle, per modal displacement.
+    pub(super) angle: [Lanes<L, FUSED>; N],
+    /// Angle per mesh force of the step.
+    pub(super) angle_push: [Lanes<L, FUSED>; R],
+    /// Γ: deflection in each direction per mesh force of the step.
+    pub(super) compliance: [[Lanes<L, FUSED>; R]; R],
+    /// Deflection under the constant loads.
+    pub(super) static_deflection: [Lanes<L, FUSED>; R],
+    /// Angle under the constant loads, plus the half point that makes rounding down the nearest.
+    pub(super) static_angle: Lanes<L, FUSED>,
+    /// Coarse points of the cycle per sample, at the nominal speed.
+    pub(super) points_per_sample: Lanes<L, FUSED>,
+    pub(super) cycle: Lanes<L, FUSED>,
+    pub(super) per_cycle: Lanes<L, FUSED>,
+    pub(super) pitch: Lanes<L, FUSED>,
+    pub(super) per_pitch: Lanes<L, FUSED>,
+    pub(super) window: Lanes<L, FUSED>,
+    /// Published energy norm: parts of the rigid rotation and of the modes.
+    pub(super) norm: Norm<L, FUSED, N>,
+}
+
+/// What the published energy norm needs.
+pub(super) struct Norm<const L: usize, const FUSED: bool, const N: usize> {
+    /// The rigid rotation's modal displacement in a step.
+    pub(super) rigid_displacement: [Lanes<L, FUSED>; N],
+    /// Its part of the right-hand side.
+    pub(super) rigid_increment: [Lanes<L, FUSED>; N],
+    /// Modal force of each external.
+    pub(super) external: [[Lanes<L, FUSED>; N]; EXTERNALS],
+    /// (1/s²) `2ω²`.
+    pub(super) twice_stiffness: [Lanes<L, FUSED>; N],
+    /// (1/s²) `2/h²`.
+    pub(super) two_per_h2: Lanes<L, FUSED>,
+}
+
+/// State of the modes.
+#[derive(Clone, Copy)]
+pub(super) struct State<const L: usize, const FUSED: bool, const N: usize, const R: usize> {
+    pub(super) displacement: [Lanes<L, FUSED>; N],
+    /// `s = h q̇`.
+    pub(super) scaled_velocity: [Lanes<L, FUSED>; N],
+    /// (N) Mesh force on the modes, `w`.
+    pub(super) force: [Lanes<L, FUSED>; R],
+    pub(super) external: [Lanes<L, FUSED>; EXTERNALS],
+    /// Angle of the pinion relative to the rigid rotation, in coarse points, plus a half.
+    pub(super) angle: Lanes<L, FUSED>,
+    /// Entry of the cycle table that the state belongs to.
+    pub(super) entry: [usize; L],
+}
+
+/// Simulations that are stepped side by side.
+pub(super) struct Group<'a, const L: usize, const FUSED: bool, const N: usize, const R: usize> {
+    pub(super) coefficients: &'a Coefficients<L, FUSED, N, R>,
+    pub(super) tables: [&'a CycleTable<R>; L],
+}
+
+impl<const L: usize, const FUSED: bool, const N: usize, const R: usize> Group<'_, L, FUSED, N, R> {
+    /// Entries of the cycle tables at `angle`, in coarse points plus a half.
+    #[inline(always)]
+    pub(super) fn entries(&self, angle: Lanes<L, FUSED>) -> [usize; L] {
+        let c = self.coefficients;
+        let half = Lanes::splat(0.5);
+        let nearest = angle.floor();
+        // The half keeps a whole number of cycles from being rounded into the cycle before.
+        let cycles = nearest.add(half).mul(c.per_cycle).floor();
+        let in_cycle = cycles.negative_mul_add(c.cycle, nearest);
+        let pitches = in_cycle.add(half).mul(c.per_pitch).floor();
+        let in_pitch = pitches.negative_mul_add(c.pitch, in_cycle).add(c.window);
+        in_cycle.where_less(in_cycle, c.window, in_pitch).indices()
+    }
+
+    /// `w = −(1 + S' Γ)⁻¹ (f + S' ŷ)`: the mesh force at the end of a step whose deflection is ŷ without it.
+    #[inline(always)]
+    pub(super) fn solve(
+        &self,
+        entries: &[usize; L],
+        errors: &[Lanes<L, FUSED>; R],
+        deflection: &[Lanes<L, FUSED>; R],
+    ) -> [Lanes<L, FUSED>; R] {
+        let mut load = *errors;
+        for r in 0..R {
+            for c in 0..R {
+                let deviation = Lanes::from_fn(|l| self.tables[l].points[entries[l]].deviation[r][c]);
+                load[r] = deviation.mul_add(deflection[c], load[r]);
+            }
+        }
+        let mut force = [Lanes::splat(0.0); R];
+        for r in 0..R {
+            for c in 0..R {
+                let relief = Lanes::from_fn(|l| self.tables[l].points[entries[l]].relief[r][c]);
+                force[r] = relief.negative_mul_add(load[c], force[r]);
+            }
+        }
+        force
+    }
+
+    /// The mesh force that is in equilibrium with a state's displacement at its entry.
+    pub(super) fn force_of_state(
+        &self,
+        displacement: &[Lanes<L, FUSED>; N],
+        entries: &[usize; L],
+        errors: &[Lanes<L, FUSED>; R],
+    ) -> [Lanes<L, FUSED>; R] {
+        let mut force = [Lanes::splat(0.0); R];
+        let deflection = self.deflection(displacement);
+        for r in 0..R {
+            force[r] = errors[r].neg();
+            for c in 0..R {
+                let deviation = Lanes::from_fn(|l| self.tables[l].points[entries[l]].deviation[r][c]);
+                force[r] = deviation.negative_mul_add(deflection[c], force[r]);
+            }
+        }
+        force
+    }
+
+    #[inline(always)]
+    fn deflection(&self, displacement: &[Lanes<L, FUSED>; N]) -> [Lanes<L, FUSED>; R] {
+        let mut deflection = self.coefficients.static_deflection;
+        for r in 0..R {
+            deflection[r] = dot(&self.coefficients.mesh[r], displacement).add(deflection[r]);
+        }
+        deflection
+    }
+
+    #[inline(always)]
+    fn angle_with(&self, base: Lanes<L, FUSED>, force: &[Lanes<L, FUSED>; R]) -> Lanes<L, FUSED> {
+        let mut angle = base;
+        for r in 0..R {
+            angle = self.coefficients.angle_push[r].mul_add(force[r], angle);
+        }
+        angle
+    }
+
+    /// Steps to sample `sample`.
+    ///
+    /// # Arguments
+    /// * `errors` - force of the profile errors there, in the mesh's directions
+    /// * `external` - motor lead, torque deviation and speed deviation there; not read when `STEADY`
+    #[inline(always)]
+    pub(super) fn step<const PUBLISHED: bool, const STEADY: bool>(
+        &self,
+        state: &mut State<L, FUSED, N, R>,
+        sample: usize,
+        errors: &[Lanes<L, FUSED>; R],
+        external: &[Lanes<L, FUSED>; EXTERNALS],
+    ) {
+        let c = self.coefficients;
+        // Everything but the new mesh force.
+        let mut change = [Lanes::splat(0.0); N];
+        let mut trial = [Lanes::splat(0.0); N];
+        for n in 0..N {
+            change[n] = c.keep[n].mul(state.scaled_velocity[n]);
+            change[n] = c.restore[n].negative_mul_add(state.displacement[n], change[n]);
+            for r in 0..R {
+                change[n] = c.push[r][n].mul_add(state.force[r], change[n]);
+            }
+            if !STEADY {
+                for x in 0..EXTERNALS {
+                    let both = state.external[x].add(external[x]);
+                    change[n] = c.external_push[x][n].mul_add(both, change[n]);
+                }
+            }
+            trial[n] = state.displacement[n].add(change[n]);
+        }
+        let deflection = self.deflection(&trial);
+        let trial_angle = dot(&c.angle, &trial).add(c.static_angle);
+        let rotation = Lanes::splat(sample as f64).mul(c.points_per_sample);
+
+        let force = if PUBLISHED {
+            self.published_force::<STEADY>(
+                state,
+                &change,
+                rotation.add(trial_angle),
+                errors,
+                external,
+                &deflection,
+            )
+        } else {
+            self.corrected_force(state, rotation, trial_angle, errors, &deflection)
+        };
+
+        for n in 0..N {
+            for r in 0..R {
+                change[n] = c.push[r][n].mul_add(force[r], change[n]);
+            }
+            state.displacement[n] = state.displacement[n].add(change[n]);
+            state.scaled_velocity[n] = change[n].sub(state.scaled_velocity[n]);
+        }
+        state.force = force;
+        state.angle = self.angle_with(trial_angle, &force);
+        if !STEADY {
+            state.external = *external;
+        }
+    }
+
+    /// Solves for the point of the cycle that the rigid rotation leads to, until the solution leads to that point.
+    #[inline(always)]
+    fn corrected_force(
+        &self,
+        state: &mut State<L, FUSED, N, R>,
+        rotation: Lanes<L, FUSED>,
+        trial_angle: Lanes<L, FUSED>,
+        errors: &[Lanes<L, FUSED>; R],
+        deflection: &[Lanes<L, FUSED>; R],
+    ) -> [Lanes<L, FUSED>; R] {
+        let mut entries = self.entries(rotation.add(state.angle));
+        let mut force = self.solve(&entries, errors, deflection);
+        for _ in 0..MOST_ITERATIONS {
+            let next = self.entries(rotation.add(self.angle_with(trial_angle, &force)));
+            if next == entries {
+                break;
+            }
+            // A lane whose point does not change solves the same problem again, with the same result.
+            entries = next;
+            force = self.solve(&entries, errors, deflection);
+        }
+        state.entry = entries;
+        force
+    }
+
+    /// The published iteration: from the point of the state before, until the change's energy norm is small.
+    #[inline(always)]
+    fn published_force<const STEADY: bool>(
+        &self,
+        state: &mut State<L, FUSED, N, R>,
+        change: &[Lanes<L, FUSED>; N],
+        trial_angle: Lanes<L, FUSED>,
+        errors: &[Lanes<L, FUSED>; R],
+        external: &[Lanes<L, FUSED>; EXTERNALS],
+        deflection: &[Lanes<L, FUSED>; R],
+    ) -> [Lanes<L, FUSED>; R] {
+        let right_hand_side = self.right_hand_side::<STEADY>(state, errors, external);
+        let mut force = self.solve(&state.entry, errors, deflection);
+        let mut entries = self.entries(self.angle_with(trial_angle, &force));
+        let mut running = [true; L];
+        for _ in 1..MOST_ITERATIONS {
+            let next = self.solve(&entries, errors, deflection);
+            let error = self.energy_norm(&entries, change, &right_hand_side, &force, &next);
+            let next_entries = self.entries(self.angle_with(trial_angle, &next));
+            let mut any = false;
+            for l in 0..L {
+                if running[l] {
+                    for r in 0..R {
+                        force[r].0[l] = next[r].0[l];
+                    }
+                    entries[l] = next_entries[l];
+                    running[l] = error.0[l] > PUBLISHED_TOLERANCE;
+                    any |= running[l];
+                }
+            }
+            if !any {
+                break;
+            }
+        }
+        state.entry = entries;
+        force
+    }
+
+    /// The published right-hand side `ΔF + (M/(β dt) + (γ/β) C) u̇ + M/(2β) ü`, in the modes.
+    #[inline(always)]
+    fn right_hand_side<const STEADY: bool>(
+        &self,
+        state: &State<L, FUSED, N, R>,
+        errors: &[Lanes<L, FUSED>; R],
+        external: &[Lanes<L, FUSED>; EXTERNALS],
+    ) -> [Lanes<L, FUSED>; N] {
+        let c = self.coefficients;
+        let held = self.force_of_state(&state.displacement, &state.entry, errors);
+        let mut result = c.norm.rigid_increment;
+        for n in 0..N {
+            result[n] = c.norm.two_per_h2.mul_add(state.scaled_velocity[n], result[n]);
+            result[n] = c.norm.twice_stiffness[n].negative_mul_add(state.displacement[n], result[n]);
+            for r in 0..R {
+                result[n] = c.mesh[r][n].mul_add(held[r].add(state.force[r]), result[n]);
+            }
+            if !STEADY {
+                for x in 0..EXTERNALS {
+                    let both = state.external[x].add(external[x]);
+                    result[n] = c.norm.external[x][n].mul_add(both, result[n]);
+                }
+            }
+        }
+        result
+    }
+
+    /// `|r·ΔP/(ΔF̂·P)|` of the change from mesh force `before` to `after`, solved at `entries`: with `Δw` that change,
+    /// `r·ΔP = Δwᵀ Γ Δw + (Γ Δw)ᵀ S' (Γ Δw)`.
+    #[inline(always)]
+    fn energy_norm(
+        &self,
+        entries: &[usize; L],
+        change: &[Lanes<L, FUSED>; N],
+        right_hand_side: &[Lanes<L, FUSED>; N],
+        before: &[Lanes<L, FUSED>; R],
+        after: &[Lanes<L, FUSED>; R],
+    ) -> Lanes<L, FUSED> {
+        let c = self.coefficients;
+        let mut moved = [Lanes::splat(0.0); R];
+        for r in 0..R {
+            for s in 0..R {
+                moved[r] = c.compliance[r][s].mul_add(after[s].sub(before[s]), moved[r]);
+            }
+        }
+        let mut work = Lanes::splat(0.0);
+        for r in 0..R {
+            let mut load = after[r].sub(before[r]);
+            for s in 0..R {
+                let deviation = Lanes::from_fn(|l| self.tables[l].points[entries[l]].deviation[r][s]);
+                load = deviation.mul_add(moved[s], load);
+            }
+            work = load.mul_add(moved[r], work);
+        }
+        let mut whole = Lanes::splat(0.0);
+        for n in 0..N {
+            let mut displacement = change[n].add(c.norm.rigid_displacement[n]);
+            for r in 0..R {
+                displacement = c.push[r][n].mul_add(after[r], displacement);
+            }
+            whole = right_hand_side[n].mul_add(displacement, whole);
+        }
+        Lanes::from_fn(|l| (work.0[l] / whole.0[l]).abs())
+    }
+}
