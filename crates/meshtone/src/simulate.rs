@@ -9,7 +9,7 @@ use crate::quality::profile_errors;
 use crate::sampling::{CycleGrid, TimeGrid};
 use crate::scenario::{Convention, ProfileErrors, Scenario, ScenarioError};
 use crate::signal::{Channels, channel_outputs};
-use crate::solver::{Output, Problem, Recorder, ReducedModel, integrate};
+use crate::solver::{InstructionSet, Output, Problem, Recorder, ReducedModel, integrate};
 use crate::stiffness::{MeshStiffness, PairStiffness};
 use crate::tooth::{Teeth, teeth};
 
@@ -231,7 +231,8 @@ impl Stages {
         first_sample: usize,
         recorder: &mut dyn Recorder,
     ) {
-        integrate(&Problem { stages: self, model, outputs, first_sample }, recorder);
+        let problem = Problem { stages: self, model, outputs, first_sample };
+        integrate(&problem, InstructionSet::fastest(), recorder);
     }
 }
 

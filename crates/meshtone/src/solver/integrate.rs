@@ -1,6 +1,7 @@
 //! The time loop: one simulation, or several side by side.
 
 use super::cycle_table::{CycleTable, StepFactors};
+use super::instruction_set::{InstructionSet, Task};
 use super::lanes::Lanes;
 use super::outputs::{EXTERNALS, Output, OutputRow, Scales};
 use super::reduce::ReducedModel;
@@ -55,35 +56,105 @@ pub(crate) struct Problem<'a> {
     pub(crate) first_sample: usize,
 }
 
+/// Number of modes and of mesh directions that a step is compiled for. Fixed sizes let the compiler unroll the step and
+/// keep it in registers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Size {
+    /// A healthy pair, a missing or a destroyed tooth: the wheels do not tilt.
+    Flat,
+    /// The load moves along the face: the wheels tilt.
+    Tilting,
+    /// The pressure angle changes.
+    Rolling,
+    /// Everything, as after an arbitrary initial displacement.
+    General,
+}
+
+impl Size {
+    fn of(model: &ReducedModel) -> Self {
+        match (model.modes(), model.directions.len()) {
+            (0..=5, 0..=1) => Self::Flat,
+            (0..=7, 0..=2) => Self::Tilting,
+            (0..=7, 3) => Self::Rolling,
+            _ => Self::General,
+        }
+    }
+}
+
 /// Integrates one simulation.
-pub(crate) fn integrate(problem: &Problem, recorder: &mut dyn Recorder) {
-    let (modes, rank) = (problem.model.modes(), problem.model.directions.len());
-    // Fixed sizes let the compiler unroll the step and keep it in registers.
-    match (modes, rank) {
-        (0..=5, 0..=1) => by_convention::<5, 1>(problem, recorder),
-        (0..=7, 0..=2) => by_convention::<7, 2>(problem, recorder),
-        (0..=7, 3) => by_convention::<7, 3>(problem, recorder),
-        _ => by_convention::<13, 5>(problem, recorder),
-    }
-}
-
-fn by_convention<const N: usize, const R: usize>(problem: &Problem, recorder: &mut dyn Recorder) {
+pub(crate) fn integrate(problem: &Problem, instructions: InstructionSet, recorder: &mut dyn Recorder) {
     let forcing = Forcing::new(problem.stages, &problem.model.directions);
+    let steady = forcing.is_steady();
     let published = problem.stages.scenario.convention == Convention::Published;
-    let simulations = [(problem, forcing)];
-    match (published, simulations[0].1.is_steady()) {
-        (true, true) => run::<1, N, R, true, true>(simulations, [recorder]),
-        (true, false) => run::<1, N, R, true, false>(simulations, [recorder]),
-        (false, true) => run::<1, N, R, false, true>(simulations, [recorder]),
-        (false, false) => run::<1, N, R, false, false>(simulations, [recorder]),
-    }
+    let size = Size::of(problem.model);
+    by_size::<1>(size, published, steady, instructions, [problem], [forcing], [recorder]);
 }
 
-fn run<const L: usize, const N: usize, const R: usize, const PUBLISHED: bool, const STEADY: bool>(
-    simulations: [(&Problem, Forcing); L],
+fn by_size<const L: usize>(
+    size: Size,
+    published: bool,
+    steady: bool,
+    instructions: InstructionSet,
+    problems: [&Problem; L],
+    forcings: [Forcing; L],
     recorders: [&mut dyn Recorder; L],
 ) {
-    solve::<L, false, N, R, PUBLISHED, STEADY>(simulations, recorders);
+    macro_rules! solve {
+        ($modes:literal, $directions:literal) => {
+            match (published, steady) {
+                (true, true) => instructions.run(Solve::<L, $modes, $directions, true, true> {
+                    problems,
+                    forcings,
+                    recorders,
+                }),
+                (true, false) => instructions.run(Solve::<L, $modes, $directions, true, false> {
+                    problems,
+                    forcings,
+                    recorders,
+                }),
+                (false, true) => instructions.run(Solve::<L, $modes, $directions, false, true> {
+                    problems,
+                    forcings,
+                    recorders,
+                }),
+                (false, false) => instructions.run(Solve::<L, $modes, $directions, false, false> {
+                    problems,
+                    forcings,
+                    recorders,
+                }),
+            }
+        };
+    }
+    match size {
+        Size::Flat => solve!(5, 1),
+        Size::Tilting => solve!(7, 2),
+        Size::Rolling => solve!(7, 3),
+        Size::General => solve!(13, 5),
+    }
+}
+
+/// A time loop of `L` simulations, ready to run.
+struct Solve<
+    'a,
+    'r,
+    const L: usize,
+    const N: usize,
+    const R: usize,
+    const PUBLISHED: bool,
+    const STEADY: bool,
+> {
+    problems: [&'a Problem<'a>; L],
+    forcings: [Forcing<'a>; L],
+    recorders: [&'r mut dyn Recorder; L],
+}
+
+impl<const L: usize, const N: usize, const R: usize, const PUBLISHED: bool, const STEADY: bool> Task
+    for Solve<'_, '_, L, N, R, PUBLISHED, STEADY>
+{
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        solve::<L, FUSED, N, R, PUBLISHED, STEADY>(self.problems, self.forcings, self.recorders);
+    }
 }
 
 /// Everything about one simulation that does not change from step to step.
@@ -293,11 +364,10 @@ fn solve<
     const PUBLISHED: bool,
     const STEADY: bool,
 >(
-    simulations: [(&Problem, Forcing); L],
+    problems: [&Problem; L],
+    mut forcings: [Forcing; L],
     recorders: [&mut dyn Recorder; L],
 ) {
-    let problems: [&Problem; L] = std::array::from_fn(|l| simulations[l].0);
-    let mut forcings: [Forcing; L] = simulations.map(|(_, forcing)| forcing);
     let prepared: [Prepared<R>; L] = std::array::from_fn(|l| Prepared::new(problems[l]));
     let coefficients = coefficients::<L, FUSED, N, R>(&problems, &prepared);
     let group = Group { coefficients: &coefficients, tables: std::array::from_fn(|l| &prepared[l].table) };

@@ -6,12 +6,14 @@
 //! force nor the mesh reaches stay at rest and are left out ([`ReducedModel`]).
 
 mod cycle_table;
+mod instruction_set;
 mod integrate;
 mod lanes;
 mod outputs;
 mod reduce;
 mod step;
 
+pub use instruction_set::InstructionSet;
 pub use integrate::{Block, Recorder};
 pub(crate) use integrate::{Problem, integrate};
 pub use outputs::Output;
