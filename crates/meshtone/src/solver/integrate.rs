@@ -273,45 +273,71 @@ fn coefficients<const L: usize, const FUSED: bool, const N: usize, const R: usiz
     }
 }
 
-/// An output row of all simulations side by side.
-struct Row<const L: usize, const FUSED: bool, const N: usize, const R: usize> {
-    displacement: [Lanes<L, FUSED>; N],
-    scaled_velocity: [Lanes<L, FUSED>; N],
-    force: [Lanes<L, FUSED>; R],
-    external: [Lanes<L, FUSED>; EXTERNALS],
+/// States of one block of samples, variable by variable, so that outputs are computed for many samples at once.
+struct History<const L: usize, const FUSED: bool> {
+    /// Displacements, scaled velocities, mesh forces and externals.
+    variables: Vec<Vec<Lanes<L, FUSED>>>,
+}
+
+/// An output as a combination of a [`History`]'s variables; those whose weight is zero everywhere are left out.
+struct Row<const L: usize, const FUSED: bool> {
+    weights: Vec<(usize, Lanes<L, FUSED>)>,
     constant: Lanes<L, FUSED>,
     per_sample: Lanes<L, FUSED>,
 }
 
-impl<const L: usize, const FUSED: bool, const N: usize, const R: usize> Row<L, FUSED, N, R> {
-    fn new(rows: [&OutputRow; L]) -> Self {
+impl<const L: usize, const FUSED: bool> History<L, FUSED> {
+    fn new<const N: usize, const R: usize>(samples: usize) -> Self {
+        Self { variables: vec![vec![Lanes::splat(0.0); samples]; 2 * N + R + EXTERNALS] }
+    }
+
+    #[inline(always)]
+    fn store<const N: usize, const R: usize, const STEADY: bool>(
+        &mut self,
+        k: usize,
+        state: &State<L, FUSED, N, R>,
+    ) {
+        for n in 0..N {
+            self.variables[n][k] = state.displacement[n];
+            self.variables[N + n][k] = state.scaled_velocity[n];
+        }
+        for r in 0..R {
+            self.variables[2 * N + r][k] = state.force[r];
+        }
+        if !STEADY {
+            for x in 0..EXTERNALS {
+                self.variables[2 * N + R + x][k] = state.external[x];
+            }
+        }
+    }
+}
+
+impl<const L: usize, const FUSED: bool> Row<L, FUSED> {
+    fn new<const N: usize, const R: usize>(rows: [&OutputRow; L]) -> Self {
+        let value = |values: &[f64], index: usize| values.get(index).copied().unwrap_or(0.0);
+        let displacement = (0..N).map(|n| (n, lanes(|l| value(&rows[l].displacement, n))));
+        let velocity = (0..N).map(|n| (N + n, lanes(|l| value(&rows[l].scaled_velocity, n))));
+        let force = (0..R).map(|r| (2 * N + r, lanes(|l| value(&rows[l].force, r))));
+        let external = (0..EXTERNALS).map(|x| (2 * N + R + x, lanes(|l| rows[l].external[x])));
+        let all = displacement.chain(velocity).chain(force).chain(external);
         Self {
-            displacement: modal(|l| rows[l].displacement.clone()),
-            scaled_velocity: modal(|l| rows[l].scaled_velocity.clone()),
-            force: std::array::from_fn(|r| lanes(|l| rows[l].force.get(r).copied().unwrap_or(0.0))),
-            external: std::array::from_fn(|x| lanes(|l| rows[l].external[x])),
+            weights: all.filter(|(_, weight): &(usize, Lanes<L, FUSED>)| weight.0 != [0.0; L]).collect(),
             constant: lanes(|l| rows[l].constant),
             per_sample: lanes(|l| rows[l].per_sample),
         }
     }
 
+    /// The output at the samples from `first` on.
     #[inline(always)]
-    fn at<const STEADY: bool>(&self, state: &State<L, FUSED, N, R>, sample: usize) -> Lanes<L, FUSED> {
-        let mut value = self.per_sample.mul_add(Lanes::splat(sample as f64), self.constant);
-        let mut other = Lanes::splat(0.0);
-        for n in 0..N {
-            value = self.displacement[n].mul_add(state.displacement[n], value);
-            other = self.scaled_velocity[n].mul_add(state.scaled_velocity[n], other);
+    fn evaluate(&self, history: &History<L, FUSED>, first: usize, output: &mut [Lanes<L, FUSED>]) {
+        for (k, value) in output.iter_mut().enumerate() {
+            *value = self.per_sample.mul_add(Lanes::splat((first + k) as f64), self.constant);
         }
-        for r in 0..R {
-            other = self.force[r].mul_add(state.force[r], other);
-        }
-        if !STEADY {
-            for x in 0..EXTERNALS {
-                other = self.external[x].mul_add(state.external[x], other);
+        for &(variable, weight) in &self.weights {
+            for (value, state) in output.iter_mut().zip(&history.variables[variable]) {
+                *value = weight.mul_add(*state, *value);
             }
         }
-        value.add(other)
     }
 }
 
@@ -371,8 +397,8 @@ fn solve<
     let prepared: [Prepared<R>; L] = std::array::from_fn(|l| Prepared::new(problems[l]));
     let coefficients = coefficients::<L, FUSED, N, R>(&problems, &prepared);
     let group = Group { coefficients: &coefficients, tables: std::array::from_fn(|l| &prepared[l].table) };
-    let rows: Vec<Row<L, FUSED, N, R>> = (0..prepared[0].rows.len())
-        .map(|row| Row::new(std::array::from_fn(|l| &prepared[l].rows[row])))
+    let rows: Vec<Row<L, FUSED>> = (0..prepared[0].rows.len())
+        .map(|row| Row::new::<N, R>(std::array::from_fn(|l| &prepared[l].rows[row])))
         .collect();
     let samples: [usize; L] = std::array::from_fn(|l| problems[l].stages.time.samples);
     let last = samples.iter().copied().max().unwrap_or(0);
@@ -381,21 +407,26 @@ fn solve<
     let mut block = SharedBlock::<L, FUSED, R>::new();
     block.fill::<STEADY>(&mut forcings, 1);
     let mut state = initial_state::<L, FUSED, N, R>(&problems, &prepared, &group, &block);
-    let mut values = vec![Lanes::<L, FUSED>::splat(0.0); BLOCK_SAMPLES * rows.len()];
-    let mut outputs = vec![Vec::with_capacity(BLOCK_SAMPLES); rows.len()];
+    let block_samples = BLOCK_SAMPLES / L;
+    let mut history = History::<L, FUSED>::new::<N, R>(block_samples);
+    let mut values = vec![vec![Lanes::<L, FUSED>::splat(0.0); block_samples]; rows.len()];
+    let mut outputs = vec![Vec::with_capacity(block_samples); rows.len()];
 
     let mut start = 0;
     while start < last {
-        let length = BLOCK_SAMPLES.min(last - start);
+        let length = block_samples.min(last - start);
         block.fill::<STEADY>(&mut forcings, length);
         let recorded = start + length > first_recorded;
         for k in 0..length {
             if recorded {
-                for (row, value) in rows.iter().zip(&mut values[k * rows.len()..]) {
-                    *value = row.at::<STEADY>(&state, start + k);
-                }
+                history.store::<N, R, STEADY>(k, &state);
             }
             group.step::<PUBLISHED, STEADY>(&mut state, start + k + 1, &block.errors[k], &block.external[k]);
+        }
+        if recorded {
+            for (row, values) in rows.iter().zip(&mut values) {
+                row.evaluate(&history, start, &mut values[..length]);
+            }
         }
         for l in 0..L {
             let from = problems[l].first_sample.saturating_sub(start).min(length);
@@ -403,9 +434,9 @@ fn solve<
             if from >= until {
                 continue;
             }
-            for (row, output) in outputs.iter_mut().enumerate() {
+            for (output, values) in outputs.iter_mut().zip(&values) {
                 output.clear();
-                output.extend((from..until).map(|k| values[k * rows.len() + row].0[l]));
+                output.extend(values[from..until].iter().map(|value| value.0[l]));
             }
             recorders[l].record(&Block { first_sample: start + from, outputs: &outputs });
         }

@@ -92,9 +92,14 @@ impl<const L: usize, const FUSED: bool, const N: usize, const R: usize> Group<'_
     /// Entries of the cycle tables at `angle`, in coarse points plus a half.
     #[inline(always)]
     pub(super) fn entries(&self, angle: Lanes<L, FUSED>) -> [usize; L] {
+        self.entries_of(angle.floor())
+    }
+
+    /// Entries of the cycle tables at the point `nearest`, counted from the start of the simulation.
+    #[inline(always)]
+    fn entries_of(&self, nearest: Lanes<L, FUSED>) -> [usize; L] {
         let c = self.coefficients;
         let half = Lanes::splat(0.5);
-        let nearest = angle.floor();
         // The half keeps a whole number of cycles from being rounded into the cycle before.
         let cycles = nearest.add(half).mul(c.per_cycle).floor();
         let in_cycle = cycles.negative_mul_add(c.cycle, nearest);
@@ -237,15 +242,17 @@ impl<const L: usize, const FUSED: bool, const N: usize, const R: usize> Group<'_
         errors: &[Lanes<L, FUSED>; R],
         deflection: &[Lanes<L, FUSED>; R],
     ) -> [Lanes<L, FUSED>; R] {
-        let mut entries = self.entries(rotation.add(state.angle));
+        let mut point = rotation.add(state.angle).floor();
+        let mut entries = self.entries_of(point);
         let mut force = self.solve(&entries, errors, deflection);
         for _ in 0..MOST_ITERATIONS {
-            let next = self.entries(rotation.add(self.angle_with(trial_angle, &force)));
-            if next == entries {
+            let next = rotation.add(self.angle_with(trial_angle, &force)).floor();
+            if next.0 == point.0 {
                 break;
             }
             // A lane whose point does not change solves the same problem again, with the same result.
-            entries = next;
+            point = next;
+            entries = self.entries_of(point);
             force = self.solve(&entries, errors, deflection);
         }
         state.entry = entries;
