@@ -274,10 +274,15 @@ fn coefficients<const L: usize, const FUSED: bool, const N: usize, const R: usiz
 }
 
 /// States of one block of samples, variable by variable, so that outputs are computed for many samples at once.
-struct History<const L: usize, const FUSED: bool> {
-    /// Displacements, scaled velocities, mesh forces and externals.
-    variables: Vec<Vec<Lanes<L, FUSED>>>,
+struct History<const L: usize, const FUSED: bool, const N: usize, const R: usize> {
+    displacement: Column<L, FUSED, N>,
+    scaled_velocity: Column<L, FUSED, N>,
+    force: Column<L, FUSED, R>,
+    external: Column<L, FUSED, EXTERNALS>,
 }
+
+/// `V` variables over a block of samples.
+type Column<const L: usize, const FUSED: bool, const V: usize> = Box<[[Lanes<L, FUSED>; BLOCK_SAMPLES]; V]>;
 
 /// An output as a combination of a [`History`]'s variables; those whose weight is zero everywhere are left out.
 struct Row<const L: usize, const FUSED: bool> {
@@ -286,29 +291,39 @@ struct Row<const L: usize, const FUSED: bool> {
     per_sample: Lanes<L, FUSED>,
 }
 
-impl<const L: usize, const FUSED: bool> History<L, FUSED> {
-    fn new<const N: usize, const R: usize>(samples: usize) -> Self {
-        Self { variables: vec![vec![Lanes::splat(0.0); samples]; 2 * N + R + EXTERNALS] }
+impl<const L: usize, const FUSED: bool, const N: usize, const R: usize> History<L, FUSED, N, R> {
+    fn new() -> Self {
+        Self {
+            displacement: Box::new([[Lanes::splat(0.0); BLOCK_SAMPLES]; N]),
+            scaled_velocity: Box::new([[Lanes::splat(0.0); BLOCK_SAMPLES]; N]),
+            force: Box::new([[Lanes::splat(0.0); BLOCK_SAMPLES]; R]),
+            external: Box::new([[Lanes::splat(0.0); BLOCK_SAMPLES]; EXTERNALS]),
+        }
     }
 
+    /// Stores the state of sample `k` of the block.
     #[inline(always)]
-    fn store<const N: usize, const R: usize, const STEADY: bool>(
-        &mut self,
-        k: usize,
-        state: &State<L, FUSED, N, R>,
-    ) {
+    fn store<const STEADY: bool>(&mut self, k: usize, state: &State<L, FUSED, N, R>) {
+        // Never larger; lets the compiler see that.
+        let k = k % BLOCK_SAMPLES;
         for n in 0..N {
-            self.variables[n][k] = state.displacement[n];
-            self.variables[N + n][k] = state.scaled_velocity[n];
+            self.displacement[n][k] = state.displacement[n];
+            self.scaled_velocity[n][k] = state.scaled_velocity[n];
         }
         for r in 0..R {
-            self.variables[2 * N + r][k] = state.force[r];
+            self.force[r][k] = state.force[r];
         }
         if !STEADY {
             for x in 0..EXTERNALS {
-                self.variables[2 * N + R + x][k] = state.external[x];
+                self.external[x][k] = state.external[x];
             }
         }
+    }
+
+    /// Variable `index`: displacements first, then scaled velocities, forces and externals.
+    fn variable(&self, index: usize) -> &[Lanes<L, FUSED>] {
+        let all = self.displacement.iter().chain(self.scaled_velocity.iter());
+        all.chain(self.force.iter()).chain(self.external.iter()).nth(index).map_or(&[], |column| column)
     }
 }
 
@@ -329,12 +344,17 @@ impl<const L: usize, const FUSED: bool> Row<L, FUSED> {
 
     /// The output at the samples from `first` on.
     #[inline(always)]
-    fn evaluate(&self, history: &History<L, FUSED>, first: usize, output: &mut [Lanes<L, FUSED>]) {
+    fn evaluate<const N: usize, const R: usize>(
+        &self,
+        history: &History<L, FUSED, N, R>,
+        first: usize,
+        output: &mut [Lanes<L, FUSED>],
+    ) {
         for (k, value) in output.iter_mut().enumerate() {
             *value = self.per_sample.mul_add(Lanes::splat((first + k) as f64), self.constant);
         }
         for &(variable, weight) in &self.weights {
-            for (value, state) in output.iter_mut().zip(&history.variables[variable]) {
+            for (value, state) in output.iter_mut().zip(history.variable(variable)) {
                 *value = weight.mul_add(*state, *value);
             }
         }
@@ -408,7 +428,7 @@ fn solve<
     block.fill::<STEADY>(&mut forcings, 1);
     let mut state = initial_state::<L, FUSED, N, R>(&problems, &prepared, &group, &block);
     let block_samples = BLOCK_SAMPLES / L;
-    let mut history = History::<L, FUSED>::new::<N, R>(block_samples);
+    let mut history = History::<L, FUSED, N, R>::new();
     let mut values = vec![vec![Lanes::<L, FUSED>::splat(0.0); block_samples]; rows.len()];
     let mut outputs = vec![Vec::with_capacity(block_samples); rows.len()];
 
@@ -419,7 +439,7 @@ fn solve<
         let recorded = start + length > first_recorded;
         for k in 0..length {
             if recorded {
-                history.store::<N, R, STEADY>(k, &state);
+                history.store::<STEADY>(k, &state);
             }
             group.step::<PUBLISHED, STEADY>(&mut state, start + k + 1, &block.errors[k], &block.external[k]);
         }

@@ -79,14 +79,14 @@ pub fn contact_line(
     let pinion_index = pinion_profile.nearest_to_radius(pinion_radius);
     let gear_index = gear_profile.nearest_to_radius(gear_radius);
     let points = gear_profile.len() - gear_index;
-    let resample = |values: &[f64]| {
+    let resample = |values: &[f64], stretch: fn(&[f64], usize) -> Vec<f64>| {
         let mut resampled = stretch(&values[..pinion_index], gear_index);
         resampled.extend(stretch(&values[pinion_index..], points));
         resampled
     };
     let resampled = ToothProfile {
-        x_mm: resample(&pinion_profile.x_mm),
-        y_mm: resample(&pinion_profile.y_mm),
+        x_mm: resample(&pinion_profile.x_mm, stretch_line),
+        y_mm: resample(&pinion_profile.y_mm, stretch),
         tip_relief_index: pinion_profile.tip_relief_index,
     };
     let ratio = contact_ratio(pinion.teeth, gear.teeth, pinion.pressure_angle_rad);
@@ -99,6 +99,13 @@ pub fn contact_line(
         span_rev: ratio / f64::from(pinion.teeth),
     };
     (contact, resampled)
+}
+
+/// As [`stretch`], of values that are uniform: the curve is a line.
+fn stretch_line(values: &[f64], count: usize) -> Vec<f64> {
+    let (Some(&first), Some(&last)) = (values.first(), values.last()) else { return Vec::new() };
+    let step = (last - first) / (count.max(2) - 1) as f64;
+    (0..count).map(|i| if i + 1 == count { last } else { first + step * i as f64 }).collect()
 }
 
 /// The curve through `values` over a uniform parameter, at `count` uniform points.

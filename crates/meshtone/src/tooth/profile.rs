@@ -39,7 +39,11 @@ impl ToothProfile {
 
     /// Index of the point nearest to `radius_mm` from the wheel's centre (the first of equals).
     pub fn nearest_to_radius(&self, radius_mm: f64) -> usize {
-        first_minimum((0..self.len()).map(|i| (self.radius_mm(i) - radius_mm).abs()))
+        let squared = |i: usize| self.x_mm[i] * self.x_mm[i] + self.y_mm[i] * self.y_mm[i];
+        // The square finds the neighbourhood, the radius itself the point.
+        let near = first_minimum((0..self.len()).map(|i| (squared(i) - radius_mm * radius_mm).abs()));
+        let around = near.saturating_sub(2)..(near + 3).min(self.len());
+        around.start + first_minimum(around.map(|i| (self.radius_mm(i) - radius_mm).abs()))
     }
 
     /// Index of the point whose x is nearest to `x_mm` (the first of equals).
@@ -195,28 +199,45 @@ impl Flank {
             return fillet.y_mm(x);
         }
         // dx/d(u²) = Rb cos β / 2 does not vanish at the base circle, dx/du does: solve for u².
-        let mut squared = roll.squared.max(self.first_roll * self.first_roll);
+        let mut squared = roll.predicted().max(self.first_roll * self.first_roll);
+        let mut y = 0.0;
         for _ in 0..MAX_NEWTON_STEPS {
             let u = squared.sqrt();
             let (sin, cos) = (self.foot_angle_rad - u).sin_cos();
             let step = 2.0 * (x / self.base_radius_mm - (cos - u * sin)) / cos;
             squared = (squared + step).max(0.0);
-            // The step is quadratic in the last one: below 1e-9 the next is below rounding.
+            // y at the end of the step, to first order.
+            y = self.base_radius_mm * (sin + u * cos + 0.5 * step * sin);
+            // The next step, and the error of y, are quadratic in this one: below rounding.
             if step.abs() < 1e-9 * (1e-6 + squared) {
                 break;
             }
         }
-        roll.squared = squared;
-        self.involute_point_mm(squared.sqrt()).1
+        roll.remember(squared);
+        y
     }
 }
 
 const MAX_NEWTON_STEPS: usize = 20;
 
-/// Square of the roll angle at the last point that was solved for.
+/// Squares of the roll angle at the last three points, from which the next is predicted.
 #[derive(Default)]
 struct RollAngle {
-    squared: f64,
+    squared: [f64; 3],
+    known: usize,
+}
+
+impl RollAngle {
+    /// The parabola through the last three points, which are uniform in x.
+    fn predicted(&self) -> f64 {
+        let [a, b, c] = self.squared;
+        if self.known < 3 { c } else { (3.0 * (c - b) + a).max(0.0) }
+    }
+
+    fn remember(&mut self, squared: f64) {
+        self.squared = [self.squared[1], self.squared[2], squared];
+        self.known += 1;
+    }
 }
 
 impl Fillet {
