@@ -7,7 +7,7 @@
 
 use std::error::Error;
 use std::path::PathBuf;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 #[path = "../tests/support/mod.rs"]
 mod support;
@@ -18,14 +18,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let with_svg = std::env::args().any(|argument| argument == "--svg");
     for (name, scenario) in support::gallery() {
         let simulation = meshtone::simulate(&scenario)?;
-        let start = Instant::now();
-        let panel = meshtone_plot::panel::draw(&simulation.stages, &simulation.channels)?;
-        let drawn = start.elapsed();
-        let png = panel.png()?;
+        let (panel, drawn) =
+            quickest(|| meshtone_plot::panel::draw(&simulation.stages, &simulation.channels))?;
+        let (png, rasterised) = quickest(|| panel.png())?;
         println!(
-            "{name}: drawn in {:.1} ms, with PNG {:.1} ms; SVG {} kB, PNG {} kB",
+            "{name}: SVG in {:.1} ms, PNG from it in {:.1} ms; SVG {} kB, PNG {} kB",
             1e3 * drawn.as_secs_f64(),
-            1e3 * start.elapsed().as_secs_f64(),
+            1e3 * rasterised.as_secs_f64(),
             panel.svg().len() / 1000,
             png.len() / 1000
         );
@@ -35,4 +34,21 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     Ok(())
+}
+
+/// The result of `work`, and the least time that it took in ten runs.
+fn quickest<T, E>(work: impl Fn() -> Result<T, E>) -> Result<(T, Duration), E> {
+    let timed = || -> Result<(T, Duration), E> {
+        let start = Instant::now();
+        let result = work()?;
+        Ok((result, start.elapsed()))
+    };
+    let mut best = timed()?;
+    for _ in 1..10 {
+        let next = timed()?;
+        if next.1 < best.1 {
+            best = next;
+        }
+    }
+    Ok(best)
 }

@@ -1,9 +1,9 @@
 //! A pair of axes and what is drawn in them.
 
 use crate::canvas::{Canvas, Pixel};
-use crate::curve;
 use crate::style::{Anchor, Fill, Stroke, TextStyle, colour};
 use crate::ticks::Ticks;
+use crate::{curve, font};
 
 /// A rectangle of the figure, in pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,6 +44,8 @@ const NUMBERS_BELOW: f64 = 17.0;
 const NAME_BELOW: f64 = 36.0;
 /// (px) From the frame to the end of the numbers on its left.
 const NUMBERS_LEFT: f64 = 8.0;
+/// (px) From the numbers to the baseline of the axis' name on their left.
+const NAME_GAP: f64 = 6.0;
 /// (px) From the frame up to the baseline of the title.
 pub(crate) const TITLE_ABOVE: f64 = 8.0;
 
@@ -61,8 +63,8 @@ pub(crate) fn range(values: impl Iterator<Item = f64>, margin: f64) -> [f64; 2] 
         return [-1.0, 1.0];
     }
     let size = low.abs().max(high.abs());
-    // A constant signal: a tenth of its own size on either side.
-    let least = if size > 0.0 { 0.1 * size } else { 1.0 };
+    // A constant signal: from 0 to twice its size.
+    let least = if size > 0.0 { size } else { 1.0 };
     let extra = if high - low > 1e-9 * size { margin * (high - low) } else { least };
     [low - extra, high + extra]
 }
@@ -119,7 +121,8 @@ impl Axes {
         }
     }
 
-    /// As [`Self::y_grid`], with numbers and the axis' name, whose baseline is `name_left` of the frame.
+    /// As [`Self::y_grid`], with numbers and the axis' name, whose baseline is `name_left` of the frame, or farther
+    /// where the numbers are wide.
     pub(crate) fn y_axis(&self, canvas: &mut Canvas, ticks: &Ticks, name: &str, name_left: f64) {
         self.y_grid(canvas, ticks);
         let left = self.area.left;
@@ -127,6 +130,13 @@ impl Axes {
             let style = TextStyle::TICK.anchored(Anchor::End);
             canvas.text((left - NUMBERS_LEFT, self.py(value) + 0.36 * style.size), &ticks.text(value), style);
         }
+        let tick = TextStyle::TICK;
+        let widest = ticks
+            .values
+            .iter()
+            .map(|&value| font::text_width(&ticks.text(value), tick.size, tick.bold))
+            .fold(0.0, f64::max);
+        let name_left = name_left.max(NUMBERS_LEFT + widest + NAME_GAP);
         let middle = self.area.top + self.area.height / 2.0;
         canvas.text((left - name_left, middle), name, TextStyle::AXIS.upwards());
     }
@@ -155,10 +165,6 @@ impl Axes {
         canvas.line((self.area.left, self.py(y)), (self.area.right(), self.py(y)), stroke);
     }
 
-    pub(crate) fn vertical(&self, canvas: &mut Canvas, x: f64, stroke: Stroke) {
-        canvas.line((self.px(x), self.area.top), (self.px(x), self.area.bottom()), stroke);
-    }
-
     /// A filled part of the horizontal axis, cut at the frame.
     pub(crate) fn band(&self, canvas: &mut Canvas, from: f64, to: f64, fill: Fill) {
         let (from, to) = (from.max(self.x[0]), to.min(self.x[1]));
@@ -184,7 +190,7 @@ mod tests {
         assert_eq!(range([].into_iter(), 0.1), [-1.0, 1.0]);
         assert_eq!(range([f64::NAN, f64::INFINITY].into_iter(), 0.1), [-1.0, 1.0]);
         assert_eq!(range([0.0, 0.0].into_iter(), 0.1), [-1.0, 1.0]);
-        assert_eq!(range([5.0].into_iter(), 0.1), [4.5, 5.5]);
+        assert_eq!(range([5.0].into_iter(), 0.1), [0.0, 10.0]);
         assert_eq!(range([0.0, 10.0].into_iter(), 0.1), [-1.0, 11.0]);
     }
 

@@ -43,16 +43,6 @@ impl Canvas {
         self.polygon(&[a, (b.0, a.1), b, (a.0, b.1)], fill);
     }
 
-    pub(crate) fn dot(&mut self, (x, y): Pixel, radius: f64, colour: &str) {
-        self.push(format_args!(
-            "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"{colour}\" stroke=\"{}\"/>\n",
-            Short(x),
-            Short(y),
-            Short(radius),
-            colour::WHITE
-        ));
-    }
-
     /// Text whose baseline starts, has its middle or ends at `at`.
     pub(crate) fn text(&mut self, at: Pixel, text: &str, style: TextStyle) {
         let (x, y) = (Short(at.0), Short(at.1));
@@ -130,7 +120,8 @@ impl Canvas {
     /// `title` and `description` are for readers who cannot see it.
     pub(crate) fn finish(self, title: &str, description: &str) -> Figure {
         let (width, height) = (self.width, self.height);
-        let hatches: String = self.hatches.iter().enumerate().map(|(name, fill)| pattern(name, fill)).collect();
+        let hatches: String =
+            self.hatches.iter().enumerate().map(|(name, fill)| pattern(name, fill)).collect();
         let svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
              viewBox=\"0 0 {width} {height}\" font-family=\"{}\" stroke-linejoin=\"round\" role=\"img\">\n\

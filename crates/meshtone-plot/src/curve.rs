@@ -19,7 +19,14 @@ pub(crate) fn per_column(points: impl Iterator<Item = Pixel>) -> Vec<Pixel> {
                 if let Some(column) = column.take() {
                     column.flush(&mut kept);
                 }
-                column = Some(Column { number, first: point, low: (point, 0), high: (point, 0), last: point, count: 1 });
+                column = Some(Column {
+                    number,
+                    first: point,
+                    low: (point, 0),
+                    high: (point, 0),
+                    last: point,
+                    count: 1,
+                });
             }
         }
     }
@@ -55,7 +62,9 @@ impl Column {
         let (a, b) = if self.low.1 < self.high.1 { (self.low, self.high) } else { (self.high, self.low) };
         kept.push(self.first);
         let last = self.count - 1;
-        kept.extend([a, b].into_iter().filter(|(_, place)| (1..last).contains(place)).map(|(point, _)| point));
+        kept.extend(
+            [a, b].into_iter().filter(|(_, place)| (1..last).contains(place)).map(|(point, _)| point),
+        );
         if last > 0 {
             kept.push(self.last);
         }
@@ -76,10 +85,9 @@ pub(crate) fn simplify(points: &[Pixel]) -> Vec<Pixel> {
     let mut ranges = vec![(0, points.len() - 1)];
     while let Some((first, last)) = ranges.pop() {
         let farthest = (first + 1..last)
-            .map(|k| (distance(points[k], points[first], points[last]), k))
+            .map(|k| (squared_distance(points[k], points[first], points[last]), k))
             .max_by(|a, b| a.0.total_cmp(&b.0));
-        if let Some((distance, k)) = farthest.filter(|&(distance, _)| distance > TOLERANCE) {
-            debug_assert!(distance.is_finite());
+        if let Some((_, k)) = farthest.filter(|&(squared, _)| squared > TOLERANCE * TOLERANCE) {
             keep[k] = true;
             ranges.extend([(first, k), (k, last)]);
         }
@@ -87,13 +95,13 @@ pub(crate) fn simplify(points: &[Pixel]) -> Vec<Pixel> {
     points.iter().zip(keep).filter(|(_, keep)| *keep).map(|(point, _)| *point).collect()
 }
 
-/// Distance of a point from the piece of line from `a` to `b`.
-fn distance(point: Pixel, a: Pixel, b: Pixel) -> f64 {
+/// Squared distance of a point from the piece of line from `a` to `b`.
+fn squared_distance(point: Pixel, a: Pixel, b: Pixel) -> f64 {
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);
     let square = dx * dx + dy * dy;
     let (px, py) = (point.0 - a.0, point.1 - a.1);
     let t = if square > 0.0 { ((px * dx + py * dy) / square).clamp(0.0, 1.0) } else { 0.0 };
-    (px - t * dx).hypot(py - t * dy)
+    (px - t * dx).powi(2) + (py - t * dy).powi(2)
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use meshtone::Stages;
 use meshtone::signal::{Channels, revolution_average};
 
+use super::damage;
 use crate::axes::{self, Area, Axes};
 use crate::canvas::Canvas;
 use crate::legend::{self, Entry, Sample};
@@ -13,7 +14,7 @@ pub(super) const CURVE: Stroke = Stroke::solid(colour::BLUE, 1.2);
 /// The time in which the damaged tooth carries load.
 pub(super) const DAMAGED: Fill = Fill::tint(colour::VERMILLION, 0.22);
 const SECOND_CURVE: Stroke = Stroke::solid(colour::GREEN, 1.4);
-const ACCELERATION: &str = "Vertical accel. (g)";
+const ACCELERATION: &str = "Vertical acceleration (g)";
 const MARGIN: f64 = 0.06;
 
 /// Draws both averages on the same scale; or, where the speed changes and nothing can be averaged revolution by
@@ -29,23 +30,21 @@ pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], stages: &Stages, chann
     let averages = [per_pinion, per_gear].map(|samples| Average::new(channels, samples));
     let values = averages.iter().flat_map(|average| average.values.iter().copied());
     let y = axes::range(values, MARGIN);
-    let damaged = stages.fault.is_some();
-    let tooth = if damaged { "damaged" } else { "first" };
-    let contact_deg = 360.0 * stages.teeth.contact.span_rev * f64::from(teeth[0]) / f64::from(teeth[1].max(1));
+    let contact_deg =
+        360.0 * stages.teeth.contact.span_rev * f64::from(teeth[0]) / f64::from(teeth[1].max(1));
     let since = [
         "Pinion angle since its first tooth enters contact (°)".to_owned(),
-        format!("Gear angle since its {tooth} tooth enters contact (°)"),
+        format!("Gear angle since its {} (°)", damage::start_of_revolution(stages.fault.as_ref())),
     ];
     for (column, average) in averages.iter().enumerate() {
         let axes = Axes::new(areas[column], [0.0, 360.0], y);
         let wheel = ["pinion", "gear"][column];
         axes.title(canvas, &average.title(wheel));
-        let contact = (column == 1 && damaged).then_some(contact_deg);
-        if let Some(end) = contact {
+        if let Some(fault) = stages.fault.as_ref().filter(|_| column == 1) {
             let end_of_title = (axes.area.right(), axes.area.top - axes::TITLE_ABOVE);
-            let entry = Entry { sample: Sample::Area(DAMAGED), text: "damaged tooth in contact" };
+            let entry = Entry { sample: Sample::Area(DAMAGED), text: damage::contact_text(fault) };
             legend::row(canvas, end_of_title, &[entry]);
-            axes.band(canvas, 0.0, end, DAMAGED);
+            axes.band(canvas, 0.0, contact_deg, DAMAGED);
         }
         axes.x_axis(canvas, &Ticks::every(45.0, 0.0, 360.0), &since[column]);
         axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), ACCELERATION, super::NAME_LEFT);
@@ -83,13 +82,20 @@ impl Average {
 
     fn draw(&self, canvas: &mut Canvas, axes: &Axes) {
         if self.values.is_empty() {
-            let reason =
-                if self.is_empty { "no samples were kept" } else { "the kept signal is shorter than a revolution" };
+            let reason = if self.is_empty {
+                "no samples were kept"
+            } else {
+                "the kept signal is shorter than a revolution"
+            };
             axes.note(canvas, reason);
             return;
         }
         let degrees = 360.0 / self.values.len() as f64;
-        axes.line(canvas, self.values.iter().enumerate().map(|(k, &value)| (k as f64 * degrees, value)), CURVE);
+        axes.line(
+            canvas,
+            self.values.iter().enumerate().map(|(k, &value)| (k as f64 * degrees, value)),
+            CURVE,
+        );
     }
 }
 
@@ -102,7 +108,8 @@ fn over_time(canvas: &mut Canvas, areas: [Area; 2], channels: &Channels) {
     };
     let time = if time[1] > time[0] && time.iter().all(|&t| axes::drawable(t)) { time } else { [0.0, 1.0] };
     let acceleration = [(channels.vertical_g.as_slice(), CURVE)];
-    let speeds = [(channels.pinion_speed_hz.as_slice(), CURVE), (channels.gear_speed_hz.as_slice(), SECOND_CURVE)];
+    let speeds =
+        [(channels.pinion_speed_hz.as_slice(), CURVE), (channels.gear_speed_hz.as_slice(), SECOND_CURVE)];
     signals(canvas, areas[0], time, "Vertical acceleration, at changing speed", ACCELERATION, &acceleration);
     let axes = signals(canvas, areas[1], time, "Speed of both shafts", "Speed (Hz)", &speeds);
     let entries = [("pinion", CURVE), ("gear", SECOND_CURVE)]

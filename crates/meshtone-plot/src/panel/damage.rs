@@ -70,10 +70,32 @@ pub(super) fn caption(geometry: &FaultGeometry) -> Vec<String> {
             [chip].into_iter().chain((*tip_loss_mm > 0.0).then_some(loss)).collect()
         }
         FaultDescription::FaceFault { pit, width_mm } => {
-            vec![format!("pit {} mm wide,", hundredths(*width_mm)), format!("{} mm long", hundredths(pit.length_mm))]
+            vec![
+                format!("pit {} mm wide,", hundredths(*width_mm)),
+                format!("{} mm long", hundredths(pit.length_mm)),
+            ]
         }
         FaultDescription::ToothDestruction { .. } => vec!["flank ground down".to_owned()],
     }
+}
+
+/// Whether the whole tooth is gone.
+pub(super) fn is_missing(geometry: &FaultGeometry) -> bool {
+    matches!(geometry.description, FaultDescription::MissingTooth)
+}
+
+/// Where the gear's revolution starts.
+pub(super) fn start_of_revolution(geometry: Option<&FaultGeometry>) -> &'static str {
+    match geometry {
+        None => "first tooth enters contact",
+        Some(geometry) if is_missing(geometry) => "missing tooth would enter contact",
+        Some(_) => "damaged tooth enters contact",
+    }
+}
+
+/// What the shaded part of the revolution is.
+pub(super) fn contact_text(geometry: &FaultGeometry) -> &'static str {
+    if is_missing(geometry) { "turn of the missing tooth" } else { "damaged tooth in contact" }
 }
 
 /// Whether a part of the face width is sound where the flank is damaged.

@@ -1,8 +1,8 @@
 //! The first tooth's profile errors, among those of all teeth.
 
-use meshtone::fault::FaultDescription;
 use nalgebra::DMatrix;
 
+use super::damage;
 use super::face::{CONTACT, RELIEF};
 use super::side::Side;
 use crate::axes::{Area, Axes, drawable};
@@ -28,7 +28,8 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, along: [f64; 2], side: &Side
     axes.title(canvas, "Profile errors");
     axes.x_axis(canvas, &Ticks::nice(-half, half, 4), "Error (µm)");
     axes.y_grid(canvas, &Ticks::nice(along[0], along[1], 8));
-    axes.vertical(canvas, 0.0, Stroke::solid(colour::MUTED, 0.9));
+    let zero = [side.contact_x_mm(), side.profile.tip_x_mm()].map(|x| axes.at(0.0, x));
+    canvas.line(zero[0], zero[1], Stroke::solid(colour::MUTED, 0.9));
     match errors {
         Some(errors) => curves(canvas, &axes, side, errors),
         None => axes.note(canvas, "ideal teeth"),
@@ -49,17 +50,21 @@ fn curves(canvas: &mut Canvas, axes: &Axes, side: &Side, errors: &DMatrix<f64>) 
     // From the start of contact to the tip, whichever way the rows run.
     let row = |place: usize| if side.errors_from_tip { rows - 1 - place } else { place };
     let extreme = |pick: fn(f64, f64) -> f64, start: f64| -> Vec<Pixel> {
-        axes.along_y((0..rows).map(|place| (1e3 * errors.row(row(place)).iter().copied().fold(start, pick), x_mm[place])))
+        axes.along_y(
+            (0..rows)
+                .map(|place| (1e3 * errors.row(row(place)).iter().copied().fold(start, pick), x_mm[place])),
+        )
     };
     let mut band = extreme(f64::min, f64::INFINITY);
     band.extend(extreme(f64::max, f64::NEG_INFINITY).into_iter().rev());
     canvas.polygon(&band, ALL);
     let all = Entry { sample: Sample::Area(ALL), text: "all teeth" };
     let start = (axes.area.left + 6.0, axes.area.bottom() - 26.0);
-    if matches!(side.fault.map(|fault| &fault.description), Some(FaultDescription::MissingTooth)) {
+    if side.fault.is_some_and(damage::is_missing) {
         legend::column(canvas, start, &[all]);
         return;
     }
-    canvas.polyline(&axes.along_y((0..rows).map(|place| (1e3 * errors[(row(place), 0)], x_mm[place]))), FIRST);
+    canvas
+        .polyline(&axes.along_y((0..rows).map(|place| (1e3 * errors[(row(place), 0)], x_mm[place]))), FIRST);
     legend::column(canvas, start, &[Entry { sample: Sample::Line(FIRST), text: "first tooth" }, all]);
 }

@@ -4,7 +4,7 @@ use meshtone::fault::{FaultDescription, FaultGeometry};
 
 use super::damage;
 use super::side::Side;
-use super::tooth::{LOST, PARTLY_LOST};
+use super::tooth::{DAMAGE_EDGE, LOST};
 use crate::axes::{Area, Axes};
 use crate::canvas::Canvas;
 use crate::style::{Anchor, Fill, Stroke, TextStyle, colour};
@@ -20,17 +20,19 @@ const EDGE: Stroke = Stroke::solid(colour::VERMILLION, 1.8);
 pub(super) fn draw(canvas: &mut Canvas, area: Area, along: [f64; 2], side: &Side) {
     let half = side.wheel.face_width_mm / 2.0;
     let axes = Axes::new(area, [-1.12 * half, 1.12 * half], along);
-    axes.title(canvas, "Its face");
+    axes.title(canvas, "Tooth face");
     axes.x_axis(canvas, &Ticks::nice(-half, half, 4), "Face width, z (mm)");
     axes.y_grid(canvas, &Ticks::nice(along[0], along[1], 8));
     let (root, tip) = (side.profile.x_mm[0], side.profile.tip_x_mm());
-    canvas.rectangle(axes.at(-half, along[0]), axes.at(half, tip), Fill::solid(colour::STEEL));
+    let missing = side.fault.is_some_and(damage::is_missing);
+    let top = if missing { root } else { tip };
+    canvas.rectangle(axes.at(-half, along[0]), axes.at(half, top), Fill::solid(colour::STEEL));
     if let Some(fault) = side.fault {
         damaged(canvas, &axes, side, fault);
     }
     let outline = Stroke::solid(colour::MUTED, 1.6);
     canvas.line(axes.at(-half, root), axes.at(half, root), Stroke::solid(colour::MUTED, 0.9));
-    let corners = [(-half, along[0]), (-half, tip), (half, tip), (half, along[0])];
+    let corners = [(-half, along[0]), (-half, top), (half, top), (half, along[0])];
     canvas.polyline(&corners.map(|(z, x)| axes.at(z, x)), outline);
     landmark(canvas, &axes, side.contact_x_mm(), "contact start", CONTACT);
     if let Some(relief) = side.relief_x_mm.filter(|relief| *relief > side.contact_x_mm()) {
@@ -55,7 +57,9 @@ fn damaged(canvas: &mut Canvas, axes: &Axes, side: &Side, fault: &FaultGeometry)
     let tip = side.profile.tip_x_mm();
     match &fault.description {
         FaultDescription::MissingTooth => {
-            canvas.rectangle(axes.at(-half, x(0)), axes.at(half, tip), PARTLY_LOST);
+            canvas.rectangle(axes.at(-half, x(0)), axes.at(half, tip), LOST);
+            let ghost = [(-half, x(0)), (-half, tip), (half, tip), (half, x(0))];
+            canvas.polyline(&ghost.map(|(z, x)| axes.at(z, x)), DAMAGE_EDGE);
         }
         FaultDescription::ToothBreakage { chip_start_index, missing_width_mm, tip_loss_mm, .. } => {
             let bottom = x(*chip_start_index);

@@ -30,13 +30,17 @@ pub(super) fn description(stages: &Stages) -> String {
 }
 
 pub(super) fn draw(canvas: &mut Canvas, title: &str, stages: &Stages) {
-    canvas.text((super::LEFT - super::NAME_LEFT - 10.0, 36.0), title, TextStyle::TITLE);
+    canvas.text((super::LEFT - super::NAME_LEFT - 11.0, 36.0), title, TextStyle::TITLE);
     let facts = facts(&stages.scenario).join("  ·  ");
-    canvas.text((super::LEFT - super::NAME_LEFT - 10.0, 61.0), &facts, TextStyle::FACTS);
+    canvas.text((super::LEFT - super::NAME_LEFT - 11.0, 61.0), &facts, TextStyle::FACTS);
 }
 
 pub(super) fn column(canvas: &mut Canvas, (left, baseline): Pixel, width: f64, side: &Side) {
-    let damage = if side.fault.is_some() { ", the first one damaged" } else { "" };
+    let damage = match side.fault {
+        None => "",
+        Some(fault) if damage::is_missing(fault) => ", the first one missing",
+        Some(_) => ", the first one damaged",
+    };
     let text = format!("{}, {}: {} teeth{damage}", side.name, side.shaft, side.wheel.teeth);
     canvas.text((left, baseline), &text, TextStyle::HEADING);
     let rule = Stroke::solid(colour::INK, 1.2);

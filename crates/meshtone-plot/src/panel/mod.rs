@@ -26,12 +26,12 @@ pub const WIDTH: u32 = 1600;
 /// (px) Size of the panel.
 pub const HEIGHT: u32 = 1000;
 
-const LEFT: f64 = 68.0;
-const COLUMN_WIDTH: f64 = 718.0;
-const COLUMN_GAP: f64 = 76.0;
+const LEFT: f64 = 74.0;
+const COLUMN_WIDTH: f64 = 710.0;
+const COLUMN_GAP: f64 = 82.0;
 const FULL_WIDTH: f64 = 2.0 * COLUMN_WIDTH + COLUMN_GAP;
 /// (px) From the frame of a plot to the baseline of its vertical axis' name.
-const NAME_LEFT: f64 = 46.0;
+const NAME_LEFT: f64 = 56.0;
 
 const HEADING_BASELINE: f64 = 96.0;
 const TEETH_TOP: f64 = 134.0;
@@ -41,10 +41,10 @@ const AVERAGES_HEIGHT: f64 = 168.0;
 const STIFFNESS_TOP: f64 = 778.0;
 const STIFFNESS_HEIGHT: f64 = 172.0;
 
-const TOOTH_WIDTH: f64 = 364.0;
+const TOOTH_WIDTH: f64 = 360.0;
 /// (px) Room for the names of the circles, right of the tooth.
 const CIRCLE_NAMES: f64 = 50.0;
-const FACE_WIDTH: f64 = 162.0;
+const FACE_WIDTH: f64 = 160.0;
 const FACE_GAP: f64 = 14.0;
 const ERRORS_WIDTH: f64 = COLUMN_WIDTH - TOOTH_WIDTH - CIRCLE_NAMES - FACE_WIDTH - FACE_GAP;
 

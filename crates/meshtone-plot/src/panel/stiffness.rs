@@ -1,8 +1,10 @@
 //! The mesh stiffness over a revolution of the gear, and its first pitches enlarged.
 
 use meshtone::Stages;
+use meshtone::fault::FaultGeometry;
 
 use super::average::DAMAGED;
+use super::damage;
 use crate::axes::{self, Area, Axes};
 use crate::canvas::Canvas;
 use crate::legend::{self, Entry, Sample};
@@ -13,7 +15,7 @@ const MESH: Stroke = Stroke::solid(colour::BLUE, 1.6);
 const HEALTHY: Stroke = Stroke::dashed(colour::INK, 1.4, "5 3");
 /// (px) Width of the enlarged part and the gap before it.
 const ENLARGED_WIDTH: f64 = 430.0;
-const GAP: f64 = 22.0;
+const GAP: f64 = 40.0;
 /// Pitches that the enlarged part shows, counted from where the first tooth enters contact.
 const ENLARGED: [f64; 2] = [-1.0, 3.0];
 
@@ -37,27 +39,27 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, stages: &Stages) {
         }
     }
     whole.title(canvas, "Mesh stiffness over a gear revolution");
-    let tooth = if damaged { "damaged" } else { "first" };
-    let name = format!("Pitches since the gear’s {tooth} tooth enters contact");
+    let start = damage::start_of_revolution(stages.fault.as_ref());
+    let name = format!("Pitches since the gear’s {start}");
     whole.x_axis(canvas, &Ticks::whole(0.0, mesh.pitches(), 20), &name);
     whole.y_axis(canvas, &ticks, "Stiffness (N/µm)", super::NAME_LEFT);
-    enlarged.title(canvas, if damaged { "The damaged pair, enlarged" } else { "Four pitches, enlarged" });
+    enlarged.title(canvas, if damaged { "Its first pitches, enlarged" } else { "Four pitches, enlarged" });
     enlarged.x_axis(canvas, &Ticks::nice(ENLARGED[0], ENLARGED[1], 8), "Pitches");
     enlarged.y_grid(canvas, &ticks);
     for axes in [&whole, &enlarged] {
-        mesh.draw(canvas, axes, damaged);
+        mesh.draw(canvas, axes, damaged.then_some(contact));
         axes.frame(canvas);
     }
-    if damaged {
-        legend(canvas, &whole);
+    if let Some(fault) = &stages.fault {
+        legend(canvas, &whole, fault);
     }
 }
 
-fn legend(canvas: &mut Canvas, axes: &Axes) {
+fn legend(canvas: &mut Canvas, axes: &Axes, fault: &FaultGeometry) {
     let entries = [
         Entry { sample: Sample::Line(MESH), text: "this gear" },
         Entry { sample: Sample::Line(HEALTHY), text: "healthy gear" },
-        Entry { sample: Sample::Area(DAMAGED), text: "damaged tooth in contact" },
+        Entry { sample: Sample::Area(DAMAGED), text: damage::contact_text(fault) },
     ];
     legend::row(canvas, (axes.area.right(), axes.area.top - axes::TITLE_ABOVE), &entries);
 }
@@ -89,21 +91,22 @@ impl<'a> Mesh<'a> {
         (self.mesh_n_per_mm.len() as f64 / self.per_pitch() as f64).max(1.0)
     }
 
-    fn draw(&self, canvas: &mut Canvas, axes: &Axes, with_healthy: bool) {
+    fn draw(&self, canvas: &mut Canvas, axes: &Axes, damaged_contact: Option<f64>) {
         if self.mesh_n_per_mm.is_empty() || self.healthy_n_per_mm.is_empty() {
             axes.note(canvas, "no mesh stiffness");
             return;
         }
         let per_pitch = self.per_pitch() as f64;
-        let (first, last) = ((axes.x[0] * per_pitch).ceil() as i64, (axes.x[1] * per_pitch).floor() as i64);
         // The cycle repeats: what comes before the first tooth is the revolution's end.
-        let curve = |values: &'a [f64]| {
+        let curve = |values: &'a [f64], [from, to]: [f64; 2]| {
             let length = values.len() as i64;
+            let (first, last) = ((from * per_pitch).ceil() as i64, (to * per_pitch).floor() as i64);
             (first..=last).map(move |k| (k as f64 / per_pitch, values[k.rem_euclid(length) as usize] / 1e3))
         };
-        if with_healthy {
-            axes.line(canvas, curve(self.healthy_n_per_mm), HEALTHY);
+        // Elsewhere the two are the same.
+        if let Some(contact) = damaged_contact {
+            axes.line(canvas, curve(self.healthy_n_per_mm, [0.0, contact.min(axes.x[1])]), HEALTHY);
         }
-        axes.line(canvas, curve(self.mesh_n_per_mm), MESH);
+        axes.line(canvas, curve(self.mesh_n_per_mm, axes.x), MESH);
     }
 }

@@ -13,7 +13,7 @@ use crate::ticks::Ticks;
 const WORKING: Stroke = Stroke::solid(colour::BLUE, 2.4);
 const BACK: Stroke = Stroke::solid(colour::MUTED, 1.6);
 const DAMAGED: Stroke = Stroke::solid(colour::VERMILLION, 2.6);
-const DAMAGE_EDGE: Stroke = Stroke::dashed(colour::VERMILLION, 1.6, "6 3");
+pub(super) const DAMAGE_EDGE: Stroke = Stroke::dashed(colour::VERMILLION, 1.6, "6 3");
 const GHOST: Stroke = Stroke::dashed(colour::INK, 1.2, "5 3");
 pub(super) const LOST: Fill = Fill::tint(colour::VERMILLION, 0.3);
 pub(super) const PARTLY_LOST: Fill = Fill::hatch(colour::VERMILLION);
@@ -23,7 +23,12 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, across: [f64; 2], along: [f6
     let axes = Axes::new(area, across, along);
     axes.title(canvas, "First tooth, in its plane");
     axes.x_axis(canvas, &Ticks::nice(across[0], across[1], 9), "Across the tooth, y (mm)");
-    axes.y_axis(canvas, &Ticks::nice(along[0], along[1], 8), "From the wheel’s centre, x (mm)", super::NAME_LEFT);
+    axes.y_axis(
+        canvas,
+        &Ticks::nice(along[0], along[1], 8),
+        "From the wheel’s centre, x (mm)",
+        super::NAME_LEFT,
+    );
     let tooth = Drawing { axes, side };
     tooth.body(canvas);
     tooth.circles(canvas);
@@ -72,7 +77,7 @@ impl Drawing<'_> {
         for rim in rim {
             canvas.polyline(&rim, BACK);
         }
-        if matches!(side.fault.map(|fault| &fault.description), Some(FaultDescription::MissingTooth)) {
+        if side.fault.is_some_and(damage::is_missing) {
             canvas.polyline(&self.root_gap(), BACK);
         }
     }
@@ -87,7 +92,8 @@ impl Drawing<'_> {
             (x.hypot(y), y.atan2(x))
         };
         let (foot, foot_angle) = polar(0);
-        let arc = (0..=20).map(|k| (foot, foot_angle + (pitch - 2.0 * foot_angle).max(0.0) * f64::from(k) / 20.0));
+        let arc =
+            (0..=20).map(|k| (foot, foot_angle + (pitch - 2.0 * foot_angle).max(0.0) * f64::from(k) / 20.0));
         let stride = (profile.len() / 400).max(1);
         let neighbour = (1..profile.len()).step_by(stride).map(|index| {
             let (radius, angle) = polar(index);
