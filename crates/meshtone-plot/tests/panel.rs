@@ -1,5 +1,7 @@
 //! The results panel of every fault, of awkward wheels and of awkward signals.
 
+#![allow(clippy::unwrap_used)]
+
 mod support;
 
 use meshtone::scenario::*;
