@@ -1,1 +1,23 @@
-//! Part of Meshtone.
+//! Figures of a simulation, as SVG and PNG.
+//!
+//! One file or folder per figure; what they share (axes, ticks, legends, text that knows its own width) is
+//! `axes`, `canvas`, `legend`, `curve` and `style`. Figures are written as SVG and rasterised from that same SVG, with
+//! the font that this crate brings along, so that both look alike on every machine.
+//!
+//! * [`panel`]: teeth, damage, profile errors, averages and mesh stiffness of one simulation
+#![deny(missing_docs)]
+
+mod axes;
+mod canvas;
+mod curve;
+mod error;
+mod figure;
+mod font;
+mod legend;
+pub mod panel;
+mod raster;
+mod style;
+mod ticks;
+
+pub use error::PlotError;
+pub use figure::{Figure, Label};

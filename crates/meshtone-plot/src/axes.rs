@@ -1,0 +1,205 @@
+//! A pair of axes and what is drawn in them.
+
+use crate::canvas::{Canvas, Pixel};
+use crate::style::{Anchor, Fill, Stroke, TextStyle, colour};
+use crate::ticks::Ticks;
+use crate::{curve, font};
+
+/// A rectangle of the figure, in pixels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Area {
+    pub(crate) left: f64,
+    pub(crate) top: f64,
+    pub(crate) width: f64,
+    pub(crate) height: f64,
+}
+
+impl Area {
+    pub(crate) const fn new(left: f64, top: f64, width: f64, height: f64) -> Self {
+        Self { left, top, width, height }
+    }
+
+    pub(crate) fn right(&self) -> f64 {
+        self.left + self.width
+    }
+
+    pub(crate) fn bottom(&self) -> f64 {
+        self.top + self.height
+    }
+}
+
+/// A pair of axes with linear scales.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Axes {
+    pub(crate) area: Area,
+    pub(crate) x: [f64; 2],
+    pub(crate) y: [f64; 2],
+}
+
+const FRAME: Stroke = Stroke::solid("#8a8a8a", 1.0);
+const GRID: Stroke = Stroke::solid(colour::GRID, 1.0);
+const TICK_LENGTH: f64 = 4.0;
+/// (px) From the frame to the baseline of the numbers below it, and of the axis' name.
+const NUMBERS_BELOW: f64 = 17.0;
+const NAME_BELOW: f64 = 36.0;
+/// (px) From the frame to the end of the numbers on its left.
+const NUMBERS_LEFT: f64 = 8.0;
+/// (px) From the numbers to the baseline of the axis' name on their left.
+const NAME_GAP: f64 = 6.0;
+/// (px) From the frame up to the baseline of the title.
+pub(crate) const TITLE_ABOVE: f64 = 8.0;
+
+/// Whether a number can be drawn at all.
+pub(crate) fn drawable(value: f64) -> bool {
+    value.abs() < 1e30
+}
+
+/// Range of the drawable values with a margin; ±1 round 0 where there are none.
+pub(crate) fn range(values: impl Iterator<Item = f64>, margin: f64) -> [f64; 2] {
+    let (low, high) = values
+        .filter(|&value| drawable(value))
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+    if low > high {
+        return [-1.0, 1.0];
+    }
+    let size = low.abs().max(high.abs());
+    // A constant signal: from 0 to twice its size.
+    let least = if size > 0.0 { size } else { 1.0 };
+    let extra = if high - low > 1e-9 * size { margin * (high - low) } else { least };
+    [low - extra, high + extra]
+}
+
+impl Axes {
+    pub(crate) fn new(area: Area, x: [f64; 2], y: [f64; 2]) -> Self {
+        Self { area, x, y }
+    }
+
+    pub(crate) fn px(&self, x: f64) -> f64 {
+        self.area.left + (x - self.x[0]) / (self.x[1] - self.x[0]) * self.area.width
+    }
+
+    pub(crate) fn py(&self, y: f64) -> f64 {
+        self.area.bottom() - (y - self.y[0]) / (self.y[1] - self.y[0]) * self.area.height
+    }
+
+    pub(crate) fn at(&self, x: f64, y: f64) -> Pixel {
+        (self.px(x), self.py(y))
+    }
+
+    /// The frame, to be drawn over everything else.
+    pub(crate) fn frame(&self, canvas: &mut Canvas) {
+        let Area { left, top, .. } = self.area;
+        let (right, bottom) = (self.area.right(), self.area.bottom());
+        let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
+        canvas.polyline(&corners, FRAME);
+    }
+
+    pub(crate) fn title(&self, canvas: &mut Canvas, text: &str) {
+        canvas.text((self.area.left, self.area.top - TITLE_ABOVE), text, TextStyle::AXES_TITLE);
+    }
+
+    /// Grid lines, ticks and numbers of the horizontal axis, and its name.
+    pub(crate) fn x_axis(&self, canvas: &mut Canvas, ticks: &Ticks, name: &str) {
+        let (top, bottom) = (self.area.top, self.area.bottom());
+        for &value in &ticks.values {
+            let x = self.px(value);
+            canvas.line((x, top), (x, bottom), GRID);
+            canvas.line((x, bottom), (x, bottom + TICK_LENGTH), FRAME);
+            canvas.text((x, bottom + NUMBERS_BELOW), &ticks.text(value), TextStyle::TICK);
+        }
+        let middle = self.area.left + self.area.width / 2.0;
+        canvas.text((middle, bottom + NAME_BELOW), name, TextStyle::AXIS);
+    }
+
+    /// Grid lines and ticks of the vertical axis.
+    pub(crate) fn y_grid(&self, canvas: &mut Canvas, ticks: &Ticks) {
+        let (left, right) = (self.area.left, self.area.right());
+        for &value in &ticks.values {
+            let y = self.py(value);
+            canvas.line((left, y), (right, y), GRID);
+            canvas.line((left - TICK_LENGTH, y), (left, y), FRAME);
+        }
+    }
+
+    /// As [`Self::y_grid`], with numbers and the axis' name, whose baseline is `name_left` of the frame, or farther
+    /// where the numbers are wide.
+    pub(crate) fn y_axis(&self, canvas: &mut Canvas, ticks: &Ticks, name: &str, name_left: f64) {
+        self.y_grid(canvas, ticks);
+        let left = self.area.left;
+        for &value in &ticks.values {
+            let style = TextStyle::TICK.anchored(Anchor::End);
+            canvas.text((left - NUMBERS_LEFT, self.py(value) + 0.36 * style.size), &ticks.text(value), style);
+        }
+        let tick = TextStyle::TICK;
+        let widest = ticks
+            .values
+            .iter()
+            .map(|&value| font::text_width(&ticks.text(value), tick.size, tick.bold))
+            .fold(0.0, f64::max);
+        let name_left = name_left.max(NUMBERS_LEFT + widest + NAME_GAP);
+        let middle = self.area.top + self.area.height / 2.0;
+        canvas.text((left - name_left, middle), name, TextStyle::AXIS.upwards());
+    }
+
+    /// Pixels of a curve whose x does not fall.
+    pub(crate) fn along_x(&self, points: impl Iterator<Item = (f64, f64)>) -> Vec<Pixel> {
+        let drawable = points.filter(|&(x, y)| drawable(x) && drawable(y));
+        curve::simplify(&curve::per_column(drawable.map(|(x, y)| self.at(x, y))))
+    }
+
+    /// Pixels of a curve whose y does not fall.
+    pub(crate) fn along_y(&self, points: impl Iterator<Item = (f64, f64)>) -> Vec<Pixel> {
+        let drawable = points.filter(|&(x, y)| drawable(x) && drawable(y));
+        // Upwards is falling pixels; the columns only ask for one direction.
+        let turned = drawable.map(|(x, y)| (-self.py(y), self.px(x)));
+        let turned = curve::simplify(&curve::per_column(turned));
+        turned.into_iter().map(|(y, x)| (x, -y)).collect()
+    }
+
+    /// A curve whose x does not fall.
+    pub(crate) fn line(&self, canvas: &mut Canvas, points: impl Iterator<Item = (f64, f64)>, stroke: Stroke) {
+        canvas.polyline(&self.along_x(points), stroke);
+    }
+
+    pub(crate) fn horizontal(&self, canvas: &mut Canvas, y: f64, stroke: Stroke) {
+        canvas.line((self.area.left, self.py(y)), (self.area.right(), self.py(y)), stroke);
+    }
+
+    /// A filled part of the horizontal axis, cut at the frame.
+    pub(crate) fn band(&self, canvas: &mut Canvas, from: f64, to: f64, fill: Fill) {
+        let (from, to) = (from.max(self.x[0]), to.min(self.x[1]));
+        if from < to {
+            canvas.rectangle((self.px(from), self.area.top), (self.px(to), self.area.bottom()), fill);
+        }
+    }
+
+    /// Words in the middle, instead of a curve.
+    pub(crate) fn note(&self, canvas: &mut Canvas, text: &str) {
+        let at = (self.area.left + self.area.width / 2.0, self.area.top + self.area.height / 2.0);
+        let style = TextStyle::NOTE.coloured(colour::MUTED).anchored(Anchor::Middle).with_halo();
+        canvas.text(at, text, style);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_of_awkward_values() {
+        assert_eq!(range([].into_iter(), 0.1), [-1.0, 1.0]);
+        assert_eq!(range([f64::NAN, f64::INFINITY].into_iter(), 0.1), [-1.0, 1.0]);
+        assert_eq!(range([0.0, 0.0].into_iter(), 0.1), [-1.0, 1.0]);
+        assert_eq!(range([5.0].into_iter(), 0.1), [0.0, 10.0]);
+        assert_eq!(range([0.0, 10.0].into_iter(), 0.1), [-1.0, 11.0]);
+    }
+
+    #[test]
+    fn pixels_run_downwards() {
+        let axes = Axes::new(Area::new(10.0, 20.0, 100.0, 50.0), [0.0, 1.0], [-1.0, 1.0]);
+        assert_eq!(axes.at(0.0, -1.0), (10.0, 70.0));
+        assert_eq!(axes.at(1.0, 1.0), (110.0, 20.0));
+        let upwards = axes.along_y([(0.0, -1.0), (1.0, 1.0)].into_iter());
+        assert_eq!(upwards, [(10.0, 70.0), (110.0, 20.0)]);
+    }
+}

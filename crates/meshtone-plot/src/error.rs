@@ -1,0 +1,41 @@
+//! What can go wrong.
+
+use thiserror::Error;
+
+/// Why a figure could not be drawn or rasterised.
+#[derive(Debug, Error)]
+pub enum PlotError {
+    /// A tooth without a profile.
+    #[error("the {wheel}'s tooth profile has {points} points; at least 2 are needed to draw it")]
+    NoProfile {
+        /// Pinion or gear.
+        wheel: &'static str,
+        /// Number of points.
+        points: usize,
+    },
+    /// Signals that do not belong to the simulation.
+    #[error(
+        "the signals have {channels_hz} samples per second, but the simulation they are drawn with has \
+         {simulation_hz}; draw the signals as simulated, before any resampling"
+    )]
+    SamplingRate {
+        /// (S/s) Rate of the signals.
+        channels_hz: f64,
+        /// (S/s) Rate of the simulation.
+        simulation_hz: f64,
+    },
+    /// The SVG could not be read back.
+    #[error("the figure could not be rasterised: {0}")]
+    Svg(#[from] resvg::usvg::Error),
+    /// No bitmap of that size.
+    #[error("no bitmap of {width} × {height} pixels could be made")]
+    Bitmap {
+        /// (px) Width.
+        width: u32,
+        /// (px) Height.
+        height: u32,
+    },
+    /// The PNG could not be written.
+    #[error("the figure could not be encoded as PNG: {0}")]
+    Png(#[from] png::EncodingError),
+}

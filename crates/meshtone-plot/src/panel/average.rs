@@ -1,0 +1,144 @@
+//! The vertical acceleration, averaged over the revolutions of either shaft.
+
+use meshtone::Stages;
+use meshtone::signal::{Channels, revolution_average};
+
+use super::damage;
+use crate::axes::{self, Area, Axes};
+use crate::canvas::Canvas;
+use crate::legend::{self, Entry, Sample};
+use crate::style::{Fill, Stroke, colour};
+use crate::ticks::Ticks;
+
+pub(super) const CURVE: Stroke = Stroke::solid(colour::BLUE, 1.2);
+/// The time in which the damaged tooth carries load.
+pub(super) const DAMAGED: Fill = Fill::tint(colour::VERMILLION, 0.22);
+const SECOND_CURVE: Stroke = Stroke::solid(colour::GREEN, 1.4);
+const ACCELERATION: &str = "Vertical acceleration (g)";
+const MARGIN: f64 = 0.06;
+
+/// Draws both averages on the same scale; or, where the speed changes and nothing can be averaged revolution by
+/// revolution, the signal and the speeds over time.
+pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], stages: &Stages, channels: &Channels) {
+    if stages.scenario.operation.speed_profile_hz.is_some() {
+        over_time(canvas, areas, channels);
+        return;
+    }
+    let per_pinion = stages.time.samples_per_pinion_revolution;
+    let teeth = [stages.teeth.pinion.teeth, stages.teeth.gear.teeth];
+    let per_gear = per_pinion * teeth[1] as usize / (teeth[0] as usize).max(1);
+    let averages = [per_pinion, per_gear].map(|samples| Average::new(channels, samples));
+    let values = averages.iter().flat_map(|average| average.values.iter().copied());
+    let y = axes::range(values, MARGIN);
+    let contact_deg =
+        360.0 * stages.teeth.contact.span_rev * f64::from(teeth[0]) / f64::from(teeth[1].max(1));
+    let since = [
+        "Pinion angle since its first tooth enters contact (°)".to_owned(),
+        format!("Gear angle since its {} (°)", damage::start_of_revolution(stages.fault.as_ref())),
+    ];
+    for (column, average) in averages.iter().enumerate() {
+        let axes = Axes::new(areas[column], [0.0, 360.0], y);
+        let wheel = ["pinion", "gear"][column];
+        axes.title(canvas, &average.title(wheel));
+        if let Some(fault) = stages.fault.as_ref().filter(|_| column == 1) {
+            let end_of_title = (axes.area.right(), axes.area.top - axes::TITLE_ABOVE);
+            let entry = Entry { sample: Sample::Area(DAMAGED), text: damage::contact_text(fault) };
+            legend::row(canvas, end_of_title, &[entry]);
+            axes.band(canvas, 0.0, contact_deg, DAMAGED);
+        }
+        axes.x_axis(canvas, &Ticks::every(45.0, 0.0, 360.0), &since[column]);
+        axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), ACCELERATION, super::NAME_LEFT);
+        average.draw(canvas, &axes);
+        axes.frame(canvas);
+    }
+}
+
+/// An average from the angle at which the first tooth enters contact.
+struct Average {
+    values: Vec<f64>,
+    revolutions: usize,
+    is_empty: bool,
+}
+
+impl Average {
+    fn new(channels: &Channels, samples_per_revolution: usize) -> Self {
+        let mut values = revolution_average(&channels.vertical_g, samples_per_revolution);
+        if !values.is_empty() {
+            let start = channels.start_s * channels.sampling_rate_hz;
+            let start = if start.is_finite() && start > 0.0 { start.round() as usize } else { 0 };
+            values.rotate_right(start % samples_per_revolution);
+        }
+        let revolutions = channels.len().checked_div(samples_per_revolution).unwrap_or(0);
+        Self { values, revolutions, is_empty: channels.is_empty() }
+    }
+
+    fn title(&self, wheel: &str) -> String {
+        match self.revolutions {
+            0 => format!("Average over the {wheel}’s revolutions"),
+            1 => format!("One revolution of the {wheel}"),
+            count => format!("Average of {count} {wheel} revolutions"),
+        }
+    }
+
+    fn draw(&self, canvas: &mut Canvas, axes: &Axes) {
+        if self.values.is_empty() {
+            let reason = if self.is_empty {
+                "no samples were kept"
+            } else {
+                "the kept signal is shorter than a revolution"
+            };
+            axes.note(canvas, reason);
+            return;
+        }
+        let degrees = 360.0 / self.values.len() as f64;
+        axes.line(
+            canvas,
+            self.values.iter().enumerate().map(|(k, &value)| (k as f64 * degrees, value)),
+            CURVE,
+        );
+    }
+}
+
+fn over_time(canvas: &mut Canvas, areas: [Area; 2], channels: &Channels) {
+    let samples = channels.len();
+    let time = if samples > 1 {
+        [channels.time_s(0), channels.time_s(samples - 1)]
+    } else {
+        [channels.start_s, channels.start_s + 1.0]
+    };
+    let time = if time[1] > time[0] && time.iter().all(|&t| axes::drawable(t)) { time } else { [0.0, 1.0] };
+    let acceleration = [(channels.vertical_g.as_slice(), CURVE)];
+    let speeds =
+        [(channels.pinion_speed_hz.as_slice(), CURVE), (channels.gear_speed_hz.as_slice(), SECOND_CURVE)];
+    signals(canvas, areas[0], time, "Vertical acceleration, at changing speed", ACCELERATION, &acceleration);
+    let axes = signals(canvas, areas[1], time, "Speed of both shafts", "Speed (Hz)", &speeds);
+    let entries = [("pinion", CURVE), ("gear", SECOND_CURVE)]
+        .map(|(text, stroke)| Entry { sample: Sample::Line(stroke), text });
+    legend::row(canvas, (axes.area.right(), axes.area.top - axes::TITLE_ABOVE), &entries);
+}
+
+/// Signals of all samples over time.
+fn signals(
+    canvas: &mut Canvas,
+    area: Area,
+    time: [f64; 2],
+    title: &str,
+    name: &str,
+    curves: &[(&[f64], Stroke)],
+) -> Axes {
+    let y = axes::range(curves.iter().flat_map(|(values, _)| values.iter().copied()), MARGIN);
+    let axes = Axes::new(area, time, y);
+    axes.title(canvas, title);
+    axes.x_axis(canvas, &Ticks::nice(time[0], time[1], 10), "Time since the start of the simulation (s)");
+    axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), name, super::NAME_LEFT);
+    for (values, stroke) in curves {
+        let step = (time[1] - time[0]) / values.len().saturating_sub(1).max(1) as f64;
+        let points = values.iter().enumerate().map(|(k, &value)| (time[0] + k as f64 * step, value));
+        axes.line(canvas, points, *stroke);
+    }
+    if curves.iter().all(|(values, _)| values.is_empty()) {
+        axes.note(canvas, "no samples were kept");
+    }
+    axes.frame(canvas);
+    axes
+}

@@ -1,0 +1,99 @@
+//! The first tooth's face: the working flank seen along the normal of the tooth's plane of symmetry.
+
+use meshtone::fault::{FaultDescription, FaultGeometry};
+
+use super::damage;
+use super::side::Side;
+use super::tooth::{DAMAGE_EDGE, LOST};
+use crate::axes::{Area, Axes};
+use crate::canvas::Canvas;
+use crate::style::{Anchor, Fill, Stroke, TextStyle, colour};
+use crate::ticks::Ticks;
+
+/// Where contact starts, here and at the profile errors.
+pub(super) const CONTACT: Stroke = Stroke::dashed(colour::GREEN, 1.6, "7 3");
+/// Where the tip relief starts.
+pub(super) const RELIEF: Stroke = Stroke::dashed(colour::PURPLE, 1.6, "2 2.5");
+const EDGE: Stroke = Stroke::solid(colour::VERMILLION, 1.8);
+
+/// Draws the face; `along` is the tooth's own range.
+pub(super) fn draw(canvas: &mut Canvas, area: Area, along: [f64; 2], side: &Side) {
+    let half = side.wheel.face_width_mm / 2.0;
+    let axes = Axes::new(area, [-1.12 * half, 1.12 * half], along);
+    axes.title(canvas, "Tooth face");
+    axes.x_axis(canvas, &Ticks::nice(-half, half, 4), "Face width, z (mm)");
+    axes.y_grid(canvas, &Ticks::nice(along[0], along[1], 8));
+    let (root, tip) = (side.profile.x_mm[0], side.profile.tip_x_mm());
+    let missing = side.fault.is_some_and(damage::is_missing);
+    let top = if missing { root } else { tip };
+    canvas.rectangle(axes.at(-half, along[0]), axes.at(half, top), Fill::solid(colour::STEEL));
+    if let Some(fault) = side.fault {
+        damaged(canvas, &axes, side, fault);
+    }
+    let outline = Stroke::solid(colour::MUTED, 1.6);
+    canvas.line(axes.at(-half, root), axes.at(half, root), Stroke::solid(colour::MUTED, 0.9));
+    let corners = [(-half, along[0]), (-half, top), (half, top), (half, along[0])];
+    canvas.polyline(&corners.map(|(z, x)| axes.at(z, x)), outline);
+    landmark(canvas, &axes, side.contact_x_mm(), "contact start", CONTACT);
+    if let Some(relief) = side.relief_x_mm.filter(|relief| *relief > side.contact_x_mm()) {
+        landmark(canvas, &axes, relief, "tip relief", RELIEF);
+    }
+    if let Some(fault) = side.fault {
+        caption(canvas, &axes, side, fault);
+    }
+    axes.frame(canvas);
+}
+
+fn landmark(canvas: &mut Canvas, axes: &Axes, x_mm: f64, name: &str, stroke: Stroke) {
+    axes.horizontal(canvas, x_mm, stroke);
+    let style = TextStyle::NOTE.coloured(stroke.colour).anchored(Anchor::End).with_halo();
+    canvas.text((axes.px(axes.x[1] / 1.12) - 5.0, axes.py(x_mm) - 5.0), name, style);
+}
+
+fn damaged(canvas: &mut Canvas, axes: &Axes, side: &Side, fault: &FaultGeometry) {
+    let half = side.wheel.face_width_mm / 2.0;
+    let (first, end) = damage::damaged_range(fault, side);
+    let x = |index: usize| side.profile.x_mm[index.min(side.last())];
+    let tip = side.profile.tip_x_mm();
+    match &fault.description {
+        FaultDescription::MissingTooth => {
+            canvas.rectangle(axes.at(-half, x(0)), axes.at(half, tip), LOST);
+            let ghost = [(-half, x(0)), (-half, tip), (half, tip), (half, x(0))];
+            canvas.polyline(&ghost.map(|(z, x)| axes.at(z, x)), DAMAGE_EDGE);
+        }
+        FaultDescription::ToothBreakage { chip_start_index, missing_width_mm, tip_loss_mm, .. } => {
+            let bottom = x(*chip_start_index);
+            let top = fault.no_contact.start.min(side.last());
+            let width = missing_width_mm.last().copied().unwrap_or(0.0);
+            let chip = [(-half, bottom), (-half, tip), (-half + width, tip)].map(|(z, x)| axes.at(z, x));
+            canvas.polygon(&chip, LOST);
+            canvas.line(chip[0], chip[2], EDGE);
+            if *tip_loss_mm > 0.0 {
+                canvas.rectangle(axes.at(-half, x(top)), axes.at(half, tip), LOST);
+                canvas.line(axes.at(-half, x(top)), axes.at(half, x(top)), EDGE);
+            }
+        }
+        FaultDescription::FaceFault { width_mm, .. } => {
+            rectangle(canvas, axes, [-half, -half + width_mm], [x(first), x(end)]);
+        }
+        FaultDescription::ToothDestruction { .. } => {
+            rectangle(canvas, axes, [-half, half], [x(first), x(end)]);
+        }
+    }
+}
+
+fn rectangle(canvas: &mut Canvas, axes: &Axes, z: [f64; 2], x: [f64; 2]) {
+    canvas.rectangle(axes.at(z[0], x[0]), axes.at(z[1], x[1]), LOST);
+    let corners = [(z[0], x[0]), (z[1], x[0]), (z[1], x[1]), (z[0], x[1]), (z[0], x[0])];
+    canvas.polyline(&corners.map(|(z, x)| axes.at(z, x)), EDGE);
+}
+
+/// Below the start of contact, where no damage reaches.
+fn caption(canvas: &mut Canvas, axes: &Axes, side: &Side, fault: &FaultGeometry) {
+    let middle = axes.area.left + axes.area.width / 2.0;
+    let style = TextStyle::NOTE.coloured(colour::VERMILLION).anchored(Anchor::Middle).with_halo();
+    let top = axes.py(side.contact_x_mm());
+    for (row, text) in damage::caption(fault).iter().enumerate() {
+        canvas.text((middle, top + 18.0 + 16.0 * row as f64), text, style);
+    }
+}

@@ -1,0 +1,92 @@
+//! Title, key facts and the columns' headings.
+
+use meshtone::Stages;
+use meshtone::scenario::{Convention, Operation, Scenario};
+
+use super::damage;
+use super::side::Side;
+use crate::canvas::{Canvas, Pixel};
+use crate::style::{Stroke, TextStyle, colour};
+use crate::ticks::number;
+
+/// The fault and its sizes.
+pub(super) fn title(stages: &Stages) -> String {
+    let fault = stages.scenario.fault.as_ref();
+    let name = damage::name(fault);
+    let sizes = match (fault, &stages.fault) {
+        (Some(fault), Some(geometry)) => damage::sizes(fault, geometry, &stages.teeth),
+        _ => Vec::new(),
+    };
+    if sizes.is_empty() { name.to_owned() } else { format!("{name}: {}", sizes.join(", ")) }
+}
+
+/// The panel in a sentence, for readers who cannot see it.
+pub(super) fn description(stages: &Stages) -> String {
+    format!(
+        "Results panel of a simulated spur gear pair: teeth, tooth faces, profile errors, averages over the \
+         shafts' revolutions and mesh stiffness. {}.",
+        facts(&stages.scenario).join(", ")
+    )
+}
+
+pub(super) fn draw(canvas: &mut Canvas, title: &str, stages: &Stages) {
+    canvas.text((super::LEFT - super::NAME_LEFT - 11.0, 36.0), title, TextStyle::TITLE);
+    let facts = facts(&stages.scenario).join("  ·  ");
+    canvas.text((super::LEFT - super::NAME_LEFT - 11.0, 61.0), &facts, TextStyle::FACTS);
+}
+
+pub(super) fn column(canvas: &mut Canvas, (left, baseline): Pixel, width: f64, side: &Side) {
+    let damage = match side.fault {
+        None => "",
+        Some(fault) if damage::is_missing(fault) => ", the first one missing",
+        Some(_) => ", the first one damaged",
+    };
+    let text = format!("{}, {}: {} teeth{damage}", side.name, side.shaft, side.wheel.teeth);
+    canvas.text((left, baseline), &text, TextStyle::HEADING);
+    let rule = Stroke::solid(colour::INK, 1.2);
+    canvas.line((left, baseline + 8.0), (left + width, baseline + 8.0), rule);
+}
+
+fn facts(scenario: &Scenario) -> Vec<String> {
+    let gears = &scenario.gears;
+    vec![
+        format!("{} and {} teeth", gears.pinion_teeth, gears.gear_teeth),
+        format!("module {} mm", number(gears.module_mm)),
+        format!("face width {} mm", number(gears.face_width_mm)),
+        format!("pressure angle {}°", number(gears.pressure_angle_deg)),
+        speed(&scenario.operation),
+        torque(&scenario.operation),
+        quality(scenario),
+        match scenario.convention {
+            Convention::Corrected => "corrected model".to_owned(),
+            Convention::Published => "model as published".to_owned(),
+        },
+    ]
+}
+
+fn speed(operation: &Operation) -> String {
+    match operation.speed_profile_hz.as_ref().and_then(|profile| extremes(&profile.value)) {
+        Some((low, high)) => format!("pinion speed {} to {} Hz", number(low), number(high)),
+        None => format!("pinion speed {} Hz", number(operation.pinion_speed_hz)),
+    }
+}
+
+fn torque(operation: &Operation) -> String {
+    match operation.torque_profile_nm.as_ref().and_then(|profile| extremes(&profile.value)) {
+        Some((low, high)) => format!("brake torque {} to {} N·m", number(low), number(high)),
+        None => format!("brake torque {} N·m", number(operation.brake_torque_nm)),
+    }
+}
+
+fn extremes(values: &[f64]) -> Option<(f64, f64)> {
+    let first = *values.first()?;
+    Some(values.iter().fold((first, first), |(low, high), &value| (low.min(value), high.max(value))))
+}
+
+fn quality(scenario: &Scenario) -> String {
+    match (&scenario.quality.profile_errors, scenario.quality.din_grade) {
+        (Some(_), _) => "given profile errors".to_owned(),
+        (None, 0) => "ideal teeth".to_owned(),
+        (None, grade) => format!("DIN 3962 grade {grade}"),
+    }
+}

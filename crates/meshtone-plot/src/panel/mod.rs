@@ -1,0 +1,110 @@
+//! The results panel: one simulation on one page.
+//!
+//! In two columns, for pinion and gear, the tooth in its own plane, the tooth's face, the profile errors and the average
+//! over the shaft's revolutions; below, the mesh stiffness over a gear revolution. The tooth, its face and its profile
+//! errors share their vertical axis: the distance from the wheel's centre along the tooth's centre line.
+
+mod average;
+mod damage;
+mod errors;
+mod face;
+mod heading;
+mod side;
+mod stiffness;
+mod tooth;
+
+use meshtone::Stages;
+use meshtone::signal::Channels;
+
+use crate::axes::Area;
+use crate::canvas::Canvas;
+use crate::{Figure, PlotError};
+use side::Side;
+
+/// (px) Size of the panel.
+pub const WIDTH: u32 = 1600;
+/// (px) Size of the panel.
+pub const HEIGHT: u32 = 1000;
+
+const LEFT: f64 = 74.0;
+const COLUMN_WIDTH: f64 = 710.0;
+const COLUMN_GAP: f64 = 82.0;
+const FULL_WIDTH: f64 = 2.0 * COLUMN_WIDTH + COLUMN_GAP;
+/// (px) From the frame of a plot to the baseline of its vertical axis' name.
+const NAME_LEFT: f64 = 56.0;
+
+const HEADING_BASELINE: f64 = 96.0;
+const TEETH_TOP: f64 = 134.0;
+const TEETH_HEIGHT: f64 = 324.0;
+const AVERAGES_TOP: f64 = 534.0;
+const AVERAGES_HEIGHT: f64 = 168.0;
+const STIFFNESS_TOP: f64 = 778.0;
+const STIFFNESS_HEIGHT: f64 = 172.0;
+
+const TOOTH_WIDTH: f64 = 360.0;
+/// (px) Room for the names of the circles, right of the tooth.
+const CIRCLE_NAMES: f64 = 50.0;
+const FACE_WIDTH: f64 = 160.0;
+const FACE_GAP: f64 = 14.0;
+const ERRORS_WIDTH: f64 = COLUMN_WIDTH - TOOTH_WIDTH - CIRCLE_NAMES - FACE_WIDTH - FACE_GAP;
+
+/// Draws the results panel of a simulation.
+///
+/// # Arguments
+/// * `stages` - what was simulated
+/// * `channels` - the kept signals, as simulated; they may be empty
+///
+/// # Errors
+/// Signals at another sampling rate than the simulation's.
+///
+/// ```
+/// use meshtone::scenario::{Fault, Scenario};
+///
+/// let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+/// scenario.fault = Some(Fault::MissingTooth);
+/// scenario.solver.sampling_rate_hz = 2e4;
+/// let simulation = meshtone::simulate(&scenario)?;
+/// let panel = meshtone_plot::panel::draw(&simulation.stages, &simulation.channels)?;
+/// assert!(panel.svg().contains("Missing tooth"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn draw(stages: &Stages, channels: &Channels) -> Result<Figure, PlotError> {
+    check_rate(stages, channels)?;
+    let mut canvas = Canvas::new(WIDTH, HEIGHT);
+    let title = heading::title(stages);
+    heading::draw(&mut canvas, &title, stages);
+    for (column, side) in [Side::pinion(stages)?, Side::gear(stages)?].iter().enumerate() {
+        teeth(&mut canvas, column, side);
+    }
+    average::draw(&mut canvas, [0, 1].map(averages_area), stages, channels);
+    stiffness::draw(&mut canvas, Area::new(LEFT, STIFFNESS_TOP, FULL_WIDTH, STIFFNESS_HEIGHT), stages);
+    Ok(canvas.finish(&title, &heading::description(stages)))
+}
+
+fn column_left(column: usize) -> f64 {
+    LEFT + column as f64 * (COLUMN_WIDTH + COLUMN_GAP)
+}
+
+fn averages_area(column: usize) -> Area {
+    Area::new(column_left(column), AVERAGES_TOP, COLUMN_WIDTH, AVERAGES_HEIGHT)
+}
+
+fn teeth(canvas: &mut Canvas, column: usize, side: &Side) {
+    let left = column_left(column);
+    heading::column(canvas, (left, HEADING_BASELINE), COLUMN_WIDTH, side);
+    let area = |left: f64, width: f64| Area::new(left, TEETH_TOP, width, TEETH_HEIGHT);
+    let tooth = area(left, TOOTH_WIDTH);
+    let (across, along) = side.view(tooth);
+    tooth::draw(canvas, tooth, across, along, side);
+    let face_left = tooth.right() + CIRCLE_NAMES;
+    face::draw(canvas, area(face_left, FACE_WIDTH), along, side);
+    errors::draw(canvas, area(face_left + FACE_WIDTH + FACE_GAP, ERRORS_WIDTH), along, side);
+}
+
+fn check_rate(stages: &Stages, channels: &Channels) -> Result<(), PlotError> {
+    let (channels_hz, simulation_hz) = (channels.sampling_rate_hz, stages.time.sampling_rate_hz);
+    if channels.is_empty() || (channels_hz - simulation_hz).abs() <= 1e-6 * simulation_hz {
+        return Ok(());
+    }
+    Err(PlotError::SamplingRate { channels_hz, simulation_hz })
+}

@@ -1,0 +1,111 @@
+//! One of the two wheels, as the panel sees it.
+
+use meshtone::Stages;
+use meshtone::fault::FaultGeometry;
+use meshtone::tooth::{ToothProfile, Wheel};
+use nalgebra::DMatrix;
+
+use crate::PlotError;
+use crate::axes::Area;
+
+/// A wheel, its first tooth and what is wrong with it.
+pub(super) struct Side<'a> {
+    pub(super) name: &'static str,
+    pub(super) shaft: &'static str,
+    pub(super) wheel: &'a Wheel,
+    pub(super) profile: &'a ToothProfile,
+    /// Profile index where contact starts.
+    pub(super) contact_index: usize,
+    /// (mm) x where the tip relief starts.
+    pub(super) relief_x_mm: Option<f64>,
+    /// The damage; only the gear has one.
+    pub(super) fault: Option<&'a FaultGeometry>,
+    /// (mm) One column per tooth.
+    pub(super) errors_mm: Option<&'a DMatrix<f64>>,
+    /// Whether the rows of `errors_mm` run from tip to contact start.
+    pub(super) errors_from_tip: bool,
+}
+
+impl<'a> Side<'a> {
+    pub(super) fn pinion(stages: &'a Stages) -> Result<Self, PlotError> {
+        let side = Self {
+            name: "Pinion",
+            shaft: "input shaft",
+            wheel: &stages.teeth.pinion,
+            profile: &stages.teeth.pinion_profile,
+            contact_index: stages.teeth.contact.initial_contact_index,
+            relief_x_mm: relief_x_mm(stages, &stages.teeth.pinion_profile),
+            fault: None,
+            errors_mm: stages.profile_errors.as_ref().map(|errors| &errors.pinion_profile_errors_mm),
+            errors_from_tip: false,
+        };
+        side.checked()
+    }
+
+    pub(super) fn gear(stages: &'a Stages) -> Result<Self, PlotError> {
+        let side = Self {
+            name: "Gear",
+            shaft: "output shaft",
+            wheel: &stages.teeth.gear,
+            profile: &stages.teeth.gear_profile,
+            contact_index: stages.teeth.contact.initial_contact_index,
+            relief_x_mm: relief_x_mm(stages, &stages.teeth.gear_profile),
+            fault: stages.fault.as_ref(),
+            errors_mm: stages.profile_errors.as_ref().map(|errors| &errors.gear_profile_errors_mm),
+            errors_from_tip: true,
+        };
+        side.checked()
+    }
+
+    fn checked(self) -> Result<Self, PlotError> {
+        let points = self.profile.len().min(self.profile.y_mm.len());
+        if points < 2 || self.contact_index + 1 >= points {
+            return Err(PlotError::NoProfile { wheel: self.name, points });
+        }
+        Ok(self)
+    }
+
+    pub(super) fn last(&self) -> usize {
+        self.profile.len() - 1
+    }
+
+    pub(super) fn contact_x_mm(&self) -> f64 {
+        self.profile.x_mm[self.contact_index]
+    }
+
+    /// (mm) Point of the sound flank; `side` is 1 for the working and −1 for the back flank.
+    pub(super) fn flank(&self, index: usize, side: f64) -> (f64, f64) {
+        (side * self.profile.y_mm[index], self.profile.x_mm[index])
+    }
+
+    /// (mm) Ranges across and along the tooth that fill `area` at equal scales.
+    pub(super) fn view(&self, area: Area) -> ([f64; 2], [f64; 2]) {
+        let module = self.wheel.module_mm;
+        let low = self.profile.x_mm[0] - 0.34 * module;
+        let high = self.wheel.tip_radius_mm.max(self.profile.tip_x_mm()) + 0.22 * module;
+        let widest = self.profile.y_mm.iter().fold(0.5 * module, |widest, y| widest.max(*y));
+        let px_per_mm = (area.height / (high - low)).min(area.width / (2.12 * widest));
+        let across = area.width / px_per_mm / 2.0;
+        let spare = (area.height / px_per_mm - (high - low)) / 2.0;
+        ([-across, across], [low - spare, high + spare])
+    }
+
+    /// (mm) x of the flank at `radius_mm` from the wheel's centre, above the start of contact.
+    pub(super) fn x_at_radius_mm(&self, radius_mm: f64) -> f64 {
+        let (mut low, mut high) = (self.contact_index, self.last());
+        while low + 1 < high {
+            let middle = (low + high) / 2;
+            if self.profile.radius_mm(middle) <= radius_mm { low = middle } else { high = middle }
+        }
+        let (a, b) = (self.profile.radius_mm(low), self.profile.radius_mm(high));
+        let t = if b > a { ((radius_mm - a) / (b - a)).clamp(0.0, 1.0) } else { 0.0 };
+        self.profile.x_mm[low] + t * (self.profile.x_mm[high] - self.profile.x_mm[low])
+    }
+}
+
+/// From the tip inwards, as the scenario says: the resampled pinion profile's own index is that of the profile before
+/// resampling.
+fn relief_x_mm(stages: &Stages, profile: &ToothProfile) -> Option<f64> {
+    let relief = stages.scenario.gears.tip_relief?;
+    (profile.len() > 1).then(|| profile.tip_x_mm() - relief.length_mm)
+}

@@ -1,0 +1,273 @@
+//! The first tooth in its own plane.
+
+use meshtone::fault::{FaultDescription, FaultGeometry};
+
+use super::damage;
+use super::side::Side;
+use crate::axes::{Area, Axes};
+use crate::canvas::{Canvas, Pixel};
+use crate::curve;
+use crate::style::{Anchor, Fill, Stroke, TextStyle, colour};
+use crate::ticks::Ticks;
+
+const WORKING: Stroke = Stroke::solid(colour::BLUE, 2.4);
+const BACK: Stroke = Stroke::solid(colour::MUTED, 1.6);
+const DAMAGED: Stroke = Stroke::solid(colour::VERMILLION, 2.6);
+pub(super) const DAMAGE_EDGE: Stroke = Stroke::dashed(colour::VERMILLION, 1.6, "6 3");
+const GHOST: Stroke = Stroke::dashed(colour::INK, 1.2, "5 3");
+pub(super) const LOST: Fill = Fill::tint(colour::VERMILLION, 0.3);
+pub(super) const PARTLY_LOST: Fill = Fill::hatch(colour::VERMILLION);
+
+/// Draws the tooth; `across` and `along` have the same scale.
+pub(super) fn draw(canvas: &mut Canvas, area: Area, across: [f64; 2], along: [f64; 2], side: &Side) {
+    let axes = Axes::new(area, across, along);
+    axes.title(canvas, "First tooth, in its plane");
+    axes.x_axis(canvas, &Ticks::nice(across[0], across[1], 9), "Across the tooth, y (mm)");
+    axes.y_axis(
+        canvas,
+        &Ticks::nice(along[0], along[1], 8),
+        "From the wheel’s centre, x (mm)",
+        super::NAME_LEFT,
+    );
+    let tooth = Drawing { axes, side };
+    tooth.body(canvas);
+    tooth.circles(canvas);
+    match side.fault {
+        Some(fault) => tooth.damaged(canvas, fault),
+        None => tooth.sound(canvas),
+    }
+    tooth.flank_names(canvas);
+    axes.frame(canvas);
+}
+
+struct Drawing<'a> {
+    axes: Axes,
+    side: &'a Side<'a>,
+}
+
+impl Drawing<'_> {
+    /// The wheel around the tooth, and the tooth as far as it is there.
+    fn body(&self, canvas: &mut Canvas) {
+        let side = self.side;
+        let last = side.last();
+        let mut outline = self.space(-1.0);
+        outline.reverse();
+        match side.fault.map(|fault| (fault, &fault.description)) {
+            Some((_, FaultDescription::MissingTooth)) => outline.extend(self.root_gap()),
+            Some((fault, FaultDescription::ToothBreakage { .. })) => {
+                let top = fault.no_contact.start.clamp(1, last);
+                outline.extend(self.flank(-1.0, 0, top));
+                outline.extend(self.flank(1.0, 0, top).into_iter().rev());
+            }
+            Some((fault, _)) => {
+                outline.extend(self.flank(-1.0, 0, last));
+                let cut = |index: usize| (fault.flank_y_mm[index], side.profile.x_mm[index]);
+                outline.extend(self.axes.along_y((0..=last).map(cut)).into_iter().rev());
+            }
+            None => {
+                outline.extend(self.flank(-1.0, 0, last));
+                outline.extend(self.flank(1.0, 0, last).into_iter().rev());
+            }
+        }
+        outline.extend(self.space(1.0));
+        let rim = [self.space(-1.0), self.space(1.0)];
+        let (bottom, left, right) = (self.axes.area.bottom(), self.axes.area.left, self.axes.area.right());
+        outline.extend([(right, bottom), (left, bottom)]);
+        canvas.polygon(&outline, Fill::solid(colour::STEEL));
+        for rim in rim {
+            canvas.polyline(&rim, BACK);
+        }
+        if side.fault.is_some_and(damage::is_missing) {
+            canvas.polyline(&self.root_gap(), BACK);
+        }
+    }
+
+    /// From the tooth's foot outwards to the frame: the bottom of the tooth space and the neighbour's flank.
+    fn space(&self, sign: f64) -> Vec<Pixel> {
+        let (profile, side) = (self.side.profile, self.side);
+        let reach = self.axes.x[1];
+        let pitch = std::f64::consts::TAU / f64::from(side.wheel.teeth);
+        let polar = |index: usize| {
+            let (y, x) = (profile.y_mm[index], profile.x_mm[index]);
+            (x.hypot(y), y.atan2(x))
+        };
+        let (foot, foot_angle) = polar(0);
+        let arc =
+            (0..=20).map(|k| (foot, foot_angle + (pitch - 2.0 * foot_angle).max(0.0) * f64::from(k) / 20.0));
+        let stride = (profile.len() / 400).max(1);
+        let neighbour = (1..profile.len()).step_by(stride).map(|index| {
+            let (radius, angle) = polar(index);
+            (radius, pitch - angle)
+        });
+        let mut points = Vec::new();
+        let (mut y, mut x) = (0.0, f64::NAN);
+        for (radius, angle) in arc.chain(neighbour) {
+            let (next_y, next_x) = (radius * angle.sin(), radius * angle.cos());
+            if next_y > reach {
+                let t = if next_y > y { (reach - y) / (next_y - y) } else { 1.0 };
+                points.push((reach, if x.is_nan() { next_x } else { x + t * (next_x - x) }));
+                break;
+            }
+            (y, x) = (next_y, next_x);
+            points.push((y, x));
+        }
+        let lowest = self.axes.y[0];
+        let pixels: Vec<Pixel> =
+            points.into_iter().map(|(y, x)| self.axes.at(sign * y, x.max(lowest))).collect();
+        curve::simplify(&pixels)
+    }
+
+    /// The root circle where the tooth has been.
+    fn root_gap(&self) -> Vec<Pixel> {
+        let (y, x) = self.side.flank(0, 1.0);
+        let (radius, angle) = (x.hypot(y), y.atan2(x));
+        (-10..=10)
+            .map(|k| angle * f64::from(k) / 10.0)
+            .map(|angle| self.axes.at(radius * angle.sin(), (radius * angle.cos()).max(self.axes.y[0])))
+            .collect()
+    }
+
+    fn flank(&self, sign: f64, first: usize, last: usize) -> Vec<Pixel> {
+        self.axes.along_y((first..=last).map(|index| self.side.flank(index, sign)))
+    }
+
+    /// The part of the sound tooth between two profile points.
+    fn slab(&self, first: usize, last: usize) -> Vec<Pixel> {
+        let mut outline = self.flank(-1.0, first, last);
+        outline.extend(self.flank(1.0, first, last).into_iter().rev());
+        outline
+    }
+
+    fn across_at(&self, canvas: &mut Canvas, index: usize, stroke: Stroke) {
+        let [(a_y, a_x), (b_y, b_x)] = [self.side.flank(index, -1.0), self.side.flank(index, 1.0)];
+        canvas.line(self.axes.at(a_y, a_x), self.axes.at(b_y, b_x), stroke);
+    }
+
+    fn sound(&self, canvas: &mut Canvas) {
+        let last = self.side.last();
+        self.across_at(canvas, last, BACK);
+        canvas.polyline(&self.flank(-1.0, 0, last), BACK);
+        canvas.polyline(&self.flank(1.0, 0, last), WORKING);
+    }
+
+    fn damaged(&self, canvas: &mut Canvas, fault: &FaultGeometry) {
+        let last = self.side.last();
+        match &fault.description {
+            FaultDescription::MissingTooth => {
+                let mut ghost = self.flank(-1.0, 0, last);
+                ghost.extend(self.flank(1.0, 0, last).into_iter().rev());
+                canvas.polygon(&ghost, LOST);
+                canvas.polyline(&ghost, DAMAGE_EDGE);
+                let (_, foot) = self.side.flank(0, 1.0);
+                let at = self.axes.at(0.0, (foot + self.side.profile.tip_x_mm()) / 2.0);
+                let style = TextStyle::NOTE.coloured(colour::VERMILLION).anchored(Anchor::Middle).bold();
+                canvas.text(at, "missing", style);
+            }
+            FaultDescription::ToothBreakage { chip_start_index, .. } => {
+                let top = fault.no_contact.start.min(last);
+                let chip = (*chip_start_index).min(top);
+                canvas.polygon(&self.slab(chip, top), PARTLY_LOST);
+                canvas.polygon(&self.slab(top, last), LOST);
+                canvas.polyline(&self.flank(-1.0, top, last), GHOST);
+                canvas.polyline(&self.flank(1.0, top, last), GHOST);
+                self.across_at(canvas, last, if top < last { GHOST } else { BACK });
+                canvas.polyline(&self.flank(-1.0, 0, top), BACK);
+                canvas.polyline(&self.flank(1.0, 0, top), WORKING);
+                self.across_at(canvas, chip, DAMAGE_EDGE);
+                if top < last {
+                    self.across_at(canvas, top, DAMAGED);
+                }
+            }
+            _ => self.cut(canvas, fault),
+        }
+        if damage::is_partial(fault, self.side.wheel.face_width_mm) {
+            let at = (self.axes.area.left + self.axes.area.width / 2.0, self.axes.area.bottom() - 9.0);
+            let style = TextStyle::NOTE.coloured(colour::VERMILLION).anchored(Anchor::Middle);
+            canvas.text(at, "hatched: lost over part of the face width", style);
+        }
+    }
+
+    /// A flank from which material is gone.
+    fn cut(&self, canvas: &mut Canvas, fault: &FaultGeometry) {
+        let last = self.side.last();
+        let (first, end) = damage::damaged_range(fault, self.side);
+        let partial = damage::is_partial(fault, self.side.wheel.face_width_mm);
+        let cut = |index: usize| (fault.flank_y_mm[index], self.side.profile.x_mm[index]);
+        let damaged = self.axes.along_y((first..=end).map(cut));
+        let sound = self.flank(1.0, first, end);
+        let between: Vec<Pixel> = damaged.iter().chain(sound.iter().rev()).copied().collect();
+        canvas.polygon(&between, if partial { PARTLY_LOST } else { LOST });
+        canvas.polyline(&sound, GHOST);
+        self.across_at(canvas, last, BACK);
+        canvas.polyline(&self.flank(-1.0, 0, last), BACK);
+        canvas.polyline(&self.flank(1.0, 0, first), WORKING);
+        canvas.polyline(&self.flank(1.0, end, last), WORKING);
+        // From edge to edge of the sound flank, so that the damaged one leaves no gap to it.
+        let (head, tail) = (self.side.flank(first, 1.0), self.side.flank(end, 1.0));
+        let mut closed = vec![self.axes.at(head.0, head.1)];
+        closed.extend(damaged);
+        closed.push(self.axes.at(tail.0, tail.1));
+        canvas.polyline(&closed, DAMAGED);
+    }
+
+    /// Root, base, pitch and tip circle, with their names right of the frame.
+    fn circles(&self, canvas: &mut Canvas) {
+        let wheel = self.side.wheel;
+        let circles = [
+            ("root", wheel.root_radius_mm, Stroke::solid(colour::MUTED, 0.9)),
+            ("base", wheel.base_radius_mm, Stroke::dashed(colour::MUTED, 0.9, "3 3")),
+            ("pitch", wheel.pitch_radius_mm, Stroke::dashed(colour::MUTED, 0.9, "10 3 2 3")),
+            ("tip", wheel.tip_radius_mm, Stroke::solid(colour::MUTED, 0.9)),
+        ];
+        let mut names = Vec::new();
+        for (name, radius, stroke) in circles {
+            let arc: Vec<Pixel> = self.arc(radius);
+            if arc.len() > 1 {
+                canvas.polyline(&arc, stroke);
+                let end = arc[arc.len() - 1];
+                names.push((name, end.1, end.0 > self.axes.area.right() - 1.0));
+            }
+        }
+        let size = TextStyle::NOTE.size;
+        // From the bottom upwards, each name clear of the one below.
+        let mut ceiling = self.axes.area.bottom() + size;
+        names.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let right = self.axes.area.right();
+        for (name, y, reaches_frame) in names {
+            let baseline = (y + 0.36 * size).min(ceiling - 1.2 * size);
+            ceiling = baseline;
+            if reaches_frame {
+                let leader = Stroke::solid(colour::MUTED, 0.8);
+                canvas.line((right, y), (right + 8.0, baseline - 0.36 * size), leader);
+            }
+            canvas.text((right + 11.0, baseline), name, TextStyle::NOTE.coloured(colour::MUTED));
+        }
+    }
+
+    /// The visible part of a circle round the wheel's centre, from left to right.
+    fn arc(&self, radius: f64) -> Vec<Pixel> {
+        let reach = self.axes.x[1];
+        let [low, high] = self.axes.y;
+        let widest = (radius * radius - low * low).max(0.0).sqrt().min(reach);
+        (-40..=40)
+            .map(|k| widest * f64::from(k) / 40.0)
+            .map(|y| (y, (radius * radius - y * y).max(0.0).sqrt()))
+            .filter(|&(_, x)| x >= low - 1e-9 * radius && x <= high)
+            .map(|(y, x)| self.axes.at(y, x))
+            .collect()
+    }
+
+    fn flank_names(&self, canvas: &mut Canvas) {
+        let wheel = self.side.wheel;
+        let area = self.axes.area;
+        let middle = self.axes.py((wheel.pitch_radius_mm + wheel.tip_radius_mm) / 2.0);
+        let line = 1.2 * TextStyle::NOTE.size;
+        let working = TextStyle::NOTE.coloured(colour::BLUE).anchored(Anchor::End).bold().with_halo();
+        let back = TextStyle::NOTE.coloured(colour::MUTED).bold().with_halo();
+        for (row, [left, right]) in [["back", "working"], ["flank", "flank"]].into_iter().enumerate() {
+            let y = middle + line * row as f64;
+            canvas.text((area.left + 10.0, y), left, back);
+            canvas.text((area.right() - 10.0, y), right, working);
+        }
+    }
+}
