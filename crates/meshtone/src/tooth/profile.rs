@@ -12,7 +12,7 @@ pub struct ToothProfile {
     pub x_mm: Vec<f64>,
     /// (mm) Half thickness of the tooth.
     pub y_mm: Vec<f64>,
-    /// Index of the point where the tip relief starts.
+    /// Index of the point where the tip relief starts, in the wheel's own sampling (the pinion's before it is resampled).
     pub tip_relief_index: Option<usize>,
 }
 
