@@ -62,13 +62,8 @@ fn rows(summary: &Summary) -> [(&'static str, String); 8] {
 
 /// `horizontal acceleration, g` for `horizontal_acceleration_g`.
 fn label(channel: &ChannelSummary) -> String {
-    let name = channel.name.strip_suffix(channel.unit).unwrap_or(channel.name);
-    let unit = match channel.unit {
-        "hz" => "Hz",
-        "n" => "N",
-        unit => unit,
-    };
-    format!("{}, {unit}", name.trim_end_matches('_').replace('_', " "))
+    let quantity = channel.name.rsplit_once('_').map_or(channel.name, |(quantity, _)| quantity);
+    format!("{}, {}", quantity.replace('_', " "), channel.unit)
 }
 
 /// Four significant digits.

@@ -7,7 +7,7 @@ use meshtone::signal::Channels;
 pub struct Column {
     /// Name, with the unit at its end.
     pub name: &'static str,
-    /// Unit, as in the name.
+    /// Unit.
     pub unit: &'static str,
     /// Meaning.
     pub description: &'static str,
@@ -33,12 +33,12 @@ const AXIAL: Column = Column {
     description: "sum of both wheels' axial accelerations, over 9.81 m/s²",
 };
 const PINION_SPEED: Column =
-    Column { name: "pinion_shaft_speed_hz", unit: "hz", description: "revolutions of the pinion per second" };
+    Column { name: "pinion_shaft_speed_hz", unit: "Hz", description: "revolutions of the pinion per second" };
 const GEAR_SPEED: Column =
-    Column { name: "gear_shaft_speed_hz", unit: "hz", description: "revolutions of the gear per second" };
+    Column { name: "gear_shaft_speed_hz", unit: "Hz", description: "revolutions of the gear per second" };
 const MESH_FORCE: Column = Column {
     name: "mesh_force_n",
-    unit: "n",
+    unit: "N",
     description: "force along the line of action; negative: the linear mesh pulls",
 };
 

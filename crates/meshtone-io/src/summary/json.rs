@@ -61,7 +61,7 @@ impl Summary {
 }
 
 fn indicators(channel: &ChannelSummary) -> Value {
-    let unit = channel.unit;
+    let unit = channel.unit.to_lowercase();
     let entries = [
         (format!("rms_{unit}"), json!(channel.rms)),
         (format!("peak_{unit}"), json!(channel.peak)),
