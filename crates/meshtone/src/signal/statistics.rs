@@ -46,15 +46,17 @@ pub fn peak(signal: &[f64]) -> f64 {
 /// ```
 pub fn kurtosis(signal: &[f64]) -> Option<f64> {
     let count = signal.len() as f64;
-    let mean = signal.iter().sum::<f64>() / count;
+    // Seen from its first value a constant is exactly 0, and so is its mean.
+    let first = *signal.first()?;
+    let mean = signal.iter().map(|x| x - first).sum::<f64>() / count;
     let (mut second, mut fourth) = (0.0, 0.0);
     for x in signal {
-        let square = (x - mean) * (x - mean);
+        let square = (x - first - mean) * (x - first - mean);
         second += square;
         fourth += square * square;
     }
     let (second, fourth) = (second / count, fourth / count);
-    // What is left of a constant after its rounded mean is taken away is no signal.
+    // What differs by rounding only is no signal.
     let rounding = 4.0 * f64::EPSILON * peak(signal);
     (second > rounding * rounding).then(|| fourth / (second * second))
 }
@@ -97,7 +99,7 @@ mod tests {
     #[test]
     fn of_a_constant_or_nothing() {
         assert_eq!(kurtosis(&[0.0; 5]), None);
-        // The mean of these is not exactly 0.1.
+        // The sum of these is not exactly 100.1.
         assert_eq!(kurtosis(&[0.1; 1001]), None);
         assert_eq!(kurtosis(&[]), None);
         assert!(rms(&[]).is_nan());
