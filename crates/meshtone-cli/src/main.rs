@@ -1,2 +1,48 @@
-//! The program.
-fn main() {}
+//! The program `meshtone`.
+//!
+//! Exit codes: 0, 1 (something failed: a disk, a permission) or 2 (bad input: a scenario or an argument).
+
+mod check;
+mod commands;
+mod failure;
+mod memory;
+mod output_directory;
+mod progress;
+mod report;
+mod results;
+mod table;
+mod terminal;
+mod warnings;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::commands::Command;
+
+/// Simulates the vibration of spur gears, healthy or with a damaged tooth.
+#[derive(Debug, Parser)]
+#[command(name = "meshtone", version, after_help = EXAMPLES, arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  meshtone init tooth-breakage > broken.toml   a commented scenario file to start from
+  meshtone simulate broken.toml -o broken      signals, summary and results panel in the folder broken
+  meshtone simulate --help                     more on one command
+
+Exit codes: 0 all went well, 1 it could not be carried out, 2 the input is wrong.";
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    match arguments.command.run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            report::print(&failure);
+            failure.exit_code()
+        }
+    }
+}

@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use tempfile::NamedTempFile;
+
 /// A file that could not be written.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot write {}: {source}", path.display())]
@@ -40,24 +42,103 @@ pub fn write_atomically(
     path: &Path,
     write: impl FnOnce(&mut File) -> io::Result<()>,
 ) -> Result<(), WriteFileError> {
-    let written = write_beside(path, write);
-    written.map_err(|source| WriteFileError { path: path.to_path_buf(), source })
+    StagedFile::write(path, write)?.commit()
 }
 
-fn write_beside(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<()> {
+/// A complete file under a temporary name beside its target.
+///
+/// Several files that belong together are all staged first and then committed, one right after the other, so
+/// that hardly any moment is left in which only some of them are new. Dropped without being committed, it
+/// disappears; where the program is killed, it stays behind under a name that starts with `.meshtone-`.
+#[derive(Debug)]
+#[must_use = "a staged file disappears unless it is committed"]
+pub struct StagedFile {
+    temporary: NamedTempFile,
+    path: PathBuf,
+}
+
+impl StagedFile {
+    /// Writes the content beside its target.
+    ///
+    /// # Arguments
+    /// * `path` - the target
+    /// * `write` - writes the content; to be wrapped in a buffer where it writes in small pieces
+    ///
+    /// # Errors
+    /// The directory does not exist or is not writable, the disk is full, or `write` fails.
+    pub fn write(
+        path: &Path,
+        write: impl FnOnce(&mut File) -> io::Result<()>,
+    ) -> Result<Self, WriteFileError> {
+        let path = path.to_path_buf();
+        match write_beside(&path, write) {
+            Ok(temporary) => Ok(Self { temporary, path }),
+            Err(source) => Err(WriteFileError { path, source }),
+        }
+    }
+
+    /// Gives the file its name, in place of the file that had it.
+    ///
+    /// # Errors
+    /// The file cannot be renamed; the one that had the name is then still there.
+    pub fn commit(self) -> Result<(), WriteFileError> {
+        let Self { temporary, path } = self;
+        temporary.persist(&path).map_err(|error| WriteFileError { path, source: error.error })?;
+        Ok(())
+    }
+
+    /// Gives the file its name, unless another file has it.
+    ///
+    /// # Errors
+    /// There is a file of that name (`AlreadyExists`), or the file cannot be renamed.
+    pub fn commit_new(self) -> Result<(), WriteFileError> {
+        let Self { temporary, path } = self;
+        temporary.persist_noclobber(&path).map_err(|error| WriteFileError { path, source: error.error })?;
+        Ok(())
+    }
+}
+
+/// Whether files can be written into a directory, tried with an empty one that disappears at once.
+///
+/// # Arguments
+/// * `directory` - an existing directory
+///
+/// # Errors
+/// Why files cannot be written.
+pub fn check_writable(directory: &Path) -> Result<(), WriteFileError> {
+    match temporary_in(directory) {
+        Ok(_) => Ok(()),
+        Err(source) => Err(WriteFileError { path: directory.to_path_buf(), source }),
+    }
+}
+
+fn write_beside(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<NamedTempFile> {
     if path.is_dir() {
         return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a directory"));
     }
-    let directory = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    let mut temporary = builder().tempfile_in(directory)?;
+    let mut temporary = temporary_in(path.parent().unwrap_or(Path::new("")))?;
     write(temporary.as_file_mut())?;
     // Without this a power failure after the rename could leave an empty file under the name.
     temporary.as_file().sync_all()?;
-    temporary.persist(path).map_err(|error| error.error)?;
-    Ok(())
+    Ok(temporary)
+}
+
+fn temporary_in(directory: &Path) -> io::Result<NamedTempFile> {
+    // The current directory is an empty path as a file's parent.
+    let directory = if directory.as_os_str().is_empty() { Path::new(".") } else { directory };
+    builder().tempfile_in(directory).map_err(|error| match directory.is_dir() {
+        true => io::Error::new(error.kind(), without_temporary_name(&error)),
+        false => {
+            let problem = format!("there is no directory {}", directory.display());
+            io::Error::new(io::ErrorKind::NotFound, problem)
+        }
+    })
+}
+
+/// The temporary file's name, which comes with its error, tells a user nothing.
+fn without_temporary_name(error: &io::Error) -> String {
+    let cause = error.get_ref().and_then(|wrapped| wrapped.source());
+    cause.map_or_else(|| error.to_string(), ToString::to_string)
 }
 
 /// Temporary files are private by default; a result is to have the permissions of any new file.

@@ -1,6 +1,9 @@
-//! Files of Meshtone: scenarios, profile errors and profiles in, and everything out through
-//! [`atomic_file`], so that no half-written file is ever left behind.
+//! Files of Meshtone: scenarios, profile errors and profiles in; signals, summaries and traces out. All are
+//! written through [`atomic_file`], so that no half-written file ever stands under a result's name.
 #![deny(missing_docs)]
 
 pub mod atomic_file;
 pub mod scenario_file;
+pub mod signals;
+pub mod summary;
+pub mod trace_npz;

@@ -5,7 +5,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
-use meshtone_io::atomic_file::write_atomically;
+use meshtone_io::atomic_file::{StagedFile, check_writable, write_atomically};
 use tempfile::tempdir;
 
 fn names_in(directory: &Path) -> Vec<String> {
@@ -71,4 +71,23 @@ fn permissions_are_those_of_any_new_file() {
     write_atomically(&atomic, |_| Ok(())).unwrap();
     let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
     assert_eq!(mode(&atomic), mode(&plain));
+}
+
+#[test]
+fn a_staged_file_shows_itself_only_when_committed() {
+    let directory = tempdir().unwrap();
+    let path = directory.path().join("a.txt");
+    fs::write(&path, "old").unwrap();
+    let staged = StagedFile::write(&path, |file| file.write_all(b"new")).unwrap();
+    assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+    staged.commit().unwrap();
+    assert_eq!(fs::read_to_string(&path).unwrap(), "new");
+    drop(StagedFile::write(&path, |file| file.write_all(b"newer")).unwrap());
+    let refused = StagedFile::write(&path, |_| Ok(())).unwrap().commit_new().unwrap_err();
+    assert_eq!(refused.source.kind(), io::ErrorKind::AlreadyExists);
+    assert_eq!(fs::read_to_string(&path).unwrap(), "new");
+    assert_eq!(names_in(directory.path()), ["a.txt"]);
+    let absent = StagedFile::write(&directory.path().join("absent/a.txt"), |_| Ok(())).unwrap_err();
+    assert!(absent.source.to_string().contains("there is no directory"), "{absent}");
+    assert!(check_writable(directory.path()).is_ok() && check_writable(&path).is_err());
 }

@@ -7,7 +7,7 @@ use crate::dynamics::{ErrorForce, Excitation, MeshLoad, Motion, MotionSample, Sy
 use crate::fault::{FaultGeometry, fault_geometry};
 use crate::quality::profile_errors;
 use crate::sampling::{CycleGrid, TimeGrid};
-use crate::scenario::{Convention, ProfileErrors, Scenario, ScenarioError};
+use crate::scenario::{ProfileErrors, Scenario, ScenarioError};
 use crate::signal::{Channels, channel_outputs};
 use crate::solver::{InstructionSet, Output, Problem, Recorder, ReducedModel, integrate};
 use crate::stiffness::{MeshStiffness, PairStiffness};
@@ -99,7 +99,7 @@ pub fn simulate(scenario: &Scenario) -> Result<Simulation, ScenarioError> {
 pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
     let mut clock = Clock::default();
     scenario.validate()?;
-    let scenario = honoured(scenario);
+    let scenario = scenario.as_honoured();
     let (gears, convention) = (&scenario.gears, scenario.convention);
     let time = TimeGrid::new(&scenario);
     let cycle = CycleGrid::new(gears.pinion_teeth, gears.gear_teeth, time.sampling_rate_hz);
@@ -137,22 +137,6 @@ pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
         timings: clock.laps,
         scenario,
     })
-}
-
-/// The scenario with what its convention does not honour at its default.
-///
-/// Convention: the published code accepts and ignores these, or fails.
-fn honoured(scenario: &Scenario) -> Scenario {
-    let mut honoured = scenario.clone();
-    if scenario.convention == Convention::Published {
-        let default = Scenario::new(1.0, 20, 20, 10.0, 1.0, 1.0);
-        honoured.gears.tip_relief = default.gears.tip_relief;
-        honoured.gears.foundation = default.gears.foundation;
-        honoured.rig.eccentricity_mm = default.rig.eccentricity_mm;
-        honoured.rig.bearing_stiffness_n_per_m = default.rig.bearing_stiffness_n_per_m;
-        honoured.operation.speed_profile_hz = None;
-    }
-    honoured
 }
 
 impl Stages {

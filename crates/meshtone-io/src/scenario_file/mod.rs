@@ -2,6 +2,7 @@
 
 mod profile_csv;
 mod profile_errors_npz;
+mod source;
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -9,6 +10,7 @@ use std::path::{Path, PathBuf};
 use meshtone::scenario::{FileProblem, Profile, ProfileErrors, Scenario, ScenarioError, ScenarioFiles};
 
 pub use profile_errors_npz::write_profile_errors_npz;
+pub use source::ScenarioFile;
 
 /// A scenario file that could not be read.
 #[derive(Debug, thiserror::Error)]
@@ -20,6 +22,16 @@ pub enum ReadScenarioError {
         path: PathBuf,
         /// Why it cannot be read.
         source: io::Error,
+    },
+    /// The file holds something else than text.
+    #[error("{}: line {line}: is not UTF-8 text: the byte 0x{byte:02x} belongs to no character", path.display())]
+    NotText {
+        /// The scenario file.
+        path: PathBuf,
+        /// 1-based line of the first byte that is wrong.
+        line: usize,
+        /// That byte.
+        byte: u8,
     },
     /// What it says is wrong, or what a file that it names says.
     #[error("{}: {error}", path.display())]
@@ -52,15 +64,7 @@ pub enum ReadScenarioError {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read_scenario(path: &Path) -> Result<Scenario, ReadScenarioError> {
-    let unreadable = |source| ReadScenarioError::Unreadable { path: path.to_path_buf(), source };
-    let text = std::fs::read_to_string(path).map_err(unreadable)?;
-    let files = FilesBeside::new(path.parent().unwrap_or(Path::new("")));
-    match Scenario::from_toml_with_files(&text, &files) {
-        Ok(scenario) => Ok(scenario),
-        Err(error) => {
-            Err(ReadScenarioError::Invalid { path: path.to_path_buf(), text, error: Box::new(error) })
-        }
-    }
+    Ok(ScenarioFile::read(path)?.scenario)
 }
 
 /// The files that a scenario names, relative to a directory.

@@ -9,6 +9,7 @@ mod error;
 mod fault;
 mod from_toml;
 mod gears;
+mod honoured;
 mod material;
 mod operation;
 mod quality;

@@ -1,0 +1,55 @@
+//! `meshtone init`
+
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use meshtone::scenario::{TEMPLATE_KINDS, template};
+use meshtone_io::atomic_file::StagedFile;
+
+use crate::failure::Failure;
+use crate::terminal;
+
+/// Print a commented scenario file to start from
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Init {
+    /// A healthy pair, or what is broken on the gear's first tooth
+    #[arg(value_parser = PossibleValuesParser::new(TEMPLATE_KINDS))]
+    kind: String,
+    /// File to write, instead of standard output
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Replace the file if it exists
+    #[arg(long, requires = "output")]
+    force: bool,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  meshtone init healthy
+  meshtone init tooth-breakage -o broken.toml";
+
+impl Init {
+    pub fn run(&self) -> Result<(), Failure> {
+        let unknown = || Failure::bad_input(format!("there is no template {}", self.kind));
+        let text = template(&self.kind).ok_or_else(unknown)?;
+        match &self.output {
+            None => terminal::print(&text),
+            Some(path) => self.write(path, &text),
+        }
+    }
+
+    fn write(&self, path: &Path, text: &str) -> Result<(), Failure> {
+        let file = StagedFile::write(path, |file| file.write_all(text.as_bytes()))?;
+        if self.force {
+            return Ok(file.commit()?);
+        }
+        file.commit_new().map_err(|error| match error.source.kind() {
+            ErrorKind::AlreadyExists => Failure::bad_input(format!("{} exists already", path.display()))
+                .with_help("name another file with -o, or replace it with --force"),
+            _ => error.into(),
+        })
+    }
+}

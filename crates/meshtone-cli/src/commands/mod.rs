@@ -1,0 +1,31 @@
+//! The commands, one file each.
+
+mod init;
+mod panel;
+mod simulate;
+mod wheels;
+
+use clap::Subcommand;
+
+use crate::failure::Failure;
+
+/// A command with its arguments.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    Simulate(simulate::Simulate),
+    Init(init::Init),
+    Wheels(wheels::Wheels),
+    Panel(panel::Panel),
+}
+
+impl Command {
+    /// Carries the command out.
+    pub fn run(&self) -> Result<(), Failure> {
+        match self {
+            Self::Simulate(arguments) => arguments.run(),
+            Self::Init(arguments) => arguments.run(),
+            Self::Wheels(arguments) => arguments.run(),
+            Self::Panel(arguments) => arguments.run(),
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! `meshtone simulate`
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::{Args, ValueEnum};
+use meshtone::scenario::{
+    Convention, ProfileErrors, Scenario, ScenarioError, ScenarioFiles, ScenarioWarning,
+};
+use meshtone::{Simulation, StageTime, Trace};
+use meshtone_io::atomic_file::check_writable;
+use meshtone_io::scenario_file::{FilesBeside, ScenarioFile};
+use meshtone_io::summary::Summary;
+
+use crate::check::check;
+use crate::failure::Failure;
+use crate::output_directory::OutputDirectory;
+use crate::progress::Progress;
+use crate::results::Results;
+use crate::table::table;
+use crate::{terminal, warnings};
+
+/// Simulate scenarios: signals, summary and results panel
+///
+/// Writes signals.parquet, summary.json, panel.svg and panel.png. Files of an earlier run are replaced; every file
+/// appears whole or not at all. Nothing is simulated or written unless all scenarios can be.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Simulate {
+    /// Scenario files
+    #[arg(value_name = "SCENARIO.toml", required = true)]
+    scenarios: Vec<PathBuf>,
+    /// Directory to write to; for several scenarios, to DIR/<file name without .toml> each.
+    /// [default: <file name without .toml>_results in the current directory]
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Reading of the model, instead of the scenario's own
+    #[arg(long)]
+    convention: Option<ConventionArgument>,
+    /// Profile errors, as `meshtone wheels` writes them, instead of the scenario's own
+    #[arg(long, value_name = "WHEELS.npz")]
+    errors_file: Option<PathBuf>,
+    /// Write every stage's output too (one scenario only)
+    #[arg(long, value_name = "FILE.npz")]
+    trace: Option<PathBuf>,
+    /// Print no table and no progress; warnings and errors are still printed
+    #[arg(short, long)]
+    quiet: bool,
+    /// Do not draw the results panel
+    #[arg(long)]
+    no_panel: bool,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  meshtone simulate broken.toml                         into ./broken_results
+  meshtone simulate broken.toml -o out --trace all.npz  with every stage's output
+  meshtone simulate healthy.toml broken.toml -o out     into out/healthy and out/broken
+  meshtone simulate pit.toml chip.toml --errors-file wheels.npz -o out   both on the same wheels";
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum ConventionArgument {
+    /// What the theory says
+    Corrected,
+    /// The published code, its slips included
+    Published,
+}
+
+impl From<ConventionArgument> for Convention {
+    fn from(argument: ConventionArgument) -> Self {
+        match argument {
+            ConventionArgument::Corrected => Self::Corrected,
+            ConventionArgument::Published => Self::Published,
+        }
+    }
+}
+
+/// A scenario that can be simulated, and where its results go.
+struct Run {
+    file: ScenarioFile,
+    /// The file's scenario with what the command line changes.
+    scenario: Scenario,
+    warnings: Vec<ScenarioWarning>,
+    directory: PathBuf,
+}
+
+impl Simulate {
+    pub fn run(&self) -> Result<(), Failure> {
+        if self.trace.is_some() && self.scenarios.len() > 1 {
+            let given = self.scenarios.len();
+            return Err(Failure::bad_input(format!("--trace: {given} scenarios are given; must be one"))
+                .with_help("a trace is one file; run `meshtone simulate` once for each trace"));
+        }
+        let directories = self.directories()?;
+        let errors = self.errors_file.as_deref().map(read_errors).transpose()?;
+        let runs = self.scenarios.iter().zip(directories);
+        let runs = runs.map(|(path, directory)| self.prepare(path, directory, errors.as_ref()));
+        let runs = runs.collect::<Result<Vec<_>, _>>()?;
+        let directories = runs.iter().map(|run| OutputDirectory::prepare(&run.directory));
+        let directories = directories.collect::<Result<Vec<_>, _>>()?;
+        if let Some(trace) = &self.trace {
+            check_writable(trace.parent().unwrap_or(Path::new("")))?;
+        }
+        for (number, (run, directory)) in runs.iter().zip(directories).enumerate() {
+            self.simulate(run, &directory, number)?;
+            directory.keep();
+        }
+        Ok(())
+    }
+
+    /// The directory of each scenario's results.
+    fn directories(&self) -> Result<Vec<PathBuf>, Failure> {
+        let mut directories = Vec::with_capacity(self.scenarios.len());
+        for path in &self.scenarios {
+            let Some(stem) = path.file_stem() else {
+                return Err(Failure::bad_input(format!("{} is no scenario file", path.display())));
+            };
+            let directory = match &self.output {
+                None => {
+                    let mut name = stem.to_os_string();
+                    name.push("_results");
+                    PathBuf::from(name)
+                }
+                Some(output) if self.scenarios.len() == 1 => output.clone(),
+                Some(output) => output.join(stem),
+            };
+            if let Some(other) = directories.iter().position(|other| *other == directory) {
+                let problem = format!(
+                    "{} and {} would both write to {}",
+                    self.scenarios[other].display(),
+                    path.display(),
+                    directory.display()
+                );
+                return Err(Failure::bad_input(problem).with_help(
+                    "rename one of the files, or run them one after the other with different -o",
+                ));
+            }
+            directories.push(directory);
+        }
+        Ok(directories)
+    }
+
+    fn prepare(
+        &self,
+        path: &Path,
+        directory: PathBuf,
+        errors: Option<&ProfileErrors>,
+    ) -> Result<Run, Failure> {
+        let file = ScenarioFile::read(path)?;
+        let mut scenario = file.scenario.clone();
+        if let Some(convention) = self.convention {
+            scenario.convention = convention.into();
+        }
+        if let Some(errors) = errors {
+            scenario.quality.din_grade = 0;
+            scenario.quality.profile_errors = Some(errors.clone());
+        }
+        let warnings = check(&scenario).map_err(|error| self.refuse(&file, error))?;
+        Ok(Run { file, scenario, warnings, directory })
+    }
+
+    /// An error about a scenario, or about the errors file that the command line put in its place.
+    fn refuse(&self, file: &ScenarioFile, error: ScenarioError) -> Failure {
+        match (&self.errors_file, error.key.strip_prefix("quality.")) {
+            (Some(errors_file), Some(entry)) => {
+                let (errors_file, scenario) = (errors_file.display(), file.path.display());
+                let problem = error.problem;
+                let failure = Failure::bad_input(format!(
+                    "--errors-file {errors_file}: {entry}: {problem} ({scenario})"
+                ));
+                match error.help {
+                    Some(help) => failure.with_help(help),
+                    None => failure,
+                }
+            }
+            _ => file.refuse(error).into(),
+        }
+    }
+
+    fn simulate(&self, run: &Run, directory: &OutputDirectory, number: usize) -> Result<(), Failure> {
+        run.warnings.iter().for_each(|warning| warnings::print(&run.file, warning));
+        let of = format!("({} of {})", number + 1, self.scenarios.len());
+        let progress = Progress::start(format!("{} {of}", run.file.path.display()), !self.quiet);
+        let (simulation, trace) =
+            simulate(&run.scenario, self.trace.is_some()).map_err(|error| run.file.refuse(error))?;
+        let tension = warnings::of_tension(&simulation.channels);
+        let all_warnings: Vec<_> = run.warnings.iter().cloned().chain(tension.clone()).collect();
+        let summary = Summary::new(&simulation, &all_warnings);
+        let results = Results {
+            scenario: &run.scenario,
+            simulation: &simulation,
+            summary: &summary,
+            trace: trace.as_ref().zip(self.trace.as_deref()),
+            with_panel: !self.no_panel,
+        };
+        let written = results.write(directory.path());
+        drop(progress);
+        tension.iter().for_each(|warning| warnings::print(&run.file, warning));
+        written?;
+        if self.quiet {
+            return Ok(());
+        }
+        let (from, to) = (run.file.path.display(), directory.path().display());
+        terminal::print(&format!("{from} -> {to}\n{}\n", table(&summary)))
+    }
+}
+
+fn read_errors(path: &Path) -> Result<ProfileErrors, Failure> {
+    let errors = FilesBeside::new("").profile_errors(&path.to_string_lossy());
+    errors.map_err(|problem| {
+        Failure::bad_input(format!("--errors-file: {}", problem.problem)).with_help(problem.help)
+    })
+}
+
+fn simulate(scenario: &Scenario, with_trace: bool) -> Result<(Simulation, Option<Trace>), ScenarioError> {
+    if !with_trace {
+        return Ok((meshtone::simulate(scenario)?, None));
+    }
+    let start = Instant::now();
+    let (mut simulation, trace) = meshtone::trace(scenario)?;
+    let before: std::time::Duration = simulation.timings.iter().map(|time| time.elapsed).sum();
+    let elapsed = start.elapsed().saturating_sub(before);
+    simulation.timings.push(StageTime { stage: "time integration and trace", elapsed });
+    Ok((simulation, Some(trace)))
+}

@@ -1,0 +1,47 @@
+//! `meshtone wheels`
+
+use std::path::PathBuf;
+
+use clap::Args;
+use meshtone::scenario::ScenarioError;
+use meshtone_io::scenario_file::{ScenarioFile, write_profile_errors_npz};
+
+use crate::failure::Failure;
+
+/// Draw the profile errors of both wheels once, so that several simulations share the wheels
+///
+/// Writes the errors that the scenario would draw for its grade and seed, 100 per tooth, in mm. A scenario takes
+/// them by `errors_file = "FILE.npz"` in its section [quality], or `meshtone simulate` by --errors-file.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Wheels {
+    /// Scenario file
+    #[arg(value_name = "SCENARIO.toml")]
+    scenario: PathBuf,
+    /// File to write; it is replaced if it exists
+    #[arg(short, long, value_name = "FILE.npz")]
+    output: PathBuf,
+}
+
+const EXAMPLES: &str = "\
+Example:
+  meshtone wheels healthy.toml -o wheels.npz
+  meshtone simulate pit.toml chip.toml --errors-file wheels.npz -o pit_and_chip";
+
+impl Wheels {
+    pub fn run(&self) -> Result<(), Failure> {
+        let file = ScenarioFile::read(&self.scenario)?;
+        let mut scenario = file.scenario.clone();
+        // The errors are those of the wheels before the damage.
+        scenario.fault = None;
+        let stages = meshtone::stages(&scenario).map_err(|error| file.refuse(error))?;
+        let errors = stages.profile_errors.ok_or_else(|| file.refuse(ideal_teeth()))?;
+        Ok(write_profile_errors_npz(&self.output, &errors)?)
+    }
+}
+
+fn ideal_teeth() -> ScenarioError {
+    let problem = "must be a grade of DIN 3962, from 1 (best) to 12: the teeth of grade 0 are ideal and have no \
+                   errors to write";
+    ScenarioError::new("quality.din_grade", 0, problem)
+}

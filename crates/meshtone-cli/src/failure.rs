@@ -1,0 +1,115 @@
+//! Why a command did not succeed, in words for its user.
+
+use std::io::ErrorKind;
+use std::process::ExitCode;
+
+use meshtone::scenario::ScenarioError;
+use meshtone_io::atomic_file::WriteFileError;
+use meshtone_io::scenario_file::ReadScenarioError;
+use meshtone_io::signals::ReadSignalsError;
+
+/// Why a command did not succeed.
+#[derive(Debug)]
+pub struct Failure {
+    kind: Kind,
+    /// What is wrong, where, and what is allowed.
+    pub message: String,
+    /// What to do about it, where that is not plain.
+    pub help: Option<String>,
+    /// The line that it is about.
+    pub snippet: Option<Snippet>,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Kind {
+    BadInput,
+    Failed,
+}
+
+/// A line of a file.
+#[derive(Debug)]
+pub struct Snippet {
+    /// The file's name.
+    pub file: String,
+    /// Its whole text.
+    pub text: String,
+    /// 1-based.
+    pub line: usize,
+}
+
+impl Failure {
+    /// The user's input is wrong.
+    pub fn bad_input(message: impl Into<String>) -> Self {
+        Self { kind: Kind::BadInput, message: message.into(), help: None, snippet: None }
+    }
+
+    /// The input is good, but could not be carried out.
+    pub fn failed(message: impl Into<String>) -> Self {
+        Self { kind: Kind::Failed, message: message.into(), help: None, snippet: None }
+    }
+
+    /// The same failure with advice.
+    pub fn with_help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// 1 or 2.
+    pub fn exit_code(&self) -> ExitCode {
+        match self.kind {
+            Kind::Failed => ExitCode::from(1),
+            Kind::BadInput => ExitCode::from(2),
+        }
+    }
+}
+
+impl From<ReadScenarioError> for Failure {
+    fn from(error: ReadScenarioError) -> Self {
+        match error {
+            ReadScenarioError::Unreadable { path, source } => {
+                let path = path.display();
+                match source.kind() {
+                    ErrorKind::NotFound => Self::bad_input(format!("there is no scenario file {path}"))
+                        .with_help(
+                            "check the name; `meshtone init healthy -o FILE` writes one to start from",
+                        ),
+                    ErrorKind::IsADirectory => {
+                        Self::bad_input(format!("{path} is a directory; must be a scenario file"))
+                    }
+                    _ => Self::failed(format!("cannot read {path}: {source}")),
+                }
+            }
+            ReadScenarioError::NotText { .. } => Self::bad_input(error.to_string())
+                .with_help("a scenario is a text file; save it in UTF-8, as every editor can"),
+            ReadScenarioError::Invalid { path, text, error } => {
+                let file = path.display().to_string();
+                let ScenarioError { help, line, .. } = (*error).clone();
+                let message = format!("{file}: {error}");
+                let snippet = line.map(|line| Snippet { file, text, line });
+                Self { kind: Kind::BadInput, message, help, snippet }
+            }
+        }
+    }
+}
+
+impl From<WriteFileError> for Failure {
+    fn from(error: WriteFileError) -> Self {
+        Self::failed(error.to_string())
+    }
+}
+
+impl From<ReadSignalsError> for Failure {
+    fn from(error: ReadSignalsError) -> Self {
+        match &error {
+            ReadSignalsError::Unreadable { path, source } if source.kind() == ErrorKind::NotFound => {
+                Self::bad_input(format!("there is no file {}", path.display()))
+                    .with_help("name the directory that `meshtone simulate` wrote its results to")
+            }
+            ReadSignalsError::Unreadable { .. } => Self::failed(error.to_string()),
+            ReadSignalsError::Foreign { .. } | ReadSignalsError::Scenario { .. } => {
+                Self::bad_input(error.to_string())
+                    .with_help("simulate again with this version: `meshtone simulate SCENARIO.toml -o DIR`")
+            }
+        }
+    }
+}

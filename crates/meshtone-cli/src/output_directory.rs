@@ -1,0 +1,56 @@
+//! The directory that a run writes to.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use meshtone_io::atomic_file::check_writable;
+
+use crate::failure::Failure;
+
+/// A directory that exists and can be written to. What had to be created for it is removed again unless it is
+/// kept.
+#[derive(Debug)]
+pub struct OutputDirectory {
+    path: PathBuf,
+    /// Innermost first.
+    created: Vec<PathBuf>,
+}
+
+impl OutputDirectory {
+    /// Creates the directory where it does not exist, and tries whether files can be written to it, so that no
+    /// simulation runs whose results could not be kept.
+    pub fn prepare(path: &Path) -> Result<Self, Failure> {
+        let missing = path.ancestors().filter(|part| !part.as_os_str().is_empty());
+        let created = missing.take_while(|part| !part.exists()).map(Path::to_path_buf).collect();
+        let directory = Self { path: path.to_path_buf(), created };
+        let refuse = |problem: &dyn std::fmt::Display| {
+            Failure::failed(format!("cannot write results to the directory {}: {problem}", path.display()))
+                .with_help("name another directory with -o, or change its permissions")
+        };
+        if path.exists() && !path.is_dir() {
+            return Err(refuse(&"it is a file"));
+        }
+        fs::create_dir_all(path).map_err(|error| refuse(&error))?;
+        check_writable(path).map_err(|error| refuse(&error.source))?;
+        Ok(directory)
+    }
+
+    /// The directory.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Keeps the directory.
+    pub fn keep(mut self) {
+        self.created.clear();
+    }
+}
+
+impl Drop for OutputDirectory {
+    fn drop(&mut self) {
+        for directory in &self.created {
+            // What is not empty stays.
+            let _ = fs::remove_dir(directory);
+        }
+    }
+}

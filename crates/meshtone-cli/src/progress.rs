@@ -1,0 +1,54 @@
+//! A sign of life while something takes long.
+
+use std::io::{self, IsTerminal};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// What is over sooner needs no sign of life.
+const PATIENCE: Duration = Duration::from_secs(1);
+const TICK: Duration = Duration::from_millis(120);
+
+/// A spinner on a terminal's standard error, from one second on until it is dropped.
+pub struct Progress {
+    running: Option<(Sender<()>, JoinHandle<()>)>,
+}
+
+impl Progress {
+    /// Starts waiting; nothing is ever shown where standard error is no terminal.
+    ///
+    /// # Arguments
+    /// * `message` - what is being done
+    /// * `wanted` - whether anything is to be shown
+    pub fn start(message: String, wanted: bool) -> Self {
+        if !wanted || !io::stderr().is_terminal() {
+            return Self { running: None };
+        }
+        let (stop, stopped) = channel();
+        Self { running: Some((stop, thread::spawn(move || show(message, &stopped)))) }
+    }
+}
+
+fn show(message: String, stopped: &Receiver<()>) {
+    if stopped.recv_timeout(PATIENCE) != Err(RecvTimeoutError::Timeout) {
+        return;
+    }
+    let spinner = ProgressBar::new_spinner().with_message(message).with_elapsed(PATIENCE);
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} {elapsed}") {
+        spinner.set_style(style);
+    }
+    spinner.enable_steady_tick(TICK);
+    let _ = stopped.recv();
+    spinner.finish_and_clear();
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if let Some((stop, thread)) = self.running.take() {
+            drop(stop);
+            let _ = thread.join();
+        }
+    }
+}

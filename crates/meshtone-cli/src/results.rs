@@ -1,0 +1,103 @@
+//! The files that a run writes.
+
+use std::fs;
+use std::io::{BufWriter, ErrorKind, Write};
+use std::path::Path;
+use std::thread;
+
+use meshtone::scenario::Scenario;
+use meshtone::signal::Channels;
+use meshtone::{Simulation, Stages, Trace};
+use meshtone_io::atomic_file::{StagedFile, WriteFileError};
+use meshtone_io::signals::write_signals;
+use meshtone_io::summary::Summary;
+use meshtone_io::trace_npz::write_trace;
+use meshtone_plot::panel;
+
+use crate::failure::Failure;
+
+/// The signals' file.
+pub const SIGNALS: &str = "signals.parquet";
+/// The summary's file.
+pub const SUMMARY: &str = "summary.json";
+/// The panel's files.
+pub const PANEL: [&str; 2] = ["panel.svg", "panel.png"];
+
+/// What a run writes.
+pub struct Results<'r> {
+    /// What was simulated, as the user asked for it.
+    pub scenario: &'r Scenario,
+    /// Its results.
+    pub simulation: &'r Simulation,
+    /// Its main numbers.
+    pub summary: &'r Summary,
+    /// Every stage's output, and where to.
+    pub trace: Option<(&'r Trace, &'r Path)>,
+    /// Whether to draw the panel.
+    pub with_panel: bool,
+}
+
+impl Results<'_> {
+    /// Writes all files, each whole or not at all.
+    ///
+    /// All are complete beside their targets before the first takes its name; the summary is the last. A panel
+    /// that an earlier run left is removed where this run draws none: it would show something else.
+    pub fn write(&self, directory: &Path) -> Result<(), Failure> {
+        let (panel, signals) = thread::scope(|scope| {
+            let panel = scope.spawn(|| self.with_panel.then(|| self.stage_panel(directory)).transpose());
+            let signals = StagedFile::write(&directory.join(SIGNALS), |file| {
+                write_signals(file, self.scenario, &self.simulation.channels)
+            });
+            let panel = panel.join().unwrap_or_else(|_| Err(Failure::failed("cannot draw the panel")));
+            (panel, signals)
+        });
+        let signals = signals?;
+        let trace = self.trace.map(|(trace, path)| StagedFile::write(path, |file| write_trace(file, trace)));
+        let trace = trace.transpose()?;
+        let summary = StagedFile::write(&directory.join(SUMMARY), |file| {
+            let mut file = BufWriter::new(file);
+            self.summary.write_json(&mut file)?;
+            file.flush()
+        })?;
+        // What has been computed is kept even where the picture of it fails.
+        let (panel, failure) = match panel {
+            Ok(panel) => (panel, None),
+            Err(failure) => (None, Some(failure.with_help("the other results are written; see --no-panel"))),
+        };
+        signals.commit()?;
+        trace.map(StagedFile::commit).transpose()?;
+        match panel {
+            Some(files) => files.into_iter().try_for_each(StagedFile::commit)?,
+            None => remove_panel(directory)?,
+        }
+        summary.commit()?;
+        failure.map_or(Ok(()), Err)
+    }
+
+    fn stage_panel(&self, directory: &Path) -> Result<[StagedFile; 2], Failure> {
+        stage_panel(directory, &self.simulation.stages, &self.simulation.channels)
+    }
+}
+
+/// Draws the panel and writes its files, to be committed.
+pub fn stage_panel(
+    directory: &Path,
+    stages: &Stages,
+    channels: &Channels,
+) -> Result<[StagedFile; 2], Failure> {
+    let cannot = |error| Failure::failed(format!("cannot draw the panel: {error}"));
+    let figure = panel::draw(stages, channels).map_err(cannot)?;
+    let png = figure.png().map_err(cannot)?;
+    let [svg_path, png_path] = PANEL.map(|name| directory.join(name));
+    Ok([
+        StagedFile::write(&svg_path, |file| file.write_all(figure.svg().as_bytes()))?,
+        StagedFile::write(&png_path, |file| file.write_all(&png))?,
+    ])
+}
+
+fn remove_panel(directory: &Path) -> Result<(), WriteFileError> {
+    PANEL.into_iter().map(|name| directory.join(name)).try_for_each(|path| match fs::remove_file(&path) {
+        Err(source) if source.kind() != ErrorKind::NotFound => Err(WriteFileError { path, source }),
+        _ => Ok(()),
+    })
+}

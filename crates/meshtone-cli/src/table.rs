@@ -1,0 +1,90 @@
+//! The main numbers of a run, for reading.
+
+use std::fmt::Write;
+
+use meshtone_io::summary::{ChannelSummary, Summary};
+
+/// The table of one run.
+pub fn table(summary: &Summary) -> String {
+    let mut text = String::new();
+    for (name, value) in rows(summary) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "  {name:<24}{value}");
+    }
+    let _ = writeln!(text, "\n  {:<28}{:>12}{:>12}{:>12}", "signal", "rms", "peak", "kurtosis");
+    for channel in &summary.channels {
+        let kurtosis = channel.kurtosis.map_or_else(|| "-".to_string(), short);
+        let (rms, peak) = (short(channel.rms), short(channel.peak));
+        let _ = writeln!(text, "  {:<28}{rms:>12}{peak:>12}{kurtosis:>12}", label(channel));
+    }
+    text
+}
+
+fn rows(summary: &Summary) -> [(&'static str, String); 8] {
+    let (stiffness, force) = (&summary.mesh_stiffness, &summary.mesh_force);
+    let frequencies: Vec<_> = summary.natural_frequencies_hz.iter().map(|f| format!("{f:.0}")).collect();
+    let duration_s = summary.samples as f64 / summary.sampling_rate_hz;
+    [
+        ("model", format!("{}, seed {}", summary.convention, summary.seed)),
+        ("fault", summary.fault.unwrap_or("none").to_string()),
+        (
+            "sampling",
+            format!(
+                "{} samples, {duration_s:.3} s at {} S/s",
+                summary.samples,
+                short(summary.sampling_rate_hz)
+            ),
+        ),
+        ("contact ratio", format!("{:.4}", summary.contact_ratio)),
+        (
+            "mesh stiffness, kN/mm",
+            format!(
+                "min {}, mean {}, max {}",
+                short(stiffness.min_n_per_mm / 1e3),
+                short(stiffness.mean_n_per_mm / 1e3),
+                short(stiffness.max_n_per_mm / 1e3)
+            ),
+        ),
+        (
+            "mesh force, N",
+            format!(
+                "min {}, mean {}, max {}; in tension {:.1} % of the time",
+                short(force.min_n),
+                short(force.mean_n),
+                short(force.max_n),
+                100.0 * force.tension_fraction
+            ),
+        ),
+        ("natural frequencies, Hz", frequencies.join(" ")),
+        ("computing time", format!("{} ms", short(summary.total_time().as_secs_f64() * 1e3))),
+    ]
+}
+
+/// `horizontal acceleration, g` for `horizontal_acceleration_g`.
+fn label(channel: &ChannelSummary) -> String {
+    let quantity = channel.name.rsplit_once('_').map_or(channel.name, |(quantity, _)| quantity);
+    format!("{}, {}", quantity.replace('_', " "), channel.unit)
+}
+
+/// Four significant digits.
+fn short(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let magnitude = value.abs().log10().floor() as i32;
+    if !(-4..9).contains(&magnitude) {
+        return format!("{value:.3e}");
+    }
+    format!("{value:.*}", usize::try_from(3 - magnitude).unwrap_or(0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::short;
+
+    #[test]
+    fn four_digits() {
+        let shown = [0.0, 187.0042, -1.60909, 258_400.0, 0.001_234_56, 1e-9, 2.5e12, f64::NAN].map(short);
+        assert_eq!(shown, ["0", "187.0", "-1.609", "258400", "0.001235", "1.000e-9", "2.500e12", "NaN"]);
+    }
+}

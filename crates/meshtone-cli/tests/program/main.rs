@@ -1,0 +1,11 @@
+//! The program, run as its users run it. One test program, because each is linked with all libraries.
+#![allow(clippy::unwrap_used)]
+
+mod bad_input;
+mod examples;
+mod init;
+mod killed;
+mod simulate;
+mod support;
+mod unwritable;
+mod wheels_and_panel;

@@ -1,0 +1,201 @@
+//! `meshtone simulate`
+
+use std::fs::File;
+
+use crate::support::{Workplace, fast_and, stderr, stdout};
+use arrow::datatypes::Schema;
+use meshtone_io::scenario_file::read_scenario;
+use meshtone_io::signals::read_signals;
+use ndarray::{ArrayD, IxDyn};
+use ndarray_npy::NpzReader;
+use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+use serde_json::Value;
+
+const ALL_FILES: [&str; 4] = ["panel.png", "panel.svg", "signals.parquet", "summary.json"];
+
+fn summary(workplace: &Workplace, directory: &str) -> Value {
+    serde_json::from_slice(&workplace.read(&format!("{directory}/summary.json"))).unwrap()
+}
+
+#[test]
+fn signals_are_those_of_the_library() {
+    let workplace = Workplace::new();
+    workplace.write("worn.toml", fast_and("[quality]\ndin_grade = 7"));
+    workplace.succeeds(&["simulate", "worn.toml", "-o", "out"]);
+    assert_eq!(workplace.names("out"), ALL_FILES);
+    let scenario = read_scenario(&workplace.path("worn.toml")).unwrap();
+    let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
+    assert_eq!(recorded.scenario, scenario);
+    assert_eq!(recorded.channels, meshtone::simulate(&scenario).unwrap().channels);
+}
+
+#[test]
+fn columns_and_metadata() {
+    let workplace = Workplace::new();
+    workplace.succeeds(&["simulate", "fast.toml", "-o", "out", "--no-panel"]);
+    let file = File::open(workplace.path("out/signals.parquet")).unwrap();
+    let builder = ParquetRecordBatchReaderBuilder::try_new(file).unwrap();
+    let schema: &Schema = builder.schema();
+    let columns: Vec<_> = schema
+        .fields()
+        .iter()
+        .map(|field| (field.name().as_str(), field.metadata()["unit"].as_str()))
+        .collect();
+    let expected = [
+        ("time_s", "s"),
+        ("horizontal_acceleration_g", "g"),
+        ("vertical_acceleration_g", "g"),
+        ("axial_acceleration_g", "g"),
+        ("pinion_shaft_speed_hz", "Hz"),
+        ("gear_shaft_speed_hz", "Hz"),
+        ("mesh_force_n", "N"),
+    ];
+    assert_eq!(columns, expected);
+    let metadata = builder.metadata().file_metadata().key_value_metadata().unwrap();
+    let value = |key: &str| {
+        let entry = metadata.iter().find(|entry| entry.key == key).unwrap();
+        entry.value.clone().unwrap()
+    };
+    assert_eq!(value("meshtone.sampling_rate_hz"), "11200.0");
+    assert_eq!(value("meshtone.version"), env!("CARGO_PKG_VERSION"));
+    assert!(value("meshtone.scenario").contains("pinion_teeth = 20\n"));
+    assert_eq!(builder.metadata().file_metadata().num_rows(), 11_200);
+}
+
+#[test]
+fn the_same_scenario_gives_the_same_bytes() {
+    let workplace = Workplace::new();
+    let noisy = "[quality]\ndin_grade = 7\n[fault]\nkind = \"tooth-destruction\"\nstart = 0.2\nend = 0.9\n\
+                 noise_mm = 0.01";
+    workplace.write("noisy.toml", fast_and(noisy));
+    for directory in ["a", "b"] {
+        workplace.succeeds(&["simulate", "noisy.toml", "-o", directory, "--no-panel"]);
+    }
+    assert_eq!(workplace.read("a/signals.parquet"), workplace.read("b/signals.parquet"));
+}
+
+#[test]
+fn summary_of_a_healthy_pair() {
+    let workplace = Workplace::new();
+    workplace.succeeds(&["simulate", "fast.toml", "-o", "out", "--no-panel"]);
+    let summary = summary(&workplace, "out");
+    assert_eq!(summary["format_version"], 1);
+    assert_eq!(summary["convention"], "corrected");
+    assert_eq!(summary["seed"], 1);
+    assert_eq!(summary["fault"], Value::Null);
+    assert_eq!(summary["sampling_rate_hz"], 11_200.0);
+    assert_eq!(summary["samples"], 11_200);
+    assert_eq!(summary["natural_frequencies_hz"].as_array().unwrap().len(), 13);
+    // The mean force balances the brake: T/(r_g cos α), r_g = 60 mm.
+    let mean = summary["mesh_force"]["mean_n"].as_f64().unwrap();
+    assert!((mean / (200.0 / (0.06 * 20f64.to_radians().cos())) - 1.0).abs() < 0.01, "{mean}");
+    let stiffness = |key: &str| summary["mesh_stiffness"][key].as_f64().unwrap();
+    assert!(stiffness("min_n_per_mm") < stiffness("mean_n_per_mm"));
+    assert!(stiffness("mean_n_per_mm") < stiffness("max_n_per_mm"));
+    let channels = &summary["channels"];
+    let speed = channels["pinion_shaft_speed_hz"]["rms_hz"].as_f64().unwrap();
+    assert!((speed - 40.0).abs() < 0.1, "{speed}");
+    assert!(channels["vertical_acceleration_g"]["kurtosis"].is_f64());
+    // Nothing pushes along the axis.
+    assert_eq!(channels["axial_acceleration_g"]["rms_g"], 0.0);
+    assert_eq!(channels["axial_acceleration_g"]["kurtosis"], Value::Null);
+    assert!(summary["computing_time_ms"]["time_integration"].is_f64());
+    assert_eq!(summary["warnings"], Value::Array(Vec::new()));
+}
+
+#[test]
+fn every_field_of_the_trace() {
+    let workplace = Workplace::new();
+    workplace.write("pit.toml", fast_and("[quality]\ndin_grade = 6\n[fault]\nkind = \"missing-tooth\""));
+    workplace.succeeds(&["simulate", "pit.toml", "-o", "out", "--trace", "out/all.npz", "--no-panel"]);
+    let scenario = read_scenario(&workplace.path("pit.toml")).unwrap();
+    let (simulation, trace) = meshtone::trace(&scenario).unwrap();
+    let mut archive = NpzReader::new(File::open(workplace.path("out/all.npz")).unwrap()).unwrap();
+    assert_eq!(archive.names().unwrap().len(), trace.fields.len());
+    for field in &trace.fields {
+        let array: ArrayD<f64> = archive.by_name(&field.name).unwrap();
+        let expected = ArrayD::from_shape_vec(IxDyn(&field.shape), field.values.clone()).unwrap();
+        assert_eq!(array, expected, "{}", field.name);
+    }
+    let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
+    assert_eq!(recorded.channels, simulation.channels);
+}
+
+#[test]
+fn several_scenarios_on_the_same_wheels() {
+    let workplace = Workplace::new();
+    workplace.write("worn.toml", fast_and("[quality]\ndin_grade = 9"));
+    workplace.write("gone.toml", fast_and("[fault]\nkind = \"missing-tooth\""));
+    workplace.succeeds(&["wheels", "worn.toml", "-o", "wheels.npz"]);
+    let both = ["simulate", "fast.toml", "gone.toml", "--errors-file", "wheels.npz", "-o", "out/deep"];
+    workplace.succeeds(&both);
+    assert_eq!(workplace.names("out/deep"), ["fast", "gone"]);
+    let read =
+        |name: &str| read_signals(&workplace.path(&format!("out/deep/{name}/signals.parquet"))).unwrap();
+    let (healthy, gone) = (read("fast").scenario, read("gone").scenario);
+    assert_eq!(healthy.quality, gone.quality);
+    assert!(healthy.quality.profile_errors.is_some());
+    // The wheels are those that the grade draws.
+    workplace.succeeds(&["simulate", "worn.toml", "--quiet", "--no-panel"]);
+    let drawn = read_signals(&workplace.path("worn_results/signals.parquet")).unwrap();
+    assert_eq!(drawn.channels, read("fast").channels);
+}
+
+#[test]
+fn convention_of_the_command_line_and_what_it_ignores() {
+    let workplace = Workplace::new();
+    workplace.write("bent.toml", fast_and("[rig]\neccentricity_mm = 0.02"));
+    let assert = workplace.succeeds(&["simulate", "bent.toml", "--convention", "published", "--no-panel"]);
+    assert!(
+        stderr(&assert).contains("bent.toml: line 12: rig.eccentricity_mm: is ignored"),
+        "{}",
+        stderr(&assert)
+    );
+    let summary = summary(&workplace, "bent_results");
+    assert_eq!(summary["convention"], "published");
+    assert_eq!(summary["warnings"][0]["key"], "rig.eccentricity_mm");
+    let assert = workplace.succeeds(&["simulate", "bent.toml", "--no-panel"]);
+    assert!(!stderr(&assert).contains("ignored"));
+}
+
+#[test]
+fn a_pulling_mesh_is_warned_of() {
+    let workplace = Workplace::new();
+    workplace.write(
+        "light.toml",
+        crate::support::fast_with("brake_torque_nm", "brake_torque_nm = 1.0") + "[quality]\ndin_grade = 9\n",
+    );
+    let assert = workplace.succeeds(&["simulate", "light.toml", "--quiet", "--no-panel"]).stdout("");
+    let warning = stderr(&assert);
+    assert!(
+        warning.contains("line 8: operation.brake_torque_nm: the mesh force is negative for"),
+        "{warning}"
+    );
+}
+
+#[test]
+fn the_table() {
+    let workplace = Workplace::new();
+    let text = stdout(&workplace.succeeds(&["simulate", "fast.toml"]));
+    for words in
+        ["fast.toml -> fast_results", "mesh stiffness", "contact ratio", "natural frequencies", "rms"]
+    {
+        assert!(text.contains(words), "`{words}` is not in {text}");
+    }
+    workplace.succeeds(&["simulate", "fast.toml", "--quiet"]).stdout("").stderr("");
+}
+
+#[test]
+fn a_run_without_a_panel_leaves_none_of_another_run() {
+    let workplace = Workplace::new();
+    workplace.succeeds(&["simulate", "fast.toml"]);
+    workplace.succeeds(&["simulate", "fast.toml", "--no-panel"]);
+    assert_eq!(workplace.names("fast_results"), ["signals.parquet", "summary.json"]);
+}
+
+#[test]
+fn a_byte_order_mark_is_no_part_of_the_text() {
+    let workplace = Workplace::new();
+    workplace.write("windows.toml", format!("\u{feff}{}", crate::support::FAST.replace('\n', "\r\n")));
+    workplace.succeeds(&["simulate", "windows.toml", "--no-panel"]);
+}

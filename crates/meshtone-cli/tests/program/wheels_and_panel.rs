@@ -1,0 +1,55 @@
+//! `meshtone wheels` and `meshtone panel`
+
+use crate::support::{Workplace, fast_and};
+use meshtone::scenario::ScenarioFiles;
+use meshtone_io::scenario_file::{FilesBeside, read_scenario};
+
+#[test]
+fn wheels_are_those_that_the_scenario_draws() {
+    let workplace = Workplace::new();
+    workplace.write("worn.toml", fast_and("[quality]\ndin_grade = 9\n[fault]\nkind = \"missing-tooth\""));
+    workplace.succeeds(&["wheels", "worn.toml", "-o", "wheels.npz"]).stdout("");
+    let scenario = read_scenario(&workplace.path("worn.toml")).unwrap();
+    let drawn = meshtone::stages(&scenario).unwrap().profile_errors.unwrap();
+    let written = FilesBeside::new(workplace.directory.path()).profile_errors("wheels.npz").unwrap();
+    assert_eq!(written, drawn);
+}
+
+#[test]
+fn ideal_wheels_have_no_errors_to_write() {
+    let workplace = Workplace::new();
+    workplace.write("ideal.toml", fast_and("[quality]\ndin_grade = 0"));
+    let words = ["ideal.toml: line 12: quality.din_grade = 0", "from 1 (best) to 12"];
+    workplace.fails(2, &["wheels", "ideal.toml", "-o", "wheels.npz"], &words);
+    workplace.fails(2, &["wheels", "fast.toml", "-o", "wheels.npz"], &["quality.din_grade = 0"]);
+    workplace.write("ideal.toml", fast_and("[quality]\ndin_grade = 7"));
+    workplace.fails(1, &["wheels", "ideal.toml", "-o", "absent/w.npz"], &["there is no directory absent"]);
+}
+
+#[test]
+fn the_panel_is_drawn_again_from_the_signals_alone() {
+    let workplace = Workplace::new();
+    workplace.write("worn.toml", fast_and("[quality]\ndin_grade = 7"));
+    workplace.succeeds(&["simulate", "worn.toml", "-o", "out"]);
+    let panel = || [workplace.read("out/panel.svg"), workplace.read("out/panel.png")];
+    let first = panel();
+    for name in ["worn.toml", "out/panel.svg", "out/panel.png", "out/summary.json"] {
+        std::fs::remove_file(workplace.path(name)).unwrap();
+    }
+    workplace.succeeds(&["panel", "out"]);
+    assert_eq!(panel(), first);
+    assert_eq!(workplace.names("out"), ["panel.png", "panel.svg", "signals.parquet"]);
+}
+
+#[test]
+fn a_panel_of_something_else() {
+    let workplace = Workplace::new();
+    workplace.fails(
+        2,
+        &["panel", "absent"],
+        &["there is no file absent/signals.parquet", "meshtone simulate"],
+    );
+    std::fs::create_dir(workplace.path("out")).unwrap();
+    workplace.write("out/signals.parquet", "time,force");
+    workplace.fails(2, &["panel", "out"], &["out/signals.parquet", "not a whole Parquet file"]);
+}

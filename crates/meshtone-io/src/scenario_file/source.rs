@@ -1,0 +1,66 @@
+//! A scenario file with its text, for errors that are found after reading.
+
+use std::path::{Path, PathBuf};
+
+use meshtone::scenario::{Scenario, ScenarioError};
+use meshtone::toml_reader::TomlDocument;
+
+use super::{FilesBeside, ReadScenarioError};
+
+/// A scenario file that has been read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ScenarioFile {
+    /// Where it was read from.
+    pub path: PathBuf,
+    /// Its text.
+    pub text: String,
+    /// What it says.
+    pub scenario: Scenario,
+}
+
+impl ScenarioFile {
+    /// Reads and validates a scenario file, and the files that it names.
+    ///
+    /// # Arguments
+    /// * `path` - the scenario file; names of other files in it are relative to its directory
+    ///
+    /// # Errors
+    /// As [`super::read_scenario`].
+    pub fn read(path: &Path) -> Result<Self, ReadScenarioError> {
+        let text = read_text(path)?;
+        let files = FilesBeside::new(path.parent().unwrap_or(Path::new("")));
+        let path = path.to_path_buf();
+        match Scenario::from_toml_with_files(&text, &files) {
+            Ok(scenario) => Ok(Self { path, text, scenario }),
+            Err(error) => Err(ReadScenarioError::Invalid { path, text, error: Box::new(error) }),
+        }
+    }
+
+    /// An error that was found after reading, with the key's line and its value as written.
+    ///
+    /// # Arguments
+    /// * `error` - about a key of the file
+    pub fn refuse(&self, error: ScenarioError) -> ReadScenarioError {
+        let error = match TomlDocument::parse(&self.text) {
+            Ok(document) => document.locate(error),
+            Err(_) => error,
+        };
+        let (path, text) = (self.path.clone(), self.text.clone());
+        ReadScenarioError::Invalid { path, text, error: Box::new(error) }
+    }
+}
+
+/// Some editors start a text with a mark that it is UTF-8.
+const BYTE_ORDER_MARK: char = '\u{feff}';
+
+fn read_text(path: &Path) -> Result<String, ReadScenarioError> {
+    let path_buf = || path.to_path_buf();
+    let bytes =
+        std::fs::read(path).map_err(|source| ReadScenarioError::Unreadable { path: path_buf(), source })?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let (bytes, start) = (error.as_bytes(), error.utf8_error().valid_up_to());
+        let line = 1 + bytes[..start].iter().filter(|&&byte| byte == b'\n').count();
+        ReadScenarioError::NotText { path: path_buf(), line, byte: bytes[start] }
+    })?;
+    Ok(text.strip_prefix(BYTE_ORDER_MARK).map(str::to_string).unwrap_or(text))
+}

@@ -1,0 +1,22 @@
+//! Signals as Apache Parquet.
+//!
+//! One row per sample, one column of double precision per signal, its unit in its name. What belongs to the
+//! whole file stands in its key-value metadata: the scenario as TOML that needs no other file
+//! ([`SCENARIO_KEY`]), the version of Meshtone ([`VERSION_KEY`]) and the sampling rate ([`RATE_KEY`]). Each
+//! column's unit and meaning stand in the metadata of its Arrow field. Nothing depends on when or where the
+//! file is written: the same simulation gives the same bytes.
+
+mod columns;
+mod read;
+mod write;
+
+pub use columns::{Column, TIME, columns};
+pub use read::{ReadSignalsError, Recorded, read_signals};
+pub use write::write_signals;
+
+/// Metadata key of the scenario, as TOML.
+pub const SCENARIO_KEY: &str = "meshtone.scenario";
+/// Metadata key of the version of Meshtone that wrote the file.
+pub const VERSION_KEY: &str = "meshtone.version";
+/// (S/s) Metadata key of the sampling rate.
+pub const RATE_KEY: &str = "meshtone.sampling_rate_hz";

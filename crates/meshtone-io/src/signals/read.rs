@@ -1,0 +1,111 @@
+//! Reading signals back.
+
+use std::fs::File;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use arrow::array::{Array, AsArray};
+use arrow::datatypes::Float64Type;
+use arrow::record_batch::RecordBatch;
+use meshtone::scenario::{Scenario, ScenarioError};
+use meshtone::signal::Channels;
+use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+use parquet::file::metadata::FileMetaData;
+
+use super::columns::columns_mut;
+use super::{RATE_KEY, SCENARIO_KEY, TIME, VERSION_KEY};
+
+/// A simulation's signals, read back.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recorded {
+    /// What was simulated.
+    pub scenario: Scenario,
+    /// The signals.
+    pub channels: Channels,
+    /// Version of Meshtone that wrote the file.
+    pub version: String,
+}
+
+/// Signals that could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadSignalsError {
+    /// The file cannot be opened or read.
+    #[error("cannot read {}: {source}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why it cannot be read.
+        source: io::Error,
+    },
+    /// The file holds something else than a simulation's signals.
+    #[error("{}: {problem}", path.display())]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+        /// What is not as `meshtone simulate` writes it.
+        problem: String,
+    },
+    /// The scenario in the file is refused, perhaps because another version wrote it.
+    #[error("{}: the scenario in {SCENARIO_KEY} is refused: {error}", path.display())]
+    Scenario {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        error: Box<ScenarioError>,
+    },
+}
+
+/// Reads what [`super::write_signals`] wrote.
+///
+/// # Arguments
+/// * `path` - the Parquet file
+///
+/// # Errors
+/// The file cannot be read, or it is none that Meshtone wrote.
+pub fn read_signals(path: &Path) -> Result<Recorded, ReadSignalsError> {
+    let file = File::open(path)
+        .map_err(|source| ReadSignalsError::Unreadable { path: path.to_path_buf(), source })?;
+    let foreign = |problem: String| ReadSignalsError::Foreign { path: path.to_path_buf(), problem };
+    let broken = |error: &dyn std::fmt::Display| foreign(format!("is not a whole Parquet file: {error}"));
+    let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|error| broken(&error))?;
+    let metadata = builder.metadata().file_metadata();
+    let text = text_of(metadata, SCENARIO_KEY).map_err(foreign)?;
+    let scenario = Scenario::from_toml(text)
+        .map_err(|error| ReadSignalsError::Scenario { path: path.to_path_buf(), error: Box::new(error) })?;
+    let version = text_of(metadata, VERSION_KEY).map_err(foreign)?.to_string();
+    let mut channels = Channels { sampling_rate_hz: rate(metadata).map_err(foreign)?, ..Channels::default() };
+    let mut first = true;
+    for batch in builder.build().map_err(|error| broken(&error))? {
+        let batch = batch.map_err(|error| broken(&error))?;
+        if std::mem::take(&mut first) {
+            channels.start_s = column(&batch, TIME.name).map_err(foreign)?.first().copied().unwrap_or(0.0);
+        }
+        for (wanted, signal) in columns_mut(&mut channels) {
+            signal.extend_from_slice(column(&batch, wanted.name).map_err(foreign)?);
+        }
+    }
+    Ok(Recorded { scenario, channels, version })
+}
+
+fn text_of<'m>(metadata: &'m FileMetaData, key: &str) -> Result<&'m str, String> {
+    let entries = metadata.key_value_metadata().into_iter().flatten();
+    entries
+        .filter(|entry| entry.key == key)
+        .find_map(|entry| entry.value.as_deref())
+        .ok_or_else(|| format!("has no metadata {key}, so `meshtone simulate` did not write it"))
+}
+
+fn rate(metadata: &FileMetaData) -> Result<f64, String> {
+    let text = text_of(metadata, RATE_KEY)?;
+    let rate = text.parse().ok().filter(|rate: &f64| rate.is_finite() && *rate > 0.0);
+    rate.ok_or_else(|| format!("metadata {RATE_KEY} is `{text}`; must be a number above 0"))
+}
+
+fn column<'b>(batch: &'b RecordBatch, name: &str) -> Result<&'b [f64], String> {
+    let column = batch.column_by_name(name).ok_or_else(|| format!("has no column {name}"))?;
+    let numbers = column.as_primitive_opt::<Float64Type>();
+    let numbers = numbers.filter(|numbers| numbers.logical_null_count() == 0);
+    numbers.map(|numbers| &numbers.values()[..]).ok_or_else(|| {
+        format!("has a column {name} of {}; must be of Float64 without nulls", column.data_type())
+    })
+}

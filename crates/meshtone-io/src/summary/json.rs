@@ -1,0 +1,76 @@
+//! The summary's JSON.
+
+use std::io::{self, Write};
+use std::time::Duration;
+
+use serde_json::{Map, Value, json};
+
+use super::{ChannelSummary, Summary};
+
+impl Summary {
+    /// Writes the summary as indented JSON.
+    ///
+    /// # Arguments
+    /// * `to` - where it is written to
+    ///
+    /// # Errors
+    /// Those of `to`.
+    pub fn write_json(&self, mut to: impl Write) -> io::Result<()> {
+        writeln!(to, "{:#}", self.to_json())
+    }
+
+    fn to_json(&self) -> Value {
+        let channels = self.channels.iter().map(|channel| (channel.name.to_string(), indicators(channel)));
+        let (stiffness, force) = (&self.mesh_stiffness, &self.mesh_force);
+        let warnings = self.warnings.iter();
+        let warnings = warnings.map(|warning| json!({ "key": warning.key, "message": warning.message }));
+        json!({
+            "format_version": self.format_version,
+            "meshtone_version": self.meshtone_version,
+            "convention": self.convention,
+            "seed": self.seed,
+            "fault": self.fault,
+            "sampling_rate_hz": self.sampling_rate_hz,
+            "samples": self.samples,
+            "start_s": self.start_s,
+            "samples_per_pinion_revolution": self.samples_per_pinion_revolution,
+            "contact_ratio": self.contact_ratio,
+            "natural_frequencies_hz": self.natural_frequencies_hz,
+            "mesh_stiffness": {
+                "min_n_per_mm": stiffness.min_n_per_mm,
+                "mean_n_per_mm": stiffness.mean_n_per_mm,
+                "max_n_per_mm": stiffness.max_n_per_mm,
+            },
+            "mesh_force": {
+                "min_n": force.min_n,
+                "mean_n": force.mean_n,
+                "max_n": force.max_n,
+                "tension_fraction": force.tension_fraction,
+            },
+            "channels": channels.collect::<Map<_, _>>(),
+            "computing_time_ms": self.times(),
+            "warnings": warnings.collect::<Vec<_>>(),
+        })
+    }
+
+    fn times(&self) -> Map<String, Value> {
+        let stages = self.computing_time.iter().map(|(stage, time)| (stage.replace(' ', "_"), *time));
+        let total = ("total".to_string(), self.total_time());
+        stages.chain([total]).map(|(stage, time)| (stage, json!(milliseconds(time)))).collect()
+    }
+}
+
+fn indicators(channel: &ChannelSummary) -> Value {
+    let unit = channel.unit.to_lowercase();
+    let entries = [
+        (format!("rms_{unit}"), json!(channel.rms)),
+        (format!("peak_{unit}"), json!(channel.peak)),
+        ("kurtosis".to_string(), json!(channel.kurtosis)),
+    ];
+    Value::Object(entries.into_iter().collect())
+}
+
+/// (ms) To the microsecond.
+fn milliseconds(time: Duration) -> f64 {
+    time.as_micros() as f64 / 1e3
+}

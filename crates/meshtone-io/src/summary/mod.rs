@@ -1,0 +1,163 @@
+//! The summary of a simulation, as JSON.
+//!
+//! Every key of a number ends in its unit. A number that does not exist, such as the kurtosis of a constant
+//! channel, is `null`.
+
+mod json;
+
+use std::time::Duration;
+
+use meshtone::Simulation;
+use meshtone::scenario::ScenarioWarning;
+use meshtone::signal::{kurtosis, peak, rms};
+
+use crate::signals::columns;
+
+/// Version of the summary's format: it grows when a key changes its name or meaning.
+pub const FORMAT_VERSION: u32 = 1;
+
+/// The main numbers of a simulation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Summary {
+    /// [`FORMAT_VERSION`].
+    pub format_version: u32,
+    /// Version of Meshtone.
+    pub meshtone_version: &'static str,
+    /// Convention, by its name in the scenario file.
+    pub convention: &'static str,
+    /// Seed of the random draws.
+    pub seed: u64,
+    /// Kind of fault, by its name in the scenario file; none for a healthy gear.
+    pub fault: Option<&'static str>,
+    /// (S/s) Actual sampling rate.
+    pub sampling_rate_hz: f64,
+    /// Number of samples kept.
+    pub samples: usize,
+    /// (s) Time of the first sample kept, since the start of the simulation.
+    pub start_s: f64,
+    /// Samples per revolution of the pinion, at the nominal speed.
+    pub samples_per_pinion_revolution: usize,
+    /// (-) Contact ratio.
+    pub contact_ratio: f64,
+    /// (Hz) The 13 natural frequencies at the mean mesh stiffness, rising.
+    pub natural_frequencies_hz: Vec<f64>,
+    /// Over a revolution of the gear.
+    pub mesh_stiffness: MeshStiffness,
+    /// Over the samples kept.
+    pub mesh_force: MeshForce,
+    /// Indicators of each signal, by the name of its column.
+    pub channels: Vec<ChannelSummary>,
+    /// Time that each stage took.
+    pub computing_time: Vec<(String, Duration)>,
+    /// What deserves attention.
+    pub warnings: Vec<ScenarioWarning>,
+}
+
+/// Stiffness of the mesh over a revolution of the gear.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeshStiffness {
+    /// (N/mm) Smallest.
+    pub min_n_per_mm: f64,
+    /// (N/mm) Mean.
+    pub mean_n_per_mm: f64,
+    /// (N/mm) Largest.
+    pub max_n_per_mm: f64,
+}
+
+/// Force along the line of action.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeshForce {
+    /// (N) Smallest; negative where the mesh pulls.
+    pub min_n: f64,
+    /// (N) Mean.
+    pub mean_n: f64,
+    /// (N) Largest.
+    pub max_n: f64,
+    /// (-) Part of the time in which the mesh pulls.
+    pub tension_fraction: f64,
+}
+
+/// Indicators of one signal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ChannelSummary {
+    /// The signal's column.
+    pub name: &'static str,
+    /// Unit of rms and peak.
+    pub unit: &'static str,
+    /// Root mean square, mean included.
+    pub rms: f64,
+    /// Largest absolute value.
+    pub peak: f64,
+    /// (-) Kurtosis, 3 for Gaussian noise; none for a constant.
+    pub kurtosis: Option<f64>,
+}
+
+impl Summary {
+    /// Sums up a simulation.
+    ///
+    /// # Arguments
+    /// * `simulation` - its stages and signals
+    /// * `warnings` - what deserves attention
+    pub fn new(simulation: &Simulation, warnings: &[ScenarioWarning]) -> Self {
+        let (stages, channels) = (&simulation.stages, &simulation.channels);
+        let stiffness = Extremes::of(&stages.mesh.mesh_n_per_mm);
+        let force = Extremes::of(&channels.mesh_force_n);
+        let stage_times = simulation.timings.iter().map(|time| (time.stage.to_string(), time.elapsed));
+        Self {
+            format_version: FORMAT_VERSION,
+            meshtone_version: env!("CARGO_PKG_VERSION"),
+            convention: stages.scenario.convention.name(),
+            seed: stages.scenario.seed,
+            fault: stages.scenario.fault.as_ref().map(|fault| fault.kind()),
+            sampling_rate_hz: channels.sampling_rate_hz,
+            samples: channels.len(),
+            start_s: channels.start_s,
+            samples_per_pinion_revolution: stages.time.samples_per_pinion_revolution,
+            contact_ratio: stages.teeth.contact.contact_ratio,
+            natural_frequencies_hz: stages.system.natural_frequencies_hz().to_vec(),
+            mesh_stiffness: MeshStiffness {
+                min_n_per_mm: stiffness.min,
+                mean_n_per_mm: stiffness.mean,
+                max_n_per_mm: stiffness.max,
+            },
+            mesh_force: MeshForce {
+                min_n: force.min,
+                mean_n: force.mean,
+                max_n: force.max,
+                tension_fraction: channels.tension_fraction(),
+            },
+            channels: columns(channels)
+                .map(|(column, signal)| ChannelSummary {
+                    name: column.name,
+                    unit: column.unit,
+                    rms: rms(signal),
+                    peak: peak(signal),
+                    kurtosis: kurtosis(signal),
+                })
+                .to_vec(),
+            computing_time: stage_times.collect(),
+            warnings: warnings.to_vec(),
+        }
+    }
+
+    /// (s) Time that all stages took.
+    pub fn total_time(&self) -> Duration {
+        self.computing_time.iter().map(|(_, elapsed)| *elapsed).sum()
+    }
+}
+
+struct Extremes {
+    min: f64,
+    mean: f64,
+    max: f64,
+}
+
+impl Extremes {
+    fn of(values: &[f64]) -> Self {
+        Self {
+            min: values.iter().copied().fold(f64::INFINITY, f64::min),
+            mean: values.iter().sum::<f64>() / values.len() as f64,
+            max: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        }
+    }
+}

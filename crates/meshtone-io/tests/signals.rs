@@ -1,0 +1,86 @@
+//! Signals and summaries, written and read back.
+#![allow(clippy::unwrap_used)]
+
+use std::fs::{self, File};
+use std::sync::Arc;
+
+use arrow::array::Float32Array;
+use arrow::datatypes::{DataType, Field, Schema};
+use arrow::record_batch::RecordBatch;
+use meshtone::scenario::Scenario;
+use meshtone::signal::Channels;
+use meshtone_io::signals::{RATE_KEY, ReadSignalsError, SCENARIO_KEY, read_signals, write_signals};
+use parquet::arrow::ArrowWriter;
+use parquet::file::metadata::KeyValue;
+use tempfile::tempdir;
+
+fn scenario() -> Scenario {
+    Scenario::new(3.0, 20, 40, 15.0, 40.0, 10.0)
+}
+
+/// More rows than are written at once, with numbers that only exact writing keeps.
+fn channels() -> Channels {
+    let signal = |scale: f64| (0..70_000).map(|i| scale * (f64::from(i) / 3.0).sin()).collect::<Vec<_>>();
+    Channels {
+        sampling_rate_hz: 258_400.0,
+        start_s: 0.95,
+        horizontal_g: signal(1.0),
+        vertical_g: signal(1e-300),
+        axial_g: vec![-0.0; 70_000],
+        pinion_speed_hz: signal(40.0),
+        gear_speed_hz: signal(17.0),
+        mesh_force_n: signal(1e9),
+    }
+}
+
+fn refused(file: File, path: &std::path::Path, schema: Schema, metadata: Vec<KeyValue>, words: &str) {
+    let columns = schema.fields().iter().map(|_| Arc::new(Float32Array::from(vec![1.0])) as _).collect();
+    let schema = Arc::new(schema);
+    let mut writer = ArrowWriter::try_new(file, schema.clone(), None).unwrap();
+    metadata.into_iter().for_each(|entry| writer.append_key_value_metadata(entry));
+    writer.write(&RecordBatch::try_new(schema, columns).unwrap()).unwrap();
+    writer.close().unwrap();
+    let error = read_signals(path).unwrap_err();
+    assert!(matches!(error, ReadSignalsError::Foreign { .. } | ReadSignalsError::Scenario { .. }));
+    assert!(error.to_string().contains(words), "{error}");
+}
+
+#[test]
+fn signals_are_read_back_exactly() {
+    let directory = tempdir().unwrap();
+    let path = directory.path().join("signals.parquet");
+    write_signals(File::create(&path).unwrap(), &scenario(), &channels()).unwrap();
+    let recorded = read_signals(&path).unwrap();
+    assert_eq!((recorded.scenario, recorded.channels), (scenario(), channels()));
+    assert_eq!(recorded.version, env!("CARGO_PKG_VERSION"));
+}
+
+#[test]
+fn files_of_others_are_refused() {
+    let directory = tempdir().unwrap();
+    let path = directory.path().join("signals.parquet");
+    let new_file = || File::create(&path).unwrap();
+    let schema = || Schema::new(vec![Field::new("time_s", DataType::Float32, false)]);
+    refused(new_file(), &path, schema(), Vec::new(), "has no metadata meshtone.scenario");
+    let broken = KeyValue::new(SCENARIO_KEY.to_string(), "seed = -1".to_string());
+    refused(new_file(), &path, schema(), vec![broken], "seed = -1");
+    let text = |key: &str, value: &str| KeyValue::new(key.to_string(), value.to_string());
+    let good = || vec![text(SCENARIO_KEY, &scenario().to_toml()), text("meshtone.version", "0.1.0")];
+    let wrong_rate = [good(), vec![text(RATE_KEY, "fast")]].concat();
+    refused(new_file(), &path, schema(), wrong_rate, "is `fast`; must be a number above 0");
+    let single = [good(), vec![text(RATE_KEY, "1000.0")]].concat();
+    refused(new_file(), &path, schema(), single, "column time_s of Float32; must be of Float64");
+}
+
+#[test]
+fn cut_files_are_refused() {
+    let directory = tempdir().unwrap();
+    let path = directory.path().join("signals.parquet");
+    let mut bytes = Vec::new();
+    write_signals(&mut bytes, &scenario(), &channels()).unwrap();
+    fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
+    let error = read_signals(&path).unwrap_err();
+    assert!(error.to_string().contains("not a whole Parquet file"), "{error}");
+    let error = read_signals(&directory.path().join("absent")).unwrap_err();
+    assert!(matches!(error, ReadSignalsError::Unreadable { .. }));
+}
