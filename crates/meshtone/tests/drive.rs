@@ -1,4 +1,5 @@
 //! What drives and disturbs the pair under `corrected`: profiles of speed and torque, fluctuations, eccentricity.
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
 mod physics;
 

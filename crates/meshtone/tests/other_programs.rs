@@ -2,6 +2,7 @@
 //!
 //! None of the numbers is a measurement. What is given to five digits is compared to what the models have in common;
 //! every tolerance is explained where it stands and on the documentation's page on validation.
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
 mod physics;
 
@@ -93,7 +94,7 @@ impl Flank {
     }
 
     /// The tooth clamped at the base circle.
-    fn from_base_circle(&self) -> ToothProfile {
+    fn clamped_at_base_circle(&self) -> ToothProfile {
         as_profile(self.profile(0.0, 10_000))
     }
 
@@ -288,7 +289,7 @@ fn classic_potential_energy() {
         let means = [expected[2], expected[5], cycle];
         let clamped = |turned: bool| {
             conjugate_mesh(&gears, e, 20.0, |wheel| {
-                let profile = Flank::new(&wheel).from_base_circle();
+                let profile = Flank::new(&wheel).clamped_at_base_circle();
                 Tooth::new(wheel, profile, turned, &rigid_foundation())
             })
         };
@@ -426,4 +427,33 @@ fn natural_frequencies_of_a_pair_with_8_coordinates() {
         assert!(worst < 0.006, "{hz:?}");
         assert!(hz[8] > 1e5, "the unused coordinates stand apart");
     }
+}
+
+// Without the mesh every wheel stands alone on its bearings and its shaft; only the gear shares its shaft with the brake.
+#[test]
+fn natural_frequencies_without_the_mesh() {
+    let mut scenario = meshtone::scenario::Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    scenario.gears.points_per_tooth = 1_000;
+    let system = meshtone::stages(&scenario).unwrap().system;
+    let mass = CoordinateVector::from(system.mass_diagonal);
+    let modes = Modes::new(&mass, &system.constant_stiffness);
+    let (pinion, gear, brake) = (system.pinion, system.gear, scenario.rig.brake_inertia_kgm2);
+    let [pinion_shaft, gear_shaft] = system.shaft_stiffness_nm_per_rad;
+    let (bearing, tilt) = (1.9e8, 1e8);
+    let mut squares: Vec<f64> = [gear, pinion]
+        .iter()
+        .flat_map(|wheel| {
+            let translation = bearing / wheel.mass_kg;
+            let tilting = tilt / wheel.transverse_kgm2;
+            [translation, translation, translation, tilting, tilting]
+        })
+        .collect();
+    squares.extend([pinion_shaft / pinion.polar_kgm2, gear_shaft * (1.0 / gear.polar_kgm2 + 1.0 / brake)]);
+    squares.sort_by(f64::total_cmp);
+    assert!(modes.angular_frequencies[0].powi(2) < 1e-9 * squares[0], "gear and brake turn freely");
+    let exact = squares.iter().map(|square| square.sqrt());
+    assert_close("uncoupled frequencies", 1e-13, modes.angular_frequencies[1..].iter().copied().zip(exact));
+    // G = E/(2 (1 + ν)) of steel, radius 10 mm, 200 and 600 mm long.
+    let by_hand = std::f64::consts::PI * 1e-8 * (210e9 / 2.6) / 2.0;
+    assert_close("shafts", 1e-14, [(pinion_shaft, by_hand / 0.2), (gear_shaft, by_hand / 0.6)]);
 }

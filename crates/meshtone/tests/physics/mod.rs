@@ -1,5 +1,5 @@
 //! What the tests of the physics share.
-#![allow(dead_code, clippy::unwrap_used)]
+#![allow(dead_code, clippy::unwrap_used, clippy::print_stdout)]
 
 use meshtone::scenario::{Convention, FoundationCoefficients, Gears, Rig};
 use meshtone::tooth::{Teeth, teeth};
