@@ -5,28 +5,19 @@ mod physics;
 
 use meshtone::dynamics::coordinates::{COORDINATES, THETA_BRAKE, THETA_GEAR, THETA_PINION};
 use meshtone::scenario::{Convention, Fault, Scenario, ToothBreakage};
-use meshtone::solver::{Projection, Recorder, StateView};
+use meshtone::solver::{Block, Output, Recorder};
 use physics::*;
 
-/// Sums over the kept samples.
-struct Balance {
-    first_kept: usize,
-    motor_rad: Vec<f64>,
-    pinion: Projection,
-    gear_shaft: Projection,
-    motor_torsion_rad: f64,
-    brake_torsion_rad: f64,
-    force_n: f64,
-    count: f64,
+/// The kept part of each output.
+#[derive(Default)]
+struct Kept {
+    outputs: [Vec<f64>; 3],
 }
 
-impl Recorder for Balance {
-    fn record(&mut self, sample: usize, state: &StateView) {
-        if sample >= self.first_kept {
-            self.motor_torsion_rad += self.motor_rad[sample] - self.pinion.displacement(state);
-            self.brake_torsion_rad += self.gear_shaft.displacement(state);
-            self.force_n += state.mesh_force_n;
-            self.count += 1.0;
+impl Recorder for Kept {
+    fn record(&mut self, block: &Block) {
+        for (n, kept) in self.outputs.iter_mut().enumerate() {
+            kept.extend_from_slice(block.output(n));
         }
     }
 }
@@ -34,29 +25,26 @@ impl Recorder for Balance {
 /// (N m, N m, N) Mean motor torque, mean torque of the brake's shaft and mean mesh force.
 fn means(scenario: &Scenario) -> [f64; 3] {
     let stages = meshtone::stages(scenario).unwrap();
-    let model = stages.reduced_model();
-    let weighted = |terms: &[(usize, f64)]| {
+    let displacement = |terms: &[(usize, f64)]| {
         let mut weights = [0.0; COORDINATES];
         terms.iter().for_each(|&(coordinate, weight)| weights[coordinate] = weight);
-        Projection::new(&model, &weights)
+        Output::Displacement(weights)
     };
-    let mut balance = Balance {
-        first_kept: stages.time.first_kept_sample,
-        motor_rad: stages.excitation().take(stages.time.samples).map(|e| e.motor_angle_rad).collect(),
-        pinion: weighted(&[(THETA_PINION, 1.0)]),
-        gear_shaft: weighted(&[(THETA_BRAKE, 1.0), (THETA_GEAR, -1.0)]),
-        motor_torsion_rad: 0.0,
-        brake_torsion_rad: 0.0,
-        force_n: 0.0,
-        count: 0.0,
-    };
-    stages.integrate(&model, &mut balance);
+    let outputs = [
+        displacement(&[(THETA_PINION, 1.0)]),
+        displacement(&[(THETA_BRAKE, 1.0), (THETA_GEAR, -1.0)]),
+        Output::MeshForce,
+    ];
+    let first = stages.time.first_kept_sample;
+    let mut kept = Kept::default();
+    stages.integrate(&stages.reduced_model(), &outputs, first, &mut kept);
+    let [pinion_rad, brake_torsion_rad, force_n] = kept.outputs;
+    assert_eq!(pinion_rad.len(), stages.time.kept_samples());
+    let motor_rad = stages.excitation().skip(first).map(|excitation| excitation.motor_angle_rad);
+    let motor_torsion_rad: Vec<f64> =
+        motor_rad.zip(&pinion_rad).map(|(motor, pinion)| motor - pinion).collect();
     let [motor, brake] = stages.system.shaft_stiffness_nm_per_rad;
-    [
-        motor * balance.motor_torsion_rad / balance.count,
-        brake * balance.brake_torsion_rad / balance.count,
-        balance.force_n / balance.count,
-    ]
+    [motor * mean(&motor_torsion_rad), brake * mean(&brake_torsion_rad), mean(&force_n)]
 }
 
 /// (N m, N m, N) What the load asks for.

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::super::{Gears, ScenarioError, ScenarioWarning, TipRelief};
-use super::rules::{Check, below, finite, positive_up_to, require};
+use super::rules::{Check, below, finite, positive_up_to, refuse, require};
 
 const FEWEST_TEETH: u32 = 6;
 const MOST_TEETH: u32 = 10_000;
