@@ -26,6 +26,10 @@ pub(super) fn geometry(
     let inside = pit.start_index..=pit.end_index;
     let mut gear = ToothSection::sound(&teeth.gear, &teeth.gear_profile);
     cut_corner(&mut gear, face_width, fault.width_mm, &teeth.gear_profile.y_mm, &flank_y_mm, inside.clone());
+    if let Some(lateral) = &mut gear.lateral {
+        // Convention: the published coupling has the sign of a pit on the other side, with the load left where it is.
+        lateral.published_coupling = convention == Convention::Published;
+    }
 
     let mut pinion = ToothSection::sound(&teeth.pinion, &teeth.pinion_profile);
     let left = (face_width - fault.width_mm) / face_width;
@@ -75,6 +79,7 @@ fn cut_corner(
         iyz_mm4: vec![0.0; points],
         zc_mm: vec![0.0; points],
         load_z_mm: vec![0.0; points],
+        published_coupling: false,
     };
     for i in inside {
         let (y, cut_y) = (y_mm[i], flank_y_mm[i]);

@@ -41,6 +41,9 @@ pub struct LateralBending {
     pub zc_mm: Vec<f64>,
     /// (mm) z of the load when the mate touches the point.
     pub load_z_mm: Vec<f64>,
+    /// Whether the term that couples the two bendings has the published sign, which is that of the section's mirror
+    /// image.
+    pub published_coupling: bool,
 }
 
 /// Range of profile points over which the mate turns about the range's two ends.

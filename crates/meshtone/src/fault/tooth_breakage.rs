@@ -53,6 +53,7 @@ pub(super) fn geometry(fault: &ToothBreakage, teeth: &Teeth) -> Result<FaultGeom
         iyz_mm4: vec![0.0; points],
         zc_mm: vec![0.0; points],
         load_z_mm: met_width.iter().map(|width| width / 2.0).collect(),
+        published_coupling: false,
     });
     pinion.foundation_width_mm = met_width.iter().map(|width| face_width - width).collect();
 
@@ -89,6 +90,7 @@ fn chipped(face_width: f64, y_mm: &[f64], missing_width: &[f64]) -> ToothSection
             iyz_mm4: vec![0.0; y_mm.len()],
             zc_mm: centre.clone(),
             load_z_mm: centre,
+            published_coupling: false,
         }),
         foundation_width_mm: widths.clone(),
         contact_width_mm: widths,

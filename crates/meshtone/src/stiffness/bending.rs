@@ -1,8 +1,8 @@
 //! Bending about both axes of the section.
 //!
-//! `U_b = ∫ (M_z² Iy + 2 M_z M_y Iyz + M_y² Iz)/(2E (Iy Iz − Iyz²)) dx` with
-//! `M_z = F_s (x − x_i) + F_a (y_i − Yc)` and `M_y = F_a (Z̄_i − Zc)`. Everything that depends on the
-//! loaded point i is moved out of the integrals.
+//! `U_b = ∫ (M_z² Iy − 2 M_z M_y Iyz + M_y² Iz)/(2E (Iy Iz − Iyz²)) dx` with
+//! `M_z = F_s (x − x_i) + F_a (y_i − Yc)` and `M_y = F_a (Z̄_i − Zc)`, both the moment of the stress, `−∫ σ y dA` and
+//! `−∫ σ z dA`. Everything that depends on the loaded point i is moved out of the integrals.
 
 use super::energy::{EnergyCoefficients, LoadedTooth};
 use crate::fault::LateralBending;
@@ -50,12 +50,15 @@ fn main_moment(x_i: f64, y_i: f64, [xx, x, one, xyc, yc, ycyc]: [f64; 6]) -> Ene
 fn about_both(tooth: &LoadedTooth, lateral: &LateralBending) -> Vec<EnergyCoefficients> {
     let flexibility = 1.0 / (2.0 * tooth.youngs_modulus_mpa);
     let y_mm = &tooth.profile.y_mm;
+    // Convention: the published energy adds the coupling, as if M_y had the opposite sign.
+    let coupling = if lateral.published_coupling { 1.0 } else { -1.0 };
     let centre_y = |i: usize| tooth.section.yc_mm.as_ref().map_or(0.0, |yc| yc[i]);
     tooth.integrate(
         |i| {
             let (iz, iy, iyz) = (tooth.section.iz_mm4[i], lateral.iy_mm4[i], lateral.iyz_mm4[i]);
             let per_determinant = flexibility / (iy * iz - iyz * iyz);
-            let (main, cross, side) = (iy * per_determinant, iyz * per_determinant, iz * per_determinant);
+            let (main, cross, side) =
+                (iy * per_determinant, coupling * iyz * per_determinant, iz * per_determinant);
             let (x, yc, zc) = (tooth.depth_mm(i), centre_y(i), lateral.zc_mm[i]);
             let [m0, m1, m2, m3, m4, m5] = main_integrands(main, x, yc);
             [

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::super::{Gears, ScenarioError, ScenarioWarning, TipRelief};
-use super::rules::{Check, below, finite, positive_up_to, require};
+use super::rules::{Check, below, finite, positive_up_to, refuse, require};
 
 const FEWEST_TEETH: u32 = 6;
 const MOST_TEETH: u32 = 10_000;
@@ -32,6 +32,7 @@ pub(super) fn check(gears: &Gears) -> Check {
     gears.tip_relief.map_or(Ok(()), |relief| tip_relief(&relief, gears.module_mm))?;
     let thickness = half_thickness_mm(gears.module_mm);
     below("gears.crowning_mm", gears.crowning_mm, thickness, HALF_THICKNESS)?;
+    tip_thickness(gears)?;
     points_per_tooth(gears.points_per_tooth)?;
     foundation(gears)
 }
@@ -126,6 +127,54 @@ fn tip_relief(relief: &TipRelief, module_mm: f64) -> Check {
     })
     .map_err(|error| error.with_help("for no relief, write tip_relief = false; its default is 1 mm × 1 mm"))
 }
+
+/// Relief and crowning must leave some of the tip: the compliances take what is beyond the tooth's centre line for a
+/// negative thickness.
+fn tip_thickness(gears: &Gears) -> Check {
+    let (length, depth) = gears.tip_relief.map_or((0.0, 0.0), |relief| (relief.length_mm, relief.depth_mm));
+    let left = [gears.pinion_teeth, gears.gear_teeth]
+        .map(|teeth| half_thickness_below_tip_mm(gears, f64::from(teeth), length))
+        .into_iter()
+        .fold(f64::INFINITY, f64::min);
+    let removed = depth + gears.crowning_mm;
+    if removed < left {
+        return Ok(());
+    }
+    let problem = format!(
+        "with gears.crowning_mm, {removed:?} mm is removed where the tooth is only {left:.4} mm thick from its \
+         centre line, {length:?} mm below the tip; must leave some of the tip"
+    );
+    let (key, value) = match gears.tip_relief {
+        Some(relief) => ("gears.tip_relief.depth_mm", relief.depth_mm),
+        None => ("gears.crowning_mm", gears.crowning_mm),
+    };
+    Err(refuse(key, value, problem).with_help(
+        "the default relief, 1 mm × 1 mm, is for modules above 1.5 mm; for none, write tip_relief = false",
+    ))
+}
+
+/// (mm) Half thickness of an unrelieved tooth, `below_tip_mm` from the tip along its centre line; of its foot on the
+/// base circle where that is nearer.
+fn half_thickness_below_tip_mm(gears: &Gears, teeth: f64, below_tip_mm: f64) -> f64 {
+    let angle = gears.pressure_angle_deg.to_radians();
+    let base = gears.module_mm * teeth / 2.0 * angle.cos();
+    let foot = PI / (2.0 * teeth) + angle.tan() - angle;
+    let flank = |roll: f64| {
+        let (sin, cos) = (foot - roll).sin_cos();
+        (base * (cos - roll * sin), base * (sin + roll * cos))
+    };
+    let tip_roll = (teeth * angle.cos() / (teeth + 2.0)).acos().tan();
+    let x = flank(tip_roll).0 - below_tip_mm;
+    let (mut low, mut high) = (0.0, tip_roll);
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        if flank(middle).0 < x { low = middle } else { high = middle }
+    }
+    flank(high).1
+}
+
+/// Enough for a double's precision.
+const BISECTIONS: usize = 60;
 
 fn points_per_tooth(points: usize) -> Check {
     let [fewest, most] = POINTS_PER_TOOTH;

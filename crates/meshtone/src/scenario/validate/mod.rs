@@ -52,6 +52,7 @@ impl Scenario {
         fault::check(self.fault.as_ref(), &self.gears)?;
         rig::check(&self.rig, &self.gears)?;
         solver::check(&self.solver)?;
+        operation::check_duration(self)?;
         size::check(self, memory_limit_bytes)?;
         Ok(gears::warnings(&self.gears))
     }

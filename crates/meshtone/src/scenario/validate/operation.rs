@@ -1,6 +1,6 @@
 //! Rules for `[operation]`.
 
-use super::super::{Operation, Profile, ScenarioError};
+use super::super::{Convention, Operation, Profile, Scenario, ScenarioError};
 use super::rules::{Check, finite, not_negative, positive_up_to, refuse, require};
 
 const FASTEST_HZ: f64 = 1e5;
@@ -36,6 +36,24 @@ pub(super) fn check(operation: &Operation) -> Check {
     fluctuation("operation.speed_fluctuation_hz", operation.speed_fluctuation_hz, slowest, "speed", "Hz")?;
     let lightest = smallest(torque, operation.torque_profile_nm.as_ref());
     fluctuation("operation.torque_fluctuation_nm", operation.torque_fluctuation_nm, lightest, "torque", "N m")
+}
+
+/// A speed profile sets the duration, which must outlast what is discarded.
+pub(super) fn check_duration(scenario: &Scenario) -> Check {
+    let operation = &scenario.operation;
+    if scenario.convention == Convention::Published {
+        // Convention: the published code ignores the profile.
+        return Ok(());
+    }
+    let Some(end) = operation.speed_profile_hz.as_ref().and_then(|profile| profile.time_s.last()) else {
+        return Ok(());
+    };
+    let revolutions = f64::from(crate::sampling::nominal_revolutions(scenario.gears.gear_teeth));
+    let settling = scenario.solver.settle_fraction * revolutions / operation.pinion_speed_hz;
+    let problem =
+        format!("the profile ends at {end:?} s, within the first {settling:.4} s, which are discarded");
+    require("operation.speed_profile_hz", *end, *end > settling, problem)
+        .map_err(|error| error.with_help("lengthen the profile, or lower solver.settle_fraction"))
 }
 
 fn smallest(nominal: f64, profile: Option<&Profile>) -> f64 {
