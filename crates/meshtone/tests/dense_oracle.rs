@@ -1,4 +1,5 @@
 //! The modal, low-rank solver against a dense 13 × 13 one, written straight from the equations of motion.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout)]
 
 use meshtone::dynamics::Excitation;
 use meshtone::dynamics::coordinates::{COORDINATES, CoordinateMatrix, CoordinateVector, THETA_PINION};

@@ -1,4 +1,5 @@
 //! The time integration on problems whose solution is known: constant mesh stiffness.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout)]
 
 use meshtone::dynamics::coordinates::*;
 use meshtone::scenario::{DampingRatio, Scenario};
