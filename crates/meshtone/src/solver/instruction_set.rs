@@ -5,8 +5,6 @@
 /// All sets with fused multiply-add give the same bits; [`Self::Plain`] rounds products apart and differs by rounding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InstructionSet {
-    /// AVX-512 (x86-64).
-    Avx512,
     /// AVX2 and FMA (x86-64).
     Avx2,
     /// NEON (aarch64).
@@ -23,24 +21,16 @@ impl InstructionSet {
     /// assert!(InstructionSet::available().contains(&InstructionSet::Plain));
     /// ```
     pub fn available() -> Vec<Self> {
-        [Self::Avx512, Self::Avx2, Self::Neon, Self::Plain]
-            .into_iter()
-            .filter(|set| set.is_available())
-            .collect()
+        [Self::Avx2, Self::Neon, Self::Plain].into_iter().filter(|set| set.is_available()).collect()
     }
 
     /// The fastest set that this machine can run.
     pub fn fastest() -> Self {
-        [Self::Avx512, Self::Avx2, Self::Neon]
-            .into_iter()
-            .find(|set| set.is_available())
-            .unwrap_or(Self::Plain)
+        [Self::Avx2, Self::Neon].into_iter().find(|set| set.is_available()).unwrap_or(Self::Plain)
     }
 
     fn is_available(self) -> bool {
         match self {
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => pulp::x86::V4::try_new().is_some(),
             #[cfg(target_arch = "x86_64")]
             Self::Avx2 => pulp::x86::V3::try_new().is_some(),
             #[cfg(target_arch = "aarch64")]
@@ -54,12 +44,6 @@ impl InstructionSet {
     /// Runs a task with this set's instructions, or plainly where the machine has not got them.
     pub(super) fn run(self, task: impl Task) {
         match self {
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => {
-                if let Some(simd) = pulp::x86::V4::try_new() {
-                    return pulp::Simd::vectorize(simd, Fused(task));
-                }
-            }
             #[cfg(target_arch = "x86_64")]
             Self::Avx2 => {
                 if let Some(simd) = pulp::x86::V3::try_new() {

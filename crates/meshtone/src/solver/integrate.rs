@@ -66,7 +66,7 @@ enum Size {
     Tilting,
     /// The pressure angle changes.
     Rolling,
-    /// Everything, as after an arbitrary initial displacement.
+    /// Everything, as after an arbitrary initial displacement; also at varying speed or load.
     General,
 }
 
@@ -100,36 +100,28 @@ fn by_size<const L: usize>(
     recorders: [&mut dyn Recorder; L],
 ) {
     macro_rules! solve {
-        ($modes:literal, $directions:literal) => {
-            match (published, steady) {
-                (true, true) => instructions.run(Solve::<L, $modes, $directions, true, true> {
+        ($modes:literal, $directions:literal, $steady:literal) => {
+            if published {
+                instructions.run(Solve::<L, $modes, $directions, true, $steady> {
                     problems,
                     forcings,
                     recorders,
-                }),
-                (true, false) => instructions.run(Solve::<L, $modes, $directions, true, false> {
+                })
+            } else {
+                instructions.run(Solve::<L, $modes, $directions, false, $steady> {
                     problems,
                     forcings,
                     recorders,
-                }),
-                (false, true) => instructions.run(Solve::<L, $modes, $directions, false, true> {
-                    problems,
-                    forcings,
-                    recorders,
-                }),
-                (false, false) => instructions.run(Solve::<L, $modes, $directions, false, false> {
-                    problems,
-                    forcings,
-                    recorders,
-                }),
+                })
             }
         };
     }
+    // Each line is compiled for every instruction set, so what is rare shares the largest size.
     match size {
-        Size::Flat => solve!(5, 1),
-        Size::Tilting => solve!(7, 2),
-        Size::Rolling => solve!(7, 3),
-        Size::General => solve!(13, 5),
+        Size::Flat if steady => solve!(5, 1, true),
+        Size::Tilting if steady => solve!(7, 2, true),
+        Size::Rolling if steady => solve!(7, 3, true),
+        _ => solve!(13, 5, false),
     }
 }
 
