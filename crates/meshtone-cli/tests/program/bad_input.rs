@@ -120,7 +120,10 @@ fn nothing_left_after_settling() {
     let settling = fast_and("settle_fraction = 0.99999");
     refused(settling, &["line 11", "solver.settle_fraction = 0.99999", "must be smaller"]);
     let short = "[operation.speed_profile_hz]\ntime_s = [0.0, 0.5]\nvalue = [40.0, 41.0]";
-    refused(fast_and(short), &["operation.speed_profile_hz", "ends at 0.5 s", "first 1 s", "longer"]);
+    refused(
+        fast_and(short),
+        &["line 11", "operation.speed_profile_hz = 0.5", "ends at 0.5 s", "first 1.0000 s"],
+    );
 }
 
 #[test]
