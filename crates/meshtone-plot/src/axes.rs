@@ -138,7 +138,9 @@ impl Axes {
             .fold(0.0, f64::max);
         let name_left = name_left.max(NUMBERS_LEFT + widest + NAME_GAP);
         let middle = self.area.top + self.area.height / 2.0;
-        canvas.text((left - name_left, middle), name, TextStyle::AXIS.upwards());
+        // Beside the widest numbers the gap gives way before the figure's edge does.
+        let baseline = (left - name_left).max(TextStyle::AXIS.size);
+        canvas.text((baseline, middle), name, TextStyle::AXIS.upwards());
     }
 
     /// Pixels of a curve whose x does not fall.

@@ -38,7 +38,7 @@ impl Ticks {
     /// The number as it stands at the axis.
     pub(crate) fn text(&self, value: f64) -> String {
         let largest = self.values.iter().fold(0.0f64, |largest, value| largest.max(value.abs()));
-        let text = if self.step < 1e-4 || largest >= 1e5 {
+        let text = if self.step < 1e-4 || largest >= 1e4 {
             if value.abs() < self.step / 2.0 { "0".to_owned() } else { scientific(value, self.step) }
         } else {
             let decimals = (-self.step.log10() - 1e-9).ceil().max(0.0) as usize;

@@ -266,7 +266,7 @@ fn signals_of_another_rate_are_refused() {
 #[test]
 fn no_samples_at_changing_speed() {
     let mut scenario = with_teeth(17, 38, None);
-    scenario.operation.speed_profile_hz = Some(Profile { time_s: vec![0.0, 0.5], value: vec![20.0, 40.0] });
+    scenario.operation.speed_profile_hz = Some(Profile { time_s: vec![0.0, 1.5], value: vec![20.0, 40.0] });
     let simulation = simulated(&scenario);
     let figure = panel::draw(&simulation.stages, &Channels::default()).unwrap();
     check(&figure);

@@ -105,7 +105,12 @@ impl<const L: usize, const FUSED: bool, const N: usize, const R: usize> Group<'_
         let in_cycle = cycles.negative_mul_add(c.cycle, nearest);
         let pitches = in_cycle.add(half).mul(c.per_pitch).floor();
         let in_pitch = pitches.negative_mul_add(c.pitch, in_cycle).add(c.window);
-        in_cycle.where_less(in_cycle, c.window, in_pitch).indices()
+        let mut entries = in_cycle.where_less(in_cycle, c.window, in_pitch).indices();
+        for l in 0..L {
+            // An angle that is not a number, of a solution that has diverged, has no entry.
+            entries[l] = entries[l].min(self.tables[l].points.len() - 1);
+        }
+        entries
     }
 
     /// `w = −(1 + S' Γ)⁻¹ (f + S' ŷ)`: the mesh force at the end of a step whose deflection is ŷ without it.
