@@ -54,8 +54,12 @@ pub(crate) fn drawable(value: f64) -> bool {
     value.abs() < 1e30
 }
 
+/// Below this a value is rounding, in every unit that is drawn.
+const ROUNDING: f64 = 1e-9;
+
 /// Range of the drawable values with a margin; ±1 round 0 where there are none.
 pub(crate) fn range(values: impl Iterator<Item = f64>, margin: f64) -> [f64; 2] {
+    let values = values.map(|value| if value.abs() < ROUNDING { 0.0 } else { value });
     let (low, high) = values
         .filter(|&value| drawable(value))
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
