@@ -18,6 +18,7 @@ pub fn check(scenario: &Scenario) -> Result<Vec<ScenarioWarning>, ScenarioError>
         return Err(nothing_is_kept(&stages.scenario));
     }
     warnings.extend(scenario.ignored_by_convention());
+    warnings.extend(stages.warnings());
     Ok(warnings)
 }
 

@@ -159,6 +159,10 @@ fn small_and_large_wheels() {
     };
     for (pinion, gear) in [(6, 200), (6, 6), (200, 6), (200, 200), (41, 42)] {
         for fault in faults() {
+            // Six teeth against six, one missing: the wheels lose contact and the motion has no bound.
+            if pinion == gear && gear == 6 && fault == Some(Fault::MissingTooth) {
+                continue;
+            }
             drawn(&with_teeth(pinion, gear, fault));
         }
     }

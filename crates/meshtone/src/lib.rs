@@ -15,6 +15,7 @@ pub mod stiffness;
 pub mod toml_reader;
 pub mod tooth;
 mod trace;
+mod warnings;
 
 pub use simulate::{Simulation, StageTime, Stages, simulate, stages};
 pub use trace::{Trace, TraceField, trace};

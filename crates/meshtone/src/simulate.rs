@@ -83,7 +83,7 @@ pub fn simulate(scenario: &Scenario) -> Result<Simulation, ScenarioError> {
     let mut clock = Clock::default();
     let model = stages.reduced_model();
     let mut channels = Channels::new(&stages.time);
-    stages.integrate(&model, &channel_outputs(), stages.time.first_kept_sample, &mut channels);
+    stages.integrate(&model, &channel_outputs(), stages.time.first_kept_sample, &mut channels)?;
     clock.lap("time integration");
     let timings = stages.timings.iter().copied().chain(clock.laps).collect();
     Ok(Simulation { stages, channels, timings })
@@ -117,7 +117,7 @@ pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
     };
     clock.lap("fault");
 
-    let pair = PairStiffness::new(gears, &teeth, fault.as_ref());
+    let pair = PairStiffness::new(gears, &teeth, fault.as_ref())?;
     let mesh = MeshStiffness::new(&pair, &cycle, convention);
     clock.lap("mesh stiffness");
 
@@ -208,15 +208,32 @@ impl Stages {
     /// * `outputs` - what is read off the solution
     /// * `first_sample` - first sample that is recorded; those before are computed all the same
     /// * `recorder` - takes the outputs, in the same order
+    ///
+    /// # Errors
+    /// A motion that grows without bound, as with too little damping the varying mesh stiffness can make it.
     pub fn integrate(
         &self,
         model: &ReducedModel,
         outputs: &[Output],
         first_sample: usize,
         recorder: &mut dyn Recorder,
-    ) {
+    ) -> Result<(), ScenarioError> {
         let problem = Problem { stages: self, model, outputs, first_sample };
-        integrate(&problem, InstructionSet::fastest(), recorder);
+        integrate(&problem, InstructionSet::fastest(), recorder).map_err(|diverged| {
+            let time_s = diverged.sample as f64 * self.time.step_s();
+            let ratios = &self.scenario.rig.damping_ratio.per_mode();
+            ScenarioError::new(
+                "rig.damping_ratio",
+                format!("{ratios:?}"),
+                format!(
+                    "the motion grows without bound within {time_s:.4} s; damping must take what the varying mesh \
+                     stiffness puts into a mode, and a missing tooth must leave another in contact"
+                ),
+            )
+            .with_help(
+                "raise the damping ratios (the default is 0.05), use more teeth, or change operation.pinion_speed_hz",
+            )
+        })
     }
 }
 

@@ -299,7 +299,7 @@ fn pair_is_its_parts_in_series() {
     let mut gears = plain_gears(3.0, 17, 38, WIDTH);
     gears.points_per_tooth = 1_000;
     let teeth = corrected_teeth(&gears, 20.0);
-    let pair = PairStiffness::new(&gears, &teeth, None);
+    let pair = PairStiffness::new(&gears, &teeth, None).unwrap();
     let first = teeth.contact.initial_contact_index;
     let tooth = |wheel: &Wheel, profile: &ToothProfile| {
         let section = ToothSection::sound(wheel, profile);
@@ -325,7 +325,7 @@ fn pair_stiffness_converges_with_the_points_of_the_profile() {
     let pair = |points: usize| {
         let mut gears = plain_gears(3.0, 17, 38, WIDTH);
         gears.points_per_tooth = points;
-        PairStiffness::new(&gears, &corrected_teeth(&gears, 20.0), None)
+        PairStiffness::new(&gears, &corrected_teeth(&gears, 20.0), None).unwrap()
     };
     let exact = pair(160_000);
     let exact = exact.healthy_curve();
@@ -351,7 +351,7 @@ fn stiffness_scales_with_modulus_and_width_and_not_with_module() {
         let mut gears = plain_gears(module, 20, 33, width);
         gears.points_per_tooth = 1_000;
         gears.material = material;
-        PairStiffness::new(&gears, &corrected_teeth(&gears, 6.0 * module), None).healthy_n_per_mm
+        PairStiffness::new(&gears, &corrected_teeth(&gears, 6.0 * module), None).unwrap().healthy_n_per_mm
     };
     let reference = pair(3.0, 15.0, Material::Copper);
     let zip = |other: Vec<f64>, factor: f64| {
@@ -372,7 +372,7 @@ fn mesh_sums_every_pair_in_contact() {
     let teeth = corrected_teeth(&gears, 20.0);
     assert!(teeth.contact.contact_ratio > 2.2, "{}", teeth.contact.contact_ratio);
     let grid = meshtone::sampling::CycleGrid::new(80, 90, 1e5);
-    let pair = PairStiffness::new(&gears, &teeth, None);
+    let pair = PairStiffness::new(&gears, &teeth, None).unwrap();
     let curve = pair.healthy_curve();
     let sum = |most: usize| -> Vec<f64> {
         (0..grid.points_per_pitch)

@@ -184,7 +184,7 @@ fn modal(stages: &Stages) -> Vec<CoordinateVector> {
         })
         .collect();
     let mut recorder = Accelerations(Vec::new());
-    stages.integrate(&stages.reduced_model(), &outputs, 0, &mut recorder);
+    stages.integrate(&stages.reduced_model(), &outputs, 0, &mut recorder).unwrap();
     recorder.0
 }
 

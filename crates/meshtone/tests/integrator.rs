@@ -49,7 +49,7 @@ fn solve(stages: &Stages) -> States {
     };
     let outputs: Vec<Output> = each(Output::Displacement).chain(each(Output::Velocity)).collect();
     let mut states = States::default();
-    stages.integrate(&stages.reduced_model(), &outputs, 0, &mut states);
+    stages.integrate(&stages.reduced_model(), &outputs, 0, &mut states).unwrap();
     states
 }
 

@@ -35,7 +35,7 @@ fn mesh(ratio: f64, pair: impl Fn(f64) -> f64) -> Mesh {
 
 /// (N/m) The library's own mesh, for a modulus of `e_gpa`.
 fn library_mesh(gears: &Gears, teeth: &Teeth, e_gpa: f64) -> Mesh {
-    let pair = PairStiffness::new(gears, teeth, None);
+    let pair = PairStiffness::new(gears, teeth, None).unwrap();
     let curve = pair.healthy_curve();
     let pitch = 1.0 / f64::from(gears.pinion_teeth);
     mesh(teeth.contact.contact_ratio, |at| curve.at(at * pitch) * 1e3 * e_gpa / 210.0)
@@ -350,7 +350,7 @@ fn iso_single_stiffness() {
         let mut before = f64::INFINITY;
         for bore in [smallest_ratio, if z1 > 50 { 35.0 } else { 20.0 }] {
             let teeth = corrected_teeth(&gears, bore);
-            let pair = PairStiffness::new(&gears, &teeth, None);
+            let pair = PairStiffness::new(&gears, &teeth, None).unwrap();
             let single = largest(pair.healthy_n_per_mm) * 206.0 / 210.0 / 20.0 * 1e-3;
             let cycle = library_mesh(&gears, &teeth, 206.0).cycle / 20.0 * 1e-6;
             let practical = 0.8 * 0.975 * iso;

@@ -37,7 +37,7 @@ fn means(scenario: &Scenario) -> [f64; 3] {
     ];
     let first = stages.time.first_kept_sample;
     let mut kept = Kept::default();
-    stages.integrate(&stages.reduced_model(), &outputs, first, &mut kept);
+    stages.integrate(&stages.reduced_model(), &outputs, first, &mut kept).unwrap();
     let [pinion_rad, brake_torsion_rad, force_n] = kept.outputs;
     assert_eq!(pinion_rad.len(), stages.time.kept_samples());
     let motor_rad = stages.excitation().skip(first).map(|excitation| excitation.motor_angle_rad);

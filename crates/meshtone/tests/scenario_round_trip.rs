@@ -206,6 +206,9 @@ proptest! {
 
     #[test]
     fn scenarios_survive_being_written_and_read(scenario in scenario()) {
+        // A long speed profile may need more memory than is allowed, and a tooth that is small may not bear the default
+        // relief, which the published convention always has.
+        prop_assume!(scenario.validate().is_ok());
         let text = scenario.to_toml();
         let read = Scenario::from_toml(&text);
         prop_assert_eq!(read.as_ref(), Ok(&scenario), "{}", text);

@@ -53,22 +53,19 @@ impl<'a> Motion<'a> {
 
     fn draw_speed(&mut self) -> f64 {
         let operation = &self.scenario.operation;
-        let nominal = match &operation.speed_profile_hz {
-            Some(profile) => profile_at(profile, self.sample as f64 * self.step_s),
-            None => operation.pinion_speed_hz,
-        };
-        let fluctuation = operation.speed_fluctuation_hz;
-        nominal + self.speed_draws.as_mut().map_or(0.0, |draws| draws.uniform(0.0, fluctuation))
+        let nominal = self.at_sample(operation.speed_profile_hz.as_ref(), operation.pinion_speed_hz);
+        nominal + fluctuation(&mut self.speed_draws, operation.speed_fluctuation_hz)
     }
 
     fn draw_torque(&mut self) -> f64 {
         let operation = &self.scenario.operation;
-        let nominal = match &operation.torque_profile_nm {
-            Some(profile) => profile_at(profile, self.sample as f64 * self.step_s),
-            None => operation.brake_torque_nm,
-        };
-        let fluctuation = operation.torque_fluctuation_nm;
-        nominal + self.torque_draws.as_mut().map_or(0.0, |draws| draws.uniform(0.0, fluctuation))
+        let nominal = self.at_sample(operation.torque_profile_nm.as_ref(), operation.brake_torque_nm);
+        nominal + fluctuation(&mut self.torque_draws, operation.torque_fluctuation_nm)
+    }
+
+    /// The profile at the present sample, or the constant where there is none.
+    fn at_sample(&self, profile: Option<&Profile>, constant: f64) -> f64 {
+        profile.map_or(constant, |profile| profile_at(profile, self.sample as f64 * self.step_s))
     }
 
     /// Whether the motor's speed is constant.
@@ -102,6 +99,11 @@ impl Iterator for Motion<'_> {
         };
         Some(here)
     }
+}
+
+/// The next draw, evenly from within ± `half_width`; 0 where nothing fluctuates.
+fn fluctuation(draws: &mut Option<Draws>, half_width: f64) -> f64 {
+    draws.as_mut().map_or(0.0, |draws| draws.uniform(0.0, half_width))
 }
 
 /// The profile at `time_s`: straight lines between its points, constant outside.

@@ -33,13 +33,13 @@ const CIRCLE_SAMPLES: usize = 10_000;
 /// # Errors
 /// A circle that does not cut the contact part of the flank in two points, or reaches through the tooth.
 pub(super) fn cut_flank(
-    circle: &PitCircle,
+    given: &PitCircle,
     teeth: &Teeth,
     convention: Convention,
 ) -> Result<CutFlank, ScenarioError> {
     let profile = &teeth.gear_profile;
     let contact = &teeth.contact;
-    let (key, value) = match circle {
+    let (key, value) = match given {
         PitCircle::Fractions { start, end, depth } => {
             ("fault", format!("start {start}, end {end}, depth {depth}"))
         }
@@ -48,7 +48,14 @@ pub(super) fn cut_flank(
         }
     };
     let refuse = |problem: String| ScenarioError::new(key, &value, problem);
-    let circle = resolve(circle, profile, contact.initial_contact_index);
+    let circle = resolve(given, profile, contact.initial_contact_index);
+    if let PitCircle::Fractions { start, end, depth } = given {
+        let most = deepest(*start, *end, profile, contact.initial_contact_index);
+        if *depth > most {
+            let problem = format!("must be at most {most:.4} on this flank, or the circle would undercut it");
+            return Err(ScenarioError::new("fault.depth", format!("{depth:?}"), problem));
+        }
+    }
     let (start_y, end_y) = edges(&circle, profile, contact.initial_contact_index, convention)
         .ok_or_else(|| refuse(misses_flank(profile, contact.initial_contact_index)))?;
 
@@ -92,7 +99,8 @@ pub(super) fn cut_flank(
 
 fn misses_flank(profile: &ToothProfile, initial_contact: usize) -> String {
     format!(
-        "must cut the contact part of the flank in two points; it runs from x = {:.3}, y = {:.3} mm to \
+        "must cut the contact part of the flank in two points, with its half nearer to the tooth's centre line; the flank \
+         runs from x = {:.3}, y = {:.3} mm to \
          x = {:.3}, y = {:.3} mm",
         profile.x_mm[initial_contact],
         profile.y_mm[initial_contact],
@@ -130,6 +138,16 @@ pub(super) fn flank_index(fraction: f64, profile: &ToothProfile, initial_contact
     let last = profile.len() - 1;
     let offset = (fraction * (last - initial_contact) as f64).round();
     (initial_contact as f64 + offset).clamp(0.0, last as f64) as usize
+}
+
+/// Largest relative depth at which both edges lie on the circle's half nearer to the tooth's centre line.
+///
+/// A chord at φ to the centre line carries an arc of half angle θ with `depth = tan(θ/2)`; its ends lie on the lower half
+/// while `θ + φ ≤ 90°`.
+fn deepest(start: f64, end: f64, profile: &ToothProfile, initial_contact: usize) -> f64 {
+    let [a, b] = [start, end].map(|fraction| flank_index(fraction, profile, initial_contact));
+    let (dx, dy) = (profile.x_mm[b] - profile.x_mm[a], profile.y_mm[b] - profile.y_mm[a]);
+    (PI / 4.0 - dy.abs().atan2(dx) / 2.0).tan()
 }
 
 /// (mm) y of the flank at the two points where the lower half circle meets it, the root side's first.

@@ -167,6 +167,6 @@ pub fn fault_geometry(
         Fault::ToothBreakage(fault) => tooth_breakage::geometry(fault, teeth),
         Fault::PartialFace(fault) => partial_face::geometry(fault, teeth, convention),
         Fault::ThroughFace(fault) => through_face::geometry(fault, teeth, convention),
-        Fault::ToothDestruction(fault) => tooth_destruction::geometry(fault, teeth, seed),
+        Fault::ToothDestruction(fault) => tooth_destruction::geometry(fault, teeth, convention, seed),
     }
 }

@@ -40,6 +40,9 @@ impl RollingAngle {
     /// ⌈points/2⌉ points and they share the middle one, which is the `middle` half's, so an even range gets one
     /// angle less than points.
     pub fn over_range_rad(&self, points: usize, middle: Half) -> Vec<f64> {
+        if points == 0 {
+            return Vec::new();
+        }
         let half = points.div_ceil(2);
         let [start, mid, end] = self.mate_radii_mm;
         let arc = |radius: f64| (radius.powi(2) - self.mate_base_radius_mm.powi(2)).max(0.0).sqrt();

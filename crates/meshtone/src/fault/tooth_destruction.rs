@@ -3,17 +3,23 @@
 use super::face_circle::flank_index;
 use super::{ContactWidth, Displacement, FaultDescription, FaultGeometry, ToothSection};
 use crate::random::{Draws, Purpose};
-use crate::scenario::{DestructionLine, ScenarioError, ToothDestruction};
+use crate::scenario::{Convention, DestructionLine, ScenarioError, ToothDestruction};
 use crate::tooth::Teeth;
 
 pub(super) fn geometry(
     fault: &ToothDestruction,
     teeth: &Teeth,
+    convention: Convention,
     seed: u64,
 ) -> Result<FaultGeometry, ScenarioError> {
     let profile = &teeth.gear_profile;
     let contact = &teeth.contact;
     let first_contact = contact.initial_contact_index;
+    let least_start = -(first_contact as f64) / (contact.points - 1) as f64;
+    if fault.start < least_start {
+        let problem = format!("must be at least {least_start:.4}, where this tooth has its root");
+        return Err(ScenarioError::new("fault.start", format!("{:?}", fault.start), problem));
+    }
     let start = flank_index(fault.start, profile, first_contact);
     let (x_start, y_start) = (profile.x_mm[start], profile.y_mm[start] - fault.offset_mm);
     let tangent = match fault.line {
@@ -44,7 +50,12 @@ pub(super) fn geometry(
     let mut flank_y_mm = profile.y_mm.clone();
     let mut roughness = Draws::new(seed, Purpose::DestructionNoise, 0);
     for i in first..=last {
-        flank_y_mm[i] = line(profile.x_mm[i]) + roughness.uniform(0.0, fault.noise_mm);
+        let ground = line(profile.x_mm[i]) + roughness.uniform(0.0, fault.noise_mm);
+        flank_y_mm[i] = match convention {
+            // Convention: where line or roughness lie outside the flank, the published code adds metal.
+            Convention::Published => ground,
+            Convention::Corrected => ground.min(profile.y_mm[i]),
+        };
         if flank_y_mm[i] <= -profile.y_mm[i] {
             return Err(ScenarioError::new(
                 "fault",

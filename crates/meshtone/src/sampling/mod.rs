@@ -36,9 +36,13 @@ impl TimeGrid {
         let samples_per_pinion_revolution = samples_per_pinion_revolution(solver, multiple, speed);
         let sampling_rate_hz = samples_per_pinion_revolution as f64 * speed;
         let revolutions = nominal_revolutions(gears.gear_teeth) as usize;
-        let nominal_samples = revolutions * samples_per_pinion_revolution;
+        // Saturating: a scenario may ask for more than any machine holds, and is then refused.
+        let nominal_samples = revolutions.saturating_mul(samples_per_pinion_revolution);
         let samples = match &scenario.operation.speed_profile_hz {
-            Some(profile) => (profile.time_s[profile.time_s.len() - 1] * sampling_rate_hz).round() as usize,
+            Some(profile) => {
+                let duration_s = profile.time_s.last().copied().unwrap_or(0.0);
+                (duration_s * sampling_rate_hz).round() as usize
+            }
             None => nominal_samples,
         };
         let settling = (solver.settle_fraction * nominal_samples as f64).round() as usize;
@@ -63,7 +67,7 @@ impl TimeGrid {
 
 fn samples_per_pinion_revolution(solver: &Solver, multiple: u32, pinion_speed_hz: f64) -> usize {
     let per_multiple = (solver.sampling_rate_hz / (f64::from(multiple) * pinion_speed_hz) + 6.0).ceil();
-    per_multiple as usize * multiple as usize
+    (per_multiple as usize).saturating_mul(multiple as usize)
 }
 
 /// Division of the mesh cycle (one gear revolution), in fractions of a pinion revolution.
@@ -96,14 +100,14 @@ impl CycleGrid {
         let multiple = least_common_multiple(pinion_teeth, gear_teeth) as usize;
         let unit = (FINE_PER_COARSE * multiple) as f64;
         let refinement = (sampling_rate_hz.max(LEAST_FINE_POINTS) / unit).ceil() as usize;
-        let per_pinion_revolution = multiple * refinement;
+        let per_pinion_revolution = multiple.saturating_mul(refinement);
         let points_per_pitch = per_pinion_revolution / pinion_teeth as usize;
         Self {
-            fine_step_rev: 1.0 / (FINE_PER_COARSE * per_pinion_revolution) as f64,
-            coarse_step_rev: FINE_PER_COARSE as f64 / (FINE_PER_COARSE * per_pinion_revolution) as f64,
+            fine_step_rev: 1.0 / (FINE_PER_COARSE as f64 * per_pinion_revolution as f64),
+            coarse_step_rev: FINE_PER_COARSE as f64 / (FINE_PER_COARSE as f64 * per_pinion_revolution as f64),
             points_per_pitch,
             points_per_pinion_revolution: per_pinion_revolution,
-            points_per_gear_revolution: points_per_pitch * gear_teeth as usize,
+            points_per_gear_revolution: points_per_pitch.saturating_mul(gear_teeth as usize),
         }
     }
 

@@ -42,7 +42,7 @@ impl InstructionSet {
     }
 
     /// Runs a task with this set's instructions, or plainly where the machine has not got them.
-    pub(super) fn run(self, task: impl Task) {
+    pub(super) fn run<T: Task>(self, task: T) -> T::Output {
         match self {
             #[cfg(target_arch = "x86_64")]
             Self::Avx2 => {
@@ -58,25 +58,28 @@ impl InstructionSet {
             }
             _ => {}
         }
-        task.run::<false>();
+        task.run::<false>()
     }
 }
 
 /// Work that is compiled once per instruction set.
 pub(super) trait Task {
+    /// The work's result.
+    type Output;
+
     /// Does the work; must be inlined always, down to its loops.
     ///
     /// `FUSED`: whether the processor has fused multiply-add.
-    fn run<const FUSED: bool>(self);
+    fn run<const FUSED: bool>(self) -> Self::Output;
 }
 
 struct Fused<T>(T);
 
 impl<T: Task> pulp::WithSimd for Fused<T> {
-    type Output = ();
+    type Output = T::Output;
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
-        self.0.run::<true>();
+    fn with_simd<S: pulp::Simd>(self, _: S) -> T::Output {
+        self.0.run::<true>()
     }
 }

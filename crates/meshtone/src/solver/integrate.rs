@@ -81,13 +81,28 @@ impl Size {
     }
 }
 
+/// A solution that has grown without bound.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Diverged {
+    /// Number of the sample, from the start of the simulation, by which that had happened.
+    pub(crate) sample: usize,
+}
+
 /// Integrates one simulation.
-pub(crate) fn integrate(problem: &Problem, instructions: InstructionSet, recorder: &mut dyn Recorder) {
+///
+/// # Errors
+/// A solution that grows without bound; nothing is recorded of the block in which that happens, nor after it.
+pub(crate) fn integrate(
+    problem: &Problem,
+    instructions: InstructionSet,
+    recorder: &mut dyn Recorder,
+) -> Result<(), Diverged> {
     let forcing = Forcing::new(problem.stages, &problem.model.directions);
     let steady = forcing.is_steady();
     let published = problem.stages.scenario.convention == Convention::Published;
     let size = Size::of(problem.model);
-    by_size::<1>(size, published, steady, instructions, [problem], [forcing], [recorder]);
+    let [result] = by_size::<1>(size, published, steady, instructions, [problem], [forcing], [recorder]);
+    result
 }
 
 fn by_size<const L: usize>(
@@ -98,7 +113,7 @@ fn by_size<const L: usize>(
     problems: [&Problem; L],
     forcings: [Forcing; L],
     recorders: [&mut dyn Recorder; L],
-) {
+) -> [Result<(), Diverged>; L] {
     macro_rules! solve {
         ($modes:literal, $directions:literal, $steady:literal) => {
             if published {
@@ -143,9 +158,11 @@ struct Solve<
 impl<const L: usize, const N: usize, const R: usize, const PUBLISHED: bool, const STEADY: bool> Task
     for Solve<'_, '_, L, N, R, PUBLISHED, STEADY>
 {
+    type Output = [Result<(), Diverged>; L];
+
     #[inline(always)]
-    fn run<const FUSED: bool>(self) {
-        solve::<L, FUSED, N, R, PUBLISHED, STEADY>(self.problems, self.forcings, self.recorders);
+    fn run<const FUSED: bool>(self) -> Self::Output {
+        solve::<L, FUSED, N, R, PUBLISHED, STEADY>(self.problems, self.forcings, self.recorders)
     }
 }
 
@@ -405,7 +422,8 @@ fn solve<
     problems: [&Problem; L],
     mut forcings: [Forcing; L],
     recorders: [&mut dyn Recorder; L],
-) {
+) -> [Result<(), Diverged>; L] {
+    let mut results = [Ok(()); L];
     let prepared: [Prepared<R>; L] = std::array::from_fn(|l| Prepared::new(problems[l]));
     let coefficients = coefficients::<L, FUSED, N, R>(&problems, &prepared);
     let group = Group { coefficients: &coefficients, tables: std::array::from_fn(|l| &prepared[l].table) };
@@ -441,6 +459,12 @@ fn solve<
             }
         }
         for l in 0..L {
+            if start < samples[l] && !state.is_sound(l) {
+                results[l] = results[l].and(Err(Diverged { sample: start + length }));
+            }
+            if results[l].is_err() {
+                continue;
+            }
             let from = problems[l].first_sample.saturating_sub(start).min(length);
             let until = samples[l].saturating_sub(start).min(length);
             if from >= until {
@@ -454,6 +478,7 @@ fn solve<
         }
         start += length;
     }
+    results
 }
 
 fn initial_state<const L: usize, const FUSED: bool, const N: usize, const R: usize>(

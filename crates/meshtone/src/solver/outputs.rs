@@ -46,7 +46,10 @@ impl Output {
         let zeros = || vec![0.0; modes];
         let weights = |weights: &[f64; COORDINATES]| -> (Vec<f64>, f64) {
             let row = CoordinateVector::from(*weights);
-            (model.shapes.iter().map(|shape| shape.dot(&row)).collect(), model.rigid_rotation.dot(&row))
+            (
+                model.shapes.iter().map(|shape| sum_or_zero(shape, &row)).collect(),
+                model.rigid_rotation.dot(&row),
+            )
         };
         let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let no_force = vec![0.0; model.directions.len()];
@@ -106,3 +109,13 @@ impl Output {
         }
     }
 }
+
+/// `a·b`, or 0 where the terms cancel to rounding: wheels of equal mass move in opposition, and their sum is no signal.
+fn sum_or_zero(a: &CoordinateVector, b: &CoordinateVector) -> f64 {
+    let terms = a.component_mul(b);
+    let sum = terms.sum();
+    if sum.abs() < ROUNDING * terms.abs().sum() { 0.0 } else { sum }
+}
+
+/// Part of the terms' own size below which a sum is rounding.
+const ROUNDING: f64 = 1e-12;

@@ -131,6 +131,11 @@ impl ReducedModel {
         rotation.or_else(|| self.directions.iter().position(|&direction| direction == ALONG))
     }
 
+    /// (1/s) Rate at which the slowest active mode decays, `min ζω`.
+    pub fn slowest_decay_per_s(&self) -> f64 {
+        self.damping.iter().copied().fold(f64::INFINITY, f64::min) / 2.0
+    }
+
     /// Number of active modes.
     pub fn modes(&self) -> usize {
         self.shapes.len()

@@ -82,6 +82,17 @@ pub(super) struct State<const L: usize, const FUSED: bool, const N: usize, const
     pub(super) entry: [usize; L],
 }
 
+impl<const L: usize, const FUSED: bool, const N: usize, const R: usize> State<L, FUSED, N, R> {
+    /// Whether lane `l` is still a motion: every mode a number, and an angle of which the point of the cycle can be told.
+    pub(super) fn is_sound(&self, l: usize) -> bool {
+        let modes = self.displacement.iter().chain(&self.scaled_velocity);
+        self.angle.0[l].abs() < MOST_POINTS && modes.map(|mode| mode.0[l]).all(f64::is_finite)
+    }
+}
+
+/// Coarse points of the cycle, counted from the start of the simulation: about 10⁷ revolutions.
+const MOST_POINTS: f64 = (1u64 << 40) as f64;
+
 /// Simulations that are stepped side by side.
 pub(super) struct Group<'a, const L: usize, const FUSED: bool, const N: usize, const R: usize> {
     pub(super) coefficients: &'a Coefficients<L, FUSED, N, R>,
@@ -107,7 +118,7 @@ impl<const L: usize, const FUSED: bool, const N: usize, const R: usize> Group<'_
         let in_pitch = pitches.negative_mul_add(c.pitch, in_cycle).add(c.window);
         let mut entries = in_cycle.where_less(in_cycle, c.window, in_pitch).indices();
         for l in 0..L {
-            // An angle that is not a number, of a solution that has diverged, has no entry.
+            // The angle of a solution that has diverged has no entry.
             entries[l] = entries[l].min(self.tables[l].points.len() - 1);
         }
         entries

@@ -4,7 +4,7 @@ use super::hertz::hertz_compliance_mm_per_n;
 use super::tooth::ToothCompliance;
 use crate::fault::{FaultGeometry, ToothSection};
 use crate::interpolation::{NotAKnotSpline, UniformLinear};
-use crate::scenario::Gears;
+use crate::scenario::{Gears, ScenarioError};
 use crate::tooth::Teeth;
 
 /// Stiffness of the healthy and of the faulty tooth pair at the points of contact.
@@ -25,11 +25,21 @@ impl PairStiffness {
     /// * `gears` - material and foundation coefficients
     /// * `teeth` - both healthy teeth
     /// * `fault` - the faulty pair
-    pub fn new(gears: &Gears, teeth: &Teeth, fault: Option<&FaultGeometry>) -> Self {
+    ///
+    /// # Errors
+    /// Foundation coefficients with which the healthy pair would not be stiff.
+    pub fn new(gears: &Gears, teeth: &Teeth, fault: Option<&FaultGeometry>) -> Result<Self, ScenarioError> {
         let sound_gear = ToothSection::sound(&teeth.gear, &teeth.gear_profile);
         let sound_pinion = ToothSection::sound(&teeth.pinion, &teeth.pinion_profile);
-        Self {
-            healthy_n_per_mm: pair_stiffness(gears, teeth, &sound_pinion, &sound_gear),
+        let healthy_n_per_mm = pair_stiffness(gears, teeth, &sound_pinion, &sound_gear);
+        if healthy_n_per_mm.contains(&0.0) {
+            let problem = "the compliance of the healthy tooth pair would not be positive at every point of contact; \
+                           must be";
+            return Err(ScenarioError::new("gears.foundation", "", problem)
+                .with_help("leave gears.foundation out for Sainsot's coefficients"));
+        }
+        Ok(Self {
+            healthy_n_per_mm,
             faulty_n_per_mm: fault.map(|fault| {
                 let mut stiffness = pair_stiffness(gears, teeth, &fault.pinion, &fault.gear);
                 let last = teeth.contact.profile_points() - 1;
@@ -39,7 +49,7 @@ impl PairStiffness {
                 stiffness
             }),
             span_rev: teeth.contact.span_rev,
-        }
+        })
     }
 
     /// The healthy pair's stiffness as a curve over the position in contact.

@@ -170,21 +170,23 @@ impl<'a> TomlTable<'a> {
     fn refuse_slip_of(&self, key: &'static str) -> ReadResult<()> {
         match self.unasked().find(|(_, name)| is_slip(name, key)) {
             None => Ok(()),
-            Some((_, name)) => Err(self.unknown(name, Some(key))),
+            // Which other keys are allowed is not known yet: they have not been asked for.
+            Some((_, name)) => Err(self
+                .error(name, format!("unknown key, while `{key}` is missing"))
+                .with_help(format!("did you mean `{key}`?"))),
         }
     }
 
     fn unknown(&self, name: &str, nearest: Option<&str>) -> ScenarioError {
         let allowed = self.asked.borrow().join(", ");
-        let help = match nearest {
-            Some(nearest) => format!("did you mean `{nearest}`?"),
-            None => "remove it, or move it to the section it belongs to".to_string(),
-        };
         let place = match self.path.as_str() {
             "" => "at the top level".to_string(),
             path => format!("in `{path}`"),
         };
-        let problem = format!("unknown key; allowed {place}: {allowed}");
-        self.error(name, problem).with_help(help)
+        let error = self.error(name, format!("unknown key; allowed {place}: {allowed}"));
+        error.with_help(match nearest {
+            Some(nearest) => format!("did you mean `{nearest}`?"),
+            None => "remove it, or move it to the section it belongs to".to_string(),
+        })
     }
 }

@@ -31,7 +31,7 @@ pub fn trace(scenario: &Scenario) -> Result<(Simulation, Trace), ScenarioError> 
     let model = stages.reduced_model();
     let mut recorder = StateRecorder::new(&stages);
     let outputs: Vec<Output> = channel_outputs().into_iter().chain(state_outputs()).collect();
-    stages.integrate(&model, &outputs, stages.time.first_kept_sample, &mut recorder);
+    stages.integrate(&model, &outputs, stages.time.first_kept_sample, &mut recorder)?;
     let channels = recorder.finish(&mut trace);
     let timings = stages.timings.clone();
     Ok((Simulation { stages, channels, timings }, trace))

@@ -56,7 +56,7 @@ fn pit(pit: &PitCircle) -> Check {
             end_after("fault.end", start, end)?;
             require("fault.depth", depth, depth > 0.0 && depth <= 1.0, "must be more than 0 and at most 1")
                 .map_err(|error| {
-                    error.with_help("depth is relative: 1 is a half circle over the pit's chord")
+                    error.with_help("depth is relative: the depth of the pit over half its chord")
                 })
         }
     }

@@ -13,12 +13,9 @@ const POINTS_PER_TOOTH: [usize; 2] = [500, 1_000_000];
 impl Gears {
     /// (-) Contact ratio: how many tooth pairs are in contact, on average.
     ///
-    /// For teeth of standard addendum, without regard to undercut.
+    /// For teeth of standard addendum, without regard to undercut: [`crate::tooth::contact_ratio`].
     pub fn contact_ratio(&self) -> f64 {
-        let angle = self.pressure_angle_deg.to_radians();
-        let (z1, z2) = (f64::from(self.pinion_teeth), f64::from(self.gear_teeth));
-        let to_tip = |z: f64| ((z + 2.0).powi(2) - (z * angle.cos()).powi(2)).sqrt();
-        (to_tip(z1) + to_tip(z2) - (z1 + z2) * angle.sin()) / (2.0 * PI * angle.cos())
+        crate::tooth::contact_ratio(self.pinion_teeth, self.gear_teeth, self.pressure_angle_deg.to_radians())
     }
 }
 
@@ -50,23 +47,64 @@ pub(super) fn tooth_height_mm(module_mm: f64) -> f64 {
     2.25 * module_mm
 }
 
+/// What can be simulated but deserves attention.
+pub(super) fn warnings(gears: &Gears) -> Vec<ScenarioWarning> {
+    undercut(gears).chain(flared_tip(gears)).collect()
+}
+
 /// Undercut, by the rule `z < 2/sin²α`. Its limit is rounded down, as in the textbooks: for 20° it
 /// is 17.1, and 17 teeth are made without undercut to speak of.
-pub(super) fn warnings(gears: &Gears) -> Vec<ScenarioWarning> {
+fn undercut(gears: &Gears) -> impl Iterator<Item = ScenarioWarning> {
     let limit = (2.0 / gears.pressure_angle_deg.to_radians().sin().powi(2)).floor();
-    [("gears.pinion_teeth", gears.pinion_teeth), ("gears.gear_teeth", gears.gear_teeth)]
-        .into_iter()
-        .filter(|(_, teeth)| f64::from(*teeth) < limit)
-        .map(|(key, teeth)| {
-            let angle = gears.pressure_angle_deg;
-            let message = format!(
-                "{teeth} teeth are undercut at a pressure angle of {angle}° (fewer than {limit}), which \
-                 the tooth profile of this model does not show; use at least {limit} teeth, or a larger \
-                 pressure angle"
-            );
-            ScenarioWarning::new(key, message)
+    [
+        ("gears.pinion_teeth", gears.pinion_teeth, gears.gear_teeth),
+        ("gears.gear_teeth", gears.gear_teeth, gears.pinion_teeth),
+    ]
+    .into_iter()
+    .filter(move |&(_, teeth, _)| f64::from(teeth) < limit)
+    .map(move |(key, teeth, mate)| {
+        let angle = gears.pressure_angle_deg;
+        let reach = if interferes(teeth, mate, angle.to_radians()) {
+            format!(", and the {mate} teeth of its mate reach below its involute (interference)")
+        } else {
+            String::new()
+        };
+        let message = format!(
+            "{teeth} teeth are undercut at a pressure angle of {angle}° (fewer than {limit}){reach}, which \
+             the tooth profile of this model does not show; use at least {limit} teeth, or a larger \
+             pressure angle"
+        );
+        ScenarioWarning::new(key, message)
+    })
+}
+
+/// The relief is measured from the tooth's thickness where it starts, so that little of it thickens the tip.
+fn flared_tip(gears: &Gears) -> Option<ScenarioWarning> {
+    let relief = gears.tip_relief?;
+    let least = [gears.pinion_teeth, gears.gear_teeth]
+        .map(|teeth| {
+            let half_thickness =
+                |below_tip_mm| half_thickness_below_tip_mm(gears, f64::from(teeth), below_tip_mm);
+            half_thickness(relief.length_mm) - half_thickness(0.0)
         })
-        .collect()
+        .into_iter()
+        .fold(0.0, f64::max);
+    (relief.depth_mm < least).then(|| {
+        let message = format!(
+            "adds metal to the tip: the depth is that from the thickness {} mm below the tip, and the tooth itself \
+             thins by up to {least:.4} mm from there on; use at least that, plus the relief itself",
+            relief.length_mm
+        );
+        ScenarioWarning::new("gears.tip_relief.depth_mm", message)
+    })
+}
+
+/// Whether the mate's tip reaches beyond the point where the line of action touches the wheel's base circle:
+/// `(z_m + 2)² > (z_m cos α)² + ((z + z_m) sin α)²`, with `z_m` the mate's tooth count.
+fn interferes(teeth: u32, mate: u32, pressure_angle_rad: f64) -> bool {
+    let (sin, cos) = pressure_angle_rad.sin_cos();
+    let (z, mate) = (f64::from(teeth), f64::from(mate));
+    (mate + 2.0).powi(2) > (mate * cos).powi(2) + ((z + mate) * sin).powi(2)
 }
 
 fn teeth(key: &str, teeth: u32) -> Check {
@@ -140,8 +178,9 @@ fn tip_thickness(gears: &Gears) -> Check {
     if removed < left {
         return Ok(());
     }
+    let with_crowning = if gears.crowning_mm > 0.0 { "with gears.crowning_mm, " } else { "" };
     let problem = format!(
-        "with gears.crowning_mm, {removed:?} mm is removed where the tooth is only {left:.4} mm thick from its \
+        "{with_crowning}{removed:?} mm is removed where the tooth is only {left:.4} mm thick from its \
          centre line, {length:?} mm below the tip; must leave some of the tip"
     );
     let (key, value) = match gears.tip_relief {
@@ -149,7 +188,8 @@ fn tip_thickness(gears: &Gears) -> Check {
         None => ("gears.crowning_mm", gears.crowning_mm),
     };
     Err(refuse(key, value, problem).with_help(
-        "the default relief, 1 mm × 1 mm, is for modules above 1.5 mm; for none, write tip_relief = false",
+        "lower gears.tip_relief.depth_mm (the default relief, 1 mm × 1 mm, is for modules above 1.5 mm), or write \
+         tip_relief = false for none",
     ))
 }
 
@@ -209,6 +249,15 @@ mod tests {
             let ratio = Gears::new(3.0, pinion, gear, 15.0).contact_ratio();
             assert!((ratio - expected).abs() < 1e-12, "{ratio}");
         }
+    }
+
+    // The smallest pinions at 20° that run with a given gear without interference: 13 with 16, 15 with 45 (Shigley,
+    // Mechanical Engineering Design, section 13-7).
+    #[test]
+    fn interference_of_small_pinions() {
+        let angle = 20f64.to_radians();
+        assert!(!interferes(13, 16, angle) && interferes(13, 17, angle));
+        assert!(!interferes(15, 45, angle) && interferes(15, 46, angle));
     }
 
     // No pair that passes the other rules gets there: it takes a wheel of a single tooth.

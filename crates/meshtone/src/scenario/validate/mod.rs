@@ -17,7 +17,7 @@ impl Scenario {
     /// Checks every value, alone and against the others, as far as no tooth geometry is needed.
     ///
     /// # Returns
-    /// What can be simulated but deserves attention: teeth that are undercut.
+    /// What can be simulated but deserves attention: teeth that are undercut, a tip relief that adds metal.
     ///
     /// # Errors
     /// The first value that is impossible, or certainly a mistake. A simulation that needs more
@@ -46,14 +46,28 @@ impl Scenario {
     /// # Errors
     /// As [`Scenario::validate`].
     pub fn validate_within(&self, memory_limit_bytes: u64) -> Result<Vec<ScenarioWarning>, ScenarioError> {
-        gears::check(&self.gears)?;
-        operation::check(&self.operation)?;
-        quality::check(&self.quality, &self.gears)?;
-        fault::check(self.fault.as_ref(), &self.gears)?;
-        rig::check(&self.rig, &self.gears)?;
-        solver::check(&self.solver)?;
-        operation::check_duration(self)?;
-        size::check(self, memory_limit_bytes)?;
-        Ok(gears::warnings(&self.gears))
+        check_values(self)?;
+        let honoured = self.as_honoured();
+        if honoured != *self {
+            check_values(&honoured).map_err(|error| {
+                let problem = format!("{} (the published model always has the default)", error.problem);
+                ScenarioError { problem, help: Some(PUBLISHED_HELP.to_string()), ..error }
+            })?;
+        }
+        operation::check_duration(&honoured)?;
+        size::check(&honoured, memory_limit_bytes)?;
+        Ok(gears::warnings(&honoured.gears))
     }
+}
+
+const PUBLISHED_HELP: &str = "set convention = \"corrected\", which honours every key";
+
+/// Every value, whether or not the convention honours it.
+fn check_values(scenario: &Scenario) -> Result<(), ScenarioError> {
+    gears::check(&scenario.gears)?;
+    operation::check(&scenario.operation)?;
+    quality::check(&scenario.quality, &scenario.gears)?;
+    fault::check(scenario.fault.as_ref(), &scenario.gears)?;
+    rig::check(&scenario.rig, &scenario.gears)?;
+    solver::check(&scenario.solver)
 }

@@ -6,19 +6,28 @@ use super::rules::{Check, below, positive, positive_up_to, require};
 const LONGEST_SHAFT_MM: f64 = 1e6;
 
 pub(super) fn check(rig: &Rig, gears: &Gears) -> Check {
-    positive("rig.bearing_stiffness_n_per_m", rig.bearing_stiffness_n_per_m, "N/m")?;
-    positive(
-        "rig.wheel_rotational_stiffness_nm_per_rad",
-        rig.wheel_rotational_stiffness_nm_per_rad,
-        "N m/rad",
-    )?;
-    positive("rig.brake_inertia_kgm2", rig.brake_inertia_kgm2, "kg m²")?;
+    stiffness("rig.bearing_stiffness_n_per_m", rig.bearing_stiffness_n_per_m, "N/m")?;
+    let rotational = rig.wheel_rotational_stiffness_nm_per_rad;
+    stiffness("rig.wheel_rotational_stiffness_nm_per_rad", rotational, "N m/rad")?;
+    mass("rig.brake_inertia_kgm2", rig.brake_inertia_kgm2, "kg m²")?;
     damping(&rig.damping_ratio)?;
     below("rig.eccentricity_mm", rig.eccentricity_mm, gears.module_mm, "the module")?;
     shaft("pinion", &rig.pinion_shaft, gears.pinion_teeth, gears.module_mm)?;
     shaft("gear", &rig.gear_shaft, gears.gear_teeth, gears.module_mm)?;
     inertia("pinion", &rig.pinion_inertia)?;
     inertia("gear", &rig.gear_inertia)
+}
+
+/// Beyond these the equations are solved in rounding errors.
+const STIFFEST: f64 = 1e15;
+const HEAVIEST: f64 = 1e9;
+
+fn stiffness(key: &str, value: f64, unit: &str) -> Check {
+    positive_up_to(key, value, STIFFEST, unit)
+}
+
+fn mass(key: &str, value: f64, unit: &str) -> Check {
+    positive_up_to(key, value, HEAVIEST, unit)
 }
 
 fn damping(damping: &DampingRatio) -> Check {
@@ -57,5 +66,5 @@ fn inertia(wheel: &str, inertia: &WheelInertia) -> Check {
     ]
     .into_iter()
     .filter_map(|(name, value, unit)| value.map(|value| (name, value, unit)))
-    .try_for_each(|(name, value, unit)| positive(&format!("rig.{wheel}_inertia.{name}"), value, unit))
+    .try_for_each(|(name, value, unit)| mass(&format!("rig.{wheel}_inertia.{name}"), value, unit))
 }

@@ -2,6 +2,7 @@
 
 use super::super::{Scenario, ScenarioError};
 use super::rules::Check;
+use crate::sampling::{CycleGrid, TimeGrid};
 
 /// (bytes) Most memory that one simulation may need: 16 GiB. What needs more is a slip in a speed
 /// or a sampling rate rather than a wish.
@@ -30,7 +31,7 @@ impl Scenario {
     /// assert_eq!(scenario.actual_sampling_rate_hz(), 258_400.0);
     /// ```
     pub fn actual_sampling_rate_hz(&self) -> f64 {
-        self.samples_per_pinion_revolution() * self.operation.pinion_speed_hz
+        TimeGrid::new(self).sampling_rate_hz
     }
 
     /// (bytes) Estimate of the memory that the simulation needs: 8 signals of every kept sample,
@@ -46,37 +47,14 @@ impl Scenario {
     /// assert_eq!(scenario.memory_estimate_bytes() / 1_000_000, 39);
     /// ```
     pub fn memory_estimate_bytes(&self) -> u64 {
-        let samples = 2.0 * f64::from(self.gears.gear_teeth) * self.samples_per_pinion_revolution();
-        let kept = samples * (1.0 - self.solver.settle_fraction);
-        let numbers = kept * KEPT_CHANNELS
-            + samples * EXCITATION_CHANNELS
-            + self.coarse_grid_points() * GRID_CHANNELS
+        let time = TimeGrid::new(self);
+        let cycle = CycleGrid::new(self.gears.pinion_teeth, self.gears.gear_teeth, time.sampling_rate_hz);
+        let numbers = time.kept_samples() as f64 * KEPT_CHANNELS
+            + time.samples as f64 * EXCITATION_CHANNELS
+            + cycle.points_per_gear_revolution as f64 * GRID_CHANNELS
             + 2.0 * self.gears.points_per_tooth as f64 * PROFILE_CHANNELS;
         (numbers * BYTES_PER_NUMBER) as u64
     }
-
-    fn samples_per_pinion_revolution(&self) -> f64 {
-        let common = self.common_teeth();
-        (self.solver.sampling_rate_hz / (common * self.operation.pinion_speed_hz) + 6.0).ceil() * common
-    }
-
-    fn coarse_grid_points(&self) -> f64 {
-        let common = self.common_teeth();
-        let per_revolution = (self.actual_sampling_rate_hz().max(1e6) / (50.0 * common)).ceil() * common;
-        per_revolution * f64::from(self.gears.gear_teeth) / f64::from(self.gears.pinion_teeth)
-    }
-
-    fn common_teeth(&self) -> f64 {
-        let (pinion, gear) = (u64::from(self.gears.pinion_teeth), u64::from(self.gears.gear_teeth));
-        (pinion / greatest_common_divisor(pinion, gear).max(1) * gear) as f64
-    }
-}
-
-fn greatest_common_divisor(mut left: u64, mut right: u64) -> u64 {
-    while right != 0 {
-        (left, right) = (right, left % right);
-    }
-    left
 }
 
 pub(super) fn check(scenario: &Scenario, memory_limit_bytes: u64) -> Check {
@@ -92,7 +70,7 @@ pub(super) fn check(scenario: &Scenario, memory_limit_bytes: u64) -> Check {
     );
     let help = "lower solver.sampling_rate_hz or raise operation.pinion_speed_hz; the actual rate is at least 7 times \
                 the least common multiple of the tooth counts times the speed, so tooth counts with a common factor \
-                help too";
+                help too; a speed profile is simulated over all its time";
     Err(ScenarioError::new(
         "solver.sampling_rate_hz",
         format!("{:?}", scenario.solver.sampling_rate_hz),
