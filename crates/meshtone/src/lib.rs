@@ -1,6 +1,7 @@
 //! Vibration of a spur gear pair, sound or damaged.
 #![deny(missing_docs)]
 
+pub mod batch;
 pub mod dynamics;
 pub mod fault;
 pub mod interpolation;

@@ -7,9 +7,9 @@ use crate::dynamics::{ErrorForce, Excitation, MeshLoad, Motion, MotionSample, Sy
 use crate::fault::{FaultGeometry, fault_geometry};
 use crate::quality::profile_errors;
 use crate::sampling::{CycleGrid, TimeGrid};
-use crate::scenario::{ProfileErrors, Scenario, ScenarioError};
+use crate::scenario::{Convention, ProfileErrors, Scenario, ScenarioError, Solver};
 use crate::signal::{Channels, channel_outputs};
-use crate::solver::{InstructionSet, Output, Problem, Recorder, ReducedModel, integrate};
+use crate::solver::{Diverged, InstructionSet, Output, Problem, Recorder, ReducedModel, integrate};
 use crate::stiffness::{MeshStiffness, PairStiffness};
 use crate::tooth::{Teeth, teeth};
 
@@ -124,8 +124,7 @@ pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
     let angle = teeth.gear.pressure_angle_rad;
     let load = MeshLoad::new(&mesh, fault.as_ref(), &cycle, gears.face_width_mm, angle, convention);
     let system = System::new(&scenario, &teeth, load);
-    clock.lap("equations of motion");
-    Ok(Stages {
+    let mut stages = Stages {
         time,
         cycle,
         teeth,
@@ -134,12 +133,39 @@ pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
         pair,
         mesh,
         system,
-        timings: clock.laps,
+        timings: Vec::new(),
         scenario,
-    })
+    };
+    stages.time.first_simulated_sample = stages.start_of_settling();
+    clock.lap("equations of motion");
+    stages.timings = clock.laps;
+    Ok(stages)
 }
 
 impl Stages {
+    /// Whether motor speed and brake torque are constant.
+    pub fn is_steady(&self) -> bool {
+        let motion = Motion::new(&self.scenario, &self.time);
+        motion.is_steady() && motion.has_constant_torque()
+    }
+
+    /// First sample that must be simulated, so that the slowest mode's transient has decayed to the settling tolerance where
+    /// the kept signal starts.
+    ///
+    /// Only for a steady motion that starts in equilibrium: what is left out is then a motion like the one that follows.
+    fn start_of_settling(&self) -> usize {
+        let Solver { settle_tolerance, initial_displacement, initial_velocity, .. } = &self.scenario.solver;
+        let starts_in_equilibrium = initial_displacement.is_none() && initial_velocity.is_none();
+        let published = self.scenario.convention == Convention::Published;
+        if published || !starts_in_equilibrium || *settle_tolerance == 0.0 || !self.is_steady() {
+            return 0;
+        }
+        let decay_s = -settle_tolerance.ln() / self.reduced_model().slowest_decay_per_s();
+        let settling = (decay_s * self.time.sampling_rate_hz).ceil();
+        // As a float: a decay that takes forever saturates.
+        self.time.first_kept_sample.saturating_sub(settling as usize)
+    }
+
     /// (rev) Simulated revolutions of the pinion at the nominal speed, settling included.
     pub fn pinion_revolutions(&self) -> f64 {
         self.time.samples as f64 / self.time.samples_per_pinion_revolution as f64
@@ -184,14 +210,18 @@ impl Stages {
     /// The equations of motion in the modes that take part in the motion.
     pub fn reduced_model(&self) -> ReducedModel {
         let solver = &self.scenario.solver;
-        let displacement = solver.initial_displacement.map_or_else(CoordinateVector::zeros, Into::into);
+        let displacement = match (solver.initial_displacement, self.scenario.convention) {
+            (Some(given), _) => Some(given.into()),
+            (None, Convention::Published) => Some(CoordinateVector::zeros()),
+            (None, Convention::Corrected) => None,
+        };
         let speed = self.initial_motor_speed_rad_per_s();
         let velocity = match solver.initial_velocity {
             Some(given) => given.into(),
             None => self.system.rigid_rotation() * speed,
         };
         let nominal_speed = std::f64::consts::TAU * self.scenario.operation.pinion_speed_hz;
-        ReducedModel::new(&self.system, nominal_speed, &displacement, &velocity)
+        ReducedModel::new(&self.system, nominal_speed, displacement.as_ref(), &velocity)
     }
 
     fn initial_motor_speed_rad_per_s(&self) -> f64 {
@@ -219,21 +249,21 @@ impl Stages {
         recorder: &mut dyn Recorder,
     ) -> Result<(), ScenarioError> {
         let problem = Problem { stages: self, model, outputs, first_sample };
-        integrate(&problem, InstructionSet::fastest(), recorder).map_err(|diverged| {
-            let time_s = diverged.sample as f64 * self.time.step_s();
-            let ratios = &self.scenario.rig.damping_ratio.per_mode();
-            ScenarioError::new(
-                "rig.damping_ratio",
-                format!("{ratios:?}"),
-                format!(
-                    "the motion grows without bound within {time_s:.4} s; damping must take what the varying mesh \
-                     stiffness puts into a mode, and a missing tooth must leave another in contact"
-                ),
-            )
-            .with_help(
-                "raise the damping ratios (the default is 0.05), use more teeth, or change operation.pinion_speed_hz",
-            )
-        })
+        let result = integrate(&problem, InstructionSet::fastest(), recorder);
+        result.map_err(|diverged| self.divergence(diverged))
+    }
+
+    /// The error that a solution without bound is.
+    pub(crate) fn divergence(&self, diverged: Diverged) -> ScenarioError {
+        let time_s = diverged.sample as f64 * self.time.step_s();
+        let ratios = self.scenario.rig.damping_ratio.per_mode();
+        let problem = format!(
+            "the motion grows without bound within {time_s:.4} s; damping must take what the varying mesh stiffness puts \
+             into a mode, and a missing tooth must leave another in contact"
+        );
+        ScenarioError::new("rig.damping_ratio", format!("{ratios:?}"), problem).with_help(
+            "raise the damping ratios (the default is 0.05), use more teeth, or change operation.pinion_speed_hz",
+        )
     }
 }
 

@@ -15,6 +15,9 @@ fn constant_stiffness(sampling_rate_hz: f64, damping_ratio: f64, torque_nm: f64,
     scenario.gears.points_per_tooth = 1000;
     scenario.rig.damping_ratio = DampingRatio::Uniform(damping_ratio);
     scenario.solver.sampling_rate_hz = sampling_rate_hz;
+    // From rest, and from the start on: nothing has settled.
+    scenario.solver.initial_displacement = Some([0.0; 13]);
+    scenario.solver.settle_tolerance = 0.0;
     let mut stages = stages(&scenario).unwrap();
     let mesh = &mut stages.system.mesh.stiffness_n_per_m;
     let mean = mesh.iter().sum::<f64>() / mesh.len() as f64;

@@ -52,6 +52,7 @@ gear_inertia = { polar_inertia_kgm2 = 1e-3, transverse_inertia_kgm2 = 2e-3 }
 [solver]
 sampling_rate_hz = 2e5
 settle_fraction = 0.25
+settle_tolerance = 1e-4
 initial_displacement = [1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2]
 initial_velocity = [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3]
 "#;
@@ -97,6 +98,7 @@ fn every_key_is_read() {
     expected.rig.gear_inertia.transverse_inertia_kgm2 = Some(2e-3);
     expected.solver.sampling_rate_hz = 2e5;
     expected.solver.settle_fraction = 0.25;
+    expected.solver.settle_tolerance = 1e-4;
     let state = |first, last| {
         let mut state = [0.0; 13];
         (state[0], state[12]) = (first, last);

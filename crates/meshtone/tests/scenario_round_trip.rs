@@ -170,12 +170,15 @@ fn rig() -> impl Strategy<Value = Rig> {
 
 fn solver() -> impl Strategy<Value = Solver> {
     let state = || option::of(uniform13(-1e3..1e3));
-    (1.0..2e5, 0.0..1.0, state(), state()).prop_map(
-        |(sampling_rate_hz, settle_fraction, initial_displacement, initial_velocity)| Solver {
-            sampling_rate_hz,
-            settle_fraction,
-            initial_displacement,
-            initial_velocity,
+    (1.0..2e5, 0.0..1.0, 0.0..1.0, state(), state()).prop_map(
+        |(sampling_rate_hz, settle_fraction, settle_tolerance, initial_displacement, initial_velocity)| {
+            Solver {
+                sampling_rate_hz,
+                settle_fraction,
+                settle_tolerance,
+                initial_displacement,
+                initial_velocity,
+            }
         },
     )
 }
@@ -202,7 +205,7 @@ fn scenario() -> impl Strategy<Value = Scenario> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(300) })]
 
     #[test]
     fn scenarios_survive_being_written_and_read(scenario in scenario()) {

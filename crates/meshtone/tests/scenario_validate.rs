@@ -208,6 +208,12 @@ fn rig_and_solver_out_of_range() {
         ("sampling_rate_hz = 0", "sampling_rate_hz", "more than 0 S/s"),
         ("settle_fraction = -0.1", "settle_fraction", "from 0 to less than 1"),
         ("settle_fraction = 1", "settle_fraction", "from 0 to less than 1"),
+        (
+            "settle_tolerance = -1e-6",
+            "settle_tolerance",
+            "must be from 0 (the whole settling is simulated) to less than 1",
+        ),
+        ("settle_tolerance = 1", "settle_tolerance", "to less than 1"),
     ] {
         assert_refused(&appended(&format!("[solver]\n{keys}")), &format!("solver.{key}"), 10, &[words]);
     }

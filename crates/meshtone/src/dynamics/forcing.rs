@@ -1,6 +1,9 @@
 //! The right-hand side in blocks of samples, as fast as the solution.
 
+use nalgebra::SVector;
+
 use super::excitation::{ErrorForce, ToothForces};
+use super::mesh_directions::DIRECTIONS;
 use super::motion::Motion;
 use crate::scenario::Convention;
 use crate::simulate::Stages;
@@ -31,7 +34,7 @@ pub(crate) struct Forcing<'a> {
 }
 
 impl<'a> Forcing<'a> {
-    /// Forcing from the first sample on.
+    /// Forcing from the first simulated sample on.
     ///
     /// # Arguments
     /// * `stages` - the simulation
@@ -46,14 +49,10 @@ impl<'a> Forcing<'a> {
             directions: directions.to_vec(),
             motion,
             errors,
-            sample: 0,
+            // Beyond 0 only where the motion is steady, and so a function of the sample.
+            sample: stages.time.first_simulated_sample,
             revolutions: 0.0,
         }
-    }
-
-    /// Whether motor speed and brake torque are constant.
-    pub(crate) fn is_steady(&self) -> bool {
-        self.tables.is_some() && self.motion.has_constant_torque()
     }
 
     /// The next `samples` samples.
@@ -123,6 +122,39 @@ impl<'a> Forcing<'a> {
         if !tables.needs_position {
             return;
         }
+        if tables.published || tables.eccentric {
+            self.correct_each(tables, samples, block, &nominal);
+        } else {
+            self.correct_disturbed(tables, samples, block);
+        }
+    }
+
+    /// Replaces the force of the samples at which the fault is in contact, by the table.
+    fn correct_disturbed(&self, tables: &ErrorTables, samples: usize, block: &mut ForcingBlock) {
+        let cycle = tables.disturbed.cycle;
+        let mut k = 0;
+        while k < samples {
+            let since = (self.sample + k) % cycle;
+            match tables.disturbed.at(since) {
+                Some(disturbed) => {
+                    let force = block.errors[0][k] + disturbed.force_n;
+                    self.spread(k, force, disturbed.direction.as_slice(), block);
+                    k += 1;
+                }
+                None => k += tables.disturbed.next_after(since) - since,
+            }
+        }
+    }
+
+    /// Looks at each sample's own position.
+    fn correct_each(
+        &mut self,
+        tables: &ErrorTables,
+        samples: usize,
+        block: &mut ForcingBlock,
+        nominal: &SVector<f64, DIRECTIONS>,
+    ) {
+        let stages = self.stages;
         for k in 0..samples {
             let revolutions = self.steady_revolutions(self.sample + k, tables);
             let mut force = block.errors[0][k];
@@ -130,10 +162,9 @@ impl<'a> Forcing<'a> {
             if half_way {
                 force = self.errors.pairs_after(revolutions);
             }
-            let (position_rev, coarse_point) = stages.position(revolutions);
-            let disturbed = coarse_point <= stages.system.mesh.disturbed_points + 1
-                || coarse_point + 1 >= stages.cycle.points_per_gear_revolution;
-            if disturbed || tables.eccentric {
+            let may_disturb = tables.disturbed.contains((self.sample + k) % tables.disturbed.cycle);
+            if tables.eccentric || (may_disturb && tables.depends_on_position) {
+                let (position_rev, coarse_point) = stages.position(revolutions);
                 force += self.errors.mesh_terms(revolutions, position_rev, coarse_point);
                 let direction = stages.system.mesh.error_direction(
                     position_rev,
@@ -162,6 +193,8 @@ struct ErrorTables {
     teeth: Option<ToothForces>,
     samples_per_pitch: usize,
     needs_position: bool,
+    depends_on_position: bool,
+    disturbed: Disturbed,
     /// Samples of a pitch whose place on the fine grid rounding decides; empty for none.
     half_way: Vec<bool>,
     eccentric: bool,
@@ -174,6 +207,7 @@ impl ErrorTables {
         let samples_per_revolution = stages.time.samples_per_pinion_revolution;
         let published = stages.scenario.convention == Convention::Published;
         let eccentric = stages.scenario.rig.eccentricity_mm != 0.0;
+        let depends_on_position = errors.depends_on_position();
         let mut half_way = Vec::new();
         if published && errors.has_pairs() {
             half_way = errors.half_way(samples_per_revolution);
@@ -186,7 +220,9 @@ impl ErrorTables {
                 .has_pairs()
                 .then(|| errors.tooth_tables(&errors.fine_points(samples_per_revolution))),
             samples_per_pitch: samples_per_revolution / stages.scenario.gears.pinion_teeth as usize,
-            needs_position: !half_way.is_empty() || eccentric || errors.depends_on_position(),
+            needs_position: !half_way.is_empty() || eccentric || depends_on_position,
+            depends_on_position,
+            disturbed: Disturbed::new(stages, errors, depends_on_position && !published && !eccentric),
             half_way,
             eccentric,
             published,
@@ -219,5 +255,74 @@ impl ErrorTables {
             }
             start += length;
         }
+    }
+}
+
+/// The samples of a gear revolution at which the fault is in contact, the first and the last of the revolution.
+struct Disturbed {
+    /// Samples of a gear revolution.
+    cycle: usize,
+    /// Samples up to this one are disturbed.
+    last_of_first: usize,
+    /// Samples from this one on are disturbed: the point of the cycle nearest to them is the next revolution's first.
+    first_of_last: usize,
+    /// What the fault does there, in that order; empty where it is not tabulated.
+    table: Vec<DisturbedSample>,
+}
+
+/// What the fault does to the force at one sample.
+struct DisturbedSample {
+    /// (N) Force of the mesh as a whole.
+    force_n: f64,
+    /// Line of action.
+    direction: SVector<f64, DIRECTIONS>,
+}
+
+impl Disturbed {
+    fn new(stages: &Stages, errors: &ErrorForce, tabulated: bool) -> Self {
+        let (time, grid, gears) = (&stages.time, &stages.cycle, &stages.scenario.gears);
+        let per_revolution = time.samples_per_pinion_revolution;
+        let cycle = per_revolution / gears.pinion_teeth as usize * gears.gear_teeth as usize;
+        let samples_per_point = grid.coarse_step_rev * per_revolution as f64;
+        // One point more on either side, for what rounding may do.
+        let points = stages.system.mesh.disturbed_points + 2;
+        let last_of_first = ((points as f64 * samples_per_point).ceil() as usize).min(cycle - 1);
+        let first_of_last =
+            cycle.saturating_sub((2.0 * samples_per_point).ceil() as usize).max(last_of_first + 1);
+        let mut disturbed = Self { cycle, last_of_first, first_of_last, table: Vec::new() };
+        if tabulated {
+            let convention = stages.scenario.convention;
+            disturbed.table = (0..=last_of_first)
+                .chain(first_of_last..cycle)
+                .map(|sample| {
+                    let revolutions = sample as f64 / per_revolution as f64;
+                    let (position_rev, coarse_point) = stages.position(revolutions);
+                    DisturbedSample {
+                        force_n: errors.mesh_terms(revolutions, position_rev, coarse_point),
+                        direction: stages.system.mesh.error_direction(position_rev, coarse_point, convention),
+                    }
+                })
+                .collect();
+        }
+        disturbed
+    }
+
+    /// Whether `since` samples after the start of a gear revolution the fault may be in contact.
+    fn contains(&self, since: usize) -> bool {
+        since <= self.last_of_first || since >= self.first_of_last
+    }
+
+    fn at(&self, since: usize) -> Option<&DisturbedSample> {
+        if since <= self.last_of_first {
+            self.table.get(since)
+        } else {
+            let row = since.checked_sub(self.first_of_last)?;
+            self.table.get(self.last_of_first + 1 + row)
+        }
+    }
+
+    /// The first sample after an undisturbed one that is not, or the end of the revolution.
+    fn next_after(&self, since: usize) -> usize {
+        self.first_of_last.min(self.cycle).max(since + 1)
     }
 }

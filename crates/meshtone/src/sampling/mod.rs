@@ -12,8 +12,10 @@ pub(crate) fn nominal_revolutions(gear_teeth: u32) -> u32 {
 pub struct TimeGrid {
     /// (S/s) Actual sampling rate, a whole number of samples per revolution of either wheel.
     pub sampling_rate_hz: f64,
-    /// Number of samples, settling included.
+    /// Number of samples, the whole settling included.
     pub samples: usize,
+    /// First sample that is simulated: 0, or later where a short settling suffices.
+    pub first_simulated_sample: usize,
     /// First sample that is kept.
     pub first_kept_sample: usize,
     /// Number of samples per (nominal) pinion revolution.
@@ -49,6 +51,7 @@ impl TimeGrid {
         Self {
             sampling_rate_hz,
             samples,
+            first_simulated_sample: 0,
             first_kept_sample: settling.min(samples),
             samples_per_pinion_revolution,
         }

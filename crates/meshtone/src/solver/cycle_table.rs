@@ -52,6 +52,14 @@ impl<const R: usize> CycleTable<R> {
     }
 }
 
+impl<const R: usize> CycleTable<R> {
+    /// Entry of the point that is `angle` rounded down, counted from the start of the simulation.
+    pub(super) fn entry(&self, angle: f64) -> usize {
+        let in_cycle = (angle.floor() as i64).rem_euclid(self.cycle as i64) as usize;
+        if in_cycle < self.window { in_cycle } else { self.window + in_cycle % self.pitch }
+    }
+}
+
 fn point<const R: usize>(
     model: &ReducedModel,
     system: &System,

@@ -36,8 +36,8 @@ pub struct ReducedModel {
     pub rigid_rotation: CoordinateVector,
     /// (rad/s) Speed of the rigid rotation on top of which the modes move: the nominal one.
     pub rotation_rad_per_s: f64,
-    /// Modal displacement at the start, relative to the rigid rotation.
-    pub initial_displacement: Vec<f64>,
+    /// Modal displacement at the start, relative to the rigid rotation; none for the static equilibrium there.
+    pub initial_displacement: Option<Vec<f64>>,
     /// Modal velocity at the start, relative to the rigid rotation.
     pub initial_velocity: Vec<f64>,
 }
@@ -55,11 +55,12 @@ impl ReducedModel {
     /// # Arguments
     /// * `system` - the equations of motion
     /// * `rotation_rad_per_s` - nominal speed of the motor
-    /// * `initial_displacement`, `initial_velocity` - initial state in the 13 coordinates
+    /// * `initial_displacement` - in the 13 coordinates; none for the static equilibrium of the loaded mesh
+    /// * `initial_velocity` - in the 13 coordinates
     pub fn new(
         system: &System,
         rotation_rad_per_s: f64,
-        initial_displacement: &CoordinateVector,
+        initial_displacement: Option<&CoordinateVector>,
         initial_velocity: &CoordinateVector,
     ) -> Self {
         let turn = &system.directions.turn;
@@ -75,14 +76,14 @@ impl ReducedModel {
         unit = CoordinateVector::zeros();
         unit[THETA_BRAKE] = 1.0;
         let brake = modal(&unit);
-        let displacement = modal_motion(initial_displacement);
+        let displacement = initial_displacement.map(modal_motion);
+        let displaced = displacement.unwrap_or_else(CoordinateVector::zeros);
         let rigid_rotation = system.rigid_rotation();
         let velocity = modal_motion(&(initial_velocity - rigid_rotation * rotation_rad_per_s));
         let rigid = modal_motion(&rigid_rotation);
 
-        let moved = |n: usize| {
-            [&motor, &brake, &displacement, &velocity, &rigid].iter().any(|vector| vector[n] != 0.0)
-        };
+        let moved =
+            |n: usize| [&motor, &brake, &displaced, &velocity, &rigid].iter().any(|vector| vector[n] != 0.0);
         let mut active_modes: Vec<bool> = (0..COORDINATES).map(moved).collect();
         let mut active_columns = vec![false; columns.len()];
         loop {
@@ -119,7 +120,7 @@ impl ReducedModel {
             rigid_velocity: pick(&rigid),
             rigid_rotation,
             rotation_rad_per_s,
-            initial_displacement: pick(&displacement),
+            initial_displacement: displacement.as_ref().map(pick),
             initial_velocity: pick(&velocity),
         }
     }

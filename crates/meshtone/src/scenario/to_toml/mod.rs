@@ -134,7 +134,8 @@ fn solver(solver: &Solver) -> Section {
     let mut section = Section::new("solver");
     section
         .number("sampling_rate_hz", solver.sampling_rate_hz)
-        .number("settle_fraction", solver.settle_fraction);
+        .number("settle_fraction", solver.settle_fraction)
+        .number("settle_tolerance", solver.settle_tolerance);
     for (key, state) in [
         ("initial_displacement", &solver.initial_displacement),
         ("initial_velocity", &solver.initial_velocity),

@@ -12,6 +12,13 @@ pub(super) fn check(solver: &Solver) -> Check {
         (0.0..1.0).contains(&settle),
         "must be from 0 to less than 1, the part of the simulation that is discarded",
     )?;
+    let tolerance = solver.settle_tolerance;
+    require(
+        "solver.settle_tolerance",
+        tolerance,
+        (0.0..1.0).contains(&tolerance),
+        "must be from 0 (the whole settling is simulated) to less than 1",
+    )?;
     state("solver.initial_displacement", solver.initial_displacement.as_ref())?;
     state("solver.initial_velocity", solver.initial_velocity.as_ref())
 }

@@ -1,0 +1,14 @@
+//! Many simulations: side by side in vector registers inside a thread, and in threads outside.
+//!
+//! Scenarios may differ in everything. Those of one kind are gathered into groups of eight that are stepped together; what comes
+//! out of each is the same, bit by bit, as alone. Results are handed out in the order of the scenarios.
+//!
+//! The work is done in the current thread pool of [`rayon`]: install another to use more or fewer threads.
+
+mod group;
+mod keep;
+mod plan;
+mod run;
+
+pub use keep::{ChannelKind, Keep, KeepChannels, KeepSimulation, Signals};
+pub use run::{Control, simulate_many};

@@ -1,0 +1,75 @@
+//! Which scenarios are simulated side by side.
+
+use super::group::Numbered;
+use crate::sampling::TimeGrid;
+use crate::scenario::{Convention, Fault, Scenario};
+use crate::solver::LANES;
+
+/// What decides how much a step costs; a group costs what its most expensive simulation does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Kind {
+    published: bool,
+    motion: Motion,
+}
+
+/// What the time loop of a scenario is compiled for; see [`crate::solver`]'s sizes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Motion {
+    Flat,
+    Tilting,
+    Rolling,
+    General,
+}
+
+impl Kind {
+    fn of(scenario: &Scenario) -> Self {
+        let (operation, solver) = (&scenario.operation, &scenario.solver);
+        let steady = operation.speed_profile_hz.is_none()
+            && operation.torque_profile_nm.is_none()
+            && operation.speed_fluctuation_hz == 0.0
+            && operation.torque_fluctuation_nm == 0.0;
+        let at_rest = solver.initial_displacement.is_none() && solver.initial_velocity.is_none();
+        let motion = match &scenario.fault {
+            _ if !steady || !at_rest => Motion::General,
+            None | Some(Fault::MissingTooth | Fault::ToothDestruction(_)) => Motion::Flat,
+            Some(Fault::ToothBreakage(_) | Fault::PartialFace(_)) => Motion::Tilting,
+            Some(Fault::ThroughFace(_)) => Motion::Rolling,
+        };
+        Self { published: scenario.convention == Convention::Published, motion }
+    }
+}
+
+impl Kind {
+    /// Whether simulations of both kinds may be in one group. What varies its speed or load is compiled apart, and costs too
+    /// much to mix with the rest.
+    fn goes_with(self, other: Self) -> bool {
+        self.published == other.published
+            && (self.motion == Motion::General) == (other.motion == Motion::General)
+    }
+}
+
+/// Divides scenarios into groups of at most [`LANES`], of like kinds and of similar length.
+pub(super) fn groups(scenarios: Vec<Numbered>) -> Vec<Vec<Numbered>> {
+    let mut keyed: Vec<_> = scenarios
+        .into_iter()
+        .map(|(index, scenario)| ((Kind::of(&scenario), samples(&scenario), index), scenario))
+        .collect();
+    keyed.sort_by_key(|(key, _)| *key);
+    let mut groups: Vec<Vec<Numbered>> = Vec::new();
+    let mut last: Option<Kind> = None;
+    for ((kind, _, index), scenario) in keyed {
+        match groups.last_mut() {
+            Some(group) if last.is_some_and(|last| last.goes_with(kind)) && group.len() < LANES => {
+                group.push((index, scenario))
+            }
+            _ => groups.push(vec![(index, scenario)]),
+        }
+        last = Some(kind);
+    }
+    groups
+}
+
+/// Number of samples of a scenario, which need not be valid.
+fn samples(scenario: &Scenario) -> usize {
+    TimeGrid::new(scenario).samples
+}

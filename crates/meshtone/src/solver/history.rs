@@ -1,0 +1,156 @@
+//! States of one block of samples, and what is read off them.
+
+use super::instruction_set::{InstructionSet, Instructions, Task};
+use super::lanes::Lanes;
+use super::outputs::{EXTERNALS, OutputRow};
+use super::step::State;
+
+/// `V` variables over a block of samples.
+struct Columns<const L: usize, const V: usize, const BLOCK: usize>(Box<Aligned<[[Lanes<L>; BLOCK]; V]>>);
+
+/// Starts at a cache line.
+#[repr(align(64))]
+struct Aligned<T>(T);
+
+/// States of one block of samples, variable by variable, so that outputs are computed for many samples at once.
+pub(super) struct History<const L: usize, const N: usize, const R: usize, const BLOCK: usize> {
+    displacement: Columns<L, N, BLOCK>,
+    scaled_velocity: Columns<L, N, BLOCK>,
+    force: Columns<L, R, BLOCK>,
+    external: Columns<L, EXTERNALS, BLOCK>,
+}
+
+impl<const L: usize, const N: usize, const R: usize, const BLOCK: usize> History<L, N, R, BLOCK> {
+    pub(super) fn new() -> Self {
+        Self {
+            displacement: Columns::new(),
+            scaled_velocity: Columns::new(),
+            force: Columns::new(),
+            external: Columns::new(),
+        }
+    }
+
+    /// Stores the state of sample `k` of the block.
+    #[inline(always)]
+    pub(super) fn store<const STEADY: bool>(&mut self, k: usize, state: &State<L, N, R>) {
+        // Never larger; lets the compiler see that.
+        let k = k % BLOCK;
+        for n in 0..N {
+            self.displacement.0.0[n][k] = state.displacement[n];
+            self.scaled_velocity.0.0[n][k] = state.scaled_velocity[n];
+        }
+        for r in 0..R {
+            self.force.0.0[r][k] = state.force[r];
+        }
+        if !STEADY {
+            for x in 0..EXTERNALS {
+                self.external.0.0[x][k] = state.external[x];
+            }
+        }
+    }
+
+    /// Variable `index`: displacements first, then scaled velocities, forces and externals.
+    fn variable(&self, index: usize) -> &[Lanes<L>] {
+        let all = self.displacement.iter().chain(self.scaled_velocity.iter());
+        all.chain(self.force.iter()).chain(self.external.iter()).nth(index).map_or(&[], |column| column)
+    }
+}
+
+impl<const L: usize, const V: usize, const BLOCK: usize> Columns<L, V, BLOCK> {
+    fn new() -> Self {
+        Self(Box::new(Aligned([[Lanes::splat(0.0); BLOCK]; V])))
+    }
+
+    fn iter(&self) -> impl Iterator<Item = &[Lanes<L>; BLOCK]> {
+        self.0.0.iter()
+    }
+}
+
+/// An output as a combination of a [`History`]'s variables; those whose weight is zero everywhere are left out.
+pub(super) struct Row<const L: usize> {
+    weights: Vec<(usize, Lanes<L>)>,
+    constant: Lanes<L>,
+    per_sample: Lanes<L>,
+    /// Number of the sample at which each lane starts.
+    start: Lanes<L>,
+}
+
+impl<const L: usize> Row<L> {
+    /// Lines an output of `L` simulations up.
+    ///
+    /// # Arguments
+    /// * `rows` - of each lane
+    /// * `start` - number of the sample at which each lane starts
+    pub(super) fn new<const N: usize, const R: usize>(rows: [&OutputRow; L], start: Lanes<L>) -> Self {
+        let value = |values: &[f64], index: usize| values.get(index).copied().unwrap_or(0.0);
+        let displacement = (0..N).map(|n| (n, Lanes::from_fn(|l| value(&rows[l].displacement, n))));
+        let velocity = (0..N).map(|n| (N + n, Lanes::from_fn(|l| value(&rows[l].scaled_velocity, n))));
+        let force = (0..R).map(|r| (2 * N + r, Lanes::from_fn(|l| value(&rows[l].force, r))));
+        let external = (0..EXTERNALS).map(|x| (2 * N + R + x, Lanes::from_fn(|l| rows[l].external[x])));
+        let all = displacement.chain(velocity).chain(force).chain(external);
+        Self {
+            weights: all.filter(|(_, weight): &(usize, Lanes<L>)| weight.0 != [0.0; L]).collect(),
+            constant: Lanes::from_fn(|l| rows[l].constant),
+            per_sample: Lanes::from_fn(|l| rows[l].per_sample),
+            start,
+        }
+    }
+
+    /// The output at the samples from `first` on.
+    ///
+    /// # Arguments
+    /// * `instructions` - what the processor may use
+    /// * `history` - the states
+    /// * `first` - number of steps before the block's first sample
+    /// * `output` - set, one per sample
+    pub(super) fn evaluate<const N: usize, const R: usize, const BLOCK: usize>(
+        &self,
+        instructions: InstructionSet,
+        history: &History<L, N, R, BLOCK>,
+        first: usize,
+        output: &mut [Lanes<L>],
+    ) {
+        instructions.run(Ramp { row: self, first, output });
+        for &(variable, weight) in &self.weights {
+            instructions.run(AddScaled { weight, variable: history.variable(variable), output });
+        }
+    }
+}
+
+/// The part of an output that does not depend on the state.
+struct Ramp<'a, const L: usize> {
+    row: &'a Row<L>,
+    first: usize,
+    output: &'a mut [Lanes<L>],
+}
+
+impl<const L: usize> Task for Ramp<'_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: Instructions>(self, simd: I) {
+        let (start, constant, per_sample) = (self.row.start, self.row.constant, self.row.per_sample);
+        for (k, value) in self.output.iter_mut().enumerate() {
+            let sample = start.add(simd, Lanes::splat((self.first + k) as f64));
+            *value = per_sample.mul_add(simd, sample, constant);
+        }
+    }
+}
+
+/// `output += weight · variable`.
+struct AddScaled<'a, const L: usize> {
+    weight: Lanes<L>,
+    variable: &'a [Lanes<L>],
+    output: &'a mut [Lanes<L>],
+}
+
+impl<const L: usize> Task for AddScaled<'_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: Instructions>(self, simd: I) {
+        for (value, state) in self.output.iter_mut().zip(self.variable) {
+            *value = self.weight.mul_add(simd, *state, *value);
+        }
+    }
+}

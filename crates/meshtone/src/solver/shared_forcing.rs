@@ -1,0 +1,54 @@
+//! The forcing of several simulations, side by side.
+
+use super::lanes::Lanes;
+use super::outputs::EXTERNALS;
+use crate::dynamics::{Forcing, ForcingBlock};
+
+/// Forcing of one block of samples.
+pub(super) struct SharedForcing<const L: usize, const R: usize> {
+    /// (N) Force of the profile errors in the mesh's directions.
+    pub(super) errors: Vec<[Lanes<L>; R]>,
+    /// Motor lead, torque deviation and speed deviation; not set while motor and brake are steady.
+    pub(super) external: Vec<[Lanes<L>; EXTERNALS]>,
+    scratch: ForcingBlock,
+}
+
+impl<const L: usize, const R: usize> SharedForcing<L, R> {
+    /// Room for `samples` samples.
+    pub(super) fn new(samples: usize) -> Self {
+        Self {
+            errors: vec![[Lanes::splat(0.0); R]; samples],
+            external: vec![[Lanes::splat(0.0); EXTERNALS]; samples],
+            scratch: ForcingBlock::default(),
+        }
+    }
+
+    /// Takes the next `samples` samples of every lane.
+    ///
+    /// # Arguments
+    /// * `forcings` - of each lane
+    /// * `samples` - at most as many as there is room for
+    /// * `steady` - whether motor and brake of all lanes are steady
+    pub(super) fn fill(&mut self, forcings: &mut [Forcing; L], samples: usize, steady: bool) {
+        for (l, forcing) in forcings.iter_mut().enumerate() {
+            forcing.next_block(samples, &mut self.scratch);
+            for (r, errors) in self.scratch.errors.iter().enumerate() {
+                for (shared, error) in self.errors.iter_mut().zip(errors) {
+                    shared[r].0[l] = *error;
+                }
+            }
+            if !steady {
+                let parts = [
+                    &self.scratch.motor_lead_rad,
+                    &self.scratch.torque_deviation_nm,
+                    &self.scratch.speed_deviation_rad_per_s,
+                ];
+                for (x, part) in parts.into_iter().enumerate() {
+                    for (shared, value) in self.external.iter_mut().zip(part) {
+                        shared[x].0[l] = *value;
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! How large a problem the step is compiled for.
+
+use super::reduce::ReducedModel;
+use crate::simulate::Stages;
+
+/// Number of modes and of mesh directions that a step is compiled for, the smaller sizes first. Fixed sizes let the compiler
+/// unroll the step and keep it in registers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(crate) enum Size {
+    /// A healthy pair, a missing or a destroyed tooth: the wheels do not tilt.
+    Flat,
+    /// The load moves along the face: the wheels tilt.
+    Tilting,
+    /// The pressure angle changes.
+    Rolling,
+    /// Everything, as after an arbitrary initial displacement; also at varying speed or load.
+    General,
+}
+
+impl Size {
+    /// The smallest size that holds a simulation.
+    pub(crate) fn of(stages: &Stages, model: &ReducedModel) -> Self {
+        if !stages.is_steady() {
+            return Self::General;
+        }
+        match (model.modes(), model.directions.len()) {
+            (0..=5, 0..=1) => Self::Flat,
+            (0..=7, 0..=2) => Self::Tilting,
+            (0..=7, 3) => Self::Rolling,
+            _ => Self::General,
+        }
+    }
+}
