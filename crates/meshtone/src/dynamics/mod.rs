@@ -16,6 +16,7 @@ mod system;
 pub use body::WheelBody;
 pub use excitation::{ErrorForce, Excitation};
 pub(crate) use forcing::{Forcing, ForcingBlock};
+pub(crate) use mesh_directions::DIRECTIONS;
 pub use mesh_directions::MeshDirections;
 pub use mesh_load::{LoadState, MeshLoad};
 pub use modes::Modes;

@@ -110,47 +110,53 @@ impl<const L: usize> Row<L> {
         first: usize,
         output: &mut [Lanes<L>],
     ) {
-        instructions.run(Ramp { row: self, first, output });
-        for &(variable, weight) in &self.weights {
-            instructions.run(AddScaled { weight, variable: history.variable(variable), output });
-        }
+        let terms: Vec<_> =
+            self.weights.iter().map(|&(variable, weight)| (weight, history.variable(variable))).collect();
+        instructions.run(Evaluate { row: self, terms: &terms, first, output });
     }
 }
 
-/// The part of an output that does not depend on the state.
-struct Ramp<'a, const L: usize> {
+/// Samples whose outputs are summed in registers.
+const CHUNK: usize = 8;
+
+/// `output = constant + slope · sample + Σ weight · variable`.
+struct Evaluate<'a, const L: usize> {
     row: &'a Row<L>,
+    terms: &'a [(Lanes<L>, &'a [Lanes<L>])],
     first: usize,
     output: &'a mut [Lanes<L>],
 }
 
-impl<const L: usize> Task for Ramp<'_, L> {
-    type Output = ();
-
+impl<const L: usize> Evaluate<'_, L> {
     #[inline(always)]
-    fn run<I: Instructions>(self, simd: I) {
-        let (start, constant, per_sample) = (self.row.start, self.row.constant, self.row.per_sample);
-        for (k, value) in self.output.iter_mut().enumerate() {
-            let sample = start.add(simd, Lanes::splat((self.first + k) as f64));
-            *value = per_sample.mul_add(simd, sample, constant);
-        }
+    fn constant<I: Instructions>(&self, simd: I, k: usize) -> Lanes<L> {
+        let sample = self.row.start.add(simd, Lanes::splat((self.first + k) as f64));
+        self.row.per_sample.mul_add(simd, sample, self.row.constant)
     }
 }
 
-/// `output += weight · variable`.
-struct AddScaled<'a, const L: usize> {
-    weight: Lanes<L>,
-    variable: &'a [Lanes<L>],
-    output: &'a mut [Lanes<L>],
-}
-
-impl<const L: usize> Task for AddScaled<'_, L> {
+impl<const L: usize> Task for Evaluate<'_, L> {
     type Output = ();
 
     #[inline(always)]
     fn run<I: Instructions>(self, simd: I) {
-        for (value, state) in self.output.iter_mut().zip(self.variable) {
-            *value = self.weight.mul_add(simd, *state, *value);
+        let samples = self.output.len();
+        let whole = samples - samples % CHUNK;
+        for start in (0..whole).step_by(CHUNK) {
+            let mut sums: [Lanes<L>; CHUNK] = std::array::from_fn(|k| self.constant(simd, start + k));
+            for (weight, variable) in self.terms {
+                for (sum, value) in sums.iter_mut().zip(&variable[start..start + CHUNK]) {
+                    *sum = weight.mul_add(simd, *value, *sum);
+                }
+            }
+            self.output[start..start + CHUNK].copy_from_slice(&sums);
+        }
+        for k in whole..samples {
+            let mut sum = self.constant(simd, k);
+            for (weight, variable) in self.terms {
+                sum = weight.mul_add(simd, variable[k], sum);
+            }
+            self.output[k] = sum;
         }
     }
 }

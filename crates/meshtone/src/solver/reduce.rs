@@ -1,7 +1,8 @@
 //! The equations of motion in modal coordinates, without what stays at rest.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, SMatrix};
 
+use crate::dynamics::DIRECTIONS;
 use crate::dynamics::System;
 use crate::dynamics::coordinates::*;
 
@@ -69,6 +70,7 @@ impl ReducedModel {
         let modal_motion =
             |motion: &CoordinateVector| modal(&(turn.transpose() * motion).component_mul(&mass));
         let columns = columns(system);
+        let coupled = couplings(system);
         let mesh: Vec<CoordinateVector> = columns.iter().map(|column| modal(&column.vector)).collect();
         let mut unit = CoordinateVector::zeros();
         unit[THETA_PINION] = system.shaft_stiffness_nm_per_rad[0];
@@ -88,12 +90,13 @@ impl ReducedModel {
         let mut active_columns = vec![false; columns.len()];
         loop {
             let before = (active_modes.clone(), active_columns.clone());
-            for (c, column) in mesh.iter().enumerate() {
-                let reached = (0..COORDINATES).any(|n| active_modes[n] && column[n] != 0.0)
-                    || (0..columns.len()).any(|d| active_columns[d] && coupled(system, &columns, c, d));
+            for (c, (column, vector)) in columns.iter().zip(&mesh).enumerate() {
+                let reached = (0..COORDINATES).any(|n| active_modes[n] && vector[n] != 0.0)
+                    || (0..columns.len())
+                        .any(|d| active_columns[d] && coupled[(column.direction, columns[d].direction)]);
                 active_columns[c] |= reached;
                 for n in 0..COORDINATES {
-                    active_modes[n] |= active_columns[c] && column[n] != 0.0;
+                    active_modes[n] |= active_columns[c] && vector[n] != 0.0;
                 }
             }
             if before == (active_modes.clone(), active_columns.clone()) {
@@ -159,13 +162,16 @@ fn columns(system: &System) -> Vec<Column> {
     }
 }
 
-/// Whether the mesh couples two columns at any point of the cycle beyond the mean, which the modes hold.
-fn coupled(system: &System, columns: &[Column], c: usize, d: usize) -> bool {
+/// Which of the mesh's constant directions the mesh couples at any point of the cycle.
+fn couplings(system: &System) -> SMatrix<bool, DIRECTIONS, DIRECTIONS> {
     let nominal = system.mesh.nominal.pressure_angle_rad;
-    let (c, d) = (columns[c].direction, columns[d].direction);
-    std::iter::once(&system.mesh.nominal)
-        .chain(&system.mesh.faulty)
-        .any(|state| state.mean_square(nominal)[(c, d)] != 0.0)
+    let states = std::iter::once(&system.mesh.nominal).chain(&system.mesh.faulty);
+    let mut coupled = SMatrix::<bool, DIRECTIONS, DIRECTIONS>::from_element(false);
+    let mut last = None;
+    for state in states.filter(|state| last.replace(**state) != Some(**state)) {
+        coupled.zip_apply(&state.mean_square(nominal), |coupled, entry| *coupled |= entry != 0.0);
+    }
+    coupled
 }
 
 fn clean(vector: CoordinateVector) -> CoordinateVector {

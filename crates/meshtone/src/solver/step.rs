@@ -99,6 +99,18 @@ impl<const L: usize, const N: usize, const R: usize> State<L, N, R> {
     }
 }
 
+/// What a step leads to before the new mesh force is known.
+struct Trial<const L: usize, const N: usize, const R: usize> {
+    /// Change of the displacements.
+    change: [Lanes<L>; N],
+    /// Deflection in the mesh's directions after it.
+    deflection: [Lanes<L>; R],
+    /// Angle of the wheel that leads the cycle after it, in points, without the steady rotation.
+    angle: Lanes<L>,
+    /// Steady rotation at the step's end, in points.
+    rotation: Lanes<L>,
+}
+
 /// Coarse points of the cycle, counted from the start of the simulation: about 10⁷ revolutions.
 const MOST_POINTS: f64 = (1u64 << 40) as f64;
 
@@ -215,9 +227,8 @@ impl<const L: usize, const N: usize, const R: usize> Group<'_, L, N, R> {
         external: &[Lanes<L>; EXTERNALS],
     ) {
         let c = self.coefficients;
-        // Everything but the new mesh force.
         let mut change = [Lanes::splat(0.0); N];
-        let mut trial = [Lanes::splat(0.0); N];
+        let mut displacement = [Lanes::splat(0.0); N];
         for n in 0..N {
             change[n] = c.keep[n].mul(simd, state.scaled_velocity[n]);
             change[n] = c.restore[n].negative_mul_add(simd, state.displacement[n], change[n]);
@@ -230,24 +241,18 @@ impl<const L: usize, const N: usize, const R: usize> Group<'_, L, N, R> {
                     change[n] = c.external_push[x][n].mul_add(simd, both, change[n]);
                 }
             }
-            trial[n] = state.displacement[n].add(simd, change[n]);
+            displacement[n] = state.displacement[n].add(simd, change[n]);
         }
-        let deflection = self.deflection(simd, &trial);
-        let trial_angle = dot(simd, c.static_angle, &c.angle, &trial);
-        let rotation = c.start.add(simd, Lanes::splat(step as f64)).mul(simd, c.points_per_sample);
-
+        let trial = Trial {
+            change,
+            deflection: self.deflection(simd, &displacement),
+            angle: dot(simd, c.static_angle, &c.angle, &displacement),
+            rotation: c.start.add(simd, Lanes::splat(step as f64)).mul(simd, c.points_per_sample),
+        };
         let force = if PUBLISHED {
-            self.published_force::<I, STEADY>(
-                simd,
-                state,
-                &change,
-                rotation.add(simd, trial_angle),
-                errors,
-                external,
-                &deflection,
-            )
+            self.published_force::<I, STEADY>(simd, state, &trial, errors, external)
         } else {
-            self.corrected_force(simd, state, rotation, trial_angle, errors, &deflection)
+            self.corrected_force(simd, state, &trial, errors)
         };
 
         for n in 0..N {
@@ -259,7 +264,7 @@ impl<const L: usize, const N: usize, const R: usize> Group<'_, L, N, R> {
         }
         state.force = force;
         state.angles_before = [state.angle, state.angles_before[0]];
-        state.angle = self.angle_with(simd, trial_angle, &force);
+        state.angle = self.angle_with(simd, trial.angle, &force);
         if !STEADY {
             state.external = *external;
         }
@@ -274,18 +279,17 @@ impl<const L: usize, const N: usize, const R: usize> Group<'_, L, N, R> {
         &self,
         simd: I,
         state: &mut State<L, N, R>,
-        rotation: Lanes<L>,
-        trial_angle: Lanes<L>,
+        trial: &Trial<L, N, R>,
         errors: &[Lanes<L>; R],
-        deflection: &[Lanes<L>; R],
     ) -> [Lanes<L>; R] {
+        let &Trial { ref deflection, angle, rotation, .. } = trial;
         let [before, two_before] = state.angles_before;
         let guess = before.sub(simd, two_before).mul_add(simd, Lanes::splat(2.0), before);
         let mut point = rotation.add(simd, guess).floor(simd);
         let mut entries = self.entries_of(simd, point);
         let mut force = self.solve(simd, &entries, errors, deflection);
         for _ in 0..MOST_ITERATIONS {
-            let next = rotation.add(simd, self.angle_with(simd, trial_angle, &force)).floor(simd);
+            let next = rotation.add(simd, self.angle_with(simd, angle, &force)).floor(simd);
             if next.equals(simd, point) {
                 break;
             }
@@ -304,20 +308,20 @@ impl<const L: usize, const N: usize, const R: usize> Group<'_, L, N, R> {
         &self,
         simd: I,
         state: &mut State<L, N, R>,
-        change: &[Lanes<L>; N],
-        trial_angle: Lanes<L>,
+        trial: &Trial<L, N, R>,
         errors: &[Lanes<L>; R],
         external: &[Lanes<L>; EXTERNALS],
-        deflection: &[Lanes<L>; R],
     ) -> [Lanes<L>; R] {
+        let Trial { change, deflection, .. } = trial;
+        let angle = trial.rotation.add(simd, trial.angle);
         let right_hand_side = self.right_hand_side::<I, STEADY>(simd, state, errors, external);
         let mut force = self.solve(simd, &state.entry, errors, deflection);
-        let mut entries = self.entries(simd, self.angle_with(simd, trial_angle, &force));
+        let mut entries = self.entries(simd, self.angle_with(simd, angle, &force));
         let mut running = [true; L];
         for _ in 1..MOST_ITERATIONS {
             let next = self.solve(simd, &entries, errors, deflection);
             let error = self.energy_norm(simd, &entries, change, &right_hand_side, &force, &next);
-            let next_entries = self.entries(simd, self.angle_with(simd, trial_angle, &next));
+            let next_entries = self.entries(simd, self.angle_with(simd, angle, &next));
             let mut any = false;
             for l in 0..L {
                 if running[l] {

@@ -17,10 +17,25 @@ pub(super) struct EnergyCoefficients {
 }
 
 impl EnergyCoefficients {
-    /// (mm/N) Compliance `2U` of a unit force at pressure angle `alpha`.
-    pub(super) fn compliance(&self, alpha: f64) -> f64 {
-        let (fa, fs) = alpha.sin_cos();
+    /// (mm/N) Compliance `2U` of a unit force.
+    pub(super) fn compliance(&self, load: LoadDirection) -> f64 {
+        let (fa, fs) = (load.sin, load.cos);
         2.0 * (fs * fs * self.ss + fs * fa * self.sa + fa * fa * self.aa)
+    }
+}
+
+/// Pressure angle of a load.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LoadDirection {
+    pub(super) sin: f64,
+    pub(super) cos: f64,
+    pub(super) tan: f64,
+}
+
+impl LoadDirection {
+    pub(super) fn new(pressure_angle_rad: f64) -> Self {
+        let (sin, cos) = pressure_angle_rad.sin_cos();
+        Self { sin, cos, tan: pressure_angle_rad.tan() }
     }
 }
 

@@ -3,6 +3,7 @@
 //! `(cos²α/(E W)) (L u² + M u + P (1 + Q tan²α))`, `u = (x − Rd − y tan α)/S_f`, `S_f = 2 θ_f Rd`.
 //! Source: P. Sainsot, P. Velex, O. Duverger, Journal of Mechanical Design 126 (2004).
 
+use super::energy::LoadDirection;
 use crate::scenario::FoundationCoefficients;
 use crate::tooth::{ToothProfile, Wheel};
 
@@ -33,9 +34,15 @@ impl Foundation {
         }
     }
 
-    /// (mm/N) Compliance of a load at (x, y) over `width_mm`, at pressure angle `alpha`.
-    pub(super) fn compliance(&self, (x, y): (f64, f64), alpha: f64, width_mm: f64, youngs_mpa: f64) -> f64 {
-        let (cos, tan) = (alpha.cos(), alpha.tan());
+    /// (mm/N) Compliance of a load at (x, y) over `width_mm`.
+    pub(super) fn compliance(
+        &self,
+        (x, y): (f64, f64),
+        direction: LoadDirection,
+        width_mm: f64,
+        youngs_mpa: f64,
+    ) -> f64 {
+        let LoadDirection { cos, tan, .. } = direction;
         let u = (x - self.root_radius_mm - y * tan) / self.root_thickness_mm;
         cos * cos / (youngs_mpa * width_mm)
             * (self.l * u * u + self.m * u + self.p * (1.0 + self.q * tan * tan))

@@ -1,6 +1,6 @@
 //! The compliances of one tooth.
 
-use super::energy::{EnergyCoefficients, LoadedTooth};
+use super::energy::{EnergyCoefficients, LoadDirection, LoadedTooth};
 use super::foundation::Foundation;
 use super::{axial, bending, shear};
 use crate::fault::ToothSection;
@@ -44,8 +44,10 @@ impl ToothCompliance {
             shear_modulus_mpa: material.shear_modulus_mpa(),
             first_contact,
         };
-        let angle = |i: usize| {
-            section.pressure_angle_rad.as_ref().map_or(wheel.pressure_angle_rad, |angles| angles[i])
+        let nominal = LoadDirection::new(wheel.pressure_angle_rad);
+        let direction = |i: usize| match &section.pressure_angle_rad {
+            Some(angles) if angles[i] != wheel.pressure_angle_rad => LoadDirection::new(angles[i]),
+            _ => nominal,
         };
         let energy_point = |i: usize| match section.pivot {
             Some(pivot) if pivot.energies => pivot.loaded_point(i),
@@ -54,7 +56,7 @@ impl ToothCompliance {
         let foundation_point = |i: usize| section.pivot.map_or(i, |pivot| pivot.loaded_point(i));
         let compliance = |energies: Vec<EnergyCoefficients>| {
             (first_contact..profile.len())
-                .map(|i| energies[energy_point(i) - first_contact].compliance(angle(i)))
+                .map(|i| energies[energy_point(i) - first_contact].compliance(direction(i)))
                 .collect()
         };
         let body = Foundation::new(wheel, profile, foundation);
@@ -66,7 +68,12 @@ impl ToothCompliance {
                 .map(|i| {
                     let point = foundation_point(i);
                     let load = (profile.x_mm[point], profile.y_mm[point]);
-                    body.compliance(load, angle(i), section.foundation_width_mm[i], tooth.youngs_modulus_mpa)
+                    body.compliance(
+                        load,
+                        direction(i),
+                        section.foundation_width_mm[i],
+                        tooth.youngs_modulus_mpa,
+                    )
                 })
                 .collect(),
         }

@@ -143,10 +143,12 @@ impl Flank {
         let first_roll = if fillet.is_some() {
             0.0
         } else {
-            let k = first_minimum(
-                (0..INVOLUTE_SAMPLES).map(|k| ((base / angle(k).cos()).powi(2) - root * root).abs()),
-            );
-            angle(k).tan()
+            // The radius rises with k: the nearest is next to the exact solution.
+            let exact = (base / root).acos() / angle(1);
+            let first = (exact as usize).saturating_sub(1);
+            let distance = |k: usize| ((base / angle(k).cos()).powi(2) - root * root).abs();
+            let near = (first..first + 4).filter(|&k| k < INVOLUTE_SAMPLES);
+            angle(first + first_minimum(near.map(distance))).tan()
         };
         let mut flank = Self {
             base_radius_mm: base,
@@ -203,7 +205,7 @@ impl Flank {
         let mut y = 0.0;
         for _ in 0..MAX_NEWTON_STEPS {
             let u = squared.sqrt();
-            let (sin, cos) = (self.foot_angle_rad - u).sin_cos();
+            let (sin, cos) = roll.sin_cos(self.foot_angle_rad - u);
             let step = 2.0 * (x / self.base_radius_mm - (cos - u * sin)) / cos;
             squared = (squared + step).max(0.0);
             // y at the end of the step, to first order.
@@ -220,11 +222,47 @@ impl Flank {
 
 const MAX_NEWTON_STEPS: usize = 20;
 
-/// Squares of the roll angle at the last three points, from which the next is predicted.
+/// Squares of the roll angle at the last three points, from which the next is predicted, and the last angle's sine and cosine.
 #[derive(Default)]
 struct RollAngle {
     squared: [f64; 3],
     known: usize,
+    turned: TurnedAngle,
+}
+
+/// An angle whose sine and cosine are known, and from which those of angles nearby follow.
+#[derive(Default)]
+struct TurnedAngle {
+    angle_rad: f64,
+    sin: f64,
+    cos: f64,
+    turns_left: usize,
+}
+
+impl TurnedAngle {
+    /// (rad) Largest turn: the series' first neglected terms are below 1e-24.
+    const LARGEST_RAD: f64 = 1e-3;
+    /// Turns until rounding errors, one more with each, are forgotten.
+    const MOST_TURNS: usize = 32;
+
+    /// Sine and cosine, by the addition theorem where the angle before is near.
+    fn sin_cos(&mut self, angle_rad: f64) -> (f64, f64) {
+        let turn = angle_rad - self.angle_rad;
+        if self.turns_left == 0 || turn.abs() > Self::LARGEST_RAD {
+            (self.sin, self.cos) = angle_rad.sin_cos();
+            self.turns_left = Self::MOST_TURNS;
+        } else {
+            let square = turn * turn;
+            let sin = turn * (1.0 - square / 6.0 * (1.0 - square / 20.0));
+            let versine = square / 2.0 * (1.0 - square / 12.0 * (1.0 - square / 30.0));
+            let (before_sin, before_cos) = (self.sin, self.cos);
+            self.sin = before_sin + (before_cos * sin - before_sin * versine);
+            self.cos = before_cos - (before_sin * sin + before_cos * versine);
+            self.turns_left -= 1;
+        }
+        self.angle_rad = angle_rad;
+        (self.sin, self.cos)
+    }
 }
 
 impl RollAngle {
@@ -232,6 +270,10 @@ impl RollAngle {
     fn predicted(&self) -> f64 {
         let [a, b, c] = self.squared;
         if self.known < 3 { c } else { (3.0 * (c - b) + a).max(0.0) }
+    }
+
+    fn sin_cos(&mut self, angle_rad: f64) -> (f64, f64) {
+        self.turned.sin_cos(angle_rad)
     }
 
     fn remember(&mut self, squared: f64) {

@@ -1,0 +1,204 @@
+//! Many simulations: the same bits as alone, in order, each with its own error.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use meshtone::batch::{Control, KeepChannels, KeepSimulation, simulate_many};
+use meshtone::scenario::*;
+use meshtone::signal::Channels;
+use meshtone::simulate;
+use meshtone::solver::InstructionSet;
+
+fn small(pinion: u32, gear: u32, fault: Option<Fault>) -> Scenario {
+    let mut scenario = Scenario::new(3.0, pinion, gear, 15.0, 30.0, 60.0);
+    scenario.gears.points_per_tooth = 1000;
+    scenario.solver.sampling_rate_hz = 1e4;
+    scenario.quality.din_grade = 6;
+    scenario.fault = fault;
+    scenario
+}
+
+fn faults() -> Vec<Option<Fault>> {
+    let pit = PitCircle::Fractions { start: 0.2, end: 0.8, depth: 0.4 };
+    vec![
+        None,
+        Some(Fault::MissingTooth),
+        Some(Fault::ToothBreakage(ToothBreakage {
+            chip_height_mm: 3.0,
+            chip_width_mm: 9.0,
+            tip_loss_mm: 0.0,
+        })),
+        Some(Fault::PartialFace(PartialFace { width_mm: 5.0, pit })),
+        Some(Fault::ThroughFace(ThroughFace { pit })),
+        Some(Fault::ToothDestruction(ToothDestruction {
+            start: 0.2,
+            line: DestructionLine::SlopeDeg(22.0),
+            offset_mm: 0.0,
+            noise_mm: 0.02,
+        })),
+    ]
+}
+
+/// Everything that may be mixed: faults, teeth, lengths, conventions, drives, initial states, and one that is refused.
+fn mixed() -> Vec<Scenario> {
+    let mut scenarios = Vec::new();
+    for (n, fault) in faults().into_iter().enumerate() {
+        for (k, (pinion, gear)) in [(17, 38), (20, 20), (18, 27)].into_iter().enumerate() {
+            let mut scenario = small(pinion, gear, fault.clone());
+            scenario.seed = (10 * n + k) as u64;
+            scenario.operation.pinion_speed_hz = 20.0 + 7.0 * n as f64 + k as f64;
+            scenario.solver.settle_tolerance = if k == 1 { 0.0 } else { 1e-6 };
+            if k == 2 && n % 2 == 0 {
+                scenario.convention = Convention::Published;
+            }
+            if k == 1 && n == 3 {
+                scenario.operation.speed_fluctuation_hz = 0.2;
+            }
+            if k == 0 && n == 4 {
+                scenario.rig.eccentricity_mm = 0.01;
+            }
+            if k == 1 && n == 5 {
+                scenario.solver.initial_displacement = Some(std::array::from_fn(|c| 1e-6 * c as f64));
+            }
+            scenarios.push(scenario);
+        }
+    }
+    let mut refused = small(17, 38, None);
+    refused.gears.module_mm = -1.0;
+    scenarios.insert(5, refused);
+    scenarios
+}
+
+/// An order that depends on `seed` alone.
+fn shuffled<T>(mut items: Vec<T>, seed: u64) -> Vec<T> {
+    let mut state = seed;
+    for i in (1..items.len()).rev() {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        items.swap(i, (state >> 33) as usize % (i + 1));
+    }
+    items
+}
+
+fn bits(channels: &Channels) -> Vec<Vec<u64>> {
+    let Channels { horizontal_g, vertical_g, axial_g, pinion_speed_hz, gear_speed_hz, mesh_force_n, .. } =
+        channels;
+    [horizontal_g, vertical_g, axial_g, pinion_speed_hz, gear_speed_hz, mesh_force_n]
+        .map(|channel| channel.iter().map(|value| value.to_bits()).collect())
+        .to_vec()
+}
+
+fn in_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(work)
+}
+
+fn all(scenarios: &[Scenario], control: &Control) -> Vec<Result<Channels, ScenarioError>> {
+    let mut results = Vec::new();
+    let handed_out = simulate_many(scenarios.to_vec(), &KeepSimulation, control, |index, result| {
+        assert_eq!(index, results.len());
+        results.push(result.map(|simulation| simulation.channels));
+    });
+    assert_eq!(handed_out, scenarios.len());
+    results
+}
+
+#[test]
+fn the_same_bits_alone_in_any_lane_and_any_thread() {
+    for round in 0..3 {
+        let scenarios = shuffled(mixed(), round);
+        let alone: Vec<_> = scenarios.iter().map(simulate).collect();
+        assert_eq!(alone.iter().filter(|result| result.is_err()).count(), 1);
+        let batch = in_threads(1 + round as usize, || all(&scenarios, &Control::default()));
+        for ((scenario, alone), batch) in scenarios.iter().zip(&alone).zip(&batch) {
+            match (alone, batch) {
+                (Ok(alone), Ok(batch)) => {
+                    assert!(alone.channels.len() > 1000);
+                    assert!(bits(&alone.channels) == bits(batch), "{}", scenario.to_toml());
+                }
+                (alone, batch) => assert_eq!(alone.as_ref().err(), batch.as_ref().err()),
+            }
+        }
+    }
+}
+
+#[test]
+fn every_instruction_set_gives_the_same() {
+    let scenarios: Vec<Scenario> = mixed();
+    let with = |instructions| all(&scenarios, &Control { instructions, ..Control::default() });
+    let reference = with(InstructionSet::Plain);
+    let mut fused = None;
+    for instructions in InstructionSet::available() {
+        println!("{instructions:?}");
+        let results = with(instructions);
+        for (result, reference) in results.iter().zip(&reference) {
+            let (Ok(result), Ok(reference)) = (result, reference) else { continue };
+            for (a, b) in [
+                (&result.horizontal_g, &reference.horizontal_g),
+                (&result.vertical_g, &reference.vertical_g),
+                (&result.mesh_force_n, &reference.mesh_force_n),
+            ] {
+                let square = |values: &mut dyn Iterator<Item = f64>| values.map(|x| x * x).sum::<f64>();
+                let difference = square(&mut a.iter().zip(b).map(|(a, b)| a - b)).sqrt();
+                assert!(difference <= 1e-9 * square(&mut b.iter().copied()).sqrt(), "{instructions:?}");
+            }
+        }
+        if instructions != InstructionSet::Plain {
+            let results: Vec<_> = results.iter().map(|result| result.as_ref().ok().map(bits)).collect();
+            assert!(*fused.get_or_insert_with(|| results.clone()) == results, "{instructions:?}");
+        }
+    }
+}
+
+#[test]
+fn progress_counts_every_simulation() {
+    let counts = Mutex::new(Vec::new());
+    let progress = |count| counts.lock().unwrap().push(count);
+    let scenarios = vec![small(17, 34, None); 40];
+    let control = Control { progress: &progress, ..Control::default() };
+    assert_eq!(in_threads(2, || all(&scenarios, &control)).len(), 40);
+    let mut counts = counts.into_inner().unwrap();
+    counts.sort_unstable();
+    assert_eq!(counts.last(), Some(&40));
+    assert!(counts.len() >= 5);
+}
+
+#[test]
+fn cancelled_work_ends_early_and_what_is_handed_out_is_whole() {
+    let cancelled = AtomicBool::new(false);
+    let asked_for = AtomicUsize::new(0);
+    let scenarios = (0..100_000).map(|_| {
+        asked_for.fetch_add(1, Ordering::Relaxed);
+        small(17, 34, None)
+    });
+    let expected = simulate(&small(17, 34, None)).unwrap().channels.len();
+    let control = Control { cancelled: &cancelled, ..Control::default() };
+    let handed_out = in_threads(2, || {
+        simulate_many(scenarios, &KeepChannels::default(), &control, |index, signals| {
+            assert_eq!(signals.unwrap().channels[0].len(), expected);
+            if index == 20 {
+                cancelled.store(true, Ordering::Relaxed);
+            }
+        })
+    });
+    assert!((21..1000).contains(&handed_out), "{handed_out}");
+    assert!(asked_for.into_inner() < 1000);
+}
+
+#[test]
+fn nothing_to_do() {
+    assert_eq!(all(&[], &Control::default()).len(), 0);
+}
+
+#[test]
+fn single_precision_channels_are_the_signals_rounded() {
+    let scenario = small(17, 34, None);
+    let whole = simulate(&scenario).unwrap().channels;
+    simulate_many([scenario], &KeepChannels::default(), &Control::default(), |_, signals| {
+        let signals = signals.unwrap();
+        assert_eq!(signals.sampling_rate_hz, whole.sampling_rate_hz);
+        assert_eq!(signals.start_s, whole.start_s);
+        for (channel, whole) in signals.channels.iter().zip([&whole.horizontal_g, &whole.vertical_g]) {
+            assert!(channel.iter().zip(whole).all(|(a, b)| *a == *b as f32));
+        }
+    });
+}
