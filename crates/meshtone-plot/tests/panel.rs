@@ -128,6 +128,18 @@ fn the_png_has_the_panels_size() {
 }
 
 #[test]
+fn the_run_stands_in_both_files() {
+    let (_, scenario) = support::gallery().remove(0);
+    let figure = drawn(&scenario).of_run("0123<ab>cd");
+    check(&figure);
+    assert!(figure.svg().contains("<metadata>meshtone.run: 0123abcd</metadata>"));
+    let png = figure.png().unwrap();
+    let reader = png::Decoder::new(std::io::Cursor::new(&png)).read_info().unwrap();
+    let texts = &reader.info().uncompressed_latin1_text;
+    assert_eq!((texts[0].keyword.as_str(), texts[0].text.as_str()), ("meshtone.run", "0123abcd"));
+}
+
+#[test]
 fn the_same_panel_twice_is_the_same() {
     let (_, scenario) = support::gallery().remove(3);
     assert_eq!(drawn(&scenario), drawn(&scenario));
