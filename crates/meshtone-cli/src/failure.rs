@@ -48,6 +48,21 @@ impl Failure {
         Self { kind: Kind::Failed, message: message.into(), help: None, snippet: None }
     }
 
+    /// Something cannot be read or written: the user's input is wrong where a name or a permission stands in the way,
+    /// but not where the disk is full or broken.
+    pub fn of_file(error: ErrorKind, message: impl Into<String>) -> Self {
+        use ErrorKind::{
+            InvalidFilename, InvalidInput, IsADirectory, NotADirectory, NotFound, PermissionDenied,
+            ReadOnlyFilesystem,
+        };
+
+        match error {
+            InvalidFilename | InvalidInput | IsADirectory | NotADirectory | NotFound | PermissionDenied
+            | ReadOnlyFilesystem => Self::bad_input(message),
+            _ => Self::failed(message),
+        }
+    }
+
     /// The same failure with advice.
     pub fn with_help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
@@ -76,7 +91,7 @@ impl From<ReadScenarioError> for Failure {
                     ErrorKind::IsADirectory => {
                         Self::bad_input(format!("{path} is a directory; must be a scenario file"))
                     }
-                    _ => Self::failed(format!("cannot read {path}: {source}")),
+                    kind => Self::of_file(kind, format!("cannot read {path}: {source}")),
                 }
             }
             ReadScenarioError::NotText { .. } => Self::bad_input(error.to_string())
@@ -94,7 +109,7 @@ impl From<ReadScenarioError> for Failure {
 
 impl From<WriteFileError> for Failure {
     fn from(error: WriteFileError) -> Self {
-        Self::failed(error.to_string())
+        Self::of_file(error.source.kind(), error.to_string())
     }
 }
 
@@ -105,7 +120,7 @@ impl From<ReadSignalsError> for Failure {
                 Self::bad_input(format!("there is no file {}", path.display()))
                     .with_help("name the directory that `meshtone simulate` wrote its results to")
             }
-            ReadSignalsError::Unreadable { .. } => Self::failed(error.to_string()),
+            ReadSignalsError::Unreadable { source, .. } => Self::of_file(source.kind(), error.to_string()),
             ReadSignalsError::Foreign { .. } | ReadSignalsError::Scenario { .. } => {
                 Self::bad_input(error.to_string())
                     .with_help("simulate again with this version: `meshtone simulate SCENARIO.toml -o DIR`")

@@ -1,16 +1,20 @@
 //! The program `meshtone`.
 //!
-//! Exit codes: 0, 1 (something failed: a disk, a permission) or 2 (bad input: a scenario or an argument).
+//! Exit codes: 0, 1 (something failed, such as a full disk) or 2 (bad input: a scenario, an argument, a place that cannot
+//! be read or written).
 
 mod check;
 mod commands;
+mod earlier_results;
 mod failure;
 mod memory;
 mod output_directory;
 mod progress;
 mod report;
 mod results;
+mod same_file;
 mod table;
+mod targets;
 mod terminal;
 mod warnings;
 

@@ -2,8 +2,15 @@
 
 use std::fs;
 
+use meshtone::scenario::MemoryLimit;
+
+/// How much memory a simulation may need on this machine.
+pub fn limit() -> MemoryLimit {
+    available_bytes().map_or_else(MemoryLimit::default, |free_bytes| MemoryLimit::Machine { free_bytes })
+}
+
 /// (bytes) Memory that can be used now without swapping, where the system says so (Linux does).
-pub fn available_bytes() -> Option<u64> {
+fn available_bytes() -> Option<u64> {
     let machine = fs::read_to_string("/proc/meminfo").ok().and_then(|text| available_in(&text));
     machine.into_iter().chain(left_to_container()).min()
 }

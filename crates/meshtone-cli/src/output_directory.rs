@@ -1,11 +1,14 @@
 //! The directory that a run writes to.
 
 use std::fs;
+use std::io::{Error, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use meshtone_io::atomic_file::check_writable;
+use meshtone_io::atomic_file::{check_target, check_writable};
 
+use crate::earlier_results;
 use crate::failure::Failure;
+use crate::results::RESULTS;
 
 /// A directory that exists and can be written to. What had to be created for it is removed again unless it is
 /// kept.
@@ -17,21 +20,24 @@ pub struct OutputDirectory {
 }
 
 impl OutputDirectory {
-    /// Creates the directory where it does not exist, and tries whether files can be written to it, so that no
+    /// Creates the directory where it does not exist, and tries whether the results can be written to it, so that no
     /// simulation runs whose results could not be kept.
     pub fn prepare(path: &Path) -> Result<Self, Failure> {
         let missing = path.ancestors().filter(|part| !part.as_os_str().is_empty());
         let created = missing.take_while(|part| !part.exists()).map(Path::to_path_buf).collect();
         let directory = Self { path: path.to_path_buf(), created };
-        let refuse = |problem: &dyn std::fmt::Display| {
-            Failure::failed(format!("cannot write results to the directory {}: {problem}", path.display()))
+        let refuse = |error: Error| {
+            let message = format!("cannot write results to the directory {}: {error}", path.display());
+            Failure::of_file(error.kind(), message)
                 .with_help("name another directory with -o, or change its permissions")
         };
         if path.exists() && !path.is_dir() {
-            return Err(refuse(&"it is a file"));
+            return Err(refuse(Error::new(ErrorKind::NotADirectory, "it is a file")));
         }
-        fs::create_dir_all(path).map_err(|error| refuse(&error))?;
-        check_writable(path).map_err(|error| refuse(&error.source))?;
+        fs::create_dir_all(path).map_err(refuse)?;
+        check_writable(path).map_err(|error| refuse(error.source))?;
+        earlier_results::put_back(path)?;
+        RESULTS.into_iter().try_for_each(|name| check_target(&path.join(name)))?;
         Ok(directory)
     }
 

@@ -22,7 +22,7 @@ pub fn table(summary: &Summary) -> String {
 
 fn rows(summary: &Summary) -> [(&'static str, String); 8] {
     let (stiffness, force) = (&summary.mesh_stiffness, &summary.mesh_force);
-    let frequencies: Vec<_> = summary.natural_frequencies_hz.iter().map(|f| format!("{f:.0}")).collect();
+    let frequencies: Vec<_> = summary.natural_frequencies_hz.iter().map(|f| frequency(*f)).collect();
     let duration_s = summary.samples as f64 / summary.sampling_rate_hz;
     [
         ("model", format!("{}, seed {}", summary.convention, summary.seed)),
@@ -66,13 +66,18 @@ fn label(channel: &ChannelSummary) -> String {
     format!("{}, {}", quantity.replace('_', " "), channel.unit)
 }
 
+/// To the hertz, where that is not too long to read.
+fn frequency(value_hz: f64) -> String {
+    if value_hz.abs() < 1e6 { format!("{value_hz:.0}") } else { short(value_hz) }
+}
+
 /// Four significant digits.
 fn short(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
     }
     let magnitude = value.abs().log10().floor() as i32;
-    if !(-4..9).contains(&magnitude) {
+    if !(-4..6).contains(&magnitude) {
         return format!("{value:.3e}");
     }
     format!("{value:.*}", usize::try_from(3 - magnitude).unwrap_or(0))
@@ -80,11 +85,17 @@ fn short(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::short;
+    use super::{frequency, short};
 
     #[test]
     fn four_digits() {
         let shown = [0.0, 187.0042, -1.60909, 258_400.0, 0.001_234_56, 1e-9, 2.5e12, f64::NAN].map(short);
         assert_eq!(shown, ["0", "187.0", "-1.609", "258400", "0.001235", "1.000e-9", "2.500e12", "NaN"]);
+    }
+
+    #[test]
+    fn large_frequencies_are_short() {
+        let shown = [0.4, 187.4, 999_999.4, 1e6, 123_456_789.0].map(frequency);
+        assert_eq!(shown, ["0", "187", "999999", "1.000e6", "1.235e8"]);
     }
 }

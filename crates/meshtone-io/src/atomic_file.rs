@@ -98,6 +98,31 @@ impl StagedFile {
     }
 }
 
+/// Whether a file can be written, tried with an empty one beside it that disappears at once. What has the name now stays
+/// as it is.
+///
+/// # Arguments
+/// * `path` - the file
+///
+/// # Errors
+/// As [`StagedFile::write`], but for what only the content brings about.
+///
+/// ```
+/// use meshtone_io::atomic_file::check_target;
+///
+/// let directory = tempfile::tempdir()?;
+/// assert!(check_target(&directory.path().join("signals.parquet")).is_ok());
+/// let error = check_target(directory.path()).unwrap_err();
+/// assert!(error.to_string().ends_with("it is a directory"));
+/// # Ok::<(), std::io::Error>(())
+/// ```
+pub fn check_target(path: &Path) -> Result<(), WriteFileError> {
+    match temporary_beside(path) {
+        Ok(_) => Ok(()),
+        Err(source) => Err(WriteFileError { path: path.to_path_buf(), source }),
+    }
+}
+
 /// Whether files can be written into a directory, tried with an empty one that disappears at once.
 ///
 /// # Arguments
@@ -113,14 +138,28 @@ pub fn check_writable(directory: &Path) -> Result<(), WriteFileError> {
 }
 
 fn write_beside(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<NamedTempFile> {
-    if path.is_dir() {
-        return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a directory"));
-    }
-    let mut temporary = temporary_in(path.parent().unwrap_or(Path::new("")))?;
+    let mut temporary = temporary_beside(path)?;
     write(temporary.as_file_mut())?;
     // Without this a power failure after the rename could leave an empty file under the name.
     temporary.as_file().sync_all()?;
     Ok(temporary)
+}
+
+/// A temporary file that can take the name `path`.
+fn temporary_beside(path: &Path) -> io::Result<NamedTempFile> {
+    use io::ErrorKind::{InvalidInput, IsADirectory};
+
+    match path.metadata() {
+        Ok(taken) if taken.is_dir() => return Err(io::Error::new(IsADirectory, "it is a directory")),
+        // Renaming would put a file in the place of a device such as /dev/null.
+        Ok(taken) if !taken.is_file() => return Err(io::Error::new(InvalidInput, "it is no ordinary file")),
+        _ => {}
+    }
+    let ends_as_directory = path.to_string_lossy().ends_with(std::path::is_separator);
+    if path.file_name().is_none() || ends_as_directory {
+        return Err(io::Error::new(InvalidInput, "it is no name of a file"));
+    }
+    temporary_in(path.parent().unwrap_or(Path::new("")))
 }
 
 fn temporary_in(directory: &Path) -> io::Result<NamedTempFile> {

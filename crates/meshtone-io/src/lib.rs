@@ -3,6 +3,7 @@
 #![deny(missing_docs)]
 
 pub mod atomic_file;
+pub mod run_identity;
 pub mod scenario_file;
 pub mod signals;
 pub mod summary;

@@ -5,7 +5,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
-use meshtone_io::atomic_file::{StagedFile, check_writable, write_atomically};
+use meshtone_io::atomic_file::{StagedFile, check_target, check_writable, write_atomically};
 use tempfile::tempdir;
 
 fn names_in(directory: &Path) -> Vec<String> {
@@ -58,6 +58,32 @@ fn directories_are_refused() {
     let error = write_atomically(&absent, |_| Ok(())).unwrap_err();
     assert_eq!(error.path, absent);
     assert_eq!(error.source.kind(), io::ErrorKind::NotFound);
+}
+
+#[test]
+fn what_can_be_written_is_known_before() {
+    let directory = tempdir().unwrap();
+    let refused = |name: &str, problem: &str| {
+        let path = directory.path().join(name);
+        let error = check_target(&path).unwrap_err();
+        assert!(error.to_string().ends_with(problem), "{error}");
+        assert_eq!(write_atomically(&path, |_| Ok(())).unwrap_err().to_string(), error.to_string());
+    };
+    refused("", "it is a directory");
+    refused("a.txt/", "it is no name of a file");
+    refused("deep/..", "it is no name of a file");
+    fs::write(directory.path().join("b.txt"), "old").unwrap();
+    assert!(check_target(&directory.path().join("a.txt")).is_ok());
+    assert!(check_target(&directory.path().join("b.txt")).is_ok());
+    assert_eq!(names_in(directory.path()), ["b.txt"]);
+}
+
+/// A renamed file would take the device's place.
+#[cfg(unix)]
+#[test]
+fn devices_are_refused() {
+    let error = check_target(Path::new("/dev/null")).unwrap_err();
+    assert!(error.to_string().contains("it is no ordinary file"), "{error}");
 }
 
 #[cfg(unix)]

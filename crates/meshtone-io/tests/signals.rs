@@ -9,7 +9,8 @@ use arrow::datatypes::{DataType, Field, Schema};
 use arrow::record_batch::RecordBatch;
 use meshtone::scenario::Scenario;
 use meshtone::signal::Channels;
-use meshtone_io::signals::{RATE_KEY, ReadSignalsError, SCENARIO_KEY, read_signals, write_signals};
+use meshtone_io::run_identity::RunIdentity;
+use meshtone_io::signals::{RATE_KEY, RUN_KEY, ReadSignalsError, SCENARIO_KEY, read_signals, write_signals};
 use parquet::arrow::ArrowWriter;
 use parquet::file::metadata::KeyValue;
 use tempfile::tempdir;
@@ -52,6 +53,7 @@ fn signals_are_read_back_exactly() {
     write_signals(File::create(&path).unwrap(), &scenario(), &channels()).unwrap();
     let recorded = read_signals(&path).unwrap();
     assert_eq!((recorded.scenario, recorded.channels), (scenario(), channels()));
+    assert_eq!(recorded.run, RunIdentity::of(&scenario()));
     assert_eq!(recorded.version, env!("CARGO_PKG_VERSION"));
 }
 
@@ -66,6 +68,16 @@ fn files_of_others_are_refused() {
     refused(new_file(), &path, schema(), vec![broken], "seed = -1");
     let text = |key: &str, value: &str| KeyValue::new(key.to_string(), value.to_string());
     let good = || vec![text(SCENARIO_KEY, &scenario().to_toml()), text("meshtone.version", "0.1.0")];
+    refused(new_file(), &path, schema(), good(), "has no metadata meshtone.run");
+    let wrong_run = [good(), vec![text(RUN_KEY, "7")]].concat();
+    refused(
+        new_file(),
+        &path,
+        schema(),
+        wrong_run,
+        "`7` is no run's identity; must be 16 hexadecimal digits",
+    );
+    let good = || [good(), vec![text(RUN_KEY, "00000000000000ff")]].concat();
     let wrong_rate = [good(), vec![text(RATE_KEY, "fast")]].concat();
     refused(new_file(), &path, schema(), wrong_rate, "is `fast`; must be a number above 0");
     let single = [good(), vec![text(RATE_KEY, "1000.0")]].concat();

@@ -179,11 +179,17 @@ impl Axes {
         }
     }
 
-    /// Words in the middle, instead of a curve.
+    /// Words in the middle, instead of a curve; no line runs through them.
     pub(crate) fn note(&self, canvas: &mut Canvas, text: &str) {
-        let at = (self.area.left + self.area.width / 2.0, self.area.top + self.area.height / 2.0);
-        let style = TextStyle::NOTE.coloured(colour::MUTED).anchored(Anchor::Middle).with_halo();
-        canvas.text(at, text, style);
+        let (x, y) = (self.area.left + self.area.width / 2.0, self.area.top + self.area.height / 2.0);
+        let style = TextStyle::NOTE.coloured(colour::MUTED).anchored(Anchor::Middle);
+        let half = font::text_width(text, style.size, style.bold) / 2.0 + 3.0;
+        canvas.rectangle(
+            (x - half, y - style.size),
+            (x + half, y + 0.4 * style.size),
+            Fill::solid(colour::WHITE),
+        );
+        canvas.text((x, y), text, style);
     }
 }
 

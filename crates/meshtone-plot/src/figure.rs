@@ -2,6 +2,11 @@
 
 use crate::{PlotError, raster};
 
+/// Name of the run's identity in the files.
+const RUN_KEY: &str = "meshtone.run";
+/// What metadata stand before in the SVG.
+const METADATA_BEFORE: &str = "<defs>";
+
 /// A finished figure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
@@ -9,6 +14,7 @@ pub struct Figure {
     width: u32,
     height: u32,
     labels: Vec<Label>,
+    run: Option<String>,
 }
 
 /// A text of a figure and the box that it fills when set in the bundled font.
@@ -38,7 +44,32 @@ impl Label {
 
 impl Figure {
     pub(crate) fn new(svg: String, width: u32, height: u32, labels: Vec<Label>) -> Self {
-        Self { svg, width, height, labels }
+        Self { svg, width, height, labels, run: None }
+    }
+
+    /// The same figure with the identity of the run that it shows in its files: in the SVG's element `metadata`,
+    /// and in the PNG's text `meshtone.run`.
+    ///
+    /// # Arguments
+    /// * `run` - ASCII letters and digits; others are left out
+    ///
+    /// ```
+    /// use meshtone::scenario::Scenario;
+    ///
+    /// let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    /// scenario.solver.sampling_rate_hz = 2e4;
+    /// let simulation = meshtone::simulate(&scenario)?;
+    /// let panel = meshtone_plot::panel::draw(&simulation.stages, &simulation.channels)?.of_run("00ff");
+    /// assert!(panel.svg().contains("<metadata>meshtone.run: 00ff</metadata>"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn of_run(mut self, run: &str) -> Self {
+        let run: String = run.chars().filter(char::is_ascii_alphanumeric).collect();
+        if let Some(place) = self.svg.find(METADATA_BEFORE) {
+            self.svg.insert_str(place, &format!("<metadata>{RUN_KEY}: {run}</metadata>\n"));
+        }
+        self.run = Some(run);
+        self
     }
 
     /// The figure as an SVG document.
@@ -51,7 +82,7 @@ impl Figure {
     /// # Errors
     /// A figure that cannot be rasterised, which no input should bring about.
     pub fn png(&self) -> Result<Vec<u8>, PlotError> {
-        raster::png(&self.svg, self.width, self.height)
+        raster::png(&self.svg, self.width, self.height, self.run.as_deref().map(|run| (RUN_KEY, run)))
     }
 
     /// (px) Width and height.

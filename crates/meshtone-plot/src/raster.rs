@@ -5,17 +5,22 @@ use resvg::usvg::{Options, Tree};
 
 use crate::{PlotError, font};
 
-/// Rasterises `svg` and encodes it with a palette.
-pub(crate) fn png(svg: &str, width: u32, height: u32) -> Result<Vec<u8>, PlotError> {
+/// Rasterises `svg` and encodes it with a palette, and with a text under its keyword.
+pub(crate) fn png(
+    svg: &str,
+    width: u32,
+    height: u32,
+    text: Option<(&str, &str)>,
+) -> Result<Vec<u8>, PlotError> {
     let options =
         Options { fontdb: font::database(), font_family: font::FAMILY.to_owned(), ..Options::default() };
     let tree = Tree::from_str(svg, &options)?;
     let mut pixmap = Pixmap::new(width, height).ok_or(PlotError::Bitmap { width, height })?;
     resvg::render(&tree, Transform::default(), &mut pixmap.as_mut());
-    encode(pixmap.data(), width, height)
+    encode(pixmap.data(), width, height, text)
 }
 
-fn encode(rgba: &[u8], width: u32, height: u32) -> Result<Vec<u8>, PlotError> {
+fn encode(rgba: &[u8], width: u32, height: u32, text: Option<(&str, &str)>) -> Result<Vec<u8>, PlotError> {
     let Indexed { palette, pixels } = Indexed::new(rgba);
     let mut file = Vec::with_capacity(1 << 18);
     let mut encoder = png::Encoder::new(&mut file, width, height);
@@ -25,6 +30,9 @@ fn encode(rgba: &[u8], width: u32, height: u32) -> Result<Vec<u8>, PlotError> {
     // Most rows are the row above: its difference is zeros, which even the fastest compression makes short.
     encoder.set_compression(png::Compression::Fast);
     encoder.set_filter(png::Filter::Up);
+    if let Some((keyword, text)) = text {
+        encoder.add_text_chunk(keyword.to_owned(), text.to_owned())?;
+    }
     let mut writer = encoder.write_header()?;
     writer.write_image_data(&pixels)?;
     writer.finish()?;

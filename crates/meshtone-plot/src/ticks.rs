@@ -8,7 +8,8 @@ pub(crate) struct Ticks {
 }
 
 impl Ticks {
-    /// Multiples of 1, 2 or 5 × 10ⁿ from `low` to `high`, at most `most` (≥ 2) of them.
+    /// Multiples of 1, 2 or 5 × 10ⁿ from `low` to `high`: at least three, from which the scale can be read, and at most
+    /// `most` where that leaves three.
     pub(crate) fn nice(low: f64, high: f64, most: usize) -> Self {
         let span = high - low;
         if !(span > 0.0 && span.is_finite()) {
@@ -16,9 +17,26 @@ impl Ticks {
         }
         let least_step = span / most.max(2) as f64;
         let power = 10f64.powf(least_step.log10().floor());
-        let step = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power).into_iter();
-        let step = step.into_iter().find(|step| *step >= least_step * (1.0 - 1e-9)).unwrap_or(10.0 * power);
-        Self::every(step, low, high)
+        let steps = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0].map(|factor| factor * power);
+        let coarsest = steps.iter().position(|step| *step >= least_step * (1.0 - 1e-9));
+        let ticks = steps[..=coarsest.unwrap_or(steps.len() - 1)]
+            .iter()
+            .rev()
+            .map(|&step| Self::every(step, low, high))
+            .find(|ticks| ticks.values.len() >= 3);
+        ticks.unwrap_or_else(|| Self::every(power, low, high))
+    }
+
+    /// Zero and one round number on either side of it, within `half`.
+    pub(crate) fn about_zero(half: f64) -> Self {
+        let power = 10f64.powf(half.log10().floor());
+        if !(half > 0.0 && power.is_finite() && power > 0.0) {
+            return Self { values: Vec::new(), step: 1.0 };
+        }
+        // Not at the very edge, where the number would reach into the next axes.
+        let step = [5.0, 4.0, 3.0, 2.0, 1.0].map(|factor| factor * power).into_iter();
+        let step = step.into_iter().find(|step| *step <= 0.95 * half).unwrap_or(0.5 * power);
+        Self { values: vec![-step, 0.0, step], step }
     }
 
     /// Multiples of `step` from `low` to `high`.
@@ -38,7 +56,7 @@ impl Ticks {
     /// The number as it stands at the axis.
     pub(crate) fn text(&self, value: f64) -> String {
         let largest = self.values.iter().fold(0.0f64, |largest, value| largest.max(value.abs()));
-        let text = if self.step < 1e-4 || largest >= 1e4 {
+        let text = if self.step < 1e-4 || largest >= 1e5 {
             if value.abs() < self.step / 2.0 { "0".to_owned() } else { scientific(value, self.step) }
         } else {
             let decimals = (-self.step.log10() - 1e-9).ceil().max(0.0) as usize;
@@ -86,6 +104,20 @@ mod tests {
         assert_eq!(texts(1e6, 1.2e6, 3), ["1.0e6", "1.1e6", "1.2e6"]);
         assert!(texts(1.0, 1.0, 5).is_empty());
         assert!(texts(f64::NAN, 1.0, 5).is_empty());
+    }
+
+    #[test]
+    fn at_least_three_ticks() {
+        for k in 1..1000 {
+            let half = 1.37e-3 * 1.02f64.powi(k);
+            for most in [2, 4, 5, 8] {
+                assert!(Ticks::nice(-half, half, most).values.len() >= 3, "{half} {most}");
+                assert!(Ticks::nice(0.7 * half, 1.3 * half, most).values.len() >= 3, "{half} {most}");
+            }
+            let [low, zero, high] = Ticks::about_zero(half).values[..] else { panic!("{half}") };
+            assert!(zero == 0.0 && low == -high && high > 0.4 * half && high < half, "{half} {high}");
+        }
+        assert!(Ticks::about_zero(0.0).values.is_empty() && Ticks::about_zero(f64::NAN).values.is_empty());
     }
 
     #[test]

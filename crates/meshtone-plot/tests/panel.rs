@@ -128,6 +128,18 @@ fn the_png_has_the_panels_size() {
 }
 
 #[test]
+fn the_run_stands_in_both_files() {
+    let (_, scenario) = support::gallery().remove(0);
+    let figure = drawn(&scenario).of_run("0123<ab>cd");
+    check(&figure);
+    assert!(figure.svg().contains("<metadata>meshtone.run: 0123abcd</metadata>"));
+    let png = figure.png().unwrap();
+    let reader = png::Decoder::new(std::io::Cursor::new(&png)).read_info().unwrap();
+    let texts = &reader.info().uncompressed_latin1_text;
+    assert_eq!((texts[0].keyword.as_str(), texts[0].text.as_str()), ("meshtone.run", "0123abcd"));
+}
+
+#[test]
 fn the_same_panel_twice_is_the_same() {
     let (_, scenario) = support::gallery().remove(3);
     assert_eq!(drawn(&scenario), drawn(&scenario));
@@ -188,6 +200,52 @@ fn small_and_large_modules_and_no_relief() {
 #[test]
 fn ideal_teeth_say_so() {
     assert_shows(&drawn(&with_teeth(17, 38, None)), &["ideal teeth"]);
+}
+
+#[test]
+fn base_circles_that_are_not_seen_are_told_of() {
+    let told =
+        |figure: &Figure| figure.labels().iter().filter(|l| l.text == "base circle below the root").count();
+    let named = |figure: &Figure| figure.labels().iter().filter(|l| l.text == "base").count();
+    for (pinion, gear, seen) in [(17, 38, 2), (38, 45, 2), (45, 60, 1), (60, 200, 0)] {
+        for fault in [None, Some(partial_face())] {
+            let figure = drawn(&with_teeth(pinion, gear, fault));
+            assert_eq!((named(&figure), told(&figure)), (seen, 2 - seen), "{pinion} and {gear}");
+        }
+    }
+}
+
+fn partial_face() -> Fault {
+    let pit = PitCircle::Fractions { start: 0.2, end: 0.8, depth: 0.4 };
+    Fault::PartialFace(PartialFace { width_mm: 5.0, pit })
+}
+
+/// The face shows the damage where the equations of motion take the width away.
+#[test]
+fn damage_is_at_the_end_from_which_the_load_moves_away() {
+    let chip = ToothBreakage { chip_height_mm: 4.0, chip_width_mm: 6.0, tip_loss_mm: 0.0 };
+    for fault in [partial_face(), Fault::ToothBreakage(chip)] {
+        let simulation = simulated(&with_teeth(17, 38, Some(fault)));
+        let states = &simulation.stages.system.mesh.faulty;
+        assert!(
+            states.iter().any(|state| state.mean_z_m < 0.0)
+                && states.iter().all(|state| state.mean_z_m <= 0.0)
+        );
+        let figure = panel::draw(&simulation.stages, &simulation.channels).unwrap();
+        let face_middle = figure.labels().iter().filter(|label| label.text == "Face width, z (mm)");
+        let face_middle = face_middle.map(|label| (label.left + label.right) / 2.0).fold(0.0, f64::max);
+        let document = roxmltree::Document::parse(figure.svg()).unwrap();
+        let edges = document.descendants().filter(|node| {
+            node.attribute("stroke") == Some("#d55e00") && node.attribute("stroke-width") == Some("1.8")
+        });
+        let mut places = edges.flat_map(|edge| {
+            let path = edge.attribute("d").unwrap().replace('Z', "");
+            let points =
+                path.split(['M', 'L']).filter_map(|point| point.split(' ').next()?.parse::<f64>().ok());
+            points.collect::<Vec<_>>()
+        });
+        assert!(places.next().is_some() && places.all(|x| x > face_middle));
+    }
 }
 
 #[test]

@@ -79,14 +79,7 @@ pub struct Simulation {
 /// # Ok::<(), meshtone::scenario::ScenarioError>(())
 /// ```
 pub fn simulate(scenario: &Scenario) -> Result<Simulation, ScenarioError> {
-    let stages = stages(scenario)?;
-    let mut clock = Clock::default();
-    let model = stages.reduced_model();
-    let mut channels = Channels::new(&stages.time);
-    stages.integrate(&model, &channel_outputs(), stages.time.first_kept_sample, &mut channels)?;
-    clock.lap("time integration");
-    let timings = stages.timings.iter().copied().chain(clock.laps).collect();
-    Ok(Simulation { stages, channels, timings })
+    stages(scenario)?.simulate()
 }
 
 /// Runs stages 1 to 6: everything before the time loop.
@@ -164,6 +157,31 @@ impl Stages {
         let settling = (decay_s * self.time.sampling_rate_hz).ceil();
         // As a float: a decay that takes forever saturates.
         self.time.first_kept_sample.saturating_sub(settling as usize)
+    }
+
+    /// Stages 7 and 8: the rest of the simulation, for those who have looked at the first six.
+    ///
+    /// # Errors
+    /// As [`Self::integrate`].
+    ///
+    /// ```
+    /// use meshtone::scenario::Scenario;
+    ///
+    /// let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    /// scenario.solver.sampling_rate_hz = 2e4;
+    /// let stages = meshtone::stages(&scenario)?;
+    /// let samples = stages.time.kept_samples();
+    /// assert_eq!(stages.simulate()?.channels.len(), samples);
+    /// # Ok::<(), meshtone::scenario::ScenarioError>(())
+    /// ```
+    pub fn simulate(self) -> Result<Simulation, ScenarioError> {
+        let mut clock = Clock::default();
+        let model = self.reduced_model();
+        let mut channels = Channels::new(&self.time);
+        self.integrate(&model, &channel_outputs(), self.time.first_kept_sample, &mut channels)?;
+        clock.lap("time integration");
+        let timings = self.timings.iter().copied().chain(clock.laps).collect();
+        Ok(Simulation { stages: self, channels, timings })
     }
 
     /// (rev) Simulated revolutions of the pinion at the nominal speed, settling included.

@@ -1,14 +1,18 @@
 //! `meshtone panel`
 
+use std::io::ErrorKind;
 use std::path::PathBuf;
 
 use clap::Args;
 use meshtone_io::atomic_file::StagedFile;
-use meshtone_io::signals::{ReadSignalsError, read_signals};
+use meshtone_io::run_identity::RunIdentity;
+use meshtone_io::signals::{ReadSignalsError, Recorded, read_signals};
+use meshtone_io::summary::{ReadSummaryError, read_run};
 
+use crate::earlier_results;
 use crate::failure::Failure;
-use crate::results::{PANEL, SIGNALS, stage_panel};
-use crate::terminal::print_error_line;
+use crate::results::{PANEL, SIGNALS, SUMMARY, stage_panel};
+use crate::terminal::{print, print_error_line};
 
 /// Draw the panel of a simulation's results again
 ///
@@ -24,8 +28,16 @@ pub struct Panel {
 
 impl Panel {
     pub fn run(&self) -> Result<(), Failure> {
+        if earlier_results::put_back(&self.directory)? {
+            print_error_line(format!(
+                "warning: the last run into {} was interrupted while it replaced the results of the run before it, which \
+                 have been put back",
+                self.directory.display()
+            ));
+        }
         let path = self.directory.join(SIGNALS);
         let recorded = read_signals(&path)?;
+        self.check_summary(recorded.run)?;
         let refuse = |problem: String| ReadSignalsError::Foreign { path: path.clone(), problem };
         let stages = meshtone::stages(&recorded.scenario)
             .map_err(|error| ReadSignalsError::Scenario { path: path.clone(), error: Box::new(error) })?;
@@ -35,18 +47,51 @@ impl Panel {
                 refuse(format!("is sampled at {rate} S/s, but its scenario at {expected} S/s")).into()
             );
         }
-        if recorded.version != env!("CARGO_PKG_VERSION") {
-            print_error_line(format!(
-                "warning: {} was written by version {}; what the panel shows beside the signals is computed \
-                 by version {}",
-                path.display(),
-                recorded.version,
-                env!("CARGO_PKG_VERSION")
-            ));
-        }
-        let files = stage_panel(&self.directory, &stages, &recorded.channels)?;
+        self.warn_of_version(&recorded);
+        let files = stage_panel(&self.directory, recorded.run, &stages, &recorded.channels)?;
         files.into_iter().try_for_each(StagedFile::commit)?;
         let [svg, png] = PANEL.map(|name| self.directory.join(name));
-        crate::terminal::print(&format!("{}\n{}\n", svg.display(), png.display()))
+        print(&format!("{}\n{}\n", svg.display(), png.display()))
+    }
+
+    /// Signals without a summary can be drawn all the same; but a panel is not to make the files of two runs look like
+    /// those of one.
+    fn check_summary(&self, signals: RunIdentity) -> Result<(), Failure> {
+        const HELP: &str = "simulate again: `meshtone simulate SCENARIO.toml -o DIR`";
+        let path = self.directory.join(SUMMARY);
+        match read_run(&path) {
+            Ok(summary) if summary == signals => Ok(()),
+            Ok(summary) => {
+                let problem = format!(
+                    "{} is of the run {summary}, but {SIGNALS} beside it of the run {signals}",
+                    path.display()
+                );
+                Err(Failure::bad_input(problem).with_help(HELP))
+            }
+            Err(ReadSummaryError::Unreadable { source, .. }) if source.kind() == ErrorKind::NotFound => {
+                print_error_line(format!(
+                    "warning: there is no {}, so the results are not complete: the run may have been interrupted, and \
+                     what stands beside {SIGNALS} may be of another run; {HELP}",
+                    path.display()
+                ));
+                Ok(())
+            }
+            Err(error @ ReadSummaryError::Unreadable { .. }) => Err(Failure::failed(error.to_string())),
+            Err(error @ ReadSummaryError::Foreign { .. }) => {
+                Err(Failure::bad_input(error.to_string()).with_help(HELP))
+            }
+        }
+    }
+
+    fn warn_of_version(&self, recorded: &Recorded) {
+        const THIS: &str = env!("CARGO_PKG_VERSION");
+        if recorded.version != THIS {
+            print_error_line(format!(
+                "warning: {} was written by version {}; what the panel shows beside the signals is computed \
+                 by version {THIS}",
+                self.directory.join(SIGNALS).display(),
+                recorded.version,
+            ));
+        }
     }
 }

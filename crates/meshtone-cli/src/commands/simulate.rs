@@ -7,17 +7,19 @@ use clap::{Args, ValueEnum};
 use meshtone::scenario::{
     Convention, ProfileErrors, Scenario, ScenarioError, ScenarioFiles, ScenarioWarning,
 };
-use meshtone::{Simulation, StageTime, Trace};
-use meshtone_io::atomic_file::check_writable;
+use meshtone::{Simulation, StageTime, Stages, Trace};
+use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::scenario_file::{FilesBeside, ScenarioFile};
 use meshtone_io::summary::Summary;
 
 use crate::check::check;
 use crate::failure::Failure;
+use crate::memory;
 use crate::output_directory::OutputDirectory;
 use crate::progress::Progress;
 use crate::results::Results;
 use crate::table::table;
+use crate::targets::Targets;
 use crate::{terminal, warnings};
 
 /// Simulate scenarios: signals, summary and results panel
@@ -81,6 +83,8 @@ struct Run {
     /// The file's scenario with what the command line changes.
     scenario: Scenario,
     warnings: Vec<ScenarioWarning>,
+    /// Computed while the scenario was checked; kept where it is the only one, as several would fill the memory.
+    stages: Option<Stages>,
     directory: PathBuf,
 }
 
@@ -98,10 +102,13 @@ impl Simulate {
         let runs = runs.collect::<Result<Vec<_>, _>>()?;
         let directories = runs.iter().map(|run| OutputDirectory::prepare(&run.directory));
         let directories = directories.collect::<Result<Vec<_>, _>>()?;
-        if let Some(trace) = &self.trace {
-            check_writable(trace.parent().unwrap_or(Path::new("")))?;
-        }
-        for (number, (run, directory)) in runs.iter().zip(directories).enumerate() {
+        let targets = Targets {
+            directories: runs.iter().map(|run| run.directory.as_path()).collect(),
+            trace: self.trace.as_deref(),
+        };
+        let read = runs.iter().flat_map(|run| run.file.sources());
+        targets.check(&read.chain(self.errors_file.as_deref()).collect::<Vec<_>>())?;
+        for (number, (run, directory)) in runs.into_iter().zip(directories).enumerate() {
             self.simulate(run, &directory, number)?;
             directory.keep();
         }
@@ -146,7 +153,7 @@ impl Simulate {
         directory: PathBuf,
         errors: Option<&ProfileErrors>,
     ) -> Result<Run, Failure> {
-        let file = ScenarioFile::read(path)?;
+        let file = ScenarioFile::read_within(path, memory::limit())?;
         let mut scenario = file.scenario.clone();
         if let Some(convention) = self.convention {
             scenario.convention = convention.into();
@@ -155,8 +162,9 @@ impl Simulate {
             scenario.quality.din_grade = 0;
             scenario.quality.profile_errors = Some(errors.clone());
         }
-        let warnings = check(&scenario).map_err(|error| self.refuse(&file, error))?;
-        Ok(Run { file, scenario, warnings, directory })
+        let (warnings, stages) = check(&scenario).map_err(|error| self.refuse(&file, error))?;
+        let stages = (self.scenarios.len() == 1 && self.trace.is_none()).then_some(stages);
+        Ok(Run { file, scenario, warnings, stages, directory })
     }
 
     /// An error about a scenario, or about the errors file that the command line put in its place.
@@ -177,15 +185,15 @@ impl Simulate {
         }
     }
 
-    fn simulate(&self, run: &Run, directory: &OutputDirectory, number: usize) -> Result<(), Failure> {
+    fn simulate(&self, run: Run, directory: &OutputDirectory, number: usize) -> Result<(), Failure> {
         run.warnings.iter().for_each(|warning| warnings::print(&run.file, warning));
         let of = format!("({} of {})", number + 1, self.scenarios.len());
         let progress = Progress::start(format!("{} {of}", run.file.path.display()), !self.quiet);
-        let (simulation, trace) =
-            simulate(&run.scenario, self.trace.is_some()).map_err(|error| run.file.refuse(error))?;
+        let (simulation, trace) = simulate(&run.scenario, run.stages, self.trace.is_some())
+            .map_err(|error| run.file.refuse(error))?;
         let tension = warnings::of_tension(&simulation.channels);
         let all_warnings: Vec<_> = run.warnings.iter().cloned().chain(tension.clone()).collect();
-        let summary = Summary::new(&simulation, &all_warnings);
+        let summary = Summary::new(&simulation, RunIdentity::of(&run.scenario), &all_warnings);
         let results = Results {
             scenario: &run.scenario,
             simulation: &simulation,
@@ -212,9 +220,14 @@ fn read_errors(path: &Path) -> Result<ProfileErrors, Failure> {
     })
 }
 
-fn simulate(scenario: &Scenario, with_trace: bool) -> Result<(Simulation, Option<Trace>), ScenarioError> {
+fn simulate(
+    scenario: &Scenario,
+    stages: Option<Stages>,
+    with_trace: bool,
+) -> Result<(Simulation, Option<Trace>), ScenarioError> {
     if !with_trace {
-        return Ok((meshtone::simulate(scenario)?, None));
+        let stages = stages.map_or_else(|| meshtone::stages(scenario), Ok)?;
+        return Ok((stages.simulate()?, None));
     }
     let start = Instant::now();
     let (mut simulation, trace) = meshtone::trace(scenario)?;

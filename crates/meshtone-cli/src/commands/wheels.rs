@@ -7,6 +7,7 @@ use meshtone::scenario::ScenarioError;
 use meshtone_io::scenario_file::{ScenarioFile, write_profile_errors_npz};
 
 use crate::failure::Failure;
+use crate::same_file::is_same_file;
 
 /// Draw the profile errors of both wheels once, so that several simulations share the wheels
 ///
@@ -31,6 +32,10 @@ Example:
 impl Wheels {
     pub fn run(&self) -> Result<(), Failure> {
         let file = ScenarioFile::read(&self.scenario)?;
+        if is_same_file(&self.output, &self.scenario) {
+            let problem = format!("-o {}: is the scenario file", self.output.display());
+            return Err(Failure::bad_input(problem).with_help("name another file with -o"));
+        }
         let mut scenario = file.scenario.clone();
         // The errors are those of the wheels before the damage.
         scenario.fault = None;

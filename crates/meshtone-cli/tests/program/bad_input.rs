@@ -112,7 +112,16 @@ fn wheels_of_another_pair() {
 #[test]
 fn more_memory_than_there_is() {
     let greedy = fast_with("sampling_rate_hz", "sampling_rate_hz = 1e12");
-    refused(greedy, &["line 10", "solver.sampling_rate_hz = 1e12", "would need 94175.3 GiB", "of memory"]);
+    let words =
+        ["line 10", "solver.sampling_rate_hz = 1e12", "would need 94175.3 GiB", "of memory", "lower it"];
+    refused(&greedy, &words);
+    let slow = fast_with("pinion_speed_hz", "pinion_speed_hz = 1e-6");
+    refused(slow, &["line 7", "operation.pinion_speed_hz = 1e-6", "GiB of memory", "raise it"]);
+    let long = fast_and("[operation.speed_profile_hz]\ntime_s = [0.0, 1e9]\nvalue = [40.0, 41.0]");
+    refused(long, &["line 11", "operation.speed_profile_hz", "GiB of memory", "shorten the profile"]);
+    // Where the system tells how much is free, so does the message.
+    #[cfg(target_os = "linux")]
+    refused(greedy, &["GiB", "free on this machine"]);
 }
 
 #[test]

@@ -23,7 +23,7 @@ fn an_existing_file_is_not_replaced_by_accident() {
     assert_eq!(workplace.read("fast.toml"), crate::support::FAST.as_bytes());
     workplace.succeeds(&["init", "healthy", "-o", "fast.toml", "--force"]);
     assert_eq!(workplace.read("fast.toml"), template("healthy").unwrap().as_bytes());
-    workplace.fails(1, &["init", "healthy", "-o", "absent/h.toml"], &["there is no directory absent"]);
+    workplace.fails(2, &["init", "healthy", "-o", "absent/h.toml"], &["there is no directory absent"]);
 }
 
 #[test]

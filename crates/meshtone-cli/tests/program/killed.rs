@@ -1,18 +1,22 @@
-//! A run that is killed leaves the results of the run before it whole.
+//! A run that is killed leaves the results of the run before it whole; where it is killed while it gives its files
+//! their names, this can be seen, and the next command puts the earlier results back.
 
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::support::{Workplace, fast_with};
-use meshtone_io::signals::{Recorded, read_signals};
+use crate::support::{Workplace, fast_with, stderr};
+use meshtone_io::signals::read_signals;
+use meshtone_io::summary::read_run;
 
-const PANEL: [&str; 2] = ["panel.svg", "panel.png"];
+const SUMMARY: &str = "out/summary.json";
+const FILES: [&str; 4] = ["out/signals.parquet", "out/panel.svg", "out/panel.png", SUMMARY];
 
 /// A results directory into which two scenarios write in turn.
 struct Contest {
     workplace: Workplace,
-    earlier: Recorded,
-    earlier_panel: Vec<Vec<u8>>,
+    earlier: [Vec<u8>; 4],
+    /// Whether a run was killed while it gave its files their names.
+    caught: std::cell::Cell<bool>,
 }
 
 impl Contest {
@@ -23,9 +27,8 @@ impl Contest {
         workplace.write("a.toml", &long);
         workplace.write("b.toml", format!("{long}[quality]\ndin_grade = 5\n"));
         workplace.succeeds(&["simulate", "a.toml", "-o", "out"]);
-        let earlier = read_signals(&workplace.path("out/signals.parquet")).unwrap();
-        let earlier_panel = PANEL.map(|name| workplace.read(&format!("out/{name}"))).to_vec();
-        Self { workplace, earlier, earlier_panel }
+        let earlier = FILES.map(|name| workplace.read(name));
+        Self { workplace, earlier, caught: false.into() }
     }
 
     /// Starts the other scenario, kills it when `now` says so, and looks at what is there. Returns whether it
@@ -41,25 +44,45 @@ impl Contest {
         while !now() && child.try_wait().unwrap().is_none() {}
         child.kill().unwrap();
         let killed = !child.wait().unwrap().success();
-        self.assert_whole();
+        self.assert_whole_or_put_back();
         killed
     }
 
-    fn assert_whole(&self) {
-        let left = read_signals(&self.workplace.path("out/signals.parquet")).unwrap();
-        let summary = self.workplace.read("out/summary.json");
-        let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap();
-        assert_eq!(summary["samples"], left.channels.len());
-        if left == self.earlier {
-            assert_eq!(
-                PANEL.map(|name| self.workplace.read(&format!("out/{name}"))).to_vec(),
-                self.earlier_panel
-            );
+    fn assert_whole_or_put_back(&self) {
+        // Every file is whole, whatever happened.
+        let signals = read_signals(&self.workplace.path(FILES[0])).unwrap();
+        let run_of_signals = signals.run.to_string();
+        if !self.workplace.path(SUMMARY).exists() {
+            self.caught.set(true);
+            let warning = stderr(&self.workplace.succeeds(&["panel", "out"]));
+            assert!(warning.contains("have been put back"), "{warning}");
+            assert!(FILES.map(|name| self.workplace.read(name)) == self.earlier, "an earlier result is lost");
             return;
         }
-        // The other run was through before it was killed.
-        assert_eq!(left.scenario.quality.din_grade, 5);
+        // With a summary, all files are of one run.
+        assert_eq!(read_run(&self.workplace.path(SUMMARY)).unwrap(), signals.run);
+        for name in FILES {
+            let bytes = self.workplace.read(name);
+            let found = bytes.windows(run_of_signals.len()).any(|part| part == run_of_signals.as_bytes());
+            assert!(found, "{name} is not of the run {run_of_signals}");
+        }
+        match signals.scenario.quality.din_grade {
+            0 => assert!(
+                FILES.map(|name| self.workplace.read(name)) == self.earlier,
+                "an earlier result changed"
+            ),
+            // The other run was through before it was killed.
+            grade => {
+                assert_eq!(grade, 5);
+                self.start_again();
+            }
+        }
+    }
+
+    /// The earlier results once more; their summary differs by the computing times.
+    fn start_again(&self) {
         self.workplace.succeeds(&["simulate", "a.toml", "-o", "out"]);
+        std::fs::write(self.workplace.path(SUMMARY), &self.earlier[3]).unwrap();
     }
 
     /// Whether a run has begun to write its results, under another name.
@@ -97,4 +120,17 @@ fn killed_while_it_writes() {
         contest.kill(|| contest.is_being_written())
     });
     assert!(killed.count() > 0);
+}
+
+/// Whether the kill comes in time is a matter of luck; what it leaves must be consistent, or seen not to be, either way.
+#[test]
+fn killed_while_it_names_its_files() {
+    let contest = Contest::new();
+    let summary = contest.workplace.path(SUMMARY);
+    for _ in 0..20 {
+        contest.kill(|| !summary.exists());
+        if contest.caught.get() {
+            break;
+        }
+    }
 }

@@ -4,6 +4,7 @@ use std::fs::File;
 
 use crate::support::{Workplace, fast_and, stderr, stdout};
 use arrow::datatypes::Schema;
+use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::scenario_file::read_scenario;
 use meshtone_io::signals::read_signals;
 use ndarray::{ArrayD, IxDyn};
@@ -27,6 +28,24 @@ fn signals_are_those_of_the_library() {
     let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
     assert_eq!(recorded.scenario, scenario);
     assert_eq!(recorded.channels, meshtone::simulate(&scenario).unwrap().channels);
+}
+
+#[test]
+fn every_file_carries_the_runs_identity() {
+    let workplace = Workplace::new();
+    let runs = ["corrected", "published"].map(|convention| {
+        workplace.succeeds(&["simulate", "fast.toml", "--convention", convention, "-o", "out"]);
+        let run = summary(&workplace, "out")["run"].as_str().unwrap().to_string();
+        let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
+        assert_eq!(recorded.run.to_string(), run);
+        assert_eq!(recorded.run, RunIdentity::of(&recorded.scenario));
+        for panel in ["out/panel.svg", "out/panel.png"] {
+            let bytes = workplace.read(panel);
+            assert!(bytes.windows(run.len()).any(|part| part == run.as_bytes()), "{panel}");
+        }
+        run
+    });
+    assert_ne!(runs[0], runs[1]);
 }
 
 #[test]
@@ -57,6 +76,7 @@ fn columns_and_metadata() {
         entry.value.clone().unwrap()
     };
     assert_eq!(value("meshtone.sampling_rate_hz"), "11200.0");
+    assert_eq!(value("meshtone.run"), summary(&workplace, "out")["run"]);
     assert_eq!(value("meshtone.version"), env!("CARGO_PKG_VERSION"));
     assert!(value("meshtone.scenario").contains("pinion_teeth = 20\n"));
     assert_eq!(builder.metadata().file_metadata().num_rows(), 11_200);
@@ -111,7 +131,9 @@ fn every_field_of_the_trace() {
     let scenario = read_scenario(&workplace.path("pit.toml")).unwrap();
     let (simulation, trace) = meshtone::trace(&scenario).unwrap();
     let mut archive = NpzReader::new(File::open(workplace.path("out/all.npz")).unwrap()).unwrap();
-    assert_eq!(archive.names().unwrap().len(), trace.fields.len());
+    assert_eq!(archive.names().unwrap().len(), trace.fields.len() + 1);
+    let run: ArrayD<u64> = archive.by_name("run").unwrap();
+    assert_eq!(run, ndarray::arr0(RunIdentity::of(&scenario).number()).into_dyn());
     for field in &trace.fields {
         let array: ArrayD<f64> = archive.by_name(&field.name).unwrap();
         let expected = ArrayD::from_shape_vec(IxDyn(&field.shape), field.values.clone()).unwrap();

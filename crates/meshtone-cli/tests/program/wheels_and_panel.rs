@@ -1,6 +1,6 @@
 //! `meshtone wheels` and `meshtone panel`
 
-use crate::support::{Workplace, fast_and};
+use crate::support::{Workplace, fast_and, stderr};
 use meshtone::scenario::ScenarioFiles;
 use meshtone_io::scenario_file::{FilesBeside, read_scenario};
 
@@ -23,7 +23,12 @@ fn ideal_wheels_have_no_errors_to_write() {
     workplace.fails(2, &["wheels", "ideal.toml", "-o", "wheels.npz"], &words);
     workplace.fails(2, &["wheels", "fast.toml", "-o", "wheels.npz"], &["quality.din_grade = 0"]);
     workplace.write("ideal.toml", fast_and("[quality]\ndin_grade = 7"));
-    workplace.fails(1, &["wheels", "ideal.toml", "-o", "absent/w.npz"], &["there is no directory absent"]);
+    workplace.fails(2, &["wheels", "ideal.toml", "-o", "absent/w.npz"], &["there is no directory absent"]);
+    workplace.fails(
+        2,
+        &["wheels", "ideal.toml", "-o", "./ideal.toml"],
+        &["-o ./ideal.toml", "is the scenario file"],
+    );
 }
 
 #[test]
@@ -33,12 +38,32 @@ fn the_panel_is_drawn_again_from_the_signals_alone() {
     workplace.succeeds(&["simulate", "worn.toml", "-o", "out"]);
     let panel = || [workplace.read("out/panel.svg"), workplace.read("out/panel.png")];
     let first = panel();
-    for name in ["worn.toml", "out/panel.svg", "out/panel.png", "out/summary.json"] {
+    for name in ["worn.toml", "out/panel.svg", "out/panel.png"] {
         std::fs::remove_file(workplace.path(name)).unwrap();
     }
-    workplace.succeeds(&["panel", "out"]);
+    workplace.succeeds(&["panel", "out"]).stderr("");
     assert_eq!(panel(), first);
-    assert_eq!(workplace.names("out"), ["panel.png", "panel.svg", "signals.parquet"]);
+    assert_eq!(workplace.names("out"), ["panel.png", "panel.svg", "signals.parquet", "summary.json"]);
+}
+
+#[test]
+fn a_panel_of_results_that_are_not_complete() {
+    let workplace = Workplace::new();
+    workplace.succeeds(&["simulate", "fast.toml", "-o", "out"]);
+    let summary = workplace.path("out/summary.json");
+    // As a run leaves it that is killed while it names its files.
+    std::fs::remove_file(&summary).unwrap();
+    let warning = stderr(&workplace.succeeds(&["panel", "out"]));
+    for words in ["warning: there is no out/summary.json", "not complete", "simulate again"] {
+        assert!(warning.contains(words), "{warning}");
+    }
+    workplace.write("other.toml", fast_and("[quality]\ndin_grade = 7"));
+    workplace.succeeds(&["simulate", "other.toml", "-o", "other"]);
+    std::fs::copy(workplace.path("other/summary.json"), &summary).unwrap();
+    let words = ["out/summary.json is of the run", "signals.parquet beside it of the run", "simulate again"];
+    workplace.fails(2, &["panel", "out"], &words);
+    workplace.write("out/summary.json", "{ \"run\": 3 }");
+    workplace.fails(2, &["panel", "out"], &["out/summary.json", "has no `run`"]);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod profile_csv;
 mod profile_errors_npz;
+mod remembering;
 mod source;
 
 use std::io;
@@ -81,15 +82,20 @@ impl FilesBeside {
     pub fn new(directory: impl Into<PathBuf>) -> Self {
         Self { directory: directory.into() }
     }
+
+    /// Where the file of a name is.
+    fn path_of(&self, name: &str) -> PathBuf {
+        self.directory.join(name)
+    }
 }
 
 impl ScenarioFiles for FilesBeside {
     fn profile_errors(&self, name: &str) -> Result<ProfileErrors, FileProblem> {
-        profile_errors_npz::read(&self.directory.join(name))
+        profile_errors_npz::read(&self.path_of(name))
     }
 
     fn profile(&self, name: &str) -> Result<Profile, FileProblem> {
-        profile_csv::read(&self.directory.join(name))
+        profile_csv::read(&self.path_of(name))
     }
 }
 

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use meshtone::scenario::{Scenario, ScenarioError};
+use meshtone::scenario::{MemoryLimit, Scenario, ScenarioError};
 use meshtone::toml_reader::TomlDocument;
 
-use super::{FilesBeside, ReadScenarioError};
+use super::{FilesBeside, ReadScenarioError, remembering::Remembering};
 
 /// A scenario file that has been read.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +16,8 @@ pub struct ScenarioFile {
     pub text: String,
     /// What it says.
     pub scenario: Scenario,
+    /// The files that it names.
+    pub named_files: Vec<PathBuf>,
 }
 
 impl ScenarioFile {
@@ -27,13 +29,31 @@ impl ScenarioFile {
     /// # Errors
     /// As [`super::read_scenario`].
     pub fn read(path: &Path) -> Result<Self, ReadScenarioError> {
+        Self::read_within(path, MemoryLimit::default())
+    }
+
+    /// As [`Self::read`], with another limit of memory.
+    ///
+    /// # Arguments
+    /// * `path` - the scenario file
+    /// * `limit` - most that the simulation may need
+    ///
+    /// # Errors
+    /// As [`super::read_scenario`].
+    pub fn read_within(path: &Path, limit: MemoryLimit) -> Result<Self, ReadScenarioError> {
         let text = read_text(path)?;
         let files = FilesBeside::new(path.parent().unwrap_or(Path::new("")));
+        let files = Remembering::new(&files);
         let path = path.to_path_buf();
-        match Scenario::from_toml_with_files(&text, &files) {
-            Ok(scenario) => Ok(Self { path, text, scenario }),
+        match Scenario::from_toml_within(&text, &files, limit) {
+            Ok(scenario) => Ok(Self { path, text, scenario, named_files: files.read() }),
             Err(error) => Err(ReadScenarioError::Invalid { path, text, error: Box::new(error) }),
         }
+    }
+
+    /// The scenario file and the files that it names.
+    pub fn sources(&self) -> impl Iterator<Item = &Path> {
+        std::iter::once(&self.path).chain(&self.named_files).map(PathBuf::as_path)
     }
 
     /// An error that was found after reading, with the key's line and its value as written.

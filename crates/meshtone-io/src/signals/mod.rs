@@ -2,8 +2,8 @@
 //!
 //! One row per sample, one column of double precision per signal, its unit in its name. What belongs to the
 //! whole file stands in its key-value metadata: the scenario as TOML that needs no other file
-//! ([`SCENARIO_KEY`]), the version of Meshtone ([`VERSION_KEY`]) and the sampling rate ([`RATE_KEY`]). Each
-//! column's unit and meaning stand in the metadata of its Arrow field. Nothing depends on when or where the
+//! ([`SCENARIO_KEY`]), the version of Meshtone ([`VERSION_KEY`]), the identity of the run ([`RUN_KEY`]) and the
+//! sampling rate ([`RATE_KEY`]). Each column's unit and meaning stand in the metadata of its Arrow field. Nothing depends on when or where the
 //! file is written: the same simulation gives the same bytes.
 
 mod columns;
@@ -18,5 +18,7 @@ pub use write::write_signals;
 pub const SCENARIO_KEY: &str = "meshtone.scenario";
 /// Metadata key of the version of Meshtone that wrote the file.
 pub const VERSION_KEY: &str = "meshtone.version";
+/// Metadata key of the run's [identity](crate::run_identity::RunIdentity).
+pub const RUN_KEY: &str = "meshtone.run";
 /// (S/s) Metadata key of the sampling rate.
 pub const RATE_KEY: &str = "meshtone.sampling_rate_hz";

@@ -12,8 +12,10 @@ use meshtone::signal::Channels;
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use parquet::file::metadata::FileMetaData;
 
+use crate::run_identity::RunIdentity;
+
 use super::columns::columns_mut;
-use super::{RATE_KEY, SCENARIO_KEY, TIME, VERSION_KEY};
+use super::{RATE_KEY, RUN_KEY, SCENARIO_KEY, TIME, VERSION_KEY};
 
 /// A simulation's signals, read back.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +26,8 @@ pub struct Recorded {
     pub channels: Channels,
     /// Version of Meshtone that wrote the file.
     pub version: String,
+    /// Identity of the run that wrote it.
+    pub run: RunIdentity,
 }
 
 /// Signals that could not be read.
@@ -73,6 +77,8 @@ pub fn read_signals(path: &Path) -> Result<Recorded, ReadSignalsError> {
     let scenario = Scenario::from_toml(text)
         .map_err(|error| ReadSignalsError::Scenario { path: path.to_path_buf(), error: Box::new(error) })?;
     let version = text_of(metadata, VERSION_KEY).map_err(foreign)?.to_string();
+    let run = text_of(metadata, RUN_KEY).map_err(foreign)?.parse::<RunIdentity>();
+    let run = run.map_err(|error| foreign(format!("metadata {RUN_KEY}: {error}")))?;
     let mut channels = Channels { sampling_rate_hz: rate(metadata).map_err(foreign)?, ..Channels::default() };
     let mut first = true;
     for batch in builder.build().map_err(|error| broken(&error))? {
@@ -84,7 +90,7 @@ pub fn read_signals(path: &Path) -> Result<Recorded, ReadSignalsError> {
             signal.extend_from_slice(column(&batch, wanted.name).map_err(foreign)?);
         }
     }
-    Ok(Recorded { scenario, channels, version })
+    Ok(Recorded { scenario, channels, version, run })
 }
 
 fn text_of<'m>(metadata: &'m FileMetaData, key: &str) -> Result<&'m str, String> {

@@ -14,7 +14,9 @@ use parquet::basic::{Compression, Encoding, ZstdLevel};
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 
-use super::{Column, RATE_KEY, SCENARIO_KEY, TIME, VERSION_KEY, columns};
+use crate::run_identity::RunIdentity;
+
+use super::{Column, RATE_KEY, RUN_KEY, SCENARIO_KEY, TIME, VERSION_KEY, columns};
 
 /// Rows that are handed over at once: a compromise of memory and overhead.
 const ROWS_AT_ONCE: usize = 1 << 16;
@@ -66,6 +68,7 @@ fn properties(
     let metadata = [
         (SCENARIO_KEY, scenario.to_toml()),
         (VERSION_KEY, env!("CARGO_PKG_VERSION").to_string()),
+        (RUN_KEY, RunIdentity::of(scenario).to_string()),
         (RATE_KEY, format!("{:?}", channels.sampling_rate_hz)),
     ];
     let metadata = metadata.map(|(key, value)| KeyValue::new(key.to_string(), value));

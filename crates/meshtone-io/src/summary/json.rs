@@ -27,6 +27,7 @@ impl Summary {
         json!({
             "format_version": self.format_version,
             "meshtone_version": self.meshtone_version,
+            "run": self.run.to_string(),
             "convention": self.convention,
             "seed": self.seed,
             "fault": self.fault,

@@ -4,6 +4,7 @@
 //! channel, is `null`.
 
 mod json;
+mod read;
 
 use std::time::Duration;
 
@@ -11,7 +12,10 @@ use meshtone::Simulation;
 use meshtone::scenario::ScenarioWarning;
 use meshtone::signal::{kurtosis, peak, rms};
 
+use crate::run_identity::RunIdentity;
 use crate::signals::columns;
+
+pub use read::{ReadSummaryError, read_run};
 
 /// Version of the summary's format: it grows when a key changes its name or meaning.
 pub const FORMAT_VERSION: u32 = 1;
@@ -23,6 +27,8 @@ pub struct Summary {
     pub format_version: u32,
     /// Version of Meshtone.
     pub meshtone_version: &'static str,
+    /// Identity of the run, which all its files carry.
+    pub run: RunIdentity,
     /// Convention, by its name in the scenario file.
     pub convention: &'static str,
     /// Seed of the random draws.
@@ -97,8 +103,9 @@ impl Summary {
     ///
     /// # Arguments
     /// * `simulation` - its stages and signals
+    /// * `run` - the run's identity
     /// * `warnings` - what deserves attention
-    pub fn new(simulation: &Simulation, warnings: &[ScenarioWarning]) -> Self {
+    pub fn new(simulation: &Simulation, run: RunIdentity, warnings: &[ScenarioWarning]) -> Self {
         let (stages, channels) = (&simulation.stages, &simulation.channels);
         let stiffness = Extremes::of(&stages.mesh.mesh_n_per_mm);
         let force = Extremes::of(&channels.mesh_force_n);
@@ -106,6 +113,7 @@ impl Summary {
         Self {
             format_version: FORMAT_VERSION,
             meshtone_version: env!("CARGO_PKG_VERSION"),
+            run,
             convention: stages.scenario.convention.name(),
             seed: stages.scenario.seed,
             fault: stages.scenario.fault.as_ref().map(|fault| fault.kind()),

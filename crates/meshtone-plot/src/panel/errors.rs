@@ -26,7 +26,7 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, along: [f64; 2], side: &Side
     let half = if largest > 0.0 { 1.15 * largest } else { 10.0 };
     let axes = Axes::new(area, [-half, half], along);
     axes.title(canvas, "Profile errors");
-    axes.x_axis(canvas, &Ticks::nice(-half, half, 4), "Error (µm)");
+    axes.x_axis(canvas, &Ticks::about_zero(half), "Error (µm)");
     axes.y_grid(canvas, &Ticks::nice(along[0], along[1], 8));
     let zero = [side.contact_x_mm(), side.profile.tip_x_mm()].map(|x| axes.at(0.0, x));
     canvas.line(zero[0], zero[1], Stroke::solid(colour::MUTED, 0.9));

@@ -1,4 +1,7 @@
 //! The first tooth's face: the working flank seen along the normal of the tooth's plane of symmetry.
+//!
+//! z is that of the equations of motion: a fault that reaches from one end of the face reaches from positive z
+//! ([`meshtone::dynamics::MeshLoad`]).
 
 use meshtone::fault::{FaultDescription, FaultGeometry};
 
@@ -14,6 +17,8 @@ use crate::ticks::Ticks;
 pub(super) const CONTACT: Stroke = Stroke::dashed(colour::GREEN, 1.6, "7 3");
 /// Where the tip relief starts.
 pub(super) const RELIEF: Stroke = Stroke::dashed(colour::PURPLE, 1.6, "2 2.5");
+/// (px) From line to line of the caption.
+const CAPTION_LINE: f64 = 16.0;
 const EDGE: Stroke = Stroke::solid(colour::VERMILLION, 1.8);
 
 /// Draws the face; `along` is the tooth's own range.
@@ -21,7 +26,7 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, along: [f64; 2], side: &Side
     let half = side.wheel.face_width_mm / 2.0;
     let axes = Axes::new(area, [-1.12 * half, 1.12 * half], along);
     axes.title(canvas, "Tooth face");
-    axes.x_axis(canvas, &Ticks::nice(-half, half, 4), "Face width, z (mm)");
+    axes.x_axis(canvas, &Ticks::about_zero(half), "Face width, z (mm)");
     axes.y_grid(canvas, &Ticks::nice(along[0], along[1], 8));
     let (root, tip) = (side.profile.x_mm[0], side.profile.tip_x_mm());
     let missing = side.fault.is_some_and(damage::is_missing);
@@ -46,8 +51,9 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, along: [f64; 2], side: &Side
 
 fn landmark(canvas: &mut Canvas, axes: &Axes, x_mm: f64, name: &str, stroke: Stroke) {
     axes.horizontal(canvas, x_mm, stroke);
-    let style = TextStyle::NOTE.coloured(stroke.colour).anchored(Anchor::End).with_halo();
-    canvas.text((axes.px(axes.x[1] / 1.12) - 5.0, axes.py(x_mm) - 5.0), name, style);
+    // At the end of the face that no one-sided fault reaches first.
+    let style = TextStyle::NOTE.coloured(stroke.colour).with_halo();
+    canvas.text((axes.px(axes.x[0] / 1.12) + 5.0, axes.py(x_mm) - 5.0), name, style);
 }
 
 fn damaged(canvas: &mut Canvas, axes: &Axes, side: &Side, fault: &FaultGeometry) {
@@ -65,16 +71,21 @@ fn damaged(canvas: &mut Canvas, axes: &Axes, side: &Side, fault: &FaultGeometry)
             let bottom = x(*chip_start_index);
             let top = fault.no_contact.start.min(side.last());
             let width = missing_width_mm.last().copied().unwrap_or(0.0);
-            let chip = [(-half, bottom), (-half, tip), (-half + width, tip)].map(|(z, x)| axes.at(z, x));
-            canvas.polygon(&chip, LOST);
-            canvas.line(chip[0], chip[2], EDGE);
+            // The lost tip takes the chip's upper part with it.
+            let end = if *tip_loss_mm > 0.0 { x(top) } else { tip };
+            if bottom < end {
+                let width = width * (end - bottom) / (tip - bottom);
+                let chip = [(half, bottom), (half, end), (half - width, end)].map(|(z, x)| axes.at(z, x));
+                canvas.polygon(&chip, LOST);
+                canvas.line(chip[0], chip[2], EDGE);
+            }
             if *tip_loss_mm > 0.0 {
-                canvas.rectangle(axes.at(-half, x(top)), axes.at(half, tip), LOST);
-                canvas.line(axes.at(-half, x(top)), axes.at(half, x(top)), EDGE);
+                canvas.rectangle(axes.at(-half, end), axes.at(half, tip), LOST);
+                canvas.line(axes.at(-half, end), axes.at(half, end), EDGE);
             }
         }
         FaultDescription::FaceFault { width_mm, .. } => {
-            rectangle(canvas, axes, [-half, -half + width_mm], [x(first), x(end)]);
+            rectangle(canvas, axes, [half - width_mm, half], [x(first), x(end)]);
         }
         FaultDescription::ToothDestruction { .. } => {
             rectangle(canvas, axes, [-half, half], [x(first), x(end)]);
@@ -88,12 +99,16 @@ fn rectangle(canvas: &mut Canvas, axes: &Axes, z: [f64; 2], x: [f64; 2]) {
     canvas.polyline(&corners.map(|(z, x)| axes.at(z, x)), EDGE);
 }
 
-/// Below the start of contact, where no damage reaches.
+/// Below the start of contact and the damage, as far as there is room.
 fn caption(canvas: &mut Canvas, axes: &Axes, side: &Side, fault: &FaultGeometry) {
     let middle = axes.area.left + axes.area.width / 2.0;
     let style = TextStyle::NOTE.coloured(colour::VERMILLION).anchored(Anchor::Middle).with_halo();
-    let top = axes.py(side.contact_x_mm());
-    for (row, text) in damage::caption(fault).iter().enumerate() {
-        canvas.text((middle, top + 18.0 + 16.0 * row as f64), text, style);
+    let lines = damage::caption(fault);
+    let below = if damage::is_missing(fault) { side.last() } else { damage::damaged_range(fault, side).0 };
+    let lowest = side.contact_x_mm().min(side.profile.x_mm[below]);
+    let first = axes.py(lowest) + 18.0;
+    let first = first.min(axes.area.bottom() - 6.0 - CAPTION_LINE * (lines.len() as f64 - 1.0));
+    for (row, text) in lines.iter().enumerate() {
+        canvas.text((middle, first + CAPTION_LINE * row as f64), text, style);
     }
 }

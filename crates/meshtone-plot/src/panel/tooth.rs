@@ -40,6 +40,9 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, across: [f64; 2], along: [f6
     axes.frame(canvas);
 }
 
+/// (px) Room that a row of remarks takes from the bottom.
+const ROW_OF_REMARKS: f64 = 24.0;
+
 struct Drawing<'a> {
     axes: Axes,
     side: &'a Side<'a>,
@@ -156,10 +159,13 @@ impl Drawing<'_> {
             FaultDescription::MissingTooth => {
                 let mut ghost = self.flank(-1.0, 0, last);
                 ghost.extend(self.flank(1.0, 0, last).into_iter().rev());
-                canvas.polygon(&ghost, LOST);
                 canvas.polyline(&ghost, DAMAGE_EDGE);
-                let (_, foot) = self.side.flank(0, 1.0);
-                let at = self.axes.at(0.0, (foot + self.side.profile.tip_x_mm()) / 2.0);
+                // Down to the root that is left, which rises between the feet.
+                ghost.extend(self.root_gap().into_iter().rev());
+                canvas.polygon(&ghost, LOST);
+                let wheel = self.side.wheel;
+                // Between the circles, and beside the names of the flanks.
+                let at = self.axes.at(0.0, (wheel.pitch_radius_mm + wheel.tip_radius_mm) / 2.0);
                 let style = TextStyle::NOTE.coloured(colour::VERMILLION).anchored(Anchor::Middle).bold();
                 canvas.text(at, "missing", style);
             }
@@ -181,10 +187,16 @@ impl Drawing<'_> {
             _ => self.cut(canvas, fault),
         }
         if damage::is_partial(fault, self.side.wheel.face_width_mm) {
-            let at = (self.axes.area.left + self.axes.area.width / 2.0, self.axes.area.bottom() - 9.0);
-            let style = TextStyle::NOTE.coloured(colour::VERMILLION).anchored(Anchor::Middle);
-            canvas.text(at, "hatched: lost over part of the face width", style);
+            self.remark(canvas, 0, "hatched: lost over part of the face width", colour::VERMILLION);
         }
+    }
+
+    /// Words in the wheel's body, in a row counted from the bottom.
+    fn remark(&self, canvas: &mut Canvas, row: usize, text: &str, colour: &'static str) {
+        let style = TextStyle::NOTE.coloured(colour).anchored(Anchor::Middle);
+        let area = self.axes.area;
+        let at = (area.left + area.width / 2.0, area.bottom() - 8.0 - 1.15 * style.size * row as f64);
+        canvas.text(at, text, style);
     }
 
     /// A flank from which material is gone.
@@ -222,7 +234,9 @@ impl Drawing<'_> {
         let mut names = Vec::new();
         for (name, radius, stroke) in circles {
             let arc: Vec<Pixel> = self.arc(radius);
-            if arc.len() > 1 {
+            if name == "base" && self.leaves_the_view(radius) {
+                self.remark(canvas, 1, "base circle below the root", colour::MUTED);
+            } else if arc.len() > 1 {
                 canvas.polyline(&arc, stroke);
                 let end = arc[arc.len() - 1];
                 names.push((name, end.1, end.0 > self.axes.area.right() - 1.0));
@@ -242,6 +256,13 @@ impl Drawing<'_> {
             }
             canvas.text((right + 11.0, baseline), name, TextStyle::NOTE.coloured(colour::MUTED));
         }
+    }
+
+    /// Whether a circle lies so far below the root that it would meet the remarks or not be seen at all. The base circle
+    /// is below the root from 42 teeth on, where the pressure angle is 20°.
+    fn leaves_the_view(&self, radius: f64) -> bool {
+        radius < self.side.wheel.root_radius_mm
+            && self.axes.py(radius) > self.axes.area.bottom() - ROW_OF_REMARKS
     }
 
     /// The visible part of a circle round the wheel's centre, from left to right.

@@ -7,7 +7,10 @@ use crate::tooth::{ContactLine, ToothProfile, Wheel};
 
 /// Cross-sections of one tooth at its profile points, and how the mate loads it there.
 ///
-/// y is measured across the tooth from its centre line, z along the face from its middle.
+/// y is measured across the tooth from its centre line, z along the face from its middle. A fault that reaches from one
+/// end of the face lies at negative z here, so this z runs opposite to that of the equations of motion
+/// ([`crate::dynamics::MeshLoad`]), where it takes the width away at positive z. The strain energy does not know
+/// the difference: it is the same for the mirror image.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ToothSection {
     /// (mm²) Area.

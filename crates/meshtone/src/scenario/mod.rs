@@ -31,7 +31,7 @@ pub use quality::{ERROR_POINTS, ProfileErrors, Quality};
 pub use rig::{DampingRatio, Rig, Shaft, WheelInertia};
 pub use solver::Solver;
 pub use template::{TEMPLATE_KINDS, template};
-pub use validate::MEMORY_LIMIT_BYTES;
+pub use validate::{MEMORY_LIMIT_BYTES, MemoryLimit};
 
 /// Which of two readings of the model is simulated.
 ///

@@ -11,7 +11,7 @@ mod solver;
 pub use files::{FileProblem, ScenarioFiles};
 
 use self::files::NoFiles;
-use super::{Convention, Scenario, ScenarioError};
+use super::{Convention, MemoryLimit, Scenario, ScenarioError};
 use crate::toml_reader::{ReadResult, TomlDocument, TomlTable};
 
 const CONVENTIONS: [(&str, Convention); 2] =
@@ -69,9 +69,26 @@ impl Scenario {
     /// # Errors
     /// As [`Scenario::from_toml`], and what `files` reports, at the line that names the file.
     pub fn from_toml_with_files(text: &str, files: &dyn ScenarioFiles) -> Result<Self, ScenarioError> {
+        Self::from_toml_within(text, files, MemoryLimit::default())
+    }
+
+    /// As [`Scenario::from_toml_with_files`], with another limit of memory.
+    ///
+    /// # Arguments
+    /// * `text` - the scenario file's text
+    /// * `files` - loads the files that the text names
+    /// * `limit` - most that [`Scenario::memory_estimate_bytes`] may be
+    ///
+    /// # Errors
+    /// As [`Scenario::from_toml_with_files`].
+    pub fn from_toml_within(
+        text: &str,
+        files: &dyn ScenarioFiles,
+        limit: MemoryLimit,
+    ) -> Result<Self, ScenarioError> {
         let document = TomlDocument::parse(text)?;
         let scenario = document.root().read(|root| read_scenario(root, files))?;
-        match scenario.validate() {
+        match scenario.validate_within(limit) {
             Ok(_) => Ok(scenario),
             Err(error) => Err(document.locate(quality::in_its_file(&document, error))),
         }

@@ -2,6 +2,8 @@
 
 mod fault;
 mod gears;
+mod largest_cause;
+mod memory_limit;
 mod operation;
 mod quality;
 mod rig;
@@ -9,7 +11,7 @@ mod rules;
 mod size;
 mod solver;
 
-pub use size::MEMORY_LIMIT_BYTES;
+pub use memory_limit::{MEMORY_LIMIT_BYTES, MemoryLimit};
 
 use super::{Scenario, ScenarioError, ScenarioWarning};
 
@@ -35,17 +37,27 @@ impl Scenario {
     /// # Ok::<(), meshtone::scenario::ScenarioError>(())
     /// ```
     pub fn validate(&self) -> Result<Vec<ScenarioWarning>, ScenarioError> {
-        self.validate_within(MEMORY_LIMIT_BYTES)
+        self.validate_within(MemoryLimit::default())
     }
 
     /// As [`Scenario::validate`], with another limit of memory.
     ///
     /// # Arguments
-    /// * `memory_limit_bytes` - (bytes) most that [`Scenario::memory_estimate_bytes`] may be
+    /// * `limit` - most that [`Scenario::memory_estimate_bytes`] may be
     ///
     /// # Errors
     /// As [`Scenario::validate`].
-    pub fn validate_within(&self, memory_limit_bytes: u64) -> Result<Vec<ScenarioWarning>, ScenarioError> {
+    ///
+    /// ```
+    /// use meshtone::scenario::{MemoryLimit, Scenario};
+    ///
+    /// let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    /// scenario.solver.sampling_rate_hz = 1e8;
+    /// let error = scenario.validate_within(MemoryLimit::Machine { free_bytes: 1 << 30 }).unwrap_err();
+    /// assert_eq!(error.key, "solver.sampling_rate_hz");
+    /// assert!(error.problem.ends_with("only 1.0 GiB are free on this machine"));
+    /// ```
+    pub fn validate_within(&self, limit: MemoryLimit) -> Result<Vec<ScenarioWarning>, ScenarioError> {
         check_values(self)?;
         let honoured = self.as_honoured();
         if honoured != *self {
@@ -55,7 +67,7 @@ impl Scenario {
             })?;
         }
         operation::check_duration(&honoured)?;
-        size::check(&honoured, memory_limit_bytes)?;
+        size::check(&honoured, limit)?;
         Ok(gears::warnings(&honoured.gears))
     }
 }

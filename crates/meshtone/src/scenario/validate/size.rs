@@ -1,12 +1,10 @@
 //! How large a simulation is.
 
-use super::super::{Scenario, ScenarioError};
+use super::super::Scenario;
+use super::largest_cause;
+use super::memory_limit::{MemoryLimit, in_words};
 use super::rules::Check;
 use crate::sampling::{CycleGrid, TimeGrid};
-
-/// (bytes) Most memory that one simulation may need: 16 GiB. What needs more is a slip in a speed
-/// or a sampling rate rather than a wish.
-pub const MEMORY_LIMIT_BYTES: u64 = 16 << 30;
 
 /// Signals that are kept of every sample after settling.
 const KEPT_CHANNELS: f64 = 8.0;
@@ -17,7 +15,6 @@ const GRID_CHANNELS: f64 = 16.0;
 /// Numbers that are held for every profile point of either wheel.
 const PROFILE_CHANNELS: f64 = 64.0;
 const BYTES_PER_NUMBER: f64 = 8.0;
-const GIBIBYTE: f64 = (1u64 << 30) as f64;
 
 impl Scenario {
     /// (S/s) The actual sampling rate `⌈f_nom/(L f_p) + 6⌉ L f_p`, with `L` the least common
@@ -57,24 +54,15 @@ impl Scenario {
     }
 }
 
-pub(super) fn check(scenario: &Scenario, memory_limit_bytes: u64) -> Check {
+pub(super) fn check(scenario: &Scenario, limit: MemoryLimit) -> Check {
     let needed = scenario.memory_estimate_bytes();
-    if needed <= memory_limit_bytes {
+    if needed <= limit.bytes() {
         return Ok(());
     }
-    let (needed_gib, limit_gib) = (needed as f64 / GIBIBYTE, memory_limit_bytes as f64 / GIBIBYTE);
+    let (needed, allowed) = (in_words(needed), limit.allows());
     let actual = scenario.actual_sampling_rate_hz();
     let problem = format!(
-        "the simulation would need {needed_gib:.1} GiB of memory at its actual sampling rate of {actual:.4e} S/s; \
-         at most {limit_gib:.1} GiB are allowed"
+        "the simulation would need {needed} of memory at its actual sampling rate of {actual:.4e} S/s; {allowed}"
     );
-    let help = "lower solver.sampling_rate_hz or raise operation.pinion_speed_hz; the actual rate is at least 7 times \
-                the least common multiple of the tooth counts times the speed, so tooth counts with a common factor \
-                help too; a speed profile is simulated over all its time";
-    Err(ScenarioError::new(
-        "solver.sampling_rate_hz",
-        format!("{:?}", scenario.solver.sampling_rate_hz),
-        problem,
-    )
-    .with_help(help))
+    Err(largest_cause::refuse(scenario, &problem))
 }

@@ -1,0 +1,41 @@
+//! Which files a scenario names.
+
+use std::cell::RefCell;
+use std::path::PathBuf;
+
+use meshtone::scenario::{FileProblem, Profile, ProfileErrors, ScenarioFiles};
+
+use super::FilesBeside;
+
+/// Files beside a scenario, and which of them it asked for.
+pub(super) struct Remembering<'f> {
+    files: &'f FilesBeside,
+    asked: RefCell<Vec<PathBuf>>,
+}
+
+impl<'f> Remembering<'f> {
+    pub(super) fn new(files: &'f FilesBeside) -> Self {
+        Self { files, asked: RefCell::default() }
+    }
+
+    /// The files that were asked for.
+    pub(super) fn read(&self) -> Vec<PathBuf> {
+        self.asked.borrow().clone()
+    }
+
+    fn remember(&self, name: &str) {
+        self.asked.borrow_mut().push(self.files.path_of(name));
+    }
+}
+
+impl ScenarioFiles for Remembering<'_> {
+    fn profile_errors(&self, name: &str) -> Result<ProfileErrors, FileProblem> {
+        self.remember(name);
+        self.files.profile_errors(name)
+    }
+
+    fn profile(&self, name: &str) -> Result<Profile, FileProblem> {
+        self.remember(name);
+        self.files.profile(name)
+    }
+}

@@ -1,0 +1,95 @@
+//! How much memory a simulation may need.
+
+/// (bytes) Most memory that one simulation may need: 16 GiB. What needs more is a slip in a speed
+/// or a sampling rate rather than a wish.
+pub const MEMORY_LIMIT_BYTES: u64 = 16 << 30;
+
+/// How much memory a simulation may need, and why no more.
+///
+/// ```
+/// use meshtone::scenario::{MEMORY_LIMIT_BYTES, MemoryLimit};
+///
+/// assert_eq!(MemoryLimit::Machine { free_bytes: 1 << 30 }.bytes(), 1 << 30);
+/// assert_eq!(MemoryLimit::Machine { free_bytes: 1 << 40 }.bytes(), MEMORY_LIMIT_BYTES);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MemoryLimit {
+    /// A limit by itself. The default is [`MEMORY_LIMIT_BYTES`].
+    Given {
+        /// (bytes) The limit.
+        bytes: u64,
+    },
+    /// What is free on the machine that simulates, and at most [`MEMORY_LIMIT_BYTES`].
+    Machine {
+        /// (bytes) Free memory.
+        free_bytes: u64,
+    },
+}
+
+impl Default for MemoryLimit {
+    fn default() -> Self {
+        Self::Given { bytes: MEMORY_LIMIT_BYTES }
+    }
+}
+
+impl MemoryLimit {
+    /// (bytes) The limit.
+    pub fn bytes(self) -> u64 {
+        match self {
+            Self::Given { bytes } => bytes,
+            Self::Machine { free_bytes } => free_bytes.min(MEMORY_LIMIT_BYTES),
+        }
+    }
+
+    /// What is allowed, for a message about a simulation that needs more.
+    pub(super) fn allows(self) -> String {
+        let most = in_words(self.bytes());
+        match self {
+            Self::Machine { free_bytes } if free_bytes <= MEMORY_LIMIT_BYTES => {
+                format!("only {most} are free on this machine")
+            }
+            Self::Machine { free_bytes } => {
+                format!(
+                    "at most {most} are allowed, of the {} that are free on this machine",
+                    in_words(free_bytes)
+                )
+            }
+            Self::Given { .. } => format!("at most {most} are allowed"),
+        }
+    }
+}
+
+/// An amount of memory as one reads it.
+pub(super) fn in_words(bytes: u64) -> String {
+    let mebibytes = bytes as f64 / (1u64 << 20) as f64;
+    let gibibytes = mebibytes / 1024.0;
+    match gibibytes {
+        _ if bytes == u64::MAX => "more than 1e10 GiB".to_string(),
+        _ if gibibytes >= 1e6 => format!("{gibibytes:.1e} GiB"),
+        _ if gibibytes >= 1.0 => format!("{gibibytes:.1} GiB"),
+        _ => format!("{mebibytes:.1} MiB"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_allowed_names_the_machine_only_where_it_is_known() {
+        assert_eq!(MemoryLimit::default().allows(), "at most 16.0 GiB are allowed");
+        let machine = |free_bytes| MemoryLimit::Machine { free_bytes }.allows();
+        assert_eq!(machine(3 << 29), "only 1.5 GiB are free on this machine");
+        assert_eq!(machine(100 << 20), "only 100.0 MiB are free on this machine");
+        assert_eq!(
+            machine(20 << 30),
+            "at most 16.0 GiB are allowed, of the 20.0 GiB that are free on this machine"
+        );
+    }
+
+    #[test]
+    fn amounts_of_any_size_are_short() {
+        assert_eq!(in_words(u64::MAX), "more than 1e10 GiB");
+        assert_eq!(in_words(1 << 60), "1.1e9 GiB");
+    }
+}
