@@ -1,5 +1,6 @@
 //! The eight stages, in order.
 
+use std::fmt::{self, Debug, Formatter};
 use std::time::{Duration, Instant};
 
 use crate::dynamics::coordinates::CoordinateVector;
@@ -7,14 +8,14 @@ use crate::dynamics::{ErrorForce, Excitation, MeshLoad, Motion, MotionSample, Sy
 use crate::fault::{FaultGeometry, fault_geometry};
 use crate::quality::profile_errors;
 use crate::sampling::{CycleGrid, TimeGrid};
-use crate::scenario::{Convention, ProfileErrors, Scenario, ScenarioError, Solver};
+use crate::scenario::{Convention, DampingRatio, ProfileErrors, Scenario, ScenarioError, Solver};
 use crate::signal::{Channels, channel_outputs};
 use crate::solver::{Diverged, InstructionSet, Output, Problem, Recorder, ReducedModel, integrate};
 use crate::stiffness::{MeshStiffness, PairStiffness};
 use crate::tooth::{Teeth, teeth};
 
 /// Results of every stage before the time loop.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Stages {
     /// Stage 1: what is simulated. Under the published convention the keys that the published code ignores are
     /// at their defaults.
@@ -49,7 +50,7 @@ pub struct StageTime {
 }
 
 /// A simulation: every stage's results and the signals.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Simulation {
     /// Stages 1 to 6.
     pub stages: Stages,
@@ -274,14 +275,36 @@ impl Stages {
     /// The error that a solution without bound is.
     pub(crate) fn divergence(&self, diverged: Diverged) -> ScenarioError {
         let time_s = diverged.sample as f64 * self.time.step_s();
-        let ratios = self.scenario.rig.damping_ratio.per_mode();
+        let value = match &self.scenario.rig.damping_ratio {
+            DampingRatio::Uniform(ratio) => format!("{ratio:?}"),
+            ratios => format!("{:?}", ratios.per_mode()),
+        };
         let problem = format!(
             "the motion grows without bound within {time_s:.4} s; damping must take what the varying mesh stiffness puts \
              into a mode, and a missing tooth must leave another in contact"
         );
-        ScenarioError::new("rig.damping_ratio", format!("{ratios:?}"), problem).with_help(
+        ScenarioError::new("rig.damping_ratio", value, problem).with_help(
             "raise the damping ratios (the default is 0.05), use more teeth, or change operation.pinion_speed_hz",
         )
+    }
+}
+
+/// What is simulated; the fields' thousands of numbers are left out.
+impl Debug for Stages {
+    fn fmt(&self, formatter: &mut Formatter) -> fmt::Result {
+        let Self { scenario, time, .. } = self;
+        formatter
+            .debug_struct("Stages")
+            .field("scenario", scenario)
+            .field("time", time)
+            .finish_non_exhaustive()
+    }
+}
+
+/// What is simulated; the signals' thousands of numbers are left out.
+impl Debug for Simulation {
+    fn fmt(&self, formatter: &mut Formatter) -> fmt::Result {
+        formatter.debug_struct("Simulation").field("stages", &self.stages).finish_non_exhaustive()
     }
 }
 

@@ -1,0 +1,78 @@
+//! Instructions of the time loop and of the stiffness stages, counted: a regression shows on a noisy machine too.
+//!
+//! Needs valgrind and gungraun-runner of this crate's version of gungraun; see the performance chapter of the book.
+#![allow(clippy::expect_used, missing_docs)]
+
+#[path = "cases/mod.rs"]
+mod cases;
+
+use std::hint::black_box;
+
+use gungraun::prelude::*;
+use meshtone::batch::{Control, KeepChannels, simulate_many};
+use meshtone::scenario::{Convention, Scenario};
+use meshtone::signal::channel_outputs;
+use meshtone::solver::{Block, Recorder, ReducedModel};
+use meshtone::stiffness::{MeshStiffness, PairStiffness};
+use meshtone::{Stages, stages};
+
+struct Nothing;
+
+impl Recorder for Nothing {
+    fn record(&mut self, block: &Block) {
+        black_box(block.output(0));
+    }
+}
+
+fn scenario(index: usize, convention: Convention) -> Scenario {
+    let mut scenario = cases::with_full_settling(convention).swap_remove(index).1;
+    // A tenth of the steps: counts are proportional.
+    scenario.solver.sampling_rate_hz = 1e4;
+    scenario
+}
+
+fn prepared(index: usize, convention: Convention) -> Box<Stages> {
+    Box::new(stages(&scenario(index, convention)).expect("an example is valid"))
+}
+
+fn loop_of(index: usize, convention: Convention) -> (Box<Stages>, ReducedModel) {
+    let stages = prepared(index, convention);
+    let model = stages.reduced_model();
+    (stages, model)
+}
+
+#[library_benchmark]
+#[bench::healthy(loop_of(0, Convention::Corrected))]
+#[bench::tooth_breakage(loop_of(2, Convention::Corrected))]
+#[bench::healthy_published(loop_of(0, Convention::Published))]
+fn time_loop((stages, model): (Box<Stages>, ReducedModel)) -> Box<Stages> {
+    let outputs = channel_outputs();
+    stages.integrate(&model, &outputs, stages.time.first_kept_sample, &mut Nothing).expect("a solution");
+    stages
+}
+
+#[library_benchmark]
+#[bench::healthy(prepared(0, Convention::Corrected))]
+#[bench::tooth_breakage(prepared(2, Convention::Corrected))]
+#[bench::partial_face(prepared(3, Convention::Corrected))]
+#[bench::through_face(prepared(4, Convention::Corrected))]
+fn stiffness(stages: Box<Stages>) -> (MeshStiffness, Box<Stages>) {
+    let Stages { teeth, fault, cycle, scenario, .. } = &*stages;
+    let pair = PairStiffness::new(&scenario.gears, teeth, fault.as_ref()).expect("an example is valid");
+    (MeshStiffness::new(&pair, cycle, scenario.convention), stages)
+}
+
+#[library_benchmark]
+#[bench::healthy(vec![scenario(0, Convention::Corrected); 8])]
+fn eight_side_by_side(scenarios: Vec<Scenario>) -> usize {
+    // In this thread: only its instructions are counted.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build().expect("a thread");
+    pool.install(|| {
+        simulate_many(scenarios, &KeepChannels::default(), &Control::default(), |_, signals| {
+            black_box(signals.expect("an example is valid"));
+        })
+    })
+}
+
+library_benchmark_group!(name = counts, benchmarks = [time_loop, stiffness, eight_side_by_side]);
+main!(library_benchmark_groups = counts);
