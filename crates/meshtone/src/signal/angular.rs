@@ -11,9 +11,9 @@ const ANGLE_ROUNDING: f64 = 1e-9;
 /// How the signal is read between its samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Interpolation {
-    /// PCHIP, as the published code: [`interpolate_pchip`]. It flattens peaks: a tone of 10 samples a period loses 3 %.
+    /// PCHIP, as the published code: [`interpolate_pchip`]. It flattens peaks: a tone of 5 samples a period loses 5 %.
     Pchip,
-    /// Sinc under Kaiser's window: [`interpolate_band_limited`]. Exact to 1e-5 of a tone up to 0.8 of half the sampling
+    /// Sinc under Kaiser's window: [`interpolate_band_limited`]. Exact to 1.2e-5 of a tone up to 0.8 of half the sampling
     /// rate.
     #[default]
     BandLimited,

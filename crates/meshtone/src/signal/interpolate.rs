@@ -19,8 +19,8 @@ const PCHIP_REACH: isize = 2;
 
 /// Reads a signal at places between its samples by PCHIP, as the published code does.
 ///
-/// The curve never overshoots its samples, so peaks between them are lost: a tone of n samples a period keeps
-/// about `1 − 3/n²` of its amplitude in the mean over its phases.
+/// The curve never overshoots its samples, so peaks between them are lost, and harmonics are made. Of a tone of n samples a
+/// period `1 − 34/n⁴` is left: it loses 0.3 % at 10 samples, 5 % at 5, 26 % at 3.
 ///
 /// # Arguments
 /// * `signal` - (at least 2) the samples
@@ -58,7 +58,7 @@ pub fn interpolate_pchip(signal: &[f64], places: &[f64], edge: Edge) -> Result<V
 
 /// Reads a signal at places between its samples by the sinc under Kaiser's window with β = 10, 16 samples on each side.
 ///
-/// For a tone of unit amplitude the error is below 1e-5 up to 0.8 of half the sampling rate; beyond, it grows to
+/// For a tone of unit amplitude the error is below 1.2e-5 up to 0.8 of half the sampling rate; beyond, it grows to
 /// 0.5 at half the sampling rate, where a tone is not determined by its samples.
 ///
 /// # Arguments
