@@ -32,8 +32,11 @@ fn wandering(samples: usize, drift: f64) -> Vec<f64> {
 #[test]
 fn phase_from_the_mesh_tone_in_noise() {
     let samples = 500_000;
-    for teeth in [17_u32, 38] {
-        let truth = wandering(samples, 0.01);
+    // The last tone wanders into the ends of the band, where it is weakened, and so the noise gains.
+    for (teeth, drift, nominal_hz, middle) in
+        [(17_u32, 0.01, 20.1, true), (38, 0.0, 20.0, true), (38, 0.01, 20.1, false)]
+    {
+        let truth = wandering(samples, drift);
         // Half the amplitude squared over ten.
         let noise = noise(u64::from(teeth), samples);
         let signal: Vec<f64> = (0..samples)
@@ -44,14 +47,14 @@ fn phase_from_the_mesh_tone_in_noise() {
                 mesh + 0.05f64.sqrt() * noise[i] + 0.2 * wave(0.31 * f64::from(teeth) * r)
             })
             .collect();
-        let tone = MeshTone::new(teeth, 20.1);
+        let tone = MeshTone::new(teeth, nominal_hz);
         let phase = ShaftPhase::from_mesh_tone(&signal, RATE_HZ, &tone).unwrap();
         let off = rms_degrees(&phase, &truth);
-        let predicted = 360.0 * (2.0 * 0.69 * 10.05 / (RATE_HZ * 10.0)).sqrt()
+        let predicted = 360.0 * (2.0 * 0.69 * 0.5 * nominal_hz / (RATE_HZ * 10.0)).sqrt()
             / (std::f64::consts::TAU * f64::from(teeth));
         println!("{teeth} teeth: {off:.4}° rms, {predicted:.4}° by the formula; {:?}", phase.warnings);
         assert!(off < 0.2, "{teeth}: {off}");
-        assert!((off / predicted - 1.0).abs() < 0.35, "{teeth}: {off} {predicted}");
+        assert!(!middle || (off / predicted - 1.0).abs() < 0.35, "{teeth}: {off} {predicted}");
         assert!(phase.warnings.is_empty());
 
         // Good enough to average with: the mesh harmonics come out whole.
@@ -168,11 +171,12 @@ fn a_bad_tachometer() {
     let phase = ShaftPhase::from_pulses(&times, 1, Some(20.0), RATE_HZ, samples).unwrap();
     let messages: Vec<String> = phase.warnings.iter().map(ToString::to_string).collect();
     println!("{messages:#?}");
-    assert_eq!(messages.len(), 2);
-    assert!(
-        messages[0].starts_with("doubled pulse at 0.3557")
-            && messages[1].starts_with("1 pulse(s) missing after 0.6")
-    );
+    let [SignalWarning::DoubledPulse { time_s, .. }, SignalWarning::MissingPulses { after_s, count: 1, .. }] =
+        phase.warnings[..]
+    else {
+        panic!("{messages:#?}")
+    };
+    assert!((time_s - 7.115 / 20.0).abs() < 1e-4 && (after_s - 12.0 / 20.0).abs() < 1e-4);
     let truth: Vec<f64> = (0..samples).map(|i| 20.0 * i as f64 / RATE_HZ).collect();
     assert!(rms_degrees(&phase, &truth) < 0.2);
 

@@ -65,8 +65,9 @@ impl ShaftPhase {
     /// by the teeth.
     ///
     /// White noise makes an error of `√(2 b/(f_s r))/(2π z)` revolutions rms, with b the band's equivalent half width (0.69 of
-    /// the given one), r the ratio of the tone's power to all the noise's and z the teeth. Phase modulation within the band,
-    /// as from a run-out, is taken for speed; the sidebands of the default band's outside are not. The angle's origin is
+    /// the given one), r the ratio of the tone's power to all the noise's and z the teeth, as long as the tone stays in the
+    /// middle half of the band; towards its ends the tone is weakened and the error grows. Phase modulation within the band,
+    /// as from a run-out, is taken for speed; sidebands outside it are left out. The angle's origin is
     /// where the tone has a maximum, so it says nothing about which tooth is which.
     ///
     /// One period of `half_band_hz` is left out at each end of the recording, where the band-pass rings.
