@@ -1,5 +1,5 @@
 //! The shaft's phase.
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 mod signal;
 

@@ -60,12 +60,12 @@ mod tests {
     fn convenient_lengths() {
         let smooth = |n: &usize| {
             let rest = [2, 3, 5].iter().fold(*n, |mut n, prime| {
-                while n % prime == 0 {
+                while n.is_multiple_of(prime) {
                     n /= prime;
                 }
                 n
             });
-            n % 2 == 0 && rest == 1
+            n.is_multiple_of(2) && rest == 1
         };
         for len in [1, 2, 7, 11, 97, 121, 1001, 44_101, 3_000_001] {
             assert_eq!(Some(convenient_length(len)), (len..).find(smooth), "{len}");

@@ -29,6 +29,7 @@ mod resample;
 mod separation;
 mod spectrum;
 mod statistics;
+mod warning;
 
 pub use angular::{AngularSettings, AngularSignal, Interpolation, angular_resample, points_per_revolution};
 pub use average::{SynchronousAverage, revolution_average, segmented_averages, synchronous_average};
@@ -36,7 +37,7 @@ pub use channels::{Channels, GRAVITY_M_PER_S2, channel_outputs};
 pub use check::check_channel;
 pub use edge::Edge;
 pub use envelope::{analytic_signal, envelope, envelope_spectrum};
-pub use error::{SignalError, SignalWarning};
+pub use error::SignalError;
 pub use indicators::{
     IndicatorValue, Indicators, ShapeIndicators, energy_ratio, fm0, fm4, m6a, m8a, na4, sideband_level_factor,
 };
@@ -53,3 +54,4 @@ pub use statistics::{
     central_moment, crest_factor, kurtosis, peak, peak_to_peak, rms, skewness, standard_deviation,
     standardised_moment,
 };
+pub use warning::SignalWarning;

@@ -149,8 +149,8 @@ pub fn resampling_ratio(from_hz: f64, to_hz: f64) -> Result<(usize, usize), Sign
         up = (up.1, whole * up.1 + up.0);
         down = (down.1, whole * down.1 + down.0);
         rest = inverse - whole;
-        // Infinite and NaN too.
-        if !(up.1.max(down.1) <= LARGEST_FACTOR as f64) {
+        let largest: f64 = up.1.max(down.1);
+        if largest.is_nan() || largest > LARGEST_FACTOR as f64 {
             return Err(SignalError::parameter(
                 "ratio of the sampling rates",
                 wanted,

@@ -18,6 +18,8 @@ const ROUNDING: f64 = 1e-12;
 pub struct Indicators {
     /// Of the synchronous average.
     pub average: ShapeIndicators,
+    /// Of the regular part.
+    pub regular: ShapeIndicators,
     /// Of the residual.
     pub residual: ShapeIndicators,
     /// Of the difference.
@@ -95,6 +97,7 @@ impl Indicators {
         let spectrum = order_spectrum(average)?;
         Ok(Self {
             average: ShapeIndicators::new(average),
+            regular: ShapeIndicators::new(&regular),
             residual: ShapeIndicators::new(&residual),
             difference: ShapeIndicators::new(&difference),
             envelope: ShapeIndicators::above(&envelope(&difference)?, rounding),
@@ -119,12 +122,13 @@ impl Indicators {
     /// # let parts = separate(&average, &SeparationSettings::new(20))?;
     /// let table = Indicators::new(&average, &parts, 20)?.table("g");
     /// assert_eq!((table[0].name.as_str(), table[0].unit.as_str()), ("average_rms", "g"));
-    /// assert_eq!((table[20].name.as_str(), table[20].unit.as_str()), ("fm0", "-"));
+    /// assert_eq!((table[25].name.as_str(), table[25].unit.as_str()), ("fm0", "-"));
     /// # Ok::<(), meshtone::signal::SignalError>(())
     /// ```
     pub fn table(&self, unit: &str) -> Vec<IndicatorValue> {
         let shapes = [
             ("average", &self.average),
+            ("regular", &self.regular),
             ("residual", &self.residual),
             ("difference", &self.difference),
             ("envelope", &self.envelope),

@@ -2,6 +2,7 @@
 
 mod constant;
 mod mesh_tone;
+mod mesh_tone_checks;
 mod pulse_train;
 mod pulses;
 mod speed;

@@ -9,6 +9,8 @@ const NEIGHBOURS: usize = 4;
 const DOUBLED: f64 = 0.5;
 /// An interval of more than this part holds missing pulses.
 const MISSING: f64 = 1.6;
+/// Most pulses that are put in at one place: the speed may change within a longer gap.
+const MOST_MISSING: usize = 20;
 
 /// Times of pulses, evenly many per revolution.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,13 +25,13 @@ pub struct PulseTrain {
 ///
 /// An interval between pulses is compared with the median of the four before and the four after it. Shorter than half of
 /// it: the later pulse is one too many, as from a bouncing contact. Longer than 1.6 times it: pulses are missing, and
-/// are put in evenly. So pulses may be unevenly spaced by a good quarter of an interval.
+/// are put in evenly, up to 20 at one place. So pulses may be unevenly spaced by a good quarter of an interval.
 ///
 /// # Arguments
 /// * `time_s` - (s) the pulses' times, strictly rising
 ///
 /// # Errors
-/// Fewer than three pulses; NaN; pulses out of order or at the same time.
+/// Fewer than three pulses; NaN; pulses out of order or at the same time; more than 20 missing at one place.
 ///
 /// ```
 /// use meshtone::signal::repair_pulses;
@@ -60,6 +62,10 @@ pub fn repair_pulses(time_s: &[f64]) -> Result<PulseTrain, SignalError> {
         let (index, after_s) = kept[i];
         let parts = interval / usual(&intervals, i);
         if parts > MISSING {
+            let missing = parts.round() - 1.0;
+            if missing > MOST_MISSING as f64 {
+                return Err(SignalError::PulseGap { index, after_s, missing, allowed: MOST_MISSING });
+            }
             let parts = parts.round().max(2.0) as usize;
             warnings.push(SignalWarning::MissingPulses { index, after_s, count: parts - 1 });
             complete.extend((1..parts).map(|k| after_s + interval * k as f64 / parts as f64));

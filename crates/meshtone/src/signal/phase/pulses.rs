@@ -22,7 +22,7 @@ impl ShaftPhase {
     /// * `samples` - length of the recording
     ///
     /// # Errors
-    /// Fewer than three pulses; NaN; pulses out of order or at the same time; a stated speed that is not theirs; no
+    /// What [`repair_pulses`] refuses; a stated speed that is not theirs; no
     /// samples between the pulses.
     ///
     /// ```

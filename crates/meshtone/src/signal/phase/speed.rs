@@ -110,6 +110,7 @@ fn check_profile(time_s: &[f64], speed_hz: &[f64]) -> Result<(), SignalError> {
         });
     }
     check_finite(time_s)?;
+    check_finite(speed_hz)?;
     for &speed in speed_hz {
         check_positive("speed of the profile", speed)?;
     }
