@@ -59,8 +59,8 @@ mod tests {
     #[test]
     fn convenient_lengths() {
         let smooth = |n: &usize| {
-            let rest = [2, 3, 5].iter().fold(*n, |mut n, prime| {
-                while n.is_multiple_of(prime) {
+            let rest = [2, 3, 5].iter().fold(*n, |mut n: usize, prime| {
+                while n.is_multiple_of(*prime) {
                     n /= prime;
                 }
                 n
