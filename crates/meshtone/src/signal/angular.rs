@@ -108,7 +108,7 @@ pub fn points_per_revolution(phase: &ShaftPhase) -> usize {
 /// let phase = ShaftPhase::from_speed_profile(&[0.0, 1.0], &[5.0, 15.0], 4000.0, 4001)?;
 /// let signal: Vec<f64> = phase.revolutions.iter().map(|r| (std::f64::consts::TAU * 5.0 * r).sin()).collect();
 /// let angular = angular_resample(&signal, &phase, &AngularSettings::default())?;
-/// assert_eq!((angular.points_per_revolution, angular.revolutions()), (1024, 9));
+/// assert_eq!((angular.points_per_revolution, angular.revolutions()), (1024, 10));
 /// let steady = |i: usize| (std::f64::consts::TAU * 5.0 * i as f64 / 1024.0).sin();
 /// assert!((100..9000).all(|i| (angular.values[i] - steady(i)).abs() < 1e-4));
 /// # Ok::<(), meshtone::signal::SignalError>(())
