@@ -159,6 +159,13 @@ fn a_phase_of_another_recording() {
     assert_eq!(message, "samples of the recording, by its phase: 5000 values, but 6000 are expected");
     assert!(ShaftPhase::new(0, vec![0.0, 0.1, 0.1]).is_err());
     assert!(steady(100).of_mate(0, 19).is_err());
+    let points = |points| {
+        let settings = AngularSettings { points_per_revolution: Some(points), ..Default::default() };
+        angular_resample(&recording(5_000), &steady(5_000), &settings)
+    };
+    assert!(points(1).is_err() && points(usize::MAX).is_err() && points(2).is_ok());
+    let slow = ShaftPhase::constant(1e-300, RATE_HZ, 5_000).unwrap();
+    assert!(refused(&recording(5_000), &slow, TEETH).starts_with("the recording covers 0.000 revolutions"));
 }
 
 #[test]
@@ -167,4 +174,36 @@ fn rates_with_no_ratio() {
     assert!(resampling_ratio(0.0, 1.0).is_err());
     assert!(resample(&[1.0, 2.0], 0, 1, Edge::Zero).is_err());
     assert!(resample(&[], 2, 1, Edge::Zero).is_err());
+}
+
+// The structs' fields are open, so they may hold what no function of the library makes.
+#[test]
+fn structs_that_are_made_by_hand() {
+    let signal = recording(5_000);
+    for revolutions in [vec![], vec![1.0], vec![1.0, 1.0], vec![0.0, f64::NAN], vec![0.0, 1.0, 0.5]] {
+        let phase = ShaftPhase { first_sample: usize::MAX, revolutions, warnings: vec![] };
+        assert!(process_channel(&signal, &phase, TEETH, &ChainSettings::default()).is_err());
+        let _ = (phase.span_rev(), phase.mean_speed_hz(RATE_HZ), points_per_revolution(&phase));
+    }
+    let far = ShaftPhase { first_sample: usize::MAX, revolutions: vec![0.0, 1.0], warnings: vec![] };
+    assert!(angular_resample(&signal, &far, &AngularSettings::default()).is_err());
+    let nothing =
+        AngularSignal { points_per_revolution: 0, start_rev: 0.0, nyquist_order: 1.0, values: vec![1.0; 9] };
+    assert!(synchronous_average(&nothing).is_err() && segmented_averages(&nothing, 2).is_err());
+    let empty = SynchronousAverage { revolutions: 2, nyquist_order: 1e3, values: vec![] };
+    assert!(process_average(empty, TEETH, &ChainSettings::default()).is_err());
+    let many = SeparationSettings { sidebands: usize::MAX, ..SeparationSettings::new(19) };
+    assert!(separate(&signal[..500], &many).is_err());
+    let no_order = SeparationSettings { shaft_orders: vec![usize::MAX], ..SeparationSettings::new(19) };
+    assert!(separate(&signal[..500], &no_order).is_ok());
+}
+
+#[test]
+fn places_that_are_none() {
+    for place in [f64::NAN, f64::INFINITY, 1e300] {
+        assert!(interpolate_band_limited(&[1.0, 2.0], &[0.5, place], Edge::Reflect).is_err());
+        assert!(interpolate_pchip(&[1.0, 2.0], &[0.5, place], Edge::Reflect).is_err());
+    }
+    assert!(interpolate_band_limited(&[], &[0.5], Edge::Zero).is_err());
+    assert!(interpolate_pchip(&[1.0], &[0.5], Edge::Zero).is_err());
 }

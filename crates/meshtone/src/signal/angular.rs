@@ -8,6 +8,9 @@ const ROUNDING: f64 = 1e-6;
 /// (rev) Distance from a whole revolution that is taken for rounding.
 const ANGLE_ROUNDING: f64 = 1e-9;
 
+/// Most points per revolution: half a gigabyte a revolution.
+const MOST_POINTS: usize = 1 << 26;
+
 /// How the signal is read between its samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Interpolation {
@@ -35,7 +38,7 @@ pub struct AngularSignal {
 impl AngularSignal {
     /// Number of revolutions.
     pub fn revolutions(&self) -> usize {
-        self.values.len() / self.points_per_revolution
+        self.values.len().checked_div(self.points_per_revolution).unwrap_or(0)
     }
 }
 
@@ -79,9 +82,10 @@ pub fn points_per_revolution(phase: &ShaftPhase) -> usize {
         }
     }
     if longest == 0.0 {
-        longest = (revolutions.len() - 1) as f64 / phase.span_rev();
+        longest = revolutions.len().saturating_sub(1) as f64 / phase.span_rev();
     }
-    ((longest * (1.0 - ROUNDING)).ceil() as usize).next_power_of_two()
+    let samples = (longest * (1.0 - ROUNDING)).ceil() as usize;
+    samples.checked_next_power_of_two().unwrap_or(usize::MAX)
 }
 
 /// Resamples a signal at equal angles of a shaft, over whole revolutions.
@@ -95,7 +99,7 @@ pub fn points_per_revolution(phase: &ShaftPhase) -> usize {
 /// [`Edge::Periodic`] it is at the phase's first sample.
 ///
 /// # Errors
-/// NaN; a constant channel; a phase that is not the recording's; fewer than one whole revolution; not whole revolutions where
+/// NaN; a constant channel; a phase that is not the recording's; no number of points between 2 and 2²⁶; fewer than one whole revolution; not whole revolutions where
 /// the signal is to be continued periodically.
 ///
 /// Source: K. R. Fyfe, E. D. S. Munck, "Analysis of computed order tracking", Mech. Syst. Signal Process. 11 (1997)
@@ -119,7 +123,8 @@ pub fn angular_resample(
     settings: &AngularSettings,
 ) -> Result<AngularSignal, SignalError> {
     check_channel(signal)?;
-    let end = phase.first_sample + phase.revolutions.len();
+    phase.check()?;
+    let end = phase.first_sample.saturating_add(phase.revolutions.len());
     if end > signal.len() {
         let what = "samples of the recording, by its phase";
         return Err(SignalError::LengthMismatch { what, given: signal.len(), expected: end });
@@ -132,6 +137,9 @@ pub fn angular_resample(
         Edge::Periodic => whole_recording(signal, phase)?,
         Edge::Zero | Edge::Reflect => whole_revolutions(phase, points)?,
     };
+    if points > MOST_POINTS {
+        return Err(SignalError::parameter("points_per_revolution", points as f64, "at most 67 108 864"));
+    }
     let places = places(phase, next_rev, start_rev, points, count);
     let values = match settings.interpolation {
         Interpolation::Pchip => interpolate_pchip(signal, &places, settings.edge)?,

@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 
+use super::check::check_finite;
 use super::kaiser::{kaiser, sinc};
 use super::{Edge, SignalError};
 use crate::interpolation::Pchip;
@@ -14,6 +15,8 @@ const BETA: f64 = 10.0;
 /// Places between two samples for which the taps are tabulated; straight lines between them are off by
 /// `(π/STEPS)²/8` at most, 1.2e-6.
 const STEPS: usize = 1024;
+/// Beyond this a place has no fraction any more.
+const FARTHEST: f64 = 1e15;
 /// Samples that PCHIP reads beyond an end.
 const PCHIP_REACH: isize = 2;
 
@@ -28,7 +31,7 @@ const PCHIP_REACH: isize = 2;
 /// * `edge` - how the signal goes on beyond its ends
 ///
 /// # Errors
-/// Fewer than two samples.
+/// Fewer than two samples; a place that is no number.
 ///
 /// ```
 /// use meshtone::signal::{Edge, interpolate_pchip};
@@ -41,6 +44,7 @@ pub fn interpolate_pchip(signal: &[f64], places: &[f64], edge: Edge) -> Result<V
     if signal.len() < 2 {
         return Err(SignalError::TooFew { what: "samples", given: signal.len(), needed: 2 });
     }
+    check_places(places)?;
     // PCHIP has its own ends where there is nothing beyond them.
     if edge == Edge::Zero {
         let curve = Pchip::uniform(0.0, 1.0, signal);
@@ -67,7 +71,7 @@ pub fn interpolate_pchip(signal: &[f64], places: &[f64], edge: Edge) -> Result<V
 /// * `edge` - how the signal goes on beyond its ends
 ///
 /// # Errors
-/// No samples.
+/// No samples; a place that is no number.
 ///
 /// Source: J. O. Smith, P. Gossett, "A flexible sampling-rate conversion method", Proc. IEEE ICASSP (1984) 19.4.1–4.
 ///
@@ -84,6 +88,7 @@ pub fn interpolate_band_limited(signal: &[f64], places: &[f64], edge: Edge) -> R
     if signal.is_empty() {
         return Err(SignalError::TooFew { what: "samples", given: 0, needed: 1 });
     }
+    check_places(places)?;
     let table = taps();
     let mut window = [0.0; TAPS];
     let value = |&place: &f64| {
@@ -101,6 +106,14 @@ pub fn interpolate_band_limited(signal: &[f64], places: &[f64], edge: Edge) -> R
         weighted(samples, &table[row], &table[row + 1], step - row as f64)
     };
     Ok(places.iter().map(value).collect())
+}
+
+fn check_places(places: &[f64]) -> Result<(), SignalError> {
+    check_finite(places)?;
+    match places.iter().find(|place| place.abs() > FARTHEST) {
+        Some(&place) => Err(SignalError::parameter("place", place, "within 1e15 samples")),
+        None => Ok(()),
+    }
 }
 
 /// `Σ x ((1 − t) a + t b)`, in four sums that the processor can run side by side.

@@ -122,7 +122,7 @@ fn check_settings(points: usize, settings: &SeparationSettings) -> Result<(), Si
         });
     }
     // All orders would be regular.
-    if 2 * sidebands + 1 >= teeth {
+    if sidebands.saturating_mul(2).saturating_add(1) >= teeth {
         return Err(SignalError::parameter(
             "sidebands",
             sidebands as f64,

@@ -44,22 +44,9 @@ impl ShaftPhase {
     /// assert!(error.to_string().contains("turns backwards at sample 2"));
     /// ```
     pub fn new(first_sample: usize, revolutions: Vec<f64>) -> Result<Self, SignalError> {
-        if revolutions.len() < 2 {
-            return Err(SignalError::TooFew {
-                what: "samples with a phase",
-                given: revolutions.len(),
-                needed: 2,
-            });
-        }
-        super::check::check_finite(&revolutions)?;
-        if let Some(i) = revolutions.windows(2).position(|pair| pair[1] <= pair[0]) {
-            return Err(SignalError::NotForwards {
-                sample: first_sample + i + 1,
-                from_rev: revolutions[i],
-                to_rev: revolutions[i + 1],
-            });
-        }
-        Ok(Self { first_sample, revolutions, warnings: Vec::new() })
+        let phase = Self { first_sample, revolutions, warnings: Vec::new() };
+        phase.check()?;
+        Ok(phase)
     }
 
     /// The phase of the shaft that meshes with this one, forwards too.
@@ -94,7 +81,7 @@ impl ShaftPhase {
 
     /// (rev) What the shaft turns between the first and the last value.
     pub fn span_rev(&self) -> f64 {
-        self.last() - self.revolutions[0]
+        self.revolutions.first().map_or(0.0, |first| self.last() - first)
     }
 
     /// (Hz) Mean speed.
@@ -102,11 +89,32 @@ impl ShaftPhase {
     /// # Arguments
     /// * `sampling_rate_hz` - (S/s) of the recording
     pub fn mean_speed_hz(&self, sampling_rate_hz: f64) -> f64 {
-        self.span_rev() * sampling_rate_hz / (self.revolutions.len() - 1) as f64
+        self.span_rev() * sampling_rate_hz / self.revolutions.len().saturating_sub(1).max(1) as f64
     }
 
     pub(super) fn last(&self) -> f64 {
-        self.revolutions[self.revolutions.len() - 1]
+        self.revolutions.last().copied().unwrap_or(0.0)
+    }
+
+    /// Checks that the shaft turns forwards: the fields are open to everyone.
+    pub(super) fn check(&self) -> Result<(), SignalError> {
+        let revolutions = &self.revolutions;
+        if revolutions.len() < 2 {
+            return Err(SignalError::TooFew {
+                what: "samples with a phase",
+                given: revolutions.len(),
+                needed: 2,
+            });
+        }
+        super::check::check_finite(revolutions)?;
+        if let Some(i) = revolutions.windows(2).position(|pair| pair[1] <= pair[0]) {
+            return Err(SignalError::NotForwards {
+                sample: self.first_sample.saturating_add(i + 1),
+                from_rev: revolutions[i],
+                to_rev: revolutions[i + 1],
+            });
+        }
+        Ok(())
     }
 
     pub(super) fn with_warnings(mut self, warnings: Vec<SignalWarning>) -> Self {
