@@ -146,6 +146,19 @@ fn a_mesh_beyond_the_sampling_rate() {
         beyond,
         "mesh order 251 is beyond the Nyquist order 250.0: the sampling rate is too low for this speed and tooth count"
     );
+    // Near it the interpolation weakens the mesh.
+    let near = |teeth| {
+        let signal: Vec<f64> =
+            (0..5_000).map(|i| wave(f64::from(teeth) * 20.0 * f64::from(i) / RATE_HZ)).collect();
+        process_channel(&signal, &steady(5_000), teeth, &ChainSettings::default()).unwrap()
+    };
+    assert_eq!(
+        near(230).warnings[0].to_string(),
+        "mesh order 230 is more than 80 % of the Nyquist order 250.0: the interpolation between samples weakens the mesh \
+         tone; record at a higher rate"
+    );
+    assert!(near(230).order_spectrum[230] < 0.99);
+    assert!(near(199).warnings.is_empty() && (near(199).order_spectrum[199] - 1.0).abs() < 1e-4);
     assert!(separate(&recording(500), &SeparationSettings::new(251)).is_err());
     assert_eq!(refused(&recording(5_000), &steady(5_000), 0), "teeth is 0, but must be at least 1");
     let many = SeparationSettings { sidebands: 9, ..SeparationSettings::new(19) };

@@ -26,6 +26,8 @@ pub struct Record {
     pub envelope_spectrum: Vec<f64>,
     /// The indicators.
     pub indicators: Indicators,
+    /// What is doubtful about them, beside the warnings of the phase: [`ShaftPhase::warnings`].
+    pub warnings: Vec<SignalWarning>,
 }
 
 /// One recording of a series.
@@ -138,7 +140,7 @@ pub fn process_series(
 /// # Arguments
 /// * `average` - the synchronous average
 /// * `teeth` - of the wheel on the shaft
-/// * `settings` - how; only its separation matters
+/// * `settings` - how; its separation, and its interpolation for a warning where that has weakened the mesh tone
 ///
 /// # Errors
 /// NaN; a mesh order beyond the Nyquist order of the average or of the recording.
@@ -162,6 +164,13 @@ pub fn process_average(
         let nyquist_order = average.nyquist_order;
         return Err(SignalError::MeshOrderBeyondNyquist { mesh_order: teeth as f64, nyquist_order });
     }
+    let passed = settings.angular.interpolation.passed();
+    let near = SignalWarning::MeshOrderNearNyquist {
+        mesh_order: teeth as f64,
+        nyquist_order: average.nyquist_order,
+        passed,
+    };
+    let doubtful = teeth as f64 > passed * average.nyquist_order;
     let separation = settings.separation.clone().unwrap_or_else(|| SeparationSettings::new(teeth));
     let parts = separate(&average.values, &separation)?;
     let envelope = envelope(&parts.difference)?;
@@ -169,6 +178,7 @@ pub fn process_average(
         order_spectrum: order_spectrum(&average.values)?,
         envelope_spectrum: order_spectrum(&envelope)?,
         indicators: Indicators::new(&average.values, &parts, teeth)?,
+        warnings: doubtful.then_some(near).into_iter().collect(),
         envelope,
         parts,
         average,

@@ -59,4 +59,17 @@ pub enum SignalWarning {
         /// (Hz) Shaft speed if it is the mesh.
         speed_hz: f64,
     },
+    /// The mesh frequency is so near half the sampling rate that the interpolation weakens it.
+    #[error(
+        "mesh order {mesh_order} is more than {:.0} % of the Nyquist order {nyquist_order:.1}: the interpolation between \
+         samples weakens the mesh tone; record at a higher rate", 100.0 * passed
+    )]
+    MeshOrderNearNyquist {
+        /// Orders of the shaft.
+        mesh_order: f64,
+        /// Half the samples in a revolution.
+        nyquist_order: f64,
+        /// (-) Part of the Nyquist order up to which the interpolation passes a tone with less than 5 % of loss.
+        passed: f64,
+    },
 }
