@@ -1,6 +1,6 @@
 //! One timed step of a task.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
@@ -14,21 +14,25 @@ use std::time::Instant;
 ///
 /// # Errors
 /// Cargo's exit code, or 1 where it could not be started or was killed.
-pub fn cargo(root: &Path, arguments: &[&str], environment: &[(&str, &str)]) -> Result<(), u8> {
+pub fn cargo(root: &Path, arguments: &[&str], environment: &[(&str, &OsStr)]) -> Result<(), u8> {
     // Cargo tells the programs that it runs which cargo it is.
     let program = std::env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"));
     run(&format!("cargo {}", arguments.join(" ")), || {
-        let status = Command::new(&program)
-            .args(arguments)
-            .envs(environment.iter().copied())
-            .current_dir(root)
-            .status()
-            .map_err(|error| {
-                eprintln!("error: cannot start {}: {error}", program.display());
-                1
-            })?;
-        if status.success() { Ok(()) } else { Err(exit_code(status.code())) }
+        let environment = environment.iter().copied();
+        self::program(Command::new(&program).args(arguments).envs(environment).current_dir(root))
     })
+}
+
+/// Runs a program to its end.
+///
+/// # Errors
+/// Its exit code, or 1 where it could not be started or was killed.
+pub fn program(command: &mut Command) -> Result<(), u8> {
+    let status = command.status().map_err(|error| {
+        eprintln!("error: cannot start {}: {error}", command.get_program().display());
+        1
+    })?;
+    if status.success() { Ok(()) } else { Err(exit_code(status.code())) }
 }
 
 /// Runs `work` between two lines that name the step and say how long it took.

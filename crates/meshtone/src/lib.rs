@@ -19,4 +19,4 @@ mod trace;
 mod warnings;
 
 pub use simulate::{Simulation, StageTime, Stages, simulate, stages};
-pub use trace::{Trace, TraceField, trace};
+pub use trace::{Trace, TraceField, trace, trace_at};

@@ -137,6 +137,11 @@ fn every_field_of_the_trace() {
     for field in &trace.fields {
         let array: ArrayD<f64> = archive.by_name(&field.name).unwrap();
         let expected = ArrayD::from_shape_vec(IxDyn(&field.shape), field.values.clone()).unwrap();
+        // The computing time is each run's own.
+        if field.name == "elapsed_s" {
+            assert!(array.len() == 1 && array.iter().all(|&seconds| seconds > 0.0));
+            continue;
+        }
         assert_eq!(array, expected, "{}", field.name);
     }
     let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();

@@ -4,11 +4,13 @@ mod cubic_spline;
 mod linear;
 mod natural_spline;
 mod pchip;
+mod pchip_through;
 
 pub use cubic_spline::NotAKnotSpline;
 pub use linear::UniformLinear;
 pub use natural_spline::NaturalSpline;
 pub use pchip::Pchip;
+pub use pchip_through::PchipThrough;
 
 /// Interval of a uniform grid that holds `x`, and the position within it.
 ///

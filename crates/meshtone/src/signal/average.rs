@@ -1,5 +1,10 @@
 //! Average over the revolutions of a shaft.
 
+use super::{AngularSignal, SignalError};
+
+/// Fewest revolutions that make an average.
+const FEWEST_REVOLUTIONS: usize = 2;
+
 /// Average of a signal over whole revolutions, sample by sample.
 ///
 /// # Arguments
@@ -26,4 +31,92 @@ pub fn revolution_average(signal: &[f64], samples_per_revolution: usize) -> Vec<
     }
     average.iter_mut().for_each(|sum| *sum /= revolutions as f64);
     average
+}
+
+/// What repeats with every revolution of a shaft.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SynchronousAverage {
+    /// Number of revolutions that were averaged. What does not repeat falls with its square root.
+    pub revolutions: usize,
+    /// (orders) Beyond this order of the shaft the recording holds nothing.
+    pub nyquist_order: f64,
+    /// The average at equal angles, from the angle where the first revolution began.
+    pub values: Vec<f64>,
+}
+
+/// Time synchronous average: the mean of all revolutions, angle by angle.
+///
+/// Tones that do not repeat with the shaft and noise fall with the square root of the number of revolutions (a tone at a
+/// fraction of an order as a sinc comb).
+///
+/// # Arguments
+/// * `angular` - the signal over whole revolutions
+///
+/// # Errors
+/// Fewer than two revolutions.
+///
+/// Sources: S. G. Braun, "The extraction of periodic waveforms by time domain averaging", Acustica 32 (1975) 69–77;
+/// P. D. McFadden, "A revised model for the extraction of periodic waveforms by time domain averaging", Mech. Syst. Signal
+/// Process. 1 (1987) 83–95.
+///
+/// ```
+/// use meshtone::signal::{AngularSignal, synchronous_average};
+///
+/// let values = vec![1.0, 2.0, 3.0, 6.0];
+/// let angular = AngularSignal { points_per_revolution: 2, start_rev: 0.0, nyquist_order: 1.0, values };
+/// let average = synchronous_average(&angular)?;
+/// assert_eq!((average.values, average.revolutions), (vec![2.0, 4.0], 2));
+/// # Ok::<(), meshtone::signal::SignalError>(())
+/// ```
+pub fn synchronous_average(angular: &AngularSignal) -> Result<SynchronousAverage, SignalError> {
+    average_of(angular, &angular.values)
+}
+
+/// Averages over segments of equally many revolutions: records in the order of time out of one long recording.
+///
+/// # Arguments
+/// * `angular` - the signal over whole revolutions
+/// * `revolutions` - (at least 2) of each segment; what is left at the end is not used
+///
+/// # Errors
+/// Fewer than two revolutions a segment; not even one segment.
+///
+/// ```
+/// use meshtone::signal::{AngularSignal, segmented_averages};
+///
+/// let values = vec![1.0, 2.0, 3.0, 6.0, 0.0, 1.0, 2.0, 1.0, 7.0, 7.0];
+/// let angular = AngularSignal { points_per_revolution: 2, start_rev: 0.0, nyquist_order: 1.0, values };
+/// let averages = segmented_averages(&angular, 2)?;
+/// assert_eq!(averages.len(), 2);
+/// assert_eq!(averages[1].values, [1.0, 1.0]);
+/// # Ok::<(), meshtone::signal::SignalError>(())
+/// ```
+pub fn segmented_averages(
+    angular: &AngularSignal,
+    revolutions: usize,
+) -> Result<Vec<SynchronousAverage>, SignalError> {
+    if revolutions < FEWEST_REVOLUTIONS {
+        return Err(SignalError::parameter("revolutions of a segment", revolutions as f64, "at least 2"));
+    }
+    let there_are = angular.revolutions();
+    if there_are < revolutions {
+        return Err(SignalError::TooFewRevolutions { revolutions: there_are as f64, needed: revolutions });
+    }
+    let segment = angular.points_per_revolution * revolutions;
+    angular.values.chunks_exact(segment).map(|values| average_of(angular, values)).collect()
+}
+
+fn average_of(angular: &AngularSignal, values: &[f64]) -> Result<SynchronousAverage, SignalError> {
+    let revolutions = values.len().checked_div(angular.points_per_revolution).unwrap_or(0);
+    if revolutions < FEWEST_REVOLUTIONS {
+        return Err(SignalError::TooFewRevolutions {
+            revolutions: revolutions as f64,
+            needed: FEWEST_REVOLUTIONS,
+        });
+    }
+    Ok(SynchronousAverage {
+        revolutions,
+        nyquist_order: angular.nyquist_order,
+        values: revolution_average(values, angular.points_per_revolution),
+    })
 }

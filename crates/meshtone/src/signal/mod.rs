@@ -1,9 +1,57 @@
-//! Stage 8: the signals.
+//! Stage 8: the signals; and the chain from a recording, simulated or measured, to condition indicators.
+//!
+//! [`process_channel`] is the chain on one page. Each of its steps can be used alone:
+//!
+//! | step | functions |
+//! |---|---|
+//! | another sampling rate | [`resample`], [`resample_with`], [`resampling_ratio`], [`resampling_taps`] |
+//! | phase of the shaft | [`ShaftPhase`], [`tachometer_pulses`], [`repair_pulses`] |
+//! | over the angle | [`angular_resample`], [`interpolate_pchip`], [`interpolate_band_limited`] |
+//! | synchronous average | [`synchronous_average`], [`segmented_averages`] |
+//! | separation | [`separate`] |
+//! | spectra and envelope | [`order_spectrum`], [`envelope`], [`envelope_spectrum`] |
+//! | indicators | [`Indicators`], [`fm0`], [`fm4`], [`m6a`], [`m8a`], [`na4`], [`energy_ratio`], [`sideband_level_factor`] |
 
+mod angular;
 mod average;
 mod channels;
+mod check;
+mod edge;
+mod envelope;
+mod error;
+mod fourier;
+mod indicators;
+mod interpolate;
+mod kaiser;
+mod phase;
+mod record;
+mod resample;
+mod separation;
+mod spectrum;
 mod statistics;
+mod warning;
 
-pub use average::revolution_average;
+pub use angular::{AngularSettings, AngularSignal, Interpolation, angular_resample, points_per_revolution};
+pub use average::{SynchronousAverage, revolution_average, segmented_averages, synchronous_average};
 pub use channels::{Channels, GRAVITY_M_PER_S2, channel_outputs};
-pub use statistics::{kurtosis, peak, rms};
+pub use check::check_channel;
+pub use edge::Edge;
+pub use envelope::{analytic_signal, envelope, envelope_spectrum};
+pub use error::SignalError;
+pub use indicators::{
+    IndicatorValue, Indicators, ShapeIndicators, energy_ratio, fm0, fm4, m6a, m8a, na4, sideband_level_factor,
+};
+pub use interpolate::{interpolate_band_limited, interpolate_pchip};
+pub use kaiser::kaiser;
+pub use phase::{MeshTone, PulseEdge, PulseTrain, ShaftPhase, Tachometer, repair_pulses, tachometer_pulses};
+pub use record::{
+    ChainSettings, Record, Recording, process_average, process_channel, process_segments, process_series,
+};
+pub use resample::{resample, resample_with, resampling_ratio, resampling_taps};
+pub use separation::{MeanPart, Separation, SeparationSettings, separate};
+pub use spectrum::order_spectrum;
+pub use statistics::{
+    central_moment, crest_factor, kurtosis, peak, peak_to_peak, rms, skewness, standard_deviation,
+    standardised_moment,
+};
+pub use warning::SignalWarning;

@@ -28,12 +28,115 @@ pub fn peak(signal: &[f64]) -> f64 {
     signal.iter().fold(0.0, |peak, x| peak.max(x.abs()))
 }
 
+/// Peak to peak, the largest value less the least.
+///
+/// # Arguments
+/// * `signal` - the signal
+///
+/// 0 for an empty signal.
+///
+/// ```
+/// assert_eq!(meshtone::signal::peak_to_peak(&[1.0, -4.0, 2.0]), 6.0);
+/// ```
+pub fn peak_to_peak(signal: &[f64]) -> f64 {
+    let largest = signal.iter().copied().reduce(f64::max);
+    let least = signal.iter().copied().reduce(f64::min);
+    largest.zip(least).map_or(0.0, |(largest, least)| largest - least)
+}
+
+/// Crest factor, peak over rms: `√2` for a sine.
+///
+/// # Arguments
+/// * `signal` - the signal; its mean is not removed
+///
+/// None where the signal is 0 or empty.
+///
+/// ```
+/// assert_eq!(meshtone::signal::crest_factor(&[3.0, -1.0, 1.0, -1.0, 0.0, 0.0, 0.0, 2.0]), Some(3.0 / 2f64.sqrt()));
+/// assert_eq!(meshtone::signal::crest_factor(&[0.0; 3]), None);
+/// ```
+pub fn crest_factor(signal: &[f64]) -> Option<f64> {
+    let rms = rms(signal);
+    (rms > 0.0).then(|| peak(signal) / rms)
+}
+
+/// Central moment `µ_k = Σ(x − x̄)ᵏ/n`, of the whole population.
+///
+/// # Arguments
+/// * `signal` - the signal
+/// * `order` - k
+///
+/// NaN for an empty signal.
+///
+/// ```
+/// assert_eq!(meshtone::signal::central_moment(&[1.0, 2.0, 3.0, 6.0], 2), 3.5);
+/// ```
+pub fn central_moment(signal: &[f64], order: i32) -> f64 {
+    let count = signal.len() as f64;
+    // Seen from its first value a constant is exactly 0, and so is its mean.
+    let first = signal.first().copied().unwrap_or(f64::NAN);
+    let mean = signal.iter().map(|x| x - first).sum::<f64>() / count;
+    signal.iter().map(|x| (x - first - mean).powi(order)).sum::<f64>() / count
+}
+
+/// Standard deviation `√µ₂`, of the whole population.
+///
+/// # Arguments
+/// * `signal` - the signal
+///
+/// NaN for an empty signal.
+///
+/// ```
+/// assert_eq!(meshtone::signal::standard_deviation(&[1.0, 3.0, 1.0, 3.0]), 1.0);
+/// ```
+pub fn standard_deviation(signal: &[f64]) -> f64 {
+    central_moment(signal, 2).sqrt()
+}
+
+/// Standardised moment `µ_k/µ₂^(k/2)`: skewness for k = 3, kurtosis for 4; 1·3·5…(k − 1) for Gaussian noise and
+/// even k.
+///
+/// # Arguments
+/// * `signal` - the signal
+/// * `order` - k
+///
+/// None where the signal is constant (to rounding) or empty, and so has no shape. Without a correction for small
+/// samples.
+///
+/// ```
+/// use meshtone::signal::standardised_moment;
+///
+/// assert_eq!(standardised_moment(&[1.0, -1.0, 1.0, -1.0], 6), Some(1.0));
+/// assert_eq!(standardised_moment(&[40.0; 8], 6), None);
+/// ```
+pub fn standardised_moment(signal: &[f64], order: i32) -> Option<f64> {
+    let deviation = standard_deviation(signal);
+    // What differs by rounding only is no signal.
+    let rounding = 4.0 * f64::EPSILON * peak(signal);
+    (deviation > rounding).then(|| central_moment(signal, order) / deviation.powi(order))
+}
+
+/// Skewness `µ₃/µ₂^1.5`: 0 for what is as often so far above as below its mean.
+///
+/// # Arguments
+/// * `signal` - the signal
+///
+/// None as for [`standardised_moment`].
+///
+/// ```
+/// let skewness = meshtone::signal::skewness(&[0.0, 0.0, 0.0, 4.0]).unwrap();
+/// assert!((skewness - 2.0 / 3f64.sqrt()).abs() < 1e-15);
+/// ```
+pub fn skewness(signal: &[f64]) -> Option<f64> {
+    standardised_moment(signal, 3)
+}
+
 /// Kurtosis `µ₄/µ₂²`, with `µ_k = Σ(x − x̄)ᵏ/n`: 3 for Gaussian noise, 1.5 for a sine.
 ///
 /// # Arguments
 /// * `signal` - the signal
 ///
-/// None where the signal is constant (to rounding) or empty, and so has no shape.
+/// None as for [`standardised_moment`].
 ///
 /// This is the kurtosis itself, not its excess over 3, of the whole population, without the correction for
 /// small samples.
@@ -45,20 +148,7 @@ pub fn peak(signal: &[f64]) -> f64 {
 /// assert_eq!(kurtosis(&[40.0; 8]), None);
 /// ```
 pub fn kurtosis(signal: &[f64]) -> Option<f64> {
-    let count = signal.len() as f64;
-    // Seen from its first value a constant is exactly 0, and so is its mean.
-    let first = *signal.first()?;
-    let mean = signal.iter().map(|x| x - first).sum::<f64>() / count;
-    let (mut second, mut fourth) = (0.0, 0.0);
-    for x in signal {
-        let square = (x - first - mean) * (x - first - mean);
-        second += square;
-        fourth += square * square;
-    }
-    let (second, fourth) = (second / count, fourth / count);
-    // What differs by rounding only is no signal.
-    let rounding = 4.0 * f64::EPSILON * peak(signal);
-    (second > rounding * rounding).then(|| fourth / (second * second))
+    standardised_moment(signal, 4)
 }
 
 #[cfg(test)]

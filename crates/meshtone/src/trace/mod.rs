@@ -1,9 +1,10 @@
 //! Every stage's output under one name each, for checking number by number.
 
+mod average;
 mod run;
 mod stages;
 
-pub use run::trace;
+pub use run::{trace, trace_at};
 use stages::static_stages;
 
 /// A named array.

@@ -1,0 +1,46 @@
+//! Whether a channel can be processed.
+
+use super::SignalError;
+
+/// Checks that a channel holds a vibration.
+///
+/// # Arguments
+/// * `signal` - the channel
+///
+/// # Errors
+/// NaN or infinity, with the first position; a constant channel; fewer than two samples.
+///
+/// ```
+/// use meshtone::signal::{SignalError, check_channel};
+///
+/// assert!(check_channel(&[0.0, 1.0]).is_ok());
+/// assert_eq!(check_channel(&[2.0; 9]), Err(SignalError::Constant { value: 2.0, samples: 9 }));
+/// ```
+pub fn check_channel(signal: &[f64]) -> Result<(), SignalError> {
+    if signal.len() < 2 {
+        return Err(SignalError::TooFew { what: "samples", given: signal.len(), needed: 2 });
+    }
+    check_finite(signal)?;
+    if signal.iter().all(|&x| x == signal[0]) {
+        return Err(SignalError::Constant { value: signal[0], samples: signal.len() });
+    }
+    Ok(())
+}
+
+/// Checks that every value is a number.
+pub(super) fn check_finite(signal: &[f64]) -> Result<(), SignalError> {
+    let Some(sample) = signal.iter().position(|x| !x.is_finite()) else {
+        return Ok(());
+    };
+    let count = signal.iter().filter(|x| !x.is_finite()).count();
+    Err(SignalError::NotFinite { sample, value: signal[sample], count, samples: signal.len() })
+}
+
+/// Checks that a number is finite and more than 0.
+pub(super) fn check_positive(name: &'static str, value: f64) -> Result<(), SignalError> {
+    if value.is_finite() && value > 0.0 {
+        Ok(())
+    } else {
+        Err(SignalError::parameter(name, value, "a number more than 0"))
+    }
+}

@@ -1,0 +1,174 @@
+//! What is wrong with a recording.
+
+use thiserror::Error;
+
+/// A recording, a phase or a setting that gives no right result.
+///
+/// Samples and pulses are counted from 0.
+///
+/// ```
+/// use meshtone::signal::check_channel;
+///
+/// let error = check_channel(&[0.1, f64::NAN, 0.3, f64::NAN]).unwrap_err();
+/// assert_eq!(error.to_string(), "sample 1 is NaN; 2 of 4 samples are not finite numbers");
+/// ```
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SignalError {
+    /// NaN or infinity, as gaps are often written.
+    #[error("sample {sample} is {value}; {count} of {samples} samples are not finite numbers")]
+    NotFinite {
+        /// First such sample.
+        sample: usize,
+        /// Its value.
+        value: f64,
+        /// How many there are.
+        count: usize,
+        /// Length of the channel.
+        samples: usize,
+    },
+    /// Every sample has the same value: the sensor was not connected, or the wrong column was read.
+    #[error("all {samples} samples are {value}: a constant channel holds no vibration")]
+    Constant {
+        /// The value.
+        value: f64,
+        /// Length of the channel.
+        samples: usize,
+    },
+    /// There are too few values.
+    #[error("{what}: there are {given}, but at least {needed} are needed")]
+    TooFew {
+        /// What there is too little of.
+        what: &'static str,
+        /// How many there are.
+        given: usize,
+        /// How many are needed.
+        needed: usize,
+    },
+    /// Two things that must be equally long are not.
+    #[error("{what}: {given} values, but {expected} are expected")]
+    LengthMismatch {
+        /// What has the wrong length.
+        what: &'static str,
+        /// Its length.
+        given: usize,
+        /// The length that it should have.
+        expected: usize,
+    },
+    /// The recording holds too few whole revolutions.
+    #[error(
+        "the recording covers {revolutions:.3} revolutions of the shaft, but at least {needed} are needed"
+    )]
+    TooFewRevolutions {
+        /// (rev) What is covered.
+        revolutions: f64,
+        /// What is needed.
+        needed: usize,
+    },
+    /// A recording that is to be continued periodically does not hold whole revolutions.
+    #[error(
+        "a recording can be continued periodically only if it spans whole revolutions, but this one spans {revolutions:.6}"
+    )]
+    NotWholeRevolutions {
+        /// (rev) What is covered.
+        revolutions: f64,
+    },
+    /// A pulse comes before the one that precedes it in the list.
+    #[error("pulse {index} at {time_s} s comes before pulse {} at {previous_s} s: pulses must be in order of time", index - 1)]
+    PulsesOutOfOrder {
+        /// The later one in the list.
+        index: usize,
+        /// (s) Its time.
+        time_s: f64,
+        /// (s) Time of the one before.
+        previous_s: f64,
+    },
+    /// Two pulses at the same time.
+    #[error("pulses {} and {index} are both at {time_s} s: a pulse must come after the one before it", index - 1)]
+    PulsesEqual {
+        /// The later one in the list.
+        index: usize,
+        /// (s) Their time.
+        time_s: f64,
+    },
+    /// More pulses are missing in one place than can be put in evenly without guessing the speed.
+    #[error(
+        "some {missing} pulses are missing between {after_s:.6} s (pulse {index}) and the next one: at most {allowed} can \
+         be filled in; process the parts before and after on their own"
+    )]
+    PulseGap {
+        /// The pulse before the gap, in the list as given.
+        index: usize,
+        /// (s) Its time.
+        after_s: f64,
+        /// How many are missing, by the spacing of those around.
+        missing: f64,
+        /// How many may be.
+        allowed: usize,
+    },
+    /// The stated speed is not the one of the pulses.
+    #[error(
+        "the pulses give {found_hz:.4} Hz, but {stated_hz:.4} Hz is stated ({:+.1} %): check the speed and the number \
+         of pulses per revolution", 100.0 * (stated_hz / found_hz - 1.0)
+    )]
+    SpeedMismatch {
+        /// (Hz) Mean speed by the pulses.
+        found_hz: f64,
+        /// (Hz) The stated speed.
+        stated_hz: f64,
+    },
+    /// The shaft does not turn forwards.
+    #[error(
+        "the shaft stands still or turns backwards at sample {sample}: its phase goes from {from_rev} to {to_rev} rev"
+    )]
+    NotForwards {
+        /// The sample.
+        sample: usize,
+        /// (rev) Phase at the sample before.
+        from_rev: f64,
+        /// (rev) Phase at the sample.
+        to_rev: f64,
+    },
+    /// The mesh order, or frequency, is beyond what the sampling rate shows.
+    #[error(
+        "mesh order {mesh_order} is beyond the Nyquist order {nyquist_order:.1}: the sampling rate is too low for this \
+         speed and tooth count"
+    )]
+    MeshOrderBeyondNyquist {
+        /// Orders of the shaft.
+        mesh_order: f64,
+        /// Half the samples in a revolution.
+        nyquist_order: f64,
+    },
+    /// No tone stands out at the mesh frequency.
+    #[error(
+        "no mesh tone at {frequency_hz:.2} Hz ± {half_band_hz:.2} Hz: the mean power there is {ratio:.2} times the \
+         noise around it, at least {needed} is needed; check the tooth count and the speed, or take a wider band"
+    )]
+    NoMeshTone {
+        /// (Hz) Where it is expected.
+        frequency_hz: f64,
+        /// (Hz) Half width of the band.
+        half_band_hz: f64,
+        /// (-) Mean power in the band over the median around it.
+        ratio: f64,
+        /// (-) What is demanded.
+        needed: f64,
+    },
+    /// A parameter has a value that makes no sense.
+    #[error("{name} is {value}, but must be {allowed}")]
+    Parameter {
+        /// Name of the parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+}
+
+impl SignalError {
+    pub(crate) fn parameter(name: &'static str, value: f64, allowed: &'static str) -> Self {
+        Self::Parameter { name, value, allowed }
+    }
+}

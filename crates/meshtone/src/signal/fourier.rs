@@ -1,0 +1,83 @@
+//! Fourier transforms, without normalisation in either direction.
+
+use realfft::RealFftPlanner;
+use rustfft::FftPlanner;
+use rustfft::num_complex::Complex64;
+
+/// `X_k = Σ_n x_n e^(−2πikn/N)` for k = 0 … ⌊N/2⌋.
+pub(super) fn real_spectrum(values: &[f64]) -> Vec<Complex64> {
+    let plan = RealFftPlanner::<f64>::new().plan_fft_forward(values.len());
+    let mut input = values.to_vec();
+    let mut output = plan.make_output_vec();
+    // The lengths are the plan's own, which is all that can fail.
+    let done = plan.process(&mut input, &mut output);
+    debug_assert!(done.is_ok());
+    output
+}
+
+/// The `len` real values with the spectrum of [`real_spectrum`], divided by `len`.
+pub(super) fn from_real_spectrum(mut spectrum: Vec<Complex64>, len: usize) -> Vec<f64> {
+    let plan = RealFftPlanner::<f64>::new().plan_fft_inverse(len);
+    // Real values have real ends of the spectrum; rounding may have left something there.
+    spectrum[0].im = 0.0;
+    if len.is_multiple_of(2) {
+        spectrum[len / 2].im = 0.0;
+    }
+    let mut output = plan.make_output_vec();
+    let done = plan.process(&mut spectrum, &mut output);
+    debug_assert!(done.is_ok());
+    output.iter_mut().for_each(|x| *x /= len as f64);
+    output
+}
+
+/// `x_n = Σ_k X_k e^(2πikn/N)`, not divided by N.
+pub(super) fn inverse_complex(mut spectrum: Vec<Complex64>) -> Vec<Complex64> {
+    FftPlanner::new().plan_fft_inverse(spectrum.len()).process(&mut spectrum);
+    spectrum
+}
+
+/// The least length of at least `len` whose only prime factors are 2, 3 and 5, and even.
+pub(super) fn convenient_length(len: usize) -> usize {
+    let mut best = len.max(2).next_power_of_two();
+    let mut fives = 1;
+    while fives < best {
+        let mut threes = fives;
+        while threes < best {
+            let twos = len.div_ceil(threes).next_power_of_two().max(2);
+            best = best.min(threes * twos);
+            threes *= 3;
+        }
+        fives *= 5;
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn convenient_lengths() {
+        let smooth = |n: &usize| {
+            let rest = [2, 3, 5].iter().fold(*n, |mut n: usize, prime| {
+                while n.is_multiple_of(*prime) {
+                    n /= prime;
+                }
+                n
+            });
+            n.is_multiple_of(2) && rest == 1
+        };
+        for len in [1, 2, 7, 11, 97, 121, 1001, 44_101, 3_000_001] {
+            assert_eq!(Some(convenient_length(len)), (len..).find(smooth), "{len}");
+        }
+    }
+
+    #[test]
+    fn there_and_back() {
+        for len in [1, 2, 5, 8] {
+            let values: Vec<f64> = (0..len).map(|i| f64::from(i * i) - 2.0).collect();
+            let back = from_real_spectrum(real_spectrum(&values), values.len());
+            assert!(back.iter().zip(&values).all(|(a, b)| (a - b).abs() < 1e-13));
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! Condition indicators of a gear.
+
+mod gear;
+mod na4;
+mod shape;
+
+pub use gear::{energy_ratio, fm0, fm4, m6a, m8a, sideband_level_factor};
+pub use na4::na4;
+pub use shape::ShapeIndicators;
+
+use super::{Separation, SignalError, envelope, order_spectrum, peak};
+
+/// Part of the average's peak below which a part of it is the transforms' rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// All indicators of one record. None where one is not defined, as the kurtosis of a part that is 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Indicators {
+    /// Of the synchronous average.
+    pub average: ShapeIndicators,
+    /// Of the regular part.
+    pub regular: ShapeIndicators,
+    /// Of the residual.
+    pub residual: ShapeIndicators,
+    /// Of the difference.
+    pub difference: ShapeIndicators,
+    /// Of the difference's envelope.
+    pub envelope: ShapeIndicators,
+    /// (-) [`fm0`].
+    pub fm0: Option<f64>,
+    /// (-) [`fm4`].
+    pub fm4: Option<f64>,
+    /// (-) [`m6a`].
+    pub m6a: Option<f64>,
+    /// (-) [`m8a`].
+    pub m8a: Option<f64>,
+    /// (-) [`na4`], of the records so far; of the first record the kurtosis of its residual.
+    pub na4: Option<f64>,
+    /// (-) [`energy_ratio`].
+    pub energy_ratio: Option<f64>,
+    /// (-) [`sideband_level_factor`].
+    pub sideband_level_factor: Option<f64>,
+}
+
+/// One line of a table of indicators.
+#[derive(Debug, Clone, PartialEq)]
+pub struct IndicatorValue {
+    /// Name, as the path of fields: `difference_kurtosis`, `fm4`.
+    pub name: String,
+    /// Unit: the signal's, or `-`.
+    pub unit: String,
+    /// The value, where it is defined.
+    pub value: Option<f64>,
+}
+
+impl Indicators {
+    /// The indicators of a record that stands alone.
+    ///
+    /// # Arguments
+    /// * `average` - one revolution at equal angles
+    /// * `parts` - from [`super::separate`]
+    /// * `teeth` - of the wheel on the shaft
+    ///
+    /// A part that is below 1e-12 of the average's peak is rounding, and counts as 0.
+    ///
+    /// # Errors
+    /// NaN; parts that are not as long as the average; a mesh order beyond the Nyquist order.
+    ///
+    /// ```
+    /// use meshtone::signal::{Indicators, SeparationSettings, separate};
+    ///
+    /// let wave = |order: f64, i: usize| (std::f64::consts::TAU * order * i as f64 / 256.0).cos();
+    /// let average: Vec<f64> = (0..256).map(|i| 2.0 * wave(20.0, i) + wave(28.0, i)).collect();
+    /// let parts = separate(&average, &SeparationSettings::new(20))?;
+    /// let indicators = Indicators::new(&average, &parts, 20)?;
+    /// assert!((indicators.fm0.unwrap() - 6.0 / 2.0).abs() < 1e-12);
+    /// assert!((indicators.fm4.unwrap() - 1.5).abs() < 1e-12);
+    /// assert!((indicators.energy_ratio.unwrap() - 0.5).abs() < 1e-12);
+    /// assert_eq!(indicators.envelope.kurtosis, None); // a constant
+    /// # Ok::<(), meshtone::signal::SignalError>(())
+    /// ```
+    pub fn new(average: &[f64], parts: &Separation, teeth: usize) -> Result<Self, SignalError> {
+        for (what, part) in [
+            ("regular part", &parts.regular),
+            ("residual", &parts.residual),
+            ("difference", &parts.difference),
+        ] {
+            if part.len() != average.len() {
+                return Err(SignalError::LengthMismatch { what, given: part.len(), expected: average.len() });
+            }
+        }
+        let rounding = ROUNDING * peak(average);
+        let significant =
+            |part: &[f64]| if peak(part) > rounding { part.to_vec() } else { vec![0.0; part.len()] };
+        let [regular, residual, difference] =
+            [&parts.regular, &parts.residual, &parts.difference].map(|part| significant(part));
+        let spectrum = order_spectrum(average)?;
+        Ok(Self {
+            average: ShapeIndicators::new(average),
+            regular: ShapeIndicators::new(&regular),
+            residual: ShapeIndicators::new(&residual),
+            difference: ShapeIndicators::new(&difference),
+            envelope: ShapeIndicators::above(&envelope(&difference)?, rounding),
+            fm0: fm0(average, &spectrum, teeth)?,
+            fm4: fm4(&difference),
+            m6a: m6a(&difference),
+            m8a: m8a(&difference),
+            na4: na4(&[&residual])?[0],
+            energy_ratio: energy_ratio(&difference, &regular),
+            sideband_level_factor: sideband_level_factor(average, &spectrum, teeth)?,
+        })
+    }
+
+    /// The indicators as a table, in a fixed order.
+    ///
+    /// # Arguments
+    /// * `unit` - of the signal, such as `g`
+    ///
+    /// ```
+    /// # use meshtone::signal::{Indicators, SeparationSettings, separate};
+    /// # let average: Vec<f64> = (0..64).map(|i| f64::from(i * i % 37)).collect();
+    /// # let parts = separate(&average, &SeparationSettings::new(20))?;
+    /// let table = Indicators::new(&average, &parts, 20)?.table("g");
+    /// assert_eq!((table[0].name.as_str(), table[0].unit.as_str()), ("average_rms", "g"));
+    /// assert_eq!((table[25].name.as_str(), table[25].unit.as_str()), ("fm0", "-"));
+    /// # Ok::<(), meshtone::signal::SignalError>(())
+    /// ```
+    pub fn table(&self, unit: &str) -> Vec<IndicatorValue> {
+        let shapes = [
+            ("average", &self.average),
+            ("regular", &self.regular),
+            ("residual", &self.residual),
+            ("difference", &self.difference),
+            ("envelope", &self.envelope),
+        ];
+        let gear = [
+            ("fm0", self.fm0),
+            ("fm4", self.fm4),
+            ("m6a", self.m6a),
+            ("m8a", self.m8a),
+            ("na4", self.na4),
+            ("energy_ratio", self.energy_ratio),
+            ("sideband_level_factor", self.sideband_level_factor),
+        ];
+        let of_shapes = shapes.into_iter().flat_map(|(part, shape)| shape.table(part, unit));
+        let of_gear = gear.into_iter().map(|(name, value)| IndicatorValue {
+            name: name.to_owned(),
+            unit: "-".to_owned(),
+            value,
+        });
+        of_shapes.chain(of_gear).collect()
+    }
+}

@@ -1,0 +1,124 @@
+//! How far a shaft has turned at each sample.
+
+mod constant;
+mod mesh_tone;
+mod mesh_tone_checks;
+mod pulse_train;
+mod pulses;
+mod speed;
+mod tachometer;
+
+pub use mesh_tone::MeshTone;
+pub use pulse_train::{PulseTrain, repair_pulses};
+pub use tachometer::{PulseEdge, Tachometer, tachometer_pulses};
+
+use super::{SignalError, SignalWarning};
+
+/// The angle of a shaft over the samples of a recording, in revolutions, always rising.
+///
+/// A phase may cover a part of the recording only: pulses say nothing before the first and after the last one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShaftPhase {
+    /// Sample of the recording that the first value belongs to.
+    pub first_sample: usize,
+    /// (rev) Angle at that sample and those after it.
+    pub revolutions: Vec<f64>,
+    /// What was doubtful while it was found.
+    pub warnings: Vec<SignalWarning>,
+}
+
+impl ShaftPhase {
+    /// A phase from the angle at each sample.
+    ///
+    /// # Arguments
+    /// * `first_sample` - sample of the recording that the first value belongs to
+    /// * `revolutions` - (rev) angle at each sample from that one on
+    ///
+    /// # Errors
+    /// Fewer than two values; a value that is no number, or not more than the one before.
+    ///
+    /// ```
+    /// use meshtone::signal::ShaftPhase;
+    ///
+    /// let error = ShaftPhase::new(0, vec![0.0, 0.2, 0.1]).unwrap_err();
+    /// assert!(error.to_string().contains("turns backwards at sample 2"));
+    /// ```
+    pub fn new(first_sample: usize, revolutions: Vec<f64>) -> Result<Self, SignalError> {
+        let phase = Self { first_sample, revolutions, warnings: Vec::new() };
+        phase.check()?;
+        Ok(phase)
+    }
+
+    /// The phase of the shaft that meshes with this one, forwards too.
+    ///
+    /// # Arguments
+    /// * `teeth` - of the wheel on this shaft
+    /// * `mate_teeth` - of the wheel on the other
+    ///
+    /// # Errors
+    /// A wheel without teeth.
+    ///
+    /// ```
+    /// use meshtone::signal::ShaftPhase;
+    ///
+    /// let pinion = ShaftPhase::constant(40.0, 1000.0, 101)?;
+    /// let gear = pinion.of_mate(17, 34)?;
+    /// assert!((gear.revolutions[100] - 2.0).abs() < 1e-12);
+    /// # Ok::<(), meshtone::signal::SignalError>(())
+    /// ```
+    pub fn of_mate(&self, teeth: u32, mate_teeth: u32) -> Result<Self, SignalError> {
+        for (name, count) in [("teeth", teeth), ("mate_teeth", mate_teeth)] {
+            if count == 0 {
+                return Err(SignalError::parameter(name, 0.0, "at least 1"));
+            }
+        }
+        let ratio = f64::from(teeth) / f64::from(mate_teeth);
+        let revolutions = self.revolutions.iter().map(|angle| angle * ratio).collect();
+        let mut mate = Self::new(self.first_sample, revolutions)?;
+        mate.warnings.clone_from(&self.warnings);
+        Ok(mate)
+    }
+
+    /// (rev) What the shaft turns between the first and the last value.
+    pub fn span_rev(&self) -> f64 {
+        self.revolutions.first().map_or(0.0, |first| self.last() - first)
+    }
+
+    /// (Hz) Mean speed.
+    ///
+    /// # Arguments
+    /// * `sampling_rate_hz` - (S/s) of the recording
+    pub fn mean_speed_hz(&self, sampling_rate_hz: f64) -> f64 {
+        self.span_rev() * sampling_rate_hz / self.revolutions.len().saturating_sub(1).max(1) as f64
+    }
+
+    pub(super) fn last(&self) -> f64 {
+        self.revolutions.last().copied().unwrap_or(0.0)
+    }
+
+    /// Checks that the shaft turns forwards: the fields are open to everyone.
+    pub(super) fn check(&self) -> Result<(), SignalError> {
+        let revolutions = &self.revolutions;
+        if revolutions.len() < 2 {
+            return Err(SignalError::TooFew {
+                what: "samples with a phase",
+                given: revolutions.len(),
+                needed: 2,
+            });
+        }
+        super::check::check_finite(revolutions)?;
+        if let Some(i) = revolutions.windows(2).position(|pair| pair[1] <= pair[0]) {
+            return Err(SignalError::NotForwards {
+                sample: self.first_sample.saturating_add(i + 1),
+                from_rev: revolutions[i],
+                to_rev: revolutions[i + 1],
+            });
+        }
+        Ok(())
+    }
+
+    pub(super) fn with_warnings(mut self, warnings: Vec<SignalWarning>) -> Self {
+        self.warnings = warnings;
+        self
+    }
+}

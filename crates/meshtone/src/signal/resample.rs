@@ -1,0 +1,213 @@
+//! Another sampling rate.
+
+use super::check::check_positive;
+use super::kaiser::{kaiser, sinc};
+use super::{Edge, SignalError};
+
+/// Zero crossings of the default filter on each side, in samples of the lower rate.
+const ZERO_CROSSINGS: usize = 10;
+/// Kaiser's β of the default filter.
+const BETA: f64 = 5.0;
+/// Largest `up` and `down`: the filter has 20 times as many taps.
+const LARGEST_FACTOR: usize = 100_000;
+/// Relative deviation of a ratio of rates that is taken for rounding.
+const RATIO_TOLERANCE: f64 = 1e-12;
+
+/// Resamples a signal by the ratio `up/down` behind an anti-aliasing filter.
+///
+/// The filter is the one of MATLAB's `resample` and SciPy's `resample_poly`: [`resampling_taps`]. It has linear phase and
+/// its delay is taken out, so that sample m of the result lies at `m down/up` of the signal. It is within 0.2 % of 1 up to
+/// 0.8 of half the lower rate, 0.5 at half that rate, and below 0.2 % from 1.2 of it on.
+///
+/// # Arguments
+/// * `signal` - the samples
+/// * `up`, `down` - ratio of the rates, new over old, see [`resampling_ratio`]; common factors are taken out
+/// * `edge` - how the signal goes on beyond its ends
+///
+/// Returns `⌈n up/down⌉` samples.
+///
+/// # Errors
+/// An empty signal; a factor of 0 or beyond 100 000.
+///
+/// ```
+/// use meshtone::signal::{Edge, resample};
+///
+/// let wave = |i: usize, n: f64| (std::f64::consts::TAU * 3.0 * i as f64 / n).cos();
+/// let signal: Vec<f64> = (0..100).map(|i| wave(i, 100.0)).collect();
+/// let resampled = resample(&signal, 2, 5, Edge::Periodic)?;
+/// assert_eq!(resampled.len(), 40);
+/// assert!(resampled.iter().enumerate().all(|(i, x)| (x - wave(i, 40.0)).abs() < 1e-3));
+/// # Ok::<(), meshtone::signal::SignalError>(())
+/// ```
+pub fn resample(signal: &[f64], up: usize, down: usize, edge: Edge) -> Result<Vec<f64>, SignalError> {
+    let (up, down) = reduced(up, down)?;
+    if up == down {
+        return Ok(signal.to_vec());
+    }
+    resample_with(signal, up, down, &resampling_taps(up, down)?, edge)
+}
+
+/// Resamples with a filter of one's own: the signal with `up − 1` zeros after every sample, filtered, every `down`-th
+/// sample of that.
+///
+/// # Arguments
+/// * `signal` - the samples
+/// * `up`, `down` - ratio of the rates, new over old, taken as they are
+/// * `taps` - an odd number, at `up` times the signal's rate; the middle one has no delay
+/// * `edge` - how the signal goes on beyond its ends
+///
+/// Returns `⌈n up/down⌉` samples.
+///
+/// # Errors
+/// As [`resample`]; an even number of taps.
+///
+/// Source: R. E. Crochiere, L. R. Rabiner, "Multirate Digital Signal Processing", Prentice-Hall (1983), section 3.3.
+///
+/// ```
+/// use meshtone::signal::{Edge, resample_with};
+///
+/// let line = resample_with(&[0.0, 1.0, 2.0], 2, 1, &[0.5, 1.0, 0.5], Edge::Reflect)?;
+/// assert_eq!(line, [0.0, 0.5, 1.0, 1.5, 2.0, 1.5]);
+/// # Ok::<(), meshtone::signal::SignalError>(())
+/// ```
+pub fn resample_with(
+    signal: &[f64],
+    up: usize,
+    down: usize,
+    taps: &[f64],
+    edge: Edge,
+) -> Result<Vec<f64>, SignalError> {
+    check_factors(up, down)?;
+    if signal.is_empty() {
+        return Err(SignalError::TooFew { what: "samples", given: 0, needed: 1 });
+    }
+    if taps.len().is_multiple_of(2) {
+        return Err(SignalError::parameter("number of taps", taps.len() as f64, "odd"));
+    }
+    let branches = Branches::new(taps, up);
+    let half = taps.len() / 2;
+    let samples = (signal.len() * up).div_ceil(down);
+    Ok((0..samples).map(|m| branches.output(signal, m * down + half, edge)).collect())
+}
+
+/// The default filter: an ideal low-pass at half the lower rate under Kaiser's window with β = 5 and 10 zero crossings on
+/// each side, scaled to `Σ taps = up`.
+///
+/// # Arguments
+/// * `up`, `down` - ratio of the rates, in lowest terms
+///
+/// Returns `20 max(up, down) + 1` taps, those of SciPy's `firwin(20 r + 1, 1/r, window=("kaiser", 5.0)) * up` with
+/// `r = max(up, down)`.
+///
+/// # Errors
+/// A factor of 0 or beyond 100 000.
+///
+/// ```
+/// let taps = meshtone::signal::resampling_taps(1, 4)?;
+/// assert_eq!(taps.len(), 81);
+/// assert!((taps.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+/// # Ok::<(), meshtone::signal::SignalError>(())
+/// ```
+pub fn resampling_taps(up: usize, down: usize) -> Result<Vec<f64>, SignalError> {
+    check_factors(up, down)?;
+    let rate = up.max(down);
+    let half = ZERO_CROSSINGS * rate;
+    let mut taps: Vec<f64> = (0..=2 * half)
+        .map(|i| {
+            let offset = i as f64 - half as f64;
+            sinc(offset / rate as f64) * kaiser(offset / half as f64, BETA)
+        })
+        .collect();
+    let scale = up as f64 / taps.iter().sum::<f64>();
+    taps.iter_mut().for_each(|tap| *tap *= scale);
+    Ok(taps)
+}
+
+/// The ratio `up/down` in lowest terms that turns one sampling rate into another.
+///
+/// # Arguments
+/// * `from_hz` - (S/s) the rate there is
+/// * `to_hz` - (S/s) the rate that is wanted
+///
+/// The best fraction within a relative 1e-12 of the ratio of the rates, by continued fractions.
+///
+/// # Errors
+/// A rate that is not positive; rates with no such fraction up to 100 000.
+///
+/// ```
+/// assert_eq!(meshtone::signal::resampling_ratio(258_400.0, 25_000.0), Ok((125, 1292)));
+/// ```
+pub fn resampling_ratio(from_hz: f64, to_hz: f64) -> Result<(usize, usize), SignalError> {
+    check_positive("from_hz", from_hz)?;
+    check_positive("to_hz", to_hz)?;
+    let wanted = to_hz / from_hz;
+    let (mut up, mut down) = ((1.0, wanted.floor()), (0.0, 1.0));
+    let mut rest = wanted - wanted.floor();
+    while (up.1 / down.1 - wanted).abs() > RATIO_TOLERANCE * wanted {
+        let inverse = 1.0 / rest;
+        let whole = inverse.floor();
+        up = (up.1, whole * up.1 + up.0);
+        down = (down.1, whole * down.1 + down.0);
+        rest = inverse - whole;
+        let largest: f64 = up.1.max(down.1);
+        if largest.is_nan() || largest > LARGEST_FACTOR as f64 {
+            return Err(SignalError::parameter(
+                "ratio of the sampling rates",
+                wanted,
+                "a fraction of whole numbers up to 100 000",
+            ));
+        }
+    }
+    check_factors(up.1 as usize, down.1 as usize)?;
+    Ok((up.1 as usize, down.1 as usize))
+}
+
+/// The filter's taps by the position of a new sample between two old ones.
+struct Branches {
+    up: usize,
+    /// For each of the `up` positions the taps, the one of the oldest sample first.
+    taps: Vec<Vec<f64>>,
+}
+
+impl Branches {
+    fn new(taps: &[f64], up: usize) -> Self {
+        let branch = |first: usize| {
+            let mut branch: Vec<f64> = taps.iter().skip(first).step_by(up).copied().collect();
+            branch.reverse();
+            branch
+        };
+        Self { up, taps: (0..up).map(branch).collect() }
+    }
+
+    /// What the filter gives when its first tap has come to `tick`, in steps of the high rate.
+    fn output(&self, signal: &[f64], tick: usize, edge: Edge) -> f64 {
+        let branch = &self.taps[tick % self.up];
+        let newest = (tick / self.up) as isize;
+        let oldest = newest + 1 - branch.len() as isize;
+        if oldest >= 0 && (newest as usize) < signal.len() {
+            let window = &signal[oldest as usize..=newest as usize];
+            return branch.iter().zip(window).map(|(tap, x)| tap * x).sum();
+        }
+        let at = |n: isize| edge.index(n, signal.len()).map_or(0.0, |i| signal[i]);
+        branch.iter().zip(oldest..).map(|(tap, n)| tap * at(n)).sum()
+    }
+}
+
+fn check_factors(up: usize, down: usize) -> Result<(), SignalError> {
+    for (name, factor) in [("up", up), ("down", down)] {
+        if factor == 0 || factor > LARGEST_FACTOR {
+            return Err(SignalError::parameter(name, factor as f64, "a whole number from 1 to 100 000"));
+        }
+    }
+    Ok(())
+}
+
+fn reduced(up: usize, down: usize) -> Result<(usize, usize), SignalError> {
+    let (mut a, mut b) = (up, down);
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    let divisor = a.max(1);
+    check_factors(up / divisor, down / divisor)?;
+    Ok((up / divisor, down / divisor))
+}

@@ -1,0 +1,95 @@
+//! Fields of the signal chain: the vertical signal's average over the gear's revolutions.
+
+use super::Trace;
+use crate::sampling::TimeGrid;
+use crate::signal::{
+    AngularSettings, ChainSettings, Channels, Edge, Interpolation, Record, ShaftPhase, SignalError,
+    process_channel, resample, resampling_ratio,
+};
+use crate::simulate::Stages;
+
+/// Samples of the lower rate by which a periodic signal is continued at each end: more than the resampling filter and the
+/// interpolation reach.
+const CONTINUATION: usize = 40;
+
+/// Adds the average, the difference and the order spectrum, where there are at least two revolutions of the gear and its
+/// mesh frequency is below half of the rate.
+///
+/// As in the published code the signal is resampled first, and read by PCHIP between its samples; unlike there the
+/// kept signal is continued periodically before, so that nothing rings.
+pub(super) fn average(trace: &mut Trace, stages: &Stages, channels: &Channels, rate_hz: f64) {
+    let rate_hz = rate_hz.min(stages.time.sampling_rate_hz);
+    let Ok(record) = gear_record(stages, channels, rate_hz) else { return };
+    let points = record.average.values.len();
+    // Orders up to half of the rate; the published spectrum doubles order 0 too.
+    let orders = (record.average.nyquist_order * (1.0 + 1e-9)) as usize;
+    let mut amplitude = record.order_spectrum;
+    amplitude[0] *= 2.0;
+    amplitude.truncate(orders.min(points / 2 + 1));
+    trace.vector("synchronous_average_g", record.average.values);
+    trace.vector("difference_g", record.parts.difference);
+    trace.vector("order_amplitude_g", amplitude);
+    trace.scalar("sa_rate_in_hz", rate_hz);
+}
+
+fn gear_record(stages: &Stages, channels: &Channels, rate_hz: f64) -> Result<Record, SignalError> {
+    let gears = &stages.scenario.gears;
+    let ratio = resampling_ratio(channels.sampling_rate_hz, rate_hz)?;
+    let angular = AngularSettings { interpolation: Interpolation::Pchip, ..AngularSettings::default() };
+    let settings = ChainSettings { angular, separation: None };
+    let signal = &channels.vertical_g;
+    let (signal, phase) = match whole_revolutions(stages) {
+        Some(revolutions) => periodic(signal, ratio, revolutions)?,
+        None => {
+            let pinion = if stages.scenario.operation.speed_profile_hz.is_some() {
+                ShaftPhase::from_speed_samples(&channels.pinion_speed_hz, channels.sampling_rate_hz)?
+            } else {
+                let speed_hz = stages.scenario.operation.pinion_speed_hz;
+                ShaftPhase::constant(speed_hz, channels.sampling_rate_hz, signal.len())?
+            };
+            let gear = pinion.of_mate(gears.pinion_teeth, gears.gear_teeth)?;
+            (resample(signal, ratio.0, ratio.1, Edge::Reflect)?, at_rate(&gear, ratio)?)
+        }
+    };
+    process_channel(&signal, &phase, gears.gear_teeth, &settings)
+}
+
+/// The whole number of gear revolutions that the kept signal spans, where it does and is periodic.
+fn whole_revolutions(stages: &Stages) -> Option<usize> {
+    let TimeGrid { samples_per_pinion_revolution, .. } = stages.time;
+    let gears = &stages.scenario.gears;
+    let per_revolution =
+        samples_per_pinion_revolution / gears.pinion_teeth as usize * gears.gear_teeth as usize;
+    let kept = stages.time.kept_samples();
+    let steady = stages.scenario.operation.speed_profile_hz.is_none();
+    (steady && kept > 0 && kept.is_multiple_of(per_revolution)).then(|| kept / per_revolution)
+}
+
+/// The signal at its new rate, with a continuation at both ends, and its phase over the samples between.
+fn periodic(
+    signal: &[f64],
+    (up, down): (usize, usize),
+    revolutions: usize,
+) -> Result<(Vec<f64>, ShaftPhase), SignalError> {
+    // Whole multiples of `down` samples become whole multiples of `up`.
+    let blocks = CONTINUATION.div_ceil(up);
+    let n = signal.len() as isize;
+    let reach = (blocks * down) as isize;
+    let continued: Vec<f64> = (-reach..n + reach).map(|i| signal[i.rem_euclid(n) as usize]).collect();
+    let samples_per_revolution = signal.len() as f64 * up as f64 / (down as f64 * revolutions as f64);
+    let samples = (signal.len() * up).div_ceil(down) + 1;
+    let angles = (0..samples).map(|i| i as f64 / samples_per_revolution).collect();
+    Ok((resample(&continued, up, down, Edge::Periodic)?, ShaftPhase::new(blocks * up, angles)?))
+}
+
+/// A phase at the samples of the new rate, by straight lines.
+fn at_rate(phase: &ShaftPhase, (up, down): (usize, usize)) -> Result<ShaftPhase, SignalError> {
+    let angles = &phase.revolutions;
+    let last = angles.len() - 1;
+    let samples = last * up / down + 1;
+    let at = |i: usize| {
+        let (whole, part) = (i * down / up, (i * down % up) as f64 / up as f64);
+        angles[whole] + part * (angles[(whole + 1).min(last)] - angles[whole])
+    };
+    ShaftPhase::new(0, (0..samples).map(at).collect())
+}
