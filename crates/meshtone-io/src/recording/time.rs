@@ -1,0 +1,282 @@
+//! The sampling rate out of a time column.
+//!
+//! The times are compared with the straight line through them (least squares). They may deviate by a hundredth
+//! of the interval, by what floating point makes of large times, and by half the step to which they are rounded
+//! in the file: 50 kS/s with four decimals of a second are ten equal times in a row, and uniform none the less.
+//! That step is found from the numbers themselves.
+
+use std::path::Path;
+
+use super::ReadRecordingError;
+
+/// Part of the interval by which a time may deviate.
+const JITTER: f64 = 0.01;
+/// A rate that is less certain is none.
+const MAX_UNCERTAINTY: f64 = 1e-3;
+/// Decimals of a time beyond which it counts as exact; the number of digits in double precision is the limit.
+const MAX_DECIMALS: i32 = 15;
+/// Largest whole number up to which a double has digits to spare for telling it from its neighbours.
+const MAX_WHOLE: f64 = (1_u64 << 46) as f64;
+/// Steps that are alike, out of all, for times to be on a grid of their own rather than rounded to one.
+const ALIKE: f64 = 0.99;
+
+/// What a time column says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Timing {
+    pub rate_hz: f64,
+    pub start_s: f64,
+    /// Part of the rate by which it may be wrong, because the times are rounded.
+    pub uncertainty: f64,
+}
+
+/// The straight line through the times, and what is farthest from it.
+struct Line {
+    interval: f64,
+    largest_deviation: f64,
+    deviation_index: usize,
+}
+
+/// The steps from each time to the next.
+struct Steps {
+    median: f64,
+    /// Part of all that is the median.
+    alike: f64,
+    worst_index: usize,
+    worst: f64,
+}
+
+/// Finds the sampling rate.
+///
+/// # Arguments
+/// * `path`, `column` - for messages
+/// * `times` - finite times in the file's unit
+/// * `unit_s` - (s) that unit
+pub(super) fn timing(
+    path: &Path,
+    column: &str,
+    times: &[f64],
+    unit_s: f64,
+) -> Result<Timing, ReadRecordingError> {
+    let refuse = |problem: String| ReadRecordingError::Time {
+        path: path.to_path_buf(),
+        column: column.to_string(),
+        problem,
+    };
+    let (&[first, .., last], count) = (times, times.len()) else {
+        return Err(refuse("has one sample only, which tells no sampling rate".to_string()));
+    };
+    if let Some(index) = times.windows(2).position(|pair| pair[1] < pair[0]) {
+        let (from, to) = (times[index] * unit_s, times[index + 1] * unit_s);
+        let problem = format!("goes back from {from} s to {to} s at sample {}", index + 2);
+        return Err(refuse(problem));
+    }
+    if last <= first {
+        return Err(refuse(format!("stays at {} s", first * unit_s)));
+    }
+    let steps = steps(times);
+    let line = line(times);
+    let largest = first.abs().max(last.abs());
+    let rounding = 4.0 * f64::EPSILON * largest;
+    let resolution = resolution(times, largest, &steps);
+    let sampling_noise = 1.0 + 4.0 / (count as f64).sqrt();
+    // Where rounding is finer than the interval, a missing sample shows in any case, so that room can be left
+    // for the slow beat between the interval and the rounding step.
+    let share = if resolution < 0.5 * line.interval { 0.75 } else { 0.5 };
+    let allowed = share * sampling_noise * resolution + JITTER * line.interval + rounding;
+    if line.largest_deviation > allowed {
+        return Err(ReadRecordingError::NonUniformTime {
+            path: path.to_path_buf(),
+            column: column.to_string(),
+            from_sample: steps.worst_index as u64 + 1,
+            step_s: readable(steps.worst * unit_s),
+            interval_s: readable(if steps.median > 0.0 { steps.median } else { line.interval } * unit_s),
+            largest_deviation_s: readable(line.largest_deviation * unit_s),
+            deviation_sample: line.deviation_index as u64 + 1,
+        });
+    }
+    let uncertainty = (1.5 * resolution + rounding) / (last - first) + 1e-12;
+    if uncertainty > MAX_UNCERTAINTY {
+        let (resolution_s, span_s) = (readable(resolution * unit_s), readable((last - first) * unit_s));
+        let percent = readable(100.0 * uncertainty);
+        return Err(refuse(format!(
+            "is rounded to {resolution_s} s over {span_s} s, which tells the sampling rate only to {percent} %"
+        )));
+    }
+    let rate_hz = shortest_within(1.0 / (line.interval * unit_s), uncertainty);
+    Ok(Timing { rate_hz, start_s: first * unit_s, uncertainty })
+}
+
+/// Least squares, as a correction of the line from the first to the last time: that keeps all digits.
+fn line(times: &[f64]) -> Line {
+    let (first, last) = (times[0], times[times.len() - 1]);
+    let count = times.len() as f64;
+    let chord = (last - first) / (count - 1.0);
+    let middle = 0.5 * (count - 1.0);
+    let from_chord = |index: usize| (times[index] - first) - index as f64 * chord;
+    let (mut sum, mut moment) = (0.0, 0.0);
+    for index in 0..times.len() {
+        let deviation = from_chord(index);
+        sum += deviation;
+        moment += (index as f64 - middle) * deviation;
+    }
+    let slope = moment * 12.0 / (count * (count * count - 1.0));
+    let mean = sum / count;
+    let (mut largest_deviation, mut deviation_index) = (0.0, 0);
+    for index in 0..times.len() {
+        let deviation = (from_chord(index) - mean - slope * (index as f64 - middle)).abs();
+        if deviation > largest_deviation {
+            (largest_deviation, deviation_index) = (deviation, index);
+        }
+    }
+    Line { interval: chord + slope, largest_deviation, deviation_index }
+}
+
+fn steps(times: &[f64]) -> Steps {
+    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let middle = steps.len() / 2;
+    let median = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let alike = steps.iter().filter(|step| (**step - median).abs() <= JITTER * median).count();
+    let alike = alike as f64 / steps.len() as f64;
+    let (mut worst_index, mut worst) = (0, median);
+    for (index, pair) in times.windows(2).enumerate() {
+        let step = pair[1] - pair[0];
+        if (step - median).abs() > (worst - median).abs() {
+            (worst_index, worst) = (index, step);
+        }
+    }
+    Steps { median, alike, worst_index, worst }
+}
+
+/// The step to which the times are rounded; 0 where they are as exact as numbers are.
+fn resolution(times: &[f64], largest: f64, steps: &Steps) -> f64 {
+    let found = decimal_step(times, largest).unwrap_or_else(|| single_precision_step(times, largest));
+    let own_grid = steps.alike >= ALIKE && (steps.alike == 1.0 || found >= 0.5 * steps.median);
+    if own_grid { 0.0 } else { found }
+}
+
+/// 10 to the power of minus the decimals, of the times in the largest decade (smaller ones may have more).
+fn decimal_step(times: &[f64], largest: f64) -> Option<f64> {
+    let mut decimals = 0;
+    let mut scale = 1.0;
+    for time in times.iter().filter(|time| time.abs() >= 0.1 * largest) {
+        loop {
+            let scaled = time * scale;
+            if (scaled - scaled.round()).abs() <= 4.0 * f64::EPSILON * scaled.abs() {
+                break;
+            }
+            decimals += 1;
+            scale = 10_f64.powi(decimals);
+            if decimals > MAX_DECIMALS || largest * scale > MAX_WHOLE {
+                return None;
+            }
+        }
+    }
+    Some(1.0 / scale)
+}
+
+fn single_precision_step(times: &[f64], largest: f64) -> f64 {
+    let single = times.iter().all(|time| f64::from(*time as f32) == *time);
+    if single { largest * f64::from(f32::EPSILON) } else { 0.0 }
+}
+
+/// The number of fewest digits that differs by no more than a part of it.
+fn shortest_within(value: f64, part: f64) -> f64 {
+    let rounded = |digits: usize| format!("{value:.digits$e}").parse().unwrap_or(value);
+    (0..16).map(rounded).find(|short: &f64| (short / value - 1.0).abs() <= part).unwrap_or(value)
+}
+
+/// A number for a message, to six digits.
+fn readable(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::super::ReadRecordingError;
+    use super::{Timing, timing};
+
+    fn of(times: &[f64]) -> Result<Timing, ReadRecordingError> {
+        timing(Path::new("x"), "time", times, 1.0)
+    }
+
+    fn rounded(count: usize, rate_hz: f64, start_s: f64, decimals: i32) -> Vec<f64> {
+        let scale = 10_f64.powi(decimals);
+        (0..count).map(|i| ((start_s + i as f64 / rate_hz) * scale).round() / scale).collect()
+    }
+
+    #[test]
+    fn rounded_times_tell_the_rate() {
+        for rate_hz in [50_000.0, 25_600.0, 51_200.0, 48_000.0, 44_100.0, 12_345.6, 258_400.0] {
+            for decimals in [4, 5, 6, 7, 9, 12] {
+                for start_s in [0.0, -3.0, 17.123_456] {
+                    let timing = of(&rounded(200_000, rate_hz, start_s, decimals)).unwrap();
+                    let error = (timing.rate_hz / rate_hz - 1.0).abs();
+                    assert!(
+                        error <= timing.uncertainty.max(1e-12),
+                        "{rate_hz} {decimals} {start_s}: {timing:?}"
+                    );
+                }
+            }
+        }
+        assert_eq!(of(&rounded(100_000, 50_000.0, 0.0, 4)).unwrap().rate_hz, 50_000.0);
+        assert_eq!(of(&rounded(200_000, 25_600.0, 0.0, 6)).unwrap().rate_hz, 25_600.0);
+    }
+
+    #[test]
+    fn exact_and_single_precision_times_tell_the_rate() {
+        let exact: Vec<f64> = (0..100_000).map(|i| 0.95 + f64::from(i) / 258_400.0).collect();
+        assert_eq!(of(&exact).unwrap().rate_hz, 258_400.0);
+        let single: Vec<f64> = (0..100_000).map(|i| f64::from((f64::from(i) / 10_000.0) as f32)).collect();
+        assert_eq!(of(&single).unwrap().rate_hz, 10_000.0);
+        let since_1970: Vec<f64> = (0..100_000).map(|i| 1.7e9 + f64::from(i) / 1000.0).collect();
+        assert_eq!(of(&since_1970).unwrap().rate_hz, 1000.0);
+        assert_eq!(of(&[0.0, 1.0]).unwrap().rate_hz, 1.0);
+    }
+
+    #[test]
+    fn a_drifting_clock_is_uniform() {
+        for count in [60_000, 130_000, 300_000] {
+            let times = rounded(count, 1.0 / 20.0002e-6, 0.0, 6);
+            assert!((of(&times).unwrap().rate_hz * 20.0002e-6 - 1.0).abs() < 2e-6);
+        }
+    }
+
+    #[test]
+    fn one_missing_sample_is_found() {
+        for (rate_hz, decimals) in
+            [(50_000.0, 5), (50_000.0, 6), (1.0, 0), (100.0, 2), (25_600.0, 6), (10_000.0, 9)]
+        {
+            for missing in [1, 500, 9_998] {
+                let mut times = rounded(10_000, rate_hz, 0.0, decimals);
+                times.remove(missing);
+                let error = of(&times).unwrap_err();
+                assert!(
+                    matches!(error, ReadRecordingError::NonUniformTime { from_sample, .. } if from_sample == missing as u64),
+                    "{rate_hz} {decimals} {missing}: {error}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_gap_among_coarsely_rounded_times_is_found() {
+        let mut times = rounded(100_000, 50_000.0, 0.0, 4);
+        times.drain(50_000..50_010);
+        assert!(matches!(of(&times), Err(ReadRecordingError::NonUniformTime { .. })));
+    }
+
+    #[test]
+    fn times_that_tell_no_rate_are_refused() {
+        let message = |times: &[f64]| of(times).unwrap_err().to_string();
+        assert!(message(&[1.0]).contains("one sample only"));
+        assert!(message(&[1.0, 1.0]).contains("stays at 1 s"));
+        assert!(message(&[0.0, 1.0, 0.5]).contains("goes back from 1 s to 0.5 s at sample 3"));
+        assert!(
+            message(&[0.0, 0.0, 0.1, 0.1, 0.1]).contains("is rounded to 0.1 s"),
+            "{}",
+            message(&[0.0, 0.0, 0.1, 0.1, 0.1])
+        );
+    }
+}
