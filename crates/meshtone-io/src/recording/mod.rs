@@ -61,6 +61,8 @@ pub struct Recording {
     pub channels: Vec<Channel>,
     /// The file that was read.
     pub source: PathBuf,
+    /// The scenario as TOML, where the file is one that `meshtone simulate` wrote.
+    pub scenario_toml: Option<String>,
 }
 
 impl Recording {

@@ -20,6 +20,7 @@ use super::label::Label;
 use super::rate::StatedRate;
 use super::selection::select;
 use super::{Position, ReadRecordingError, Recording, RecordingOptions};
+use crate::signals::SCENARIO_KEY;
 
 const FORMAT: &str = "Parquet";
 /// Rows that are decoded at once.
@@ -38,6 +39,7 @@ pub(super) fn read(
         ParquetRecordBatchReaderBuilder::try_new(file).map_err(|error| broken(path, FORMAT, error))?;
     let labels: Vec<Label> = builder.schema().fields().iter().map(|field| label(field)).collect();
     let stated = stated_rates(builder.metadata().file_metadata());
+    let scenario_toml = scenario(builder.metadata().file_metadata());
     let selection = select(path, &labels, options)?;
     let wanted = selection.wanted();
     let rows = builder.metadata().file_metadata().num_rows();
@@ -54,7 +56,8 @@ pub(super) fn read(
         }
     }
     let parts = Parts { path, labels: &labels, selection: &selection, samples: columns, stated: &stated };
-    assemble(parts, options)
+    let recording = assemble(parts, options)?;
+    Ok(Recording { scenario_toml, ..recording })
 }
 
 fn label(field: &Field) -> Label {
@@ -90,6 +93,11 @@ fn stated_rates(metadata: &FileMetaData) -> Vec<StatedRate> {
         StatedRate::from_named(&entry.key, value)
     });
     named.map(|rate| StatedRate { by: format!("metadata {}", rate.by), ..rate }).collect()
+}
+
+fn scenario(metadata: &FileMetaData) -> Option<String> {
+    let mut entries = metadata.key_value_metadata().into_iter().flatten();
+    entries.find(|entry| entry.key == SCENARIO_KEY).and_then(|entry| entry.value.clone())
 }
 
 fn reserved(columns: usize, rows: i64, file_bytes: u64) -> Vec<Vec<f64>> {
