@@ -1,5 +1,5 @@
 //! How long it takes to read a recording of 60 s, 50 kS/s and four channels, and how much memory, format by
-//! format: `cargo run --release --workspace --example recording_speed`. Takes 700 MB of disk for a moment.
+//! format: `cargo run --release -p meshtone-io --example recording_speed`. Takes 700 MB of disk for a moment.
 //!
 //! The file is read twice and the second time counts, so that the disk does not. Memory is the peak of what is
 //! allocated while reading, the recording itself included.

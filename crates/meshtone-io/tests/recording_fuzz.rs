@@ -109,7 +109,7 @@ fn check_both(name: &str, bytes: &[u8]) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn random_bytes(format in 0..FORMATS.len(), bytes in prop::collection::vec(any::<u8>(), 0..600)) {

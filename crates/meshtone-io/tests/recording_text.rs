@@ -88,8 +88,12 @@ fn columns_are_chosen_and_calibrated() {
         [("b", None, &[5.0, 6.0, 7.0][..]), ("a", Some("g"), &[1.0, -2.0, 0.5])]
     );
     assert_eq!(recording.sampling_rate_hz, 10.0);
-    let message = refused("run.csv", content, &RecordingOptions { channels: vec!["A".into()], ..rate(1.0) });
-    assert_eq!(message, "run.csv: has no column `A` (did you mean `a`?); it has when, note, a [mV], b, c");
+    let message =
+        refused("run.csv", content, &RecordingOptions { channels: vec!["nota".into()], ..rate(1.0) });
+    assert_eq!(
+        message,
+        "run.csv: has no column `nota` (did you mean `note`?); it has when, note, a [mV], b, c"
+    );
     let message = refused("run.csv", content, &RecordingOptions { channels: vec![9.into()], ..rate(1.0) });
     assert!(message.contains("has no column number 9; it has when, note"), "{message}");
     let message = refused("run.csv", content, &RecordingOptions { channels: vec!["c".into()], ..rate(1.0) });

@@ -19,6 +19,7 @@ mod mat;
 mod number;
 mod numpy;
 mod options;
+mod parquet_check;
 mod parquet_file;
 mod rate;
 mod selection;

@@ -17,6 +17,7 @@ use parquet::file::metadata::FileMetaData;
 use super::assemble::{Parts, assemble};
 use super::error::{broken, unreadable};
 use super::label::Label;
+use super::parquet_check::check;
 use super::rate::StatedRate;
 use super::selection::select;
 use super::{Position, ReadRecordingError, Recording, RecordingOptions};
@@ -37,6 +38,7 @@ pub(super) fn read(
     let file_bytes = file.metadata().map_err(|source| unreadable(path, source))?.len();
     let builder =
         ParquetRecordBatchReaderBuilder::try_new(file).map_err(|error| broken(path, FORMAT, error))?;
+    check(builder.metadata(), file_bytes).map_err(|problem| broken(path, FORMAT, problem))?;
     let labels: Vec<Label> = builder.schema().fields().iter().map(|field| label(field)).collect();
     let stated = stated_rates(builder.metadata().file_metadata());
     let scenario_toml = scenario(builder.metadata().file_metadata());

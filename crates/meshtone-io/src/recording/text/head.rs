@@ -11,6 +11,8 @@ const JUDGED: usize = 32;
 /// What is written for a missing number.
 const MISSING: [&str; 11] = ["-", "--", "nan", "n/a", "na", "#n/a", "null", "none", "error", "?", "inf"];
 
+const QUOTED_COMMAS: Dialect = Dialect { separator: Some(Separator::Comma), decimal_comma: true };
+
 /// A line of the head.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Line<'h> {
@@ -154,7 +156,11 @@ impl Candidate {
         let judged = &content[before.max(content.len().saturating_sub(JUDGED))..];
         let rows: Vec<Vec<&[u8]>> = judged.iter().map(|line| dialect.cells(line.text)).collect();
         let first = dialect.cells(content[0].text);
-        let all = usual_length(&rows);
+        // A comma that separates is no decimal sign, unless numbers are quoted.
+        if dialect == QUOTED_COMMAS && !rows.iter().flatten().any(|cell| cell.contains(&b',')) {
+            return None;
+        }
+        let all = usual_length(&rows, first.len());
         let ends_empty =
             |row: &Vec<&[u8]>| row.len() == all && row.last().is_some_and(|cell| cell.is_empty());
         let trailing = all > 1 && rows.iter().all(ends_empty) && (first.len() < all || ends_empty(&first));
@@ -260,9 +266,9 @@ fn is_missing(cell: &[u8]) -> bool {
     cell.is_empty() || MISSING.contains(&decoded(cell).to_lowercase().as_str())
 }
 
-/// The length that most rows have; the largest of equally frequent ones.
-fn usual_length(rows: &[Vec<&[u8]>]) -> usize {
+/// The length that most rows have; of equally frequent ones that of the first line, or the largest.
+fn usual_length(rows: &[Vec<&[u8]>], first: usize) -> usize {
     let count = |length: usize| rows.iter().filter(|row| row.len() == length).count();
     let lengths = rows.iter().map(Vec::len);
-    lengths.max_by_key(|length| (count(*length), *length)).unwrap_or(1)
+    lengths.max_by_key(|length| (count(*length), *length == first, *length)).unwrap_or(1)
 }
