@@ -4,7 +4,7 @@ use std::io;
 
 use super::super::array::read_one;
 use super::super::catalogue::{ArrayEntry, MAX_ARRAYS, Numbers};
-use super::super::number::NumberKind;
+use super::class::{Class, stored_kind};
 use super::source::{Source, Variable, invalid, padding};
 
 /// The type of an element that is an array.
@@ -18,7 +18,6 @@ const MAX_FIELD_BYTES: u64 = 1 << 20;
 /// Bytes of the names of all arrays together.
 const MAX_NAMES_BYTES: usize = 1 << 24;
 const COMPLEX: u32 = 0x0800;
-const LOGICAL: u32 = 0x0200;
 
 /// Where an array's real numbers are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -172,8 +171,6 @@ impl Walk {
         };
         let (numbers, single) = if flags & COMPLEX != 0 {
             (Err("complex numbers".to_string()), None)
-        } else if flags & LOGICAL != 0 {
-            (Err("truth values".to_string()), None)
         } else {
             (Ok(numbers), single)
         };
@@ -211,60 +208,6 @@ struct Inside {
     end: u64,
     name: String,
     depth: usize,
-}
-
-/// What an array holds.
-enum Class {
-    Cell,
-    Struct,
-    Object,
-    Text,
-    Sparse,
-    Numbers(&'static str),
-    Function,
-    Opaque,
-}
-
-impl Class {
-    fn of(number: u32) -> io::Result<Class> {
-        Ok(match number {
-            1 => Class::Cell,
-            2 => Class::Struct,
-            3 => Class::Object,
-            4 => Class::Text,
-            5 => Class::Sparse,
-            6 => Class::Numbers("double"),
-            7 => Class::Numbers("single"),
-            8 => Class::Numbers("int8"),
-            9 => Class::Numbers("uint8"),
-            10 => Class::Numbers("int16"),
-            11 => Class::Numbers("uint16"),
-            12 => Class::Numbers("int32"),
-            13 => Class::Numbers("uint32"),
-            14 => Class::Numbers("int64"),
-            15 => Class::Numbers("uint64"),
-            16 => Class::Function,
-            17 => Class::Opaque,
-            other => return Err(invalid(format!("an array of class {other}, which does not exist"))),
-        })
-    }
-}
-
-/// Numbers are stored in the smallest type that holds them, whatever the array's class.
-fn stored_kind(kind: u32) -> Option<NumberKind> {
-    Some(match kind {
-        1 => NumberKind::I8,
-        2 => NumberKind::U8,
-        3 => NumberKind::I16,
-        4 => NumberKind::U16,
-        5 => NumberKind::I32,
-        6 => NumberKind::U32,
-        7 => NumberKind::F32,
-        9 => NumberKind::F64,
-        12 => NumberKind::I64,
-        13 => NumberKind::U64,
-        _ => return None,
-    })
 }
 
 /// A name, up to its first zero.

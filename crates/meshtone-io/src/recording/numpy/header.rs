@@ -2,9 +2,9 @@
 
 use std::io::{self, Read};
 
+use super::element::element;
 use super::literal::Literal;
 use crate::recording::catalogue::Numbers;
-use crate::recording::number::NumberKind;
 
 /// Longest header that is read; NumPy itself warns beyond 10 000 bytes.
 const MAX_HEADER_BYTES: u32 = 1 << 20;
@@ -142,51 +142,10 @@ fn type_name(code: &str, numbers: &Result<Numbers, String>) -> String {
     numbers.as_ref().map_or_else(|_| code.to_string(), |numbers| numbers.kind.name().to_string())
 }
 
-/// An element's type, such as `<f8`, and its bytes, where they are known.
-fn element(code: &str) -> (Result<Numbers, String>, Option<u64>) {
-    let order = code.chars().next().unwrap_or_default();
-    let kind = match code.get(1..) {
-        Some("f8") => NumberKind::F64,
-        Some("f4") => NumberKind::F32,
-        Some("i8") => NumberKind::I64,
-        Some("i4") => NumberKind::I32,
-        Some("i2") => NumberKind::I16,
-        Some("i1") => NumberKind::I8,
-        Some("u8") => NumberKind::U64,
-        Some("u4") => NumberKind::U32,
-        Some("u2") => NumberKind::U16,
-        Some("u1" | "b1") => NumberKind::U8,
-        _ => return other_element(code),
-    };
-    let big_endian = order == '>';
-    if matches!(order, '<' | '>' | '|' | '=') {
-        (Ok(Numbers { kind, big_endian }), Some(kind.size() as u64))
-    } else {
-        other_element(code)
-    }
-}
-
-fn other_element(code: &str) -> (Result<Numbers, String>, Option<u64>) {
-    let letter = code.chars().nth(1).unwrap_or_default();
-    let what = match letter {
-        'c' => "complex numbers",
-        'f' => "floating-point numbers of an unusual size",
-        'U' | 'S' | 'a' => "text",
-        'O' => "Python objects",
-        'M' => "dates",
-        'm' => "durations as integers",
-        _ => "elements",
-    };
-    let digits = code.get(2..).unwrap_or_default();
-    let digits = digits.split('[').next().unwrap_or_default();
-    let count: Option<u64> = digits.parse().ok();
-    let size = count.and_then(|count| if letter == 'U' { count.checked_mul(4) } else { Some(count) });
-    (Err(format!("{what} ({code})")), size.filter(|_| letter != 'O'))
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{NpyHeader, NumberKind};
+    use super::NpyHeader;
+    use crate::recording::number::NumberKind;
 
     fn header(text: &str) -> Option<NpyHeader> {
         let mut bytes = b"\x93NUMPY\x01\x00".to_vec();

@@ -3,6 +3,7 @@
 //! `ndarray-npy` takes memory for whatever a header announces, and cannot read a part of an array; so the
 //! headers are read here, and the numbers as they come.
 
+mod element;
 mod header;
 mod literal;
 

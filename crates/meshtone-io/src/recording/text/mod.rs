@@ -5,6 +5,7 @@
 //! numbers themselves.
 
 mod blocks;
+mod candidate;
 mod cells;
 mod head;
 mod numbers;
