@@ -181,3 +181,23 @@ fn deep_nesting_does_not_end_the_stack() {
     npy.extend(header.as_bytes());
     assert!(refused("a.npy", &npy, &rate(1.0)).contains("header"));
 }
+
+/// A schema of groups inside groups, in Thrift's compact protocol.
+#[test]
+fn deeply_nested_parquet_does_not_end_the_stack() {
+    for depth in [10_u32, 1000, 30_000, 300_000] {
+        let mut metadata = vec![0x15, 2, 0x19, 0xfc];
+        let mut count = depth + 1;
+        while count > 0x7f {
+            metadata.push((count & 0x7f) as u8 | 0x80);
+            count >>= 7;
+        }
+        metadata.push(count as u8);
+        (0..depth).for_each(|_| metadata.extend([0x35, 0, 0x18, 1, b'a', 0x15, 2, 0]));
+        metadata.extend([0x15, 10, 0x25, 0, 0x18, 1, b'a', 0]);
+        metadata.extend([0x16, 0, 0x19, 0x0c, 0]);
+        let length = (metadata.len() as u32).to_le_bytes();
+        let file = [b"PAR1", &metadata[..], &length, b"PAR1"].concat();
+        assert!(refused("a.parquet", &file, &rate(1.0)).starts_with("a.parquet: "));
+    }
+}

@@ -108,7 +108,7 @@ impl Catalogue {
 
     fn add(&mut self, index: usize, entry: &ArrayEntry, variable: Option<&str>, units_in_names: bool) {
         let layout = ArrayLayout::of_shape(&entry.shape, entry.first_runs_fastest);
-        let layout = entry.numbers.clone().and_then(|_| layout);
+        let layout = entry.numbers.clone().and(layout);
         let name = short_name(&entry.name, variable);
         let label = |name: &str| Label {
             raw: name.to_string(),

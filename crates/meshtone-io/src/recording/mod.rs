@@ -20,6 +20,7 @@ mod number;
 mod numpy;
 mod options;
 mod parquet_check;
+mod parquet_depth;
 mod parquet_file;
 mod rate;
 mod selection;

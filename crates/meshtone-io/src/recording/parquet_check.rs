@@ -2,6 +2,11 @@
 
 use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData};
 
+/// Bytes of samples that a byte of a file may at most stand for, as pages may repeat a number any number of times.
+const MAX_COMPRESSION: u64 = 4096;
+/// Bytes of samples that any file may have.
+const ALWAYS_BYTES: u64 = 1 << 30;
+
 /// Finds what is impossible in the metadata.
 ///
 /// # Arguments
@@ -22,6 +27,11 @@ pub(super) fn check(metadata: &ParquetMetaData, file_bytes: u64) -> Result<(), S
     if rows != metadata.file_metadata().num_rows() {
         let stated = metadata.file_metadata().num_rows();
         return Err(format!("it states {stated} rows, but its row groups have {rows}"));
+    }
+    let columns = metadata.file_metadata().schema_descr().num_columns();
+    let bytes = (rows as u64).saturating_mul(8 * columns as u64);
+    if bytes > file_bytes.saturating_mul(MAX_COMPRESSION).max(ALWAYS_BYTES) {
+        return Err(format!("it states {rows} rows, which is not possible in {file_bytes} bytes"));
     }
     Ok(())
 }

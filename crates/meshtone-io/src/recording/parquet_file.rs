@@ -1,6 +1,7 @@
 //! Parquet, of whatever program; that of `meshtone simulate` states units and rate in its metadata.
 
 use std::fs::File;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use arrow::array::{Array, ArrayRef, AsArray};
@@ -15,9 +16,10 @@ use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use parquet::file::metadata::FileMetaData;
 
 use super::assemble::{Parts, assemble};
-use super::error::{broken, unreadable};
+use super::error::{broken, read_failed, unreadable};
 use super::label::Label;
 use super::parquet_check::check;
+use super::parquet_depth::is_too_deep;
 use super::rate::StatedRate;
 use super::selection::select;
 use super::{Position, ReadRecordingError, Recording, RecordingOptions};
@@ -30,12 +32,28 @@ const ROWS_AT_ONCE: usize = 1 << 14;
 const USUAL_COMPRESSION: u64 = 16;
 
 /// Reads a recording from Parquet.
+///
+/// The `parquet` crate panics where a page contradicts the metadata, which no check finds before it is decoded; so
+/// its panics are caught. Nothing but what is dropped with them has changed by then.
 pub(super) fn read(
     path: &Path,
     file: File,
     options: &RecordingOptions,
 ) -> Result<Recording, ReadRecordingError> {
+    let result = catch_unwind(AssertUnwindSafe(|| decode(path, file, options)));
+    result.unwrap_or_else(|panic| {
+        let message = panic.downcast_ref::<String>().map(String::as_str);
+        let message = message.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("unknown");
+        Err(broken(path, FORMAT, format!("its pages cannot be decoded ({message})")))
+    })
+}
+
+fn decode(path: &Path, mut file: File, options: &RecordingOptions) -> Result<Recording, ReadRecordingError> {
     let file_bytes = file.metadata().map_err(|source| unreadable(path, source))?.len();
+    let too_deep = is_too_deep(&mut file, file_bytes).map_err(|error| read_failed(path, FORMAT, error))?;
+    if too_deep {
+        return Err(broken(path, FORMAT, "its list of columns is damaged, or nested more than 64 deep"));
+    }
     let builder =
         ParquetRecordBatchReaderBuilder::try_new(file).map_err(|error| broken(path, FORMAT, error))?;
     check(builder.metadata(), file_bytes).map_err(|problem| broken(path, FORMAT, problem))?;

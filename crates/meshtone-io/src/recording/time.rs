@@ -2,7 +2,7 @@
 //!
 //! The times are compared with the straight line through them (least squares). They may deviate by a hundredth
 //! of the interval, by what floating point makes of large times, and by half the step to which they are rounded
-//! in the file: 50 kS/s with four decimals of a second are ten equal times in a row, and uniform none the less.
+//! in the file: 50 kS/s with four decimals of a second are five equal times in a row, and uniform none the less.
 //! That step is found from the numbers themselves.
 
 use std::path::Path;
