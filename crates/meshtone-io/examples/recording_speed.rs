@@ -23,6 +23,9 @@ use peak_alloc::PeakAlloc;
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
+type Written = Result<(), Box<dyn Error>>;
+type WriteFile = fn(&Path) -> Written;
+
 const SAMPLES: usize = 3_000_000;
 const CHANNELS: usize = 4;
 const RATE_HZ: f64 = 50_000.0;
@@ -36,9 +39,9 @@ fn sample(index: usize, channel: usize) -> f64 {
     f64::from((state >> 48) as i16) / 32768.0 * 10.0
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> Written {
     let folder = tempfile::tempdir()?;
-    let write: [(&str, fn(&Path) -> Result<(), Box<dyn Error>>); 8] = [
+    let write: [(&str, WriteFile); 8] = [
         ("time.csv", |path| text(path, true, ",", 6)),
         ("plain.csv", |path| text(path, false, ",", 6)),
         ("all digits.csv", |path| text(path, true, ",", 17)),
@@ -82,7 +85,7 @@ fn column(channel: usize) -> Vec<f64> {
     (0..SAMPLES).map(|index| sample(index, channel)).collect()
 }
 
-fn text(path: &Path, time: bool, separator: &str, decimals: usize) -> Result<(), Box<dyn Error>> {
+fn text(path: &Path, time: bool, separator: &str, decimals: usize) -> Written {
     let mut to = BufWriter::new(File::create(path)?);
     writeln!(to, "{}a,b,c,d", if time { "time_s," } else { "" })?;
     for index in 0..SAMPLES {
@@ -98,7 +101,7 @@ fn text(path: &Path, time: bool, separator: &str, decimals: usize) -> Result<(),
     Ok(to.flush()?)
 }
 
-fn parquet(path: &Path) -> Result<(), Box<dyn Error>> {
+fn parquet(path: &Path) -> Written {
     let time = (0..SAMPLES).map(|index| index as f64 / RATE_HZ).collect();
     let columns = [("time", time), ("a", column(0)), ("b", column(1)), ("c", column(2)), ("d", column(3))];
     let columns = columns.map(|(name, column)| (name, Arc::new(Float64Array::from(column)) as ArrayRef));
@@ -109,7 +112,7 @@ fn parquet(path: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn npz(path: &Path) -> Result<(), Box<dyn Error>> {
+fn npz(path: &Path) -> Written {
     let mut archive = NpzWriter::new_compressed(BufWriter::new(File::create(path)?));
     archive.add_array("data", &table())?;
     archive.add_array("fs", &ndarray::arr0(RATE_HZ))?;
@@ -118,7 +121,7 @@ fn npz(path: &Path) -> Result<(), Box<dyn Error>> {
 }
 
 /// One compressed struct of four arrays and the rate, as MATLAB saves it.
-fn mat(path: &Path) -> Result<(), Box<dyn Error>> {
+fn mat(path: &Path) -> Written {
     let element = |kind: u32, data: &[u8]| {
         let mut bytes = [kind.to_le_bytes(), (data.len() as u32).to_le_bytes()].concat();
         bytes.extend_from_slice(data);
@@ -150,7 +153,7 @@ fn mat(path: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn wav(path: &Path) -> Result<(), Box<dyn Error>> {
+fn wav(path: &Path) -> Written {
     let sample_format = hound::SampleFormat::Float;
     let spec = hound::WavSpec { channels: 4, sample_rate: 50_000, bits_per_sample: 32, sample_format };
     let mut writer = hound::WavWriter::create(path, spec)?;

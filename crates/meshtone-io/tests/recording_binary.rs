@@ -172,6 +172,35 @@ fn archives_are_read() {
     }
 }
 
+#[test]
+fn changed_numbers_in_an_archive_are_noticed() {
+    let bytes = npz(false);
+    let number = 59.0_f64.to_le_bytes();
+    let at = bytes.windows(8).position(|window| window == number).unwrap();
+    let mut changed = bytes.clone();
+    changed[at] ^= 1;
+    let message = refused("a.npz", &changed, &defaults());
+    assert!(message.contains("array bench: ") && message.contains("checksum"), "{message}");
+}
+
+#[test]
+fn the_fields_of_a_structured_array_are_columns() {
+    let header = "{'descr': [('time', '<f8'), ('note', '|S2'), ('a [g]', '<f4')], 'fortran_order': False, \
+                  'shape': (3,), }\n";
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((header.len() as u16).to_le_bytes());
+    bytes.extend(header.as_bytes());
+    for (time, sample) in [(0.0_f64, 1.5_f32), (0.5, -2.0), (1.0, 3.0)] {
+        bytes.extend(time.to_le_bytes());
+        bytes.extend(b"xy");
+        bytes.extend(sample.to_le_bytes());
+    }
+    let recording = read("a.npy", &bytes, &defaults()).unwrap();
+    assert_eq!((recording.sampling_rate_hz, names(&recording)), (2.0, vec!["a"]));
+    assert_eq!(recording.channels[0].unit.as_deref(), Some("g"));
+    assert_eq!(recording.channels[0].samples, [1.5, -2.0, 3.0]);
+}
+
 fn wav(spec: WavSpec, write: impl Fn(&mut WavWriter<&mut Cursor<Vec<u8>>>)) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
     let mut writer = WavWriter::new(&mut bytes, spec).unwrap();

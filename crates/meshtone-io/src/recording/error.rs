@@ -270,7 +270,9 @@ pub(super) fn broken(path: &Path, format: &'static str, problem: impl fmt::Displ
 pub(super) fn read_failed(path: &Path, format: &'static str, error: io::Error) -> ReadRecordingError {
     match error.kind() {
         io::ErrorKind::UnexpectedEof => broken(path, format, "it ends too early"),
-        io::ErrorKind::InvalidData | io::ErrorKind::InvalidInput => broken(path, format, error),
+        io::ErrorKind::InvalidData | io::ErrorKind::InvalidInput | io::ErrorKind::Other => {
+            broken(path, format, error)
+        }
         _ => unreadable(path, error),
     }
 }

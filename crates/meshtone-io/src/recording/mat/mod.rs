@@ -35,10 +35,7 @@ pub(super) fn read(
     options: &RecordingOptions,
 ) -> Result<Recording, ReadRecordingError> {
     let file_bytes = file.metadata().map_err(|source| unreadable(path, source))?.len();
-    let failed = |error: io::Error| match error.kind() {
-        io::ErrorKind::Other => broken(path, FORMAT, error),
-        _ => read_failed(path, FORMAT, error),
-    };
+    let failed = |error: io::Error| read_failed(path, FORMAT, error);
     let walk = walk(path, &file, file_bytes)?;
     let big_endian = walk.big_endian;
     let (entries, places): (Vec<ArrayEntry>, Vec<Place>) = walk.arrays.into_iter().unzip();

@@ -8,7 +8,7 @@ mod header;
 mod literal;
 
 use std::fs::File;
-use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use zip::ZipArchive;
@@ -84,7 +84,9 @@ pub(super) fn read_npz(
             return Err(broken(path, NPZ, "it changes while it is read"));
         }
         let numbers = stored.read(&mut from, layout, numbers, wanted, present);
-        numbers.map_err(|error| read_failed(path, NPZ, error))
+        // The checksum is compared at the end of the array.
+        let whole = numbers.and_then(|numbers| io::copy(&mut from, &mut io::sink()).map(|_| numbers));
+        whole.map_err(|error| in_array(path, &entries[index].name, error))
     })?;
     let (labels, stated) = (&catalogue.labels, &catalogue.stated);
     assemble(Parts { path, labels, selection: &selection, samples, stated }, options)
@@ -126,12 +128,15 @@ fn survey(
     for index in 0..archive.len() {
         let mut file = archive.by_index(index).map_err(|error| zip_failed(path, error))?;
         let Some(name) = file.name().strip_suffix(".npy").map(str::to_string) else { continue };
-        let header = NpyHeader::read(&mut file).map_err(|error| read_failed(path, NPZ, error))?;
-        let single = single(&header, &mut file).map_err(|error| read_failed(path, NPZ, error))?;
+        let header = NpyHeader::read(&mut file);
+        let header = header.map_err(|error| in_array(path, &name, error))?;
+        let single = single(&header, &mut file).map_err(|error| in_array(path, &name, error))?;
         found.push((name, index, header, single));
     }
     if found.is_empty() {
-        let problem = "is a ZIP archive, but holds no NumPy array (.npy)".to_string();
+        let problem = "is a ZIP archive, but holds no NumPy array (.npy); unpack it, or save it as CSV if it is a table of \
+                       Excel's (.xlsx)"
+            .to_string();
         return Err(ReadRecordingError::Empty { path: path.to_path_buf(), problem });
     }
     Ok(found)
@@ -197,6 +202,14 @@ fn check_size(
         needed.map_or("more bytes than any file has".to_string(), |needed| format!("{needed} bytes"));
     let shape = shape_text(&header.shape);
     Err(broken(path, format, format!("an array of shape {shape} takes {needed}, but there are {there}")))
+}
+
+fn in_array(path: &Path, name: &str, error: io::Error) -> ReadRecordingError {
+    let problem = match error.kind() {
+        io::ErrorKind::UnexpectedEof => "it ends too early".to_string(),
+        _ => error.to_string(),
+    };
+    broken(path, NPZ, format!("array {name}: {problem}"))
 }
 
 fn zip_failed(path: &Path, error: ZipError) -> ReadRecordingError {
