@@ -173,6 +173,41 @@ fn archives_are_read() {
 }
 
 #[test]
+fn a_stated_rate_and_a_time_array_must_agree() {
+    let with_rate = |rate_hz: f64| {
+        let mut bytes = Cursor::new(Vec::new());
+        let mut archive = NpzWriter::new(&mut bytes);
+        archive.add_array("t", &Array1::from_shape_fn(100, |index| 3.0 + index as f64 / 1000.0)).unwrap();
+        archive.add_array("a", &Array1::from_elem(100, 1.0)).unwrap();
+        archive.add_array("sampling_rate_khz", &arr0(rate_hz / 1000.0)).unwrap();
+        archive.finish().unwrap();
+        bytes.into_inner()
+    };
+    let recording = read("a.npz", &with_rate(1000.0), &defaults()).unwrap();
+    assert_eq!((recording.sampling_rate_hz, recording.start_s, names(&recording)), (1000.0, 3.0, vec!["a"]));
+    assert_eq!((recording.duration_s(), recording.time_s(10)), (0.1, 3.01));
+    let message = refused("a.npz", &with_rate(2000.0), &defaults());
+    assert!(message.contains("sampling_rate_khz says a sampling rate of 2000 S/s"), "{message}");
+    assert!(message.contains("time column t says 1000 S/s; give the sampling rate"), "{message}");
+    assert_eq!(read("a.npz", &with_rate(2000.0), &rate(50.0)).unwrap().sampling_rate_hz, 50.0);
+    assert!(refused("a.npz", &with_rate(-1.0), &defaults()).contains("must be above 0"));
+}
+
+#[test]
+fn channels_of_unequal_length_are_named() {
+    let mut bytes = Cursor::new(Vec::new());
+    let mut archive = NpzWriter::new(&mut bytes);
+    archive.add_array("a", &Array1::from_elem(100, 1.0)).unwrap();
+    archive.add_array("b", &Array1::from_elem(99, 1.0)).unwrap();
+    archive.finish().unwrap();
+    let message = refused("a.npz", &bytes.into_inner(), &rate(1.0));
+    assert!(
+        message.ends_with("(option channels, or variable): a (100 samples), b (99 samples)"),
+        "{message}"
+    );
+}
+
+#[test]
 fn changed_numbers_in_an_archive_are_noticed() {
     let bytes = npz(false);
     let number = 59.0_f64.to_le_bytes();

@@ -132,7 +132,10 @@ fn bad_lines_are_named() {
             "line 4 has 1 cells, but the lines above it have 2; mend or remove it (if the file ends",
         ),
         ("a,b\n1,2\n3,x4\n5,6\n", "line 3, column b: `x4` is no number; mend it, or choose other columns"),
-        ("a;b\n1;2\n3;4\n5;6\n7;8,5\n", "line 5, column b: `8,5` is no number"),
+        (
+            "a;b\n1;2.5\n3;4.5\n5;6.5\n7;8,5\n",
+            "line 5, column b: `8,5` is no number; the first lines are read with",
+        ),
         ("a\n1\n\n3\n", "line 3 of column a is empty"),
         ("a,b\n", "holds no line of numbers"),
     ];

@@ -95,7 +95,9 @@ fn split_unit(raw: &str) -> Option<(&str, Option<&str>)> {
         Some((name.trim_end(), unit.trim()))
     };
     let (name, unit) = bracketed('[', ']')
-        .or_else(|| bracketed('(', ')').filter(|(_, unit)| unit.is_empty() || is_unit(unit)))
+        .or_else(|| {
+            bracketed('(', ')').filter(|(_, unit)| unit.is_empty() || (!unit.contains(')') && is_unit(unit)))
+        })
         .or_else(|| parenthesised_with_inner(raw))?;
     (!name.is_empty()).then_some((name, Some(unit).filter(|unit| !matches!(*unit, "" | "-"))))
 }

@@ -81,7 +81,8 @@ pub(super) fn timing(
     let sampling_noise = 1.0 + 4.0 / (count as f64).sqrt();
     // Where rounding is finer than the interval, a missing sample shows in any case, so that room can be left
     // for the slow beat between the interval and the rounding step.
-    let share = if resolution < 0.5 * line.interval { 0.75 } else { 0.5 };
+    // A little more than half a step otherwise: ties are rounded away from 0, on both sides of it.
+    let share = if resolution < 0.5 * line.interval { 0.75 } else { 0.52 };
     let allowed = share * sampling_noise * resolution + JITTER * line.interval + rounding;
     if line.largest_deviation > allowed {
         return Err(ReadRecordingError::NonUniformTime {
@@ -150,8 +151,14 @@ fn steps(times: &[f64]) -> Steps {
 /// The step to which the times are rounded; 0 where they are as exact as numbers are.
 fn resolution(times: &[f64], largest: f64, steps: &Steps) -> f64 {
     let found = decimal_step(times, largest).unwrap_or_else(|| single_precision_step(times, largest));
-    let own_grid = steps.alike >= ALIKE && (steps.alike == 1.0 || found >= 0.5 * steps.median);
-    if own_grid { 0.0 } else { found }
+    if steps.alike == 1.0 {
+        // On a grid of their own; single precision makes even those steps differ a little.
+        found.min((steps.worst - steps.median).abs())
+    } else if steps.alike >= ALIKE && found >= 0.5 * steps.median {
+        0.0
+    } else {
+        found
+    }
 }
 
 /// 10 to the power of minus the decimals, of the times in the largest decade (smaller ones may have more).

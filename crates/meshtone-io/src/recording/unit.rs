@@ -1,10 +1,10 @@
 //! Units, where they matter: whether a word in parentheses is one, time and voltage.
 
 /// Symbols that measurements come in. What follows a prefix is in [`PREFIXED`].
-const PLAIN: [&str; 32] = [
+const PLAIN: [&str; 34] = [
     "%", "°", "°C", "°F", "deg", "degC", "rad", "rev", "rpm", "RPM", "U/min", "1/min", "min", "h", "dB",
     "bar", "mbar", "psi", "in", "ips", "ft", "lb", "lbf", "kgf", "count", "counts", "EU", "G", "gn", "g_n",
-    "sec", "mil",
+    "sec", "mil", "Nm", "kNm",
 ];
 /// Symbols that may have a prefix.
 const PREFIXED: [&str; 15] = ["m", "s", "g", "V", "A", "N", "Hz", "Pa", "W", "J", "K", "C", "Ohm", "Ω", "S"];
