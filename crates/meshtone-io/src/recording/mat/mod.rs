@@ -1,0 +1,129 @@
+//! MATLAB's MAT-files of version 5 (which `save` calls v6 and v7).
+//!
+//! A file is a list of elements, each a type, a length and as many bytes; an array is an element of elements, and
+//! so are structs and cell arrays of arrays. Each variable may be compressed. The file is walked twice: first for
+//! the names, shapes and places of all arrays, then for the samples of those that are wanted, so that nothing
+//! else is ever held in memory.
+
+mod class;
+mod source;
+mod walk;
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+use self::source::{Source, Variable, invalid, padding};
+use self::walk::{MATRIX, Place, Walk};
+use super::array::read_channels;
+use super::assemble::{Parts, assemble};
+use super::catalogue::{ArrayEntry, Catalogue};
+use super::error::{broken, read_failed, unreadable};
+use super::selection::select;
+use super::{ReadRecordingError, Recording, RecordingOptions};
+
+const FORMAT: &str = "MAT";
+const HEADER_BYTES: u64 = 128;
+const TAG_BYTES: u64 = 8;
+/// The type of an element that is a compressed array.
+const COMPRESSED: u32 = 15;
+
+/// Reads a recording from a MAT-file.
+pub(super) fn read(
+    path: &Path,
+    file: File,
+    options: &RecordingOptions,
+) -> Result<Recording, ReadRecordingError> {
+    let file_bytes = file.metadata().map_err(|source| unreadable(path, source))?.len();
+    let failed = |error: io::Error| read_failed(path, FORMAT, error);
+    let walk = walk(path, &file, file_bytes)?;
+    let big_endian = walk.big_endian;
+    let (entries, places): (Vec<ArrayEntry>, Vec<Place>) = walk.arrays.into_iter().unzip();
+    let catalogue = Catalogue::new(path, &entries, options, false)?;
+    let selection = select(path, &catalogue.labels, options)?;
+    let mut open: Option<(Variable, Source)> = None;
+    let samples = catalogue.read(&selection.wanted(), &entries, |index, layout, numbers, channels| {
+        let Place { variable, offset, bytes } = places[index];
+        let mut source = match open.take() {
+            Some((same, source)) if same == variable && source.at <= offset => source,
+            other => {
+                other.map_or(Ok(()), |(_, done)| done.finish()).map_err(failed)?;
+                Source::open(&file, variable, big_endian).map_err(failed)?
+            }
+        };
+        source.skip_to(offset).map_err(failed)?;
+        let samples = read_channels(&mut source, layout, numbers.kind, numbers.big_endian, channels, bytes)
+            .map_err(failed)?;
+        open = Some((variable, source));
+        Ok(samples)
+    })?;
+    open.map_or(Ok(()), |(_, done)| done.finish()).map_err(failed)?;
+    let stated = &catalogue.stated;
+    assemble(Parts { path, labels: &catalogue.labels, selection: &selection, samples, stated }, options)
+}
+
+/// Finds all arrays of the file.
+fn walk(path: &Path, mut file: &File, file_bytes: u64) -> Result<Walk, ReadRecordingError> {
+    let mut header = [0; HEADER_BYTES as usize];
+    file.read_exact(&mut header).map_err(|error| read_failed(path, FORMAT, error))?;
+    let big_endian = match header {
+        [.., 0, 1, b'I', b'M'] => false,
+        [.., 1, 0, b'M', b'I'] => true,
+        _ => {
+            let what = "a MATLAB file of another version than 5 (version 4, perhaps)".to_string();
+            let how = "save it again in MATLAB with `s = load('FILE.mat'); save('FILE7.mat', '-struct', 's', '-v7')`, \
+                       or in Python with scipy.io.savemat(…, format='5')";
+            return Err(ReadRecordingError::Convert { path: path.to_path_buf(), what, how: how.to_string() });
+        }
+    };
+    let mut walk = Walk::new(big_endian);
+    let mut at = HEADER_BYTES;
+    while at < file_bytes {
+        let length = element(&mut walk, file, at, file_bytes - at).map_err(|error| match error.kind() {
+            io::ErrorKind::UnexpectedEof => broken(
+                path,
+                FORMAT,
+                format!("the variable at byte {at} ends too early; is the file cut off?"),
+            ),
+            io::ErrorKind::InvalidData | io::ErrorKind::InvalidInput | io::ErrorKind::Other => {
+                broken(path, FORMAT, format!("the variable at byte {at}: {error}; is the file cut off?"))
+            }
+            _ => unreadable(path, error),
+        })?;
+        at += length;
+    }
+    if walk.arrays.is_empty() {
+        let problem = "holds no variable".to_string();
+        return Err(ReadRecordingError::Empty { path: path.to_path_buf(), problem });
+    }
+    Ok(walk)
+}
+
+/// Finds the arrays of one variable, and gives the bytes of its element.
+fn element(walk: &mut Walk, file: &File, at: u64, left: u64) -> io::Result<u64> {
+    let whole = Variable { at, bytes: left, compressed: false };
+    let tag = Source::open(file, whole, walk.big_endian)?.tag(left)?;
+    let variable = Variable { at: at + TAG_BYTES, bytes: tag.bytes, compressed: tag.kind == COMPRESSED };
+    let bytes = match tag.kind {
+        _ if tag.inline.is_some() => return Err(invalid("it is no array")),
+        MATRIX => {
+            let mut source = Source::open(file, variable, walk.big_endian)?;
+            walk.matrix(&mut source, variable, tag.bytes, None, 0)?;
+            tag.bytes + padding(tag.bytes)
+        }
+        COMPRESSED => {
+            let mut source = Source::open(file, variable, walk.big_endian)?;
+            let inner = source.tag(source.end)?;
+            if inner.kind != MATRIX || inner.inline.is_some() {
+                return Err(invalid(format!(
+                    "a compressed element of type {}; must be an array",
+                    inner.kind
+                )));
+            }
+            walk.matrix(&mut source, variable, inner.bytes, None, 0)?;
+            tag.bytes
+        }
+        other => return Err(invalid(format!("an element of type {other}; must be an array"))),
+    };
+    Ok(TAG_BYTES + bytes)
+}

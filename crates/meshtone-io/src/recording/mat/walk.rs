@@ -1,0 +1,217 @@
+//! All arrays of a MAT-file, without their samples.
+
+use std::io;
+
+use super::super::array::read_one;
+use super::super::catalogue::{ArrayEntry, MAX_ARRAYS, Numbers};
+use super::class::{Class, stored_kind};
+use super::source::{Source, Variable, invalid, padding};
+
+/// The type of an element that is an array.
+pub(super) const MATRIX: u32 = 14;
+/// Structs and cells inside each other beyond which a file is none that recordings come in.
+const MAX_DEPTH: usize = 32;
+const MAX_DIMENSIONS: u64 = 32;
+const MAX_NAME_BYTES: u64 = 4096;
+/// Bytes of all field names of one struct.
+const MAX_FIELD_BYTES: u64 = 1 << 20;
+/// Bytes of the names of all arrays together.
+const MAX_NAMES_BYTES: usize = 1 << 24;
+const COMPLEX: u32 = 0x0800;
+
+/// Where an array's real numbers are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Place {
+    pub variable: Variable,
+    /// Bytes of the variable before the numbers.
+    pub offset: u64,
+    pub bytes: u64,
+}
+
+/// Collects the arrays of a file.
+pub(super) struct Walk {
+    pub big_endian: bool,
+    pub arrays: Vec<(ArrayEntry, Place)>,
+    names_bytes: usize,
+}
+
+impl Walk {
+    pub(super) fn new(big_endian: bool) -> Walk {
+        Walk { big_endian, arrays: Vec::new(), names_bytes: 0 }
+    }
+
+    /// Collects the arrays of one array element, which stands behind its tag.
+    ///
+    /// # Arguments
+    /// * `source` - the variable's elements
+    /// * `bytes` - of the array element
+    /// * `name` - path to it; its own name if none
+    /// * `depth` - structs and cells around it
+    pub(super) fn matrix(
+        &mut self,
+        source: &mut Source,
+        variable: Variable,
+        bytes: u64,
+        name: Option<String>,
+        depth: usize,
+    ) -> io::Result<()> {
+        if bytes == 0 {
+            return Ok(());
+        }
+        if depth > MAX_DEPTH {
+            return Err(invalid(format!("its structs and cells are nested more than {MAX_DEPTH} deep")));
+        }
+        let end = source.at + bytes;
+        let flags = source.u32_data("array flags", 2, end)?.first().copied();
+        let flags = flags.ok_or_else(|| invalid("an array without flags"))?;
+        let class = Class::of(flags & 0xff)?;
+        let shape = if matches!(class, Class::Opaque) {
+            vec![0]
+        } else {
+            let lengths = source.u32_data("array dimensions", MAX_DIMENSIONS, end)?;
+            lengths.into_iter().map(u64::from).collect()
+        };
+        let own = source.data("an array name", MAX_NAME_BYTES, end)?;
+        let name = name.unwrap_or_else(|| text(&own));
+        // MATLAB keeps data of its own in a variable without a name.
+        if !name.is_empty() {
+            let inside = Inside { variable, end, name, depth };
+            match class {
+                Class::Cell => self.cells(source, inside)?,
+                Class::Struct => self.fields(source, inside, &shape)?,
+                Class::Object => {
+                    source.data("a class name", MAX_NAME_BYTES, end)?;
+                    self.fields(source, inside, &shape)?;
+                }
+                Class::Numbers(type_name) => self.numbers(source, inside, shape, type_name, flags)?,
+                Class::Text => self.push(inside, shape, "char", Err("text".to_string()), None, (0, 0))?,
+                Class::Sparse => {
+                    let problem = "a sparse array; save it with full(…)".to_string();
+                    self.push(inside, shape, "sparse", Err(problem), None, (0, 0))?;
+                }
+                Class::Opaque | Class::Function => {
+                    let problem = "a MATLAB object (table, timetable, string, function or alike); save its columns \
+                                   as arrays, for instance with s = table2struct(t, 'ToScalar', true)";
+                    self.push(inside, shape, "object", Err(problem.to_string()), None, (0, 0))?;
+                }
+            }
+        }
+        source.skip_to(end)
+    }
+
+    fn cells(&mut self, source: &mut Source, inside: Inside) -> io::Result<()> {
+        let mut number = 1_u64;
+        while source.at < inside.end {
+            let name = format!("{}{{{number}}}", inside.name);
+            self.child(source, &inside, name)?;
+            number += 1;
+        }
+        Ok(())
+    }
+
+    fn fields(&mut self, source: &mut Source, inside: Inside, shape: &[u64]) -> io::Result<()> {
+        let length = source.u32_data("a length of field names", 1, inside.end)?.first().copied();
+        let length = length.filter(|length| (1..=MAX_NAME_BYTES as u32).contains(length));
+        let length = length.ok_or_else(|| invalid("a struct whose field names have no possible length"))?;
+        let names = source.data("field names", MAX_FIELD_BYTES, inside.end)?;
+        let names: Vec<String> = names.chunks_exact(length as usize).map(text).collect();
+        if names.is_empty() {
+            return Ok(());
+        }
+        let single = shape.iter().all(|length| *length == 1);
+        let mut number = 0;
+        while source.at < inside.end {
+            let (element, field) = (number / names.len() + 1, &names[number % names.len()]);
+            let name = match single {
+                true => format!("{}.{field}", inside.name),
+                false => format!("{}({element}).{field}", inside.name),
+            };
+            self.child(source, &inside, name)?;
+            number += 1;
+        }
+        Ok(())
+    }
+
+    fn child(&mut self, source: &mut Source, inside: &Inside, name: String) -> io::Result<()> {
+        let tag = source.tag(inside.end)?;
+        if tag.kind != MATRIX || tag.inline.is_some() {
+            return Err(invalid(format!("{name} is an element of type {}; must be an array", tag.kind)));
+        }
+        self.matrix(source, inside.variable, tag.bytes, Some(name), inside.depth + 1)
+    }
+
+    fn numbers(
+        &mut self,
+        source: &mut Source,
+        inside: Inside,
+        shape: Vec<u64>,
+        type_name: &'static str,
+        flags: u32,
+    ) -> io::Result<()> {
+        let tag = source.tag(inside.end)?;
+        let kind = stored_kind(tag.kind).ok_or_else(|| {
+            invalid(format!("{} holds elements of type {}; must be numbers", inside.name, tag.kind))
+        })?;
+        let count = shape.iter().fold(1_u128, |count, length| count.saturating_mul(u128::from(*length)));
+        if count.saturating_mul(kind.size() as u128) != u128::from(tag.bytes) {
+            return Err(invalid(format!(
+                "{} announces {count} numbers, but has {} bytes of {}",
+                inside.name,
+                tag.bytes,
+                kind.name()
+            )));
+        }
+        let numbers = Numbers { kind, big_endian: self.big_endian };
+        // Few bytes stand in the tag itself, the last four of its eight.
+        let offset = source.at - if tag.inline.is_some() { 4 } else { 0 };
+        let single = match (count, tag.inline) {
+            (1, Some(data)) => Some(read_one(&mut &data[..], numbers)?),
+            (1, None) => Some(read_one(source, numbers)?),
+            _ => None,
+        };
+        let (numbers, single) = if flags & COMPLEX != 0 {
+            (Err("complex numbers".to_string()), None)
+        } else {
+            (Ok(numbers), single)
+        };
+        if tag.inline.is_none() {
+            let data_end = offset + tag.bytes;
+            source.skip_to((data_end + padding(tag.bytes)).min(inside.end))?;
+        }
+        self.push(inside, shape, type_name, numbers, single, (offset, tag.bytes))
+    }
+
+    fn push(
+        &mut self,
+        inside: Inside,
+        shape: Vec<u64>,
+        type_name: &str,
+        numbers: Result<Numbers, String>,
+        single: Option<f64>,
+        (offset, bytes): (u64, u64),
+    ) -> io::Result<()> {
+        self.names_bytes += inside.name.len();
+        if self.arrays.len() >= MAX_ARRAYS || self.names_bytes > MAX_NAMES_BYTES {
+            return Err(invalid(format!("it holds more than {MAX_ARRAYS} arrays, or very long names")));
+        }
+        let name = inside.name;
+        let type_name = type_name.to_string();
+        let entry = ArrayEntry { name, shape, first_runs_fastest: true, numbers, type_name, single };
+        self.arrays.push((entry, Place { variable: inside.variable, offset, bytes }));
+        Ok(())
+    }
+}
+
+/// What is known about an array before its content.
+struct Inside {
+    variable: Variable,
+    end: u64,
+    name: String,
+    depth: usize,
+}
+
+/// A name, up to its first zero.
+fn text(bytes: &[u8]) -> String {
+    let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
+    String::from_utf8_lossy(&bytes[..end]).into_owned()
+}

@@ -1,0 +1,173 @@
+//! Recordings: measured or simulated signals, out of whatever file they came in.
+//!
+//! [`read_recording`] opens CSV and other separated text, Parquet (also the one that `meshtone simulate`
+//! writes), NumPy's NPY and NPZ, MATLAB's MAT (version 5) and WAV, and gives one [`Recording`] whatever the
+//! format: channels with name, unit and samples, at one sampling rate. What is to be read, and what the file
+//! does not say itself, stands in [`RecordingOptions`].
+//!
+//! Nothing is guessed about the numbers: a cell that is empty or no number, time that is not uniform, or a file
+//! that ends early is a [`ReadRecordingError`] that names the place. Memory stays bounded by what the file
+//! really holds, whatever its headers claim.
+
+mod array;
+mod assemble;
+mod catalogue;
+mod error;
+mod format;
+mod label;
+mod mat;
+mod number;
+mod numpy;
+mod options;
+mod parquet_check;
+mod parquet_depth;
+mod parquet_file;
+mod rate;
+mod selection;
+mod text;
+mod time;
+mod unit;
+mod wav;
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+pub use error::{Position, ReadRecordingError};
+pub use format::RecordingFormat;
+pub use options::{
+    Calibration, ColumnChoice, DecimalSign, RecordingOptions, Separator, TextOptions, TimeColumn,
+};
+
+/// The file in a folder of results that is read for the folder.
+const SIGNALS_FILE: &str = "signals.parquet";
+
+/// One channel of a recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Channel {
+    /// Name, as the file has it, without the unit in brackets.
+    pub name: String,
+    /// Unit of the samples, where the file or the options say it.
+    pub unit: Option<String>,
+    /// (unit) The samples, all finite, at the recording's sampling rate.
+    pub samples: Vec<f64>,
+}
+
+/// Channels that were recorded together, at one constant sampling rate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// (S/s) Sampling rate of all channels.
+    pub sampling_rate_hz: f64,
+    /// (s) Time of the first sample; 0 where no time column was read.
+    pub start_s: f64,
+    /// The channels, at least one, all equally long.
+    pub channels: Vec<Channel>,
+    /// The file that was read.
+    pub source: PathBuf,
+    /// The scenario as TOML, where the file is one that `meshtone simulate` wrote.
+    pub scenario_toml: Option<String>,
+}
+
+impl Recording {
+    /// Samples of each channel.
+    pub fn len(&self) -> usize {
+        self.channels.first().map_or(0, |channel| channel.samples.len())
+    }
+
+    /// Whether there is no sample; [`read_recording`] never gives such a recording.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// (s) Duration, that of the last sample included.
+    pub fn duration_s(&self) -> f64 {
+        self.len() as f64 / self.sampling_rate_hz
+    }
+
+    /// (s) Time of a sample.
+    ///
+    /// # Arguments
+    /// * `index` - the sample, counted from 0
+    pub fn time_s(&self, index: usize) -> f64 {
+        self.start_s + index as f64 / self.sampling_rate_hz
+    }
+
+    /// The channel of a name, if there is one; the first of several.
+    ///
+    /// # Arguments
+    /// * `name` - its name, exactly
+    pub fn channel(&self, name: &str) -> Option<&Channel> {
+        self.channels.iter().find(|channel| channel.name == name)
+    }
+}
+
+/// Reads a recording.
+///
+/// # Arguments
+/// * `path` - the file; or a folder that `meshtone simulate` wrote, whose `signals.parquet` is read
+/// * `options` - what is read, and what the file does not say itself
+///
+/// The format is known by the file's first bytes, and by its ending where those decide nothing (text). The
+/// sampling rate is that of the options; else what the file states (WAV, our own signals, a number named
+/// `sampling_rate_hz`, `fs` or alike); else that of the time column. Where the file states a rate and has a time
+/// column too, the two must agree.
+///
+/// # Errors
+/// The file cannot be read, is of no known format, is broken or cut off; a column or variable does not exist;
+/// a sample is missing or not finite; time is not uniform; there is no sampling rate. Every message names the
+/// file, the place in it, and what to do.
+///
+/// ```
+/// use meshtone_io::recording::{RecordingOptions, read_recording};
+///
+/// let directory = tempfile::tempdir()?;
+/// let path = directory.path().join("run-up.csv");
+/// std::fs::write(&path, "time [s];acceleration [g]\n0,00;1,5\n0,01;-2,25\n0,02;0,5\n")?;
+///
+/// let recording = read_recording(&path, &RecordingOptions::default())?;
+/// assert_eq!(recording.sampling_rate_hz, 100.0);
+/// assert_eq!(recording.channels[0].name, "acceleration");
+/// assert_eq!(recording.channels[0].unit.as_deref(), Some("g"));
+/// assert_eq!(recording.channels[0].samples, [1.5, -2.25, 0.5]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// Columns are chosen by name or number; a sensitivity turns volts into what was measured:
+///
+/// ```
+/// use meshtone_io::recording::{Calibration, RecordingOptions, read_recording};
+///
+/// let directory = tempfile::tempdir()?;
+/// let path = directory.path().join("run.csv");
+/// std::fs::write(&path, "bearing,tacho\n0.10,5\n-0.20,0\n")?;
+///
+/// let options = RecordingOptions {
+///     channels: vec!["bearing".into()],
+///     sampling_rate_hz: Some(25_600.0),
+///     calibrations: vec![Calibration {
+///         channel: "bearing".into(),
+///         sensitivity_v_per_unit: Some(0.1),
+///         unit: Some("g".to_string()),
+///     }],
+///     ..RecordingOptions::default()
+/// };
+/// let recording = read_recording(&path, &options)?;
+/// assert_eq!(recording.channels.len(), 1);
+/// assert_eq!(recording.channels[0].samples, [1.0, -2.0]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn read_recording(path: &Path, options: &RecordingOptions) -> Result<Recording, ReadRecordingError> {
+    options.check()?;
+    let inside = path.join(SIGNALS_FILE);
+    let path = if path.is_dir() && inside.exists() { inside.as_path() } else { path };
+    let mut file = File::open(path).map_err(|source| error::unreadable(path, source))?;
+    let format = format::detect(path, &mut file, options.format)?;
+    options.check_format(format)?;
+    match format {
+        RecordingFormat::Text => text::read(path, file, options),
+        RecordingFormat::Parquet => parquet_file::read(path, file, options),
+        RecordingFormat::Npy => numpy::read_npy(path, file, options),
+        RecordingFormat::Npz => numpy::read_npz(path, file, options),
+        RecordingFormat::Mat => mat::read(path, file, options),
+        RecordingFormat::Wav => wav::read(path, file, options),
+    }
+}

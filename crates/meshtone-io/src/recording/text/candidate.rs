@@ -1,0 +1,175 @@
+//! Ways to read the first lines of a text file, and which of them does best.
+
+use super::cells::{Cell, Dialect, decoded};
+use super::head::{Line, is_comment, label};
+use crate::recording::label::Label;
+use crate::recording::{DecimalSign, Separator, TextOptions};
+
+/// Lines, the last of those, by which separator and decimal sign are judged.
+const JUDGED: usize = 32;
+/// What is written for a missing number.
+const MISSING: [&str; 11] = ["-", "--", "nan", "n/a", "na", "#n/a", "null", "none", "error", "?", "inf"];
+
+const QUOTED_COMMAS: Dialect = Dialect { separator: Some(Separator::Comma), decimal_comma: true };
+
+/// One way to read the lines, and how well it does.
+pub(super) struct Candidate {
+    pub dialect: Dialect,
+    pub columns: usize,
+    pub trailing: bool,
+    /// For each column, whether the judged lines hold numbers there.
+    numeric: Vec<bool>,
+    /// Nothing but numbers; names as many as columns; how many numbers.
+    score: (bool, bool, usize),
+}
+
+/// The way that reads the lines best.
+pub(super) fn best(content: &[Line], options: &TextOptions) -> Option<Candidate> {
+    use Separator::{Bar, Comma, Semicolon, Tab, Whitespace};
+    let separators = match options.separator {
+        Some(separator) => vec![Some(separator), None],
+        None => vec![Some(Tab), Some(Semicolon), Some(Comma), Some(Bar), Some(Whitespace), None],
+    };
+    let decimals: &[bool] = match options.decimal_sign {
+        None => &[false, true],
+        Some(DecimalSign::Point) => &[false],
+        Some(DecimalSign::Comma) => &[true],
+    };
+    let mut best: Option<Candidate> = None;
+    for separator in separators {
+        for decimal_comma in decimals {
+            let candidate = Candidate::of(content, Dialect { separator, decimal_comma: *decimal_comma });
+            // The first of equals: the separators come in the order of their likelihood.
+            if let Some(candidate) = candidate
+                && best.as_ref().is_none_or(|best| candidate.score > best.score)
+            {
+                best = Some(candidate);
+            }
+        }
+    }
+    best
+}
+
+impl Candidate {
+    fn of(content: &[Line], dialect: Dialect) -> Option<Candidate> {
+        // Names and units are no numbers, if there may be such lines.
+        let before = if content.len() > 3 { 2 } else { content.len() - 1 };
+        let judged = &content[before.max(content.len().saturating_sub(JUDGED))..];
+        let rows: Vec<Vec<&[u8]>> = judged.iter().map(|line| dialect.cells(line.text)).collect();
+        let first = dialect.cells(content[0].text);
+        // A comma that separates is no decimal sign, unless numbers are quoted.
+        if dialect == QUOTED_COMMAS && !rows.iter().flatten().any(|cell| cell.contains(&b',')) {
+            return None;
+        }
+        let all = usual_length(&rows, first.len());
+        let ends_empty =
+            |row: &Vec<&[u8]>| row.len() == all && row.last().is_some_and(|cell| cell.is_empty());
+        let trailing = all > 1 && rows.iter().all(ends_empty) && (first.len() < all || ends_empty(&first));
+        let columns = all - usize::from(trailing);
+        let kinds = rows.iter().flat_map(|row| row.iter().take(columns)).map(|cell| dialect.cell(cell));
+        let (mut numbers, mut texts) = (0, 0);
+        for kind in kinds {
+            match kind {
+                Cell::Number(_) => numbers += 1,
+                Cell::Text => texts += 1,
+                Cell::Empty => {}
+            }
+        }
+        let is_number = |row: &Vec<&[u8]>, column: usize| {
+            row.get(column).is_some_and(|cell| matches!(dialect.cell(cell), Cell::Number(_)))
+        };
+        let numeric = (0..columns).map(|column| {
+            let numbers = rows.iter().filter(|row| is_number(row, column)).count();
+            2 * numbers >= rows.len()
+        });
+        let numeric: Vec<bool> = numeric.collect();
+        let usable = if dialect.separator.is_none() { texts == 0 } else { columns > 1 };
+        let fits = first.len() == columns || (trailing && first.len() == all);
+        let score = (texts == 0, fits, numbers);
+        (usable && numeric.contains(&true)).then_some(Candidate {
+            dialect,
+            columns,
+            trailing,
+            numeric,
+            score,
+        })
+    }
+
+    /// The cells of a line, without the empty one behind a separator at the end.
+    pub(super) fn cells<'l>(&self, line: &'l [u8]) -> Vec<&'l [u8]> {
+        let mut cells = self.dialect.cells(line);
+        if self.trailing
+            && cells.len() == self.columns + 1
+            && cells.last().is_some_and(|cell| cell.is_empty())
+        {
+            cells.pop();
+        }
+        cells
+    }
+
+    /// Whether a line holds names: words, and at most whole numbers (of channels) behind the first.
+    pub(super) fn is_header(&self, line: &[u8]) -> bool {
+        let cells = self.cells(line);
+        let judged: Vec<&[u8]> = cells
+            .iter()
+            .enumerate()
+            .filter(|(column, _)| *self.numeric.get(*column).unwrap_or(&true))
+            .map(|(_, cell)| *cell)
+            .collect();
+        let kinds: Vec<Cell> = judged.iter().map(|cell| self.dialect.cell(cell)).collect();
+        let texts = kinds.iter().filter(|kind| **kind == Cell::Text).count();
+        let numbers = kinds.iter().filter(|kind| matches!(kind, Cell::Number(_))).count();
+        let only_counts = judged
+            .iter()
+            .zip(&kinds)
+            .all(|(cell, kind)| !matches!(kind, Cell::Number(_)) || cell.iter().all(u8::is_ascii_digit));
+        let all_missing = judged.iter().all(|cell| is_missing(cell));
+        only_counts && texts > 0 && !all_missing && (texts > numbers || kinds.first() == Some(&Cell::Text))
+    }
+
+    /// Whether two columns may as well be one with a decimal comma.
+    pub(super) fn may_be_one_number(&self, line: &[u8]) -> bool {
+        let line = line.trim_ascii();
+        let one = Dialect { separator: None, decimal_comma: true };
+        let commas = self.dialect.separator == Some(Separator::Comma) && self.columns == 2;
+        commas && line.contains(&b',') && matches!(one.cell(line), Cell::Number(_))
+    }
+
+    /// Whether the line behind the names holds units: no numbers, but 1 for no unit.
+    pub(super) fn is_unit_row(&self, line: &[u8]) -> bool {
+        let cells = self.cells(line);
+        let is_number = |cell: &[u8]| matches!(self.dialect.cell(cell), Cell::Number(_)) && !is_missing(cell);
+        let says_something = |cell: &[u8]| !is_missing(cell) && self.dialect.cell(cell) == Cell::Text;
+        cells.len() == self.columns
+            && cells.iter().any(|cell| says_something(cell))
+            && !cells.iter().any(|cell| is_number(cell) && *cell != b"1")
+    }
+
+    /// The names in a comment right above the numbers, as NumPy's `savetxt` writes them; numbers otherwise.
+    pub(super) fn names_in_comment(&self, lines: &[Line], first: Line) -> Vec<Label> {
+        let above = lines.iter().take_while(|line| line.number < first.number).last();
+        let comment = above.filter(|line| is_comment(line.text)).map(|line| {
+            let text = line.text.trim_ascii_start();
+            &text[text.iter().take_while(|byte| matches!(byte, b'#' | b'%')).count()..]
+        });
+        let names = comment.map(|comment| self.cells(comment)).unwrap_or_default();
+        let fits = names.len() == self.columns && self.columns > 1;
+        let are_words = names.iter().all(|name| self.dialect.cell(name) == Cell::Text);
+        if fits && are_words {
+            names.iter().enumerate().map(|(index, name)| label(index, &decoded(name))).collect()
+        } else {
+            (1..=self.columns).map(|number| Label::numbered("column", number)).collect()
+        }
+    }
+}
+
+fn is_missing(cell: &[u8]) -> bool {
+    cell.is_empty() || MISSING.contains(&decoded(cell).to_lowercase().as_str())
+}
+
+/// The length that most rows have; of equally frequent ones that of the first line, or the largest.
+fn usual_length(rows: &[Vec<&[u8]>], first: usize) -> usize {
+    let count = |length: usize| rows.iter().filter(|row| row.len() == length).count();
+    let lengths = rows.iter().map(Vec::len);
+    lengths.max_by_key(|length| (count(*length), *length == first, *length)).unwrap_or(1)
+}

@@ -1,0 +1,122 @@
+//! The cells of a line, and the numbers in them.
+
+use std::borrow::Cow;
+
+use crate::recording::Separator;
+
+/// How the cells of a text file are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Dialect {
+    /// `None` where there is one column only.
+    pub separator: Option<Separator>,
+    pub decimal_comma: bool,
+}
+
+/// What a cell holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Cell {
+    Number(f64),
+    Empty,
+    Text,
+}
+
+impl Dialect {
+    /// Splits a line into its cells, without blanks and quotes around them.
+    pub(super) fn cells<'l>(&self, line: &'l [u8]) -> Vec<&'l [u8]> {
+        match self.separator {
+            None => vec![unquoted(line.trim_ascii())],
+            Some(Separator::Whitespace) => {
+                let cells = line.split(u8::is_ascii_whitespace).filter(|cell| !cell.is_empty());
+                cells.map(unquoted).collect()
+            }
+            Some(separator) => split(line, byte_of(separator)),
+        }
+    }
+
+    /// What a cell holds.
+    pub(super) fn cell(&self, cell: &[u8]) -> Cell {
+        if cell.is_empty() {
+            return Cell::Empty;
+        }
+        let with_point = match (self.decimal_comma, cell.contains(&b','), cell.contains(&b'.')) {
+            (true, _, true) | (false, true, _) => return Cell::Text,
+            (true, true, false) => {
+                Cow::Owned(cell.iter().map(|byte| if *byte == b',' { b'.' } else { *byte }).collect())
+            }
+            _ => Cow::Borrowed(cell),
+        };
+        fast_float2::parse(with_point).map_or(Cell::Text, Cell::Number)
+    }
+}
+
+pub(super) fn byte_of(separator: Separator) -> u8 {
+    match separator {
+        Separator::Comma => b',',
+        Separator::Semicolon => b';',
+        Separator::Tab => b'\t',
+        Separator::Bar => b'|',
+        Separator::Whitespace => b' ',
+    }
+}
+
+/// Splits at a byte that is not within quotes.
+fn split(line: &[u8], separator: u8) -> Vec<&[u8]> {
+    let mut cells = Vec::new();
+    let mut start = 0;
+    let mut quoted = false;
+    for (at, byte) in line.iter().enumerate() {
+        if *byte == b'"' {
+            quoted = !quoted;
+        } else if *byte == separator && !quoted {
+            cells.push(unquoted(line[start..at].trim_ascii()));
+            start = at + 1;
+        }
+    }
+    cells.push(unquoted(line[start..].trim_ascii()));
+    cells
+}
+
+fn unquoted(cell: &[u8]) -> &[u8] {
+    let inner = cell.strip_prefix(b"\"").and_then(|rest| rest.strip_suffix(b"\""));
+    inner.map_or(cell, <[u8]>::trim_ascii)
+}
+
+/// Text in UTF-8, or else in Latin-1, which spreadsheets of Western Europe still write.
+pub(super) fn decoded(bytes: &[u8]) -> String {
+    let utf8 = std::str::from_utf8(bytes).map(str::to_string);
+    utf8.unwrap_or_else(|_| bytes.iter().map(|byte| char::from(*byte)).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Cell, Dialect, Separator, decoded};
+
+    fn dialect(separator: Separator, decimal_comma: bool) -> Dialect {
+        Dialect { separator: Some(separator), decimal_comma }
+    }
+
+    #[test]
+    fn lines_are_split() {
+        let commas = dialect(Separator::Comma, true);
+        assert_eq!(commas.cells(b" 1 , \"2,5\",,x \r\n"), [&b"1"[..], b"2,5", b"", b"x"]);
+        assert_eq!(commas.cell(b"2,5"), Cell::Number(2.5));
+        assert_eq!(dialect(Separator::Tab, false).cells(b"\t1\t\r\n"), [&b""[..], b"1", b""]);
+        assert_eq!(dialect(Separator::Whitespace, false).cells(b"  1 \t 2\n"), [&b"1"[..], b"2"]);
+    }
+
+    #[test]
+    fn numbers_are_told_from_text() {
+        let (point, comma) = (dialect(Separator::Semicolon, false), dialect(Separator::Semicolon, true));
+        assert_eq!(point.cell(b"-1.5e-3"), Cell::Number(-1.5e-3));
+        assert_eq!(point.cell(b"+2"), Cell::Number(2.0));
+        assert_eq!(comma.cell(b"-1,5E+3"), Cell::Number(-1500.0));
+        for text in ["1,5", "1.234,5", "1 5", "x", "-", "0x10", "1e"] {
+            assert_eq!(point.cell(text.as_bytes()), Cell::Text, "{text}");
+        }
+        for text in ["1.5", "1.234,5", "1,234,567"] {
+            assert_eq!(comma.cell(text.as_bytes()), Cell::Text, "{text}");
+        }
+        assert_eq!(point.cell(b""), Cell::Empty);
+        assert_eq!(decoded(b"\xb5m"), "µm");
+    }
+}

@@ -1,0 +1,201 @@
+//! The sampling rate out of a time column.
+//!
+//! The times are compared with the straight line through them (least squares). They may deviate by a hundredth
+//! of the interval, by what floating point makes of large times, and by half the step to which they are rounded
+//! in the file: 50 kS/s with four decimals of a second are five equal times in a row, and uniform none the less.
+//! That step is found from the numbers themselves.
+
+use std::path::Path;
+
+use super::ReadRecordingError;
+
+/// Part of the interval by which a time may deviate.
+const JITTER: f64 = 0.01;
+/// A rate that is less certain is none.
+const MAX_UNCERTAINTY: f64 = 1e-3;
+/// Decimals of a time beyond which it counts as exact; the number of digits in double precision is the limit.
+const MAX_DECIMALS: i32 = 15;
+/// Largest whole number up to which a double has digits to spare for telling it from its neighbours.
+const MAX_WHOLE: f64 = (1_u64 << 46) as f64;
+/// Steps that are alike, out of all, for times to be on a grid of their own rather than rounded to one.
+const ALIKE: f64 = 0.99;
+
+/// What a time column says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Timing {
+    pub rate_hz: f64,
+    pub start_s: f64,
+    /// Part of the rate by which it may be wrong, because the times are rounded.
+    pub uncertainty: f64,
+}
+
+/// The straight line through the times, and what is farthest from it.
+struct Line {
+    interval: f64,
+    largest_deviation: f64,
+    deviation_index: usize,
+}
+
+/// The steps from each time to the next.
+struct Steps {
+    median: f64,
+    /// Part of all that is the median.
+    alike: f64,
+    worst_index: usize,
+    worst: f64,
+}
+
+/// Finds the sampling rate.
+///
+/// # Arguments
+/// * `path`, `column` - for messages
+/// * `times` - finite times in the file's unit
+/// * `unit_s` - (s) that unit
+pub(super) fn timing(
+    path: &Path,
+    column: &str,
+    times: &[f64],
+    unit_s: f64,
+) -> Result<Timing, ReadRecordingError> {
+    let refuse = |problem: String| ReadRecordingError::Time {
+        path: path.to_path_buf(),
+        column: column.to_string(),
+        problem,
+    };
+    let (&[first, .., last], count) = (times, times.len()) else {
+        return Err(refuse("has one sample only, which tells no sampling rate".to_string()));
+    };
+    if let Some(index) = times.windows(2).position(|pair| pair[1] < pair[0]) {
+        let (from, to) = (times[index] * unit_s, times[index + 1] * unit_s);
+        let problem = format!("goes back from {from} s to {to} s at sample {}", index + 2);
+        return Err(refuse(problem));
+    }
+    if last <= first {
+        return Err(refuse(format!("stays at {} s", first * unit_s)));
+    }
+    let steps = steps(times);
+    let line = line(times);
+    let largest = first.abs().max(last.abs());
+    let rounding = 4.0 * f64::EPSILON * largest;
+    let resolution = resolution(times, largest, &steps);
+    let sampling_noise = 1.0 + 4.0 / (count as f64).sqrt();
+    // Where rounding is finer than the interval, a missing sample shows in any case, so that room can be left
+    // for the slow beat between the interval and the rounding step.
+    // A little more than half a step otherwise: ties are rounded away from 0, on both sides of it.
+    let share = if resolution < 0.5 * line.interval { 0.75 } else { 0.52 };
+    let allowed = share * sampling_noise * resolution + JITTER * line.interval + rounding;
+    if line.largest_deviation > allowed {
+        return Err(ReadRecordingError::NonUniformTime {
+            path: path.to_path_buf(),
+            column: column.to_string(),
+            from_sample: steps.worst_index as u64 + 1,
+            step_s: readable(steps.worst * unit_s),
+            interval_s: readable(if steps.median > 0.0 { steps.median } else { line.interval } * unit_s),
+            largest_deviation_s: readable(line.largest_deviation * unit_s),
+            deviation_sample: line.deviation_index as u64 + 1,
+        });
+    }
+    let uncertainty = (1.5 * resolution + rounding) / (last - first) + 1e-12;
+    if uncertainty > MAX_UNCERTAINTY {
+        let (resolution_s, span_s) = (readable(resolution * unit_s), readable((last - first) * unit_s));
+        let percent = readable(100.0 * uncertainty);
+        return Err(refuse(format!(
+            "is rounded to {resolution_s} s over {span_s} s, which tells the sampling rate only to {percent} %"
+        )));
+    }
+    let rate_hz = shortest_within(1.0 / (line.interval * unit_s), uncertainty);
+    Ok(Timing { rate_hz, start_s: first * unit_s, uncertainty })
+}
+
+/// Least squares, as a correction of the line from the first to the last time: that keeps all digits.
+fn line(times: &[f64]) -> Line {
+    let (first, last) = (times[0], times[times.len() - 1]);
+    let count = times.len() as f64;
+    let chord = (last - first) / (count - 1.0);
+    let middle = 0.5 * (count - 1.0);
+    let from_chord = |index: usize| (times[index] - first) - index as f64 * chord;
+    let (mut sum, mut moment) = (0.0, 0.0);
+    for index in 0..times.len() {
+        let deviation = from_chord(index);
+        sum += deviation;
+        moment += (index as f64 - middle) * deviation;
+    }
+    let slope = moment * 12.0 / (count * (count * count - 1.0));
+    let mean = sum / count;
+    let (mut largest_deviation, mut deviation_index) = (0.0, 0);
+    for index in 0..times.len() {
+        let deviation = (from_chord(index) - mean - slope * (index as f64 - middle)).abs();
+        if deviation > largest_deviation {
+            (largest_deviation, deviation_index) = (deviation, index);
+        }
+    }
+    Line { interval: chord + slope, largest_deviation, deviation_index }
+}
+
+fn steps(times: &[f64]) -> Steps {
+    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let middle = steps.len() / 2;
+    let median = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let alike = steps.iter().filter(|step| (**step - median).abs() <= JITTER * median).count();
+    let alike = alike as f64 / steps.len() as f64;
+    let (mut worst_index, mut worst) = (0, median);
+    for (index, pair) in times.windows(2).enumerate() {
+        let step = pair[1] - pair[0];
+        if (step - median).abs() > (worst - median).abs() {
+            (worst_index, worst) = (index, step);
+        }
+    }
+    Steps { median, alike, worst_index, worst }
+}
+
+/// The step to which the times are rounded; 0 where they are as exact as numbers are.
+fn resolution(times: &[f64], largest: f64, steps: &Steps) -> f64 {
+    let found = decimal_step(times, largest).unwrap_or_else(|| single_precision_step(times, largest));
+    if steps.alike == 1.0 {
+        // On a grid of their own; single precision makes even those steps differ a little.
+        found.min((steps.worst - steps.median).abs())
+    } else if steps.alike >= ALIKE && found >= 0.5 * steps.median {
+        0.0
+    } else {
+        found
+    }
+}
+
+/// 10 to the power of minus the decimals, of the times in the largest decade (smaller ones may have more).
+fn decimal_step(times: &[f64], largest: f64) -> Option<f64> {
+    let mut decimals = 0;
+    let mut scale = 1.0;
+    for time in times.iter().filter(|time| time.abs() >= 0.1 * largest) {
+        loop {
+            let scaled = time * scale;
+            if (scaled - scaled.round()).abs() <= 4.0 * f64::EPSILON * scaled.abs() {
+                break;
+            }
+            decimals += 1;
+            scale = 10_f64.powi(decimals);
+            if decimals > MAX_DECIMALS || largest * scale > MAX_WHOLE {
+                return None;
+            }
+        }
+    }
+    Some(1.0 / scale)
+}
+
+fn single_precision_step(times: &[f64], largest: f64) -> f64 {
+    let single = times.iter().all(|time| f64::from(*time as f32) == *time);
+    if single { largest * f64::from(f32::EPSILON) } else { 0.0 }
+}
+
+/// The number of fewest digits that differs by no more than a part of it.
+fn shortest_within(value: f64, part: f64) -> f64 {
+    let rounded = |digits: usize| format!("{value:.digits$e}").parse().unwrap_or(value);
+    (0..16).map(rounded).find(|short: &f64| (short / value - 1.0).abs() <= part).unwrap_or(value)
+}
+
+/// A number for a message, to six digits.
+fn readable(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests;
