@@ -4,6 +4,7 @@
 pub mod batch;
 pub mod dynamics;
 pub mod fault;
+pub mod hybrid;
 pub mod interpolation;
 pub mod quality;
 mod random;

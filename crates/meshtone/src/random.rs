@@ -21,6 +21,12 @@ pub(crate) enum Purpose {
     SpeedFluctuation = 4,
     /// Error of the brake's torque, sample by sample; index: 0.
     TorqueFluctuation = 5,
+    /// Noise of an enhanced difference signal, value by value; index: draw.
+    EnhancementNoise = 6,
+    /// Which records a bootstrap sample takes; index: sample.
+    Bootstrap = 7,
+    /// Values of scenario keys that are tried; index: candidate.
+    Candidate = 8,
 }
 
 /// A sequence of uniform numbers.
@@ -43,5 +49,13 @@ impl Draws {
         // 53 random bits: every multiple of 2⁻⁵³ in [0, 1).
         let unit = (self.generator.next_u64() >> 11) as f64 * 2f64.powi(-53);
         centre + half_width * (2.0 * unit - 1.0)
+    }
+
+    /// Next number, normal with mean 0 and standard deviation 1 (Box and Muller).
+    pub(crate) fn normal(&mut self) -> f64 {
+        // In (0, 1]: its logarithm is finite.
+        let unit = 1.0 - self.uniform(0.5, 0.5);
+        let angle = std::f64::consts::TAU * self.uniform(0.5, 0.5);
+        (-2.0 * unit.ln()).sqrt() * angle.cos()
     }
 }

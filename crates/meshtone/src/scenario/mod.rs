@@ -5,6 +5,7 @@
 //! solved. It is a plain value: build it in code, or read it from TOML with [`Scenario::from_toml`].
 //! The names are the same everywhere (Rust fields, TOML keys, Python arguments).
 
+mod edit;
 mod error;
 mod fault;
 mod from_toml;

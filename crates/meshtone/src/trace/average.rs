@@ -3,8 +3,8 @@
 use super::Trace;
 use crate::sampling::TimeGrid;
 use crate::signal::{
-    AngularSettings, ChainSettings, Channels, Edge, Interpolation, Record, ShaftPhase, SignalError,
-    process_channel, resample, resampling_ratio,
+    AngularSettings, ChainSettings, Channels, Edge, Interpolation, Record, SeparationSettings, ShaftPhase,
+    SignalError, process_channel, resample, resampling_ratio,
 };
 use crate::simulate::Stages;
 
@@ -19,7 +19,8 @@ const CONTINUATION: usize = 40;
 /// kept signal is continued periodically before, so that nothing rings.
 pub(super) fn average(trace: &mut Trace, stages: &Stages, channels: &Channels, rate_hz: f64) {
     let rate_hz = rate_hz.min(stages.time.sampling_rate_hz);
-    let Ok(record) = gear_record(stages, channels, rate_hz) else { return };
+    let Channels { vertical_g, pinion_speed_hz, .. } = channels;
+    let Ok(record) = gear_record(stages, vertical_g, pinion_speed_hz, rate_hz, None) else { return };
     let points = record.average.values.len();
     // Orders up to half of the rate; the published spectrum doubles order 0 too.
     let orders = (record.average.nyquist_order * (1.0 + 1e-9)) as usize;
@@ -32,20 +33,27 @@ pub(super) fn average(trace: &mut Trace, stages: &Stages, channels: &Channels, r
     trace.scalar("sa_rate_in_hz", rate_hz);
 }
 
-fn gear_record(stages: &Stages, channels: &Channels, rate_hz: f64) -> Result<Record, SignalError> {
+/// The gear's average of a simulated channel and what follows from it, resampled to `rate_hz` first.
+pub(crate) fn gear_record(
+    stages: &Stages,
+    signal: &[f64],
+    pinion_speed_hz: &[f64],
+    rate_hz: f64,
+    separation: Option<SeparationSettings>,
+) -> Result<Record, SignalError> {
+    let sampling_rate_hz = stages.time.sampling_rate_hz;
     let gears = &stages.scenario.gears;
-    let ratio = resampling_ratio(channels.sampling_rate_hz, rate_hz)?;
+    let ratio = resampling_ratio(sampling_rate_hz, rate_hz)?;
     let angular = AngularSettings { interpolation: Interpolation::Pchip, ..AngularSettings::default() };
-    let settings = ChainSettings { angular, separation: None };
-    let signal = &channels.vertical_g;
+    let settings = ChainSettings { angular, separation };
     let (signal, phase) = match whole_revolutions(stages) {
         Some(revolutions) => periodic(signal, ratio, revolutions)?,
         None => {
             let pinion = if stages.scenario.operation.speed_profile_hz.is_some() {
-                ShaftPhase::from_speed_samples(&channels.pinion_speed_hz, channels.sampling_rate_hz)?
+                ShaftPhase::from_speed_samples(pinion_speed_hz, sampling_rate_hz)?
             } else {
                 let speed_hz = stages.scenario.operation.pinion_speed_hz;
-                ShaftPhase::constant(speed_hz, channels.sampling_rate_hz, signal.len())?
+                ShaftPhase::constant(speed_hz, sampling_rate_hz, signal.len())?
             };
             let gear = pinion.of_mate(gears.pinion_teeth, gears.gear_teeth)?;
             (resample(signal, ratio.0, ratio.1, Edge::Reflect)?, at_rate(&gear, ratio)?)

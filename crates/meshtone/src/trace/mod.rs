@@ -4,6 +4,7 @@ mod average;
 mod run;
 mod stages;
 
+pub(crate) use average::gear_record;
 pub use run::{trace, trace_at};
 use stages::static_stages;
 

@@ -1,0 +1,163 @@
+//! Moments of a mixture, without forming it.
+
+use super::HybridError;
+use super::modify::{check_cycle, window_start};
+
+/// Highest power.
+const POWERS: usize = 5;
+
+/// Sums of products of powers of a signal and of the healthy one, over every window around a centre.
+///
+/// `E[(α d + (1 − α) h)^k]` is a polynomial in α whose coefficients are the joint moments `E[dⁱ hʲ]`, i + j = k; over
+/// a window they are differences of running sums. So a search over α, the noise level and the width needs no
+/// signal at all.
+#[derive(Debug, Clone)]
+pub struct WindowMoments {
+    /// Running sums of dⁱ hʲ by `[i][j]`, i + j ≤ 4; the first is 0.
+    sums: [[Vec<f64>; POWERS]; POWERS],
+    points: usize,
+}
+
+/// Joint moments `E[dⁱ hʲ]` over one window, by `[i][j]`.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct JointMoments(pub [[f64; POWERS]; POWERS]);
+
+/// Mean and central moments of a signal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moments {
+    /// Mean.
+    pub mean: f64,
+    /// Second central moment.
+    pub second: f64,
+    /// Third central moment.
+    pub third: f64,
+    /// Fourth central moment.
+    pub fourth: f64,
+}
+
+impl WindowMoments {
+    /// Sums up a cycle.
+    ///
+    /// # Arguments
+    /// * `difference` - d, one cycle
+    /// * `healthy` - h, one cycle
+    /// * `centre_rev` - (rev) centre of all windows
+    ///
+    /// # Errors
+    /// NaN, fewer than 4 values, different lengths.
+    pub fn new(difference: &[f64], healthy: &[f64], centre_rev: f64) -> Result<Self, HybridError> {
+        check_cycle("difference", difference)?;
+        check_cycle("healthy", healthy)?;
+        let points = difference.len();
+        if healthy.len() != points {
+            return Err(HybridError::LengthMismatch { signal: points, healthy: healthy.len() });
+        }
+        let start = window_start(centre_rev, points) as i64;
+        let at = |k: usize| (start + k as i64).rem_euclid(points as i64) as usize;
+        let sums = std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                if i + j >= POWERS {
+                    return Vec::new();
+                }
+                let mut sum = 0.0;
+                let mut running = Vec::with_capacity(points + 1);
+                running.push(0.0);
+                for k in 0..points {
+                    let n = at(k);
+                    sum += difference[n].powi(i as i32) * healthy[n].powi(j as i32);
+                    running.push(sum);
+                }
+                running
+            })
+        });
+        Ok(Self { sums, points })
+    }
+
+    /// Joint moments after a change of duration.
+    ///
+    /// # Arguments
+    /// * `width_ratio` - (-) as of [`super::change_duration`]; above 1 the zeros of the padding count
+    pub fn at_width(&self, width_ratio: f64) -> JointMoments {
+        let points = self.points as f64;
+        let half = 0.5 * width_ratio.min(1.0) * points;
+        let (from, to) = (0.5 * points - half, 0.5 * points + half);
+        let count = width_ratio * points;
+        let mut moments = JointMoments::default();
+        for i in 0..POWERS {
+            for j in 0..POWERS - i {
+                let sums = &self.sums[i][j];
+                moments.0[i][j] = (read(sums, to) - read(sums, from)) / count;
+            }
+        }
+        moments.0[0][0] = 1.0;
+        moments
+    }
+}
+
+/// A running sum between two values: each value counts by its part.
+fn read(sums: &[f64], place: f64) -> f64 {
+    let below = (place as usize).min(sums.len() - 2);
+    let part = place - below as f64;
+    sums[below] + part * (sums[below + 1] - sums[below])
+}
+
+impl JointMoments {
+    /// Moments of `α d + (1 − α) h`.
+    ///
+    /// # Arguments
+    /// * `fault_to_harmonics_ratio` - (-) α
+    pub fn mixed(&self, fault_to_harmonics_ratio: f64) -> Moments {
+        let (a, b) = (fault_to_harmonics_ratio, 1.0 - fault_to_harmonics_ratio);
+        let m = &self.0;
+        let first = a * m[1][0] + b * m[0][1];
+        let second = a * a * m[2][0] + 2.0 * a * b * m[1][1] + b * b * m[0][2];
+        let third =
+            a.powi(3) * m[3][0] + 3.0 * a * a * b * m[2][1] + 3.0 * a * b * b * m[1][2] + b.powi(3) * m[0][3];
+        let fourth = a.powi(4) * m[4][0]
+            + 4.0 * a.powi(3) * b * m[3][1]
+            + 6.0 * a * a * b * b * m[2][2]
+            + 4.0 * a * b.powi(3) * m[1][3]
+            + b.powi(4) * m[0][4];
+        Moments {
+            mean: first,
+            second: second - first * first,
+            third: third - 3.0 * first * second + 2.0 * first.powi(3),
+            fourth: fourth - 4.0 * first * third + 6.0 * first * first * second - 3.0 * first.powi(4),
+        }
+    }
+
+    /// Mean square of the healthy signal.
+    pub fn healthy_square(&self) -> f64 {
+        self.0[0][2]
+    }
+}
+
+impl Moments {
+    /// With Gaussian noise added.
+    ///
+    /// # Arguments
+    /// * `variance` - of the noise
+    pub fn with_noise(self, variance: f64) -> Self {
+        Self {
+            mean: self.mean,
+            second: self.second + variance,
+            third: self.third,
+            fourth: self.fourth + 6.0 * self.second * variance + 3.0 * variance * variance,
+        }
+    }
+
+    /// Rms.
+    pub fn rms(self) -> f64 {
+        (self.mean * self.mean + self.second).sqrt()
+    }
+
+    /// Skewness `µ₃/µ₂^1.5`.
+    pub fn skewness(self) -> f64 {
+        self.third / self.second.powf(1.5)
+    }
+
+    /// Kurtosis `µ₄/µ₂²`.
+    pub fn kurtosis(self) -> f64 {
+        self.fourth / (self.second * self.second)
+    }
+}

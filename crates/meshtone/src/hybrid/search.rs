@@ -1,0 +1,255 @@
+//! The enhancement that fits best: a grid, then a local refinement.
+
+use argmin::core::{CostFunction, Error, Executor, State};
+use argmin::solver::neldermead::NelderMead;
+
+use super::simulated::closed_form;
+use super::{Enhancement, HybridError, Measurements, SimulatedCases};
+
+/// Points of the global grid, by parameter.
+const GRID: [usize; 3] = [24, 16, 16];
+/// Likewise where every point costs the envelopes of all signals.
+const COARSE_GRID: [usize; 3] = [10, 7, 7];
+/// Starts of the refinement: this many of the grid's best points.
+const STARTS: usize = 3;
+const MOST_ITERATIONS: u64 = 120;
+/// Of the simplex's errors, where the refinement ends.
+const TOLERANCE: f64 = 1e-6;
+
+/// Where the three parameters are searched.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EnhancementBounds {
+    /// (-) Least and largest width ratio.
+    pub width_ratio: [f64; 2],
+    /// (-) Least and largest fault-to-harmonics ratio.
+    pub fault_to_harmonics_ratio: [f64; 2],
+    /// (-) Least and largest noise level.
+    pub noise_level: [f64; 2],
+}
+
+impl Default for EnhancementBounds {
+    /// Wide enough for every rig that was tried.
+    fn default() -> Self {
+        Self { width_ratio: [0.05, 2.0], fault_to_harmonics_ratio: [0.2, 8.0], noise_level: [0.02, 8.0] }
+    }
+}
+
+impl EnhancementBounds {
+    pub(super) fn all(&self) -> [(&'static str, [f64; 2]); 3] {
+        [
+            ("width_ratio", self.width_ratio),
+            ("fault_to_harmonics_ratio", self.fault_to_harmonics_ratio),
+            ("noise_level", self.noise_level),
+        ]
+    }
+
+    /// Refuses bounds that hold nothing.
+    ///
+    /// # Errors
+    /// A bound that is not above 0 and finite; a least value above the largest.
+    pub fn check(&self) -> Result<(), HybridError> {
+        for (name, [least, largest]) in self.all() {
+            if !(least > 0.0 && least <= largest && largest.is_finite()) {
+                return Err(HybridError::Parameter {
+                    name: format!("the range of {name}"),
+                    value: format!("[{least}, {largest}]"),
+                    allowed: "two numbers above 0, the smaller first".into(),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn logarithms(&self) -> [[f64; 2]; 3] {
+        self.all().map(|(_, range)| range.map(f64::ln))
+    }
+}
+
+/// The parameters' logarithms.
+pub(super) type Point = [f64; 3];
+
+pub(super) fn enhancement(point: Point) -> Enhancement {
+    let [width_ratio, fault_to_harmonics_ratio, noise_level] = point.map(f64::exp);
+    Enhancement { width_ratio, fault_to_harmonics_ratio, noise_level }
+}
+
+pub(super) fn point(enhancement: &Enhancement) -> Point {
+    [enhancement.width_ratio, enhancement.fault_to_harmonics_ratio, enhancement.noise_level].map(f64::ln)
+}
+
+/// An enhancement and its error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fit {
+    /// The parameters.
+    pub enhancement: Enhancement,
+    /// Mean error over cases and indicators (Eq. 7).
+    pub error: f64,
+}
+
+/// What is minimised: the mean error over the cases, all or all but one.
+#[derive(Clone, Copy)]
+pub(super) struct Objective<'a> {
+    pub(super) simulated: &'a SimulatedCases,
+    pub(super) measured: &'a Measurements,
+    pub(super) left_out: Option<usize>,
+}
+
+impl Objective<'_> {
+    pub(super) fn at(&self, point: Point) -> Result<f64, HybridError> {
+        let enhancement = enhancement(point);
+        if self.has_closed_form() {
+            let windows = self.simulated.at_width(enhancement.width_ratio);
+            return Ok(self.mean(|case| {
+                let value = |j| closed_form(self.measured.indicators()[j], &windows, case, &enhancement);
+                self.case(case, |j| value(j).unwrap_or(f64::NAN))
+            }));
+        }
+        let predicted = self.simulated.predict(self.measured.indicators(), &enhancement)?;
+        Ok(self.mean(|case| self.case(case, |j| predicted[case][j])))
+    }
+
+    fn has_closed_form(&self) -> bool {
+        self.measured.indicators().iter().all(|indicator| !indicator.is_of_envelope())
+    }
+
+    fn mean(&self, of_case: impl Fn(usize) -> f64) -> f64 {
+        let cases = || (0..self.measured.cases()).filter(|&case| Some(case) != self.left_out);
+        cases().map(of_case).sum::<f64>() / cases().count() as f64
+    }
+
+    fn case(&self, case: usize, value: impl Fn(usize) -> f64) -> f64 {
+        let indicators = self.measured.indicators().len();
+        (0..indicators).map(|j| self.measured.error(case, j, value(j))).sum::<f64>() / indicators as f64
+    }
+
+    /// Errors over the grid, the best points first.
+    fn best_of_grid(&self, ranges: [[f64; 2]; 3], starts: usize) -> Result<Vec<(f64, Point)>, HybridError> {
+        let counts = if self.has_closed_form() { GRID } else { COARSE_GRID };
+        let at = |d: usize, k: usize| {
+            let [from, to] = ranges[d];
+            from + (to - from) * (k as f64 + 0.5) / counts[d] as f64
+        };
+        let mut best: Vec<(f64, Point)> = Vec::new();
+        for i in 0..counts[0] {
+            let windows = self.simulated.at_width(at(0, i).exp());
+            for j in 0..counts[1] {
+                for k in 0..counts[2] {
+                    let point = [at(0, i), at(1, j), at(2, k)];
+                    let error = if self.has_closed_form() {
+                        let enhancement = enhancement(point);
+                        self.mean(|case| {
+                            self.case(case, |j| {
+                                let indicator = self.measured.indicators()[j];
+                                closed_form(indicator, &windows, case, &enhancement).unwrap_or(f64::NAN)
+                            })
+                        })
+                    } else {
+                        self.at(point)?
+                    };
+                    let place = best.partition_point(|(other, _)| *other <= error);
+                    if place < starts && !error.is_nan() {
+                        best.insert(place, (error, point));
+                        best.truncate(starts);
+                    }
+                }
+            }
+        }
+        Ok(best)
+    }
+}
+
+/// Finds the enhancement with the lowest mean error: over a grid, then refined from its best points.
+///
+/// # Arguments
+/// * `simulated` - difference signals of all cases
+/// * `measured` - of the same cases
+/// * `bounds` - where the parameters are searched
+/// * `left_out` - number of a case that does not count, if any
+///
+/// # Errors
+/// Bounds that hold nothing; not as many simulated cases as measured ones; nothing left to fit.
+pub fn fit(
+    simulated: &SimulatedCases,
+    measured: &Measurements,
+    bounds: &EnhancementBounds,
+    left_out: Option<usize>,
+) -> Result<Fit, HybridError> {
+    bounds.check()?;
+    let cases = simulated.differences().len();
+    if cases != measured.cases() {
+        return Err(HybridError::Cases { simulated: cases, measured: measured.cases() });
+    }
+    let objective = Objective { simulated, measured, left_out };
+    let ranges = bounds.logarithms();
+    let starts = objective.best_of_grid(ranges, STARTS)?;
+    let steps: [f64; 3] = std::array::from_fn(|d| (ranges[d][1] - ranges[d][0]) / GRID[d] as f64);
+    let mut best: Option<(f64, Point)> = None;
+    for (error, start) in starts {
+        let refined = refine(&objective, ranges, start, steps)?;
+        for found in [(error, start), refined] {
+            if best.is_none_or(|(least, _)| found.0 < least) {
+                best = Some(found);
+            }
+        }
+    }
+    let (error, found) = best.ok_or(HybridError::NoFit)?;
+    Ok(Fit { enhancement: enhancement(found), error })
+}
+
+/// Nelder and Mead's search from a point, within ranges; a range of no width holds its parameter.
+pub(super) fn refine(
+    objective: &Objective,
+    ranges: [[f64; 2]; 3],
+    start: Point,
+    steps: [f64; 3],
+) -> Result<(f64, Point), HybridError> {
+    let free: Vec<usize> = (0..3).filter(|&d| ranges[d][1] > ranges[d][0]).collect();
+    let held: Point = std::array::from_fn(|d| start[d].clamp(ranges[d][0], ranges[d][1]));
+    if free.is_empty() {
+        return Ok((objective.at(held)?, held));
+    }
+    let whole = |vertex: &[f64]| {
+        let mut point = held;
+        for (&d, &value) in free.iter().zip(vertex) {
+            point[d] = value;
+        }
+        point
+    };
+    let first: Vec<f64> = free.iter().map(|&d| held[d]).collect();
+    let simplex = std::iter::once(first.clone())
+        .chain(free.iter().enumerate().map(|(n, &d)| {
+            let mut vertex = first.clone();
+            // Towards the range's middle, so that no vertex lies outside.
+            let middle = 0.5 * (ranges[d][0] + ranges[d][1]);
+            vertex[n] += if vertex[n] < middle { steps[d] } else { -steps[d] };
+            vertex
+        }))
+        .collect();
+    let cost = Cost(|vertex: &[f64]| {
+        let point = whole(vertex);
+        let inside: Point = std::array::from_fn(|d| point[d].clamp(ranges[d][0], ranges[d][1]));
+        let outside: f64 = (0..3).map(|d| (point[d] - inside[d]).abs()).sum();
+        Ok(objective.at(inside)? + outside)
+    });
+    let solver = NelderMead::new(simplex).with_sd_tolerance(TOLERANCE).map_err(|_| HybridError::NoFit)?;
+    let result = Executor::new(cost, solver)
+        .configure(|state| state.max_iters(MOST_ITERATIONS))
+        .run()
+        .map_err(|error| error.downcast::<HybridError>().unwrap_or(HybridError::NoFit))?;
+    let state = result.state();
+    let vertex = state.get_best_param().ok_or(HybridError::NoFit)?;
+    let point = whole(vertex);
+    let inside: Point = std::array::from_fn(|d| point[d].clamp(ranges[d][0], ranges[d][1]));
+    Ok((objective.at(inside)?, inside))
+}
+
+struct Cost<F>(F);
+
+impl<F: Fn(&[f64]) -> Result<f64, HybridError>> CostFunction for Cost<F> {
+    type Param = Vec<f64>;
+    type Output = f64;
+
+    fn cost(&self, vertex: &Vec<f64>) -> Result<f64, Error> {
+        (self.0)(vertex).map_err(Error::from)
+    }
+}

@@ -1,0 +1,322 @@
+//! The three parameters, how well they are known, and how well they predict.
+
+use super::search::{Objective, Point, enhancement, point, refine};
+use super::{Enhancement, EnhancementBounds, Fit, HybridError, Measurements, SimulatedCases, fit};
+
+/// Bootstrap samples of the records.
+const BOOTSTRAP_SAMPLES: u64 = 200;
+/// Part of the bootstrap samples that the intervals hold.
+const CONFIDENCE: f64 = 0.95;
+/// How much more error a solution nearer to α = 1 may have, relative.
+const VALLEY: f64 = 0.005;
+/// Halvings of an interval's end.
+const HALVINGS: usize = 9;
+/// First steps of local searches, in logarithms.
+const STEPS: Point = [0.1; 3];
+/// Ratio of the ends of an interval from which on the parameter counts as unknown.
+const UNKNOWN: f64 = 4.0;
+/// Records per case below which intervals mean little.
+const FEW_RECORDS: usize = 5;
+
+/// A range of each parameter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EnhancementIntervals {
+    /// (-) Of the width ratio.
+    pub width_ratio: [f64; 2],
+    /// (-) Of the fault-to-harmonics ratio.
+    pub fault_to_harmonics_ratio: [f64; 2],
+    /// (-) Of the noise level.
+    pub noise_level: [f64; 2],
+}
+
+/// The result of tuning the three parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tuning {
+    /// The parameters: of all solutions that are as good as the best, to half a per cent of its error, the one with the
+    /// fault-to-harmonics ratio nearest to 1.
+    pub enhancement: Enhancement,
+    /// Intervals that hold them with a confidence of 95 %, by a bootstrap over the records.
+    ///
+    /// All values whose error, with the other parameters adjusted, exceeds the least by no more than the chosen
+    /// parameters' error exceeds the least one in 95 % of the bootstrap samples.
+    pub intervals: EnhancementIntervals,
+    /// Mean error (Eq. 7) of the signals as they were simulated.
+    pub original_error: f64,
+    /// Mean error after the enhancement.
+    pub enhanced_error: f64,
+    /// Mean error of the measurements' own medians: the floor.
+    pub scatter: f64,
+    /// Error of each case, predicted by what fits the others.
+    pub leave_one_out_error: Vec<f64>,
+    /// Indicators as simulated, by case and indicator.
+    pub original: Vec<Vec<f64>>,
+    /// Indicators after the enhancement, by case and indicator.
+    pub enhanced: Vec<Vec<f64>>,
+    /// What is doubtful.
+    pub warnings: Vec<TuningWarning>,
+}
+
+impl Tuning {
+    /// Mean error over the cases that were left out of the fit in turn.
+    pub fn mean_leave_one_out_error(&self) -> f64 {
+        self.leave_one_out_error.iter().sum::<f64>() / self.leave_one_out_error.len() as f64
+    }
+}
+
+/// Why a tuning is doubtful.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum TuningWarning {
+    /// The measurements hardly limit a parameter.
+    Unknown {
+        /// Its name.
+        parameter: &'static str,
+        /// Its interval.
+        interval: [f64; 2],
+    },
+    /// A parameter lies at the end of the range in which it was searched.
+    AtBound {
+        /// Its name.
+        parameter: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A case has few records.
+    FewRecords {
+        /// Number of the case, the healthy one is 0.
+        case: usize,
+        /// Its records.
+        records: usize,
+    },
+    /// The enhancement is no better than the simulation was.
+    NoBetter,
+}
+
+impl std::fmt::Display for TuningWarning {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Self::Unknown { parameter, interval: [least, largest] } => write!(
+                formatter,
+                "the measurements do not determine {parameter}: everything from {least:.3} to {largest:.3} fits as well"
+            ),
+            Self::AtBound { parameter, value } => write!(
+                formatter,
+                "{parameter} = {value:.3} lies at the end of the range in which it was searched; widen the range"
+            ),
+            Self::FewRecords { case, records } => write!(
+                formatter,
+                "case {case} has only {records} records, too few for the intervals to mean much (5 or more would do)"
+            ),
+            Self::NoBetter => {
+                formatter.write_str("the enhanced signals resemble the measured ones no better")
+            }
+        }
+    }
+}
+
+/// Tunes the three parameters.
+///
+/// # Arguments
+/// * `simulated` - difference signals of all cases
+/// * `measured` - of the same cases
+/// * `bounds` - where the parameters are searched
+/// * `seed` - of the bootstrap
+///
+/// # Errors
+/// As [`fit`]'s.
+///
+/// Source: section 5 of arXiv:2410.05073, Eq. 7.
+pub fn tune(
+    simulated: &SimulatedCases,
+    measured: &Measurements,
+    bounds: &EnhancementBounds,
+    seed: u64,
+) -> Result<Tuning, HybridError> {
+    let objective = Objective { simulated, measured, left_out: None };
+    let best = fit(simulated, measured, bounds, None)?;
+    let chosen = nearest_to_unit_ratio(&objective, bounds, best)?;
+    let intervals = intervals(&objective, bounds, &chosen, best.error, seed)?;
+    let leave_one_out_error = (0..measured.cases())
+        .map(|case| {
+            let others = fit(simulated, measured, bounds, Some(case))?;
+            let predicted = simulated.predict(measured.indicators(), &others.enhancement)?;
+            Ok(measured.case_error(case, &predicted[case]))
+        })
+        .collect::<Result<Vec<f64>, HybridError>>()?;
+    let original = simulated.predict(measured.indicators(), &Enhancement::default())?;
+    let enhanced = simulated.predict(measured.indicators(), &chosen.enhancement)?;
+    let mean = |predicted: &[Vec<f64>]| {
+        let errors = predicted.iter().enumerate().map(|(case, values)| measured.case_error(case, values));
+        errors.sum::<f64>() / predicted.len() as f64
+    };
+    let original_error = mean(&original);
+    let warnings = warnings(measured, bounds, &chosen, &intervals, original_error);
+    Ok(Tuning {
+        enhancement: chosen.enhancement,
+        intervals,
+        original_error,
+        enhanced_error: chosen.error,
+        scatter: measured.scatter(),
+        leave_one_out_error,
+        original,
+        enhanced,
+        warnings,
+    })
+}
+
+/// Along the valley in which α and the noise level rise together, the solution nearest to α = 1.
+fn nearest_to_unit_ratio(
+    objective: &Objective,
+    bounds: &EnhancementBounds,
+    best: Fit,
+) -> Result<Fit, HybridError> {
+    let ranges = logarithms(bounds);
+    let limit = best.error * (1.0 + VALLEY);
+    let from = point(&best.enhancement);
+    let goal = 0.0_f64.clamp(ranges[1][0], ranges[1][1]);
+    let mut chosen = best;
+    // Part of the way to α = 1: from what fits to what does not.
+    let (mut good, mut bad) = (0.0, 1.0);
+    let mut part = 1.0;
+    for _ in 0..HALVINGS {
+        let ratio = from[1] + part * (goal - from[1]);
+        let mut held = ranges;
+        held[1] = [ratio; 2];
+        let mut start = point(&chosen.enhancement);
+        // The noise goes along with the ratio.
+        start[2] += ratio - start[1];
+        let (error, found) = refine(objective, held, start, STEPS)?;
+        if error <= limit {
+            chosen = Fit { enhancement: enhancement(found), error };
+            good = part;
+        } else {
+            bad = part;
+        }
+        if good == bad {
+            break;
+        }
+        part = 0.5 * (good + bad);
+    }
+    Ok(chosen)
+}
+
+fn logarithms(bounds: &EnhancementBounds) -> [[f64; 2]; 3] {
+    bounds.all().map(|(_, range)| range.map(f64::ln))
+}
+
+fn intervals(
+    objective: &Objective,
+    bounds: &EnhancementBounds,
+    chosen: &Fit,
+    least: f64,
+    seed: u64,
+) -> Result<EnhancementIntervals, HybridError> {
+    let ranges = logarithms(bounds);
+    let centre = point(&chosen.enhancement);
+    let mut excesses = (0..BOOTSTRAP_SAMPLES)
+        .map(|sample| {
+            let measured = objective.measured.resampled(seed, sample);
+            let objective = Objective { measured: &measured, ..*objective };
+            let here = objective.at(centre)?;
+            let (there, _) = refine(&objective, ranges, centre, STEPS)?;
+            Ok((here - there).max(0.0))
+        })
+        .collect::<Result<Vec<f64>, HybridError>>()?;
+    excesses.sort_unstable_by(f64::total_cmp);
+    let limit = least + excesses[(CONFIDENCE * BOOTSTRAP_SAMPLES as f64) as usize];
+    let mut ends = [[0.0; 2]; 3];
+    for d in 0..3 {
+        for side in 0..2 {
+            ends[d][side] =
+                end_of_profile(objective, ranges, centre, d, side, limit.max(chosen.error))?.exp();
+        }
+    }
+    let [width_ratio, fault_to_harmonics_ratio, noise_level] = ends;
+    Ok(EnhancementIntervals { width_ratio, fault_to_harmonics_ratio, noise_level })
+}
+
+/// How far a parameter can go, the others adjusted, before the error exceeds a limit.
+fn end_of_profile(
+    objective: &Objective,
+    ranges: [[f64; 2]; 3],
+    centre: Point,
+    parameter: usize,
+    side: usize,
+    limit: f64,
+) -> Result<f64, HybridError> {
+    let mut last = centre;
+    let mut fits = |value: f64| -> Result<bool, HybridError> {
+        let mut held = ranges;
+        held[parameter] = [value; 2];
+        let mut start = last;
+        if parameter != 0 {
+            // α and the noise level go together.
+            start[3 - parameter] += value - start[parameter];
+        }
+        let mut found = refine(objective, held, start, STEPS)?;
+        let again = refine(objective, held, centre, STEPS)?;
+        if again.0 < found.0 {
+            found = again;
+        }
+        if found.0 <= limit {
+            last = found.1;
+        }
+        Ok(found.0 <= limit)
+    };
+    let outermost = ranges[parameter][side];
+    // Outwards in growing steps, so that no far region that fits again by chance is taken.
+    let (mut good, mut step) = (centre[parameter], 0.02);
+    let direction = if side == 0 { -1.0 } else { 1.0 };
+    let mut bad = loop {
+        let next = good + direction * step;
+        let beyond = direction * (next - outermost) >= 0.0;
+        let next = if beyond { outermost } else { next };
+        if !fits(next)? {
+            break next;
+        }
+        good = next;
+        if beyond {
+            return Ok(outermost);
+        }
+        step *= 1.6;
+    };
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (good + bad);
+        if fits(middle)? {
+            good = middle;
+        } else {
+            bad = middle;
+        }
+    }
+    Ok(good)
+}
+
+fn warnings(
+    measured: &Measurements,
+    bounds: &EnhancementBounds,
+    chosen: &Fit,
+    intervals: &EnhancementIntervals,
+    original_error: f64,
+) -> Vec<TuningWarning> {
+    let mut warnings = Vec::new();
+    let values = point(&chosen.enhancement).map(f64::exp);
+    let intervals = [intervals.width_ratio, intervals.fault_to_harmonics_ratio, intervals.noise_level];
+    for (((parameter, range), value), interval) in bounds.all().into_iter().zip(values).zip(intervals) {
+        if range[0] < range[1] && range.iter().any(|end| (value / end - 1.0).abs() < 1e-3) {
+            warnings.push(TuningWarning::AtBound { parameter, value });
+        }
+        if interval[1] >= UNKNOWN * interval[0] {
+            warnings.push(TuningWarning::Unknown { parameter, interval });
+        }
+    }
+    for case in 0..measured.cases() {
+        let records = (0..measured.indicators().len()).map(|j| measured.records(case, j).len()).min();
+        if let Some(records) = records.filter(|&records| records < FEW_RECORDS) {
+            warnings.push(TuningWarning::FewRecords { case, records });
+        }
+    }
+    if chosen.error >= original_error {
+        warnings.push(TuningWarning::NoBetter);
+    }
+    warnings
+}

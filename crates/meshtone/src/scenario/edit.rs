@@ -1,0 +1,87 @@
+//! Single numbers of a scenario, by the names of their keys.
+
+use toml::{Table, Value};
+
+use super::{Scenario, ScenarioError};
+
+impl Scenario {
+    /// The number at a key of the scenario file, defaults included.
+    ///
+    /// # Arguments
+    /// * `key` - dotted, as in the file
+    ///
+    /// None where there is no such key in this scenario, or no single number at it.
+    ///
+    /// ```
+    /// use meshtone::scenario::Scenario;
+    ///
+    /// let scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    /// assert_eq!(scenario.number("rig.damping_ratio"), Some(0.05));
+    /// assert_eq!(scenario.number("fault.chip_width_mm"), None); // it is healthy
+    /// ```
+    pub fn number(&self, key: &str) -> Option<f64> {
+        match at(&self.table()?, key)? {
+            Value::Float(number) => Some(*number),
+            Value::Integer(number) => Some(*number as f64),
+            _ => None,
+        }
+    }
+
+    /// The same scenario with another number at a key of the scenario file.
+    ///
+    /// # Arguments
+    /// * `key` - dotted, as in the file
+    /// * `value` - in the key's unit
+    ///
+    /// # Errors
+    /// A key that the scenario does not have, a value that is not allowed there, as for the scenario file.
+    ///
+    /// ```
+    /// use meshtone::scenario::Scenario;
+    ///
+    /// let scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    /// let graded = scenario.with_number("quality.din_grade", 7.0)?;
+    /// assert_eq!(graded.quality.din_grade, 7);
+    /// let error = scenario.with_number("quality.din_grade", 13.0).unwrap_err();
+    /// assert_eq!(error.key, "quality.din_grade");
+    /// # Ok::<(), meshtone::scenario::ScenarioError>(())
+    /// ```
+    pub fn with_number(&self, key: &str, value: f64) -> Result<Self, ScenarioError> {
+        let missing = || {
+            ScenarioError::new(key, format!("{value}"), "the scenario has no number at this key")
+                .with_help("`meshtone init KIND` prints every key of a kind of fault")
+        };
+        let mut table = self.table().ok_or_else(missing)?;
+        let place = at_mut(&mut table, key).ok_or_else(missing)?;
+        *place = match place {
+            Value::Integer(_) if value.fract() == 0.0 => Value::Integer(value as i64),
+            Value::Integer(_) | Value::Float(_) => Value::Float(value),
+            _ => return Err(missing()),
+        };
+        let mut changed = Self::from_toml(&table.to_string())?;
+        // Not part of the text's table.
+        changed.quality.profile_errors.clone_from(&self.quality.profile_errors);
+        Ok(changed)
+    }
+
+    /// The scenario file as a table, without the profile errors given, which are large.
+    fn table(&self) -> Option<Table> {
+        let mut small = self.clone();
+        small.quality.profile_errors = None;
+        small.to_toml().parse().ok()
+    }
+}
+
+fn at<'a>(table: &'a Table, key: &str) -> Option<&'a Value> {
+    match key.split_once('.') {
+        Some((section, rest)) => at(table.get(section)?.as_table()?, rest),
+        None => table.get(key),
+    }
+}
+
+fn at_mut<'a>(table: &'a mut Table, key: &str) -> Option<&'a mut Value> {
+    match key.split_once('.') {
+        Some((section, rest)) => at_mut(table.get_mut(section)?.as_table_mut()?, rest),
+        None => table.get_mut(key),
+    }
+}
