@@ -3,6 +3,7 @@
 #![deny(missing_docs)]
 
 pub mod atomic_file;
+pub mod experiment;
 pub mod recording;
 pub mod run_identity;
 pub mod scenario_file;

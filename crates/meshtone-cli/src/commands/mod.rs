@@ -1,8 +1,10 @@
 //! The commands, one file each.
 
+mod enhance;
 mod init;
 mod panel;
 mod simulate;
+mod tune;
 mod wheels;
 
 use clap::Subcommand;
@@ -16,6 +18,8 @@ pub enum Command {
     Init(init::Init),
     Wheels(wheels::Wheels),
     Panel(panel::Panel),
+    Tune(tune::Tune),
+    Enhance(enhance::Enhance),
 }
 
 impl Command {
@@ -26,6 +30,8 @@ impl Command {
             Self::Init(arguments) => arguments.run(),
             Self::Wheels(arguments) => arguments.run(),
             Self::Panel(arguments) => arguments.run(),
+            Self::Tune(arguments) => arguments.run(),
+            Self::Enhance(arguments) => arguments.run(),
         }
     }
 }

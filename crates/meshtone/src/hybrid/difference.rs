@@ -1,7 +1,8 @@
 //! Simulated difference signals.
 
 use super::HybridError;
-use crate::batch::{ChannelKind, Keep};
+use crate::batch::{ChannelKind, Control, Keep, simulate_many};
+use crate::scenario::Scenario;
 use crate::signal::{Record, SeparationSettings};
 use crate::simulate::Stages;
 use crate::solver::{Block, Output, Recorder};
@@ -44,6 +45,35 @@ impl DifferenceChain {
         let rate_hz = self.sampling_rate_hz.min(stages.time.sampling_rate_hz);
         Ok(crate::trace::gear_record(stages, signal, pinion_speed_hz, rate_hz, self.separation.clone())?)
     }
+}
+
+/// Difference signals of some scenarios, in their order.
+///
+/// # Arguments
+/// * `scenarios` - what is simulated
+/// * `chain` - how a difference signal is taken
+///
+/// # Errors
+/// The first scenario's that cannot be simulated or has no difference signal.
+///
+/// ```
+/// use meshtone::hybrid::{DifferenceChain, difference_signals};
+/// use meshtone::scenario::{Fault, Scenario};
+///
+/// let mut healthy = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+/// healthy.quality.din_grade = 7;
+/// let broken = Scenario { fault: Some(Fault::MissingTooth), ..healthy.clone() };
+/// let signals = difference_signals(vec![healthy, broken], &DifferenceChain::new(25e3))?;
+/// assert_eq!((signals.len(), signals[0].len()), (2, 2048));
+/// # Ok::<(), meshtone::hybrid::HybridError>(())
+/// ```
+pub fn difference_signals(
+    scenarios: Vec<Scenario>,
+    chain: &DifferenceChain,
+) -> Result<Vec<Vec<f64>>, HybridError> {
+    let mut signals = Vec::with_capacity(scenarios.len());
+    simulate_many(scenarios, &KeepDifference(chain), &Control::default(), |_, kept| signals.push(kept));
+    signals.into_iter().map(|kept| kept?).collect()
 }
 
 /// Keeps the difference signal of each of many simulations.

@@ -25,7 +25,7 @@ mod search;
 mod simulated;
 mod tune;
 
-pub use difference::DifferenceChain;
+pub use difference::{DifferenceChain, difference_signals};
 pub use error::HybridError;
 pub use experiment::{Case, Experiment, KeyRange, TunedKey};
 pub use indicator::TuningIndicator;

@@ -15,6 +15,21 @@ const KINDS: [(&str, Reader); 5] = [
     ("tooth-destruction", |table| tooth_destruction(table).map(Fault::ToothDestruction)),
 ];
 
+impl Fault {
+    /// Reads the section or table `fault` of a file, as the scenario file has it.
+    ///
+    /// # Arguments
+    /// * `table` - what the section is in
+    ///
+    /// None where it is absent.
+    ///
+    /// # Errors
+    /// An unknown kind, a missing or unknown key, a value of the wrong type; ranges are checked with the whole scenario.
+    pub fn from_table(table: &TomlTable<'_>) -> ReadResult<Option<Self>> {
+        read_optional(table)
+    }
+}
+
 /// The fault, or none where the section is absent.
 pub(super) fn read_optional(root: &TomlTable<'_>) -> ReadResult<Option<Fault>> {
     match root.optional("fault") {

@@ -1,0 +1,213 @@
+//! `meshtone tune`
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::AtomicBool;
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use meshtone::hybrid::{Experiment, ExperimentControl, ExperimentResult, Tuning, run_experiment};
+use meshtone_io::atomic_file::{StagedFile, check_target, check_writable};
+use meshtone_io::experiment::{Tuned, read_experiment, tuning_json, write_tuned};
+
+use crate::failure::Failure;
+use crate::same_file::is_same_file;
+use crate::terminal::{print, print_error_line};
+
+const TUNING: &str = "tuning.json";
+const TUNED: &str = "tuned.toml";
+const FIGURE: [&str; 2] = ["tuning.svg", "tuning.png"];
+
+/// Tune simulations to what was measured on a rig
+///
+/// Simulates the experiment's cases and finds the enhancement, and the scenario's numbers, with which they resemble the
+/// measurements most. Writes tuning.json, tuned.toml, tuning.svg and tuning.png; nothing is written unless all went well.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Tune {
+    /// The experiment: base scenario, cases, measurements, what is tuned
+    #[arg(value_name = "EXPERIMENT.toml")]
+    experiment: PathBuf,
+    /// Directory to write to. [default: <file name without .toml>_tuning in the current directory]
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Print no table and no progress; warnings and errors are still printed
+    #[arg(short, long)]
+    quiet: bool,
+    /// Do not draw the figure
+    #[arg(long)]
+    no_figure: bool,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  meshtone tune breakage.toml                                  into ./breakage_tuning
+  meshtone enhance broken.toml --tuned breakage_tuning/tuned.toml --draws 20";
+
+impl Tune {
+    pub fn run(&self) -> Result<(), Failure> {
+        let file = read_experiment(&self.experiment)?;
+        let directory = self.directory()?;
+        for name in [TUNING, TUNED].into_iter().chain(FIGURE) {
+            let target = directory.join(name);
+            if let Some(source) = file.sources.iter().find(|source| is_same_file(source, &target)) {
+                let problem = format!("{} would be replaced, but is read", source.display());
+                return Err(Failure::bad_input(problem).with_help("name another directory with -o"));
+            }
+        }
+        let existed = directory.is_dir();
+        prepare(&directory)?;
+        let written = self.tune(&file.experiment, &directory);
+        if written.is_err() && !existed {
+            // Only where nothing is in it.
+            let _ = std::fs::remove_dir(&directory);
+        }
+        written
+    }
+
+    fn directory(&self) -> Result<PathBuf, Failure> {
+        if let Some(output) = &self.output {
+            return Ok(output.clone());
+        }
+        let stem = self.experiment.file_stem().ok_or_else(|| {
+            Failure::bad_input(format!("{} is no experiment file", self.experiment.display()))
+        })?;
+        let mut name = stem.to_os_string();
+        name.push("_tuning");
+        Ok(PathBuf::from(name))
+    }
+
+    fn tune(&self, experiment: &Experiment, directory: &Path) -> Result<(), Failure> {
+        let bar = Mutex::new(self.progress_bar());
+        let progress = |finished: usize, all: usize| {
+            // A poisoned lock means another thread's end, which is told elsewhere.
+            if let Ok(bar) = bar.lock() {
+                bar.set_length(all as u64);
+                bar.set_position(finished as u64);
+            }
+        };
+        let cancelled = AtomicBool::new(false);
+        let control = ExperimentControl { progress: &progress, cancelled: &cancelled };
+        let result = run_experiment(experiment, &control)
+            .map_err(|error| Failure::bad_input(format!("{}: {error}", self.experiment.display())))?;
+        if let Ok(bar) = bar.lock() {
+            bar.finish_and_clear();
+        }
+        self.write(experiment, &result, directory)?;
+        for warning in &result.tuning().warnings {
+            print_error_line(format!("warning: {warning}"));
+        }
+        if self.quiet { Ok(()) } else { print(&table(experiment, &result, directory)) }
+    }
+
+    fn progress_bar(&self) -> ProgressBar {
+        if self.quiet {
+            return ProgressBar::hidden();
+        }
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+        if let Ok(style) =
+            ProgressStyle::with_template("{bar:30} {pos} of {len} simulations, {per_sec}, {eta} left")
+        {
+            bar.set_style(style);
+        }
+        bar
+    }
+
+    fn write(
+        &self,
+        experiment: &Experiment,
+        result: &ExperimentResult,
+        directory: &Path,
+    ) -> Result<(), Failure> {
+        let json = tuning_json(experiment, result);
+        let name = self.experiment.file_name().unwrap_or_default().to_string_lossy();
+        let toml = write_tuned(&Tuned::of(experiment, result), &name);
+        let mut staged = Vec::new();
+        for (name, text) in [(TUNING, json), (TUNED, toml)] {
+            staged.push(StagedFile::write(&directory.join(name), |file| file.write_all(text.as_bytes()))?);
+        }
+        for file in staged {
+            file.commit()?;
+        }
+        Ok(())
+    }
+}
+
+/// Creates the directory, and finds out before the simulations whether the results can be written to it.
+fn prepare(directory: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(directory).map_err(|error| {
+        Failure::of_file(
+            error.kind(),
+            format!("cannot create the directory {}: {error}", directory.display()),
+        )
+    })?;
+    check_writable(directory)?;
+    for name in [TUNING, TUNED].into_iter().chain(FIGURE) {
+        check_target(&directory.join(name))?;
+    }
+    Ok(())
+}
+
+fn table(experiment: &Experiment, result: &ExperimentResult, directory: &Path) -> String {
+    let mut text = String::new();
+    let tuning = result.tuning();
+    // Writing to a text cannot fail.
+    let _ = writeln!(text, "  {:<28}{:>10}  95 % interval", "parameter", "value");
+    let intervals = tuning.intervals;
+    for (name, value, [least, largest]) in [
+        ("width ratio", tuning.enhancement.width_ratio, intervals.width_ratio),
+        (
+            "fault-to-harmonics ratio",
+            tuning.enhancement.fault_to_harmonics_ratio,
+            intervals.fault_to_harmonics_ratio,
+        ),
+        ("noise level", tuning.enhancement.noise_level, intervals.noise_level),
+    ] {
+        let _ = writeln!(text, "  {name:<28}{value:>10.3}  {least:.3} to {largest:.3}");
+    }
+    if let Some(keys) = &result.with_keys {
+        for (key, value) in experiment.keys.iter().zip(&keys.values) {
+            let _ = writeln!(text, "  {:<28}{:>10}", key.key, short(*value));
+        }
+    }
+    let _ =
+        writeln!(text, "\n  {:<40}{:>10}{:>10}{:>15}", "mean error", "original", "enhanced", "leave one out");
+    let mut row = |name: &str, tuning: &Tuning| {
+        let _ = writeln!(
+            text,
+            "  {name:<40}{:>10.3}{:>10.3}{:>15.3}",
+            tuning.original_error,
+            tuning.enhanced_error,
+            tuning.mean_leave_one_out_error()
+        );
+    };
+    row("the three parameters alone", &result.enhancement_alone);
+    if let Some(keys) = &result.with_keys {
+        row("with the scenario's numbers", &keys.tuning);
+    }
+    let _ = writeln!(text, "  {:<40}{:>20.3}", "the measurements' own medians", tuning.scatter);
+    let _ = writeln!(text, "\n  {:<40}{:>10}{:>10}{:>15}", "case", "original", "enhanced", "leave one out");
+    for (number, case) in experiment.cases.iter().enumerate() {
+        let measured = &experiment.measured;
+        let _ = writeln!(
+            text,
+            "  {:<40}{:>10.3}{:>10.3}{:>15.3}",
+            case.label,
+            measured.case_error(number, &tuning.original[number]),
+            measured.case_error(number, &tuning.enhanced[number]),
+            tuning.leave_one_out_error[number]
+        );
+    }
+    let _ = writeln!(text, "\n{}", directory.display());
+    text
+}
+
+fn short(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) {
+        format!("{value:.4}")
+    } else {
+        format!("{value:.3e}")
+    }
+}

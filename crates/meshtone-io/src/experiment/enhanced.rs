@@ -1,0 +1,104 @@
+//! Enhanced difference signals as Parquet.
+
+use std::io::{self, Write};
+use std::sync::Arc;
+
+use arrow::array::{ArrayRef, Float32Builder, Float64Array, ListBuilder, StringArray, UInt64Array};
+use arrow::datatypes::{DataType, Field, Schema};
+use arrow::record_batch::RecordBatch;
+use meshtone::scenario::Scenario;
+use parquet::arrow::ArrowWriter;
+use parquet::basic::{Compression, ZstdLevel};
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::WriterProperties;
+
+use super::Tuned;
+
+const COMPRESSION_LEVEL: i32 = 1;
+
+/// One draw of an enhanced difference signal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnhancedRecord {
+    /// The fault's kind, or `healthy`.
+    pub label: String,
+    /// Number of the draw.
+    pub draw: u64,
+    /// Rms over that of the enhanced healthy signal.
+    pub relative_rms: f64,
+    /// Kurtosis.
+    pub kurtosis: f64,
+    /// One cycle of the gear, over the rms of the enhanced healthy signal.
+    pub relative_difference: Vec<f64>,
+}
+
+/// What all records of a file have in common.
+#[derive(Debug, Clone, Copy)]
+pub struct EnhancedHead<'a> {
+    /// What was simulated.
+    pub scenario: &'a Scenario,
+    /// How it was enhanced.
+    pub tuned: &'a Tuned,
+    /// Of the noise.
+    pub seed: u64,
+    /// (g) Rms of the simulated healthy signal, enhanced: what the records are divided by.
+    pub healthy_rms_g: f64,
+}
+
+/// Writes enhanced difference signals, one row a draw.
+///
+/// # Arguments
+/// * `to` - where the file is written to; it needs no buffer
+/// * `head` - what they have in common; it goes into the file's metadata
+/// * `records` - the rows
+///
+/// # Errors
+/// Those of `to`.
+pub fn write_enhanced(
+    to: impl Write + Send,
+    head: EnhancedHead,
+    records: &[EnhancedRecord],
+) -> io::Result<()> {
+    let mut signals = ListBuilder::new(Float32Builder::new());
+    for record in records {
+        signals.values().append_slice(
+            &record.relative_difference.iter().map(|&value| value as f32).collect::<Vec<f32>>(),
+        );
+        signals.append(true);
+    }
+    let signals = signals.finish();
+    let field = |name: &str, kind: DataType| Field::new(name, kind, false);
+    let schema = Arc::new(Schema::new(vec![
+        field("label", DataType::Utf8),
+        field("draw", DataType::UInt64),
+        field("relative_rms", DataType::Float64),
+        field("kurtosis", DataType::Float64),
+        field("relative_difference", arrow::array::Array::data_type(&signals).clone()),
+    ]));
+    let arrays: Vec<ArrayRef> = vec![
+        Arc::new(StringArray::from_iter_values(records.iter().map(|record| &record.label))),
+        Arc::new(UInt64Array::from_iter_values(records.iter().map(|record| record.draw))),
+        Arc::new(Float64Array::from_iter_values(records.iter().map(|record| record.relative_rms))),
+        Arc::new(Float64Array::from_iter_values(records.iter().map(|record| record.kurtosis))),
+        Arc::new(signals),
+    ];
+    let metadata = [
+        ("meshtone.scenario", head.scenario.to_toml()),
+        ("meshtone.tuned", super::write_tuned(head.tuned, "an experiment")),
+        ("meshtone.version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("meshtone.seed", head.seed.to_string()),
+        ("meshtone.healthy_rms_g", format!("{:?}", head.healthy_rms_g)),
+        ("meshtone.relative_difference", "difference signal over one revolution of the gear, over the rms of the enhanced healthy signal, meshtone.healthy_rms_g".to_owned()),
+    ];
+    let level = ZstdLevel::try_new(COMPRESSION_LEVEL).map_err(io::Error::other)?;
+    let properties = WriterProperties::builder()
+        .set_compression(Compression::ZSTD(level))
+        .set_key_value_metadata(Some(
+            metadata.into_iter().map(|(key, value)| KeyValue::new(key.to_owned(), value)).collect(),
+        ))
+        .build();
+    let mut writer = ArrowWriter::try_new(to, schema.clone(), Some(properties)).map_err(io::Error::other)?;
+    let batch = RecordBatch::try_new(schema, arrays).map_err(io::Error::other)?;
+    writer.write(&batch).map_err(io::Error::other)?;
+    writer.close().map_err(io::Error::other)?;
+    Ok(())
+}

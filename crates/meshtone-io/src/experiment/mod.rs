@@ -1,0 +1,13 @@
+//! Experiments of the hybrid stage: the file that describes one, and the files that tuning writes.
+
+mod enhanced;
+mod measured;
+mod read;
+mod recordings;
+mod tuned;
+mod tuning_json;
+
+pub use enhanced::{EnhancedHead, EnhancedRecord, write_enhanced};
+pub use read::{ExperimentFile, read_experiment};
+pub use tuned::{Tuned, read_tuned, write_tuned};
+pub use tuning_json::tuning_json;

@@ -1,0 +1,260 @@
+//! The experiment file.
+
+use std::path::{Path, PathBuf};
+
+use meshtone::batch::ChannelKind;
+use meshtone::hybrid::{
+    Case, DifferenceChain, EnhancementBounds, Experiment, HybridError, KeyRange, TunedKey, TuningIndicator,
+};
+use meshtone::scenario::{Fault, Scenario, ScenarioError};
+use meshtone::signal::{MeanPart, SeparationSettings};
+use meshtone::toml_reader::{ReadResult, TomlDocument, TomlTable, TomlValue};
+
+use super::measured::{self, CaseFiles};
+use crate::scenario_file::{ReadScenarioError, ScenarioFile, read_text};
+
+/// Combinations of the tuned keys' values that are simulated unless the file says otherwise.
+const CANDIDATES: u64 = 160;
+const MOST_CANDIDATES: u64 = 100_000;
+
+const CHANNELS: [(&str, ChannelKind); 3] = [
+    ("horizontal", ChannelKind::Horizontal),
+    ("vertical", ChannelKind::Vertical),
+    ("axial", ChannelKind::Axial),
+];
+
+/// An experiment file that has been read, with everything that it names.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExperimentFile {
+    /// Where it was read from.
+    pub path: PathBuf,
+    /// Its text.
+    pub text: String,
+    /// What it says.
+    pub experiment: Experiment,
+    /// All files that were read: this one, the scenario's, the measurements'.
+    pub sources: Vec<PathBuf>,
+}
+
+/// Reads an experiment, its base scenario and its measurements.
+///
+/// # Arguments
+/// * `path` - the experiment file; names of other files in it are relative to its directory
+///
+/// # Errors
+/// A file that cannot be read; what is wrong in one of them, with key and line; what [`Experiment::check`] refuses.
+pub fn read_experiment(path: &Path) -> Result<ExperimentFile, ReadScenarioError> {
+    let text = read_text(path)?;
+    let directory = path.parent().unwrap_or(Path::new(""));
+    let mut sources = vec![path.to_path_buf()];
+    let mut base = None;
+    let read = TomlDocument::parse(&text).and_then(|document| {
+        let result = document.root().read(|root| experiment(root, directory, &mut sources, &mut base));
+        result.map_err(|error| document.locate(error))
+    });
+    match (read, base) {
+        (Ok(experiment), _) => Ok(ExperimentFile { path: path.to_path_buf(), text, experiment, sources }),
+        // What is wrong in the scenario file is told with that file's lines.
+        (Err(_), Some(error)) => Err(error),
+        (Err(error), None) => {
+            Err(ReadScenarioError::Invalid { path: path.to_path_buf(), text, error: Box::new(error) })
+        }
+    }
+}
+
+fn experiment(
+    root: &TomlTable<'_>,
+    directory: &Path,
+    sources: &mut Vec<PathBuf>,
+    base_error: &mut Option<ReadScenarioError>,
+) -> ReadResult<Experiment> {
+    let named = root.required("scenario", "the scenario file that all cases have in common")?;
+    let file = directory.join(named.string()?);
+    let base = match ScenarioFile::read(&file) {
+        Ok(file) => {
+            sources.extend(file.sources().map(Path::to_path_buf));
+            file.scenario
+        }
+        Err(error) => {
+            let problem = named.error(error.to_string());
+            *base_error = Some(error);
+            return Err(problem);
+        }
+    };
+    let chain = root.table_or_empty("signal")?.read(|table| signal(table, &base))?;
+    let listed = root.required("case", "the cases, [[case]] each, the healthy one first")?;
+    let mut cases = Vec::new();
+    let mut files = Vec::new();
+    for value in listed.array()? {
+        let (case, of_case) = value.table()?.read(case)?;
+        let scenario = Scenario { fault: case.fault.clone(), ..base.clone() };
+        // Before anything is simulated.
+        if let Err(error) = meshtone::stages(&scenario) {
+            let key = format!("{}.{}", value.path(), error.key);
+            return Err(ScenarioError { key, line: Some(value.line()), ..error });
+        }
+        cases.push(case);
+        files.push(of_case);
+    }
+    check_cases(&listed, &cases)?;
+    let tune = root.table_or_empty("tune")?.read(tune)?;
+    let measured = root.table_or_empty("measured")?.read(|table| {
+        measured::read(
+            table,
+            &measured::Wanted {
+                directory,
+                cases: &cases,
+                files: &files,
+                indicators: &tune.indicators,
+                chain: &chain,
+                base: &base,
+            },
+            sources,
+        )
+    })?;
+    let Tune { bounds, keys, candidates, seed, .. } = tune;
+    let experiment = Experiment { base, cases, chain, measured, bounds, keys, candidates, seed };
+    experiment.check().map_err(|error| {
+        let key = match &error {
+            HybridError::NoSuchKey { .. } => "tune.key",
+            HybridError::Cases { .. } | HybridError::HealthyCase { .. } => "case",
+            _ => "tune",
+        };
+        ScenarioError::new(key, "", error.to_string())
+    })?;
+    Ok(experiment)
+}
+
+fn check_cases(listed: &TomlValue<'_>, cases: &[Case]) -> ReadResult<()> {
+    if cases.len() < 2 {
+        return Err(listed.error(format!("{} case; must be two or more, the healthy one first", cases.len())));
+    }
+    for (number, case) in cases.iter().enumerate() {
+        if case.fault.is_some() == (number == 0) {
+            let error = HybridError::HealthyCase { case: number, label: case.label.clone() };
+            return Err(listed.array()?[number].error(error.to_string()));
+        }
+        if let Some(other) = cases[..number].iter().position(|other| other.severity == case.severity) {
+            let problem =
+                format!("has the severity {} of case {other}; each must have its own", case.severity);
+            return Err(listed.array()?[number].error(problem));
+        }
+    }
+    Ok(())
+}
+
+fn case(table: &TomlTable<'_>) -> ReadResult<(Case, CaseFiles)> {
+    let label = table.required("label", "the case's name")?.string()?.to_owned();
+    let severity = table.required("severity", "how severe the fault is, 0 for the healthy case")?.number()?;
+    let fault = Fault::from_table(table)?;
+    Ok((Case { label, severity, fault }, CaseFiles::read(table)?))
+}
+
+fn signal(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<DifferenceChain> {
+    let channel = table.optional("channel").map(|value| value.choice(&CHANNELS)).transpose()?;
+    let rate = table.required("sampling_rate_hz", "(S/s) the sampling rate of the rig's recordings")?;
+    let sampling_rate_hz = rate.number()?;
+    let mesh_hz = base.operation.pinion_speed_hz * f64::from(base.gears.pinion_teeth);
+    if sampling_rate_hz <= 2.0 * mesh_hz {
+        let problem = format!("must be more than twice the mesh frequency of {mesh_hz} Hz");
+        return Err(rate.error(problem));
+    }
+    let teeth = base.gears.gear_teeth as usize;
+    let default = SeparationSettings::new(teeth);
+    let most_sidebands = (teeth as u64).saturating_sub(2) / 2;
+    let sidebands = table.optional("sidebands").map(|value| value.integer(0..=most_sidebands)).transpose()?;
+    let orders =
+        table.optional("shaft_orders").map(|value| value.integer(0..=teeth as u64 - 1)).transpose()?;
+    let separation = SeparationSettings {
+        sidebands: sidebands.map_or(default.sidebands, |count| count as usize),
+        shaft_orders: orders.map_or(default.shaft_orders, |last| (1..=last as usize).collect()),
+        mean: MeanPart::Kept,
+        teeth,
+    };
+    Ok(DifferenceChain {
+        channel: channel.unwrap_or(ChannelKind::Vertical),
+        sampling_rate_hz,
+        separation: Some(separation),
+    })
+}
+
+struct Tune {
+    indicators: Vec<TuningIndicator>,
+    bounds: EnhancementBounds,
+    keys: Vec<TunedKey>,
+    candidates: usize,
+    seed: u64,
+}
+
+fn tune(table: &TomlTable<'_>) -> ReadResult<Tune> {
+    let names = TuningIndicator::ALL.map(|indicator| (indicator.name(), indicator));
+    let indicators = match table.optional("indicators") {
+        None => vec![TuningIndicator::Rms, TuningIndicator::Kurtosis],
+        Some(value) => {
+            let chosen =
+                value.array()?.iter().map(|value| value.choice(&names)).collect::<ReadResult<Vec<_>>>()?;
+            if chosen.is_empty() {
+                return Err(value.error("names no indicator; must name one or more"));
+            }
+            if let Some(twice) = (1..chosen.len()).find(|&n| chosen[..n].contains(&chosen[n])) {
+                return Err(value.error(format!("names {} twice", chosen[twice].name())));
+            }
+            chosen
+        }
+    };
+    let range = |key, default: [f64; 2]| -> ReadResult<[f64; 2]> {
+        let Some(value) = table.optional(key) else { return Ok(default) };
+        let [least, largest] = if value.is_array() { value.exactly()? } else { [value.number()?; 2] };
+        if !(least > 0.0 && least <= largest) {
+            return Err(value.error("must be [least, largest], both above 0, or one number to hold it there"));
+        }
+        Ok([least, largest])
+    };
+    let default = EnhancementBounds::default();
+    let bounds = EnhancementBounds {
+        width_ratio: range("width_ratio", default.width_ratio)?,
+        fault_to_harmonics_ratio: range("fault_to_harmonics_ratio", default.fault_to_harmonics_ratio)?,
+        noise_level: range("noise_level", default.noise_level)?,
+    };
+    let keys = match table.optional("key") {
+        None => Vec::new(),
+        Some(value) => {
+            let read = |value: &TomlValue<'_>| {
+                let key = value.table()?.read(tuned_key)?;
+                key.check().map_err(|error| value.error(error.to_string()))?;
+                Ok(key)
+            };
+            value.array()?.iter().map(read).collect::<ReadResult<Vec<_>>>()?
+        }
+    };
+    let candidates =
+        table.optional("candidates").map(|value| value.integer(1..=MOST_CANDIDATES)).transpose()?;
+    let seed = table.optional("seed").map(|value| value.integer(0..=u64::MAX)).transpose()?;
+    Ok(Tune {
+        indicators,
+        bounds,
+        keys,
+        candidates: candidates.unwrap_or(CANDIDATES) as usize,
+        seed: seed.unwrap_or(1),
+    })
+}
+
+fn tuned_key(table: &TomlTable<'_>) -> ReadResult<TunedKey> {
+    let key = table.required("key", "the dotted key of a number of the scenario file")?.string()?.to_owned();
+    let one_of = table.optional("one_of");
+    let ends = ["least", "largest"].map(|end| table.optional(end));
+    let logarithmic = table.optional("logarithmic").map(|value| value.boolean()).transpose()?;
+    let range = match (one_of, ends) {
+        (Some(values), [None, None]) if logarithmic.is_none() => KeyRange::OneOf(values.numbers()?),
+        (None, [Some(least), Some(largest)]) => KeyRange::Between {
+            least: least.number()?,
+            largest: largest.number()?,
+            logarithmic: logarithmic.unwrap_or(false),
+        },
+        _ => {
+            let problem = "needs either one_of = [values], or least and largest (and logarithmic = true for equal ratios)";
+            return Err(table.error("key", problem));
+        }
+    };
+    Ok(TunedKey { key, range })
+}

@@ -1,0 +1,113 @@
+//! Measured difference signals from recordings with their shaft phase.
+
+use std::path::PathBuf;
+
+use meshtone::signal::{
+    ChainSettings, MeshTone, ShaftPhase, SignalError, Tachometer, process_channel, process_segments,
+    tachometer_pulses,
+};
+use meshtone::toml_reader::{ReadResult, TomlTable};
+
+use super::measured::{Wanted, column, missing};
+use crate::recording::{Recording, RecordingOptions, read_recording};
+
+/// How the phase of a recording's shafts is known.
+enum Phase<'a> {
+    /// The gear's shaft turns at a constant speed.
+    Constant { gear_shaft_hz: f64 },
+    /// Pulses of a tachometer's channel.
+    Tachometer { channel: &'a str, pulses_per_revolution: u32, on_pinion: bool },
+    /// The mesh tone itself.
+    MeshTone { gear_shaft_hz: f64 },
+}
+
+/// Difference signals by case and record.
+pub(super) fn differences(
+    table: &TomlTable<'_>,
+    wanted: &Wanted,
+    sources: &mut Vec<PathBuf>,
+) -> ReadResult<Vec<Vec<Vec<f64>>>> {
+    let channel = table.required("channel", "name or number of the recordings' channel")?.string()?;
+    let rate = table.number("sampling_rate_hz")?;
+    let segment = table
+        .optional("revolutions_per_record")
+        .map(|value| value.integer(2..=u64::from(u32::MAX)))
+        .transpose()?;
+    let phase = phase(table, wanted)?;
+    let settings = ChainSettings { separation: wanted.chain.separation.clone(), ..ChainSettings::default() };
+    let teeth = wanted.base.gears.gear_teeth;
+    let mut all = Vec::new();
+    for (case, files) in wanted.cases.iter().zip(wanted.files) {
+        if files.recordings.is_empty() {
+            let problem = format!("the case \"{}\" has no recordings, but others have", case.label);
+            return Err(missing(files, problem));
+        }
+        let mut records = Vec::new();
+        for named in &files.recordings {
+            let path = wanted.directory.join(&named.name);
+            let mut channels = vec![column(channel)];
+            if let Phase::Tachometer { channel, .. } = phase {
+                channels.push(column(channel));
+            }
+            let options =
+                RecordingOptions { channels, sampling_rate_hz: rate, ..RecordingOptions::default() };
+            let recording = read_recording(&path, &options).map_err(|error| named.error(error))?;
+            sources.push(path);
+            let refuse = |error: SignalError| named.error(format!("{}: {error}", named.name));
+            let gear = gear_phase(&recording, &phase, wanted).map_err(refuse)?;
+            let signal = &recording.channels[0].samples;
+            let found = match segment {
+                None => process_channel(signal, &gear, teeth, &settings).map(|record| vec![record]),
+                Some(count) => process_segments(signal, &gear, teeth, &settings, count as usize),
+            };
+            records.extend(found.map_err(refuse)?.into_iter().map(|record| record.parts.difference));
+        }
+        all.push(records);
+    }
+    Ok(all)
+}
+
+fn phase<'a>(table: &TomlTable<'a>, wanted: &Wanted) -> ReadResult<Phase<'a>> {
+    let gears = &wanted.base.gears;
+    let nominal =
+        wanted.base.operation.pinion_speed_hz * f64::from(gears.pinion_teeth) / f64::from(gears.gear_teeth);
+    let gear_shaft_hz = table.number_or("gear_shaft_hz", nominal)?;
+    let tachometer = table.optional("tachometer_channel");
+    let pulses =
+        table.optional("pulses_per_revolution").map(|value| value.integer(1..=100_000)).transpose()?;
+    let on = table.optional("tachometer_shaft");
+    let on = on.map(|value| value.choice(&[("gear", false), ("pinion", true)])).transpose()?;
+    let mesh_tone = table.optional("phase_from_mesh_tone").map(|value| value.boolean()).transpose()?;
+    match (tachometer, mesh_tone.unwrap_or(false)) {
+        (Some(_), true) => {
+            Err(table
+                .error("phase_from_mesh_tone", "given beside tachometer_channel; the phase has one source"))
+        }
+        (Some(channel), false) => Ok(Phase::Tachometer {
+            channel: channel.string()?,
+            pulses_per_revolution: pulses.unwrap_or(1) as u32,
+            on_pinion: on.unwrap_or(false),
+        }),
+        (None, true) => Ok(Phase::MeshTone { gear_shaft_hz }),
+        (None, false) => Ok(Phase::Constant { gear_shaft_hz }),
+    }
+}
+
+fn gear_phase(recording: &Recording, phase: &Phase, wanted: &Wanted) -> Result<ShaftPhase, SignalError> {
+    let rate = recording.sampling_rate_hz;
+    let gears = &wanted.base.gears;
+    match *phase {
+        Phase::Constant { gear_shaft_hz } => ShaftPhase::constant(gear_shaft_hz, rate, recording.len()),
+        Phase::MeshTone { gear_shaft_hz } => {
+            let tone = MeshTone::new(gears.gear_teeth, gear_shaft_hz);
+            ShaftPhase::from_mesh_tone(&recording.channels[0].samples, rate, &tone)
+        }
+        Phase::Tachometer { pulses_per_revolution, on_pinion, .. } => {
+            let waveform = &recording.channels[1].samples;
+            let times_s = tachometer_pulses(waveform, rate, &Tachometer::default())?;
+            let shaft =
+                ShaftPhase::from_pulses(&times_s, pulses_per_revolution, None, rate, recording.len())?;
+            if on_pinion { shaft.of_mate(gears.pinion_teeth, gears.gear_teeth) } else { Ok(shaft) }
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! What tuning found, in a form that other commands use.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use meshtone::batch::ChannelKind;
+use meshtone::hybrid::{DifferenceChain, Enhancement, Experiment, ExperimentResult};
+use meshtone::scenario::{Scenario, ScenarioError};
+use meshtone::signal::SeparationSettings;
+use meshtone::toml_reader::{ReadResult, TomlDocument, TomlTable, TomlValue};
+
+use crate::scenario_file::{ReadScenarioError, read_text};
+
+/// What tuning found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tuned {
+    /// The three parameters.
+    pub enhancement: Enhancement,
+    /// (rev) Where the faults' responses are in the gear's cycle, for signals that show none.
+    pub centre_rev: f64,
+    /// (-) Channel, rate and separation of the difference signals.
+    pub channel: ChannelKind,
+    /// (S/s) The rig's sampling rate.
+    pub sampling_rate_hz: f64,
+    /// Sidebands that are taken away.
+    pub sidebands: usize,
+    /// The last of the shaft orders that are taken away.
+    pub shaft_orders: usize,
+    /// Numbers of the scenario that were tuned as well: key and value.
+    pub keys: Vec<(String, f64)>,
+}
+
+const CHANNELS: [(&str, ChannelKind); 3] = [
+    ("horizontal", ChannelKind::Horizontal),
+    ("vertical", ChannelKind::Vertical),
+    ("axial", ChannelKind::Axial),
+];
+
+impl Tuned {
+    /// What an experiment found.
+    ///
+    /// # Arguments
+    /// * `experiment`, `result` - as of [`meshtone::hybrid::run_experiment`]
+    pub fn of(experiment: &Experiment, result: &ExperimentResult) -> Self {
+        let values = result.with_keys.as_ref().map_or(&[][..], |keys| &keys.values);
+        let gear_teeth = experiment.base.gears.gear_teeth as usize;
+        let separation =
+            experiment.chain.separation.clone().unwrap_or_else(|| SeparationSettings::new(gear_teeth));
+        Self {
+            enhancement: result.tuning().enhancement,
+            centre_rev: result.simulated().centre_rev(),
+            channel: experiment.chain.channel,
+            sampling_rate_hz: experiment.chain.sampling_rate_hz,
+            sidebands: separation.sidebands,
+            shaft_orders: separation.shaft_orders.len(),
+            keys: experiment.keys.iter().map(|key| key.key.clone()).zip(values.iter().copied()).collect(),
+        }
+    }
+
+    /// A scenario with the tuned numbers; those of another fault's keys are left out.
+    ///
+    /// # Arguments
+    /// * `scenario` - to be changed
+    ///
+    /// # Errors
+    /// A number that is not allowed in this scenario.
+    pub fn apply(&self, scenario: &Scenario) -> Result<Scenario, ScenarioError> {
+        let mut tuned = scenario.clone();
+        for (key, value) in &self.keys {
+            if tuned.number(key).is_some() {
+                tuned = tuned.with_number(key, *value)?;
+            }
+        }
+        Ok(tuned)
+    }
+
+    /// How difference signals are taken.
+    ///
+    /// # Arguments
+    /// * `gear_teeth` - of the scenario
+    pub fn chain(&self, gear_teeth: u32) -> DifferenceChain {
+        let separation = SeparationSettings {
+            sidebands: self.sidebands,
+            shaft_orders: (1..=self.shaft_orders).collect(),
+            ..SeparationSettings::new(gear_teeth as usize)
+        };
+        DifferenceChain {
+            channel: self.channel,
+            sampling_rate_hz: self.sampling_rate_hz,
+            separation: Some(separation),
+        }
+    }
+}
+
+/// The text of a `tuned.toml`.
+///
+/// # Arguments
+/// * `tuned` - what was found
+/// * `from` - the experiment, told in a comment
+///
+/// ```
+/// use meshtone::batch::ChannelKind;
+/// use meshtone::hybrid::Enhancement;
+/// use meshtone_io::experiment::{Tuned, read_tuned, write_tuned};
+///
+/// let tuned = Tuned {
+///     enhancement: Enhancement { width_ratio: 0.18, fault_to_harmonics_ratio: 2.25, noise_level: 1.585 },
+///     centre_rev: 0.03,
+///     channel: ChannelKind::Vertical,
+///     sampling_rate_hz: 25e3,
+///     sidebands: 2,
+///     shaft_orders: 7,
+///     keys: vec![("rig.damping_ratio".into(), 0.034)],
+/// };
+/// let directory = tempfile::tempdir()?;
+/// let path = directory.path().join("tuned.toml");
+/// std::fs::write(&path, write_tuned(&tuned, "breakage.toml"))?;
+/// assert_eq!(read_tuned(&path)?, tuned);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn write_tuned(tuned: &Tuned, from: &str) -> String {
+    let Enhancement { width_ratio, fault_to_harmonics_ratio, noise_level } = tuned.enhancement;
+    let channel =
+        CHANNELS.iter().find(|(_, kind)| *kind == tuned.channel).map_or("vertical", |(name, _)| name);
+    let mut text = format!(
+        "# Written by `meshtone tune` from {}.\n\n\
+         [enhancement]                 # of difference signals, in this order\n\
+         width_ratio = {width_ratio:?}\n\
+         fault_to_harmonics_ratio = {fault_to_harmonics_ratio:?}\n\
+         noise_level = {noise_level:?}            # times the rms of the healthy signal\n\
+         centre_rev = {:?}             # where a fault shows in the gear's cycle\n\n\
+         [signal]                      # how they are taken from a simulation\n\
+         channel = \"{channel}\"\n\
+         sampling_rate_hz = {:?}\n\
+         sidebands = {}\n\
+         shaft_orders = {}\n",
+        from.replace(char::is_control, " "),
+        tuned.centre_rev,
+        tuned.sampling_rate_hz,
+        tuned.sidebands,
+        tuned.shaft_orders
+    );
+    for (key, value) in &tuned.keys {
+        // Writing to a text cannot fail.
+        let _ = write!(
+            text,
+            "\n[[key]]                       # of the scenario file\nkey = {key:?}\nvalue = {value:?}\n"
+        );
+    }
+    text
+}
+
+/// Reads a `tuned.toml`.
+///
+/// # Arguments
+/// * `path` - the file
+///
+/// # Errors
+/// It cannot be read; an unknown or missing key, a value that is not allowed, with its line.
+pub fn read_tuned(path: &Path) -> Result<Tuned, ReadScenarioError> {
+    let text = read_text(path)?;
+    let read = TomlDocument::parse(&text)
+        .and_then(|document| document.root().read(tuned).map_err(|error| document.locate(error)));
+    read.map_err(|error| ReadScenarioError::Invalid {
+        path: path.to_path_buf(),
+        text,
+        error: Box::new(error),
+    })
+}
+
+fn tuned(root: &TomlTable<'_>) -> ReadResult<Tuned> {
+    let (enhancement, centre_rev) = root.table_or_empty("enhancement")?.read(|table| {
+        let above_0 = |key, meaning: &str| {
+            let value = table.required(key, meaning)?;
+            let number = value.number()?;
+            if number > 0.0 { Ok(number) } else { Err(value.error("must be more than 0")) }
+        };
+        let noise = table.required("noise_level", "the noise over the healthy signal's rms")?;
+        let noise_level = noise.number()?;
+        if noise_level < 0.0 {
+            return Err(noise.error("must be 0 or more"));
+        }
+        let ratio = table.required("fault_to_harmonics_ratio", "the weight of the fault's response")?;
+        let enhancement = Enhancement {
+            width_ratio: above_0("width_ratio", "the part of the cycle that becomes the cycle")?,
+            fault_to_harmonics_ratio: ratio.number()?,
+            noise_level,
+        };
+        Ok((enhancement, table.number_or("centre_rev", 0.0)?))
+    })?;
+    let (channel, rate, sidebands, orders) = root.table_or_empty("signal")?.read(|table| {
+        let channel = table.optional("channel").map(|value| value.choice(&CHANNELS)).transpose()?;
+        let rate = table.required("sampling_rate_hz", "(S/s) the rig's sampling rate")?;
+        let sampling_rate_hz = rate.number()?;
+        if sampling_rate_hz <= 0.0 {
+            return Err(rate.error("must be more than 0"));
+        }
+        let count = |key, default: u64| -> ReadResult<u64> {
+            Ok(table.optional(key).map(|value| value.integer(0..=10_000)).transpose()?.unwrap_or(default))
+        };
+        Ok((
+            channel.unwrap_or(ChannelKind::Vertical),
+            sampling_rate_hz,
+            count("sidebands", 2)?,
+            count("shaft_orders", 7)?,
+        ))
+    })?;
+    let keys = match root.optional("key") {
+        None => Vec::new(),
+        Some(value) => value.array()?.iter().map(key).collect::<ReadResult<_>>()?,
+    };
+    Ok(Tuned {
+        enhancement,
+        centre_rev,
+        channel,
+        sampling_rate_hz: rate,
+        sidebands: sidebands as usize,
+        shaft_orders: orders as usize,
+        keys,
+    })
+}
+
+fn key(value: &TomlValue<'_>) -> ReadResult<(String, f64)> {
+    value.table()?.read(|table| {
+        let key =
+            table.required("key", "the dotted key of a number of the scenario file")?.string()?.to_owned();
+        Ok((key, table.required("value", "the number")?.number()?))
+    })
+}
