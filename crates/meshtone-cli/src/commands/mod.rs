@@ -1,5 +1,6 @@
 //! The commands, one file each.
 
+mod indicators;
 mod init;
 mod panel;
 mod simulate;
@@ -13,6 +14,7 @@ use crate::failure::Failure;
 #[derive(Debug, Subcommand)]
 pub enum Command {
     Simulate(simulate::Simulate),
+    Indicators(indicators::Indicators),
     Init(init::Init),
     Wheels(wheels::Wheels),
     Panel(panel::Panel),
@@ -23,6 +25,7 @@ impl Command {
     pub fn run(&self) -> Result<(), Failure> {
         match self {
             Self::Simulate(arguments) => arguments.run(),
+            Self::Indicators(arguments) => arguments.run(),
             Self::Init(arguments) => arguments.run(),
             Self::Wheels(arguments) => arguments.run(),
             Self::Panel(arguments) => arguments.run(),

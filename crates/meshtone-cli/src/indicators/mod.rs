@@ -1,0 +1,11 @@
+//! From recordings to indicators: what `meshtone indicators` is made of.
+
+pub mod figures;
+pub mod files;
+pub mod options;
+pub mod phase;
+pub mod process;
+pub mod reading;
+mod refuse;
+pub mod results;
+pub mod table;
