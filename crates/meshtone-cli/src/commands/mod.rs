@@ -14,7 +14,8 @@ use crate::failure::Failure;
 #[derive(Debug, Subcommand)]
 pub enum Command {
     Simulate(simulate::Simulate),
-    Indicators(indicators::Indicators),
+    // It has many more options than the others.
+    Indicators(Box<indicators::Indicators>),
     Init(init::Init),
     Wheels(wheels::Wheels),
     Panel(panel::Panel),

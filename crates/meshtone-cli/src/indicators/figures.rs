@@ -26,7 +26,8 @@ pub fn of_record(
     let channel = &latest.input.channel;
     let mut facts = vec![format!("phase from the {}", phase.source())];
     if series.is_series() {
-        facts.insert(0, format!("the last of {} records", counted(series)));
+        let records = if processing.revolutions.is_some() { "segments" } else { "recordings" };
+        facts.insert(0, format!("the last of {} {records}", counted(series)));
     }
     let mut removed = vec!["mesh orders".to_string()];
     if processing.sidebands > 0 {
@@ -46,7 +47,7 @@ pub fn of_record(
             mean_speed_hz: *mean_speed_hz,
             sidebands: processing.sidebands as usize,
             low_orders: processing.low_orders as usize,
-            first_tooth: phase.first_tooth(),
+            first_tooth: phase.first_tooth(wheel),
             is_first_damaged: wheel.is_first_damaged,
             record,
         })
@@ -66,11 +67,11 @@ pub fn of_record(
 pub fn of_trend(series: &Series, phase: &PhaseOptions, processing: &ProcessingOptions) -> Figure {
     let names: Vec<String> =
         series.results.recordings.iter().map(|recording| name(&recording.source)).collect();
-    let mut facts =
-        vec![format!("{} records", counted(series)), format!("phase from the {}", phase.source())];
-    if let Some(revolutions) = processing.revolutions {
-        facts.push(format!("segments of {revolutions} revolutions"));
-    }
+    let counted_records = match processing.revolutions {
+        None => format!("{} recordings", counted(series)),
+        Some(revolutions) => format!("{} segments of {revolutions} revolutions", counted(series)),
+    };
+    let mut facts = vec![counted_records, format!("phase from the {}", phase.source())];
     facts.push(format!("Meshtone {}", env!("CARGO_PKG_VERSION")));
     let wheels: Vec<String> =
         series.wheels.iter().map(|wheel| format!("{}, {} teeth", wheel.name, wheel.teeth)).collect();

@@ -15,7 +15,7 @@ pub struct ReadingOptions {
     #[arg(short, long, value_name = "CHANNEL")]
     pub channel: Option<String>,
     /// (S/s) Sampling rate, where the file does not say it, or instead of what it says
-    #[arg(long, value_name = "RATE", value_parser = positive)]
+    #[arg(long, value_name = "RATE", value_parser = positive, allow_negative_numbers = true)]
     pub sampling_rate_hz: Option<f64>,
     /// Column that holds the time, by its name or number, or `none`. [default: the one that is named as time]
     #[arg(long, value_name = "CHANNEL")]
@@ -51,7 +51,7 @@ pub struct PhaseOptions {
     #[arg(long, value_name = "TEETH", requires = "teeth", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub mate_teeth: Option<u32>,
     /// (Hz) Speed of the shaft: constant; with pulses, what they are checked against; with --from-mesh-tone, the nominal one
-    #[arg(long, value_name = "SPEED", value_parser = positive)]
+    #[arg(long, value_name = "SPEED", value_parser = positive, allow_negative_numbers = true)]
     pub shaft_hz: Option<f64>,
     /// Channel with a tachometer's waveform, by its name or number
     #[arg(long, value_name = "CHANNEL", group = "pulses", group = "source")]
@@ -75,7 +75,7 @@ pub struct PhaseOptions {
     #[arg(long, value_name = "LEVEL", requires = "tach", allow_negative_numbers = true)]
     pub threshold: Option<f64>,
     /// (unit of the waveform) How far it goes back before the next pulse counts. [default: 0.2 of its range]
-    #[arg(long, value_name = "LEVEL", requires = "tach", value_parser = positive)]
+    #[arg(long, value_name = "LEVEL", requires = "tach", value_parser = positive, allow_negative_numbers = true)]
     pub hysteresis: Option<f64>,
     /// Side of a pulse that counts
     #[arg(long, requires = "tach", default_value = "rising")]

@@ -7,6 +7,7 @@ use meshtone::signal::{MeshTone, ShaftPhase, SimulatedShafts, Tachometer, tachom
 use meshtone_io::recording::{Channel, RecordingOptions, TimeColumn, read_recording};
 
 use super::options::PhaseOptions;
+use super::process::Wheel;
 use super::reading::Input;
 use super::refuse::refuse;
 use crate::failure::Failure;
@@ -68,12 +69,16 @@ impl PhaseOptions {
         }
     }
 
-    /// What tooth 1 is.
-    pub fn first_tooth(&self) -> &'static str {
+    /// What tooth 1 of a wheel is.
+    pub fn first_tooth(&self, wheel: &Wheel) -> &'static str {
         match self.source() {
-            "tachometer" | "pulse times" => "1: in mesh at the pulse",
-            "mesh tone" => "1: chosen by chance",
+            "scenario" if wheel.is_first_damaged => "1: the damaged one",
             "scenario" => "1: enters contact first",
+            "mesh tone" => "1: chosen by chance",
+            "tachometer" | "pulse times" if wheel.is_on_shaft && self.pulses_per_rev == 1 => {
+                "1: in mesh at the pulse"
+            }
+            "tachometer" | "pulse times" => "1: in mesh at the first pulse",
             _ => "1: in mesh at the first sample",
         }
     }
@@ -119,9 +124,12 @@ impl PhaseOptions {
 pub fn simulated(input: &Input, scenario_toml: &str) -> Result<(Scenario, SimulatedShafts), Failure> {
     const HELP: &str = "simulate again with this version: `meshtone simulate SCENARIO.toml -o DIR`";
     let path = input.source.display();
-    let scenario = Scenario::from_toml(scenario_toml).map_err(|error| {
-        Failure::bad_input(format!("{path}: the scenario in the file cannot be read: {error}"))
-            .with_help(HELP)
+    let scenario = Scenario::from_toml(scenario_toml).and_then(|scenario| {
+        scenario.validate()?;
+        Ok(scenario)
+    });
+    let scenario = scenario.map_err(|error| {
+        Failure::bad_input(format!("{path}: the scenario in the file is not valid: {error}")).with_help(HELP)
     })?;
     let shafts = SimulatedShafts::new(&scenario, input.start_s, input.channel.samples.len());
     let (rate, expected) = (input.sampling_rate_hz, shafts.sampling_rate_hz());

@@ -18,6 +18,8 @@ pub struct Wheel {
     pub name: &'static str,
     /// Its teeth.
     pub teeth: u32,
+    /// Whether it is on the shaft that speed or pulses are of.
+    pub is_on_shaft: bool,
     /// Whether tooth 1 is known to be damaged.
     pub is_first_damaged: bool,
 }
@@ -102,13 +104,15 @@ fn turning(input: &Input, phase: &PhaseOptions) -> Result<(Turning, Vec<Wheel>),
             let wheels = Shaft::BOTH.map(|shaft| Wheel {
                 name: shaft.wheel(),
                 teeth: shafts.teeth(shaft),
+                is_on_shaft: shaft == Shaft::Pinion,
                 is_first_damaged: shaft == Shaft::Gear && scenario.fault.is_some(),
             });
             Ok((Turning::Simulated(shafts), wheels.to_vec()))
         }
         _ => {
             phase.check(&input.source)?;
-            let wheel = |(name, teeth)| Wheel { name, teeth, is_first_damaged: false };
+            let wheel =
+                |(name, teeth)| Wheel { name, teeth, is_on_shaft: name == "wheel", is_first_damaged: false };
             let teeth = [("wheel", phase.teeth), ("mate", phase.mate_teeth)];
             let wheels = teeth.into_iter().filter_map(|(name, teeth)| Some(wheel((name, teeth?))));
             Ok((Turning::Measured(phase.measured(input)?), wheels.collect()))

@@ -49,7 +49,7 @@ fn of_record(text: &mut String, series: &Series, wheel: &Wheel) -> std::fmt::Res
     }
     let names = ["FM0", "FM4", "M6A", "M8A", "NA4", "energy ratio", "sidebands"];
     writeln!(text, "  {:<12}{}", "", names.map(|name| format!("{name:>14}")).concat())?;
-    writeln!(text, "  {:<12}{}", "gear", gear(record).map(|value| format!("{value:>14}")).concat())
+    writeln!(text, "  {:<12}{}", "gear metrics", gear(record).map(|value| format!("{value:>14}")).concat())
 }
 
 fn of_series(text: &mut String, series: &Series, wheel: &Wheel) -> std::fmt::Result {

@@ -54,7 +54,6 @@ fn gear(wheel: &WheelView) -> String {
         ("FM0", indicators.fm0),
         ("FM4", indicators.fm4),
         ("NA4", indicators.na4),
-        ("M6A", indicators.m6a),
         ("energy ratio", indicators.energy_ratio),
         ("sideband level factor", indicators.sideband_level_factor),
     ];

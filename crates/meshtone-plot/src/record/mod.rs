@@ -121,7 +121,7 @@ pub fn draw(figure: &RecordFigure) -> Figure {
     let unit = unit(figure.signal.unit);
     let y = common(wheels.iter().flat_map(|wheel| wheel.record.average.values.iter().copied()));
     let around = common(wheels.iter().flat_map(|wheel| difference::extent(wheel)));
-    let amplitudes = spectrum::range(wheels);
+    let amplitudes = spectrum::range(wheels, column_area(0, wheels.len(), 0.0).width);
     for (column, wheel) in wheels.iter().enumerate() {
         let area = |top: f64| column_area(column, wheels.len(), top);
         heading::column(&mut canvas, (area(0.0).left, HEADING_BASELINE), area(0.0).width, wheel);

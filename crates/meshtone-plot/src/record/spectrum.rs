@@ -12,17 +12,17 @@ const SIDEBAND: Stroke = Stroke::solid(colour::PURPLE, 1.8);
 const SHAFT: Stroke = Stroke::solid(colour::GREEN, 1.8);
 const REST: Stroke = Stroke::solid("#9a9a9a", 1.0);
 /// (decades) What is shown below the largest amplitude, at least and at most.
-const DECADES: [f64; 2] = [2.0, 5.0];
+const DECADES: [f64; 2] = [2.0, 4.0];
 /// (px) Least distance of two orders.
 const BETWEEN_ORDERS: f64 = 3.2;
 /// Fewest mesh orders that are shown.
 const FEWEST: f64 = 2.0;
 
 /// (decades) Range of the amplitudes, for all wheels.
-pub(super) fn range(wheels: &[WheelView]) -> [f64; 2] {
+pub(super) fn range(wheels: &[WheelView], width_px: f64) -> [f64; 2] {
     let mut logs: Vec<f64> = wheels
         .iter()
-        .flat_map(|wheel| wheel.record.order_spectrum.iter().skip(1).take(last_order(wheel, 1.0)))
+        .flat_map(|wheel| wheel.record.order_spectrum.iter().skip(1).take(last_order(wheel, width_px)))
         .filter(|amplitude| **amplitude > 0.0 && axes::drawable(**amplitude))
         .map(|amplitude| amplitude.log10())
         .collect();
@@ -33,17 +33,15 @@ pub(super) fn range(wheels: &[WheelView]) -> [f64; 2] {
 }
 
 pub(super) fn draw(canvas: &mut Canvas, area: Area, y: [f64; 2], wheel: &WheelView, unit: &str) {
-    let most = last_order(wheel, area.width / BETWEEN_ORDERS);
+    let most = last_order(wheel, area.width);
     let axes = Axes::new(area, [0.0, most as f64 + 0.5], y);
     axes.title(canvas, "Order spectrum");
     legend(canvas, &axes, wheel);
     let teeth = wheel.teeth.max(1);
     let orders = Ticks::every(f64::from(teeth), 0.0, most as f64);
-    let name = format!(
-        "Order of the {}’s shaft (marked: 0 and the mesh orders {teeth}, {}, …)",
-        wheel.name,
-        2 * teeth
-    );
+    let nyquist = wheel.record.average.nyquist_order.floor() as usize;
+    let shown = if most < nyquist { format!(", up to {most} of {nyquist}") } else { String::new() };
+    let name = format!("Order of the {}’s shaft{shown} (mesh orders {teeth}, {}, …)", wheel.name, 2 * teeth);
     axes.x_axis(canvas, &orders, &name);
     let decades = Ticks::every(1.0, y[0], y[1]);
     axes.y_grid(canvas, &decades);
@@ -69,7 +67,8 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, y: [f64; 2], wheel: &WheelVi
 }
 
 /// Orders that are shown: those that can be told apart, but always some mesh orders.
-fn last_order(wheel: &WheelView, room: f64) -> usize {
+fn last_order(wheel: &WheelView, width_px: f64) -> usize {
+    let room = width_px / BETWEEN_ORDERS;
     let nyquist = wheel.record.average.nyquist_order.floor() as usize;
     let teeth = f64::from(wheel.teeth);
     let shown = ((room / teeth - 0.5).floor().max(FEWEST) + 0.5) * teeth;

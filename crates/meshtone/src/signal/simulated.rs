@@ -59,7 +59,7 @@ impl SimulatedShafts {
     pub fn new(scenario: &Scenario, start_s: f64, samples: usize) -> Self {
         let scenario = scenario.as_honoured();
         let time = TimeGrid::new(&scenario);
-        let start = (start_s * time.sampling_rate_hz).round().max(0.0) as usize;
+        let start = ((start_s * time.sampling_rate_hz).round().max(0.0) as usize).min(time.samples);
         let motion = Motion::new(&scenario, &time);
         let turning = if motion.is_steady() {
             let samples_per_pinion_revolution = time.samples_per_pinion_revolution;
