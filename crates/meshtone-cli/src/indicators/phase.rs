@@ -124,6 +124,12 @@ impl PhaseOptions {
 pub fn simulated(input: &Input, scenario_toml: &str) -> Result<(Scenario, SimulatedShafts), Failure> {
     const HELP: &str = "simulate again with this version: `meshtone simulate SCENARIO.toml -o DIR`";
     let path = input.source.display();
+    if !input.has_own_time {
+        let problem =
+            format!("{path}: --sampling-rate-hz or --time-column is given, but the file says both itself");
+        return Err(Failure::bad_input(problem)
+            .with_help("leave them out, or state --teeth and the phase too, as of a measured recording"));
+    }
     let scenario = Scenario::from_toml(scenario_toml).and_then(|scenario| {
         scenario.validate()?;
         Ok(scenario)

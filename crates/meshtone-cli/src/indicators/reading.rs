@@ -25,6 +25,8 @@ pub struct Input {
     pub channel: Channel,
     /// Tachometer or speed.
     pub turning: Option<Channel>,
+    /// Whether the file itself says when its samples were taken.
+    pub has_own_time: bool,
     /// What was simulated, where it was, as TOML.
     pub scenario_toml: Option<String>,
 }
@@ -73,6 +75,7 @@ impl Input {
             start_s: recording.start_s,
             channel,
             turning,
+            has_own_time: options.sampling_rate_hz.is_none() && options.time_column.is_none(),
             scenario_toml: recording.scenario_toml,
         })
     }

@@ -136,6 +136,8 @@ fn series_of_different_things() {
     let workplace = workplace();
     workplace.write("other.toml", fast_with("gear_teeth", "gear_teeth = 60"));
     workplace.succeeds(&["simulate", "fast.toml", "other.toml", "-o", "out_s", "--no-panel", "-q"]);
+    let rate = ["out_s/fast", "--sampling-rate-hz", "11200"];
+    refused(&workplace, &rate, &["out_s/fast", "--sampling-rate-hz", "leave them out"]);
     let words = ["out_s/other", "20 and 60 teeth", "20 and 40 teeth", "same in a series"];
     refused(&workplace, &["out_s/fast", "out_s/other"], &words);
     workplace.write("indicators.csv", "a\n1\n");
