@@ -4,6 +4,7 @@ pub mod figures;
 pub mod files;
 pub mod options;
 pub mod phase;
+mod phase_files;
 pub mod process;
 pub mod reading;
 mod refuse;

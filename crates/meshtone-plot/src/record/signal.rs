@@ -3,6 +3,8 @@
 use super::{CURVE, MARGIN, NAME_LEFT, SignalView, unit};
 use crate::axes::{self, Area, Axes};
 use crate::canvas::Canvas;
+use crate::style::TextStyle;
+use crate::text::fitted;
 use crate::ticks::{Ticks, number};
 
 pub(super) fn draw(canvas: &mut Canvas, area: Area, signal: &SignalView) {
@@ -14,7 +16,8 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, signal: &SignalView) {
     axes.title(
         canvas,
         &format!(
-            "Recording: {} s, {} samples at {} S/s",
+            "{}: {} s, {} samples at {} S/s",
+            fitted(signal.quantity, TextStyle::AXES_TITLE, 0.5 * area.width),
             number(duration_s),
             signal.samples.len(),
             number(signal.sampling_rate_hz)
