@@ -7,6 +7,7 @@ mod check;
 mod commands;
 mod earlier_results;
 mod failure;
+mod indicators;
 mod memory;
 mod output_directory;
 mod progress;
@@ -24,7 +25,7 @@ use clap::Parser;
 
 use crate::commands::Command;
 
-/// Simulates the vibration of spur gears, healthy or with a damaged tooth.
+/// Simulates the vibration of spur gears, healthy or with a damaged tooth, and takes recordings to indicators.
 #[derive(Debug, Parser)]
 #[command(name = "meshtone", version, after_help = EXAMPLES, arg_required_else_help = true)]
 struct Arguments {
@@ -36,6 +37,7 @@ const EXAMPLES: &str = "\
 Examples:
   meshtone init tooth-breakage > broken.toml   a commented scenario file to start from
   meshtone simulate broken.toml -o broken      signals, summary and results panel in the folder broken
+  meshtone indicators broken                   their condition indicators, as of any recording
   meshtone simulate --help                     more on one command
 
 Exit codes: 0 all went well, 1 it could not be carried out, 2 the input is wrong.";

@@ -23,6 +23,13 @@ impl OutputDirectory {
     /// Creates the directory where it does not exist, and tries whether the results can be written to it, so that no
     /// simulation runs whose results could not be kept.
     pub fn prepare(path: &Path) -> Result<Self, Failure> {
+        let directory = Self::for_files(path, &RESULTS)?;
+        earlier_results::put_back(path)?;
+        Ok(directory)
+    }
+
+    /// The same for files of other names, for which nothing is put back.
+    pub fn for_files(path: &Path, names: &[&str]) -> Result<Self, Failure> {
         let missing = path.ancestors().filter(|part| !part.as_os_str().is_empty());
         let created = missing.take_while(|part| !part.exists()).map(Path::to_path_buf).collect();
         let directory = Self { path: path.to_path_buf(), created };
@@ -36,8 +43,7 @@ impl OutputDirectory {
         }
         fs::create_dir_all(path).map_err(refuse)?;
         check_writable(path).map_err(|error| refuse(error.source))?;
-        earlier_results::put_back(path)?;
-        RESULTS.into_iter().try_for_each(|name| check_target(&path.join(name)))?;
+        names.iter().try_for_each(|name| check_target(&path.join(name)))?;
         Ok(directory)
     }
 

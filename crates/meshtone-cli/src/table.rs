@@ -72,7 +72,7 @@ fn frequency(value_hz: f64) -> String {
 }
 
 /// Four significant digits.
-fn short(value: f64) -> String {
+pub fn short(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
     }

@@ -1,9 +1,10 @@
-//! Files of Meshtone: scenarios, profile errors, profiles and recordings in; signals, summaries and traces out.
+//! Files of Meshtone: scenarios, profile errors, profiles and recordings in; signals, indicators, summaries and traces out.
 //! All are written through [`atomic_file`], so that no half-written file ever stands under a result's name.
 #![deny(missing_docs)]
 
 pub mod atomic_file;
 pub mod experiment;
+pub mod indicators;
 pub mod recording;
 pub mod run_identity;
 pub mod scenario_file;

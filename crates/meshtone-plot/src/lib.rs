@@ -5,6 +5,8 @@
 //! the font that this crate brings along, so that both look alike on every machine.
 //!
 //! * [`panel`]: teeth, damage, profile errors, averages and mesh stiffness of one simulation
+//! * [`record`]: a recording, its average, order spectrum and difference signal
+//! * [`trend`]: indicators over a series of recordings
 #![deny(missing_docs)]
 
 mod axes;
@@ -16,8 +18,11 @@ mod font;
 mod legend;
 pub mod panel;
 mod raster;
+pub mod record;
 mod style;
+mod text;
 mod ticks;
+pub mod trend;
 
 pub use error::PlotError;
 pub use figure::{Figure, Label};

@@ -66,6 +66,17 @@ impl Ticks {
     }
 }
 
+/// 10 to a whole power, as it stands at a logarithmic axis.
+pub(crate) fn log_text(decade: f64) -> String {
+    let power = decade.round() as i32;
+    let text = match power {
+        -4..0 => format!("{:.*}", power.unsigned_abs() as usize, 10f64.powi(power)),
+        0..5 => format!("{:.0}", 10f64.powi(power)),
+        _ => format!("1e{power}"),
+    };
+    text.replace('-', "−")
+}
+
 /// As many digits as tell neighbours apart.
 fn scientific(value: f64, step: f64) -> String {
     let digits = (value.abs().log10().floor() - step.log10().floor()).clamp(0.0, 9.0) as usize;

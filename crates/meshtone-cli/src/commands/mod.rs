@@ -1,6 +1,7 @@
 //! The commands, one file each.
 
 mod enhance;
+mod indicators;
 mod init;
 mod panel;
 mod simulate;
@@ -15,6 +16,8 @@ use crate::failure::Failure;
 #[derive(Debug, Subcommand)]
 pub enum Command {
     Simulate(simulate::Simulate),
+    // It has many more options than the others.
+    Indicators(Box<indicators::Indicators>),
     Init(init::Init),
     Wheels(wheels::Wheels),
     Panel(panel::Panel),
@@ -27,6 +30,7 @@ impl Command {
     pub fn run(&self) -> Result<(), Failure> {
         match self {
             Self::Simulate(arguments) => arguments.run(),
+            Self::Indicators(arguments) => arguments.run(),
             Self::Init(arguments) => arguments.run(),
             Self::Wheels(arguments) => arguments.run(),
             Self::Panel(arguments) => arguments.run(),

@@ -3,6 +3,8 @@
 
 mod bad_input;
 mod examples;
+mod indicators;
+mod indicators_refused;
 mod init;
 mod killed;
 mod simulate;

@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 use std::time::Duration;
 
+use meshtone::signal::{IndicatorValue, Indicators, Shaft};
 use serde_json::{Map, Value, json};
 
 use super::{ChannelSummary, Summary};
@@ -49,9 +50,18 @@ impl Summary {
                 "tension_fraction": force.tension_fraction,
             },
             "channels": channels.collect::<Map<_, _>>(),
+            "indicators": self.indicators_json(),
             "computing_time_ms": self.times(),
             "warnings": warnings.collect::<Vec<_>>(),
         })
+    }
+
+    /// Of average and difference, and of the gear, by the shaft's wheel.
+    fn indicators_json(&self) -> Map<String, Value> {
+        let wheel = |(shaft, indicators): (Shaft, &Option<Indicators>)| {
+            (shaft.wheel().to_string(), indicators.as_ref().map_or(Value::Null, averaged))
+        };
+        Shaft::BOTH.into_iter().zip(&self.indicators).map(wheel).collect()
     }
 
     fn times(&self) -> Map<String, Value> {
@@ -59,6 +69,18 @@ impl Summary {
         let total = ("total".to_string(), self.total_time());
         stages.chain([total]).map(|(stage, time)| (stage, json!(milliseconds(time)))).collect()
     }
+}
+
+/// Every indicator of a wheel but those of the parts between average and difference.
+fn averaged(indicators: &Indicators) -> Value {
+    let left_out = ["regular_", "residual_", "envelope_"];
+    let entries = indicators.table("g").into_iter();
+    let entries = entries.filter(|entry| !left_out.iter().any(|part| entry.name.starts_with(part)));
+    let named = |entry: IndicatorValue| match entry.unit.as_str() {
+        "-" => (entry.name, json!(entry.value)),
+        unit => (format!("{}_{unit}", entry.name), json!(entry.value)),
+    };
+    Value::Object(entries.map(named).collect())
 }
 
 fn indicators(channel: &ChannelSummary) -> Value {

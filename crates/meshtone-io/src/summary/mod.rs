@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use meshtone::Simulation;
 use meshtone::scenario::ScenarioWarning;
-use meshtone::signal::{kurtosis, peak, rms};
+use meshtone::signal::{ChainSettings, Indicators, Shaft, SimulatedShafts, kurtosis, peak, rms};
 
 use crate::run_identity::RunIdentity;
 use crate::signals::columns;
@@ -53,6 +53,9 @@ pub struct Summary {
     pub mesh_force: MeshForce,
     /// Indicators of each signal, by the name of its column.
     pub channels: Vec<ChannelSummary>,
+    /// Indicators of the vertical acceleration, synchronously averaged on the shafts of pinion and gear; none where the kept
+    /// signal holds no average.
+    pub indicators: [Option<Indicators>; 2],
     /// Time that each stage took.
     pub computing_time: Vec<(String, Duration)>,
     /// What deserves attention.
@@ -107,6 +110,7 @@ impl Summary {
     /// * `warnings` - what deserves attention
     pub fn new(simulation: &Simulation, run: RunIdentity, warnings: &[ScenarioWarning]) -> Self {
         let (stages, channels) = (&simulation.stages, &simulation.channels);
+        let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
         let stiffness = Extremes::of(&stages.mesh.mesh_n_per_mm);
         let force = Extremes::of(&channels.mesh_force_n);
         let stage_times = simulation.timings.iter().map(|time| (time.stage.to_string(), time.elapsed));
@@ -143,6 +147,10 @@ impl Summary {
                     kurtosis: kurtosis(signal),
                 })
                 .to_vec(),
+            indicators: Shaft::BOTH.map(|shaft| {
+                let record = shafts.process(&channels.vertical_g, shaft, &ChainSettings::default());
+                Some(record.ok()?.indicators)
+            }),
             computing_time: stage_times.collect(),
             warnings: warnings.to_vec(),
         }

@@ -1,7 +1,7 @@
 //! The vertical acceleration, averaged over the revolutions of either shaft.
 
 use meshtone::Stages;
-use meshtone::signal::{Channels, revolution_average};
+use meshtone::signal::{ChainSettings, Channels, Shaft, SimulatedShafts, revolution_average};
 
 use super::damage;
 use crate::axes::{self, Area, Axes};
@@ -24,10 +24,9 @@ pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], stages: &Stages, chann
         over_time(canvas, areas, channels);
         return;
     }
-    let per_pinion = stages.time.samples_per_pinion_revolution;
     let teeth = [stages.teeth.pinion.teeth, stages.teeth.gear.teeth];
-    let per_gear = per_pinion * teeth[1] as usize / (teeth[0] as usize).max(1);
-    let averages = [per_pinion, per_gear].map(|samples| Average::new(channels, samples));
+    let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
+    let averages = Shaft::BOTH.map(|shaft| Average::new(channels, &shafts, shaft));
     let values = averages.iter().flat_map(|average| average.values.iter().copied());
     let y = axes::range(values, MARGIN);
     let contact_deg =
@@ -61,14 +60,15 @@ struct Average {
 }
 
 impl Average {
-    fn new(channels: &Channels, samples_per_revolution: usize) -> Self {
-        let mut values = revolution_average(&channels.vertical_g, samples_per_revolution);
-        if !values.is_empty() {
-            let start = channels.start_s * channels.sampling_rate_hz;
-            let start = if start.is_finite() && start > 0.0 { start.round() as usize } else { 0 };
-            values.rotate_right(start % samples_per_revolution);
-        }
-        let revolutions = channels.len().checked_div(samples_per_revolution).unwrap_or(0);
+    fn new(channels: &Channels, shafts: &SimulatedShafts, shaft: Shaft) -> Self {
+        // Where there is no whole revolution there is no average.
+        let angular = shafts.angular(&channels.vertical_g, shaft, &ChainSettings::default());
+        let (values, revolutions) = angular.map_or_else(
+            |_| (Vec::new(), 0),
+            |angular| {
+                (revolution_average(&angular.values, angular.points_per_revolution), angular.revolutions())
+            },
+        );
         Self { values, revolutions, is_empty: channels.is_empty() }
     }
 

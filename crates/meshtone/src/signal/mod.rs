@@ -10,6 +10,7 @@
 //! | synchronous average | [`synchronous_average`], [`segmented_averages`] |
 //! | separation | [`separate`] |
 //! | spectra and envelope | [`order_spectrum`], [`envelope`], [`envelope_spectrum`] |
+//! | what was simulated | [`SimulatedShafts`], whose phase the scenario says |
 //! | indicators | [`Indicators`], [`fm0`], [`fm4`], [`m6a`], [`m8a`], [`na4`], [`energy_ratio`], [`sideband_level_factor`] |
 
 mod angular;
@@ -27,6 +28,7 @@ mod phase;
 mod record;
 mod resample;
 mod separation;
+mod simulated;
 mod spectrum;
 mod statistics;
 mod warning;
@@ -44,11 +46,13 @@ pub use indicators::{
 pub use interpolate::{interpolate_band_limited, interpolate_pchip};
 pub use kaiser::kaiser;
 pub use phase::{MeshTone, PulseEdge, PulseTrain, ShaftPhase, Tachometer, repair_pulses, tachometer_pulses};
+use record::process_segments_of;
 pub use record::{
     ChainSettings, Record, Recording, process_average, process_channel, process_segments, process_series,
 };
 pub use resample::{resample, resample_with, resampling_ratio, resampling_taps};
 pub use separation::{MeanPart, Separation, SeparationSettings, separate};
+pub use simulated::{Shaft, SimulatedShafts};
 pub use spectrum::order_spectrum;
 pub use statistics::{
     central_moment, crest_factor, kurtosis, peak, peak_to_peak, rms, skewness, standard_deviation,

@@ -101,7 +101,17 @@ pub fn process_segments(
     revolutions: usize,
 ) -> Result<Vec<Record>, SignalError> {
     let angular = angular_resample(signal, phase, &settings.angular)?;
-    let averages = segmented_averages(&angular, revolutions)?;
+    process_segments_of(&angular, teeth, settings, revolutions)
+}
+
+/// Processes a signal over the angle in segments.
+pub(super) fn process_segments_of(
+    angular: &AngularSignal,
+    teeth: u32,
+    settings: &ChainSettings,
+    revolutions: usize,
+) -> Result<Vec<Record>, SignalError> {
+    let averages = segmented_averages(angular, revolutions)?;
     as_series(averages.into_iter().map(|average| process_average(average, teeth, settings)).collect())
 }
 

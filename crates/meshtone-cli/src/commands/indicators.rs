@@ -1,0 +1,177 @@
+//! `meshtone indicators`
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use meshtone_io::indicators::WarningEntry;
+
+use crate::failure::Failure;
+use crate::indicators::options::{PhaseOptions, ProcessingOptions, ReadingOptions};
+use crate::indicators::process::process;
+use crate::indicators::reading::Input;
+use crate::indicators::results::{Series, settings};
+use crate::indicators::{figures, files, table};
+use crate::output_directory::OutputDirectory;
+use crate::progress::Progress;
+use crate::same_file::is_same_file;
+use crate::terminal;
+
+/// Warnings of one recording that are printed; the others are counted.
+const PRINTED: usize = 5;
+
+/// Condition indicators of recordings, simulated or measured
+///
+/// Averages a channel over the revolutions of a shaft, takes the average apart, and writes indicators.json,
+/// indicators.parquet and a figure of the recording, or of the last one (indicators.svg, .png). Several recordings, or
+/// segments of one (--revolutions), are a series in the order given, with a figure of the trend (trend.svg, .png).
+/// Nothing is written unless all recordings are good.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Indicators {
+    /// Recordings, in the order of time: CSV and other text, Parquet, NPY, NPZ, MAT (version 5), WAV, or directories that
+    /// `meshtone simulate` wrote
+    #[arg(value_name = "RECORDING", required = true)]
+    recordings: Vec<PathBuf>,
+    /// Directory to write to. [default: <name of the recording>_indicators, for several series_indicators, in the
+    /// current directory]
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Print no table and no progress; warnings and errors are still printed
+    #[arg(short, long)]
+    quiet: bool,
+    /// Draw no figures
+    #[arg(long)]
+    no_figure: bool,
+    #[command(flatten)]
+    reading: ReadingOptions,
+    #[command(flatten)]
+    phase: PhaseOptions,
+    #[command(flatten)]
+    processing: ProcessingOptions,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  meshtone indicators broken                                        what `meshtone simulate` wrote there, both wheels
+  meshtone indicators run.csv --channel bearing --teeth 38 --shaft-hz 17.9
+  meshtone indicators run.csv -c bearing --tach tacho --teeth 17 --mate-teeth 38
+  meshtone indicators day*.parquet -c bearing --teeth 38 --shaft-hz 17.9 -o trend   a series, in this order";
+
+impl Indicators {
+    pub fn run(&self) -> Result<(), Failure> {
+        let directory = self.directory();
+        let mut series = Series::default();
+        for (number, path) in self.recordings.iter().enumerate() {
+            let of = format!("({} of {})", number + 1, self.recordings.len());
+            let _progress = Progress::start(format!("{} {of}", path.display()), !self.quiet);
+            let input = Input::read(path, &self.reading, self.phase.channel())?;
+            let processed = process(&input, &self.phase, &self.processing)?;
+            series.add(input, processed, self.processing.revolutions.is_some())?;
+        }
+        series.finish()?;
+        series.results.settings = settings(&self.phase, &self.processing);
+        if let Some(message) = order_of_names(&self.recordings) {
+            series.results.warnings.push(WarningEntry { source: None, message });
+        }
+        self.check_targets(&directory)?;
+        let output = OutputDirectory::for_files(&directory, &files::FILES)?;
+        self.write(output.path(), &series)?;
+        output.keep();
+        print_warnings(&series.results.warnings);
+        if self.quiet {
+            return Ok(());
+        }
+        let from = match &self.recordings[..] {
+            [only] => only.display().to_string(),
+            several => format!("{} recordings", several.len()),
+        };
+        terminal::print(&format!("{from} -> {}\n{}", directory.display(), table::table(&series)))
+    }
+
+    fn directory(&self) -> PathBuf {
+        match (&self.output, &self.recordings[..]) {
+            (Some(output), _) => output.clone(),
+            (None, [only]) => {
+                let stem = if only.is_dir() { only.file_name() } else { only.file_stem() };
+                let mut name = stem.unwrap_or_default().to_os_string();
+                name.push(if name.is_empty() { "indicators" } else { "_indicators" });
+                PathBuf::from(name)
+            }
+            (None, _) => PathBuf::from("series_indicators"),
+        }
+    }
+
+    /// Refuses to replace a file that is read.
+    fn check_targets(&self, directory: &Path) -> Result<(), Failure> {
+        let read = self.recordings.iter().chain(&self.phase.pulse_times).chain(&self.phase.speed_profile);
+        let read: Vec<&PathBuf> = read.collect();
+        let targets = files::FILES.map(|name| directory.join(name));
+        match targets.iter().find(|target| read.iter().any(|file| is_same_file(target, file))) {
+            None => Ok(()),
+            Some(target) => {
+                let problem = format!("the result {} would replace a file that is read", target.display());
+                Err(Failure::bad_input(problem).with_help("name another directory with -o"))
+            }
+        }
+    }
+
+    fn write(&self, directory: &Path, series: &Series) -> Result<(), Failure> {
+        let latest = series.latest.as_ref().filter(|_| !self.no_figure);
+        let record = latest.map(|latest| figures::of_record(series, latest, &self.phase, &self.processing));
+        let trend = latest.filter(|_| series.is_series());
+        let trend = trend.map(|_| figures::of_trend(series, &self.phase, &self.processing));
+        files::write(directory, &series.results, record.as_ref(), trend.as_ref())
+    }
+}
+
+fn print_warnings(warnings: &[WarningEntry]) {
+    let print = |warning: &WarningEntry| {
+        let source =
+            warning.source.as_ref().map(|source| format!("{}: ", source.display())).unwrap_or_default();
+        terminal::print_error_line(format!("warning: {source}{}", warning.message));
+    };
+    for of_one in warnings.chunk_by(|a, b| a.source == b.source) {
+        of_one.iter().take(PRINTED).for_each(print);
+        if let Some(more) = of_one.len().checked_sub(PRINTED).filter(|more| *more > 0) {
+            terminal::print_error_line(format!("warning: … and {more} more, in indicators.json"));
+        }
+    }
+}
+
+/// A shell puts run10 before run2: NA4 and the trend would be those of another order.
+fn order_of_names(recordings: &[PathBuf]) -> Option<String> {
+    let names: Vec<String> = recordings.iter().map(|path| path.display().to_string()).collect();
+    let place =
+        names.windows(2).position(|pair| pair[0] < pair[1] && numbers(&pair[0]) > numbers(&pair[1]))?;
+    let alphabetical = names.is_sorted();
+    alphabetical.then(|| {
+        format!(
+            "the series is in the order given, in which {} comes before {}; if time goes by their numbers, name them in \
+             that order, as with `$(ls -v …)`",
+            names[place],
+            names[place + 1]
+        )
+    })
+}
+
+/// The numbers in a name, the words between them left out.
+fn numbers(name: &str) -> Vec<u64> {
+    let parts = name.split(|letter: char| !letter.is_ascii_digit());
+    parts.filter(|part| !part.is_empty()).filter_map(|part| part.parse().ok()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shells_order_is_noticed() {
+        let warned =
+            |names: &[&str]| order_of_names(&names.iter().map(PathBuf::from).collect::<Vec<_>>()).is_some();
+        assert!(warned(&["run1.csv", "run10.csv", "run2.csv"]));
+        assert!(!warned(&["run1.csv", "run2.csv", "run10.csv"]));
+        assert!(!warned(&["run01.csv", "run02.csv", "run10.csv"]));
+        assert!(!warned(&["sound.csv", "worn.csv"]));
+        assert!(!warned(&["run2.csv", "run1.csv"]));
+    }
+}

@@ -1,0 +1,124 @@
+//! The figure of the last record, and that of the trend.
+
+use std::path::Path;
+
+use meshtone_io::indicators::RecordEntry;
+use meshtone_plot::Figure;
+use meshtone_plot::record::{self, RecordFigure, SignalView, WheelView};
+use meshtone_plot::trend::{self, Trend, TrendFigure};
+
+use super::options::{PhaseOptions, ProcessingOptions};
+use super::results::{Latest, Series};
+
+/// The last part of a path.
+pub fn name(path: &Path) -> String {
+    let last = path.file_name().map(|name| name.to_string_lossy().into_owned());
+    last.unwrap_or_else(|| path.display().to_string())
+}
+
+/// The figure of the last record.
+pub fn of_record(
+    series: &Series,
+    latest: &Latest,
+    phase: &PhaseOptions,
+    processing: &ProcessingOptions,
+) -> Figure {
+    let channel = &latest.input.channel;
+    let mut facts = vec![format!("phase from the {}", phase.source())];
+    if series.is_series() {
+        let records = if processing.revolutions.is_some() { "segments" } else { "recordings" };
+        facts.insert(0, format!("the last of {} {records}", counted(series)));
+    }
+    let mut removed = vec!["mesh orders".to_string()];
+    if processing.sidebands > 0 {
+        removed.push(format!("±{} sidebands", processing.sidebands));
+    }
+    if processing.low_orders > 0 {
+        removed.push(format!("shaft orders 1 to {}", processing.low_orders));
+    }
+    facts.push(format!("difference without {}", removed.join(", ")));
+    facts.push(format!("Meshtone {}", env!("CARGO_PKG_VERSION")));
+    let wheels: Vec<WheelView> = latest
+        .wheels
+        .iter()
+        .map(|(wheel, mean_speed_hz, record)| WheelView {
+            name: wheel.name,
+            teeth: wheel.teeth,
+            mean_speed_hz: *mean_speed_hz,
+            sidebands: processing.sidebands as usize,
+            low_orders: processing.low_orders as usize,
+            first_tooth: phase.first_tooth(wheel),
+            is_first_damaged: wheel.is_first_damaged,
+            record,
+        })
+        .collect();
+    let signal = SignalView {
+        quantity: &channel.name,
+        unit: channel.unit.as_deref(),
+        sampling_rate_hz: latest.input.sampling_rate_hz,
+        start_s: latest.input.start_s,
+        samples: &channel.samples,
+    };
+    let title = title(&[name(&latest.input.source)], series);
+    record::draw(&RecordFigure { title: &title, facts: &facts, signal, wheels: &wheels })
+}
+
+/// The figure of the indicators over the series.
+pub fn of_trend(series: &Series, phase: &PhaseOptions, processing: &ProcessingOptions) -> Figure {
+    let names: Vec<String> =
+        series.results.recordings.iter().map(|recording| name(&recording.source)).collect();
+    let counted_records = match processing.revolutions {
+        None => format!("{} recordings", counted(series)),
+        Some(revolutions) => format!("{} segments of {revolutions} revolutions", counted(series)),
+    };
+    let mut facts = vec![counted_records, format!("phase from the {}", phase.source())];
+    facts.push(format!("Meshtone {}", env!("CARGO_PKG_VERSION")));
+    let wheels: Vec<String> =
+        series.wheels.iter().map(|wheel| format!("{}, {} teeth", wheel.name, wheel.teeth)).collect();
+    let counted = if processing.revolutions.is_some() { "Segment" } else { "Recording" };
+    let figure = TrendFigure {
+        title: &title(&names, series),
+        facts: &facts,
+        counted,
+        wheels: &wheels,
+        indicators: trends(series),
+    };
+    trend::draw(&figure)
+}
+
+/// Records of each wheel.
+fn counted(series: &Series) -> usize {
+    series.wheels.iter().map(|wheel| series.of(wheel).count()).max().unwrap_or(0)
+}
+
+/// `run01.csv … run12.csv: bearing`.
+fn title(names: &[String], series: &Series) -> String {
+    let channel = &series.results.channel;
+    match names {
+        [] => channel.clone(),
+        [only] => format!("{only}: {channel}"),
+        [first, .., last] => format!("{first} … {last}: {channel}"),
+    }
+}
+
+fn trends(series: &Series) -> Vec<Trend> {
+    type Value = fn(&RecordEntry) -> Option<f64>;
+    let unit = series.results.unit.as_deref().unwrap_or("unit not stated");
+    let shown: [(&str, &str, Value); 9] = [
+        ("RMS of the average", unit, |record| Some(record.indicators.average.rms)),
+        ("RMS of the difference", unit, |record| Some(record.indicators.difference.rms)),
+        ("Peak to peak of the difference", unit, |record| Some(record.indicators.difference.peak_to_peak)),
+        ("FM0", "", |record| record.indicators.fm0),
+        ("FM4, kurtosis of the difference", "", |record| record.indicators.fm4),
+        ("NA4", "", |record| record.indicators.na4),
+        ("M6A", "", |record| record.indicators.m6a),
+        ("Energy ratio", "", |record| record.indicators.energy_ratio),
+        ("Sideband level factor", "", |record| record.indicators.sideband_level_factor),
+    ];
+    let trend = |(name, unit, value): (&str, &str, Value)| Trend {
+        name: name.to_string(),
+        unit: unit.to_string(),
+        values: series.wheels.iter().map(|wheel| series.of(wheel).map(value).collect()).collect(),
+    };
+    shown.map(trend).to_vec()
+}

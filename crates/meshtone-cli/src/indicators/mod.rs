@@ -1,0 +1,12 @@
+//! From recordings to indicators: what `meshtone indicators` is made of.
+
+pub mod figures;
+pub mod files;
+pub mod options;
+pub mod phase;
+mod phase_files;
+pub mod process;
+pub mod reading;
+mod refuse;
+pub mod results;
+pub mod table;

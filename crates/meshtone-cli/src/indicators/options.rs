@@ -1,0 +1,178 @@
+//! The options, in the groups in which the help shows them.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use meshtone::signal::{Interpolation, PulseEdge};
+use meshtone_io::recording::{DecimalSign, Separator};
+
+/// What of the files is read, and what they do not say themselves.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Recording")]
+pub struct ReadingOptions {
+    /// Column to process, by its name or its number from 1.
+    /// [default: the only one; of a simulation the vertical acceleration]
+    #[arg(short, long, value_name = "CHANNEL")]
+    pub channel: Option<String>,
+    /// (S/s) Sampling rate, where the file does not say it, or instead of what it says
+    #[arg(long, value_name = "RATE", value_parser = positive, allow_negative_numbers = true)]
+    pub sampling_rate_hz: Option<f64>,
+    /// Column that holds the time, by its name or number, or `none`. [default: the one that is named as time]
+    #[arg(long, value_name = "CHANNEL")]
+    pub time_column: Option<String>,
+    /// Variable of an NPZ or MAT file that holds the recording, such as `run.sensors`
+    #[arg(long, value_name = "NAME")]
+    pub variable: Option<String>,
+    /// (mV/unit) Sensitivity of the sensor: the channel holds volts and is divided by it
+    #[arg(long, value_name = "MV", requires = "channel", allow_negative_numbers = true)]
+    pub sensitivity_mv_per_unit: Option<f64>,
+    /// Unit of the channel (after the division), such as g or m/s²
+    #[arg(long, value_name = "UNIT", requires = "channel")]
+    pub unit: Option<String>,
+    /// What stands between two cells of a text file. [default: found out]
+    #[arg(long)]
+    pub separator: Option<SeparatorArgument>,
+    /// Decimal sign of a text file. [default: found out]
+    #[arg(long)]
+    pub decimal_sign: Option<DecimalSignArgument>,
+    /// Lines at the start of a text file that are no table
+    #[arg(long, value_name = "LINES", default_value_t = 0)]
+    pub skip_lines: usize,
+}
+
+/// The wheels, and how far their shafts have turned.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Wheels and phase (what `meshtone simulate` wrote needs none of these)")]
+pub struct PhaseOptions {
+    /// Teeth of the wheel on the shaft that speed or pulses are of
+    #[arg(long, value_name = "TEETH", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub teeth: Option<u32>,
+    /// Teeth of the wheel that meshes with it, to process that one too, on its own shaft
+    #[arg(long, value_name = "TEETH", requires = "teeth", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub mate_teeth: Option<u32>,
+    /// (Hz) Speed of the shaft: constant; with pulses, what they are checked against; with --from-mesh-tone, the nominal one
+    #[arg(long, value_name = "SPEED", value_parser = positive, allow_negative_numbers = true)]
+    pub shaft_hz: Option<f64>,
+    /// Channel with a tachometer's waveform, by its name or number
+    #[arg(long, value_name = "CHANNEL", group = "pulses", group = "source")]
+    pub tach: Option<String>,
+    /// File with the times of a tachometer's pulses, in s, on the recording's own time
+    #[arg(long, value_name = "FILE", group = "pulses", group = "source")]
+    pub pulse_times: Option<PathBuf>,
+    /// Channel with the shaft's speed in Hz or rpm, by its name or number
+    #[arg(long, value_name = "CHANNEL", group = "source", conflicts_with = "shaft_hz")]
+    pub speed_channel: Option<String>,
+    /// File with two columns, time in s and speed in Hz or rpm, on the recording's own time
+    #[arg(long, value_name = "FILE", group = "source", conflicts_with = "shaft_hz")]
+    pub speed_profile: Option<PathBuf>,
+    /// Follow the mesh tone itself; needs no tachometer but a nearly constant speed
+    #[arg(long, group = "source", requires = "shaft_hz")]
+    pub from_mesh_tone: bool,
+    /// Pulses in a revolution
+    #[arg(long, value_name = "PULSES", requires = "pulses", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub pulses_per_rev: u32,
+    /// (unit of the waveform) Level that a pulse crosses. [default: the middle]
+    #[arg(long, value_name = "LEVEL", requires = "tach", allow_negative_numbers = true)]
+    pub threshold: Option<f64>,
+    /// (unit of the waveform) How far it goes back before the next pulse counts. [default: 0.2 of its range]
+    #[arg(long, value_name = "LEVEL", requires = "tach", value_parser = positive, allow_negative_numbers = true)]
+    pub hysteresis: Option<f64>,
+    /// Side of a pulse that counts
+    #[arg(long, requires = "tach", default_value = "rising")]
+    pub edge: EdgeArgument,
+}
+
+/// How the channel is processed.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Processing")]
+pub struct ProcessingOptions {
+    /// Sidebands on each side of every mesh order that belong to the regular part
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(..=1_000_000))]
+    pub sidebands: u32,
+    /// The shaft orders 1 to N belong to it; 0: none
+    #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(..=1_000_000))]
+    pub low_orders: u32,
+    /// Cut each recording into segments of M revolutions (of each wheel), and make a series of them
+    #[arg(long, value_name = "M", value_parser = clap::value_parser!(u64).range(2..))]
+    pub revolutions: Option<u64>,
+    /// How the signal is read between its samples
+    #[arg(long, default_value = "band-limited")]
+    pub interpolation: InterpolationArgument,
+}
+
+/// [`Separator`] on the command line.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum SeparatorArgument {
+    Comma,
+    Semicolon,
+    Tab,
+    Bar,
+    Whitespace,
+}
+
+impl From<SeparatorArgument> for Separator {
+    fn from(argument: SeparatorArgument) -> Self {
+        match argument {
+            SeparatorArgument::Comma => Self::Comma,
+            SeparatorArgument::Semicolon => Self::Semicolon,
+            SeparatorArgument::Tab => Self::Tab,
+            SeparatorArgument::Bar => Self::Bar,
+            SeparatorArgument::Whitespace => Self::Whitespace,
+        }
+    }
+}
+
+/// [`DecimalSign`] on the command line.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum DecimalSignArgument {
+    Point,
+    Comma,
+}
+
+impl From<DecimalSignArgument> for DecimalSign {
+    fn from(argument: DecimalSignArgument) -> Self {
+        match argument {
+            DecimalSignArgument::Point => Self::Point,
+            DecimalSignArgument::Comma => Self::Comma,
+        }
+    }
+}
+
+/// [`PulseEdge`] on the command line.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum EdgeArgument {
+    Rising,
+    Falling,
+}
+
+impl From<EdgeArgument> for PulseEdge {
+    fn from(argument: EdgeArgument) -> Self {
+        match argument {
+            EdgeArgument::Rising => Self::Rising,
+            EdgeArgument::Falling => Self::Falling,
+        }
+    }
+}
+
+/// [`Interpolation`] on the command line.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum InterpolationArgument {
+    /// Exact up to 0.8 of half the sampling rate
+    BandLimited,
+    /// As the published code, flattens peaks
+    Pchip,
+}
+
+impl From<InterpolationArgument> for Interpolation {
+    fn from(argument: InterpolationArgument) -> Self {
+        match argument {
+            InterpolationArgument::BandLimited => Self::BandLimited,
+            InterpolationArgument::Pchip => Self::Pchip,
+        }
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
+    number.ok_or_else(|| "must be a number above 0".to_string())
+}

@@ -1,0 +1,147 @@
+//! How far the shaft has turned at each sample.
+
+use std::path::Path;
+
+use meshtone::scenario::Scenario;
+use meshtone::signal::{MeshTone, ShaftPhase, SimulatedShafts, Tachometer, tachometer_pulses};
+
+use super::options::PhaseOptions;
+use super::phase_files::{hertz, one_column, profile, times_s};
+use super::process::Wheel;
+use super::reading::Input;
+use super::refuse::refuse;
+use crate::failure::Failure;
+
+/// Relative deviation of two sampling rates that is rounding.
+const RATE_ROUNDING: f64 = 1e-9;
+
+/// How far the shafts have turned.
+pub enum Turning {
+    /// By measurement: the shaft of the wheel with so many teeth.
+    Measured(ShaftPhase),
+    /// By the scenario.
+    Simulated(SimulatedShafts),
+}
+
+impl PhaseOptions {
+    /// Whether none is given, so that only a simulation can be processed.
+    pub fn is_empty(&self) -> bool {
+        let sources = [self.tach.is_some(), self.pulse_times.is_some(), self.speed_channel.is_some()];
+        let others = [self.speed_profile.is_some(), self.shaft_hz.is_some(), self.teeth.is_some()];
+        !sources.into_iter().chain(others).any(|given| given)
+    }
+
+    /// The channel that is read for the phase.
+    pub fn channel(&self) -> Option<&str> {
+        self.tach.as_deref().or(self.speed_channel.as_deref())
+    }
+
+    /// What is missing on the command line for a measured recording.
+    pub fn check(&self, path: &Path) -> Result<(), Failure> {
+        let path = path.display();
+        if self.teeth.is_none() {
+            return Err(Failure::bad_input(format!("{path}: the teeth of the wheel are not stated"))
+                .with_help(
+                    "state them with --teeth; only what `meshtone simulate` wrote tells them itself",
+                ));
+        }
+        let has_source =
+            self.channel().is_some() || self.pulse_times.is_some() || self.speed_profile.is_some();
+        if !has_source && self.shaft_hz.is_none() {
+            return Err(Failure::bad_input(format!("{path}: nothing says how far the shaft has turned")).with_help(
+                "state its speed with --shaft-hz, or --tach, --pulse-times, --speed-channel, --speed-profile or \
+                 --from-mesh-tone",
+            ));
+        }
+        Ok(())
+    }
+
+    /// What tells the phase, in words.
+    pub fn source(&self) -> &'static str {
+        match self {
+            Self { tach: Some(_), .. } => "tachometer",
+            Self { pulse_times: Some(_), .. } => "pulse times",
+            Self { speed_channel: Some(_), .. } => "speed channel",
+            Self { speed_profile: Some(_), .. } => "speed profile",
+            Self { from_mesh_tone: true, .. } => "mesh tone",
+            Self { shaft_hz: Some(_), .. } => "constant speed",
+            _ => "scenario",
+        }
+    }
+
+    /// What tooth 1 of a wheel is.
+    pub fn first_tooth(&self, wheel: &Wheel) -> &'static str {
+        match self.source() {
+            "scenario" if wheel.is_first_damaged => "1: the damaged one",
+            "scenario" => "1: enters contact first",
+            "mesh tone" => "1: chosen by chance",
+            "tachometer" | "pulse times" if wheel.is_on_shaft && self.pulses_per_rev == 1 => {
+                "1: in mesh at the pulse"
+            }
+            "tachometer" | "pulse times" => "1: in mesh at the first pulse",
+            _ => "1: in mesh at the first sample",
+        }
+    }
+
+    /// The phase of the shaft, as measured.
+    pub fn measured(&self, input: &Input) -> Result<ShaftPhase, Failure> {
+        let (rate_hz, samples) = (input.sampling_rate_hz, input.channel.samples.len());
+        let of = |what: String| move |error| refuse(&input.source, &what, &error);
+        if let Some(path) = &self.pulse_times {
+            let times = times_s(one_column(path)?, input.start_s);
+            let phase = ShaftPhase::from_pulses(&times, self.pulses_per_rev, self.shaft_hz, rate_hz, samples);
+            return phase.map_err(of(format!("--pulse-times {}", path.display())));
+        }
+        if let Some(path) = &self.speed_profile {
+            let (times, speeds) = profile(path)?;
+            let times = times_s(times, input.start_s);
+            let phase = ShaftPhase::from_speed_profile(&times, &hertz(path, speeds)?, rate_hz, samples);
+            return phase.map_err(of(format!("--speed-profile {}", path.display())));
+        }
+        if let Some(channel) = &input.turning {
+            let what = || format!("channel {}", channel.name);
+            if self.tach.is_none() {
+                let speeds = hertz(&input.source, channel.clone())?;
+                return ShaftPhase::from_speed_samples(&speeds, rate_hz).map_err(of(what()));
+            }
+            let tachometer =
+                Tachometer { threshold: self.threshold, hysteresis: self.hysteresis, edge: self.edge.into() };
+            let times = tachometer_pulses(&channel.samples, rate_hz, &tachometer).map_err(of(what()))?;
+            let phase = ShaftPhase::from_pulses(&times, self.pulses_per_rev, self.shaft_hz, rate_hz, samples);
+            return phase.map_err(of(what()));
+        }
+        let (teeth, shaft_hz) = (self.teeth.unwrap_or(0), self.shaft_hz.unwrap_or(0.0));
+        let what = format!("channel {}", input.channel.name);
+        if self.from_mesh_tone {
+            let tone = MeshTone::new(teeth, shaft_hz);
+            return ShaftPhase::from_mesh_tone(&input.channel.samples, rate_hz, &tone).map_err(of(what));
+        }
+        ShaftPhase::constant(shaft_hz, rate_hz, samples).map_err(of(what))
+    }
+}
+
+/// The shafts of what was simulated.
+pub fn simulated(input: &Input, scenario_toml: &str) -> Result<(Scenario, SimulatedShafts), Failure> {
+    const HELP: &str = "simulate again with this version: `meshtone simulate SCENARIO.toml -o DIR`";
+    let path = input.source.display();
+    if !input.has_own_time {
+        let problem =
+            format!("{path}: --sampling-rate-hz or --time-column is given, but the file says both itself");
+        return Err(Failure::bad_input(problem)
+            .with_help("leave them out, or state --teeth and the phase too, as of a measured recording"));
+    }
+    let scenario = Scenario::from_toml(scenario_toml).and_then(|scenario| {
+        scenario.validate()?;
+        Ok(scenario)
+    });
+    let scenario = scenario.map_err(|error| {
+        Failure::bad_input(format!("{path}: the scenario in the file is not valid: {error}")).with_help(HELP)
+    })?;
+    let shafts = SimulatedShafts::new(&scenario, input.start_s, input.channel.samples.len());
+    let (rate, expected) = (input.sampling_rate_hz, shafts.sampling_rate_hz());
+    if (rate / expected - 1.0).abs() > RATE_ROUNDING {
+        let problem = format!("{path}: is sampled at {rate} S/s, but its scenario at {expected} S/s");
+        return Err(Failure::bad_input(problem).with_help(HELP));
+    }
+    Ok((scenario, shafts))
+}

@@ -1,0 +1,146 @@
+//! One recording's records.
+
+use meshtone::signal::{
+    AngularSettings, ChainSettings, Record, SeparationSettings, Shaft, ShaftPhase, SignalError,
+    SignalWarning, process_channel, process_segments,
+};
+
+use super::options::{PhaseOptions, ProcessingOptions};
+use super::phase::{Turning, simulated};
+use super::reading::Input;
+use super::refuse::refuse;
+use crate::failure::Failure;
+
+/// A wheel whose average is taken.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wheel {
+    /// Its name.
+    pub name: &'static str,
+    /// Its teeth.
+    pub teeth: u32,
+    /// Whether it is on the shaft that speed or pulses are of.
+    pub is_on_shaft: bool,
+    /// Whether tooth 1 is known to be damaged.
+    pub is_first_damaged: bool,
+}
+
+/// What one recording shows about one wheel.
+pub struct WheelRecords {
+    /// The wheel.
+    pub wheel: Wheel,
+    /// (Hz) Mean speed of its shaft.
+    pub mean_speed_hz: f64,
+    /// One record, or one of each segment.
+    pub records: Vec<Record>,
+}
+
+/// What one recording shows.
+pub struct Processed {
+    /// Of one wheel, or of both of a pair.
+    pub wheels: Vec<WheelRecords>,
+    /// What is doubtful.
+    pub warnings: Vec<SignalWarning>,
+}
+
+/// Processes a recording.
+pub fn process(
+    input: &Input,
+    phase: &PhaseOptions,
+    processing: &ProcessingOptions,
+) -> Result<Processed, Failure> {
+    let (turning, wheels) = turning(input, phase)?;
+    let mut warnings = match &turning {
+        Turning::Measured(phase) => phase.warnings.clone(),
+        Turning::Simulated(_) => Vec::new(),
+    };
+    let what = format!("channel {}", input.channel.name);
+    let mut processed = Vec::new();
+    for (shaft, wheel) in Shaft::BOTH.into_iter().zip(wheels.clone()) {
+        let settings = settings(processing, wheel.teeth);
+        let of_wheel = |error: SignalError| {
+            let what = if wheels.len() > 1 {
+                format!("{what}, {} of {} teeth", wheel.name, wheel.teeth)
+            } else {
+                what.clone()
+            };
+            refuse(&input.source, &what, &error)
+        };
+        let records = match &turning {
+            Turning::Measured(phase) => {
+                let own = if shaft == Shaft::Pinion {
+                    None
+                } else {
+                    Some(phase.of_mate(wheels[0].teeth, wheel.teeth))
+                };
+                let own = own.transpose().map_err(of_wheel)?;
+                let phase = own.as_ref().unwrap_or(phase);
+                let records = measured(input, phase, wheel.teeth, &settings, processing.revolutions);
+                (phase.mean_speed_hz(input.sampling_rate_hz), records)
+            }
+            Turning::Simulated(shafts) => {
+                let signal = &input.channel.samples;
+                let records = match processing.revolutions {
+                    None => shafts.process(signal, shaft, &settings).map(|record| vec![record]),
+                    Some(count) => shafts.process_segments(signal, shaft, &settings, count as usize),
+                };
+                (shafts.mean_speed_hz(shaft), records)
+            }
+        };
+        let (mean_speed_hz, records) = (records.0, records.1.map_err(of_wheel)?);
+        for warning in records.iter().flat_map(|record| &record.warnings) {
+            if !warnings.contains(warning) {
+                warnings.push(warning.clone());
+            }
+        }
+        processed.push(WheelRecords { wheel, mean_speed_hz, records });
+    }
+    Ok(Processed { wheels: processed, warnings })
+}
+
+fn turning(input: &Input, phase: &PhaseOptions) -> Result<(Turning, Vec<Wheel>), Failure> {
+    match &input.scenario_toml {
+        Some(toml) if phase.is_empty() => {
+            let (scenario, shafts) = simulated(input, toml)?;
+            let wheels = Shaft::BOTH.map(|shaft| Wheel {
+                name: shaft.wheel(),
+                teeth: shafts.teeth(shaft),
+                is_on_shaft: shaft == Shaft::Pinion,
+                is_first_damaged: shaft == Shaft::Gear && scenario.fault.is_some(),
+            });
+            Ok((Turning::Simulated(shafts), wheels.to_vec()))
+        }
+        _ => {
+            phase.check(&input.source)?;
+            let wheel =
+                |(name, teeth)| Wheel { name, teeth, is_on_shaft: name == "wheel", is_first_damaged: false };
+            let teeth = [("wheel", phase.teeth), ("mate", phase.mate_teeth)];
+            let wheels = teeth.into_iter().filter_map(|(name, teeth)| Some(wheel((name, teeth?))));
+            Ok((Turning::Measured(phase.measured(input)?), wheels.collect()))
+        }
+    }
+}
+
+fn measured(
+    input: &Input,
+    phase: &ShaftPhase,
+    teeth: u32,
+    settings: &ChainSettings,
+    revolutions: Option<u64>,
+) -> Result<Vec<Record>, SignalError> {
+    let signal = &input.channel.samples;
+    match revolutions {
+        None => Ok(vec![process_channel(signal, phase, teeth, settings)?]),
+        Some(count) => process_segments(signal, phase, teeth, settings, count as usize),
+    }
+}
+
+fn settings(processing: &ProcessingOptions, teeth: u32) -> ChainSettings {
+    let separation = SeparationSettings {
+        sidebands: processing.sidebands as usize,
+        shaft_orders: (1..=processing.low_orders as usize).collect(),
+        ..SeparationSettings::new(teeth as usize)
+    };
+    let angular =
+        AngularSettings { interpolation: processing.interpolation.into(), ..AngularSettings::default() };
+    ChainSettings { angular, separation: Some(separation) }
+}

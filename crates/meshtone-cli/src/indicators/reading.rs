@@ -1,0 +1,153 @@
+//! A recording, and the channel of it that is processed.
+
+use std::path::{Path, PathBuf};
+
+use meshtone_io::recording::{
+    Calibration, Channel, ColumnChoice, RecordingOptions, TextOptions, TimeColumn, read_recording,
+};
+
+use super::options::ReadingOptions;
+use crate::failure::Failure;
+
+/// The channel of a simulation that is processed unless another is chosen.
+const OF_SIMULATION: &str = "vertical_acceleration_g";
+
+/// A recording with the channel that is processed and the one that tells the phase.
+#[derive(Debug)]
+pub struct Input {
+    /// The file that was read.
+    pub source: PathBuf,
+    /// (S/s) Sampling rate.
+    pub sampling_rate_hz: f64,
+    /// (s) Time of the first sample.
+    pub start_s: f64,
+    /// The channel that is processed.
+    pub channel: Channel,
+    /// Tachometer or speed.
+    pub turning: Option<Channel>,
+    /// Whether the file itself says when its samples were taken.
+    pub has_own_time: bool,
+    /// What was simulated, where it was, as TOML.
+    pub scenario_toml: Option<String>,
+}
+
+impl Input {
+    /// Reads a recording.
+    ///
+    /// # Arguments
+    /// * `path` - a file, or a directory that `meshtone simulate` wrote
+    /// * `options` - what is read
+    /// * `turning` - name or number of the channel that tells the phase
+    pub fn read(path: &Path, options: &ReadingOptions, turning: Option<&str>) -> Result<Self, Failure> {
+        let chosen = RecordingOptions {
+            channels: options.channel.iter().map(|choice| ColumnChoice::parse(choice)).collect(),
+            calibrations: calibration(options)?,
+            ..plain(options)
+        };
+        // The tachometer comes by itself: only so is it known which of the columns it is.
+        let turning = turning.map(|choice| read_one(path, options, choice)).transpose()?;
+        let mut recording = read_recording(path, &chosen)?;
+        let simulated = recording.scenario_toml.is_some();
+        if options.channel.is_none() {
+            let keep = |channel: &Channel| {
+                let is_turning = turning.as_ref().is_some_and(|turning| turning.name == channel.name);
+                !is_turning && (!simulated || channel.name == OF_SIMULATION)
+            };
+            recording.channels.retain(keep);
+        }
+        let channel = one(path, recording.channels, options.channel.as_deref())?;
+        if let Some(turning) =
+            turning.as_ref().filter(|turning| turning.samples.len() != channel.samples.len())
+        {
+            let problem = format!(
+                "{}: channel {} has {} samples, but {} has {}; must be equally many",
+                path.display(),
+                turning.name,
+                turning.samples.len(),
+                channel.name,
+                channel.samples.len()
+            );
+            return Err(Failure::bad_input(problem));
+        }
+        Ok(Self {
+            source: path.to_path_buf(),
+            sampling_rate_hz: recording.sampling_rate_hz,
+            start_s: recording.start_s,
+            channel,
+            turning,
+            has_own_time: options.sampling_rate_hz.is_none() && options.time_column.is_none(),
+            scenario_toml: recording.scenario_toml,
+        })
+    }
+}
+
+fn read_one(path: &Path, options: &ReadingOptions, choice: &str) -> Result<Channel, Failure> {
+    let channels = vec![ColumnChoice::parse(choice)];
+    let recording = read_recording(path, &RecordingOptions { channels, ..plain(options) })?;
+    one(path, recording.channels, Some(choice))
+}
+
+/// The only channel there is.
+fn one(path: &Path, mut channels: Vec<Channel>, choice: Option<&str>) -> Result<Channel, Failure> {
+    const SHOWN: usize = 30;
+    let names: Vec<&str> = channels.iter().map(|channel| channel.name.as_str()).collect();
+    let more = names.len().saturating_sub(SHOWN);
+    let mut list = names[..names.len() - more].join(", ");
+    if more > 0 {
+        list += &format!(" and {more} more");
+    }
+    let path = path.display();
+    match (channels.len(), choice) {
+        (1, _) => {}
+        (0, _) => {
+            let problem = format!("{path}: has no channel besides the one that tells the phase");
+            return Err(Failure::bad_input(problem));
+        }
+        (count, Some(choice)) => {
+            let problem = format!("{path}: channel `{choice}` is {count} columns: {list}");
+            return Err(Failure::bad_input(problem).with_help("choose one of them"));
+        }
+        (count, None) => {
+            let problem = format!("{path}: has {count} channels: {list}");
+            return Err(Failure::bad_input(problem).with_help("choose one with --channel NAME"));
+        }
+    }
+    Ok(channels.swap_remove(0))
+}
+
+/// What applies to every column.
+fn plain(options: &ReadingOptions) -> RecordingOptions {
+    let time = match options.time_column.as_deref() {
+        None => TimeColumn::ByName,
+        Some("none") => TimeColumn::Absent,
+        Some(choice) => TimeColumn::Chosen(ColumnChoice::parse(choice)),
+    };
+    RecordingOptions {
+        time,
+        sampling_rate_hz: options.sampling_rate_hz,
+        variable: options.variable.clone(),
+        text: TextOptions {
+            separator: options.separator.map(Into::into),
+            decimal_sign: options.decimal_sign.map(Into::into),
+            skip_lines: options.skip_lines,
+        },
+        ..RecordingOptions::default()
+    }
+}
+
+fn calibration(options: &ReadingOptions) -> Result<Vec<Calibration>, Failure> {
+    let (sensitivity, unit) = (options.sensitivity_mv_per_unit, &options.unit);
+    let Some(channel) = options.channel.as_deref() else { return Ok(Vec::new()) };
+    if let Some(wrong) = sensitivity.filter(|sensitivity| !sensitivity.is_finite() || *sensitivity == 0.0) {
+        let problem = format!("--sensitivity-mv-per-unit: is {wrong}; must be a finite number other than 0");
+        return Err(Failure::bad_input(problem));
+    }
+    if sensitivity.is_none() && unit.is_none() {
+        return Ok(Vec::new());
+    }
+    Ok(vec![Calibration {
+        channel: ColumnChoice::parse(channel),
+        sensitivity_v_per_unit: sensitivity.map(|millivolts| millivolts / 1e3),
+        unit: unit.clone(),
+    }])
+}

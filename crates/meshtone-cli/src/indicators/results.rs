@@ -1,0 +1,170 @@
+//! The records of a whole series, as they come.
+
+use std::path::Path;
+
+use meshtone::signal::{Record, na4};
+use meshtone_io::indicators::{IndicatorResults, RecordEntry, RecordingEntry, Setting, WarningEntry};
+
+use super::options::{PhaseOptions, ProcessingOptions};
+use super::process::{Processed, Wheel};
+use super::reading::Input;
+use crate::failure::Failure;
+
+/// The last record of each wheel, which the figure shows.
+pub struct Latest {
+    /// The recording.
+    pub input: Input,
+    /// Each wheel with the mean speed of its shaft and its record.
+    pub wheels: Vec<(Wheel, f64, Record)>,
+}
+
+/// All records so far. Of each but the last only its indicators and its residual are kept.
+#[derive(Default)]
+pub struct Series {
+    /// The results.
+    pub results: IndicatorResults,
+    /// The last record.
+    pub latest: Option<Latest>,
+    /// The wheels, which are the same in all recordings.
+    pub wheels: Vec<Wheel>,
+    /// Residuals of each wheel's records.
+    residuals: Vec<Vec<Vec<f64>>>,
+}
+
+impl Series {
+    /// Adds the next recording.
+    pub fn add(&mut self, input: Input, processed: Processed, in_segments: bool) -> Result<(), Failure> {
+        self.check(&input, &processed)?;
+        self.results.recordings.push(RecordingEntry {
+            source: input.source.clone(),
+            sampling_rate_hz: input.sampling_rate_hz,
+            samples: input.channel.samples.len(),
+            start_s: input.start_s,
+        });
+        let source = Some(input.source.clone());
+        let warnings = processed.warnings.iter().map(ToString::to_string);
+        let warnings = warnings.map(|message| WarningEntry { source: source.clone(), message });
+        self.results.warnings.extend(warnings);
+        let mut last = Vec::new();
+        for (place, of_wheel) in processed.wheels.into_iter().enumerate() {
+            let count = of_wheel.records.len();
+            for (number, mut record) in of_wheel.records.into_iter().enumerate() {
+                self.results.records.push(RecordEntry {
+                    recording: self.results.recordings.len(),
+                    segment: in_segments.then_some(number + 1),
+                    wheel: of_wheel.wheel.name.to_string(),
+                    teeth: of_wheel.wheel.teeth,
+                    revolutions: record.average.revolutions,
+                    mean_speed_hz: of_wheel.mean_speed_hz,
+                    points_per_revolution: record.average.values.len(),
+                    nyquist_order: record.average.nyquist_order,
+                    indicators: record.indicators,
+                });
+                self.residuals[place].push(std::mem::take(&mut record.parts.residual));
+                if number + 1 == count {
+                    last.push((of_wheel.wheel.clone(), of_wheel.mean_speed_hz, record));
+                }
+            }
+        }
+        self.latest = Some(Latest { input, wheels: last });
+        Ok(())
+    }
+
+    /// What must be the same in all recordings of a series.
+    fn check(&mut self, input: &Input, processed: &Processed) -> Result<(), Failure> {
+        let wheels: Vec<Wheel> = processed.wheels.iter().map(|of_wheel| of_wheel.wheel.clone()).collect();
+        let Some(first) = self.results.recordings.first() else {
+            self.residuals = vec![Vec::new(); wheels.len()];
+            self.wheels = wheels;
+            self.results.channel.clone_from(&input.channel.name);
+            self.results.unit.clone_from(&input.channel.unit);
+            return Ok(());
+        };
+        let refuse = |of: &str, here: String, there: String| {
+            let (path, first) = (input.source.display(), first.source.display());
+            let problem = format!("{path}: {of} {here}, but {first} {there}; must be the same in a series");
+            Err(Failure::bad_input(problem).with_help("process them one by one, each with its own -o"))
+        };
+        let teeth = |wheels: &[Wheel]| -> Vec<String> {
+            wheels.iter().map(|wheel| wheel.teeth.to_string()).collect()
+        };
+        if teeth(&wheels) != teeth(&self.wheels) {
+            let words = |wheels: &[Wheel]| format!("has {} teeth", teeth(wheels).join(" and "));
+            return refuse("is of a pair that", words(&wheels), words(&self.wheels));
+        }
+        if input.channel.unit != self.results.unit {
+            let words = |unit: &Option<String>| unit.clone().unwrap_or_else(|| "no stated unit".to_string());
+            let (here, there) = (words(&input.channel.unit), words(&self.results.unit));
+            return refuse("is in", here, format!("in {there}"));
+        }
+        for (wheel, here) in self.wheels.iter_mut().zip(wheels) {
+            wheel.is_first_damaged = here.is_first_damaged;
+        }
+        Ok(())
+    }
+
+    /// Gives every record the NA4 that it has in the series.
+    pub fn finish(&mut self) -> Result<(), Failure> {
+        for (wheel, residuals) in self.wheels.iter().zip(&self.residuals) {
+            let values = na4(residuals).map_err(|error| Failure::failed(format!("NA4: {error}")))?;
+            let records = self.results.records.iter_mut().filter(|record| record.wheel == wheel.name);
+            for (record, value) in records.zip(values) {
+                // A residual that is rounding has none, alone as in the series.
+                record.indicators.na4 = record.indicators.na4.and(value);
+            }
+            let last = self.results.records.iter().rfind(|record| record.wheel == wheel.name);
+            let shown = self.latest.iter_mut().flat_map(|latest| &mut latest.wheels);
+            for (_, _, record) in shown.filter(|(shown, ..)| shown.name == wheel.name) {
+                record.indicators.na4 = last.and_then(|last| last.indicators.na4);
+            }
+        }
+        Ok(())
+    }
+
+    /// The records of a wheel, in the order of the series.
+    pub fn of<'s>(&'s self, wheel: &'s Wheel) -> impl Iterator<Item = &'s RecordEntry> + 's {
+        self.results.records.iter().filter(|record| record.wheel == wheel.name)
+    }
+
+    /// Whether there are several records, so that there is a trend.
+    pub fn is_series(&self) -> bool {
+        self.results.records.len() > self.wheels.len()
+    }
+}
+
+/// What the command line says, with its defaults.
+pub fn settings(phase: &PhaseOptions, processing: &ProcessingOptions) -> Vec<(&'static str, Setting)> {
+    let number = |value: Option<f64>| value.map_or(Setting::Absent, Setting::Number);
+    let text = |value: Option<String>| value.map_or(Setting::Absent, Setting::Text);
+    let count = |value: Option<u32>| value.map_or(Setting::Absent, |value| Setting::Count(value as usize));
+    let file =
+        |path: &Option<std::path::PathBuf>| path.as_deref().map(|path: &Path| path.display().to_string());
+    let has_pulses = phase.tach.is_some() || phase.pulse_times.is_some();
+    let edge = phase.tach.as_ref().map(|_| format!("{:?}", phase.edge).to_lowercase());
+    let interpolation = meshtone::signal::Interpolation::from(processing.interpolation);
+    let interpolation = match interpolation {
+        meshtone::signal::Interpolation::Pchip => "pchip",
+        meshtone::signal::Interpolation::BandLimited => "band-limited",
+    };
+    vec![
+        ("phase", Setting::Text(phase.source().to_string())),
+        ("teeth", count(phase.teeth)),
+        ("mate_teeth", count(phase.mate_teeth)),
+        ("shaft_hz", number(phase.shaft_hz)),
+        ("tach", text(phase.tach.clone())),
+        ("pulse_times", text(file(&phase.pulse_times))),
+        ("speed_channel", text(phase.speed_channel.clone())),
+        ("speed_profile", text(file(&phase.speed_profile))),
+        ("pulses_per_rev", count(has_pulses.then_some(phase.pulses_per_rev))),
+        ("threshold", number(phase.threshold)),
+        ("hysteresis", number(phase.hysteresis)),
+        ("edge", text(edge)),
+        ("sidebands", Setting::Count(processing.sidebands as usize)),
+        ("low_orders", Setting::Count(processing.low_orders as usize)),
+        (
+            "revolutions_of_a_segment",
+            processing.revolutions.map_or(Setting::Absent, |m| Setting::Count(m as usize)),
+        ),
+        ("interpolation", Setting::Text(interpolation.to_string())),
+    ]
+}

@@ -1,0 +1,236 @@
+//! `meshtone indicators`
+
+use std::f64::consts::TAU;
+use std::fmt::Write;
+use std::fs::File;
+
+use meshtone::signal::{ChainSettings, Recording, ShaftPhase, process_series};
+use meshtone_io::signals::read_signals;
+use ndarray::Array1;
+use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+use serde_json::Value;
+
+use crate::support::{Workplace, fast_with, stderr, stdout};
+
+pub const RATE_HZ: f64 = 5000.0;
+const FIGURES: [&str; 2] = ["indicators.png", "indicators.svg"];
+const TREND: [&str; 2] = ["trend.png", "trend.svg"];
+const DATA: [&str; 2] = ["indicators.json", "indicators.parquet"];
+
+/// A wheel of 19 teeth at 20 Hz, one of which is heard once a revolution.
+pub fn vibration(samples: usize, fault: f64) -> Vec<f64> {
+    let at = |i: usize| {
+        let turned = 20.0 * i as f64 / RATE_HZ;
+        let since = (turned + 0.5).fract();
+        let knock = fault * (-20.0 * since).exp() * (TAU * 61.0 * since).sin();
+        let rough = f64::from((i as u32).wrapping_mul(2_654_435_761) >> 8) / f64::from(1 << 24) - 0.5;
+        (TAU * 19.0 * turned).cos() * (1.0 + 0.1 * (TAU * turned).cos()) + knock + 0.2 * rough
+    };
+    (0..samples).map(at).collect()
+}
+
+/// A CSV file with time, vibration and a tachometer.
+pub fn csv(rate_hz: f64, vibration: &[f64], tacho: impl Fn(usize) -> f64) -> String {
+    let mut text = "time_s,bearing [g],tacho [V]\n".to_string();
+    for (i, value) in vibration.iter().enumerate() {
+        writeln!(text, "{:.9},{value:e},{}", i as f64 / rate_hz, tacho(i)).unwrap();
+    }
+    text
+}
+
+/// 5 V over the first tenth of every revolution.
+pub fn tacho(hz: f64, rate_hz: f64) -> impl Fn(usize) -> f64 {
+    move |i| if (hz * i as f64 / rate_hz + 1e-9).fract() < 0.1 { 5.0 } else { 0.0 }
+}
+
+fn results(workplace: &Workplace, directory: &str) -> Value {
+    serde_json::from_slice(&workplace.read(&format!("{directory}/indicators.json"))).unwrap()
+}
+
+fn value(record: &Value, name: &str) -> f64 {
+    record["indicators"][name].as_f64().unwrap_or(f64::NAN)
+}
+
+#[track_caller]
+fn assert_alike(a: &Value, b: &Value, tolerance: f64) {
+    assert_eq!(a["teeth"], b["teeth"]);
+    for name in [
+        "average_rms",
+        "difference_rms",
+        "difference_kurtosis",
+        "envelope_rms",
+        "residual_rms",
+        "fm0",
+        "fm4",
+        "na4",
+        "energy_ratio",
+    ] {
+        let (a, b) = (value(a, name), value(b, name));
+        assert!((a / b - 1.0).abs() < tolerance, "{name}: {a} and {b}");
+    }
+}
+
+#[test]
+fn a_simulation_and_the_same_signal_from_other_files() {
+    let workplace = Workplace::new();
+    let faulty = fast_with("sampling_rate_hz", "sampling_rate_hz = 4e4")
+        + "[quality]\ndin_grade = 7\n[fault]\nkind = \"missing-tooth\"\n";
+    workplace.write("gone.toml", faulty);
+    workplace.succeeds(&["simulate", "gone.toml", "-o", "gone", "--no-panel", "-q"]);
+    let assert = workplace.succeeds(&["indicators", "gone"]);
+    for words in
+        ["gone -> gone_indicators", "vertical_acceleration_g, g", "gear, 40 teeth", "kurtosis", "FM4"]
+    {
+        assert!(stdout(&assert).contains(words), "{words}");
+    }
+    assert_eq!(workplace.names("gone_indicators"), [DATA[0], DATA[1], FIGURES[0], FIGURES[1]]);
+    let simulated = results(&workplace, "gone_indicators");
+    let [pinion, gear] = [0, 1].map(|place| &simulated["records"][place]);
+    assert_eq!((&gear["wheel"], &gear["revolutions"]), (&Value::from("gear"), &Value::from(20)));
+    assert!(value(gear, "fm4") > 2.0 * value(pinion, "fm4"));
+
+    // The summary has the same numbers.
+    let summary: Value = serde_json::from_slice(&workplace.read("gone/summary.json")).unwrap();
+    for (wheel, record) in [("pinion", pinion), ("gear", gear)] {
+        let of_summary = &summary["indicators"][wheel];
+        assert_eq!(of_summary["difference_kurtosis"], record["indicators"]["difference_kurtosis"]);
+        assert_eq!(of_summary["average_rms_g"], record["indicators"]["average_rms"]);
+        assert_eq!(of_summary["fm4"], record["indicators"]["fm4"]);
+        assert!(of_summary.get("residual_rms_g").is_none());
+    }
+
+    let channels = read_signals(&workplace.path("gone/signals.parquet")).unwrap().channels;
+    let rate = channels.sampling_rate_hz;
+    workplace.write("gone.csv", csv(rate, &channels.vertical_g, tacho(40.0, rate)));
+    ndarray_npy::write_npy(workplace.path("gone.npy"), &Array1::from(channels.vertical_g)).unwrap();
+    let rate = rate.to_string();
+    let wheels = ["--teeth", "20", "--mate-teeth", "40", "-o", "out"];
+    for arguments in [
+        &["gone.csv", "-c", "bearing", "--shaft-hz", "40"][..],
+        &["gone.csv", "--tach", "tacho"],
+        &["gone.csv", "--tach", "tacho", "--shaft-hz", "39.5"],
+        &["gone.csv", "-c", "2", "--tach", "3", "--edge", "falling", "--threshold", "2", "--hysteresis", "1"],
+        &["gone.npy", "--sampling-rate-hz", &rate, "--shaft-hz", "40"],
+        &["gone/signals.parquet", "-c", "vertical_acceleration_g", "--shaft-hz", "40"],
+    ] {
+        let arguments = [&["indicators"], arguments, &wheels].concat();
+        let assert = workplace.succeeds(&arguments);
+        let measured = results(&workplace, "out");
+        assert_eq!(measured["records"].as_array().unwrap().len(), 2);
+        // Without what the simulation knows, the last revolution is not whole: 39 of 40, 20 of which the gap is in.
+        let tolerance = 0.03;
+        assert_alike(&measured["records"][0], pinion, tolerance);
+        assert_alike(&measured["records"][1], gear, tolerance);
+        assert!(!stderr(&assert).contains("error"));
+    }
+}
+
+#[test]
+fn a_series_with_a_growing_fault() {
+    let workplace = Workplace::new();
+    let signals: Vec<Vec<f64>> = (0..5).map(|day| vibration(10_000, 0.3 * f64::from(day))).collect();
+    let mut arguments = vec!["indicators".to_string()];
+    for (day, signal) in signals.iter().enumerate() {
+        let name = format!("day{day}.npy");
+        ndarray_npy::write_npy(workplace.path(&name), &Array1::from(signal.clone())).unwrap();
+        arguments.push(name);
+    }
+    let settings = ["--sampling-rate-hz", "5000", "--shaft-hz", "20", "--teeth", "19", "-o", "trend"];
+    arguments.extend(settings.map(str::to_string));
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let assert = workplace.succeeds(&arguments).stderr("");
+    for words in ["5 recordings -> trend", "day0.npy", "day4.npy", "NA4"] {
+        assert!(stdout(&assert).contains(words), "{words}");
+    }
+    assert_eq!(workplace.names("trend").len(), 6);
+
+    let phase = ShaftPhase::constant(20.0, RATE_HZ, 10_000).unwrap();
+    let recordings: Vec<_> = signals.iter().map(|signal| Recording { signal, phase: &phase }).collect();
+    let expected = process_series(&recordings, 19, &ChainSettings::default()).unwrap();
+    let found = results(&workplace, "trend");
+    let found = found["records"].as_array().unwrap();
+    assert_eq!(found.len(), 5);
+    for (found, expected) in found.iter().zip(&expected) {
+        for entry in expected.indicators.table("") {
+            let found = found["indicators"][&entry.name].as_f64();
+            // Reading the text may be off by a last digit.
+            let close = found.zip(entry.value).is_some_and(|(a, b)| (a - b).abs() <= 1e-14 * b.abs());
+            assert!(close, "{}: {found:?} {:?}", entry.name, entry.value);
+        }
+    }
+    let na4: Vec<f64> = found.iter().map(|record| value(record, "na4")).collect();
+    assert!(na4[4] > 2.0 * na4[0], "{na4:?}");
+
+    // The table for other programs has the same.
+    let file = File::open(workplace.path("trend/indicators.parquet")).unwrap();
+    let mut batches = ParquetRecordBatchReaderBuilder::try_new(file).unwrap().build().unwrap();
+    let batch = batches.next().unwrap().unwrap();
+    assert_eq!(batch.num_rows(), 5);
+    let column = batch.column_by_name("na4").unwrap();
+    let column = column.as_any().downcast_ref::<arrow::array::Float64Array>().unwrap();
+    assert!(column.values().iter().zip(&na4).all(|(a, b)| (a - b).abs() <= 1e-14 * b.abs()), "{column:?}");
+}
+
+#[test]
+fn segments_of_one_recording_are_a_series() {
+    let workplace = Workplace::new();
+    workplace.write("run.csv", csv(RATE_HZ, &vibration(20_000, 1.0), tacho(20.0, RATE_HZ)));
+    let base = ["indicators", "run.csv", "--tach", "tacho", "--teeth", "19", "-o", "out", "-q"];
+    workplace.succeeds(&[&base[..], &["--revolutions", "10"]].concat()).stdout("").stderr("");
+    let found = results(&workplace, "out");
+    assert_eq!(found["records"].as_array().unwrap().len(), 7);
+    assert_eq!(found["records"][6]["segment"], 7);
+    assert_eq!(found["settings"]["revolutions_of_a_segment"], 10);
+    assert_eq!(found["settings"]["phase"], "tachometer");
+    assert_eq!(found["unit"], "g");
+    assert!(workplace.names("out").contains(&TREND[0].to_string()));
+    // What no longer belongs there goes.
+    workplace.succeeds(&base);
+    assert_eq!(workplace.names("out").len(), 4);
+    workplace.succeeds(&[&base[..], &["--no-figure"]].concat());
+    assert_eq!(workplace.names("out"), DATA);
+}
+
+#[test]
+fn pulses_and_speeds_from_other_files() {
+    let workplace = Workplace::new();
+    workplace.write("run.csv", csv(RATE_HZ, &vibration(20_000, 1.0), |_| 1200.0).replace("[V]", "[rpm]"));
+    let base = ["indicators", "run.csv", "-c", "bearing", "--teeth", "19", "--no-figure"];
+    workplace.succeeds(&[&base[..], &["--shaft-hz", "20", "-o", "constant"]].concat());
+    let expected = results(&workplace, "constant");
+    let times: String = (0..160).map(|pulse| format!("{:.6}\n", f64::from(pulse) / 40.0)).collect();
+    workplace.write("pulses.txt", format!("pulse [s]\n{times}"));
+    workplace.write("speed.csv", "time [s],speed [rpm]\n0,1200\n9,1200\n");
+    for arguments in [
+        &["--pulse-times", "pulses.txt", "--pulses-per-rev", "2", "-o", "pulses"][..],
+        &["--speed-profile", "speed.csv", "-o", "profile"],
+        &["--speed-channel", "tacho", "-o", "channel"],
+        &["--from-mesh-tone", "--shaft-hz", "20.1", "-o", "tone"],
+    ] {
+        workplace.succeeds(&[&base[..], arguments].concat()).stderr("");
+        let found = results(&workplace, arguments[arguments.len() - 1]);
+        // What the fault does to the mesh tone is taken for speed.
+        let tolerance = if arguments.contains(&"tone") { 0.3 } else { 0.02 };
+        assert_alike(&found["records"][0], &expected["records"][0], tolerance);
+    }
+}
+
+#[test]
+fn what_is_doubtful_is_said() {
+    let workplace = Workplace::new();
+    let pulses = tacho(20.0, RATE_HZ);
+    let missing = |i: usize| if (5000..5100).contains(&i) { 0.0 } else { pulses(i) };
+    workplace.write("run.csv", csv(RATE_HZ, &vibration(20_000, 1.0), missing));
+    let base = ["indicators", "run.csv", "--tach", "tacho", "--teeth", "19", "-q", "--no-figure"];
+    let said = stderr(&workplace.succeeds(&base));
+    assert!(said.contains("warning: run.csv: 1 pulse(s) missing after 0.9"), "{said}");
+    let found = results(&workplace, "run_indicators");
+    assert_eq!(found["warnings"][0]["recording"], "run.csv");
+    for name in ["run1.csv", "run2.csv", "run10.csv"] {
+        workplace.write(name, csv(RATE_HZ, &vibration(5000, 1.0), |_| 0.0));
+    }
+    let series =
+        ["indicators", "run1.csv", "run10.csv", "run2.csv", "-c", "2", "--teeth", "19", "--shaft-hz", "20"];
+    let said = stderr(&workplace.succeeds(&series));
+    assert!(said.contains("run10.csv comes before run2.csv"), "{said}");
+}

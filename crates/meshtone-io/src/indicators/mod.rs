@@ -1,0 +1,92 @@
+//! Indicators of recordings, as JSON and Apache Parquet.
+//!
+//! One record is what one recording, or one segment of it, shows about one wheel. The JSON holds everything: settings,
+//! recordings, records, warnings. The Parquet file is a table with one row for each record, for programs that compare
+//! many; what belongs to the whole file stands in its key-value metadata.
+
+mod json;
+mod parquet_file;
+
+use std::path::PathBuf;
+
+use meshtone::signal::Indicators;
+
+/// Version of the JSON's format: it grows when a key changes its name or meaning.
+pub const FORMAT_VERSION: u32 = 1;
+/// Metadata key of the settings, as JSON, in the Parquet file.
+pub const SETTINGS_KEY: &str = "meshtone.settings";
+
+/// The indicators of one or several recordings.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct IndicatorResults {
+    /// How the recordings were processed, in the order in which it is written.
+    pub settings: Vec<(&'static str, Setting)>,
+    /// The channel that was processed.
+    pub channel: String,
+    /// Its unit, where it is known: the unit of every rms and peak to peak.
+    pub unit: Option<String>,
+    /// The recordings, in the order of the series.
+    pub recordings: Vec<RecordingEntry>,
+    /// The records, in the order of the series.
+    pub records: Vec<RecordEntry>,
+    /// What is doubtful.
+    pub warnings: Vec<WarningEntry>,
+}
+
+/// The value of a setting.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Setting {
+    /// Words.
+    Text(String),
+    /// A number; its unit stands in the setting's name.
+    Number(f64),
+    /// A count.
+    Count(usize),
+    /// Not given.
+    Absent,
+}
+
+/// One recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordingEntry {
+    /// The file that was read.
+    pub source: PathBuf,
+    /// (S/s) Its sampling rate.
+    pub sampling_rate_hz: f64,
+    /// Its samples.
+    pub samples: usize,
+    /// (s) Time of its first sample.
+    pub start_s: f64,
+}
+
+/// What one recording, or one segment of it, shows about one wheel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordEntry {
+    /// Number of the recording, from 1.
+    pub recording: usize,
+    /// Number of the segment in it, from 1; none where the recording is one record.
+    pub segment: Option<usize>,
+    /// Name of the wheel.
+    pub wheel: String,
+    /// Its teeth.
+    pub teeth: u32,
+    /// Revolutions that were averaged.
+    pub revolutions: usize,
+    /// (Hz) Mean speed of its shaft over the recording.
+    pub mean_speed_hz: f64,
+    /// Values of the average.
+    pub points_per_revolution: usize,
+    /// (orders) Beyond this order of the shaft the recording holds nothing.
+    pub nyquist_order: f64,
+    /// The indicators.
+    pub indicators: Indicators,
+}
+
+/// Something doubtful.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct WarningEntry {
+    /// The recording that it is about; none where it is about all.
+    pub source: Option<PathBuf>,
+    /// What it is.
+    pub message: String,
+}

@@ -1,0 +1,258 @@
+//! The chain for what was simulated: the scenario says how far the shafts have turned.
+
+use super::check::check_channel;
+use super::{
+    AngularSignal, ChainSettings, Channels, Interpolation, Record, ShaftPhase, SignalError, angular_resample,
+    process_average, process_segments_of, synchronous_average,
+};
+use crate::dynamics::Motion;
+use crate::sampling::TimeGrid;
+use crate::scenario::Scenario;
+
+/// A shaft of the simulated pair.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shaft {
+    /// The driving one, with the pinion.
+    Pinion,
+    /// The driven one, with the gear, whose first tooth is the damaged one.
+    Gear,
+}
+
+impl Shaft {
+    /// Both, the driving one first.
+    pub const BOTH: [Self; 2] = [Self::Pinion, Self::Gear];
+
+    /// Name of its wheel.
+    pub fn wheel(self) -> &'static str {
+        match self {
+            Self::Pinion => "pinion",
+            Self::Gear => "gear",
+        }
+    }
+}
+
+/// How far the shafts of a simulated pair have turned at its kept samples. At whole revolutions the wheel's first tooth
+/// enters contact.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SimulatedShafts {
+    teeth: [u32; 2],
+    sampling_rate_hz: f64,
+    samples: usize,
+    turning: Turning,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Turning {
+    /// Whole numbers of samples in each revolution.
+    Steady { start: usize, samples_per_pinion_revolution: usize },
+    /// (rev) Angle of the pinion at each sample.
+    Varying(Vec<f64>),
+}
+
+impl SimulatedShafts {
+    /// The shafts of a scenario.
+    ///
+    /// # Arguments
+    /// * `scenario` - what was simulated; a valid one
+    /// * `start_s` - (s) [`Channels::start_s`]
+    /// * `samples` - how many were kept
+    pub fn new(scenario: &Scenario, start_s: f64, samples: usize) -> Self {
+        let scenario = scenario.as_honoured();
+        let time = TimeGrid::new(&scenario);
+        let start = ((start_s * time.sampling_rate_hz).round().max(0.0) as usize).min(time.samples);
+        let motion = Motion::new(&scenario, &time);
+        let turning = if motion.is_steady() {
+            let samples_per_pinion_revolution = time.samples_per_pinion_revolution;
+            Turning::Steady { start, samples_per_pinion_revolution }
+        } else {
+            Turning::Varying(motion.skip(start).take(samples).map(|sample| sample.revolutions).collect())
+        };
+        let teeth = [scenario.gears.pinion_teeth, scenario.gears.gear_teeth];
+        Self { teeth, sampling_rate_hz: time.sampling_rate_hz, samples, turning }
+    }
+
+    /// The shafts of a simulation's channels.
+    ///
+    /// # Arguments
+    /// * `scenario` - what was simulated
+    /// * `channels` - the kept signals
+    pub fn of_channels(scenario: &Scenario, channels: &Channels) -> Self {
+        Self::new(scenario, channels.start_s, channels.len())
+    }
+
+    /// (S/s) Sampling rate that the scenario leads to.
+    pub fn sampling_rate_hz(&self) -> f64 {
+        self.sampling_rate_hz
+    }
+
+    /// Whether both shafts turn at constant speed.
+    pub fn is_steady(&self) -> bool {
+        matches!(self.turning, Turning::Steady { .. })
+    }
+
+    /// Teeth of a shaft's wheel.
+    ///
+    /// # Arguments
+    /// * `shaft` - which
+    pub fn teeth(&self, shaft: Shaft) -> u32 {
+        self.teeth[shaft as usize]
+    }
+
+    /// (Hz) Mean speed of a shaft.
+    ///
+    /// # Arguments
+    /// * `shaft` - which
+    pub fn mean_speed_hz(&self, shaft: Shaft) -> f64 {
+        let pinion_hz = match &self.turning {
+            Turning::Steady { samples_per_pinion_revolution, .. } => {
+                self.sampling_rate_hz / *samples_per_pinion_revolution as f64
+            }
+            Turning::Varying(angles) => match angles[..] {
+                [first, .., last] => (last - first) * self.sampling_rate_hz / (angles.len() - 1) as f64,
+                _ => 0.0,
+            },
+        };
+        pinion_hz * f64::from(self.teeth[0]) / f64::from(self.teeth(shaft).max(1))
+    }
+
+    /// A signal over whole revolutions of a shaft, from an angle on at which the wheel's first tooth enters contact.
+    ///
+    /// At constant speed there is nothing to interpolate: the samples of a revolution are the points, and a signal of whole
+    /// revolutions, as the simulation keeps it, is continued periodically, so that none of it is left out.
+    ///
+    /// # Arguments
+    /// * `signal` - one of the kept signals
+    /// * `shaft` - which
+    /// * `settings` - how it is resampled where the speed varies
+    ///
+    /// # Errors
+    /// A signal of another length; where the speed varies, what [`angular_resample`] refuses.
+    ///
+    /// ```
+    /// use meshtone::scenario::Scenario;
+    /// use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
+    ///
+    /// let mut scenario = Scenario::new(3.0, 20, 40, 15.0, 40.0, 10.0);
+    /// scenario.solver.sampling_rate_hz = 1e4;
+    /// let channels = meshtone::simulate(&scenario)?.channels;
+    /// let shafts = SimulatedShafts::of_channels(&scenario, &channels);
+    /// let angular = shafts.angular(&channels.vertical_g, Shaft::Gear, &ChainSettings::default())?;
+    /// assert_eq!((angular.start_rev, angular.revolutions()), (0.0, 20));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn angular(
+        &self,
+        signal: &[f64],
+        shaft: Shaft,
+        settings: &ChainSettings,
+    ) -> Result<AngularSignal, SignalError> {
+        if signal.len() != self.samples {
+            let what = "samples of a simulated signal";
+            return Err(SignalError::LengthMismatch { what, given: signal.len(), expected: self.samples });
+        }
+        match &self.turning {
+            Turning::Steady { start, .. } => {
+                let points = self.samples_per_revolution(shaft).unwrap_or(1);
+                Ok(from_first_tooth(signal, *start, points))
+            }
+            Turning::Varying(angles) => {
+                let pinion = ShaftPhase::new(0, angles.clone())?;
+                let phase = match shaft {
+                    Shaft::Pinion => pinion,
+                    Shaft::Gear => pinion.of_mate(self.teeth[0], self.teeth[1])?,
+                };
+                angular_resample(signal, &phase, &settings.angular)
+            }
+        }
+    }
+
+    fn samples_per_revolution(&self, shaft: Shaft) -> Option<usize> {
+        let Turning::Steady { samples_per_pinion_revolution, .. } = self.turning else { return None };
+        let [pinion, gear] = self.teeth.map(|teeth| teeth.max(1) as usize);
+        Some(match shaft {
+            Shaft::Pinion => samples_per_pinion_revolution,
+            Shaft::Gear => samples_per_pinion_revolution / pinion * gear,
+        })
+    }
+
+    /// As [`super::process_channel`], for one wheel of a simulated pair.
+    ///
+    /// # Arguments
+    /// * `signal` - one of the kept signals
+    /// * `shaft` - which wheel's
+    /// * `settings` - how
+    ///
+    /// # Errors
+    /// As [`super::process_channel`].
+    pub fn process(
+        &self,
+        signal: &[f64],
+        shaft: Shaft,
+        settings: &ChainSettings,
+    ) -> Result<Record, SignalError> {
+        check_channel(signal)?;
+        let angular = self.angular(signal, shaft, settings)?;
+        process_average(synchronous_average(&angular)?, self.teeth(shaft), &self.settings(settings))
+    }
+
+    /// As [`super::process_segments`], for one wheel of a simulated pair.
+    ///
+    /// # Arguments
+    /// * `signal`, `shaft`, `settings` - as for [`Self::process`]
+    /// * `revolutions` - (at least 2) of each segment
+    ///
+    /// # Errors
+    /// As [`super::process_segments`].
+    pub fn process_segments(
+        &self,
+        signal: &[f64],
+        shaft: Shaft,
+        settings: &ChainSettings,
+        revolutions: usize,
+    ) -> Result<Vec<Record>, SignalError> {
+        check_channel(signal)?;
+        let angular = self.angular(signal, shaft, settings)?;
+        process_segments_of(&angular, self.teeth(shaft), &self.settings(settings), revolutions)
+    }
+
+    /// Nothing is interpolated at constant speed, so nothing is weakened.
+    fn settings(&self, settings: &ChainSettings) -> ChainSettings {
+        let mut settings = settings.clone();
+        if self.is_steady() {
+            settings.angular.interpolation = Interpolation::BandLimited;
+        }
+        settings
+    }
+}
+
+/// The samples over whole revolutions, from the first whole one on.
+fn from_first_tooth(signal: &[f64], start: usize, points: usize) -> AngularSignal {
+    let before = (points - start % points) % points;
+    let values = if signal.len().is_multiple_of(points) && !signal.is_empty() {
+        [&signal[before..], &signal[..before]].concat()
+    } else {
+        let whole = signal.len().saturating_sub(before) / points * points;
+        signal.get(before..before + whole).unwrap_or(&[]).to_vec()
+    };
+    AngularSignal {
+        points_per_revolution: points,
+        start_rev: 0.0,
+        nyquist_order: points as f64 / 2.0,
+        values,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::from_first_tooth;
+
+    #[test]
+    fn whole_revolutions_are_turned_and_others_cut() {
+        let signal = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
+        assert_eq!(from_first_tooth(&signal, 0, 3).values, signal);
+        assert_eq!(from_first_tooth(&signal, 4, 3).values, [3.0, 4.0, 5.0, 6.0, 1.0, 2.0]);
+        assert_eq!(from_first_tooth(&signal, 3, 4).values, [2.0, 3.0, 4.0, 5.0]);
+        assert_eq!(from_first_tooth(&signal, 1, 5).revolutions(), 0);
+        assert_eq!(from_first_tooth(&[], 1, 5).revolutions(), 0);
+    }
+}

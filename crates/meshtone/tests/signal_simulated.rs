@@ -1,0 +1,106 @@
+//! The chain for what was simulated.
+
+#![allow(clippy::unwrap_used)]
+
+use meshtone::scenario::{Fault, Scenario};
+use meshtone::signal::{
+    ChainSettings, Channels, Shaft, ShaftPhase, SignalError, SimulatedShafts, process_channel,
+    process_segments, revolution_average,
+};
+
+fn faulty() -> Scenario {
+    let mut scenario = Scenario::new(3.0, 20, 40, 15.0, 40.0, 200.0);
+    scenario.solver.sampling_rate_hz = 4e4;
+    scenario.quality.din_grade = 7;
+    scenario.fault = Some(Fault::MissingTooth);
+    scenario
+}
+
+fn channels(scenario: &Scenario) -> Channels {
+    meshtone::simulate(scenario).unwrap().channels
+}
+
+fn close(a: f64, b: f64, tolerance: f64) {
+    assert!((a / b - 1.0).abs() < tolerance, "{a} and {b}");
+}
+
+#[test]
+fn the_average_is_that_of_the_samples() {
+    let scenario = faulty();
+    let channels = channels(&scenario);
+    let shafts = SimulatedShafts::of_channels(&scenario, &channels);
+    assert_eq!(shafts.sampling_rate_hz(), channels.sampling_rate_hz);
+    assert_eq!(shafts.mean_speed_hz(Shaft::Gear), 20.0);
+    for shaft in Shaft::BOTH {
+        let per_revolution = (channels.sampling_rate_hz / shafts.mean_speed_hz(shaft)).round() as usize;
+        let record = shafts.process(&channels.vertical_g, shaft, &ChainSettings::default()).unwrap();
+        let mut expected = revolution_average(&channels.vertical_g, per_revolution);
+        let start = (channels.start_s * channels.sampling_rate_hz).round() as usize;
+        expected.rotate_right(start % per_revolution);
+        assert_eq!(record.average.revolutions * per_revolution, channels.len());
+        let off = expected.iter().zip(&record.average.values).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-9 * meshtone::signal::peak(&expected), "{off}");
+        assert!(record.warnings.is_empty());
+    }
+}
+
+#[test]
+fn as_measured_at_constant_speed() {
+    let scenario = faulty();
+    let channels = channels(&scenario);
+    let shafts = SimulatedShafts::of_channels(&scenario, &channels);
+    let phase = ShaftPhase::constant(20.0, channels.sampling_rate_hz, channels.len()).unwrap();
+    let (signal, settings) = (&channels.vertical_g, ChainSettings::default());
+    let simulated = shafts.process(signal, Shaft::Gear, &settings).unwrap();
+    let measured = process_channel(signal, &phase, 40, &settings).unwrap();
+    for (a, b) in simulated.indicators.table("g").iter().zip(measured.indicators.table("g")) {
+        if a.name.ends_with("rms") || a.name == "fm4" {
+            close(a.value.unwrap(), b.value.unwrap(), 0.01);
+        }
+    }
+    let simulated = shafts.process_segments(signal, Shaft::Gear, &settings, 5).unwrap();
+    let measured = process_segments(signal, &phase, 40, &settings, 5).unwrap();
+    assert_eq!((simulated.len(), measured.len()), (4, 3));
+    close(simulated[1].indicators.na4.unwrap(), measured[1].indicators.na4.unwrap(), 0.01);
+}
+
+#[test]
+fn a_speed_that_varies() {
+    let steady = faulty();
+    let still = channels(&steady);
+    let expected = SimulatedShafts::of_channels(&steady, &still);
+    let expected = expected.process(&still.vertical_g, Shaft::Gear, &ChainSettings::default()).unwrap();
+    let mut fluctuating = faulty();
+    fluctuating.operation.speed_fluctuation_hz = 1e-6;
+    let channels = channels(&fluctuating);
+    let shafts = SimulatedShafts::of_channels(&fluctuating, &channels);
+    assert!(!shafts.is_steady());
+    close(shafts.mean_speed_hz(Shaft::Pinion), 40.0, 1e-6);
+    let found = shafts.process(&channels.vertical_g, Shaft::Gear, &ChainSettings::default()).unwrap();
+    close(found.indicators.difference.rms, expected.indicators.difference.rms, 0.01);
+    close(found.indicators.fm4.unwrap(), expected.indicators.fm4.unwrap(), 0.01);
+    // The burst of the missing tooth is at the same angle.
+    let place = |values: &[f64]| {
+        let largest = (0..values.len()).max_by(|&a, &b| values[a].abs().total_cmp(&values[b].abs())).unwrap();
+        largest as f64 / values.len() as f64
+    };
+    let off = place(&found.average.values) - place(&expected.average.values);
+    assert!(off.abs() < 2e-3, "{off}");
+}
+
+#[test]
+fn what_is_refused() {
+    let scenario = faulty();
+    let shafts = SimulatedShafts::new(&scenario, 0.0, 4000);
+    let settings = ChainSettings::default();
+    let wave: Vec<f64> = (0..4000).map(|i| f64::from(i % 7)).collect();
+    let too_few = shafts.process(&wave, Shaft::Gear, &settings);
+    assert!(matches!(too_few, Err(SignalError::TooFewRevolutions { .. })));
+    assert!(shafts.process(&wave[1..], Shaft::Gear, &settings).is_err());
+    let constant = shafts.process(&[0.0; 4000], Shaft::Gear, &settings);
+    assert!(matches!(constant, Err(SignalError::Constant { .. })));
+    // A start far beyond the simulation does not take for ever.
+    let mut fluctuating = faulty();
+    fluctuating.operation.speed_fluctuation_hz = 0.1;
+    assert!(!SimulatedShafts::new(&fluctuating, 1e300, 10).is_steady());
+}
