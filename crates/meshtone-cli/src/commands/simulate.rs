@@ -8,6 +8,7 @@ use meshtone::scenario::{
     Convention, ProfileErrors, Scenario, ScenarioError, ScenarioFiles, ScenarioWarning,
 };
 use meshtone::{Simulation, StageTime, Stages, Trace};
+use meshtone_io::experiment::{Tuned, read_tuned};
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::scenario_file::{FilesBeside, ScenarioFile};
 use meshtone_io::summary::Summary;
@@ -42,6 +43,9 @@ pub struct Simulate {
     /// Profile errors, as `meshtone wheels` writes them, instead of the scenario's own
     #[arg(long, value_name = "WHEELS.npz")]
     errors_file: Option<PathBuf>,
+    /// What `meshtone tune` found: its numbers of the scenario are put into every scenario that has them
+    #[arg(long, value_name = "tuned.toml")]
+    tuned: Option<PathBuf>,
     /// Write every stage's output too (one scenario only)
     #[arg(long, value_name = "FILE.npz")]
     trace: Option<PathBuf>,
@@ -97,8 +101,10 @@ impl Simulate {
         }
         let directories = self.directories()?;
         let errors = self.errors_file.as_deref().map(read_errors).transpose()?;
+        let tuned = self.tuned.as_deref().map(read_tuned).transpose()?;
         let runs = self.scenarios.iter().zip(directories);
-        let runs = runs.map(|(path, directory)| self.prepare(path, directory, errors.as_ref()));
+        let runs =
+            runs.map(|(path, directory)| self.prepare(path, directory, errors.as_ref(), tuned.as_ref()));
         let runs = runs.collect::<Result<Vec<_>, _>>()?;
         let directories = runs.iter().map(|run| OutputDirectory::prepare(&run.directory));
         let directories = directories.collect::<Result<Vec<_>, _>>()?;
@@ -107,7 +113,8 @@ impl Simulate {
             trace: self.trace.as_deref(),
         };
         let read = runs.iter().flat_map(|run| run.file.sources());
-        targets.check(&read.chain(self.errors_file.as_deref()).collect::<Vec<_>>())?;
+        let named = self.errors_file.as_deref().into_iter().chain(self.tuned.as_deref());
+        targets.check(&read.chain(named).collect::<Vec<_>>())?;
         for (number, (run, directory)) in runs.into_iter().zip(directories).enumerate() {
             self.simulate(run, &directory, number)?;
             directory.keep();
@@ -152,9 +159,16 @@ impl Simulate {
         path: &Path,
         directory: PathBuf,
         errors: Option<&ProfileErrors>,
+        tuned: Option<&Tuned>,
     ) -> Result<Run, Failure> {
         let file = ScenarioFile::read_within(path, memory::limit())?;
         let mut scenario = file.scenario.clone();
+        if let (Some(tuned), Some(tuned_path)) = (tuned, &self.tuned) {
+            scenario = tuned.apply(&scenario).map_err(|error| {
+                let (tuned, path) = (tuned_path.display(), path.display());
+                Failure::bad_input(format!("--tuned {tuned}: {error} ({path})"))
+            })?;
+        }
         if let Some(convention) = self.convention {
             scenario.convention = convention.into();
         }

@@ -9,5 +9,6 @@ mod init;
 mod killed;
 mod simulate;
 mod support;
+mod tune;
 mod unwritable;
 mod wheels_and_panel;

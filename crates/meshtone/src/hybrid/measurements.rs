@@ -192,15 +192,18 @@ impl Measurements {
         (0..self.cases()).map(of_case).sum::<f64>() / self.cases() as f64
     }
 
-    /// Records drawn again, with replacement, within each case: one bootstrap sample. σ̂ stays.
+    /// One bootstrap sample: cases drawn again with replacement, and records within each. σ̂ stays.
     ///
     /// # Arguments
     /// * `seed`, `sample` - the same numbers give the same sample
-    pub fn resampled(&self, seed: u64, sample: u64) -> Self {
+    ///
+    /// Returns the records of every case, and how often each case was drawn.
+    pub fn resampled(&self, seed: u64, sample: u64) -> (Self, Vec<f64>) {
         let mut draws = Draws::new(seed, Purpose::Bootstrap, sample);
-        let mut again = |count: usize| -> Vec<usize> {
-            (0..count).map(|_| ((draws.uniform(0.5, 0.5) * count as f64) as usize).min(count - 1)).collect()
-        };
+        let mut one_of = |count: usize| ((draws.uniform(0.5, 0.5) * count as f64) as usize).min(count - 1);
+        let mut weights = vec![0.0; self.cases()];
+        (0..self.cases()).for_each(|_| weights[one_of(self.cases())] += 1.0);
+        let mut again = |count: usize| -> Vec<usize> { (0..count).map(|_| one_of(count)).collect() };
         let records = self.records.iter().map(|case| {
             let together = self.paired.then(|| again(case[0].values.len()));
             case.iter()
@@ -210,7 +213,8 @@ impl Measurements {
                 })
                 .collect()
         });
-        Self { records: records.collect(), ..self.clone() }
+        let records = records.collect();
+        (Self { records, ..self.clone() }, weights)
     }
 }
 

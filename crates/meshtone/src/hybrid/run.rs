@@ -6,9 +6,13 @@ use rayon::prelude::*;
 
 use super::candidates::{place, rounds, value};
 use super::difference::KeepDifference;
+use super::tune::tune_among;
 use super::{Experiment, Fit, HybridError, SimulatedCases, Tuning, fit, tune};
 use crate::batch::{Control, simulate_many};
 use crate::scenario::{Scenario, ScenarioError};
+
+/// The best candidates whose parameters the intervals hold, where their error allows it.
+const MOST_FOR_INTERVALS: usize = 12;
 
 /// What an experiment gave.
 #[derive(Debug, Clone)]
@@ -176,14 +180,26 @@ impl Search<'_> {
             tried.sort_by(|a, b| a.fit.error.total_cmp(&b.fit.error));
         }
         let leave_one_out_error = self.leave_one_out(&tried)?;
-        let candidates = tried.len();
-        let best = tried.into_iter().next().ok_or_else(|| HybridError::NoCandidate {
-            first_failure: first_failure.clone().unwrap_or_default(),
-        })?;
-        let mut tuning = tune(&best.simulated, measured, bounds, *seed)?;
+        let good: Vec<(&SimulatedCases, Fit)> = tried
+            .iter()
+            .take(MOST_FOR_INTERVALS)
+            .map(|candidate| (&candidate.simulated, candidate.fit))
+            .collect();
+        if good.is_empty() {
+            let first_failure = first_failure.unwrap_or_default();
+            return Err(HybridError::NoCandidate { first_failure });
+        }
+        let mut tuning = tune_among(&good, measured, bounds, *seed)?;
         tuning.leave_one_out_error = leave_one_out_error;
-        let values = keys.iter().zip(&best.places).map(|(key, &at)| value(key, at)).collect();
-        Ok(TunedKeys { values, simulated: best.simulated, tuning, candidates, failed, first_failure })
+        let best = &tried[0];
+        Ok(TunedKeys {
+            values: keys.iter().zip(&best.places).map(|(key, &at)| value(key, at)).collect(),
+            simulated: best.simulated.clone(),
+            tuning,
+            candidates: tried.len(),
+            failed,
+            first_failure,
+        })
     }
 
     /// Error of each case, predicted by the candidate and the enhancement that fit the others best.

@@ -86,12 +86,18 @@ pub struct Fit {
     pub error: f64,
 }
 
-/// What is minimised: the mean error over the cases, all or all but one.
+/// What is minimised: the mean error over the cases.
 #[derive(Clone, Copy)]
 pub(super) struct Objective<'a> {
     pub(super) simulated: &'a SimulatedCases,
     pub(super) measured: &'a Measurements,
-    pub(super) left_out: Option<usize>,
+    /// Weights of the cases.
+    pub(super) weights: &'a [f64],
+}
+
+/// Every case weighs the same, but for one that is left out.
+pub(super) fn equal_weights(cases: usize, left_out: Option<usize>) -> Vec<f64> {
+    (0..cases).map(|case| if Some(case) == left_out { 0.0 } else { 1.0 }).collect()
 }
 
 impl Objective<'_> {
@@ -113,8 +119,9 @@ impl Objective<'_> {
     }
 
     fn mean(&self, of_case: impl Fn(usize) -> f64) -> f64 {
-        let cases = || (0..self.measured.cases()).filter(|&case| Some(case) != self.left_out);
-        cases().map(of_case).sum::<f64>() / cases().count() as f64
+        let counting = || self.weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0);
+        let sum: f64 = counting().map(|(case, weight)| weight * of_case(case)).sum();
+        sum / counting().map(|(_, weight)| weight).sum::<f64>()
     }
 
     fn case(&self, case: usize, value: impl Fn(usize) -> f64) -> f64 {
@@ -179,7 +186,8 @@ pub fn fit(
     if cases != measured.cases() {
         return Err(HybridError::Cases { simulated: cases, measured: measured.cases() });
     }
-    let objective = Objective { simulated, measured, left_out };
+    let weights = equal_weights(cases, left_out);
+    let objective = Objective { simulated, measured, weights: &weights };
     let ranges = bounds.logarithms();
     let starts = objective.best_of_grid(ranges, STARTS)?;
     let steps: [f64; 3] = std::array::from_fn(|d| (ranges[d][1] - ranges[d][0]) / GRID[d] as f64);

@@ -1,6 +1,8 @@
 //! The three parameters, how well they are known, and how well they predict.
 
-use super::search::{Objective, Point, enhancement, point, refine};
+use rayon::prelude::*;
+
+use super::search::{Objective, Point, enhancement, equal_weights, point, refine};
 use super::{Enhancement, EnhancementBounds, Fit, HybridError, Measurements, SimulatedCases, fit};
 
 /// Bootstrap samples of the records.
@@ -35,10 +37,11 @@ pub struct Tuning {
     /// The parameters: of all solutions that are as good as the best, to half a per cent of its error, the one with the
     /// fault-to-harmonics ratio nearest to 1.
     pub enhancement: Enhancement,
-    /// Intervals that hold them with a confidence of 95 %, by a bootstrap over the records.
+    /// Intervals that hold them with a confidence of 95 %, by a bootstrap over the cases and their records.
     ///
-    /// All values whose error, with the other parameters adjusted, exceeds the least by no more than the chosen
-    /// parameters' error exceeds the least one in 95 % of the bootstrap samples.
+    /// All values whose error, with everything else adjusted, exceeds the least by no more than the chosen
+    /// parameters' error exceeds the least one in 95 % of the bootstrap samples. Drawing the cases, too, lets what the model
+    /// cannot follow in some of them widen the intervals.
     pub intervals: EnhancementIntervals,
     /// Mean error (Eq. 7) of the signals as they were simulated.
     pub original_error: f64,
@@ -132,17 +135,31 @@ pub fn tune(
     bounds: &EnhancementBounds,
     seed: u64,
 ) -> Result<Tuning, HybridError> {
-    let objective = Objective { simulated, measured, left_out: None };
     let best = fit(simulated, measured, bounds, None)?;
-    let chosen = nearest_to_unit_ratio(&objective, bounds, best)?;
-    let intervals = intervals(&objective, bounds, &chosen, best.error, seed)?;
-    let leave_one_out_error = (0..measured.cases())
+    let mut tuning = tune_among(&[(simulated, best)], measured, bounds, seed)?;
+    tuning.leave_one_out_error = (0..measured.cases())
         .map(|case| {
             let others = fit(simulated, measured, bounds, Some(case))?;
             let predicted = simulated.predict(measured.indicators(), &others.enhancement)?;
             Ok(measured.case_error(case, &predicted[case]))
         })
         .collect::<Result<Vec<f64>, HybridError>>()?;
+    Ok(tuning)
+}
+
+/// Tunes where several simulations are as good as another: the first is the best, the others count for the intervals.
+/// Leave-one-out errors are not computed.
+pub(super) fn tune_among(
+    candidates: &[(&SimulatedCases, Fit)],
+    measured: &Measurements,
+    bounds: &EnhancementBounds,
+    seed: u64,
+) -> Result<Tuning, HybridError> {
+    let weights = equal_weights(measured.cases(), None);
+    let (simulated, best) = candidates.first().copied().ok_or(HybridError::NoFit)?;
+    let objective = Objective { simulated, measured, weights: &weights };
+    let chosen = nearest_to_unit_ratio(&objective, bounds, best)?;
+    let intervals = intervals(candidates, &objective, bounds, &chosen, seed)?;
     let original = simulated.predict(measured.indicators(), &Enhancement::default())?;
     let enhanced = simulated.predict(measured.indicators(), &chosen.enhancement)?;
     let mean = |predicted: &[Vec<f64>]| {
@@ -157,7 +174,7 @@ pub fn tune(
         original_error,
         enhanced_error: chosen.error,
         scatter: measured.scatter(),
-        leave_one_out_error,
+        leave_one_out_error: Vec::new(),
         original,
         enhanced,
         warnings,
@@ -205,34 +222,60 @@ fn logarithms(bounds: &EnhancementBounds) -> [[f64; 2]; 3] {
 }
 
 fn intervals(
+    candidates: &[(&SimulatedCases, Fit)],
     objective: &Objective,
     bounds: &EnhancementBounds,
     chosen: &Fit,
-    least: f64,
     seed: u64,
 ) -> Result<EnhancementIntervals, HybridError> {
     let ranges = logarithms(bounds);
     let centre = point(&chosen.enhancement);
     let mut excesses = (0..BOOTSTRAP_SAMPLES)
+        .into_par_iter()
         .map(|sample| {
-            let measured = objective.measured.resampled(seed, sample);
-            let objective = Objective { measured: &measured, ..*objective };
-            let here = objective.at(centre)?;
-            let (there, _) = refine(&objective, ranges, centre, STEPS)?;
-            Ok((here - there).max(0.0))
+            let (measured, weights) = objective.measured.resampled(seed, sample);
+            let again = |simulated| Objective { simulated, measured: &measured, weights: &weights };
+            let here = again(objective.simulated).at(centre)?;
+            let mut least = here;
+            for (simulated, fit) in candidates {
+                let start = point(&fit.enhancement);
+                least = least.min(refine(&again(simulated), ranges, start, STEPS)?.0);
+            }
+            least = least.min(refine(&again(objective.simulated), ranges, centre, STEPS)?.0);
+            Ok(here - least)
         })
         .collect::<Result<Vec<f64>, HybridError>>()?;
     excesses.sort_unstable_by(f64::total_cmp);
-    let limit = least + excesses[(CONFIDENCE * BOOTSTRAP_SAMPLES as f64) as usize];
-    let mut ends = [[0.0; 2]; 3];
-    for d in 0..3 {
-        for side in 0..2 {
-            ends[d][side] =
-                end_of_profile(objective, ranges, centre, d, side, limit.max(chosen.error))?.exp();
-        }
-    }
-    let [width_ratio, fault_to_harmonics_ratio, noise_level] = ends;
-    Ok(EnhancementIntervals { width_ratio, fault_to_harmonics_ratio, noise_level })
+    let least = candidates.first().map_or(chosen.error, |(_, best)| best.error);
+    let limit = chosen.error.max(least + excesses[(CONFIDENCE * BOOTSTRAP_SAMPLES as f64) as usize]);
+    let starts = candidates
+        .iter()
+        .filter(|(_, fit)| fit.error <= limit)
+        .map(|(simulated, fit)| (*simulated, point(&fit.enhancement)))
+        .chain([(objective.simulated, centre)]);
+    let ends: Vec<[[f64; 2]; 3]> = starts
+        .collect::<Vec<_>>()
+        .into_par_iter()
+        .map(|(simulated, centre)| {
+            let objective = Objective { simulated, ..*objective };
+            let mut ends = [[0.0; 2]; 3];
+            for (d, of_parameter) in ends.iter_mut().enumerate() {
+                for (side, end) in of_parameter.iter_mut().enumerate() {
+                    *end = end_of_profile(&objective, ranges, centre, d, side, limit)?.exp();
+                }
+            }
+            Ok(ends)
+        })
+        .collect::<Result<_, HybridError>>()?;
+    let widest = |d: usize| {
+        let least = ends.iter().map(|ends| ends[d][0]).fold(f64::INFINITY, f64::min);
+        [least, ends.iter().map(|ends| ends[d][1]).fold(0.0, f64::max)]
+    };
+    Ok(EnhancementIntervals {
+        width_ratio: widest(0),
+        fault_to_harmonics_ratio: widest(1),
+        noise_level: widest(2),
+    })
 }
 
 /// How far a parameter can go, the others adjusted, before the error exceeds a limit.

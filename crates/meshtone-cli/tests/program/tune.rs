@@ -1,0 +1,266 @@
+//! `meshtone tune` and `meshtone enhance`.
+
+use std::fmt::Write as _;
+
+use serde_json::Value;
+
+use crate::support::{FAST, Workplace, stderr, stdout};
+
+const RMS: [f64; 3] = [0.0, 0.3, 0.8];
+const KURTOSIS: [f64; 3] = [0.5, 0.9, 1.2];
+
+/// Indicators of three cases, ten records each.
+fn table(change: impl Fn(usize, &'static str, usize) -> Option<String>) -> String {
+    let mut text = String::from("experiment,indicator,series,severity,log10_value\n");
+    for case in 0..3 {
+        for (name, means) in [("rms", RMS), ("kurtosis", KURTOSIS)] {
+            for record in 0..10 {
+                let value = means[case] + 0.01 * (record as f64 - 4.5);
+                let value = change(case, name, record).unwrap_or_else(|| format!("{value}"));
+                writeln!(text, "rig,{name},measured,{case},{value}").unwrap();
+            }
+        }
+    }
+    text
+}
+
+const HEAD: &str = "scenario = \"fast.toml\"\n[signal]\nsampling_rate_hz = 10e3\n";
+const MEASURED: &str = "[measured]\nindicators_file = \"table.csv\"\nexperiment = \"rig\"\n";
+const CASES: &str = "[[case]]\nlabel = \"healthy\"\nseverity = 0\n\
+                     [[case]]\nlabel = \"chipped\"\nseverity = 1\n\
+                     fault = { kind = \"tooth-breakage\", chip_height_mm = 4.0, chip_width_mm = 10.0, tip_loss_mm = 1.0 }\n\
+                     [[case]]\nlabel = \"missing\"\nseverity = 2\nfault = { kind = \"missing-tooth\" }\n";
+
+fn experiment(tune: &str) -> String {
+    format!("{HEAD}{MEASURED}[tune]\n{tune}{CASES}")
+}
+
+fn workplace() -> Workplace {
+    let workplace = Workplace::new();
+    workplace.write("fast.toml", format!("{FAST}[quality]\ndin_grade = 8\n"));
+    workplace.write("table.csv", table(|_, _, _| None));
+    workplace.write("rig.toml", experiment(""));
+    workplace
+}
+
+fn json(workplace: &Workplace, name: &str) -> Value {
+    serde_json::from_slice(&workplace.read(name)).unwrap()
+}
+
+#[test]
+fn a_rig_is_tuned_and_signals_are_enhanced() {
+    let workplace = workplace();
+    let keys = "candidates = 6\n[[tune.key]]\nkey = \"rig.damping_ratio\"\nleast = 0.02\nlargest = 0.1\n\
+                [[tune.key]]\nkey = \"fault.chip_width_mm\"\nleast = 5.0\nlargest = 14.0\n";
+    workplace.write("rig.toml", experiment(keys));
+    let output = stdout(&workplace.succeeds(&["tune", "rig.toml", "-o", "out"]));
+    for word in ["width ratio", "rig.damping_ratio", "leave one out", "chipped"] {
+        assert!(output.contains(word), "{output}");
+    }
+    let tuning = json(&workplace, "out/tuning.json");
+    let number =
+        |path: &str| tuning.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("{path}"));
+    for name in ["width_ratio", "fault_to_harmonics_ratio", "noise_level"] {
+        let value = number(&format!("/parameters/{name}"));
+        assert!(number(&format!("/intervals/{name}/0")) <= value, "{name}");
+        assert!(number(&format!("/intervals/{name}/1")) >= value, "{name}");
+    }
+    let enhanced = number("/error/enhanced");
+    assert!(enhanced < number("/error/original"));
+    assert!(enhanced <= number("/enhancement_alone/error/enhanced"));
+    assert!(number("/error/leave_one_out") >= number("/error/measurements_own_scatter"));
+    assert!((0.02..=0.1).contains(&number("/scenario_keys/rig.damping_ratio")));
+    // The mean over cases and indicators of what is given for each.
+    let mean = (0..3)
+        .flat_map(|case| {
+            ["rms", "kurtosis"].map(|name| format!("/cases/{case}/indicators/{name}/error/enhanced"))
+        })
+        .map(|path| number(&path))
+        .sum::<f64>()
+        / 6.0;
+    assert!((mean - enhanced).abs() < 1e-9);
+
+    // The same bits again, for one thread as for several.
+    let mut again = workplace.command(&["tune", "rig.toml", "-o", "again", "-q"]);
+    again.env("RAYON_NUM_THREADS", "1").assert().success().stdout("");
+    for name in ["tuning.json", "tuned.toml", "tuning.svg"] {
+        assert!(workplace.read(&format!("out/{name}")) == workplace.read(&format!("again/{name}")), "{name}");
+    }
+
+    workplace
+        .write("broken.toml", format!("{FAST}[quality]\ndin_grade = 8\n[fault]\nkind = \"missing-tooth\"\n"));
+    let enhance = ["enhance", "broken.toml", "--tuned", "out/tuned.toml", "--draws", "7", "-o", "enhanced"];
+    assert!(stdout(&workplace.succeeds(&enhance)).contains("7 draws"));
+    let first = workplace.read("enhanced/enhanced.parquet");
+    workplace.succeeds(&enhance);
+    assert!(workplace.read("enhanced/enhanced.parquet") == first);
+    // Every draw has the indicators that tuning promised, to their scatter.
+    let promised = number("/cases/2/indicators/kurtosis/enhanced");
+    let output = stdout(&workplace.succeeds(&enhance));
+    let mean: f64 =
+        output.split("mean kurtosis").nth(1).unwrap().split_whitespace().next().unwrap().parse().unwrap();
+    assert!((mean.log10() - promised).abs() < 0.1, "{mean} {promised}");
+
+    let simulate = ["simulate", "broken.toml", "--tuned", "out/tuned.toml", "--no-panel", "-o", "simulated"];
+    workplace.succeeds(&simulate);
+    let summary = json(&workplace, "simulated/summary.json");
+    let damping = number("/scenario_keys/rig.damping_ratio");
+    assert!(summary.to_string().contains(&format!("damping_ratio = {damping:?}")), "{summary}");
+}
+
+#[track_caller]
+fn refused(workplace: &Workplace, text: &str, words: &[&str]) {
+    workplace.write("rig.toml", text);
+    workplace.fails(2, &["tune", "rig.toml", "-o", "out"], words);
+}
+
+#[test]
+fn wrong_experiments_are_refused() {
+    let workplace = workplace();
+    let good = experiment("");
+    let with = |from: &str, to: &str| {
+        assert!(good.contains(from), "{from}");
+        good.replacen(from, to, 1)
+    };
+    refused(
+        &workplace,
+        &experiment("indicators = [\"rms\", \"kurtossis\"]\n"),
+        &["tune.indicators", "did you mean \"kurtosis\""],
+    );
+    refused(&workplace, &experiment("indicators = []\n"), &["tune.indicators", "one or more"]);
+    refused(
+        &workplace,
+        &experiment("width_ratio = [1.0, 0.1]\n"),
+        &["line 8", "tune.width_ratio", "[least, largest]"],
+    );
+    refused(&workplace, &experiment("noise_level = [nan, 0.1]\n"), &["tune.noise_level", "finite"]);
+    refused(&workplace, &experiment("candidats = 3\n"), &["candidats", "candidates"]);
+    let key = |lines: &str| experiment(&format!("[[tune.key]]\n{lines}\n"));
+    refused(&workplace, &key("key = \"rig.dampin\"\nleast = 0.1\nlargest = 0.2"), &["rig.dampin"]);
+    refused(&workplace, &key("key = \"seed\"\none_of = []"), &["seed", "one value or more"]);
+    refused(&workplace, &key("key = \"seed\""), &["one_of", "least and largest"]);
+    refused(
+        &workplace,
+        &key("key = \"rig.damping_ratio\"\nleast = 0.2\nlargest = 0.1"),
+        &["the smaller first"],
+    );
+    refused(&workplace, &with("fault = { kind = \"missing-tooth\" }\n", ""), &["missing", "has no fault"]);
+    let no_healthy = with(
+        "label = \"healthy\"\nseverity = 0\n",
+        "label = \"x\"\nseverity = 0\nfault = { kind = \"missing-tooth\" }\n",
+    );
+    refused(&workplace, &no_healthy, &["case[0]", "must be the healthy one"]);
+    refused(&workplace, &with("severity = 2", "severity = 7"), &["table.csv", "severity 7", "missing"]);
+    refused(&workplace, &with("severity = 2", "severity = 1"), &["case[2]", "must have its own"]);
+    refused(
+        &workplace,
+        &with("experiment = \"rig\"", "experiment = \"gir\""),
+        &["table.csv", "experiment gir"],
+    );
+    refused(&workplace, &with("tip_loss_mm = 1.0", "tip_loss_mm = 40.0"), &["case[1]", "tip_loss_mm"]);
+    refused(&workplace, &with("fast.toml", "slow.toml"), &["slow.toml"]);
+    refused(
+        &workplace,
+        &with("sampling_rate_hz = 10e3", "sampling_rate_hz = 1e3"),
+        &["signal.sampling_rate_hz", "mesh frequency"],
+    );
+    refused(&workplace, &with(MEASURED, ""), &["nothing measured"]);
+    workplace.write(
+        "table.csv",
+        table(|case, name, record| (case == 1 && name == "rms" && record == 3).then(|| "NaN".into())),
+    );
+    refused(&workplace, &good, &["table.csv", "line 25", "NaN", "finite"]);
+    workplace.write("table.csv", "indicator,value\n");
+    refused(&workplace, &good, &["no column severity", "indicator, value"]);
+    workplace.fails(2, &["tune", "absent.toml"], &["absent.toml"]);
+}
+
+#[test]
+fn difference_signals_must_be_of_one_length_and_whole() {
+    let workplace = workplace();
+    let signal = |rows: usize, gap: bool| {
+        let mut text = String::from("a,b\n");
+        for row in 0..rows {
+            let value = (row as f64 * 0.3).sin();
+            let second = if gap && row == 7 {
+                "nan".to_owned()
+            } else {
+                format!("{}", value * 1.1 + 0.01 * (row % 3) as f64)
+            };
+            writeln!(text, "{value},{second}").unwrap();
+        }
+        text
+    };
+    let text = format!("{HEAD}{CASES}")
+        .replace("severity = 0\n", "severity = 0\ndifference_file = \"h.csv\"\n")
+        .replace("severity = 1\n", "severity = 1\ndifference_file = \"c.csv\"\n");
+    workplace.write("h.csv", signal(512, false));
+    workplace.write("c.csv", signal(512, false));
+    refused(&workplace, &text, &["case[2]", "has no difference_file"]);
+    let text = text.replace("severity = 2\n", "severity = 2\ndifference_file = \"m.csv\"\n");
+    workplace.write("m.csv", signal(500, false));
+    refused(&workplace, &text, &["512", "500"]);
+    workplace.write("m.csv", signal(512, true));
+    refused(&workplace, &text, &["m.csv", "case[2].difference_file"]);
+    workplace.write("m.csv", signal(512, false));
+    workplace.write("rig.toml", &text);
+    let warned = stderr(&workplace.succeeds(&["tune", "rig.toml", "-o", "out", "--no-figure"]));
+    assert!(warned.contains("only 2 records"), "{warned}");
+    assert_eq!(workplace.names("out"), ["tuned.toml", "tuning.json"]);
+}
+
+#[test]
+fn recordings_are_taken_to_difference_signals() {
+    let workplace = workplace();
+    for (case, fault) in [
+        ("healthy", ""),
+        (
+            "chipped",
+            "[fault]\nkind = \"tooth-breakage\"\nchip_height_mm = 4.0\nchip_width_mm = 10.0\ntip_loss_mm = 1.0\n",
+        ),
+        ("missing", "[fault]\nkind = \"missing-tooth\"\n"),
+    ] {
+        for seed in 1..=3 {
+            let name = format!("{case}{seed}");
+            workplace.write(
+                &format!("{name}.toml"),
+                format!("seed = {seed}\n{FAST}[quality]\ndin_grade = 8\n{fault}"),
+            );
+            workplace.succeeds(&["simulate", &format!("{name}.toml"), "--no-panel", "-q", "-o", &name]);
+        }
+    }
+    let mut text = format!("{HEAD}[measured]\nchannel = \"vertical_acceleration_g\"\n{CASES}");
+    for (severity, case) in ["healthy", "chipped", "missing"].iter().enumerate() {
+        let files =
+            (1..=3).map(|seed| format!("\"{case}{seed}/signals.parquet\"")).collect::<Vec<_>>().join(", ");
+        text = text.replace(
+            &format!("severity = {severity}\n"),
+            &format!("severity = {severity}\nrecordings = [{files}]\n"),
+        );
+    }
+    workplace.write("rig.toml", &text);
+    workplace.succeeds(&["tune", "rig.toml", "-o", "out", "-q", "--no-figure"]);
+    let tuning = json(&workplace, "out/tuning.json");
+    // The "measured" ones are simulated: nothing needs to be changed.
+    let error = tuning.pointer("/error/original").and_then(Value::as_f64).unwrap();
+    assert!(error < 0.5, "{tuning:#}");
+    refused(&workplace, &text.replace("vertical_acceleration_g", "vertikal"), &["healthy1", "vertikal"]);
+}
+
+#[test]
+fn what_enhance_refuses() {
+    let workplace = workplace();
+    workplace.write("tuned.toml", "[enhancement]\nwidth_ratio = 0.2\nfault_to_harmonics_ratio = 2.0\nnoise_level = 1.0\n[signal]\nsampling_rate_hz = 10e3\n");
+    let enhance = |tuned: &'static str, draws: &'static str| {
+        ["enhance", "fast.toml", "--tuned", tuned, "--draws", draws, "-o", "out"]
+    };
+    workplace.fails(2, &enhance("tuned.toml", "0"), &["--draws"]);
+    workplace.fails(2, &enhance("absent.toml", "1"), &["absent.toml"]);
+    workplace.write("wrong.toml", "[enhancement]\nwidth_ratio = -0.2\nfault_to_harmonics_ratio = 2.0\nnoise_level = 1.0\n[signal]\nsampling_rate_hz = 10e3\n");
+    workplace.fails(
+        2,
+        &enhance("wrong.toml", "1"),
+        &["wrong.toml", "line 2", "enhancement.width_ratio", "more than 0"],
+    );
+    workplace.succeeds(&enhance("tuned.toml", "3"));
+}

@@ -1,0 +1,95 @@
+//! The paper's own simulation, before tuning: the indicators of its Figure 6, series `original`.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use std::fs;
+use std::path::Path;
+
+use meshtone::hybrid::{DifferenceChain, SimulatedCases, TuningIndicator, difference_signals};
+use meshtone::scenario::*;
+
+/// Draws of the wheels' profile errors that are averaged. One draw scatters by up to 0.08, the paper shows a single one.
+const DRAWS: u64 = 64;
+
+fn rig(name: &str) -> (Scenario, f64) {
+    let (mut scenario, grade, rate_hz) = match name {
+        "destruction" => (Scenario::new(3.0, 18, 35, 30.0, 45.0, 15.0), 8, 50e3),
+        _ => (Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0), 7, 25e3),
+    };
+    scenario.convention = Convention::Published;
+    scenario.quality.din_grade = grade;
+    (scenario, rate_hz)
+}
+
+/// The cases whose fault dominates, with their severity.
+fn dominating(name: &str) -> Vec<(usize, Fault)> {
+    let faults: Vec<Fault> = match name {
+        "breakage" => [3.0, 4.0]
+            .map(|tip_loss_mm| {
+                Fault::ToothBreakage(ToothBreakage { chip_height_mm: 5.0, chip_width_mm: 12.0, tip_loss_mm })
+            })
+            .into_iter()
+            .chain([Fault::MissingTooth])
+            .collect(),
+        "pitting" => [(57.12, 3.59, 1.7), (57.69, 3.71, 2.1), (57.37, 4.00, 2.4), (57.49, 3.66, 2.4)]
+            .map(|(x_mm, y_mm, radius_mm)| {
+                Fault::ThroughFace(ThroughFace { pit: PitCircle::Circle { x_mm, y_mm, radius_mm } })
+            })
+            .to_vec(),
+        _ => [(0.2, 13.0), (-0.6, 13.2), (-0.8, 13.2), (-1.0, 13.8)]
+            .map(|(start, end)| {
+                Fault::ToothDestruction(ToothDestruction {
+                    start: start / 14.0,
+                    line: DestructionLine::End(end / 14.0),
+                    offset_mm: 0.0,
+                    noise_mm: 0.0,
+                })
+            })
+            .to_vec(),
+    };
+    let first = match name {
+        "breakage" => 4,
+        "pitting" => 1,
+        _ => 3,
+    };
+    (first..).zip(faults).collect()
+}
+
+fn original(name: &str, indicator: TuningIndicator, severity: usize) -> f64 {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/experiments/fig6_indicators.csv");
+    let text = fs::read_to_string(path).unwrap();
+    let start = format!("{name},{},original,{severity},", indicator.name());
+    text.lines().find_map(|line| line.strip_prefix(&start)).unwrap().parse().unwrap()
+}
+
+#[test]
+fn the_paper_s_original_indicators_where_the_fault_dominates() {
+    let indicators = [TuningIndicator::Rms, TuningIndicator::Kurtosis];
+    for name in ["breakage", "pitting", "destruction"] {
+        let (base, rate_hz) = rig(name);
+        let cases = dominating(name);
+        let mut sums = vec![[0.0; 2]; cases.len()];
+        for seed in 1..=DRAWS {
+            let base = Scenario { seed, ..base.clone() };
+            let faulty =
+                cases.iter().map(|(_, fault)| Scenario { fault: Some(fault.clone()), ..base.clone() });
+            let scenarios = std::iter::once(base.clone()).chain(faulty).collect();
+            let signals = difference_signals(scenarios, &DifferenceChain::new(rate_hz)).unwrap();
+            let simulated = SimulatedCases::new(signals).unwrap();
+            let values = simulated.predict(&indicators, &meshtone::hybrid::Enhancement::default()).unwrap();
+            for (sum, value) in sums.iter_mut().zip(&values[1..]) {
+                (0..2).for_each(|j| sum[j] += value[j] / DRAWS as f64);
+            }
+        }
+        for ((severity, _), means) in cases.iter().zip(&sums) {
+            for (j, &indicator) in indicators.iter().enumerate() {
+                let paper = original(name, indicator, *severity);
+                println!(
+                    "{name} F{severity} log10 {}: {:.3}, the paper {paper:.3}",
+                    indicator.name(),
+                    means[j]
+                );
+                assert!((means[j] - paper).abs() < 0.15, "{name} F{severity} {}", indicator.name());
+            }
+        }
+    }
+}
