@@ -1,10 +1,11 @@
-//! Figures of a simulation, as SVG and PNG.
+//! Figures of a simulation, and of a simulation tuned to measurements, as SVG and PNG.
 //!
 //! One file or folder per figure; what they share (axes, ticks, legends, text that knows its own width) is
 //! `axes`, `canvas`, `legend`, `curve` and `style`. Figures are written as SVG and rasterised from that same SVG, with
 //! the font that this crate brings along, so that both look alike on every machine.
 //!
 //! * [`panel`]: teeth, damage, profile errors, averages and mesh stiffness of one simulation
+//! * [`tuning_figure`]: an experiment of the hybrid stage, measured, simulated and enhanced
 #![deny(missing_docs)]
 
 mod axes;
@@ -14,10 +15,13 @@ mod error;
 mod figure;
 mod font;
 mod legend;
+mod marker;
 pub mod panel;
 mod raster;
 mod style;
 mod ticks;
+mod tuning;
 
 pub use error::PlotError;
 pub use figure::{Figure, Label};
+pub use tuning::tuning_figure;
