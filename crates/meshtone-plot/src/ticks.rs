@@ -73,6 +73,14 @@ impl Ticks {
         if nice.step < 1.0 { Self::every(1.0, low, high) } else { nice }
     }
 
+    /// Every second, third, … of the values, so that there are at most `most`.
+    pub(crate) fn thinned(mut self, most: usize) -> Self {
+        let every = self.values.len().div_ceil(most.max(1)).max(1) as i64;
+        let step = self.step;
+        self.values.retain(|value| (value / step).round() as i64 % every == 0);
+        self
+    }
+
     /// The number as it stands at the axis.
     pub(crate) fn text(&self, value: f64) -> String {
         if self.logarithmic {
@@ -141,6 +149,13 @@ mod tests {
             assert!(zero == 0.0 && low == -high && high > 0.4 * half && high < half, "{half} {high}");
         }
         assert!(Ticks::about_zero(0.0).values.is_empty() && Ticks::about_zero(f64::NAN).values.is_empty());
+    }
+
+    #[test]
+    fn thinned_ticks_keep_zero() {
+        let values = |most| Ticks::every(0.2, -0.2, 0.8).thinned(most).values.len();
+        assert_eq!((values(9), values(5), values(3), values(2)), (6, 3, 3, 2));
+        assert!(Ticks::every(0.2, -0.2, 0.8).thinned(2).values.contains(&0.0));
     }
 
     #[test]

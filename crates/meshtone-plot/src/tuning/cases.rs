@@ -23,8 +23,8 @@ const WIDEST: f64 = 190.0;
 /// (cases) Where the simulations' markers stand, beside the records.
 const ORIGINAL_AT: f64 = 0.14;
 const ENHANCED_AT: f64 = 0.24;
-/// Dots of one case and indicator; of more records, only every second, third, … in order of size is drawn.
-const MOST_DOTS: usize = 400;
+/// Dots in all; of more records, only every second, third, … of a case in order of size is drawn.
+const MOST_DOTS: usize = 6000;
 /// The golden ratio's multiples, modulo 1, fill an interval evenly.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 const LABEL_LINES: usize = 3;
@@ -35,6 +35,7 @@ const FIRST_LABEL: f64 = 17.0;
 const NAMES: Stroke = Stroke::solid(colour::GRID, 1.0);
 /// (px) Height of a vertical axis per number.
 const PER_NUMBER: f64 = 26.0;
+const LEAST_PER_NUMBER: f64 = 17.0;
 
 pub(super) fn draw(canvas: &mut Canvas, areas: &[Area], data: &Data) {
     let Some((errors, indicators)) = areas.split_last() else { return };
@@ -60,7 +61,8 @@ fn beside(axes: &Axes, case: usize, at: f64) -> f64 {
 fn ground(canvas: &mut Canvas, axes: &Axes, cases: usize, title: &str, unit: &str) {
     axes.title(canvas, title);
     let numbers = (axes.area.height / PER_NUMBER) as usize;
-    let ticks = Ticks::nice(axes.y[0], axes.y[1], numbers.clamp(2, 6));
+    let most = (axes.area.height / LEAST_PER_NUMBER) as usize;
+    let ticks = Ticks::nice(axes.y[0], axes.y[1], numbers.clamp(2, 6)).thinned(most);
     axes.y_axis(canvas, &ticks, unit, super::NAME_LEFT);
     for case in 1..cases {
         let x = axes.px(case as f64 - 0.5);
@@ -81,7 +83,7 @@ fn indicator(canvas: &mut Canvas, area: Area, data: &Data, j: usize, indicator: 
     let unit = if indicator.is_logarithmic() { "log10 (–)" } else { "(–)" };
     ground(canvas, &axes, cases, name(indicator), unit);
     for case in 0..cases {
-        dots(canvas, &axes, case, data.measured().records(case, j));
+        dots(canvas, &axes, case, data.measured().records(case, j), every_nth(data));
     }
     connected(canvas, &axes, cases, ORIGINAL_AT, &original, ORIGINAL);
     connected(canvas, &axes, cases, ENHANCED_AT, &enhanced, ENHANCED);
@@ -144,10 +146,9 @@ fn error(canvas: &mut Canvas, area: Area, data: &Data) {
 }
 
 /// Every record, spread over the width of the case in the order of measurement.
-fn dots(canvas: &mut Canvas, axes: &Axes, case: usize, records: &[f64]) {
+fn dots(canvas: &mut Canvas, axes: &Axes, case: usize, records: &[f64], every: usize) {
     let mut sorted: Vec<(usize, f64)> = records.iter().copied().enumerate().collect();
     sorted.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let every = every_nth(records.len());
     let pixels: Vec<_> = sorted
         .into_iter()
         .step_by(every)
@@ -159,8 +160,9 @@ fn dots(canvas: &mut Canvas, axes: &Axes, case: usize, records: &[f64]) {
     canvas.dots(&pixels, DOT_RADIUS, RECORDS);
 }
 
-fn every_nth(records: usize) -> usize {
-    records.div_ceil(MOST_DOTS).max(1)
+fn every_nth(data: &Data) -> usize {
+    let records = |case| (0..data.indicators().len()).map(move |j| data.measured().records(case, j).len());
+    (0..data.cases()).flat_map(records).sum::<usize>().div_ceil(MOST_DOTS).max(1)
 }
 
 fn places(axes: &Axes, cases: usize, at: f64, value: &dyn Fn(usize) -> f64) -> Vec<(f64, f64)> {
@@ -194,12 +196,9 @@ fn markers(
 
 /// At the end of the heading.
 fn legend(canvas: &mut Canvas, baseline: f64, data: &Data) {
-    let most = (0..data.cases())
-        .flat_map(|case| (0..data.indicators().len()).map(move |j| data.measured().records(case, j).len()))
-        .max();
-    let records = match every_nth(most.unwrap_or(0)) {
+    let records = match every_nth(data) {
         1 => "measured records".to_owned(),
-        every => format!("measured records (where many, 1 of {every})"),
+        every => format!("measured records (1 of {every})"),
     };
     let enhanced = format!("enhanced; bar: {DRAWS} draws of the noise");
     let entries = [
