@@ -28,7 +28,7 @@ impl Area {
     }
 }
 
-/// A pair of axes with linear scales.
+/// A pair of axes with linear scales; a logarithmic one is a linear scale of decadic logarithms.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Axes {
     pub(crate) area: Area,
@@ -41,7 +41,7 @@ const GRID: Stroke = Stroke::solid(colour::GRID, 1.0);
 const TICK_LENGTH: f64 = 4.0;
 /// (px) From the frame to the baseline of the numbers below it, and of the axis' name.
 const NUMBERS_BELOW: f64 = 17.0;
-const NAME_BELOW: f64 = 36.0;
+pub(crate) const NAME_BELOW: f64 = 36.0;
 /// (px) From the frame to the end of the numbers on its left.
 const NUMBERS_LEFT: f64 = 8.0;
 /// (px) From the numbers to the baseline of the axis' name on their left.
@@ -104,15 +104,28 @@ impl Axes {
 
     /// Grid lines, ticks and numbers of the horizontal axis, and its name.
     pub(crate) fn x_axis(&self, canvas: &mut Canvas, ticks: &Ticks, name: &str) {
+        self.x_grid(canvas, ticks);
+        self.x_numbers(canvas, ticks);
+        let middle = self.area.left + self.area.width / 2.0;
+        canvas.text((middle, self.area.bottom() + NAME_BELOW), name, TextStyle::AXIS);
+    }
+
+    /// Grid lines and ticks of the horizontal axis.
+    pub(crate) fn x_grid(&self, canvas: &mut Canvas, ticks: &Ticks) {
         let (top, bottom) = (self.area.top, self.area.bottom());
         for &value in &ticks.values {
             let x = self.px(value);
             canvas.line((x, top), (x, bottom), GRID);
             canvas.line((x, bottom), (x, bottom + TICK_LENGTH), FRAME);
-            canvas.text((x, bottom + NUMBERS_BELOW), &ticks.text(value), TextStyle::TICK);
         }
-        let middle = self.area.left + self.area.width / 2.0;
-        canvas.text((middle, bottom + NAME_BELOW), name, TextStyle::AXIS);
+    }
+
+    /// Numbers below the horizontal axis.
+    pub(crate) fn x_numbers(&self, canvas: &mut Canvas, ticks: &Ticks) {
+        for &value in &ticks.values {
+            let at = (self.px(value), self.area.bottom() + NUMBERS_BELOW);
+            canvas.text(at, &ticks.text(value), TextStyle::TICK);
+        }
     }
 
     /// Grid lines and ticks of the vertical axis.

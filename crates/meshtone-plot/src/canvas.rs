@@ -1,6 +1,6 @@
 //! Shapes and text as SVG.
 //!
-//! Written out directly: the figures need seven elements, and both chart libraries and general SVG writers hide what
+//! Written out directly: the figures need few elements, and both chart libraries and general SVG writers hide what
 //! matters here – equal scales across neighbouring axes, hatching, and where each text ends.
 
 use std::fmt::Write;
@@ -41,6 +41,48 @@ impl Canvas {
     /// A rectangle with the corners `a` and `b`.
     pub(crate) fn rectangle(&mut self, a: Pixel, b: Pixel, fill: Fill) {
         self.polygon(&[a, (b.0, a.1), b, (a.0, b.1)], fill);
+    }
+
+    /// A filled shape with an outline.
+    pub(crate) fn outlined(&mut self, points: &[Pixel], stroke: Stroke, fill: Fill) {
+        self.path(points, true, Some(stroke), Some(fill));
+    }
+
+    /// Rectangles with the corners `[a, b]`, filled as one shape.
+    pub(crate) fn rectangles(&mut self, rectangles: &[[Pixel; 2]], fill: Fill) {
+        if rectangles.is_empty() {
+            return;
+        }
+        self.body.push_str("<path d=\"");
+        for &[(left, top), (right, bottom)] in rectangles {
+            let (width, height) = (right - left, bottom - top);
+            self.push(format_args!(
+                "M{} {}h{}v{}h{}Z",
+                Short(left),
+                Short(top),
+                Short(width),
+                Short(height),
+                Short(-width)
+            ));
+        }
+        self.push(format_args!("\" fill=\"{}\" fill-opacity=\"{}\"/>\n", fill.colour, Short(fill.opacity)));
+    }
+
+    /// Small discs; where they overlap the fill adds up.
+    pub(crate) fn dots(&mut self, centres: &[Pixel], radius: f64, fill: Fill) {
+        if centres.is_empty() {
+            return;
+        }
+        self.push(format_args!("<g fill=\"{}\" fill-opacity=\"{}\">\n", fill.colour, Short(fill.opacity)));
+        for &(x, y) in centres {
+            self.push(format_args!(
+                "<circle cx=\"{}\" cy=\"{}\" r=\"{}\"/>\n",
+                Short(x),
+                Short(y),
+                Short(radius)
+            ));
+        }
+        self.body.push_str("</g>\n");
     }
 
     /// Text whose baseline starts, has its middle or ends at `at`.

@@ -24,6 +24,9 @@ pub enum PlotError {
         /// (S/s) Rate of the simulation.
         simulation_hz: f64,
     },
+    /// An experiment and a result that do not belong together, or signals that cannot be enhanced.
+    #[error(transparent)]
+    Hybrid(#[from] meshtone::hybrid::HybridError),
     /// The SVG could not be read back.
     #[error("the figure could not be rasterised: {0}")]
     Svg(#[from] resvg::usvg::Error),

@@ -39,6 +39,43 @@ pub(crate) fn text_width(text: &str, size_px: f64, bold: bool) -> f64 {
         .sum()
 }
 
+/// `text` on lines that are no wider than `width_px`; what does not fit on the last of them is left out.
+pub(crate) fn wrapped(text: &str, width_px: f64, most_lines: usize, size_px: f64, bold: bool) -> Vec<String> {
+    let fits = |line: &str| text_width(line, size_px, bold) <= width_px;
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        let mut rest = word.to_owned();
+        if let Some(line) = lines.last_mut() {
+            let longer = format!("{line} {word}");
+            if fits(&longer) {
+                *line = longer;
+                continue;
+            }
+        }
+        // A word that is wider than a line is cut.
+        while !fits(&rest) && rest.chars().count() > 1 {
+            let mut part = rest.clone();
+            while !fits(&part) && part.chars().count() > 1 {
+                part.pop();
+            }
+            // Rather where it has a joint.
+            if let Some(joint) = part.rfind(['_', '-', '/']).filter(|&joint| 2 * joint > part.len()) {
+                part.truncate(joint + 1);
+            }
+            rest = rest.split_off(part.len());
+            lines.push(part);
+        }
+        lines.push(rest);
+    }
+    let cut = lines.len() > most_lines;
+    lines.truncate(most_lines);
+    if let Some(line) = lines.last_mut().filter(|_| cut) {
+        while !fits(&format!("{line}…")) && line.pop().is_some() {}
+        *line = format!("{}…", line.trim_end());
+    }
+    lines
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -47,7 +84,7 @@ mod tests {
     fn both_weights_have_every_character_that_figures_use() {
         for data in [REGULAR, SEMIBOLD] {
             let font = FontRef::new(data).unwrap();
-            for character in "µ°²³·×−–θαω≥0123456789 abcXYZ()/".chars() {
+            for character in "µ°²³·×−–…’θανσω≥0123456789 abcXYZ()/".chars() {
                 assert!(font.charmap().map(character).is_some(), "{character}");
             }
         }
@@ -59,5 +96,22 @@ mod tests {
         assert!((width("ab", 12.0) - width("a", 12.0) - width("b", 12.0)).abs() < 1e-9);
         assert!((width("ab", 24.0) / width("ab", 12.0) - 2.0).abs() < 1e-3);
         assert!(text_width("mesh", 12.0, true) > width("mesh", 12.0));
+    }
+
+    #[test]
+    fn long_texts_are_wrapped_and_cut() {
+        let lines = |text, most| wrapped(text, 100.0, most, 12.5, false);
+        assert_eq!(lines("tip loss 3 mm", 3), ["tip loss 3 mm"]);
+        assert_eq!(lines("chip with a tip loss of 3 mm", 3), ["chip with a tip", "loss of 3 mm"]);
+        for text in
+            ["chip with a tip loss of 3 mm and more", "chip_with_a_tip_loss_of_3_mm_and_more", "", "a"]
+        {
+            for most in 1..4 {
+                let lines = lines(text, most);
+                assert!(lines.len() <= most);
+                assert!(lines.iter().all(|line| text_width(line, 12.5, false) <= 100.0), "{lines:?}");
+            }
+        }
+        assert!(lines("chip with a tip loss of 3 mm and more", 1)[0].ends_with('…'));
     }
 }

@@ -2,13 +2,18 @@
 
 use crate::canvas::{Canvas, Pixel};
 use crate::font;
-use crate::style::{Fill, Stroke, TextStyle, colour};
+use crate::marker::Marker;
+use crate::style::{DOT_RADIUS, Fill, Stroke, TextStyle, colour};
 
 /// A sample of what the entry explains.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Sample {
     Line(Stroke),
     Area(Fill),
+    Dots(Fill),
+    Marker(Marker),
+    /// A marker on a line.
+    Marked(Stroke, Marker),
 }
 
 /// One entry.
@@ -53,6 +58,15 @@ fn draw(canvas: &mut Canvas, (x, y): Pixel, entry: &Entry) {
     let middle = y - 4.5;
     match entry.sample {
         Sample::Line(stroke) => canvas.line((x, middle), (x + SAMPLE_WIDTH, middle), stroke),
+        Sample::Dots(fill) => {
+            let dots = [4.0, 8.0, 12.0, 15.0, 20.0].map(|dx| (x + dx, middle + 3.0 * (dx * 2.1).sin()));
+            canvas.dots(&dots, DOT_RADIUS, fill);
+        }
+        Sample::Marker(marker) => marker.draw(canvas, (x + SAMPLE_WIDTH / 2.0, middle)),
+        Sample::Marked(stroke, marker) => {
+            canvas.line((x, middle), (x + SAMPLE_WIDTH, middle), stroke);
+            marker.draw(canvas, (x + SAMPLE_WIDTH / 2.0, middle));
+        }
         Sample::Area(fill) => canvas.rectangle((x, middle - 5.0), (x + SAMPLE_WIDTH, middle + 5.0), fill),
     }
     canvas.text((x + SAMPLE_WIDTH + SAMPLE_GAP, y), entry.text, TextStyle::NOTE);

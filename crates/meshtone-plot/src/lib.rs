@@ -1,4 +1,4 @@
-//! Figures of a simulation, as SVG and PNG.
+//! Figures of a simulation, and of a simulation tuned to measurements, as SVG and PNG.
 //!
 //! One file or folder per figure; what they share (axes, ticks, legends, text that knows its own width) is
 //! `axes`, `canvas`, `legend`, `curve` and `style`. Figures are written as SVG and rasterised from that same SVG, with
@@ -7,6 +7,7 @@
 //! * [`panel`]: teeth, damage, profile errors, averages and mesh stiffness of one simulation
 //! * [`record`]: a recording, its average, order spectrum and difference signal
 //! * [`trend`]: indicators over a series of recordings
+//! * [`tuning_figure`]: an experiment of the hybrid stage, measured, simulated and enhanced
 #![deny(missing_docs)]
 
 mod axes;
@@ -16,6 +17,7 @@ mod error;
 mod figure;
 mod font;
 mod legend;
+mod marker;
 pub mod panel;
 mod raster;
 pub mod record;
@@ -23,6 +25,8 @@ mod style;
 mod text;
 mod ticks;
 pub mod trend;
+mod tuning;
 
 pub use error::PlotError;
 pub use figure::{Figure, Label};
+pub use tuning::tuning_figure;

@@ -16,13 +16,16 @@ pub(crate) mod colour {
     pub(crate) const BLUE: &str = "#0072b2";
     /// Damage, and nothing else.
     pub(crate) const VERMILLION: &str = "#d55e00";
-    /// Start of contact.
+    /// Start of contact; what is simulated, enhanced.
     pub(crate) const GREEN: &str = "#009e73";
     /// Start of the tip relief.
     pub(crate) const PURPLE: &str = "#aa4a8a";
     /// Background.
     pub(crate) const WHITE: &str = "#ffffff";
 }
+
+/// (px) Of the dots that stand for many values.
+pub(crate) const DOT_RADIUS: f64 = 1.7;
 
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy)]

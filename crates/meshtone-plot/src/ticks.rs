@@ -5,6 +5,8 @@
 pub(crate) struct Ticks {
     pub(crate) values: Vec<f64>,
     step: f64,
+    /// The values are decadic logarithms of what stands at the axis.
+    logarithmic: bool,
 }
 
 impl Ticks {
@@ -13,7 +15,7 @@ impl Ticks {
     pub(crate) fn nice(low: f64, high: f64, most: usize) -> Self {
         let span = high - low;
         if !(span > 0.0 && span.is_finite()) {
-            return Self { values: Vec::new(), step: 1.0 };
+            return Self { values: Vec::new(), step: 1.0, logarithmic: false };
         }
         let least_step = span / most.max(2) as f64;
         let power = 10f64.powf(least_step.log10().floor());
@@ -31,12 +33,12 @@ impl Ticks {
     pub(crate) fn about_zero(half: f64) -> Self {
         let power = 10f64.powf(half.log10().floor());
         if !(half > 0.0 && power.is_finite() && power > 0.0) {
-            return Self { values: Vec::new(), step: 1.0 };
+            return Self { values: Vec::new(), step: 1.0, logarithmic: false };
         }
         // Not at the very edge, where the number would reach into the next axes.
         let step = [5.0, 4.0, 3.0, 2.0, 1.0].map(|factor| factor * power).into_iter();
         let step = step.into_iter().find(|step| *step <= 0.95 * half).unwrap_or(0.5 * power);
-        Self { values: vec![-step, 0.0, step], step }
+        Self { values: vec![-step, 0.0, step], step, logarithmic: false }
     }
 
     /// Multiples of `step` from `low` to `high`.
@@ -44,7 +46,25 @@ impl Ticks {
         let first = (low / step - 1e-9).ceil();
         let last = (high / step + 1e-9).floor();
         let count = if last >= first { (last - first) as usize + 1 } else { 0 };
-        Self { values: (0..count.min(1000)).map(|k| (first + k as f64) * step).collect(), step }
+        let values = (0..count.min(1000)).map(|k| (first + k as f64) * step).collect();
+        Self { values, step, logarithmic: false }
+    }
+
+    /// Decadic logarithms of round numbers, for a logarithmic axis: the fewest of 10ⁿ, of 1, 2 and 5 × 10ⁿ and of
+    /// 1 to 9 × 10ⁿ that are three or more.
+    ///
+    /// # Arguments
+    /// * `low`, `high` - decadic logarithms of the axis' ends
+    pub(crate) fn of_logarithms(low: f64, high: f64) -> Self {
+        let decades = low.floor() as i32..=high.ceil() as i32;
+        let inside = |factors: &[f64]| -> Vec<f64> {
+            let all = decades.clone().flat_map(|n| factors.iter().map(move |f| f.log10() + f64::from(n)));
+            all.filter(|value| (low - 1e-9..=high + 1e-9).contains(value)).collect()
+        };
+        let nine = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0];
+        let sets: [&[f64]; 3] = [&[1.0], &[1.0, 2.0, 5.0], &nine];
+        let values = sets.into_iter().map(inside).find(|values| values.len() >= 3);
+        Self { values: values.unwrap_or_else(|| inside(&nine)), step: 1.0, logarithmic: true }
     }
 
     /// Whole numbers only, at most `most` of them.
@@ -53,8 +73,19 @@ impl Ticks {
         if nice.step < 1.0 { Self::every(1.0, low, high) } else { nice }
     }
 
+    /// Every second, third, … of the values, so that there are at most `most`.
+    pub(crate) fn thinned(mut self, most: usize) -> Self {
+        let every = self.values.len().div_ceil(most.max(1)).max(1) as i64;
+        let step = self.step;
+        self.values.retain(|value| (value / step).round() as i64 % every == 0);
+        self
+    }
+
     /// The number as it stands at the axis.
     pub(crate) fn text(&self, value: f64) -> String {
+        if self.logarithmic {
+            return number(10f64.powf(value));
+        }
         let largest = self.values.iter().fold(0.0f64, |largest, value| largest.max(value.abs()));
         let text = if self.step < 1e-4 || largest >= 1e5 {
             if value.abs() < self.step / 2.0 { "0".to_owned() } else { scientific(value, self.step) }
@@ -129,6 +160,24 @@ mod tests {
             assert!(zero == 0.0 && low == -high && high > 0.4 * half && high < half, "{half} {high}");
         }
         assert!(Ticks::about_zero(0.0).values.is_empty() && Ticks::about_zero(f64::NAN).values.is_empty());
+    }
+
+    #[test]
+    fn thinned_ticks_keep_zero() {
+        let values = |most| Ticks::every(0.2, -0.2, 0.8).thinned(most).values.len();
+        assert_eq!((values(9), values(5), values(3), values(2)), (6, 3, 3, 2));
+        assert!(Ticks::every(0.2, -0.2, 0.8).thinned(2).values.contains(&0.0));
+    }
+
+    #[test]
+    fn logarithmic_ticks_are_round() {
+        let texts = |low: f64, high: f64| -> Vec<String> {
+            let ticks = Ticks::of_logarithms(low.log10(), high.log10());
+            ticks.values.iter().map(|&value| ticks.text(value)).collect()
+        };
+        assert_eq!(texts(0.01, 30.0), ["0.01", "0.1", "1", "10"]);
+        assert_eq!(texts(0.2, 8.0), ["0.2", "0.5", "1", "2", "5"]);
+        assert_eq!(texts(0.9, 3.1), ["1", "2", "3"]);
     }
 
     #[test]

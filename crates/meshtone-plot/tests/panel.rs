@@ -8,6 +8,7 @@ use meshtone::scenario::*;
 use meshtone::signal::Channels;
 use meshtone::{Simulation, simulate};
 use meshtone_plot::{Figure, PlotError, panel};
+use support::check;
 
 fn simulated(scenario: &Scenario) -> Simulation {
     let mut scenario = scenario.clone();
@@ -21,27 +22,6 @@ fn drawn(scenario: &Scenario) -> Figure {
     let figure = panel::draw(&simulation.stages, &simulation.channels).unwrap();
     check(&figure);
     figure
-}
-
-/// What holds for every panel.
-fn check(figure: &Figure) {
-    roxmltree::Document::parse(figure.svg()).unwrap();
-    assert!(figure.svg().len() < 400_000, "{} bytes", figure.svg().len());
-    for number in ["NaN", "inf"] {
-        assert!(!figure.svg().contains(&format!("{number} ")), "{number}");
-    }
-    let (width, height) = figure.size_px();
-    let labels = figure.labels();
-    for (index, label) in labels.iter().enumerate() {
-        let inside = label.left >= 0.0
-            && label.top >= 0.0
-            && label.right <= f64::from(width)
-            && label.bottom <= f64::from(height);
-        assert!(inside, "{label:?} leaves the figure");
-        for other in &labels[index + 1..] {
-            assert!(!label.overlaps(other), "{label:?} overlaps {other:?}");
-        }
-    }
 }
 
 fn assert_shows(figure: &Figure, words: &[&str]) {

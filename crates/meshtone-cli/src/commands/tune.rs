@@ -1,7 +1,7 @@
 //! `meshtone tune`
 
 use std::fmt::Write as _;
-use std::io::Write as _;
+use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
@@ -11,6 +11,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use meshtone::hybrid::{Experiment, ExperimentControl, ExperimentResult, Tuning, run_experiment};
 use meshtone_io::atomic_file::{StagedFile, check_target, check_writable};
 use meshtone_io::experiment::{Tuned, read_experiment, tuning_json, write_tuned};
+use meshtone_plot::tuning_figure;
 
 use crate::failure::Failure;
 use crate::same_file::is_same_file;
@@ -124,14 +125,49 @@ impl Tune {
         let json = tuning_json(experiment, result);
         let name = self.experiment.file_name().unwrap_or_default().to_string_lossy();
         let toml = write_tuned(&Tuned::of(experiment, result), &name);
-        let mut staged = Vec::new();
+        let mut staged =
+            if self.no_figure { Vec::new() } else { figure(experiment, result, directory, &name)? };
         for (name, text) in [(TUNING, json), (TUNED, toml)] {
             staged.push(StagedFile::write(&directory.join(name), |file| file.write_all(text.as_bytes()))?);
         }
         for file in staged {
             file.commit()?;
         }
+        if self.no_figure {
+            // An earlier tuning's would show something else.
+            for name in FIGURE {
+                remove(&directory.join(name))?;
+            }
+        }
         Ok(())
+    }
+}
+
+fn figure(
+    experiment: &Experiment,
+    result: &ExperimentResult,
+    directory: &Path,
+    name: &str,
+) -> Result<Vec<StagedFile>, Failure> {
+    let cannot = |error| {
+        Failure::failed(format!("cannot draw the figure: {error}"))
+            .with_help("--no-figure writes the other results without it")
+    };
+    let figure = tuning_figure(experiment, result, name).map_err(cannot)?;
+    let png = figure.png().map_err(cannot)?;
+    let [svg_path, png_path] = FIGURE.map(|name| directory.join(name));
+    Ok(vec![
+        StagedFile::write(&svg_path, |file| file.write_all(figure.svg().as_bytes()))?,
+        StagedFile::write(&png_path, |file| file.write_all(&png))?,
+    ])
+}
+
+fn remove(path: &Path) -> Result<(), Failure> {
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != ErrorKind::NotFound => {
+            Err(Failure::of_file(error.kind(), format!("cannot remove {}: {error}", path.display())))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -1,6 +1,10 @@
-//! The scenarios of the gallery.
+//! The scenarios of the gallery, and what holds for every figure.
+
+// Each test program uses a part.
+#![allow(dead_code, clippy::unwrap_used)]
 
 use meshtone::scenario::*;
+use meshtone_plot::Figure;
 
 fn small_pair(fault: Option<Fault>) -> Scenario {
     let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
@@ -29,4 +33,25 @@ pub fn gallery() -> Vec<(&'static str, Scenario)> {
         ("through_face", small_pair(Some(Fault::ThroughFace(ThroughFace { pit })))),
         ("tooth_destruction", destruction),
     ]
+}
+
+/// What holds for every figure.
+pub fn check(figure: &Figure) {
+    roxmltree::Document::parse(figure.svg()).unwrap();
+    assert!(figure.svg().len() < 400_000, "{} bytes", figure.svg().len());
+    for number in ["NaN", "inf"] {
+        assert!(!figure.svg().contains(&format!("{number} ")), "{number}");
+    }
+    let (width, height) = figure.size_px();
+    let labels = figure.labels();
+    for (index, label) in labels.iter().enumerate() {
+        let inside = label.left >= 0.0
+            && label.top >= 0.0
+            && label.right <= f64::from(width)
+            && label.bottom <= f64::from(height);
+        assert!(inside, "{label:?} leaves the figure");
+        for other in &labels[index + 1..] {
+            assert!(!label.overlaps(other), "{label:?} overlaps {other:?}");
+        }
+    }
 }

@@ -1,0 +1,83 @@
+//! Title and key facts.
+
+use meshtone::hybrid::Tuning;
+
+use super::data::Data;
+use crate::canvas::Canvas;
+use crate::font;
+use crate::style::TextStyle;
+use crate::ticks::number;
+
+const TITLE_BASELINE: f64 = 34.0;
+const FACTS_BASELINE: f64 = 57.0;
+const FACTS_PITCH: f64 = 19.0;
+const BETWEEN: &str = "  ·  ";
+
+pub(super) fn draw(canvas: &mut Canvas, title: &str, data: &Data) {
+    let width = f64::from(super::WIDTH) - 2.0 * super::TEXT_LEFT;
+    let mut line = |baseline: f64, text: &str, style: TextStyle| {
+        if let Some(text) = font::wrapped(text, width, 1, style.size, style.bold).first() {
+            canvas.text((super::TEXT_LEFT, baseline), text, style);
+        }
+    };
+    line(TITLE_BASELINE, title, TextStyle::TITLE);
+    let [parameters, errors] = [parameters(data), errors(data)].map(|facts| facts.join(BETWEEN));
+    line(FACTS_BASELINE, &parameters, TextStyle::FACTS);
+    line(FACTS_BASELINE + FACTS_PITCH, &errors, TextStyle::FACTS);
+}
+
+/// The figure in a sentence, for readers who cannot see it.
+pub(super) fn description(data: &Data) -> String {
+    format!(
+        "Simulated difference signals tuned to measured ones, {} cases: indicators, errors, signals, and the error \
+         around the optimum. {}. {}.",
+        data.cases(),
+        parameters(data).join(", "),
+        errors(data).join(", ")
+    )
+}
+
+fn parameters(data: &Data) -> Vec<String> {
+    let Tuning { enhancement, intervals, .. } = data.tuning;
+    let parameter = |name: &str, value: f64, [low, high]: [f64; 2]| {
+        format!("{name} {} ({} to {})", short(value), short(low), short(high))
+    };
+    let mut facts = vec![
+        parameter("width ratio", enhancement.width_ratio, intervals.width_ratio),
+        parameter(
+            "fault-to-harmonics ratio",
+            enhancement.fault_to_harmonics_ratio,
+            intervals.fault_to_harmonics_ratio,
+        ),
+        parameter("noise level", enhancement.noise_level, intervals.noise_level),
+    ];
+    if let Some(last) = facts.last_mut() {
+        last.push_str(", in brackets the 95 % intervals");
+    }
+    if let Some(keys) = &data.result.with_keys {
+        let values = data.experiment.keys.iter().zip(&keys.values);
+        facts.extend(values.map(|(key, &value)| format!("{} = {}", key.key, number(value))));
+    }
+    facts
+}
+
+fn errors(data: &Data) -> Vec<String> {
+    let original = data.result.enhancement_alone.original_error;
+    let Tuning { enhanced_error, scatter, .. } = data.tuning;
+    vec![
+        format!("mean error as simulated {} σ", short(original)),
+        format!("enhanced {} σ", short(*enhanced_error)),
+        format!("of cases left out of the fit {} σ", short(data.tuning.mean_leave_one_out_error())),
+        format!("scatter of the records, the floor {} σ", short(*scatter)),
+        "σ: standard deviation of all measured records of an indicator".to_owned(),
+    ]
+}
+
+/// Three significant digits.
+pub(super) fn short(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return number(value);
+    }
+    let scale = 10f64.powf(2.0 - value.abs().log10().floor());
+    number((value * scale).round() / scale)
+}

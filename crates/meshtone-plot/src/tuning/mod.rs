@@ -1,0 +1,134 @@
+//! An experiment of the hybrid stage on one page.
+//!
+//! On the left, above each other and with the cases as their common horizontal axis, the indicators, the error of each
+//! case, and the difference signals as simulated and enhanced; on the right the error around the optimum. The indicators
+//! are drawn as in Figure 6 of arXiv:2410.05073.
+
+mod cases;
+mod data;
+mod differences;
+mod heading;
+mod surface;
+mod symbols;
+mod width;
+
+use meshtone::hybrid::{Experiment, ExperimentResult};
+
+use crate::axes::Area;
+use crate::canvas::Canvas;
+use crate::style::{Stroke, TextStyle, colour};
+use crate::{Figure, PlotError};
+use data::Data;
+
+const WIDTH: u32 = 1600;
+const HEIGHT: u32 = 1000;
+
+const LEFT: f64 = 74.0;
+const CASES_WIDTH: f64 = 1010.0;
+const ERRORS_LEFT: f64 = 1178.0;
+const ERRORS_WIDTH: f64 = 396.0;
+/// (px) From the frame of a plot to the baseline of its vertical axis' name.
+const NAME_LEFT: f64 = 48.0;
+/// (px) Left edge of title and facts.
+const TEXT_LEFT: f64 = 15.0;
+
+const HEADING_BASELINE: f64 = 118.0;
+/// (px) From a heading's baseline to the frame of the first plot below it, which has a title.
+const BELOW_HEADING: f64 = 38.0;
+/// (px) Lower edge of the lowest plots.
+const BOTTOM: f64 = 950.0;
+
+/// (px) From the last line of the cases' names to the next heading's baseline.
+const BELOW_LABELS: f64 = 36.0;
+const DIFFERENCES_HEIGHT: f64 = 108.0;
+/// (px) Between the two rows of difference signals: the second one's title.
+const DIFFERENCES_GAP: f64 = 28.0;
+/// (px) Of a plot of an indicator, and of the title above the next one.
+const LARGEST_PITCH: f64 = 200.0;
+const TITLE_HEIGHT: f64 = 27.0;
+
+const SURFACE_SIZE: [f64; 2] = [312.0, 312.0];
+const WIDTH_PLOT_HEIGHT: f64 = 326.0;
+
+/// Draws an experiment of the hybrid stage: what was measured, simulated and enhanced.
+///
+/// # Arguments
+/// * `experiment` - what was tuned
+/// * `result` - of that experiment
+/// * `title` - what stands above the figure
+///
+/// # Errors
+/// A result of another number of cases than the experiment's; signals that cannot be enhanced.
+///
+/// ```
+/// use meshtone::hybrid::*;
+/// use meshtone::scenario::{Fault, Scenario};
+///
+/// let case = |label: &str, fault: Option<Fault>| Case {
+///     label: label.into(),
+///     severity: f64::from(u8::from(fault.is_some())),
+///     fault,
+/// };
+/// let mut base = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+/// base.solver.sampling_rate_hz = 25e3;
+/// let experiment = Experiment {
+///     base,
+///     cases: vec![case("healthy", None), case("missing tooth", Some(Fault::MissingTooth))],
+///     chain: DifferenceChain::new(25e3),
+///     measured: Measurements::from_compared(
+///         vec![TuningIndicator::Rms],
+///         vec![vec![vec![-0.02, 0.0, 0.03]], vec![vec![0.7, 0.72, 0.75]]],
+///     )?,
+///     bounds: EnhancementBounds::default(),
+///     keys: Vec::new(),
+///     candidates: 0,
+///     seed: 1,
+/// };
+/// let control = ExperimentControl { progress: &|_, _| (), cancelled: &false.into() };
+/// let result = run_experiment(&experiment, &control)?;
+/// let figure = meshtone_plot::tuning_figure(&experiment, &result, "A rig with a missing tooth")?;
+/// assert!(figure.labels().iter().any(|label| label.text == "missing tooth"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn tuning_figure(
+    experiment: &Experiment,
+    result: &ExperimentResult,
+    title: &str,
+) -> Result<Figure, PlotError> {
+    let data = Data::new(experiment, result)?;
+    let mut canvas = Canvas::new(WIDTH, HEIGHT);
+    heading::draw(&mut canvas, title, &data);
+
+    // Error of each case below the indicators.
+    let rows = data.indicators().len() + 1;
+    let labels = cases::labels_height(CASES_WIDTH, &data);
+    let first_top = HEADING_BASELINE + BELOW_HEADING;
+    let differences = 2.0 * DIFFERENCES_HEIGHT + DIFFERENCES_GAP + BELOW_HEADING + BELOW_LABELS;
+    let room = BOTTOM - differences - labels - first_top;
+    let pitch = ((room + TITLE_HEIGHT) / rows as f64).min(LARGEST_PITCH);
+    let areas: Vec<Area> = (0..rows)
+        .map(|row| Area::new(LEFT, first_top + row as f64 * pitch, CASES_WIDTH, pitch - TITLE_HEIGHT))
+        .collect();
+    let bottom = areas.last().map_or(first_top, Area::bottom);
+    section(&mut canvas, (LEFT, HEADING_BASELINE), CASES_WIDTH, "Indicators of the difference signal");
+    cases::draw(&mut canvas, &areas, &data);
+
+    let baseline = bottom + labels + BELOW_LABELS;
+    section(&mut canvas, (LEFT, baseline), CASES_WIDTH, differences::HEADING);
+    let top = baseline + BELOW_HEADING;
+    let height = (BOTTOM - top - DIFFERENCES_GAP) / 2.0;
+    let both = [top, top + height + DIFFERENCES_GAP].map(|top| Area::new(LEFT, top, CASES_WIDTH, height));
+    differences::draw(&mut canvas, both, &data);
+
+    section(&mut canvas, (ERRORS_LEFT, HEADING_BASELINE), ERRORS_WIDTH, "Error around the optimum");
+    let [width, height] = SURFACE_SIZE;
+    surface::draw(&mut canvas, Area::new(ERRORS_LEFT, first_top, width, height), &data)?;
+    let top = BOTTOM - WIDTH_PLOT_HEIGHT;
+    width::draw(&mut canvas, Area::new(ERRORS_LEFT, top, ERRORS_WIDTH, WIDTH_PLOT_HEIGHT), &data)?;
+    Ok(canvas.finish(title, &heading::description(&data)))
+}
+
+fn section(canvas: &mut Canvas, (left, baseline): (f64, f64), width: f64, text: &str) {
+    canvas.text((left, baseline), text, TextStyle::HEADING);
+    canvas.line((left, baseline + 6.0), (left + width, baseline + 6.0), Stroke::solid(colour::INK, 1.2));
+}

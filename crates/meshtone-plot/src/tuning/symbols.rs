@@ -1,0 +1,31 @@
+//! What stands for what was measured, simulated and enhanced.
+
+use crate::marker::{Marker, Shape};
+use crate::style::{Fill, Stroke, colour};
+
+pub(super) const RECORDS: Fill = Fill::tint(colour::MUTED, 0.35);
+pub(super) const MEDIAN: Stroke = Stroke::solid(colour::INK, 2.6);
+pub(super) const ORIGINAL: Stroke = Stroke::dashed(colour::BLUE, 1.6, "5 3");
+pub(super) const ENHANCED: Stroke = Stroke::solid(colour::GREEN, 1.8);
+pub(super) const LEFT_OUT: Stroke = Stroke::dashed(colour::PURPLE, 1.4, "2 2.5");
+pub(super) const ORIGINAL_CURVE: Stroke = Stroke::solid(colour::BLUE, 1.0);
+pub(super) const ENHANCED_CURVE: Stroke = Stroke::solid(colour::GREEN, 1.0);
+
+pub(super) const ORIGINAL_MARKER: Marker = Marker {
+    shape: Shape::Square,
+    radius: 5.2,
+    stroke: Stroke::solid(colour::BLUE, 1.8),
+    fill: Fill::solid(colour::WHITE),
+};
+pub(super) const ENHANCED_MARKER: Marker = Marker {
+    shape: Shape::Diamond,
+    radius: 6.0,
+    stroke: Stroke::solid(colour::WHITE, 1.2),
+    fill: Fill::solid(colour::GREEN),
+};
+pub(super) const LEFT_OUT_MARKER: Marker = Marker {
+    shape: Shape::Triangle,
+    radius: 5.0,
+    stroke: Stroke::solid(colour::WHITE, 1.0),
+    fill: Fill::solid(colour::PURPLE),
+};

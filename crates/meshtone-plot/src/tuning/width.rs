@@ -1,0 +1,91 @@
+//! The error against the width ratio.
+
+use meshtone::hybrid::{Enhancement, EnhancementBounds, HybridError, fit};
+
+use super::data::Data;
+use super::symbols::{ENHANCED, ENHANCED_MARKER, MEDIAN};
+use crate::axes::{self, Area, Axes};
+use crate::canvas::Canvas;
+use crate::legend::{self, Entry, Sample};
+use crate::style::{Fill, Stroke, colour};
+use crate::ticks::Ticks;
+
+const PLACES: usize = 160;
+const FEW_PLACES: usize = 30;
+/// Width ratios at which the other parameters are searched anew.
+const FITS: usize = 33;
+const MARGIN: f64 = 0.06;
+const HELD: Stroke = ENHANCED;
+const ADJUSTED: Stroke = Stroke::dashed(colour::BLUE, 1.6, "7 3");
+const FLOOR: Stroke = Stroke { width: 1.6, ..MEDIAN };
+const INTERVAL: Fill = Fill::tint(colour::MUTED, 0.16);
+/// (px) Above the frame: title, then two rows of the legend.
+const LEGEND_ROW: f64 = 18.0;
+
+pub(super) fn draw(canvas: &mut Canvas, area: Area, data: &Data) -> Result<(), HybridError> {
+    let bounds = &data.experiment.bounds;
+    let best = data.tuning.enhancement.width_ratio;
+    let [low, high] = bounds.width_ratio;
+    let x = if low < high { [low.log10(), high.log10()] } else { [best / 2.0, best * 2.0].map(f64::log10) };
+    let held = curve(x, if data.errors_are_costly() { FEW_PLACES } else { PLACES }, |width_ratio| {
+        data.error(&Enhancement { width_ratio, ..data.tuning.enhancement })
+    })?;
+    // Where an error takes transforms, searches at many places take minutes.
+    let adjusted = if data.errors_are_costly() {
+        Vec::new()
+    } else {
+        curve(x, FITS, |width_ratio| {
+            let bounds = EnhancementBounds { width_ratio: [width_ratio; 2], ..*bounds };
+            Ok(fit(data.result.simulated(), data.measured(), &bounds, None)?.error)
+        })?
+    };
+    let errors = held.iter().chain(&adjusted).map(|(_, error)| *error);
+    let [_, most] = axes::range(errors.chain([data.tuning.scatter]), MARGIN);
+    let axes = Axes::new(area, x, [0.0, most]);
+    axes.band(
+        canvas,
+        data.tuning.intervals.width_ratio[0].log10(),
+        data.tuning.intervals.width_ratio[1].log10(),
+        INTERVAL,
+    );
+    axes.x_axis(canvas, &Ticks::of_logarithms(x[0], x[1]), "Width ratio w (–)");
+    axes.y_axis(canvas, &Ticks::nice(0.0, most, 6), "Mean error (σ)", super::NAME_LEFT);
+    axes.horizontal(canvas, data.tuning.scatter, FLOOR);
+    axes.line(canvas, adjusted.iter().copied(), ADJUSTED);
+    axes.line(canvas, held.iter().copied(), HELD);
+    let chosen = axes.at(best.log10().clamp(x[0], x[1]), data.tuning.enhanced_error);
+    ENHANCED_MARKER.draw(canvas, chosen);
+    axes.frame(canvas);
+    key(canvas, area, !adjusted.is_empty());
+    Ok(())
+}
+
+/// Errors at equal distances of the width ratio's logarithm.
+fn curve(
+    x: [f64; 2],
+    places: usize,
+    error: impl Fn(f64) -> Result<f64, HybridError>,
+) -> Result<Vec<(f64, f64)>, HybridError> {
+    (0..places)
+        .map(|k| {
+            let place = x[0] + (x[1] - x[0]) * k as f64 / (places as f64 - 1.0);
+            Ok((place, error(10f64.powf(place))?))
+        })
+        .collect()
+}
+
+fn key(canvas: &mut Canvas, area: Area, adjusted: bool) {
+    let title = (area.left, area.top - axes::TITLE_ABOVE - 2.0 * LEGEND_ROW);
+    canvas.text(title, "Mean error against the width ratio", crate::style::TextStyle::AXES_TITLE);
+    let entry = |(sample, text)| Entry { sample, text };
+    let mut curves = vec![(Sample::Marked(HELD, ENHANCED_MARKER), "α and ν as chosen")];
+    if adjusted {
+        curves.push((Sample::Line(ADJUSTED), "α and ν adjusted"));
+    }
+    let limits = [(Sample::Area(INTERVAL), "95 % interval"), (Sample::Line(FLOOR), "scatter of the records")];
+    for (row, entries) in [curves, limits.to_vec()].into_iter().enumerate() {
+        let baseline = area.top - axes::TITLE_ABOVE - LEGEND_ROW * (1.0 - row as f64);
+        let entries: Vec<Entry> = entries.into_iter().map(entry).collect();
+        legend::row(canvas, (area.right(), baseline), &entries);
+    }
+}
