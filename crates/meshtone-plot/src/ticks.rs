@@ -50,8 +50,8 @@ impl Ticks {
         Self { values, step, logarithmic: false }
     }
 
-    /// Decadic logarithms of round numbers, for a logarithmic axis: the fewest of 10ⁿ, of 1, 2 and 5 × 10ⁿ and of
-    /// 1 to 9 × 10ⁿ that are three or more.
+    /// Decadic logarithms of round numbers, for a logarithmic axis: the fewest of 10ⁿ, of 1, 2 and 5 × 10ⁿ, and
+    /// so on to 1 to 9 × 10ⁿ, that are three or more.
     ///
     /// # Arguments
     /// * `low`, `high` - decadic logarithms of the axis' ends
@@ -62,7 +62,7 @@ impl Ticks {
             all.filter(|value| (low - 1e-9..=high + 1e-9).contains(value)).collect()
         };
         let nine = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0];
-        let sets: [&[f64]; 3] = [&[1.0], &[1.0, 2.0, 5.0], &nine];
+        let sets: [&[f64]; 4] = [&[1.0], &[1.0, 2.0, 5.0], &[1.0, 1.5, 2.0, 3.0, 5.0, 7.0], &nine];
         let values = sets.into_iter().map(inside).find(|values| values.len() >= 3);
         Self { values: values.unwrap_or_else(|| inside(&nine)), step: 1.0, logarithmic: true }
     }
@@ -73,11 +73,12 @@ impl Ticks {
         if nice.step < 1.0 { Self::every(1.0, low, high) } else { nice }
     }
 
-    /// Every second, third, … of the values, so that there are at most `most`.
+    /// Every second, third, … of the values, so that there are at most `most`; 0 stays where it is one of them.
     pub(crate) fn thinned(mut self, most: usize) -> Self {
-        let every = self.values.len().div_ceil(most.max(1)).max(1) as i64;
-        let step = self.step;
-        self.values.retain(|value| (value / step).round() as i64 % every == 0);
+        let every = self.values.len().div_ceil(most.max(1)).max(1);
+        let zero = self.values.iter().position(|value| value.abs() < 0.5 * self.step).unwrap_or(0);
+        let mut place = 0..;
+        self.values.retain(|_| place.next().is_some_and(|k: usize| k % every == zero % every));
         self
     }
 
@@ -167,6 +168,7 @@ mod tests {
         let values = |most| Ticks::every(0.2, -0.2, 0.8).thinned(most).values.len();
         assert_eq!((values(9), values(5), values(3), values(2)), (6, 3, 3, 2));
         assert!(Ticks::every(0.2, -0.2, 0.8).thinned(2).values.contains(&0.0));
+        assert_eq!(Ticks::every(0.5, 0.5, 1.5).thinned(2).values, [0.5, 1.5]);
     }
 
     #[test]
@@ -177,7 +179,8 @@ mod tests {
         };
         assert_eq!(texts(0.01, 30.0), ["0.01", "0.1", "1", "10"]);
         assert_eq!(texts(0.2, 8.0), ["0.2", "0.5", "1", "2", "5"]);
-        assert_eq!(texts(0.9, 3.1), ["1", "2", "3"]);
+        assert_eq!(texts(0.9, 3.1), ["1", "1.5", "2", "3"]);
+        assert_eq!(texts(0.58, 0.82), ["0.6", "0.7", "0.8"]);
     }
 
     #[test]
