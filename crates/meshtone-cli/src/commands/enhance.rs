@@ -15,7 +15,8 @@ use crate::memory;
 use crate::terminal::{print, print_error_line};
 
 const ENHANCED: &str = "enhanced.parquet";
-const MOST_DRAWS: u64 = 1_000_000;
+/// All are held in memory: some 50 kB each.
+const MOST_DRAWS: u64 = 20_000;
 
 /// Make enhanced difference signals of a scenario, with what `tune` found
 ///
@@ -127,8 +128,10 @@ impl Enhance {
         let noise = 1.0 + tuned.enhancement.noise_level.powi(2);
         let healthy_rms_g = enhanced.healthy_rms * noise.sqrt();
         let label = scenario.fault.as_ref().map_or("healthy", Fault::kind);
+        // Files of different scenarios must not share their noise.
+        let noise_seed = self.seed ^ identity(scenario);
         let record = |draw: u64| {
-            let mut signal = enhanced.with_noise(self.seed, draw)?;
+            let mut signal = enhanced.with_noise(noise_seed, draw)?;
             signal.iter_mut().for_each(|value| *value /= healthy_rms_g);
             Ok(EnhancedRecord {
                 label: label.to_owned(),
@@ -140,4 +143,11 @@ impl Enhance {
         };
         Ok((healthy_rms_g, (0..self.draws).map(record).collect::<Result<_, HybridError>>()?))
     }
+}
+
+/// A number that stands for the whole scenario (FNV-1a of its file).
+fn identity(scenario: &Scenario) -> u64 {
+    scenario.to_toml().bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
 }

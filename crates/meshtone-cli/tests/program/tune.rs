@@ -103,9 +103,14 @@ fn a_rig_is_tuned_and_signals_are_enhanced() {
 
     let simulate = ["simulate", "broken.toml", "--tuned", "out/tuned.toml", "--no-panel", "-o", "simulated"];
     workplace.succeeds(&simulate);
-    let summary = json(&workplace, "simulated/summary.json");
+    // As if the number had been in the scenario.
     let damping = number("/scenario_keys/rig.damping_ratio");
-    assert!(summary.to_string().contains(&format!("damping_ratio = {damping:?}")), "{summary}");
+    let broken = String::from_utf8(workplace.read("broken.toml")).unwrap();
+    workplace.write("damped.toml", format!("{broken}[rig]\ndamping_ratio = {damping:?}\n"));
+    workplace.succeeds(&["simulate", "damped.toml", "--no-panel", "-o", "damped"]);
+    let run = |name: &str| json(&workplace, name)["run"].clone();
+    assert!(run("simulated/summary.json").is_string());
+    assert_eq!(run("simulated/summary.json"), run("damped/summary.json"));
 }
 
 #[track_caller]
@@ -229,7 +234,8 @@ fn recordings_are_taken_to_difference_signals() {
             workplace.succeeds(&["simulate", &format!("{name}.toml"), "--no-panel", "-q", "-o", &name]);
         }
     }
-    let mut text = format!("{HEAD}[measured]\nchannel = \"vertical_acceleration_g\"\n{CASES}");
+    let head = HEAD.replace("10e3", "11200.0");
+    let mut text = format!("{head}[measured]\nchannel = \"vertical_acceleration_g\"\n{CASES}");
     for (severity, case) in ["healthy", "chipped", "missing"].iter().enumerate() {
         let files =
             (1..=3).map(|seed| format!("\"{case}{seed}/signals.parquet\"")).collect::<Vec<_>>().join(", ");

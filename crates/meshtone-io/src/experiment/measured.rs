@@ -1,5 +1,6 @@
 //! What was measured: a table of indicators, difference signals, or recordings.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use meshtone::hybrid::{Case, DifferenceChain, Measurements, TuningIndicator};
@@ -126,7 +127,8 @@ fn indicator_table(
 ) -> ReadResult<Measurements> {
     let path = wanted.directory.join(file.string()?);
     let experiment = table.optional("experiment").map(|value| value.string()).transpose()?;
-    let series = table.optional("series").map(|value| value.string()).transpose()?.unwrap_or("measured");
+    let named_series = table.optional("series").map(|value| value.string()).transpose()?;
+    let series = named_series.unwrap_or("measured");
     let problem = |problem: String| file.error(format!("{}: {problem}", path.display()));
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
@@ -142,6 +144,9 @@ fn indicator_table(
     let (indicator_at, severity_at) = (needed("indicator")?, needed("severity")?);
     let value_at = needed("log10_value")?;
     let experiment_at = experiment.map(|_| needed("experiment")).transpose()?;
+    named_series.map(|_| needed("series")).transpose()?;
+    let unnamed_experiment = if experiment.is_none() { column("experiment") } else { None };
+    let mut experiments = BTreeSet::new();
     let mut values = vec![vec![Vec::new(); wanted.indicators.len()]; wanted.cases.len()];
     for (row, record) in reader.records().enumerate() {
         let record = record.map_err(|error| problem(format!("cannot be read: {error}")))?;
@@ -156,6 +161,12 @@ fn indicator_table(
         let other_series = column("series").is_some_and(|at| field(at) != series);
         if other_series || experiment_at.is_some_and(|at| Some(field(at)) != experiment) {
             continue;
+        }
+        experiments.extend(unnamed_experiment.map(|at| field(at).to_owned()));
+        if experiments.len() > 1 {
+            let all = experiments.into_iter().collect::<Vec<_>>().join(", ");
+            let which = "holds more than one experiment; say which with measured.experiment";
+            return Err(problem(format!("{which} ({all})")));
         }
         let indicator =
             wanted.indicators.iter().position(|indicator| indicator.name() == field(indicator_at));

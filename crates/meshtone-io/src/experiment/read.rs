@@ -116,7 +116,9 @@ fn experiment(
     let experiment = Experiment { base, cases, chain, measured, bounds, keys, candidates, seed };
     experiment.check().map_err(|error| {
         let key = match &error {
-            HybridError::NoSuchKey { .. } => "tune.key",
+            HybridError::NoSuchKey { .. } | HybridError::KeyTwice { .. } | HybridError::IgnoredKey { .. } => {
+                "tune.key"
+            }
             HybridError::Cases { .. } | HybridError::HealthyCase { .. } => "case",
             _ => "tune",
         };
@@ -168,7 +170,7 @@ fn signal(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<DifferenceChain>
     let separation = SeparationSettings {
         sidebands: sidebands.map_or(default.sidebands, |count| count as usize),
         shaft_orders: orders.map_or(default.shaft_orders, |last| (1..=last as usize).collect()),
-        mean: MeanPart::Kept,
+        mean: MeanPart::Removed,
         teeth,
     };
     Ok(DifferenceChain {

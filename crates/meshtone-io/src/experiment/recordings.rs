@@ -2,14 +2,18 @@
 
 use std::path::PathBuf;
 
+use meshtone::scenario::ScenarioError;
 use meshtone::signal::{
-    ChainSettings, MeshTone, ShaftPhase, SignalError, Tachometer, process_channel, process_segments,
-    tachometer_pulses,
+    AngularSettings, ChainSettings, Interpolation, MeshTone, ShaftPhase, SignalError, Tachometer,
+    points_per_revolution, process_channel, process_segments, tachometer_pulses,
 };
 use meshtone::toml_reader::{ReadResult, TomlTable};
 
 use super::measured::{Wanted, column, missing};
 use crate::recording::{Recording, RecordingOptions, read_recording};
+
+/// Of a recording's sampling rate, relative: what a file's rounded times are off.
+const RATE_TOLERANCE: f64 = 1e-4;
 
 /// How the phase of a recording's shafts is known.
 enum Phase<'a> {
@@ -34,8 +38,8 @@ pub(super) fn differences(
         .map(|value| value.integer(2..=u64::from(u32::MAX)))
         .transpose()?;
     let phase = phase(table, wanted)?;
-    let settings = ChainSettings { separation: wanted.chain.separation.clone(), ..ChainSettings::default() };
     let teeth = wanted.base.gears.gear_teeth;
+    let settings = settings(wanted)?;
     let mut all = Vec::new();
     for (case, files) in wanted.cases.iter().zip(wanted.files) {
         if files.recordings.is_empty() {
@@ -54,6 +58,13 @@ pub(super) fn differences(
             let recording = read_recording(&path, &options).map_err(|error| named.error(error))?;
             sources.push(path);
             let refuse = |error: SignalError| named.error(format!("{}: {error}", named.name));
+            let (given, stated) = (recording.sampling_rate_hz, wanted.chain.sampling_rate_hz);
+            if (given / stated - 1.0).abs() > RATE_TOLERANCE {
+                return Err(named.error(format!(
+                    "{} has {given} S/s, but signal.sampling_rate_hz, to which the simulated signals are brought, is {stated}",
+                    named.name
+                )));
+            }
             let gear = gear_phase(&recording, &phase, wanted).map_err(refuse)?;
             let signal = &recording.channels[0].samples;
             let found = match segment {
@@ -67,17 +78,44 @@ pub(super) fn differences(
     Ok(all)
 }
 
+/// As simulated signals are processed: so many points a revolution, read in the same way.
+fn settings(wanted: &Wanted) -> ReadResult<ChainSettings> {
+    let gears = &wanted.base.gears;
+    let gear_hz =
+        wanted.base.operation.pinion_speed_hz * f64::from(gears.pinion_teeth) / f64::from(gears.gear_teeth);
+    let rate = wanted.chain.sampling_rate_hz;
+    let revolution = ShaftPhase::constant(gear_hz, rate, (3.0 * rate / gear_hz).ceil() as usize)
+        .map_err(|error| ScenarioError::new("signal.sampling_rate_hz", rate, error.to_string()))?;
+    let angular = AngularSettings {
+        points_per_revolution: Some(points_per_revolution(&revolution)),
+        interpolation: Interpolation::Pchip,
+        ..AngularSettings::default()
+    };
+    Ok(ChainSettings { angular, separation: wanted.chain.separation.clone() })
+}
+
 fn phase<'a>(table: &TomlTable<'a>, wanted: &Wanted) -> ReadResult<Phase<'a>> {
     let gears = &wanted.base.gears;
     let nominal =
         wanted.base.operation.pinion_speed_hz * f64::from(gears.pinion_teeth) / f64::from(gears.gear_teeth);
-    let gear_shaft_hz = table.number_or("gear_shaft_hz", nominal)?;
+    let stated = table.number("gear_shaft_hz")?;
+    let gear_shaft_hz = stated.unwrap_or(nominal);
     let tachometer = table.optional("tachometer_channel");
     let pulses =
         table.optional("pulses_per_revolution").map(|value| value.integer(1..=100_000)).transpose()?;
     let on = table.optional("tachometer_shaft");
     let on = on.map(|value| value.choice(&[("gear", false), ("pinion", true)])).transpose()?;
     let mesh_tone = table.optional("phase_from_mesh_tone").map(|value| value.boolean()).transpose()?;
+    if tachometer.is_none() {
+        for (key, given) in [("pulses_per_revolution", pulses.is_some()), ("tachometer_shaft", on.is_some())]
+        {
+            if given {
+                return Err(table.error(key, "given without tachometer_channel, so it has no meaning"));
+            }
+        }
+    } else if stated.is_some() {
+        return Err(table.error("gear_shaft_hz", "given beside tachometer_channel; the phase has one source"));
+    }
     match (tachometer, mesh_tone.unwrap_or(false)) {
         (Some(_), true) => {
             Err(table

@@ -6,7 +6,7 @@ use std::path::Path;
 use meshtone::batch::ChannelKind;
 use meshtone::hybrid::{DifferenceChain, Enhancement, Experiment, ExperimentResult};
 use meshtone::scenario::{Scenario, ScenarioError};
-use meshtone::signal::SeparationSettings;
+use meshtone::signal::{MeanPart, SeparationSettings};
 use meshtone::toml_reader::{ReadResult, TomlDocument, TomlTable, TomlValue};
 
 use crate::scenario_file::{ReadScenarioError, read_text};
@@ -82,6 +82,8 @@ impl Tuned {
         let separation = SeparationSettings {
             sidebands: self.sidebands,
             shaft_orders: (1..=self.shaft_orders).collect(),
+            // A sensor's offset is no vibration.
+            mean: MeanPart::Removed,
             ..SeparationSettings::new(gear_teeth as usize)
         };
         DifferenceChain {

@@ -82,6 +82,7 @@ pub fn simulate_many<K: Keep>(
         }),
         changed: Condvar::new(),
         finished: AtomicUsize::new(0),
+        panicked: AtomicBool::new(false),
         keep,
         control,
         threads: rayon::current_num_threads(),
@@ -98,6 +99,8 @@ struct Work<'a, K: Keep, I, F> {
     state: Mutex<State<K::Kept, I, F>>,
     changed: Condvar,
     finished: AtomicUsize,
+    /// A thread has panicked: what it had in flight never arrives.
+    panicked: AtomicBool,
     keep: &'a K,
     control: &'a Control<'a>,
     threads: usize,
@@ -116,6 +119,20 @@ struct State<T, I, F> {
     take: F,
 }
 
+/// The end of one thread's work, be it a panic of what the caller gave: the others must not wait for it.
+struct Ended<'a, 'b, K: Keep, I, F>(&'a Work<'b, K, I, F>);
+
+impl<K: Keep, I, F> Drop for Ended<'_, '_, K, I, F> {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.0.panicked.store(true, Ordering::Relaxed);
+            // Whoever is about to wait holds the lock until it does.
+            drop(self.0.state.lock());
+        }
+        self.0.changed.notify_all();
+    }
+}
+
 impl<K, I, F> Work<'_, K, I, F>
 where
     K: Keep,
@@ -129,6 +146,7 @@ where
 
     /// One thread's work.
     fn run(&self) {
+        let ended = Ended(self);
         while let Some(group) = self.next_group() {
             let count = group.len();
             let results = simulate_group(group, self.keep, self.control.instructions);
@@ -136,13 +154,13 @@ where
             (self.control.progress)(finished);
             self.hand_out(count, results);
         }
-        self.changed.notify_all();
+        drop(ended);
     }
 
     fn next_group(&self) -> Option<Vec<Numbered>> {
         let mut state = self.lock();
         loop {
-            if self.control.cancelled.load(Ordering::Relaxed) {
+            if self.control.cancelled.load(Ordering::Relaxed) || self.panicked.load(Ordering::Relaxed) {
                 return None;
             }
             if state.queue.is_empty() && !self.is_full(&state) {

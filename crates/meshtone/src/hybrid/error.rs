@@ -107,6 +107,20 @@ pub enum HybridError {
         /// The key.
         key: String,
     },
+    /// A tuned key is given twice.
+    #[error("the key {key} is given twice")]
+    KeyTwice {
+        /// The key.
+        key: String,
+    },
+    /// A tuned key has no effect.
+    #[error(
+        "the key {key} has no effect on any case under the scenario's convention, so it cannot be tuned; remove it, or set convention = \"corrected\""
+    )]
+    IgnoredKey {
+        /// The key.
+        key: String,
+    },
     /// None of the combinations of the keys' values could be simulated.
     #[error("none of the tried values of the keys can be simulated; the first failure was: {first_failure}")]
     NoCandidate {

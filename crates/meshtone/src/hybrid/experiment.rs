@@ -107,14 +107,41 @@ impl Experiment {
             }
         }
         self.bounds.check()?;
-        for key in &self.keys {
+        for (number, key) in self.keys.iter().enumerate() {
             key.check()?;
-            let scenarios = self.cases.iter().map(|case| self.scenario(case));
-            if scenarios.filter_map(|scenario| scenario.number(&key.key)).next().is_none() {
-                return Err(HybridError::NoSuchKey { key: key.key.clone() });
+            if self.keys[..number].iter().any(|other| other.key == key.key) {
+                return Err(HybridError::KeyTwice { key: key.key.clone() });
             }
+            self.check_effect(key)?;
         }
         Ok(())
+    }
+
+    /// Refuses a key that no case has, values that a scenario refuses, and a key that the convention ignores.
+    fn check_effect(&self, key: &TunedKey) -> Result<(), HybridError> {
+        let values = match &key.range {
+            // The middle, too: whole numbers have none, and are to be listed.
+            KeyRange::Between { least, largest, .. } => {
+                vec![*least, *largest, least + 0.437 * (largest - least)]
+            }
+            KeyRange::OneOf(values) => values.clone(),
+        };
+        let (mut known, mut honoured) = (false, false);
+        for case in &self.cases {
+            let scenario = self.scenario(case);
+            let Some(number) = scenario.number(&key.key) else { continue };
+            known = true;
+            for &value in &values {
+                let changed = scenario.with_number(&key.key, value)?;
+                honoured |= value != number && changed.as_honoured() != scenario.as_honoured();
+            }
+        }
+        let distinct = values.iter().any(|value| *value != values[0]);
+        match (known, honoured || !distinct) {
+            (false, _) => Err(HybridError::NoSuchKey { key: key.key.clone() }),
+            (true, false) => Err(HybridError::IgnoredKey { key: key.key.clone() }),
+            (true, true) => Ok(()),
+        }
     }
 
     /// The scenario of a case.

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::candidates::{place, rounds, value};
 use super::difference::KeepDifference;
 use super::tune::tune_among;
-use super::{Experiment, Fit, HybridError, SimulatedCases, Tuning, fit, tune};
+use super::{Experiment, Fit, HybridError, SimulatedCases, Tuning, TuningWarning, fit, tune};
 use crate::batch::{Control, simulate_many};
 use crate::scenario::{Scenario, ScenarioError};
 
@@ -21,7 +21,8 @@ pub struct ExperimentResult {
     pub original: SimulatedCases,
     /// The three parameters tuned alone.
     pub enhancement_alone: Tuning,
-    /// With the keys tuned as well; none where no keys are.
+    /// With the keys tuned as well; none where no keys are, or where no combination that was tried is better than the scenario
+    /// as it is.
     pub with_keys: Option<TunedKeys>,
 }
 
@@ -93,7 +94,18 @@ pub fn run_experiment(
     let original = search.simulate(vec![unchanged])?.swap_remove(0)?;
     let Experiment { measured, bounds, seed, .. } = experiment;
     let enhancement_alone = tune(&original, measured, bounds, *seed)?;
-    let with_keys = if experiment.keys.is_empty() { None } else { Some(search.with_keys()?) };
+    let mut enhancement_alone = enhancement_alone;
+    let mut with_keys = if experiment.keys.is_empty() { None } else { Some(search.with_keys()?) };
+    if let Some(keys) = &mut with_keys {
+        let (alone, together) = (&enhancement_alone, &mut keys.tuning);
+        let [before, after] = [alone.mean_leave_one_out_error(), together.mean_leave_one_out_error()];
+        if together.enhanced_error >= alone.enhanced_error {
+            enhancement_alone.warnings.push(TuningWarning::KeysDoNotHelp);
+            with_keys = None;
+        } else if after > before {
+            together.warnings.push(TuningWarning::KeysPredictWorse { alone: before, together: after });
+        }
+    }
     Ok(ExperimentResult { original, enhancement_alone, with_keys })
 }
 
@@ -191,6 +203,9 @@ impl Search<'_> {
         }
         let mut tuning = tune_among(&good, measured, bounds, *seed)?;
         tuning.leave_one_out_error = leave_one_out_error;
+        if let Some(first) = &first_failure {
+            tuning.warnings.push(TuningWarning::Failed { failed, first: first.clone() });
+        }
         let best = &tried[0];
         Ok(TunedKeys {
             values: keys.iter().zip(&best.places).map(|(key, &at)| value(key, at)).collect(),

@@ -93,6 +93,22 @@ pub enum TuningWarning {
     },
     /// The enhancement is no better than the simulation was.
     NoBetter,
+    /// No combination of the keys' values that was tried is better than the scenario as it is, which was kept.
+    KeysDoNotHelp,
+    /// With the keys the cases that are left out are predicted worse than without.
+    KeysPredictWorse {
+        /// Leave-one-out error of the three parameters alone.
+        alone: f64,
+        /// With the keys.
+        together: f64,
+    },
+    /// Combinations of the keys' values that could not be simulated.
+    Failed {
+        /// How many.
+        failed: usize,
+        /// Reason of the first.
+        first: String,
+    },
 }
 
 impl std::fmt::Display for TuningWarning {
@@ -109,6 +125,18 @@ impl std::fmt::Display for TuningWarning {
             Self::FewRecords { case, records } => write!(
                 formatter,
                 "case {case} has only {records} records, too few for the intervals to mean much (5 or more would do)"
+            ),
+            Self::KeysDoNotHelp => formatter.write_str(
+                "no values of the keys that were tried are better than the scenario's own, which are kept; try more candidates",
+            ),
+            Self::KeysPredictWorse { alone, together } => write!(
+                formatter,
+                "left out, the cases are predicted worse with the keys ({together:.3}) than by the three parameters alone \
+                 ({alone:.3}): the keys may have learned the cases instead of the rig"
+            ),
+            Self::Failed { failed, first } => write!(
+                formatter,
+                "{failed} combinations of the keys' values could not be simulated; the first: {first}"
             ),
             Self::NoBetter => {
                 formatter.write_str("the enhanced signals resemble the measured ones no better")
