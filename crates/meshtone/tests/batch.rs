@@ -131,7 +131,10 @@ fn every_instruction_set_gives_the_same() {
         println!("{instructions:?}");
         let results = with(instructions);
         for (result, reference) in results.iter().zip(&reference) {
-            let (Ok(result), Ok(reference)) = (result, reference) else { continue };
+            let (Ok(result), Ok(reference)) = (result, reference) else {
+                assert_eq!(result.as_ref().err(), reference.as_ref().err(), "{instructions:?}");
+                continue;
+            };
             for (a, b) in [
                 (&result.horizontal_g, &reference.horizontal_g),
                 (&result.vertical_g, &reference.vertical_g),
@@ -193,12 +196,36 @@ fn nothing_to_do() {
 fn single_precision_channels_are_the_signals_rounded() {
     let scenario = small(17, 34, None);
     let whole = simulate(&scenario).unwrap().channels;
+    let mut taken = 0;
     simulate_many([scenario], &KeepChannels::default(), &Control::default(), |_, signals| {
+        taken += 1;
         let signals = signals.unwrap();
         assert_eq!(signals.sampling_rate_hz, whole.sampling_rate_hz);
         assert_eq!(signals.start_s, whole.start_s);
+        assert_eq!(signals.channels.len(), 2);
         for (channel, whole) in signals.channels.iter().zip([&whole.horizontal_g, &whole.vertical_g]) {
+            assert_eq!(channel.len(), whole.len());
             assert!(channel.iter().zip(whole).all(|(a, b)| *a == *b as f32));
         }
     });
+    assert_eq!(taken, 1);
+}
+
+/// A panic of what the caller gave ends the batch, instead of leaving the other threads waiting.
+#[test]
+fn a_panic_of_the_caller_s_own_code_ends_the_batch() {
+    let asked_for = AtomicUsize::new(0);
+    let scenarios = (0..100_000).map(|_| {
+        asked_for.fetch_add(1, Ordering::Relaxed);
+        small(17, 34, None)
+    });
+    let caught = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+        in_threads(2, || {
+            simulate_many(scenarios, &KeepChannels::default(), &Control::default(), |index, _| {
+                assert!(index < 5, "what the caller does not want");
+            })
+        })
+    }));
+    assert!(caught.is_err());
+    assert!(asked_for.into_inner() < 2000);
 }
