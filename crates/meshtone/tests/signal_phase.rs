@@ -186,3 +186,17 @@ fn a_bad_tachometer() {
     let times = tachometer_pulses(&clean, RATE_HZ, &falling).unwrap();
     assert!((times[0] - 0.0125).abs() < 1.0 / RATE_HZ && times.len() == 40);
 }
+
+#[test]
+fn pulses_between_samples_lose_no_revolution() {
+    for offset_s in [0.0, 0.0003, 0.0007] {
+        for pulses in 3..6 {
+            let times: Vec<f64> = (0..pulses).map(|k| 0.05 + offset_s + 0.1 * f64::from(k)).collect();
+            let phase = ShaftPhase::from_pulses(&times, 1, None, 1000.0, 700).unwrap();
+            let signal: Vec<f64> = (0..700).map(|i| f64::from(i % 37)).collect();
+            let angular = angular_resample(&signal, &phase, &AngularSettings::default()).unwrap();
+            assert_eq!(angular.revolutions() as i32, pulses - 1, "{offset_s} {pulses}");
+            assert_eq!(angular.start_rev, 0.0);
+        }
+    }
+}

@@ -57,6 +57,9 @@ impl Enhance {
             .apply(&file.scenario)
             .map_err(|error| Failure::bad_input(format!("{}: {error}", self.tuned.display())))?;
         let (warnings, _) = check(&scenario).map_err(|error| file.refuse(error))?;
+        if let Some(warning) = tuned.warning_for(&scenario) {
+            print_error_line(format!("warning: {}: {warning}", self.tuned.display()));
+        }
         for warning in warnings {
             print_error_line(format!("warning: {}: {warning}", self.scenario.display()));
         }

@@ -164,6 +164,9 @@ impl Simulate {
         let file = ScenarioFile::read_within(path, memory::limit())?;
         let mut scenario = file.scenario.clone();
         if let (Some(tuned), Some(tuned_path)) = (tuned, &self.tuned) {
+            if let Some(warning) = tuned.warning_for(&scenario) {
+                terminal::print_error_line(format!("warning: {}: {warning}", tuned_path.display()));
+            }
             scenario = tuned.apply(&scenario).map_err(|error| {
                 let (tuned, path) = (tuned_path.display(), path.display());
                 Failure::bad_input(format!("--tuned {tuned}: {error} ({path})"))

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use meshtone::batch::ChannelKind;
 use meshtone::hybrid::{DifferenceChain, Enhancement, Experiment, ExperimentResult};
-use meshtone::scenario::{Scenario, ScenarioError};
+use meshtone::scenario::{Convention, Scenario, ScenarioError};
 use meshtone::signal::{MeanPart, SeparationSettings};
 use meshtone::toml_reader::{ReadResult, TomlDocument, TomlTable, TomlValue};
 
@@ -14,6 +14,8 @@ use crate::scenario_file::{ReadScenarioError, read_text};
 /// What tuning found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tuned {
+    /// Reading of the model that was tuned: under another one the same numbers mean something else.
+    pub convention: Convention,
     /// The three parameters.
     pub enhancement: Enhancement,
     /// (rev) Where the faults' responses are in the gear's cycle, for signals that show none.
@@ -47,6 +49,7 @@ impl Tuned {
         let separation =
             experiment.chain.separation.clone().unwrap_or_else(|| SeparationSettings::new(gear_teeth));
         Self {
+            convention: experiment.base.convention,
             enhancement: result.tuning().enhancement,
             centre_rev: result.simulated().centre_rev(),
             channel: experiment.chain.channel,
@@ -72,6 +75,20 @@ impl Tuned {
             }
         }
         Ok(tuned)
+    }
+
+    /// What a user should know before these values are used for a scenario.
+    ///
+    /// # Arguments
+    /// * `scenario` - that they are used for
+    pub fn warning_for(&self, scenario: &Scenario) -> Option<String> {
+        (scenario.convention != self.convention).then(|| {
+            format!(
+                "was tuned with convention = \"{}\", but the scenario has \"{}\": the same numbers mean something else there",
+                self.convention.name(),
+                scenario.convention.name()
+            )
+        })
     }
 
     /// How difference signals are taken.
@@ -103,9 +120,11 @@ impl Tuned {
 /// ```
 /// use meshtone::batch::ChannelKind;
 /// use meshtone::hybrid::Enhancement;
+/// use meshtone::scenario::Convention;
 /// use meshtone_io::experiment::{Tuned, read_tuned, write_tuned};
 ///
 /// let tuned = Tuned {
+///     convention: Convention::Published,
 ///     enhancement: Enhancement { width_ratio: 0.18, fault_to_harmonics_ratio: 2.25, noise_level: 1.585 },
 ///     centre_rev: 0.03,
 ///     channel: ChannelKind::Vertical,
@@ -125,7 +144,8 @@ pub fn write_tuned(tuned: &Tuned, from: &str) -> String {
     let channel =
         CHANNELS.iter().find(|(_, kind)| *kind == tuned.channel).map_or("vertical", |(name, _)| name);
     let mut text = format!(
-        "# Written by `meshtone tune` from {}.\n\n\
+        "# Written by `meshtone tune` from {}.\n\
+         convention = \"{}\"       # of the simulations that were tuned\n\n\
          [enhancement]                 # of difference signals, in this order\n\
          width_ratio = {width_ratio:?}\n\
          fault_to_harmonics_ratio = {fault_to_harmonics_ratio:?}\n\
@@ -137,6 +157,7 @@ pub fn write_tuned(tuned: &Tuned, from: &str) -> String {
          sidebands = {}\n\
          shaft_orders = {}\n",
         from.replace(char::is_control, " "),
+        tuned.convention.name(),
         tuned.centre_rev,
         tuned.sampling_rate_hz,
         tuned.sidebands,
@@ -171,6 +192,9 @@ pub fn read_tuned(path: &Path) -> Result<Tuned, ReadScenarioError> {
 }
 
 fn tuned(root: &TomlTable<'_>) -> ReadResult<Tuned> {
+    let conventions =
+        [Convention::Corrected, Convention::Published].map(|convention| (convention.name(), convention));
+    let convention = root.optional("convention").map(|value| value.choice(&conventions)).transpose()?;
     let (enhancement, centre_rev) = root.table_or_empty("enhancement")?.read(|table| {
         let above_0 = |key, meaning: &str| {
             let value = table.required(key, meaning)?;
@@ -212,6 +236,7 @@ fn tuned(root: &TomlTable<'_>) -> ReadResult<Tuned> {
         Some(value) => value.array()?.iter().map(key).collect::<ReadResult<_>>()?,
     };
     Ok(Tuned {
+        convention: convention.unwrap_or_default(),
         enhancement,
         centre_rev,
         channel,

@@ -12,7 +12,8 @@ impl ShaftPhase {
     /// A shaft with pulses at equal angles; the first pulse is angle 0.
     ///
     /// Between the pulses PCHIP (monotone, continuous in speed). Missing and doubled pulses are repaired as
-    /// [`repair_pulses`] does, with a warning for each. The phase covers the samples from the first to the last pulse.
+    /// [`repair_pulses`] does, with a warning for each. The phase covers the samples from the first to the last pulse, and at each end the
+    /// one beyond, by a straight line: N pulses once a revolution are N − 1 whole revolutions wherever they fall between samples.
     ///
     /// # Arguments
     /// * `time_s` - (s) the pulses' times, strictly rising; 0 is the recording's first sample
@@ -49,12 +50,22 @@ impl ShaftPhase {
         let (first_s, last_s) = (time_s[0], time_s[time_s.len() - 1]);
         let per_pulse = 1.0 / f64::from(pulses_per_revolution);
         check_speed(stated_speed_hz, (time_s.len() - 1) as f64 * per_pulse / (last_s - first_s))?;
+        let speed_hz = |pulse: usize| per_pulse / (time_s[pulse + 1] - time_s[pulse]);
+        let (first_speed_hz, last_speed_hz) = (speed_hz(0), speed_hz(time_s.len() - 2));
         let angles = (0..time_s.len()).map(|pulse| pulse as f64 * per_pulse).collect();
         let curve = PchipThrough::new(time_s, angles);
-        let first_sample = (first_s * sampling_rate_hz).ceil().max(0.0) as usize;
-        let end = ((last_s * sampling_rate_hz).floor() + 1.0).clamp(0.0, samples as f64) as usize;
-        let times = (first_sample..end).map(|i| i as f64 / sampling_rate_hz);
-        Ok(Self::new(first_sample, curve.at_rising(times))?.with_warnings(warnings))
+        let first_sample = (first_s * sampling_rate_hz).floor().max(0.0) as usize;
+        let end = ((last_s * sampling_rate_hz).ceil() + 1.0).clamp(0.0, samples as f64) as usize;
+        let time_s = |i: usize| i as f64 / sampling_rate_hz;
+        let between = (first_sample..end).map(|i| time_s(i).clamp(first_s, last_s));
+        let mut revolutions = curve.at_rising(between);
+        if let Some(first) = revolutions.first_mut() {
+            *first += (time_s(first_sample) - first_s).min(0.0) * first_speed_hz;
+        }
+        if let Some(last) = revolutions.last_mut() {
+            *last += (time_s(end - 1) - last_s).max(0.0) * last_speed_hz;
+        }
+        Ok(Self::new(first_sample, revolutions)?.with_warnings(warnings))
     }
 }
 
