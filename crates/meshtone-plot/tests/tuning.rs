@@ -104,12 +104,12 @@ fn every_indicator() {
 
 #[test]
 fn tuned_keys_are_told() {
-    let mut experiment = experiment(&LABELS[..2], &TWO);
-    let range = KeyRange::Between { least: 5.0, largest: 15.0, logarithmic: false };
-    experiment.keys = vec![TunedKey { key: "operation.brake_torque_nm".into(), range }];
-    experiment.candidates = 3;
+    let mut experiment = experiment(&LABELS[..4], &TWO);
+    let range = KeyRange::Between { least: 0.01, largest: 0.3, logarithmic: true };
+    experiment.keys = vec![TunedKey { key: "rig.damping_ratio".into(), range }];
+    experiment.candidates = 16;
     let figure = drawn(&experiment, "With a key");
-    assert!(figure.labels().iter().any(|label| label.text.contains("operation.brake_torque_nm = ")));
+    assert!(figure.labels().iter().any(|label| label.text.contains("rig.damping_ratio = ")));
 }
 
 #[test]
