@@ -19,6 +19,14 @@ pub struct OutputDirectory {
     created: Vec<PathBuf>,
 }
 
+/// Where results of a file go unless the user says otherwise: its name without the ending and with `suffix`, in the
+/// current directory. None where the path names no file.
+pub fn named_after(input: &Path, suffix: &str) -> Option<PathBuf> {
+    let mut name = input.file_stem()?.to_os_string();
+    name.push(suffix);
+    Some(PathBuf::from(name))
+}
+
 impl OutputDirectory {
     /// Creates the directory where it does not exist, and tries whether the results can be written to it, so that no
     /// simulation runs whose results could not be kept.

@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use meshtone::hybrid::{HybridError, SimulatedCases, TuningIndicator, difference_signals};
 use meshtone::scenario::{Fault, Scenario};
-use meshtone_io::atomic_file::{check_target, check_writable, write_atomically};
+use meshtone_io::atomic_file::write_atomically;
 use meshtone_io::experiment::{EnhancedHead, EnhancedRecord, Tuned, read_tuned, write_enhanced};
 use meshtone_io::scenario_file::ScenarioFile;
 
 use crate::check::check;
 use crate::failure::Failure;
 use crate::memory;
+use crate::output_directory::{OutputDirectory, named_after};
 use crate::terminal::{print, print_error_line};
 
 const ENHANCED: &str = "enhanced.parquet";
@@ -63,36 +64,18 @@ impl Enhance {
         for warning in warnings {
             print_error_line(format!("warning: {}: {warning}", self.scenario.display()));
         }
-        let directory = self.directory()?;
-        let existed = directory.is_dir();
-        std::fs::create_dir_all(&directory).map_err(|error| {
-            Failure::of_file(
-                error.kind(),
-                format!("cannot create the directory {}: {error}", directory.display()),
-            )
-        })?;
-        let path = directory.join(ENHANCED);
-        check_writable(&directory)?;
-        check_target(&path)?;
-        let written = self.write(&scenario, &tuned, &path);
-        if written.is_err() && !existed {
-            // Only where nothing is in it.
-            let _ = std::fs::remove_dir(&directory);
-        }
-        written
+        let directory = OutputDirectory::for_files(&self.directory()?, &[ENHANCED])?;
+        self.write(&scenario, &tuned, &directory.path().join(ENHANCED))?;
+        directory.keep();
+        Ok(())
     }
 
     fn directory(&self) -> Result<PathBuf, Failure> {
-        if let Some(output) = &self.output {
-            return Ok(output.clone());
-        }
-        let stem = self
-            .scenario
-            .file_stem()
-            .ok_or_else(|| Failure::bad_input(format!("{} is no scenario file", self.scenario.display())))?;
-        let mut name = stem.to_os_string();
-        name.push("_enhanced");
-        Ok(PathBuf::from(name))
+        let default = || named_after(&self.scenario, "_enhanced");
+        self.output
+            .clone()
+            .or_else(default)
+            .ok_or_else(|| Failure::bad_input(format!("{} is no scenario file", self.scenario.display())))
     }
 
     fn write(&self, scenario: &Scenario, tuned: &Tuned, path: &Path) -> Result<(), Failure> {

@@ -9,17 +9,19 @@ use std::sync::atomic::AtomicBool;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use meshtone::hybrid::{Experiment, ExperimentControl, ExperimentResult, Tuning, run_experiment};
-use meshtone_io::atomic_file::{StagedFile, check_target, check_writable};
+use meshtone_io::atomic_file::StagedFile;
 use meshtone_io::experiment::{Tuned, read_experiment, tuning_json, write_tuned};
 use meshtone_plot::tuning_figure;
 
 use crate::failure::Failure;
+use crate::output_directory::{OutputDirectory, named_after};
 use crate::same_file::is_same_file;
 use crate::terminal::{print, print_error_line};
 
 const TUNING: &str = "tuning.json";
 const TUNED: &str = "tuned.toml";
 const FIGURE: [&str; 2] = ["tuning.svg", "tuning.png"];
+const FILES: [&str; 4] = [TUNING, TUNED, FIGURE[0], FIGURE[1]];
 
 /// Tune simulations to what was measured on a rig
 ///
@@ -51,33 +53,25 @@ impl Tune {
     pub fn run(&self) -> Result<(), Failure> {
         let file = read_experiment(&self.experiment)?;
         let directory = self.directory()?;
-        for name in [TUNING, TUNED].into_iter().chain(FIGURE) {
+        for name in FILES {
             let target = directory.join(name);
             if let Some(source) = file.sources.iter().find(|source| is_same_file(source, &target)) {
                 let problem = format!("{} would be replaced, but is read", source.display());
                 return Err(Failure::bad_input(problem).with_help("name another directory with -o"));
             }
         }
-        let existed = directory.is_dir();
-        prepare(&directory)?;
-        let written = self.tune(&file.experiment, &directory);
-        if written.is_err() && !existed {
-            // Only where nothing is in it.
-            let _ = std::fs::remove_dir(&directory);
-        }
-        written
+        let directory = OutputDirectory::for_files(&directory, &FILES)?;
+        self.tune(&file.experiment, directory.path())?;
+        directory.keep();
+        Ok(())
     }
 
     fn directory(&self) -> Result<PathBuf, Failure> {
-        if let Some(output) = &self.output {
-            return Ok(output.clone());
-        }
-        let stem = self.experiment.file_stem().ok_or_else(|| {
-            Failure::bad_input(format!("{} is no experiment file", self.experiment.display()))
-        })?;
-        let mut name = stem.to_os_string();
-        name.push("_tuning");
-        Ok(PathBuf::from(name))
+        let default = || named_after(&self.experiment, "_tuning");
+        self.output
+            .clone()
+            .or_else(default)
+            .ok_or_else(|| Failure::bad_input(format!("{} is no experiment file", self.experiment.display())))
     }
 
     fn tune(&self, experiment: &Experiment, directory: &Path) -> Result<(), Failure> {
@@ -169,21 +163,6 @@ fn remove(path: &Path) -> Result<(), Failure> {
         }
         _ => Ok(()),
     }
-}
-
-/// Creates the directory, and finds out before the simulations whether the results can be written to it.
-fn prepare(directory: &Path) -> Result<(), Failure> {
-    std::fs::create_dir_all(directory).map_err(|error| {
-        Failure::of_file(
-            error.kind(),
-            format!("cannot create the directory {}: {error}", directory.display()),
-        )
-    })?;
-    check_writable(directory)?;
-    for name in [TUNING, TUNED].into_iter().chain(FIGURE) {
-        check_target(&directory.join(name))?;
-    }
-    Ok(())
 }
 
 fn table(experiment: &Experiment, result: &ExperimentResult, directory: &Path) -> String {

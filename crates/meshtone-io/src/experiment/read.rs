@@ -10,18 +10,13 @@ use meshtone::scenario::{Fault, Scenario, ScenarioError};
 use meshtone::signal::{MeanPart, SeparationSettings};
 use meshtone::toml_reader::{ReadResult, TomlDocument, TomlTable, TomlValue};
 
+use super::CHANNELS;
 use super::measured::{self, CaseFiles};
 use crate::scenario_file::{ReadScenarioError, ScenarioFile, read_text};
 
 /// Combinations of the tuned keys' values that are simulated unless the file says otherwise.
 const CANDIDATES: u64 = 160;
 const MOST_CANDIDATES: u64 = 100_000;
-
-const CHANNELS: [(&str, ChannelKind); 3] = [
-    ("horizontal", ChannelKind::Horizontal),
-    ("vertical", ChannelKind::Vertical),
-    ("axial", ChannelKind::Axial),
-];
 
 /// An experiment file that has been read, with everything that it names.
 #[derive(Debug, Clone, PartialEq)]

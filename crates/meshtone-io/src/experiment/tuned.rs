@@ -9,6 +9,7 @@ use meshtone::scenario::{Convention, Scenario, ScenarioError};
 use meshtone::signal::{MeanPart, SeparationSettings};
 use meshtone::toml_reader::{ReadResult, TomlDocument, TomlTable, TomlValue};
 
+use super::CHANNELS;
 use crate::scenario_file::{ReadScenarioError, read_text};
 
 /// What tuning found.
@@ -31,12 +32,6 @@ pub struct Tuned {
     /// Numbers of the scenario that were tuned as well: key and value.
     pub keys: Vec<(String, f64)>,
 }
-
-const CHANNELS: [(&str, ChannelKind); 3] = [
-    ("horizontal", ChannelKind::Horizontal),
-    ("vertical", ChannelKind::Vertical),
-    ("axial", ChannelKind::Axial),
-];
 
 impl Tuned {
     /// What an experiment found.
