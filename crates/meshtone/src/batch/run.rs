@@ -9,7 +9,7 @@ use super::keep::Keep;
 use super::plan::groups;
 use crate::sampling::TimeGrid;
 use crate::scenario::{Scenario, ScenarioError};
-use crate::solver::InstructionSet;
+use crate::solver::{InstructionSet, LANES};
 
 /// (bytes) What may be kept for each thread of simulations that are planned together.
 const WINDOW_BYTES: usize = 16 << 20;
@@ -180,14 +180,14 @@ where
 
     /// Whether so many results wait that no more are begun.
     fn is_full(&self, state: &State<K::Kept, I, F>) -> bool {
-        state.in_flight > 0 && state.waiting.len() >= self.threads * crate::solver::LANES
+        state.in_flight > 0 && state.waiting.len() >= self.threads * LANES
     }
 
     /// Takes the next scenarios from the source and puts them into groups.
     fn plan(&self, state: &mut State<K::Kept, I, F>) {
         let mut window = Vec::new();
         let mut bytes = 0;
-        while window.len() < WINDOW_SCENARIOS * self.threads && bytes < WINDOW_BYTES * self.threads {
+        while !window_is_full(window.len(), bytes, self.threads) {
             let Some(scenario) = state.source.next() else { break };
             bytes += self.keep.kept_bytes(&TimeGrid::new(&scenario));
             window.push((state.numbered, scenario));
@@ -207,5 +207,31 @@ where
         }
         drop(state);
         self.changed.notify_all();
+    }
+}
+
+/// Whether no more scenarios are planned together with `scenarios` that keep `bytes`.
+fn window_is_full(scenarios: usize, bytes: usize, threads: usize) -> bool {
+    // Only whole groups: a group of what is left over would leave most of its lanes idle.
+    scenarios.is_multiple_of(LANES)
+        && (scenarios >= WINDOW_SCENARIOS * threads || bytes >= WINDOW_BYTES * threads)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn window_holds_whole_groups_whatever_is_kept() {
+        for threads in 1..=5 {
+            for kept_bytes in [0, 1 << 10, 1_963_840, 5 << 20, 100 << 20] {
+                let full = (1..).find(|&n| window_is_full(n, n * kept_bytes, threads));
+                let full = full.expect("a window ends");
+                assert_eq!(full % LANES, 0, "{threads} threads, {kept_bytes} bytes");
+                assert!(full <= WINDOW_SCENARIOS * threads);
+                // No more than a group beyond what may be kept.
+                assert!((full - LANES) * kept_bytes < WINDOW_BYTES * threads || full == LANES);
+            }
+        }
     }
 }
