@@ -20,4 +20,4 @@ mod trace;
 mod warnings;
 
 pub use simulate::{Simulation, StageTime, Stages, simulate, stages};
-pub use trace::{Trace, TraceField, trace, trace_at};
+pub use trace::{Trace, TraceField, stage_trace, trace, trace_at};

@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use meshtone::hybrid::{HybridError, SimulatedCases, TuningIndicator, difference_signals};
-use meshtone::scenario::{Fault, Scenario};
+use meshtone::scenario::Scenario;
 use meshtone_io::atomic_file::write_atomically;
-use meshtone_io::experiment::{EnhancedHead, EnhancedRecord, Tuned, read_tuned, write_enhanced};
+use meshtone_io::experiment::{
+    EnhancedDraws, EnhancedHead, EnhancedRecord, Tuned, enhance, read_tuned, write_enhanced,
+};
 use meshtone_io::scenario_file::ScenarioFile;
 
 use crate::check::check;
@@ -79,8 +80,7 @@ impl Enhance {
     }
 
     fn write(&self, scenario: &Scenario, tuned: &Tuned, path: &Path) -> Result<(), Failure> {
-        let (healthy_rms_g, records) = self
-            .enhance(scenario, tuned)
+        let EnhancedDraws { healthy_rms_g, records } = enhance(scenario, tuned, self.seed, self.draws)
             .map_err(|error| Failure::bad_input(format!("{}: {error}", self.scenario.display())))?;
         let head = EnhancedHead { scenario, tuned, seed: self.seed, healthy_rms_g };
         write_atomically(path, |file| write_enhanced(file, head, &records))?;
@@ -98,42 +98,4 @@ impl Enhance {
             path.display()
         ))
     }
-
-    fn enhance(&self, scenario: &Scenario, tuned: &Tuned) -> Result<(f64, Vec<EnhancedRecord>), HybridError> {
-        let healthy = Scenario { fault: None, ..scenario.clone() };
-        let both = if scenario.fault.is_some() { vec![healthy, scenario.clone()] } else { vec![healthy] };
-        let mut signals = difference_signals(both, &tuned.chain(scenario.gears.gear_teeth))?;
-        // A healthy signal does not show where a fault would be.
-        let centre_rev = match signals.len() {
-            1 => tuned.centre_rev,
-            _ => SimulatedCases::new(signals.clone())?.centre_rev(),
-        };
-        let healthy = signals.swap_remove(0);
-        let difference = signals.pop().unwrap_or_else(|| healthy.clone());
-        let enhanced = tuned.enhancement.without_noise(&difference, &healthy, centre_rev)?;
-        let noise = 1.0 + tuned.enhancement.noise_level.powi(2);
-        let healthy_rms_g = enhanced.healthy_rms * noise.sqrt();
-        let label = scenario.fault.as_ref().map_or("healthy", Fault::kind);
-        // Files of different scenarios must not share their noise.
-        let noise_seed = self.seed ^ identity(scenario);
-        let record = |draw: u64| {
-            let mut signal = enhanced.with_noise(noise_seed, draw)?;
-            signal.iter_mut().for_each(|value| *value /= healthy_rms_g);
-            Ok(EnhancedRecord {
-                label: label.to_owned(),
-                draw,
-                relative_rms: TuningIndicator::Rms.measure(&signal)?,
-                kurtosis: TuningIndicator::Kurtosis.measure(&signal)?,
-                relative_difference: signal,
-            })
-        };
-        Ok((healthy_rms_g, (0..self.draws).map(record).collect::<Result<_, HybridError>>()?))
-    }
-}
-
-/// A number that stands for the whole scenario (FNV-1a of its file).
-fn identity(scenario: &Scenario) -> u64 {
-    scenario.to_toml().bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
 }

@@ -1,4 +1,4 @@
-//! Enhanced difference signals as Parquet.
+//! Enhanced difference signals, and their Parquet file.
 
 use std::io::{self, Write};
 use std::sync::Arc;
@@ -6,7 +6,8 @@ use std::sync::Arc;
 use arrow::array::{ArrayRef, Float32Builder, Float64Array, ListBuilder, StringArray, UInt64Array};
 use arrow::datatypes::{DataType, Field, Schema};
 use arrow::record_batch::RecordBatch;
-use meshtone::scenario::Scenario;
+use meshtone::hybrid::{HybridError, SimulatedCases, TuningIndicator, difference_signals};
+use meshtone::scenario::{Fault, Scenario};
 use parquet::arrow::ArrowWriter;
 use parquet::basic::{Compression, ZstdLevel};
 use parquet::file::metadata::KeyValue;
@@ -29,6 +30,68 @@ pub struct EnhancedRecord {
     pub kurtosis: f64,
     /// One cycle of the gear, over the rms of the enhanced healthy signal.
     pub relative_difference: Vec<f64>,
+}
+
+/// Draws of a scenario's enhanced difference signal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnhancedDraws {
+    /// (g) Rms of the simulated healthy signal, enhanced: what the records are divided by.
+    pub healthy_rms_g: f64,
+    /// The draws.
+    pub records: Vec<EnhancedRecord>,
+}
+
+/// Simulates a scenario and its healthy counterpart, and enhances the gear's difference signal.
+///
+/// # Arguments
+/// * `scenario` - what is simulated; where keys were tuned, [`Tuned::apply`] has put them in
+/// * `tuned` - how it is enhanced
+/// * `seed` - of the noise; the same seed and scenario give the same draws
+/// * `draws` - how many, at least 1
+///
+/// # Errors
+/// A scenario that cannot be simulated; a chain that its signals are too short or too slow for.
+pub fn enhance(
+    scenario: &Scenario,
+    tuned: &Tuned,
+    seed: u64,
+    draws: u64,
+) -> Result<EnhancedDraws, HybridError> {
+    let healthy = Scenario { fault: None, ..scenario.clone() };
+    let both = if scenario.fault.is_some() { vec![healthy, scenario.clone()] } else { vec![healthy] };
+    let mut signals = difference_signals(both, &tuned.chain(scenario.gears.gear_teeth))?;
+    // A healthy signal does not show where a fault would be.
+    let centre_rev = match signals.len() {
+        1 => tuned.centre_rev,
+        _ => SimulatedCases::new(signals.clone())?.centre_rev(),
+    };
+    let healthy = signals.swap_remove(0);
+    let difference = signals.pop().unwrap_or_else(|| healthy.clone());
+    let enhanced = tuned.enhancement.without_noise(&difference, &healthy, centre_rev)?;
+    let noise = 1.0 + tuned.enhancement.noise_level.powi(2);
+    let healthy_rms_g = enhanced.healthy_rms * noise.sqrt();
+    let label = scenario.fault.as_ref().map_or("healthy", Fault::kind);
+    // Files of different scenarios must not share their noise.
+    let noise_seed = seed ^ identity(scenario);
+    let record = |draw: u64| {
+        let mut signal = enhanced.with_noise(noise_seed, draw)?;
+        signal.iter_mut().for_each(|value| *value /= healthy_rms_g);
+        Ok(EnhancedRecord {
+            label: label.to_owned(),
+            draw,
+            relative_rms: TuningIndicator::Rms.measure(&signal)?,
+            kurtosis: TuningIndicator::Kurtosis.measure(&signal)?,
+            relative_difference: signal,
+        })
+    };
+    Ok(EnhancedDraws { healthy_rms_g, records: (0..draws).map(record).collect::<Result<_, HybridError>>()? })
+}
+
+/// A number that stands for the whole scenario (FNV-1a of its file).
+fn identity(scenario: &Scenario) -> u64 {
+    scenario.to_toml().bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
 }
 
 /// What all records of a file have in common.

@@ -7,7 +7,7 @@ mod recordings;
 mod tuned;
 mod tuning_json;
 
-pub use enhanced::{EnhancedHead, EnhancedRecord, write_enhanced};
+pub use enhanced::{EnhancedDraws, EnhancedHead, EnhancedRecord, enhance, write_enhanced};
 pub use read::{ExperimentFile, read_experiment};
 pub use tuned::{Tuned, read_tuned, write_tuned};
 pub use tuning_json::tuning_json;

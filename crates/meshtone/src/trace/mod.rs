@@ -8,6 +8,8 @@ pub(crate) use average::gear_record;
 pub use run::{trace, trace_at};
 use stages::static_stages;
 
+use crate::simulate::Stages;
+
 /// A named array.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TraceField {
@@ -17,6 +19,25 @@ pub struct TraceField {
     pub shape: Vec<usize>,
     /// The numbers, the last dimension running fastest.
     pub values: Vec<f64>,
+}
+
+/// The fields of a trace that belong to the stages before the time loop.
+///
+/// # Arguments
+/// * `stages` - of a simulation
+///
+/// ```
+/// use meshtone::scenario::Scenario;
+///
+/// let stages = meshtone::stages(&Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0))?;
+/// let trace = meshtone::stage_trace(&stages);
+/// assert_eq!(trace.get("natural_frequencies_hz").map(|field| field.values.len()), Some(13));
+/// # Ok::<(), meshtone::scenario::ScenarioError>(())
+/// ```
+pub fn stage_trace(stages: &Stages) -> Trace {
+    let mut trace = Trace::default();
+    static_stages(&mut trace, stages);
+    trace
 }
 
 /// Every stage's output; the fields are described in the documentation's chapter "Trace".
