@@ -72,8 +72,13 @@ impl PhaseOptions {
     /// What tooth 1 of a wheel is.
     pub fn first_tooth(&self, wheel: &Wheel) -> &'static str {
         match self.source() {
-            "scenario" if wheel.is_first_damaged => "1: the damaged one",
-            "scenario" => "1: enters contact first",
+            "scenario" => match wheel.damaged_tooth {
+                None => "each enters contact at the left of its pitch",
+                Some(tooth) if tooth.is_missing => {
+                    "each enters contact at the left of its pitch; 1 is missing"
+                }
+                Some(_) => "each enters contact at the left of its pitch; 1 is damaged",
+            },
             "mesh tone" => "1: chosen by chance",
             "tachometer" | "pulse times" if wheel.is_on_shaft && self.pulses_per_rev == 1 => {
                 "1: in mesh at the pulse"

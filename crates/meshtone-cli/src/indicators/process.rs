@@ -1,9 +1,12 @@
 //! One recording's records.
 
+use meshtone::scenario::{Fault, Gears, Scenario};
 use meshtone::signal::{
     AngularSettings, ChainSettings, Record, SeparationSettings, Shaft, ShaftPhase, SignalError,
     SignalWarning, process_channel, process_segments,
 };
+use meshtone::tooth::contact_ratio;
+use meshtone_plot::DamagedTooth;
 
 use super::options::{PhaseOptions, ProcessingOptions};
 use super::phase::{Turning, simulated};
@@ -20,8 +23,8 @@ pub struct Wheel {
     pub teeth: u32,
     /// Whether it is on the shaft that speed or pulses are of.
     pub is_on_shaft: bool,
-    /// Whether tooth 1 is known to be damaged.
-    pub is_first_damaged: bool,
+    /// The damaged tooth, where it is known to be tooth 1.
+    pub damaged_tooth: Option<DamagedTooth>,
 }
 
 /// What one recording shows about one wheel.
@@ -105,19 +108,27 @@ fn turning(input: &Input, phase: &PhaseOptions) -> Result<(Turning, Vec<Wheel>),
                 name: shaft.wheel(),
                 teeth: shafts.teeth(shaft),
                 is_on_shaft: shaft == Shaft::Pinion,
-                is_first_damaged: shaft == Shaft::Gear && scenario.fault.is_some(),
+                damaged_tooth: if shaft == Shaft::Gear { damaged_tooth(&scenario) } else { None },
             });
             Ok((Turning::Simulated(shafts), wheels.to_vec()))
         }
         _ => {
             phase.check(&input.source)?;
             let wheel =
-                |(name, teeth)| Wheel { name, teeth, is_on_shaft: name == "wheel", is_first_damaged: false };
+                |(name, teeth)| Wheel { name, teeth, is_on_shaft: name == "wheel", damaged_tooth: None };
             let teeth = [("wheel", phase.teeth), ("mate", phase.mate_teeth)];
             let wheels = teeth.into_iter().filter_map(|(name, teeth)| Some(wheel((name, teeth?))));
             Ok((Turning::Measured(phase.measured(input)?), wheels.collect()))
         }
     }
+}
+
+/// The gear's tooth that the scenario damages.
+fn damaged_tooth(scenario: &Scenario) -> Option<DamagedTooth> {
+    let Gears { pinion_teeth, gear_teeth, pressure_angle_deg, .. } = scenario.gears;
+    let contact_pitches = contact_ratio(pinion_teeth, gear_teeth, pressure_angle_deg.to_radians());
+    let is_missing = |fault: &Fault| matches!(fault, Fault::MissingTooth);
+    scenario.fault.as_ref().map(|fault| DamagedTooth { contact_pitches, is_missing: is_missing(fault) })
 }
 
 fn measured(

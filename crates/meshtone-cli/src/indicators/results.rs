@@ -98,7 +98,7 @@ impl Series {
             return refuse("is in", here, format!("in {there}"));
         }
         for (wheel, here) in self.wheels.iter_mut().zip(wheels) {
-            wheel.is_first_damaged = here.is_first_damaged;
+            wheel.damaged_tooth = here.damaged_tooth;
         }
         Ok(())
     }
