@@ -95,6 +95,20 @@ fn columns_are_chosen_and_calibrated() {
         message,
         "run.csv: has no column `nota` (did you mean `note`?); it has when, note, a [mV], b, c"
     );
+    // Time is no channel, whether its times are needed or not.
+    for options in [rate(1.0), RecordingOptions::default()] {
+        for time in ["t".into(), 1.into()] {
+            let message = refused(
+                "run.csv",
+                b"t [s],a\n0,1\n1,3\n",
+                &RecordingOptions { channels: vec![time], ..options.clone() },
+            );
+            assert_eq!(
+                message,
+                "run.csv: column `t [s]` is the time; choose another (option channels); it has t [s], a"
+            );
+        }
+    }
     let message = refused("run.csv", content, &RecordingOptions { channels: vec![9.into()], ..rate(1.0) });
     assert!(message.contains("has no column number 9; it has when, note"), "{message}");
     let message = refused("run.csv", content, &RecordingOptions { channels: vec!["c".into()], ..rate(1.0) });

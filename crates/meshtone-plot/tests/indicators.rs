@@ -128,7 +128,11 @@ fn no_order_is_off_the_chart() {
     let figure = of_tones(&tones(5555, 14_440), None);
     shown(
         &figure,
-        &["Order spectrum, all 7220 orders", "shown below, 10 % of the power", "(order 1000 is 20000 Hz)"],
+        &[
+            "Order spectrum, all 7220 orders",
+            "shown below, 10 % of the power",
+            "(order 1000 is 20000 Hz at mean speed)",
+        ],
     );
     shown(&figure, &["Orders 1 to 209", "7000"]);
     let figure = of_tones(&tones(100, 14_440), None);

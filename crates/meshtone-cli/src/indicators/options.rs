@@ -92,7 +92,7 @@ pub struct ProcessingOptions {
     /// The shaft orders 1 to N belong to it; 0: none
     #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(..=1_000_000))]
     pub low_orders: u32,
-    /// Cut each recording into segments of M revolutions (of each wheel), and make a series of them
+    /// Cut each recording into segments of M revolutions (of each wheel), at least 2, and make a series of them
     #[arg(long, value_name = "M", value_parser = several)]
     pub revolutions: Option<u64>,
     /// How the signal is read between its samples

@@ -104,7 +104,8 @@ fn help(subject: Subject, error: &SignalError) -> Option<String> {
         }
         (MeshOrderBeyondNyquist { .. }, Measured { speed_hz, by }) => {
             return Some(format!(
-                "the shaft turns at {speed_hz:.4} Hz by the {by}: check that and --teeth, or record at a higher rate"
+                "the shaft turns at {speed_hz:.4} Hz by the {by}: check that (revolutions per second, not rpm) and --teeth, or \
+                 record at a higher rate"
             ));
         }
         (MeshOrderBeyondNyquist { .. }, _) => "simulate at a higher solver.sampling_rate_hz",

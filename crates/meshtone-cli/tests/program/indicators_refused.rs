@@ -57,6 +57,11 @@ fn columns_and_files() {
         &["no column `bering`", "did you mean `bearing`", "bearing [g], tacho [V]"],
     );
     refused(&workplace, &named("7"), &["run.csv", "7"]);
+    refused(
+        &workplace,
+        &named("1"),
+        &["column `time_s` is the time", "(--channel)", "bearing [g], tacho [V]"],
+    );
     let of = |name: &'static str| [&[name], &CONSTANT[..]].concat();
     refused(&workplace, &of("absent.csv"), &["there is no recording absent.csv"]);
     refused(&workplace, &of("."), &["."]);
