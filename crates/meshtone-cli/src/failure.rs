@@ -4,9 +4,9 @@ use std::io::ErrorKind;
 use std::process::ExitCode;
 
 use meshtone::scenario::ScenarioError;
+use meshtone_io::ReadResultsError;
 use meshtone_io::atomic_file::WriteFileError;
 use meshtone_io::scenario_file::ReadScenarioError;
-use meshtone_io::signals::ReadSignalsError;
 
 /// Why a command did not succeed.
 #[derive(Debug)]
@@ -113,15 +113,15 @@ impl From<WriteFileError> for Failure {
     }
 }
 
-impl From<ReadSignalsError> for Failure {
-    fn from(error: ReadSignalsError) -> Self {
+impl From<ReadResultsError> for Failure {
+    fn from(error: ReadResultsError) -> Self {
         match &error {
-            ReadSignalsError::Unreadable { path, source } if source.kind() == ErrorKind::NotFound => {
+            ReadResultsError::Unreadable { path, source } if source.kind() == ErrorKind::NotFound => {
                 Self::bad_input(format!("there is no file {}", path.display()))
                     .with_help("name the directory that `meshtone simulate` wrote its results to")
             }
-            ReadSignalsError::Unreadable { source, .. } => Self::of_file(source.kind(), error.to_string()),
-            ReadSignalsError::Foreign { .. } | ReadSignalsError::Scenario { .. } => {
+            ReadResultsError::Unreadable { source, .. } => Self::of_file(source.kind(), error.to_string()),
+            ReadResultsError::Foreign { .. } | ReadResultsError::Scenario { .. } => {
                 Self::bad_input(error.to_string())
                     .with_help("simulate again with this version: `meshtone simulate SCENARIO.toml -o DIR`")
             }

@@ -4,7 +4,8 @@
 mod recording_help;
 
 use meshtone_io::recording::{
-    Calibration, DecimalSign, Recording, RecordingOptions, Separator, TextOptions, TimeColumn,
+    Calibration, DecimalSign, Recording, RecordingOptions, RecordingWarning, Separator, TextOptions,
+    TimeColumn,
 };
 use recording_help::{rate, read, refused};
 
@@ -94,6 +95,20 @@ fn columns_are_chosen_and_calibrated() {
         message,
         "run.csv: has no column `nota` (did you mean `note`?); it has when, note, a [mV], b, c"
     );
+    // Time is no channel, whether its times are needed or not.
+    for options in [rate(1.0), RecordingOptions::default()] {
+        for time in ["t".into(), 1.into()] {
+            let message = refused(
+                "run.csv",
+                b"t [s],a\n0,1\n1,3\n",
+                &RecordingOptions { channels: vec![time], ..options.clone() },
+            );
+            assert_eq!(
+                message,
+                "run.csv: column `t [s]` is the time; choose another (option channels); it has t [s], a"
+            );
+        }
+    }
     let message = refused("run.csv", content, &RecordingOptions { channels: vec![9.into()], ..rate(1.0) });
     assert!(message.contains("has no column number 9; it has when, note"), "{message}");
     let message = refused("run.csv", content, &RecordingOptions { channels: vec!["c".into()], ..rate(1.0) });
@@ -162,4 +177,36 @@ fn time_must_be_uniform() {
     assert!(message.contains("option sampling_rate_hz") && message.contains("it has time, a"), "{message}");
     let recording = read("run.csv", content(&times).as_bytes(), &rate(50_000.0)).unwrap();
     assert_eq!((recording.len(), recording.channels.len()), (999, 1));
+}
+
+#[test]
+fn a_last_number_that_may_be_cut_off_is_warned_about() {
+    let warned = |content: &str| text(content).warnings;
+    let cut = |line: u64, column: &str, text: &str| {
+        [RecordingWarning::MayBeCut { line, column: column.to_string(), text: text.to_string() }]
+    };
+    let head = "time,a [g]\n0.0,0.125\n0.1,-1.125\n";
+    for (end, text) in [("0.2,2.12", "2.12"), ("0.2,2.", "2."), ("0.2,2", "2"), ("0.2,2.1255", "2.1255")] {
+        assert_eq!(warned(&format!("{head}{end}")), cut(4, "a [g]", text), "{end}");
+        assert_eq!(warned(&format!("{head}{end}\n")), []);
+        assert_eq!(warned(&format!("{head}{end} ")), []);
+        assert_eq!(warned(&format!("{head}{end}\r")), []);
+    }
+    // Written like the others, it is whole.
+    assert_eq!(warned(&format!("{head}0.2,17.625")), []);
+    assert_eq!(warned("time;a\n0,0;1,25e-03\n0,1;-1,75e+00\n0,2;-2,25e+01"), []);
+    assert_eq!(warned("time;a\n0,0;1,25e-03\n0,1;-1,75e+00\n0,2;-2,25e+0"), cut(4, "a", "-2,25e+0"));
+    assert_eq!(warned("time,tacho\n0.0,5\n0.1,0\n0.2,5"), []);
+    assert_eq!(warned("time,rpm\n0.0,1200\n0.1,1200\n0.2,120"), cut(4, "rpm", "120"));
+    // Another sign ends the number.
+    assert_eq!(warned("time,a,\n0.0,1.25,\n0.1,1.25,\n0.2,1.2,"), []);
+    assert_eq!(warned("\"time\",\"a\"\n\"0,0\",\"1,5\"\n\"0,1\",\"1,55\""), []);
+    assert_eq!(warned("time,a\n0.0,1.25\n0.1,1.25\n# the end"), []);
+    // A column that is not read does no harm.
+    let first = RecordingOptions { channels: vec!["a".into()], ..rate(10.0) };
+    assert_eq!(read("run.csv", b"a,b\n1.25,2.25\n1.25,2.2", &first).unwrap().warnings, []);
+    // Longer than one block.
+    let long = "time,a\n".to_string() + &(0..200_000).map(|i| format!("{i},1.250\n")).collect::<String>();
+    assert_eq!(warned(&long), []);
+    assert_eq!(warned(&long[..long.len() - 2]), cut(200_001, "a", "1.25"));
 }

@@ -9,8 +9,9 @@ use arrow::datatypes::{DataType, Field, Schema};
 use arrow::record_batch::RecordBatch;
 use meshtone::scenario::Scenario;
 use meshtone::signal::Channels;
+use meshtone_io::ReadResultsError;
 use meshtone_io::run_identity::RunIdentity;
-use meshtone_io::signals::{RATE_KEY, RUN_KEY, ReadSignalsError, SCENARIO_KEY, read_signals, write_signals};
+use meshtone_io::signals::{RATE_KEY, RUN_KEY, SCENARIO_KEY, read_signals, write_signals};
 use parquet::arrow::ArrowWriter;
 use parquet::file::metadata::KeyValue;
 use tempfile::tempdir;
@@ -42,7 +43,7 @@ fn refused(file: File, path: &std::path::Path, schema: Schema, metadata: Vec<Key
     writer.write(&RecordBatch::try_new(schema, columns).unwrap()).unwrap();
     writer.close().unwrap();
     let error = read_signals(path).unwrap_err();
-    assert!(matches!(error, ReadSignalsError::Foreign { .. } | ReadSignalsError::Scenario { .. }));
+    assert!(matches!(error, ReadResultsError::Foreign { .. } | ReadResultsError::Scenario { .. }));
     assert!(error.to_string().contains(words), "{error}");
 }
 
@@ -94,5 +95,5 @@ fn cut_files_are_refused() {
     let error = read_signals(&path).unwrap_err();
     assert!(error.to_string().contains("not a whole Parquet file"), "{error}");
     let error = read_signals(&directory.path().join("absent")).unwrap_err();
-    assert!(matches!(error, ReadSignalsError::Unreadable { .. }));
+    assert!(matches!(error, ReadResultsError::Unreadable { .. }));
 }

@@ -13,6 +13,7 @@
 mod axes;
 mod canvas;
 mod curve;
+mod damaged_tooth;
 mod error;
 mod figure;
 mod font;
@@ -27,6 +28,7 @@ mod ticks;
 pub mod trend;
 mod tuning;
 
+pub use damaged_tooth::DamagedTooth;
 pub use error::PlotError;
 pub use figure::{Figure, Label};
 pub use tuning::tuning_figure;

@@ -2,17 +2,22 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod support;
+
 use std::f64::consts::TAU;
 
 use meshtone::signal::{
     ChainSettings, Record, SeparationSettings, ShaftPhase, SynchronousAverage, process_average,
     process_channel,
 };
-use meshtone_plot::Figure;
 use meshtone_plot::record::{self, RecordFigure, SignalView, WheelView};
 use meshtone_plot::trend::{self, Trend, TrendFigure};
+use meshtone_plot::{DamagedTooth, Figure};
+use support::check;
 
 const RATE_HZ: f64 = 1e4;
+/// (bytes) Of an SVG: curves of all samples, a line for each order, or a trend of thousands of records.
+const LARGEST: usize = 1_500_000;
 
 fn signal(size: f64) -> Vec<f64> {
     let mesh = |t: f64| (1.0 + 0.1 * (TAU * 20.0 * t).cos()) * (TAU * 380.0 * t).cos();
@@ -28,24 +33,6 @@ fn processed(signal: &[f64], shaft_hz: f64, teeth: u32, sidebands: usize, low_or
     };
     let settings = ChainSettings { separation: Some(separation), ..ChainSettings::default() };
     process_channel(signal, &phase, teeth, &settings).unwrap()
-}
-
-fn check(figure: &Figure) {
-    roxmltree::Document::parse(figure.svg()).unwrap();
-    assert!(figure.svg().len() < 1_500_000, "{} bytes", figure.svg().len());
-    let (width, height) = figure.size_px();
-    let labels = figure.labels();
-    for (index, label) in labels.iter().enumerate() {
-        let inside = label.left >= 0.0
-            && label.top >= 0.0
-            && label.right <= f64::from(width)
-            && label.bottom <= f64::from(height);
-        assert!(inside, "{label:?} leaves the figure");
-        for other in &labels[index + 1..] {
-            assert!(!label.overlaps(other), "{label:?} overlaps {other:?}");
-        }
-    }
-    assert!(figure.png().unwrap().starts_with(b"\x89PNG"));
 }
 
 fn shown(figure: &Figure, words: &[&str]) {
@@ -70,7 +57,8 @@ fn one_wheel_and_both_of_a_pair() {
             sidebands,
             low_orders,
             first_tooth: "1: in mesh at the first sample",
-            is_first_damaged: name == "gear",
+            damaged_tooth: (name == "gear")
+                .then_some(DamagedTooth { contact_pitches: 1.6, is_missing: false }),
             record,
         };
         let wheels = [
@@ -89,7 +77,7 @@ fn one_wheel_and_both_of_a_pair() {
         for wheels in [&wheels[..1], &wheels[1..2], &wheels[..2], &wheels[1..]] {
             let title = "a recording with a very long name ".repeat(9);
             let figure = record::draw(&RecordFigure { title: &title, facts: &facts, signal, wheels });
-            check(&figure);
+            check(&figure, LARGEST);
             shown(
                 &figure,
                 &["Time (s)", "Signal (m/s²)", "Amplitude (m/s²)", "Order spectrum", "Tooth of the"],
@@ -97,8 +85,85 @@ fn one_wheel_and_both_of_a_pair() {
             shown(&figure, &["mesh orders", "difference", "envelope", "FM4"]);
         }
         let figure = record::draw(&RecordFigure { title: "run", facts: &[], signal, wheels: &wheels[..2] });
-        shown(&figure, &["±2 sidebands", "shaft orders 1–7", "tooth 1, the damaged one", "Pinion, 19 teeth"]);
+        shown(&figure, &["±2 sidebands", "shaft orders 1–7", "damaged tooth in contact", "Pinion, 19 teeth"]);
     }
+}
+
+/// A record whose average is the mesh tone of 38 teeth and a tone at another order.
+fn tones(order: usize, points: usize) -> Record {
+    let turn = |i: usize| TAU * i as f64 / points as f64;
+    let value = |i: usize| (38.0 * turn(i)).cos() + 3.0 * (order as f64 * turn(i)).cos();
+    let values = (0..points).map(value).collect();
+    let average = SynchronousAverage { revolutions: 17, nyquist_order: points as f64 / 2.0, values };
+    process_average(average, 38, &ChainSettings::default()).unwrap()
+}
+
+fn of_tones(record: &Record, damaged_tooth: Option<DamagedTooth>) -> Figure {
+    let samples = [0.0, 1.0];
+    let signal = SignalView {
+        quantity: "bearing",
+        unit: Some("g"),
+        sampling_rate_hz: RATE_HZ,
+        start_s: 0.0,
+        samples: &samples,
+    };
+    let wheel = WheelView {
+        name: "gear",
+        teeth: 38,
+        mean_speed_hz: 20.0,
+        sidebands: 2,
+        low_orders: 7,
+        first_tooth: "each enters contact at the left of its pitch",
+        damaged_tooth,
+        record,
+    };
+    let figure = record::draw(&RecordFigure { title: "tones", facts: &[], signal, wheels: &[wheel; 2] });
+    check(&figure, LARGEST);
+    figure
+}
+
+// In one column of two there is room for some 200 orders, one by one.
+#[test]
+fn no_order_is_off_the_chart() {
+    let figure = of_tones(&tones(5555, 14_440), None);
+    shown(
+        &figure,
+        &[
+            "Order spectrum, all 7220 orders",
+            "shown below, 10 % of the power",
+            "(order 1000 is 20000 Hz at mean speed)",
+        ],
+    );
+    shown(&figure, &["Orders 1 to 209", "7000"]);
+    let figure = of_tones(&tones(100, 14_440), None);
+    shown(&figure, &["shown below, 100 % of the power"]);
+    // Where all orders have room they are shown once.
+    let figure = of_tones(&tones(100, 300), None);
+    assert!(!figure.labels().iter().any(|label| label.text.contains("shown below")));
+    shown(&figure, &["Order spectrum"]);
+}
+
+#[test]
+fn the_damaged_tooth_is_tinted_as_long_as_it_is_in_contact() {
+    let tones = tones(5555, 14_440);
+    let left_to_right = |contact_pitches: f64| {
+        let figure = of_tones(&tones, Some(DamagedTooth { contact_pitches, is_missing: false }));
+        let document = roxmltree::Document::parse(figure.svg()).unwrap();
+        let tinted = |node: &roxmltree::Node| node.attribute("fill") == Some("#d55e00");
+        let paths: Vec<String> =
+            document.descendants().filter(tinted).map(|node| node.attribute("d").unwrap().into()).collect();
+        // For each wheel average and difference, and what explains them.
+        assert_eq!(paths.len(), 8);
+        // `M<left> <top>L<right> <top>L…`
+        let mut ends = paths[1].split(['M', 'L', ' ']).filter(|part| !part.is_empty());
+        let left: f64 = ends.next().unwrap().parse().unwrap();
+        let right: f64 = ends.nth(1).unwrap().parse().unwrap();
+        right - left
+    };
+    let pitch = left_to_right(1.0);
+    assert!((left_to_right(1.609) / pitch - 1.609).abs() < 2e-3);
+    let missing = DamagedTooth { contact_pitches: 1.6, is_missing: true };
+    shown(&of_tones(&tones, Some(missing)), &["turn of the missing tooth"]);
 }
 
 #[test]
@@ -121,11 +186,11 @@ fn nothing_but_the_mesh_tone() {
         sidebands: 2,
         low_orders: 7,
         first_tooth: "1: in mesh at the pulse",
-        is_first_damaged: false,
+        damaged_tooth: None,
         record: &record,
     };
     let figure = record::draw(&RecordFigure { title: "tone", facts: &[], signal, wheels: &[wheel] });
-    check(&figure);
+    check(&figure, LARGEST);
     shown(&figure, &["FM4 –", "Signal (unit not stated)"]);
 }
 
@@ -156,7 +221,7 @@ fn trends_of_any_length_with_gaps() {
                 indicators,
             };
             let figure = trend::draw(&figure);
-            check(&figure);
+            check(&figure, LARGEST);
             shown(&figure, &["not defined", "gear, 38 teeth", "Recording", "(m/s²)"]);
         }
     }

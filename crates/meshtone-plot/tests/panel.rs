@@ -10,6 +10,9 @@ use meshtone::{Simulation, simulate};
 use meshtone_plot::{Figure, PlotError, panel};
 use support::check;
 
+/// (bytes) Of an SVG.
+const LARGEST: usize = 400_000;
+
 fn simulated(scenario: &Scenario) -> Simulation {
     let mut scenario = scenario.clone();
     scenario.solver.sampling_rate_hz = 2e4;
@@ -20,7 +23,7 @@ fn simulated(scenario: &Scenario) -> Simulation {
 fn drawn(scenario: &Scenario) -> Figure {
     let simulation = simulated(scenario);
     let figure = panel::draw(&simulation.stages, &simulation.channels).unwrap();
-    check(&figure);
+    check(&figure, LARGEST);
     figure
 }
 
@@ -111,7 +114,7 @@ fn the_png_has_the_panels_size() {
 fn the_run_stands_in_both_files() {
     let (_, scenario) = support::gallery().remove(0);
     let figure = drawn(&scenario).of_run("0123<ab>cd");
-    check(&figure);
+    check(&figure, LARGEST);
     assert!(figure.svg().contains("<metadata>meshtone.run: 0123abcd</metadata>"));
     let png = figure.png().unwrap();
     let reader = png::Decoder::new(std::io::Cursor::new(&png)).read_info().unwrap();
@@ -273,7 +276,7 @@ fn kept_signals_that_start_within_a_revolution() {
     let Simulation { stages, channels, .. } = simulated(&scenario);
     let per_gear = stages.time.samples_per_pinion_revolution * 38 / 17;
     assert_ne!(stages.time.first_kept_sample % per_gear, 0);
-    check(&panel::draw(&stages, &channels).unwrap());
+    check(&panel::draw(&stages, &channels).unwrap(), LARGEST);
 }
 
 #[test]
@@ -283,7 +286,7 @@ fn awkward_signals() {
     let like = |values: Vec<f64>| Channels { vertical_g: values, ..channels.clone() };
     let panel = |channels: &Channels| {
         let figure = panel::draw(&stages, channels).unwrap();
-        check(&figure);
+        check(&figure, LARGEST);
         figure.png().unwrap();
         figure
     };
@@ -311,6 +314,6 @@ fn no_samples_at_changing_speed() {
     scenario.operation.speed_profile_hz = Some(Profile { time_s: vec![0.0, 1.5], value: vec![20.0, 40.0] });
     let simulation = simulated(&scenario);
     let figure = panel::draw(&simulation.stages, &Channels::default()).unwrap();
-    check(&figure);
+    check(&figure, LARGEST);
     assert_shows(&figure, &["no samples were kept"]);
 }

@@ -9,6 +9,9 @@ use meshtone::scenario::*;
 use meshtone_plot::{Figure, PlotError, tuning_figure};
 use support::check;
 
+/// (bytes) Of an SVG.
+const LARGEST: usize = 400_000;
+
 /// A pair with more and more of a tooth's tip lost.
 fn experiment(labels: &[&str], indicators: &[TuningIndicator]) -> Experiment {
     let mut base = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
@@ -44,7 +47,7 @@ fn result(experiment: &Experiment) -> ExperimentResult {
 
 fn drawn(experiment: &Experiment, title: &str) -> Figure {
     let figure = tuning_figure(experiment, &result(experiment), title).unwrap();
-    check(&figure);
+    check(&figure, LARGEST);
     assert_eq!(figure.size_px(), (1600, 1000));
     figure
 }
@@ -98,7 +101,7 @@ fn every_indicator() {
     tuning.original = original.predict(indicators, &Enhancement::default()).unwrap();
     tuning.enhanced = original.predict(indicators, &tuning.enhancement).unwrap();
     let figure = tuning_figure(&all, &result, "All").unwrap();
-    check(&figure);
+    check(&figure, LARGEST);
     assert!(has(&figure, "Skewness of the envelope"));
 }
 

@@ -6,7 +6,7 @@ mod published_model;
 use meshtone::dynamics::coordinates::*;
 use meshtone::trace_at;
 use ndarray::ArrayD;
-use published_model::{Reference, reference, scenario};
+use published_model::{Reference, for_each_scenario, reference, scenario};
 
 /// How a field is compared. Quantities of different units are never compared with one scale.
 #[derive(Debug, Clone, Copy)]
@@ -205,23 +205,4 @@ fn check(name: &str) {
     assert!(failures.is_empty(), "{name}:\n{}", failures.join("\n"));
 }
 
-macro_rules! scenarios {
-    ($($name:ident),*) => {$(
-        #[test]
-        fn $name() {
-            check(stringify!($name));
-        }
-    )*};
-}
-
-scenarios!(
-    healthy_din0,
-    healthy_din7,
-    missing_din0,
-    breakage_din7,
-    partial_din0,
-    through_din0,
-    through_circ_din7,
-    destruction_din0,
-    destruction_slope_din0
-);
+for_each_scenario!(check);

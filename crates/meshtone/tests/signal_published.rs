@@ -13,7 +13,7 @@ mod signal;
 
 use meshtone::signal::*;
 use meshtone::{simulate, trace_at};
-use published_model::{reference, scenario};
+use published_model::{for_each_scenario, reference, scenario};
 use signal::{largest_difference, relative_rms};
 
 /// Relative rms; the signals themselves agree to 5e-7 (partial face 1e-5).
@@ -69,26 +69,7 @@ fn check(name: &str) {
     assert_eq!(trace.get("sa_rate_in_hz").unwrap().values, [rate_hz]);
 }
 
-macro_rules! scenarios {
-    ($($name:ident),*) => {$(
-        #[test]
-        fn $name() {
-            check(stringify!($name));
-        }
-    )*};
-}
-
-scenarios!(
-    healthy_din0,
-    healthy_din7,
-    missing_din0,
-    breakage_din7,
-    partial_din0,
-    through_din0,
-    through_circ_din7,
-    destruction_din0,
-    destruction_slope_din0
-);
+for_each_scenario!(check);
 
 // With band-limited interpolation the average keeps what the resampling filter lets through.
 #[test]

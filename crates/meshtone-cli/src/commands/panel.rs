@@ -4,10 +4,11 @@ use std::io::ErrorKind;
 use std::path::PathBuf;
 
 use clap::Args;
+use meshtone_io::ReadResultsError;
 use meshtone_io::atomic_file::StagedFile;
 use meshtone_io::run_identity::RunIdentity;
-use meshtone_io::signals::{ReadSignalsError, Recorded, read_signals};
-use meshtone_io::summary::{ReadSummaryError, read_run};
+use meshtone_io::signals::{Recorded, read_signals};
+use meshtone_io::summary::read_run;
 
 use crate::earlier_results;
 use crate::failure::Failure;
@@ -38,9 +39,9 @@ impl Panel {
         let path = self.directory.join(SIGNALS);
         let recorded = read_signals(&path)?;
         self.check_summary(recorded.run)?;
-        let refuse = |problem: String| ReadSignalsError::Foreign { path: path.clone(), problem };
+        let refuse = |problem: String| ReadResultsError::Foreign { path: path.clone(), problem };
         let stages = meshtone::stages(&recorded.scenario)
-            .map_err(|error| ReadSignalsError::Scenario { path: path.clone(), error: Box::new(error) })?;
+            .map_err(|error| ReadResultsError::Scenario { path: path.clone(), error: Box::new(error) })?;
         let (rate, expected) = (recorded.channels.sampling_rate_hz, stages.time.sampling_rate_hz);
         if rate != expected {
             return Err(
@@ -68,7 +69,7 @@ impl Panel {
                 );
                 Err(Failure::bad_input(problem).with_help(HELP))
             }
-            Err(ReadSummaryError::Unreadable { source, .. }) if source.kind() == ErrorKind::NotFound => {
+            Err(ReadResultsError::Unreadable { source, .. }) if source.kind() == ErrorKind::NotFound => {
                 print_error_line(format!(
                     "warning: there is no {}, so the results are not complete: the run may have been interrupted, and \
                      what stands beside {SIGNALS} may be of another run; {HELP}",
@@ -76,10 +77,8 @@ impl Panel {
                 ));
                 Ok(())
             }
-            Err(error @ ReadSummaryError::Unreadable { .. }) => Err(Failure::failed(error.to_string())),
-            Err(error @ ReadSummaryError::Foreign { .. }) => {
-                Err(Failure::bad_input(error.to_string()).with_help(HELP))
-            }
+            Err(error @ ReadResultsError::Unreadable { .. }) => Err(Failure::failed(error.to_string())),
+            Err(error) => Err(Failure::bad_input(error.to_string()).with_help(HELP)),
         }
     }
 

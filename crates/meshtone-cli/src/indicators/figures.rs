@@ -48,7 +48,7 @@ pub fn of_record(
             sidebands: processing.sidebands as usize,
             low_orders: processing.low_orders as usize,
             first_tooth: phase.first_tooth(wheel),
-            is_first_damaged: wheel.is_first_damaged,
+            damaged_tooth: wheel.damaged_tooth,
             record,
         })
         .collect();

@@ -92,8 +92,8 @@ pub struct ProcessingOptions {
     /// The shaft orders 1 to N belong to it; 0: none
     #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u32).range(..=1_000_000))]
     pub low_orders: u32,
-    /// Cut each recording into segments of M revolutions (of each wheel), and make a series of them
-    #[arg(long, value_name = "M", value_parser = clap::value_parser!(u64).range(2..))]
+    /// Cut each recording into segments of M revolutions (of each wheel), at least 2, and make a series of them
+    #[arg(long, value_name = "M", value_parser = several)]
     pub revolutions: Option<u64>,
     /// How the signal is read between its samples
     #[arg(long, default_value = "band-limited")]
@@ -170,6 +170,13 @@ impl From<InterpolationArgument> for Interpolation {
             InterpolationArgument::Pchip => Self::Pchip,
         }
     }
+}
+
+fn several(text: &str) -> Result<u64, String> {
+    let number = text.parse().ok().filter(|number: &u64| *number >= 2);
+    number.ok_or_else(|| {
+        "must be a whole number, at least 2: of one revolution there is nothing to average".to_string()
+    })
 }
 
 fn positive(text: &str) -> Result<f64, String> {

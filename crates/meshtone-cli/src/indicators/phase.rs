@@ -1,15 +1,14 @@
 //! How far the shaft has turned at each sample.
 
-use std::path::Path;
-
 use meshtone::scenario::Scenario;
 use meshtone::signal::{MeshTone, ShaftPhase, SimulatedShafts, Tachometer, tachometer_pulses};
+use meshtone_io::indicators::WarningEntry;
 
 use super::options::PhaseOptions;
 use super::phase_files::{hertz, one_column, profile, times_s};
 use super::process::Wheel;
 use super::reading::Input;
-use super::refuse::refuse;
+use super::refuse::{Subject, refuse};
 use crate::failure::Failure;
 
 /// Relative deviation of two sampling rates that is rounding.
@@ -31,14 +30,15 @@ impl PhaseOptions {
         !sources.into_iter().chain(others).any(|given| given)
     }
 
-    /// The channel that is read for the phase.
-    pub fn channel(&self) -> Option<&str> {
-        self.tach.as_deref().or(self.speed_channel.as_deref())
+    /// The channel that is read for the phase, behind the option that names it.
+    pub fn channel(&self) -> Option<(&'static str, &str)> {
+        let tach = self.tach.as_deref().map(|name| ("--tach", name));
+        tach.or(self.speed_channel.as_deref().map(|name| ("--speed-channel", name)))
     }
 
     /// What is missing on the command line for a measured recording.
-    pub fn check(&self, path: &Path) -> Result<(), Failure> {
-        let path = path.display();
+    pub fn check(&self, input: &Input) -> Result<(), Failure> {
+        let path = input.source.display();
         if self.teeth.is_none() {
             return Err(Failure::bad_input(format!("{path}: the teeth of the wheel are not stated"))
                 .with_help(
@@ -48,10 +48,14 @@ impl PhaseOptions {
         let has_source =
             self.channel().is_some() || self.pulse_times.is_some() || self.speed_profile.is_some();
         if !has_source && self.shaft_hz.is_none() {
-            return Err(Failure::bad_input(format!("{path}: nothing says how far the shaft has turned")).with_help(
+            let help = if input.scenario_toml.is_some() {
+                "leave out --teeth: what `meshtone simulate` wrote needs no options; or state the speed too, with --shaft-hz"
+            } else {
                 "state its speed with --shaft-hz, or --tach, --pulse-times, --speed-channel, --speed-profile or \
-                 --from-mesh-tone",
-            ));
+                 --from-mesh-tone"
+            };
+            let problem = format!("{path}: nothing says how far the shaft has turned");
+            return Err(Failure::bad_input(problem).with_help(help));
         }
         Ok(())
     }
@@ -72,8 +76,13 @@ impl PhaseOptions {
     /// What tooth 1 of a wheel is.
     pub fn first_tooth(&self, wheel: &Wheel) -> &'static str {
         match self.source() {
-            "scenario" if wheel.is_first_damaged => "1: the damaged one",
-            "scenario" => "1: enters contact first",
+            "scenario" => match wheel.damaged_tooth {
+                None => "each enters contact at the left of its pitch",
+                Some(tooth) if tooth.is_missing => {
+                    "each enters contact at the left of its pitch; 1 is missing"
+                }
+                Some(_) => "each enters contact at the left of its pitch; 1 is damaged",
+            },
             "mesh tone" => "1: chosen by chance",
             "tachometer" | "pulse times" if wheel.is_on_shaft && self.pulses_per_rev == 1 => {
                 "1: in mesh at the pulse"
@@ -83,40 +92,54 @@ impl PhaseOptions {
         }
     }
 
-    /// The phase of the shaft, as measured.
-    pub fn measured(&self, input: &Input) -> Result<ShaftPhase, Failure> {
+    /// The phase of the shaft, as measured, and what is doubtful about the file that it is from.
+    pub fn measured(&self, input: &Input) -> Result<(ShaftPhase, Vec<WarningEntry>), Failure> {
         let (rate_hz, samples) = (input.sampling_rate_hz, input.channel.samples.len());
-        let of = |what: String| move |error| refuse(&input.source, &what, &error);
+        let of = |what: String, subject| move |error| refuse(&input.source, &what, subject, &error);
+        let pulses = |times: &[f64]| {
+            ShaftPhase::from_pulses(times, self.pulses_per_rev, self.shaft_hz, rate_hz, samples)
+        };
         if let Some(path) = &self.pulse_times {
-            let times = times_s(one_column(path)?, input.start_s);
-            let phase = ShaftPhase::from_pulses(&times, self.pulses_per_rev, self.shaft_hz, rate_hz, samples);
-            return phase.map_err(of(format!("--pulse-times {}", path.display())));
+            let (times, warnings) = one_column(path)?;
+            let what = format!("--pulse-times {}", path.display());
+            let phase = pulses(&times_s(times, input.start_s)).map_err(of(what, Subject::PulseTimes))?;
+            return Ok((phase, warnings));
         }
         if let Some(path) = &self.speed_profile {
-            let (times, speeds) = profile(path)?;
+            let ([times, speeds], warnings) = profile(path)?;
             let times = times_s(times, input.start_s);
             let phase = ShaftPhase::from_speed_profile(&times, &hertz(path, speeds)?, rate_hz, samples);
-            return phase.map_err(of(format!("--speed-profile {}", path.display())));
+            let what = format!("--speed-profile {}", path.display());
+            return Ok((phase.map_err(of(what, Subject::Phase))?, warnings));
         }
-        if let Some(channel) = &input.turning {
-            let what = || format!("channel {}", channel.name);
-            if self.tach.is_none() {
-                let speeds = hertz(&input.source, channel.clone())?;
-                return ShaftPhase::from_speed_samples(&speeds, rate_hz).map_err(of(what()));
+        let phase = match &input.turning {
+            Some(channel) if self.tach.is_some() => {
+                let what = || format!("--tach {}", channel.name);
+                let tachometer = Tachometer {
+                    threshold: self.threshold,
+                    hysteresis: self.hysteresis,
+                    edge: self.edge.into(),
+                };
+                let times = tachometer_pulses(&channel.samples, rate_hz, &tachometer);
+                times.and_then(|times| pulses(&times)).map_err(of(what(), Subject::Tachometer))
             }
-            let tachometer =
-                Tachometer { threshold: self.threshold, hysteresis: self.hysteresis, edge: self.edge.into() };
-            let times = tachometer_pulses(&channel.samples, rate_hz, &tachometer).map_err(of(what()))?;
-            let phase = ShaftPhase::from_pulses(&times, self.pulses_per_rev, self.shaft_hz, rate_hz, samples);
-            return phase.map_err(of(what()));
-        }
-        let (teeth, shaft_hz) = (self.teeth.unwrap_or(0), self.shaft_hz.unwrap_or(0.0));
-        let what = format!("channel {}", input.channel.name);
-        if self.from_mesh_tone {
-            let tone = MeshTone::new(teeth, shaft_hz);
-            return ShaftPhase::from_mesh_tone(&input.channel.samples, rate_hz, &tone).map_err(of(what));
-        }
-        ShaftPhase::constant(shaft_hz, rate_hz, samples).map_err(of(what))
+            Some(channel) => {
+                let speeds = hertz(&input.source, channel.clone())?;
+                let what = format!("--speed-channel {}", channel.name);
+                ShaftPhase::from_speed_samples(&speeds, rate_hz).map_err(of(what, Subject::Phase))
+            }
+            None => {
+                let (teeth, shaft_hz) = (self.teeth.unwrap_or(0), self.shaft_hz.unwrap_or(0.0));
+                let phase = if self.from_mesh_tone {
+                    let tone = MeshTone::new(teeth, shaft_hz);
+                    ShaftPhase::from_mesh_tone(&input.channel.samples, rate_hz, &tone)
+                } else {
+                    ShaftPhase::constant(shaft_hz, rate_hz, samples)
+                };
+                phase.map_err(of(format!("channel {}", input.channel.name), Subject::Phase))
+            }
+        };
+        Ok((phase?, Vec::new()))
     }
 }
 

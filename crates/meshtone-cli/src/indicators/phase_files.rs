@@ -2,40 +2,44 @@
 
 use std::path::Path;
 
+use meshtone_io::indicators::WarningEntry;
 use meshtone_io::recording::{Channel, RecordingOptions, TimeColumn, read_recording};
 
+use super::reading::warnings_of;
 use crate::failure::Failure;
 
+/// The times of pulses, and what is doubtful about their file.
+pub fn one_column(path: &Path) -> Result<(Channel, Vec<WarningEntry>), Failure> {
+    let ([times], warnings) = columns(path, "--pulse-times", "one, the times of the pulses in s")?;
+    Ok((times, warnings))
+}
+
+/// The times and speeds of a speed profile, and what is doubtful about their file.
+pub fn profile(path: &Path) -> Result<([Channel; 2], Vec<WarningEntry>), Failure> {
+    columns(path, "--speed-profile", "two, time in s and speed in Hz or rpm")
+}
+
 /// A file of numbers that is no recording: it has no sampling rate.
-fn columns(path: &Path) -> Result<Vec<Channel>, Failure> {
+fn columns<const N: usize>(
+    path: &Path,
+    option: &str,
+    expected: &str,
+) -> Result<([Channel; N], Vec<WarningEntry>), Failure> {
     let time = TimeColumn::Absent;
     let options = RecordingOptions { time, sampling_rate_hz: Some(1.0), ..RecordingOptions::default() };
-    Ok(read_recording(path, &options)?.channels)
-}
-
-/// The times of pulses.
-pub fn one_column(path: &Path) -> Result<Channel, Failure> {
-    let mut columns = columns(path)?;
-    match (columns.len(), columns.pop()) {
-        (1, Some(column)) => Ok(column),
-        (count, _) => {
-            let problem = format!("--pulse-times {}: has {count} columns", path.display());
-            Err(Failure::bad_input(problem + "; must be one, the times of the pulses in s"))
-        }
-    }
-}
-
-/// The times and speeds of a speed profile.
-pub fn profile(path: &Path) -> Result<(Channel, Channel), Failure> {
-    let mut columns = columns(path)?;
-    let count = columns.len();
-    match (count, columns.pop(), columns.pop()) {
-        (2, Some(speed), Some(time)) => Ok((time, speed)),
-        _ => {
-            let problem = format!("--speed-profile {}: has {count} columns", path.display());
-            Err(Failure::bad_input(problem + "; must be two, time in s and speed in Hz or rpm"))
-        }
-    }
+    let recording = read_recording(path, &options).map_err(|error| {
+        let mut failure = Failure::from(error);
+        // There are none to choose from.
+        failure.message = failure.message.replace(", or choose other columns (--channel)", "");
+        failure
+    })?;
+    let warnings = warnings_of(&recording);
+    let columns = <[Channel; N]>::try_from(recording.channels).map_err(|columns| {
+        let problem =
+            format!("{option} {}: has {} columns; must be {expected}", path.display(), columns.len());
+        Failure::bad_input(problem)
+    })?;
+    Ok((columns, warnings))
 }
 
 /// (s) Times since the recording's first sample.

@@ -1,14 +1,20 @@
 //! One recording's records.
 
+use std::borrow::Cow;
+
+use meshtone::scenario::{Fault, Gears, Scenario};
 use meshtone::signal::{
     AngularSettings, ChainSettings, Record, SeparationSettings, Shaft, ShaftPhase, SignalError,
-    SignalWarning, process_channel, process_segments,
+    SignalWarning, check_channel, process_channel, process_segments,
 };
+use meshtone::tooth::contact_ratio;
+use meshtone_io::indicators::WarningEntry;
+use meshtone_plot::DamagedTooth;
 
 use super::options::{PhaseOptions, ProcessingOptions};
 use super::phase::{Turning, simulated};
 use super::reading::Input;
-use super::refuse::refuse;
+use super::refuse::{Subject, refuse};
 use crate::failure::Failure;
 
 /// A wheel whose average is taken.
@@ -20,8 +26,8 @@ pub struct Wheel {
     pub teeth: u32,
     /// Whether it is on the shaft that speed or pulses are of.
     pub is_on_shaft: bool,
-    /// Whether tooth 1 is known to be damaged.
-    pub is_first_damaged: bool,
+    /// The damaged tooth, where it is known to be tooth 1.
+    pub damaged_tooth: Option<DamagedTooth>,
 }
 
 /// What one recording shows about one wheel.
@@ -39,7 +45,7 @@ pub struct Processed {
     /// Of one wheel, or of both of a pair.
     pub wheels: Vec<WheelRecords>,
     /// What is doubtful.
-    pub warnings: Vec<SignalWarning>,
+    pub warnings: Vec<WarningEntry>,
 }
 
 /// Processes a recording.
@@ -48,56 +54,74 @@ pub fn process(
     phase: &PhaseOptions,
     processing: &ProcessingOptions,
 ) -> Result<Processed, Failure> {
-    let (turning, wheels) = turning(input, phase)?;
-    let mut warnings = match &turning {
+    let of_channel = format!("channel {}", input.channel.name);
+    let (turning, wheels, mut warnings) = turning(input, phase)?;
+    let subject = match &turning {
+        Turning::Measured(shaft) => {
+            Subject::Measured { speed_hz: shaft.mean_speed_hz(input.sampling_rate_hz), by: phase.source() }
+        }
+        Turning::Simulated(_) => Subject::Simulated,
+    };
+    check_channel(&input.channel.samples)
+        .map_err(|error| refuse(&input.source, &of_channel, subject, &error))?;
+    let mut doubtful = match &turning {
         Turning::Measured(phase) => phase.warnings.clone(),
         Turning::Simulated(_) => Vec::new(),
     };
-    let what = format!("channel {}", input.channel.name);
     let mut processed = Vec::new();
-    for (shaft, wheel) in Shaft::BOTH.into_iter().zip(wheels.clone()) {
-        let settings = settings(processing, wheel.teeth);
-        let of_wheel = |error: SignalError| {
-            let what = if wheels.len() > 1 {
-                format!("{what}, {} of {} teeth", wheel.name, wheel.teeth)
-            } else {
-                what.clone()
-            };
-            refuse(&input.source, &what, &error)
-        };
-        let records = match &turning {
-            Turning::Measured(phase) => {
-                let own = if shaft == Shaft::Pinion {
-                    None
-                } else {
-                    Some(phase.of_mate(wheels[0].teeth, wheel.teeth))
-                };
-                let own = own.transpose().map_err(of_wheel)?;
-                let phase = own.as_ref().unwrap_or(phase);
-                let records = measured(input, phase, wheel.teeth, &settings, processing.revolutions);
-                (phase.mean_speed_hz(input.sampling_rate_hz), records)
-            }
-            Turning::Simulated(shafts) => {
-                let signal = &input.channel.samples;
-                let records = match processing.revolutions {
-                    None => shafts.process(signal, shaft, &settings).map(|record| vec![record]),
-                    Some(count) => shafts.process_segments(signal, shaft, &settings, count as usize),
-                };
-                (shafts.mean_speed_hz(shaft), records)
-            }
-        };
-        let (mean_speed_hz, records) = (records.0, records.1.map_err(of_wheel)?);
-        for warning in records.iter().flat_map(|record| &record.warnings) {
-            if !warnings.contains(warning) {
-                warnings.push(warning.clone());
+    for (shaft, wheel) in Shaft::BOTH.into_iter().zip(&wheels) {
+        let of_wheel = format!("{of_channel}, {} of {} teeth", wheel.name, wheel.teeth);
+        let what = if wheels.len() > 1 { &of_wheel } else { &of_channel };
+        let of_wheel = wheel_records(input, &turning, shaft, &wheels, processing)
+            .map_err(|error| refuse(&input.source, what, subject, &error))?;
+        for warning in of_wheel.records.iter().flat_map(|record| &record.warnings) {
+            if !doubtful.contains(warning) {
+                doubtful.push(warning.clone());
             }
         }
-        processed.push(WheelRecords { wheel, mean_speed_hz, records });
+        processed.push(of_wheel);
     }
+    let entry = |warning: &SignalWarning| WarningEntry {
+        source: Some(input.source.clone()),
+        message: warning.to_string(),
+    };
+    warnings.extend(doubtful.iter().map(entry));
     Ok(Processed { wheels: processed, warnings })
 }
 
-fn turning(input: &Input, phase: &PhaseOptions) -> Result<(Turning, Vec<Wheel>), Failure> {
+/// The records of the wheel on a shaft, the first of `wheels` on the pinion's.
+fn wheel_records(
+    input: &Input,
+    turning: &Turning,
+    shaft: Shaft,
+    wheels: &[Wheel],
+    processing: &ProcessingOptions,
+) -> Result<WheelRecords, SignalError> {
+    let wheel = &wheels[shaft as usize];
+    let settings = settings(processing, wheel.teeth);
+    let (mean_speed_hz, records) = match turning {
+        Turning::Measured(phase) => {
+            let phase = match shaft {
+                Shaft::Pinion => Cow::Borrowed(phase),
+                Shaft::Gear => Cow::Owned(phase.of_mate(wheels[0].teeth, wheel.teeth)?),
+            };
+            let records = measured(input, &phase, wheel.teeth, &settings, processing.revolutions)?;
+            (phase.mean_speed_hz(input.sampling_rate_hz), records)
+        }
+        Turning::Simulated(shafts) => {
+            let signal = &input.channel.samples;
+            let records = match processing.revolutions {
+                None => vec![shafts.process(signal, shaft, &settings)?],
+                Some(count) => shafts.process_segments(signal, shaft, &settings, count as usize)?,
+            };
+            (shafts.mean_speed_hz(shaft), records)
+        }
+    };
+    Ok(WheelRecords { wheel: wheel.clone(), mean_speed_hz, records })
+}
+
+/// How far the shafts have turned, the wheels on them, and what is doubtful about the files that say so.
+fn turning(input: &Input, phase: &PhaseOptions) -> Result<(Turning, Vec<Wheel>, Vec<WarningEntry>), Failure> {
     match &input.scenario_toml {
         Some(toml) if phase.is_empty() => {
             let (scenario, shafts) = simulated(input, toml)?;
@@ -105,19 +129,28 @@ fn turning(input: &Input, phase: &PhaseOptions) -> Result<(Turning, Vec<Wheel>),
                 name: shaft.wheel(),
                 teeth: shafts.teeth(shaft),
                 is_on_shaft: shaft == Shaft::Pinion,
-                is_first_damaged: shaft == Shaft::Gear && scenario.fault.is_some(),
+                damaged_tooth: if shaft == Shaft::Gear { damaged_tooth(&scenario) } else { None },
             });
-            Ok((Turning::Simulated(shafts), wheels.to_vec()))
+            Ok((Turning::Simulated(shafts), wheels.to_vec(), input.warnings.clone()))
         }
         _ => {
-            phase.check(&input.source)?;
+            phase.check(input)?;
             let wheel =
-                |(name, teeth)| Wheel { name, teeth, is_on_shaft: name == "wheel", is_first_damaged: false };
+                |(name, teeth)| Wheel { name, teeth, is_on_shaft: name == "wheel", damaged_tooth: None };
             let teeth = [("wheel", phase.teeth), ("mate", phase.mate_teeth)];
             let wheels = teeth.into_iter().filter_map(|(name, teeth)| Some(wheel((name, teeth?))));
-            Ok((Turning::Measured(phase.measured(input)?), wheels.collect()))
+            let (shaft, of_phase) = phase.measured(input)?;
+            Ok((Turning::Measured(shaft), wheels.collect(), [input.warnings.clone(), of_phase].concat()))
         }
     }
+}
+
+/// The gear's tooth that the scenario damages.
+fn damaged_tooth(scenario: &Scenario) -> Option<DamagedTooth> {
+    let Gears { pinion_teeth, gear_teeth, pressure_angle_deg, .. } = scenario.gears;
+    let contact_pitches = contact_ratio(pinion_teeth, gear_teeth, pressure_angle_deg.to_radians());
+    let is_missing = |fault: &Fault| matches!(fault, Fault::MissingTooth);
+    scenario.fault.as_ref().map(|fault| DamagedTooth { contact_pitches, is_missing: is_missing(fault) })
 }
 
 fn measured(

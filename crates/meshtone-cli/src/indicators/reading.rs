@@ -2,11 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use meshtone_io::indicators::WarningEntry;
 use meshtone_io::recording::{
-    Calibration, Channel, ColumnChoice, RecordingOptions, TextOptions, TimeColumn, read_recording,
+    Calibration, Channel, ColumnChoice, Recording, RecordingOptions, RecordingWarning, TextOptions,
+    TimeColumn, read_recording,
 };
 
 use super::options::ReadingOptions;
+use super::refuse::unreadable;
 use crate::failure::Failure;
 
 /// The channel of a simulation that is processed unless another is chosen.
@@ -29,6 +32,8 @@ pub struct Input {
     pub has_own_time: bool,
     /// What was simulated, where it was, as TOML.
     pub scenario_toml: Option<String>,
+    /// What is doubtful about the file.
+    pub warnings: Vec<WarningEntry>,
 }
 
 impl Input {
@@ -37,16 +42,24 @@ impl Input {
     /// # Arguments
     /// * `path` - a file, or a directory that `meshtone simulate` wrote
     /// * `options` - what is read
-    /// * `turning` - name or number of the channel that tells the phase
-    pub fn read(path: &Path, options: &ReadingOptions, turning: Option<&str>) -> Result<Self, Failure> {
+    /// * `turning` - name or number of the channel that tells the phase, behind the option that says so
+    pub fn read(
+        path: &Path,
+        options: &ReadingOptions,
+        turning: Option<(&str, &str)>,
+    ) -> Result<Self, Failure> {
         let chosen = RecordingOptions {
             channels: options.channel.iter().map(|choice| ColumnChoice::parse(choice)).collect(),
             calibrations: calibration(options)?,
             ..plain(options)
         };
         // The tachometer comes by itself: only so is it known which of the columns it is.
-        let turning = turning.map(|choice| read_one(path, options, choice)).transpose()?;
+        let turning = turning.map(|(option, choice)| read_one(path, options, option, choice)).transpose()?;
+        let (turning, mut warnings) =
+            turning.map_or((None, Vec::new()), |(channel, warnings)| (Some(channel), warnings));
         let mut recording = read_recording(path, &chosen)?;
+        warnings.extend(warnings_of(&recording));
+        warnings.dedup();
         let simulated = recording.scenario_toml.is_some();
         if options.channel.is_none() {
             let keep = |channel: &Channel| {
@@ -56,6 +69,9 @@ impl Input {
             recording.channels.retain(keep);
         }
         let channel = one(path, recording.channels, options.channel.as_deref())?;
+        if let (Some(turning), Some(choice)) = (&turning, options.channel.as_deref()) {
+            check_different(path, options, turning, &channel, choice)?;
+        }
         if let Some(turning) =
             turning.as_ref().filter(|turning| turning.samples.len() != channel.samples.len())
         {
@@ -77,14 +93,51 @@ impl Input {
             turning,
             has_own_time: options.sampling_rate_hz.is_none() && options.time_column.is_none(),
             scenario_toml: recording.scenario_toml,
+            warnings,
         })
     }
 }
 
-fn read_one(path: &Path, options: &ReadingOptions, choice: &str) -> Result<Channel, Failure> {
+/// What is doubtful about a file that was read.
+pub fn warnings_of(recording: &Recording) -> Vec<WarningEntry> {
+    let source = Some(recording.source.clone());
+    let entry =
+        |warning: &RecordingWarning| WarningEntry { source: source.clone(), message: warning.to_string() };
+    recording.warnings.iter().map(entry).collect()
+}
+
+fn read_one(
+    path: &Path,
+    options: &ReadingOptions,
+    option: &str,
+    choice: &str,
+) -> Result<(Channel, Vec<WarningEntry>), Failure> {
     let channels = vec![ColumnChoice::parse(choice)];
-    let recording = read_recording(path, &RecordingOptions { channels, ..plain(options) })?;
-    one(path, recording.channels, Some(choice))
+    let recording = read_recording(path, &RecordingOptions { channels, ..plain(options) });
+    let recording = recording.map_err(|error| unreadable(error, option))?;
+    let warnings = warnings_of(&recording);
+    Ok((one(path, recording.channels, Some(choice))?, warnings))
+}
+
+/// Refuses what tells the phase as the vibration.
+fn check_different(
+    path: &Path,
+    options: &ReadingOptions,
+    turning: &Channel,
+    channel: &Channel,
+    choice: &str,
+) -> Result<(), Failure> {
+    // Two columns may have one name; without a sensitivity the same one has the same samples.
+    if turning.name != channel.name
+        || read_one(path, options, "--channel", choice)?.0.samples != turning.samples
+    {
+        return Ok(());
+    }
+    let path = path.display();
+    let problem = format!("{path}: channel {} is both processed and what tells the phase", channel.name);
+    Err(Failure::bad_input(problem).with_help(
+        "name the vibration with --channel, and tachometer or speed with --tach or --speed-channel",
+    ))
 }
 
 /// The only channel there is.

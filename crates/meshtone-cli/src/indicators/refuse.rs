@@ -8,10 +8,12 @@ use meshtone_io::recording::ReadRecordingError;
 
 use crate::failure::Failure;
 
+/// The option that names the column which is processed.
+const CHANNEL: &str = "--channel";
 /// What the library calls options, and what the command line does.
 const OPTIONS: [(&str, &str); 9] = [
     ("option channels, or variable", "--channel or --variable"),
-    ("option channels", "--channel"),
+    ("option channels", CHANNEL),
     ("option sampling_rate_hz", "--sampling-rate-hz"),
     ("option text.decimal_sign", "--decimal-sign"),
     ("text.separator", "--separator"),
@@ -23,48 +25,104 @@ const OPTIONS: [(&str, &str); 9] = [
 
 impl From<ReadRecordingError> for Failure {
     fn from(error: ReadRecordingError) -> Self {
-        if let ReadRecordingError::Unreadable { path, source } = &error {
-            return match source.kind() {
-                ErrorKind::NotFound => Self::bad_input(format!("there is no recording {}", path.display())),
-                ErrorKind::IsADirectory => Self::bad_input(format!("{} is a directory", path.display()))
-                    .with_help("name a file, or a directory that `meshtone simulate` wrote"),
-                kind => Self::of_file(kind, error.to_string()),
-            };
-        }
-        let message = error.to_string();
-        Self::bad_input(OPTIONS.iter().fold(message, |message, (option, flag)| message.replace(option, flag)))
+        unreadable(error, CHANNEL)
     }
 }
 
+/// Refuses a file.
+///
+/// # Arguments
+/// * `error` - what is wrong with it
+/// * `option` - that names the column which is read
+pub fn unreadable(error: ReadRecordingError, option: &str) -> Failure {
+    if let ReadRecordingError::Unreadable { path, source } = &error {
+        return match source.kind() {
+            ErrorKind::NotFound => Failure::bad_input(format!("there is no recording {}", path.display())),
+            ErrorKind::IsADirectory => Failure::bad_input(format!("{} is a directory", path.display()))
+                .with_help("name a file, or a directory that `meshtone simulate` wrote"),
+            kind => Failure::of_file(kind, error.to_string()),
+        };
+    }
+    let message =
+        OPTIONS.iter().fold(error.to_string(), |message, (option, flag)| message.replace(option, flag));
+    Failure::bad_input(message.replace(CHANNEL, option))
+}
+
+/// What of a recording is refused, on which depends what its user can do.
+#[derive(Debug, Clone, Copy)]
+pub enum Subject {
+    /// The channel of a measurement.
+    Measured {
+        /// (Hz) Mean speed of the shaft.
+        speed_hz: f64,
+        /// What tells the phase, in words.
+        by: &'static str,
+    },
+    /// The channel of a simulation.
+    Simulated,
+    /// The tachometer's waveform.
+    Tachometer,
+    /// The times of its pulses.
+    PulseTimes,
+    /// Whatever else tells the phase.
+    Phase,
+}
+
 /// Refuses a channel of a recording, or its phase.
-pub fn refuse(path: &Path, what: &str, error: &SignalError) -> Failure {
+///
+/// # Arguments
+/// * `path` - the recording
+/// * `what` - the channel, or the option that names it
+/// * `subject` - what that is
+/// * `error` - what is wrong with it
+pub fn refuse(path: &Path, what: &str, subject: Subject, error: &SignalError) -> Failure {
     let failure = Failure::bad_input(format!("{}: {what}: {error}", path.display()));
-    match help(error) {
+    match help(subject, error) {
         Some(help) => failure.with_help(help),
         None => failure,
     }
 }
 
-fn help(error: &SignalError) -> Option<&'static str> {
-    use SignalError::{
-        Constant, MeshOrderBeyondNyquist, NotFinite, PulseGap, SpeedMismatch, TooFew, TooFewRevolutions,
-    };
+fn help(subject: Subject, error: &SignalError) -> Option<String> {
+    use SignalError::{Constant, MeshOrderBeyondNyquist, PulseGap, SpeedMismatch, TooFew, TooFewRevolutions};
+    use Subject::{Measured, PulseTimes, Simulated, Tachometer};
 
-    match error {
-        NotFinite { .. } => {
-            Some("cut the recording there, fill the gap, or choose another channel with --channel")
+    let help = match (error, subject) {
+        (Constant { .. }, Tachometer) => {
+            "was the tachometer connected? Name its channel with --tach; without one, take --from-mesh-tone or --shaft-hz"
         }
-        Constant { .. } => Some("choose another channel with --channel; was the sensor connected?"),
-        TooFewRevolutions { .. } => {
-            Some("record for longer, or check --shaft-hz, --pulses-per-rev and the sampling rate")
+        (Constant { .. }, Simulated) => {
+            "this signal of the simulation does not change; leave out --channel for the vertical acceleration, or name \
+             another"
         }
-        MeshOrderBeyondNyquist { .. } => Some("check --teeth and the speed, or record at a higher rate"),
-        SpeedMismatch { .. } => {
-            Some("check --shaft-hz (revolutions per second, not rpm) and --pulses-per-rev")
+        (Constant { .. }, _) => "choose another channel with --channel; was the sensor connected?",
+        (TooFewRevolutions { .. }, Simulated) => {
+            "state fewer --revolutions: a simulation keeps as many revolutions of a wheel as its mate has teeth, or less"
         }
-        TooFew { what: "tachometer pulses", .. } | PulseGap { .. } => {
-            Some("check --threshold, --hysteresis and --edge, and that the channel is the tachometer's")
+        (TooFewRevolutions { .. }, _) => {
+            "record for longer, or check --shaft-hz, --pulses-per-rev, --revolutions and the sampling rate"
         }
-        _ => None,
-    }
+        (MeshOrderBeyondNyquist { .. }, Measured { speed_hz, by }) => {
+            return Some(format!(
+                "the shaft turns at {speed_hz:.4} Hz by the {by}: check that (revolutions per second, not rpm) and --teeth, or \
+                 record at a higher rate"
+            ));
+        }
+        (MeshOrderBeyondNyquist { .. }, _) => "simulate at a higher solver.sampling_rate_hz",
+        (SpeedMismatch { .. }, _) => {
+            "check --shaft-hz (revolutions per second, not rpm) and --pulses-per-rev"
+        }
+        (TooFew { what: "tachometer pulses", .. }, Tachometer) => {
+            "record for longer: two revolutions are three pulses, more with --pulses-per-rev; or check --threshold, \
+             --hysteresis and --edge, and that --tach names the tachometer's channel"
+        }
+        (TooFew { what: "tachometer pulses", .. }, PulseTimes) => {
+            "record for longer: two revolutions are three pulses, more with --pulses-per-rev"
+        }
+        (PulseGap { .. }, Tachometer) => {
+            "check --threshold, --hysteresis and --edge, and that --tach names the tachometer's channel"
+        }
+        _ => return None,
+    };
+    Some(help.to_string())
 }

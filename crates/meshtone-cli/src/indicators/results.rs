@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use meshtone::signal::{Record, na4};
-use meshtone_io::indicators::{IndicatorResults, RecordEntry, RecordingEntry, Setting, WarningEntry};
+use meshtone_io::indicators::{IndicatorResults, RecordEntry, RecordingEntry, Setting};
 
 use super::options::{PhaseOptions, ProcessingOptions};
 use super::process::{Processed, Wheel};
@@ -41,10 +41,7 @@ impl Series {
             samples: input.channel.samples.len(),
             start_s: input.start_s,
         });
-        let source = Some(input.source.clone());
-        let warnings = processed.warnings.iter().map(ToString::to_string);
-        let warnings = warnings.map(|message| WarningEntry { source: source.clone(), message });
-        self.results.warnings.extend(warnings);
+        self.results.warnings.extend(processed.warnings);
         let mut last = Vec::new();
         for (place, of_wheel) in processed.wheels.into_iter().enumerate() {
             let count = of_wheel.records.len();
@@ -98,7 +95,7 @@ impl Series {
             return refuse("is in", here, format!("in {there}"));
         }
         for (wheel, here) in self.wheels.iter_mut().zip(wheels) {
-            wheel.is_first_damaged = here.is_first_damaged;
+            wheel.damaged_tooth = here.damaged_tooth;
         }
         Ok(())
     }

@@ -226,6 +226,16 @@ fn what_is_doubtful_is_said() {
     assert!(said.contains("warning: run.csv: 1 pulse(s) missing after 0.9"), "{said}");
     let found = results(&workplace, "run_indicators");
     assert_eq!(found["warnings"][0]["recording"], "run.csv");
+    // A file that was cut off within its last number, and one of pulses.
+    let whole = csv(RATE_HZ, &vibration(5000, 1.0), |_| 1200.25).replace("[V]", "[rpm]");
+    workplace.write("cut.csv", &whole[..whole.len() - 2]);
+    let times: String = (0..20).map(|pulse| format!("{:.6}\n", 0.05 * f64::from(pulse))).collect();
+    workplace.write("pulses.txt", &times[..times.len() - 3]);
+    let cut = ["indicators", "cut.csv", "-c", "bearing", "--teeth", "19", "--no-figure"];
+    let said = stderr(&workplace.succeeds(&[&cut[..], &["--speed-channel", "tacho"]].concat()));
+    assert!(said.contains("warning: cut.csv: line 5001, the last, has no end of line"), "{said}");
+    let said = stderr(&workplace.succeeds(&[&cut[..], &["--pulse-times", "pulses.txt"]].concat()));
+    assert!(said.contains("warning: pulses.txt: line 20, the last, has no end of line"), "{said}");
     for name in ["run1.csv", "run2.csv", "run10.csv"] {
         workplace.write(name, csv(RATE_HZ, &vibration(5000, 1.0), |_| 0.0));
     }

@@ -40,7 +40,10 @@ fn what_is_missing_or_contradicts() {
         &[&all[..], &["--sidebands", "9"]].concat(),
         &["sidebands is 9", "less than half the teeth"],
     );
-    refused(&workplace, &[&all[..], &["--revolutions", "1"]].concat(), &["--revolutions"]);
+    for few in ["0", "1", "x"] {
+        let words = ["--revolutions", "at least 2: of one revolution there is nothing to average"];
+        refused(&workplace, &[&all[..], &["--revolutions", few]].concat(), &words);
+    }
     refused(&workplace, &[&all[..], &["--revolutions", "50"]].concat(), &["revolutions", "at least 50"]);
 }
 
@@ -54,6 +57,11 @@ fn columns_and_files() {
         &["no column `bering`", "did you mean `bearing`", "bearing [g], tacho [V]"],
     );
     refused(&workplace, &named("7"), &["run.csv", "7"]);
+    refused(
+        &workplace,
+        &named("1"),
+        &["column `time_s` is the time", "(--channel)", "bearing [g], tacho [V]"],
+    );
     let of = |name: &'static str| [&[name], &CONSTANT[..]].concat();
     refused(&workplace, &of("absent.csv"), &["there is no recording absent.csv"]);
     refused(&workplace, &of("."), &["."]);
@@ -96,10 +104,16 @@ fn signals() {
         &all("dead.csv"),
         &["dead.csv", "channel bearing", "all 5000 samples are 0.25", "--channel"],
     );
+    let tach = ["dead.csv", "-c", "bearing", "--teeth", "19", "--tach", "tacho"];
+    refused(&workplace, &tach, &["dead.csv: --tach tacho: all 5000 samples are 0", "--from-mesh-tone"]);
     workplace.write("short.csv", csv(RATE_HZ, &vibration(450, 1.0), |_| 0.0));
     refused(&workplace, &all("short.csv"), &["short.csv", "revolutions", "at least 2"]);
     let many = ["run.csv", "-c", "bearing", "--teeth", "200", "--shaft-hz", "20"];
-    refused(&workplace, &many, &["mesh order 200", "Nyquist order 125", "--teeth"]);
+    refused(
+        &workplace,
+        &many,
+        &["mesh order 200", "Nyquist order 125", "--teeth", "20.0000 Hz by the constant speed"],
+    );
     let mate = [&all("run.csv")[..], &["--mate-teeth", "1000"]].concat();
     workplace.succeeds(&[&["indicators"], &all("run.csv")[..], &["-o", "kept", "-q"]].concat());
     refused(&workplace, &mate, &["mate of 1000 teeth"]);
@@ -114,10 +128,40 @@ fn pulses() {
     refused(
         &workplace,
         &wrong,
-        &["channel tacho", "give 20.0000 Hz", "40.0000 Hz is stated", "--pulses-per-rev"],
+        &["--tach tacho", "give 20.0000 Hz", "40.0000 Hz is stated", "--pulses-per-rev"],
     );
     refused(&workplace, &with(&["--tach", "taco"]), &["no column `taco`", "did you mean"]);
     refused(&workplace, &with(&["--tach", "tacho", "--threshold", "9"]), &["threshold is 9", "crosses"]);
+    // 1.6 revolutions.
+    workplace.write("short.csv", csv(RATE_HZ, &vibration(400, 1.0), tacho(20.0, RATE_HZ)));
+    let short = ["short.csv", "--tach", "tacho", "--teeth", "19"];
+    refused(
+        &workplace,
+        &short,
+        &["--tach tacho", "there are 1, but at least 3", "record for longer", "three pulses"],
+    );
+    for same in [["-c", "tacho", "--tach", "tacho"], ["-c", "tacho", "--tach", "3"]] {
+        let same = [&["run.csv", "--teeth", "19"], &same[..]].concat();
+        refused(
+            &workplace,
+            &same,
+            &["channel tacho is both processed and what tells the phase", "--channel"],
+        );
+    }
+    let mut waveform = csv(RATE_HZ, &vibration(5000, 1.0), tacho(20.0, RATE_HZ));
+    waveform.push_str("1.0,0.5,nan\n");
+    workplace.write("gap.csv", waveform);
+    refused(
+        &workplace,
+        &["gap.csv", "--tach", "tacho", "--teeth", "19"],
+        &["line 5002 of column tacho [V] is NaN", "(--tach)"],
+    );
+    workplace.write("nan.txt", "0.1\nnan\n0.2\n0.4\n");
+    refused(
+        &workplace,
+        &with(&["--pulse-times", "nan.txt"]),
+        &["nan.txt: line 2 of column column 1 is NaN", "fill the gap\n"],
+    );
     workplace.write("pulses.txt", "0.1\n0.3\n0.2\n0.4\n");
     refused(&workplace, &with(&["--pulse-times", "pulses.txt"]), &["pulses.txt", "order of time"]);
     workplace.write("two.csv", "a,b\n0.1,2\n0.2,3\n");
@@ -136,6 +180,17 @@ fn series_of_different_things() {
     let workplace = workplace();
     workplace.write("other.toml", fast_with("gear_teeth", "gear_teeth = 60"));
     workplace.succeeds(&["simulate", "fast.toml", "other.toml", "-o", "out_s", "--no-panel", "-q"]);
+    refused(
+        &workplace,
+        &["out_s/fast", "-c", "axial_acceleration_g"],
+        &["all", "samples are 0", "leave out --channel"],
+    );
+    refused(&workplace, &["out_s/fast", "--revolutions", "60"], &["at least 60", "fewer --revolutions"]);
+    refused(
+        &workplace,
+        &["out_s/fast", "--teeth", "20"],
+        &["how far the shaft has turned", "leave out --teeth"],
+    );
     let rate = ["out_s/fast", "--sampling-rate-hz", "11200"];
     refused(&workplace, &rate, &["out_s/fast", "--sampling-rate-hz", "leave them out"]);
     let words = ["out_s/other", "20 and 60 teeth", "20 and 40 teeth", "same in a series"];

@@ -44,7 +44,14 @@ pub(super) fn assemble(parts: Parts, options: &RecordingOptions) -> Result<Recor
     };
     let mut channels: Vec<Channel> = selection.channels.iter().map(channel).collect();
     calibrate(path, labels, selection, &mut channels, options)?;
-    Ok(Recording { sampling_rate_hz, start_s, channels, source: path.to_path_buf(), scenario_toml: None })
+    Ok(Recording {
+        sampling_rate_hz,
+        start_s,
+        channels,
+        source: path.to_path_buf(),
+        scenario_toml: None,
+        warnings: Vec::new(),
+    })
 }
 
 fn check_lengths(

@@ -27,6 +27,7 @@ mod selection;
 mod text;
 mod time;
 mod unit;
+mod warning;
 mod wav;
 
 use std::fs::File;
@@ -37,6 +38,7 @@ pub use format::RecordingFormat;
 pub use options::{
     Calibration, ColumnChoice, DecimalSign, RecordingOptions, Separator, TextOptions, TimeColumn,
 };
+pub use warning::RecordingWarning;
 
 /// The file in a folder of results that is read for the folder.
 const SIGNALS_FILE: &str = "signals.parquet";
@@ -65,6 +67,8 @@ pub struct Recording {
     pub source: PathBuf,
     /// The scenario as TOML, where the file is one that `meshtone simulate` wrote.
     pub scenario_toml: Option<String>,
+    /// What is doubtful about the file.
+    pub warnings: Vec<RecordingWarning>,
 }
 
 impl Recording {

@@ -36,16 +36,20 @@ pub(super) fn select(
     let times = time_columns(path, labels, options)?;
     let channels = channels(path, labels, options, &times)?;
     for index in channels.iter().copied().chain(times.iter().map(|(index, _)| *index)) {
-        if let Some(kind) = &labels[index].not_numeric {
-            return Err(ReadRecordingError::NotNumeric {
-                path: path.to_path_buf(),
-                column: labels[index].raw.clone(),
-                kind: kind.clone(),
-            });
-        }
+        check_numeric(path, &labels[index])?;
     }
     let time = if options.sampling_rate_hz.is_some() { None } else { times.first().copied() };
     Ok(Selection { channels, time })
+}
+
+fn check_numeric(path: &Path, label: &Label) -> Result<(), ReadRecordingError> {
+    let Some(kind) = &label.not_numeric else { return Ok(()) };
+    Err(ReadRecordingError::NotNumeric {
+        path: path.to_path_buf(),
+        // The only array of a file has no name.
+        column: if label.raw.is_empty() { "1".to_string() } else { label.raw.clone() },
+        kind: kind.clone(),
+    })
 }
 
 /// The time column with its unit in seconds; several only where their times are not needed.
@@ -89,10 +93,13 @@ fn channels(
     options: &RecordingOptions,
     times: &[(usize, f64)],
 ) -> Result<Vec<usize>, ReadRecordingError> {
+    let is_time = |index: usize| times.iter().any(|(time, _)| *time == index);
     if options.channels.is_empty() {
-        let is_time = |index: usize| times.iter().any(|(time, _)| *time == index);
         let all = (0..labels.len()).filter(|index| labels[*index].not_numeric.is_none() && !is_time(*index));
         let all: Vec<usize> = all.collect();
+        if all.is_empty() && times.is_empty() {
+            labels.iter().try_for_each(|label| check_numeric(path, label))?;
+        }
         let problem =
             if times.is_empty() { "holds no numbers" } else { "has no column of numbers besides time" };
         return if all.is_empty() {
@@ -103,7 +110,15 @@ fn channels(
     }
     let mut chosen = Vec::new();
     for choice in &options.channels {
-        for index in matching(path, labels, choice)? {
+        let matching = matching(path, labels, choice)?;
+        if let [index] = matching[..]
+            && is_time(index)
+        {
+            let problem =
+                format!("column `{}` is the time; choose another (option channels)", labels[index].raw);
+            return Err(ambiguous(path, labels, &problem));
+        }
+        for index in matching.into_iter().filter(|index| !is_time(*index)) {
             if chosen.contains(&index) {
                 let problem = format!("column `{}` is chosen twice", labels[index].raw);
                 return Err(ambiguous(path, labels, &problem));

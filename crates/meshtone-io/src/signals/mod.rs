@@ -11,7 +11,7 @@ mod read;
 mod write;
 
 pub use columns::{Column, TIME, columns};
-pub use read::{ReadSignalsError, Recorded, read_signals};
+pub use read::{Recorded, read_signals};
 pub use write::write_signals;
 
 /// Metadata key of the scenario, as TOML.

@@ -1,17 +1,17 @@
 //! Reading signals back.
 
 use std::fs::File;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use arrow::array::{Array, AsArray};
 use arrow::datatypes::Float64Type;
 use arrow::record_batch::RecordBatch;
-use meshtone::scenario::{Scenario, ScenarioError};
+use meshtone::scenario::Scenario;
 use meshtone::signal::Channels;
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use parquet::file::metadata::FileMetaData;
 
+use crate::ReadResultsError;
 use crate::run_identity::RunIdentity;
 
 use super::columns::columns_mut;
@@ -30,35 +30,6 @@ pub struct Recorded {
     pub run: RunIdentity,
 }
 
-/// Signals that could not be read.
-#[derive(Debug, thiserror::Error)]
-pub enum ReadSignalsError {
-    /// The file cannot be opened or read.
-    #[error("cannot read {}: {source}", path.display())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// Why it cannot be read.
-        source: io::Error,
-    },
-    /// The file holds something else than a simulation's signals.
-    #[error("{}: {problem}", path.display())]
-    Foreign {
-        /// The file.
-        path: PathBuf,
-        /// What is not as `meshtone simulate` writes it.
-        problem: String,
-    },
-    /// The scenario in the file is refused, perhaps because another version wrote it.
-    #[error("{}: the scenario in {SCENARIO_KEY} is refused: {error}", path.display())]
-    Scenario {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        error: Box<ScenarioError>,
-    },
-}
-
 /// Reads what [`super::write_signals`] wrote.
 ///
 /// # Arguments
@@ -66,16 +37,15 @@ pub enum ReadSignalsError {
 ///
 /// # Errors
 /// The file cannot be read, or it is none that Meshtone wrote.
-pub fn read_signals(path: &Path) -> Result<Recorded, ReadSignalsError> {
-    let file = File::open(path)
-        .map_err(|source| ReadSignalsError::Unreadable { path: path.to_path_buf(), source })?;
-    let foreign = |problem: String| ReadSignalsError::Foreign { path: path.to_path_buf(), problem };
+pub fn read_signals(path: &Path) -> Result<Recorded, ReadResultsError> {
+    let file = File::open(path).map_err(|source| ReadResultsError::unreadable(path, source))?;
+    let foreign = |problem: String| ReadResultsError::foreign(path, problem);
     let broken = |error: &dyn std::fmt::Display| foreign(format!("is not a whole Parquet file: {error}"));
     let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|error| broken(&error))?;
     let metadata = builder.metadata().file_metadata();
     let text = text_of(metadata, SCENARIO_KEY).map_err(foreign)?;
     let scenario = Scenario::from_toml(text)
-        .map_err(|error| ReadSignalsError::Scenario { path: path.to_path_buf(), error: Box::new(error) })?;
+        .map_err(|error| ReadResultsError::Scenario { path: path.to_path_buf(), error: Box::new(error) })?;
     let version = text_of(metadata, VERSION_KEY).map_err(foreign)?.to_string();
     let run = text_of(metadata, RUN_KEY).map_err(foreign)?.parse::<RunIdentity>();
     let run = run.map_err(|error| foreign(format!("metadata {RUN_KEY}: {error}")))?;

@@ -15,7 +15,7 @@ use meshtone::signal::{ChainSettings, Indicators, Shaft, SimulatedShafts, kurtos
 use crate::run_identity::RunIdentity;
 use crate::signals::columns;
 
-pub use read::{ReadSummaryError, read_run};
+pub use read::read_run;
 
 /// Version of the summary's format: it grows when a key changes its name or meaning.
 pub const FORMAT_VERSION: u32 = 1;

@@ -1,33 +1,12 @@
 //! Reading what tells a summary's run.
 
 use std::fs;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde_json::Value;
 
+use crate::ReadResultsError;
 use crate::run_identity::RunIdentity;
-
-/// A summary that could not be read.
-#[derive(Debug, thiserror::Error)]
-pub enum ReadSummaryError {
-    /// The file cannot be opened or read.
-    #[error("cannot read {}: {source}", path.display())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// Why it cannot be read.
-        source: io::Error,
-    },
-    /// The file holds something else than a summary.
-    #[error("{}: {problem}", path.display())]
-    Foreign {
-        /// The file.
-        path: PathBuf,
-        /// What is not as `meshtone simulate` writes it.
-        problem: String,
-    },
-}
 
 /// The identity of the run that a summary is of.
 ///
@@ -46,10 +25,9 @@ pub enum ReadSummaryError {
 /// assert_eq!(read_run(&path)?.number(), 255);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn read_run(path: &Path) -> Result<RunIdentity, ReadSummaryError> {
-    let text =
-        fs::read(path).map_err(|source| ReadSummaryError::Unreadable { path: path.to_path_buf(), source })?;
-    let foreign = |problem: String| ReadSummaryError::Foreign { path: path.to_path_buf(), problem };
+pub fn read_run(path: &Path) -> Result<RunIdentity, ReadResultsError> {
+    let text = fs::read(path).map_err(|source| ReadResultsError::unreadable(path, source))?;
+    let foreign = |problem: String| ReadResultsError::foreign(path, problem);
     let summary: Value =
         serde_json::from_slice(&text).map_err(|error| foreign(format!("is not whole JSON: {error}")))?;
     let run = summary.get("run").and_then(Value::as_str);

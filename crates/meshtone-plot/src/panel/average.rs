@@ -7,12 +7,10 @@ use super::damage;
 use crate::axes::{self, Area, Axes};
 use crate::canvas::Canvas;
 use crate::legend::{self, Entry, Sample};
-use crate::style::{Fill, Stroke, colour};
+use crate::style::{Stroke, colour};
 use crate::ticks::Ticks;
 
 pub(super) const CURVE: Stroke = Stroke::solid(colour::BLUE, 1.2);
-/// The time in which the damaged tooth carries load.
-pub(super) const DAMAGED: Fill = Fill::tint(colour::VERMILLION, 0.22);
 const SECOND_CURVE: Stroke = Stroke::solid(colour::GREEN, 1.4);
 const ACCELERATION: &str = "Vertical acceleration (g)";
 const MARGIN: f64 = 0.06;
@@ -24,13 +22,12 @@ pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], stages: &Stages, chann
         over_time(canvas, areas, channels);
         return;
     }
-    let teeth = [stages.teeth.pinion.teeth, stages.teeth.gear.teeth];
     let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
     let averages = Shaft::BOTH.map(|shaft| Average::new(channels, &shafts, shaft));
     let values = averages.iter().flat_map(|average| average.values.iter().copied());
     let y = axes::range(values, MARGIN);
-    let contact_deg =
-        360.0 * stages.teeth.contact.span_rev * f64::from(teeth[0]) / f64::from(teeth[1].max(1));
+    let damaged = damage::damaged_tooth(stages);
+    let pitch_deg = 360.0 / f64::from(stages.teeth.gear.teeth.max(1));
     let since = [
         "Pinion angle since its first tooth enters contact (°)".to_owned(),
         format!("Gear angle since its {} (°)", damage::start_of_revolution(stages.fault.as_ref())),
@@ -39,11 +36,10 @@ pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], stages: &Stages, chann
         let axes = Axes::new(areas[column], [0.0, 360.0], y);
         let wheel = ["pinion", "gear"][column];
         axes.title(canvas, &average.title(wheel));
-        if let Some(fault) = stages.fault.as_ref().filter(|_| column == 1) {
+        if let Some(tooth) = damaged.filter(|_| column == 1) {
             let end_of_title = (axes.area.right(), axes.area.top - axes::TITLE_ABOVE);
-            let entry = Entry { sample: Sample::Area(DAMAGED), text: damage::contact_text(fault) };
-            legend::row(canvas, end_of_title, &[entry]);
-            axes.band(canvas, 0.0, contact_deg, DAMAGED);
+            legend::row(canvas, end_of_title, &[tooth.legend_entry()]);
+            tooth.tint(canvas, &axes, pitch_deg);
         }
         axes.x_axis(canvas, &Ticks::every(45.0, 0.0, 360.0), &since[column]);
         axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), ACCELERATION, super::NAME_LEFT);

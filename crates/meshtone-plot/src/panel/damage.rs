@@ -1,10 +1,12 @@
 //! The damage in words and as ranges of the gear's profile.
 
+use meshtone::Stages;
 use meshtone::fault::{FaultDescription, FaultGeometry};
 use meshtone::scenario::Fault;
 use meshtone::tooth::Teeth;
 
 use super::side::Side;
+use crate::DamagedTooth;
 use crate::ticks::number;
 
 /// Profile indices, first and last, of the damaged part of the flank.
@@ -93,9 +95,11 @@ pub(super) fn start_of_revolution(geometry: Option<&FaultGeometry>) -> &'static 
     }
 }
 
-/// What the shaded part of the revolution is.
-pub(super) fn contact_text(geometry: &FaultGeometry) -> &'static str {
-    if is_missing(geometry) { "turn of the missing tooth" } else { "damaged tooth in contact" }
+/// The damaged tooth, if there is one.
+pub(super) fn damaged_tooth(stages: &Stages) -> Option<DamagedTooth> {
+    let contact_pitches = stages.teeth.contact.contact_ratio;
+    let of = |fault| DamagedTooth { contact_pitches, is_missing: is_missing(fault) };
+    stages.fault.as_ref().map(of)
 }
 
 /// Whether a part of the face width is sound where the flank is damaged.

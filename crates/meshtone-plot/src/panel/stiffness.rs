@@ -1,10 +1,9 @@
 //! The mesh stiffness over a revolution of the gear, and its first pitches enlarged.
 
 use meshtone::Stages;
-use meshtone::fault::FaultGeometry;
 
-use super::average::DAMAGED;
 use super::damage;
+use crate::DamagedTooth;
 use crate::axes::{self, Area, Axes};
 use crate::canvas::Canvas;
 use crate::legend::{self, Entry, Sample};
@@ -22,7 +21,7 @@ const ENLARGED: [f64; 2] = [-1.0, 3.0];
 /// Draws both.
 pub(super) fn draw(canvas: &mut Canvas, area: Area, stages: &Stages) {
     let mesh = Mesh::new(stages);
-    let damaged = stages.fault.is_some();
+    let damaged = damage::damaged_tooth(stages);
     let y = axes::range(mesh.values().map(|stiffness| stiffness / 1e3), 0.07);
     let ticks = Ticks::nice(y[0], y[1], 5);
     let whole = Axes::new(
@@ -32,10 +31,9 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, stages: &Stages) {
     );
     let enlarged =
         Axes::new(Area::new(whole.area.right() + GAP, area.top, ENLARGED_WIDTH, area.height), ENLARGED, y);
-    let contact = stages.teeth.contact.contact_ratio;
     for axes in [&whole, &enlarged] {
-        if damaged {
-            axes.band(canvas, 0.0, contact, DAMAGED);
+        if let Some(tooth) = damaged {
+            tooth.tint(canvas, axes, 1.0);
         }
     }
     whole.title(canvas, "Mesh stiffness over a gear revolution");
@@ -43,23 +41,26 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, stages: &Stages) {
     let name = format!("Pitches since the gear’s {start}");
     whole.x_axis(canvas, &Ticks::whole(0.0, mesh.pitches(), 20), &name);
     whole.y_axis(canvas, &ticks, "Stiffness (N/µm)", super::NAME_LEFT);
-    enlarged.title(canvas, if damaged { "Its first pitches, enlarged" } else { "Four pitches, enlarged" });
+    enlarged.title(
+        canvas,
+        if damaged.is_some() { "Its first pitches, enlarged" } else { "Four pitches, enlarged" },
+    );
     enlarged.x_axis(canvas, &Ticks::nice(ENLARGED[0], ENLARGED[1], 8), "Pitches");
     enlarged.y_grid(canvas, &ticks);
     for axes in [&whole, &enlarged] {
-        mesh.draw(canvas, axes, damaged.then_some(contact));
+        mesh.draw(canvas, axes, damaged.map(|tooth| tooth.contact_pitches));
         axes.frame(canvas);
     }
-    if let Some(fault) = &stages.fault {
-        legend(canvas, &whole, fault);
+    if let Some(tooth) = damaged {
+        legend(canvas, &whole, tooth);
     }
 }
 
-fn legend(canvas: &mut Canvas, axes: &Axes, fault: &FaultGeometry) {
+fn legend(canvas: &mut Canvas, axes: &Axes, tooth: DamagedTooth) {
     let entries = [
         Entry { sample: Sample::Line(MESH), text: "this gear" },
         Entry { sample: Sample::Line(HEALTHY), text: "healthy gear" },
-        Entry { sample: Sample::Area(DAMAGED), text: damage::contact_text(fault) },
+        tooth.legend_entry(),
     ];
     legend::row(canvas, (axes.area.right(), axes.area.top - axes::TITLE_ABOVE), &entries);
 }

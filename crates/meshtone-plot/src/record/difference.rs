@@ -1,13 +1,13 @@
 //! The difference signal with its envelope.
 
 use super::{CURVE, WheelView, teeth, value_axis};
+use crate::DamagedTooth;
 use crate::axes::{self, Axes};
 use crate::canvas::Canvas;
 use crate::legend::{self, Entry, Sample};
-use crate::style::{Fill, Stroke, colour};
+use crate::style::{Stroke, colour};
 
 const ENVELOPE: Stroke = Stroke::solid(colour::INK, 1.2);
-const DAMAGED: Fill = Fill::tint(colour::VERMILLION, 0.18);
 
 /// All values that are drawn.
 pub(super) fn extent<'a>(wheel: &'a WheelView) -> impl Iterator<Item = f64> + 'a {
@@ -17,10 +17,10 @@ pub(super) fn extent<'a>(wheel: &'a WheelView) -> impl Iterator<Item = f64> + 'a
 
 pub(super) fn draw(canvas: &mut Canvas, axes: Axes, wheel: &WheelView, unit: &str) {
     axes.title(canvas, "Difference signal");
-    let damaged = Entry { sample: Sample::Area(DAMAGED), text: "tooth 1, the damaged one" };
     let curves = [("difference", CURVE), ("envelope", ENVELOPE)]
         .map(|(text, line)| Entry { sample: Sample::Line(line), text });
-    let entries: Vec<Entry> = wheel.is_first_damaged.then_some(damaged).into_iter().chain(curves).collect();
+    let damaged = wheel.damaged_tooth.map(DamagedTooth::legend_entry);
+    let entries: Vec<Entry> = damaged.into_iter().chain(curves).collect();
     legend::row(canvas, (axes.area.right(), axes.area.top - axes::TITLE_ABOVE), &entries);
     teeth::axis(canvas, &axes, wheel);
     value_axis(canvas, &axes, unit);

@@ -1,7 +1,8 @@
 //! One record: signal, average, order spectrum and difference on one page.
 //!
 //! Above, the recording as it was read; below, for one wheel or in two columns for both wheels of a pair, the average over a
-//! revolution and its difference, both over the teeth, and the order spectrum with what belongs to which part.
+//! revolution and its difference, both over the teeth, and the order spectrum: all of it, and its low orders with what belongs
+//! to which part.
 
 mod difference;
 mod heading;
@@ -11,15 +12,16 @@ mod teeth;
 
 use meshtone::signal::Record;
 
-use crate::Figure;
 use crate::axes::{self, Area, Axes};
 use crate::canvas::Canvas;
+use crate::legend;
 use crate::style::{Stroke, colour};
+use crate::{DamagedTooth, Figure};
 
 /// (px) Size of the figure.
 pub const WIDTH: u32 = 1600;
 /// (px) Size of the figure.
-pub const HEIGHT: u32 = 1050;
+pub const HEIGHT: u32 = 1200;
 
 const LEFT: f64 = 84.0;
 const RIGHT: f64 = 1576.0;
@@ -31,7 +33,8 @@ const SIGNAL_HEIGHT: f64 = 130.0;
 const HEADING_BASELINE: f64 = 302.0;
 const AVERAGE_TOP: f64 = 372.0;
 const SPECTRUM_TOP: f64 = 604.0;
-const DIFFERENCE_TOP: f64 = 844.0;
+const SPECTRUM_HEIGHT: f64 = 308.0;
+const DIFFERENCE_TOP: f64 = 990.0;
 const HEIGHT_OF_AXES: f64 = 162.0;
 const MARGIN: f64 = 0.06;
 const CURVE: Stroke = Stroke::solid(colour::BLUE, 1.2);
@@ -79,8 +82,8 @@ pub struct WheelView<'a> {
     pub low_orders: usize,
     /// What marks tooth 1, such as `tooth 1 is in mesh at the tachometer's pulse`.
     pub first_tooth: &'a str,
-    /// Whether tooth 1 is known to be damaged.
-    pub is_first_damaged: bool,
+    /// The damaged tooth, where it is known to be tooth 1; its turn is tinted.
+    pub damaged_tooth: Option<DamagedTooth>,
     /// The record.
     pub record: &'a Record,
 }
@@ -106,7 +109,7 @@ pub struct WheelView<'a> {
 ///     sidebands: 2,
 ///     low_orders: 7,
 ///     first_tooth: "tooth 1 is in mesh at the first sample",
-///     is_first_damaged: false,
+///     damaged_tooth: None,
 ///     record: &record,
 /// };
 /// let figure = record::draw(&RecordFigure { title: "run.csv: bearing", facts: &[], signal, wheels: &[wheel] });
@@ -121,12 +124,14 @@ pub fn draw(figure: &RecordFigure) -> Figure {
     let unit = unit(figure.signal.unit);
     let y = common(wheels.iter().flat_map(|wheel| wheel.record.average.values.iter().copied()));
     let around = common(wheels.iter().flat_map(|wheel| difference::extent(wheel)));
-    let amplitudes = spectrum::range(wheels, column_area(0, wheels.len(), 0.0).width);
+    let column = column_area(0, wheels.len(), 0.0, 0.0);
+    let amplitudes = spectrum::Amplitudes::of(wheels, column.width);
     for (column, wheel) in wheels.iter().enumerate() {
-        let area = |top: f64| column_area(column, wheels.len(), top);
+        let area = |top: f64| column_area(column, wheels.len(), top, HEIGHT_OF_AXES);
         heading::column(&mut canvas, (area(0.0).left, HEADING_BASELINE), area(0.0).width, wheel);
         average(&mut canvas, Axes::new(area(AVERAGE_TOP), [0.0, f64::from(wheel.teeth)], y), wheel, &unit);
-        spectrum::draw(&mut canvas, area(SPECTRUM_TOP), amplitudes, wheel, &unit);
+        let spectrum_area = column_area(column, wheels.len(), SPECTRUM_TOP, SPECTRUM_HEIGHT);
+        spectrum::draw(&mut canvas, spectrum_area, &amplitudes, wheel, &unit);
         let axes = Axes::new(area(DIFFERENCE_TOP), [0.0, f64::from(wheel.teeth)], around);
         difference::draw(&mut canvas, axes, wheel, &unit);
     }
@@ -135,6 +140,10 @@ pub fn draw(figure: &RecordFigure) -> Figure {
 
 fn average(canvas: &mut Canvas, axes: Axes, wheel: &WheelView, unit: &str) {
     axes.title(canvas, &format!("Average over a revolution of the {}", wheel.name));
+    if let Some(tooth) = wheel.damaged_tooth {
+        let end_of_title = (axes.area.right(), axes.area.top - axes::TITLE_ABOVE);
+        legend::row(canvas, end_of_title, &[tooth.legend_entry()]);
+    }
     teeth::axis(canvas, &axes, wheel);
     value_axis(canvas, &axes, unit);
     axes.line(canvas, teeth::over(&wheel.record.average.values, wheel.teeth), CURVE);
@@ -155,12 +164,12 @@ fn common(values: impl Iterator<Item = f64>) -> [f64; 2] {
     axes::range(values, MARGIN)
 }
 
-fn column_area(column: usize, columns: usize, top: f64) -> Area {
+fn column_area(column: usize, columns: usize, top: f64, height: f64) -> Area {
     let width = match columns {
         0 | 1 => RIGHT - LEFT,
         _ => (RIGHT - LEFT - COLUMN_GAP) / 2.0,
     };
-    Area::new(LEFT + column as f64 * (width + COLUMN_GAP), top, width, HEIGHT_OF_AXES)
+    Area::new(LEFT + column as f64 * (width + COLUMN_GAP), top, width, height)
 }
 
 /// The unit in an axis' name.

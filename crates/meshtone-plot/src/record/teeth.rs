@@ -3,14 +3,12 @@
 use super::WheelView;
 use crate::axes::Axes;
 use crate::canvas::Canvas;
-use crate::style::{Fill, Stroke, TextStyle, colour};
+use crate::style::{Stroke, TextStyle, colour};
 use crate::ticks::Ticks;
 
 /// (px) Least distance of two numbers, and of two grid lines.
 const BETWEEN_NUMBERS: f64 = 30.0;
 const BETWEEN_LINES: f64 = 7.0;
-/// The pitch of the damaged tooth.
-const DAMAGED: Fill = Fill::tint(colour::VERMILLION, 0.18);
 const GRID: Stroke = Stroke::solid(colour::GRID, 1.0);
 
 /// The values of a revolution over the teeth: tooth k is from k − 1 to k.
@@ -19,10 +17,10 @@ pub(super) fn over(values: &[f64], teeth: u32) -> impl Iterator<Item = (f64, f64
     values.iter().enumerate().map(move |(k, &value)| (k as f64 * per_value, value))
 }
 
-/// Numbers of the teeth in the middle of their pitches, lines between them.
+/// Numbers of the teeth in the middle of their pitches, lines between them; the turn of the damaged one is tinted.
 pub(super) fn axis(canvas: &mut Canvas, axes: &Axes, wheel: &WheelView) {
-    if wheel.is_first_damaged {
-        axes.band(canvas, 0.0, 1.0, DAMAGED);
+    if let Some(tooth) = wheel.damaged_tooth {
+        tooth.tint(canvas, axes, 1.0);
     }
     let pitch = axes.area.width / f64::from(wheel.teeth.max(1));
     let step = |least: f64| {

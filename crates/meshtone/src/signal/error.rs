@@ -28,7 +28,7 @@ pub enum SignalError {
         samples: usize,
     },
     /// Every sample has the same value: the sensor was not connected, or the wrong column was read.
-    #[error("all {samples} samples are {value}: a constant channel holds no vibration")]
+    #[error("all {samples} samples are {value}: a constant channel tells nothing")]
     Constant {
         /// The value.
         value: f64,
@@ -143,7 +143,7 @@ pub enum SignalError {
     /// No tone stands out at the mesh frequency.
     #[error(
         "no mesh tone at {frequency_hz:.2} Hz ± {half_band_hz:.2} Hz: the mean power there is {ratio:.2} times the \
-         noise around it, at least {needed} is needed; check the tooth count and the speed, or take a wider band"
+         noise around it, at least {needed} is needed; check the tooth count and the speed"
     )]
     NoMeshTone {
         /// (Hz) Where it is expected.

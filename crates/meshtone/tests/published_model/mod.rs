@@ -10,6 +10,23 @@ use nalgebra::DMatrix;
 use ndarray::{ArrayD, IxDyn};
 use ndarray_npy::NpzReader;
 
+/// A test of each of the nine scenarios, of its name.
+macro_rules! for_each_scenario {
+    ($check:ident) => {
+        for_each_scenario!(
+            $check: healthy_din0, healthy_din7, missing_din0, breakage_din7, partial_din0, through_din0, through_circ_din7,
+            destruction_din0, destruction_slope_din0
+        );
+    };
+    ($check:ident: $($name:ident),*) => {$(
+        #[test]
+        fn $name() {
+            $check(stringify!($name));
+        }
+    )*};
+}
+pub(crate) use for_each_scenario;
+
 /// Fields by name.
 pub type Reference = HashMap<String, ArrayD<f64>>;
 

@@ -215,6 +215,7 @@ fn in_array(path: &Path, name: &str, error: io::Error) -> ReadRecordingError {
 fn zip_failed(path: &Path, error: ZipError) -> ReadRecordingError {
     match error {
         ZipError::Io(error) => read_failed(path, NPZ, error),
-        other => broken(path, NPZ, other),
+        // Its table of contents stands at the end.
+        other => broken(path, NPZ, format!("{other}; is the file cut off?")),
     }
 }

@@ -7,6 +7,7 @@
 mod blocks;
 mod candidate;
 mod cells;
+mod end;
 mod head;
 mod numbers;
 
@@ -15,6 +16,7 @@ use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use self::blocks::Blocks;
+use self::end::doubtful_end;
 use self::head::{Head, HeadError, Line};
 use self::numbers::Numbers;
 use super::assemble::{Parts, assemble};
@@ -42,7 +44,7 @@ pub(super) fn read(
     // A little more than expected, as a column that grows is copied.
     let rows = 1.01 * file_bytes as f64 / head.line_bytes.max((CELL_BYTES * wanted.len()) as f64);
     let mut numbers = Numbers::new(path, &head, &wanted, rows as usize + 1);
-    let mut blocks = Blocks::new(file);
+    let mut blocks = Blocks::new(&file);
     loop {
         let block = blocks.next().map_err(failed)?;
         if block.is_empty() {
@@ -50,8 +52,13 @@ pub(super) fn read(
         }
         numbers.read(block)?;
     }
+    let last_line = numbers.last_line();
     let samples = numbers.finish()?;
-    assemble(Parts { path, labels: &head.labels, selection: &selection, samples, stated: &[] }, options)
+    let parts = Parts { path, labels: &head.labels, selection: &selection, samples, stated: &[] };
+    let recording = assemble(parts, options)?;
+    let reads_last = wanted.last().is_some_and(|column| column + 1 == head.labels.len());
+    let doubtful = if reads_last { doubtful_end(&mut file, &head, last_line).map_err(failed)? } else { None };
+    Ok(Recording { warnings: doubtful.into_iter().collect(), ..recording })
 }
 
 /// Reads the first lines.

@@ -68,6 +68,11 @@ impl<'h> Numbers<'h> {
         Ok(())
     }
 
+    /// The last line that was read, counted from 1.
+    pub(super) fn last_line(&self) -> u64 {
+        self.line - 1
+    }
+
     /// The samples of each column, after the last line.
     pub(super) fn finish(self) -> Result<Vec<Vec<f64>>, ReadRecordingError> {
         match self.blank {
