@@ -1,0 +1,78 @@
+//! Many simulations.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use meshtone::batch::{ChannelKind, Control, KeepChannels, Signals, simulate_many as simulate};
+use meshtone::scenario::ScenarioError;
+use pyo3::exceptions::PyOSError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::array::array;
+use crate::error::{scenario_error, value_error};
+use crate::interrupt::interruptible;
+use crate::scenario::Scenario;
+
+/// Simulates scenarios side by side; of each a dictionary of its channels, or the error that it gave.
+#[pyfunction]
+pub fn simulate_many<'py>(
+    py: Python<'py>,
+    scenarios: Vec<PyRef<'py, Scenario>>,
+    channels: Vec<String>,
+    threads: Option<usize>,
+    progress: Option<Bound<'py, PyAny>>,
+) -> PyResult<Vec<Bound<'py, PyAny>>> {
+    let kinds = channels.iter().map(|name| kind(name)).collect::<PyResult<Vec<_>>>()?;
+    let scenarios: Vec<_> = scenarios.iter().map(|scenario| scenario.0.clone()).collect();
+    let mut pool = rayon::ThreadPoolBuilder::new();
+    match threads {
+        Some(0) => return Err(value_error("threads = 0: must be at least 1")),
+        Some(threads) => pool = pool.num_threads(threads),
+        None => {}
+    }
+    let pool = pool.build().map_err(|error| PyOSError::new_err(error.to_string()))?;
+    let finished = AtomicUsize::new(0);
+    let progress = progress.map(Bound::unbind);
+    let results = interruptible(
+        py,
+        |cancelled| {
+            let told = |count| finished.store(count, Ordering::Relaxed);
+            let control = Control { progress: &told, cancelled, ..Control::default() };
+            let mut results = Vec::with_capacity(scenarios.len());
+            pool.install(|| {
+                simulate(scenarios, &KeepChannels::new(kinds), &control, |_, result| results.push(result));
+            });
+            results
+        },
+        |py| match &progress {
+            Some(progress) => progress.call1(py, (finished.load(Ordering::Relaxed),)).map(drop),
+            None => Ok(()),
+        },
+    )?;
+    results.into_iter().map(|result| signals(py, &channels, result)).collect()
+}
+
+fn kind(name: &str) -> PyResult<ChannelKind> {
+    ChannelKind::ALL.into_iter().find(|kind| kind.name() == name).ok_or_else(|| {
+        let names: Vec<_> = ChannelKind::ALL.iter().map(|kind| kind.name()).collect();
+        value_error(format!("channels: '{name}': must be one of {}", names.join(", ")))
+    })
+}
+
+fn signals<'py>(
+    py: Python<'py>,
+    names: &[String],
+    result: Result<Signals, ScenarioError>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let signals = match result {
+        Ok(signals) => signals,
+        Err(error) => return Ok(scenario_error(&error).into_value(py).into_bound(py).into_any()),
+    };
+    let all = PyDict::new(py);
+    all.set_item("sampling_rate_hz", signals.sampling_rate_hz)?;
+    all.set_item("start_s", signals.start_s)?;
+    for (name, channel) in names.iter().zip(signals.channels) {
+        all.set_item(name, array(py, channel))?;
+    }
+    Ok(all.into_any())
+}

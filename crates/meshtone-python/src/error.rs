@@ -1,0 +1,26 @@
+//! The library's errors as Python's, with the same text.
+
+use std::fmt::Display;
+use std::path::Path;
+
+use meshtone::scenario::ScenarioError;
+use pyo3::PyErr;
+use pyo3::exceptions::{PyFileNotFoundError, PyValueError};
+
+/// Bad input.
+pub fn value_error(error: impl Display) -> PyErr {
+    PyValueError::new_err(error.to_string())
+}
+
+/// A scenario that cannot be simulated: the problem, and below it what to do about it.
+pub fn scenario_error(error: &ScenarioError) -> PyErr {
+    match &error.help {
+        Some(help) => PyValueError::new_err(format!("{error}\n{help}")),
+        None => value_error(error),
+    }
+}
+
+/// A file that could not be read: absent, or with bad content.
+pub fn file_error(path: &Path, error: impl Display) -> PyErr {
+    if path.exists() { value_error(error) } else { PyFileNotFoundError::new_err(error.to_string()) }
+}

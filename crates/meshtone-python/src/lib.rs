@@ -1,0 +1,52 @@
+//! The Python module `meshtone._core`: what the package `meshtone` is built around.
+//!
+//! Everything here is thin: it turns Python values into the library's and back, releases the interpreter's lock while the
+//! library computes, and gives its errors as Python's, with the same text. What users see, with its documentation, is in
+//! `python/meshtone`.
+// Functions that Python calls take what Python gives, and are documented there.
+#![allow(clippy::too_many_arguments)]
+
+mod array;
+mod batch;
+mod error;
+mod hybrid;
+mod interrupt;
+mod phase;
+mod process;
+mod recording;
+mod scenario;
+mod signal;
+mod simulation;
+mod value;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _core {
+    #[pymodule_export]
+    use crate::batch::simulate_many;
+    #[pymodule_export]
+    use crate::hybrid::{add_noise, change_duration, change_fault_to_harmonics_ratio, enhance, tune};
+    #[pymodule_export]
+    use crate::phase::{ShaftPhase, repair_pulses, tachometer_pulses};
+    #[pymodule_export]
+    use crate::process::{Record, process_channel, process_series};
+    #[pymodule_export]
+    use crate::recording::read_recording;
+    #[pymodule_export]
+    use crate::scenario::{Scenario, template};
+    #[pymodule_export]
+    use crate::signal::{
+        angular_resample, energy_ratio, envelope, envelope_spectrum, fm0, fm4, m6a, m8a, na4, order_spectrum,
+        resample, separate, sideband_level_factor, statistics, synchronous_average,
+    };
+    #[pymodule_export]
+    use crate::simulation::{Simulation, simulate, trace};
+
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

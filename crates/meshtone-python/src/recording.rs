@@ -1,0 +1,67 @@
+//! Recordings.
+
+use std::path::PathBuf;
+
+use meshtone_io::recording::{self, Calibration, ColumnChoice, RecordingOptions, TimeColumn};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::array::array;
+use crate::error::file_error;
+
+/// A column's name or number.
+#[derive(FromPyObject)]
+pub enum Column {
+    Number(usize),
+    Name(String),
+}
+
+impl From<Column> for ColumnChoice {
+    fn from(column: Column) -> Self {
+        match column {
+            Column::Number(number) => Self::Number(number),
+            Column::Name(name) => Self::Name(name),
+        }
+    }
+}
+
+/// Reads a recording: a dictionary of its parts.
+#[pyfunction]
+pub fn read_recording<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    channels: Vec<Column>,
+    sampling_rate_hz: Option<f64>,
+    variable: Option<String>,
+    time: Option<Column>,
+    calibrations: Vec<(Column, Option<f64>, Option<String>)>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let calibrations = calibrations
+        .into_iter()
+        .map(|(channel, sensitivity_v_per_unit, unit)| Calibration {
+            channel: channel.into(),
+            sensitivity_v_per_unit,
+            unit,
+        })
+        .collect();
+    let options = RecordingOptions {
+        channels: channels.into_iter().map(ColumnChoice::from).collect(),
+        sampling_rate_hz,
+        variable,
+        time: time.map_or_else(TimeColumn::default, |column| TimeColumn::Chosen(column.into())),
+        calibrations,
+        ..RecordingOptions::default()
+    };
+    let read =
+        py.detach(|| recording::read_recording(&path, &options)).map_err(|error| file_error(&path, error))?;
+    let all = PyDict::new(py);
+    all.set_item("sampling_rate_hz", read.sampling_rate_hz)?;
+    all.set_item("start_s", read.start_s)?;
+    all.set_item("scenario_toml", read.scenario_toml)?;
+    let mut channels = Vec::with_capacity(read.channels.len());
+    for channel in read.channels {
+        channels.push((channel.name, channel.unit, array(py, channel.samples)));
+    }
+    all.set_item("channels", channels)?;
+    Ok(all)
+}

@@ -1,0 +1,138 @@
+//! What is simulated.
+
+use std::path::{Path, PathBuf};
+
+use meshtone::scenario::{self, ProfileErrors, ScenarioError};
+use meshtone_io::scenario_file::read_scenario;
+use nalgebra::DMatrix;
+use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use toml::Table;
+
+use crate::array::array;
+use crate::error::{file_error, scenario_error, value_error};
+use crate::value::{dictionary, table};
+
+/// A scenario as the library has it.
+#[pyclass(frozen, eq, module = "meshtone._core")]
+#[derive(Clone, PartialEq)]
+pub struct Scenario(pub scenario::Scenario);
+
+#[pymethods]
+impl Scenario {
+    /// From the sections of a scenario file.
+    #[new]
+    #[pyo3(signature = (sections, pinion_profile_errors_mm=None, gear_profile_errors_mm=None))]
+    fn new(
+        sections: &Bound<'_, PyDict>,
+        pinion_profile_errors_mm: Option<PyReadonlyArray2<'_, f64>>,
+        gear_profile_errors_mm: Option<PyReadonlyArray2<'_, f64>>,
+    ) -> PyResult<Self> {
+        let text = table(sections)?.to_string();
+        let mut scenario = scenario::Scenario::from_toml(&text).map_err(without_line)?;
+        match (pinion_profile_errors_mm, gear_profile_errors_mm) {
+            (Some(pinion), Some(gear)) => {
+                scenario.quality.profile_errors = Some(ProfileErrors {
+                    pinion_profile_errors_mm: matrix(&pinion),
+                    gear_profile_errors_mm: matrix(&gear),
+                });
+                scenario.validate().map_err(|error| scenario_error(&error))?;
+            }
+            (None, None) => {}
+            _ => {
+                return Err(PyValueError::new_err(
+                    "pinion_profile_errors_mm and gear_profile_errors_mm belong together: give both or neither",
+                ));
+            }
+        }
+        Ok(Self(scenario))
+    }
+
+    /// From the text of a scenario file.
+    #[staticmethod]
+    fn from_toml(text: &str) -> PyResult<Self> {
+        scenario::Scenario::from_toml(text).map(Self).map_err(|error| scenario_error(&error))
+    }
+
+    /// From a scenario file, and the files that it names.
+    #[staticmethod]
+    fn from_file(path: PathBuf) -> PyResult<Self> {
+        read_scenario(&path).map(Self).map_err(|error| file_error(&path, describe(&path, error)))
+    }
+
+    /// As the text of a scenario file.
+    fn to_toml(&self) -> String {
+        self.0.to_toml()
+    }
+
+    /// The sections with all their keys, defaults included, but for the profile errors.
+    fn sections<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let mut small = self.0.clone();
+        small.quality.profile_errors = None;
+        let table: Table = small.to_toml().parse().map_err(value_error)?;
+        dictionary(py, &table)
+    }
+
+    /// Pinion's and gear's profile errors, where they were given.
+    fn profile_errors_mm<'py>(&self, py: Python<'py>) -> PyResult<Option<BothWheels<'py>>> {
+        self.0.quality.profile_errors.as_ref().map(|errors| both_wheels(py, errors)).transpose()
+    }
+
+    /// What is doubtful about it.
+    fn warnings(&self) -> PyResult<Vec<String>> {
+        let mut warnings = self.0.validate().map_err(|error| scenario_error(&error))?;
+        warnings.extend(self.0.ignored_by_convention());
+        Ok(warnings.iter().map(ToString::to_string).collect())
+    }
+}
+
+/// A commented scenario file of a kind of fault, or `healthy`.
+#[pyfunction]
+pub fn template(kind: &str) -> PyResult<String> {
+    scenario::template(kind).ok_or_else(|| {
+        PyValueError::new_err(format!(
+            "kind = {kind}: must be one of {}",
+            scenario::TEMPLATE_KINDS.join(", ")
+        ))
+    })
+}
+
+/// The error without the line: the text was made from Python's values.
+fn without_line(error: ScenarioError) -> PyErr {
+    scenario_error(&ScenarioError { line: None, ..error })
+}
+
+fn describe(path: &Path, error: meshtone_io::scenario_file::ReadScenarioError) -> String {
+    let mut text = error.to_string();
+    let mut source = std::error::Error::source(&error);
+    while let Some(cause) = source {
+        let cause_text = cause.to_string();
+        if !text.contains(&cause_text) {
+            text = format!("{text}: {cause_text}");
+        }
+        source = cause.source();
+    }
+    if text.contains(&path.display().to_string()) { text } else { format!("{}: {text}", path.display()) }
+}
+
+fn matrix(array: &PyReadonlyArray2<'_, f64>) -> DMatrix<f64> {
+    let [rows, columns] = [array.shape()[0], array.shape()[1]];
+    let view = array.as_array();
+    DMatrix::from_fn(rows, columns, |row, column| view[[row, column]])
+}
+
+/// An array each of the pinion and the gear.
+pub type BothWheels<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>);
+
+/// Profile errors of both wheels, a column a tooth.
+pub fn both_wheels<'py>(py: Python<'py>, errors: &ProfileErrors) -> PyResult<BothWheels<'py>> {
+    Ok((rows(py, &errors.pinion_profile_errors_mm)?, rows(py, &errors.gear_profile_errors_mm)?))
+}
+
+/// A matrix as NumPy has it, rows first.
+fn rows<'py>(py: Python<'py>, matrix: &DMatrix<f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let values: Vec<f64> = matrix.transpose().as_slice().to_vec();
+    array(py, values).reshape([matrix.nrows(), matrix.ncols()]).map_err(value_error)
+}

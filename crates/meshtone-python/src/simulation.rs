@@ -1,0 +1,174 @@
+//! One simulation.
+
+use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
+use meshtone::{Stages, Trace};
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::array::{Signal, array, field, samples};
+use crate::error::{scenario_error, value_error};
+use crate::process::Record;
+use crate::scenario::{BothWheels, Scenario, both_wheels};
+
+/// A simulation: every stage's results and the signals.
+#[pyclass(frozen, module = "meshtone._core")]
+pub struct Simulation {
+    stages: Stages,
+    /// (S/s)
+    #[pyo3(get)]
+    sampling_rate_hz: f64,
+    /// (s) Of the first kept sample.
+    #[pyo3(get)]
+    start_s: f64,
+    #[pyo3(get)]
+    horizontal_g: Py<PyArray1<f64>>,
+    #[pyo3(get)]
+    vertical_g: Py<PyArray1<f64>>,
+    #[pyo3(get)]
+    axial_g: Py<PyArray1<f64>>,
+    #[pyo3(get)]
+    pinion_speed_hz: Py<PyArray1<f64>>,
+    #[pyo3(get)]
+    gear_speed_hz: Py<PyArray1<f64>>,
+    #[pyo3(get)]
+    mesh_force_n: Py<PyArray1<f64>>,
+    /// (s) Of the stages, by name.
+    #[pyo3(get)]
+    computing_time_s: Vec<(&'static str, f64)>,
+}
+
+/// Simulates a scenario.
+#[pyfunction]
+pub fn simulate(py: Python<'_>, scenario: &Scenario) -> PyResult<Simulation> {
+    let simulation = py.detach(|| meshtone::simulate(&scenario.0)).map_err(|error| scenario_error(&error))?;
+    Ok(Simulation::new(py, simulation))
+}
+
+/// Simulates a scenario and gives every stage's output by name.
+#[pyfunction]
+#[pyo3(signature = (scenario, average_rate_hz=None))]
+pub fn trace<'py>(
+    py: Python<'py>,
+    scenario: &Scenario,
+    average_rate_hz: Option<f64>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let traced = py.detach(|| match average_rate_hz {
+        Some(rate) => meshtone::trace_at(&scenario.0, rate),
+        None => meshtone::trace(&scenario.0),
+    });
+    let (_, trace) = traced.map_err(|error| scenario_error(&error))?;
+    fields(py, trace)
+}
+
+fn fields(py: Python<'_>, trace: Trace) -> PyResult<Bound<'_, PyDict>> {
+    let all = PyDict::new(py);
+    for entry in trace.fields {
+        let name = entry.name.clone();
+        all.set_item(name, field(py, entry)?)?;
+    }
+    Ok(all)
+}
+
+impl Simulation {
+    fn new(py: Python<'_>, simulation: meshtone::Simulation) -> Self {
+        let channels = simulation.channels;
+        Self {
+            sampling_rate_hz: channels.sampling_rate_hz,
+            start_s: channels.start_s,
+            horizontal_g: array(py, channels.horizontal_g).unbind(),
+            vertical_g: array(py, channels.vertical_g).unbind(),
+            axial_g: array(py, channels.axial_g).unbind(),
+            pinion_speed_hz: array(py, channels.pinion_speed_hz).unbind(),
+            gear_speed_hz: array(py, channels.gear_speed_hz).unbind(),
+            mesh_force_n: array(py, channels.mesh_force_n).unbind(),
+            computing_time_s: simulation
+                .timings
+                .iter()
+                .map(|stage| (stage.stage, stage.elapsed.as_secs_f64()))
+                .collect(),
+            stages: simulation.stages,
+        }
+    }
+}
+
+#[pymethods]
+impl Simulation {
+    /// What was simulated.
+    #[getter]
+    fn scenario(&self) -> Scenario {
+        Scenario(self.stages.scenario.clone())
+    }
+
+    /// The fields of a trace that belong to the stages before the time loop.
+    fn fields<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        fields(py, meshtone::stage_trace(&self.stages))
+    }
+
+    /// (-) Mode shapes, a column each, normalised to unit modal mass.
+    #[getter]
+    fn mode_shapes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let shapes = &self.stages.system.modes.shapes;
+        let values: Vec<f64> =
+            (0..shapes.nrows()).flat_map(|row| (0..shapes.ncols()).map(move |n| shapes[(row, n)])).collect();
+        array(py, values).reshape([shapes.nrows(), shapes.ncols()]).map_err(value_error)
+    }
+
+    /// (N/mm) Mesh stiffness at every point of a revolution of the gear.
+    fn mesh_stiffness_curve_n_per_mm<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        array(py, self.stages.mesh.mesh_n_per_mm.clone())
+    }
+
+    /// (mm) Profile of a wheel's tooth: x, y.
+    fn tooth_profile_mm<'py>(
+        &self,
+        py: Python<'py>,
+        wheel: &str,
+    ) -> PyResult<[Bound<'py, PyArray1<f64>>; 2]> {
+        let profile = match shaft(wheel)? {
+            Shaft::Pinion => &self.stages.teeth.pinion_profile,
+            Shaft::Gear => &self.stages.teeth.gear_profile,
+        };
+        Ok([array(py, profile.x_mm.clone()), array(py, profile.y_mm.clone())])
+    }
+
+    /// (mm) The damaged flank's y, at the gear's profile points; none for a healthy pair.
+    fn damaged_flank_y_mm<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        self.stages.fault.as_ref().map(|fault| array(py, fault.flank_y_mm.clone()))
+    }
+
+    /// (mm) Profile errors of both wheels, a column a tooth; none for ideal teeth.
+    fn profile_errors_mm<'py>(&self, py: Python<'py>) -> PyResult<Option<BothWheels<'py>>> {
+        self.stages.profile_errors.as_ref().map(|errors| both_wheels(py, errors)).transpose()
+    }
+
+    /// One of its signals, taken to the average over a revolution of a shaft and to indicators.
+    #[pyo3(signature = (signal, shaft, start_s, settings=None))]
+    fn process(
+        &self,
+        py: Python<'_>,
+        signal: Signal<'_>,
+        shaft: &str,
+        start_s: f64,
+        settings: Option<crate::process::Settings>,
+    ) -> PyResult<Record> {
+        let shaft = self::shaft(shaft)?;
+        let signal = samples(&signal)?;
+        let settings = settings.map_or_else(|| Ok(ChainSettings::default()), |settings| settings.chain())?;
+        let scenario = &self.stages.scenario;
+        py.detach(|| {
+            let shafts = SimulatedShafts::new(scenario, start_s, signal.len());
+            shafts.process(signal, shaft, &settings)
+        })
+        .map(Record)
+        .map_err(value_error)
+    }
+}
+
+/// The shaft of a wheel.
+fn shaft(wheel: &str) -> PyResult<Shaft> {
+    Shaft::BOTH
+        .into_iter()
+        .find(|shaft| shaft.wheel() == wheel)
+        .ok_or_else(|| value_error(format!("'{wheel}': must be 'pinion' or 'gear'")))
+}

@@ -1,0 +1,53 @@
+"""Vibration of spur gears, healthy or with a damaged tooth.
+
+>>> from meshtone import Scenario, ToothBreakage, simulate
+>>> scenario = Scenario(module_mm=3, pinion_teeth=17, gear_teeth=38, face_width_mm=15, pinion_speed_hz=40, brake_torque_nm=10,
+...                     din_grade=7, fault=ToothBreakage(chip_height_mm=5, chip_width_mm=12))
+>>> simulation = simulate(scenario)
+>>> figure = simulation.plot()                      # doctest: +SKIP
+>>> round(simulation.process().indicators["difference_kurtosis"]) > 3
+True
+
+The parts: :class:`Scenario` and the faults say what is simulated; :func:`simulate` and :func:`simulate_many` do it; :mod:`meshtone.signal`
+takes signals, simulated or measured, to condition indicators; :mod:`meshtone.hybrid` tunes simulations to a rig;
+:mod:`meshtone.plotting` draws; :mod:`meshtone.examples` has scenarios to start from.
+"""
+
+from . import examples, hybrid, signal
+from ._core import __version__
+from .faults import Fault, MissingTooth, PartialFace, PitCircle, ThroughFace, ToothBreakage, ToothDestruction
+from .hybrid import enhance, tune
+from .recording import Recording, read_recording
+from .scenario import Scenario, template
+from .signal import Record, ShaftPhase, process_channel, process_series
+from .simulation import CHANNELS, Signals, Simulation, simulate, simulate_many, trace
+
+__all__ = [
+    "CHANNELS",
+    "Fault",
+    "MissingTooth",
+    "PartialFace",
+    "PitCircle",
+    "Record",
+    "Recording",
+    "Scenario",
+    "ShaftPhase",
+    "Signals",
+    "Simulation",
+    "ThroughFace",
+    "ToothBreakage",
+    "ToothDestruction",
+    "__version__",
+    "enhance",
+    "examples",
+    "hybrid",
+    "process_channel",
+    "process_series",
+    "read_recording",
+    "signal",
+    "simulate",
+    "simulate_many",
+    "template",
+    "trace",
+    "tune",
+]

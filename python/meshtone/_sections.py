@@ -1,0 +1,63 @@
+"""Which section of the scenario file each key stands in."""
+
+from __future__ import annotations
+
+import difflib
+
+SECTION_OF_KEY: dict[str, str] = {
+    key: section
+    for section, keys in {
+        "": ("convention", "seed"),
+        "gears": (
+            "module_mm",
+            "pinion_teeth",
+            "gear_teeth",
+            "face_width_mm",
+            "pressure_angle_deg",
+            "material",
+            "tip_relief",
+            "crowning_mm",
+            "points_per_tooth",
+            "foundation",
+        ),
+        "operation": (
+            "pinion_speed_hz",
+            "brake_torque_nm",
+            "speed_fluctuation_hz",
+            "torque_fluctuation_nm",
+            "speed_profile_hz",
+            "torque_profile_nm",
+        ),
+        "quality": ("din_grade", "errors_seed"),
+        "rig": (
+            "bearing_stiffness_n_per_m",
+            "wheel_rotational_stiffness_nm_per_rad",
+            "brake_inertia_kgm2",
+            "damping_ratio",
+            "eccentricity_mm",
+            "pinion_shaft",
+            "gear_shaft",
+            "pinion_inertia",
+            "gear_inertia",
+        ),
+        "solver": (
+            "sampling_rate_hz",
+            "settle_fraction",
+            "settle_tolerance",
+            "initial_displacement",
+            "initial_velocity",
+        ),
+    }.items()
+    for key in keys
+}
+
+OTHER_ARGUMENTS = ("fault", "pinion_profile_errors_mm", "gear_profile_errors_mm")
+
+
+def check_key(key: str) -> None:
+    """Refuse a key that a scenario does not have."""
+    known = [*SECTION_OF_KEY, *OTHER_ARGUMENTS]
+    if key not in known:
+        near = difflib.get_close_matches(key, known, n=1)
+        hint = f"; did you mean '{near[0]}'?" if near else f"; a scenario has {', '.join(known)}"
+        raise TypeError(f"a scenario has no key '{key}'{hint}")

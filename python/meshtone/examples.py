@@ -1,0 +1,66 @@
+"""Scenarios to start from: the pair of the paper's examples, healthy and with each fault.
+
+Examples
+--------
+>>> from meshtone import examples
+>>> examples.tooth_breakage().fault.chip_width_mm
+12.0
+>>> sorted(examples.all())
+['healthy', 'missing-tooth', 'partial-face', 'through-face', 'tooth-breakage', 'tooth-destruction']
+"""
+
+from __future__ import annotations
+
+from .scenario import Scenario, template
+
+__all__ = [
+    "all",
+    "healthy",
+    "missing_tooth",
+    "partial_face",
+    "through_face",
+    "tooth_breakage",
+    "tooth_destruction",
+]
+
+
+def healthy() -> Scenario:
+    """A healthy pair, 17 and 38 teeth, 40 Hz, 10 N m, DIN grade 7."""
+    return Scenario.from_toml(template("healthy"))
+
+
+def missing_tooth() -> Scenario:
+    """The same pair without the gear's first tooth."""
+    return Scenario.from_toml(template("missing-tooth"))
+
+
+def tooth_breakage() -> Scenario:
+    """The same pair with a chipped tooth."""
+    return Scenario.from_toml(template("tooth-breakage"))
+
+
+def partial_face() -> Scenario:
+    """The same pair with a pit over a part of the face width."""
+    return Scenario.from_toml(template("partial-face"))
+
+
+def through_face() -> Scenario:
+    """The same pair with a pit over the whole face width."""
+    return Scenario.from_toml(template("through-face"))
+
+
+def tooth_destruction() -> Scenario:
+    """A pair with a flank that has been worn away."""
+    return Scenario.from_toml(template("tooth-destruction"))
+
+
+def all() -> dict[str, Scenario]:
+    """All of them, by the kind of fault."""
+    return {
+        "healthy": healthy(),
+        "missing-tooth": missing_tooth(),
+        "tooth-breakage": tooth_breakage(),
+        "partial-face": partial_face(),
+        "through-face": through_face(),
+        "tooth-destruction": tooth_destruction(),
+    }

@@ -1,0 +1,374 @@
+"""Figures, with matplotlib: they return figures and axes that can be changed.
+
+Needs matplotlib: ``pip install 'meshtone[plot]'``.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from .faults import MissingTooth, ToothBreakage
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from .signal import Record
+    from .simulation import Simulation
+
+__all__ = [
+    "plot_indicators",
+    "plot_mesh_stiffness",
+    "plot_record",
+    "plot_signal",
+    "plot_simulation",
+    "plot_spectrum",
+    "plot_tooth",
+    "png",
+]
+
+BLUE, ORANGE, GREY = "#0072b2", "#d55e00", "#8c8c8c"
+"""Colours that also readers with colour blindness can tell apart (Okabe and Ito)."""
+
+LABELS = {
+    "horizontal_g": "Horizontal acceleration (g)",
+    "vertical_g": "Vertical acceleration (g)",
+    "axial_g": "Axial acceleration (g)",
+    "pinion_speed_hz": "Pinion speed (rev/s)",
+    "gear_speed_hz": "Gear speed (rev/s)",
+    "mesh_force_n": "Mesh force (N)",
+}
+
+
+def _new_figure(size: tuple[float, float]) -> Figure:
+    import matplotlib.pyplot as plt
+
+    return plt.figure(figsize=size, layout="constrained")
+
+
+def png(figure: Figure) -> bytes:
+    """A figure as PNG, for notebooks; it is closed.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.Figure
+        The figure.
+    """
+    import matplotlib.pyplot as plt
+
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=100)
+    plt.close(figure)
+    return buffer.getvalue()
+
+
+def _axes(ax: Axes | None, size: tuple[float, float] = (8.0, 3.2)) -> Axes:
+    return ax if ax is not None else _new_figure(size).subplots()
+
+
+def plot_signal(
+    simulation: Simulation, channel: str = "vertical_g", *, revolutions: float = 2.0, ax: Axes | None = None
+) -> Axes:
+    """A signal over some revolutions of the gear.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        What is shown.
+    channel : str
+        One of :data:`meshtone.CHANNELS`.
+    revolutions : float
+        (rev) Of the gear, from the first kept sample on.
+    ax : matplotlib.axes.Axes, optional
+        Where it is drawn; a new figure by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ValueError
+        A channel that there is not.
+    """
+    if channel not in LABELS:
+        raise ValueError(f"channel = '{channel}': must be one of {', '.join(LABELS)}")
+    ax = _axes(ax)
+    scenario = simulation.scenario
+    turns = simulation.sampling_rate_hz * scenario.gear_teeth / scenario.pinion_teeth / scenario.pinion_speed_hz
+    count = max(2, int(round(revolutions * turns)))
+    values = getattr(simulation, channel)[:count]
+    ax.plot(simulation.time_s[: values.size], values, color=BLUE, linewidth=0.8)
+    ax.set(xlabel="Time (s)", ylabel=LABELS[channel])
+    ax.margins(x=0)
+    ax.grid(alpha=0.3)
+    return ax
+
+
+def plot_mesh_stiffness(simulation: Simulation, *, ax: Axes | None = None) -> Axes:
+    """Mesh stiffness over a revolution of the gear.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        What is shown.
+    ax : matplotlib.axes.Axes, optional
+        Where it is drawn; a new figure by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = _axes(ax)
+    gear_rev, stiffness = simulation.mesh_stiffness_curve()
+    pitches = gear_rev * simulation.scenario.gear_teeth
+    shown = pitches < 8
+    ax.plot(pitches[shown], stiffness[shown], color=BLUE, linewidth=1.2)
+    ax.set(xlabel="Angle of the gear (tooth pitches; tooth 1 enters contact at 0)", ylabel="Mesh stiffness (N/mm)")
+    ax.set_xlim(0, 8)
+    ax.set_ylim(bottom=0)
+    ax.grid(alpha=0.3)
+    return ax
+
+
+def plot_spectrum(simulation: Simulation, channel: str = "vertical_g", *, ax: Axes | None = None) -> Axes:
+    """Amplitude of a signal against frequency, with the harmonics of the mesh.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        What is shown.
+    channel : str
+        One of :data:`meshtone.CHANNELS`.
+    ax : matplotlib.axes.Axes, optional
+        Where it is drawn; a new figure by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    if channel not in LABELS:
+        raise ValueError(f"channel = '{channel}': must be one of {', '.join(LABELS)}")
+    ax = _axes(ax)
+    values = getattr(simulation, channel)
+    amplitude = 2 * np.abs(np.fft.rfft(values - values.mean())) / values.size
+    frequency_hz = np.fft.rfftfreq(values.size, 1 / simulation.sampling_rate_hz)
+    mesh_hz = simulation.scenario.pinion_speed_hz * simulation.scenario.pinion_teeth
+    limit_hz = min(40 * mesh_hz, frequency_hz[-1])
+    shown = (frequency_hz > 0) & (frequency_hz <= limit_hz)
+    ax.semilogy(frequency_hz[shown] / 1e3, np.maximum(amplitude[shown], 1e-12), color=GREY, linewidth=0.6, label="spectrum")
+    harmonics = mesh_hz * np.arange(1, int(limit_hz / mesh_hz) + 1)
+    lines = np.searchsorted(frequency_hz, harmonics - frequency_hz[1] / 2)
+    ax.plot(harmonics / 1e3, amplitude[lines], "o", markersize=3, color=BLUE, label=f"mesh harmonics ({mesh_hz:g} Hz)")
+    top = amplitude[shown].max()
+    ax.set_ylim(top * 1e-6, top * 3)
+    ax.set_xlim(0, limit_hz / 1e3)
+    quantity, unit = LABELS[channel].rsplit(" ", 1)
+    ax.set(xlabel="Frequency (kHz)", ylabel=f"{quantity},\namplitude {unit}")
+    ax.legend(loc="lower right", fontsize="small", ncols=2, framealpha=1.0)
+    ax.grid(alpha=0.3)
+    return ax
+
+
+def plot_tooth(simulation: Simulation, wheel: Literal["gear", "pinion"] = "gear", *, ax: Axes | None = None) -> Axes:
+    """The first tooth of a wheel, at equal scales; of the gear with its damage.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        What is shown.
+    wheel : {'gear', 'pinion'}
+        Whose tooth.
+    ax : matplotlib.axes.Axes, optional
+        Where it is drawn; a new figure by default.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    ax = _axes(ax, (4.0, 4.0))
+    x_mm, y_mm = simulation.tooth_profile(wheel)
+    outline_y = np.concatenate([y_mm, -y_mm[::-1]])
+    outline_x = np.concatenate([x_mm, x_mm[::-1]])
+    ax.fill(outline_y, outline_x, facecolor="#e8e8e8", edgecolor="black", linewidth=1.0)
+    flank = simulation._native.damaged_flank_y_mm() if wheel == "gear" else None
+    fault = simulation.scenario.fault
+    if fault is not None and wheel == "gear":
+        if isinstance(fault, MissingTooth):
+            ax.fill(outline_y, outline_x, facecolor="white", edgecolor=ORANGE, hatch="//", linewidth=1.0, label="missing")
+        elif isinstance(fault, ToothBreakage):
+            broken_from = x_mm[-1] - fault.chip_height_mm
+            lost = x_mm >= broken_from
+            y = np.concatenate([y_mm[lost], -y_mm[lost][::-1]])
+            x = np.concatenate([x_mm[lost], x_mm[lost][::-1]])
+            ax.fill(y, x, facecolor=ORANGE, alpha=0.5, label=f"chip, {fault.chip_width_mm:g} mm wide at the tip")
+        elif flank is not None and flank.size == y_mm.size:
+            ax.fill(
+                np.concatenate([y_mm, flank[::-1]]),
+                np.concatenate([x_mm, x_mm[::-1]]),
+                facecolor=ORANGE,
+                alpha=0.7,
+                label=fault.kind,
+            )
+    ax.set_aspect("equal")
+    ax.set(xlabel="Across the tooth (mm)", ylabel="Distance from the wheel's centre (mm)", title=f"First tooth of the {wheel}")
+    if ax.get_legend_handles_labels()[0]:
+        ax.legend(fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.22))
+    return ax
+
+
+def plot_record(record: Record) -> Figure:
+    """Average over a revolution, order spectrum, difference with its envelope.
+
+    Parameters
+    ----------
+    record : Record
+        What is shown.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = _new_figure((9.0, 7.0))
+    average_ax, spectrum_ax, difference_ax = figure.subplots(3)
+    _plot_over_teeth(average_ax, record.average, record.teeth, BLUE, "average")
+    average_ax.set(ylabel=_label(record), title=f"Average of {record.revolutions} revolutions")
+    spectrum = record.order_spectrum
+    orders = np.arange(spectrum.size)
+    limit = min(spectrum.size, 12 * record.teeth)
+    spectrum_ax.semilogy(orders[1:limit], np.maximum(spectrum[1:limit], 1e-12), color=GREY, linewidth=0.8)
+    mesh = orders[record.teeth : limit : record.teeth]
+    spectrum_ax.plot(mesh, spectrum[mesh], "o", markersize=4, color=BLUE, label="mesh orders")
+    spectrum_ax.set(xlabel="Order of the shaft", ylabel="Amplitude", xlim=(0, limit))
+    top = spectrum[1:limit].max()
+    if top > 0:
+        spectrum_ax.set_ylim(top * 1e-5, top * 3)
+    spectrum_ax.legend(fontsize="small", loc="lower right")
+    spectrum_ax.grid(alpha=0.3)
+    _plot_over_teeth(difference_ax, record.difference, record.teeth, BLUE, "difference")
+    _plot_over_teeth(difference_ax, record.envelope, record.teeth, ORANGE, "envelope")
+    difference_ax.set(ylabel=_label(record), title="Difference signal")
+    difference_ax.legend(fontsize="small", loc="upper right")
+    return figure
+
+
+def _label(record: Record) -> str:
+    return LABELS.get(record.name, record.name).replace(" acceleration", "\nacceleration")
+
+
+def _plot_over_teeth(ax: Axes, values: npt.NDArray[np.float64], teeth: int, colour: str, label: str) -> None:
+    ax.plot(np.arange(values.size) / values.size * teeth, values, color=colour, linewidth=0.8, label=label)
+    ax.set(xlabel="Angle (tooth pitches)", xlim=(0, teeth))
+    ax.grid(alpha=0.3)
+
+
+def plot_simulation(simulation: Simulation) -> Figure:
+    """The panel: tooth, mesh stiffness, signal, spectrum, average and difference over a revolution of the gear.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        What is shown.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = _new_figure((11.0, 10.0))
+    axes = figure.subplot_mosaic(
+        [
+            ["tooth"] * 2 + ["stiffness"] * 4,
+            ["signal"] * 6,
+            ["spectrum"] * 6,
+            ["average"] * 3 + ["difference"] * 3,
+        ],
+        height_ratios=[1.5, 1, 1, 1],
+    )
+    plot_tooth(simulation, ax=axes["tooth"])
+    plot_mesh_stiffness(simulation, ax=axes["stiffness"])
+    plot_signal(simulation, ax=axes["signal"])
+    plot_spectrum(simulation, ax=axes["spectrum"])
+    record = simulation.process()
+    teeth = simulation.scenario.gear_teeth
+    for name, values in [("average", record.average), ("difference", record.difference)]:
+        _plot_over_teeth(axes[name], values, teeth, BLUE, name)
+        axes[name].set(title=f"{name.capitalize()}, gear shaft", ylabel="Vertical (g)")
+    limits = max(np.abs(record.average).max(), np.abs(record.difference).max()) * 1.1
+    for name in ("average", "difference"):
+        axes[name].set_ylim(-limits, limits)
+    scenario = simulation.scenario
+    kind = "healthy" if scenario.fault is None else scenario.fault.kind
+    figure.suptitle(
+        f"{scenario.pinion_teeth}/{scenario.gear_teeth} teeth, {scenario.pinion_speed_hz:g} rev/s, "
+        f"{scenario.brake_torque_nm:g} N m: {kind}"
+    )
+    return figure
+
+
+def plot_indicators(
+    table: Mapping[str, Sequence[float]] | Any,
+    *,
+    x: str,
+    indicators: Sequence[str] | None = None,
+    by: str | None = None,
+) -> Figure:
+    """Indicators against what was varied, an axes each.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame, polars.DataFrame, or mapping of str to sequence
+        A column for ``x``, one for each indicator.
+    x : str
+        The column that is varied: severity, speed, number of the record.
+    indicators : sequence of str, optional
+        Which columns are shown; all other numeric ones by default.
+    by : str, optional
+        A column of labels: a line each.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    ValueError
+        A column that there is not.
+
+    Examples
+    --------
+    >>> import matplotlib
+    >>> matplotlib.use("agg")
+    >>> figure = plot_indicators({"chip_width_mm": [0, 6, 12], "kurtosis": [3.1, 9.0, 60.0]}, x="chip_width_mm")
+    >>> figure.axes[0].get_ylabel()
+    'kurtosis'
+    """
+    columns = {str(name): np.asarray(table[name]) for name in (table.keys() if isinstance(table, Mapping) else table.columns)}
+    if indicators is None:
+        indicators = [name for name, values in columns.items() if name not in (x, by) and values.dtype.kind in "fiu"]
+    for name in [x, *indicators, *([by] if by else [])]:
+        if name not in columns:
+            raise ValueError(f"the table has no column '{name}', but {', '.join(columns)}")
+    if not indicators:
+        raise ValueError(f"the table has no numeric column beside '{x}'")
+    rows = -(-len(indicators) // 2)
+    wide = min(2, len(indicators))
+    figure = _new_figure((4.6 * wide, 2.8 * rows))
+    axes = np.atleast_1d(figure.subplots(rows, wide)).ravel()
+    for ax, name in zip(axes, indicators):
+        groups = np.unique(columns[by]) if by else [None]
+        for group in groups:
+            chosen = np.ones(columns[x].size, bool) if group is None else columns[by or x] == group
+            order = np.argsort(columns[x][chosen], kind="stable")
+            ax.plot(columns[x][chosen][order], columns[name][chosen][order], "o-", markersize=4, label=str(group))
+        ax.set(xlabel=x, ylabel=name)
+        ax.grid(alpha=0.3)
+        if by:
+            ax.legend(fontsize="small")
+    for ax in axes[len(indicators) :]:
+        ax.remove()
+    return figure

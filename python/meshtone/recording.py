@@ -1,0 +1,118 @@
+"""Recordings of a rig, or what ``meshtone simulate`` wrote: CSV, TSV, Parquet, NPY, NPZ, MATLAB v5, WAV."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from os import PathLike
+from typing import Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from .scenario import Scenario
+
+__all__ = ["Recording", "read_recording"]
+
+Array = npt.NDArray[np.float64]
+Column = Union[int, str]
+
+
+@dataclass(frozen=True)
+class Recording:
+    """Channels that were recorded together.
+
+    Attributes
+    ----------
+    sampling_rate_hz : float
+        (S/s) Of all channels.
+    start_s : float
+        (s) Time of the first sample.
+    channels : dict of str to array of float64, shape (samples,)
+        By name, in the file's order.
+    units : dict of str to str or None
+        Unit of each channel, where the file says it.
+    scenario : Scenario or None
+        What was simulated, where the file is one that Meshtone wrote.
+    """
+
+    sampling_rate_hz: float
+    start_s: float
+    channels: dict[str, Array] = field(repr=False)
+    units: dict[str, str | None]
+    scenario: Scenario | None = field(repr=False)
+
+    def __getitem__(self, name: str) -> Array:
+        """The samples of a channel."""
+        try:
+            return self.channels[name]
+        except KeyError:
+            raise KeyError(f"no channel '{name}'; the recording has {', '.join(self.channels)}") from None
+
+
+def read_recording(
+    path: str | PathLike[str],
+    *,
+    channels: Sequence[Column] = (),
+    sampling_rate_hz: float | None = None,
+    variable: str | None = None,
+    time: Column | None = None,
+    sensitivity_v_per_unit: Mapping[Column, float] | None = None,
+    units: Mapping[Column, str] | None = None,
+) -> Recording:
+    """Read a recording.
+
+    Parameters
+    ----------
+    path : str or path
+        The file, or a folder that ``meshtone simulate`` wrote.
+    channels : sequence of str or int
+        Names or numbers (from 1) of the columns; all numeric ones by default.
+    sampling_rate_hz : float, optional
+        (S/s) By default what the file states, or its time column.
+    variable : str, optional
+        Of NPZ and MAT files: the variable that holds the recording, ``run.sensors`` for nested ones.
+    time : str or int, optional
+        The time column; by default the one whose name says so.
+    sensitivity_v_per_unit : mapping of channel to float, optional
+        (V/unit) Of the sensors: samples in volts are divided by it.
+    units : mapping of channel to str, optional
+        Units of the samples, after that division.
+
+    Returns
+    -------
+    Recording
+
+    Raises
+    ------
+    FileNotFoundError
+        There is no such file.
+    ValueError
+        A broken file, a column that there is not, NaN, times that are not uniform, no sampling rate: with the place in the file.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "run.csv")
+    ...     _ = path.write_text("time [s],bearing [g]\\n0,1.5\\n0.01,-2.25\\n0.02,0.5\\n")
+    ...     recording = read_recording(path)
+    >>> recording
+    Recording(sampling_rate_hz=100.0, start_s=0.0, units={'bearing': 'g'})
+    >>> recording["bearing"]
+    array([ 1.5 , -2.25,  0.5 ])
+    """
+    sensitivities, named = dict(sensitivity_v_per_unit or {}), dict(units or {})
+    calibrations = [
+        (channel, sensitivities.get(channel), named.get(channel)) for channel in {**sensitivities, **named}
+    ]
+    read = _core.read_recording(path, list(channels), sampling_rate_hz, variable, time, calibrations)
+    text = read["scenario_toml"]
+    return Recording(
+        sampling_rate_hz=read["sampling_rate_hz"],
+        start_s=read["start_s"],
+        channels={name: samples for name, _, samples in read["channels"]},
+        units={name: unit for name, unit, _ in read["channels"]},
+        scenario=None if text is None else Scenario.from_toml(text),
+    )

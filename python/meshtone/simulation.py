@@ -1,0 +1,421 @@
+"""One simulation, or many."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from .scenario import Scenario
+from .signal import Record
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = ["CHANNELS", "Signals", "Simulation", "simulate", "simulate_many", "trace"]
+
+Array = npt.NDArray[np.float64]
+Wheel = Literal["pinion", "gear"]
+
+CHANNELS = ("horizontal_g", "vertical_g", "axial_g", "pinion_speed_hz", "gear_speed_hz", "mesh_force_n")
+"""The signals of a simulation, with their units."""
+
+
+class Simulation:
+    """A simulation: every stage's results and the signals. :func:`simulate` makes one.
+
+    Beside the attributes below it has every field of a trace that belongs to the stages before the time loop, under the trace's names:
+    ``natural_frequencies_hz``, ``mesh_stiffness_n_per_mm`` (every 4th point of a revolution of the gear),
+    ``pair_stiffness_healthy_n_per_mm``, ``mass_diagonal``, ``damping_matrix``, ``stiffness_matrix_mean``, ``contact_ratio``, and so on:
+    :attr:`fields` has them all.
+
+    Examples
+    --------
+    >>> from meshtone import examples, simulate
+    >>> simulation = simulate(examples.tooth_breakage())
+    >>> simulation.vertical_g.shape, simulation.vertical_g.dtype
+    ((245480,), dtype('float64'))
+    >>> simulation.natural_frequencies_hz.round(1)[:3]
+    array([ 104.9,  574.4, 1951.5])
+    >>> round(float(simulation.contact_ratio), 3)
+    1.609
+    """
+
+    natural_frequencies_hz: Array
+    mesh_stiffness_n_per_mm: Array
+    pair_stiffness_healthy_n_per_mm: Array
+    pair_stiffness_faulty_n_per_mm: Array
+    mass_diagonal: Array
+    damping_matrix: Array
+    contact_ratio: float
+
+    def __init__(self, scenario: Scenario, native: _core.Simulation) -> None:
+        self._scenario = scenario
+        self._native = native
+        self._fields: dict[str, Any] | None = None
+
+    @property
+    def scenario(self) -> Scenario:
+        """What was simulated."""
+        return self._scenario
+
+    @property
+    def sampling_rate_hz(self) -> float:
+        """(S/s) Sampling rate: a whole number of samples in each revolution of either shaft."""
+        return self._native.sampling_rate_hz
+
+    @property
+    def start_s(self) -> float:
+        """(s) Time of the first kept sample since the start of the simulation."""
+        return self._native.start_s
+
+    @property
+    def time_s(self) -> Array:
+        """(s) Time of each sample since the start of the simulation."""
+        return self.start_s + np.arange(self.vertical_g.size) / self.sampling_rate_hz
+
+    @property
+    def horizontal_g(self) -> Array:
+        """(g) Horizontal acceleration of the two wheels, summed; shape (samples,)."""
+        return self._native.horizontal_g
+
+    @property
+    def vertical_g(self) -> Array:
+        """(g) Vertical acceleration of the two wheels, summed; shape (samples,)."""
+        return self._native.vertical_g
+
+    @property
+    def axial_g(self) -> Array:
+        """(g) Axial acceleration of the two wheels, summed; shape (samples,)."""
+        return self._native.axial_g
+
+    @property
+    def pinion_speed_hz(self) -> Array:
+        """(rev/s) Speed of the pinion; shape (samples,)."""
+        return self._native.pinion_speed_hz
+
+    @property
+    def gear_speed_hz(self) -> Array:
+        """(rev/s) Speed of the gear; shape (samples,)."""
+        return self._native.gear_speed_hz
+
+    @property
+    def mesh_force_n(self) -> Array:
+        """(N) Force of the mesh along the line of action; shape (samples,)."""
+        return self._native.mesh_force_n
+
+    @property
+    def mode_shapes(self) -> Array:
+        """Mode shapes in the columns, in the order of ``natural_frequencies_hz``, of unit modal mass; shape (13, 13)."""
+        return self._native.mode_shapes
+
+    @property
+    def computing_time_s(self) -> dict[str, float]:
+        """(s) Wall time of each stage."""
+        return dict(self._native.computing_time_s)
+
+    @property
+    def fields(self) -> dict[str, Any]:
+        """Fields of a trace of the stages before the time loop: a number or an array each."""
+        if self._fields is None:
+            self._fields = self._native.fields()
+        return self._fields
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        try:
+            return self.fields[name]
+        except KeyError:
+            known = ", ".join(sorted(self.fields))
+            raise AttributeError(f"a simulation has no field '{name}'; beside its signals it has {known}") from None
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self.fields]
+
+    def mesh_stiffness_curve(self) -> tuple[Array, Array]:
+        """Mesh stiffness at every point of a revolution of the gear.
+
+        Returns
+        -------
+        gear_rev : array, shape (points,)
+            (rev) Angle of the gear since its first tooth entered contact.
+        stiffness_n_per_mm : array, shape (points,)
+            (N/mm) Mesh stiffness.
+        """
+        stiffness = self._native.mesh_stiffness_curve_n_per_mm()
+        return np.arange(stiffness.size) / stiffness.size, stiffness
+
+    def tooth_profile(self, wheel: Wheel = "gear") -> tuple[Array, Array]:
+        """Half of a healthy tooth.
+
+        Parameters
+        ----------
+        wheel : {'gear', 'pinion'}
+            Whose.
+
+        Returns
+        -------
+        x_mm, y_mm : array, shape (points,)
+            (mm) From root to tip; x along the tooth's middle, y half its thickness.
+        """
+        x_mm, y_mm = self._native.tooth_profile_mm(wheel)
+        return x_mm, y_mm
+
+    def profile_errors_mm(self) -> tuple[Array, Array] | None:
+        """Profile errors of both wheels.
+
+        Returns
+        -------
+        tuple of arrays, shape (100, teeth), or None
+            (mm) Pinion's and gear's, root to tip in the rows, a column a tooth; None for ideal teeth.
+        """
+        return self._native.profile_errors_mm()
+
+    def process(self, channel: str = "vertical_g", wheel: Wheel = "gear", *, sidebands: int | None = None) -> Record:
+        """Take one of the signals to its average over a revolution, its parts and its indicators.
+
+        Parameters
+        ----------
+        channel : str
+            One of :data:`CHANNELS`.
+        wheel : {'gear', 'pinion'}
+            On whose shaft.
+        sidebands : int, optional
+            Sidebands on either side of each mesh harmonic that belong to the regular part.
+
+        Returns
+        -------
+        Record
+
+        Raises
+        ------
+        ValueError
+            A channel that there is not, or that is constant; fewer than two revolutions; a mesh order beyond the Nyquist order.
+
+        Examples
+        --------
+        >>> from meshtone import examples, simulate
+        >>> record = simulate(examples.tooth_breakage()).process()
+        >>> record.revolutions, record.indicators["difference_kurtosis"] > 10
+        (17, True)
+        """
+        if channel not in CHANNELS:
+            raise ValueError(f"channel = '{channel}': must be one of {', '.join(CHANNELS)}")
+        signal: Array = getattr(self, channel)
+        teeth = self.scenario.gear_teeth if wheel == "gear" else self.scenario.pinion_teeth
+        settings = None if sidebands is None else {"teeth": teeth, "sidebands": sidebands, "shaft_orders": None}
+        record = self._native.process(signal, wheel, self.start_s, settings)
+        return Record(record, teeth=teeth, name=channel)
+
+    def plot(self) -> Figure:
+        """The panel: teeth, mesh stiffness, signal, spectrum, average, difference. See :mod:`meshtone.plotting`."""
+        from . import plotting
+
+        return plotting.plot_simulation(self)
+
+    def plot_signal(self, channel: str = "vertical_g", *, revolutions: float = 2.0, ax: Axes | None = None) -> Axes:
+        """A signal over some revolutions of the gear. See :func:`meshtone.plotting.plot_signal`."""
+        from . import plotting
+
+        return plotting.plot_signal(self, channel, revolutions=revolutions, ax=ax)
+
+    def plot_mesh_stiffness(self, *, ax: Axes | None = None) -> Axes:
+        """Mesh stiffness over a revolution of the gear. See :func:`meshtone.plotting.plot_mesh_stiffness`."""
+        from . import plotting
+
+        return plotting.plot_mesh_stiffness(self, ax=ax)
+
+    def plot_spectrum(self, channel: str = "vertical_g", *, ax: Axes | None = None) -> Axes:
+        """Amplitude against frequency. See :func:`meshtone.plotting.plot_spectrum`."""
+        from . import plotting
+
+        return plotting.plot_spectrum(self, channel, ax=ax)
+
+    def plot_tooth(self, wheel: Wheel = "gear", *, ax: Axes | None = None) -> Axes:
+        """The first tooth, with its damage. See :func:`meshtone.plotting.plot_tooth`."""
+        from . import plotting
+
+        return plotting.plot_tooth(self, wheel, ax=ax)
+
+    def _repr_png_(self) -> bytes:
+        from . import plotting
+
+        return plotting.png(self.plot())
+
+    def __repr__(self) -> str:
+        kind = "healthy" if self.scenario.fault is None else self.scenario.fault.kind
+        return (
+            f"<Simulation of {self.scenario.pinion_teeth}/{self.scenario.gear_teeth} teeth, {kind}: "
+            f"{self.vertical_g.size} samples at {self.sampling_rate_hz:.0f} S/s>"
+        )
+
+
+@dataclass(frozen=True)
+class Signals:
+    """Some channels of one of many simulations.
+
+    Attributes
+    ----------
+    scenario : Scenario
+        What was simulated.
+    sampling_rate_hz : float
+        (S/s)
+    start_s : float
+        (s) Time of the first sample since the start of the simulation.
+    channels : dict of str to array of float32, shape (samples,)
+        By the names of :data:`CHANNELS`; they are attributes too: ``signals.vertical_g``.
+    """
+
+    scenario: Scenario
+    sampling_rate_hz: float
+    start_s: float
+    channels: dict[str, npt.NDArray[np.float32]] = field(repr=False)
+
+    def __getattr__(self, name: str) -> npt.NDArray[np.float32]:
+        if name.startswith("_") or name == "channels":
+            raise AttributeError(name)
+        try:
+            return self.channels[name]
+        except KeyError:
+            raise AttributeError(f"no channel '{name}' was kept, but {', '.join(self.channels)}") from None
+
+
+def simulate(scenario: Scenario) -> Simulation:
+    """Simulate a scenario.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What is simulated.
+
+    Returns
+    -------
+    Simulation
+
+    Raises
+    ------
+    ValueError
+        A fault that does not fit the tooth, a solution that grows without bound.
+
+    Examples
+    --------
+    >>> from meshtone import Scenario, ToothBreakage, simulate
+    >>> broken = Scenario(module_mm=3, pinion_teeth=17, gear_teeth=38, face_width_mm=15, pinion_speed_hz=40,
+    ...                   brake_torque_nm=10, fault=ToothBreakage(chip_height_mm=5, chip_width_mm=12))
+    >>> simulate(broken)
+    <Simulation of 17/38 teeth, tooth-breakage: 245480 samples at 258400 S/s>
+    """
+    return Simulation(scenario, _core.simulate(scenario._native))
+
+
+def trace(scenario: Scenario, *, average_rate_hz: float | None = None) -> dict[str, Any]:
+    """Simulate a scenario and give every stage's output by name, for checking number by number.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What is simulated.
+    average_rate_hz : float, optional
+        (S/s) Rate at which the average's fields are given. 25000 by default.
+
+    Returns
+    -------
+    dict of str to float or array of float64
+        What ``meshtone simulate --trace`` writes.
+
+    Raises
+    ------
+    ValueError
+        As :func:`simulate`.
+
+    Examples
+    --------
+    >>> from meshtone import examples, trace
+    >>> trace(examples.healthy())["acceleration"].shape
+    (4000, 13)
+    """
+    return _core.trace(scenario._native, average_rate_hz)
+
+
+def simulate_many(
+    scenarios: Iterable[Scenario],
+    *,
+    channels: Sequence[str] = ("horizontal_g", "vertical_g"),
+    threads: int | None = None,
+    progress: bool | Callable[[int, int], None] = False,
+) -> list[Union[Signals, ValueError]]:
+    """Simulate many scenarios side by side: several times faster than one after the other.
+
+    Parameters
+    ----------
+    scenarios : iterable of Scenario
+        What is simulated.
+    channels : sequence of str
+        What is kept of each, in single precision: some of :data:`CHANNELS`.
+    threads : int, optional
+        How many; all cores by default. Results do not depend on it.
+    progress : bool or callable, optional
+        True for a line on the terminal; or called with the numbers of those that are finished and of all.
+
+    Returns
+    -------
+    list of Signals or ValueError
+        In the order of the scenarios. One that could not be simulated has its error in its place, and stops no other.
+
+    Raises
+    ------
+    ValueError
+        A channel that there is not.
+    KeyboardInterrupt
+        Ctrl-C stops the simulations.
+
+    Examples
+    --------
+    >>> from meshtone import examples, simulate_many
+    >>> results = simulate_many(examples.healthy().copy(seed=seed) for seed in range(8))
+    >>> len(results), results[0].vertical_g.dtype
+    (8, dtype('float32'))
+    """
+    scenarios = list(scenarios)
+    told: Callable[[int], None] | None
+    if progress is True:
+        told = _terminal_progress(len(scenarios))
+    elif progress is False:
+        told = None
+    else:
+        ask = progress
+
+        def told(finished: int) -> None:
+            ask(finished, len(scenarios))
+
+    native = [scenario._native for scenario in scenarios]
+    results = _core.simulate_many(native, list(channels), threads, told)
+    return [_signals(scenario, result) for scenario, result in zip(scenarios, results)]
+
+
+def _signals(scenario: Scenario, result: dict[str, Any] | ValueError) -> Signals | ValueError:
+    if isinstance(result, ValueError):
+        return result
+    rate, start = result.pop("sampling_rate_hz"), result.pop("start_s")
+    return Signals(scenario, rate, start, result)
+
+
+def _terminal_progress(total: int) -> Callable[[int], None]:
+    start = time.monotonic()
+
+    def told(finished: int) -> None:
+        rate = finished / max(time.monotonic() - start, 1e-9)
+        left = f", {(total - finished) / rate:.0f} s left" if 0 < finished < total else ""
+        end = "\n" if finished == total else ""
+        sys.stderr.write(f"\r{finished} of {total} simulations, {rate:.0f} a second{left}   {end}")
+        sys.stderr.flush()
+
+    return told

@@ -1,0 +1,63 @@
+"""What several tests need."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+import pytest
+
+import meshtone
+
+matplotlib.use("agg")
+
+ROOT = Path(__file__).parents[2]
+PUBLISHED = ROOT / "crates" / "meshtone" / "tests" / "published"
+
+FRACTIONS: dict[str, float] = {"start": 0.2, "end": 0.8, "depth": 0.5}
+
+FAULTS: dict[str, meshtone.Fault | None] = {
+    "healthy_din0": None,
+    "healthy_din7": None,
+    "missing_din0": meshtone.MissingTooth(),
+    "breakage_din7": meshtone.ToothBreakage(chip_height_mm=5, chip_width_mm=12, tip_loss_mm=3),
+    "partial_din0": meshtone.PartialFace(width_mm=2, start=0.2, end=0.8, depth=0.5),
+    "through_din0": meshtone.ThroughFace(start=0.2, end=0.8, depth=0.5),
+    "through_circ_din7": meshtone.ThroughFace(circle=meshtone.PitCircle(57.5, 3.66, 2.5)),
+    "destruction_din0": meshtone.ToothDestruction(start=3 / 14, end=13 / 14),
+    "destruction_slope_din0": meshtone.ToothDestruction(start=0.2, slope_deg=22),
+}
+
+
+class Published:
+    """A scenario of the published model with its outputs."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        with np.load(PUBLISHED / f"{name}.npz") as fields:
+            self.fields: dict[str, Any] = {key: fields[key] for key in fields.files}
+        if name.startswith("destruction"):
+            teeth = {"pinion_teeth": 18, "gear_teeth": 35, "face_width_mm": 30}
+            operation = {"pinion_speed_hz": 45, "brake_torque_nm": 15}
+        else:
+            teeth = {"pinion_teeth": 17, "gear_teeth": 38, "face_width_mm": 15}
+            operation = {"pinion_speed_hz": 40, "brake_torque_nm": 10}
+        errors = {}
+        if name.endswith("din7"):
+            errors = {f"{wheel}_profile_errors_mm": self.fields[f"{wheel}_profile_errors_mm"] for wheel in ("pinion", "gear")}
+        arguments: dict[str, Any] = {**teeth, **operation, **errors}
+        self.scenario = meshtone.Scenario(module_mm=3, convention="published", fault=FAULTS[name], **arguments)
+
+
+@pytest.fixture(params=sorted(FAULTS), scope="module")
+def published(request: pytest.FixtureRequest) -> Published:
+    """Each of the nine scenarios of the published model."""
+    return Published(request.param)
+
+
+@pytest.fixture(scope="session")
+def broken() -> meshtone.Simulation:
+    """A simulation of a broken tooth."""
+    return meshtone.simulate(meshtone.examples.tooth_breakage())

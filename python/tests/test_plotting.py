@@ -1,0 +1,52 @@
+"""Figures: what they show, and that axes of one's own are used."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import pytest
+
+import meshtone
+from meshtone import plotting
+
+
+def test_axes_of_ones_own(broken: meshtone.Simulation) -> None:
+    figure, ax = plt.subplots()
+    assert broken.plot_signal("horizontal_g", revolutions=1, ax=ax) is ax
+    [line] = ax.lines
+    assert line.get_xdata().size == 14440
+    assert ax.get_ylabel() == "Horizontal acceleration (g)"
+    plt.close(figure)
+
+
+def test_each_figure(broken: meshtone.Simulation) -> None:
+    stiffness = broken.plot_mesh_stiffness()
+    assert stiffness.get_ylabel() == "Mesh stiffness (N/mm)"
+    spectrum = broken.plot_spectrum()
+    assert "680 Hz" in spectrum.get_legend().get_texts()[1].get_text()
+    tooth = broken.plot_tooth()
+    assert "chip, 12 mm" in tooth.get_legend().get_texts()[0].get_text()
+    assert broken.plot_tooth("pinion").get_legend() is None
+    panel = broken.plot()
+    assert len(panel.axes) == 6
+    record = broken.process().plot()
+    assert len(record.axes) == 3
+    for picture in (broken._repr_png_(), broken.process()._repr_png_()):
+        assert picture.startswith(b"\x89PNG")
+    plt.close("all")
+    with pytest.raises(ValueError, match="channel = 'sideways'"):
+        broken.plot_signal("sideways")
+    with pytest.raises(ValueError, match="channel = 'sideways'"):
+        broken.plot_spectrum("sideways")
+
+
+def test_indicators() -> None:
+    table = {"mm": [3, 1, 2, 1], "rms": [3.0, 1.0, 2.0, 5.0], "kurtosis": [9.0, 1.0, 4.0, 2.0], "kind": ["a", "a", "a", "b"]}
+    figure = plotting.plot_indicators(table, x="mm", by="kind")
+    first = figure.axes[0]
+    assert [list(line.get_xdata()) for line in first.lines] == [[1, 2, 3], [1]]
+    assert [ax.get_ylabel() for ax in figure.axes] == ["rms", "kurtosis"]
+    plt.close("all")
+    with pytest.raises(ValueError, match="no column 'severity'"):
+        plotting.plot_indicators(table, x="severity")
+    with pytest.raises(ValueError, match="no numeric column beside 'mm'"):
+        plotting.plot_indicators({"mm": [1]}, x="mm")

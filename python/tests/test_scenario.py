@@ -1,0 +1,115 @@
+"""Scenarios: arguments, round trips, errors."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import FAULTS, ROOT
+
+import meshtone
+from meshtone import Scenario, examples
+
+REQUIRED: dict[str, Any] = {
+    "module_mm": 3,
+    "pinion_teeth": 17,
+    "gear_teeth": 38,
+    "face_width_mm": 15,
+    "pinion_speed_hz": 40,
+    "brake_torque_nm": 10,
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS.values())
+def test_round_trips(fault: meshtone.Fault | None) -> None:
+    scenario = Scenario(**REQUIRED, fault=fault, din_grade=6, damping_ratio=np.full(13, 0.04), tip_relief=False)
+    for same in (Scenario.from_toml(scenario.to_toml()), pickle.loads(pickle.dumps(scenario)), scenario.copy()):
+        assert same == scenario
+        assert hash(same) == hash(scenario)
+    assert scenario.fault is None if fault is None else scenario.fault.kind == fault.kind
+    assert eval(repr(scenario), vars(meshtone)) == scenario
+
+
+def test_every_key_of_a_scenario_file_is_an_argument() -> None:
+    import tomllib
+
+    from meshtone._sections import SECTION_OF_KEY
+
+    for kind in examples.all():
+        text = meshtone.template(kind)
+        keys = set()
+        section = ""
+        for line in text.splitlines():
+            line = line.removeprefix("# ") if line.startswith(("# pinion_inertia =", "# gear_inertia =")) else line.removeprefix("#")
+            if line.startswith("["):
+                section = line.strip("[]")
+            elif " = " in line and not line.startswith(" "):
+                keys.add((section, line.split(" = ")[0].split(".")[0]))
+        for section, key in keys:
+            if section != "fault":
+                assert SECTION_OF_KEY.get(key) == section, key
+        assert tomllib.loads(text)["gears"]["module_mm"] == 3.0
+
+
+def test_profile_errors() -> None:
+    pinion, gear = np.full((100, 17), 1e-3), np.arange(3800.0).reshape(100, 38) * 1e-6
+    scenario = Scenario(**REQUIRED, pinion_profile_errors_mm=pinion, gear_profile_errors_mm=gear)
+    for same in (scenario, scenario.copy(pinion_speed_hz=30), pickle.loads(pickle.dumps(scenario))):
+        assert np.array_equal(same.gear_profile_errors_mm, gear)
+        assert np.array_equal(same.pinion_profile_errors_mm, pinion)
+    with pytest.raises(ValueError, match="belong together"):
+        Scenario(**REQUIRED, pinion_profile_errors_mm=pinion)
+    with pytest.raises(ValueError, match="gear_profile_errors_mm"):
+        Scenario(**REQUIRED, pinion_profile_errors_mm=pinion, gear_profile_errors_mm=gear[:, :-1])
+
+
+def test_examples_are_the_files(tmp_path: Path) -> None:
+    for path in sorted((ROOT / "examples").glob("*.toml")):
+        assert isinstance(Scenario.from_file(path), Scenario)
+    with pytest.raises(FileNotFoundError, match="absent.toml"):
+        Scenario.from_file(tmp_path / "absent.toml")
+    wrong = tmp_path / "wrong.toml"
+    wrong.write_text(meshtone.template("healthy").replace("module_mm = 3.0", "modul_mm = 3.0"))
+    with pytest.raises(ValueError, match="module_mm"):
+        Scenario.from_file(wrong)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"module_mm": -1}, "gears.module_mm = -1: must be more than 0 mm"),
+        ({"pinion_teeth": 3}, "gears.pinion_teeth = 3: must be from 6"),
+        ({"din_grade": 13}, "quality.din_grade = 13"),
+        ({"material": "wood"}, "gears.material"),
+        ({"convention": "other"}, "convention"),
+        ({"fault": meshtone.ToothBreakage(chip_height_mm=-5, chip_width_mm=12)}, "fault.chip_height_mm = -5"),
+        ({"damping_ratio": [0.05] * 12}, "rig.damping_ratio"),
+    ],
+)
+def test_values_that_are_not_allowed(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError) as error:
+        Scenario(**{**REQUIRED, **changes})
+    assert message in str(error.value)
+    assert "line" not in str(error.value)
+
+
+def test_keys_that_there_are_not() -> None:
+    with pytest.raises(TypeError, match="no key 'modul_mm'; did you mean 'module_mm'"):
+        Scenario(**REQUIRED, modul_mm=3)
+    with pytest.raises(TypeError, match="no key 'speed'"):
+        examples.healthy().copy(speed=3)
+    with pytest.raises(TypeError, match="fault = 'broken'"):
+        Scenario(**REQUIRED, fault="broken")  # type: ignore[arg-type]
+    with pytest.raises(AttributeError, match=r"scenario.copy\(seed=2\)"):
+        examples.healthy().seed = 2
+    with pytest.raises(AttributeError, match="no key 'speed'"):
+        _ = examples.healthy().speed
+
+
+def test_warnings() -> None:
+    assert examples.healthy().warnings == []
+    ignored = examples.healthy().copy(convention="published", eccentricity_mm=0.1)
+    assert all(isinstance(warning, str) for warning in ignored.warnings)

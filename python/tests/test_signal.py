@@ -1,0 +1,137 @@
+"""The chain on signals with known answers."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import meshtone
+from meshtone import ShaftPhase, signal
+
+RATE_HZ, SHAFT_HZ, TEETH = 10_000.0, 20.0, 19
+Array = npt.NDArray[np.float64]
+
+
+def vibration(samples: int = 40_000) -> Array:
+    time_s = np.arange(samples) / RATE_HZ
+    return np.cos(2 * np.pi * SHAFT_HZ * TEETH * time_s) + 0.1 * np.cos(2 * np.pi * 253 * time_s)
+
+
+def test_phases_agree() -> None:
+    tone = vibration()
+    constant = ShaftPhase.constant(SHAFT_HZ, RATE_HZ, tone.size)
+    pulses = ShaftPhase.from_pulses(np.arange(0, 4, 0.05), 1, RATE_HZ, tone.size, stated_speed_hz=SHAFT_HZ)
+    profile = ShaftPhase.from_speed_profile([0, 4], [SHAFT_HZ, SHAFT_HZ], RATE_HZ, tone.size)
+    speeds = ShaftPhase.from_speed_samples(np.full(tone.size, SHAFT_HZ), RATE_HZ)
+    mesh = ShaftPhase.from_mesh_tone(tone, RATE_HZ, TEETH, 20.2)
+    for phase in (constant, pulses, profile, speeds, mesh):
+        assert phase.mean_speed_hz(RATE_HZ) == pytest.approx(SHAFT_HZ, rel=1e-5)
+        assert phase.warnings == [] or phase is mesh
+    assert np.diff(constant.of_mate(19, 38).revolutions).mean() == pytest.approx(SHAFT_HZ / RATE_HZ / 2)
+    same = ShaftPhase(constant.revolutions)
+    assert np.array_equal(same.revolutions, constant.revolutions)
+    assert "80.00 revolutions" in repr(ShaftPhase(np.arange(40_001) / 500))
+
+
+def test_tachometer() -> None:
+    time_s = np.arange(20_000) / RATE_HZ
+    waveform = np.where((time_s * SHAFT_HZ) % 1 < 0.2, 5.0, 0.0)
+    rising = signal.tachometer_pulses(waveform, RATE_HZ)
+    falling = signal.tachometer_pulses(waveform, RATE_HZ, threshold=2.5, hysteresis=1.0, edge="falling")
+    assert np.allclose(np.diff(rising), 0.05, atol=1e-9)
+    assert falling[0] == pytest.approx(0.01, abs=1e-4)
+    with_gap = np.delete(rising, 7)
+    mended, warnings = signal.repair_pulses(with_gap)
+    assert mended.size == rising.size and len(warnings) == 1
+    with pytest.raises(ValueError, match="edge = 'up'"):
+        signal.tachometer_pulses(waveform, RATE_HZ, edge="up")  # type: ignore[arg-type]
+
+
+def test_steps_are_the_chain() -> None:
+    tone = vibration()
+    phase = ShaftPhase.constant(SHAFT_HZ, RATE_HZ, tone.size)
+    record = signal.process_channel(tone, phase, TEETH, name="bearing")
+    angular = signal.angular_resample(tone, phase)
+    average = signal.synchronous_average(angular)
+    parts = signal.separate(average, TEETH)
+    assert np.allclose(average, record.average)
+    assert np.allclose(parts.regular, record.regular)
+    assert np.allclose(parts.residual, record.residual)
+    assert np.allclose(parts.difference, record.difference)
+    assert np.allclose(signal.envelope(parts.difference), record.envelope)
+    assert np.allclose(signal.order_spectrum(average), record.order_spectrum)
+    assert np.allclose(signal.envelope_spectrum(parts.difference), record.envelope_spectrum, atol=1e-12)
+    assert record.indicators["fm0"] == pytest.approx(signal.fm0(average, TEETH))
+    assert record.indicators["energy_ratio"] == pytest.approx(signal.energy_ratio(parts.difference, parts.regular))
+    assert record.indicators["sideband_level_factor"] == pytest.approx(signal.sideband_level_factor(average, TEETH))
+    assert record.nyquist_order > TEETH and record.warnings == []
+    assert "bearing" in repr(record)
+
+
+def test_moments_against_numpy() -> None:
+    values = np.random.default_rng(1).gamma(2.0, size=5000)
+    centred = values - values.mean()
+    second = np.mean(centred**2)
+    for ours, order in ((signal.fm4, 4), (signal.m6a, 6), (signal.m8a, 8)):
+        assert ours(values) == pytest.approx(np.mean(centred**order) / second ** (order / 2), rel=1e-10)
+    statistics = signal.statistics(values)
+    assert statistics["rms"] == pytest.approx(np.sqrt(np.mean(values**2)))
+    assert statistics["peak_to_peak"] == pytest.approx(np.ptp(values))
+    assert statistics["skewness"] == pytest.approx(np.mean(centred**3) / second**1.5)
+    assert statistics["kurtosis"] == pytest.approx(np.mean(centred**4) / second**2)
+
+
+def test_na4_golden() -> None:
+    rng = np.random.default_rng(2)
+    residuals = [rng.normal(size=1000) * (1 + k / 3) for k in range(4)]
+    expected = []
+    for k in range(4):
+        so_far = np.mean([np.var(residual) for residual in residuals[: k + 1]])
+        centred = residuals[k] - residuals[k].mean()
+        expected.append(np.mean(centred**4) / so_far**2)
+    assert signal.na4(residuals) == pytest.approx(expected, rel=1e-10)
+    phases = [ShaftPhase.constant(SHAFT_HZ, RATE_HZ, 40_000)] * 2
+    first, second = signal.process_series([vibration(), 2 * vibration()], phases, TEETH)
+    assert second.indicators["na4"] != pytest.approx(first.indicators["na4"])
+
+
+def test_resample() -> None:
+    time_s = np.arange(10_000) / RATE_HZ
+    tone = np.cos(2 * np.pi * 50 * time_s)
+    half = signal.resample(tone, RATE_HZ, RATE_HZ / 2, edge="periodic")
+    assert half.size == 5000
+    assert np.allclose(half, tone[::2], atol=2e-3)
+    with pytest.raises(ValueError, match="edge = 'mirror'"):
+        signal.resample(tone, RATE_HZ, 5000, edge="mirror")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        (np.full(20_000, np.nan), "sample 0"),
+        (np.ones(20_000), "constant"),
+        (vibration(700), "revolution"),
+        (np.ones((3, 4)), r"shape \(3, 4\)"),
+    ],
+)
+def test_signals_that_are_refused(values: Array, message: str) -> None:
+    phase = ShaftPhase.constant(SHAFT_HZ, RATE_HZ, values.size)
+    with pytest.raises(ValueError, match=message):
+        signal.process_channel(values, phase, TEETH)
+
+
+def test_settings() -> None:
+    tone = vibration()
+    phase = ShaftPhase.constant(SHAFT_HZ, RATE_HZ, tone.size)
+    assert signal.process_channel(tone.astype(np.float32), phase, TEETH, sidebands=1, shaft_orders=[1]).revolutions == 79
+    with pytest.raises(ValueError, match="interpolation = 'linear'"):
+        signal.angular_resample(tone, phase, interpolation="linear")  # type: ignore[arg-type]
+    assert signal.angular_resample(tone, phase, points_per_revolution=256).points_per_revolution == 256
+
+
+def test_recording_is_processed_like_the_simulation(tmp_path: object, broken: meshtone.Simulation) -> None:
+    phase = ShaftPhase(broken.process().revolutions * np.linspace(0, 1, broken.vertical_g.size + 1)[:-1])
+    record = signal.process_channel(broken.vertical_g, phase, 38)
+    ours = broken.process()
+    assert record.indicators["average_rms"] == pytest.approx(ours.indicators["average_rms"], rel=0.05)

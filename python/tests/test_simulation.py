@@ -1,0 +1,157 @@
+"""Simulations: signals, batches, cancellation."""
+
+from __future__ import annotations
+
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import meshtone
+from meshtone import examples, simulate, simulate_many
+
+
+def test_signals(broken: meshtone.Simulation) -> None:
+    for name in meshtone.CHANNELS:
+        values = getattr(broken, name)
+        assert values.shape == (245480,)
+        assert values.dtype == np.float64
+        assert np.isfinite(values).all()
+    # No copies: the same array each time.
+    assert broken.vertical_g is broken.vertical_g
+    assert np.allclose(np.diff(broken.time_s), 1 / broken.sampling_rate_hz)
+    assert broken.sampling_rate_hz == 258400
+    # Torque equilibrium: the mean mesh force is the brake's torque over the gear's base radius.
+    base_radius_m = broken.gear_radii_mm[3] * 1e-3
+    assert broken.mesh_force_n.mean() == pytest.approx(10 / base_radius_m, rel=0.01)
+
+
+def test_matrices(broken: meshtone.Simulation) -> None:
+    stiffness, mass, shapes = broken.stiffness_matrix_mean, broken.mass_diagonal, broken.mode_shapes
+    assert stiffness.shape == shapes.shape == (13, 13)
+    omega = 2 * np.pi * broken.natural_frequencies_hz
+    residual = stiffness @ shapes - (mass[:, None] * shapes) * omega**2
+    assert np.abs(residual).max() < 1e-6 * np.abs(stiffness @ shapes).max()
+    assert np.allclose(shapes.T @ (mass[:, None] * shapes), np.eye(13), atol=1e-9)
+
+
+def test_curves(broken: meshtone.Simulation) -> None:
+    gear_rev, stiffness = broken.mesh_stiffness_curve()
+    assert gear_rev.shape == stiffness.shape
+    assert gear_rev[0] == 0 and gear_rev[-1] < 1
+    assert np.array_equal(stiffness[::4], broken.mesh_stiffness_n_per_mm)
+    x_mm, y_mm = broken.tooth_profile("pinion")
+    assert x_mm.shape == y_mm.shape == (10000,)
+    assert x_mm[-1] == pytest.approx(3 * 17 / 2 + 3)
+    pinion, gear = broken.profile_errors_mm() or (None, None)
+    assert pinion.shape == (100, 17) and gear.shape == (100, 38)
+    with pytest.raises(ValueError, match="'wheel': must be 'pinion' or 'gear'"):
+        broken.tooth_profile("wheel")  # type: ignore[arg-type]
+    with pytest.raises(AttributeError, match="no field 'stiffness'"):
+        _ = broken.stiffness
+
+
+def test_healthy_has_no_errors_under_ideal_quality() -> None:
+    ideal = simulate(examples.healthy().copy(din_grade=0, sampling_rate_hz=1e4))
+    assert ideal.profile_errors_mm() is None
+
+
+def test_process(broken: meshtone.Simulation) -> None:
+    record = broken.process("vertical_g", "gear")
+    assert record.revolutions == 17
+    assert record.average.shape == record.difference.shape == record.envelope.shape == (14440,)
+    assert np.allclose(record.regular + record.difference, record.average, atol=1e-9 * np.abs(record.average).max())
+    difference = record.difference
+    moment = np.mean((difference - difference.mean()) ** 4) / np.var(difference) ** 2
+    assert record.indicators["difference_kurtosis"] == pytest.approx(moment, rel=1e-9)
+    assert record.indicators["fm4"] == pytest.approx(moment, rel=1e-9)
+    assert broken.process("vertical_g", "pinion").revolutions == 38
+    wider = broken.process(sidebands=8)
+    assert np.std(wider.difference) < np.std(record.difference)
+    with pytest.raises(ValueError, match="channel = 'sideways_g'"):
+        broken.process("sideways_g")
+    with pytest.raises(ValueError, match="'axle'"):
+        broken.process(wheel="axle")  # type: ignore[arg-type]
+
+
+def test_many_are_the_same_as_one(broken: meshtone.Simulation) -> None:
+    healthy = examples.healthy()
+    scenarios = [broken.scenario, healthy, healthy.copy(seed=2), examples.missing_tooth()]
+    told: list[tuple[int, int]] = []
+    results = simulate_many(scenarios, threads=2, progress=lambda done, of: told.append((done, of)))
+    assert told[-1] == (4, 4)
+    for scenario, result in zip(scenarios, results):
+        assert isinstance(result, meshtone.Signals)
+        assert result.scenario == scenario
+        alone = simulate(scenario)
+        assert result.sampling_rate_hz == alone.sampling_rate_hz
+        assert result.vertical_g.dtype == np.float32
+        assert np.array_equal(result.vertical_g, alone.vertical_g.astype(np.float32))
+    [forces] = simulate_many([healthy], channels=["mesh_force_n"])
+    assert isinstance(forces, meshtone.Signals)
+    assert list(forces.channels) == ["mesh_force_n"]
+    with pytest.raises(AttributeError, match="no channel 'vertical_g' was kept"):
+        _ = forces.vertical_g
+
+
+def test_many_keep_the_errors_in_their_places() -> None:
+    healthy = examples.healthy().copy(sampling_rate_hz=1e4)
+    # Valid as a scenario, but the circle misses the tooth.
+    misses = healthy.copy(fault=meshtone.ThroughFace(circle=meshtone.PitCircle(10.0, 30.0, 0.5)))
+    first, second, third = simulate_many([healthy, misses, healthy])
+    assert isinstance(second, ValueError)
+    assert "fault.circle" in str(second)
+    assert isinstance(first, meshtone.Signals) and isinstance(third, meshtone.Signals)
+    with pytest.raises(ValueError, match=r"fault\.circle") as alone:
+        simulate(misses)
+    assert str(alone.value) == str(second)
+
+
+def test_many_refuse() -> None:
+    with pytest.raises(ValueError, match="'sideways': must be one of horizontal_g"):
+        simulate_many([examples.healthy()], channels=["sideways"])
+    with pytest.raises(ValueError, match="threads = 0"):
+        simulate_many([examples.healthy()], threads=0)
+    assert simulate_many([]) == []
+
+
+def test_progress_that_raises_stops_the_rest() -> None:
+    def stop(done: int, of: int) -> None:
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        simulate_many((examples.healthy().copy(seed=seed) for seed in range(400)), progress=stop)
+
+
+def test_control_c_stops() -> None:
+    main = threading.main_thread().ident
+    assert main is not None
+    timer = threading.Timer(0.3, lambda: signal.pthread_kill(main, signal.SIGINT))
+    scenarios = [examples.healthy().copy(seed=seed) for seed in range(4000)]
+    timer.start()
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        simulate_many(scenarios)
+    # All of them would take at least ten times as long on any machine.
+    assert time.monotonic() - start < 10
+    timer.join()
+
+
+def test_other_threads_run_meanwhile() -> None:
+    counted = 0
+    done = threading.Event()
+
+    def count() -> None:
+        nonlocal counted
+        while not done.is_set():
+            counted += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    simulate_many([examples.healthy().copy(seed=seed) for seed in range(32)])
+    done.set()
+    thread.join()
+    assert counted > 10
