@@ -67,9 +67,15 @@ const TWO: [TuningIndicator; 2] = [TuningIndicator::Rms, TuningIndicator::Kurtos
 #[test]
 fn seven_cases_with_long_names() {
     let figure = drawn(&experiment(&LABELS, &TWO), "A rig");
-    for text in
-        ["A rig", "healthy", "F5", "Kurtosis", "As simulated", "Noise level ν (–)", "Width ratio w (–)"]
-    {
+    for text in [
+        "A rig",
+        "healthy",
+        "F5",
+        "Kurtosis",
+        "Original simulation",
+        "Noise level ν (–)",
+        "Width ratio w (–)",
+    ] {
         assert!(has(&figure, text), "{text}");
     }
     assert!(figure.svg().matches("<circle").count() >= 7 * 2 * 40);

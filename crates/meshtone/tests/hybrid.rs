@@ -1,8 +1,12 @@
 //! The hybrid stage on signals whose answer is known.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+use std::sync::atomic::AtomicBool;
+
 use meshtone::hybrid::*;
 use meshtone::signal::{kurtosis, rms, skewness};
+
+static NEVER: AtomicBool = AtomicBool::new(false);
 
 const POINTS: usize = 2048;
 
@@ -106,7 +110,8 @@ fn hidden_parameters_lie_in_their_intervals() {
     ] {
         let simulated = SimulatedCases::new(cases(&sizes)).unwrap();
         let tuning =
-            tune(&simulated, &records(&hidden, &sizes, 40), &EnhancementBounds::default(), 1).unwrap();
+            tune(&simulated, &records(&hidden, &sizes, 40), &EnhancementBounds::default(), 1, &NEVER)
+                .unwrap();
         println!("{hidden:.3?}\n{:.3?}\n{:.3?}", tuning.enhancement, tuning.intervals);
         let EnhancementIntervals { width_ratio, fault_to_harmonics_ratio, noise_level } = tuning.intervals;
         assert!(holds(width_ratio, hidden.width_ratio));
@@ -134,7 +139,7 @@ fn what_cannot_be_known_is_said() {
             .collect(),
     )
     .unwrap();
-    let tuning = tune(&simulated, &measured, &EnhancementBounds::default(), 1).unwrap();
+    let tuning = tune(&simulated, &measured, &EnhancementBounds::default(), 1, &NEVER).unwrap();
     let unknown = |warning: &TuningWarning| matches!(warning, TuningWarning::Unknown { .. });
     assert!(tuning.warnings.iter().any(unknown), "{:?} {:?}", tuning.warnings, tuning.intervals);
     let few = |warning: &TuningWarning| matches!(warning, TuningWarning::FewRecords { records: 2, .. });
@@ -158,7 +163,7 @@ fn indicators_of_the_envelope_can_be_tuned_by() {
         .collect();
     let indicators = vec![TuningIndicator::Rms, TuningIndicator::EnvelopeKurtosis];
     let measured = Measurements::from_difference_signals(indicators, &measured).unwrap();
-    let found = fit(&simulated, &measured, &EnhancementBounds::default(), None).unwrap();
+    let found = fit(&simulated, &measured, &EnhancementBounds::default(), None, &NEVER).unwrap();
     println!("{found:?}");
     assert!((found.enhancement.width_ratio / hidden.width_ratio - 1.0).abs() < 0.15);
     assert!(found.error < 1.3 * measured.scatter());
@@ -195,7 +200,7 @@ fn bad_input_is_refused() {
     let measured = records(&Enhancement::default(), &[9.0], 5);
     let upside_down = EnhancementBounds { width_ratio: [1.0, 0.1], ..EnhancementBounds::default() };
     assert_eq!(
-        message(fit(&simulated, &measured, &upside_down, None).unwrap_err()),
+        message(fit(&simulated, &measured, &upside_down, None, &NEVER).unwrap_err()),
         "the range of width_ratio is [1, 0.1], but must be two numbers above 0, the smaller first"
     );
 }

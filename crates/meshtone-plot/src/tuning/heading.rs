@@ -62,13 +62,12 @@ fn parameters(data: &Data) -> Vec<String> {
 }
 
 fn errors(data: &Data) -> Vec<String> {
-    let original = data.result.enhancement_alone.original_error;
-    let Tuning { enhanced_error, scatter, .. } = data.tuning;
+    let Tuning { original_error, enhanced_error, scatter, .. } = data.tuning;
     vec![
-        format!("mean error as simulated {} σ", short(original)),
+        format!("mean error of the original simulation {} σ", short(*original_error)),
         format!("enhanced {} σ", short(*enhanced_error)),
         format!("of cases left out of the fit {} σ", short(data.tuning.mean_leave_one_out_error())),
-        format!("scatter of the records, the floor {} σ", short(*scatter)),
+        format!("the measurements’ own scatter {} σ", short(*scatter)),
         "σ: standard deviation of all measured records of an indicator".to_owned(),
     ]
 }

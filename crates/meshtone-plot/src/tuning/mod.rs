@@ -1,7 +1,7 @@
 //! An experiment of the hybrid stage on one page.
 //!
 //! On the left, above each other and with the cases as their common horizontal axis, the indicators, the error of each
-//! case, and the difference signals as simulated and enhanced; on the right the error around the optimum. The indicators
+//! case, and the difference signals of the original simulation and enhanced; on the right the error around the optimum. The indicators
 //! are drawn as in Figure 6 of arXiv:2410.05073.
 
 mod cases;

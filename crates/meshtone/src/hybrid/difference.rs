@@ -14,7 +14,8 @@ pub struct DifferenceChain {
     pub channel: ChannelKind,
     /// (S/s) The rig's sampling rate, to which the simulated signal is brought first; at most the simulation's.
     pub sampling_rate_hz: f64,
-    /// Sidebands and shaft orders that are taken away; by default as the paper has them.
+    /// Sidebands and shaft orders that are taken away; by default as the paper has them. The mesh order is always that of the
+    /// gear that is simulated, whatever `teeth` says.
     pub separation: Option<SeparationSettings>,
 }
 
@@ -43,7 +44,9 @@ impl DifferenceChain {
         pinion_speed_hz: &[f64],
     ) -> Result<Record, HybridError> {
         let rate_hz = self.sampling_rate_hz.min(stages.time.sampling_rate_hz);
-        Ok(crate::trace::gear_record(stages, signal, pinion_speed_hz, rate_hz, self.separation.clone())?)
+        let teeth = stages.scenario.gears.gear_teeth as usize;
+        let separation = self.separation.clone().map(|settings| SeparationSettings { teeth, ..settings });
+        Ok(crate::trace::gear_record(stages, signal, pinion_speed_hz, rate_hz, separation)?)
     }
 }
 
