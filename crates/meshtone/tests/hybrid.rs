@@ -81,6 +81,38 @@ fn the_expected_indicators_are_the_means_over_draws() {
     assert!((predicted[0][0]).abs() < 1e-12);
 }
 
+#[test]
+fn the_expected_indicators_of_envelopes_are_the_means_over_draws() {
+    use TuningIndicator::{EnvelopeKurtosis, EnvelopeRms, EnvelopeSkewness};
+
+    let signals = cases(&[9.0]);
+    let simulated = SimulatedCases::new(signals.clone()).unwrap();
+    let indicators = [EnvelopeRms, EnvelopeKurtosis, EnvelopeSkewness];
+    for (width_ratio, fault_to_harmonics_ratio, noise_level) in
+        [(1.0, 1.0, 0.1), (1.0, 0.6, 1.2), (0.4, 1.5, 0.8), (0.15, 0.7, 0.4), (1.5, 1.3, 0.6)]
+    {
+        let enhancement = Enhancement { width_ratio, fault_to_harmonics_ratio, noise_level };
+        let predicted = simulated.predict(&indicators, &enhancement).unwrap();
+        let draws = |case: usize| -> Vec<Vec<f64>> {
+            let enhanced =
+                enhancement.without_noise(&signals[case], &signals[0], simulated.centre_rev()).unwrap();
+            (0..200).map(|draw| enhanced.with_noise(3, draw).unwrap()).collect()
+        };
+        let mean = |indicator: TuningIndicator, draws: &[Vec<f64>]| {
+            draws.iter().map(|draw| indicator.measure(draw).unwrap()).sum::<f64>() / draws.len() as f64
+        };
+        let (healthy, faulty) = (draws(0), draws(1));
+        for (j, indicator) in indicators.into_iter().enumerate() {
+            let drawn = indicator.compared(mean(indicator, &faulty), mean(indicator, &healthy));
+            println!("{enhancement:?} {indicator:?} {drawn:.4} {:.4}", predicted[1][j]);
+            // Where the cycle is cut, its stretched part begins and ends otherwise than it went on.
+            assert!((predicted[1][j] - drawn).abs() < 0.02, "{enhancement:?} {indicator:?}");
+        }
+    }
+    let upside_down = Enhancement { width_ratio: -1.0, ..Enhancement::default() };
+    assert!(matches!(simulated.predict(&indicators, &upside_down), Err(HybridError::Parameter { .. })));
+}
+
 /// Measured signals made by an enhancement that is then to be found.
 fn records(hidden: &Enhancement, sizes: &[f64], count: u64) -> Measurements {
     let signals = cases(sizes);

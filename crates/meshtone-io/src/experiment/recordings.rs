@@ -12,8 +12,8 @@ use meshtone::toml_reader::{ReadResult, TomlTable};
 use super::measured::{Wanted, column, missing};
 use crate::recording::{Recording, RecordingOptions, read_recording};
 
-/// Of a recording's sampling rate, relative: what a file's rounded times are off.
-const RATE_TOLERANCE: f64 = 1e-4;
+/// Of a sampling rate, relative: what a file's rounded times are off.
+pub(super) const RATE_TOLERANCE: f64 = 1e-4;
 
 /// How the phase of a recording's shafts is known.
 enum Phase<'a> {
