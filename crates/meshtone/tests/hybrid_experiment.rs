@@ -197,8 +197,13 @@ fn the_mesh_order_is_that_of_the_gear_that_is_simulated() {
 #[test]
 fn the_original_is_the_scenario_before_anything_is_tuned() {
     let mut experiment = experiment(&[("rig.damping_ratio", &[0.03, 0.05, 0.07])]);
-    // The rig has another damping than the base.
-    experiment.base.rig.damping_ratio = meshtone::scenario::DampingRatio::Uniform(0.1);
+    // The rig has another damping than the base, which the three parameters cannot make up for.
+    experiment.bounds = EnhancementBounds {
+        width_ratio: [HIDDEN.width_ratio; 2],
+        fault_to_harmonics_ratio: [HIDDEN.fault_to_harmonics_ratio; 2],
+        noise_level: [HIDDEN.noise_level; 2],
+    };
+    experiment.base.rig.damping_ratio = meshtone::scenario::DampingRatio::Uniform(0.5);
     let result = run(&experiment).unwrap();
     let keys = result.with_keys.as_ref().unwrap();
     let untouched =

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use meshtone::hybrid::{DifferenceChain, difference_signals};
 use meshtone::scenario::Scenario;
-use meshtone::signal::{Edge, SeparationSettings, kurtosis, resample};
+use meshtone::signal::{Edge, kurtosis, resample};
 use serde_json::Value;
 
 use crate::support::{FAST, Workplace, stderr, stdout};
@@ -53,7 +53,7 @@ fn json(workplace: &Workplace, name: &str) -> Value {
 #[test]
 fn a_rig_is_tuned_and_signals_are_enhanced() {
     let workplace = workplace();
-    let keys = "candidates = 6\n[[tune.key]]\nkey = \"rig.damping_ratio\"\nleast = 0.02\nlargest = 0.1\n\
+    let keys = "candidates = 16\n[[tune.key]]\nkey = \"rig.damping_ratio\"\nleast = 0.02\nlargest = 0.2\n\
                 [[tune.key]]\nkey = \"fault.chip_width_mm\"\nleast = 5.0\nlargest = 14.0\n";
     workplace.write("rig.toml", experiment(keys));
     let output = stdout(&workplace.succeeds(&["tune", "rig.toml", "-o", "out"]));
@@ -72,7 +72,7 @@ fn a_rig_is_tuned_and_signals_are_enhanced() {
     assert!(enhanced < number("/error/original"));
     assert!(enhanced <= number("/enhancement_alone/error/enhanced"));
     assert!(number("/error/leave_one_out") >= number("/error/measurements_own_scatter"));
-    assert!((0.02..=0.1).contains(&number("/scenario_keys/rig.damping_ratio")));
+    assert!((0.02..=0.2).contains(&number("/scenario_keys/rig.damping_ratio")));
     // The mean over cases and indicators of what is given for each.
     let mean = (0..3)
         .flat_map(|case| {
@@ -336,12 +336,12 @@ fn recordings_have_their_own_phase_and_sampling_rate() {
             &format!("severity = {case}\nrecordings = [{files}]\n"),
         );
     }
-    let chain =
-        DifferenceChain { separation: Some(SeparationSettings::new(40)), ..DifferenceChain::new(RIG_HZ) };
+    // As the simulation itself has them, at the rig's rate.
     let expected: Vec<f64> = FAULTS
         .iter()
         .map(|fault| {
-            let signals = difference_signals((1..=3).map(|seed| rig(fault, seed)).collect(), &chain).unwrap();
+            let scenarios = (1..=3).map(|seed| rig(fault, seed)).collect();
+            let signals = difference_signals(scenarios, &DifferenceChain::new(RIG_HZ)).unwrap();
             let mut values: Vec<f64> =
                 signals.iter().map(|signal| kurtosis(signal).unwrap().log10()).collect();
             values.sort_by(f64::total_cmp);
@@ -360,7 +360,8 @@ fn recordings_have_their_own_phase_and_sampling_rate() {
         for (case, expected) in expected.iter().enumerate() {
             let path = format!("/cases/{case}/indicators/kurtosis/measured_median");
             let median = tuning.pointer(&path).and_then(Value::as_f64).unwrap();
-            assert!((median - expected).abs() < 0.02, "{name}, case {case}: {median} instead of {expected}");
+            // The few points of a burst do not lie at the same places.
+            assert!((median - expected).abs() < 0.08, "{name}, case {case}: {median} instead of {expected}");
         }
         // Simulated as well: nothing needs to be changed.
         let error = tuning.pointer("/error/original").and_then(Value::as_f64).unwrap();

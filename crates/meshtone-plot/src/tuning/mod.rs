@@ -32,7 +32,7 @@ const NAME_LEFT: f64 = 48.0;
 /// (px) Left edge of title and facts.
 const TEXT_LEFT: f64 = 15.0;
 
-const HEADING_BASELINE: f64 = 118.0;
+const HEADING_BASELINE: f64 = 125.0;
 /// (px) From a heading's baseline to the frame of the first plot below it, which has a title.
 const BELOW_HEADING: f64 = 38.0;
 /// (px) Lower edge of the lowest plots.

@@ -2,8 +2,8 @@
 
 use super::HybridError;
 use crate::batch::{ChannelKind, Control, Keep, simulate_many};
-use crate::scenario::Scenario;
-use crate::signal::{Record, SeparationSettings};
+use crate::scenario::{Convention, Scenario};
+use crate::signal::{AngularSettings, ChainSettings, Interpolation, Record, SeparationSettings};
 use crate::simulate::Stages;
 use crate::solver::{Block, Output, Recorder};
 
@@ -28,6 +28,19 @@ impl DifferenceChain {
         Self { channel: ChannelKind::Vertical, sampling_rate_hz, separation: None }
     }
 
+    /// How signals, simulated or measured, are read at equal angles: under `published` by PCHIP as in the paper, which flattens a
+    /// burst the more the farther its peaks lie from a point; under `corrected` band-limited.
+    ///
+    /// # Arguments
+    /// * `convention` - of the scenario
+    pub fn angular_settings(convention: Convention) -> AngularSettings {
+        let interpolation = match convention {
+            Convention::Published => Interpolation::Pchip,
+            Convention::Corrected => Interpolation::BandLimited,
+        };
+        AngularSettings { interpolation, ..AngularSettings::default() }
+    }
+
     /// The gear's average, its difference signal and indicators.
     ///
     /// # Arguments
@@ -46,7 +59,9 @@ impl DifferenceChain {
         let rate_hz = self.sampling_rate_hz.min(stages.time.sampling_rate_hz);
         let teeth = stages.scenario.gears.gear_teeth as usize;
         let separation = self.separation.clone().map(|settings| SeparationSettings { teeth, ..settings });
-        Ok(crate::trace::gear_record(stages, signal, pinion_speed_hz, rate_hz, separation)?)
+        let angular = Self::angular_settings(stages.scenario.convention);
+        let settings = ChainSettings { angular, separation };
+        Ok(crate::trace::gear_record(stages, signal, pinion_speed_hz, rate_hz, settings)?)
     }
 }
 
