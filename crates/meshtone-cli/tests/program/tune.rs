@@ -306,14 +306,14 @@ fn rig(fault: &str, seed: u64) -> Scenario {
     Scenario::from_toml(&format!("seed = {seed}\n{fine}[quality]\ndin_grade = 8\n{fault}")).unwrap()
 }
 
-/// Five revolutions of the gear at the rig's sampling rate, begun anywhere, with a pulse of the pinion's tachometer.
+/// Nine revolutions of the gear at the rig's sampling rate, begun anywhere, with a pulse of the pinion's tachometer.
 fn recording(scenario: &Scenario, offset: usize) -> String {
     let simulation = meshtone::simulate(scenario).unwrap();
     let per_revolution = (simulation.stages.time.sampling_rate_hz / 20.0).round() as usize;
     let revolution = &simulation.channels.vertical_g[..per_revolution];
     let resampled = resample(revolution, 400, per_revolution, Edge::Periodic).unwrap();
     let mut text = String::from("acc,tacho\n");
-    for i in offset..offset + 5 * resampled.len() {
+    for i in offset..offset + 9 * resampled.len() {
         let pulse = if (i + 31) % 200 < 6 { 5.0 } else { 0.0 };
         writeln!(text, "{},{pulse}", resampled[i % resampled.len()]).unwrap();
     }
