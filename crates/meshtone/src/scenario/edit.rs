@@ -109,7 +109,8 @@ impl Scenario {
         if !known {
             return Ok(self.clone());
         }
-        let mut changed = Self::from_toml(&table.to_string())?;
+        // A line of this text is no line that anybody has written.
+        let mut changed = Self::from_toml(&table.to_string()).map_err(|error| error.at_line(None))?;
         // Not part of the text's table.
         changed.quality.profile_errors.clone_from(&self.quality.profile_errors);
         Ok(changed)
