@@ -3,17 +3,26 @@
 from __future__ import annotations
 
 import matplotlib.pyplot as plt
+import numpy as np
 import pytest
+from matplotlib.axes import Axes
 
 import meshtone
 from meshtone import plotting
+
+
+def legend(ax: Axes) -> list[str]:
+    """The legend's texts."""
+    shown = ax.get_legend()
+    assert shown is not None
+    return [text.get_text() for text in shown.get_texts()]
 
 
 def test_axes_of_ones_own(broken: meshtone.Simulation) -> None:
     figure, ax = plt.subplots()
     assert broken.plot_signal("horizontal_g", revolutions=1, ax=ax) is ax
     [line] = ax.lines
-    assert line.get_xdata().size == 14440
+    assert np.size(line.get_xdata()) == 14440
     assert ax.get_ylabel() == "Horizontal acceleration (g)"
     plt.close(figure)
 
@@ -22,9 +31,9 @@ def test_each_figure(broken: meshtone.Simulation) -> None:
     stiffness = broken.plot_mesh_stiffness()
     assert stiffness.get_ylabel() == "Mesh stiffness (N/mm)"
     spectrum = broken.plot_spectrum()
-    assert "680 Hz" in spectrum.get_legend().get_texts()[1].get_text()
+    assert "680 Hz" in legend(spectrum)[1]
     tooth = broken.plot_tooth()
-    assert "chip, 12 mm" in tooth.get_legend().get_texts()[0].get_text()
+    assert "chip, 12 mm" in legend(tooth)[0]
     assert broken.plot_tooth("pinion").get_legend() is None
     panel = broken.plot()
     assert len(panel.axes) == 6
@@ -43,7 +52,7 @@ def test_indicators() -> None:
     table = {"mm": [3, 1, 2, 1], "rms": [3.0, 1.0, 2.0, 5.0], "kurtosis": [9.0, 1.0, 4.0, 2.0], "kind": ["a", "a", "a", "b"]}
     figure = plotting.plot_indicators(table, x="mm", by="kind")
     first = figure.axes[0]
-    assert [list(line.get_xdata()) for line in first.lines] == [[1, 2, 3], [1]]
+    assert [np.asarray(line.get_xdata()).tolist() for line in first.lines] == [[1, 2, 3], [1]]
     assert [ax.get_ylabel() for ax in figure.axes] == ["rms", "kurtosis"]
     plt.close("all")
     with pytest.raises(ValueError, match="no column 'severity'"):

@@ -25,17 +25,15 @@ REQUIRED: dict[str, Any] = {
 
 @pytest.mark.parametrize("fault", FAULTS.values())
 def test_round_trips(fault: meshtone.Fault | None) -> None:
-    scenario = Scenario(**REQUIRED, fault=fault, din_grade=6, damping_ratio=np.full(13, 0.04), tip_relief=False)
+    scenario = Scenario(**REQUIRED, fault=fault, din_grade=6, damping_ratio=[0.04] * 13, tip_relief=False)
     for same in (Scenario.from_toml(scenario.to_toml()), pickle.loads(pickle.dumps(scenario)), scenario.copy()):
         assert same == scenario
         assert hash(same) == hash(scenario)
-    assert scenario.fault is None if fault is None else scenario.fault.kind == fault.kind
+    assert getattr(scenario.fault, "kind", None) == getattr(fault, "kind", None)
     assert eval(repr(scenario), vars(meshtone)) == scenario
 
 
 def test_every_key_of_a_scenario_file_is_an_argument() -> None:
-    import tomllib
-
     from meshtone._sections import SECTION_OF_KEY
 
     for kind in examples.all():
@@ -51,15 +49,16 @@ def test_every_key_of_a_scenario_file_is_an_argument() -> None:
         for section, key in keys:
             if section != "fault":
                 assert SECTION_OF_KEY.get(key) == section, key
-        assert tomllib.loads(text)["gears"]["module_mm"] == 3.0
+        assert keys >= {("gears", "module_mm"), ("solver", "initial_velocity")}
 
 
 def test_profile_errors() -> None:
     pinion, gear = np.full((100, 17), 1e-3), np.arange(3800.0).reshape(100, 38) * 1e-6
     scenario = Scenario(**REQUIRED, pinion_profile_errors_mm=pinion, gear_profile_errors_mm=gear)
     for same in (scenario, scenario.copy(pinion_speed_hz=30), pickle.loads(pickle.dumps(scenario))):
-        assert np.array_equal(same.gear_profile_errors_mm, gear)
-        assert np.array_equal(same.pinion_profile_errors_mm, pinion)
+        given = (same.pinion_profile_errors_mm, same.gear_profile_errors_mm)
+        assert given[0] is not None and given[1] is not None
+        assert np.array_equal(given[0], pinion) and np.array_equal(given[1], gear)
     with pytest.raises(ValueError, match="belong together"):
         Scenario(**REQUIRED, pinion_profile_errors_mm=pinion)
     with pytest.raises(ValueError, match="gear_profile_errors_mm"):

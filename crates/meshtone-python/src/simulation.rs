@@ -108,7 +108,7 @@ impl Simulation {
     /// (-) Mode shapes, a column each, normalised to unit modal mass.
     #[getter]
     fn mode_shapes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let shapes = &self.stages.system.modes.shapes;
+        let shapes = self.stages.system.mode_shapes();
         let values: Vec<f64> =
             (0..shapes.nrows()).flat_map(|row| (0..shapes.ncols()).map(move |n| shapes[(row, n)])).collect();
         array(py, values).reshape([shapes.nrows(), shapes.ncols()]).map_err(value_error)

@@ -202,7 +202,7 @@ fn table(experiment: &Experiment, result: &ExperimentResult, directory: &Path) -
     if let Some(keys) = &result.with_keys {
         row("with the scenario's numbers", &keys.tuning);
     }
-    let _ = writeln!(text, "  {:<40}{:>20.3}", "the measurements' own medians", tuning.scatter);
+    let _ = writeln!(text, "  {:<40}{:>20.3}", "the measurements' own scatter", tuning.scatter);
     let _ = writeln!(text, "\n  {:<40}{:>10}{:>10}{:>15}", "case", "original", "enhanced", "leave one out");
     for (number, case) in experiment.cases.iter().enumerate() {
         let measured = &experiment.measured;

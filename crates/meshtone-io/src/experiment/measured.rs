@@ -1,13 +1,12 @@
 //! What was measured: a table of indicators, difference signals, or recordings.
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use meshtone::hybrid::{Case, DifferenceChain, Measurements, TuningIndicator};
 use meshtone::scenario::{Scenario, ScenarioError};
 use meshtone::toml_reader::{ReadResult, TomlTable, TomlValue};
 
-use super::recordings;
+use super::{indicator_table, recordings};
 use crate::recording::{ColumnChoice, RecordingOptions, TimeColumn, read_recording};
 
 /// Files of one case, with the key and line that name them.
@@ -67,7 +66,7 @@ pub(super) fn read(
     let by_difference = wanted.files.iter().any(|files| files.difference.is_some());
     let by_recording = wanted.files.iter().any(|files| !files.recordings.is_empty());
     match (by_table, by_difference, by_recording) {
-        (Some(file), false, false) => indicator_table(table, &file, wanted, sources),
+        (Some(file), false, false) => indicator_table::read(table, &file, wanted, sources),
         (None, true, false) => difference_files(wanted, sources),
         (None, false, true) => {
             let signals = recordings::differences(table, wanted, sources)?;
@@ -116,81 +115,6 @@ fn difference_files(wanted: &Wanted, sources: &mut Vec<PathBuf>) -> ReadResult<M
 pub(super) fn missing(files: &CaseFiles, problem: String) -> ScenarioError {
     let place = files.place.clone().unwrap_or_else(|| ScenarioError::new("case", "", ""));
     ScenarioError { problem, ..place }
-}
-
-/// The layout of the paper's table: experiment, indicator, series, severity, log10_value.
-fn indicator_table(
-    table: &TomlTable<'_>,
-    file: &TomlValue<'_>,
-    wanted: &Wanted,
-    sources: &mut Vec<PathBuf>,
-) -> ReadResult<Measurements> {
-    let path = wanted.directory.join(file.string()?);
-    let experiment = table.optional("experiment").map(|value| value.string()).transpose()?;
-    let named_series = table.optional("series").map(|value| value.string()).transpose()?;
-    let series = named_series.unwrap_or("measured");
-    let problem = |problem: String| file.error(format!("{}: {problem}", path.display()));
-    let mut reader = csv::ReaderBuilder::new()
-        .trim(csv::Trim::All)
-        .from_path(&path)
-        .map_err(|error| problem(format!("cannot be read: {error}")))?;
-    sources.push(path.clone());
-    let header = reader.headers().map_err(|error| problem(format!("cannot be read: {error}")))?.clone();
-    let column = |name: &str| header.iter().position(|column| column == name);
-    let needed = |name: &str| {
-        let listed = header.iter().collect::<Vec<_>>().join(", ");
-        column(name).ok_or_else(|| problem(format!("has no column {name}; its columns are {listed}")))
-    };
-    let (indicator_at, severity_at) = (needed("indicator")?, needed("severity")?);
-    let value_at = needed("log10_value")?;
-    let experiment_at = experiment.map(|_| needed("experiment")).transpose()?;
-    named_series.map(|_| needed("series")).transpose()?;
-    let unnamed_experiment = if experiment.is_none() { column("experiment") } else { None };
-    let mut experiments = BTreeSet::new();
-    let mut values = vec![vec![Vec::new(); wanted.indicators.len()]; wanted.cases.len()];
-    for (row, record) in reader.records().enumerate() {
-        let record = record.map_err(|error| problem(format!("cannot be read: {error}")))?;
-        let field = |at: usize| record.get(at).unwrap_or_default();
-        let number = |at: usize| -> ReadResult<f64> {
-            let text = field(at);
-            text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| {
-                let (line, name) = (row + 2, &header[at]);
-                problem(format!("line {line}: {name} is '{text}', but must be a finite number"))
-            })
-        };
-        let other_series = column("series").is_some_and(|at| field(at) != series);
-        if other_series || experiment_at.is_some_and(|at| Some(field(at)) != experiment) {
-            continue;
-        }
-        experiments.extend(unnamed_experiment.map(|at| field(at).to_owned()));
-        if experiments.len() > 1 {
-            let all = experiments.into_iter().collect::<Vec<_>>().join(", ");
-            let which = "holds more than one experiment; say which with measured.experiment";
-            return Err(problem(format!("{which} ({all})")));
-        }
-        let indicator =
-            wanted.indicators.iter().position(|indicator| indicator.name() == field(indicator_at));
-        let severity = number(severity_at)?;
-        let case = wanted.cases.iter().position(|case| case.severity == severity);
-        if let (Some(indicator), Some(case)) = (indicator, case) {
-            values[case][indicator].push(number(value_at)?);
-        }
-    }
-    for (case, of_case) in wanted.cases.iter().zip(&values) {
-        for (indicator, records) in wanted.indicators.iter().zip(of_case) {
-            if records.is_empty() {
-                let of = experiment.map_or(String::new(), |name| format!(", experiment {name}"));
-                return Err(problem(format!(
-                    "has no {} of severity {} (case \"{}\"{of}, series {series})",
-                    indicator.name(),
-                    case.severity,
-                    case.label
-                )));
-            }
-        }
-    }
-    Measurements::from_compared(wanted.indicators.to_vec(), values)
-        .map_err(|error| problem(error.to_string()))
 }
 
 /// Columns to be read: one by name or number.

@@ -1,6 +1,7 @@
 //! Experiments of the hybrid stage: the file that describes one, and the files that tuning writes.
 
 mod enhanced;
+mod indicator_table;
 mod measured;
 mod read;
 mod recordings;

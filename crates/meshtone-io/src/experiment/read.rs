@@ -4,19 +4,21 @@ use std::path::{Path, PathBuf};
 
 use meshtone::batch::ChannelKind;
 use meshtone::hybrid::{
-    Case, DifferenceChain, EnhancementBounds, Experiment, HybridError, KeyRange, TunedKey, TuningIndicator,
+    Case, DifferenceChain, EnhancementBounds, Experiment, HybridError, KeyRange, MOST_CANDIDATES, TunedKey,
+    TuningIndicator,
 };
 use meshtone::scenario::{Fault, Scenario, ScenarioError};
 use meshtone::signal::{MeanPart, SeparationSettings};
+use meshtone::stages;
 use meshtone::toml_reader::{ReadResult, TomlDocument, TomlTable, TomlValue};
 
 use super::CHANNELS;
 use super::measured::{self, CaseFiles};
+use super::recordings::RATE_TOLERANCE;
 use crate::scenario_file::{ReadScenarioError, ScenarioFile, read_text};
 
 /// Combinations of the tuned keys' values that are simulated unless the file says otherwise.
 const CANDIDATES: u64 = 160;
-const MOST_CANDIDATES: u64 = 100_000;
 
 /// An experiment file that has been read, with everything that it names.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,7 +46,10 @@ pub fn read_experiment(path: &Path) -> Result<ExperimentFile, ReadScenarioError>
     let mut sources = vec![path.to_path_buf()];
     let mut base = None;
     let read = TomlDocument::parse(&text).and_then(|document| {
-        let result = document.root().read(|root| experiment(root, directory, &mut sources, &mut base));
+        let result = document.root().read(|root| {
+            let mut reading = Reading { path, directory, sources: &mut sources, scenario_error: &mut base };
+            reading.experiment(root)
+        });
         result.map_err(|error| document.locate(error))
     });
     match (read, base) {
@@ -57,25 +62,51 @@ pub fn read_experiment(path: &Path) -> Result<ExperimentFile, ReadScenarioError>
     }
 }
 
-fn experiment(
-    root: &TomlTable<'_>,
-    directory: &Path,
-    sources: &mut Vec<PathBuf>,
-    base_error: &mut Option<ReadScenarioError>,
-) -> ReadResult<Experiment> {
-    let named = root.required("scenario", "the scenario file that all cases have in common")?;
-    let file = directory.join(named.string()?);
-    let base = match ScenarioFile::read(&file) {
-        Ok(file) => {
-            sources.extend(file.sources().map(Path::to_path_buf));
-            file.scenario
-        }
-        Err(error) => {
-            let problem = named.error(error.to_string());
-            *base_error = Some(error);
+struct Reading<'a> {
+    path: &'a Path,
+    directory: &'a Path,
+    /// Files that were read.
+    sources: &'a mut Vec<PathBuf>,
+    /// What is wrong in the scenario file, with that file's lines.
+    scenario_error: &'a mut Option<ReadScenarioError>,
+}
+
+impl Reading<'_> {
+    fn experiment(&mut self, root: &TomlTable<'_>) -> ReadResult<Experiment> {
+        let base = self.scenario(root)?;
+        experiment(root, base, self.directory, self.sources)
+    }
+
+    fn scenario(&mut self, root: &TomlTable<'_>) -> ReadResult<Scenario> {
+        let named = root.required("scenario", "the scenario file that all cases have in common")?;
+        let file = self.directory.join(named.string()?);
+        let mut error = match ScenarioFile::read(&file) {
+            Ok(file) => {
+                self.sources.extend(file.sources().map(Path::to_path_buf));
+                return Ok(file.scenario);
+            }
+            Err(error) => error,
+        };
+        let problem = named.error(error.to_string());
+        if let ReadScenarioError::Invalid { error: inner, .. } = &mut error {
+            let named_by = format!("{} names this file in line {}", self.path.display(), named.line());
+            inner.help = Some(match inner.help.take() {
+                Some(help) => format!("{help} ({named_by})"),
+                None => named_by,
+            });
+            *self.scenario_error = Some(error);
             return Err(problem);
         }
-    };
+        Err(problem.with_help("check the name; it is relative to the experiment file's directory"))
+    }
+}
+
+fn experiment(
+    root: &TomlTable<'_>,
+    base: Scenario,
+    directory: &Path,
+    sources: &mut Vec<PathBuf>,
+) -> ReadResult<Experiment> {
     let chain = root.table_or_empty("signal")?.read(|table| signal(table, &base))?;
     let listed = root.required("case", "the cases, [[case]] each, the healthy one first")?;
     let mut cases = Vec::new();
@@ -84,7 +115,7 @@ fn experiment(
         let (case, of_case) = value.table()?.read(case)?;
         let scenario = Scenario { fault: case.fault.clone(), ..base.clone() };
         // Before anything is simulated.
-        if let Err(error) = meshtone::stages(&scenario) {
+        if let Err(error) = stages(&scenario) {
             let key = format!("{}.{}", value.path(), error.key);
             return Err(ScenarioError { key, line: Some(value.line()), ..error });
         }
@@ -109,17 +140,20 @@ fn experiment(
     })?;
     let Tune { bounds, keys, candidates, seed, .. } = tune;
     let experiment = Experiment { base, cases, chain, measured, bounds, keys, candidates, seed };
-    experiment.check().map_err(|error| {
-        let key = match &error {
-            HybridError::NoSuchKey { .. } | HybridError::KeyTwice { .. } | HybridError::IgnoredKey { .. } => {
-                "tune.key"
-            }
-            HybridError::Cases { .. } | HybridError::HealthyCase { .. } => "case",
-            _ => "tune",
-        };
-        ScenarioError::new(key, "", error.to_string())
-    })?;
+    for number in 0..experiment.keys.len() {
+        experiment.check_key(number).map_err(|error| key_error(number, &error))?;
+    }
+    experiment.check().map_err(|error| ScenarioError::new("tune", "", error.to_string()))?;
     Ok(experiment)
+}
+
+/// An error about a tuned key, to be told at its own line.
+fn key_error(number: usize, error: &HybridError) -> ScenarioError {
+    let help = match error {
+        HybridError::Scenario(error) => error.help.clone(),
+        _ => None,
+    };
+    ScenarioError { help, ..ScenarioError::new(format!("tune.key[{number}].key"), "", error.to_string()) }
 }
 
 fn check_cases(listed: &TomlValue<'_>, cases: &[Case]) -> ReadResult<()> {
@@ -155,6 +189,14 @@ fn signal(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<DifferenceChain>
     if sampling_rate_hz <= 2.0 * mesh_hz {
         let problem = format!("must be more than twice the mesh frequency of {mesh_hz} Hz");
         return Err(rate.error(problem));
+    }
+    let simulated_hz = stages(base).map_err(|error| rate.error(error.to_string()))?.time.sampling_rate_hz;
+    if sampling_rate_hz > simulated_hz * (1.0 + RATE_TOLERANCE) {
+        let problem = format!(
+            "must be at most the simulation's sampling rate of {simulated_hz:.1} S/s, since what is above half of that is not in the simulated signals"
+        );
+        let help = "raise solver.sampling_rate_hz in the scenario, or resample the recordings";
+        return Err(rate.error(problem).with_help(help));
     }
     let teeth = base.gears.gear_teeth as usize;
     let default = SeparationSettings::new(teeth);
@@ -225,7 +267,7 @@ fn tune(table: &TomlTable<'_>) -> ReadResult<Tune> {
         }
     };
     let candidates =
-        table.optional("candidates").map(|value| value.integer(1..=MOST_CANDIDATES)).transpose()?;
+        table.optional("candidates").map(|value| value.integer(1..=MOST_CANDIDATES as u64)).transpose()?;
     let seed = table.optional("seed").map(|value| value.integer(0..=u64::MAX)).transpose()?;
     Ok(Tune {
         indicators,
@@ -241,6 +283,10 @@ fn tuned_key(table: &TomlTable<'_>) -> ReadResult<TunedKey> {
     let one_of = table.optional("one_of");
     let ends = ["least", "largest"].map(|end| table.optional(end));
     let logarithmic = table.optional("logarithmic").map(|value| value.boolean()).transpose()?;
+    if one_of.is_none() && ends.iter().any(Option::is_none) {
+        // Told before what is missing.
+        ["one_of", "least", "largest"].into_iter().try_for_each(|key| table.refuse_slip_of(key))?;
+    }
     let range = match (one_of, ends) {
         (Some(values), [None, None]) if logarithmic.is_none() => KeyRange::OneOf(values.numbers()?),
         (None, [Some(least), Some(largest)]) => KeyRange::Between {

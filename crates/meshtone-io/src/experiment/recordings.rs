@@ -2,18 +2,19 @@
 
 use std::path::PathBuf;
 
+use meshtone::hybrid::DifferenceChain;
 use meshtone::scenario::ScenarioError;
 use meshtone::signal::{
-    AngularSettings, ChainSettings, Interpolation, MeshTone, ShaftPhase, SignalError, Tachometer,
-    points_per_revolution, process_channel, process_segments, tachometer_pulses,
+    AngularSettings, ChainSettings, MeshTone, ShaftPhase, SignalError, Tachometer, points_per_revolution,
+    process_channel, process_segments, tachometer_pulses,
 };
 use meshtone::toml_reader::{ReadResult, TomlTable};
 
 use super::measured::{Wanted, column, missing};
 use crate::recording::{Recording, RecordingOptions, read_recording};
 
-/// Of a recording's sampling rate, relative: what a file's rounded times are off.
-const RATE_TOLERANCE: f64 = 1e-4;
+/// Of a sampling rate, relative: what a file's rounded times are off.
+pub(super) const RATE_TOLERANCE: f64 = 1e-4;
 
 /// How the phase of a recording's shafts is known.
 enum Phase<'a> {
@@ -88,8 +89,7 @@ fn settings(wanted: &Wanted) -> ReadResult<ChainSettings> {
         .map_err(|error| ScenarioError::new("signal.sampling_rate_hz", rate, error.to_string()))?;
     let angular = AngularSettings {
         points_per_revolution: Some(points_per_revolution(&revolution)),
-        interpolation: Interpolation::Pchip,
-        ..AngularSettings::default()
+        ..DifferenceChain::angular_settings(wanted.base.convention)
     };
     Ok(ChainSettings { angular, separation: wanted.chain.separation.clone() })
 }

@@ -63,13 +63,8 @@ impl Tuned {
     /// # Errors
     /// A number that is not allowed in this scenario.
     pub fn apply(&self, scenario: &Scenario) -> Result<Scenario, ScenarioError> {
-        let mut tuned = scenario.clone();
-        for (key, value) in &self.keys {
-            if tuned.number(key).is_some() {
-                tuned = tuned.with_number(key, *value)?;
-            }
-        }
-        Ok(tuned)
+        let numbers: Vec<(&str, f64)> = self.keys.iter().map(|(key, value)| (key.as_str(), *value)).collect();
+        scenario.with_known_numbers(&numbers)
     }
 
     /// What a user should know before these values are used for a scenario.

@@ -72,7 +72,7 @@ fn ground(canvas: &mut Canvas, axes: &Axes, cases: usize, title: &str, unit: &st
 
 fn indicator(canvas: &mut Canvas, area: Area, data: &Data, j: usize, indicator: TuningIndicator) {
     let cases = data.cases();
-    let original = |case: usize| data.original()[case][j];
+    let original = |case: usize| data.tuning.original[case][j];
     let enhanced = |case: usize| data.tuning.enhanced[case][j];
     let simulated = (0..cases).flat_map(|case| {
         let [low, high] = data.spread[case][j];
@@ -116,13 +116,9 @@ fn whisker(canvas: &mut Canvas, axes: &Axes, x: f64, ends: [f64; 2]) {
 fn error(canvas: &mut Canvas, area: Area, data: &Data) {
     let cases = data.cases();
     let measured = data.measured();
-    let original = |case: usize| measured.case_error(case, &data.original()[case]);
+    let original = |case: usize| measured.case_error(case, &data.tuning.original[case]);
     let enhanced = |case: usize| measured.case_error(case, &data.tuning.enhanced[case]);
     let left_out = |case: usize| data.tuning.leave_one_out_error[case];
-    let floor = |case: usize| {
-        let medians: Vec<f64> = (0..measured.indicators().len()).map(|j| measured.median(case, j)).collect();
-        measured.case_error(case, &medians)
-    };
     let all = (0..cases).flat_map(|case| [original(case), enhanced(case), left_out(case)]);
     let [_, high] = axes::range(all, MARGIN);
     let axes = axes_of(area, cases, [0.0, high]);
@@ -131,14 +127,14 @@ fn error(canvas: &mut Canvas, area: Area, data: &Data) {
     connected(canvas, &axes, cases, 0.0, &left_out, LEFT_OUT);
     connected(canvas, &axes, cases, 0.0, &enhanced, ENHANCED);
     for case in 0..cases {
-        level(canvas, &axes, case, 0.0, floor(case));
+        level(canvas, &axes, case, 0.0, measured.case_scatter(case));
     }
     markers(canvas, &axes, cases, 0.0, &original, ORIGINAL_MARKER);
     markers(canvas, &axes, cases, 0.0, &left_out, LEFT_OUT_MARKER);
     markers(canvas, &axes, cases, 0.0, &enhanced, ENHANCED_MARKER);
     axes.frame(canvas);
     let entries = [
-        (Sample::Line(MEDIAN), "scatter of the records"),
+        (Sample::Line(MEDIAN), "measurements’ own scatter"),
         (Sample::Marked(LEFT_OUT, LEFT_OUT_MARKER), "predicted by a fit to the other cases"),
     ]
     .map(|(sample, text)| Entry { sample, text });
@@ -204,7 +200,7 @@ fn legend(canvas: &mut Canvas, baseline: f64, data: &Data) {
     let entries = [
         (Sample::Dots(Fill { opacity: 0.6, ..RECORDS }), records.as_str()),
         (Sample::Line(MEDIAN), "their median"),
-        (Sample::Marked(ORIGINAL, ORIGINAL_MARKER), "as simulated"),
+        (Sample::Marked(ORIGINAL, ORIGINAL_MARKER), "original simulation"),
         (Sample::Marked(ENHANCED, ENHANCED_MARKER), enhanced.as_str()),
     ]
     .map(|(sample, text)| Entry { sample, text });

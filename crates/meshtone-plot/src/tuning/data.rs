@@ -18,7 +18,7 @@ pub(super) struct Data<'a> {
     pub(super) experiment: &'a Experiment,
     pub(super) result: &'a ExperimentResult,
     pub(super) tuning: &'a Tuning,
-    /// Difference signals of the scenario as it is, in healthy rms, the faults' responses in the middle.
+    /// Difference signals of the original simulation, in healthy rms, the faults' responses in the middle.
     pub(super) original_signals: Vec<Vec<f64>>,
     /// The same enhanced, with one draw of noise.
     pub(super) enhanced_signals: Vec<Vec<f64>>,
@@ -75,22 +75,10 @@ impl<'a> Data<'a> {
         (0..=gaps).map(|k| (k * (cases - 1) + gaps / 2) / gaps).collect()
     }
 
-    /// Indicators of the scenario as it is, by case and indicator.
-    pub(super) fn original(&self) -> &[Vec<f64>] {
-        &self.result.enhancement_alone.original
-    }
-
     /// Mean error (Eq. 7) of another enhancement.
     pub(super) fn error(&self, enhancement: &Enhancement) -> Result<f64, HybridError> {
         let predicted = self.result.simulated().predict(self.measured().indicators(), enhancement)?;
-        let errors =
-            predicted.iter().enumerate().map(|(case, values)| self.measured().case_error(case, values));
-        Ok(errors.sum::<f64>() / predicted.len() as f64)
-    }
-
-    /// Whether an error takes transforms of all signals, and not only their moments.
-    pub(super) fn errors_are_costly(&self) -> bool {
-        self.measured().indicators().iter().any(|indicator| indicator.is_of_envelope())
+        Ok(self.measured().mean_error(&predicted))
     }
 }
 

@@ -1,4 +1,4 @@
-//! Difference signals of the cases, as simulated and enhanced.
+//! Difference signals of the cases, original and enhanced.
 
 use super::data::Data;
 use super::symbols::{ENHANCED_CURVE, ORIGINAL_CURVE};
@@ -8,7 +8,7 @@ use crate::style::{Anchor, Stroke, TextStyle};
 use crate::ticks::Ticks;
 
 pub(super) const HEADING: &str = "Difference signals over one gear revolution, each on its own scale";
-const TITLES: [&str; 2] = ["As simulated", "Enhanced, one draw of the noise"];
+const TITLES: [&str; 2] = ["Original simulation", "Enhanced, one draw of the noise"];
 const UNIT: &str = "(healthy rms)";
 const ANGLE: &str = "Gear angle from the middle of the fault’s response (rev)";
 /// (px) Numbers left of each plot, and the gap right of it.
@@ -18,7 +18,7 @@ const MARGIN: f64 = 1.08;
 /// The case's number, where the columns are not those of the indicators.
 const NUMBER: TextStyle = TextStyle::TICK.anchored(Anchor::Start).with_halo();
 
-/// Draws the signals as simulated in the first area and enhanced in the second.
+/// Draws the original signals in the first area and enhanced in the second.
 pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], data: &Data) {
     let shown = data.shown_cases();
     let rows = [(&data.original_signals, ORIGINAL_CURVE), (&data.enhanced_signals, ENHANCED_CURVE)];

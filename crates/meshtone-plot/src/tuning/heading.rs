@@ -21,9 +21,10 @@ pub(super) fn draw(canvas: &mut Canvas, title: &str, data: &Data) {
         }
     };
     line(TITLE_BASELINE, title, TextStyle::TITLE);
-    let [parameters, errors] = [parameters(data), errors(data)].map(|facts| facts.join(BETWEEN));
-    line(FACTS_BASELINE, &parameters, TextStyle::FACTS);
-    line(FACTS_BASELINE + FACTS_PITCH, &errors, TextStyle::FACTS);
+    let rows = [parameters(data), keys(data), errors(data)].into_iter().filter(|facts| !facts.is_empty());
+    for (row, facts) in rows.enumerate() {
+        line(FACTS_BASELINE + FACTS_PITCH * row as f64, &facts.join(BETWEEN), TextStyle::FACTS);
+    }
 }
 
 /// The figure in a sentence, for readers who cannot see it.
@@ -32,7 +33,7 @@ pub(super) fn description(data: &Data) -> String {
         "Simulated difference signals tuned to measured ones, {} cases: indicators, errors, signals, and the error \
          around the optimum. {}. {}.",
         data.cases(),
-        parameters(data).join(", "),
+        [parameters(data), keys(data)].concat().join(", "),
         errors(data).join(", ")
     )
 }
@@ -54,21 +55,23 @@ fn parameters(data: &Data) -> Vec<String> {
     if let Some(last) = facts.last_mut() {
         last.push_str(", in brackets the 95 % intervals");
     }
-    if let Some(keys) = &data.result.with_keys {
-        let values = data.experiment.keys.iter().zip(&keys.values);
-        facts.extend(values.map(|(key, &value)| format!("{} = {}", key.key, number(value))));
-    }
     facts
 }
 
+/// Numbers of the scenario that were tuned as well.
+fn keys(data: &Data) -> Vec<String> {
+    let Some(keys) = &data.result.with_keys else { return Vec::new() };
+    let values = data.experiment.keys.iter().zip(&keys.values);
+    values.map(|(key, &value)| format!("{} = {}", key.key, number(value))).collect()
+}
+
 fn errors(data: &Data) -> Vec<String> {
-    let original = data.result.enhancement_alone.original_error;
-    let Tuning { enhanced_error, scatter, .. } = data.tuning;
+    let Tuning { original_error, enhanced_error, scatter, .. } = data.tuning;
     vec![
-        format!("mean error as simulated {} σ", short(original)),
+        format!("mean error of the original simulation {} σ", short(*original_error)),
         format!("enhanced {} σ", short(*enhanced_error)),
         format!("of cases left out of the fit {} σ", short(data.tuning.mean_leave_one_out_error())),
-        format!("scatter of the records, the floor {} σ", short(*scatter)),
+        format!("the measurements’ own scatter {} σ", short(*scatter)),
         "σ: standard deviation of all measured records of an indicator".to_owned(),
     ]
 }

@@ -1,7 +1,7 @@
 //! An experiment of the hybrid stage on one page.
 //!
 //! On the left, above each other and with the cases as their common horizontal axis, the indicators, the error of each
-//! case, and the difference signals as simulated and enhanced; on the right the error around the optimum. The indicators
+//! case, and the difference signals of the original simulation and enhanced; on the right the error around the optimum. The indicators
 //! are drawn as in Figure 6 of arXiv:2410.05073.
 
 mod cases;
@@ -32,7 +32,7 @@ const NAME_LEFT: f64 = 48.0;
 /// (px) Left edge of title and facts.
 const TEXT_LEFT: f64 = 15.0;
 
-const HEADING_BASELINE: f64 = 118.0;
+const HEADING_BASELINE: f64 = 125.0;
 /// (px) From a heading's baseline to the frame of the first plot below it, which has a title.
 const BELOW_HEADING: f64 = 38.0;
 /// (px) Lower edge of the lowest plots.

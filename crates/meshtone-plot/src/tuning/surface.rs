@@ -24,9 +24,8 @@ const LEAST_BASE: f64 = 0.005;
 const AROUND: f64 = 4.0;
 /// How far beyond the interval the range goes.
 const BEYOND: f64 = 1.25;
-/// Places at which the error is computed, along each axis; where that takes transforms, fewer.
+/// Places at which the error is computed, along each axis.
 const NODES: usize = 72;
-const FEW_NODES: usize = 14;
 /// (px) Between them the error is interpolated for squares of this size.
 const CELL: f64 = 1.0;
 /// (px) So much squares overlap, lest lines show between them.
@@ -76,19 +75,17 @@ fn range(best: f64, interval: [f64; 2], bounds: [f64; 2]) -> [f64; 2] {
 
 /// Errors at equal distances of both logarithms.
 struct Grid {
-    nodes: usize,
     errors: Vec<f64>,
 }
 
 impl Grid {
     fn new(data: &Data, axes: &Axes) -> Result<Self, HybridError> {
-        let nodes = if data.errors_are_costly() { FEW_NODES } else { NODES };
         let at = |[low, high]: [f64; 2], k: usize| {
-            10f64.powf(low + (high - low) * k as f64 / (nodes as f64 - 1.0))
+            10f64.powf(low + (high - low) * k as f64 / (NODES as f64 - 1.0))
         };
-        let mut errors = Vec::with_capacity(nodes * nodes);
-        for row in 0..nodes {
-            for column in 0..nodes {
+        let mut errors = Vec::with_capacity(NODES * NODES);
+        for row in 0..NODES {
+            for column in 0..NODES {
                 errors.push(data.error(&Enhancement {
                     fault_to_harmonics_ratio: at(axes.x, column),
                     noise_level: at(axes.y, row),
@@ -96,7 +93,7 @@ impl Grid {
                 })?);
             }
         }
-        Ok(Self { nodes, errors })
+        Ok(Self { errors })
     }
 
     /// Between the nodes.
@@ -104,14 +101,14 @@ impl Grid {
     /// # Arguments
     /// * `x`, `y` - places from 0 to 1
     fn at(&self, x: f64, y: f64) -> f64 {
-        let last = self.nodes - 2;
+        let last = NODES - 2;
         let split = |place: f64| {
-            let scaled = place * (self.nodes as f64 - 1.0);
+            let scaled = place * (NODES as f64 - 1.0);
             let below = (scaled as usize).min(last);
             (below, scaled - below as f64)
         };
         let ((column, dx), (row, dy)) = (split(x), split(y));
-        let node = |row: usize, column: usize| self.errors[row * self.nodes + column];
+        let node = |row: usize, column: usize| self.errors[row * NODES + column];
         let along = |row: usize| node(row, column) * (1.0 - dx) + node(row, column + 1) * dx;
         along(row) * (1.0 - dy) + along(row + 1) * dy
     }

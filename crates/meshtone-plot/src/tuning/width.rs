@@ -1,5 +1,7 @@
 //! The error against the width ratio.
 
+use std::sync::atomic::AtomicBool;
+
 use meshtone::hybrid::{Enhancement, EnhancementBounds, HybridError, fit};
 
 use super::data::Data;
@@ -11,7 +13,6 @@ use crate::style::{Fill, Stroke, colour};
 use crate::ticks::Ticks;
 
 const PLACES: usize = 160;
-const FEW_PLACES: usize = 30;
 /// Width ratios at which the other parameters are searched anew.
 const FITS: usize = 33;
 const MARGIN: f64 = 0.06;
@@ -27,18 +28,13 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, data: &Data) -> Result<(), H
     let best = data.tuning.enhancement.width_ratio;
     let [low, high] = bounds.width_ratio;
     let x = if low < high { [low.log10(), high.log10()] } else { [best / 2.0, best * 2.0].map(f64::log10) };
-    let held = curve(x, if data.errors_are_costly() { FEW_PLACES } else { PLACES }, |width_ratio| {
-        data.error(&Enhancement { width_ratio, ..data.tuning.enhancement })
+    let held =
+        curve(x, PLACES, |width_ratio| data.error(&Enhancement { width_ratio, ..data.tuning.enhancement }))?;
+    let never = AtomicBool::new(false);
+    let adjusted = curve(x, FITS, |width_ratio| {
+        let bounds = EnhancementBounds { width_ratio: [width_ratio; 2], ..*bounds };
+        Ok(fit(data.result.simulated(), data.measured(), &bounds, None, &never)?.error)
     })?;
-    // Where an error takes transforms, searches at many places take minutes.
-    let adjusted = if data.errors_are_costly() {
-        Vec::new()
-    } else {
-        curve(x, FITS, |width_ratio| {
-            let bounds = EnhancementBounds { width_ratio: [width_ratio; 2], ..*bounds };
-            Ok(fit(data.result.simulated(), data.measured(), &bounds, None)?.error)
-        })?
-    };
     let errors = held.iter().chain(&adjusted).map(|(_, error)| *error);
     let [_, most] = axes::range(errors.chain([data.tuning.scatter]), MARGIN);
     let axes = Axes::new(area, x, [0.0, most]);
@@ -56,7 +52,7 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, data: &Data) -> Result<(), H
     let chosen = axes.at(best.log10().clamp(x[0], x[1]), data.tuning.enhanced_error);
     ENHANCED_MARKER.draw(canvas, chosen);
     axes.frame(canvas);
-    key(canvas, area, !adjusted.is_empty());
+    key(canvas, area);
     Ok(())
 }
 
@@ -74,18 +70,17 @@ fn curve(
         .collect()
 }
 
-fn key(canvas: &mut Canvas, area: Area, adjusted: bool) {
+fn key(canvas: &mut Canvas, area: Area) {
     let title = (area.left, area.top - axes::TITLE_ABOVE - 2.0 * LEGEND_ROW);
     canvas.text(title, "Mean error against the width ratio", crate::style::TextStyle::AXES_TITLE);
-    let entry = |(sample, text)| Entry { sample, text };
-    let mut curves = vec![(Sample::Marked(HELD, ENHANCED_MARKER), "α and ν as chosen")];
-    if adjusted {
-        curves.push((Sample::Line(ADJUSTED), "α and ν adjusted"));
-    }
-    let limits = [(Sample::Area(INTERVAL), "95 % interval"), (Sample::Line(FLOOR), "scatter of the records")];
-    for (row, entries) in [curves, limits.to_vec()].into_iter().enumerate() {
+    let curves = [
+        (Sample::Marked(HELD, ENHANCED_MARKER), "α and ν as chosen"),
+        (Sample::Line(ADJUSTED), "α and ν adjusted"),
+    ];
+    let limits =
+        [(Sample::Area(INTERVAL), "95 % interval"), (Sample::Line(FLOOR), "measurements’ own scatter")];
+    for (row, entries) in [curves, limits].into_iter().enumerate() {
         let baseline = area.top - axes::TITLE_ABOVE - LEGEND_ROW * (1.0 - row as f64);
-        let entries: Vec<Entry> = entries.into_iter().map(entry).collect();
-        legend::row(canvas, (area.right(), baseline), &entries);
+        legend::row(canvas, (area.right(), baseline), &entries.map(|(sample, text)| Entry { sample, text }));
     }
 }

@@ -89,6 +89,12 @@ impl System {
         self.modes.angular_frequencies.map(|omega| omega / (2.0 * PI))
     }
 
+    /// Mode shapes of the mean system in the 13 coordinates, a column each, of unit modal mass; in the order of
+    /// [`Self::natural_frequencies_hz`].
+    pub fn mode_shapes(&self) -> CoordinateMatrix {
+        self.directions.turn * self.modes.shapes
+    }
+
     /// (N/m, N/rad, N m/rad) Stiffness matrix at coarse point `point` of the cycle.
     pub fn stiffness_matrix_at(&self, point: usize) -> CoordinateMatrix {
         self.turn_back(&(self.constant_stiffness + in_turned(&self.directions, &self.mesh.stiffness(point))))

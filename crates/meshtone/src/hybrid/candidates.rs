@@ -34,7 +34,7 @@ pub(super) fn place(
     seed: u64,
     index: usize,
     round: usize,
-    best: &[&Vec<f64>],
+    best: &[Vec<f64>],
 ) -> Vec<f64> {
     let mut draws = Draws::new(seed, Purpose::Candidate, index as u64);
     let parent = best.get(index % PARENTS.min(best.len()).max(1));

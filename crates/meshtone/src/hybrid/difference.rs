@@ -2,8 +2,8 @@
 
 use super::HybridError;
 use crate::batch::{ChannelKind, Control, Keep, simulate_many};
-use crate::scenario::Scenario;
-use crate::signal::{Record, SeparationSettings};
+use crate::scenario::{Convention, Scenario};
+use crate::signal::{AngularSettings, ChainSettings, Interpolation, Record, SeparationSettings};
 use crate::simulate::Stages;
 use crate::solver::{Block, Output, Recorder};
 
@@ -14,7 +14,8 @@ pub struct DifferenceChain {
     pub channel: ChannelKind,
     /// (S/s) The rig's sampling rate, to which the simulated signal is brought first; at most the simulation's.
     pub sampling_rate_hz: f64,
-    /// Sidebands and shaft orders that are taken away; by default as the paper has them.
+    /// Sidebands and shaft orders that are taken away; by default as the paper has them. The mesh order is always that of the
+    /// gear that is simulated, whatever `teeth` says.
     pub separation: Option<SeparationSettings>,
 }
 
@@ -25,6 +26,19 @@ impl DifferenceChain {
     /// * `sampling_rate_hz` - (S/s)
     pub fn new(sampling_rate_hz: f64) -> Self {
         Self { channel: ChannelKind::Vertical, sampling_rate_hz, separation: None }
+    }
+
+    /// How signals, simulated or measured, are read at equal angles: under `published` by PCHIP as in the paper, which flattens a
+    /// burst the more the farther its peaks lie from a point; under `corrected` band-limited.
+    ///
+    /// # Arguments
+    /// * `convention` - of the scenario
+    pub fn angular_settings(convention: Convention) -> AngularSettings {
+        let interpolation = match convention {
+            Convention::Published => Interpolation::Pchip,
+            Convention::Corrected => Interpolation::BandLimited,
+        };
+        AngularSettings { interpolation, ..AngularSettings::default() }
     }
 
     /// The gear's average, its difference signal and indicators.
@@ -43,7 +57,11 @@ impl DifferenceChain {
         pinion_speed_hz: &[f64],
     ) -> Result<Record, HybridError> {
         let rate_hz = self.sampling_rate_hz.min(stages.time.sampling_rate_hz);
-        Ok(crate::trace::gear_record(stages, signal, pinion_speed_hz, rate_hz, self.separation.clone())?)
+        let teeth = stages.scenario.gears.gear_teeth as usize;
+        let separation = self.separation.clone().map(|settings| SeparationSettings { teeth, ..settings });
+        let angular = Self::angular_settings(stages.scenario.convention);
+        let settings = ChainSettings { angular, separation };
+        Ok(crate::trace::gear_record(stages, signal, pinion_speed_hz, rate_hz, settings)?)
     }
 }
 

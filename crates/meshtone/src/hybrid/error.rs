@@ -121,6 +121,14 @@ pub enum HybridError {
         /// The key.
         key: String,
     },
+    /// No candidates, or too many.
+    #[error("{candidates} candidates; must be a whole number from 1 to {most}")]
+    Candidates {
+        /// How many.
+        candidates: usize,
+        /// How many are allowed.
+        most: usize,
+    },
     /// None of the combinations of the keys' values could be simulated.
     #[error("none of the tried values of the keys can be simulated; the first failure was: {first_failure}")]
     NoCandidate {

@@ -3,6 +3,11 @@
 use super::{DifferenceChain, EnhancementBounds, HybridError, Measurements};
 use crate::scenario::{Fault, Scenario};
 
+/// Most combinations of the keys' values that an experiment may try: days of simulations.
+pub const MOST_CANDIDATES: usize = 100_000;
+/// Combinations of the other keys' values with which a value is tried that is refused alone.
+const MOST_COMBINATIONS: usize = 243;
+
 /// One state of the rig.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {
@@ -28,6 +33,24 @@ pub enum KeyRange {
     },
     /// One of some values, such as seeds.
     OneOf(Vec<f64>),
+}
+
+impl KeyRange {
+    /// Values that stand for all: the ends, and between them one that is no round number, since whole numbers are to be listed.
+    fn some_values(&self) -> Vec<f64> {
+        match self {
+            Self::Between { least, largest, .. } => vec![*least, *largest, least + 0.437 * (largest - least)],
+            Self::OneOf(values) => values.clone(),
+        }
+    }
+
+    fn ends_and_middle(&self) -> Vec<f64> {
+        let values = self.some_values();
+        match self {
+            Self::Between { .. } => values,
+            Self::OneOf(_) => vec![values[0], values[values.len() - 1], values[values.len() / 2]],
+        }
+    }
 }
 
 /// A number of the scenario that is tuned beside the enhancement.
@@ -95,7 +118,7 @@ impl Experiment {
     ///
     /// # Errors
     /// Fewer than two cases; a first case that has a fault, or another that has none; other cases than were
-    /// measured; bounds or ranges that hold nothing; a key that no case has.
+    /// measured; bounds that hold nothing; no candidates or more than [`MOST_CANDIDATES`]; as of [`Self::check_key`].
     pub fn check(&self) -> Result<(), HybridError> {
         let (simulated, measured) = (self.cases.len(), self.measured.cases());
         if simulated < 2 || simulated != measured {
@@ -107,41 +130,67 @@ impl Experiment {
             }
         }
         self.bounds.check()?;
-        for (number, key) in self.keys.iter().enumerate() {
-            key.check()?;
-            if self.keys[..number].iter().any(|other| other.key == key.key) {
-                return Err(HybridError::KeyTwice { key: key.key.clone() });
-            }
-            self.check_effect(key)?;
+        if !self.keys.is_empty() && !(1..=MOST_CANDIDATES).contains(&self.candidates) {
+            return Err(HybridError::Candidates { candidates: self.candidates, most: MOST_CANDIDATES });
         }
-        Ok(())
+        (0..self.keys.len()).try_for_each(|number| self.check_key(number))
     }
 
-    /// Refuses a key that no case has, values that a scenario refuses, and a key that the convention ignores.
-    fn check_effect(&self, key: &TunedKey) -> Result<(), HybridError> {
-        let values = match &key.range {
-            // The middle, too: whole numbers have none, and are to be listed.
-            KeyRange::Between { least, largest, .. } => {
-                vec![*least, *largest, least + 0.437 * (largest - least)]
-            }
-            KeyRange::OneOf(values) => values.clone(),
-        };
-        let (mut known, mut honoured) = (false, false);
+    /// Refuses a tuned key that cannot be tuned.
+    ///
+    /// # Arguments
+    /// * `number` - of the key
+    ///
+    /// # Errors
+    /// A range that holds nothing; a key that an earlier one is; a key that no case has, or that the convention ignores; a value
+    /// that no scenario of this experiment can have, whatever the other keys' values.
+    pub fn check_key(&self, number: usize) -> Result<(), HybridError> {
+        let key = &self.keys[number];
+        key.check()?;
+        if self.keys[..number].iter().any(|other| other.key == key.key) {
+            return Err(HybridError::KeyTwice { key: key.key.clone() });
+        }
+        let values = key.range.some_values();
+        let (mut known, mut honoured) = (false, values.iter().all(|value| *value == values[0]));
         for case in &self.cases {
             let scenario = self.scenario(case);
-            let Some(number) = scenario.number(&key.key) else { continue };
+            let Some(before) = scenario.number(&key.key) else { continue };
             known = true;
             for &value in &values {
-                let changed = scenario.with_number(&key.key, value)?;
-                honoured |= value != number && changed.as_honoured() != scenario.as_honoured();
+                match scenario.with_number(&key.key, value) {
+                    Ok(changed) => {
+                        honoured |= value != before && changed.as_honoured() != scenario.as_honoured();
+                    }
+                    Err(_) if self.allows_together(&scenario, number, value) => honoured = true,
+                    Err(error) => return Err(error.into()),
+                }
             }
         }
-        let distinct = values.iter().any(|value| *value != values[0]);
-        match (known, honoured || !distinct) {
+        match (known, honoured) {
             (false, _) => Err(HybridError::NoSuchKey { key: key.key.clone() }),
             (true, false) => Err(HybridError::IgnoredKey { key: key.key.clone() }),
             (true, true) => Ok(()),
         }
+    }
+
+    /// Whether a value that the scenario refuses is allowed together with values of the other keys.
+    fn allows_together(&self, scenario: &Scenario, number: usize, value: f64) -> bool {
+        let others: Vec<(&str, Vec<f64>)> = self
+            .keys
+            .iter()
+            .enumerate()
+            .filter(|(other, key)| *other != number && scenario.number(&key.key).is_some())
+            .map(|(_, key)| (key.key.as_str(), key.range.ends_and_middle()))
+            .collect();
+        let combinations: usize = others.iter().map(|(_, values)| values.len()).product();
+        (0..combinations.min(MOST_COMBINATIONS)).any(|mut combination| {
+            let mut numbers = vec![(self.keys[number].key.as_str(), value)];
+            for (key, values) in &others {
+                numbers.push((*key, values[combination % values.len()]));
+                combination /= values.len();
+            }
+            scenario.with_numbers(&numbers).is_ok()
+        })
     }
 
     /// The scenario of a case.
@@ -152,7 +201,7 @@ impl Experiment {
         Scenario { fault: case.fault.clone(), ..self.base.clone() }
     }
 
-    /// The scenario of a case with other numbers at the tuned keys.
+    /// The scenario of a case with other numbers at the tuned keys, all set before anything is checked.
     ///
     /// # Arguments
     /// * `case` - of this experiment
@@ -161,13 +210,9 @@ impl Experiment {
     /// # Errors
     /// A value that is not allowed in a scenario.
     pub fn scenario_with(&self, case: &Case, values: &[f64]) -> Result<Scenario, HybridError> {
-        let mut scenario = self.scenario(case);
-        for (key, &value) in self.keys.iter().zip(values) {
-            // A fault's key that another fault has not.
-            if scenario.number(&key.key).is_some() {
-                scenario = scenario.with_number(&key.key, value)?;
-            }
-        }
-        Ok(scenario)
+        let scenario = self.scenario(case);
+        let numbers: Vec<(&str, f64)> =
+            self.keys.iter().zip(values).map(|(key, &value)| (key.key.as_str(), value)).collect();
+        Ok(scenario.with_known_numbers(&numbers)?)
     }
 }

@@ -68,7 +68,7 @@ impl TuningIndicator {
         !matches!(self, Self::Skewness | Self::EnvelopeSkewness)
     }
 
-    /// Whether it is of the envelope: its distribution under noise has no closed form.
+    /// Whether it is of the envelope.
     pub fn is_of_envelope(self) -> bool {
         matches!(self, Self::EnvelopeRms | Self::EnvelopeKurtosis | Self::EnvelopeSkewness)
     }
@@ -90,16 +90,15 @@ impl TuningIndicator {
         value.ok_or(HybridError::Constant { indicator: self.name() })
     }
 
-    /// The indicator by a signal's moments, before the logarithm; those of the envelope have none.
+    /// The indicator by moments, before the logarithm.
     ///
     /// # Arguments
-    /// * `moments` - of the difference signal
-    pub fn of_moments(self, moments: Moments) -> Option<f64> {
+    /// * `moments` - of the difference signal; of its envelope where [`Self::is_of_envelope`]
+    pub fn of_moments(self, moments: Moments) -> f64 {
         match self {
-            Self::Rms => Some(moments.rms()),
-            Self::Kurtosis => Some(moments.kurtosis()),
-            Self::Skewness => Some(moments.skewness()),
-            _ => None,
+            Self::Rms | Self::EnvelopeRms => moments.rms(),
+            Self::Kurtosis | Self::EnvelopeKurtosis => moments.kurtosis(),
+            Self::Skewness | Self::EnvelopeSkewness => moments.skewness(),
         }
     }
 

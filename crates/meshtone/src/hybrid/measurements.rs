@@ -183,13 +183,27 @@ impl Measurements {
         sum / simulated.len() as f64
     }
 
-    /// The error of the measurements' own medians: no simulation can be better.
+    /// Mean error over the cases, each weighing the same.
+    ///
+    /// # Arguments
+    /// * `simulated` - CI_sim by case and indicator
+    pub fn mean_error(&self, simulated: &[Vec<f64>]) -> f64 {
+        let errors = simulated.iter().enumerate().map(|(case, values)| self.case_error(case, values));
+        errors.sum::<f64>() / simulated.len() as f64
+    }
+
+    /// The measurements' own scatter: the mean error of their medians. No simulation can be better.
     pub fn scatter(&self) -> f64 {
-        let of_case = |case| {
-            let medians: Vec<f64> = (0..self.indicators.len()).map(|j| self.median(case, j)).collect();
-            self.case_error(case, &medians)
-        };
-        (0..self.cases()).map(of_case).sum::<f64>() / self.cases() as f64
+        (0..self.cases()).map(|case| self.case_scatter(case)).sum::<f64>() / self.cases() as f64
+    }
+
+    /// The same of one case.
+    ///
+    /// # Arguments
+    /// * `case` - its number
+    pub fn case_scatter(&self, case: usize) -> f64 {
+        let medians: Vec<f64> = (0..self.indicators.len()).map(|j| self.median(case, j)).collect();
+        self.case_error(case, &medians)
     }
 
     /// One bootstrap sample: cases drawn again with replacement, and records within each. σ̂ stays.

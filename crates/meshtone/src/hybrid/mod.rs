@@ -14,20 +14,24 @@
 
 mod candidates;
 mod difference;
+mod envelopes;
 mod error;
 mod experiment;
 mod indicator;
+mod key_search;
 mod measurements;
 mod modify;
 mod moments;
+mod rice;
 mod run;
 mod search;
 mod simulated;
+mod simulations;
 mod tune;
 
 pub use difference::{DifferenceChain, difference_signals};
 pub use error::HybridError;
-pub use experiment::{Case, Experiment, KeyRange, TunedKey};
+pub use experiment::{Case, Experiment, KeyRange, MOST_CANDIDATES, TunedKey};
 pub use indicator::TuningIndicator;
 pub use measurements::Measurements;
 pub use modify::{Enhanced, Enhancement, add_noise, change_duration, change_fault_to_harmonics_ratio};

@@ -34,9 +34,7 @@ use crate::signal::{Edge, interpolate_band_limited, rms};
 /// ```
 pub fn change_duration(signal: &[f64], width_ratio: f64, centre_rev: f64) -> Result<Vec<f64>, HybridError> {
     check_cycle("signal", signal)?;
-    if !(width_ratio > 0.0 && width_ratio.is_finite()) {
-        return Err(HybridError::parameter("width_ratio", width_ratio, "above 0"));
-    }
+    check_width_ratio(width_ratio)?;
     if !centre_rev.is_finite() {
         return Err(HybridError::parameter("centre_rev", centre_rev, "a finite number"));
     }
@@ -88,10 +86,8 @@ pub fn change_fault_to_harmonics_ratio(
     if signal.len() != healthy.len() {
         return Err(HybridError::LengthMismatch { signal: signal.len(), healthy: healthy.len() });
     }
+    check_ratio(fault_to_harmonics_ratio)?;
     let alpha = fault_to_harmonics_ratio;
-    if !alpha.is_finite() {
-        return Err(HybridError::parameter("fault_to_harmonics_ratio", alpha, "a finite number"));
-    }
     Ok(signal.iter().zip(healthy).map(|(x, h)| alpha * x + (1.0 - alpha) * h).collect())
 }
 
@@ -126,11 +122,8 @@ pub fn add_noise(
     draw: u64,
 ) -> Result<Vec<f64>, HybridError> {
     check_cycle("signal", signal)?;
-    for (name, value) in [("noise_level", noise_level), ("healthy_rms", healthy_rms)] {
-        if !(value >= 0.0 && value.is_finite()) {
-            return Err(HybridError::parameter(name, value, "0 or more"));
-        }
-    }
+    check_not_negative("noise_level", noise_level)?;
+    check_not_negative("healthy_rms", healthy_rms)?;
     let deviation = noise_level * healthy_rms;
     let mut draws = Draws::new(seed, Purpose::EnhancementNoise, draw);
     Ok(signal.iter().map(|x| x + deviation * draws.normal()).collect())
@@ -155,6 +148,13 @@ impl Default for Enhancement {
 }
 
 impl Enhancement {
+    /// Refuses parameters that no signal can be modified by.
+    pub(super) fn check(&self) -> Result<(), HybridError> {
+        check_width_ratio(self.width_ratio)?;
+        check_ratio(self.fault_to_harmonics_ratio)?;
+        check_not_negative("noise_level", self.noise_level)
+    }
+
     /// Modifies a difference signal: duration, then fault-to-harmonics ratio.
     ///
     /// # Arguments
@@ -210,4 +210,25 @@ pub(super) fn check_cycle(what: &'static str, values: &[f64]) -> Result<(), Hybr
         Some(index) => Err(HybridError::NotANumber { what, index }),
         None => Ok(()),
     }
+}
+
+fn check_width_ratio(value: f64) -> Result<(), HybridError> {
+    if value > 0.0 && value.is_finite() {
+        return Ok(());
+    }
+    Err(HybridError::parameter("width_ratio", value, "above 0"))
+}
+
+fn check_ratio(value: f64) -> Result<(), HybridError> {
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(HybridError::parameter("fault_to_harmonics_ratio", value, "a finite number"))
+}
+
+fn check_not_negative(name: &str, value: f64) -> Result<(), HybridError> {
+    if value >= 0.0 && value.is_finite() {
+        return Ok(());
+    }
+    Err(HybridError::parameter(name, value, "0 or more"))
 }

@@ -18,6 +18,38 @@ pub struct WindowMoments {
     points: usize,
 }
 
+/// Part of a cycle that becomes the cycle.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Window {
+    from: f64,
+    to: f64,
+    /// Length of what it becomes, in values of the cycle: the zeros of the padding count.
+    pub(super) count: f64,
+}
+
+impl Window {
+    /// # Arguments
+    /// * `points` - of the cycle
+    /// * `width_ratio` - (-) as of [`super::change_duration`]
+    pub(super) fn new(points: usize, width_ratio: f64) -> Self {
+        let points = points as f64;
+        let half = 0.5 * width_ratio.min(1.0) * points;
+        Self { from: 0.5 * points - half, to: 0.5 * points + half, count: width_ratio * points }
+    }
+
+    /// The values of the cycle that lie in it, with the part that each counts by.
+    pub(super) fn values<T>(self, cycle: &[T]) -> impl Iterator<Item = (f64, &T)> {
+        let (first, end) = (self.from as usize, (self.to.ceil() as usize).min(cycle.len()));
+        let part = move |place: f64| self.to.min(place + 1.0) - self.from.max(place);
+        cycle[first..end].iter().enumerate().map(move |(n, value)| (part((first + n) as f64), value))
+    }
+
+    /// How many zeros of the padding it holds.
+    pub(super) fn padding(self) -> f64 {
+        self.count - (self.to - self.from)
+    }
+}
+
 /// Joint moments `E[dⁱ hʲ]` over one window, by `[i][j]`.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct JointMoments(pub [[f64; POWERS]; POWERS]);
@@ -78,10 +110,7 @@ impl WindowMoments {
     /// # Arguments
     /// * `width_ratio` - (-) as of [`super::change_duration`]; above 1 the zeros of the padding count
     pub fn at_width(&self, width_ratio: f64) -> JointMoments {
-        let points = self.points as f64;
-        let half = 0.5 * width_ratio.min(1.0) * points;
-        let (from, to) = (0.5 * points - half, 0.5 * points + half);
-        let count = width_ratio * points;
+        let Window { from, to, count } = Window::new(self.points, width_ratio);
         let mut moments = JointMoments::default();
         for i in 0..POWERS {
             for j in 0..POWERS - i {
@@ -118,12 +147,7 @@ impl JointMoments {
             + 6.0 * a * a * b * b * m[2][2]
             + 4.0 * a * b.powi(3) * m[1][3]
             + b.powi(4) * m[0][4];
-        Moments {
-            mean: first,
-            second: second - first * first,
-            third: third - 3.0 * first * second + 2.0 * first.powi(3),
-            fourth: fourth - 4.0 * first * third + 6.0 * first * first * second - 3.0 * first.powi(4),
-        }
+        Moments::from_raw([first, second, third, fourth])
     }
 
     /// Mean square of the healthy signal.
@@ -133,6 +157,16 @@ impl JointMoments {
 }
 
 impl Moments {
+    /// From the means of the first four powers.
+    pub(super) fn from_raw([first, second, third, fourth]: [f64; 4]) -> Self {
+        Self {
+            mean: first,
+            second: second - first * first,
+            third: third - 3.0 * first * second + 2.0 * first.powi(3),
+            fourth: fourth - 4.0 * first * third + 6.0 * first * first * second - 3.0 * first.powi(4),
+        }
+    }
+
     /// With Gaussian noise added.
     ///
     /// # Arguments

@@ -1,15 +1,17 @@
 //! The enhancement that fits best: a grid, then a local refinement.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use argmin::core::{CostFunction, Error, Executor, State};
 use argmin::solver::neldermead::NelderMead;
 
-use super::simulated::closed_form;
+use super::simulated::AtWidth;
 use super::{Enhancement, HybridError, Measurements, SimulatedCases};
 
 /// Points of the global grid, by parameter.
 const GRID: [usize; 3] = [24, 16, 16];
-/// Likewise where every point costs the envelopes of all signals.
-const COARSE_GRID: [usize; 3] = [10, 7, 7];
+/// Likewise where every point costs a pass over all envelopes.
+const COARSE_GRID: [usize; 3] = [12, 8, 8];
 /// Starts of the refinement: this many of the grid's best points.
 const STARTS: usize = 3;
 const MOST_ITERATIONS: u64 = 120;
@@ -60,7 +62,7 @@ impl EnhancementBounds {
         Ok(())
     }
 
-    fn logarithms(&self) -> [[f64; 2]; 3] {
+    pub(super) fn logarithms(&self) -> [[f64; 2]; 3] {
         self.all().map(|(_, range)| range.map(f64::ln))
     }
 }
@@ -93,6 +95,8 @@ pub(super) struct Objective<'a> {
     pub(super) measured: &'a Measurements,
     /// Weights of the cases.
     pub(super) weights: &'a [f64],
+    /// Set by the caller to stop.
+    pub(super) cancelled: &'a AtomicBool,
 }
 
 /// Every case weighs the same, but for one that is left out.
@@ -102,66 +106,113 @@ pub(super) fn equal_weights(cases: usize, left_out: Option<usize>) -> Vec<f64> {
 
 impl Objective<'_> {
     pub(super) fn at(&self, point: Point) -> Result<f64, HybridError> {
+        stop_where(self.cancelled)?;
         let enhancement = enhancement(point);
-        if self.has_closed_form() {
-            let windows = self.simulated.at_width(enhancement.width_ratio);
-            return Ok(self.mean(|case| {
-                let value = |j| closed_form(self.measured.indicators()[j], &windows, case, &enhancement);
-                self.case(case, |j| value(j).unwrap_or(f64::NAN))
-            }));
+        let at_width = self.simulated.at_width(self.measured.indicators(), enhancement.width_ratio);
+        Ok(weighted_mean(self.weights, |case| case_error(self.measured, &at_width, case, &enhancement)))
+    }
+}
+
+fn stop_where(cancelled: &AtomicBool) -> Result<(), HybridError> {
+    if cancelled.load(Ordering::Relaxed) { Err(HybridError::Cancelled) } else { Ok(()) }
+}
+
+/// Expected error of a case, the mean over the indicators.
+fn case_error(measured: &Measurements, at_width: &AtWidth, case: usize, enhancement: &Enhancement) -> f64 {
+    let mut sum = 0.0;
+    at_width.indicators(case, enhancement, |j, value| sum += measured.error(case, j, value));
+    sum / measured.indicators().len() as f64
+}
+
+fn weighted_mean(weights: &[f64], of_case: impl Fn(usize) -> f64) -> f64 {
+    let counting = || weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0);
+    let sum: f64 = counting().map(|(case, weight)| weight * of_case(case)).sum();
+    sum / counting().map(|(_, weight)| weight).sum::<f64>()
+}
+
+/// Errors of all cases over a grid of the parameters: whichever case is left out, they are the same.
+pub(super) struct Grid<'a> {
+    simulated: &'a SimulatedCases,
+    measured: &'a Measurements,
+    bounds: &'a EnhancementBounds,
+    cancelled: &'a AtomicBool,
+    points: Vec<Point>,
+    /// By point and case.
+    errors: Vec<f64>,
+}
+
+impl<'a> Grid<'a> {
+    pub(super) fn new(
+        simulated: &'a SimulatedCases,
+        measured: &'a Measurements,
+        bounds: &'a EnhancementBounds,
+        cancelled: &'a AtomicBool,
+    ) -> Result<Self, HybridError> {
+        bounds.check()?;
+        let cases = simulated.differences().len();
+        if cases != measured.cases() {
+            return Err(HybridError::Cases { simulated: cases, measured: measured.cases() });
         }
-        let predicted = self.simulated.predict(self.measured.indicators(), &enhancement)?;
-        Ok(self.mean(|case| self.case(case, |j| predicted[case][j])))
-    }
-
-    fn has_closed_form(&self) -> bool {
-        self.measured.indicators().iter().all(|indicator| !indicator.is_of_envelope())
-    }
-
-    fn mean(&self, of_case: impl Fn(usize) -> f64) -> f64 {
-        let counting = || self.weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0);
-        let sum: f64 = counting().map(|(case, weight)| weight * of_case(case)).sum();
-        sum / counting().map(|(_, weight)| weight).sum::<f64>()
-    }
-
-    fn case(&self, case: usize, value: impl Fn(usize) -> f64) -> f64 {
-        let indicators = self.measured.indicators().len();
-        (0..indicators).map(|j| self.measured.error(case, j, value(j))).sum::<f64>() / indicators as f64
-    }
-
-    /// Errors over the grid, the best points first.
-    fn best_of_grid(&self, ranges: [[f64; 2]; 3], starts: usize) -> Result<Vec<(f64, Point)>, HybridError> {
-        let counts = if self.has_closed_form() { GRID } else { COARSE_GRID };
-        let at = |d: usize, k: usize| {
+        let costly = measured.indicators().iter().any(|indicator| indicator.is_of_envelope());
+        let counts = if costly { COARSE_GRID } else { GRID };
+        let ranges = bounds.logarithms();
+        // One place of a parameter that is held.
+        let places: [Vec<f64>; 3] = std::array::from_fn(|d| {
             let [from, to] = ranges[d];
-            from + (to - from) * (k as f64 + 0.5) / counts[d] as f64
-        };
-        let mut best: Vec<(f64, Point)> = Vec::new();
-        for i in 0..counts[0] {
-            let windows = self.simulated.at_width(at(0, i).exp());
-            for j in 0..counts[1] {
-                for k in 0..counts[2] {
-                    let point = [at(0, i), at(1, j), at(2, k)];
-                    let error = if self.has_closed_form() {
-                        let enhancement = enhancement(point);
-                        self.mean(|case| {
-                            self.case(case, |j| {
-                                let indicator = self.measured.indicators()[j];
-                                closed_form(indicator, &windows, case, &enhancement).unwrap_or(f64::NAN)
-                            })
-                        })
-                    } else {
-                        self.at(point)?
-                    };
-                    let place = best.partition_point(|(other, _)| *other <= error);
-                    if place < starts && !error.is_nan() {
-                        best.insert(place, (error, point));
-                        best.truncate(starts);
-                    }
+            let count = if to > from { counts[d] } else { 1 };
+            (0..count).map(|k| from + (to - from) * (k as f64 + 0.5) / count as f64).collect()
+        });
+        let (mut points, mut errors) = (Vec::new(), Vec::new());
+        for &width in &places[0] {
+            stop_where(cancelled)?;
+            let at_width = simulated.at_width(measured.indicators(), width.exp());
+            for &ratio in &places[1] {
+                for &noise in &places[2] {
+                    let point = [width, ratio, noise];
+                    let enhancement = enhancement(point);
+                    points.push(point);
+                    errors.extend((0..cases).map(|case| case_error(measured, &at_width, case, &enhancement)));
                 }
             }
         }
-        Ok(best)
+        Ok(Self { simulated, measured, bounds, cancelled, points, errors })
+    }
+
+    /// The best enhancement: refined from the grid's best points.
+    ///
+    /// # Arguments
+    /// * `left_out` - number of a case that does not count, if any
+    pub(super) fn fit(&self, left_out: Option<usize>) -> Result<Fit, HybridError> {
+        let weights = equal_weights(self.measured.cases(), left_out);
+        let Self { simulated, measured, cancelled, .. } = *self;
+        let objective = Objective { simulated, measured, weights: &weights, cancelled };
+        let ranges = self.bounds.logarithms();
+        let steps: [f64; 3] = std::array::from_fn(|d| (ranges[d][1] - ranges[d][0]) / GRID[d] as f64);
+        let mut best: Option<(f64, Point)> = None;
+        for (error, start) in self.best(&weights) {
+            let refined = refine(&objective, ranges, start, steps)?;
+            for found in [(error, start), refined] {
+                if best.is_none_or(|(least, _)| found.0 < least) {
+                    best = Some(found);
+                }
+            }
+        }
+        let (error, found) = best.ok_or(HybridError::NoFit)?;
+        Ok(Fit { enhancement: enhancement(found), error })
+    }
+
+    /// The points with the least mean errors.
+    fn best(&self, weights: &[f64]) -> Vec<(f64, Point)> {
+        let mut best: Vec<(f64, Point)> = Vec::new();
+        for (&point, errors) in self.points.iter().zip(self.errors.chunks_exact(weights.len())) {
+            let error = weighted_mean(weights, |case| errors[case]);
+            let place = best.partition_point(|(other, _)| *other <= error);
+            if place < STARTS && !error.is_nan() {
+                best.insert(place, (error, point));
+                best.truncate(STARTS);
+            }
+        }
+        best
     }
 }
 
@@ -172,36 +223,18 @@ impl Objective<'_> {
 /// * `measured` - of the same cases
 /// * `bounds` - where the parameters are searched
 /// * `left_out` - number of a case that does not count, if any
+/// * `cancelled` - set it to stop
 ///
 /// # Errors
-/// Bounds that hold nothing; not as many simulated cases as measured ones; nothing left to fit.
+/// Bounds that hold nothing; not as many simulated cases as measured ones; nothing left to fit; [`HybridError::Cancelled`].
 pub fn fit(
     simulated: &SimulatedCases,
     measured: &Measurements,
     bounds: &EnhancementBounds,
     left_out: Option<usize>,
+    cancelled: &AtomicBool,
 ) -> Result<Fit, HybridError> {
-    bounds.check()?;
-    let cases = simulated.differences().len();
-    if cases != measured.cases() {
-        return Err(HybridError::Cases { simulated: cases, measured: measured.cases() });
-    }
-    let weights = equal_weights(cases, left_out);
-    let objective = Objective { simulated, measured, weights: &weights };
-    let ranges = bounds.logarithms();
-    let starts = objective.best_of_grid(ranges, STARTS)?;
-    let steps: [f64; 3] = std::array::from_fn(|d| (ranges[d][1] - ranges[d][0]) / GRID[d] as f64);
-    let mut best: Option<(f64, Point)> = None;
-    for (error, start) in starts {
-        let refined = refine(&objective, ranges, start, steps)?;
-        for found in [(error, start), refined] {
-            if best.is_none_or(|(least, _)| found.0 < least) {
-                best = Some(found);
-            }
-        }
-    }
-    let (error, found) = best.ok_or(HybridError::NoFit)?;
-    Ok(Fit { enhancement: enhancement(found), error })
+    Grid::new(simulated, measured, bounds, cancelled)?.fit(left_out)
 }
 
 /// Nelder and Mead's search from a point, within ranges; a range of no width holds its parameter.

@@ -1,12 +1,8 @@
 //! Simulated difference signals of all cases, and what they would show after an enhancement.
 
+use super::envelopes::WindowEnvelopes;
 use super::modify::check_cycle;
 use super::{Enhancement, HybridError, JointMoments, TuningIndicator, WindowMoments};
-
-/// Draws of noise over which indicators without a closed form are averaged.
-const NOISE_DRAWS: u64 = 4;
-/// Of those draws.
-const NOISE_SEED: u64 = 0;
 
 /// Simulated difference signals of the cases of one rig; the first is the healthy one.
 #[derive(Debug, Clone)]
@@ -14,6 +10,7 @@ pub struct SimulatedCases {
     differences: Vec<Vec<f64>>,
     centre_rev: f64,
     windows: Vec<WindowMoments>,
+    envelopes: Vec<WindowEnvelopes>,
 }
 
 impl SimulatedCases {
@@ -57,7 +54,11 @@ impl SimulatedCases {
             .iter()
             .map(|difference| WindowMoments::new(difference, healthy, centre_rev))
             .collect::<Result<_, _>>()?;
-        Ok(Self { differences, centre_rev, windows })
+        let envelopes = differences
+            .iter()
+            .map(|difference| WindowEnvelopes::new(difference, healthy, centre_rev))
+            .collect::<Result<_, _>>()?;
+        Ok(Self { differences, centre_rev, windows, envelopes })
     }
 
     /// The signals.
@@ -65,88 +66,106 @@ impl SimulatedCases {
         &self.differences
     }
 
+    /// The signals alone, of which everything else follows.
+    pub(super) fn into_differences(self) -> Vec<Vec<f64>> {
+        self.differences
+    }
+
     /// (rev) Where the faults' responses are: the centre of every change of duration.
     pub fn centre_rev(&self) -> f64 {
         self.centre_rev
     }
 
-    /// Indicators after an enhancement, by case and indicator, as [`TuningIndicator::compared`] has them.
-    ///
-    /// By the moments of what the noise is expected to give; for the envelope's, which have no closed form, the mean over
-    /// a few draws.
+    /// Indicators that are expected after an enhancement, by case and indicator, as [`TuningIndicator::compared`] has them:
+    /// those of the moments that the noise is expected to give.
     ///
     /// # Arguments
     /// * `indicators` - which
     /// * `enhancement` - what is changed
     ///
     /// # Errors
-    /// As of [`Enhancement::without_noise`]; a signal that becomes constant.
+    /// A width ratio that is not above 0, a noise level below 0, a number that is not finite; an indicator that is not a number,
+    /// such as the kurtosis of a constant signal.
     pub fn predict(
         &self,
         indicators: &[TuningIndicator],
         enhancement: &Enhancement,
     ) -> Result<Vec<Vec<f64>>, HybridError> {
-        let mut of_envelopes = Vec::new();
-        if indicators.iter().any(|indicator| indicator.is_of_envelope()) {
-            of_envelopes = self.envelopes(indicators, enhancement)?;
-        }
-        let windows = self.at_width(enhancement.width_ratio);
-        let mut predicted = vec![Vec::with_capacity(indicators.len()); windows.len()];
-        for (j, &indicator) in indicators.iter().enumerate() {
-            for (case, values) in predicted.iter_mut().enumerate() {
-                values.push(match closed_form(indicator, &windows, case, enhancement) {
-                    Some(value) => value,
-                    None => of_envelopes[case][j],
-                });
+        enhancement.check()?;
+        let at_width = self.at_width(indicators, enhancement.width_ratio);
+        let mut predicted = vec![Vec::with_capacity(indicators.len()); self.differences.len()];
+        for (case, values) in predicted.iter_mut().enumerate() {
+            at_width.indicators(case, enhancement, |_, value| values.push(value));
+            if let Some(j) = values.iter().position(|value| !value.is_finite()) {
+                return Err(HybridError::Constant { indicator: indicators[j].name() });
             }
         }
         Ok(predicted)
     }
 
-    pub(super) fn at_width(&self, width_ratio: f64) -> Vec<JointMoments> {
-        self.windows.iter().map(|window| window.at_width(width_ratio)).collect()
-    }
-
-    /// Means over draws of noise, by case and indicator.
-    fn envelopes(
-        &self,
-        indicators: &[TuningIndicator],
-        enhancement: &Enhancement,
-    ) -> Result<Vec<Vec<f64>>, HybridError> {
-        let mut healthy = Vec::new();
-        let mut predicted = Vec::new();
-        for (case, difference) in self.differences.iter().enumerate() {
-            let enhanced = enhancement.without_noise(difference, &self.differences[0], self.centre_rev)?;
-            let draws: Vec<Vec<f64>> = (0..NOISE_DRAWS)
-                .map(|draw| enhanced.with_noise(NOISE_SEED, case as u64 * NOISE_DRAWS + draw))
-                .collect::<Result<_, _>>()?;
-            let mean = |indicator: TuningIndicator| {
-                let values: Result<Vec<f64>, _> = draws.iter().map(|draw| indicator.measure(draw)).collect();
-                values.map(|values| values.iter().sum::<f64>() / values.len() as f64)
-            };
-            let means: Vec<f64> = indicators.iter().map(|&j| mean(j)).collect::<Result<_, _>>()?;
-            if case == 0 {
-                healthy.clone_from(&means);
-            }
-            let compared = indicators.iter().zip(means).zip(&healthy);
-            predicted.push(compared.map(|((j, value), &healthy)| j.compared(value, healthy)).collect());
+    /// The cases after a change of duration.
+    ///
+    /// # Arguments
+    /// * `indicators` - that are asked for
+    /// * `width_ratio` - (-) as of [`super::change_duration`]
+    pub(super) fn at_width<'a>(&'a self, indicators: &'a [TuningIndicator], width_ratio: f64) -> AtWidth<'a> {
+        let asked = |of_envelope: bool| indicators.iter().any(|one| one.is_of_envelope() == of_envelope);
+        let moments: Vec<JointMoments> =
+            self.windows.iter().map(|window| window.at_width(width_ratio)).collect();
+        AtWidth {
+            simulated: self,
+            indicators,
+            width_ratio,
+            of_signals: asked(false),
+            of_envelopes: asked(true),
+            healthy_square: moments[0].healthy_square(),
+            healthy_envelope_square: self.envelopes[0].healthy_square(width_ratio),
+            moments,
         }
-        Ok(predicted)
     }
 }
 
-/// An indicator by moments, where it has a closed form.
-pub(super) fn closed_form(
-    indicator: TuningIndicator,
-    windows: &[JointMoments],
-    case: usize,
-    enhancement: &Enhancement,
-) -> Option<f64> {
-    let square = windows[0].healthy_square();
-    let variance = enhancement.noise_level.powi(2) * square;
-    let moments = windows[case].mixed(enhancement.fault_to_harmonics_ratio).with_noise(variance);
-    let value = indicator.of_moments(moments)?;
-    Some(indicator.compared(value, (square + variance).sqrt()))
+/// The cases after a change of duration.
+pub(super) struct AtWidth<'a> {
+    simulated: &'a SimulatedCases,
+    indicators: &'a [TuningIndicator],
+    width_ratio: f64,
+    of_signals: bool,
+    of_envelopes: bool,
+    moments: Vec<JointMoments>,
+    healthy_square: f64,
+    healthy_envelope_square: f64,
+}
+
+impl AtWidth<'_> {
+    /// Expected indicators of a case, as they are compared.
+    ///
+    /// # Arguments
+    /// * `case` - its number
+    /// * `enhancement` - of this width
+    /// * `take` - given each indicator's number and value
+    pub(super) fn indicators(
+        &self,
+        case: usize,
+        enhancement: &Enhancement,
+        mut take: impl FnMut(usize, f64),
+    ) {
+        let alpha = enhancement.fault_to_harmonics_ratio;
+        let variance = enhancement.noise_level.powi(2) * self.healthy_square;
+        let signal = self.of_signals.then(|| self.moments[case].mixed(alpha).with_noise(variance));
+        let envelope = self
+            .of_envelopes
+            .then(|| self.simulated.envelopes[case].moments(self.width_ratio, alpha, variance));
+        for (j, indicator) in self.indicators.iter().enumerate() {
+            let (moments, healthy_square) = if indicator.is_of_envelope() {
+                (envelope, self.healthy_envelope_square + 2.0 * variance)
+            } else {
+                (signal, self.healthy_square + variance)
+            };
+            let value = moments.map_or(f64::NAN, |moments| indicator.of_moments(moments));
+            take(j, indicator.compared(value, healthy_square.sqrt()));
+        }
+    }
 }
 
 /// (rev) Where faults show: the centre on the circle of the fourth power of what they add.

@@ -1,9 +1,11 @@
 //! The three parameters, how well they are known, and how well they predict.
 
+use std::sync::atomic::AtomicBool;
+
 use rayon::prelude::*;
 
-use super::search::{Objective, Point, enhancement, equal_weights, point, refine};
-use super::{Enhancement, EnhancementBounds, Fit, HybridError, Measurements, SimulatedCases, fit};
+use super::search::{Grid, Objective, Point, enhancement, equal_weights, point, refine};
+use super::{Enhancement, EnhancementBounds, Fit, HybridError, Measurements, SimulatedCases};
 
 /// Bootstrap samples of the records.
 const BOOTSTRAP_SAMPLES: u64 = 200;
@@ -43,15 +45,15 @@ pub struct Tuning {
     /// parameters' error exceeds the least one in 95 % of the bootstrap samples. Drawing the cases, too, lets what the model
     /// cannot follow in some of them widen the intervals.
     pub intervals: EnhancementIntervals,
-    /// Mean error (Eq. 7) of the signals as they were simulated.
+    /// Mean error (Eq. 7) of the original simulation, before anything was tuned.
     pub original_error: f64,
     /// Mean error after the enhancement.
     pub enhanced_error: f64,
-    /// Mean error of the measurements' own medians: the floor.
+    /// The measurements' own scatter: mean error of their medians, the floor.
     pub scatter: f64,
-    /// Error of each case, predicted by what fits the others.
+    /// Error of each case, predicted by what is tuned to the others.
     pub leave_one_out_error: Vec<f64>,
-    /// Indicators as simulated, by case and indicator.
+    /// Indicators of the original simulation, before anything was tuned, by case and indicator.
     pub original: Vec<Vec<f64>>,
     /// Indicators after the enhancement, by case and indicator.
     pub enhanced: Vec<Vec<f64>>,
@@ -152,9 +154,10 @@ impl std::fmt::Display for TuningWarning {
 /// * `measured` - of the same cases
 /// * `bounds` - where the parameters are searched
 /// * `seed` - of the bootstrap
+/// * `cancelled` - set it to stop
 ///
 /// # Errors
-/// As [`fit`]'s.
+/// As [`fit`](super::fit)'s.
 ///
 /// Source: section 5 of arXiv:2410.05073, Eq. 7.
 pub fn tune(
@@ -162,40 +165,65 @@ pub fn tune(
     measured: &Measurements,
     bounds: &EnhancementBounds,
     seed: u64,
+    cancelled: &AtomicBool,
 ) -> Result<Tuning, HybridError> {
-    let best = fit(simulated, measured, bounds, None)?;
-    let mut tuning = tune_among(&[(simulated, best)], measured, bounds, seed)?;
+    let grid = Grid::new(simulated, measured, bounds, cancelled)?;
+    let best = grid.fit(None)?;
+    let original = simulated.predict(measured.indicators(), &Enhancement::default())?;
+    let common = Common { measured, bounds, seed, cancelled, original: &original };
+    let mut tuning = tune_among(&[(simulated, best)], &common)?;
     tuning.leave_one_out_error = (0..measured.cases())
-        .map(|case| {
-            let others = fit(simulated, measured, bounds, Some(case))?;
-            let predicted = simulated.predict(measured.indicators(), &others.enhancement)?;
-            Ok(measured.case_error(case, &predicted[case]))
-        })
-        .collect::<Result<Vec<f64>, HybridError>>()?;
+        .into_par_iter()
+        .map(|case| common.left_out_error(simulated, grid.fit(Some(case))?, case))
+        .collect::<Result<_, _>>()?;
     Ok(tuning)
+}
+
+/// What tuning needs beside simulations.
+#[derive(Clone, Copy)]
+pub(super) struct Common<'a> {
+    pub(super) measured: &'a Measurements,
+    pub(super) bounds: &'a EnhancementBounds,
+    /// Of the bootstrap.
+    pub(super) seed: u64,
+    pub(super) cancelled: &'a AtomicBool,
+    /// Indicators of the original simulation.
+    pub(super) original: &'a [Vec<f64>],
+}
+
+impl Common<'_> {
+    /// Error of a case, predicted by what is tuned to the others.
+    ///
+    /// # Arguments
+    /// * `best` - the fit to the others
+    pub(super) fn left_out_error(
+        &self,
+        simulated: &SimulatedCases,
+        best: Fit,
+        case: usize,
+    ) -> Result<f64, HybridError> {
+        let Self { measured, cancelled, .. } = *self;
+        let weights = equal_weights(measured.cases(), Some(case));
+        let objective = Objective { simulated, measured, weights: &weights, cancelled };
+        let chosen = nearest_to_unit_ratio(&objective, self.bounds, best)?;
+        let predicted = simulated.predict(measured.indicators(), &chosen.enhancement)?;
+        Ok(measured.case_error(case, &predicted[case]))
+    }
 }
 
 /// Tunes where several simulations are as good as another: the first is the best, the others count for the intervals.
 /// Leave-one-out errors are not computed.
 pub(super) fn tune_among(
     candidates: &[(&SimulatedCases, Fit)],
-    measured: &Measurements,
-    bounds: &EnhancementBounds,
-    seed: u64,
+    common: &Common,
 ) -> Result<Tuning, HybridError> {
+    let Common { measured, bounds, seed, cancelled, original } = *common;
     let weights = equal_weights(measured.cases(), None);
     let (simulated, best) = candidates.first().copied().ok_or(HybridError::NoFit)?;
-    let objective = Objective { simulated, measured, weights: &weights };
+    let objective = Objective { simulated, measured, weights: &weights, cancelled };
     let chosen = nearest_to_unit_ratio(&objective, bounds, best)?;
     let intervals = intervals(candidates, &objective, bounds, &chosen, seed)?;
-    let original = simulated.predict(measured.indicators(), &Enhancement::default())?;
-    let enhanced = simulated.predict(measured.indicators(), &chosen.enhancement)?;
-    let mean = |predicted: &[Vec<f64>]| {
-        let errors = predicted.iter().enumerate().map(|(case, values)| measured.case_error(case, values));
-        errors.sum::<f64>() / predicted.len() as f64
-    };
-    let original_error = mean(&original);
-    let warnings = warnings(measured, bounds, &chosen, &intervals, original_error);
+    let original_error = measured.mean_error(original);
     Ok(Tuning {
         enhancement: chosen.enhancement,
         intervals,
@@ -203,9 +231,9 @@ pub(super) fn tune_among(
         enhanced_error: chosen.error,
         scatter: measured.scatter(),
         leave_one_out_error: Vec::new(),
-        original,
-        enhanced,
-        warnings,
+        original: original.to_vec(),
+        enhanced: simulated.predict(measured.indicators(), &chosen.enhancement)?,
+        warnings: warnings(measured, bounds, &chosen, &intervals, original_error),
     })
 }
 
@@ -215,7 +243,7 @@ fn nearest_to_unit_ratio(
     bounds: &EnhancementBounds,
     best: Fit,
 ) -> Result<Fit, HybridError> {
-    let ranges = logarithms(bounds);
+    let ranges = bounds.logarithms();
     let limit = best.error * (1.0 + VALLEY);
     let from = point(&best.enhancement);
     let goal = 0.0_f64.clamp(ranges[1][0], ranges[1][1]);
@@ -245,10 +273,6 @@ fn nearest_to_unit_ratio(
     Ok(chosen)
 }
 
-fn logarithms(bounds: &EnhancementBounds) -> [[f64; 2]; 3] {
-    bounds.all().map(|(_, range)| range.map(f64::ln))
-}
-
 fn intervals(
     candidates: &[(&SimulatedCases, Fit)],
     objective: &Objective,
@@ -256,13 +280,14 @@ fn intervals(
     chosen: &Fit,
     seed: u64,
 ) -> Result<EnhancementIntervals, HybridError> {
-    let ranges = logarithms(bounds);
+    let ranges = bounds.logarithms();
     let centre = point(&chosen.enhancement);
     let mut excesses = (0..BOOTSTRAP_SAMPLES)
         .into_par_iter()
         .map(|sample| {
             let (measured, weights) = objective.measured.resampled(seed, sample);
-            let again = |simulated| Objective { simulated, measured: &measured, weights: &weights };
+            let again =
+                |simulated| Objective { simulated, measured: &measured, weights: &weights, ..*objective };
             let here = again(objective.simulated).at(centre)?;
             let mut least = here;
             for (simulated, fit) in candidates {

@@ -47,18 +47,70 @@ impl Scenario {
     /// # Ok::<(), meshtone::scenario::ScenarioError>(())
     /// ```
     pub fn with_number(&self, key: &str, value: f64) -> Result<Self, ScenarioError> {
-        let missing = || {
-            ScenarioError::new(key, format!("{value}"), "the scenario has no number at this key")
-                .with_help("`meshtone init KIND` prints every key of a kind of fault")
-        };
-        let mut table = self.table().ok_or_else(missing)?;
-        let place = at_mut(&mut table, key).ok_or_else(missing)?;
-        *place = match place {
-            Value::Integer(_) if value.fract() == 0.0 => Value::Integer(value as i64),
-            Value::Integer(_) | Value::Float(_) => Value::Float(value),
-            _ => return Err(missing()),
-        };
-        let mut changed = Self::from_toml(&table.to_string())?;
+        self.with_numbers(&[(key, value)])
+    }
+
+    /// The same scenario with other numbers at some keys of the scenario file. All are set before anything is checked, so that
+    /// numbers may be allowed together that are not alone.
+    ///
+    /// # Arguments
+    /// * `numbers` - dotted key, as in the file, and value in the key's unit
+    ///
+    /// # Errors
+    /// A key that the scenario does not have, a value that is not allowed there, as for the scenario file.
+    ///
+    /// ```
+    /// use meshtone::scenario::Scenario;
+    ///
+    /// let line = "[fault]\nkind = \"tooth-destruction\"\nstart = 0.1\nend = 0.3";
+    /// let gears = "[gears]\nmodule_mm = 3.0\npinion_teeth = 17\ngear_teeth = 38\nface_width_mm = 15.0";
+    /// let operation = "[operation]\npinion_speed_hz = 40.0\nbrake_torque_nm = 10.0";
+    /// let scenario = Scenario::from_toml(&[gears, operation, line].join("\n"))?;
+    /// assert!(scenario.with_number("fault.start", 0.5).is_err()); // beyond the end
+    /// let later = scenario.with_numbers(&[("fault.start", 0.5), ("fault.end", 0.7)])?;
+    /// assert_eq!(later.number("fault.start"), Some(0.5));
+    /// # Ok::<(), meshtone::scenario::ScenarioError>(())
+    /// ```
+    pub fn with_numbers(&self, numbers: &[(&str, f64)]) -> Result<Self, ScenarioError> {
+        self.with_numbers_that(numbers, |key, value| {
+            Err(ScenarioError::new(key, format!("{value}"), "the scenario has no number at this key")
+                .with_help("`meshtone init KIND` prints every key of a kind of fault"))
+        })
+    }
+
+    /// As [`Self::with_numbers`], but numbers at keys that this scenario does not have, such as another fault's, are left out.
+    ///
+    /// # Arguments
+    /// * `numbers` - dotted key, as in the file, and value in the key's unit
+    ///
+    /// # Errors
+    /// A value that is not allowed.
+    pub fn with_known_numbers(&self, numbers: &[(&str, f64)]) -> Result<Self, ScenarioError> {
+        self.with_numbers_that(numbers, |_, _| Ok(()))
+    }
+
+    fn with_numbers_that(
+        &self,
+        numbers: &[(&str, f64)],
+        missing: impl Fn(&str, f64) -> Result<(), ScenarioError>,
+    ) -> Result<Self, ScenarioError> {
+        let mut table = self.table().unwrap_or_default();
+        let mut known = false;
+        for &(key, value) in numbers {
+            match at_mut(&mut table, key) {
+                Some(place @ (Value::Integer(_) | Value::Float(_))) => {
+                    let whole = matches!(place, Value::Integer(_)) && value.fract() == 0.0;
+                    *place = if whole { Value::Integer(value as i64) } else { Value::Float(value) };
+                    known = true;
+                }
+                _ => missing(key, value)?,
+            }
+        }
+        if !known {
+            return Ok(self.clone());
+        }
+        // A line of this text is no line that anybody has written.
+        let mut changed = Self::from_toml(&table.to_string()).map_err(|error| error.at_line(None))?;
         // Not part of the text's table.
         changed.quality.profile_errors.clone_from(&self.quality.profile_errors);
         Ok(changed)

@@ -167,7 +167,13 @@ impl<'a> TomlTable<'a> {
 
     /// A key that is missing while a misspelt one stands in its place: the misspelt one is the
     /// mistake that the user has to mend.
-    fn refuse_slip_of(&self, key: &'static str) -> ReadResult<()> {
+    ///
+    /// # Arguments
+    /// * `key` - its name in this table
+    ///
+    /// # Errors
+    /// A key that nobody has asked for looks like this one misspelt.
+    pub fn refuse_slip_of(&self, key: &'static str) -> ReadResult<()> {
         match self.unasked().find(|(_, name)| is_slip(name, key)) {
             None => Ok(()),
             // Which other keys are allowed is not known yet: they have not been asked for.

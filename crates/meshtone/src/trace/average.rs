@@ -3,8 +3,8 @@
 use super::Trace;
 use crate::sampling::TimeGrid;
 use crate::signal::{
-    AngularSettings, ChainSettings, Channels, Edge, Interpolation, Record, SeparationSettings, ShaftPhase,
-    SignalError, process_channel, resample, resampling_ratio,
+    AngularSettings, ChainSettings, Channels, Edge, Interpolation, Record, ShaftPhase, SignalError,
+    process_channel, resample, resampling_ratio,
 };
 use crate::simulate::Stages;
 
@@ -20,7 +20,15 @@ const CONTINUATION: usize = 40;
 pub(super) fn average(trace: &mut Trace, stages: &Stages, channels: &Channels, rate_hz: f64) {
     let rate_hz = rate_hz.min(stages.time.sampling_rate_hz);
     let Channels { vertical_g, pinion_speed_hz, .. } = channels;
-    let Ok(record) = gear_record(stages, vertical_g, pinion_speed_hz, rate_hz, None) else { return };
+    let Ok(record) = gear_record(
+        stages,
+        vertical_g,
+        pinion_speed_hz,
+        rate_hz,
+        ChainSettings { angular: published(), separation: None },
+    ) else {
+        return;
+    };
     let points = record.average.values.len();
     // Orders up to half of the rate; the published spectrum doubles order 0 too.
     let orders = (record.average.nyquist_order * (1.0 + 1e-9)) as usize;
@@ -33,19 +41,22 @@ pub(super) fn average(trace: &mut Trace, stages: &Stages, channels: &Channels, r
     trace.scalar("sa_rate_in_hz", rate_hz);
 }
 
+/// As the published code reads a signal between its samples.
+fn published() -> AngularSettings {
+    AngularSettings { interpolation: Interpolation::Pchip, ..AngularSettings::default() }
+}
+
 /// The gear's average of a simulated channel and what follows from it, resampled to `rate_hz` first.
 pub(crate) fn gear_record(
     stages: &Stages,
     signal: &[f64],
     pinion_speed_hz: &[f64],
     rate_hz: f64,
-    separation: Option<SeparationSettings>,
+    settings: ChainSettings,
 ) -> Result<Record, SignalError> {
     let sampling_rate_hz = stages.time.sampling_rate_hz;
     let gears = &stages.scenario.gears;
     let ratio = resampling_ratio(sampling_rate_hz, rate_hz)?;
-    let angular = AngularSettings { interpolation: Interpolation::Pchip, ..AngularSettings::default() };
-    let settings = ChainSettings { angular, separation };
     let (signal, phase) = match whole_revolutions(stages) {
         Some(revolutions) => periodic(signal, ratio, revolutions)?,
         None => {
