@@ -280,15 +280,13 @@ def plot_simulation(simulation: Simulation) -> Figure:
     matplotlib.figure.Figure
     """
     figure = _new_figure((11.0, 10.0))
-    axes = figure.subplot_mosaic(
-        [
-            ["tooth"] * 2 + ["stiffness"] * 4,
-            ["signal"] * 6,
-            ["spectrum"] * 6,
-            ["average"] * 3 + ["difference"] * 3,
-        ],
-        height_ratios=[1.5, 1, 1, 1],
-    )
+    layout: list[Any] = [
+        ["tooth"] * 2 + ["stiffness"] * 4,
+        ["signal"] * 6,
+        ["spectrum"] * 6,
+        ["average"] * 3 + ["difference"] * 3,
+    ]
+    axes = figure.subplot_mosaic(layout, height_ratios=[1.5, 1, 1, 1])
     plot_tooth(simulation, ax=axes["tooth"])
     plot_mesh_stiffness(simulation, ax=axes["stiffness"])
     plot_signal(simulation, ax=axes["signal"])

@@ -49,7 +49,7 @@ def test_every_key_of_a_scenario_file_is_an_argument() -> None:
         for section, key in keys:
             if section != "fault":
                 assert SECTION_OF_KEY.get(key) == section, key
-        assert keys >= {("gears", "module_mm"), ("solver", "initial_velocity")}
+        assert keys >= {("gears", "module_mm"), ("solver", "initial_displacement")}
 
 
 def test_profile_errors() -> None:

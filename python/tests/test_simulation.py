@@ -44,8 +44,10 @@ def test_curves(broken: meshtone.Simulation) -> None:
     assert np.array_equal(stiffness[::4], broken.mesh_stiffness_n_per_mm)
     x_mm, y_mm = broken.tooth_profile("pinion")
     assert x_mm.shape == y_mm.shape == (10000,)
-    assert np.hypot(x_mm[-1], y_mm[-1]) == pytest.approx(3 * 17 / 2 + 3)  # the tip circle
-    pinion, gear = broken.profile_errors_mm() or (None, None)
+    assert [x_mm[-1], y_mm[-1]] == pytest.approx(broken.pinion_tip_xy_mm)
+    errors = broken.profile_errors_mm()
+    assert errors is not None
+    pinion, gear = errors
     assert pinion.shape == (100, 17) and gear.shape == (100, 38)
     with pytest.raises(ValueError, match="'wheel': must be 'pinion' or 'gear'"):
         broken.tooth_profile("wheel")  # type: ignore[arg-type]
