@@ -4,6 +4,29 @@ use toml::{Table, Value};
 
 use super::{Scenario, ScenarioError};
 
+/// A number of a scenario.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ScenarioNumber {
+    /// Dotted key, as in the scenario file.
+    pub key: String,
+    /// Its value, in the key's unit.
+    pub value: f64,
+    /// Only whole numbers are allowed.
+    pub whole: bool,
+}
+
+fn collect(table: &Table, path: &str, numbers: &mut Vec<ScenarioNumber>) {
+    for (name, value) in table {
+        let key = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
+        match value {
+            Value::Table(table) => collect(table, &key, numbers),
+            Value::Float(value) => numbers.push(ScenarioNumber { key, value: *value, whole: false }),
+            Value::Integer(value) => numbers.push(ScenarioNumber { key, value: *value as f64, whole: true }),
+            _ => {}
+        }
+    }
+}
+
 impl Scenario {
     /// The number at a key of the scenario file, defaults included.
     ///
@@ -47,21 +70,61 @@ impl Scenario {
     /// # Ok::<(), meshtone::scenario::ScenarioError>(())
     /// ```
     pub fn with_number(&self, key: &str, value: f64) -> Result<Self, ScenarioError> {
-        let missing = || {
-            ScenarioError::new(key, format!("{value}"), "the scenario has no number at this key")
-                .with_help("`meshtone init KIND` prints every key of a kind of fault")
-        };
-        let mut table = self.table().ok_or_else(missing)?;
-        let place = at_mut(&mut table, key).ok_or_else(missing)?;
-        *place = match place {
-            Value::Integer(_) if value.fract() == 0.0 => Value::Integer(value as i64),
-            Value::Integer(_) | Value::Float(_) => Value::Float(value),
-            _ => return Err(missing()),
-        };
+        self.with_numbers(&[(key, value)])
+    }
+
+    /// The same scenario with other numbers at several keys, which are checked together.
+    ///
+    /// # Arguments
+    /// * `numbers` - dotted keys, as in the file, and their values, in the keys' units
+    ///
+    /// # Errors
+    /// As [`Self::with_number`].
+    ///
+    /// ```
+    /// use meshtone::scenario::Scenario;
+    ///
+    /// let scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    /// let slow = scenario.with_numbers(&[("operation.pinion_speed_hz", 10.0), ("operation.brake_torque_nm", 50.0)])?;
+    /// assert_eq!(slow.operation.brake_torque_nm, 50.0);
+    /// # Ok::<(), meshtone::scenario::ScenarioError>(())
+    /// ```
+    pub fn with_numbers(&self, numbers: &[(&str, f64)]) -> Result<Self, ScenarioError> {
+        let table = self.table();
+        let mut table = table.ok_or_else(|| ScenarioError::new("", "", "the scenario cannot be written"))?;
+        for &(key, value) in numbers {
+            let missing = || {
+                ScenarioError::new(key, format!("{value}"), "the scenario has no number at this key")
+                    .with_help("`meshtone init KIND` prints every key of a kind of fault")
+            };
+            let place = at_mut(&mut table, key).ok_or_else(missing)?;
+            *place = match place {
+                Value::Integer(_) if value.fract() == 0.0 => Value::Integer(value as i64),
+                Value::Integer(_) | Value::Float(_) => Value::Float(value),
+                _ => return Err(missing()),
+            };
+        }
         let mut changed = Self::from_toml(&table.to_string())?;
         // Not part of the text's table.
         changed.quality.profile_errors.clone_from(&self.quality.profile_errors);
         Ok(changed)
+    }
+
+    /// Every key of the scenario file at which this scenario has a single number, defaults included.
+    ///
+    /// ```
+    /// use meshtone::scenario::Scenario;
+    ///
+    /// let numbers = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0).numbers();
+    /// let teeth = numbers.iter().find(|number| number.key == "gears.pinion_teeth").unwrap();
+    /// assert!(teeth.whole && teeth.value == 17.0);
+    /// ```
+    pub fn numbers(&self) -> Vec<ScenarioNumber> {
+        let mut numbers = Vec::new();
+        if let Some(table) = self.table() {
+            collect(&table, "", &mut numbers);
+        }
+        numbers
     }
 
     /// The scenario file as a table, without the profile errors given, which are large.
