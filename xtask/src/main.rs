@@ -17,9 +17,9 @@ Usage: cargo xtask TASK
 Tasks:
   test         Everything that a change must pass, in this order, stopping at the first failure:
                formatting, lints, tests (with the examples in the documentation, and against SciPy,
-               which is installed under target/scipy once: needs Python 3.11 or later, as python3
-               or under the name in the variable PYTHON), the library's documentation, and the
-               check of the book
+               pyarrow and polars, which are installed under target/scipy once: needs Python 3.11
+               or later, as python3 or under the name in the variable PYTHON), the library's
+               documentation, and the check of the book
   check-docs   Only the check of the book: its table of contents, its links, pictures and formulas
   docs         Build the book into docs/book (needs mdbook)
   help         Print this text (also -h, --help)
@@ -67,9 +67,9 @@ fn workspace_root() -> &'static Path {
 fn test(root: &Path) -> Result<(), u8> {
     step::cargo(root, &["fmt", "--all", "--check"], &[])?;
     step::cargo(root, &["clippy", "--workspace", "--all-targets", "--release", "--", "-D", "warnings"], &[])?;
-    let scipy = scipy::reference(root)?;
-    let scipy = [("MESHTONE_SCIPY_REFERENCE", scipy.as_os_str())];
-    step::cargo(root, &["test", "--workspace", "--release"], &scipy)?;
+    let [scipy, python] = scipy::reference(root)?;
+    let python = [("MESHTONE_SCIPY_REFERENCE", scipy.as_os_str()), ("MESHTONE_PYTHON", python.as_os_str())];
+    step::cargo(root, &["test", "--workspace", "--release"], &python)?;
     step::cargo(
         root,
         &["doc", "--workspace", "--no-deps", "--release"],

@@ -1,4 +1,4 @@
-//! SciPy's results, for the tests that compare with them.
+//! SciPy's results, for the tests that compare with them, and the Python that reads data sets in the tests.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -12,22 +12,23 @@ const PYTHON: &str = "PYTHON";
 
 /// Makes a virtual environment with SciPy under `target`, once, and lets it write its results there.
 ///
-/// Returns the file of the results.
+/// Returns the file of the results, and the environment's interpreter, which also reads data sets in the tests.
 ///
 /// # Arguments
 /// * `root` - folder of the workspace
 ///
 /// # Errors
 /// The exit code of what failed: there is no Python, or the packages cannot be installed.
-pub fn reference(root: &Path) -> Result<PathBuf, u8> {
+pub fn reference(root: &Path) -> Result<[PathBuf; 2], u8> {
     let folder = root.join("target").join("scipy");
     let results = folder.join("reference.npz");
+    let mut python = PathBuf::new();
     step::run("SciPy's results", || {
-        let python = environment(root, &folder)?;
+        python = environment(root, &folder)?;
         let script = root.join(FOLDER).join("reference.py");
-        step::program(Command::new(python).arg(script).arg(&results))
+        step::program(Command::new(&python).arg(script).arg(&results))
     })?;
-    Ok(results)
+    Ok([results, python])
 }
 
 /// The virtual environment's interpreter. It is made anew when its requirements have changed.

@@ -7,12 +7,14 @@
 //! * [`panel`]: teeth, damage, profile errors, averages and mesh stiffness of one simulation
 //! * [`record`]: a recording, its average, order spectrum and difference signal
 //! * [`trend`]: indicators over a series of recordings
+//! * [`dataset::dataset_figure`]: a data set, examples, distributions and indicators by class
 //! * [`tuning_figure`]: an experiment of the hybrid stage, measured, simulated and enhanced
 #![deny(missing_docs)]
 
 mod axes;
 mod canvas;
 mod curve;
+pub mod dataset;
 mod error;
 mod figure;
 mod font;
