@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Printed are records a second, and a second of processor time, which other programs' load hardly changes (Linux).
-#![allow(clippy::expect_used, clippy::print_stdout, missing_docs)]
+#![allow(clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -56,7 +56,7 @@ fn main() {
         ("benchmark.toml, 10 to 60 Hz, noise", benchmark),
     ];
     for (name, text) in plans {
-        let plan = Plan::read_text(text, &folder.join("plan.toml")).expect("the plan is valid");
+        let plan = Plan::read_text(text, &folder.join("plan.toml")).unwrap_or_else(|error| panic!("{error}"));
         let directory = tempfile::tempdir().expect("a temporary directory");
         let control = GenerateControl { progress: &|_, _| {}, cancelled: &AtomicBool::new(false) };
         let (start, processor) = (Instant::now(), processor_s());

@@ -86,7 +86,8 @@ fn counts(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Resu
     if !contents.failures.is_empty() {
         writeln!(
             text,
-            "{} records of the plan could not be simulated and are missing; `manifest.json` lists them with the reasons.\n",
+            "Of the plan's {} records {} could not be simulated and are missing; `manifest.json` lists them with the reasons.\n",
+            plan.records(),
             contents.failures.len()
         )?;
     }

@@ -190,6 +190,7 @@ fn preview(plan: &Plan, contents: &Contents, to: &Destination, columns: &[Column
             contents.files.len()
         ),
         signal_name: shown.map_or_else(String::new, |column| column.name.clone()),
+        over_angle: shown.is_some_and(|column| !matches!(column.kind, ColumnKind::Channel(_))),
         examples: examples.collect(),
         class_of: sampled.labels.iter().map(|label| place(&classes, label)).collect(),
         split_of: sampled.splits.iter().map(|split| place(&splits, split)).collect(),

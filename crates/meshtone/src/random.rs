@@ -87,11 +87,20 @@ impl Draws {
         centre + half_width * (2.0 * unit - 1.0)
     }
 
-    /// Next number, normal with mean 0 and standard deviation 1 (Box and Muller).
+    /// Next number, normal with mean 0 and standard deviation 1: the first of [`Self::normals`].
     pub fn normal(&mut self) -> f64 {
+        self.normals()[0]
+    }
+
+    /// Next two numbers, independent and normal with mean 0 and standard deviation 1.
+    ///
+    /// Source: G. E. P. Box, M. E. Muller, "A note on the generation of random normal deviates", Ann. Math. Statist. 29
+    /// (1958) 610–611.
+    pub fn normals(&mut self) -> [f64; 2] {
         // In (0, 1]: its logarithm is finite.
         let unit = 1.0 - self.uniform(0.5, 0.5);
         let angle = std::f64::consts::TAU * self.uniform(0.5, 0.5);
-        (-2.0 * unit.ln()).sqrt() * angle.cos()
+        let radius = (-2.0 * unit.ln()).sqrt();
+        [radius * angle.cos(), radius * angle.sin()]
     }
 }

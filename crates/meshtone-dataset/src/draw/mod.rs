@@ -216,7 +216,10 @@ impl<'a> Sampler<'a> {
             draw(&rules.rules, points, number, attempt, &mut values);
             let severity = plan.severity.of(&|key| values.number(key));
             let (grade, measure) = severity.unwrap_or((u8::from(plan.fault.is_some()), None));
-            values.set_severity(grade);
+            // What is the same for a whole class can be held out by its class alone.
+            if measure.is_some() {
+                values.set_severity(grade);
+            }
             let met = self.meets(&rules.constraints, &values, &mut obstacles)
                 && self.record_suits(self.content.splits.shift(unit.split), &values, &mut obstacles);
             if met {

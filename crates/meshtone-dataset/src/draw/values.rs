@@ -20,8 +20,7 @@ impl<'a> Values<'a> {
 
     pub fn number(&self, key: &str) -> Option<f64> {
         if key == SEVERITY {
-            // A healthy record has none that could be held out.
-            return self.severity.filter(|&grade| grade > 0.0);
+            return self.severity;
         }
         let drawn = self.drawn.iter().find(|(drawn, _)| drawn == key).map(|(_, value)| *value);
         drawn

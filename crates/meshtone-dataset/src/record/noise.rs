@@ -19,8 +19,10 @@ pub(super) fn add(drawn: &DrawnRecord, channel: u64, signal: &mut [f32]) {
         (None, None) => return,
     };
     let mut draws = Draws::new(drawn.seed, Purpose::RecordNoise, channel);
-    for sample in signal {
-        *sample = (f64::from(*sample) + deviation * draws.normal()) as f32;
+    for pair in signal.chunks_mut(2) {
+        for (sample, normal) in pair.iter_mut().zip(draws.normals()) {
+            *sample = (f64::from(*sample) + deviation * normal) as f32;
+        }
     }
 }
 

@@ -11,13 +11,14 @@ use crate::ticks::Ticks;
 const CURVE: Stroke = Stroke::solid(colour::BLUE, 1.0);
 /// (px) Between two plots: the title of the lower one.
 const GAP: f64 = 30.0;
+const TALLEST: f64 = 220.0;
 const NAME_LEFT: f64 = 48.0;
 const MOST: usize = 9;
 const MARGIN: f64 = 1.06;
 
 pub(super) fn draw(canvas: &mut Canvas, area: Area, preview: &DatasetPreview) {
     let shown = preview.examples.len().min(MOST);
-    let height = ((area.height + GAP) / shown.max(1) as f64 - GAP).min(140.0);
+    let height = ((area.height + GAP) / shown.max(1) as f64 - GAP).min(TALLEST);
     for (place, example) in preview.examples.iter().take(MOST).enumerate() {
         let top = area.top + place as f64 * (height + GAP);
         let plot = Area::new(area.left, top, area.width, height);
@@ -31,10 +32,10 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, preview: &DatasetPreview) {
         let conditions = fitted(&example.conditions, TextStyle::NOTE, area.width - after);
         let at = (plot.left + after, plot.top - axes::TITLE_ABOVE);
         canvas.text(at, &conditions, TextStyle::NOTE.coloured(colour::MUTED));
-        let ticks = Ticks::every(0.25, 0.0, 1.0);
+        let ticks = Ticks::every(0.2, 0.0, 1.0);
         axes.x_grid(canvas, &ticks);
         if place + 1 == shown {
-            axes.x_axis(canvas, &ticks, if preview.signal_name.starts_with("difference") || preview.signal_name.starts_with("average") { "Gear angle from tooth 1 (rev)" } else { "Part of the record (–)" });
+            axes.x_axis(canvas, &ticks, if preview.over_angle { "Gear angle from tooth 1 (rev)" } else { "Part of the record (–)" });
         }
         axes.y_axis(canvas, &Ticks::about_zero(half), "", NAME_LEFT);
         let last = example.signal.len().max(1) as f64;

@@ -12,7 +12,9 @@ const ROWS: usize = 6;
 const BINS: usize = 16;
 /// (px) Between two plots below each other: the numbers of the upper and the title of the lower one.
 const GAP: [f64; 2] = [34.0, 52.0];
-const TALLEST: f64 = 110.0;
+const TALLEST: f64 = 150.0;
+/// Positive values that span more than this ratio are drawn by their logarithms.
+const LOGARITHMIC: f64 = 15.0;
 /// Fewer different values than this have a bar each.
 const FEW: usize = 12;
 
@@ -34,6 +36,13 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, preview: &DatasetPreview) {
 }
 
 fn histogram(canvas: &mut Canvas, area: Area, name: &str, values: &[f64], preview: &DatasetPreview) {
+    let ends = |values: &[f64]| {
+        let finite = values.iter().copied().filter(|value| value.is_finite());
+        finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
+    };
+    let [low, high] = ends(values);
+    let logarithmic = low > 0.0 && high > LOGARITHMIC * low;
+    let values: Vec<f64> = values.iter().map(|value| if logarithmic { value.log10() } else { *value }).collect();
     let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);
     let (Some(&least), Some(&largest)) = (sorted.first(), sorted.last()) else { return };
@@ -53,11 +62,17 @@ fn histogram(canvas: &mut Canvas, area: Area, name: &str, values: &[f64], previe
         BINS
     };
     let shares: Vec<Vec<f64>> =
-        (0..preview.splits.len()).map(|split| shares(values, &preview.split_of, split, range, bins)).collect();
+        (0..preview.splits.len()).map(|split| shares(&values, &preview.split_of, split, range, bins)).collect();
     let highest = shares.iter().flatten().copied().fold(0.0f64, f64::max);
     let axes = Axes::new(area, range, [0.0, 1.08 * if highest > 0.0 { highest } else { 1.0 }]);
     axes.title(canvas, &fitted(name, TextStyle::AXES_TITLE, area.width));
-    let ticks = Ticks::nice(range[0], range[1], 5);
+    let ticks = match logarithmic {
+        true => Ticks::of_logarithms(range[0], range[1]).thinned(6),
+        false if distinct.len() <= FEW && distinct.iter().all(|value| value.fract() == 0.0) => {
+            Ticks::whole(range[0], range[1], 5)
+        }
+        false => Ticks::nice(range[0], range[1], 5),
+    };
     axes.x_grid(canvas, &ticks);
     axes.x_numbers(canvas, &ticks);
     for (split, shares) in shares.iter().enumerate() {

@@ -41,6 +41,8 @@ pub struct DatasetPreview {
     pub splits: Vec<String>,
     /// Name of the signal that the examples show, its unit at the end.
     pub signal_name: String,
+    /// Whether that signal is over a revolution of the gear; otherwise over time.
+    pub over_angle: bool,
     /// At most one for each class.
     pub examples: Vec<Example>,
     /// Number of each record's class.
