@@ -14,7 +14,7 @@ fn refused(text: &str, words: &[&str]) {
     let error = match Plan::read_text(text.to_owned(), Path::new("plan.toml")) {
         Ok(_) => panic!("accepted:\n{text}"),
         Err(meshtone_io::scenario_file::ReadScenarioError::Invalid { error, .. }) => {
-            format!("{error} ({})", error.help.unwrap_or_default())
+            format!("{error} ({})", error.help.clone().unwrap_or_default())
         }
         Err(error) => error.to_string(),
     };

@@ -61,8 +61,8 @@ fn counts(
     }
     let Some((value, records)) = records else {
         if !weights.is_empty() {
-            let problem = "missing; it is how many records there are, where classes have weights";
-            return Err(root.error("records", problem).with_help("or give every class a count"));
+            // Also where a misspelt key stands in its place.
+            root.required("records", "how many records there are, where classes have weights")?;
         }
         return Ok(counts);
     };

@@ -24,7 +24,7 @@ const RATE_HZ: f64 = 25e3;
 const LARGEST_RATE_HZ: f64 = 1e7;
 
 pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>) -> ReadResult<Keep> {
-    let default_rate = tuned.map_or(RATE_HZ, |tuned| tuned.sampling_rate_hz);
+    let default_rate = tuned.map_or(RATE_HZ.min(base.solver.sampling_rate_hz), |tuned| tuned.sampling_rate_hz);
     let rate = table.optional("sampling_rate_hz");
     let sampling_rate_hz = rate.as_ref().map(|value| value.number()).transpose()?.unwrap_or(default_rate);
     if let Some(value) = rate.filter(|_| !(sampling_rate_hz > 0.0 && sampling_rate_hz <= LARGEST_RATE_HZ)) {
