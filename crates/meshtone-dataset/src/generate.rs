@@ -214,7 +214,7 @@ impl Run<'_> {
                         Role::HealthyTwin(_) => Item::HealthyTwin(record),
                     });
                 }
-                Ok(Err(error)) => error.to_string(),
+                Ok(Err(reason)) => reason,
                 Err(error) => error.to_string(),
             };
             // A twin's failure is found again where the record misses it.

@@ -24,8 +24,8 @@ din_grade = 7
 [[class]]
 label = "healthy"
 [[class]]
-label = "missing"
-fault = { kind = "missing-tooth" }
+label = "chipped"
+fault = { kind = "tooth-breakage", chip_height_mm = 3.0, chip_width_mm = 8.0 }
 [[vary]]
 key = "operation.pinion_speed_hz"
 uniform = [30.0, 60.0]
@@ -72,7 +72,7 @@ fn a_data_set_and_what_is_said_about_it() {
     let names = ["README.md", "data", "manifest.json", "plan.toml", "preview.png", "preview.svg", "scenario.toml"];
     assert_eq!(workplace.names("plan_dataset"), names);
     let card = String::from_utf8(workplace.read("plan_dataset/README.md")).unwrap();
-    for words in ["| missing |", "CC-BY-4.0", "parquetread", "scan_parquet", "`fault_tooth`", "| *units* |"] {
+    for words in ["| chipped |", "CC-BY-4.0", "parquetread", "scan_parquet", "`fault_tooth`", "| *units* |"] {
         assert!(card.contains(words), "{card}");
     }
     let again = stdout(&workplace.succeeds(&["dataset", "plan.toml"]));
@@ -137,7 +137,7 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
     let workplace = workplace();
     workplace.fails(2, &["dataset", "absent.toml"], &["there is no plan absent.toml", "meshtone init dataset"]);
     workplace.write("wrong.toml", PLAN.replace("uniform = [30.0, 60.0]", "uniform = [60.0, 30.0]"));
-    workplace.fails(2, &["dataset", "wrong.toml"], &["wrong.toml", "line 22", "write [30.0, 60.0]"]);
+    workplace.fails(2, &["dataset", "wrong.toml"], &["wrong.toml", "line 21", "write [30.0, 60.0]"]);
     workplace.write("wrong.toml", PLAN.replace("pinion_speed_hz\"", "pinion_sped_hz\""));
     workplace.fails(2, &["dataset", "wrong.toml"], &["did you mean `operation.pinion_speed_hz`?"]);
     workplace.write("wrong.toml", PLAN.replace("units = 12", "units = 12\nconstraints = [\"operation.pinion_speed_hz > 99\"]"));

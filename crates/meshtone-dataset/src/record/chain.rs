@@ -22,16 +22,20 @@ pub(super) fn record(
     drawn: DrawnRecord,
     stages: &Stages,
     samples: &[Vec<f32>],
-) -> Result<Record, SignalError> {
+) -> Result<Record, String> {
+    let signals = |error: SignalError| error.to_string();
     let keep = &content.keep;
     let view = View::new(content, &drawn, stages);
     let simulated = keep.simulated();
-    let mut channels = view.at_rate(samples)?;
+    if view.offset.is_some() {
+        refuse_growth(&simulated, samples)?;
+    }
+    let mut channels = view.at_rate(samples).map_err(signals)?;
     let analysed = simulated.iter().position(|channel| *channel == keep.analysed);
     let enhanced = content.tuned.is_some();
     let mut record = view.empty(drawn);
     if let (Some(analysed), true) = (analysed, enhanced) {
-        record.clean_difference = view.clean_difference(&channels[analysed], content)?;
+        record.clean_difference = view.clean_difference(&channels[analysed], content).map_err(signals)?;
     }
     for (number, (kind, channel)) in simulated.iter().zip(&mut channels).enumerate() {
         if is_acceleration(*kind) {
@@ -39,7 +43,7 @@ pub(super) fn record(
         }
     }
     if let (Some(analysed), true) = (analysed, keep.is_analysed()) {
-        let analysis = view.analyse(&channels[analysed], Interpolation::default(), MeanPart::default())?;
+        let analysis = view.analyse(&channels[analysed], Interpolation::default(), MeanPart::default()).map_err(signals)?;
         let single = |values: &[f64]| values.iter().map(|&value| value as f32).collect();
         if keep.average {
             record.average = single(&analysis.average.values);
@@ -53,7 +57,7 @@ pub(super) fn record(
     }
     channels.truncate(keep.channels.len());
     if let Some(seconds) = keep.duration_s {
-        view.cut(&mut channels, seconds)?;
+        view.cut(&mut channels, seconds).map_err(signals)?;
     }
     record.channels = channels;
     Ok(record)
@@ -65,15 +69,40 @@ pub(super) fn twin(
     drawn: DrawnRecord,
     stages: &Stages,
     samples: &[Vec<f32>],
-) -> Result<Record, SignalError> {
+) -> Result<Record, String> {
+    let signals = |error: SignalError| error.to_string();
     let view = View::new(content, &drawn, stages);
     let analysed = content.keep.simulated().iter().position(|channel| *channel == content.keep.analysed);
     let mut record = view.empty(drawn);
     if let Some(analysed) = analysed {
-        let channels = view.at_rate(&samples[analysed..=analysed])?;
-        record.clean_difference = view.clean_difference(&channels[0], content)?;
+        let channels = view.at_rate(&samples[analysed..=analysed]).map_err(signals)?;
+        record.clean_difference = view.clean_difference(&channels[0], content).map_err(signals)?;
     }
     Ok(record)
+}
+
+/// Part of the record at either end by which it is seen to grow.
+const END: usize = 10;
+/// Growth from the first to the last of those parts that no steady motion shows.
+const MOST_GROWTH: f64 = 10.0;
+
+/// Refuses a steady motion that grows all the time, though it has not yet grown without bound.
+fn refuse_growth(channels: &[ChannelKind], samples: &[Vec<f32>]) -> Result<(), String> {
+    let square = |part: &[f32]| part.iter().map(|&x| f64::from(x) * f64::from(x)).sum::<f64>();
+    let (mut first, mut last) = (0.0, 0.0);
+    for (_, samples) in channels.iter().zip(samples).filter(|(channel, _)| is_acceleration(**channel)) {
+        let part = samples.len() / END;
+        first += square(&samples[..part]);
+        last += square(&samples[samples.len() - part..]);
+    }
+    if last > MOST_GROWTH * MOST_GROWTH * first {
+        let growth = (last / first).sqrt();
+        return Err(format!(
+            "the motion grows from the record's start to its end, by a factor of {growth:.0}: damping does not take what \
+             the varying mesh stiffness puts into a mode; raise rig.damping_ratio or use other teeth or another speed"
+        ));
+    }
+    Ok(())
 }
 
 fn is_acceleration(channel: ChannelKind) -> bool {

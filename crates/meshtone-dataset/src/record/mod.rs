@@ -8,7 +8,7 @@ pub use start::Start;
 
 use meshtone::batch::Keep as BatchKeep;
 use meshtone::sampling::TimeGrid;
-use meshtone::signal::{IndicatorValue, SignalError};
+use meshtone::signal::IndicatorValue;
 use meshtone::Stages;
 use meshtone::solver::{Block, Output, Recorder};
 
@@ -75,7 +75,7 @@ impl Recorder for Samples {
 
 impl<F: Fn(usize) -> Option<Role> + Sync> BatchKeep for KeepRecords<'_, F> {
     type Recorder = Samples;
-    type Kept = Result<Box<Record>, SignalError>;
+    type Kept = Result<Box<Record>, String>;
 
     fn outputs(&self) -> Vec<Output> {
         self.content.keep.simulated().into_iter().map(|channel| channel.output()).collect()
@@ -94,8 +94,7 @@ impl<F: Fn(usize) -> Option<Role> + Sync> BatchKeep for KeepRecords<'_, F> {
         match (self.role)(index) {
             Some(Role::Record(drawn)) => chain::record(self.content, drawn, &stages, &samples.channels),
             Some(Role::HealthyTwin(drawn)) => chain::twin(self.content, drawn, &stages, &samples.channels),
-            // Every simulation has a role.
-            None => Err(SignalError::TooFew { what: "records", given: 0, needed: 1 }),
+            None => Err("it was not asked for".to_owned()),
         }
         .map(Box::new)
     }

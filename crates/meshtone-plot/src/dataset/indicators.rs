@@ -17,6 +17,8 @@ const NAME_LEFT: f64 = 40.0;
 const NAMES_HEIGHT: f64 = 20.0;
 const NAME_LINES: usize = 3;
 const LINE: f64 = 15.0;
+/// One of so many values at either end is left out.
+const EXTREMES: usize = 300;
 /// Dots of a class, at most.
 const MOST_DOTS: usize = 400;
 
@@ -37,7 +39,7 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, preview: &DatasetPreview) {
 fn one(canvas: &mut Canvas, area: Area, name: &str, values: &[f64], preview: &DatasetPreview) {
     let logarithms: Vec<f64> = values.iter().map(|value| value.log10()).collect();
     let classes = preview.classes.len().max(1);
-    let y = axes::range(logarithms.iter().copied(), 0.06);
+    let y = axes::range(without_extremes(&logarithms).into_iter(), 0.06);
     let axes = Axes::new(area, [0.0, classes as f64], y);
     axes.title(canvas, name);
     axes.y_axis(canvas, &Ticks::of_logarithms(y[0], y[1]).thinned(6), "", NAME_LEFT);
@@ -45,7 +47,7 @@ fn one(canvas: &mut Canvas, area: Area, name: &str, values: &[f64], preview: &Da
         let mut of_class: Vec<f64> = logarithms
             .iter()
             .zip(&preview.class_of)
-            .filter(|(value, of)| axes::drawable(**value) && **of == class)
+            .filter(|(value, of)| (y[0]..=y[1]).contains(*value) && **of == class)
             .map(|(value, _)| *value)
             .collect();
         let every = of_class.len().div_ceil(MOST_DOTS).max(1);
@@ -61,6 +63,14 @@ fn one(canvas: &mut Canvas, area: Area, name: &str, values: &[f64], preview: &Da
         }
     }
     axes.frame(canvas);
+}
+
+/// The values but for a few at the ends, which would leave little room for the others.
+fn without_extremes(values: &[f64]) -> Vec<f64> {
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|value| axes::drawable(*value)).collect();
+    sorted.sort_by(f64::total_cmp);
+    let few = sorted.len() / EXTREMES;
+    sorted[few..sorted.len() - few].to_vec()
 }
 
 fn names(canvas: &mut Canvas, area: Area, bottom: f64, preview: &DatasetPreview) {

@@ -13,8 +13,10 @@ const BINS: usize = 16;
 /// (px) Between two plots below each other: the numbers of the upper and the title of the lower one.
 const GAP: [f64; 2] = [34.0, 52.0];
 const TALLEST: f64 = 150.0;
-/// Positive values that span more than this ratio are drawn by their logarithms.
+/// Positive values that span more than this ratio are drawn by their logarithms, if their median is below this part of the sum of
+/// the least and the largest.
 const LOGARITHMIC: f64 = 15.0;
+const SKEWED: f64 = 0.3;
 /// Fewer different values than this have a bar each.
 const FEW: usize = 12;
 
@@ -41,7 +43,10 @@ fn histogram(canvas: &mut Canvas, area: Area, name: &str, values: &[f64], previe
         finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
     };
     let [low, high] = ends(values);
-    let logarithmic = low > 0.0 && high > LOGARITHMIC * low;
+    let mut by_size: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    by_size.sort_by(f64::total_cmp);
+    let median = by_size.get(by_size.len() / 2).copied().unwrap_or(0.0);
+    let logarithmic = low > 0.0 && high > LOGARITHMIC * low && median < SKEWED * (low + high);
     let values: Vec<f64> = values.iter().map(|value| if logarithmic { value.log10() } else { *value }).collect();
     let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);
