@@ -61,7 +61,8 @@ fn main() {
         let control = GenerateControl { progress: &|_, _| {}, cancelled: &AtomicBool::new(false) };
         let (start, processor) = (Instant::now(), processor_s());
         let to = Destination::directory(directory.path());
-        let generated = pool.install(|| generate(&plan, &to, Part::WHOLE, &control)).expect("it is generated");
+        let generated =
+            pool.install(|| generate(&plan, &to, Part::WHOLE, &control)).expect("it is generated");
         let (wall, used) = (start.elapsed().as_secs_f64(), processor_s() - processor);
         let made = generated.written_records as f64;
         println!(

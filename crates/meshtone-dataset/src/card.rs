@@ -44,13 +44,18 @@ fn head(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Result
         PlanFile::NAMES[1]
     )?;
     writeln!(text, "**Licence of the data: {}.**\n", about.licence)?;
-    writeln!(text, "![Examples of each class, distributions of the keys, indicators by class]({})\n", PREVIEW[1])
+    writeln!(
+        text,
+        "![Examples of each class, distributions of the keys, indicators by class]({})\n",
+        PREVIEW[1]
+    )
 }
 
 fn counts(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Result {
     writeln!(text, "## What is in it\n")?;
     let splits: Vec<&str> = plan.content.splits.names();
-    let splits: Vec<&str> = splits.into_iter().filter(|name| contents.units_of_split.contains_key(*name)).collect();
+    let splits: Vec<&str> =
+        splits.into_iter().filter(|name| contents.units_of_split.contains_key(*name)).collect();
     writeln!(text, "| class | {} | all |", splits.join(" | "))?;
     writeln!(text, "|---|{}---:|", "---:|".repeat(splits.len()))?;
     let count = |split: &str, label: &str| {
@@ -65,7 +70,8 @@ fn counts(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Resu
         let numbers = splits.iter().map(|split| count(split, &class.label)).collect();
         writeln!(text, "{}", row(&class.label, numbers))?;
     }
-    let units = splits.iter().map(|split| contents.units_of_split.get(*split).copied().unwrap_or(0)).collect();
+    let units =
+        splits.iter().map(|split| contents.units_of_split.get(*split).copied().unwrap_or(0)).collect();
     writeln!(text, "{}\n", row("*units*", units))?;
     writeln!(
         text,
@@ -157,7 +163,11 @@ fn columns_table(text: &mut String, columns: &[Column], contents: &Contents) -> 
         .map(|column| format!("`{}`", column.name))
         .collect();
     if !indicators.is_empty() {
-        writeln!(text, "\nIndicators of the analysed channel over the gear's revolutions: {}.", indicators.join(", "))?;
+        writeln!(
+            text,
+            "\nIndicators of the analysed channel over the gear's revolutions: {}.",
+            indicators.join(", ")
+        )?;
     }
     writeln!(text)
 }

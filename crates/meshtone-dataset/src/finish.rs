@@ -56,7 +56,11 @@ struct Sampled {
 }
 
 /// Writes data card, preview and manifest, where all shards are there.
-pub(crate) fn finish_if_complete(plan: &Plan, shards: Shards, to: &Destination) -> Result<bool, DatasetError> {
+pub(crate) fn finish_if_complete(
+    plan: &Plan,
+    shards: Shards,
+    to: &Destination,
+) -> Result<bool, DatasetError> {
     let names = manifest::names(to)?;
     if (0..shards.count()).any(|shard| !names.contains(&Shards::name(shard))) {
         return Ok(false);
@@ -106,7 +110,8 @@ fn contents(
     let splits = plan.content.splits.names();
     let counts = plan.content.splits.unit_counts(plan.content.units);
     debug_assert!(sampler.records() == shards.records);
-    contents.units_of_split = splits.into_iter().map(str::to_owned).zip(counts).filter(|(_, n)| *n > 0).collect();
+    contents.units_of_split =
+        splits.into_iter().map(str::to_owned).zip(counts).filter(|(_, n)| *n > 0).collect();
     Ok(Some(contents))
 }
 
@@ -121,8 +126,7 @@ impl Contents {
             *self.counts.entry((split.clone(), label.clone())).or_default() += 1;
         }
         let records = numbers(batch, "record");
-        let chosen: Vec<usize> =
-            (0..records.len()).filter(|&i| (records[i] as i64) % every == 0).collect();
+        let chosen: Vec<usize> = (0..records.len()).filter(|&i| (records[i] as i64) % every == 0).collect();
         for (i, label) in labels.iter().enumerate() {
             self.sampled.first.entry(label.clone()).or_insert((shard, row + i));
         }
@@ -155,7 +159,9 @@ fn numbers(batch: &RecordBatch, name: &str) -> Vec<f64> {
         return column.iter().map(|value| value.map_or(f64::NAN, f64::from)).collect();
     }
     let column = column.as_primitive_opt::<Int64Type>();
-    column.map(|column| column.iter().map(|value| value.map_or(f64::NAN, |n| n as f64)).collect()).unwrap_or_default()
+    column
+        .map(|column| column.iter().map(|value| value.map_or(f64::NAN, |n| n as f64)).collect())
+        .unwrap_or_default()
 }
 
 fn preview(plan: &Plan, contents: &Contents, to: &Destination, columns: &[Column]) -> DatasetPreview {
@@ -177,7 +183,8 @@ fn preview(plan: &Plan, contents: &Contents, to: &Destination, columns: &[Column
         values: sampled.values.get(&column.name).cloned().unwrap_or_default(),
     });
     let indicators = INDICATORS.iter().filter_map(|name| {
-        let column = columns.iter().find(|column| column.kind == ColumnKind::Indicator((*name).to_owned()))?;
+        let column =
+            columns.iter().find(|column| column.kind == ColumnKind::Indicator((*name).to_owned()))?;
         Some(Indicator { name: column.name.clone(), values: sampled.values.get(&column.name)?.clone() })
     });
     let failures = contents.failures.len() as u64;

@@ -128,8 +128,13 @@ pub fn generate(
     let sampler = Sampler::new(&plan.content).map_err(|error| manifest::plan_error(plan, error))?;
     let shards = Shards::new(plan, &sampler);
     let begun = manifest::begin(plan, to)?;
-    let mut generated =
-        Generated { kept_shards: 0, written_shards: 0, written_records: 0, failures: Vec::new(), complete: true };
+    let mut generated = Generated {
+        kept_shards: 0,
+        written_shards: 0,
+        written_records: 0,
+        failures: Vec::new(),
+        complete: true,
+    };
     if begun == Begun::Complete {
         generated.kept_shards = shards.count();
         return Ok(generated);
@@ -197,12 +202,13 @@ impl Run<'_> {
     fn simulate(&self, missing: &[u64], sender: SyncSender<Item>, stop: &AtomicBool) {
         let asked = Arc::new(Mutex::new(Asked::default()));
         let indices: VecDeque<u64> = missing.iter().flat_map(|&shard| self.shards.range(shard)).collect();
-        let source =
-            Source { run: self, indices, ready: VecDeque::new(), asked: asked.clone(), stop };
+        let source = Source { run: self, indices, ready: VecDeque::new(), asked: asked.clone(), stop };
         let role = |number: usize| lock(&asked).roles.get(&number).map(|(role, _)| role.clone());
         let keep = KeepRecords { content: &self.plan.content, role };
         // Nobody listens any more where writing has failed.
-        let send = |item: Item| stop.store(sender.send(item).is_err() | stop.load(Ordering::Relaxed), Ordering::Relaxed);
+        let send = |item: Item| {
+            stop.store(sender.send(item).is_err() | stop.load(Ordering::Relaxed), Ordering::Relaxed)
+        };
         let control = Control { cancelled: stop, ..Control::default() };
         simulate_many(source, &keep, &control, |number, result| {
             let Some((role, failed)) = lock(&asked).roles.remove(&number) else { return };
@@ -238,7 +244,8 @@ impl Run<'_> {
         let items = items;
         let columns = shard::columns(self.plan);
         let done = AtomicU64::new(0);
-        let result = missing.iter().map(|&shard| self.write_shard(shard, &columns, &items, (&done, records), stop));
+        let result =
+            missing.iter().map(|&shard| self.write_shard(shard, &columns, &items, (&done, records), stop));
         let result: Result<Vec<_>, _> = result.collect();
         if result.is_err() {
             stop.store(true, Ordering::Relaxed);
@@ -274,7 +281,9 @@ impl Run<'_> {
         let written =
             self.to.write(&Shards::name(shard), |file| shard::write(file, content, columns, metadata, next));
         written.map_err(|error| match error {
-            DatasetError::File { source, .. } if source.kind() == io::ErrorKind::Interrupted => DatasetError::Stopped,
+            DatasetError::File { source, .. } if source.kind() == io::ErrorKind::Interrupted => {
+                DatasetError::Stopped
+            }
             error => error,
         })
     }

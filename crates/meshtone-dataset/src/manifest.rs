@@ -61,7 +61,10 @@ pub(crate) fn look(plan: &Plan, to: &Destination) -> Result<Begun, DatasetError>
         };
     };
     let manifest = read(&text).ok_or_else(|| {
-        DatasetError::refused(format!("{to}/{MANIFEST} is not one of Meshtone"), "name another directory with -o")
+        DatasetError::refused(
+            format!("{to}/{MANIFEST} is not one of Meshtone"),
+            "name another directory with -o",
+        )
     })?;
     check_same(plan, to, &manifest)?;
     Ok(if manifest.complete { Begun::Complete } else { Begun::Incomplete })
@@ -70,12 +73,19 @@ pub(crate) fn look(plan: &Plan, to: &Destination) -> Result<Begun, DatasetError>
 fn check_same(plan: &Plan, to: &Destination, manifest: &ReadManifest) -> Result<(), DatasetError> {
     let version = env!("CARGO_PKG_VERSION");
     if manifest.version != version {
-        let problem = format!("the data set in {to} was begun by version {} of Meshtone; this is {version}", manifest.version);
-        return Err(DatasetError::refused(problem, "go on with that version, or name another directory with -o"));
+        let problem = format!(
+            "the data set in {to} was begun by version {} of Meshtone; this is {version}",
+            manifest.version
+        );
+        return Err(DatasetError::refused(
+            problem,
+            "go on with that version, or name another directory with -o",
+        ));
     }
     if manifest.plan != plan.hash().to_string() {
         let problem = format!("the data set in {to} was begun with another plan");
-        let help = format!("{} there is that plan; name another directory for this one with -o", PlanFile::NAMES[0]);
+        let help =
+            format!("{} there is that plan; name another directory for this one with -o", PlanFile::NAMES[0]);
         return Err(DatasetError::refused(problem, help));
     }
     Ok(())
@@ -150,9 +160,9 @@ pub(crate) fn complete(plan: &Plan, shards: Shards, contents: &Contents) -> Stri
     manifest.insert("counts".into(), table(&contents.counts));
     let failures = contents.failures.iter().map(|f| json!({ "record": f.record, "reason": f.reason }));
     manifest.insert("failures".into(), failures.collect());
-    let files = contents.files.iter().map(|file| {
-        json!({ "name": file.name, "bytes": file.bytes, "sha256": file.sha256, "rows": file.rows })
-    });
+    let files = contents.files.iter().map(
+        |file| json!({ "name": file.name, "bytes": file.bytes, "sha256": file.sha256, "rows": file.rows }),
+    );
     manifest.insert("files".into(), files.collect());
     text(&manifest)
 }

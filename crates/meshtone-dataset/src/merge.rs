@@ -19,7 +19,10 @@ use crate::store::Destination;
 /// A place without a data set; parts of different plans or versions; shards that no part has; what cannot be read or written.
 pub fn merge(parts: &[Destination], to: &Destination) -> Result<Generated, DatasetError> {
     let Some(first) = parts.first() else {
-        return Err(DatasetError::refused("there are no parts to merge", "name the directories of the parts"));
+        return Err(DatasetError::refused(
+            "there are no parts to merge",
+            "name the directories of the parts",
+        ));
     };
     let plan = plan_of(first)?;
     for part in parts {
@@ -46,11 +49,22 @@ pub fn merge(parts: &[Destination], to: &Destination) -> Result<Generated, Datas
     }
     if let Some(shard) = missing.first() {
         let (count, all) = (missing.len(), shards.count());
-        let problem = format!("{count} of {all} shards are in none of the parts; the first is {}", Shards::name(*shard));
-        return Err(DatasetError::refused(problem, "make them: run `meshtone dataset PLAN.toml -o DIR --part I/N` again"));
+        let problem = format!(
+            "{count} of {all} shards are in none of the parts; the first is {}",
+            Shards::name(*shard)
+        );
+        return Err(DatasetError::refused(
+            problem,
+            "make them: run `meshtone dataset PLAN.toml -o DIR --part I/N` again",
+        ));
     }
-    let mut merged =
-        Generated { kept_shards: 0, written_shards: 0, written_records: 0, failures: Vec::new(), complete: true };
+    let mut merged = Generated {
+        kept_shards: 0,
+        written_shards: 0,
+        written_records: 0,
+        failures: Vec::new(),
+        complete: true,
+    };
     if manifest::begin(&plan, to)? == Begun::Complete {
         merged.kept_shards = shards.count();
         return Ok(merged);
@@ -80,7 +94,10 @@ fn plan_of(place: &Destination) -> Result<Plan, DatasetError> {
     let path = directory.path().join(PlanFile::NAMES[0]);
     if !path.exists() {
         let help = "name the directories that `meshtone dataset` has written to";
-        return Err(DatasetError::refused(format!("{place} is no data set: it has no {}", PlanFile::NAMES[0]), help));
+        return Err(DatasetError::refused(
+            format!("{place} is no data set: it has no {}", PlanFile::NAMES[0]),
+            help,
+        ));
     }
     Ok(Plan::read_copy(&path)?)
 }

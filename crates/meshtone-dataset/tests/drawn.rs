@@ -20,7 +20,11 @@ fn value(record: &DrawnRecord, key: &str) -> Option<f64> {
 
 fn larger(records: u64, units: u64, more: &str) -> Plan {
     let text = FAST.replace("records = 60", &format!("records = {records}"));
-    plan(&text.replace("units = 10", &format!("units = {units}")).replace("[keep]", &format!("{more}\n[keep]")))
+    plan(
+        &text
+            .replace("units = 10", &format!("units = {units}"))
+            .replace("[keep]", &format!("{more}\n[keep]")),
+    )
 }
 
 #[test]
@@ -41,7 +45,11 @@ fn a_unit_is_in_one_split_with_the_same_wheels() {
         for key in ["quality.din_grade", "rig.damping_ratio"] {
             assert!(records.iter().all(|record| value(record, key) == value(first, key)));
         }
-        assert!(records.iter().all(|record| record.split == first.split && record.wheels_seed == first.wheels_seed));
+        assert!(
+            records
+                .iter()
+                .all(|record| record.split == first.split && record.wheels_seed == first.wheels_seed)
+        );
         // Every class, about evenly.
         for class in 0..3 {
             let count = records.iter().filter(|record| record.class == class).count();
@@ -50,7 +58,9 @@ fn a_unit_is_in_one_split_with_the_same_wheels() {
         // Their profile errors are the same, those of other units are not; their seeds differ.
         let [a, b] = [first, records.last().unwrap()].map(|record| sampler.scenario(record).unwrap());
         assert_ne!(a.seed, b.seed);
-        let errors = |scenario: &meshtone::scenario::Scenario| meshtone::stages(scenario).unwrap().profile_errors.unwrap();
+        let errors = |scenario: &meshtone::scenario::Scenario| {
+            meshtone::stages(scenario).unwrap().profile_errors.unwrap()
+        };
         assert_eq!(errors(&a), errors(&b));
         wheels.push(errors(&a));
     }
@@ -64,7 +74,10 @@ fn what_is_held_out_is_nowhere_else() {
     let text = "[[split.shift]]\nname = \"severe\"\npart = 0.1\nwhen = \"severity == 3\"\n\
                 [[split.shift]]\nname = \"teeth\"\npart = 0.1\nwhen = [\"gears.pinion_teeth == 18\", \"gears.gear_teeth == 36\"]\n";
     let pairs = "[[vary]]\nkeys = [\"gears.pinion_teeth\", \"gears.gear_teeth\"]\nchoice = [[20, 40], [18, 36], [19, 38]]";
-    let text = format!("{}{text}", FAST.replace("train = 0.5", "train = 0.3").replace("[keep]", &format!("{pairs}\n[keep]")));
+    let text = format!(
+        "{}{text}",
+        FAST.replace("train = 0.5", "train = 0.3").replace("[keep]", &format!("{pairs}\n[keep]"))
+    );
     let plan = plan(&text.replace("records = 60", "records = 3000").replace("units = 10", "units = 50"));
     let names = plan.content.splits.names();
     let mut counts: BTreeMap<&str, u32> = BTreeMap::new();
@@ -118,7 +131,11 @@ fn designs_fill_the_ranges_in_every_class_and_unit() {
                 .collect();
             speeds.sort_by(f64::total_cmp);
             let count = speeds.len() as f64;
-            let largest = speeds.iter().enumerate().map(|(i, x)| (x - (i as f64 + 0.5) / count).abs()).fold(0.0, f64::max);
+            let largest = speeds
+                .iter()
+                .enumerate()
+                .map(|(i, x)| (x - (i as f64 + 0.5) / count).abs())
+                .fold(0.0, f64::max);
             // Kolmogorov's statistic of independent draws is 1.36/√1024 = 0.043 in one of 20 cases.
             let allowed = if design == "independent" { 0.07 } else { 0.002 };
             assert!(largest < allowed, "{design} {class}: {largest}");
@@ -142,12 +159,15 @@ fn joint_rules() {
     let more = "[[vary]]\nkey = \"gears.module_mm\"\ngrid = [2, 3, 4]\n\
                 [[vary]]\nkey = \"gears.face_width_mm\"\nuniform = [4, 6]\ntimes = \"gears.module_mm\"\n\
                 [[vary]]\nkey = \"rig.eccentricity_mm\"\nfixed = 0.01\nplus = \"0.001 * gears.module_mm\"";
-    let text = FAST.replace("uniform = [1.0, 5.0]", "uniform = [0.2, 0.6]\nfraction_of = \"tooth.height_mm\"");
-    let text = text.replace("seed = 3", "seed = 3\nconstraints = [\"gears.face_width_mm > 9\"]").replace("chip_width_mm = 8.0", "chip_width_mm = 5.0");
+    let text =
+        FAST.replace("uniform = [1.0, 5.0]", "uniform = [0.2, 0.6]\nfraction_of = \"tooth.height_mm\"");
+    let text = text
+        .replace("seed = 3", "seed = 3\nconstraints = [\"gears.face_width_mm > 9\"]")
+        .replace("chip_width_mm = 8.0", "chip_width_mm = 5.0");
     let plan = plan(&text.replace("[keep]", &format!("{more}\n[keep]")));
     for record in all(&plan) {
-        let [module, width, eccentricity] =
-            ["gears.module_mm", "gears.face_width_mm", "rig.eccentricity_mm"].map(|key| value(&record, key).unwrap());
+        let [module, width, eccentricity] = ["gears.module_mm", "gears.face_width_mm", "rig.eccentricity_mm"]
+            .map(|key| value(&record, key).unwrap());
         assert!([2.0, 3.0, 4.0].contains(&module));
         assert!(width > 9.0 && (4.0..6.0).contains(&(width / module)), "{width} {module}");
         assert!((eccentricity - 0.01 - 0.001 * module).abs() < 1e-15);

@@ -71,11 +71,16 @@ fn stopped_damaged_and_gone_on_with() {
         assert!(matches!(result, Err(DatasetError::Stopped)) || after == 40, "{result:?}");
     }
     // A shard that is no whole file, and what a killed run leaves.
-    fs::write(stopped.join("data/records-000001.parquet"), &fs::read(whole.join("data/records-000001.parquet")).unwrap()[..99]).unwrap();
+    fs::write(
+        stopped.join("data/records-000001.parquet"),
+        &fs::read(whole.join("data/records-000001.parquet")).unwrap()[..99],
+    )
+    .unwrap();
     fs::write(stopped.join("data/.meshtone-unfinished"), "half a shard").unwrap();
     fs::remove_file(stopped.join("README.md")).ok();
     let manifest = fs::read_to_string(stopped.join("manifest.json")).unwrap();
-    fs::write(stopped.join("manifest.json"), manifest.replace("\"complete\": true", "\"complete\": false")).unwrap();
+    fs::write(stopped.join("manifest.json"), manifest.replace("\"complete\": true", "\"complete\": false"))
+        .unwrap();
     assert!(run(&plan, &to, Part::WHOLE, 2).unwrap().complete);
     assert_eq!(differing(&bytes(&whole), &bytes(&stopped)), [""; 0]);
 }
@@ -112,7 +117,9 @@ fn other_plans_and_other_files_are_refused() {
     // Layout, comments and words for the data card change nothing.
     let words = format!("title = \"Gears\" # a title\n{FAST}");
     run(&plan(&words), &to, Part { number: 1, of: 8 }, 1).unwrap();
-    for (from, into) in [("seed = 3", "seed = 4"), ("uniform = [30.0, 60.0]", "uniform = [30.0, 61.0]"), ("8e3", "9e3")] {
+    for (from, into) in
+        [("seed = 3", "seed = 4"), ("uniform = [30.0, 60.0]", "uniform = [30.0, 61.0]"), ("8e3", "9e3")]
+    {
         let refused = run(&plan(&FAST.replace(from, into)), &to, Part::WHOLE, 1).unwrap_err();
         assert!(refused.to_string().contains("begun with another plan"), "{refused}");
     }
@@ -128,7 +135,10 @@ fn other_plans_and_other_files_are_refused() {
 }
 
 fn bytes_of_names(directory: &std::path::Path) -> Vec<String> {
-    fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect()
+    fs::read_dir(directory)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+        .collect()
 }
 
 #[test]
@@ -146,7 +156,8 @@ fn records_that_fail_are_listed_and_the_rest_is_made() {
     let manifest = fs::read_to_string(directory.path().join("set/manifest.json")).unwrap();
     let manifest: serde_json::Value = serde_json::from_str(&manifest).unwrap();
     assert_eq!(manifest["failures"].as_array().unwrap().len(), failed.len());
-    let rows: u64 = manifest["files"].as_array().unwrap().iter().map(|file| file["rows"].as_u64().unwrap()).sum();
+    let rows: u64 =
+        manifest["files"].as_array().unwrap().iter().map(|file| file["rows"].as_u64().unwrap()).sum();
     assert_eq!(rows + failed.len() as u64, 60);
     // The same when it is gone on with.
     let again = Destination::directory(directory.path().join("again"));

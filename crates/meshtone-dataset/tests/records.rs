@@ -51,7 +51,11 @@ impl Made {
     }
 
     fn number(&self, name: &str, row: usize) -> f64 {
-        self.rows.column_by_name(name).unwrap_or_else(|| panic!("{name}")).as_primitive::<Float64Type>().value(row)
+        self.rows
+            .column_by_name(name)
+            .unwrap_or_else(|| panic!("{name}"))
+            .as_primitive::<Float64Type>()
+            .value(row)
     }
 
     fn tooth(&self, row: usize) -> Option<i32> {
@@ -77,7 +81,8 @@ fn rows_are_the_plans_records() {
     let made = made(&plan);
     let sampler = Sampler::new(&plan.content).unwrap();
     assert_eq!(made.rows.num_rows(), 60);
-    let integers = |name: &str| made.rows.column_by_name(name).unwrap().as_primitive::<Int64Type>().values().to_vec();
+    let integers =
+        |name: &str| made.rows.column_by_name(name).unwrap().as_primitive::<Int64Type>().values().to_vec();
     for row in 0..60 {
         let record = sampler.record(row as u64).unwrap();
         assert_eq!(integers("record")[row], row as i64);
@@ -104,9 +109,14 @@ fn the_raw_channel_gives_the_same_average() {
         let raw = made.signal("vertical_g", row);
         let phase = ShaftPhase::constant(made.number("gear_speed_hz", row), 8e3, raw.len()).unwrap();
         let record = process_channel(&raw, &phase, 40, &ChainSettings::default()).unwrap();
-        for (name, values) in [("average_g", &record.average.values), ("difference_g", &record.parts.difference)] {
+        for (name, values) in
+            [("average_g", &record.average.values), ("difference_g", &record.parts.difference)]
+        {
             let kept = made.signal(name, row);
-            assert!(kept.iter().zip(values).all(|(a, b)| (a - b).abs() <= 1e-7 * rms(values).max(b.abs())), "{name}");
+            assert!(
+                kept.iter().zip(values).all(|(a, b)| (a - b).abs() <= 1e-7 * rms(values).max(b.abs())),
+                "{name}"
+            );
         }
         assert_eq!(record.average.revolutions, 20);
         for value in record.indicators.table("g") {
@@ -119,9 +129,12 @@ fn the_raw_channel_gives_the_same_average() {
 /// A record is its scenario's simulation, begun at the mark and brought to the data set's rate.
 #[test]
 fn the_simulation_is_in_the_record() {
-    let plan = plan(&FAST.replace("[[vary]]\nkey = \"noise.snr_db\"\nuniform = [10.0, 30.0]\n", "")
-        // Speeds at which the ratio of the rates is one of small numbers, for the other resampling.
-        .replace("uniform = [30.0, 60.0]", "choice = [32.0, 40.0, 52.0]"));
+    let plan = plan(
+        &FAST
+            .replace("[[vary]]\nkey = \"noise.snr_db\"\nuniform = [10.0, 30.0]\n", "")
+            // Speeds at which the ratio of the rates is one of small numbers, for the other resampling.
+            .replace("uniform = [30.0, 60.0]", "choice = [32.0, 40.0, 52.0]"),
+    );
     let made = made(&plan);
     let sampler = Sampler::new(&plan.content).unwrap();
     for row in 0..6 {
@@ -153,7 +166,9 @@ fn the_fault_is_at_its_tooth() {
     for (made, is_aligned) in [(&random, false), (&aligned, true)] {
         for row in (0..60).filter(|&row| made.text("label", row) == "missing") {
             let difference = made.signal("difference_g", row);
-            let largest = (0..difference.len()).max_by(|&a, &b| difference[a].abs().total_cmp(&difference[b].abs())).unwrap();
+            let largest = (0..difference.len())
+                .max_by(|&a, &b| difference[a].abs().total_cmp(&difference[b].abs()))
+                .unwrap();
             let pitch = largest as f64 / difference.len() as f64 * 40.0;
             let tooth = made.tooth(row).unwrap();
             // It rings after its tooth came into contact, or should have.
@@ -170,9 +185,15 @@ fn the_fault_is_at_its_tooth() {
 
 #[test]
 fn noise_is_as_large_as_it_says_and_of_each_channel_its_own() {
-    let without = made(&plan(&FAST.replace("key = \"noise.snr_db\"\nuniform = [10.0, 30.0]", "key = \"noise.level_g\"\nuniform = [0.0, 1e-12]")));
+    let without = made(&plan(&FAST.replace(
+        "key = \"noise.snr_db\"\nuniform = [10.0, 30.0]",
+        "key = \"noise.level_g\"\nuniform = [0.0, 1e-12]",
+    )));
     let with = made(&plan(FAST));
-    let level = made(&plan(&FAST.replace("key = \"noise.snr_db\"\nuniform = [10.0, 30.0]", "key = \"noise.level_g\"\nuniform = [1.999999, 2.0]")));
+    let level = made(&plan(&FAST.replace(
+        "key = \"noise.snr_db\"\nuniform = [10.0, 30.0]",
+        "key = \"noise.level_g\"\nuniform = [1.999999, 2.0]",
+    )));
     for row in 0..20 {
         let noise = |made: &Made, name: &str| -> Vec<f64> {
             let (noisy, clean) = (made.signal(name, row), without.signal(name, row));
@@ -192,7 +213,9 @@ fn noise_is_as_large_as_it_says_and_of_each_channel_its_own() {
 #[test]
 fn a_fluctuating_speed_is_followed() {
     let text = FAST.replace("brake_torque_nm = 200.0", "brake_torque_nm = 200.0\nspeed_fluctuation_hz = 0.2");
-    let text = text.replace("[[vary]]\nkey = \"noise.snr_db\"\nuniform = [10.0, 30.0]\n", "").replace("records = 60", "records = 12");
+    let text = text
+        .replace("[[vary]]\nkey = \"noise.snr_db\"\nuniform = [10.0, 30.0]\n", "")
+        .replace("records = 60", "records = 12");
     let made = made(&plan(&text));
     for row in 0..12 {
         let angle = made.number("gear_angle_rev", row);
@@ -220,7 +243,8 @@ fn enhanced_signals_are_those_of_the_hybrid_stage() {
     let tuned = "[enhancement]\nwidth_ratio = 0.5\nfault_to_harmonics_ratio = 1.0\nnoise_level = 0.0\n\
                  [signal]\nsampling_rate_hz = 8e3\n[[key]]\nkey = \"rig.damping_ratio\"\nvalue = 0.08\n";
     std::fs::write(directory.path().join("tuned.toml"), tuned).unwrap();
-    let text = FAST.replace("seed = 3", "seed = 3\ntuned = \"tuned.toml\"").replace("records = 60", "records = 24");
+    let text =
+        FAST.replace("seed = 3", "seed = 3\ntuned = \"tuned.toml\"").replace("records = 60", "records = 24");
     let path = directory.path().join("plan.toml");
     std::fs::write(&path, text).unwrap();
     let plan = Plan::read(&path).unwrap();
@@ -239,7 +263,8 @@ fn enhanced_signals_are_those_of_the_hybrid_stage() {
     // Merging reads the plan's copies.
     let set = directory.path().join("set");
     run(&plan, &Destination::directory(&set), Part { number: 1, of: 2 }, 2).unwrap();
-    run(&plan, &Destination::directory(directory.path().join("other")), Part { number: 2, of: 2 }, 2).unwrap();
+    run(&plan, &Destination::directory(directory.path().join("other")), Part { number: 2, of: 2 }, 2)
+        .unwrap();
     let parts = [Destination::directory(&set), Destination::directory(directory.path().join("other"))];
     assert!(meshtone_dataset::merge::merge(&parts, &parts[0]).unwrap().complete);
 }

@@ -153,7 +153,9 @@ impl Make {
             return ProgressBar::hidden();
         }
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos} of {len} records, {per_sec}, {eta} left") {
+        if let Ok(style) =
+            ProgressStyle::with_template("{bar:30} {pos} of {len} records, {per_sec}, {eta} left")
+        {
             bar.set_style(style);
         }
         bar
@@ -175,7 +177,8 @@ impl Scenario {
     fn run(&self) -> Result<(), Failure> {
         let plan = read_plan(&self.plan)?;
         let name = self.plan.display();
-        let refuse = |problem: String| Failure::bad_input(format!("{name}: record {}: {problem}", self.record));
+        let refuse =
+            |problem: String| Failure::bad_input(format!("{name}: record {}: {problem}", self.record));
         if self.record >= plan.records() {
             return Err(refuse(format!("there are {} records, counted from 0", plan.records())));
         }
@@ -184,7 +187,10 @@ impl Scenario {
         let scenario = sampler.scenario(&record).map_err(|error| refuse(error.to_string()))?;
         let label = &plan.content.classes[record.class].label;
         let split = plan.content.splits.names()[record.split];
-        let head = format!("# Record {} of {name}: \"{label}\", severity {}, unit {}, {split}.\n", self.record, record.severity, record.unit);
+        let head = format!(
+            "# Record {} of {name}: \"{label}\", severity {}, unit {}, {split}.\n",
+            self.record, record.severity, record.unit
+        );
         print(&(head + &scenario.to_toml()))
     }
 }
@@ -214,8 +220,16 @@ fn summary(plan: &Plan, generated: &Generated, to: &Destination, part: Part) -> 
         generated.kept_shards
     );
     let _ = match (generated.complete, part == Part::WHOLE) {
-        (true, _) => writeln!(text, "  complete: {} records of {} units, see README.md there", plan.records(), plan.content.units),
-        (false, _) => writeln!(text, "  not complete: other parts are missing; `meshtone dataset merge` puts parts together"),
+        (true, _) => writeln!(
+            text,
+            "  complete: {} records of {} units, see README.md there",
+            plan.records(),
+            plan.content.units
+        ),
+        (false, _) => writeln!(
+            text,
+            "  not complete: other parts are missing; `meshtone dataset merge` puts parts together"
+        ),
     };
     let _ = writeln!(text, "\n{to}");
     text

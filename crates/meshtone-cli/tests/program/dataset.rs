@@ -46,7 +46,10 @@ fn bytes(directory: &Path) -> BTreeMap<String, Vec<u8>> {
         for entry in std::fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
             if path.is_file() {
-                files.insert(path.strip_prefix(directory).unwrap().display().to_string(), std::fs::read(&path).unwrap());
+                files.insert(
+                    path.strip_prefix(directory).unwrap().display().to_string(),
+                    std::fs::read(&path).unwrap(),
+                );
             }
         }
     }
@@ -69,7 +72,8 @@ fn a_data_set_and_what_is_said_about_it() {
     for words in ["96 records in 12 shards written", "complete: 96 records of 12 units", "plan_dataset"] {
         assert!(said.contains(words), "{said}");
     }
-    let names = ["README.md", "data", "manifest.json", "plan.toml", "preview.png", "preview.svg", "scenario.toml"];
+    let names =
+        ["README.md", "data", "manifest.json", "plan.toml", "preview.png", "preview.svg", "scenario.toml"];
     assert_eq!(workplace.names("plan_dataset"), names);
     let card = String::from_utf8(workplace.read("plan_dataset/README.md")).unwrap();
     for words in ["| chipped |", "CC-BY-4.0", "parquetread", "scan_parquet", "`fault_tooth`", "| *units* |"] {
@@ -112,10 +116,21 @@ fn parts_are_merged() {
     let workplace = workplace();
     workplace.succeeds(&["dataset", "plan.toml", "-o", "whole"]);
     for part in ["1", "2", "3"] {
-        let said = stdout(&workplace.succeeds(&["dataset", "plan.toml", "-o", part, "--part", &format!("{part}/3")]));
+        let said = stdout(&workplace.succeeds(&[
+            "dataset",
+            "plan.toml",
+            "-o",
+            part,
+            "--part",
+            &format!("{part}/3"),
+        ]));
         assert!(said.contains("not complete"), "{said}");
     }
-    workplace.fails(2, &["dataset", "merge", "1", "3", "-o", "merged"], &["4 of 12 shards are in none of the parts"]);
+    workplace.fails(
+        2,
+        &["dataset", "merge", "1", "3", "-o", "merged"],
+        &["4 of 12 shards are in none of the parts"],
+    );
     workplace.succeeds(&["dataset", "merge", "1", "2", "3", "-o", "merged"]);
     assert_same(&workplace, "whole", "merged");
     workplace.fails(2, &["dataset", "merge", "absent", "-o", "merged"], &["absent is no data set"]);
@@ -129,18 +144,29 @@ fn one_record_can_be_looked_at() {
     assert!(scenario.starts_with("# Record 5 of plan.toml: \""), "{scenario}");
     workplace.write("record.toml", &scenario);
     workplace.succeeds(&["simulate", "record.toml", "--no-panel"]);
-    workplace.fails(2, &["dataset", "scenario", "plan.toml", "96"], &["there are 96 records, counted from 0"]);
+    workplace.fails(
+        2,
+        &["dataset", "scenario", "plan.toml", "96"],
+        &["there are 96 records, counted from 0"],
+    );
 }
 
 #[test]
 fn what_is_wrong_is_said_and_nothing_is_written() {
     let workplace = workplace();
-    workplace.fails(2, &["dataset", "absent.toml"], &["there is no plan absent.toml", "meshtone init dataset"]);
+    workplace.fails(
+        2,
+        &["dataset", "absent.toml"],
+        &["there is no plan absent.toml", "meshtone init dataset"],
+    );
     workplace.write("wrong.toml", PLAN.replace("uniform = [30.0, 60.0]", "uniform = [60.0, 30.0]"));
     workplace.fails(2, &["dataset", "wrong.toml"], &["wrong.toml", "line 21", "write [30.0, 60.0]"]);
     workplace.write("wrong.toml", PLAN.replace("pinion_speed_hz\"", "pinion_sped_hz\""));
     workplace.fails(2, &["dataset", "wrong.toml"], &["did you mean `operation.pinion_speed_hz`?"]);
-    workplace.write("wrong.toml", PLAN.replace("units = 12", "units = 12\nconstraints = [\"operation.pinion_speed_hz > 99\"]"));
+    workplace.write(
+        "wrong.toml",
+        PLAN.replace("units = 12", "units = 12\nconstraints = [\"operation.pinion_speed_hz > 99\"]"),
+    );
     workplace.fails(2, &["dataset", "wrong.toml"], &["line 4", "was not met by 10000"]);
     workplace.fails(2, &["dataset", "plan.toml", "-o", "."], &["has another file in it: fast.toml", "-o"]);
     workplace.fails(2, &["dataset", "plan.toml", "-o", "fast.toml"], &["fast.toml"]);
@@ -152,7 +178,11 @@ fn another_plan_in_the_same_place() {
     let workplace = workplace();
     workplace.succeeds(&["dataset", "plan.toml", "-o", "set", "--part", "1/12"]);
     workplace.write("other.toml", PLAN.replace("records = 96", "records = 97"));
-    workplace.fails(2, &["dataset", "other.toml", "-o", "set"], &["begun with another plan", "name another directory"]);
+    workplace.fails(
+        2,
+        &["dataset", "other.toml", "-o", "set"],
+        &["begun with another plan", "name another directory"],
+    );
 }
 
 #[test]
@@ -182,7 +212,17 @@ fn a_full_disk_leaves_what_can_be_gone_on_with() {
     workplace.succeeds(&["dataset", "plan.toml", "-o", "whole"]);
     let limited = "trap '' XFSZ; ulimit -f \"$1\"; shift; exec \"$@\"";
     let output = Command::new("sh")
-        .args(["-c", limited, "sh", "100", env!("CARGO_BIN_EXE_meshtone"), "dataset", "plan.toml", "-o", "full"])
+        .args([
+            "-c",
+            limited,
+            "sh",
+            "100",
+            env!("CARGO_BIN_EXE_meshtone"),
+            "dataset",
+            "plan.toml",
+            "-o",
+            "full",
+        ])
         .current_dir(workplace.directory.path())
         .output()
         .unwrap();

@@ -11,10 +11,8 @@ use crate::expression::{Condition, derived_names, underlying};
 use crate::plan::{Content, Distribution, Level, Rule};
 
 /// Keys that every record or unit has its own of.
-const OWN: [(&str, &str); 2] = [
-    ("seed", "every record has a seed of its own"),
-    ("quality.seed", "every unit has wheels of its own"),
-];
+const OWN: [(&str, &str); 2] =
+    [("seed", "every record has a seed of its own"), ("quality.seed", "every unit has wheels of its own")];
 
 /// What a class's records are drawn by.
 #[derive(Debug, Clone)]
@@ -33,7 +31,8 @@ pub(super) struct ClassRules<'a> {
 type Placed<'a> = (&'a Rule, String);
 
 pub(super) fn sampler(content: &Content) -> ReadResult<Sampler<'_>> {
-    let top: Vec<Placed> = content.rules.iter().enumerate().map(|(i, rule)| (rule, format!("vary[{i}]"))).collect();
+    let top: Vec<Placed> =
+        content.rules.iter().enumerate().map(|(i, rule)| (rule, format!("vary[{i}]"))).collect();
     let mut classes = Vec::with_capacity(content.classes.len());
     for (c, class) in content.classes.iter().enumerate() {
         let base = Scenario { fault: class.fault.clone(), ..content.base.clone() };
@@ -87,7 +86,9 @@ fn check_keys(
     let mut seen: Vec<(&str, &str)> = Vec::new();
     for (rule, place) in rules {
         let named = if rule.keys.len() == 1 { "key" } else { "keys" };
-        let refuse = |key: &str, problem: String| ScenarioError::new(format!("{place}.{named}"), format!("{key:?}"), problem);
+        let refuse = |key: &str, problem: String| {
+            ScenarioError::new(format!("{place}.{named}"), format!("{key:?}"), problem)
+        };
         for (column, key) in rule.keys.iter().enumerate() {
             if let Some((_, why)) = OWN.iter().find(|(own, _)| own == key) {
                 return Err(refuse(key, format!("cannot be varied: {why}")));
@@ -98,7 +99,10 @@ fn check_keys(
             seen.push((key, place));
             if NOISE_KEYS.contains(&key.as_str()) {
                 if seen.iter().filter(|(seen, _)| NOISE_KEYS.contains(seen)).count() > 1 {
-                    return Err(refuse(key, "noise is given both relative and in g; give one of the two".to_owned()));
+                    return Err(refuse(
+                        key,
+                        "noise is given both relative and in g; give one of the two".to_owned(),
+                    ));
                 }
                 continue;
             }
@@ -111,8 +115,11 @@ fn check_keys(
             }
             let fixed_wheels = key.starts_with("gears.") || key.starts_with("quality.");
             if fixed_wheels && rule.level == Level::Record {
-                let problem = format!("`{key}` would differ between records of one unit, which share their wheels");
-                return Err(refuse(key, problem).with_help("leave out per: it is \"unit\" for gears and quality"));
+                let problem =
+                    format!("`{key}` would differ between records of one unit, which share their wheels");
+                return Err(
+                    refuse(key, problem).with_help("leave out per: it is \"unit\" for gears and quality")
+                );
             }
             if key.starts_with("fault.") && rule.level == Level::Unit {
                 let problem = format!("`{key}` varies by unit; faults vary by record");
@@ -146,12 +153,16 @@ fn unknown(
     let fault = base.fault.as_ref().map_or("a healthy pair", |fault| fault.kind());
     let problem = format!("`{key}` is no number of the scenario ({fault}), so it cannot be varied");
     let error = ScenarioError::new(format!("{place}.{named}"), format!("{key:?}"), problem);
-    error.with_help(match nearest_name(key, known.iter().map(|number| number.key.as_str()).chain(NOISE_KEYS)) {
-        Some(nearest) => format!("did you mean `{nearest}`?"),
-        None => "`meshtone init KIND` prints every key of a kind of fault; sections are part of a key, as in \
+    error.with_help(
+        match nearest_name(key, known.iter().map(|number| number.key.as_str()).chain(NOISE_KEYS)) {
+            Some(nearest) => format!("did you mean `{nearest}`?"),
+            None => {
+                "`meshtone init KIND` prints every key of a kind of fault; sections are part of a key, as in \
                  `operation.pinion_speed_hz`"
-            .to_owned(),
-    })
+                    .to_owned()
+            }
+        },
+    )
 }
 
 /// Every rule at the top concerns some class.
@@ -163,7 +174,11 @@ fn check_top(content: &Content, top: &[Placed], classes: &[ClassRules]) -> ReadR
         if classes.iter().any(|class| rule.keys.iter().all(|key| has(class, key))) {
             continue;
         }
-        let key = rule.keys.iter().find(|key| !classes.iter().any(|class| has(class, key))).unwrap_or(&rule.keys[0]);
+        let key = rule
+            .keys
+            .iter()
+            .find(|key| !classes.iter().any(|class| has(class, key)))
+            .unwrap_or(&rule.keys[0]);
         let named = if rule.keys.len() == 1 { "key" } else { "keys" };
         let mut known = content.base.numbers();
         for class in classes {
@@ -196,7 +211,8 @@ fn in_order<'a>(
         };
         let Some(next) = waiting.iter().position(is_ready) else {
             let (rule, place) = waiting[0];
-            let problem = "depends on itself, by its own times or plus or those of the rules that it depends on";
+            let problem =
+                "depends on itself, by its own times or plus or those of the rules that it depends on";
             return Err(ScenarioError::new(place, rule.keys.join(", "), problem));
         };
         ordered.push(waiting.remove(next).0);
@@ -220,7 +236,9 @@ fn check_dependency(
     if varied.is_none() && !known.iter().any(|number| number.key == key) {
         return Err(no_such_number(place, key, known.iter().map(|number| number.key.as_str())));
     }
-    if let Some((_, other)) = varied.filter(|(other, _)| rule.level == Level::Unit && other.level == Level::Record) {
+    if let Some((_, other)) =
+        varied.filter(|(other, _)| rule.level == Level::Unit && other.level == Level::Record)
+    {
         let problem = format!("depends on `{key}`, which {other} varies by record; what a unit has cannot");
         return Err(ScenarioError::new(place, "", problem));
     }
@@ -259,14 +277,19 @@ fn check_conditions(content: &Content, classes: &[ClassRules]) -> ReadResult<()>
     let check = |place: String, condition: &Condition| {
         for key in underlying(condition.keys()) {
             let known = || classes.iter().flat_map(|class| class.numbers.keys().map(String::as_str));
-            if key != SEVERITY && !known().any(|known| known == key) && !(NOISE_KEYS.contains(&key) && varied(key)) {
+            if key != SEVERITY
+                && !known().any(|known| known == key)
+                && !(NOISE_KEYS.contains(&key) && varied(key))
+            {
                 return Err(no_such_number(&place, key, known()));
             }
         }
         let unvaried = !underlying(condition.keys()).iter().any(|key| *key == SEVERITY || varied(key));
         if unvaried {
             let problem = format!("`{condition}` is about nothing that varies");
-            return Err(ScenarioError::new(place, "", problem).with_help("vary one of its keys, or remove it"));
+            return Err(
+                ScenarioError::new(place, "", problem).with_help("vary one of its keys, or remove it")
+            );
         }
         Ok(())
     };

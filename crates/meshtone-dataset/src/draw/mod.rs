@@ -85,6 +85,13 @@ struct Unit {
     values: Vec<(String, f64)>,
 }
 
+/// Values of a record that suit its split.
+struct Suitable {
+    values: Vec<(String, f64)>,
+    severity: u8,
+    severity_measure: Option<f64>,
+}
+
 impl<'a> Sampler<'a> {
     /// Prepares a plan.
     ///
@@ -122,9 +129,20 @@ impl<'a> Sampler<'a> {
         let unit_number = (permuted(number, count, unit_seed) + unit_seed % units) % units;
         let unit = self.unit(unit_number)?;
         let seed = keyed(self.content.seed, Purpose::DatasetSeed, index);
-        let (values, severity, severity_measure) = self.record_values(class, number, design_seed, &unit)?;
+        let Suitable { values, severity, severity_measure } =
+            self.record_values(class, number, design_seed, &unit)?;
         let Unit { split, wheels_seed, .. } = unit;
-        Ok(DrawnRecord { index, class, unit: unit_number, split, seed, wheels_seed, severity, severity_measure, values })
+        Ok(DrawnRecord {
+            index,
+            class,
+            unit: unit_number,
+            split,
+            seed,
+            wheels_seed,
+            severity,
+            severity_measure,
+            values,
+        })
     }
 
     /// The scenario of a record.
@@ -192,8 +210,10 @@ impl<'a> Sampler<'a> {
                 })
             } else {
                 let by_unit_alone = of_unit.iter().all(|of_unit| *of_unit);
-                let fulfilled = by_unit_alone && decided.all(|(condition, _)| condition.holds(&number) == Some(true));
-                !fulfilled || obstacles.note(shift_key(s), format!("not what belongs to the split {}", shift.name))
+                let fulfilled =
+                    by_unit_alone && decided.all(|(condition, _)| condition.holds(&number) == Some(true));
+                !fulfilled
+                    || obstacles.note(shift_key(s), format!("not what belongs to the split {}", shift.name))
             }
         })
     }
@@ -204,7 +224,7 @@ impl<'a> Sampler<'a> {
         number: u64,
         seed: u64,
         unit: &Unit,
-    ) -> Result<(Vec<(String, f64)>, u8, Option<f64>), DrawError> {
+    ) -> Result<Suitable, DrawError> {
         let rules = &self.classes[class];
         let plan = &self.content.classes[class];
         let points =
@@ -223,7 +243,7 @@ impl<'a> Sampler<'a> {
             let met = self.meets(&rules.constraints, &values, &mut obstacles)
                 && self.record_suits(self.content.splits.shift(unit.split), &values, &mut obstacles);
             if met {
-                return Ok((values.drawn(), grade, measure));
+                return Ok(Suitable { values: values.drawn(), severity: grade, severity_measure: measure });
             }
         }
         let split = self.content.splits.names()[unit.split];
@@ -248,7 +268,8 @@ impl<'a> Sampler<'a> {
                 })
             } else {
                 let fulfilled = shift.when.iter().all(|condition| condition.holds(&number) == Some(true));
-                !fulfilled || obstacles.note(shift_key(s), format!("not what belongs to the split {}", shift.name))
+                !fulfilled
+                    || obstacles.note(shift_key(s), format!("not what belongs to the split {}", shift.name))
             }
         })
     }
@@ -276,7 +297,9 @@ fn draw(rules: &[&Rule], points: Points, index: u64, attempt: u32, values: &mut 
         }
         for (key, value) in rule.keys.iter().zip(rule.distribution.at(uniform.unwrap_or(0.0), place)) {
             let term = |expression: &Option<crate::expression::Expression>, default: f64| {
-                expression.as_ref().map_or(default, |e| e.value(&|key| values.number(key)).unwrap_or(f64::NAN))
+                expression
+                    .as_ref()
+                    .map_or(default, |e| e.value(&|key| values.number(key)).unwrap_or(f64::NAN))
             };
             let value = term(&rule.plus, 0.0) + value * term(&rule.times, 1.0);
             values.set(key, value);
@@ -316,9 +339,14 @@ impl Obstacles {
     fn error(mut self, of: &str) -> DrawError {
         self.counted.sort_by_key(|(_, _, count)| std::cmp::Reverse(*count));
         let key = self.counted.first().map(|(key, _, _)| key.clone()).unwrap_or_default();
-        let list: Vec<String> =
-            self.counted.iter().take(3).map(|(_, what, count)| format!("{what} was not met by {count}")).collect();
-        let problem = format!("{MOST_ATTEMPTS} draws for {of} met not all that is asked: {}", list.join(", "));
+        let list: Vec<String> = self
+            .counted
+            .iter()
+            .take(3)
+            .map(|(_, what, count)| format!("{what} was not met by {count}"))
+            .collect();
+        let problem =
+            format!("{MOST_ATTEMPTS} draws for {of} met not all that is asked: {}", list.join(", "));
         DrawError { key, problem }
     }
 }

@@ -23,9 +23,7 @@ impl<'a> Values<'a> {
             return self.severity;
         }
         let drawn = self.drawn.iter().find(|(drawn, _)| drawn == key).map(|(_, value)| *value);
-        drawn
-            .or_else(|| self.base.get(key).copied())
-            .or_else(|| derived(key)?.value(&|key| self.number(key)))
+        drawn.or_else(|| self.base.get(key).copied()).or_else(|| derived(key)?.value(&|key| self.number(key)))
     }
 
     pub fn set(&mut self, key: &str, value: f64) {

@@ -195,7 +195,8 @@ const DERIVED: [(&str, &str); 5] = [
 pub fn derived(name: &str) -> Option<&'static Expression> {
     static PARSED: OnceLock<Vec<Option<Expression>>> = OnceLock::new();
     let place = DERIVED.iter().position(|(derived, _)| *derived == name)?;
-    let parsed = PARSED.get_or_init(|| DERIVED.iter().map(|(_, text)| Expression::parse(text).ok()).collect());
+    let parsed =
+        PARSED.get_or_init(|| DERIVED.iter().map(|(_, text)| Expression::parse(text).ok()).collect());
     parsed[place].as_ref()
 }
 

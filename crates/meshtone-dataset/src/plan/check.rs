@@ -23,19 +23,30 @@ pub(super) fn check(content: &Content, root: &TomlTable<'_>) -> ReadResult<()> {
         return Err(root.error("units", problem).with_help("raise units, or write [split] with train = 1.0"));
     }
     for (given, key, why) in [
-        (content.base.quality.profile_errors.is_some(), "errors_file", "units draw their wheels by din_grade"),
+        (
+            content.base.quality.profile_errors.is_some(),
+            "errors_file",
+            "units draw their wheels by din_grade",
+        ),
         (content.base.quality.seed.is_some(), "seed", "every unit has wheels of its own"),
     ] {
         if given {
-            return Err(ScenarioError::new(format!("scenario.quality.{key}"), "", format!("cannot be given: {why}"))
-                .with_help("remove it from the base scenario"));
+            return Err(ScenarioError::new(
+                format!("scenario.quality.{key}"),
+                "",
+                format!("cannot be given: {why}"),
+            )
+            .with_help("remove it from the base scenario"));
         }
     }
     if let Some(tuned) = &content.tuned {
         let rules = content.rules.iter().chain(content.classes.iter().flat_map(|class| &class.rules));
         let varied: Vec<&String> = rules.flat_map(|rule| &rule.keys).collect();
         if let Some((key, _)) = tuned.keys.iter().find(|(key, _)| varied.contains(&key)) {
-            return Err(root.error("tuned", format!("has the key `{key}`, which a rule varies; must be one of the two")));
+            return Err(root.error(
+                "tuned",
+                format!("has the key `{key}`, which a rule varies; must be one of the two"),
+            ));
         }
     }
     Sampler::new(content).map(|_| ())
@@ -64,12 +75,16 @@ pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
         // None stands for a record that can be simulated.
         let tried = errors.len();
         let errors: Vec<ScenarioError> = errors.into_iter().flatten().collect();
-        if tried > 0 && errors.len() == tried
+        if tried > 0
+            && errors.len() == tried
             && let Some(error) = errors.into_iter().next()
         {
             let label = &plan.content.classes[c].label;
             let problem = format!("no record of the class \"{label}\" can be simulated; the first: {error}");
-            return Err(ScenarioError { help: error.help, ..ScenarioError::new(format!("class[{c}]"), "", problem) });
+            return Err(ScenarioError {
+                help: error.help,
+                ..ScenarioError::new(format!("class[{c}]"), "", problem)
+            });
         }
     }
     Ok(())

@@ -138,7 +138,9 @@ mod tests {
     fn a_far_tail_keeps_its_digits() {
         let normal = Distribution::Normal { mean: 0.0, standard_deviation: 1.0, within: [12.0, 13.0] };
         let drawn = values(&normal, 100);
-        assert!(drawn.windows(2).all(|pair| pair[0] < pair[1]) && drawn.iter().all(|x| (12.0..=13.0).contains(x)));
+        assert!(
+            drawn.windows(2).all(|pair| pair[0] < pair[1]) && drawn.iter().all(|x| (12.0..=13.0).contains(x))
+        );
         assert!((mean(&drawn) - 12.08).abs() < 0.02);
     }
 

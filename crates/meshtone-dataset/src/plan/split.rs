@@ -89,11 +89,13 @@ impl Splits {
         let place = permuted(unit, units, seed);
         let mut end = 0;
         let counts = self.unit_counts(units);
-        counts.iter().position(|count| {
-            end += count;
-            place < end
-        })
-        .unwrap_or(0)
+        counts
+            .iter()
+            .position(|count| {
+                end += count;
+                place < end
+            })
+            .unwrap_or(0)
     }
 }
 
@@ -119,7 +121,8 @@ mod tests {
     #[test]
     fn every_unit_is_in_one_split_and_the_parts_are_kept() {
         let when = vec![Condition::parse("operation.pinion_speed_hz > 50").unwrap()];
-        let splits = Splits { parts: [0.6, 0.1, 0.2], shifts: vec![Shift { name: "fast".into(), part: 0.1, when }] };
+        let splits =
+            Splits { parts: [0.6, 0.1, 0.2], shifts: vec![Shift { name: "fast".into(), part: 0.1, when }] };
         for units in [4, 10, 37, 1000] {
             let mut counts = vec![0; 4];
             (0..units).for_each(|unit| counts[splits.of_unit(unit, units, 9)] += 1);

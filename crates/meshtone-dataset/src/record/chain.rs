@@ -3,14 +3,14 @@
 //! What is computed from a raw channel is computed from its samples as they are kept, noise and rounding to single precision
 //! included: who reads the raw channel back finds the same average.
 
+use meshtone::Stages;
 use meshtone::batch::ChannelKind;
 use meshtone::dynamics::Motion;
 use meshtone::scenario::Scenario;
 use meshtone::signal::{
-    AngularSettings, AntiAliasing, ChainSettings, Edge, Interpolation, MeanPart, Record as Analysis, SeparationSettings,
-    ShaftPhase, SignalError, process_channel,
+    AngularSettings, AntiAliasing, ChainSettings, Edge, Interpolation, MeanPart, Record as Analysis,
+    SeparationSettings, ShaftPhase, SignalError, process_channel,
 };
-use meshtone::Stages;
 
 use super::{Record, Start, noise};
 use crate::draw::DrawnRecord;
@@ -43,7 +43,9 @@ pub(super) fn record(
         }
     }
     if let (Some(analysed), true) = (analysed, keep.is_analysed()) {
-        let analysis = view.analyse(&channels[analysed], Interpolation::default(), MeanPart::default()).map_err(signals)?;
+        let analysis = view
+            .analyse(&channels[analysed], Interpolation::default(), MeanPart::default())
+            .map_err(signals)?;
         let single = |values: &[f64]| values.iter().map(|&value| value as f32).collect();
         if keep.average {
             record.average = single(&analysis.average.values);

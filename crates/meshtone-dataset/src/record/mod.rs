@@ -6,10 +6,10 @@ mod start;
 
 pub use start::Start;
 
+use meshtone::Stages;
 use meshtone::batch::Keep as BatchKeep;
 use meshtone::sampling::TimeGrid;
 use meshtone::signal::IndicatorValue;
-use meshtone::Stages;
 use meshtone::solver::{Block, Output, Recorder};
 
 use crate::draw::DrawnRecord;

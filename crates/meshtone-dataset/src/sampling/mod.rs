@@ -29,8 +29,11 @@ pub enum Design {
 
 impl Design {
     /// All of them, by their names in a plan.
-    pub const NAMES: [(&'static str, Self); 3] =
-        [("independent", Self::Independent), ("latin-hypercube", Self::LatinHypercube), ("sobol", Self::Sobol)];
+    pub const NAMES: [(&'static str, Self); 3] = [
+        ("independent", Self::Independent),
+        ("latin-hypercube", Self::LatinHypercube),
+        ("sobol", Self::Sobol),
+    ];
 }
 
 /// Number of points after which Sobol's sequence, as it is computed here, is exhausted.

@@ -82,7 +82,9 @@ impl ColumnKind {
             Self::Record | Self::Unit | Self::Seed | Self::WheelsSeed => DataType::Int64,
             Self::Split | Self::Label => DataType::Utf8,
             Self::Severity | Self::FaultTooth | Self::PinionTeeth | Self::GearTeeth => DataType::Int32,
-            kind if kind.is_signal() => DataType::List(Arc::new(Field::new("item", DataType::Float32, false))),
+            kind if kind.is_signal() => {
+                DataType::List(Arc::new(Field::new("item", DataType::Float32, false)))
+            }
             _ => DataType::Float64,
         }
     }
@@ -99,7 +101,8 @@ impl ColumnKind {
 pub fn columns(plan: &Plan) -> Vec<Column> {
     let mut columns = of_record();
     let taken: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
-    columns.extend(varied_keys(plan).into_iter().map(key_column).filter(|column| !taken.contains(&column.name)));
+    columns
+        .extend(varied_keys(plan).into_iter().map(key_column).filter(|column| !taken.contains(&column.name)));
     let keep = &plan.content.keep;
     if keep.indicators {
         columns.extend(indicator_names().into_iter().map(|(name, unit)| Column {
@@ -111,7 +114,14 @@ pub fn columns(plan: &Plan) -> Vec<Column> {
     }
     let channel = |(number, kind): (usize, &ChannelKind)| Column {
         name: kind.name().to_owned(),
-        unit: if kind.name().ends_with("_g") { "g" } else if kind.name().ends_with("_hz") { "Hz" } else { "N" }.to_owned(),
+        unit: if kind.name().ends_with("_g") {
+            "g"
+        } else if kind.name().ends_with("_hz") {
+            "Hz"
+        } else {
+            "N"
+        }
+        .to_owned(),
         description: "raw channel, its samples one after the other".to_owned(),
         kind: ColumnKind::Channel(number),
     };
@@ -123,7 +133,13 @@ pub fn columns(plan: &Plan) -> Vec<Column> {
     };
     let turn = "over one revolution of the gear, at equal angles from where tooth 1 comes into contact";
     signal(keep.average, "average_g", "g", &format!("synchronous average {turn}"), ColumnKind::Average);
-    signal(keep.difference, "difference_g", "g", &format!("difference signal {turn}"), ColumnKind::Difference);
+    signal(
+        keep.difference,
+        "difference_g",
+        "g",
+        &format!("difference signal {turn}"),
+        ColumnKind::Difference,
+    );
     let enhanced = "enhanced difference signal over one revolution of the gear, the fault's response in the middle, \
                     over the rms of the enhanced healthy signal";
     let wanted = plan.content.tuned.is_some();
@@ -160,11 +176,21 @@ fn of_record() -> Vec<Column> {
         column("label", "", "the class", Label),
         column("severity", "", "grade of the fault, from 1; 0 for healthy", Severity),
         column("severity_measure", "-", "the number that the grade was taken from", SeverityMeasure),
-        column("fault_tooth", "", "number of the damaged tooth of the gear, from 1, in the order in which teeth come into contact from the start of the record on", FaultTooth),
+        column(
+            "fault_tooth",
+            "",
+            "number of the damaged tooth of the gear, from 1, in the order in which teeth come into contact from the start of the record on",
+            FaultTooth,
+        ),
         column("seed", "", "seed of the record's noise and fluctuations", Seed),
         column("wheels_seed", "", "seed of the unit's profile errors", WheelsSeed),
         column("sampling_rate_hz", "Hz", "sampling rate of the raw channels", SamplingRate),
-        column("gear_angle_rev", "rev", "angle of the gear at the first sample, from where tooth 1 comes into contact", GearAngle),
+        column(
+            "gear_angle_rev",
+            "rev",
+            "angle of the gear at the first sample, from where tooth 1 comes into contact",
+            GearAngle,
+        ),
         column("pinion_teeth", "", "teeth of the pinion, the driving wheel", PinionTeeth),
         column("gear_teeth", "", "teeth of the gear, whose tooth is damaged", GearTeeth),
         column("pinion_speed_hz", "Hz", "speed of the pinion's shaft", PinionSpeed),

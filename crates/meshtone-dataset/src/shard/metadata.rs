@@ -39,8 +39,11 @@ pub struct ShardMetadata {
 
 impl ShardMetadata {
     pub(super) fn key_values(&self) -> Vec<KeyValue> {
-        let failures: Vec<Value> =
-            self.failures.iter().map(|failed| json!({ "record": failed.record, "reason": failed.reason })).collect();
+        let failures: Vec<Value> = self
+            .failures
+            .iter()
+            .map(|failed| json!({ "record": failed.record, "reason": failed.reason }))
+            .collect();
         [
             (PLAN, self.plan.clone()),
             (VERSION, env!("CARGO_PKG_VERSION").to_owned()),
@@ -58,7 +61,10 @@ impl ShardMetadata {
         let count: u64 = text(RECORDS)?.parse().ok()?;
         let failures: Value = serde_json::from_str(&text(FAILURES)?).ok()?;
         let failed = |value: &Value| {
-            Some(FailedRecord { record: value["record"].as_u64()?, reason: value["reason"].as_str()?.to_owned() })
+            Some(FailedRecord {
+                record: value["record"].as_u64()?,
+                reason: value["reason"].as_str()?.to_owned(),
+            })
         };
         Some(Self {
             plan: text(PLAN)?,
@@ -95,7 +101,8 @@ pub(crate) fn read(file: impl ChunkReader + 'static, wanted: &[&str]) -> io::Res
     let metadata = head.key_value_metadata().and_then(|values| ShardMetadata::from_key_values(values));
     let metadata = metadata.ok_or_else(|| io::Error::other("is no shard of a data set"))?;
     let rows = u64::try_from(head.num_rows()).unwrap_or(0);
-    let expected = (metadata.records.end - metadata.records.start).checked_sub(metadata.failures.len() as u64);
+    let expected =
+        (metadata.records.end - metadata.records.start).checked_sub(metadata.failures.len() as u64);
     if expected != Some(rows) {
         return Err(io::Error::other(format!("has {rows} rows, which is not what its metadata say")));
     }

@@ -74,12 +74,13 @@ impl Destination {
             return Ok(Self::directory(text));
         }
         let help = "name a directory or a URL such as file:///data/gears or s3://bucket/gears";
-        let url = Url::parse(text).map_err(|error| DatasetError::refused(format!("{text} is no URL: {error}"), help))?;
+        let url = Url::parse(text)
+            .map_err(|error| DatasetError::refused(format!("{text} is no URL: {error}"), help))?;
         if url.scheme() == "file" {
             let path = url.to_file_path();
-            return path
-                .map(Self::directory)
-                .map_err(|()| DatasetError::refused(format!("{text} names no directory of this machine"), help));
+            return path.map(Self::directory).map_err(|()| {
+                DatasetError::refused(format!("{text} names no directory of this machine"), help)
+            });
         }
         if url.scheme() == "memory" {
             return Err(DatasetError::refused(format!("{text} would be gone with the program"), help));
@@ -132,7 +133,9 @@ impl Destination {
 
     /// SHA-256 and length of a file.
     pub(crate) fn sha256(&self, name: &str) -> Result<(String, u64), DatasetError> {
-        self.reader(name).and_then(|mut reader| hash(&mut *reader)).map_err(DatasetError::read(self.name_of(name)))
+        self.reader(name)
+            .and_then(|mut reader| hash(&mut *reader))
+            .map_err(DatasetError::read(self.name_of(name)))
     }
 
     /// Writes a file that appears whole or not at all.
@@ -169,7 +172,9 @@ impl Destination {
     /// Whether files can be written there. A directory that does not exist is created for it.
     pub(crate) fn check_writable(&self) -> Result<(), DatasetError> {
         match &self.place {
-            Place::Directory(path) => directory::check_writable(path).map_err(DatasetError::write(self.to_string())),
+            Place::Directory(path) => {
+                directory::check_writable(path).map_err(DatasetError::write(self.to_string()))
+            }
             Place::Objects(_) => Ok(()),
         }
     }

@@ -35,7 +35,11 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, preview: &DatasetPreview) {
         let ticks = Ticks::every(0.2, 0.0, 1.0);
         axes.x_grid(canvas, &ticks);
         if place + 1 == shown {
-            axes.x_axis(canvas, &ticks, if preview.over_angle { "Gear angle from tooth 1 (rev)" } else { "Part of the record (–)" });
+            axes.x_axis(
+                canvas,
+                &ticks,
+                if preview.over_angle { "Gear angle from tooth 1 (rev)" } else { "Part of the record (–)" },
+            );
         }
         axes.y_axis(canvas, &Ticks::about_zero(half), "", NAME_LEFT);
         let last = example.signal.len().max(1) as f64;

@@ -54,7 +54,8 @@ fn one(canvas: &mut Canvas, area: Area, name: &str, values: &[f64], preview: &Da
         // Spread over the class's width by the golden ratio, which leaves no pattern.
         let spread = |i: usize| (i as f64 * 0.618_033_988_749_895).fract();
         let dots = of_class.iter().enumerate().step_by(every);
-        let dots: Vec<_> = dots.map(|(i, &value)| axes.at(class as f64 + 0.15 + 0.7 * spread(i), value)).collect();
+        let dots: Vec<_> =
+            dots.map(|(i, &value)| axes.at(class as f64 + 0.15 + 0.7 * spread(i), value)).collect();
         canvas.dots(&dots, DOT_RADIUS, DOTS);
         of_class.sort_by(f64::total_cmp);
         if let Some(&median) = of_class.get(of_class.len() / 2) {
@@ -78,7 +79,8 @@ fn names(canvas: &mut Canvas, area: Area, bottom: f64, preview: &DatasetPreview)
     let style = TextStyle::TICK;
     for (class, name) in preview.classes.iter().enumerate() {
         let middle = area.left + (class as f64 + 0.5) * slot;
-        let lines = font::wrapped(&name.replace(['-', '_'], " "), slot - 4.0, NAME_LINES, style.size, style.bold);
+        let lines =
+            font::wrapped(&name.replace(['-', '_'], " "), slot - 4.0, NAME_LINES, style.size, style.bold);
         for (line, text) in lines.iter().enumerate() {
             canvas.text((middle, bottom + 17.0 + line as f64 * LINE), text, style);
         }

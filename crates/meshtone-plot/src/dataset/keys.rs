@@ -40,14 +40,16 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, preview: &DatasetPreview) {
 fn histogram(canvas: &mut Canvas, area: Area, name: &str, values: &[f64], preview: &DatasetPreview) {
     let ends = |values: &[f64]| {
         let finite = values.iter().copied().filter(|value| value.is_finite());
-        finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
+        finite
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
     };
     let [low, high] = ends(values);
     let mut by_size: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
     by_size.sort_by(f64::total_cmp);
     let median = by_size.get(by_size.len() / 2).copied().unwrap_or(0.0);
     let logarithmic = low > 0.0 && high > LOGARITHMIC * low && median < SKEWED * (low + high);
-    let values: Vec<f64> = values.iter().map(|value| if logarithmic { value.log10() } else { *value }).collect();
+    let values: Vec<f64> =
+        values.iter().map(|value| if logarithmic { value.log10() } else { *value }).collect();
     let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);
     let (Some(&least), Some(&largest)) = (sorted.first(), sorted.last()) else { return };
@@ -66,8 +68,9 @@ fn histogram(canvas: &mut Canvas, area: Area, name: &str, values: &[f64], previe
     } else {
         BINS
     };
-    let shares: Vec<Vec<f64>> =
-        (0..preview.splits.len()).map(|split| shares(&values, &preview.split_of, split, range, bins)).collect();
+    let shares: Vec<Vec<f64>> = (0..preview.splits.len())
+        .map(|split| shares(&values, &preview.split_of, split, range, bins))
+        .collect();
     let highest = shares.iter().flatten().copied().fold(0.0f64, f64::max);
     let axes = Axes::new(area, range, [0.0, 1.08 * if highest > 0.0 { highest } else { 1.0 }]);
     axes.title(canvas, &fitted(name, TextStyle::AXES_TITLE, area.width));
@@ -86,8 +89,11 @@ fn histogram(canvas: &mut Canvas, area: Area, name: &str, values: &[f64], previe
         }
         let edge = |bin: usize| range[0] + (range[1] - range[0]) * bin as f64 / bins as f64;
         if split == 0 {
-            let bars: Vec<[Pixel; 2]> =
-                shares.iter().enumerate().map(|(b, &share)| [axes.at(edge(b), share), axes.at(edge(b + 1), 0.0)]).collect();
+            let bars: Vec<[Pixel; 2]> = shares
+                .iter()
+                .enumerate()
+                .map(|(b, &share)| [axes.at(edge(b), share), axes.at(edge(b + 1), 0.0)])
+                .collect();
             canvas.rectangles(&bars, TRAIN);
         } else {
             let mut steps = vec![axes.at(edge(0), 0.0)];
@@ -102,7 +108,13 @@ fn histogram(canvas: &mut Canvas, area: Area, name: &str, values: &[f64], previe
 }
 
 /// Part of a split's records in each bin.
-fn shares(values: &[f64], split_of: &[usize], split: usize, [least, largest]: [f64; 2], bins: usize) -> Vec<f64> {
+fn shares(
+    values: &[f64],
+    split_of: &[usize],
+    split: usize,
+    [least, largest]: [f64; 2],
+    bins: usize,
+) -> Vec<f64> {
     let mut counts = vec![0.0; bins];
     let mut all = 0.0;
     for (value, _) in values.iter().zip(split_of).filter(|(value, of)| value.is_finite() && **of == split) {

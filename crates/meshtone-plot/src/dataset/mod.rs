@@ -85,7 +85,8 @@ pub struct Indicator {
 }
 
 /// Colours of the splits after the training.
-const SPLIT_COLOURS: [&str; 5] = [colour::INK, colour::GREEN, colour::VERMILLION, colour::PURPLE, colour::MUTED];
+const SPLIT_COLOURS: [&str; 5] =
+    [colour::INK, colour::GREEN, colour::VERMILLION, colour::PURPLE, colour::MUTED];
 
 /// How a split's distribution is drawn.
 fn split_stroke(split: usize) -> Stroke {
@@ -110,8 +111,16 @@ const TRAIN: Fill = Fill::tint(colour::BLUE, 0.3);
 pub fn dataset_figure(preview: &DatasetPreview) -> Figure {
     let mut canvas = Canvas::new(WIDTH, HEIGHT);
     let width = f64::from(WIDTH) - 2.0 * TEXT_LEFT;
-    canvas.text((TEXT_LEFT, TITLE_BASELINE), &fitted(&preview.title, TextStyle::TITLE, width), TextStyle::TITLE);
-    canvas.text((TEXT_LEFT, FACTS_BASELINE), &fitted(&preview.facts, TextStyle::FACTS, width), TextStyle::FACTS);
+    canvas.text(
+        (TEXT_LEFT, TITLE_BASELINE),
+        &fitted(&preview.title, TextStyle::TITLE, width),
+        TextStyle::TITLE,
+    );
+    canvas.text(
+        (TEXT_LEFT, FACTS_BASELINE),
+        &fitted(&preview.facts, TextStyle::FACTS, width),
+        TextStyle::FACTS,
+    );
     section(&mut canvas, EXAMPLES, &format!("One example of each class: {}", preview.signal_name));
     section(&mut canvas, KEYS, "Distribution of the varied keys, by split");
     section(&mut canvas, INDICATORS, "Indicators by class");

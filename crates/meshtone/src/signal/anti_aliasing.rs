@@ -219,7 +219,8 @@ mod tests {
         };
         let filter = AntiAliasing::new(1e4, 997.3).unwrap();
         let largest = |hz: f64| {
-            let read = filter.read(&[&tone(hz)], (0..997).map(|i| f64::from(i) * 1e4 / 997.3), Edge::Periodic);
+            let read =
+                filter.read(&[&tone(hz)], (0..997).map(|i| f64::from(i) * 1e4 / 997.3), Edge::Periodic);
             read[0].iter().fold(0.0f32, |largest, x| largest.max(x.abs()))
         };
         assert!((largest(390.0) - 1.0).abs() < 2.5e-3);

@@ -11,7 +11,8 @@ use super::{PlanFile, Reading, in_another_file};
 const KEY: &str = "scenario";
 
 pub(super) fn read(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Scenario> {
-    let value = root.required(KEY, "the scenario that all records have in common: a file's name or a table")?;
+    let value =
+        root.required(KEY, "the scenario that all records have in common: a file's name or a table")?;
     let scenario = if value.is_table() && !reading.is_copy {
         let files = FilesBeside::new(reading.directory);
         let scenario = value.table()?.read(|table| Scenario::from_table(table, &files))?;

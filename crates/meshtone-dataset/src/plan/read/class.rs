@@ -49,10 +49,20 @@ fn counts(
         Some(value) => Some((value, value.integer(1..=MOST_RECORDS)?)),
         None => None,
     };
-    let weights: Vec<f64> =
-        shares.iter().filter_map(|share| match share { Share::Weight(weight) => Some(*weight), _ => None }).collect();
-    let counts: Vec<u64> =
-        shares.iter().filter_map(|share| match share { Share::Count(count) => Some(*count), _ => None }).collect();
+    let weights: Vec<f64> = shares
+        .iter()
+        .filter_map(|share| match share {
+            Share::Weight(weight) => Some(*weight),
+            _ => None,
+        })
+        .collect();
+    let counts: Vec<u64> = shares
+        .iter()
+        .filter_map(|share| match share {
+            Share::Count(count) => Some(*count),
+            _ => None,
+        })
+        .collect();
     let both = !weights.is_empty() && !counts.is_empty();
     if both {
         let first = shares.iter().position(|share| matches!(share, Share::Weight(_))).unwrap_or(0);
@@ -69,7 +79,9 @@ fn counts(
     if weights.is_empty() {
         let sum: u64 = counts.iter().sum();
         if sum != records {
-            return Err(value.error(format!("the classes' counts add up to {sum}; must be the same, or left out")));
+            return Err(
+                value.error(format!("the classes' counts add up to {sum}; must be the same, or left out"))
+            );
         }
         return Ok(counts);
     }
@@ -127,4 +139,3 @@ fn severity(table: &TomlTable<'_>, faulty: bool) -> ReadResult<Severity> {
         Ok(Severity::Measured { measure: expression, breaks: limits })
     })
 }
-

@@ -24,7 +24,8 @@ const RATE_HZ: f64 = 25e3;
 const LARGEST_RATE_HZ: f64 = 1e7;
 
 pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>) -> ReadResult<Keep> {
-    let default_rate = tuned.map_or(RATE_HZ.min(base.solver.sampling_rate_hz), |tuned| tuned.sampling_rate_hz);
+    let default_rate =
+        tuned.map_or(RATE_HZ.min(base.solver.sampling_rate_hz), |tuned| tuned.sampling_rate_hz);
     let rate = table.optional("sampling_rate_hz");
     let sampling_rate_hz = rate.as_ref().map(|value| value.number()).transpose()?.unwrap_or(default_rate);
     if let Some(value) = rate.filter(|_| !(sampling_rate_hz > 0.0 && sampling_rate_hz <= LARGEST_RATE_HZ)) {
@@ -32,7 +33,8 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
     }
     if sampling_rate_hz > base.solver.sampling_rate_hz {
         let simulated = base.solver.sampling_rate_hz;
-        let problem = format!("is more than solver.sampling_rate_hz, {simulated:?} S/s, of the base scenario");
+        let problem =
+            format!("is more than solver.sampling_rate_hz, {simulated:?} S/s, of the base scenario");
         return Err(table.error("sampling_rate_hz", problem).with_help("raise solver.sampling_rate_hz"));
     }
     let channels = match table.optional("channels") {
@@ -47,13 +49,19 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
         }
     };
     let duration_s = table.optional("duration_s");
-    if let Some(value) = duration_s.as_ref().filter(|value| value.number().is_ok_and(|seconds| seconds <= 0.0)) {
+    if let Some(value) =
+        duration_s.as_ref().filter(|value| value.number().is_ok_and(|seconds| seconds <= 0.0))
+    {
         return Err(value.error("must be more than 0 s"));
     }
-    let flag = |key| -> ReadResult<Option<bool>> { table.optional(key).map(|value| value.boolean()).transpose() };
+    let flag =
+        |key| -> ReadResult<Option<bool>> { table.optional(key).map(|value| value.boolean()).transpose() };
     let teeth = u64::from(base.gears.gear_teeth);
     let analysed = table.optional("analysed").map(|value| value.choice(&ACCELERATIONS)).transpose()?;
-    let sidebands = table.optional("sidebands").map(|value| value.integer(0..=teeth.saturating_sub(2) / 2)).transpose()?;
+    let sidebands = table
+        .optional("sidebands")
+        .map(|value| value.integer(0..=teeth.saturating_sub(2) / 2))
+        .transpose()?;
     let orders = table.optional("shaft_orders").map(|value| value.integer(0..=teeth - 1)).transpose()?;
     let shard = table.optional("records_per_shard");
     let shard = shard.map(|value| value.integer(1..=MOST_SHARD_RECORDS)).transpose()?;
@@ -71,7 +79,10 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
         records_per_shard: shard,
     };
     if keep.channels.is_empty() && !keep.is_analysed() {
-        return Err(table.error("channels", "is empty, and average, difference and indicators are false: nothing is kept"));
+        return Err(table.error(
+            "channels",
+            "is empty, and average, difference and indicators are false: nothing is kept",
+        ));
     }
     agree(table, &keep, tuned)?;
     Ok(keep)
@@ -89,7 +100,9 @@ fn agree(table: &TomlTable<'_>, keep: &Keep, tuned: Option<&Tuned>) -> ReadResul
     ] {
         if !same {
             let problem = "is not what the enhancement was tuned to";
-            return Err(table.error(key, problem).with_help("leave it out: it is then that of the file `tuned`"));
+            return Err(table
+                .error(key, problem)
+                .with_help("leave it out: it is then that of the file `tuned`"));
         }
     }
     Ok(())

@@ -61,9 +61,7 @@ fn keys(table: &TomlTable<'_>) -> ReadResult<Vec<String>> {
 fn expression(table: &TomlTable<'_>, key: &'static str) -> ReadResult<Option<Expression>> {
     let Some(value) = table.optional(key) else { return Ok(None) };
     let text = value.string()?;
-    Expression::parse(text)
-        .map(Some)
-        .map_err(|problem| value.error(format!("the expression {problem}")))
+    Expression::parse(text).map(Some).map_err(|problem| value.error(format!("the expression {problem}")))
 }
 
 fn distribution(table: &TomlTable<'_>, keys: usize) -> ReadResult<Distribution> {
@@ -154,7 +152,8 @@ fn steps(table: &TomlTable<'_>) -> ReadResult<Vec<Vec<f64>>> {
     let least = table.required("least", "the first value")?.number()?;
     let largest = table.required("largest", "the last value")?;
     let steps = table.required("values", "how many values")?.integer(2..=MOST_STEPS)?;
-    let logarithmic = table.optional("logarithmic").map(|value| value.boolean()).transpose()?.unwrap_or(false);
+    let logarithmic =
+        table.optional("logarithmic").map(|value| value.boolean()).transpose()?.unwrap_or(false);
     let last = largest.number()?;
     if last <= least {
         return Err(largest.error(format!("must be more than least, {least:?}")));
@@ -185,7 +184,9 @@ fn normal(table: &TomlTable<'_>, whole: &TomlValue<'_>) -> ReadResult<Distributi
     // Beyond, nothing of the distribution is left to draw from.
     const FARTHEST: f64 = 30.0;
     if least > mean + FARTHEST * standard_deviation || last < mean - FARTHEST * standard_deviation {
-        return Err(whole.error("has nothing between least and largest: they are 30 standard deviations away"));
+        return Err(
+            whole.error("has nothing between least and largest: they are 30 standard deviations away")
+        );
     }
     Ok(Distribution::Normal { mean, standard_deviation, within: [least, last] })
 }

@@ -41,7 +41,11 @@ pub(super) fn read(table: &TomlTable<'_>) -> ReadResult<Splits> {
 
 fn fraction(value: &TomlValue<'_>) -> ReadResult<f64> {
     let number = value.number()?;
-    if (0.0..=1.0).contains(&number) { Ok(number) } else { Err(value.error("must be from 0 to 1, a part of the units")) }
+    if (0.0..=1.0).contains(&number) {
+        Ok(number)
+    } else {
+        Err(value.error("must be from 0 to 1, a part of the units"))
+    }
 }
 
 fn shifts(listed: &TomlValue<'_>) -> ReadResult<Vec<Shift>> {
