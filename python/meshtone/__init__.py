@@ -10,11 +10,12 @@ True
 
 The parts: :class:`Scenario` and the faults say what is simulated; :func:`simulate` and :func:`simulate_many` do it; :mod:`meshtone.signal`
 takes signals, simulated or measured, to condition indicators; :mod:`meshtone.hybrid` tunes simulations to a rig;
-:mod:`meshtone.plotting` draws; :mod:`meshtone.examples` has scenarios to start from.
+:mod:`meshtone.datasets` makes and loads labelled data sets; :mod:`meshtone.plotting` draws; :mod:`meshtone.examples` has scenarios to start from.
 """
 
-from . import examples, hybrid, signal
+from . import datasets, examples, hybrid, signal
 from ._core import __version__
+from .datasets import Dataset, generate_dataset, load_dataset
 from .faults import Fault, MissingTooth, PartialFace, PitCircle, ThroughFace, ToothBreakage, ToothDestruction
 from .hybrid import enhance, tune
 from .recording import Recording, read_recording
@@ -24,6 +25,7 @@ from .simulation import CHANNELS, Signals, Simulation, simulate, simulate_many, 
 
 __all__ = [
     "CHANNELS",
+    "Dataset",
     "Fault",
     "MissingTooth",
     "PartialFace",
@@ -38,9 +40,12 @@ __all__ = [
     "ToothBreakage",
     "ToothDestruction",
     "__version__",
+    "datasets",
     "enhance",
     "examples",
+    "generate_dataset",
     "hybrid",
+    "load_dataset",
     "process_channel",
     "process_series",
     "read_recording",

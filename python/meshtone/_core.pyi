@@ -21,14 +21,18 @@ __all__ = [
     "angular_resample",
     "change_duration",
     "change_fault_to_harmonics_ratio",
+    "check_plan",
+    "dataset_template",
     "energy_ratio",
     "enhance",
     "envelope",
     "envelope_spectrum",
     "fm0",
     "fm4",
+    "generate_dataset",
     "m6a",
     "m8a",
+    "merge_datasets",
     "na4",
     "order_spectrum",
     "process_channel",
@@ -224,3 +228,14 @@ def change_fault_to_harmonics_ratio(
 def add_noise(signal: _Array, noise_level: float, healthy_rms: float, seed: int, draw: int) -> _Array: ...
 def tune(path: _Path, progress: Callable[[int, int], None] | None) -> tuple[str, str]: ...
 def enhance(scenario: Scenario, tuned: _Path, draws: int, seed: int) -> tuple[_Array, float]: ...
+def dataset_template() -> str: ...
+def check_plan(plan: _Path) -> None: ...
+def generate_dataset(
+    plan: _Path,
+    to: str,
+    jobs: int | None,
+    part: int,
+    of: int,
+    progress: Callable[[int, int], None] | None,
+) -> None: ...
+def merge_datasets(parts: Sequence[str], to: str) -> None: ...

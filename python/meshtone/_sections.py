@@ -28,7 +28,7 @@ SECTION_OF_KEY: dict[str, str] = {
             "speed_profile_hz",
             "torque_profile_nm",
         ),
-        "quality": ("din_grade", "errors_seed"),
+        "quality": ("din_grade", "wheels_seed"),
         "rig": (
             "bearing_stiffness_n_per_m",
             "wheel_rotational_stiffness_nm_per_rad",
@@ -50,6 +50,9 @@ SECTION_OF_KEY: dict[str, str] = {
     }.items()
     for key in keys
 }
+
+KEY_IN_FILE: dict[str, str] = {"wheels_seed": "seed"}
+"""Keys that are called otherwise in their section of the scenario file: two sections have a ``seed``."""
 
 OTHER_ARGUMENTS = ("fault", "pinion_profile_errors_mm", "gear_profile_errors_mm")
 

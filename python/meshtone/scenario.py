@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._sections import OTHER_ARGUMENTS, SECTION_OF_KEY, check_key
+from ._sections import KEY_IN_FILE, OTHER_ARGUMENTS, SECTION_OF_KEY, check_key
 from .faults import Fault, from_section, to_section
 
 __all__ = ["Scenario", "Shaft", "TipRelief", "WheelInertia", "template"]
@@ -86,6 +86,8 @@ class Scenario:
         ``time_s`` and ``value``: speed or torque against time instead of a constant one.
     din_grade : int, optional
         Manufacturing grade of DIN 3962, 1 (best) to 12; 0, the default, for ideal teeth.
+    wheels_seed : int, optional
+        Which wheels ``din_grade`` draws: ``seed`` of the section ``[quality]``. ``seed`` by default.
     pinion_profile_errors_mm, gear_profile_errors_mm : array of float64, shape (100, teeth), optional
         (mm) The teeth's profile errors themselves, instead of a draw by ``din_grade``.
     bearing_stiffness_n_per_m : float, optional
@@ -157,6 +159,7 @@ brake_torque_nm=10.0, din_grade=7)
     speed_profile_hz: dict[str, list[float]] | None
     torque_profile_nm: dict[str, list[float]] | None
     din_grade: int
+    wheels_seed: int | None
     bearing_stiffness_n_per_m: float
     wheel_rotational_stiffness_nm_per_rad: float
     brake_inertia_kgm2: float
@@ -195,6 +198,7 @@ brake_torque_nm=10.0, din_grade=7)
         speed_profile_hz: Profile | None = None,
         torque_profile_nm: Profile | None = None,
         din_grade: int | None = None,
+        wheels_seed: int | None = None,
         pinion_profile_errors_mm: npt.ArrayLike | None = None,
         gear_profile_errors_mm: npt.ArrayLike | None = None,
         bearing_stiffness_n_per_m: float | None = None,
@@ -226,7 +230,7 @@ brake_torque_nm=10.0, din_grade=7)
         flat: dict[str, Any] = {}
         for key, section in SECTION_OF_KEY.items():
             keys = sections.get(section, {}) if section else sections
-            flat[key] = keys.get(key)
+            flat[key] = keys.get(KEY_IN_FILE.get(key, key))
         flat["fault"] = from_section(sections["fault"]) if "fault" in sections else None
         object.__setattr__(self, "_flat", flat)
 
@@ -374,7 +378,7 @@ brake_torque_nm=10.0, din_grade=7)
         shown = dict(required)
         for key, section in SECTION_OF_KEY.items():
             keys = default.get(section, {}) if section else default
-            if key not in shown and self._flat[key] != keys.get(key):
+            if key not in shown and self._flat[key] != keys.get(KEY_IN_FILE.get(key, key)):
                 shown[key] = self._flat[key]
         if self.fault is not None:
             shown["fault"] = self.fault
@@ -404,7 +408,7 @@ def _sections_of(arguments: Mapping[str, Any]) -> dict[str, Any]:
             continue
         section = SECTION_OF_KEY[key]
         keys = sections.setdefault(section, {}) if section else sections
-        keys[key] = _plain(value)
+        keys[KEY_IN_FILE.get(key, key)] = _plain(value)
     fault = arguments.get("fault")
     if fault is not None:
         sections["fault"] = _plain(to_section(fault))

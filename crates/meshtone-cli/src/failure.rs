@@ -4,6 +4,7 @@ use std::io::ErrorKind;
 use std::process::ExitCode;
 
 use meshtone::scenario::ScenarioError;
+use meshtone_dataset::DatasetError;
 use meshtone_io::ReadResultsError;
 use meshtone_io::atomic_file::WriteFileError;
 use meshtone_io::scenario_file::ReadScenarioError;
@@ -125,6 +126,26 @@ impl From<ReadResultsError> for Failure {
                 Self::bad_input(error.to_string())
                     .with_help("simulate again with this version: `meshtone simulate SCENARIO.toml -o DIR`")
             }
+        }
+    }
+}
+
+impl From<DatasetError> for Failure {
+    fn from(error: DatasetError) -> Self {
+        let message = error.to_string();
+        match error {
+            DatasetError::Plan(ReadScenarioError::Unreadable { path, source })
+                if source.kind() == ErrorKind::NotFound =>
+            {
+                Self::bad_input(format!("there is no plan {}", path.display()))
+                    .with_help("check the name; `meshtone init dataset -o FILE` writes one to start from")
+            }
+            DatasetError::Plan(error) => error.into(),
+            DatasetError::Refused { problem, help } => Self::bad_input(problem).with_help(help),
+            DatasetError::File { source, .. } => Self::of_file(source.kind(), message).with_help(
+                "what is complete is kept: mend it and run the same command again to go on from there",
+            ),
+            DatasetError::Preview(_) | DatasetError::Stopped => Self::failed(message),
         }
     }
 }

@@ -38,6 +38,7 @@ Examples:
   meshtone init tooth-breakage > broken.toml   a commented scenario file to start from
   meshtone simulate broken.toml -o broken      signals, summary and results panel in the folder broken
   meshtone indicators broken                   their condition indicators, as of any recording
+  meshtone dataset plan.toml -o gears          a labelled data set (a plan: meshtone init dataset)
   meshtone simulate --help                     more on one command
 
 Exit codes: 0 all went well, 1 it could not be carried out, 2 the input is wrong.";

@@ -7,6 +7,7 @@
 //! * [`panel`]: teeth, damage, profile errors, averages and mesh stiffness of one simulation
 //! * [`record`]: a recording, its average, order spectrum and difference signal
 //! * [`trend`]: indicators over a series of recordings
+//! * [`dataset::dataset_figure`]: a data set, examples, distributions and indicators by class
 //! * [`tuning_figure`]: an experiment of the hybrid stage, measured, simulated and enhanced
 #![deny(missing_docs)]
 
@@ -14,6 +15,7 @@ mod axes;
 mod canvas;
 mod curve;
 mod damaged_tooth;
+pub mod dataset;
 mod error;
 mod figure;
 mod font;

@@ -247,7 +247,7 @@ fn a_rough_flank_below_the_start_of_contact() {
 fn published_convention_and_given_errors() {
     let (_, mut scenario) = support::gallery().remove(4);
     let errors = meshtone::stages(&scenario).unwrap().profile_errors;
-    scenario.quality = Quality { din_grade: 0, profile_errors: errors };
+    scenario.quality = Quality { din_grade: 0, seed: None, profile_errors: errors };
     scenario.convention = Convention::Published;
     assert_shows(&drawn(&scenario), &["model as published", "given profile errors"]);
 }

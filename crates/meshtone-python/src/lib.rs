@@ -8,6 +8,7 @@
 
 mod array;
 mod batch;
+mod dataset;
 mod error;
 mod hybrid;
 mod interrupt;
@@ -25,6 +26,8 @@ use pyo3::prelude::*;
 mod _core {
     #[pymodule_export]
     use crate::batch::simulate_many;
+    #[pymodule_export]
+    use crate::dataset::{check_plan, dataset_template, generate_dataset, merge_datasets};
     #[pymodule_export]
     use crate::hybrid::{add_noise, change_duration, change_fault_to_harmonics_ratio, enhance, tune};
     #[pymodule_export]

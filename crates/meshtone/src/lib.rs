@@ -7,7 +7,7 @@ pub mod fault;
 pub mod hybrid;
 pub mod interpolation;
 pub mod quality;
-mod random;
+pub mod random;
 pub mod sampling;
 pub mod scenario;
 pub mod signal;

@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 /// What a random number is used for; draws for different purposes are independent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u64)]
-pub(crate) enum Purpose {
+pub enum Purpose {
     /// Profile errors of the pinion's teeth; index: tooth.
     PinionProfileErrors = 1,
     /// Profile errors of the gear's teeth; index: tooth.
@@ -27,16 +27,36 @@ pub(crate) enum Purpose {
     Bootstrap = 7,
     /// Values of scenario keys that are tried; index: candidate.
     Candidate = 8,
+    /// Which wheels a unit of a data set has; index: unit.
+    DatasetWheels = 9,
+    /// Seed of a record of a data set; index: record.
+    DatasetSeed = 10,
+    /// The order of a data set's records and units, and seeds of its designs; index: which of them.
+    DatasetDesign = 11,
+    /// Values that a unit of a data set is drawn with; index: unit.
+    DatasetUnit = 12,
+    /// Values that a record of a data set is drawn with; index: its number in its class.
+    DatasetRecord = 13,
+    /// Where a unit's mark is and in which revolution a record begins; index: 0.
+    DatasetStart = 14,
+    /// Noise of a recorded channel, value by value; index: channel.
+    RecordNoise = 15,
 }
 
-/// A sequence of uniform numbers.
-pub(crate) struct Draws {
+/// A sequence of random numbers.
+#[derive(Debug, Clone)]
+pub struct Draws {
     generator: ChaCha8Rng,
 }
 
 impl Draws {
     /// The sequence for `purpose` and `index` under `seed`.
-    pub(crate) fn new(seed: u64, purpose: Purpose, index: u64) -> Self {
+    ///
+    /// # Arguments
+    /// * `seed` - of all draws that belong together
+    /// * `purpose` - what they are for
+    /// * `index` - which of the sequences for that purpose
+    pub fn new(seed: u64, purpose: Purpose, index: u64) -> Self {
         let mut key = [0; 32];
         key[..8].copy_from_slice(&seed.to_le_bytes());
         key[8..16].copy_from_slice(&(purpose as u64).to_le_bytes());
@@ -44,18 +64,43 @@ impl Draws {
         Self { generator: ChaCha8Rng::from_seed(key) }
     }
 
+    /// Next 64 random bits.
+    ///
+    /// ```
+    /// use meshtone::random::{Draws, Purpose};
+    ///
+    /// let bits = |index| Draws::new(1, Purpose::DatasetSeed, index).bits();
+    /// assert_eq!(bits(3), bits(3));
+    /// assert_ne!(bits(3), bits(4));
+    /// ```
+    pub fn bits(&mut self) -> u64 {
+        self.generator.next_u64()
+    }
+
     /// Next number, uniform in `centre` ± `half_width`.
-    pub(crate) fn uniform(&mut self, centre: f64, half_width: f64) -> f64 {
+    ///
+    /// # Arguments
+    /// * `centre`, `half_width` - of the range
+    pub fn uniform(&mut self, centre: f64, half_width: f64) -> f64 {
         // 53 random bits: every multiple of 2⁻⁵³ in [0, 1).
-        let unit = (self.generator.next_u64() >> 11) as f64 * 2f64.powi(-53);
+        let unit = (self.bits() >> 11) as f64 * 2f64.powi(-53);
         centre + half_width * (2.0 * unit - 1.0)
     }
 
-    /// Next number, normal with mean 0 and standard deviation 1 (Box and Muller).
-    pub(crate) fn normal(&mut self) -> f64 {
+    /// Next number, normal with mean 0 and standard deviation 1: the first of [`Self::normals`].
+    pub fn normal(&mut self) -> f64 {
+        self.normals()[0]
+    }
+
+    /// Next two numbers, independent and normal with mean 0 and standard deviation 1.
+    ///
+    /// Source: G. E. P. Box, M. E. Muller, "A note on the generation of random normal deviates", Ann. Math. Statist. 29
+    /// (1958) 610–611.
+    pub fn normals(&mut self) -> [f64; 2] {
         // In (0, 1]: its logarithm is finite.
         let unit = 1.0 - self.uniform(0.5, 0.5);
         let angle = std::f64::consts::TAU * self.uniform(0.5, 0.5);
-        (-2.0 * unit.ln()).sqrt() * angle.cos()
+        let radius = (-2.0 * unit.ln()).sqrt();
+        [radius * angle.cos(), radius * angle.sin()]
     }
 }

@@ -129,6 +129,7 @@ fn with_errors(scenario: &Scenario, errors: &ProfileErrors, factor: f64) -> Scen
     let mut scenario = scenario.clone();
     scenario.quality = Quality {
         din_grade: 0,
+        seed: None,
         profile_errors: Some(ProfileErrors {
             pinion_profile_errors_mm: &errors.pinion_profile_errors_mm * factor,
             gear_profile_errors_mm: &errors.gear_profile_errors_mm * factor,
@@ -299,6 +300,7 @@ proptest! {
             let mut scenario = scenario.clone();
             scenario.quality = Quality {
                 din_grade: 0,
+                seed: None,
                 profile_errors: Some(ProfileErrors {
                     pinion_profile_errors_mm: &drawn.pinion_profile_errors_mm * pinion,
                     gear_profile_errors_mm: &drawn.gear_profile_errors_mm * gear,
@@ -333,7 +335,7 @@ proptest! {
 
         let drawn = first.stages.profile_errors.clone();
         let mut given = scenario.clone();
-        given.quality = Quality { din_grade: 0, profile_errors: drawn.clone() };
+        given.quality = Quality { din_grade: 0, seed: None, profile_errors: drawn.clone() };
         prop_assert_eq!(&first.channels, &simulate(&given).unwrap().channels);
 
         let mut reseeded = scenario.clone();

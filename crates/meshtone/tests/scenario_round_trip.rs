@@ -89,9 +89,14 @@ fn quality(pinion_teeth: u32, gear_teeth: u32) -> impl Strategy<Value = Quality>
         }
     };
     prop_oneof![
-        (0u8..=12).prop_map(|din_grade| Quality { din_grade, profile_errors: None }),
+        (0u8..=12, prop::option::of(any::<u64>())).prop_map(|(din_grade, seed)| Quality {
+            din_grade,
+            seed,
+            profile_errors: None
+        }),
         (-0.01..0.01, -1e-3..1e-3).prop_map(move |(first, step)| Quality {
             din_grade: 0,
+            seed: None,
             profile_errors: Some(drawn(first, step))
         }),
     ]

@@ -6,17 +6,21 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use meshtone::scenario::{TEMPLATE_KINDS, template};
+use meshtone_dataset::plan;
 use meshtone_io::atomic_file::StagedFile;
 
 use crate::failure::Failure;
 use crate::terminal;
 
-/// Print a commented scenario file to start from
+/// The kind that is a data set's plan and no scenario.
+const DATASET: &str = "dataset";
+
+/// Print a commented scenario file to start from, or a data set's plan
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Init {
-    /// A healthy pair, or what is broken on the gear's first tooth
-    #[arg(value_parser = PossibleValuesParser::new(TEMPLATE_KINDS))]
+    /// A healthy pair, or what is broken on the gear's first tooth; or the plan of a data set
+    #[arg(value_parser = PossibleValuesParser::new(TEMPLATE_KINDS.into_iter().chain([DATASET])))]
     kind: String,
     /// File to write, instead of standard output
     #[arg(short, long, value_name = "FILE")]
@@ -29,12 +33,16 @@ pub struct Init {
 const EXAMPLES: &str = "\
 Examples:
   meshtone init healthy
-  meshtone init tooth-breakage -o broken.toml";
+  meshtone init tooth-breakage -o broken.toml
+  meshtone init dataset -o plan.toml";
 
 impl Init {
     pub fn run(&self) -> Result<(), Failure> {
         let unknown = || Failure::bad_input(format!("there is no template {}", self.kind));
-        let text = template(&self.kind).ok_or_else(unknown)?;
+        let text = match self.kind.as_str() {
+            DATASET => plan::template().to_owned(),
+            kind => template(kind).ok_or_else(unknown)?,
+        };
         match &self.output {
             None => terminal::print(&text),
             Some(path) => self.write(path, &text),

@@ -1,5 +1,6 @@
 //! The commands, one file each.
 
+mod dataset;
 mod enhance;
 mod indicators;
 mod init;
@@ -23,6 +24,7 @@ pub enum Command {
     Panel(panel::Panel),
     Tune(tune::Tune),
     Enhance(enhance::Enhance),
+    Dataset(dataset::Dataset),
 }
 
 impl Command {
@@ -36,6 +38,7 @@ impl Command {
             Self::Panel(arguments) => arguments.run(),
             Self::Tune(arguments) => arguments.run(),
             Self::Enhance(arguments) => arguments.run(),
+            Self::Dataset(arguments) => arguments.run(),
         }
     }
 }

@@ -38,7 +38,7 @@ fn version_and_help() {
     let workplace = Workplace::new();
     let version = format!("meshtone {}\n", env!("CARGO_PKG_VERSION"));
     workplace.succeeds(&["--version"]).stdout(version);
-    for command in ["simulate", "init", "wheels", "panel"] {
+    for command in ["simulate", "init", "wheels", "panel", "dataset"] {
         let help = stdout(&workplace.succeeds(&[command, "--help"]));
         assert!(help.contains("Example") && help.contains("Usage: meshtone"), "{help}");
         assert!(stdout(&workplace.succeeds(&["--help"])).contains(command));

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod bad_input;
+mod dataset;
 mod examples;
 mod indicators;
 mod indicators_refused;

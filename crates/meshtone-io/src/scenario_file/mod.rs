@@ -12,7 +12,7 @@ use meshtone::scenario::{FileProblem, Profile, ProfileErrors, Scenario, Scenario
 
 pub use profile_errors_npz::write_profile_errors_npz;
 pub use source::ScenarioFile;
-pub(crate) use source::read_text;
+pub use source::read_text;
 
 /// A scenario file that could not be read.
 #[derive(Debug, thiserror::Error)]

@@ -73,7 +73,14 @@ impl ScenarioFile {
 /// Some editors start a text with a mark that it is UTF-8.
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
-pub(crate) fn read_text(path: &Path) -> Result<String, ReadScenarioError> {
+/// Reads the text of a file that a user wrote.
+///
+/// # Arguments
+/// * `path` - the file
+///
+/// # Errors
+/// It cannot be read, or is not UTF-8 text.
+pub fn read_text(path: &Path) -> Result<String, ReadScenarioError> {
     let path_buf = || path.to_path_buf();
     let bytes =
         std::fs::read(path).map_err(|source| ReadScenarioError::Unreadable { path: path_buf(), source })?;

@@ -11,7 +11,7 @@ use crate::tooth::Teeth;
 /// # Arguments
 /// * `quality` - grade, or the errors themselves
 /// * `teeth` - both wheels
-/// * `seed` - seed of the draw
+/// * `seed` - of the draw, unless `quality` has its own
 ///
 /// Returns `None` for ideal teeth.
 pub fn profile_errors(quality: &Quality, teeth: &Teeth, seed: u64) -> Option<ProfileErrors> {
@@ -19,6 +19,7 @@ pub fn profile_errors(quality: &Quality, teeth: &Teeth, seed: u64) -> Option<Pro
         return quality.profile_errors.clone();
     }
     let grade = din3962::Grade::new(quality.din_grade)?;
+    let seed = quality.seed.unwrap_or(seed);
     let pinion_radius = teeth.contact.pinion_initial_radius_mm;
     let gear_radius = teeth.contact.gear_initial_radius_mm;
     Some(ProfileErrors {

@@ -4,6 +4,29 @@ use toml::{Table, Value};
 
 use super::{Scenario, ScenarioError};
 
+/// A number of a scenario.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ScenarioNumber {
+    /// Dotted key, as in the scenario file.
+    pub key: String,
+    /// Its value, in the key's unit.
+    pub value: f64,
+    /// Only whole numbers are allowed.
+    pub whole: bool,
+}
+
+fn collect(table: &Table, path: &str, numbers: &mut Vec<ScenarioNumber>) {
+    for (name, value) in table {
+        let key = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
+        match value {
+            Value::Table(table) => collect(table, &key, numbers),
+            Value::Float(value) => numbers.push(ScenarioNumber { key, value: *value, whole: false }),
+            Value::Integer(value) => numbers.push(ScenarioNumber { key, value: *value as f64, whole: true }),
+            _ => {}
+        }
+    }
+}
+
 impl Scenario {
     /// The number at a key of the scenario file, defaults included.
     ///
@@ -114,6 +137,23 @@ impl Scenario {
         // Not part of the text's table.
         changed.quality.profile_errors.clone_from(&self.quality.profile_errors);
         Ok(changed)
+    }
+
+    /// Every key of the scenario file at which this scenario has a single number, defaults included.
+    ///
+    /// ```
+    /// use meshtone::scenario::Scenario;
+    ///
+    /// let numbers = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0).numbers();
+    /// let teeth = numbers.iter().find(|number| number.key == "gears.pinion_teeth").unwrap();
+    /// assert!(teeth.whole && teeth.value == 17.0);
+    /// ```
+    pub fn numbers(&self) -> Vec<ScenarioNumber> {
+        let mut numbers = Vec::new();
+        if let Some(table) = self.table() {
+            collect(&table, "", &mut numbers);
+        }
+        numbers
     }
 
     /// The scenario file as a table, without the profile errors given, which are large.

@@ -20,6 +20,7 @@ mod template;
 mod to_toml;
 mod validate;
 
+pub use edit::ScenarioNumber;
 pub use error::{ScenarioError, ScenarioWarning};
 pub use fault::{
     DestructionLine, Fault, PartialFace, PitCircle, ThroughFace, ToothBreakage, ToothDestruction,

@@ -10,6 +10,8 @@ pub const ERROR_POINTS: usize = 100;
 pub struct Quality {
     /// Grade of DIN 3962, 1 (best) to 12; 0 for ideal teeth. Default 0.
     pub din_grade: u8,
+    /// Seed of the draw by `din_grade`: which wheels they are. Default: the scenario's seed.
+    pub seed: Option<u64>,
     /// The errors themselves, instead of a draw by `din_grade`: several simulations that are
     /// given the same errors share one pair of wheels.
     pub profile_errors: Option<ProfileErrors>,

@@ -89,6 +89,28 @@ pub fn interpolate_band_limited(signal: &[f64], places: &[f64], edge: Edge) -> R
         return Err(SignalError::TooFew { what: "samples", given: 0, needed: 1 });
     }
     check_places(places)?;
+    // Compiled for several sets of vector instructions. None of them fuses a multiplication with an addition here.
+    Ok(pulp::Arch::new().dispatch(BandLimited { signal, places, edge }))
+}
+
+/// One call of [`interpolate_band_limited`].
+struct BandLimited<'a> {
+    signal: &'a [f64],
+    places: &'a [f64],
+    edge: Edge,
+}
+
+impl pulp::NullaryFnOnce for BandLimited<'_> {
+    type Output = Vec<f64>;
+
+    #[inline(always)]
+    fn call(self) -> Vec<f64> {
+        band_limited(self.signal, self.places, self.edge)
+    }
+}
+
+#[inline(always)]
+fn band_limited(signal: &[f64], places: &[f64], edge: Edge) -> Vec<f64> {
     let table = taps();
     let mut window = [0.0; TAPS];
     let value = |&place: &f64| {
@@ -105,7 +127,7 @@ pub fn interpolate_band_limited(signal: &[f64], places: &[f64], edge: Edge) -> R
         });
         weighted(samples, &table[row], &table[row + 1], step - row as f64)
     };
-    Ok(places.iter().map(value).collect())
+    places.iter().map(value).collect()
 }
 
 fn check_places(places: &[f64]) -> Result<(), SignalError> {
@@ -117,6 +139,7 @@ fn check_places(places: &[f64]) -> Result<(), SignalError> {
 }
 
 /// `Σ x ((1 − t) a + t b)`, in four sums that the processor can run side by side.
+#[inline(always)]
 fn weighted(x: &[f64; TAPS], a: &[f64; TAPS], b: &[f64; TAPS], t: f64) -> f64 {
     let mut sums = [0.0; 4];
     for i in (0..TAPS).step_by(4) {

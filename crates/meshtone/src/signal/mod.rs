@@ -4,7 +4,7 @@
 //!
 //! | step | functions |
 //! |---|---|
-//! | another sampling rate | [`resample`], [`resample_with`], [`resampling_ratio`], [`resampling_taps`] |
+//! | another sampling rate | [`resample`], [`resample_with`], [`resampling_ratio`], [`resampling_taps`]; at any ratio [`AntiAliasing`] |
 //! | phase of the shaft | [`ShaftPhase`], [`tachometer_pulses`], [`repair_pulses`] |
 //! | over the angle | [`angular_resample`], [`interpolate_pchip`], [`interpolate_band_limited`] |
 //! | synchronous average | [`synchronous_average`], [`segmented_averages`] |
@@ -14,6 +14,7 @@
 //! | indicators | [`Indicators`], [`fm0`], [`fm4`], [`m6a`], [`m8a`], [`na4`], [`energy_ratio`], [`sideband_level_factor`] |
 
 mod angular;
+mod anti_aliasing;
 mod average;
 mod channels;
 mod check;
@@ -34,6 +35,7 @@ mod statistics;
 mod warning;
 
 pub use angular::{AngularSettings, AngularSignal, Interpolation, angular_resample, points_per_revolution};
+pub use anti_aliasing::AntiAliasing;
 pub use average::{SynchronousAverage, revolution_average, segmented_averages, synchronous_average};
 pub use channels::{Channels, GRAVITY_M_PER_S2, channel_outputs};
 pub use check::check_channel;

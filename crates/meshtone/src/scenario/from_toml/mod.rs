@@ -87,11 +87,23 @@ impl Scenario {
         limit: MemoryLimit,
     ) -> Result<Self, ScenarioError> {
         let document = TomlDocument::parse(text)?;
-        let scenario = document.root().read(|root| read_scenario(root, files))?;
+        let scenario = document.root().read(|root| Self::from_table(root, files))?;
         match scenario.validate_within(limit) {
             Ok(_) => Ok(scenario),
             Err(error) => Err(document.locate(quality::in_its_file(&document, error))),
         }
+    }
+
+    /// Reads a scenario that is a table of another file, without validating it.
+    ///
+    /// # Arguments
+    /// * `table` - with the sections of a scenario file
+    /// * `files` - loads the files that it names
+    ///
+    /// # Errors
+    /// An unknown or missing key, a value of the wrong type, what `files` reports.
+    pub fn from_table(table: &TomlTable<'_>, files: &dyn ScenarioFiles) -> ReadResult<Self> {
+        read_scenario(table, files)
     }
 }
 

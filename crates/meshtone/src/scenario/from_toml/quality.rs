@@ -12,7 +12,8 @@ pub(super) fn read(table: &TomlTable<'_>, files: &dyn ScenarioFiles) -> ReadResu
     let grade = table.optional("din_grade");
     let din_grade = grade.as_ref().map(|value| value.integer(0..=12)).transpose()?.unwrap_or(0);
     let profile_errors = profile_errors(table, files)?;
-    Ok(Quality { din_grade: u8::try_from(din_grade).unwrap_or(u8::MAX), profile_errors })
+    let seed = table.optional("seed").map(|value| value.integer(0..=u64::MAX)).transpose()?;
+    Ok(Quality { din_grade: u8::try_from(din_grade).unwrap_or(u8::MAX), seed, profile_errors })
 }
 
 fn profile_errors(table: &TomlTable<'_>, files: &dyn ScenarioFiles) -> ReadResult<Option<ProfileErrors>> {

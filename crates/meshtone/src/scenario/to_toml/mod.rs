@@ -86,6 +86,9 @@ fn profile(section: &mut Section, key: &str, profile: Option<&Profile>) {
 fn quality(quality: &Quality) -> Section {
     let mut section = Section::new("quality");
     section.whole("din_grade", quality.din_grade);
+    if let Some(seed) = quality.seed {
+        section.whole("seed", seed);
+    }
     if let Some(errors) = &quality.profile_errors {
         section
             .matrix("pinion_profile_errors_mm", &errors.pinion_profile_errors_mm)

@@ -21,6 +21,11 @@ pub(super) fn check(quality: &Quality, gears: &Gears) -> Check {
         return Err(ScenarioError::new("quality.din_grade", grade, problem)
             .with_help("remove din_grade or set it to 0, or remove the profile errors"));
     }
+    if let Some(seed) = quality.seed {
+        let problem = "given beside profile errors, which are not drawn";
+        return Err(ScenarioError::new("quality.seed", seed, problem)
+            .with_help("remove quality.seed, or the profile errors"));
+    }
     let module_mm = gears.module_mm;
     matrix("pinion", &errors.pinion_profile_errors_mm, gears.pinion_teeth, module_mm)?;
     matrix("gear", &errors.gear_profile_errors_mm, gears.gear_teeth, module_mm)

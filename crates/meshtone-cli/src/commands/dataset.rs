@@ -1,0 +1,236 @@
+//! `meshtone dataset`
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::str::FromStr;
+use std::sync::atomic::AtomicBool;
+
+use clap::{Args, Subcommand};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use meshtone_dataset::draw::Sampler;
+use meshtone_dataset::generate::{GenerateControl, Generated, Part, generate};
+use meshtone_dataset::merge::merge;
+use meshtone_dataset::plan::Plan;
+use meshtone_dataset::store::Destination;
+
+use crate::failure::Failure;
+use crate::output_directory::named_after;
+use crate::terminal::{print, print_error_line};
+
+/// Failed records that are told one by one.
+const TOLD: usize = 3;
+
+/// Make a labelled data set after a plan
+///
+/// Simulates the plan's records and writes them as Parquet files, with a manifest, a data card and a preview. Stopped at any
+/// moment, the same command goes on; the result has the same bytes as an uninterrupted run, with any number of jobs and parts.
+#[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, arg_required_else_help = true, after_help = EXAMPLES)]
+pub struct Dataset {
+    #[command(subcommand)]
+    action: Option<Action>,
+    #[command(flatten)]
+    make: Option<Make>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Action {
+    Merge(Merge),
+    Scenario(Scenario),
+}
+
+#[derive(Debug, Args)]
+struct Make {
+    /// The plan; `meshtone init dataset` prints one
+    #[arg(value_name = "PLAN.toml")]
+    plan: PathBuf,
+    /// Directory or URL (file:, s3:, …) to write to. [default: <file name without .toml>_dataset in the current directory]
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<String>,
+    /// Threads that simulate. [default: one for each processor]
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// Only one part of the shards, such as 2/8; parts may be made at the same time, in one directory or apart
+    #[arg(long, value_name = "I/N")]
+    part: Option<PartArgument>,
+    /// Print no summary and no progress; warnings and errors are still printed
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Put the parts of a data set together that were made apart
+#[derive(Debug, Args)]
+struct Merge {
+    /// Directories or URLs of the parts
+    #[arg(value_name = "PART", required = true)]
+    parts: Vec<String>,
+    /// Directory or URL of the whole; may be one of the parts
+    #[arg(short, long, value_name = "DIR")]
+    output: String,
+    /// Print no summary
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Print the scenario of one record, to simulate and look at it alone
+#[derive(Debug, Args)]
+struct Scenario {
+    /// The plan
+    #[arg(value_name = "PLAN.toml")]
+    plan: PathBuf,
+    /// Number of the record, as in the column record
+    #[arg(value_name = "RECORD")]
+    record: u64,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  meshtone init dataset -o plan.toml                     a commented plan to start from
+  meshtone dataset plan.toml -o gears                    the data set, into the folder gears; run it again to go on
+  meshtone dataset plan.toml -o gears_2 --part 2/8       one eighth of it
+  meshtone dataset merge gears_1 gears_2 … -o gears      all eighths together
+  meshtone dataset scenario plan.toml 17 > record.toml   what record 17 is";
+
+/// `I/N`
+#[derive(Debug, Clone, Copy)]
+struct PartArgument(Part);
+
+impl FromStr for PartArgument {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
+        match numbers {
+            Some((number, of)) if number >= 1 && number <= of => Ok(Self(Part { number, of })),
+            _ => Err("must be I/N with I from 1 to N, such as 2/8".to_owned()),
+        }
+    }
+}
+
+impl Dataset {
+    pub fn run(&self) -> Result<(), Failure> {
+        match (&self.action, &self.make) {
+            (Some(Action::Merge(arguments)), _) => arguments.run(),
+            (Some(Action::Scenario(arguments)), _) => arguments.run(),
+            (None, Some(arguments)) => arguments.run(),
+            (None, None) => Err(Failure::bad_input("name a plan").with_help("see meshtone dataset --help")),
+        }
+    }
+}
+
+impl Make {
+    fn run(&self) -> Result<(), Failure> {
+        let plan = read_plan(&self.plan)?;
+        let to = self.destination()?;
+        let part = self.part.map_or(Part::WHOLE, |part| part.0);
+        let threads = usize::from(self.jobs.unwrap_or(0));
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = pool.map_err(|error| Failure::failed(format!("cannot start threads: {error}")))?;
+        let bar = self.progress_bar();
+        let progress = |done: u64, all: u64| {
+            bar.set_length(all);
+            bar.set_position(done);
+        };
+        let control = GenerateControl { progress: &progress, cancelled: &AtomicBool::new(false) };
+        let generated = pool.install(|| generate(&plan, &to, part, &control));
+        bar.finish_and_clear();
+        let generated = generated?;
+        warn(&generated);
+        if self.quiet { Ok(()) } else { print(&summary(&plan, &generated, &to, part)) }
+    }
+
+    fn destination(&self) -> Result<Destination, Failure> {
+        if let Some(output) = &self.output {
+            return Ok(Destination::parse(output)?);
+        }
+        let name = named_after(&self.plan, "_dataset");
+        let name = name.ok_or_else(|| Failure::bad_input(format!("{} is no plan", self.plan.display())))?;
+        Ok(Destination::directory(name))
+    }
+
+    fn progress_bar(&self) -> ProgressBar {
+        if self.quiet {
+            return ProgressBar::hidden();
+        }
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+        if let Ok(style) =
+            ProgressStyle::with_template("{bar:30} {pos} of {len} records, {per_sec}, {eta} left")
+        {
+            bar.set_style(style);
+        }
+        bar
+    }
+}
+
+impl Merge {
+    fn run(&self) -> Result<(), Failure> {
+        let parts: Vec<Destination> =
+            self.parts.iter().map(|part| Destination::parse(part)).collect::<Result<_, _>>()?;
+        let to = Destination::parse(&self.output)?;
+        let merged = merge(&parts, &to)?;
+        let shards = merged.kept_shards + merged.written_shards;
+        if self.quiet { Ok(()) } else { print(&format!("  {shards} shards\n\n{to}\n")) }
+    }
+}
+
+impl Scenario {
+    fn run(&self) -> Result<(), Failure> {
+        let plan = read_plan(&self.plan)?;
+        let name = self.plan.display();
+        let refuse =
+            |problem: String| Failure::bad_input(format!("{name}: record {}: {problem}", self.record));
+        if self.record >= plan.records() {
+            return Err(refuse(format!("there are {} records, counted from 0", plan.records())));
+        }
+        let sampler = Sampler::new(&plan.content).map_err(|error| refuse(error.to_string()))?;
+        let record = sampler.record(self.record).map_err(|error| refuse(error.problem))?;
+        let scenario = sampler.scenario(&record).map_err(|error| refuse(error.to_string()))?;
+        let label = &plan.content.classes[record.class].label;
+        let split = plan.content.splits.names()[record.split];
+        let head = format!(
+            "# Record {} of {name}: \"{label}\", severity {}, unit {}, {split}.\n",
+            self.record, record.severity, record.unit
+        );
+        print(&(head + &scenario.to_toml()))
+    }
+}
+
+fn read_plan(path: &std::path::Path) -> Result<Plan, Failure> {
+    Plan::read(path).map_err(|error| meshtone_dataset::DatasetError::from(error).into())
+}
+
+fn warn(generated: &Generated) {
+    for failed in generated.failures.iter().take(TOLD) {
+        print_error_line(format!("warning: record {} failed: {}", failed.record, failed.reason));
+    }
+    if generated.failures.len() > TOLD {
+        let rest = generated.failures.len() - TOLD;
+        print_error_line(format!("warning: {rest} more records failed; manifest.json lists them"));
+    }
+}
+
+fn summary(plan: &Plan, generated: &Generated, to: &Destination, part: Part) -> String {
+    let mut text = String::new();
+    // Writing to a text cannot fail.
+    let _ = writeln!(
+        text,
+        "  {} records in {} shards written, {} shards were there already",
+        generated.written_records - generated.failures.len() as u64,
+        generated.written_shards,
+        generated.kept_shards
+    );
+    let _ = match (generated.complete, part == Part::WHOLE) {
+        (true, _) => writeln!(
+            text,
+            "  complete: {} records of {} units, see README.md there",
+            plan.records(),
+            plan.content.units
+        ),
+        (false, _) => writeln!(
+            text,
+            "  not complete: other parts are missing; `meshtone dataset merge` puts parts together"
+        ),
+    };
+    let _ = writeln!(text, "\n{to}");
+    text
+}

@@ -1,0 +1,236 @@
+//! `meshtone dataset`
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::support::{Workplace, stdout};
+
+/// 96 records of some milliseconds each.
+const PLAN: &str = r#"
+records = 96
+units = 12
+[scenario.gears]
+module_mm = 3.0
+pinion_teeth = 20
+gear_teeth = 40
+face_width_mm = 15.0
+[scenario.operation]
+pinion_speed_hz = 40.0
+brake_torque_nm = 200.0
+[scenario.quality]
+din_grade = 7
+[[class]]
+label = "healthy"
+[[class]]
+label = "chipped"
+fault = { kind = "tooth-breakage", chip_height_mm = 3.0, chip_width_mm = 8.0 }
+[[vary]]
+key = "operation.pinion_speed_hz"
+uniform = [30.0, 60.0]
+[keep]
+records_per_shard = 8
+"#;
+
+fn workplace() -> Workplace {
+    let workplace = Workplace::new();
+    workplace.write("plan.toml", PLAN);
+    workplace
+}
+
+/// Every file of a data set, by its name.
+fn bytes(directory: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    for folder in [directory.to_path_buf(), directory.join("data")] {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_file() {
+                files.insert(
+                    path.strip_prefix(directory).unwrap().display().to_string(),
+                    std::fs::read(&path).unwrap(),
+                );
+            }
+        }
+    }
+    files
+}
+
+#[track_caller]
+fn assert_same(workplace: &Workplace, a: &str, b: &str) {
+    let [a, b] = [a, b].map(|name| bytes(&workplace.path(name)));
+    assert_eq!(a.keys().collect::<Vec<_>>(), b.keys().collect::<Vec<_>>());
+    for (name, content) in &a {
+        assert!(content == &b[name], "{name} differs");
+    }
+}
+
+#[test]
+fn a_data_set_and_what_is_said_about_it() {
+    let workplace = workplace();
+    let said = stdout(&workplace.succeeds(&["dataset", "plan.toml"]));
+    for words in ["96 records in 12 shards written", "complete: 96 records of 12 units", "plan_dataset"] {
+        assert!(said.contains(words), "{said}");
+    }
+    let names =
+        ["README.md", "data", "manifest.json", "plan.toml", "preview.png", "preview.svg", "scenario.toml"];
+    assert_eq!(workplace.names("plan_dataset"), names);
+    let card = String::from_utf8(workplace.read("plan_dataset/README.md")).unwrap();
+    for words in ["| chipped |", "CC-BY-4.0", "parquetread", "scan_parquet", "`fault_tooth`", "| *units* |"] {
+        assert!(card.contains(words), "{card}");
+    }
+    let again = stdout(&workplace.succeeds(&["dataset", "plan.toml"]));
+    assert!(again.contains("0 records in 0 shards written, 12 shards were there already"), "{again}");
+    workplace.succeeds(&["dataset", "plan.toml", "-o", "quiet", "--quiet"]).stdout("");
+}
+
+#[test]
+fn killed_ten_times_and_gone_on_with() {
+    let workplace = workplace();
+    let start = Instant::now();
+    workplace.succeeds(&["dataset", "plan.toml", "-o", "whole", "--jobs", "1"]);
+    let whole_s = start.elapsed().as_secs_f64();
+    let mut killed = 0;
+    // At any moments: multiples of the golden ratio leave no pattern.
+    for moment in 1..=10 {
+        let part = (f64::from(moment) * 0.618_033_988_749_895).fract();
+        let mut child = Command::new(env!("CARGO_BIN_EXE_meshtone"))
+            .args(["dataset", "plan.toml", "-o", "killed", "--jobs", if moment % 2 == 0 { "1" } else { "3" }])
+            .current_dir(workplace.directory.path())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(Duration::from_secs_f64(0.3 * whole_s * part));
+        killed += usize::from(child.try_wait().unwrap().is_none());
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+    assert!(killed > 0);
+    workplace.succeeds(&["dataset", "plan.toml", "-o", "killed"]);
+    assert_same(&workplace, "whole", "killed");
+}
+
+#[test]
+fn parts_are_merged() {
+    let workplace = workplace();
+    workplace.succeeds(&["dataset", "plan.toml", "-o", "whole"]);
+    for part in ["1", "2", "3"] {
+        let said = stdout(&workplace.succeeds(&[
+            "dataset",
+            "plan.toml",
+            "-o",
+            part,
+            "--part",
+            &format!("{part}/3"),
+        ]));
+        assert!(said.contains("not complete"), "{said}");
+    }
+    workplace.fails(
+        2,
+        &["dataset", "merge", "1", "3", "-o", "merged"],
+        &["4 of 12 shards are in none of the parts"],
+    );
+    workplace.succeeds(&["dataset", "merge", "1", "2", "3", "-o", "merged"]);
+    assert_same(&workplace, "whole", "merged");
+    workplace.fails(2, &["dataset", "merge", "absent", "-o", "merged"], &["absent is no data set"]);
+    workplace.fails(2, &["dataset", "plan.toml", "--part", "4/3"], &["2/8"]);
+}
+
+#[test]
+fn one_record_can_be_looked_at() {
+    let workplace = workplace();
+    let scenario = stdout(&workplace.succeeds(&["dataset", "scenario", "plan.toml", "5"]));
+    assert!(scenario.starts_with("# Record 5 of plan.toml: \""), "{scenario}");
+    workplace.write("record.toml", &scenario);
+    workplace.succeeds(&["simulate", "record.toml", "--no-panel"]);
+    workplace.fails(
+        2,
+        &["dataset", "scenario", "plan.toml", "96"],
+        &["there are 96 records, counted from 0"],
+    );
+}
+
+#[test]
+fn what_is_wrong_is_said_and_nothing_is_written() {
+    let workplace = workplace();
+    workplace.fails(
+        2,
+        &["dataset", "absent.toml"],
+        &["there is no plan absent.toml", "meshtone init dataset"],
+    );
+    workplace.write("wrong.toml", PLAN.replace("uniform = [30.0, 60.0]", "uniform = [60.0, 30.0]"));
+    workplace.fails(2, &["dataset", "wrong.toml"], &["wrong.toml", "line 21", "write [30.0, 60.0]"]);
+    workplace.write("wrong.toml", PLAN.replace("pinion_speed_hz\"", "pinion_sped_hz\""));
+    workplace.fails(2, &["dataset", "wrong.toml"], &["did you mean `operation.pinion_speed_hz`?"]);
+    workplace.write(
+        "wrong.toml",
+        PLAN.replace("units = 12", "units = 12\nconstraints = [\"operation.pinion_speed_hz > 99\"]"),
+    );
+    workplace.fails(2, &["dataset", "wrong.toml"], &["line 4", "was not met by 10000"]);
+    workplace.fails(2, &["dataset", "plan.toml", "-o", "."], &["has another file in it: fast.toml", "-o"]);
+    workplace.fails(2, &["dataset", "plan.toml", "-o", "fast.toml"], &["fast.toml"]);
+    workplace.fails(2, &["dataset", "plan.toml", "-o", "s3://bucket/gears"], &["s3://bucket/gears"]);
+}
+
+#[test]
+fn another_plan_in_the_same_place() {
+    let workplace = workplace();
+    workplace.succeeds(&["dataset", "plan.toml", "-o", "set", "--part", "1/12"]);
+    workplace.write("other.toml", PLAN.replace("records = 96", "records = 97"));
+    workplace.fails(
+        2,
+        &["dataset", "other.toml", "-o", "set"],
+        &["begun with another plan", "name another directory"],
+    );
+}
+
+#[test]
+fn the_first_look() {
+    let workplace = workplace();
+    let plan = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/datasets/first_look.toml");
+    let said = stdout(&workplace.succeeds(&["dataset", plan.to_str().unwrap(), "-o", "look"]));
+    assert!(said.contains("complete: 200 records of 10 units"), "{said}");
+}
+
+/// Only whether it can be made: making it takes minutes.
+#[test]
+fn the_benchmark_and_the_template_are_plans() {
+    let workplace = workplace();
+    let plan = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/datasets/benchmark.toml");
+    let scenario = stdout(&workplace.succeeds(&["dataset", "scenario", plan.to_str().unwrap(), "11999"]));
+    assert!(scenario.contains("[gears]"), "{scenario}");
+    workplace.succeeds(&["init", "dataset", "-o", "template.toml"]);
+    workplace.succeeds(&["dataset", "scenario", "template.toml", "0"]);
+}
+
+/// A limit of the size of files stands in for a full disk: writing beyond it fails just so.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_leaves_what_can_be_gone_on_with() {
+    let workplace = workplace();
+    workplace.succeeds(&["dataset", "plan.toml", "-o", "whole"]);
+    let limited = "trap '' XFSZ; ulimit -f \"$1\"; shift; exec \"$@\"";
+    let output = Command::new("sh")
+        .args([
+            "-c",
+            limited,
+            "sh",
+            "100",
+            env!("CARGO_BIN_EXE_meshtone"),
+            "dataset",
+            "plan.toml",
+            "-o",
+            "full",
+        ])
+        .current_dir(workplace.directory.path())
+        .output()
+        .unwrap();
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    for words in ["cannot write full/data/records-000000.parquet", "run the same command again"] {
+        assert!(message.contains(words), "{message}");
+    }
+    workplace.succeeds(&["dataset", "plan.toml", "-o", "full"]);
+    assert_same(&workplace, "whole", "full");
+}

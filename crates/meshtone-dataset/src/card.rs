@@ -1,0 +1,247 @@
+//! The data card: README.md.
+
+use std::fmt::Write;
+
+use crate::finish::Contents;
+use crate::manifest::PREVIEW;
+use crate::plan::{Class, Plan, PlanFile, Severity};
+use crate::shard::{Column, ColumnKind, Shards};
+
+/// The data card's text.
+pub(crate) fn card(plan: &Plan, shards: Shards, contents: &Contents, columns: &[Column]) -> String {
+    let mut text = String::new();
+    // Writing to a text cannot fail.
+    let _ = head(&mut text, plan, contents);
+    let _ = counts(&mut text, plan, contents);
+    let _ = classes(&mut text, plan, contents);
+    let _ = columns_table(&mut text, columns, contents);
+    let _ = files(&mut text, shards, contents);
+    let _ = loading(&mut text, columns);
+    text
+}
+
+fn head(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Result {
+    let about = &plan.about;
+    writeln!(text, "# {}\n", about.title)?;
+    if !about.description.is_empty() {
+        writeln!(text, "{}\n", about.description.trim())?;
+    }
+    let rows = plan.records() - contents.failures.len() as u64;
+    let keep = &plan.content.keep;
+    let length = match keep.duration_s {
+        Some(seconds) => format!("{seconds} s"),
+        None => "one hunting period, after which the same teeth meet again".to_owned(),
+    };
+    writeln!(
+        text,
+        "{rows} simulated records of spur gear vibration from {} units (pairs of wheels), raw channels at {} S/s over {length}. \
+         Made with [Meshtone](https://crates.io/crates/meshtone) {} from `{}`, which makes the same bytes again; the base scenario \
+         is `{}`.\n",
+        plan.content.units,
+        keep.sampling_rate_hz,
+        env!("CARGO_PKG_VERSION"),
+        PlanFile::NAMES[0],
+        PlanFile::NAMES[1]
+    )?;
+    writeln!(text, "**Licence of the data: {}.**\n", about.licence)?;
+    writeln!(
+        text,
+        "![Examples of each class, distributions of the keys, indicators by class]({})\n",
+        PREVIEW[1]
+    )
+}
+
+fn counts(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Result {
+    writeln!(text, "## What is in it\n")?;
+    let splits: Vec<&str> = plan.content.splits.names();
+    let splits: Vec<&str> =
+        splits.into_iter().filter(|name| contents.units_of_split.contains_key(*name)).collect();
+    writeln!(text, "| class | {} | all |", splits.join(" | "))?;
+    writeln!(text, "|---|{}---:|", "---:|".repeat(splits.len()))?;
+    let count = |split: &str, label: &str| {
+        contents.counts.get(&(split.to_owned(), label.to_owned())).copied().unwrap_or(0)
+    };
+    let row = |name: &str, numbers: Vec<u64>| {
+        let all: u64 = numbers.iter().sum();
+        let cells: Vec<String> = numbers.iter().map(u64::to_string).collect();
+        format!("| {name} | {} | {all} |", cells.join(" | "))
+    };
+    for class in &plan.content.classes {
+        let numbers = splits.iter().map(|split| count(split, &class.label)).collect();
+        writeln!(text, "{}", row(&class.label, numbers))?;
+    }
+    let units =
+        splits.iter().map(|split| contents.units_of_split.get(*split).copied().unwrap_or(0)).collect();
+    writeln!(text, "{}\n", row("*units*", units))?;
+    writeln!(
+        text,
+        "**Splits are by unit**: all records of a pair of wheels are in one split, so that nothing about particular wheels that was \
+         learned in training helps in the test."
+    )?;
+    for shift in &plan.content.splits.shifts {
+        let when: Vec<String> = shift.when.iter().map(|condition| format!("`{condition}`")).collect();
+        writeln!(
+            text,
+            "The split `{}` is unlike the training: {} holds for its records and for no other ones. Classes that have no such \
+             number are as everywhere.",
+            shift.name,
+            when.join(" and ")
+        )?;
+    }
+    writeln!(text)?;
+    if !contents.failures.is_empty() {
+        writeln!(
+            text,
+            "Of the plan's {} records {} could not be simulated and are missing; `manifest.json` lists them with the reasons.\n",
+            plan.records(),
+            contents.failures.len()
+        )?;
+    }
+    Ok(())
+}
+
+fn classes(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Result {
+    writeln!(text, "## Classes\n\n| label | fault | severity |\n|---|---|---|")?;
+    for class in &plan.content.classes {
+        let fault = class.fault.as_ref().map_or("none", |fault| fault.kind());
+        writeln!(text, "| {} | {fault} | {} |", class.label, severity(class))?;
+    }
+    writeln!(text, "\n## How it was drawn\n\nDesign: {}. \n", design(plan))?;
+    writeln!(text, "| column | key | for each | least | largest |\n|---|---|---|---:|---:|")?;
+    let rules = plan.content.rules.iter().chain(plan.content.classes.iter().flat_map(|class| &class.rules));
+    let mut seen = Vec::new();
+    for rule in rules {
+        for key in &rule.keys {
+            let name = crate::shard::column_name(key);
+            if seen.contains(&name) {
+                continue;
+            }
+            let level = match rule.level {
+                crate::plan::Level::Unit => "unit",
+                crate::plan::Level::Record => "record",
+            };
+            let [least, largest] = contents.ranges.get(&name).copied().unwrap_or([f64::NAN; 2]);
+            writeln!(text, "| `{name}` | `{key}` | {level} | {} | {} |", short(least), short(largest))?;
+            seen.push(name);
+        }
+    }
+    writeln!(text)
+}
+
+fn severity(class: &Class) -> String {
+    match (&class.severity, &class.fault) {
+        (_, None) => "0".to_owned(),
+        (Severity::Grade(grade), _) => grade.to_string(),
+        (Severity::Measured { measure, breaks }, _) => {
+            let breaks: Vec<String> = breaks.iter().map(|limit| format!("{limit}")).collect();
+            format!("1 to {} by `{measure}`, next grade from {} on", breaks.len() + 1, breaks.join(", "))
+        }
+    }
+}
+
+fn design(plan: &Plan) -> &'static str {
+    use crate::sampling::Design;
+    match plan.content.design {
+        Design::Independent => "independent draws",
+        Design::LatinHypercube => "Latin hypercube",
+        Design::Sobol => "scrambled Sobol sequence",
+    }
+}
+
+fn columns_table(text: &mut String, columns: &[Column], contents: &Contents) -> std::fmt::Result {
+    writeln!(text, "## Columns\n\nOne row a record. Units and meanings stand in the files' metadata too.\n")?;
+    writeln!(text, "| column | unit | meaning |\n|---|---|---|")?;
+    for column in columns.iter().filter(|column| !matches!(column.kind, ColumnKind::Indicator(_))) {
+        let constant = contents.ranges.get(&column.name).filter(|[least, largest]| least == largest);
+        let value = constant.map_or(String::new(), |[value, _]| format!(" (always {})", short(*value)));
+        let kind = if column.kind.is_signal() { "; list of 32-bit numbers" } else { "" };
+        writeln!(text, "| `{}` | {} | {}{kind}{value} |", column.name, column.unit, column.description)?;
+    }
+    let indicators: Vec<String> = columns
+        .iter()
+        .filter(|column| matches!(column.kind, ColumnKind::Indicator(_)))
+        .map(|column| format!("`{}`", column.name))
+        .collect();
+    if !indicators.is_empty() {
+        writeln!(
+            text,
+            "\nIndicators of the analysed channel over the gear's revolutions: {}.",
+            indicators.join(", ")
+        )?;
+    }
+    writeln!(text)
+}
+
+fn files(text: &mut String, shards: Shards, contents: &Contents) -> std::fmt::Result {
+    let bytes: u64 = contents.files.iter().map(|file| file.bytes).sum();
+    writeln!(
+        text,
+        "## Files\n\n{} Parquet files in `data/`, {} records each, {:.1} MB together. Records are in random order, so that every file \
+         is a mixture of all classes. `manifest.json` has counts, failures and the SHA-256 of every file.\n",
+        contents.files.len(),
+        shards.records_per_shard,
+        bytes as f64 / 1e6
+    )
+}
+
+fn loading(text: &mut String, columns: &[Column]) -> std::fmt::Result {
+    let signal = columns.iter().find(|column| column.kind.is_signal()).map_or("label", |column| &column.name);
+    writeln!(
+        text,
+        "## Loading
+
+Python, with pandas or polars; polars reads only what is asked for:
+
+```python
+import numpy as np
+import pandas as pd
+import polars as pl
+
+train = pd.read_parquet(\"data\", filters=[(\"split\", \"==\", \"train\")], columns=[\"label\", \"{signal}\"])
+first = np.asarray(train[\"{signal}\"].iloc[0])
+
+lazy = pl.scan_parquet(\"data/*.parquet\")
+train = lazy.filter(pl.col(\"split\") == \"train\").select(\"label\", \"severity\", \"{signal}\").collect()
+```
+
+MATLAB:
+
+```matlab
+records = parquetread(\"data/records-000000.parquet\");
+train = records(records.split == \"train\", :);
+first = train.{signal}{{1}};
+```
+
+Rust, with the crates `parquet` and `arrow`:
+
+```rust
+use std::fs::File;
+use arrow::array::AsArray;
+use arrow::datatypes::Float32Type;
+use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+
+let file = File::open(\"data/records-000000.parquet\")?;
+for batch in ParquetRecordBatchReaderBuilder::try_new(file)?.build()? {{
+    let batch = batch?;
+    let signals = batch.column_by_name(\"{signal}\").unwrap().as_list::<i32>();
+    let first = signals.value(0);
+    let first = first.as_primitive::<Float32Type>().values();
+}}
+```"
+    )
+}
+
+/// Four digits.
+fn short(value: f64) -> String {
+    if !value.is_finite() {
+        return String::new();
+    }
+    if value == 0.0 || value.fract() == 0.0 && value.abs() < 1e7 {
+        return format!("{value}");
+    }
+    if (1e-3..1e5).contains(&value.abs()) {
+        let decimals = (3 - value.abs().log10().floor() as i32).clamp(0, 6) as usize;
+        return format!("{value:.decimals$}");
+    }
+    format!("{value:.3e}")
+}

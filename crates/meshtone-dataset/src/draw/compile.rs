@@ -1,0 +1,317 @@
+//! A plan's rules, checked against each other and against the scenario.
+
+use std::collections::HashMap;
+
+use meshtone::scenario::{Scenario, ScenarioError};
+use meshtone::toml_reader::{ReadResult, nearest_name};
+
+use super::values::SEVERITY;
+use super::{NOISE_KEYS, Sampler};
+use crate::expression::{Condition, derived_names, underlying};
+use crate::plan::{Content, Distribution, Level, Rule};
+
+/// Keys that every record or unit has its own of.
+const OWN: [(&str, &str); 2] =
+    [("seed", "every record has a seed of its own"), ("quality.seed", "every unit has wheels of its own")];
+
+/// What a class's records are drawn by.
+#[derive(Debug, Clone)]
+pub(super) struct ClassRules<'a> {
+    /// With the class's fault.
+    pub base: Scenario,
+    /// All its numbers, by their keys.
+    pub numbers: HashMap<String, f64>,
+    /// Rules for records, those that others depend on first.
+    pub rules: Vec<&'a Rule>,
+    /// Constraints that records must meet.
+    pub constraints: Vec<&'a Condition>,
+}
+
+/// A rule and its key in the plan.
+type Placed<'a> = (&'a Rule, String);
+
+pub(super) fn sampler(content: &Content) -> ReadResult<Sampler<'_>> {
+    let top: Vec<Placed> =
+        content.rules.iter().enumerate().map(|(i, rule)| (rule, format!("vary[{i}]"))).collect();
+    let mut classes = Vec::with_capacity(content.classes.len());
+    for (c, class) in content.classes.iter().enumerate() {
+        let base = Scenario { fault: class.fault.clone(), ..content.base.clone() };
+        let known: Vec<_> = base.numbers();
+        let own: Vec<Placed> =
+            class.rules.iter().enumerate().map(|(i, rule)| (rule, format!("class[{c}].vary[{i}]"))).collect();
+        for (rule, place) in &own {
+            if rule.level == Level::Unit {
+                let problem = "varies by unit; a rule of a class varies by record";
+                return Err(ScenarioError::new(place, "", problem)
+                    .with_help("move it to the top as [[vary]], or write per = \"record\""));
+            }
+        }
+        let has = |key: &str| NOISE_KEYS.contains(&key) || known.iter().any(|number| number.key == key);
+        // A rule at the top concerns the classes whose faults have its keys.
+        let concerned = top.iter().filter(|(rule, _)| rule.keys.iter().all(|key| has(key)));
+        let all: Vec<Placed> = concerned.cloned().chain(own).collect();
+        check_keys(&all, &known, &base)?;
+        let ordered = in_order(&all, &known)?;
+        let rules = ordered.into_iter().filter(|rule| rule.level == Level::Record).collect();
+        let numbers = known.iter().map(|number| (number.key.clone(), number.value)).collect();
+        classes.push(ClassRules { base, numbers, rules, constraints: Vec::new() });
+    }
+    check_top(content, &top, &classes)?;
+    let of_unit: Vec<Placed> = top.iter().filter(|(rule, _)| rule.level == Level::Unit).cloned().collect();
+    let base_numbers = content.base.numbers();
+    let unit_rules = in_order(&of_unit, &base_numbers)?;
+    let by_unit = |condition: &Condition| is_decided_by_unit(condition, content);
+    let unit_constraints: Vec<&Condition> = content.constraints.iter().filter(|c| by_unit(c)).collect();
+    for class in &mut classes {
+        class.constraints = content.constraints.iter().filter(|c| !by_unit(c)).collect();
+    }
+    let shift_levels =
+        content.splits.shifts.iter().map(|shift| shift.when.iter().map(by_unit).collect()).collect();
+    check_conditions(content, &classes)?;
+    check_severities(content, &classes)?;
+    let mut end = 0;
+    let ends = content.classes.iter().map(|class| {
+        end += class.count;
+        end
+    });
+    Ok(Sampler { ends: ends.collect(), content, unit_rules, classes, unit_constraints, shift_levels })
+}
+
+/// Keys that exist, once each, of the right kind.
+fn check_keys(
+    rules: &[Placed],
+    known: &[meshtone::scenario::ScenarioNumber],
+    base: &Scenario,
+) -> ReadResult<()> {
+    let mut seen: Vec<(&str, &str)> = Vec::new();
+    for (rule, place) in rules {
+        let named = if rule.keys.len() == 1 { "key" } else { "keys" };
+        let refuse = |key: &str, problem: String| {
+            ScenarioError::new(format!("{place}.{named}"), format!("{key:?}"), problem)
+        };
+        for (column, key) in rule.keys.iter().enumerate() {
+            if let Some((_, why)) = OWN.iter().find(|(own, _)| own == key) {
+                return Err(refuse(key, format!("cannot be varied: {why}")));
+            }
+            if let Some((_, other)) = seen.iter().find(|(seen, _)| seen == key) {
+                return Err(refuse(key, format!("`{key}` is varied by {other} too; must be varied once")));
+            }
+            seen.push((key, place));
+            if NOISE_KEYS.contains(&key.as_str()) {
+                if seen.iter().filter(|(seen, _)| NOISE_KEYS.contains(seen)).count() > 1 {
+                    return Err(refuse(
+                        key,
+                        "noise is given both relative and in g; give one of the two".to_owned(),
+                    ));
+                }
+                continue;
+            }
+            let Some(number) = known.iter().find(|number| number.key == *key) else {
+                return Err(unknown(place, named, key, known, base));
+            };
+            if number.whole && !is_whole(rule, column) {
+                let problem = format!("`{key}` is a whole number, but what is drawn for it is not");
+                return Err(refuse(key, problem).with_help("use choice or grid with whole numbers"));
+            }
+            let fixed_wheels = key.starts_with("gears.") || key.starts_with("quality.");
+            if fixed_wheels && rule.level == Level::Record {
+                let problem =
+                    format!("`{key}` would differ between records of one unit, which share their wheels");
+                return Err(
+                    refuse(key, problem).with_help("leave out per: it is \"unit\" for gears and quality")
+                );
+            }
+            if key.starts_with("fault.") && rule.level == Level::Unit {
+                let problem = format!("`{key}` varies by unit; faults vary by record");
+                return Err(refuse(key, problem).with_help("leave out per"));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn is_whole(rule: &Rule, column: usize) -> bool {
+    if rule.times.is_some() || rule.plus.is_some() {
+        return false;
+    }
+    match &rule.distribution {
+        Distribution::Fixed(value) => value.fract() == 0.0,
+        Distribution::Grid(rows) | Distribution::Choice { rows, .. } => {
+            rows.iter().all(|row| row[column].fract() == 0.0)
+        }
+        _ => false,
+    }
+}
+
+fn unknown(
+    place: &str,
+    named: &str,
+    key: &str,
+    known: &[meshtone::scenario::ScenarioNumber],
+    base: &Scenario,
+) -> ScenarioError {
+    let fault = base.fault.as_ref().map_or("a healthy pair", |fault| fault.kind());
+    let problem = format!("`{key}` is no number of the scenario ({fault}), so it cannot be varied");
+    let error = ScenarioError::new(format!("{place}.{named}"), format!("{key:?}"), problem);
+    error.with_help(
+        match nearest_name(key, known.iter().map(|number| number.key.as_str()).chain(NOISE_KEYS)) {
+            Some(nearest) => format!("did you mean `{nearest}`?"),
+            None => {
+                "`meshtone init KIND` prints every key of a kind of fault; sections are part of a key, as in \
+                 `operation.pinion_speed_hz`"
+                    .to_owned()
+            }
+        },
+    )
+}
+
+/// Every rule at the top concerns some class.
+fn check_top(content: &Content, top: &[Placed], classes: &[ClassRules]) -> ReadResult<()> {
+    for (rule, place) in top {
+        let has = |class: &ClassRules, key: &String| {
+            NOISE_KEYS.contains(&key.as_str()) || class.numbers.contains_key(key)
+        };
+        if classes.iter().any(|class| rule.keys.iter().all(|key| has(class, key))) {
+            continue;
+        }
+        let key = rule
+            .keys
+            .iter()
+            .find(|key| !classes.iter().any(|class| has(class, key)))
+            .unwrap_or(&rule.keys[0]);
+        let named = if rule.keys.len() == 1 { "key" } else { "keys" };
+        let mut known = content.base.numbers();
+        for class in classes {
+            known.extend(class.base.numbers());
+        }
+        return Err(unknown(place, named, key, &known, &content.base));
+    }
+    Ok(())
+}
+
+/// The rules, each after those that it depends on.
+fn in_order<'a>(
+    rules: &[Placed<'a>],
+    known: &[meshtone::scenario::ScenarioNumber],
+) -> ReadResult<Vec<&'a Rule>> {
+    let mut waiting: Vec<&Placed> = rules.iter().collect();
+    for (rule, place) in rules {
+        for (name, term) in [("times", &rule.times), ("plus", &rule.plus)] {
+            let Some(expression) = term else { continue };
+            for key in underlying(expression.keys()) {
+                check_dependency(rule, &format!("{place}.{name}"), key, rules, known)?;
+            }
+        }
+    }
+    let mut ordered: Vec<&'a Rule> = Vec::with_capacity(rules.len());
+    while !waiting.is_empty() {
+        let sets = |rule: &Rule, key: &str| rule.keys.iter().any(|own| own == key);
+        let is_ready = |(rule, _): &&Placed| {
+            !dependencies(rule).iter().any(|key| waiting.iter().any(|(other, _)| sets(other, key)))
+        };
+        let Some(next) = waiting.iter().position(is_ready) else {
+            let (rule, place) = waiting[0];
+            let problem =
+                "depends on itself, by its own times or plus or those of the rules that it depends on";
+            return Err(ScenarioError::new(place, rule.keys.join(", "), problem));
+        };
+        ordered.push(waiting.remove(next).0);
+    }
+    Ok(ordered)
+}
+
+fn dependencies(rule: &Rule) -> Vec<&str> {
+    let terms = [&rule.times, &rule.plus];
+    underlying(terms.into_iter().flatten().flat_map(|expression| expression.keys()))
+}
+
+fn check_dependency(
+    rule: &Rule,
+    place: &str,
+    key: &str,
+    rules: &[Placed],
+    known: &[meshtone::scenario::ScenarioNumber],
+) -> ReadResult<()> {
+    let varied = rules.iter().find(|(other, _)| other.keys.iter().any(|own| own == key));
+    if varied.is_none() && !known.iter().any(|number| number.key == key) {
+        return Err(no_such_number(place, key, known.iter().map(|number| number.key.as_str())));
+    }
+    if let Some((_, other)) =
+        varied.filter(|(other, _)| rule.level == Level::Unit && other.level == Level::Record)
+    {
+        let problem = format!("depends on `{key}`, which {other} varies by record; what a unit has cannot");
+        return Err(ScenarioError::new(place, "", problem));
+    }
+    Ok(())
+}
+
+fn no_such_number<'n>(place: &str, key: &str, known: impl Iterator<Item = &'n str>) -> ScenarioError {
+    let error = ScenarioError::new(place, "", format!("`{key}` is no number of the scenario"));
+    let others = derived_names().chain([SEVERITY]).map(|name| -> &'n str { name });
+    match nearest_name(key, known.chain(others)) {
+        Some(nearest) => error.with_help(format!("did you mean `{nearest}`?")),
+        None => error.with_help("sections are part of a key, as in `gears.module_mm`"),
+    }
+}
+
+/// Whether all that a condition is about is the same for all records of a unit.
+fn is_decided_by_unit(condition: &Condition, content: &Content) -> bool {
+    let class_rules = content.classes.iter().flat_map(|class| &class.rules);
+    let by_record: Vec<&str> = content
+        .rules
+        .iter()
+        .chain(class_rules)
+        .filter(|rule| rule.level == Level::Record)
+        .flat_map(|rule| rule.keys.iter().map(String::as_str))
+        .collect();
+    let varies = |key: &str| key == SEVERITY || key.starts_with("fault.") || by_record.contains(&key);
+    !underlying(condition.keys()).into_iter().any(varies)
+}
+
+/// Constraints and conditions of shifts are about numbers that some class has.
+fn check_conditions(content: &Content, classes: &[ClassRules]) -> ReadResult<()> {
+    let varied = |key: &str| {
+        let class_rules = content.classes.iter().flat_map(|class| &class.rules);
+        content.rules.iter().chain(class_rules).any(|rule| rule.keys.iter().any(|own| own == key))
+    };
+    let check = |place: String, condition: &Condition| {
+        for key in underlying(condition.keys()) {
+            let known = || classes.iter().flat_map(|class| class.numbers.keys().map(String::as_str));
+            if key != SEVERITY
+                && !known().any(|known| known == key)
+                && !(NOISE_KEYS.contains(&key) && varied(key))
+            {
+                return Err(no_such_number(&place, key, known()));
+            }
+        }
+        let unvaried = !underlying(condition.keys()).iter().any(|key| *key == SEVERITY || varied(key));
+        if unvaried {
+            let problem = format!("`{condition}` is about nothing that varies");
+            return Err(
+                ScenarioError::new(place, "", problem).with_help("vary one of its keys, or remove it")
+            );
+        }
+        Ok(())
+    };
+    for (i, constraint) in content.constraints.iter().enumerate() {
+        check(format!("constraints[{i}]"), constraint)?;
+    }
+    for (s, shift) in content.splits.shifts.iter().enumerate() {
+        shift.when.iter().try_for_each(|condition| check(super::shift_key(s), condition))?;
+    }
+    Ok(())
+}
+
+/// Every measure of a severity is of numbers that its class has.
+fn check_severities(content: &Content, classes: &[ClassRules]) -> ReadResult<()> {
+    for (c, (class, rules)) in content.classes.iter().zip(classes).enumerate() {
+        let crate::plan::Severity::Measured { measure, .. } = &class.severity else { continue };
+        for key in underlying(measure.keys()) {
+            if !rules.numbers.contains_key(key) {
+                let place = format!("class[{c}].severity.measure");
+                return Err(no_such_number(&place, key, rules.numbers.keys().map(String::as_str)));
+            }
+        }
+    }
+    Ok(())
+}

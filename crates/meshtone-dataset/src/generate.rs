@@ -1,0 +1,344 @@
+//! Generating a data set, from the start or from where it was stopped.
+
+use std::collections::{HashMap, VecDeque};
+use std::io;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use meshtone::batch::{Control, simulate_many};
+use meshtone::scenario::Scenario;
+
+use crate::draw::{DrawnRecord, Sampler};
+use crate::error::DatasetError;
+use crate::finish;
+use crate::manifest::{self, Begun};
+use crate::plan::Plan;
+use crate::record::{KeepRecords, Role};
+use crate::shard::{self, Column, FailedRecord, Item, ShardMetadata, Shards};
+use crate::store::Destination;
+
+/// Records that may wait to be written.
+const WAITING: usize = 32;
+
+/// A part of a data set: some of its shards.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Part {
+    /// Which, from 1.
+    pub number: u64,
+    /// Of how many.
+    pub of: u64,
+}
+
+impl Part {
+    /// Everything.
+    pub const WHOLE: Self = Self { number: 1, of: 1 };
+
+    /// Whether a shard belongs to it: every so many.
+    ///
+    /// # Arguments
+    /// * `shard` - its number
+    pub fn has(&self, shard: u64) -> bool {
+        shard % self.of == self.number - 1
+    }
+}
+
+/// What a caller wants to know, and to say, while a data set is generated.
+pub struct GenerateControl<'a> {
+    /// Called with the number of records that are done, and of all that this run is to do.
+    pub progress: &'a (dyn Fn(u64, u64) + Sync),
+    /// Set by the caller to stop: shards that are complete stay.
+    pub cancelled: &'a AtomicBool,
+}
+
+/// What a run has done.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Generated {
+    /// Shards that were there already.
+    pub kept_shards: u64,
+    /// Shards that were written.
+    pub written_shards: u64,
+    /// Records of the written shards.
+    pub written_records: u64,
+    /// Of those, the ones that failed.
+    pub failures: Vec<FailedRecord>,
+    /// Whether the data set is complete, with manifest, data card and preview.
+    pub complete: bool,
+}
+
+/// Generates a data set, or goes on with it, in the threads of the current rayon pool.
+///
+/// # Arguments
+/// * `plan` - what it consists of
+/// * `to` - where it is written to
+/// * `part` - which shards
+/// * `control` - progress and cancellation
+///
+/// Every shard that is there is kept. Where all are, the manifest is completed, and data card and preview are written.
+///
+/// # Errors
+/// A place with other files, or with a data set of another plan; what cannot be written, as to a full disk: what is complete
+/// stays, and the next run goes on from there.
+///
+/// ```
+/// use std::path::Path;
+/// use meshtone_dataset::generate::{GenerateControl, Part, generate};
+/// use meshtone_dataset::plan::Plan;
+/// use meshtone_dataset::store::Destination;
+///
+/// let text = r#"
+///     records = 4
+///     units = 2
+///     split = { train = 0.5 }
+///     [scenario.gears]
+///     module_mm = 3.0
+///     pinion_teeth = 20
+///     gear_teeth = 40
+///     face_width_mm = 15.0
+///     [scenario.operation]
+///     pinion_speed_hz = 40.0
+///     brake_torque_nm = 10.0
+///     [scenario.quality]
+///     din_grade = 7
+///     [[class]]
+///     label = "healthy"
+///     [[class]]
+///     label = "missing tooth"
+///     fault = { kind = "missing-tooth" }
+/// "#;
+/// let plan = Plan::read_text(text.to_owned(), Path::new("plan.toml"))?;
+/// let directory = tempfile::tempdir()?;
+/// let control = GenerateControl { progress: &|_, _| {}, cancelled: &false.into() };
+/// let to = Destination::directory(directory.path().join("set"));
+/// let generated = generate(&plan, &to, Part::WHOLE, &control)?;
+/// assert!(generated.complete && generated.failures.is_empty());
+/// assert!(directory.path().join("set/README.md").exists());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn generate(
+    plan: &Plan,
+    to: &Destination,
+    part: Part,
+    control: &GenerateControl,
+) -> Result<Generated, DatasetError> {
+    if part.number == 0 || part.number > part.of {
+        let problem = format!("there is no part {} of {}", part.number, part.of);
+        return Err(DatasetError::refused(problem, "parts are numbered from 1"));
+    }
+    let sampler = Sampler::new(&plan.content).map_err(|error| manifest::plan_error(plan, error))?;
+    let shards = Shards::new(plan, &sampler);
+    let begun = manifest::begin(plan, to)?;
+    let mut generated = Generated {
+        kept_shards: 0,
+        written_shards: 0,
+        written_records: 0,
+        failures: Vec::new(),
+        complete: true,
+    };
+    if begun == Begun::Complete {
+        generated.kept_shards = shards.count();
+        return Ok(generated);
+    }
+    if part == Part::WHOLE {
+        to.remove_leftovers();
+    }
+    let there = manifest::names(to)?;
+    let hash = plan.hash();
+    let is_there = |shard: u64| {
+        let name = Shards::name(shard);
+        there.contains(&name)
+            && to.shard(&name, &[]).is_some_and(|read| read.metadata.is_of(&hash, &shards.range(shard)))
+    };
+    let (kept, missing): (Vec<u64>, Vec<u64>) =
+        (0..shards.count()).filter(|&shard| part.has(shard)).partition(|&shard| is_there(shard));
+    generated.kept_shards = kept.len() as u64;
+    let run = Run { plan, sampler: &sampler, shards, to, control };
+    run.generate(&missing, &mut generated)?;
+    generated.complete = finish::finish_if_complete(plan, shards, to)?;
+    Ok(generated)
+}
+
+/// One run.
+struct Run<'a> {
+    plan: &'a Plan,
+    sampler: &'a Sampler<'a>,
+    shards: Shards,
+    to: &'a Destination,
+    control: &'a GenerateControl<'a>,
+}
+
+/// Simulations that were asked for and not yet handed out.
+#[derive(Default)]
+struct Asked {
+    /// By the number of the simulation: what it is for, and the failures that come before it.
+    roles: HashMap<usize, (Role, Vec<FailedRecord>)>,
+    /// Number of the next simulation.
+    next: usize,
+    /// Failures of records that are not simulated at all, after the last simulation.
+    failed: Vec<FailedRecord>,
+}
+
+impl Run<'_> {
+    fn generate(&self, missing: &[u64], generated: &mut Generated) -> Result<(), DatasetError> {
+        if missing.is_empty() {
+            return Ok(());
+        }
+        let records: u64 = missing.iter().map(|&shard| self.shards.range(shard).count() as u64).sum();
+        let stop = AtomicBool::new(false);
+        let (sender, receiver) = sync_channel(WAITING);
+        let written = std::thread::scope(|scope| {
+            let writer = scope.spawn(|| self.write(missing, records, receiver, &stop));
+            self.simulate(missing, sender, &stop);
+            writer.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+        });
+        let metadata = written?;
+        generated.written_shards = metadata.len() as u64;
+        generated.written_records = records;
+        generated.failures = metadata.into_iter().flat_map(|shard| shard.failures).collect();
+        Ok(())
+    }
+
+    /// Simulates all records of some shards and sends them on, in their order.
+    fn simulate(&self, missing: &[u64], sender: SyncSender<Item>, stop: &AtomicBool) {
+        let asked = Arc::new(Mutex::new(Asked::default()));
+        let indices: VecDeque<u64> = missing.iter().flat_map(|&shard| self.shards.range(shard)).collect();
+        let source = Source { run: self, indices, ready: VecDeque::new(), asked: asked.clone(), stop };
+        let role = |number: usize| lock(&asked).roles.get(&number).map(|(role, _)| role.clone());
+        let keep = KeepRecords { content: &self.plan.content, role };
+        // Nobody listens any more where writing has failed.
+        let send = |item: Item| {
+            stop.store(sender.send(item).is_err() | stop.load(Ordering::Relaxed), Ordering::Relaxed)
+        };
+        let control = Control { cancelled: stop, ..Control::default() };
+        simulate_many(source, &keep, &control, |number, result| {
+            let Some((role, failed)) = lock(&asked).roles.remove(&number) else { return };
+            failed.into_iter().for_each(|failed| send(Item::Failed(failed)));
+            let reason = match result {
+                Ok(Ok(record)) => {
+                    return send(match role {
+                        Role::Record(_) => Item::Record(record),
+                        Role::HealthyTwin(_) => Item::HealthyTwin(record),
+                    });
+                }
+                Ok(Err(reason)) => reason,
+                Err(error) => error.to_string(),
+            };
+            // A twin's failure is found again where the record misses it.
+            if let Role::Record(drawn) = role {
+                send(Item::Failed(FailedRecord { record: drawn.index, reason }));
+            }
+        });
+        let rest = std::mem::take(&mut lock(&asked).failed);
+        rest.into_iter().for_each(|failed| send(Item::Failed(failed)));
+    }
+
+    /// Writes shards as their records arrive.
+    fn write(
+        &self,
+        missing: &[u64],
+        records: u64,
+        items: Receiver<Item>,
+        stop: &AtomicBool,
+    ) -> Result<Vec<ShardMetadata>, DatasetError> {
+        // The receiver ends with this function, so that nobody waits to send.
+        let items = items;
+        let columns = shard::columns(self.plan);
+        let done = AtomicU64::new(0);
+        let result =
+            missing.iter().map(|&shard| self.write_shard(shard, &columns, &items, (&done, records), stop));
+        let result: Result<Vec<_>, _> = result.collect();
+        if result.is_err() {
+            stop.store(true, Ordering::Relaxed);
+        }
+        result
+    }
+
+    fn write_shard(
+        &self,
+        shard: u64,
+        columns: &[Column],
+        items: &Receiver<Item>,
+        (done, records): (&AtomicU64, u64),
+        stop: &AtomicBool,
+    ) -> Result<ShardMetadata, DatasetError> {
+        let metadata = ShardMetadata {
+            plan: self.plan.hash().to_string(),
+            records: self.shards.range(shard),
+            failures: Vec::new(),
+        };
+        let next = || {
+            if self.control.cancelled.load(Ordering::Relaxed) {
+                stop.store(true, Ordering::Relaxed);
+                return None;
+            }
+            let item = items.recv().ok()?;
+            if !matches!(item, Item::HealthyTwin(_)) {
+                (self.control.progress)(done.fetch_add(1, Ordering::Relaxed) + 1, records);
+            }
+            Some(item)
+        };
+        let content = &self.plan.content;
+        let written =
+            self.to.write(&Shards::name(shard), |file| shard::write(file, content, columns, metadata, next));
+        written.map_err(|error| match error {
+            DatasetError::File { source, .. } if source.kind() == io::ErrorKind::Interrupted => {
+                DatasetError::Stopped
+            }
+            error => error,
+        })
+    }
+}
+
+fn lock(asked: &Mutex<Asked>) -> std::sync::MutexGuard<'_, Asked> {
+    // A panic in another thread is passed on when its scope ends.
+    asked.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Scenarios of records, one after the other; a faulty record that is enhanced has its healthy twin before it.
+struct Source<'a> {
+    run: &'a Run<'a>,
+    indices: VecDeque<u64>,
+    ready: VecDeque<Scenario>,
+    asked: Arc<Mutex<Asked>>,
+    stop: &'a AtomicBool,
+}
+
+impl Iterator for Source<'_> {
+    type Item = Scenario;
+
+    fn next(&mut self) -> Option<Scenario> {
+        while self.ready.is_empty() && !self.stop.load(Ordering::Relaxed) {
+            let index = self.indices.pop_front()?;
+            match self.draw(index) {
+                Ok((record, scenario)) => self.ask(record, scenario),
+                Err(reason) => lock(&self.asked).failed.push(FailedRecord { record: index, reason }),
+            }
+        }
+        self.ready.pop_front()
+    }
+}
+
+impl Source<'_> {
+    fn draw(&self, index: u64) -> Result<(DrawnRecord, Scenario), String> {
+        let sampler = self.run.sampler;
+        let record = sampler.record(index).map_err(|error| error.problem)?;
+        let scenario = sampler.scenario(&record).map_err(|error| error.to_string())?;
+        Ok((record, scenario))
+    }
+
+    fn ask(&mut self, record: DrawnRecord, scenario: Scenario) {
+        let twin = self.run.plan.content.tuned.is_some() && scenario.fault.is_some();
+        let mut asked = lock(&self.asked);
+        let mut add = |role: Role, scenario: Scenario| {
+            let failed = std::mem::take(&mut asked.failed);
+            let number = asked.next;
+            asked.next += 1;
+            asked.roles.insert(number, (role, failed));
+            self.ready.push_back(scenario);
+        };
+        if twin {
+            add(Role::HealthyTwin(record.clone()), Scenario { fault: None, ..scenario.clone() });
+        }
+        add(Role::Record(record), scenario);
+    }
+}

@@ -1,0 +1,22 @@
+//! Labelled data sets of spur gear vibration.
+//!
+//! A [`plan::Plan`] says what a data set consists of; [`draw::Sampler`] draws any of its records by its number alone;
+//! [`generate`](generate::generate) simulates them and writes shards of Parquet, which can be stopped at any moment and gone on with;
+//! [`merge`](merge::merge) puts parts together that were made apart.
+#![deny(missing_docs)]
+
+mod card;
+pub mod draw;
+mod error;
+pub mod expression;
+mod finish;
+pub mod generate;
+mod manifest;
+pub mod merge;
+pub mod plan;
+pub mod record;
+pub mod sampling;
+pub mod shard;
+pub mod store;
+
+pub use error::DatasetError;

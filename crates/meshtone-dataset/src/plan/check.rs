@@ -1,0 +1,100 @@
+//! What must hold of a plan as a whole.
+
+use meshtone::scenario::ScenarioError;
+use meshtone::toml_reader::{ReadResult, TomlTable};
+
+use super::{Content, Plan};
+use crate::draw::{DrawError, Sampler};
+
+/// Records whose values are drawn before anything is written.
+const DRAWN: u64 = 5_000;
+/// Records of each class whose scenarios are made.
+const MADE: usize = 8;
+
+/// Rules, units and splits agree.
+pub(super) fn check(content: &Content, root: &TomlTable<'_>) -> ReadResult<()> {
+    let records: u64 = content.classes.iter().map(|class| class.count).sum();
+    if content.units > records {
+        return Err(root.error("units", format!("is more than the {records} records")));
+    }
+    let needed = content.splits.all_parts().iter().filter(|&&part| part > 0.0).count() as u64;
+    if content.units < needed {
+        let problem = format!("is fewer than the {needed} splits, each of which must have one of its own");
+        return Err(root.error("units", problem).with_help("raise units, or write [split] with train = 1.0"));
+    }
+    for (given, key, why) in [
+        (
+            content.base.quality.profile_errors.is_some(),
+            "errors_file",
+            "units draw their wheels by din_grade",
+        ),
+        (content.base.quality.seed.is_some(), "seed", "every unit has wheels of its own"),
+    ] {
+        if given {
+            return Err(ScenarioError::new(
+                format!("scenario.quality.{key}"),
+                "",
+                format!("cannot be given: {why}"),
+            )
+            .with_help("remove it from the base scenario"));
+        }
+    }
+    if let Some(tuned) = &content.tuned {
+        let rules = content.rules.iter().chain(content.classes.iter().flat_map(|class| &class.rules));
+        let varied: Vec<&String> = rules.flat_map(|rule| &rule.keys).collect();
+        if let Some((key, _)) = tuned.keys.iter().find(|(key, _)| varied.contains(&key)) {
+            return Err(root.error(
+                "tuned",
+                format!("has the key `{key}`, which a rule varies; must be one of the two"),
+            ));
+        }
+    }
+    Sampler::new(content).map(|_| ())
+}
+
+/// The first records can be drawn, and of each class one can be simulated.
+pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
+    let sampler = Sampler::new(&plan.content)?;
+    let mut made = vec![Vec::new(); plan.content.classes.len()];
+    for index in 0..plan.records().min(DRAWN) {
+        let record = sampler.record(index).map_err(|DrawError { key, problem }| {
+            ScenarioError::new(key, "", problem)
+                .with_help("widen the ranges of the keys that it is about, or the condition")
+        })?;
+        let of_class: &mut Vec<_> = &mut made[record.class];
+        let tried_enough = of_class.len() >= MADE || of_class.last().is_some_and(Option::is_none);
+        if !tried_enough {
+            let result = sampler.scenario(&record).and_then(|scenario| {
+                refuse_ignored(&scenario, &record.values)?;
+                meshtone::stages(&scenario).map(|_| ())
+            });
+            of_class.push(result.err());
+        }
+    }
+    for (c, errors) in made.into_iter().enumerate() {
+        // None stands for a record that can be simulated.
+        let tried = errors.len();
+        let errors: Vec<ScenarioError> = errors.into_iter().flatten().collect();
+        if tried > 0
+            && errors.len() == tried
+            && let Some(error) = errors.into_iter().next()
+        {
+            let label = &plan.content.classes[c].label;
+            let problem = format!("no record of the class \"{label}\" can be simulated; the first: {error}");
+            return Err(ScenarioError {
+                help: error.help,
+                ..ScenarioError::new(format!("class[{c}]"), "", problem)
+            });
+        }
+    }
+    Ok(())
+}
+
+/// A varied key that the convention ignores would be a label without effect.
+fn refuse_ignored(scenario: &meshtone::scenario::Scenario, values: &[(String, f64)]) -> ReadResult<()> {
+    let ignored = scenario.ignored_by_convention();
+    match ignored.iter().find(|warning| values.iter().any(|(key, _)| key.starts_with(&warning.key))) {
+        Some(warning) => Err(ScenarioError::new(&warning.key, "", warning.message.clone())),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,63 @@
+//! The classes of a data set.
+
+use meshtone::scenario::Fault;
+
+use super::Rule;
+use crate::expression::Expression;
+
+/// Records of one label.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Class {
+    /// The label.
+    pub label: String,
+    /// The fault, before its varied keys are drawn; none for healthy records.
+    pub fault: Option<Fault>,
+    /// How many records.
+    pub count: u64,
+    /// How severe they are.
+    pub severity: Severity,
+    /// Rules for this class alone.
+    pub rules: Vec<Rule>,
+}
+
+/// How severe a record's fault is: a grade, 0 for healthy ones.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Severity {
+    /// The same for all records of the class.
+    Grade(u8),
+    /// By a number.
+    Measured {
+        /// The number.
+        measure: Expression,
+        /// The grade is 1 plus the number of these that the measure is not below; rising.
+        breaks: Vec<f64>,
+    },
+}
+
+impl Severity {
+    /// Grade and, where there is one, measure.
+    ///
+    /// # Arguments
+    /// * `number` - the number at a key
+    ///
+    /// ```
+    /// use meshtone_dataset::expression::Expression;
+    /// use meshtone_dataset::plan::Severity;
+    ///
+    /// let measure = Expression::parse("fault.tip_loss_mm")?;
+    /// let severity = Severity::Measured { measure, breaks: vec![1.0, 2.0] };
+    /// assert_eq!(severity.of(&|_| Some(0.5)), Some((1, Some(0.5))));
+    /// assert_eq!(severity.of(&|_| Some(2.0)), Some((3, Some(2.0))));
+    /// # Ok::<(), String>(())
+    /// ```
+    pub fn of(&self, number: &dyn Fn(&str) -> Option<f64>) -> Option<(u8, Option<f64>)> {
+        match self {
+            Self::Grade(grade) => Some((*grade, None)),
+            Self::Measured { measure, breaks } => {
+                let value = measure.value(number)?;
+                let passed = breaks.iter().filter(|&&limit| value >= limit).count();
+                Some((u8::try_from(passed).unwrap_or(u8::MAX).saturating_add(1), Some(value)))
+            }
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! What is kept of each record.
+
+use meshtone::batch::ChannelKind;
+
+/// Most records in a shard.
+pub const MOST_SHARD_RECORDS: u64 = 65_536;
+
+/// What is kept of each record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Keep {
+    /// (S/s) Sampling rate of the raw channels.
+    pub sampling_rate_hz: f64,
+    /// (s) Length of the raw channels; none for a hunting period, after which the same teeth meet again.
+    pub duration_s: Option<f64>,
+    /// Raw channels that are kept.
+    pub channels: Vec<ChannelKind>,
+    /// The channel that is averaged.
+    pub analysed: ChannelKind,
+    /// Sidebands that are taken away for the difference signal.
+    pub sidebands: usize,
+    /// Shaft orders that are taken away for it.
+    pub shaft_orders: usize,
+    /// Whether the gear's synchronous average is kept.
+    pub average: bool,
+    /// Whether its difference signal is kept.
+    pub difference: bool,
+    /// Whether the indicators are kept.
+    pub indicators: bool,
+    /// Whether every record begins when the damaged tooth comes into contact, instead of any tooth.
+    pub aligned: bool,
+    /// Records in a shard; by default as many as make about 32 MB.
+    pub records_per_shard: Option<u64>,
+}
+
+impl Keep {
+    /// The channels that must be simulated: the raw ones, then the analysed one where it is not among them.
+    pub fn simulated(&self) -> Vec<ChannelKind> {
+        let mut channels = self.channels.clone();
+        if self.is_analysed() && !channels.contains(&self.analysed) {
+            channels.push(self.analysed);
+        }
+        channels
+    }
+
+    /// Whether anything is computed from the analysed channel.
+    pub fn is_analysed(&self) -> bool {
+        self.average || self.difference || self.indicators
+    }
+}

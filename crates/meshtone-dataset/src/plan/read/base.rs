@@ -1,0 +1,55 @@
+//! The base scenario.
+
+use meshtone::scenario::{Scenario, ScenarioError};
+use meshtone::toml_reader::{ReadResult, TomlTable, TomlValue};
+use meshtone_io::experiment::Tuned;
+use meshtone_io::scenario_file::{FilesBeside, ScenarioFile};
+
+use super::{PlanFile, Reading, in_another_file};
+
+/// Key of the base scenario.
+const KEY: &str = "scenario";
+
+pub(super) fn read(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Scenario> {
+    let value =
+        root.required(KEY, "the scenario that all records have in common: a file's name or a table")?;
+    let scenario = if value.is_table() && !reading.is_copy {
+        let files = FilesBeside::new(reading.directory);
+        let scenario = value.table()?.read(|table| Scenario::from_table(table, &files))?;
+        scenario.validate().map_err(within)?;
+        scenario
+    } else {
+        let name = if value.is_table() { "" } else { value.string()? };
+        match ScenarioFile::read(&reading.path_of(name, PlanFile::NAMES[1])) {
+            Ok(file) => {
+                reading.sources.extend(file.sources().map(std::path::Path::to_path_buf));
+                file.scenario
+            }
+            Err(error) => return Err(in_another_file(&value, error, reading)),
+        }
+    };
+    // Also of one that is written in the plan: it may name files.
+    reading.files.push(PlanFile { name: PlanFile::NAMES[1], text: scenario.to_toml() });
+    if let Some(ignored) = scenario.ignored_by_convention().into_iter().next() {
+        return Err(ScenarioError::new(format!("{KEY}.{}", ignored.key), "", ignored.message));
+    }
+    if scenario.fault.is_some() {
+        let problem = "the base scenario has a fault; must be healthy";
+        return Err(ScenarioError::new(format!("{KEY}.fault"), "", problem)
+            .with_help("faults belong to the classes: [[class]] with fault = { kind = … }"));
+    }
+    Ok(scenario)
+}
+
+/// The base with the numbers that were tuned.
+pub(super) fn tuned(base: &Scenario, tuned: &Tuned, value: &TomlValue<'_>) -> ReadResult<Scenario> {
+    if let Some(warning) = tuned.warning_for(base) {
+        return Err(value.error(warning));
+    }
+    tuned.apply(base).map_err(|error| value.error(error.to_string()))
+}
+
+/// An error about a key of the scenario within the plan.
+fn within(error: ScenarioError) -> ScenarioError {
+    ScenarioError { key: format!("{KEY}.{}", error.key), ..error }
+}

@@ -1,0 +1,109 @@
+//! The table `[keep]`.
+
+use meshtone::batch::ChannelKind;
+use meshtone::scenario::Scenario;
+use meshtone::toml_reader::{ReadResult, TomlTable};
+use meshtone_io::experiment::Tuned;
+
+use super::super::{Keep, MOST_SHARD_RECORDS};
+
+const ACCELERATIONS: [(&str, ChannelKind); 3] = [
+    ("horizontal", ChannelKind::Horizontal),
+    ("vertical", ChannelKind::Vertical),
+    ("axial", ChannelKind::Axial),
+];
+const CHANNELS: [(&str, ChannelKind); 6] = [
+    ACCELERATIONS[0],
+    ACCELERATIONS[1],
+    ACCELERATIONS[2],
+    ("pinion-speed", ChannelKind::PinionSpeed),
+    ("gear-speed", ChannelKind::GearSpeed),
+    ("mesh-force", ChannelKind::MeshForce),
+];
+const RATE_HZ: f64 = 25e3;
+const LARGEST_RATE_HZ: f64 = 1e7;
+
+pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>) -> ReadResult<Keep> {
+    let default_rate =
+        tuned.map_or(RATE_HZ.min(base.solver.sampling_rate_hz), |tuned| tuned.sampling_rate_hz);
+    let rate = table.optional("sampling_rate_hz");
+    let sampling_rate_hz = rate.as_ref().map(|value| value.number()).transpose()?.unwrap_or(default_rate);
+    if let Some(value) = rate.filter(|_| !(sampling_rate_hz > 0.0 && sampling_rate_hz <= LARGEST_RATE_HZ)) {
+        return Err(value.error(format!("must be more than 0 and at most {LARGEST_RATE_HZ:e} S/s")));
+    }
+    if sampling_rate_hz > base.solver.sampling_rate_hz {
+        let simulated = base.solver.sampling_rate_hz;
+        let problem =
+            format!("is more than solver.sampling_rate_hz, {simulated:?} S/s, of the base scenario");
+        return Err(table.error("sampling_rate_hz", problem).with_help("raise solver.sampling_rate_hz"));
+    }
+    let channels = match table.optional("channels") {
+        None => vec![ChannelKind::Horizontal, ChannelKind::Vertical],
+        Some(value) => {
+            let chosen =
+                value.array()?.iter().map(|value| value.choice(&CHANNELS)).collect::<ReadResult<Vec<_>>>()?;
+            if let Some(twice) = (1..chosen.len()).find(|&n| chosen[..n].contains(&chosen[n])) {
+                return Err(value.array()?[twice].error("is named twice"));
+            }
+            chosen
+        }
+    };
+    let duration_s = table.optional("duration_s");
+    if let Some(value) =
+        duration_s.as_ref().filter(|value| value.number().is_ok_and(|seconds| seconds <= 0.0))
+    {
+        return Err(value.error("must be more than 0 s"));
+    }
+    let flag =
+        |key| -> ReadResult<Option<bool>> { table.optional(key).map(|value| value.boolean()).transpose() };
+    let teeth = u64::from(base.gears.gear_teeth);
+    let analysed = table.optional("analysed").map(|value| value.choice(&ACCELERATIONS)).transpose()?;
+    let sidebands = table
+        .optional("sidebands")
+        .map(|value| value.integer(0..=teeth.saturating_sub(2) / 2))
+        .transpose()?;
+    let orders = table.optional("shaft_orders").map(|value| value.integer(0..=teeth - 1)).transpose()?;
+    let shard = table.optional("records_per_shard");
+    let shard = shard.map(|value| value.integer(1..=MOST_SHARD_RECORDS)).transpose()?;
+    let keep = Keep {
+        sampling_rate_hz,
+        duration_s: duration_s.map(|value| value.number()).transpose()?,
+        channels,
+        analysed: analysed.unwrap_or(tuned.map_or(ChannelKind::Vertical, |tuned| tuned.channel)),
+        sidebands: sidebands.map_or(tuned.map_or(2, |tuned| tuned.sidebands), |count| count as usize),
+        shaft_orders: orders.map_or(tuned.map_or(7, |tuned| tuned.shaft_orders), |last| last as usize),
+        average: flag("average")?.unwrap_or(true),
+        difference: flag("difference")?.unwrap_or(true),
+        indicators: flag("indicators")?.unwrap_or(true),
+        aligned: flag("aligned")?.unwrap_or(false),
+        records_per_shard: shard,
+    };
+    if keep.channels.is_empty() && !keep.is_analysed() {
+        return Err(table.error(
+            "channels",
+            "is empty, and average, difference and indicators are false: nothing is kept",
+        ));
+    }
+    agree(table, &keep, tuned)?;
+    Ok(keep)
+}
+
+/// An enhancement is only what it is for the signals that it was tuned to.
+fn agree(table: &TomlTable<'_>, keep: &Keep, tuned: Option<&Tuned>) -> ReadResult<()> {
+    let Some(tuned) = tuned else { return Ok(()) };
+    for (key, same) in [
+        ("sampling_rate_hz", keep.sampling_rate_hz == tuned.sampling_rate_hz),
+        ("analysed", keep.analysed == tuned.channel),
+        ("sidebands", keep.sidebands == tuned.sidebands),
+        ("shaft_orders", keep.shaft_orders == tuned.shaft_orders),
+        ("duration_s", keep.duration_s.is_none()),
+    ] {
+        if !same {
+            let problem = "is not what the enhancement was tuned to";
+            return Err(table
+                .error(key, problem)
+                .with_help("leave it out: it is then that of the file `tuned`"));
+        }
+    }
+    Ok(())
+}

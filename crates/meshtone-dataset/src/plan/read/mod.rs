@@ -1,0 +1,181 @@
+//! Reading a plan.
+
+mod base;
+mod class;
+mod keep;
+mod rule;
+mod split;
+
+use std::path::{Path, PathBuf};
+
+use meshtone::scenario::ScenarioError;
+use meshtone::toml_reader::{ReadResult, TomlDocument, TomlTable, TomlValue};
+use meshtone_io::experiment::{Tuned, read_tuned};
+use meshtone_io::scenario_file::{ReadScenarioError, read_text};
+
+use super::{About, Content, Plan, PlanFile, Splits, check};
+use crate::expression::Condition;
+use crate::sampling::Design;
+
+const MOST_UNITS: u64 = 1 << 40;
+const LICENCE: &str = "CC-BY-4.0";
+
+/// Where a plan is, and what was read on the way.
+struct Reading<'a> {
+    directory: &'a Path,
+    /// Whether it is a copy beside its data, where the files that it names have names of their own.
+    is_copy: bool,
+    files: Vec<PlanFile>,
+    sources: Vec<PathBuf>,
+    /// What is wrong in another file is told with that file's lines.
+    elsewhere: Option<ReadScenarioError>,
+}
+
+impl Plan {
+    /// Reads a plan and the files that it names, and checks that its first records can be drawn.
+    ///
+    /// # Arguments
+    /// * `path` - the plan; names of other files in it are relative to its directory
+    ///
+    /// # Errors
+    /// A file that cannot be read; what is wrong in one of them, with key and line.
+    pub fn read(path: &Path) -> Result<Self, ReadScenarioError> {
+        read(read_text(path)?, path, false)
+    }
+
+    /// Reads the copy of a plan that stands beside its data, where the files that the plan names have been copied too.
+    ///
+    /// # Arguments
+    /// * `path` - the plan's copy
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_copy(path: &Path) -> Result<Self, ReadScenarioError> {
+        read(read_text(path)?, path, true)
+    }
+
+    /// As [`Self::read`], of a text.
+    ///
+    /// # Arguments
+    /// * `text` - the plan
+    /// * `path` - where it is from
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_text(text: String, path: &Path) -> Result<Self, ReadScenarioError> {
+        read(text, path, false)
+    }
+}
+
+fn read(text: String, path: &Path, is_copy: bool) -> Result<Plan, ReadScenarioError> {
+    let directory = path.parent().unwrap_or(Path::new(""));
+    let mut reading =
+        Reading { directory, is_copy, files: Vec::new(), sources: vec![path.to_path_buf()], elsewhere: None };
+    let read = TomlDocument::parse(&text).and_then(|document| {
+        let plan = document.root().read(|root| plan(root, &mut reading));
+        let checked = plan.and_then(|plan| check::first_records(&plan).map(|()| plan));
+        checked.map_err(|error| document.locate(error))
+    });
+    match (read, reading.elsewhere) {
+        (Ok(mut plan), _) => {
+            plan.files.insert(0, PlanFile { name: PlanFile::NAMES[0], text });
+            Ok(plan)
+        }
+        (Err(_), Some(error)) => Err(error),
+        (Err(error), None) => {
+            Err(ReadScenarioError::Invalid { path: path.to_path_buf(), text, error: Box::new(error) })
+        }
+    }
+}
+
+impl Reading<'_> {
+    /// Where a file that the plan names is.
+    fn path_of(&self, name: &str, copy: &str) -> PathBuf {
+        self.directory.join(if self.is_copy { copy } else { name })
+    }
+}
+
+fn plan(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Plan> {
+    let text = |key| root.optional(key).map(|value| value.string()).transpose();
+    let about = About {
+        title: text("title")?.unwrap_or("Spur gear vibration").to_owned(),
+        description: text("description")?.unwrap_or_default().to_owned(),
+        licence: text("licence")?.unwrap_or(LICENCE).to_owned(),
+    };
+    let seed = root.optional("seed").map(|value| value.integer(0..=u64::MAX)).transpose()?;
+    let design = root.optional("design").map(|value| value.choice(&Design::NAMES)).transpose()?;
+    let base = base::read(root, reading)?;
+    let tuned = root.optional("tuned").map(|value| tuned(&value, reading)).transpose()?;
+    let base = match &tuned {
+        Some((value, tuned)) => base::tuned(&base, tuned, value)?,
+        None => base,
+    };
+    let tuned = tuned.map(|(_, tuned)| tuned);
+    let units = root.required("units", "how many units, that is pairs of wheels, share the records")?;
+    let units = units.integer(1..=MOST_UNITS)?;
+    let keep = root.table_or_empty("keep")?.read(|table| keep::read(table, &base, tuned.as_ref()))?;
+    let classes = class::read_all(root)?;
+    let rules = rule::read_all(root)?;
+    let constraints = match root.optional("constraints") {
+        None => Vec::new(),
+        Some(value) => conditions(&value)?,
+    };
+    let splits = match root.optional("split") {
+        None => Splits::default(),
+        Some(value) => value.table()?.read(split::read)?,
+    };
+    let content = Content {
+        seed: seed.unwrap_or(1),
+        base,
+        units,
+        design: design.unwrap_or_default(),
+        rules,
+        constraints,
+        classes,
+        splits,
+        keep,
+        tuned,
+    };
+    check::check(&content, root)?;
+    Ok(Plan {
+        about,
+        content,
+        files: std::mem::take(&mut reading.files),
+        sources: std::mem::take(&mut reading.sources),
+    })
+}
+
+fn tuned<'a>(value: &TomlValue<'a>, reading: &mut Reading) -> ReadResult<(TomlValue<'a>, Tuned)> {
+    let path = reading.path_of(value.string()?, PlanFile::NAMES[2]);
+    let read = read_text(&path).and_then(|text| Ok((text, read_tuned(&path)?)));
+    match read {
+        Ok((text, tuned)) => {
+            reading.sources.push(path);
+            reading.files.push(PlanFile { name: PlanFile::NAMES[2], text });
+            Ok((value.clone(), tuned))
+        }
+        Err(error) => Err(in_another_file(value, error, reading)),
+    }
+}
+
+/// An error in a file that the plan names.
+fn in_another_file(value: &TomlValue<'_>, error: ReadScenarioError, reading: &mut Reading) -> ScenarioError {
+    let told = value.error(error.to_string());
+    // A name that leads nowhere is the plan's mistake.
+    if !matches!(error, ReadScenarioError::Unreadable { .. }) {
+        reading.elsewhere = Some(error);
+    }
+    told
+}
+
+/// One condition, or an array of them.
+fn conditions(value: &TomlValue<'_>) -> ReadResult<Vec<Condition>> {
+    let one = |value: &TomlValue<'_>| {
+        Condition::parse(value.string()?).map_err(|problem| {
+            value.error(format!("the condition {problem}")).with_help(
+                "write two terms of keys and numbers with a comparison between, as \"fault.start < fault.end\"",
+            )
+        })
+    };
+    if value.is_array() { value.array()?.iter().map(one).collect() } else { Ok(vec![one(value)?]) }
+}

@@ -1,0 +1,213 @@
+//! The array `[[vary]]`, at the top or in a class.
+
+use meshtone::toml_reader::{ReadResult, TomlTable, TomlValue};
+
+use super::super::{Distribution, Level, Rule};
+use crate::expression::Expression;
+
+const LEVELS: [(&str, Level); 2] = [("unit", Level::Unit), ("record", Level::Record)];
+const DISTRIBUTIONS: &str = "fixed, grid, choice, uniform, log_uniform or normal";
+/// Sections whose keys make the wheels and the rig, which a unit's records share unless said otherwise.
+const OF_A_UNIT: [&str; 3] = ["gears", "quality", "rig"];
+const MOST_STEPS: u64 = 100_000;
+
+pub(super) fn read_all(table: &TomlTable<'_>) -> ReadResult<Vec<Rule>> {
+    match table.optional("vary") {
+        None => Ok(Vec::new()),
+        Some(value) => value.array()?.iter().map(|value| value.table()?.read(rule)).collect(),
+    }
+}
+
+fn rule(table: &TomlTable<'_>) -> ReadResult<Rule> {
+    let keys = keys(table)?;
+    let distribution = distribution(table, keys.len())?;
+    let (times, plus) = (expression(table, "times")?, expression(table, "plus")?);
+    let fraction_of = expression(table, "fraction_of")?;
+    if keys.len() > 1 && (times.is_some() || plus.is_some() || fraction_of.is_some()) {
+        let problem = "names several keys beside times, fraction_of or plus; these are for a single key";
+        return Err(table.error("keys", problem));
+    }
+    if times.is_some() && fraction_of.is_some() {
+        return Err(table.error("fraction_of", "given beside times; give one of the two"));
+    }
+    if fraction_of.is_some() {
+        check_fractions(table, &distribution)?;
+    }
+    let unit = OF_A_UNIT.iter().any(|section| keys[0].starts_with(&format!("{section}.")));
+    let default = if unit { Level::Unit } else { Level::Record };
+    let level = table.optional("per").map(|value| value.choice(&LEVELS)).transpose()?;
+    Ok(Rule { keys, level: level.unwrap_or(default), distribution, times: times.or(fraction_of), plus })
+}
+
+fn keys(table: &TomlTable<'_>) -> ReadResult<Vec<String>> {
+    match (table.optional("key"), table.optional("keys")) {
+        (Some(key), None) => Ok(vec![key.string()?.to_owned()]),
+        (None, Some(keys)) => {
+            let names = keys.array()?;
+            let names: Vec<String> =
+                names.iter().map(|name| Ok(name.string()?.to_owned())).collect::<ReadResult<_>>()?;
+            if names.len() < 2 {
+                return Err(keys.error("must name two or more keys; for a single one write key = \"…\""));
+            }
+            Ok(names)
+        }
+        (Some(_), Some(_)) => Err(table.error("keys", "given beside key; give one of the two")),
+        (None, None) => {
+            Err(table.error("key", "missing; it is the dotted key of a number of the scenario file"))
+        }
+    }
+}
+
+fn expression(table: &TomlTable<'_>, key: &'static str) -> ReadResult<Option<Expression>> {
+    let Some(value) = table.optional(key) else { return Ok(None) };
+    let text = value.string()?;
+    Expression::parse(text).map(Some).map_err(|problem| value.error(format!("the expression {problem}")))
+}
+
+fn distribution(table: &TomlTable<'_>, keys: usize) -> ReadResult<Distribution> {
+    let names = ["fixed", "grid", "choice", "uniform", "log_uniform", "normal"];
+    let given = names.map(|name| table.optional(name));
+    let weights = table.optional("weights");
+    let mut there = given.iter().enumerate().filter_map(|(i, value)| value.as_ref().map(|value| (i, value)));
+    let Some((which, value)) = there.next() else {
+        return Err(table.error("key", format!("says not how it varies; give one of {DISTRIBUTIONS}")));
+    };
+    if let Some((other, _)) = there.next() {
+        return Err(table.error(names[other], format!("given beside {}; give one of the two", names[which])));
+    }
+    if let (Some(weights), false) = (&weights, names[which] == "choice") {
+        return Err(weights.error(format!("given beside {}; weights are those of a choice", names[which])));
+    }
+    if keys > 1 && !["grid", "choice"].contains(&names[which]) {
+        return Err(value.error("is for a single key; several keys vary together by choice or grid"));
+    }
+    match names[which] {
+        "fixed" => Ok(Distribution::Fixed(value.number()?)),
+        "grid" if value.is_table() => Ok(Distribution::Grid(value.table()?.read(steps)?)),
+        "grid" => Ok(Distribution::Grid(rows(value, keys)?)),
+        "choice" => choice(value, weights.as_ref(), keys),
+        "uniform" => Ok(Distribution::Uniform(range(value)?)),
+        "log_uniform" => {
+            let range = range(value)?;
+            if range[0] <= 0.0 {
+                return Err(value.error("starts at 0 or below; a logarithm needs more than 0"));
+            }
+            Ok(Distribution::LogUniform(range))
+        }
+        _ => value.table()?.read(|table| normal(table, value)),
+    }
+}
+
+fn choice(value: &TomlValue<'_>, weights: Option<&TomlValue<'_>>, keys: usize) -> ReadResult<Distribution> {
+    let rows = rows(value, keys)?;
+    let weights = match weights {
+        None => vec![1.0; rows.len()],
+        Some(given) => {
+            let numbers = given.numbers()?;
+            if numbers.len() != rows.len() {
+                let (are, must) = (numbers.len(), rows.len());
+                return Err(given.error(format!("has {are} numbers; must have {must}, one for each value")));
+            }
+            if numbers.iter().any(|&weight| weight < 0.0) || numbers.iter().sum::<f64>() <= 0.0 {
+                return Err(given.error("must be 0 or more each, and not all 0"));
+            }
+            numbers
+        }
+    };
+    Ok(Distribution::Choice { rows, weights })
+}
+
+fn rows(value: &TomlValue<'_>, keys: usize) -> ReadResult<Vec<Vec<f64>>> {
+    let entries = value.array()?;
+    if entries.is_empty() {
+        return Err(value.error("is empty; must have one value or more"));
+    }
+    let row = |entry: &TomlValue<'_>| {
+        if keys == 1 {
+            return Ok(vec![entry.number()?]);
+        }
+        let numbers = entry.numbers()?;
+        if numbers.len() == keys {
+            return Ok(numbers);
+        }
+        Err(entry.error(format!("has {} numbers; must have {keys}, one for each key", numbers.len())))
+    };
+    entries.iter().map(row).collect()
+}
+
+fn range(value: &TomlValue<'_>) -> ReadResult<[f64; 2]> {
+    let [least, largest] = value.exactly()?;
+    if least < largest {
+        return Ok([least, largest]);
+    }
+    let error = value.error("must be [least, largest], the second larger than the first");
+    Err(if least > largest {
+        error.with_help(format!("write [{largest:?}, {least:?}]"))
+    } else {
+        error.with_help(format!("for one value write fixed = {least:?}"))
+    })
+}
+
+fn steps(table: &TomlTable<'_>) -> ReadResult<Vec<Vec<f64>>> {
+    let least = table.required("least", "the first value")?.number()?;
+    let largest = table.required("largest", "the last value")?;
+    let steps = table.required("values", "how many values")?.integer(2..=MOST_STEPS)?;
+    let logarithmic =
+        table.optional("logarithmic").map(|value| value.boolean()).transpose()?.unwrap_or(false);
+    let last = largest.number()?;
+    if last <= least {
+        return Err(largest.error(format!("must be more than least, {least:?}")));
+    }
+    if logarithmic && least <= 0.0 {
+        return Err(table.error("least", "must be more than 0 for equal ratios"));
+    }
+    let value = |i: u64| match i as f64 / (steps - 1) as f64 {
+        part if logarithmic => least * libm::exp(part * libm::log(last / least)),
+        part => least + part * (last - least),
+    };
+    Ok((0..steps).map(|i| vec![if i + 1 == steps { last } else { value(i) }]).collect())
+}
+
+fn normal(table: &TomlTable<'_>, whole: &TomlValue<'_>) -> ReadResult<Distribution> {
+    let mean = table.required("mean", "the mean, before it is truncated")?.number()?;
+    let deviation = table.required("standard_deviation", "likewise")?;
+    let least = table.required("least", "the least value that is drawn")?.number()?;
+    let largest = table.required("largest", "the largest value that is drawn")?;
+    let standard_deviation = deviation.number()?;
+    if standard_deviation <= 0.0 {
+        return Err(deviation.error("must be more than 0"));
+    }
+    let last = largest.number()?;
+    if last <= least {
+        return Err(largest.error(format!("must be more than least, {least:?}")));
+    }
+    // Beyond, nothing of the distribution is left to draw from.
+    const FARTHEST: f64 = 30.0;
+    if least > mean + FARTHEST * standard_deviation || last < mean - FARTHEST * standard_deviation {
+        return Err(
+            whole.error("has nothing between least and largest: they are 30 standard deviations away")
+        );
+    }
+    Ok(Distribution::Normal { mean, standard_deviation, within: [least, last] })
+}
+
+/// A fraction is from 0 to 1.
+fn check_fractions(table: &TomlTable<'_>, distribution: &Distribution) -> ReadResult<()> {
+    let ends = match distribution {
+        Distribution::Fixed(value) => [*value, *value],
+        Distribution::Grid(rows) | Distribution::Choice { rows, .. } => {
+            let values = || rows.iter().map(|row| row[0]);
+            [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
+        }
+        Distribution::Uniform(range)
+        | Distribution::LogUniform(range)
+        | Distribution::Normal { within: range, .. } => *range,
+    };
+    let outside = ends.into_iter().find(|end| !(0.0..=1.0).contains(end));
+    match outside {
+        None => Ok(()),
+        Some(end) => Err(table
+            .error("fraction_of", format!("a fraction of it may be {end:?}; must be from 0 to 1"))
+            .with_help("for other multiples write times instead of fraction_of")),
+    }
+}

@@ -1,0 +1,142 @@
+//! How units are divided into splits.
+
+use crate::expression::Condition;
+use crate::sampling::permuted;
+
+/// How units are divided. A unit is in one split, with all its records.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Splits {
+    /// (-) Parts of the units for training, validation and test.
+    pub parts: [f64; 3],
+    /// Splits that are unlike the training.
+    pub shifts: Vec<Shift>,
+}
+
+/// A split whose records fulfil a condition that no other record fulfils.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shift {
+    /// Its name.
+    pub name: String,
+    /// (-) Part of the units.
+    pub part: f64,
+    /// What holds for all of its records, together, and for no other record.
+    pub when: Vec<Condition>,
+}
+
+impl Default for Splits {
+    fn default() -> Self {
+        Self { parts: [0.7, 0.15, 0.15], shifts: Vec::new() }
+    }
+}
+
+impl Splits {
+    /// Names of the splits that are drawn alike.
+    pub const ALIKE: [&'static str; 3] = ["train", "validation", "test"];
+
+    /// All names: those drawn alike, then the shifts.
+    pub fn names(&self) -> Vec<&str> {
+        let shifts = self.shifts.iter().map(|shift| shift.name.as_str());
+        Self::ALIKE.into_iter().chain(shifts).collect()
+    }
+
+    /// (-) Part of the units in each split.
+    pub fn all_parts(&self) -> Vec<f64> {
+        self.parts.iter().copied().chain(self.shifts.iter().map(|shift| shift.part)).collect()
+    }
+
+    /// The shift that a split is; none for those that are drawn alike.
+    ///
+    /// # Arguments
+    /// * `split` - number in [`Self::names`]
+    pub fn shift(&self, split: usize) -> Option<usize> {
+        split.checked_sub(Self::ALIKE.len())
+    }
+
+    /// How many units each split has: by largest remainder, and at least one where its part is more than 0 and there are
+    /// enough.
+    ///
+    /// # Arguments
+    /// * `units` - of all splits
+    ///
+    /// ```
+    /// use meshtone_dataset::plan::Splits;
+    ///
+    /// let splits = Splits { parts: [0.7, 0.15, 0.15], shifts: Vec::new() };
+    /// assert_eq!(splits.unit_counts(20), [14, 3, 3]);
+    /// assert_eq!(splits.unit_counts(3), [1, 1, 1]);
+    /// ```
+    pub fn unit_counts(&self, units: u64) -> Vec<u64> {
+        let mut counts = largest_remainder(&self.all_parts(), units);
+        let parts = self.all_parts();
+        for (split, part) in parts.iter().enumerate() {
+            if *part > 0.0 && counts[split] == 0 {
+                let most = (0..counts.len()).max_by_key(|&other| counts[other]);
+                if let Some(most) = most.filter(|&most| counts[most] > 1) {
+                    counts[most] -= 1;
+                    counts[split] += 1;
+                }
+            }
+        }
+        counts
+    }
+
+    /// The split of a unit.
+    ///
+    /// # Arguments
+    /// * `unit`, `units` - which of how many
+    /// * `seed` - of the division
+    pub fn of_unit(&self, unit: u64, units: u64, seed: u64) -> usize {
+        let place = permuted(unit, units, seed);
+        let mut end = 0;
+        let counts = self.unit_counts(units);
+        counts
+            .iter()
+            .position(|count| {
+                end += count;
+                place < end
+            })
+            .unwrap_or(0)
+    }
+}
+
+/// Divides a whole number by parts; what is left goes to the largest remainders.
+pub(crate) fn largest_remainder(parts: &[f64], whole: u64) -> Vec<u64> {
+    let sum: f64 = parts.iter().sum();
+    let exact = |part: f64| if sum > 0.0 { part / sum * whole as f64 } else { 0.0 };
+    let mut counts: Vec<u64> = parts.iter().map(|&part| (exact(part) + 1e-9).floor() as u64).collect();
+    let mut order: Vec<usize> = (0..parts.len()).collect();
+    let remainder = |i: usize| exact(parts[i]) - counts[i] as f64;
+    order.sort_by(|&a, &b| remainder(b).total_cmp(&remainder(a)).then(a.cmp(&b)));
+    let missing = whole.saturating_sub(counts.iter().sum());
+    for &i in order.iter().cycle().take(missing as usize) {
+        counts[i] += 1;
+    }
+    counts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_unit_is_in_one_split_and_the_parts_are_kept() {
+        let when = vec![Condition::parse("operation.pinion_speed_hz > 50").unwrap()];
+        let splits =
+            Splits { parts: [0.6, 0.1, 0.2], shifts: vec![Shift { name: "fast".into(), part: 0.1, when }] };
+        for units in [4, 10, 37, 1000] {
+            let mut counts = vec![0; 4];
+            (0..units).for_each(|unit| counts[splits.of_unit(unit, units, 9)] += 1);
+            assert_eq!(counts, splits.unit_counts(units));
+            assert_eq!(counts.iter().sum::<u64>(), units);
+            assert!(counts.iter().all(|&count| count > 0));
+        }
+        assert_eq!(splits.unit_counts(1000), [600, 100, 200, 100]);
+    }
+
+    #[test]
+    fn remainders() {
+        assert_eq!(largest_remainder(&[1.0, 1.0, 1.0], 10), [4, 3, 3]);
+        assert_eq!(largest_remainder(&[0.5, 0.25, 0.25], 8), [4, 2, 2]);
+        assert_eq!(largest_remainder(&[3.0, 1.0], 0), [0, 0]);
+    }
+}

@@ -1,0 +1,261 @@
+//! Rate, noise, average, difference, indicators.
+//!
+//! What is computed from a raw channel is computed from its samples as they are kept, noise and rounding to single precision
+//! included: who reads the raw channel back finds the same average.
+
+use meshtone::Stages;
+use meshtone::batch::ChannelKind;
+use meshtone::dynamics::Motion;
+use meshtone::scenario::Scenario;
+use meshtone::signal::{
+    AngularSettings, AntiAliasing, ChainSettings, Edge, Interpolation, MeanPart, Record as Analysis,
+    SeparationSettings, ShaftPhase, SignalError, process_channel,
+};
+
+use super::{Record, Start, noise};
+use crate::draw::DrawnRecord;
+use crate::plan::{Content, Keep};
+
+/// What is kept of a record's simulation.
+pub(super) fn record(
+    content: &Content,
+    drawn: DrawnRecord,
+    stages: &Stages,
+    samples: &[Vec<f32>],
+) -> Result<Record, String> {
+    let signals = |error: SignalError| error.to_string();
+    let keep = &content.keep;
+    let view = View::new(content, &drawn, stages);
+    let simulated = keep.simulated();
+    if view.offset.is_some() {
+        refuse_growth(&simulated, samples)?;
+    }
+    let mut channels = view.at_rate(samples).map_err(signals)?;
+    let analysed = simulated.iter().position(|channel| *channel == keep.analysed);
+    let enhanced = content.tuned.is_some();
+    let mut record = view.empty(drawn);
+    if let (Some(analysed), true) = (analysed, enhanced) {
+        record.clean_difference = view.clean_difference(&channels[analysed], content).map_err(signals)?;
+    }
+    for (number, (kind, channel)) in simulated.iter().zip(&mut channels).enumerate() {
+        if is_acceleration(*kind) {
+            noise::add(&record.drawn, number as u64, channel);
+        }
+    }
+    if let (Some(analysed), true) = (analysed, keep.is_analysed()) {
+        let analysis = view
+            .analyse(&channels[analysed], Interpolation::default(), MeanPart::default())
+            .map_err(signals)?;
+        let single = |values: &[f64]| values.iter().map(|&value| value as f32).collect();
+        if keep.average {
+            record.average = single(&analysis.average.values);
+        }
+        if keep.difference {
+            record.difference = single(&analysis.parts.difference);
+        }
+        if keep.indicators {
+            record.indicators = analysis.indicators.table("g");
+        }
+    }
+    channels.truncate(keep.channels.len());
+    if let Some(seconds) = keep.duration_s {
+        view.cut(&mut channels, seconds).map_err(signals)?;
+    }
+    record.channels = channels;
+    Ok(record)
+}
+
+/// What is kept of its healthy twin: the difference signal.
+pub(super) fn twin(
+    content: &Content,
+    drawn: DrawnRecord,
+    stages: &Stages,
+    samples: &[Vec<f32>],
+) -> Result<Record, String> {
+    let signals = |error: SignalError| error.to_string();
+    let view = View::new(content, &drawn, stages);
+    let analysed = content.keep.simulated().iter().position(|channel| *channel == content.keep.analysed);
+    let mut record = view.empty(drawn);
+    if let Some(analysed) = analysed {
+        let channels = view.at_rate(&samples[analysed..=analysed]).map_err(signals)?;
+        record.clean_difference = view.clean_difference(&channels[0], content).map_err(signals)?;
+    }
+    Ok(record)
+}
+
+/// Part of the record at either end by which it is seen to grow.
+const END: usize = 10;
+/// Growth from the first to the last of those parts that no steady motion shows.
+const MOST_GROWTH: f64 = 10.0;
+
+/// Refuses a steady motion that grows all the time, though it has not yet grown without bound.
+fn refuse_growth(channels: &[ChannelKind], samples: &[Vec<f32>]) -> Result<(), String> {
+    let square = |part: &[f32]| part.iter().map(|&x| f64::from(x) * f64::from(x)).sum::<f64>();
+    let (mut first, mut last) = (0.0, 0.0);
+    for (_, samples) in channels.iter().zip(samples).filter(|(channel, _)| is_acceleration(**channel)) {
+        let part = samples.len() / END;
+        first += square(&samples[..part]);
+        last += square(&samples[samples.len() - part..]);
+    }
+    if last > MOST_GROWTH * MOST_GROWTH * first {
+        let growth = (last / first).sqrt();
+        return Err(format!(
+            "the motion grows from the record's start to its end, by a factor of {growth:.0}: damping does not take what \
+             the varying mesh stiffness puts into a mode; raise rig.damping_ratio or use other teeth or another speed"
+        ));
+    }
+    Ok(())
+}
+
+fn is_acceleration(channel: ChannelKind) -> bool {
+    matches!(channel, ChannelKind::Horizontal | ChannelKind::Vertical | ChannelKind::Axial)
+}
+
+/// A simulation as a recording: from the mark on, at the rate of the data set.
+struct View<'a> {
+    keep: &'a Keep,
+    stages: &'a Stages,
+    start: Start,
+    /// Sample of the simulation at which the recording starts; the kept samples continue periodically.
+    offset: Option<usize>,
+}
+
+impl<'a> View<'a> {
+    fn new(content: &'a Content, drawn: &DrawnRecord, stages: &'a Stages) -> Self {
+        let keep = &content.keep;
+        let gears = &stages.scenario.gears;
+        let (time, teeth) = (&stages.time, gears.gear_teeth as usize);
+        let per_tooth = time.samples_per_pinion_revolution / gears.pinion_teeth as usize;
+        let per_revolution = per_tooth * teeth;
+        let kept = time.kept_samples();
+        let revolutions = kept / per_revolution.max(1);
+        let start = Start::new(drawn, gears.gear_teeth, revolutions as u32, keep.aligned);
+        // Only a steady motion over whole revolutions can be turned.
+        let periodic = stages.is_steady() && kept > 0 && kept.is_multiple_of(per_revolution);
+        let offset = periodic.then(|| {
+            let mark = start.mark_teeth(gears.gear_teeth) as usize * per_tooth;
+            let wanted = mark + start.revolution as usize * per_revolution;
+            (wanted + kept - time.first_kept_sample % kept) % kept
+        });
+        Self { keep, stages, start, offset }
+    }
+
+    fn scenario(&self) -> &Scenario {
+        &self.stages.scenario
+    }
+
+    fn empty(&self, drawn: DrawnRecord) -> Record {
+        let scenario = self.scenario();
+        Record {
+            drawn,
+            fault_tooth: scenario.fault.is_some().then_some(self.start.first_tooth),
+            gear_angle_rev: if self.offset.is_some() { 0.0 } else { self.gear_angles()[0] },
+            teeth: [scenario.gears.pinion_teeth, scenario.gears.gear_teeth],
+            pinion_speed_hz: scenario.operation.pinion_speed_hz,
+            brake_torque_nm: scenario.operation.brake_torque_nm,
+            channels: Vec::new(),
+            average: Vec::new(),
+            difference: Vec::new(),
+            indicators: Vec::new(),
+            clean_difference: Vec::new(),
+        }
+    }
+
+    /// Number of samples of a recording of the whole kept time. Of a periodic one so many that the last revolution is
+    /// whole: its last value lies before the period's end.
+    fn samples(&self) -> usize {
+        let time = &self.stages.time;
+        let span = time.kept_samples() as f64 * time.step_s() * self.keep.sampling_rate_hz;
+        match self.offset {
+            Some(_) => (span - 1e-6).ceil() as usize + 1,
+            None => (span - 1e-6).floor() as usize,
+        }
+    }
+
+    /// The signals at the data set's rate.
+    fn at_rate(&self, samples: &[Vec<f32>]) -> Result<Vec<Vec<f32>>, SignalError> {
+        let from_hz = self.stages.time.sampling_rate_hz;
+        let step = from_hz / self.keep.sampling_rate_hz;
+        let filter = AntiAliasing::new(from_hz, self.keep.sampling_rate_hz)?;
+        let kept = self.stages.time.kept_samples();
+        let (offset, edge) = match self.offset {
+            Some(offset) => (offset as f64, Edge::Periodic),
+            None => (0.0, Edge::Reflect),
+        };
+        let wrap = |place: f64| if place < kept as f64 { place } else { place - kept as f64 };
+        let places = (0..self.samples()).map(|i| wrap(wrap(offset + i as f64 * step)));
+        let signals: Vec<&[f32]> = samples.iter().map(Vec::as_slice).collect();
+        Ok(filter.read(&signals, places, edge))
+    }
+
+    /// (rev) Angle of the gear at every kept sample of the simulation, from the mark.
+    fn gear_angles(&self) -> Vec<f64> {
+        let Stages { time, scenario, .. } = self.stages;
+        let gears = &scenario.gears;
+        let ratio = f64::from(gears.pinion_teeth) / f64::from(gears.gear_teeth);
+        let mark = f64::from(self.start.mark_teeth(gears.gear_teeth)) / f64::from(gears.gear_teeth);
+        let motion = Motion::new(scenario, time).skip(time.first_kept_sample).take(time.kept_samples());
+        motion.map(|sample| sample.revolutions * ratio - mark).collect()
+    }
+
+    /// Phase of the gear's shaft at the recording's samples.
+    fn phase(&self, samples: usize) -> Result<ShaftPhase, SignalError> {
+        let rate_hz = self.keep.sampling_rate_hz;
+        let gears = &self.scenario().gears;
+        if self.offset.is_some() {
+            let pinion_hz = self.scenario().operation.pinion_speed_hz;
+            let gear_hz = pinion_hz * f64::from(gears.pinion_teeth) / f64::from(gears.gear_teeth);
+            return ShaftPhase::constant(gear_hz, rate_hz, samples);
+        }
+        let angles = self.gear_angles();
+        let step = self.stages.time.sampling_rate_hz / rate_hz;
+        let at = |i: usize| {
+            let place = i as f64 * step;
+            let (whole, last) = (place as usize, angles.len() - 1);
+            let from = angles[whole.min(last)];
+            from + (place - whole as f64) * (angles[(whole + 1).min(last)] - from)
+        };
+        ShaftPhase::new(0, (0..samples).map(at).collect())
+    }
+
+    fn analyse(
+        &self,
+        signal: &[f32],
+        interpolation: Interpolation,
+        mean: MeanPart,
+    ) -> Result<Analysis, SignalError> {
+        let teeth = self.scenario().gears.gear_teeth;
+        let separation = SeparationSettings {
+            sidebands: self.keep.sidebands,
+            shaft_orders: (1..=self.keep.shaft_orders).collect(),
+            mean,
+            ..SeparationSettings::new(teeth as usize)
+        };
+        let angular = AngularSettings { interpolation, ..AngularSettings::default() };
+        let settings = ChainSettings { angular, separation: Some(separation) };
+        let double: Vec<f64> = signal.iter().map(|&x| f64::from(x)).collect();
+        process_channel(&double, &self.phase(signal.len())?, teeth, &settings)
+    }
+
+    /// The difference signal that is enhanced, without noise.
+    fn clean_difference(&self, signal: &[f32], content: &Content) -> Result<Vec<f64>, SignalError> {
+        if content.tuned.is_none() {
+            return Ok(Vec::new());
+        }
+        // As the signals were taken that the enhancement was tuned with.
+        Ok(self.analyse(signal, Interpolation::Pchip, MeanPart::Removed)?.parts.difference)
+    }
+
+    /// Cuts the channels to a duration.
+    fn cut(&self, channels: &mut [Vec<f32>], seconds: f64) -> Result<(), SignalError> {
+        let wanted = (seconds * self.keep.sampling_rate_hz).round() as usize;
+        for channel in channels {
+            if channel.len() < wanted {
+                let what = "samples of a record for keep.duration_s";
+                return Err(SignalError::TooFew { what, given: channel.len(), needed: wanted });
+            }
+            channel.truncate(wanted);
+        }
+        Ok(())
+    }
+}

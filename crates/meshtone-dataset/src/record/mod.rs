@@ -1,0 +1,115 @@
+//! From a simulation to what is kept of it.
+
+mod chain;
+mod noise;
+mod start;
+
+pub use start::Start;
+
+use meshtone::Stages;
+use meshtone::batch::Keep as BatchKeep;
+use meshtone::sampling::TimeGrid;
+use meshtone::signal::IndicatorValue;
+use meshtone::solver::{Block, Output, Recorder};
+
+use crate::draw::DrawnRecord;
+use crate::plan::Content;
+
+/// What is kept of one record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    /// What it is.
+    pub drawn: DrawnRecord,
+    /// Number of the damaged tooth, counted from 1 in the order in which the teeth come into contact from the start of the
+    /// record on; none for a healthy one.
+    pub fault_tooth: Option<u32>,
+    /// (rev) Angle of the gear at the first sample, from where tooth 1 comes into contact. 0 at constant speed.
+    pub gear_angle_rev: f64,
+    /// Teeth of pinion and gear.
+    pub teeth: [u32; 2],
+    /// (Hz) Mean speed of the pinion's shaft.
+    pub pinion_speed_hz: f64,
+    /// (N m) Brake torque.
+    pub brake_torque_nm: f64,
+    /// Raw channels, those of the plan.
+    pub channels: Vec<Vec<f32>>,
+    /// Synchronous average of the analysed channel over the gear's revolutions.
+    pub average: Vec<f32>,
+    /// Its difference signal.
+    pub difference: Vec<f32>,
+    /// Its indicators.
+    pub indicators: Vec<IndicatorValue>,
+    /// Difference signal without the added noise, to be enhanced; empty where nothing is.
+    pub clean_difference: Vec<f64>,
+}
+
+/// What a simulation is for.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Role {
+    /// It is the record.
+    Record(DrawnRecord),
+    /// It shows what the record's pair would be like without its fault.
+    HealthyTwin(DrawnRecord),
+}
+
+/// What is kept of each of many simulations.
+pub(crate) struct KeepRecords<'a, F> {
+    pub content: &'a Content,
+    /// What a simulation is for, by its number.
+    pub role: F,
+}
+
+/// All samples of the simulated channels, in single precision.
+#[derive(Default)]
+pub(crate) struct Samples {
+    channels: Vec<Vec<f32>>,
+}
+
+impl Recorder for Samples {
+    fn record(&mut self, block: &Block) {
+        for (index, channel) in self.channels.iter_mut().enumerate() {
+            channel.extend(block.output(index).iter().map(|&value| value as f32));
+        }
+    }
+}
+
+impl<F: Fn(usize) -> Option<Role> + Sync> BatchKeep for KeepRecords<'_, F> {
+    type Recorder = Samples;
+    type Kept = Result<Box<Record>, String>;
+
+    fn outputs(&self) -> Vec<Output> {
+        self.content.keep.simulated().into_iter().map(|channel| channel.output()).collect()
+    }
+
+    fn kept_bytes(&self, time: &TimeGrid) -> usize {
+        kept_bytes(self.content, time)
+    }
+
+    fn recorder(&self, stages: &Stages) -> Samples {
+        let samples = || Vec::with_capacity(stages.time.kept_samples());
+        Samples { channels: self.content.keep.simulated().iter().map(|_| samples()).collect() }
+    }
+
+    fn keep(&self, index: usize, stages: Stages, samples: Samples) -> Self::Kept {
+        match (self.role)(index) {
+            Some(Role::Record(drawn)) => chain::record(self.content, drawn, &stages, &samples.channels),
+            Some(Role::HealthyTwin(drawn)) => chain::twin(self.content, drawn, &stages, &samples.channels),
+            None => Err("it was not asked for".to_owned()),
+        }
+        .map(Box::new)
+    }
+}
+
+/// (bytes) About how large a record is.
+pub(crate) fn kept_bytes(content: &Content, time: &TimeGrid) -> usize {
+    let keep = &content.keep;
+    let rate = (keep.sampling_rate_hz / time.sampling_rate_hz).min(1.0);
+    let period = time.kept_samples() as f64 * rate;
+    let raw = keep.duration_s.map_or(period, |seconds| seconds * keep.sampling_rate_hz);
+    // An average's length is the next power of two above a revolution's.
+    let turns = time.kept_samples() as f64 / time.samples_per_pinion_revolution as f64;
+    let average = 4.0 * period / turns.max(1.0);
+    let averages = f64::from(u8::from(keep.average) + u8::from(keep.difference)) * average;
+    let enhanced = if content.tuned.is_some() { 3.0 * average } else { 0.0 };
+    (4.0 * (raw * keep.channels.len() as f64 + averages + enhanced)) as usize + 1000
+}

@@ -1,0 +1,33 @@
+//! Noise that is added to raw channels.
+
+use meshtone::random::{Draws, Purpose};
+
+use crate::draw::{DrawnRecord, NOISE_KEYS};
+
+/// Adds white Gaussian noise to acceleration channels, as the record's values say.
+///
+/// # Arguments
+/// * `drawn` - the record
+/// * `channel` - number of the channel
+/// * `signal` - (g) its samples
+pub(super) fn add(drawn: &DrawnRecord, channel: u64, signal: &mut [f32]) {
+    let value = |key: &str| drawn.values.iter().find(|(other, _)| other == key).map(|(_, value)| *value);
+    let [relative_db, level_g] = NOISE_KEYS.map(value);
+    let deviation = match (relative_db, level_g) {
+        (Some(ratio_db), _) => standard_deviation(signal) * libm::pow(10.0, -ratio_db / 20.0),
+        (None, Some(level)) => level,
+        (None, None) => return,
+    };
+    let mut draws = Draws::new(drawn.seed, Purpose::RecordNoise, channel);
+    for pair in signal.chunks_mut(2) {
+        for (sample, normal) in pair.iter_mut().zip(draws.normals()) {
+            *sample = (f64::from(*sample) + deviation * normal) as f32;
+        }
+    }
+}
+
+fn standard_deviation(signal: &[f32]) -> f64 {
+    let count = signal.len().max(1) as f64;
+    let mean = signal.iter().map(|&x| f64::from(x)).sum::<f64>() / count;
+    (signal.iter().map(|&x| (f64::from(x) - mean).powi(2)).sum::<f64>() / count).sqrt()
+}

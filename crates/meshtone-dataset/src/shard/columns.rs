@@ -1,0 +1,288 @@
+//! Columns of a data set.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use arrow::datatypes::{DataType, Field, Schema};
+use meshtone::batch::ChannelKind;
+
+use crate::draw::NOISE_KEYS;
+use crate::plan::Plan;
+
+/// A column.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// Name, with its unit at the end where it has one.
+    pub name: String,
+    /// Unit; `-` for plain numbers, empty for text.
+    pub unit: String,
+    /// Meaning.
+    pub description: String,
+    /// What it holds.
+    pub kind: ColumnKind,
+}
+
+/// What a column holds.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ColumnKind {
+    /// Number of the record.
+    Record,
+    /// Number of the unit.
+    Unit,
+    /// Name of the split.
+    Split,
+    /// The label.
+    Label,
+    /// Grade of the fault.
+    Severity,
+    /// What the grade was taken from.
+    SeverityMeasure,
+    /// Number of the damaged tooth.
+    FaultTooth,
+    /// Seed of the record.
+    Seed,
+    /// Seed of the unit's profile errors.
+    WheelsSeed,
+    /// Sampling rate of the raw channels.
+    SamplingRate,
+    /// Angle of the gear at the first sample.
+    GearAngle,
+    /// Teeth of the pinion.
+    PinionTeeth,
+    /// Teeth of the gear.
+    GearTeeth,
+    /// Speed of the pinion's shaft.
+    PinionSpeed,
+    /// Speed of the gear's shaft.
+    GearSpeed,
+    /// Brake torque.
+    BrakeTorque,
+    /// A varied key of the scenario file.
+    Key(String),
+    /// An indicator, by its name.
+    Indicator(String),
+    /// A raw channel, by its number.
+    Channel(usize),
+    /// Synchronous average.
+    Average,
+    /// Difference signal.
+    Difference,
+    /// Enhanced difference signal.
+    EnhancedDifference,
+}
+
+impl ColumnKind {
+    /// Whether the column holds a signal.
+    pub fn is_signal(&self) -> bool {
+        matches!(self, Self::Channel(_) | Self::Average | Self::Difference | Self::EnhancedDifference)
+    }
+
+    fn data_type(&self) -> DataType {
+        match self {
+            Self::Record | Self::Unit | Self::Seed | Self::WheelsSeed => DataType::Int64,
+            Self::Split | Self::Label => DataType::Utf8,
+            Self::Severity | Self::FaultTooth | Self::PinionTeeth | Self::GearTeeth => DataType::Int32,
+            kind if kind.is_signal() => {
+                DataType::List(Arc::new(Field::new("item", DataType::Float32, false)))
+            }
+            _ => DataType::Float64,
+        }
+    }
+
+    fn is_nullable(&self) -> bool {
+        matches!(self, Self::SeverityMeasure | Self::FaultTooth | Self::Key(_) | Self::Indicator(_))
+    }
+}
+
+/// The columns of a plan's data set: what a record is, its varied keys, its indicators, its signals.
+///
+/// # Arguments
+/// * `plan` - the plan
+pub fn columns(plan: &Plan) -> Vec<Column> {
+    let mut columns = of_record();
+    let taken: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
+    columns
+        .extend(varied_keys(plan).into_iter().map(key_column).filter(|column| !taken.contains(&column.name)));
+    let keep = &plan.content.keep;
+    if keep.indicators {
+        columns.extend(indicator_names().into_iter().map(|(name, unit)| Column {
+            name: if unit == "g" { format!("{name}_g") } else { name.clone() },
+            description: format!("indicator {name} of the analysed channel over the gear's revolutions"),
+            unit,
+            kind: ColumnKind::Indicator(name),
+        }));
+    }
+    let channel = |(number, kind): (usize, &ChannelKind)| Column {
+        name: kind.name().to_owned(),
+        unit: if kind.name().ends_with("_g") {
+            "g"
+        } else if kind.name().ends_with("_hz") {
+            "Hz"
+        } else {
+            "N"
+        }
+        .to_owned(),
+        description: "raw channel, its samples one after the other".to_owned(),
+        kind: ColumnKind::Channel(number),
+    };
+    columns.extend(keep.channels.iter().enumerate().map(channel));
+    let mut signal = |wanted: bool, name: &str, unit: &str, description: &str, kind: ColumnKind| {
+        if wanted {
+            columns.push(column(name, unit, description, kind));
+        }
+    };
+    let turn = "over one revolution of the gear, at equal angles from where tooth 1 comes into contact";
+    signal(keep.average, "average_g", "g", &format!("synchronous average {turn}"), ColumnKind::Average);
+    signal(
+        keep.difference,
+        "difference_g",
+        "g",
+        &format!("difference signal {turn}"),
+        ColumnKind::Difference,
+    );
+    let enhanced = "enhanced difference signal over one revolution of the gear, the fault's response in the middle, \
+                    over the rms of the enhanced healthy signal";
+    let wanted = plan.content.tuned.is_some();
+    signal(wanted, "enhanced_relative_difference", "-", enhanced, ColumnKind::EnhancedDifference);
+    columns
+}
+
+/// The schema of the shards.
+pub(super) fn schema(columns: &[Column]) -> Arc<Schema> {
+    let field = |column: &Column| {
+        let mut metadata = HashMap::from([
+            ("unit".to_owned(), column.unit.clone()),
+            ("description".to_owned(), column.description.clone()),
+        ]);
+        if let ColumnKind::Key(key) = &column.kind {
+            metadata.insert("key".to_owned(), key.clone());
+        }
+        let kind = &column.kind;
+        Field::new(&column.name, kind.data_type(), kind.is_nullable()).with_metadata(metadata)
+    };
+    Arc::new(Schema::new(columns.iter().map(field).collect::<Vec<_>>()))
+}
+
+fn column(name: &str, unit: &str, description: &str, kind: ColumnKind) -> Column {
+    Column { name: name.to_owned(), unit: unit.to_owned(), description: description.to_owned(), kind }
+}
+
+fn of_record() -> Vec<Column> {
+    use ColumnKind::*;
+    vec![
+        column("record", "", "number of the record; with the plan it determines everything else", Record),
+        column("unit", "", "number of the unit: the pair of wheels, shared by several records", Unit),
+        column("split", "", "the split that the unit belongs to", Split),
+        column("label", "", "the class", Label),
+        column("severity", "", "grade of the fault, from 1; 0 for healthy", Severity),
+        column("severity_measure", "-", "the number that the grade was taken from", SeverityMeasure),
+        column(
+            "fault_tooth",
+            "",
+            "number of the damaged tooth of the gear, from 1, in the order in which teeth come into contact from the start of the record on",
+            FaultTooth,
+        ),
+        column("seed", "", "seed of the record's noise and fluctuations", Seed),
+        column("wheels_seed", "", "seed of the unit's profile errors", WheelsSeed),
+        column("sampling_rate_hz", "Hz", "sampling rate of the raw channels", SamplingRate),
+        column(
+            "gear_angle_rev",
+            "rev",
+            "angle of the gear at the first sample, from where tooth 1 comes into contact",
+            GearAngle,
+        ),
+        column("pinion_teeth", "", "teeth of the pinion, the driving wheel", PinionTeeth),
+        column("gear_teeth", "", "teeth of the gear, whose tooth is damaged", GearTeeth),
+        column("pinion_speed_hz", "Hz", "speed of the pinion's shaft", PinionSpeed),
+        column("gear_speed_hz", "Hz", "speed of the gear's shaft", GearSpeed),
+        column("brake_torque_nm", "N m", "brake torque on the gear's shaft", BrakeTorque),
+    ]
+}
+
+/// The varied keys, in the plan's order.
+fn varied_keys(plan: &Plan) -> Vec<&str> {
+    let rules = plan.content.rules.iter().chain(plan.content.classes.iter().flat_map(|class| &class.rules));
+    let mut keys: Vec<&str> = Vec::new();
+    for key in rules.flat_map(|rule| &rule.keys) {
+        if !keys.contains(&key.as_str()) {
+            keys.push(key);
+        }
+    }
+    keys
+}
+
+fn key_column(key: &str) -> Column {
+    let name = column_name(key);
+    let unit = unit_of(&name).to_owned();
+    let description = match NOISE_KEYS.iter().position(|noise| *noise == key) {
+        Some(0) => "signal-to-noise ratio of the added noise".to_owned(),
+        Some(_) => "standard deviation of the added noise".to_owned(),
+        None => format!("{key} of the scenario"),
+    };
+    Column { name, unit, description, kind: ColumnKind::Key(key.to_owned()) }
+}
+
+/// Name of a varied key's column: without its section, unless that is the fault or the noise.
+pub(crate) fn column_name(key: &str) -> String {
+    let name = match key.split_once('.') {
+        Some(("fault" | "noise", _)) | None => key,
+        Some((_, rest)) => rest,
+    };
+    name.replace('.', "_")
+}
+
+/// The unit that a name ends in.
+pub(crate) fn unit_of(name: &str) -> &'static str {
+    const UNITS: [(&str, &str); 11] = [
+        ("_n_per_m", "N/m"),
+        ("_nm_per_rad", "N m/rad"),
+        ("_kgm2", "kg m²"),
+        ("_mm", "mm"),
+        ("_hz", "Hz"),
+        ("_nm", "N m"),
+        ("_deg", "°"),
+        ("_kg", "kg"),
+        ("_db", "dB"),
+        ("_g", "g"),
+        ("_s", "s"),
+    ];
+    UNITS.iter().find(|(end, _)| name.ends_with(end)).map_or("-", |(_, unit)| unit)
+}
+
+/// Names and units of all indicators, in their order.
+fn indicator_names() -> Vec<(String, String)> {
+    use meshtone::signal::{Indicators, SeparationSettings, separate};
+
+    // Any average has them all.
+    let average: Vec<f64> = (0..64).map(|i| f64::from(i % 7)).collect();
+    let parts = separate(&average, &SeparationSettings::new(20));
+    let table = parts.and_then(|parts| Indicators::new(&average, &parts, 20)).map(|all| all.table("g"));
+    table.unwrap_or_default().into_iter().map(|value| (value.name, value.unit)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_keys() {
+        for (key, name, unit) in [
+            ("operation.pinion_speed_hz", "pinion_speed_hz", "Hz"),
+            ("rig.pinion_shaft.length_mm", "pinion_shaft_length_mm", "mm"),
+            ("fault.start", "fault_start", "-"),
+            ("fault.circle.x_mm", "fault_circle_x_mm", "mm"),
+            ("noise.snr_db", "noise_snr_db", "dB"),
+            ("rig.bearing_stiffness_n_per_m", "bearing_stiffness_n_per_m", "N/m"),
+            ("rig.wheel_rotational_stiffness_nm_per_rad", "wheel_rotational_stiffness_nm_per_rad", "N m/rad"),
+            ("operation.brake_torque_nm", "brake_torque_nm", "N m"),
+        ] {
+            assert_eq!(column_name(key), name);
+            assert_eq!(unit_of(name), unit);
+        }
+    }
+
+    #[test]
+    fn there_are_32_indicators() {
+        assert_eq!(indicator_names().len(), 32);
+    }
+}

@@ -1,0 +1,156 @@
+//! Writing a shard.
+
+use std::io::{self, Write};
+use std::sync::Arc;
+
+use arrow::datatypes::Schema;
+use arrow::record_batch::RecordBatch;
+use meshtone::hybrid::SimulatedCases;
+use meshtone_io::experiment::Tuned;
+use parquet::arrow::ArrowWriter;
+use parquet::basic::{Compression, Encoding, ZstdLevel};
+use parquet::file::properties::{EnabledStatistics, WriterProperties};
+use parquet::schema::types::ColumnPath;
+
+use super::columns::schema;
+use super::rows::{Row, array};
+use super::{Column, FailedRecord, ShardMetadata};
+use crate::plan::Content;
+use crate::record::Record;
+
+/// Higher levels hardly make the noise-like digits of a vibration smaller.
+const COMPRESSION_LEVEL: i32 = 1;
+/// (bytes) Of signals, that are gathered before they are compressed.
+const GROUP_BYTES: usize = 8 << 20;
+/// Of the values in a page; pages of signals would be too small by default.
+const PAGE_BYTES: usize = 1 << 20;
+
+/// What comes out of generating, in the order of the records.
+pub(crate) enum Item {
+    /// A record.
+    Record(Box<Record>),
+    /// What the next record would be like without its fault.
+    HealthyTwin(Box<Record>),
+    /// A record that could not be made.
+    Failed(FailedRecord),
+}
+
+/// Writes a shard.
+///
+/// # Arguments
+/// * `to` - where it is written to; it needs no buffer
+/// * `content` - of the plan
+/// * `columns` - of the plan
+/// * `metadata` - of the shard; its failures are those found while it is written
+/// * `next` - gives the next item of the shard, none where generating has stopped
+pub(crate) fn write(
+    to: impl Write + Send,
+    content: &Content,
+    columns: &[Column],
+    mut metadata: ShardMetadata,
+    mut next: impl FnMut() -> Option<Item>,
+) -> io::Result<ShardMetadata> {
+    let schema = schema(columns);
+    let properties = properties(columns).map_err(io::Error::other)?;
+    let mut writer = ArrowWriter::try_new(to, schema.clone(), Some(properties)).map_err(io::Error::other)?;
+    let mut rows = Vec::new();
+    let mut bytes = 0;
+    let mut twin: Option<Box<Record>> = None;
+    let mut finished = metadata.records.start;
+    while finished < metadata.records.end {
+        let item = next().ok_or_else(|| io::Error::new(io::ErrorKind::Interrupted, "stopped"))?;
+        match item {
+            Item::HealthyTwin(record) => {
+                twin = Some(record);
+                continue;
+            }
+            Item::Failed(failed) => metadata.failures.push(failed),
+            Item::Record(record) => {
+                let healthy = twin.take().filter(|twin| twin.drawn.index == record.drawn.index);
+                let index = record.drawn.index;
+                match enhanced(content.tuned.as_ref(), &record, healthy.as_deref()) {
+                    Ok(enhanced) => {
+                        let row = Row { record, enhanced };
+                        bytes += row.bytes();
+                        rows.push(row);
+                    }
+                    Err(reason) => metadata.failures.push(FailedRecord { record: index, reason }),
+                }
+            }
+        }
+        finished += 1;
+        if bytes >= GROUP_BYTES {
+            write_group(&mut writer, &schema, content, columns, &mut rows)?;
+            bytes = 0;
+        }
+    }
+    write_group(&mut writer, &schema, content, columns, &mut rows)?;
+    for value in metadata.key_values() {
+        writer.append_key_value_metadata(value);
+    }
+    writer.close().map_err(into_io)?;
+    Ok(metadata)
+}
+
+fn write_group(
+    writer: &mut ArrowWriter<impl Write + Send>,
+    schema: &Arc<Schema>,
+    content: &Content,
+    columns: &[Column],
+    rows: &mut Vec<Row>,
+) -> io::Result<()> {
+    if rows.is_empty() {
+        return Ok(());
+    }
+    let arrays = columns.iter().map(|column| array(column, rows, content)).collect();
+    let batch = RecordBatch::try_new(schema.clone(), arrays).map_err(io::Error::other)?;
+    rows.clear();
+    writer.write(&batch).map_err(into_io)?;
+    writer.flush().map_err(into_io)
+}
+
+/// The writer's error, as the file's where it is that one: a full disk stays one.
+fn into_io(error: parquet::errors::ParquetError) -> io::Error {
+    match error {
+        parquet::errors::ParquetError::External(source) => match source.downcast::<io::Error>() {
+            Ok(error) => *error,
+            Err(source) => io::Error::other(source),
+        },
+        error => io::Error::other(error),
+    }
+}
+
+fn properties(columns: &[Column]) -> Result<WriterProperties, parquet::errors::ParquetError> {
+    let mut builder = WriterProperties::builder()
+        .set_compression(Compression::ZSTD(ZstdLevel::try_new(COMPRESSION_LEVEL)?))
+        .set_statistics_enabled(EnabledStatistics::Chunk)
+        .set_data_page_size_limit(PAGE_BYTES);
+    for column in columns.iter().filter(|column| column.kind.is_signal()) {
+        // Hardly a number occurs twice, but signs and exponents resemble each other.
+        let path = ColumnPath::new(vec![column.name.clone(), "list".to_owned(), "item".to_owned()]);
+        builder = builder
+            .set_column_dictionary_enabled(path.clone(), false)
+            .set_column_encoding(path.clone(), Encoding::BYTE_STREAM_SPLIT)
+            .set_column_statistics_enabled(path, EnabledStatistics::None);
+    }
+    Ok(builder.build())
+}
+
+/// The enhanced difference signal of a record; empty where nothing is enhanced.
+fn enhanced(tuned: Option<&Tuned>, record: &Record, twin: Option<&Record>) -> Result<Vec<f32>, String> {
+    let Some(tuned) = tuned else { return Ok(Vec::new()) };
+    let difference = &record.clean_difference;
+    // A healthy record is its own twin.
+    let healthy = twin.map_or(difference, |twin| &twin.clean_difference);
+    let signal = (|| {
+        let centre_rev = match twin {
+            Some(_) => SimulatedCases::new(vec![healthy.clone(), difference.clone()])?.centre_rev(),
+            None => tuned.centre_rev,
+        };
+        let enhanced = tuned.enhancement.without_noise(difference, healthy, centre_rev)?;
+        let rms = enhanced.healthy_rms * (1.0 + tuned.enhancement.noise_level.powi(2)).sqrt();
+        let signal = enhanced.with_noise(record.drawn.seed, 0)?;
+        Ok::<_, meshtone::hybrid::HybridError>(signal.iter().map(|value| (value / rms) as f32).collect())
+    })();
+    signal.map_err(|error| format!("it cannot be enhanced: {error}"))
+}

@@ -1,0 +1,131 @@
+//! A data set in an object store.
+
+use std::fmt;
+use std::fs::File;
+use std::future::Future;
+use std::io::{self, Read, Seek};
+use std::sync::Arc;
+
+use futures::StreamExt;
+use object_store::path::Path;
+use object_store::{ObjectStore, ObjectStoreExt, PutPayload};
+
+use super::remote_file::RemoteFile;
+
+/// (bytes) Larger objects are uploaded in parts of this size.
+const PART_BYTES: u64 = 8 << 20;
+
+/// Objects whose names begin alike.
+#[derive(Debug, Clone)]
+pub(super) struct Objects {
+    store: Arc<dyn ObjectStore>,
+    prefix: Path,
+}
+
+impl Objects {
+    pub fn new(store: Arc<dyn ObjectStore>, prefix: Path) -> Self {
+        Self { store, prefix }
+    }
+
+    fn path(&self, name: &str) -> Path {
+        name.split('/').fold(self.prefix.clone(), |path, part| path.join(part))
+    }
+
+    pub fn names(&self) -> io::Result<Vec<String>> {
+        let list = async {
+            let mut listed = self.store.list(Some(&self.prefix));
+            let mut names = Vec::new();
+            while let Some(object) = listed.next().await {
+                let object = object?;
+                let parts = object.location.prefix_match(&self.prefix);
+                let parts: Vec<String> =
+                    parts.into_iter().flatten().map(|part| part.as_ref().to_owned()).collect();
+                names.push(parts.join("/"));
+            }
+            Ok(names)
+        };
+        let mut names = wait(list)?;
+        names.sort();
+        Ok(names)
+    }
+
+    pub fn open(&self, name: &str) -> io::Result<RemoteFile> {
+        let path = self.path(name);
+        let length = wait(async { Ok(self.store.head(&path).await?.size) })?;
+        Ok(RemoteFile { store: self.store.clone(), path, length })
+    }
+
+    /// Writes to a file without a name on this machine first, so that an object is as large as it wants without being held in
+    /// memory, and then uploads it.
+    pub fn write<T>(&self, name: &str, write: impl FnOnce(&mut File) -> io::Result<T>) -> io::Result<T> {
+        let mut file = tempfile::tempfile()?;
+        let result = write(&mut file)?;
+        let length = file.stream_position()?;
+        file.rewind()?;
+        let path = self.path(name);
+        if length <= PART_BYTES {
+            let mut bytes = Vec::new();
+            file.read_to_end(&mut bytes)?;
+            wait(async { self.store.put(&path, PutPayload::from(bytes)).await.map(|_| ()) })?;
+        } else {
+            self.upload_parts(&path, file)?;
+        }
+        Ok(result)
+    }
+
+    fn upload_parts(&self, path: &Path, file: File) -> io::Result<()> {
+        let mut upload = wait(self.store.put_multipart(path))?;
+        let sent = (|| {
+            loop {
+                let mut bytes = Vec::new();
+                Read::take(&file, PART_BYTES).read_to_end(&mut bytes)?;
+                if bytes.is_empty() {
+                    return wait(upload.complete()).map(|_| ());
+                }
+                wait(upload.put_part(PutPayload::from(bytes)))?;
+            }
+        })();
+        if sent.is_err() {
+            // Parts that stay behind cost money; where even this fails, the store removes them in time.
+            let _ = wait(upload.abort());
+        }
+        sent
+    }
+}
+
+impl fmt::Display for Objects {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}/{}", self.store, self.prefix)
+    }
+}
+
+/// Waits for an operation of an object store.
+#[cfg(not(feature = "cloud"))]
+pub(super) fn wait<T>(operation: impl Future<Output = object_store::Result<T>>) -> io::Result<T> {
+    futures::executor::block_on(operation).map_err(into_io)
+}
+
+/// Waits for an operation of an object store, whose connections live in a runtime of their own.
+#[cfg(feature = "cloud")]
+pub(super) fn wait<T>(operation: impl Future<Output = object_store::Result<T>>) -> io::Result<T> {
+    use std::sync::OnceLock;
+    use tokio::runtime::{Builder, Runtime};
+
+    static RUNTIME: OnceLock<io::Result<Runtime>> = OnceLock::new();
+    let runtime = RUNTIME.get_or_init(|| Builder::new_multi_thread().worker_threads(1).enable_all().build());
+    match runtime {
+        Ok(runtime) => runtime.block_on(operation).map_err(into_io),
+        Err(error) => Err(io::Error::new(error.kind(), error.to_string())),
+    }
+}
+
+fn into_io(error: object_store::Error) -> io::Error {
+    let kind = match &error {
+        object_store::Error::NotFound { .. } => io::ErrorKind::NotFound,
+        object_store::Error::PermissionDenied { .. } | object_store::Error::Unauthenticated { .. } => {
+            io::ErrorKind::PermissionDenied
+        }
+        _ => io::ErrorKind::Other,
+    };
+    io::Error::new(kind, error)
+}

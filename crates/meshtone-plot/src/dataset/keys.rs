@@ -1,0 +1,129 @@
+//! How the varied keys are distributed.
+
+use super::{DatasetPreview, TRAIN, split_stroke};
+use crate::axes::{Area, Axes};
+use crate::canvas::{Canvas, Pixel};
+use crate::style::{TextStyle, colour};
+use crate::text::fitted;
+use crate::ticks::Ticks;
+
+const COLUMNS: usize = 2;
+const ROWS: usize = 6;
+const BINS: usize = 16;
+/// (px) Between two plots below each other: the numbers of the upper and the title of the lower one.
+const GAP: [f64; 2] = [34.0, 52.0];
+const TALLEST: f64 = 150.0;
+/// Positive values that span more than this ratio are drawn by their logarithms, if their median is below this part of the sum of
+/// the least and the largest.
+const LOGARITHMIC: f64 = 15.0;
+const SKEWED: f64 = 0.3;
+/// Fewer different values than this have a bar each.
+const FEW: usize = 12;
+
+pub(super) fn draw(canvas: &mut Canvas, area: Area, preview: &DatasetPreview) {
+    let shown = preview.keys.len().min(COLUMNS * ROWS);
+    let rows = shown.div_ceil(COLUMNS).max(1) as f64;
+    let width = (area.width - GAP[0]) / COLUMNS as f64;
+    let height = ((area.height + GAP[1]) / rows - GAP[1]).min(TALLEST);
+    for (place, key) in preview.keys.iter().take(shown).enumerate() {
+        let (row, column) = ((place / COLUMNS) as f64, (place % COLUMNS) as f64);
+        let left = area.left + column * (width + GAP[0]);
+        let plot = Area::new(left, area.top + row * (height + GAP[1]), width, height);
+        histogram(canvas, plot, &key.name, &key.values, preview);
+    }
+    if preview.keys.len() > shown {
+        let rest = format!("and {} more keys", preview.keys.len() - shown);
+        canvas.text((area.left, area.bottom() + 40.0), &rest, TextStyle::NOTE.coloured(colour::MUTED));
+    }
+}
+
+fn histogram(canvas: &mut Canvas, area: Area, name: &str, values: &[f64], preview: &DatasetPreview) {
+    let ends = |values: &[f64]| {
+        let finite = values.iter().copied().filter(|value| value.is_finite());
+        finite
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
+    };
+    let [low, high] = ends(values);
+    let mut by_size: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    by_size.sort_by(f64::total_cmp);
+    let median = by_size.get(by_size.len() / 2).copied().unwrap_or(0.0);
+    let logarithmic = low > 0.0 && high > LOGARITHMIC * low && median < SKEWED * (low + high);
+    let values: Vec<f64> =
+        values.iter().map(|value| if logarithmic { value.log10() } else { *value }).collect();
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    let (Some(&least), Some(&largest)) = (sorted.first(), sorted.last()) else { return };
+    let mut distinct = sorted.clone();
+    distinct.dedup();
+    let range = if distinct.len() <= FEW {
+        let step = distinct.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+        let margin = if step.is_finite() { 0.5 * step } else { 0.5 };
+        [least - margin, largest + margin]
+    } else {
+        [least, largest]
+    };
+    let bins = if distinct.len() <= FEW {
+        // So narrow that neighbours have bins of their own.
+        (((range[1] - range[0]) / (2.0 * (distinct[0] - range[0])).max(1e-300)).round() as usize).clamp(1, 60)
+    } else {
+        BINS
+    };
+    let shares: Vec<Vec<f64>> = (0..preview.splits.len())
+        .map(|split| shares(&values, &preview.split_of, split, range, bins))
+        .collect();
+    let highest = shares.iter().flatten().copied().fold(0.0f64, f64::max);
+    let axes = Axes::new(area, range, [0.0, 1.08 * if highest > 0.0 { highest } else { 1.0 }]);
+    axes.title(canvas, &fitted(name, TextStyle::AXES_TITLE, area.width));
+    let ticks = match logarithmic {
+        true => Ticks::of_logarithms(range[0], range[1]).thinned(6),
+        false if distinct.len() <= FEW && distinct.iter().all(|value| value.fract() == 0.0) => {
+            Ticks::whole(range[0], range[1], 5)
+        }
+        false => Ticks::nice(range[0], range[1], 5),
+    };
+    axes.x_grid(canvas, &ticks);
+    axes.x_numbers(canvas, &ticks);
+    for (split, shares) in shares.iter().enumerate() {
+        if shares.iter().all(|&share| share == 0.0) {
+            continue;
+        }
+        let edge = |bin: usize| range[0] + (range[1] - range[0]) * bin as f64 / bins as f64;
+        if split == 0 {
+            let bars: Vec<[Pixel; 2]> = shares
+                .iter()
+                .enumerate()
+                .map(|(b, &share)| [axes.at(edge(b), share), axes.at(edge(b + 1), 0.0)])
+                .collect();
+            canvas.rectangles(&bars, TRAIN);
+        } else {
+            let mut steps = vec![axes.at(edge(0), 0.0)];
+            for (b, &share) in shares.iter().enumerate() {
+                steps.extend([axes.at(edge(b), share), axes.at(edge(b + 1), share)]);
+            }
+            steps.push(axes.at(edge(bins), 0.0));
+            canvas.polyline(&steps, split_stroke(split));
+        }
+    }
+    axes.frame(canvas);
+}
+
+/// Part of a split's records in each bin.
+fn shares(
+    values: &[f64],
+    split_of: &[usize],
+    split: usize,
+    [least, largest]: [f64; 2],
+    bins: usize,
+) -> Vec<f64> {
+    let mut counts = vec![0.0; bins];
+    let mut all = 0.0;
+    for (value, _) in values.iter().zip(split_of).filter(|(value, of)| value.is_finite() && **of == split) {
+        let bin = ((value - least) / (largest - least) * bins as f64).floor().max(0.0) as usize;
+        counts[bin.min(bins - 1)] += 1.0;
+        all += 1.0;
+    }
+    if all > 0.0 {
+        counts.iter_mut().for_each(|count| *count /= all);
+    }
+    counts
+}

@@ -1,0 +1,94 @@
+//! Data sets.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use meshtone_dataset::DatasetError;
+use meshtone_dataset::generate::{self, GenerateControl, Part};
+use meshtone_dataset::merge::merge;
+use meshtone_dataset::plan::{Plan, template};
+use meshtone_dataset::store::Destination;
+use pyo3::PyErr;
+use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError, PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+
+use crate::error::{file_error, value_error};
+use crate::interrupt::interruptible;
+
+/// The commented plan.
+#[pyfunction]
+pub fn dataset_template() -> &'static str {
+    template()
+}
+
+/// Refuses a plan that is wrong.
+#[pyfunction]
+pub fn check_plan(py: Python<'_>, plan: PathBuf) -> PyResult<()> {
+    py.detach(|| Plan::read(&plan)).map(drop).map_err(|error| file_error(&plan, error))
+}
+
+/// Makes a data set, or a part of it, or goes on with one.
+#[pyfunction]
+pub fn generate_dataset(
+    py: Python<'_>,
+    plan: PathBuf,
+    to: &str,
+    jobs: Option<usize>,
+    part: u64,
+    of: u64,
+    progress: Option<Bound<'_, PyAny>>,
+) -> PyResult<()> {
+    if part < 1 || part > of {
+        return Err(value_error(format!("part = ({part}, {of}): must be (i, n) with i from 1 to n")));
+    }
+    if jobs == Some(0) {
+        return Err(value_error("jobs = 0: must be at least 1"));
+    }
+    let read = py.detach(|| Plan::read(&plan)).map_err(|error| file_error(&plan, error))?;
+    let to = destination(to)?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs.unwrap_or(0)).build();
+    let pool = pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+    let (finished, all) = (AtomicU64::new(0), AtomicU64::new(0));
+    let progress = progress.map(Bound::unbind);
+    let generated = interruptible(
+        py,
+        |cancelled| {
+            let told = |done, of| {
+                finished.store(done, Ordering::Relaxed);
+                all.store(of, Ordering::Relaxed);
+            };
+            let control = GenerateControl { progress: &told, cancelled };
+            pool.install(|| generate::generate(&read, &to, Part { number: part, of }, &control))
+        },
+        |py| match &progress {
+            Some(progress) => {
+                let (done, of) = (finished.load(Ordering::Relaxed), all.load(Ordering::Relaxed));
+                progress.call1(py, (done, of)).map(drop)
+            }
+            None => Ok(()),
+        },
+    )?;
+    generated.map(drop).map_err(dataset_error)
+}
+
+/// Puts parts together.
+#[pyfunction]
+pub fn merge_datasets(py: Python<'_>, parts: Vec<String>, to: &str) -> PyResult<()> {
+    let parts = parts.iter().map(|part| destination(part)).collect::<PyResult<Vec<_>>>()?;
+    let to = destination(to)?;
+    py.detach(|| merge(&parts, &to)).map(drop).map_err(dataset_error)
+}
+
+fn destination(to: &str) -> PyResult<Destination> {
+    Destination::parse(to).map_err(dataset_error)
+}
+
+fn dataset_error(error: DatasetError) -> PyErr {
+    match error {
+        DatasetError::Plan(error) => file_error(Path::new("."), error),
+        DatasetError::Refused { problem, help } => PyValueError::new_err(format!("{problem}\n{help}")),
+        DatasetError::Stopped => PyKeyboardInterrupt::new_err("stopped"),
+        DatasetError::File { .. } => PyOSError::new_err(error.to_string()),
+        DatasetError::Preview(_) => PyRuntimeError::new_err(error.to_string()),
+    }
+}

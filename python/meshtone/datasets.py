@@ -1,0 +1,506 @@
+"""Labelled data sets: made after a plan, loaded lazily, split without leaks.
+
+What a plan says, and what a data set holds: the book's chapter "Data sets". Loading needs pyarrow: ``pip install 'meshtone[datasets]'``.
+
+Examples
+--------
+>>> import pathlib, tempfile
+>>> from meshtone import datasets
+>>> folder = tempfile.TemporaryDirectory()
+>>> path = pathlib.Path(folder.name, "gears")
+>>> plan = pathlib.Path(folder.name, "plan.toml")
+>>> _ = plan.write_text('''
+... records = 8
+... units = 4
+... scenario = "machine.toml"
+... [[class]]
+... label = "healthy"
+... [[class]]
+... label = "missing-tooth"
+... fault = { kind = "missing-tooth" }
+... [split]
+... train = 0.5
+... test = 0.5
+... ''')
+>>> from meshtone import template
+>>> _ = pathlib.Path(folder.name, "machine.toml").write_text(template("healthy"))
+>>> gears = datasets.generate_dataset(plan, path)
+>>> gears
+<Dataset of 8 records: 4 healthy, 4 missing-tooth; splits test (4), train (4)>
+>>> train = gears.split("train")
+>>> sorted(set(train.column("label")))
+['healthy', 'missing-tooth']
+>>> train.signals("vertical_g")[0].dtype
+dtype('float32')
+>>> folder.cleanup()
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from os import PathLike, fspath
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+
+if TYPE_CHECKING:
+    import pandas
+    import pyarrow
+    import pyarrow.dataset
+
+__all__ = ["Dataset", "dataset_template", "generate_dataset", "load_dataset", "merge_datasets"]
+
+FloatSignal = npt.NDArray[np.float32]
+
+
+def dataset_template() -> str:
+    """A commented plan to start from.
+
+    Returns
+    -------
+    str
+        The text of a plan file.
+
+    Examples
+    --------
+    >>> dataset_template().startswith("#")
+    True
+    """
+    return _core.dataset_template()
+
+
+def generate_dataset(
+    plan: str | PathLike[str],
+    path: str | PathLike[str],
+    *,
+    jobs: int | None = None,
+    part: tuple[int, int] | None = None,
+    progress: bool | Callable[[int, int], None] = False,
+) -> Dataset:
+    """Make a data set after a plan, or go on with one that was interrupted.
+
+    The result has the same bytes with any number of jobs and parts, and however often it was interrupted.
+
+    Parameters
+    ----------
+    plan : str or path
+        The plan file.
+    path : str or path
+        Directory or URL to write to.
+    jobs : int, optional
+        Threads that simulate; all cores by default.
+    part : tuple of int, optional
+        ``(i, n)`` makes only part i, from 1, of n. Parts may be made at the same time, in one directory or apart.
+    progress : bool or callable, optional
+        True for a line on the terminal; or called with the numbers of records that are finished and of all.
+
+    Returns
+    -------
+    Dataset
+        What lies there now.
+
+    Raises
+    ------
+    FileNotFoundError
+        There is no such plan.
+    ValueError
+        What is wrong with the plan, with key and line; a directory with other files, or with the data set of another plan.
+    OSError
+        A full disk, or what else kept it from being written; what is finished stays.
+    KeyboardInterrupt
+        Ctrl-C stops it; what is finished stays.
+    """
+    told = _progress() if progress is True else (progress or None)
+    number, of = (1, 1) if part is None else part
+    _core.generate_dataset(plan, fspath(path), jobs, number, of, told)
+    return load_dataset(path)
+
+
+def _progress() -> Callable[[int, int], None]:
+    start = time.monotonic()
+
+    def told(finished: int, total: int) -> None:
+        if total == 0:
+            return
+        rate = finished / max(time.monotonic() - start, 1e-9)
+        left = f", {(total - finished) / rate:.0f} s left" if 0 < finished < total else ""
+        end = "\n" if finished == total else ""
+        sys.stderr.write(f"\r{finished} of {total} records, {rate:.0f} a second{left}   {end}")
+        sys.stderr.flush()
+
+    return told
+
+
+def merge_datasets(parts: Sequence[str | PathLike[str]], path: str | PathLike[str]) -> Dataset:
+    """Put the parts of a data set together that were made apart.
+
+    Parameters
+    ----------
+    parts : sequence of str or path
+        Their directories or URLs.
+    path : str or path
+        Of the whole; may be one of the parts.
+
+    Returns
+    -------
+    Dataset
+
+    Raises
+    ------
+    ValueError
+        Parts of different plans.
+    OSError
+        What kept it from being written.
+    """
+    _core.merge_datasets([fspath(part) for part in parts], fspath(path))
+    return load_dataset(path)
+
+
+def load_dataset(path: str | PathLike[str]) -> Dataset:
+    """Open a data set. Nothing is read before it is asked for.
+
+    Parameters
+    ----------
+    path : str or path
+        Its directory.
+
+    Returns
+    -------
+    Dataset
+
+    Raises
+    ------
+    FileNotFoundError
+        There is no data set in this directory.
+    ModuleNotFoundError
+        pyarrow is not installed.
+    """
+    import pyarrow.dataset
+
+    folder = Path(path)
+    files = sorted((folder / "data").glob("*.parquet"))
+    if not files:
+        raise FileNotFoundError(f"{folder} holds no data set: there is no data/*.parquet in it")
+    return Dataset(folder, pyarrow.dataset.dataset([fspath(file) for file in files], format="parquet"), None)
+
+
+class Dataset:
+    """A data set, or those of its records that a filter leaves. :func:`load_dataset` opens one.
+
+    Attributes
+    ----------
+    path : pathlib.Path
+        Its directory.
+    """
+
+    def __init__(
+        self, path: Path, native: pyarrow.dataset.Dataset, expression: pyarrow.dataset.Expression | None
+    ) -> None:
+        self.path = path
+        self._native = native
+        self._filter = expression
+        self._length: int | None = None
+
+    @property
+    def arrow(self) -> pyarrow.dataset.Dataset:
+        """The whole data set as pyarrow has it, without the filter."""
+        return self._native
+
+    @property
+    def manifest(self) -> dict[str, Any]:
+        """``manifest.json``: versions, hashes, counts, failures; empty as long as parts are missing."""
+        file = self.path / "manifest.json"
+        manifest: dict[str, Any] = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
+        return manifest
+
+    @property
+    def columns(self) -> list[str]:
+        """Names of the columns, with units."""
+        return list(self._native.schema.names)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of each column that has one."""
+        units = {}
+        for name in self.columns:
+            metadata = self._native.schema.field(name).metadata or {}
+            unit = metadata.get(b"unit", b"").decode()
+            if unit:
+                units[name] = unit
+        return units
+
+    def __len__(self) -> int:
+        if self._length is None:
+            self._length = int(self._native.count_rows(filter=self._filter))
+        return self._length
+
+    def __repr__(self) -> str:
+        labels = Counter(self.column("label").tolist())
+        splits = Counter(self.column("split").tolist())
+        counts = ", ".join(f"{count} {label}" for label, count in sorted(labels.items()))
+        parts = ", ".join(f"{name} ({count})" for name, count in sorted(splits.items()))
+        return f"<Dataset of {len(self)} records: {counts}; splits {parts}>"
+
+    def filter(self, expression: pyarrow.dataset.Expression) -> Dataset:
+        """The records for which an expression holds.
+
+        Parameters
+        ----------
+        expression : pyarrow.dataset.Expression
+            ``pyarrow.dataset.field("pinion_speed_hz") > 30``.
+        """
+        both = expression if self._filter is None else self._filter & expression
+        return Dataset(self.path, self._native, both)
+
+    def split(self, name: str) -> Dataset:
+        """The records of a split.
+
+        Parameters
+        ----------
+        name : str
+            'train', 'validation', 'test', or one of the plan's shifts.
+
+        Raises
+        ------
+        ValueError
+            A split that there is not.
+        """
+        import pyarrow.dataset
+
+        known = sorted(set(self.column("split").tolist()))
+        if name not in known:
+            raise ValueError(f"there is no split '{name}', but {', '.join(known)}")
+        return self.filter(pyarrow.dataset.field("split") == name)
+
+    def to_arrow(self, columns: Sequence[str] | None = None) -> pyarrow.Table:
+        """The records as a table of pyarrow.
+
+        Parameters
+        ----------
+        columns : sequence of str, optional
+            All by default, signals too.
+
+        Raises
+        ------
+        ValueError
+            A column that there is not.
+        """
+        self._check(columns or ())
+        return self._native.to_table(columns=None if columns is None else list(columns), filter=self._filter)
+
+    def to_pandas(self, columns: Sequence[str] | None = None) -> pandas.DataFrame:
+        """The records as a table of pandas; without the signals, which do not belong there, if no columns are named.
+
+        Parameters
+        ----------
+        columns : sequence of str, optional
+            All but the signals by default.
+
+        Raises
+        ------
+        ValueError
+            A column that there is not.
+        """
+        chosen = self.scalar_columns if columns is None else list(columns)
+        return self.to_arrow(chosen).to_pandas()
+
+    @property
+    def scalar_columns(self) -> list[str]:
+        """Names of the columns that hold one value a record."""
+        import pyarrow.types
+
+        schema = self._native.schema
+        return [name for name in self.columns if not pyarrow.types.is_list(schema.field(name).type)]
+
+    @property
+    def signal_columns(self) -> list[str]:
+        """Names of the columns that hold a signal."""
+        scalars = set(self.scalar_columns)
+        return [name for name in self.columns if name not in scalars]
+
+    def column(self, name: str) -> npt.NDArray[Any]:
+        """A column of one value a record.
+
+        Parameters
+        ----------
+        name : str
+            One of :attr:`scalar_columns`.
+
+        Returns
+        -------
+        array, shape (records,)
+
+        Raises
+        ------
+        ValueError
+            A column that there is not, or that holds signals.
+        """
+        self._check([name])
+        if name in self.signal_columns:
+            raise ValueError(f"column '{name}' holds signals: signals('{name}') gives them")
+        values: npt.NDArray[Any] = self.to_arrow([name]).column(0).to_numpy()
+        return values
+
+    def signals(self, name: str) -> list[FloatSignal]:
+        """The signals of a column, an array each; all in memory. :meth:`records` reads them bit by bit.
+
+        Parameters
+        ----------
+        name : str
+            One of :attr:`signal_columns`.
+
+        Returns
+        -------
+        list of array of float32
+            Their lengths may differ.
+
+        Raises
+        ------
+        ValueError
+            A column that there is not, or that holds no signals.
+        """
+        self._check([name])
+        if name not in self.signal_columns:
+            raise ValueError(f"column '{name}' holds one value a record: column('{name}') gives them")
+        chunks = self.to_arrow([name]).column(0).chunks
+        return [signal for chunk in chunks for signal in _signals_of(chunk)]
+
+    def records(self, columns: Sequence[str] | None = None, *, batch_size: int = 64) -> Iterator[dict[str, Any]]:
+        """The records one after the other; only some are in memory at a time.
+
+        Parameters
+        ----------
+        columns : sequence of str, optional
+            All by default.
+        batch_size : int
+            How many are read at a time.
+
+        Yields
+        ------
+        dict
+            A value or an array of float32 for each column.
+
+        Raises
+        ------
+        ValueError
+            A column that there is not.
+        """
+        self._check(columns or ())
+        chosen = self.columns if columns is None else list(columns)
+        signals = set(self.signal_columns)
+        for batch in self._native.to_batches(columns=chosen, filter=self._filter, batch_size=batch_size):
+            values = [
+                _signals_of(batch.column(k)) if name in signals else batch.column(k).to_pylist()
+                for k, name in enumerate(chosen)
+            ]
+            for row in range(batch.num_rows):
+                yield {name: values[k][row] for k, name in enumerate(chosen)}
+
+    def matrix(self, columns: Sequence[str]) -> npt.NDArray[np.float64]:
+        """Columns of numbers side by side, as classifiers take them.
+
+        Parameters
+        ----------
+        columns : sequence of str
+            Indicators, keys.
+
+        Returns
+        -------
+        array of float64, shape (records, columns)
+
+        Raises
+        ------
+        ValueError
+            A column that there is not, or that holds no numbers.
+        """
+        return np.column_stack([np.asarray(self.column(name), dtype=np.float64) for name in columns])
+
+    def to_torch(
+        self, signal: str, *, label: str = "label", transform: Callable[[FloatSignal], Any] | None = None
+    ) -> Any:
+        """A ``torch.utils.data.Dataset`` of (signal, class number); its attribute ``classes`` has the labels.
+
+        Needs torch, which this package does not install. The labels are read at once; of the signals, the last file that was
+        asked for is kept in memory, so that reading in order is fast.
+
+        Parameters
+        ----------
+        signal : str
+            One of :attr:`signal_columns`.
+        label : str
+            The column of labels.
+        transform : callable, optional
+            Given each signal; what it returns stands in its place.
+
+        Returns
+        -------
+        torch.utils.data.Dataset
+
+        Raises
+        ------
+        ModuleNotFoundError
+            torch is not installed.
+        ValueError
+            A column that there is not.
+        """
+        from ._torch import TorchDataset
+
+        self._check([signal, label])
+        return TorchDataset(self, signal, label, transform)
+
+    def to_mat(self, file: str | PathLike[str], columns: Sequence[str] | None = None) -> None:
+        """Write the records as a MATLAB v5 file: a struct array ``records`` with a field for each column.
+
+        Needs SciPy: ``pip install 'meshtone[matlab]'``.
+
+        Parameters
+        ----------
+        file : str or path
+            The file; it appears whole or not at all.
+        columns : sequence of str, optional
+            All by default.
+
+        Raises
+        ------
+        ValueError
+            A column that there is not; no records; more than the 2 GiB that a variable of such a file holds.
+        """
+        import scipy.io
+
+        rows = list(self.records(columns))
+        if not rows:
+            raise ValueError("there are no records to write")
+        size = sum(value.nbytes for row in rows for value in row.values() if isinstance(value, np.ndarray))
+        if size >= 2**31:
+            raise ValueError(f"the signals take {size / 2**30:.1f} GiB, a MATLAB v5 file holds 2: filter, or name columns")
+        array = np.empty(len(rows), dtype=[(name, object) for name in rows[0]])
+        for place, row in enumerate(rows):
+            array[place] = tuple(np.nan if value is None else value for value in row.values())
+        target = Path(file)
+        beside = target.with_name(target.name + ".tmp")
+        try:
+            with beside.open("wb") as stream:
+                scipy.io.savemat(stream, {"records": array}, do_compression=True, long_field_names=True)
+            beside.replace(target)
+        finally:
+            beside.unlink(missing_ok=True)
+
+    def _check(self, columns: Sequence[str]) -> None:
+        for name in columns:
+            if name not in self.columns:
+                raise ValueError(f"there is no column '{name}', but {', '.join(self.columns)}")
+
+
+def _signals_of(chunk: Any) -> list[FloatSignal]:
+    """The lists of an Arrow array, as views of its memory."""
+    offsets = chunk.offsets.to_numpy()
+    values = chunk.values.to_numpy(zero_copy_only=False)
+    return [values[start:end] for start, end in zip(offsets[:-1], offsets[1:])]

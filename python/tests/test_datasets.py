@@ -1,0 +1,157 @@
+"""Data sets: made, loaded, filtered, handed on."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+import numpy as np
+import pyarrow.dataset
+import pytest
+import scipy.io
+
+import meshtone
+from meshtone import datasets
+
+PLAN = """\
+records = 24
+units = 6
+scenario = "machine.toml"
+[[class]]
+label = "healthy"
+[[class]]
+label = "missing-tooth"
+fault = { kind = "missing-tooth" }
+severity = 5
+[[vary]]
+key = "operation.pinion_speed_hz"
+uniform = [20.0, 50.0]
+[output]
+shard_records = 8
+[split]
+train = 0.5
+test = 0.5
+"""
+
+
+def write_plan(folder: Path) -> Path:
+    machine = meshtone.examples.healthy().copy(sampling_rate_hz=5e4, settle_tolerance=1e-3)
+    (folder / "machine.toml").write_text(machine.to_toml())
+    plan = folder / "plan.toml"
+    plan.write_text(PLAN)
+    return plan
+
+
+def digests(folder: Path) -> dict[str, str]:
+    """SHA-256 of every file."""
+    return {
+        str(file.relative_to(folder)): hashlib.sha256(file.read_bytes()).hexdigest()
+        for file in sorted(folder.rglob("*"))
+        if file.is_file()
+    }
+
+
+@pytest.fixture(scope="module")
+def gears(tmp_path_factory: pytest.TempPathFactory) -> datasets.Dataset:
+    folder = tmp_path_factory.mktemp("gears")
+    return datasets.generate_dataset(write_plan(folder), folder / "set")
+
+
+def test_columns(gears: datasets.Dataset) -> None:
+    assert len(gears) == 24
+    labels = gears.column("label")
+    assert sorted(set(labels)) == ["healthy", "missing-tooth"]
+    speeds = gears.column("pinion_speed_hz")
+    assert speeds.min() >= 20 and speeds.max() <= 50
+    assert gears.units["pinion_speed_hz"] == "Hz"
+    table = gears.to_pandas()
+    assert len(table) == 24 and "vertical_g" not in table and "difference_kurtosis" in table
+    assert gears.matrix(["difference_kurtosis", "pinion_speed_hz"]).shape == (24, 2)
+    assert "vertical_g" in gears.signal_columns
+    for wrong in (lambda: gears.column("speed"), lambda: gears.to_arrow(["speed"]), lambda: gears.signals("speed")):
+        with pytest.raises(ValueError, match="no column 'speed'"):
+            wrong()
+    with pytest.raises(ValueError, match=r"signals\('vertical_g'\)"):
+        gears.column("vertical_g")
+    with pytest.raises(ValueError, match=r"column\('label'\)"):
+        gears.signals("label")
+
+
+def test_splits_share_no_unit(gears: datasets.Dataset) -> None:
+    train, test = gears.split("train"), gears.split("test")
+    assert len(train) + len(test) == 24
+    assert not set(train.column("unit")) & set(test.column("unit"))
+    with pytest.raises(ValueError, match="no split 'valid'"):
+        gears.split("valid")
+
+
+def test_signals_are_those_of_the_records(gears: datasets.Dataset) -> None:
+    signals = gears.signals("vertical_g")
+    records = list(gears.records(["record", "vertical_g"], batch_size=5))
+    assert [record["record"] for record in records] == list(range(24))
+    assert all(np.array_equal(record["vertical_g"], signal) for record, signal in zip(records, signals))
+    fast = gears.filter(pyarrow.dataset.field("pinion_speed_hz") > 35)
+    assert len(fast) == int((gears.column("pinion_speed_hz") > 35).sum())
+    assert len(fast.signals("vertical_g")) == len(fast)
+
+
+def test_repr(gears: datasets.Dataset) -> None:
+    assert "24 records" in repr(gears) and "healthy" in repr(gears)
+    assert gears.manifest["plan"] if "plan" in gears.manifest else gears.manifest
+
+
+def test_parts_and_interruption_change_nothing(gears: datasets.Dataset, tmp_path: Path) -> None:
+    plan = write_plan(tmp_path)
+
+    class Enough(Exception):
+        pass
+
+    def stop(done: int, of: int) -> None:
+        raise Enough
+
+    with pytest.raises(Enough):
+        datasets.generate_dataset(plan, tmp_path / "set", jobs=1, progress=stop)
+    told: list[tuple[int, int]] = []
+    datasets.generate_dataset(plan, tmp_path / "set", progress=lambda done, of: told.append((done, of)))
+    assert told[-1][0] == told[-1][1]
+    assert digests(tmp_path / "set") == digests(gears.path)
+    for number in (1, 2):
+        datasets.generate_dataset(plan, tmp_path / f"part{number}", part=(number, 2))
+    whole = datasets.merge_datasets([tmp_path / "part1", tmp_path / "part2"], tmp_path / "whole")
+    assert digests(whole.path) == digests(gears.path)
+
+
+def test_mat(gears: datasets.Dataset, tmp_path: Path) -> None:
+    file = tmp_path / "gears.mat"
+    gears.split("train").to_mat(file, ["label", "pinion_speed_hz", "difference_g"])
+    records = scipy.io.loadmat(file, squeeze_me=True)["records"]
+    assert len(records) == len(gears.split("train"))
+    assert np.allclose(records[0]["difference_g"], gears.split("train").signals("difference_g")[0])
+    assert [path.name for path in tmp_path.iterdir()] == ["gears.mat"]
+
+
+def test_refused(gears: datasets.Dataset, tmp_path: Path) -> None:
+    plan = write_plan(tmp_path)
+    with pytest.raises(FileNotFoundError):
+        datasets.generate_dataset(tmp_path / "absent.toml", tmp_path / "set")
+    with pytest.raises(FileNotFoundError, match="holds no data set"):
+        datasets.load_dataset(tmp_path)
+    with pytest.raises(ValueError, match=r"part = \(3, 2\)"):
+        datasets.generate_dataset(plan, tmp_path / "set", part=(3, 2))
+    with pytest.raises(ValueError, match="jobs = 0"):
+        datasets.generate_dataset(plan, tmp_path / "set", jobs=0)
+    plan.write_text(PLAN.replace("uniform = [20.0, 50.0]", "uniform = [50.0, 20.0]"))
+    with pytest.raises(ValueError, match="uniform"):
+        datasets.generate_dataset(plan, tmp_path / "set")
+    assert not (tmp_path / "set").exists()
+    plan.write_text(PLAN.replace("24", "30"))
+    with pytest.raises(ValueError):
+        datasets.generate_dataset(plan, gears.path)
+
+
+def test_torch(gears: datasets.Dataset) -> None:
+    torch = pytest.importorskip("torch")
+    loader = gears.split("train").to_torch("average_g")
+    assert len(loader) == len(gears.split("train")) and loader.classes == ["healthy", "missing-tooth"]
+    signal, number = loader[0]
+    assert isinstance(signal, torch.Tensor) and number in (0, 1)
