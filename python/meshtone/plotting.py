@@ -35,6 +35,9 @@ __all__ = [
 BLUE, ORANGE, GREY = "#0072b2", "#d55e00", "#8c8c8c"
 """Colours that also readers with colour blindness can tell apart (Okabe and Ito)."""
 
+LINES = ((BLUE, "o"), (ORANGE, "s"), ("#009e73", "^"), ("#cc79a7", "D"), ("#56b4e9", "v"), ("#e69f00", "P"))
+"""Colour and marker of each line where there are several; from the seventh on they come again, dashed."""
+
 LABELS = {
     "horizontal_g": "Horizontal acceleration (g)",
     "vertical_g": "Vertical acceleration (g)",
@@ -359,14 +362,24 @@ def plot_indicators(
     axes = np.atleast_1d(figure.subplots(rows, wide)).ravel()
     for ax, name in zip(axes, indicators):
         groups = np.unique(columns[by]) if by else [None]
-        for group in groups:
+        for number, group in enumerate(groups):
+            colour, marker = LINES[number % len(LINES)]
+            style = "-" if number < len(LINES) else "--"
             chosen = np.ones(columns[x].size, bool) if group is None else columns[by or x] == group
             order = np.argsort(columns[x][chosen], kind="stable")
-            ax.plot(columns[x][chosen][order], columns[name][chosen][order], "o-", markersize=4, label=str(group))
+            ax.plot(
+                columns[x][chosen][order],
+                columns[name][chosen][order],
+                color=colour,
+                marker=marker,
+                linestyle=style,
+                markersize=4,
+                label=str(group),
+            )
         ax.set(xlabel=x, ylabel=name)
         ax.grid(alpha=0.3)
         if by:
-            ax.legend(fontsize="small")
+            ax.legend(fontsize="small", title=by, title_fontsize="small")
     for ax in axes[len(indicators) :]:
         ax.remove()
     return figure
