@@ -28,7 +28,7 @@ for column, name in zip(grid.T, ("breakage", "pitting", "destruction")):
         ax.grid(alpha=0.3, which="both")
     error = tuning.error
     column[0].set_title(
-        f"{name.capitalize()}\nmean error of log₁₀: {error['original']:.2f}, tuned {error['enhanced']:.2f}\n"
+        f"{name.capitalize()}\nmean error: {error['original']:.2f}, tuned {error['enhanced']:.2f}\n"
         f"(leaving one case out {error['leave_one_out']:.2f})",
         fontsize=10,
     )
