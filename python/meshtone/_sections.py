@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+from collections.abc import Iterable
 
 SECTION_OF_KEY: dict[str, str] = {
     key: section
@@ -57,10 +58,14 @@ KEY_IN_FILE: dict[str, str] = {"wheels_seed": "seed"}
 OTHER_ARGUMENTS = ("fault", "pinion_profile_errors_mm", "gear_profile_errors_mm")
 
 
+def hint(name: str, known: Iterable[str]) -> str:
+    """The known name that is meant, to be put behind an error; empty if none is near."""
+    near = difflib.get_close_matches(name, known, n=1)
+    return f"; did you mean '{near[0]}'?" if near else ""
+
+
 def check_key(key: str) -> None:
     """Refuse a key that a scenario does not have."""
     known = [*SECTION_OF_KEY, *OTHER_ARGUMENTS]
     if key not in known:
-        near = difflib.get_close_matches(key, known, n=1)
-        hint = f"; did you mean '{near[0]}'?" if near else f"; a scenario has {', '.join(known)}"
-        raise TypeError(f"a scenario has no key '{key}'{hint}")
+        raise TypeError(f"a scenario has no key '{key}'{hint(key, known) or '; it has ' + ', '.join(known)}")

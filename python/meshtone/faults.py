@@ -168,11 +168,16 @@ _KINDS: dict[str, type[Any]] = {
 }
 
 
-def to_section(fault: Fault) -> dict[str, Any]:
+def to_section(fault: Any) -> dict[str, Any]:
     """The section ``[fault]`` of a scenario file."""
+    if fault in _KINDS.values():
+        raise TypeError(f"fault is the class {fault.__name__}: give one of its objects, {fault.__name__}(…)")
     if type(fault) not in _KINDS.values():
         kinds = ", ".join(kind.__name__ for kind in _KINDS.values())
-        raise TypeError(f"fault = {fault!r}: must be one of {kinds}, or None for a healthy pair")
+        raise TypeError(f"fault = {fault!r}: must be an object of {kinds}, or None for a healthy pair")
+    circle = getattr(fault, "circle", None)
+    if circle is not None and not isinstance(circle, PitCircle):
+        raise TypeError(f"circle = {circle!r}: must be a PitCircle(x_mm, y_mm, radius_mm)")
     return {"kind": fault.kind, **_keys(fault)}
 
 

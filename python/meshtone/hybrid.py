@@ -17,8 +17,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from .scenario import Scenario
-from .signal import _signal
+from .scenario import Scenario, native_scenario
+from .signal import _signal, whole
 
 __all__ = [
     "EnhancedSignals",
@@ -113,7 +113,7 @@ def add_noise(
     >>> round(float(add_noise(np.zeros(100_000), 0.5, 2.0).std()), 1)
     1.0
     """
-    return _core.add_noise(_signal(signal), noise_level, healthy_rms, seed, draw)
+    return _core.add_noise(_signal(signal), noise_level, healthy_rms, whole("seed", seed), whole("draw", draw))
 
 
 @dataclass(frozen=True)
@@ -223,6 +223,6 @@ def enhance(scenario: Scenario, tuned: str | PathLike[str], *, draws: int = 10, 
     ValueError
         A file that is not a ``tuned.toml``; a scenario that cannot be simulated.
     """
-    signals, healthy_rms_g = _core.enhance(scenario._native, tuned, draws, seed)
+    signals, healthy_rms_g = _core.enhance(native_scenario(scenario), tuned, whole("draws", draws, 1), whole("seed", seed))
     label = "healthy" if scenario.fault is None else scenario.fault.kind
     return EnhancedSignals(signals, healthy_rms_g, label)

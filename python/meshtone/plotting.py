@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from .faults import MissingTooth, ToothBreakage
+from .faults import MissingTooth, PartialFace, ToothBreakage
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,6 +34,12 @@ __all__ = [
 
 BLUE, ORANGE, GREY = "#0072b2", "#d55e00", "#8c8c8c"
 """Colours that also readers with colour blindness can tell apart (Okabe and Ito)."""
+
+LINES = ((BLUE, "o"), (ORANGE, "s"), ("#009e73", "^"), ("#cc79a7", "D"), ("#56b4e9", "v"), ("#e69f00", "P"))
+"""Colour and marker of each line where there are several; from the seventh on they come again, dashed."""
+
+PART: dict[str, Any] = {"facecolor": "none", "edgecolor": ORANGE, "hatch": "////", "linewidth": 1.0}
+WHOLE: dict[str, Any] = {"facecolor": ORANGE, "edgecolor": "none", "alpha": 0.7}
 
 LABELS = {
     "horizontal_g": "Horizontal acceleration (g)",
@@ -94,15 +100,14 @@ def plot_signal(
     Raises
     ------
     ValueError
-        A channel that there is not.
+        A channel that there is not; no revolutions.
     """
     if channel not in LABELS:
         raise ValueError(f"channel = '{channel}': must be one of {', '.join(LABELS)}")
+    if not revolutions > 0:
+        raise ValueError(f"revolutions = {revolutions}: must be more than 0")
     ax = _axes(ax)
-    scenario = simulation.scenario
-    turns = simulation.sampling_rate_hz * scenario.gear_teeth / scenario.pinion_teeth / scenario.pinion_speed_hz
-    count = max(2, int(round(revolutions * turns)))
-    values = getattr(simulation, channel)[:count]
+    values = getattr(simulation, channel)[: _samples_of(simulation, revolutions)]
     ax.plot(simulation.time_s[: values.size], values, color=BLUE, linewidth=0.8)
     ax.set(xlabel="Time (s)", ylabel=LABELS[channel])
     ax.margins(x=0)
@@ -110,8 +115,18 @@ def plot_signal(
     return ax
 
 
+def _samples_of(simulation: Simulation, revolutions: float) -> int:
+    """How many samples some revolutions of the gear take, from the first one on."""
+    scenario = simulation.scenario
+    if scenario.speed_profile_hz is None:
+        turns = simulation.sampling_rate_hz * scenario.gear_teeth / scenario.pinion_teeth / scenario.pinion_speed_hz
+        return max(2, int(round(revolutions * turns)))
+    turned_rev = np.cumsum(simulation.gear_speed_hz) / simulation.sampling_rate_hz
+    return max(2, int(np.searchsorted(turned_rev, revolutions)))
+
+
 def plot_mesh_stiffness(simulation: Simulation, *, ax: Axes | None = None) -> Axes:
-    """Mesh stiffness over a revolution of the gear.
+    """Mesh stiffness over the first 8 of the gear's tooth pitches: that of the damaged tooth is the first.
 
     Parameters
     ----------
@@ -130,14 +145,14 @@ def plot_mesh_stiffness(simulation: Simulation, *, ax: Axes | None = None) -> Ax
     shown = pitches < 8
     ax.plot(pitches[shown], stiffness[shown], color=BLUE, linewidth=1.2)
     ax.set(xlabel="Angle of the gear (tooth pitches; tooth 1 enters contact at 0)", ylabel="Mesh stiffness (N/mm)")
-    ax.set_xlim(0, 8)
+    ax.set_xlim(0, 8)  # further on the stiffness repeats
     ax.set_ylim(bottom=0)
     ax.grid(alpha=0.3)
     return ax
 
 
 def plot_spectrum(simulation: Simulation, channel: str = "vertical_g", *, ax: Axes | None = None) -> Axes:
-    """Amplitude of a signal against frequency, with the harmonics of the mesh.
+    """Amplitude of a signal against frequency, with the harmonics of the mesh where the speed is constant.
 
     Parameters
     ----------
@@ -162,9 +177,10 @@ def plot_spectrum(simulation: Simulation, channel: str = "vertical_g", *, ax: Ax
     limit_hz = min(40 * mesh_hz, frequency_hz[-1])
     shown = (frequency_hz > 0) & (frequency_hz <= limit_hz)
     ax.semilogy(frequency_hz[shown] / 1e3, np.maximum(amplitude[shown], 1e-12), color=GREY, linewidth=0.6, label="spectrum")
-    harmonics = mesh_hz * np.arange(1, int(limit_hz / mesh_hz) + 1)
-    lines = np.searchsorted(frequency_hz, harmonics - frequency_hz[1] / 2)
-    ax.plot(harmonics / 1e3, amplitude[lines], "o", markersize=3, color=BLUE, label=f"mesh harmonics ({mesh_hz:g} Hz)")
+    if simulation.scenario.speed_profile_hz is None:
+        harmonics = mesh_hz * np.arange(1, int(limit_hz / mesh_hz) + 1)
+        lines = np.searchsorted(frequency_hz, harmonics - frequency_hz[1] / 2)
+        ax.plot(harmonics / 1e3, amplitude[lines], "o", markersize=3, color=BLUE, label=f"mesh harmonics ({mesh_hz:g} Hz)")
     top = amplitude[shown].max()
     ax.set_ylim(top * 1e-6, top * 3)
     ax.set_xlim(0, limit_hz / 1e3)
@@ -202,21 +218,22 @@ def plot_tooth(simulation: Simulation, wheel: Literal["gear", "pinion"] = "gear"
         if isinstance(fault, MissingTooth):
             ax.fill(outline_y, outline_x, facecolor="white", edgecolor=ORANGE, hatch="//", linewidth=1.0, label="missing")
         elif isinstance(fault, ToothBreakage):
-            broken_from = x_mm[-1] - fault.chip_height_mm
-            lost = x_mm >= broken_from
-            y = np.concatenate([y_mm[lost], -y_mm[lost][::-1]])
-            x = np.concatenate([x_mm[lost], x_mm[lost][::-1]])
-            ax.fill(y, x, facecolor=ORANGE, alpha=0.5, label=f"chip, {fault.chip_width_mm:g} mm wide at the tip")
+            # What is lost over a part of the width is hatched, what is lost over all of it is filled.
+            parts = [(fault.chip_height_mm, f"chip, {fault.chip_width_mm:g} mm wide at the tip", PART)]
+            if fault.tip_loss_mm:
+                parts.append((fault.tip_loss_mm, f"tip lost, {fault.tip_loss_mm:g} mm", WHOLE))
+            for height_mm, label, style in parts:
+                lost = x_mm >= x_mm[-1] - height_mm
+                y = np.concatenate([y_mm[lost], -y_mm[lost][::-1]])
+                ax.fill(y, np.concatenate([x_mm[lost], x_mm[lost][::-1]]), label=label, **style)
         elif flank is not None and flank.size == y_mm.size:
-            ax.fill(
-                np.concatenate([y_mm, flank[::-1]]),
-                np.concatenate([x_mm, x_mm[::-1]]),
-                facecolor=ORANGE,
-                alpha=0.7,
-                label=fault.kind,
-            )
+            partial = isinstance(fault, PartialFace)
+            label = f"pit, {fault.width_mm:g} mm wide" if isinstance(fault, PartialFace) else fault.kind
+            lost = y_mm > flank + 1e-9
+            y = np.concatenate([y_mm[lost], flank[lost][::-1]])
+            ax.fill(y, np.concatenate([x_mm[lost], x_mm[lost][::-1]]), label=label, **(PART if partial else WHOLE))
     ax.set_aspect("equal")
-    ax.set(xlabel="Across the tooth (mm)", ylabel="Distance from the wheel's centre (mm)", title=f"First tooth of the {wheel}")
+    ax.set(xlabel="Across the tooth (mm)", ylabel="From the wheel's centre (mm)", title=f"First tooth of the {wheel}")
     if ax.get_legend_handles_labels()[0]:
         ax.legend(fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.22))
     return ax
@@ -244,7 +261,7 @@ def plot_record(record: Record) -> Figure:
     spectrum_ax.semilogy(orders[1:limit], np.maximum(spectrum[1:limit], 1e-12), color=GREY, linewidth=0.8)
     mesh = orders[record.teeth : limit : record.teeth]
     spectrum_ax.plot(mesh, spectrum[mesh], "o", markersize=4, color=BLUE, label="mesh orders")
-    spectrum_ax.set(xlabel="Order of the shaft", ylabel="Amplitude", xlim=(0, limit))
+    spectrum_ax.set(xlabel="Order of the shaft", ylabel=_amplitude_label(record), xlim=(0, limit))
     top = spectrum[1:limit].max()
     if top > 0:
         spectrum_ax.set_ylim(top * 1e-5, top * 3)
@@ -259,6 +276,11 @@ def plot_record(record: Record) -> Figure:
 
 def _label(record: Record) -> str:
     return LABELS.get(record.name, record.name).replace(" acceleration", "\nacceleration")
+
+
+def _amplitude_label(record: Record) -> str:
+    unit = LABELS.get(record.name, "").rpartition(" ")[2]
+    return f"Amplitude {unit}".rstrip()
 
 
 def _plot_over_teeth(ax: Axes, values: npt.NDArray[np.float64], teeth: int, colour: str, label: str) -> None:
@@ -302,10 +324,17 @@ def plot_simulation(simulation: Simulation) -> Figure:
     scenario = simulation.scenario
     kind = "healthy" if scenario.fault is None else scenario.fault.kind
     figure.suptitle(
-        f"{scenario.pinion_teeth}/{scenario.gear_teeth} teeth, {scenario.pinion_speed_hz:g} rev/s, "
+        f"{scenario.pinion_teeth}/{scenario.gear_teeth} teeth, {_speed(simulation)}, "
         f"{scenario.brake_torque_nm:g} N m: {kind}"
     )
     return figure
+
+
+def _speed(simulation: Simulation) -> str:
+    profile = simulation.scenario.speed_profile_hz
+    if profile is None:
+        return f"{simulation.scenario.pinion_speed_hz:g} rev/s"
+    return f"{min(profile['value']):g} to {max(profile['value']):g} rev/s"
 
 
 def plot_indicators(
@@ -359,14 +388,24 @@ def plot_indicators(
     axes = np.atleast_1d(figure.subplots(rows, wide)).ravel()
     for ax, name in zip(axes, indicators):
         groups = np.unique(columns[by]) if by else [None]
-        for group in groups:
+        for number, group in enumerate(groups):
+            colour, marker = LINES[number % len(LINES)]
+            style = "-" if number < len(LINES) else "--"
             chosen = np.ones(columns[x].size, bool) if group is None else columns[by or x] == group
             order = np.argsort(columns[x][chosen], kind="stable")
-            ax.plot(columns[x][chosen][order], columns[name][chosen][order], "o-", markersize=4, label=str(group))
+            ax.plot(
+                columns[x][chosen][order],
+                columns[name][chosen][order],
+                color=colour,
+                marker=marker,
+                linestyle=style,
+                markersize=4,
+                label=str(group),
+            )
         ax.set(xlabel=x, ylabel=name)
         ax.grid(alpha=0.3)
         if by:
-            ax.legend(fontsize="small")
+            ax.legend(fontsize="small", title=by, title_fontsize="small")
     for ax in axes[len(indicators) :]:
         ax.remove()
     return figure

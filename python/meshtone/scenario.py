@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._sections import KEY_IN_FILE, OTHER_ARGUMENTS, SECTION_OF_KEY, check_key
+from ._sections import KEY_IN_FILE, OTHER_ARGUMENTS, SECTION_OF_KEY, check_key, hint
 from .faults import Fault, from_section, to_section
 
 __all__ = ["Scenario", "Shaft", "TipRelief", "WheelInertia", "template"]
@@ -259,6 +259,8 @@ brake_torque_nm=10.0, din_grade=7)
         >>> Scenario.from_toml(template("missing-tooth")).fault
         MissingTooth()
         """
+        if "\n" not in text and text.endswith(".toml"):
+            raise ValueError(f"'{text}' is the name of a file, not its text: Scenario.from_file reads it")
         return cls._wrap(_core.Scenario.from_toml(text))
 
     @classmethod
@@ -345,13 +347,14 @@ brake_torque_nm=10.0, din_grade=7)
         try:
             return self._flat[name]
         except KeyError:
-            raise AttributeError(f"a scenario has no key '{name}'") from None
+            known = [*SECTION_OF_KEY, *OTHER_ARGUMENTS]
+            raise AttributeError(f"a scenario has no key '{name}'{hint(name, known)}") from None
 
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError(f"a scenario does not change: scenario.copy({name}={value!r}) gives another one")
 
     def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *SECTION_OF_KEY]
+        return sorted({*super().__dir__(), *SECTION_OF_KEY})
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Scenario) and bool(self._native == other._native)
@@ -401,6 +404,13 @@ def _plain(value: Any) -> Any:
     return value
 
 
+def native_scenario(scenario: Scenario) -> _core.Scenario:
+    """The compiled module's scenario."""
+    if not isinstance(scenario, Scenario):
+        raise TypeError(f"a Scenario is needed, not {scenario!r}; Scenario.from_file reads one from a file")
+    return scenario._native
+
+
 def _sections_of(arguments: Mapping[str, Any]) -> dict[str, Any]:
     sections: dict[str, Any] = {}
     for key, value in arguments.items():
@@ -408,7 +418,9 @@ def _sections_of(arguments: Mapping[str, Any]) -> dict[str, Any]:
             continue
         section = SECTION_OF_KEY[key]
         keys = sections.setdefault(section, {}) if section else sections
-        keys[KEY_IN_FILE.get(key, key)] = _plain(value)
+        keys[KEY_IN_FILE.get(key, key)] = plain = _plain(value)
+        if isinstance(plain, int) and abs(plain) >= 2**63:
+            raise ValueError(f"{key} = {value}: must be below 2**63 = {2**63}")
     fault = arguments.get("fault")
     if fault is not None:
         sections["fault"] = _plain(to_section(fault))
@@ -418,6 +430,9 @@ def _sections_of(arguments: Mapping[str, Any]) -> dict[str, Any]:
 def _native_of(arguments: Mapping[str, Any]) -> _core.Scenario:
     errors = [arguments.get(f"{wheel}_profile_errors_mm") for wheel in ("pinion", "gear")]
     pinion, gear = (None if error is None else np.asarray(error, dtype=np.float64) for error in errors)
+    for wheel, error in (("pinion", pinion), ("gear", gear)):
+        if error is not None and error.ndim != 2:
+            raise ValueError(f"{wheel}_profile_errors_mm has shape {error.shape}: must be (100, teeth), a column a tooth")
     return _core.Scenario(_sections_of(arguments), pinion, gear)
 
 

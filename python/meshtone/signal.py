@@ -22,6 +22,7 @@ A rig's recording with a tachometer:
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
@@ -64,10 +65,29 @@ Array = npt.NDArray[np.float64]
 
 
 def _signal(values: npt.ArrayLike) -> Array:
-    array = np.ascontiguousarray(values, dtype=np.float64)
+    array = np.asarray(values)
     if array.ndim != 1:
         raise ValueError(f"a signal has one dimension; given is an array of shape {array.shape}")
-    return array
+    if np.iscomplexobj(array):
+        raise TypeError("a signal is real; given is an array of complex numbers")
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def whole(name: str, value: int, least: int = 0) -> int:
+    """A whole number that an argument is, or an error that names it."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} = {value!r}: must be a whole number") from None
+    if number < least:
+        raise ValueError(f"{name} = {number}: must be at least {least}")
+    return number
+
+
+def _native_phase(phase: ShaftPhase) -> _core.ShaftPhase:
+    if not isinstance(phase, ShaftPhase):
+        raise TypeError(f"phase: must be a ShaftPhase, not {type(phase).__name__}; ShaftPhase.constant is that of a constant speed")
+    return phase._native
 
 
 class ShaftPhase:
@@ -88,7 +108,7 @@ class ShaftPhase:
     """
 
     def __init__(self, revolutions: npt.ArrayLike, first_sample: int = 0) -> None:
-        self._native = _core.ShaftPhase(_signal(revolutions), first_sample)
+        self._native = _core.ShaftPhase(_signal(revolutions), whole("first_sample", first_sample))
 
     @classmethod
     def _wrap(cls, native: _core.ShaftPhase) -> ShaftPhase:
@@ -109,7 +129,7 @@ class ShaftPhase:
         samples : int
             Length of the recording.
         """
-        return cls._wrap(_core.ShaftPhase.constant(speed_hz, sampling_rate_hz, samples))
+        return cls._wrap(_core.ShaftPhase.constant(speed_hz, sampling_rate_hz, whole("samples", samples)))
 
     @classmethod
     def from_pulses(
@@ -142,7 +162,11 @@ class ShaftPhase:
             Pulses that are equal or out of order, or that cannot be mended; a stated speed that is not theirs.
         """
         native = _core.ShaftPhase.from_pulses(
-            _signal(time_s), pulses_per_revolution, sampling_rate_hz, samples, stated_speed_hz
+            _signal(time_s),
+            whole("pulses_per_revolution", pulses_per_revolution, 1),
+            sampling_rate_hz,
+            whole("samples", samples),
+            stated_speed_hz,
         )
         return cls._wrap(native)
 
@@ -163,8 +187,10 @@ class ShaftPhase:
         samples : int
             Length of the recording.
         """
-        native = _core.ShaftPhase.from_speed_profile(_signal(time_s), _signal(speed_hz), sampling_rate_hz, samples)
-        return cls._wrap(native)
+        times, speeds = _signal(time_s), _signal(speed_hz)
+        return cls._wrap(
+            _core.ShaftPhase.from_speed_profile(times, speeds, sampling_rate_hz, whole("samples", samples))
+        )
 
     @classmethod
     def from_speed_samples(cls, speed_hz: npt.ArrayLike, sampling_rate_hz: float) -> ShaftPhase:
@@ -208,7 +234,7 @@ class ShaftPhase:
             (Hz) Half width of the band around it.
         """
         native = _core.ShaftPhase.from_mesh_tone(
-            _signal(signal), sampling_rate_hz, teeth, shaft_hz, harmonic, half_band_hz
+            _signal(signal), sampling_rate_hz, _teeth(teeth), shaft_hz, whole("harmonic", harmonic, 1), half_band_hz
         )
         return cls._wrap(native)
 
@@ -222,7 +248,7 @@ class ShaftPhase:
         mate_teeth : int
             Of the wheel on the other.
         """
-        return ShaftPhase._wrap(self._native.of_mate(teeth, mate_teeth))
+        return ShaftPhase._wrap(self._native.of_mate(_teeth(teeth), whole("mate_teeth", mate_teeth, 1)))
 
     @property
     def first_sample(self) -> int:
@@ -375,7 +401,8 @@ def process_channel(
         NaN, a constant channel, fewer than two revolutions, a mesh order beyond the Nyquist order.
     """
     settings = _settings(teeth, sidebands, shaft_orders)
-    return Record(_core.process_channel(_signal(signal), phase._native, teeth, settings), teeth=teeth, name=name)
+    record = _core.process_channel(_signal(signal), _native_phase(phase), _teeth(teeth), settings)
+    return Record(record, teeth=teeth, name=name)
 
 
 def process_series(
@@ -408,16 +435,29 @@ def process_series(
         As :func:`process_channel`; another number of phases than of signals.
     """
     settings = _settings(teeth, sidebands, shaft_orders)
-    native = [phase._native for phase in phases]
-    records = _core.process_series([_signal(signal) for signal in signals], native, teeth, settings)
+    if isinstance(phases, ShaftPhase):
+        raise TypeError("phases: must be a list of one ShaftPhase for each signal, not one alone")
+    native = [_native_phase(phase) for phase in phases]
+    records = _core.process_series([_signal(signal) for signal in signals], native, _teeth(teeth), settings)
     return [Record(record, teeth=teeth, name=name) for record in records]
+
+
+def _teeth(teeth: int) -> int:
+    return whole("teeth", teeth, 1)
+
+
+def _regular_part(sidebands: int | None, shaft_orders: Sequence[int] | None) -> tuple[int | None, list[int] | None]:
+    return (
+        None if sidebands is None else whole("sidebands", sidebands),
+        None if shaft_orders is None else [whole("shaft_orders", order) for order in shaft_orders],
+    )
 
 
 def _settings(teeth: int, sidebands: int | None, shaft_orders: Sequence[int] | None) -> dict[str, object] | None:
     if sidebands is None and shaft_orders is None:
         return None
-    orders = None if shaft_orders is None else list(shaft_orders)
-    return {"teeth": teeth, "sidebands": sidebands, "shaft_orders": orders}
+    bands, orders = _regular_part(sidebands, shaft_orders)
+    return {"teeth": _teeth(teeth), "sidebands": bands, "shaft_orders": orders}
 
 
 def tachometer_pulses(
@@ -566,9 +606,8 @@ def angular_resample(
     ValueError
         NaN, a constant signal, fewer than two whole revolutions.
     """
-    return AngularSignal(
-        *_core.angular_resample(_signal(signal), phase._native, points_per_revolution, interpolation)
-    )
+    points = None if points_per_revolution is None else whole("points_per_revolution", points_per_revolution, 1)
+    return AngularSignal(*_core.angular_resample(_signal(signal), _native_phase(phase), points, interpolation))
 
 
 def synchronous_average(angular: AngularSignal) -> Array:
@@ -642,8 +681,8 @@ def separate(
     >>> round(float(np.abs(parts.difference).max()), 6)
     1.0
     """
-    orders = None if shaft_orders is None else list(shaft_orders)
-    return Parts(*_core.separate(_signal(average), teeth, sidebands, orders))
+    bands, orders = _regular_part(sidebands, shaft_orders)
+    return Parts(*_core.separate(_signal(average), _teeth(teeth), bands, orders))
 
 
 def envelope(signal: npt.ArrayLike) -> Array:
@@ -714,7 +753,7 @@ def fm0(average: npt.ArrayLike, teeth: int) -> float:
     teeth : int
         Of the wheel.
     """
-    return _core.fm0(_signal(average), teeth)
+    return _core.fm0(_signal(average), _teeth(teeth))
 
 
 def fm4(difference: npt.ArrayLike) -> float:
@@ -792,7 +831,7 @@ def sideband_level_factor(average: npt.ArrayLike, teeth: int) -> float:
     teeth : int
         Of the wheel.
     """
-    return _core.sideband_level_factor(_signal(average), teeth)
+    return _core.sideband_level_factor(_signal(average), _teeth(teeth))
 
 
 def statistics(signal: npt.ArrayLike) -> dict[str, float]:

@@ -59,3 +59,24 @@ def test_indicators() -> None:
         plotting.plot_indicators(table, x="severity")
     with pytest.raises(ValueError, match="no numeric column beside 'mm'"):
         plotting.plot_indicators({"mm": [1]}, x="mm")
+
+
+def test_a_run_up_is_not_drawn_as_a_constant_speed() -> None:
+    scenario = meshtone.examples.healthy().copy(speed_profile_hz={"time_s": [0, 1, 2], "value": [20, 20, 60]})
+    run_up = meshtone.simulate(scenario)
+    assert legend(run_up.plot_spectrum()) == ["spectrum"]
+    [line] = run_up.plot_signal(revolutions=1).lines
+    # At 20 rev/s of the pinion, and not at the nominal 40.
+    assert np.ptp(np.asarray(line.get_xdata())) == pytest.approx(38 / 17 / 20, rel=0.1)
+    assert "20 to 60 rev/s" in run_up.plot().get_suptitle()
+    plt.close("all")
+    with pytest.raises(ValueError, match="revolutions = 0"):
+        run_up.plot_signal(revolutions=0)
+
+
+def test_what_is_lost_is_told_in_the_tooth() -> None:
+    part = meshtone.simulate(meshtone.examples.partial_face()).plot_tooth()
+    assert legend(part) == ["pit, 2 mm wide"]
+    broken = meshtone.simulate(meshtone.examples.tooth_breakage()).plot_tooth()
+    assert legend(broken) == ["chip, 12 mm wide at the tip", "tip lost, 3 mm"]
+    plt.close("all")

@@ -86,6 +86,8 @@ def test_examples_are_the_files(tmp_path: Path) -> None:
         ({"convention": "other"}, "convention"),
         ({"fault": meshtone.ToothBreakage(chip_height_mm=-5, chip_width_mm=12)}, "fault.chip_height_mm = -5"),
         ({"damping_ratio": [0.05] * 12}, "rig.damping_ratio"),
+        ({"seed": 2**63}, "seed = 9223372036854775808: must be below 2**63"),
+        ({"pinion_profile_errors_mm": [0.0], "gear_profile_errors_mm": [0.0]}, "pinion_profile_errors_mm has shape (1,)"),
     ],
 )
 def test_values_that_are_not_allowed(changes: dict[str, Any], message: str) -> None:
@@ -102,6 +104,12 @@ def test_keys_that_there_are_not() -> None:
         examples.healthy().copy(speed=3)
     with pytest.raises(TypeError, match="fault = 'broken'"):
         Scenario(**REQUIRED, fault="broken")  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match=r"fault is the class MissingTooth: .*MissingTooth\("):
+        Scenario(**REQUIRED, fault=meshtone.MissingTooth)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match=r"circle = \(57, 3, 2\): must be a PitCircle"):
+        Scenario(**REQUIRED, fault=meshtone.ThroughFace(circle=(57, 3, 2)))  # type: ignore[arg-type]
+    with pytest.raises(AttributeError, match="no key 'modul_mm'; did you mean 'module_mm'"):
+        _ = examples.healthy().modul_mm
     with pytest.raises(AttributeError, match=r"scenario.copy\(seed=2\)"):
         examples.healthy().seed = 2
     with pytest.raises(AttributeError, match="no key 'speed'"):
@@ -115,6 +123,11 @@ def test_seed_of_the_wheels() -> None:
     wheels = [meshtone.simulate(s.copy(sampling_rate_hz=1e4)).profile_errors_mm() for s in (scenario, scenario.copy(seed=3))]
     assert wheels[0] is not None and wheels[1] is not None
     assert np.array_equal(wheels[0][1], wheels[1][1])
+
+
+def test_a_file_name_is_not_a_files_text() -> None:
+    with pytest.raises(ValueError, match=r"'healthy\.toml' is the name of a file.*from_file"):
+        Scenario.from_toml("healthy.toml")
 
 
 def test_warnings() -> None:

@@ -121,6 +121,25 @@ def test_signals_that_are_refused(values: Array, message: str) -> None:
         signal.process_channel(values, phase, TEETH)
 
 
+def test_arguments_that_are_refused() -> None:
+    tone = vibration()
+    phase = ShaftPhase.constant(SHAFT_HZ, RATE_HZ, tone.size)
+    with pytest.raises(TypeError, match="phase: must be a ShaftPhase, not float"):
+        signal.process_channel(tone, SHAFT_HZ, TEETH)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="a list of one ShaftPhase for each signal"):
+        signal.process_series([tone], phase, TEETH)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="a signal is real"):
+        signal.process_channel(tone * 1j, phase, TEETH)
+    with pytest.raises(TypeError, match=r"teeth = 19\.5: must be a whole number"):
+        signal.process_channel(tone, phase, 19.5)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="sidebands = -1: must be at least 0"):
+        signal.process_channel(tone, phase, TEETH, sidebands=-1)
+    with pytest.raises(ValueError, match="samples = -5: must be at least 0"):
+        ShaftPhase.constant(SHAFT_HZ, RATE_HZ, -5)
+    with pytest.raises(ValueError, match="one dimension"):
+        signal.na4(tone)  # type: ignore[arg-type]
+
+
 def test_settings() -> None:
     tone = vibration()
     phase = ShaftPhase.constant(SHAFT_HZ, RATE_HZ, tone.size)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import pickle
 import signal
 import threading
 import time
+from typing import Any
 
 import numpy as np
 import pytest
@@ -49,7 +51,7 @@ def test_curves(broken: meshtone.Simulation) -> None:
     assert errors is not None
     pinion, gear = errors
     assert pinion.shape == (100, 17) and gear.shape == (100, 38)
-    with pytest.raises(ValueError, match="'wheel': must be 'pinion' or 'gear'"):
+    with pytest.raises(ValueError, match="wheel = 'wheel': must be 'gear' or 'pinion'"):
         broken.tooth_profile("wheel")  # type: ignore[arg-type]
     with pytest.raises(AttributeError, match="no field 'stiffness'"):
         _ = broken.stiffness
@@ -74,7 +76,7 @@ def test_process(broken: meshtone.Simulation) -> None:
     assert np.std(wider.difference) < np.std(record.difference)
     with pytest.raises(ValueError, match="channel = 'sideways_g'"):
         broken.process("sideways_g")
-    with pytest.raises(ValueError, match="'axle'"):
+    with pytest.raises(ValueError, match="wheel = 'axle'"):
         broken.process(wheel="axle")  # type: ignore[arg-type]
 
 
@@ -111,11 +113,34 @@ def test_many_keep_the_errors_in_their_places() -> None:
     assert str(alone.value) == str(second)
 
 
+def test_what_is_not_a_scenario() -> None:
+    name: Any = "healthy.toml"
+    for call in (simulate, meshtone.trace, lambda scenario: simulate_many([scenario])):
+        with pytest.raises(TypeError, match="a Scenario is needed, not 'healthy.toml'; Scenario.from_file"):
+            call(name)
+    with pytest.raises(ValueError, match="average_rate_hz = -1: must be more than 0"):
+        meshtone.trace(examples.healthy(), average_rate_hz=-1)
+
+
+def test_pickled_simulation_is_the_same(broken: meshtone.Simulation) -> None:
+    pickled = pickle.dumps(broken)
+    assert len(pickled) < 10_000
+    again = pickle.loads(pickled)
+    assert again.scenario == broken.scenario
+    assert np.array_equal(again.vertical_g, broken.vertical_g)
+
+
 def test_many_refuse() -> None:
     with pytest.raises(ValueError, match="'sideways': must be one of horizontal_g"):
         simulate_many([examples.healthy()], channels=["sideways"])
     with pytest.raises(ValueError, match="threads = 0"):
         simulate_many([examples.healthy()], threads=0)
+    with pytest.raises(ValueError, match="threads = -1: must be at least 1"):
+        simulate_many([examples.healthy()], threads=-1)
+    with pytest.raises(TypeError, match="simulate takes one"):
+        simulate_many(examples.healthy())
+    with pytest.raises(TypeError, match=r"channels = 'axial_g': .*\['axial_g'\]"):
+        simulate_many([examples.healthy()], channels="axial_g")
     assert simulate_many([]) == []
 
 

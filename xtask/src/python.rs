@@ -40,7 +40,15 @@ pub fn test(root: &Path) -> Result<(), u8> {
     run("Python examples", &["-m", "pytest", "--quiet", "--doctest-modules", "--pyargs", "meshtone"])?;
     run(
         "Python types",
-        &["-m", "mypy", "--config-file", "pyproject.toml", "python/meshtone", "python/tests"],
+        &[
+            "-m",
+            "mypy",
+            "--config-file",
+            "pyproject.toml",
+            "python/meshtone",
+            "python/tests",
+            "python/gallery",
+        ],
     )?;
     run("Python stubs", &["-m", "mypy.stubtest", "meshtone._core"])
 }
