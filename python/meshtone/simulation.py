@@ -211,11 +211,7 @@ class Simulation:
         """
         if channel not in CHANNELS:
             raise ValueError(f"channel = '{channel}': must be one of {', '.join(CHANNELS)}")
-        _check_wheel(wheel)
-        signal: Array = getattr(self, channel)
-        teeth = self.scenario.gear_teeth if wheel == "gear" else self.scenario.pinion_teeth
-        record = self._native.process(signal, wheel, self.start_s, _settings(teeth, sidebands, None))
-        return Record(record, teeth=teeth, name=channel)
+        return _process(self.scenario, getattr(self, channel), self.start_s, channel, wheel, sidebands)
 
     def plot(self) -> Figure:
         """The panel: teeth, mesh stiffness, signal, spectrum, average, difference. See :mod:`meshtone.plotting`."""
@@ -297,6 +293,44 @@ class Signals:
             return self.channels[name]
         except KeyError:
             raise AttributeError(f"no channel '{name}' was kept, but {', '.join(self.channels)}") from None
+
+    def process(self, channel: str = "vertical_g", wheel: Wheel = "gear", *, sidebands: int | None = None) -> Record:
+        """Take one of the channels to its average over a revolution, its parts and its indicators.
+
+        Parameters
+        ----------
+        channel, wheel, sidebands
+            As of :meth:`Simulation.process`; the channel must have been kept.
+
+        Returns
+        -------
+        Record
+
+        Raises
+        ------
+        ValueError
+            As :meth:`Simulation.process`; a channel that was not kept.
+
+        Examples
+        --------
+        >>> from meshtone import examples, simulate_many
+        >>> [signals] = simulate_many([examples.tooth_breakage()])
+        >>> signals.process().revolutions
+        17
+        """
+        if channel not in self.channels:
+            raise ValueError(f"no channel '{channel}' was kept, but {', '.join(self.channels)}")
+        return _process(self.scenario, self.channels[channel], self.start_s, channel, wheel, sidebands)
+
+
+def _process(
+    scenario: Scenario, signal: npt.ArrayLike, start_s: float, channel: str, wheel: Wheel, sidebands: int | None
+) -> Record:
+    _check_wheel(wheel)
+    teeth = scenario.gear_teeth if wheel == "gear" else scenario.pinion_teeth
+    settings = _settings(teeth, sidebands, None)
+    values = np.ascontiguousarray(signal, dtype=np.float64)
+    return Record(_core.process_simulated(scenario._native, values, wheel, start_s, settings), teeth=teeth, name=channel)
 
 
 def simulate(scenario: Scenario) -> Simulation:

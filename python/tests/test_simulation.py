@@ -93,6 +93,12 @@ def test_many_are_the_same_as_one(broken: meshtone.Simulation) -> None:
         assert result.sampling_rate_hz == alone.sampling_rate_hz
         assert result.vertical_g.dtype == np.float32
         assert np.array_equal(result.vertical_g, alone.vertical_g.astype(np.float32))
+    first = results[0]
+    assert isinstance(first, meshtone.Signals)
+    ours, theirs = first.process().indicators, broken.process().indicators
+    assert ours["difference_kurtosis"] == pytest.approx(theirs["difference_kurtosis"], rel=1e-5)
+    with pytest.raises(ValueError, match="no channel 'axial_g' was kept"):
+        first.process("axial_g")
     [forces] = simulate_many([healthy], channels=["mesh_force_n"])
     assert isinstance(forces, meshtone.Signals)
     assert list(forces.channels) == ["mesh_force_n"]

@@ -44,7 +44,7 @@ mod _core {
         resample, separate, sideband_level_factor, statistics, synchronous_average,
     };
     #[pymodule_export]
-    use crate::simulation::{Simulation, simulate, trace};
+    use crate::simulation::{Simulation, process_simulated, simulate, trace};
 
     use pyo3::prelude::*;
 

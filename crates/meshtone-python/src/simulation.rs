@@ -141,28 +141,28 @@ impl Simulation {
     fn profile_errors_mm<'py>(&self, py: Python<'py>) -> PyResult<Option<BothWheels<'py>>> {
         self.stages.profile_errors.as_ref().map(|errors| both_wheels(py, errors)).transpose()
     }
+}
 
-    /// One of its signals, taken to the average over a revolution of a shaft and to indicators.
-    #[pyo3(signature = (signal, shaft, start_s, settings=None))]
-    fn process(
-        &self,
-        py: Python<'_>,
-        signal: Signal<'_>,
-        shaft: &str,
-        start_s: f64,
-        settings: Option<crate::process::Settings>,
-    ) -> PyResult<Record> {
-        let shaft = self::shaft(shaft)?;
-        let signal = samples(&signal)?;
-        let settings = settings.map_or_else(|| Ok(ChainSettings::default()), |settings| settings.chain())?;
-        let scenario = &self.stages.scenario;
-        py.detach(|| {
-            let shafts = SimulatedShafts::new(scenario, start_s, signal.len());
-            shafts.process(signal, shaft, &settings)
-        })
-        .map(Record)
-        .map_err(value_error)
-    }
+/// A simulated signal, taken to the average over a revolution of a wheel's shaft and to indicators.
+#[pyfunction]
+#[pyo3(signature = (scenario, signal, wheel, start_s, settings=None))]
+pub fn process_simulated(
+    py: Python<'_>,
+    scenario: &Scenario,
+    signal: Signal<'_>,
+    wheel: &str,
+    start_s: f64,
+    settings: Option<crate::process::Settings>,
+) -> PyResult<Record> {
+    let shaft = shaft(wheel)?;
+    let signal = samples(&signal)?;
+    let settings = settings.map_or_else(|| Ok(ChainSettings::default()), |settings| settings.chain())?;
+    py.detach(|| {
+        let shafts = SimulatedShafts::new(&scenario.0, start_s, signal.len());
+        shafts.process(signal, shaft, &settings)
+    })
+    .map(Record)
+    .map_err(value_error)
 }
 
 /// The shaft of a wheel.
