@@ -49,6 +49,6 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, preview: &DatasetPreview) {
     }
     if preview.examples.len() > MOST {
         let rest = format!("and {} more classes", preview.examples.len() - MOST);
-        canvas.text((area.left, area.bottom() + 48.0), &rest, TextStyle::NOTE);
+        canvas.text((area.left, super::SECOND_LINE), &rest, TextStyle::NOTE);
     }
 }
