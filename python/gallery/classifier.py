@@ -10,10 +10,29 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from meshtone import datasets
+from meshtone import datasets, examples
 
 INDICATORS = ["difference_rms_g", "difference_kurtosis", "envelope_kurtosis", "fm4", "m6a", "energy_ratio", "average_crest_factor"]
-PLAN = "examples/datasets/first_look.toml"
+MACHINE = examples.healthy().copy(settle_tolerance=1e-3)
+PLAN = """
+records = 400
+units = 20
+scenario = "machine.toml"
+class = [
+    { label = "healthy" },
+    { label = "tooth-breakage", fault = { kind = "tooth-breakage", chip_height_mm = 5.0, chip_width_mm = 8.0, tip_loss_mm = 3.0 } },
+    { label = "tooth-destruction", fault = { kind = "tooth-destruction", start = 0.2, end = 0.9 } },
+    { label = "through-face", fault = { kind = "through-face", start = 0.2, end = 0.8, depth = 0.5 } },
+]
+vary = [
+    { key = "operation.pinion_speed_hz", uniform = [20.0, 50.0] },
+    { key = "operation.brake_torque_nm", uniform = [8.0, 12.0] },
+]
+[split]
+train = 0.5
+test = 0.25
+shift = [{ name = "fast", part = 0.25, when = "operation.pinion_speed_hz > 40" }]
+"""
 
 
 def inputs(part: datasets.Dataset) -> "np.typing.NDArray[np.float64]":
@@ -23,14 +42,17 @@ def inputs(part: datasets.Dataset) -> "np.typing.NDArray[np.float64]":
 
 folder = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
 with tempfile.TemporaryDirectory() as place:
-    gears = datasets.generate_dataset(PLAN, Path(place, "gears"))
+    Path(place, "machine.toml").write_text(MACHINE.to_toml())
+    plan = Path(place, "plan.toml")
+    plan.write_text(PLAN)
+    gears = datasets.generate_dataset(plan, Path(place, "gears"))
     train = gears.split("train")
     classes = sorted(set(train.column("label")))
     wanted = np.equal.outer(train.column("label"), np.array(classes, dtype=object)).astype(float)
     weights = np.linalg.lstsq(inputs(train), wanted, rcond=None)[0]
 
-    figure, axes = plt.subplots(1, 2, figsize=(9.5, 4.2), layout="constrained")
-    for ax, split, title in zip(axes, ["validation", "fast"], ["other wheels", "other wheels, faster than any in training"]):
+    figure, axes = plt.subplots(1, 2, figsize=(10.0, 4.6), layout="constrained")
+    for ax, split, title in zip(axes, ["test", "fast"], ["other wheels", "other wheels, faster than any in training"]):
         part = gears.split(split)
         found = np.array(classes)[np.argmax(inputs(part) @ weights, axis=1)]
         true = part.column("label")

@@ -55,10 +55,9 @@ def generate(
 
     plan, path = fspath(plan), fspath(path)
     _core.check_plan(plan)
-    threads = sum(client.nthreads().values())
-    count = parts if parts is not None else max(1, 4 * threads)
-    if count < 1:
-        raise ValueError(f"parts = {count}: must be at least 1")
+    if parts is not None and parts < 1:
+        raise ValueError(f"parts = {parts}: must be at least 1")
+    count = parts or max(1, 4 * sum(client.nthreads().values()))
     futures: list[Any] = [
         client.submit(_part, plan, path, number, count, pure=False, retries=retries) for number in range(1, count + 1)
     ]

@@ -20,14 +20,14 @@ scenario = "machine.toml"
 [[class]]
 label = "healthy"
 [[class]]
-label = "missing-tooth"
-fault = { kind = "missing-tooth" }
-severity = 5
+label = "tooth-breakage"
+fault = { kind = "tooth-breakage", chip_height_mm = 5.0, chip_width_mm = 8.0, tip_loss_mm = 2.0 }
+severity = 3
 [[vary]]
 key = "operation.pinion_speed_hz"
 uniform = [20.0, 50.0]
-[output]
-shard_records = 8
+[keep]
+records_per_shard = 8
 [split]
 train = 0.5
 test = 0.5
@@ -60,7 +60,7 @@ def gears(tmp_path_factory: pytest.TempPathFactory) -> datasets.Dataset:
 def test_columns(gears: datasets.Dataset) -> None:
     assert len(gears) == 24
     labels = gears.column("label")
-    assert sorted(set(labels)) == ["healthy", "missing-tooth"]
+    assert sorted(set(labels)) == ["healthy", "tooth-breakage"]
     speeds = gears.column("pinion_speed_hz")
     assert speeds.min() >= 20 and speeds.max() <= 50
     assert gears.units["pinion_speed_hz"] == "Hz"
@@ -97,7 +97,8 @@ def test_signals_are_those_of_the_records(gears: datasets.Dataset) -> None:
 
 def test_repr(gears: datasets.Dataset) -> None:
     assert "24 records" in repr(gears) and "healthy" in repr(gears)
-    assert gears.manifest["plan"] if "plan" in gears.manifest else gears.manifest
+    assert gears.manifest["records"] == 24 and gears.manifest["complete"] is True
+    assert "24" in (gears.path / "README.md").read_text()
 
 
 def test_parts_and_interruption_change_nothing(gears: datasets.Dataset, tmp_path: Path) -> None:
@@ -152,6 +153,6 @@ def test_refused(gears: datasets.Dataset, tmp_path: Path) -> None:
 def test_torch(gears: datasets.Dataset) -> None:
     torch = pytest.importorskip("torch")
     loader = gears.split("train").to_torch("average_g")
-    assert len(loader) == len(gears.split("train")) and loader.classes == ["healthy", "missing-tooth"]
+    assert len(loader) == len(gears.split("train")) and loader.classes == ["healthy", "tooth-breakage"]
     signal, number = loader[0]
     assert isinstance(signal, torch.Tensor) and number in (0, 1)
