@@ -51,7 +51,7 @@ fn preview(classes: &[&str], keys: &[&str], records: usize) -> DatasetPreview {
 
 fn drawn(preview: &DatasetPreview) -> Figure {
     let figure = dataset_figure(preview);
-    check(&figure);
+    check(&figure, LARGEST);
     figure
 }
 
@@ -61,6 +61,9 @@ fn has(figure: &Figure, text: &str) -> bool {
 
 const CLASSES: [&str; 6] =
     ["healthy", "tooth-breakage", "missing-tooth", "partial-face", "through-face", "tooth-destruction"];
+
+/// (bytes) Largest SVG of a preview.
+const LARGEST: usize = 1_000_000;
 
 #[test]
 fn everything_has_its_place() {
