@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from os import PathLike, fspath
+import os
+from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 from . import _core
@@ -34,7 +35,7 @@ def generate(
     plan : str or path
         The plan file, on a path that every worker reaches.
     path : str or path
-        Directory or URL to write to.
+        Directory to write to.
     client : distributed.Client
         Of the cluster.
     parts : int, optional
@@ -51,9 +52,11 @@ def generate(
     FileNotFoundError, ValueError, OSError
         As :func:`meshtone.datasets.generate_dataset`.
     """
+    import pyarrow.dataset  # noqa: F401  # before hours of work, not after them
     from distributed import as_completed
 
-    plan, path = fspath(plan), fspath(path)
+    # Workers have working directories of their own.
+    plan, path = os.path.abspath(plan), os.path.abspath(path)
     _core.check_plan(plan)
     if parts is not None and parts < 1:
         raise ValueError(f"parts = {parts}: must be at least 1")

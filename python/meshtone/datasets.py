@@ -37,9 +37,9 @@ dtype('float32')
 
 from __future__ import annotations
 
+import difflib
 import json
-import sys
-import time
+import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from os import PathLike, fspath
@@ -50,6 +50,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._progress import on_terminal
 
 if TYPE_CHECKING:
     import pandas
@@ -94,7 +95,7 @@ def generate_dataset(
     plan : str or path
         The plan file.
     path : str or path
-        Directory or URL to write to.
+        Directory to write to.
     jobs : int, optional
         Threads that simulate; all cores by default.
     part : tuple of int, optional
@@ -118,25 +119,20 @@ def generate_dataset(
     KeyboardInterrupt
         Ctrl-C stops it; what is finished stays.
     """
-    told = _progress() if progress is True else (progress or None)
+    import pyarrow.dataset  # noqa: F401  # before hours of work, not after them
+
+    told = on_terminal("records") if progress is True else (progress or None)
     number, of = (1, 1) if part is None else part
     _core.generate_dataset(plan, fspath(path), jobs, number, of, told)
-    return load_dataset(path)
-
-
-def _progress() -> Callable[[int, int], None]:
-    start = time.monotonic()
-
-    def told(finished: int, total: int) -> None:
-        if total == 0:
-            return
-        rate = finished / max(time.monotonic() - start, 1e-9)
-        left = f", {(total - finished) / rate:.0f} s left" if 0 < finished < total else ""
-        end = "\n" if finished == total else ""
-        sys.stderr.write(f"\r{finished} of {total} records, {rate:.0f} a second{left}   {end}")
-        sys.stderr.flush()
-
-    return told
+    made = _open(path)
+    if made.failures:
+        first = made.failures[0]
+        warnings.warn(
+            f"{len(made.failures)} records of the plan could not be simulated and are missing; "
+            f"record {first['record']}: {first['reason']}",
+            stacklevel=2,
+        )
+    return made
 
 
 def merge_datasets(parts: Sequence[str | PathLike[str]], path: str | PathLike[str]) -> Dataset:
@@ -145,9 +141,9 @@ def merge_datasets(parts: Sequence[str | PathLike[str]], path: str | PathLike[st
     Parameters
     ----------
     parts : sequence of str or path
-        Their directories or URLs.
+        Their directories.
     path : str or path
-        Of the whole; may be one of the parts.
+        Directory of the whole; may be one of the parts.
 
     Returns
     -------
@@ -183,13 +179,25 @@ def load_dataset(path: str | PathLike[str]) -> Dataset:
     ModuleNotFoundError
         pyarrow is not installed.
     """
+    opened = _open(path)
+    if not opened.is_complete:
+        warnings.warn(f"{opened.path} is not complete: it has {len(opened)} records; generate_dataset goes on with it", stacklevel=2)
+    return opened
+
+
+def _open(path: str | PathLike[str]) -> Dataset:
+    import pyarrow
     import pyarrow.dataset
 
     folder = Path(path)
+    if not (folder / "manifest.json").exists():
+        raise FileNotFoundError(f"{folder} holds no data set: there is no manifest.json in it")
     files = sorted((folder / "data").glob("*.parquet"))
-    if not files:
-        raise FileNotFoundError(f"{folder} holds no data set: there is no data/*.parquet in it")
-    return Dataset(folder, pyarrow.dataset.dataset([fspath(file) for file in files], format="parquet"), None)
+    if files:
+        return Dataset(folder, pyarrow.dataset.dataset([fspath(file) for file in files], format="parquet"), None)
+    # A part that has no shard of its own, the first there.
+    schema = pyarrow.schema([("label", pyarrow.string()), ("split", pyarrow.string())])
+    return Dataset(folder, pyarrow.dataset.dataset(schema.empty_table()), None)
 
 
 class Dataset:
@@ -216,10 +224,22 @@ class Dataset:
 
     @property
     def manifest(self) -> dict[str, Any]:
-        """``manifest.json``: versions, hashes, counts, failures; empty as long as parts are missing."""
+        """``manifest.json``: versions, hashes, counts, failures; without most of them as long as parts are missing."""
         file = self.path / "manifest.json"
         manifest: dict[str, Any] = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
         return manifest
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether all parts are there, with all the files that the manifest lists."""
+        manifest = self.manifest
+        there = {file.name for file in (self.path / "data").glob("*.parquet")}
+        return manifest.get("complete") is True and len(there) == len(manifest.get("files", there))
+
+    @property
+    def failures(self) -> list[dict[str, Any]]:
+        """Records that could not be simulated and are missing: ``record`` and ``reason``; once the data set is complete."""
+        return list(self.manifest.get("failures", []))
 
     @property
     def columns(self) -> list[str]:
@@ -247,7 +267,8 @@ class Dataset:
         splits = Counter(self.column("split").tolist())
         counts = ", ".join(f"{count} {label}" for label, count in sorted(labels.items()))
         parts = ", ".join(f"{name} ({count})" for name, count in sorted(splits.items()))
-        return f"<Dataset of {len(self)} records: {counts}; splits {parts}>"
+        state = "" if self.is_complete else ", not complete"
+        return f"<Dataset of {len(self)} records{state}: {counts}; splits {parts}>"
 
     def filter(self, expression: pyarrow.dataset.Expression) -> Dataset:
         """The records for which an expression holds.
@@ -360,7 +381,7 @@ class Dataset:
         Returns
         -------
         list of array of float32
-            Their lengths may differ.
+            Their lengths may differ. They are views of what was read, and cannot be written to.
 
         Raises
         ------
@@ -421,7 +442,17 @@ class Dataset:
         ValueError
             A column that there is not, or that holds no numbers.
         """
-        return np.column_stack([np.asarray(self.column(name), dtype=np.float64) for name in columns])
+        if isinstance(columns, str):
+            raise TypeError(f"columns = '{columns}': must be a sequence of names, such as ['{columns}']")
+        values = []
+        for name in columns:
+            try:
+                values.append(np.asarray(self.column(name), dtype=np.float64))
+            except (TypeError, ValueError) as error:
+                if name in self.scalar_columns:
+                    raise ValueError(f"column '{name}' holds no numbers") from error
+                raise
+        return np.column_stack(values)
 
     def to_torch(
         self, signal: str, *, label: str = "label", transform: Callable[[FloatSignal], Any] | None = None
@@ -475,12 +506,14 @@ class Dataset:
         """
         import scipy.io
 
-        rows = list(self.records(columns))
+        rows, size = [], 0
+        for record in self.records(columns):
+            size += sum(value.nbytes for value in record.values() if isinstance(value, np.ndarray))
+            if size >= 2**31:
+                raise ValueError("the signals take more than the 2 GiB of a MATLAB v5 file: filter, or name columns")
+            rows.append(record)
         if not rows:
             raise ValueError("there are no records to write")
-        size = sum(value.nbytes for row in rows for value in row.values() if isinstance(value, np.ndarray))
-        if size >= 2**31:
-            raise ValueError(f"the signals take {size / 2**30:.1f} GiB, a MATLAB v5 file holds 2: filter, or name columns")
         array = np.empty(len(rows), dtype=[(name, object) for name in rows[0]])
         for place, row in enumerate(rows):
             array[place] = tuple(np.nan if value is None else value for value in row.values())
@@ -496,7 +529,9 @@ class Dataset:
     def _check(self, columns: Sequence[str]) -> None:
         for name in columns:
             if name not in self.columns:
-                raise ValueError(f"there is no column '{name}', but {', '.join(self.columns)}")
+                near = difflib.get_close_matches(name, self.columns, n=1)
+                hint = f"; did you mean '{near[0]}'?" if near else f", but {', '.join(self.columns)}"
+                raise ValueError(f"there is no column '{name}'{hint}")
 
 
 def _signals_of(chunk: Any) -> list[FloatSignal]:

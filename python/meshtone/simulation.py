@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import sys
-import time
+import functools
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, Union
@@ -12,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._progress import on_terminal
 from ._sections import hint
 from .scenario import Scenario, native_scenario
 from .signal import Record, _settings, whole
@@ -436,17 +436,8 @@ def simulate_many(
     if isinstance(channels, str):
         raise TypeError(f"channels = '{channels}': must be a sequence of names: ['{channels}']")
     scenarios = list(scenarios)
-    told: Callable[[int], None] | None
-    if progress is True:
-        told = _terminal_progress(len(scenarios))
-    elif progress is False:
-        told = None
-    else:
-        ask = progress
-
-        def told(finished: int) -> None:
-            ask(finished, len(scenarios))
-
+    ask = on_terminal("simulations") if progress is True else (progress or None)
+    told = None if ask is None else functools.partial(_tell, ask, len(scenarios))
     native = [native_scenario(scenario) for scenario in scenarios]
     results = _core.simulate_many(native, list(channels), None if threads is None else whole("threads", threads, 1), told)
     return [_signals(scenario, result) for scenario, result in zip(scenarios, results)]
@@ -459,14 +450,5 @@ def _signals(scenario: Scenario, result: dict[str, Any] | ValueError) -> Signals
     return Signals(scenario, rate, start, result)
 
 
-def _terminal_progress(total: int) -> Callable[[int], None]:
-    start = time.monotonic()
-
-    def told(finished: int) -> None:
-        rate = finished / max(time.monotonic() - start, 1e-9)
-        left = f", {(total - finished) / rate:.0f} s left" if 0 < finished < total else ""
-        end = "\n" if finished == total else ""
-        sys.stderr.write(f"\r{finished} of {total} simulations, {rate:.0f} a second{left}   {end}")
-        sys.stderr.flush()
-
-    return told
+def _tell(ask: Callable[[int, int], None], total: int, finished: int) -> None:
+    ask(finished, total)

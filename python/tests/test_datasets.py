@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import hashlib
+import importlib.util
+import shutil
+import sys
+import types
 from pathlib import Path
 
 import numpy as np
@@ -71,6 +75,12 @@ def test_columns(gears: datasets.Dataset) -> None:
     for wrong in (lambda: gears.column("speed"), lambda: gears.to_arrow(["speed"]), lambda: gears.signals("speed")):
         with pytest.raises(ValueError, match="no column 'speed'"):
             wrong()
+    with pytest.raises(ValueError, match="did you mean 'pinion_speed_hz'"):
+        gears.column("pinion_sped_hz")
+    with pytest.raises(TypeError, match=r"\['fm4'\]"):
+        gears.matrix("fm4")
+    with pytest.raises(ValueError, match="'label' holds no numbers"):
+        gears.matrix(["label"])
     with pytest.raises(ValueError, match=r"signals\('vertical_g'\)"):
         gears.column("vertical_g")
     with pytest.raises(ValueError, match=r"column\('label'\)"):
@@ -122,6 +132,22 @@ def test_parts_and_interruption_change_nothing(gears: datasets.Dataset, tmp_path
     assert digests(whole.path) == digests(gears.path)
 
 
+def test_a_lost_file_is_told_and_made_again(gears: datasets.Dataset, tmp_path: Path) -> None:
+    path = tmp_path / "set"
+    shutil.copytree(gears.path, path)
+    (path / "data" / "records-000001.parquet").unlink()
+    with pytest.warns(UserWarning, match="not complete: it has 16 records"):
+        damaged = datasets.load_dataset(path)
+    assert "16 records, not complete" in repr(damaged)
+    assert datasets.generate_dataset(write_plan(tmp_path), path).is_complete
+    assert digests(path) == digests(gears.path)
+
+
+def test_a_part_without_shards(tmp_path: Path) -> None:
+    nothing = datasets.generate_dataset(write_plan(tmp_path), tmp_path / "set", part=(9, 9))
+    assert len(nothing) == 0 and not nothing.is_complete
+
+
 def test_mat(gears: datasets.Dataset, tmp_path: Path) -> None:
     file = tmp_path / "gears.mat"
     gears.split("train").to_mat(file, ["label", "pinion_speed_hz", "difference_g"])
@@ -150,9 +176,33 @@ def test_refused(gears: datasets.Dataset, tmp_path: Path) -> None:
         datasets.generate_dataset(plan, gears.path)
 
 
-def test_torch(gears: datasets.Dataset) -> None:
-    torch = pytest.importorskip("torch")
-    loader = gears.split("train").to_torch("average_g")
-    assert len(loader) == len(gears.split("train")) and loader.classes == ["healthy", "tooth-breakage"]
-    signal, number = loader[0]
-    assert isinstance(signal, torch.Tensor) and number in (0, 1)
+def stand_in_for_torch(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The little that is used of torch, which is too large to be installed for a test."""
+    torch, utils, data = (types.ModuleType(name) for name in ("torch", "torch.utils", "torch.utils.data"))
+    vars(data)["Dataset"] = object
+    vars(torch).update(utils=utils, from_numpy=lambda array: array)
+    vars(utils)["data"] = data
+    for module in (torch, utils, data):
+        monkeypatch.setitem(sys.modules, module.__name__, module)
+
+
+def test_torch(gears: datasets.Dataset, monkeypatch: pytest.MonkeyPatch) -> None:
+    if importlib.util.find_spec("torch") is None:
+        stand_in_for_torch(monkeypatch)
+        monkeypatch.delitem(sys.modules, "meshtone._torch", raising=False)
+    train = gears.split("train")
+    pairs = train.to_torch("average_g")
+    assert len(pairs) == len(train) and pairs.classes == ["healthy", "tooth-breakage"]
+    signals, labels = train.signals("average_g"), train.column("label")
+    # In any order, over the borders of the files.
+    for index in [*range(len(train)), 3, 0, -1]:
+        signal, number = pairs[index]
+        assert np.array_equal(np.asarray(signal), signals[index])
+        assert pairs.classes[number] == labels[index]
+    with pytest.raises(IndexError, match="record 99 of"):
+        pairs[99]
+    halves = train.to_torch("average_g", transform=lambda signal: signal[::2])
+    assert np.array_equal(halves[1][0], signals[1][::2])
+    with pytest.raises(ValueError, match="no column 'mean_g'"):
+        train.to_torch("mean_g")
+    monkeypatch.delitem(sys.modules, "meshtone._torch", raising=False)

@@ -75,7 +75,6 @@ pub(crate) fn finish_if_complete(
     to.write_bytes(CARD, card::card(plan, shards, &contents, &columns).as_bytes())?;
     // Last: a data set with this manifest has everything.
     to.write_bytes(MANIFEST, manifest::complete(plan, shards, &contents).as_bytes())?;
-    to.remove_leftovers();
     Ok(true)
 }
 
@@ -224,10 +223,9 @@ fn is_varied(column: &Column, contents: &Contents) -> bool {
 
 /// One signal of one record.
 fn signal(to: &Destination, shard: u64, row: usize, column: &str) -> Vec<f64> {
-    let read = to.shard(&Shards::name(shard), &[column]);
+    let read = to.shard_row(&Shards::name(shard), &[column], row);
     let values = read.and_then(|read| {
-        let (batch, row) = at(&read.batches, row)?;
-        let values = batch.column(0).as_list_opt::<i32>()?.value(row);
+        let values = read.batches.first()?.column(0).as_list_opt::<i32>()?.value(0);
         Some(values.as_primitive_opt::<Float32Type>()?.values().iter().map(|&x| f64::from(x)).collect())
     });
     values.unwrap_or_default()

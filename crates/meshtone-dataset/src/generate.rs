@@ -135,13 +135,6 @@ pub fn generate(
         failures: Vec::new(),
         complete: true,
     };
-    if begun == Begun::Complete {
-        generated.kept_shards = shards.count();
-        return Ok(generated);
-    }
-    if part == Part::WHOLE {
-        to.remove_leftovers();
-    }
     let there = manifest::names(to)?;
     let hash = plan.hash();
     let is_there = |shard: u64| {
@@ -149,6 +142,15 @@ pub fn generate(
         there.contains(&name)
             && to.shard(&name, &[]).is_some_and(|read| read.metadata.is_of(&hash, &shards.range(shard)))
     };
+    // What is called complete is looked at all the same: somebody may have lost or damaged a file since.
+    if begun == Begun::Complete && (0..shards.count()).all(is_there) {
+        generated.kept_shards = shards.count();
+        return Ok(generated);
+    }
+    // A part leaves them alone: another part may be writing.
+    if part == Part::WHOLE {
+        to.remove_leftovers();
+    }
     let (kept, missing): (Vec<u64>, Vec<u64>) =
         (0..shards.count()).filter(|&shard| part.has(shard)).partition(|&shard| is_there(shard));
     generated.kept_shards = kept.len() as u64;
@@ -223,7 +225,7 @@ impl Run<'_> {
                 Ok(Err(reason)) => reason,
                 Err(error) => error.to_string(),
             };
-            // A twin's failure is found again where the record misses it.
+            // A twin's failure is told of its record, which misses it.
             if let Role::Record(drawn) = role {
                 send(Item::Failed(FailedRecord { record: drawn.index, reason }));
             }

@@ -67,6 +67,7 @@ pub fn merge(parts: &[Destination], to: &Destination) -> Result<Generated, Datas
     };
     if manifest::begin(&plan, to)? == Begun::Complete {
         merged.kept_shards = shards.count();
+        to.remove_leftovers();
         return Ok(merged);
     }
     for (shard, part) in sources {
@@ -79,6 +80,7 @@ pub fn merge(parts: &[Destination], to: &Destination) -> Result<Generated, Datas
         }
     }
     merged.complete = finish::finish_if_complete(&plan, shards, to)?;
+    to.remove_leftovers();
     Ok(merged)
 }
 

@@ -12,7 +12,7 @@ use pyo3::PyErr;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::error::{file_error, value_error};
+use crate::error::{read_error, value_error};
 use crate::interrupt::interruptible;
 
 /// The commented plan.
@@ -24,7 +24,7 @@ pub fn dataset_template() -> &'static str {
 /// Refuses a plan that is wrong.
 #[pyfunction]
 pub fn check_plan(py: Python<'_>, plan: PathBuf) -> PyResult<()> {
-    py.detach(|| Plan::read(&plan)).map(drop).map_err(|error| file_error(&plan, error))
+    py.detach(|| Plan::read(&plan)).map(drop).map_err(|error| read_error(&plan, &error))
 }
 
 /// Makes a data set, or a part of it, or goes on with one.
@@ -44,7 +44,7 @@ pub fn generate_dataset(
     if jobs == Some(0) {
         return Err(value_error("jobs = 0: must be at least 1"));
     }
-    let read = py.detach(|| Plan::read(&plan)).map_err(|error| file_error(&plan, error))?;
+    let read = py.detach(|| Plan::read(&plan)).map_err(|error| read_error(&plan, &error))?;
     let to = destination(to)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs.unwrap_or(0)).build();
     let pool = pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
@@ -85,7 +85,7 @@ fn destination(to: &str) -> PyResult<Destination> {
 
 fn dataset_error(error: DatasetError) -> PyErr {
     match error {
-        DatasetError::Plan(error) => file_error(Path::new("."), error),
+        DatasetError::Plan(error) => read_error(Path::new("."), &error),
         DatasetError::Refused { problem, help } => PyValueError::new_err(format!("{problem}\n{help}")),
         DatasetError::Stopped => PyKeyboardInterrupt::new_err("stopped"),
         DatasetError::File { .. } => PyOSError::new_err(error.to_string()),

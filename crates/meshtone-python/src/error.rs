@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::path::Path;
 
 use meshtone::scenario::ScenarioError;
+use meshtone_io::scenario_file::ReadScenarioError;
 use pyo3::PyErr;
 use pyo3::exceptions::{PyFileNotFoundError, PyValueError};
 
@@ -17,6 +18,17 @@ pub fn scenario_error(error: &ScenarioError) -> PyErr {
     match &error.help {
         Some(help) => PyValueError::new_err(format!("{error}\n{help}")),
         None => value_error(error),
+    }
+}
+
+/// A scenario, plan or experiment file that could not be read: the problem, and below it what to do about it.
+pub fn read_error(path: &Path, error: &ReadScenarioError) -> PyErr {
+    match error {
+        ReadScenarioError::Invalid { error: invalid, .. } => match &invalid.help {
+            Some(help) => PyValueError::new_err(format!("{error}\n{help}")),
+            None => value_error(error),
+        },
+        _ => file_error(path, error),
     }
 }
 

@@ -9,7 +9,7 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
 use crate::array::{Signal, array, samples};
-use crate::error::{file_error, scenario_error, value_error};
+use crate::error::{read_error, scenario_error, value_error};
 use crate::interrupt::interruptible;
 use crate::scenario::Scenario;
 
@@ -56,7 +56,7 @@ pub fn add_noise<'py>(
 /// Runs an experiment file: the text of `tuning.json` and that of `tuned.toml`.
 #[pyfunction]
 pub fn tune(py: Python<'_>, path: PathBuf, progress: Option<Bound<'_, PyAny>>) -> PyResult<(String, String)> {
-    let file = py.detach(|| read_experiment(&path)).map_err(|error| file_error(&path, error))?;
+    let file = py.detach(|| read_experiment(&path)).map_err(|error| read_error(&path, &error))?;
     let experiment = file.experiment;
     let (finished, all) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let progress = progress.map(Bound::unbind);
@@ -91,7 +91,7 @@ pub fn enhance<'py>(
     draws: u64,
     seed: u64,
 ) -> PyResult<(Bound<'py, PyArray2<f64>>, f64)> {
-    let tuned_file = read_tuned(&tuned).map_err(|error| file_error(&tuned, error))?;
+    let tuned_file = read_tuned(&tuned).map_err(|error| read_error(&tuned, &error))?;
     let scenario = tuned_file.apply(&scenario.0).map_err(|error| scenario_error(&error))?;
     let enhanced =
         py.detach(|| experiment::enhance(&scenario, &tuned_file, seed, draws)).map_err(value_error)?;

@@ -37,7 +37,7 @@ pub fn normal_quantile(p: f64) -> f64 {
     if tail <= 0.0 {
         return q.signum() * f64::INFINITY;
     }
-    let r = (-tail.ln()).sqrt();
+    let r = (-libm::log(tail)).sqrt();
     let x = if r <= 5.0 { ratio(&MIDDLE, r - 1.6) } else { ratio(&TAIL, r - 5.0) };
     q.signum() * x
 }

@@ -96,6 +96,19 @@ pub(crate) struct ReadShard {
 /// * `file` - the shard
 /// * `wanted` - names of columns
 pub(crate) fn read(file: impl ChunkReader + 'static, wanted: &[&str]) -> io::Result<ReadShard> {
+    read_rows(file, wanted, None)
+}
+
+/// Reads a shard's metadata, and some columns of one of its rows.
+pub(crate) fn read_row(
+    file: impl ChunkReader + 'static,
+    wanted: &[&str],
+    row: usize,
+) -> io::Result<ReadShard> {
+    read_rows(file, wanted, Some(row))
+}
+
+fn read_rows(file: impl ChunkReader + 'static, wanted: &[&str], row: Option<usize>) -> io::Result<ReadShard> {
     let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(io::Error::other)?;
     let head = builder.metadata().file_metadata();
     let metadata = head.key_value_metadata().and_then(|values| ShardMetadata::from_key_values(values));
@@ -110,7 +123,12 @@ pub(crate) fn read(file: impl ChunkReader + 'static, wanted: &[&str]) -> io::Res
         return Ok(ReadShard { metadata, rows, batches: Vec::new() });
     }
     let mask = ProjectionMask::columns(builder.parquet_schema(), wanted.iter().copied());
-    let reader = builder.with_projection(mask).build().map_err(io::Error::other)?;
+    let builder = builder.with_projection(mask);
+    let builder = match row {
+        Some(row) => builder.with_offset(row).with_limit(1),
+        None => builder,
+    };
+    let reader = builder.build().map_err(io::Error::other)?;
     let batches = reader.collect::<Result<_, _>>().map_err(io::Error::other)?;
     Ok(ReadShard { metadata, rows, batches })
 }

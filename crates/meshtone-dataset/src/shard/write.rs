@@ -68,7 +68,8 @@ pub(crate) fn write(
             Item::Record(record) => {
                 let healthy = twin.take().filter(|twin| twin.drawn.index == record.drawn.index);
                 let index = record.drawn.index;
-                match enhanced(content.tuned.as_ref(), &record, healthy.as_deref()) {
+                let is_faulty = content.classes[record.drawn.class].fault.is_some();
+                match enhanced(content.tuned.as_ref(), &record, healthy.as_deref(), is_faulty) {
                     Ok(enhanced) => {
                         let row = Row { record, enhanced };
                         bytes += row.bytes();
@@ -137,8 +138,18 @@ fn properties(columns: &[Column]) -> Result<WriterProperties, parquet::errors::P
 }
 
 /// The enhanced difference signal of a record; empty where nothing is enhanced.
-fn enhanced(tuned: Option<&Tuned>, record: &Record, twin: Option<&Record>) -> Result<Vec<f32>, String> {
+fn enhanced(
+    tuned: Option<&Tuned>,
+    record: &Record,
+    twin: Option<&Record>,
+    is_faulty: bool,
+) -> Result<Vec<f32>, String> {
     let Some(tuned) = tuned else { return Ok(Vec::new()) };
+    if is_faulty && twin.is_none() {
+        return Err(
+            "it cannot be enhanced: the healthy pair of the same wheels could not be simulated".to_owned()
+        );
+    }
     let difference = &record.clean_difference;
     // A healthy record is its own twin.
     let healthy = twin.map_or(difference, |twin| &twin.clean_difference);

@@ -131,6 +131,14 @@ impl Destination {
         }
     }
 
+    /// As [`Self::shard`], of one row alone: the signals of a whole shard may be large.
+    pub(crate) fn shard_row(&self, name: &str, columns: &[&str], row: usize) -> Option<ReadShard> {
+        match &self.place {
+            Place::Directory(path) => shard::read_row(File::open(path.join(name)).ok()?, columns, row).ok(),
+            Place::Objects(objects) => shard::read_row(objects.open(name).ok()?, columns, row).ok(),
+        }
+    }
+
     /// SHA-256 and length of a file.
     pub(crate) fn sha256(&self, name: &str) -> Result<(String, u64), DatasetError> {
         self.reader(name)
