@@ -35,7 +35,7 @@ fn head(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Result
     writeln!(
         text,
         "{rows} simulated records of spur gear vibration from {} units (pairs of wheels), raw channels at {} S/s over {length}. \
-         Made with [Meshtone](https://crates.io/crates/meshtone) {} from `{}`, which makes the same bytes again; the base scenario \
+         Made with Meshtone {} from `{}`, which makes the same bytes again; the base scenario \
          is `{}`.\n",
         plan.content.units,
         keep.sampling_rate_hz,
@@ -82,8 +82,8 @@ fn counts(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Resu
         let when: Vec<String> = shift.when.iter().map(|condition| format!("`{condition}`")).collect();
         writeln!(
             text,
-            "The split `{}` is unlike the training: {} holds for its records and for no other ones. Classes that have no such \
-             number are as everywhere.",
+            "The split `{}` is unlike the training: {} holds for its records and for no other ones, in every class that has \
+             such a number.",
             shift.name,
             when.join(" and ")
         )?;
@@ -190,15 +190,29 @@ fn loading(text: &mut String, columns: &[Column]) -> std::fmt::Result {
         text,
         "## Loading
 
-Python, with pandas or polars; polars reads only what is asked for:
+In this folder. With Meshtone's Python package, which reads only what is asked for:
+
+```python
+from meshtone import load_dataset
+
+train = load_dataset(\".\").split(\"train\")
+table, first = train.to_pandas(), train.signals(\"{signal}\")[0]
+```
+
+With pandas and pyarrow:
 
 ```python
 import numpy as np
 import pandas as pd
-import polars as pl
 
 train = pd.read_parquet(\"data\", filters=[(\"split\", \"==\", \"train\")], columns=[\"label\", \"{signal}\"])
 first = np.asarray(train[\"{signal}\"].iloc[0])
+```
+
+With polars:
+
+```python
+import polars as pl
 
 lazy = pl.scan_parquet(\"data/*.parquet\")
 train = lazy.filter(pl.col(\"split\") == \"train\").select(\"label\", \"severity\", \"{signal}\").collect()

@@ -1,7 +1,7 @@
 //! Rate, noise, average, difference, indicators.
 //!
 //! What is computed from a raw channel is computed from its samples as they are kept, noise and rounding to single precision
-//! included: who reads the raw channel back finds the same average.
+//! included: who reads the raw channel back finds the same average, unless `keep.duration_s` has cut it afterwards.
 
 use meshtone::Stages;
 use meshtone::batch::ChannelKind;
