@@ -1,6 +1,9 @@
 //! Broken and hostile recordings: no reader panics, and none takes much more memory than the file has.
+//!
+//! A test program of its own, because it counts the memory of the whole program.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
+#[path = "all/recording_help.rs"]
 mod recording_help;
 
 use std::fs;

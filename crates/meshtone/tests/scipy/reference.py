@@ -1,4 +1,4 @@
-"""Inputs and what SciPy makes of them, for tests/signal_scipy.rs.
+"""Inputs and what SciPy makes of them, for tests/all/signal_scipy.rs.
 
 Usage: python reference.py OUTPUT.npz
 

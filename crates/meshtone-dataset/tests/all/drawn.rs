@@ -1,0 +1,176 @@
+//! Which records a plan has.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use std::collections::BTreeMap;
+
+use crate::support::{FAST, plan};
+use meshtone_dataset::draw::{DrawnRecord, Sampler};
+use meshtone_dataset::plan::Plan;
+
+fn all(plan: &Plan) -> Vec<DrawnRecord> {
+    let sampler = Sampler::new(&plan.content).unwrap();
+    (0..plan.records()).map(|index| sampler.record(index).unwrap()).collect()
+}
+
+fn value(record: &DrawnRecord, key: &str) -> Option<f64> {
+    record.values.iter().find(|(other, _)| other == key).map(|(_, value)| *value)
+}
+
+fn larger(records: u64, units: u64, more: &str) -> Plan {
+    let text = FAST.replace("records = 60", &format!("records = {records}"));
+    plan(
+        &text
+            .replace("units = 10", &format!("units = {units}"))
+            .replace("[keep]", &format!("{more}\n[keep]")),
+    )
+}
+
+#[test]
+fn a_unit_is_in_one_split_with_the_same_wheels() {
+    let more = "[[vary]]\nkey = \"quality.din_grade\"\nchoice = [5, 6, 7]\n\
+                [[vary]]\nkey = \"rig.damping_ratio\"\nuniform = [0.02, 0.1]";
+    let plan = larger(3000, 40, more);
+    let mut units: BTreeMap<u64, Vec<DrawnRecord>> = BTreeMap::new();
+    for record in all(&plan) {
+        units.entry(record.unit).or_default().push(record);
+    }
+    assert_eq!(units.len(), 40);
+    let sampler = Sampler::new(&plan.content).unwrap();
+    let mut wheels = Vec::new();
+    for records in units.values() {
+        let first = &records[0];
+        assert!((70..=80).contains(&records.len()), "{}", records.len());
+        for key in ["quality.din_grade", "rig.damping_ratio"] {
+            assert!(records.iter().all(|record| value(record, key) == value(first, key)));
+        }
+        assert!(
+            records
+                .iter()
+                .all(|record| record.split == first.split && record.wheels_seed == first.wheels_seed)
+        );
+        // Every class, about evenly.
+        for class in 0..3 {
+            let count = records.iter().filter(|record| record.class == class).count();
+            assert!((20..=30).contains(&count), "{count}");
+        }
+        // Their profile errors are the same, those of other units are not; their seeds differ.
+        let [a, b] = [first, records.last().unwrap()].map(|record| sampler.scenario(record).unwrap());
+        assert_ne!(a.seed, b.seed);
+        let errors = |scenario: &meshtone::scenario::Scenario| {
+            meshtone::stages(scenario).unwrap().profile_errors.unwrap()
+        };
+        assert_eq!(errors(&a), errors(&b));
+        wheels.push(errors(&a));
+    }
+    for (i, one) in wheels.iter().enumerate() {
+        assert!(wheels[..i].iter().all(|other| other != one));
+    }
+}
+
+#[test]
+fn what_is_held_out_is_nowhere_else() {
+    let text = "[[split.shift]]\nname = \"severe\"\npart = 0.1\nwhen = \"severity == 3\"\n\
+                [[split.shift]]\nname = \"teeth\"\npart = 0.1\nwhen = [\"gears.pinion_teeth == 18\", \"gears.gear_teeth == 36\"]\n";
+    let pairs = "[[vary]]\nkeys = [\"gears.pinion_teeth\", \"gears.gear_teeth\"]\nchoice = [[20, 40], [18, 36], [19, 38]]";
+    let text = format!(
+        "{}{text}",
+        FAST.replace("train = 0.5", "train = 0.3").replace("[keep]", &format!("{pairs}\n[keep]"))
+    );
+    let plan = plan(&text.replace("records = 60", "records = 3000").replace("units = 10", "units = 50"));
+    let names = plan.content.splits.names();
+    let mut counts: BTreeMap<&str, u32> = BTreeMap::new();
+    for record in all(&plan) {
+        let split = names[record.split];
+        *counts.entry(split).or_default() += 1;
+        let is = |name: &str| split == name;
+        let speed = value(&record, "operation.pinion_speed_hz").unwrap();
+        assert_eq!(speed > 50.0, is("fast"), "{record:?}");
+        let teeth = value(&record, "gears.pinion_teeth").unwrap();
+        assert_eq!(teeth == 18.0, is("teeth"), "{record:?}");
+        // Only chipped teeth can be held out by their severity; the other classes are in every split.
+        match record.class {
+            1 => assert_eq!(record.severity == 3, is("severe"), "{record:?}"),
+            2 => assert_eq!(record.severity, 4),
+            _ => assert_eq!(record.severity, 0),
+        }
+    }
+    assert_eq!(counts.len(), 6);
+    assert!(counts["train"] > 800 && counts["fast"] > 500 && counts["teeth"] > 200, "{counts:?}");
+}
+
+#[test]
+fn a_record_depends_on_its_number_alone() {
+    let plan = larger(500, 20, "");
+    let sampler = Sampler::new(&plan.content).unwrap();
+    let forwards = all(&plan);
+    for record in forwards.iter().rev() {
+        assert_eq!(sampler.record(record.index).unwrap(), *record);
+    }
+    let mut seeds: Vec<u64> = forwards.iter().map(|record| record.seed).collect();
+    seeds.sort_unstable();
+    seeds.dedup();
+    assert_eq!(seeds.len(), 500);
+    assert!(seeds.iter().all(|&seed| seed < 1 << 53));
+}
+
+/// Of every class the values fill their range evenly; where a tenth of the range is held out, the rest of it.
+#[test]
+fn designs_fill_the_ranges_in_every_class_and_unit() {
+    for design in ["sobol", "latin-hypercube", "independent"] {
+        let text = FAST.replace("seed = 3", &format!("seed = 3\ndesign = \"{design}\""));
+        let alone = text[..text.find("[split]").unwrap()].to_owned() + "[split]\ntrain = 1.0\n";
+        let plan = plan(&alone.replace("records = 60", "records = 3072").replace("units = 10", "units = 16"));
+        let records = all(&plan);
+        for class in 0..3 {
+            let mut speeds: Vec<f64> = records
+                .iter()
+                .filter(|record| record.class == class)
+                .map(|record| (value(record, "operation.pinion_speed_hz").unwrap() - 30.0) / 30.0)
+                .collect();
+            speeds.sort_by(f64::total_cmp);
+            let count = speeds.len() as f64;
+            let largest = speeds
+                .iter()
+                .enumerate()
+                .map(|(i, x)| (x - (i as f64 + 0.5) / count).abs())
+                .fold(0.0, f64::max);
+            // Kolmogorov's statistic of independent draws is 1.36/√1024 = 0.043 in one of 20 cases.
+            let allowed = if design == "independent" { 0.07 } else { 0.002 };
+            assert!(largest < allowed, "{design} {class}: {largest}");
+        }
+        // Units are not tied to places of the design.
+        for unit in 0..16 {
+            let speeds: Vec<f64> = records
+                .iter()
+                .filter(|record| record.unit == unit)
+                .map(|record| value(record, "operation.pinion_speed_hz").unwrap())
+                .collect();
+            let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
+            // Standard deviation of the mean of 192: 8.66/√192 = 0.63.
+            assert!((mean - 45.0).abs() < 2.5, "{design} {unit}: {mean}");
+        }
+    }
+}
+
+#[test]
+fn joint_rules() {
+    let more = "[[vary]]\nkey = \"gears.module_mm\"\ngrid = [2, 3, 4]\n\
+                [[vary]]\nkey = \"gears.face_width_mm\"\nuniform = [4, 6]\ntimes = \"gears.module_mm\"\n\
+                [[vary]]\nkey = \"rig.eccentricity_mm\"\nfixed = 0.01\nplus = \"0.001 * gears.module_mm\"";
+    let text =
+        FAST.replace("uniform = [1.0, 5.0]", "uniform = [0.2, 0.6]\nfraction_of = \"tooth.height_mm\"");
+    let text = text
+        .replace("seed = 3", "seed = 3\nconstraints = [\"gears.face_width_mm > 9\"]")
+        .replace("chip_width_mm = 8.0", "chip_width_mm = 5.0");
+    let plan = plan(&text.replace("[keep]", &format!("{more}\n[keep]")));
+    for record in all(&plan) {
+        let [module, width, eccentricity] = ["gears.module_mm", "gears.face_width_mm", "rig.eccentricity_mm"]
+            .map(|key| value(&record, key).unwrap());
+        assert!([2.0, 3.0, 4.0].contains(&module));
+        assert!(width > 9.0 && (4.0..6.0).contains(&(width / module)), "{width} {module}");
+        assert!((eccentricity - 0.01 - 0.001 * module).abs() < 1e-15);
+        if let Some(height) = value(&record, "fault.chip_height_mm") {
+            assert!((0.2..0.6).contains(&(height / (2.25 * module))));
+        }
+    }
+}

@@ -1,0 +1,8 @@
+//! The library, used as its users use it. One test program, because each is linked with all libraries.
+
+mod drawn;
+mod exact;
+mod python;
+mod records;
+mod refused;
+mod support;

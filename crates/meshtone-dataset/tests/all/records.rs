@@ -1,0 +1,268 @@
+//! What a record holds is what its scenario gives, taken as a rig would take it.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use std::fs::File;
+use std::path::Path;
+
+use crate::support::{FAST, plan, run};
+use arrow::array::{Array, AsArray, RecordBatch};
+use arrow::compute::concat_batches;
+use arrow::datatypes::{Float32Type, Float64Type, Int32Type, Int64Type};
+use meshtone::signal::{ChainSettings, Edge, ShaftPhase, process_channel, resample, resampling_ratio, rms};
+use meshtone_dataset::draw::Sampler;
+use meshtone_dataset::generate::Part;
+use meshtone_dataset::plan::Plan;
+use meshtone_dataset::store::Destination;
+use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+
+struct Made {
+    _directory: tempfile::TempDir,
+    rows: RecordBatch,
+}
+
+fn made(plan: &Plan) -> Made {
+    let directory = tempfile::tempdir().unwrap();
+    let to = directory.path().join("set");
+    let generated = run(plan, &Destination::directory(&to), Part::WHOLE, 2).unwrap();
+    assert_eq!(generated.failures, []);
+    Made { rows: read(&to), _directory: directory }
+}
+
+fn read(directory: &Path) -> RecordBatch {
+    let mut names: Vec<_> =
+        std::fs::read_dir(directory.join("data")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    names.sort();
+    let batches: Vec<RecordBatch> = names
+        .iter()
+        .flat_map(|path| {
+            let builder = ParquetRecordBatchReaderBuilder::try_new(File::open(path).unwrap()).unwrap();
+            builder.build().unwrap().map(Result::unwrap)
+        })
+        .collect();
+    concat_batches(&batches[0].schema(), &batches).unwrap()
+}
+
+impl Made {
+    fn signal(&self, name: &str, row: usize) -> Vec<f64> {
+        let list = self.rows.column_by_name(name).unwrap().as_list::<i32>().value(row);
+        list.as_primitive::<Float32Type>().values().iter().map(|&x| f64::from(x)).collect()
+    }
+
+    fn number(&self, name: &str, row: usize) -> f64 {
+        self.rows
+            .column_by_name(name)
+            .unwrap_or_else(|| panic!("{name}"))
+            .as_primitive::<Float64Type>()
+            .value(row)
+    }
+
+    fn tooth(&self, row: usize) -> Option<i32> {
+        let column = self.rows.column_by_name("fault_tooth").unwrap().as_primitive::<Int32Type>();
+        column.is_valid(row).then(|| column.value(row))
+    }
+
+    fn text(&self, name: &str, row: usize) -> String {
+        self.rows.column_by_name(name).unwrap().as_string::<i32>().value(row).to_owned()
+    }
+}
+
+fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len() as f64;
+    let (p, q) = (mean(a), mean(b));
+    let sum = |f: &dyn Fn(f64, f64) -> f64| a.iter().zip(b).map(|(x, y)| f(x - p, y - q)).sum::<f64>();
+    sum(&|x, y| x * y) / (sum(&|x, _| x * x) * sum(&|_, y| y * y)).sqrt()
+}
+
+#[test]
+fn rows_are_the_plans_records() {
+    let plan = plan(FAST);
+    let made = made(&plan);
+    let sampler = Sampler::new(&plan.content).unwrap();
+    assert_eq!(made.rows.num_rows(), 60);
+    let integers =
+        |name: &str| made.rows.column_by_name(name).unwrap().as_primitive::<Int64Type>().values().to_vec();
+    for row in 0..60 {
+        let record = sampler.record(row as u64).unwrap();
+        assert_eq!(integers("record")[row], row as i64);
+        assert_eq!(integers("unit")[row], record.unit as i64);
+        assert_eq!(integers("seed")[row], record.seed as i64);
+        assert_eq!(made.text("label", row), plan.content.classes[record.class].label);
+        assert_eq!(made.text("split", row), plan.content.splits.names()[record.split]);
+        let speed = record.values.iter().find(|(key, _)| key == "operation.pinion_speed_hz").unwrap().1;
+        assert_eq!(made.number("pinion_speed_hz", row), speed);
+        assert_eq!(made.number("gear_speed_hz", row), speed * 20.0 / 40.0);
+        assert_eq!(made.tooth(row).is_some(), record.class != 0);
+        // A hunting period: so many revolutions of the gear as the pinion has teeth over their common divisor.
+        let seconds = made.signal("vertical_g", row).len() as f64 / 8e3;
+        assert!((seconds * speed - 40.0).abs() < 2.0 * speed / 8e3, "{seconds}");
+    }
+}
+
+/// Average, difference and indicators are those of the raw channel as it is kept, noise included.
+#[test]
+fn the_raw_channel_gives_the_same_average() {
+    let plan = plan(FAST);
+    let made = made(&plan);
+    for row in 0..12 {
+        let raw = made.signal("vertical_g", row);
+        let phase = ShaftPhase::constant(made.number("gear_speed_hz", row), 8e3, raw.len()).unwrap();
+        let record = process_channel(&raw, &phase, 40, &ChainSettings::default()).unwrap();
+        for (name, values) in
+            [("average_g", &record.average.values), ("difference_g", &record.parts.difference)]
+        {
+            let kept = made.signal(name, row);
+            assert!(
+                kept.iter().zip(values).all(|(a, b)| (a - b).abs() <= 1e-7 * rms(values).max(b.abs())),
+                "{name}"
+            );
+        }
+        assert_eq!(record.average.revolutions, 20);
+        for value in record.indicators.table("g") {
+            let name = if value.unit == "g" { format!("{}_g", value.name) } else { value.name };
+            assert_eq!(value.value, Some(made.number(&name, row)), "{name}");
+        }
+    }
+}
+
+/// A record is its scenario's simulation, begun at the mark and brought to the data set's rate.
+#[test]
+fn the_simulation_is_in_the_record() {
+    let plan = plan(
+        &FAST
+            .replace("[[vary]]\nkey = \"noise.snr_db\"\nuniform = [10.0, 30.0]\n", "")
+            // Speeds at which the ratio of the rates is one of small numbers, for the other resampling.
+            .replace("uniform = [30.0, 60.0]", "choice = [32.0, 40.0, 52.0]"),
+    );
+    let made = made(&plan);
+    let sampler = Sampler::new(&plan.content).unwrap();
+    for row in 0..6 {
+        let record = sampler.record(row as u64).unwrap();
+        let simulation = meshtone::simulate(&sampler.scenario(&record).unwrap()).unwrap();
+        let (up, down) = resampling_ratio(simulation.channels.sampling_rate_hz, 8e3).unwrap();
+        // It begins when some tooth comes into contact; nothing else differs.
+        let simulated = &simulation.channels.vertical_g;
+        let from = |start: usize| {
+            resample(&[&simulated[start..], &simulated[..start]].concat(), up, down, Edge::Periodic).unwrap()
+        };
+        let kept = made.signal("vertical_g", row);
+        let period = from(0).len();
+        assert_eq!(kept.len(), period + 1);
+        let per_tooth = simulation.stages.time.samples_per_pinion_revolution / 20;
+        let starts = (0..simulated.len()).step_by(per_tooth);
+        let best = starts.map(|start| correlation(&kept[..period], &from(start))).fold(f64::MIN, f64::max);
+        assert!(best > 0.999_999, "{row}: {best}");
+    }
+}
+
+/// The damaged tooth's number is where the difference is largest.
+#[test]
+fn the_fault_is_at_its_tooth() {
+    let text = FAST.replace("[[vary]]\nkey = \"noise.snr_db\"\nuniform = [10.0, 30.0]\n", "");
+    let random = made(&plan(&text));
+    let aligned = made(&plan(&text.replace("[keep]", "[keep]\naligned = true")));
+    let mut seen = Vec::new();
+    for (made, is_aligned) in [(&random, false), (&aligned, true)] {
+        for row in (0..60).filter(|&row| made.text("label", row) == "missing") {
+            let difference = made.signal("difference_g", row);
+            let largest = (0..difference.len())
+                .max_by(|&a, &b| difference[a].abs().total_cmp(&difference[b].abs()))
+                .unwrap();
+            let pitch = largest as f64 / difference.len() as f64 * 40.0;
+            let tooth = made.tooth(row).unwrap();
+            // It rings after its tooth came into contact, or should have.
+            let after = (pitch - f64::from(tooth - 1)).rem_euclid(40.0);
+            assert!(after < 4.0, "row {row}: {after} pitches after tooth {tooth}");
+            assert!(!is_aligned || tooth == 1);
+            seen.push(tooth);
+        }
+    }
+    seen.sort_unstable();
+    seen.dedup();
+    assert!(seen.len() > 5, "{seen:?}");
+}
+
+#[test]
+fn noise_is_as_large_as_it_says_and_of_each_channel_its_own() {
+    let without = made(&plan(&FAST.replace(
+        "key = \"noise.snr_db\"\nuniform = [10.0, 30.0]",
+        "key = \"noise.level_g\"\nuniform = [0.0, 1e-12]",
+    )));
+    let with = made(&plan(FAST));
+    let level = made(&plan(&FAST.replace(
+        "key = \"noise.snr_db\"\nuniform = [10.0, 30.0]",
+        "key = \"noise.level_g\"\nuniform = [1.999999, 2.0]",
+    )));
+    for row in 0..20 {
+        let noise = |made: &Made, name: &str| -> Vec<f64> {
+            let (noisy, clean) = (made.signal(name, row), without.signal(name, row));
+            noisy.iter().zip(&clean).map(|(a, b)| a - b).collect()
+        };
+        let [vertical, horizontal] = ["vertical_g", "horizontal_g"].map(|name| noise(&with, name));
+        let clean = without.signal("vertical_g", row);
+        let mean = clean.iter().sum::<f64>() / clean.len() as f64;
+        let deviation = rms(&clean.iter().map(|x| x - mean).collect::<Vec<_>>());
+        let ratio_db = 20.0 * (deviation / rms(&vertical)).log10();
+        assert!((ratio_db - with.number("noise_snr_db", row)).abs() < 0.3, "{ratio_db}");
+        assert!(correlation(&vertical, &horizontal).abs() < 0.06);
+        assert!((rms(&noise(&level, "vertical_g")) / 2.0 - 1.0).abs() < 0.04);
+    }
+}
+
+#[test]
+fn a_fluctuating_speed_is_followed() {
+    let text = FAST.replace("brake_torque_nm = 200.0", "brake_torque_nm = 200.0\nspeed_fluctuation_hz = 0.2");
+    let text = text
+        .replace("[[vary]]\nkey = \"noise.snr_db\"\nuniform = [10.0, 30.0]\n", "")
+        .replace("records = 60", "records = 12");
+    let made = made(&plan(&text));
+    for row in 0..12 {
+        let angle = made.number("gear_angle_rev", row);
+        assert!(angle.is_finite());
+        // The mesh is what the average shows.
+        assert!(made.number("average_rms_g", row) > made.number("difference_rms_g", row));
+    }
+}
+
+#[test]
+fn only_what_is_wanted_is_kept() {
+    let keep = "[keep]\nchannels = [\"axial\"]\nduration_s = 0.25\naverage = false\nindicators = false";
+    let made = made(&plan(&FAST.replace("[keep]", keep)));
+    let names: Vec<String> = made.rows.schema().fields().iter().map(|field| field.name().clone()).collect();
+    assert!(names.contains(&"difference_g".to_owned()) && names.contains(&"axial_g".to_owned()));
+    for absent in ["average_g", "vertical_g", "fm4"] {
+        assert!(!names.contains(&absent.to_owned()), "{absent}");
+    }
+    assert!((0..60).all(|row| made.signal("axial_g", row).len() == 2000));
+}
+
+#[test]
+fn enhanced_signals_are_those_of_the_hybrid_stage() {
+    let directory = tempfile::tempdir().unwrap();
+    let tuned = "[enhancement]\nwidth_ratio = 0.5\nfault_to_harmonics_ratio = 1.0\nnoise_level = 0.0\n\
+                 [signal]\nsampling_rate_hz = 8e3\n[[key]]\nkey = \"rig.damping_ratio\"\nvalue = 0.08\n";
+    std::fs::write(directory.path().join("tuned.toml"), tuned).unwrap();
+    let text =
+        FAST.replace("seed = 3", "seed = 3\ntuned = \"tuned.toml\"").replace("records = 60", "records = 24");
+    let path = directory.path().join("plan.toml");
+    std::fs::write(&path, text).unwrap();
+    let plan = Plan::read(&path).unwrap();
+    let sampler = Sampler::new(&plan.content).unwrap();
+    let made = made(&plan);
+    for row in 0..24 {
+        let scenario = sampler.scenario(&sampler.record(row as u64).unwrap()).unwrap();
+        assert_eq!(scenario.number("rig.damping_ratio"), Some(0.08));
+        let relative = rms(&made.signal("enhanced_relative_difference", row));
+        match made.text("label", row).as_str() {
+            "healthy" => assert!((relative - 1.0).abs() < 1e-6, "{relative}"),
+            "missing" => assert!(relative > 1.5, "{relative}"),
+            _ => assert!(relative > 0.5, "{relative}"),
+        }
+    }
+    // Merging reads the plan's copies.
+    let set = directory.path().join("set");
+    run(&plan, &Destination::directory(&set), Part { number: 1, of: 2 }, 2).unwrap();
+    run(&plan, &Destination::directory(directory.path().join("other")), Part { number: 2, of: 2 }, 2)
+        .unwrap();
+    let parts = [Destination::directory(&set), Destination::directory(directory.path().join("other"))];
+    assert!(meshtone_dataset::merge::merge(&parts, &parts[0]).unwrap().complete);
+}

@@ -1,0 +1,201 @@
+//! Plans that are wrong, and what is said about them.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use std::path::Path;
+
+use crate::support::FAST;
+use meshtone_dataset::plan::Plan;
+
+/// Asserts that a plan is refused with all of `words`.
+#[track_caller]
+fn refused(text: &str, words: &[&str]) {
+    let error = match Plan::read_text(text.to_owned(), Path::new("plan.toml")) {
+        Ok(_) => panic!("accepted:\n{text}"),
+        Err(meshtone_io::scenario_file::ReadScenarioError::Invalid { error, .. }) => {
+            format!("{error} ({})", error.help.clone().unwrap_or_default())
+        }
+        Err(error) => error.to_string(),
+    };
+    for word in words {
+        assert!(error.contains(word), "`{word}` is not in: {error}");
+    }
+}
+
+#[track_caller]
+fn refused_with(from: &str, into: &str, words: &[&str]) {
+    assert!(FAST.contains(from), "{from}");
+    refused(&FAST.replacen(from, into, 1), words);
+}
+
+#[test]
+fn empty_and_unfinished() {
+    refused("", &["scenario", "missing"]);
+    refused("records = \n", &["line 1", "not valid TOML"]);
+    refused_with("units = 10\n", "", &["units", "missing", "pairs of wheels"]);
+    refused_with("records = 60", "record = 60", &["line 3", "record", "did you mean `records`?"]);
+    refused_with("units = 10", "units = 100", &["units = 100", "more than the 60 records"]);
+    refused_with("units = 10", "units = 3", &["fewer than the 4 splits"]);
+    let no_class = &FAST[..FAST.find("[[class]]").unwrap()];
+    refused(no_class, &["class", "missing"]);
+    refused(&format!("class = []\n{no_class}"), &["has no class"]);
+}
+
+#[test]
+fn contradictory() {
+    let twice = "[[vary]]\nkey = \"operation.pinion_speed_hz\"\nfixed = 50\n[keep]";
+    refused_with("[keep]", twice, &["vary[2].key", "varied by vary[0] too"]);
+    refused_with(
+        "uniform = [30.0, 60.0]",
+        "uniform = [30.0, 60.0]\nfixed = 3",
+        &["uniform", "given beside fixed"],
+    );
+    refused_with("uniform = [30.0, 60.0]", "per = \"record\"", &["says not how it varies"]);
+    refused_with("label = \"missing\"", "label = \"breakage\"", &["label \"breakage\" of another class"]);
+    refused_with(
+        "label = \"healthy\"",
+        "label = \"healthy\"\ncount = 5",
+        &["has a weight where another class has a count"],
+    );
+    refused_with("label = \"healthy\"", "label = \"healthy\"\nseverity = 3", &["given for a healthy class"]);
+    let level = "[[vary]]\nkey = \"noise.level_g\"\nfixed = 1.0\n[keep]";
+    refused_with("[keep]", level, &["noise is given both relative and in g"]);
+    let seed = "[[vary]]\nkey = \"seed\"\nchoice = [1, 2]\n[keep]";
+    refused_with("[keep]", seed, &["every record has a seed of its own"]);
+    let by_record = "[[vary]]\nkey = \"gears.module_mm\"\nuniform = [2, 3]\nper = \"record\"\n[keep]";
+    refused_with("[keep]", by_record, &["gears.module_mm", "share their wheels"]);
+    let circle = "[[vary]]\nkey = \"rig.damping_ratio\"\nfixed = 1\ntimes = \"rig.eccentricity_mm\"\n\
+                  [[vary]]\nkey = \"rig.eccentricity_mm\"\nfixed = 1\ntimes = \"rig.damping_ratio\"\n[keep]";
+    refused_with("[keep]", circle, &["depends on itself"]);
+    let mixed =
+        "[[vary]]\nkey = \"rig.damping_ratio\"\nfixed = 1e-3\ntimes = \"operation.pinion_speed_hz\"\n[keep]";
+    refused_with("[keep]", mixed, &["vary[2].times", "varies by record; what a unit has cannot"]);
+    refused_with(
+        "records_per_shard = 8",
+        "channels = []\naverage = false\ndifference = false\nindicators = false",
+        &["nothing is kept"],
+    );
+    refused_with("sampling_rate_hz = 8e3", "sampling_rate_hz = 2e4", &["more than solver.sampling_rate_hz"]);
+}
+
+#[test]
+fn keys_that_are_none() {
+    refused_with(
+        "operation.pinion_speed_hz\"\nuniform",
+        "operation.pinion_speed\"\nuniform",
+        &[
+            "vary[0].key",
+            "`operation.pinion_speed` is no number",
+            "did you mean `operation.pinion_speed_hz`?",
+        ],
+    );
+    refused_with(
+        "key = \"fault.chip_height_mm\"",
+        "key = \"fault.width_mm\"",
+        &["tooth-breakage", "chip_width_mm"],
+    );
+    refused_with(
+        "measure = \"fault.chip_height_mm\"",
+        "measure = \"fault.chip_hight_mm\"",
+        &["did you mean `fault.chip_height_mm`?"],
+    );
+    refused_with(
+        "when = \"operation.pinion_speed_hz > 50\"",
+        "when = \"speed > 50\"",
+        &["split.shift[0].when", "`speed` is no number"],
+    );
+    refused_with(
+        "when = \"operation.pinion_speed_hz > 50\"",
+        "when = \"operation.pinion_speed_hz\"",
+        &["<="],
+    );
+    refused_with(
+        "when = \"operation.pinion_speed_hz > 50\"",
+        "when = \"gears.module_mm > 2\"",
+        &["about nothing that varies"],
+    );
+    let teeth = "[[vary]]\nkey = \"gears.gear_teeth\"\nuniform = [30, 50]\n[keep]";
+    refused_with("[keep]", teeth, &["is a whole number", "choice or grid"]);
+    refused_with("uniform = [30.0, 60.0]", "unifrom = [30.0, 60.0]", &["says not how it varies"]);
+    refused_with("kind = \"missing-tooth\"", "kind = \"missing\"", &["did you mean \"missing-tooth\"?"]);
+    refused_with("[split]", "[splits]", &["splits", "did you mean `split`?"]);
+}
+
+#[test]
+fn fractions_beyond_1() {
+    refused_with("train = 0.5", "train = 0.8", &["split.test", "add up to 1.3", "must be 1"]);
+    refused_with("train = 0.5", "train = 1.5", &["split.train = 1.5", "from 0 to 1"]);
+    refused_with("train = 0.5", "train = 0.1", &["add up to 0.6"]);
+    refused_with(
+        "uniform = [1.0, 5.0]",
+        "uniform = [0.5, 1.5]\nfraction_of = \"tooth.height_mm\"",
+        &["fraction_of", "1.5", "from 0 to 1"],
+    );
+}
+
+#[test]
+fn distributions_upside_down() {
+    refused_with(
+        "uniform = [30.0, 60.0]",
+        "uniform = [60.0, 30.0]",
+        &["line", "[least, largest]", "write [30.0, 60.0]"],
+    );
+    refused_with("uniform = [30.0, 60.0]", "uniform = [30.0, 30.0]", &["fixed = 30.0"]);
+    refused_with("uniform = [30.0, 60.0]", "log_uniform = [0.0, 60.0]", &["a logarithm needs more than 0"]);
+    let normal = "normal = { mean = 40, standard_deviation = -1, least = 30, largest = 60 }";
+    refused_with("uniform = [30.0, 60.0]", normal, &["standard_deviation", "more than 0"]);
+    let normal = "normal = { mean = 40, standard_deviation = 1, least = 60, largest = 30 }";
+    refused_with("uniform = [30.0, 60.0]", normal, &["largest", "more than least"]);
+    let normal = "normal = { mean = 0, standard_deviation = 1, least = 40, largest = 60 }";
+    refused_with("uniform = [30.0, 60.0]", normal, &["30 standard deviations away"]);
+    refused_with(
+        "uniform = [30.0, 60.0]",
+        "grid = { least = 60, largest = 30, values = 3 }",
+        &["more than least"],
+    );
+    refused_with("uniform = [30.0, 60.0]", "choice = []", &["is empty"]);
+    refused_with(
+        "uniform = [30.0, 60.0]",
+        "choice = [30, 40]\nweights = [1]",
+        &["has 1 numbers; must have 2"],
+    );
+    refused_with("breaks = [2.0, 4.0]", "breaks = [4.0, 2.0]", &["each larger than the one before"]);
+}
+
+#[test]
+fn constraints_that_cannot_be_met() {
+    let constraints = "seed = 3\nconstraints = [\"operation.pinion_speed_hz > 100\"]";
+    refused_with(
+        "seed = 3",
+        constraints,
+        &["constraints", "10000 draws", "`operation.pinion_speed_hz > 100` was not met by 10000"],
+    );
+    refused_with(
+        "> 50\"",
+        "> 70\"",
+        &["split.shift[0].when", "`operation.pinion_speed_hz > 70` was not met by"],
+    );
+    // All records would be in the shift.
+    refused_with("> 50\"", "> 20\"", &["split.shift[0].when", "not what belongs to the split fast"]);
+    refused_with(
+        "uniform = [1.0, 5.0]",
+        "uniform = [8.0, 9.0]",
+        &["no record of the class \"breakage\" can be simulated", "fault.chip_height_mm"],
+    );
+}
+
+#[test]
+fn base_scenarios() {
+    refused_with(
+        "module_mm = 3.0",
+        "module_mm = -3.0",
+        &["line", "scenario.gears.module_mm = -3.0", "more than 0"],
+    );
+    refused_with("module_mm = 3.0", "modul_mm = 3.0", &["did you mean `module_mm`?"]);
+    refused_with(
+        "[scenario.solver]",
+        "[scenario.fault]\nkind = \"missing-tooth\"\n[scenario.solver]",
+        &["must be healthy", "[[class]]"],
+    );
+    refused_with("din_grade = 7", "din_grade = 7\nseed = 3", &["scenario.quality.seed", "wheels of its own"]);
+    refused("scenario = \"absent.toml\"\nunits = 1", &["line 1", "absent.toml"]);
+}

@@ -1,0 +1,9 @@
+//! The library, used as its users use it. One test program, because each is linked with all libraries.
+
+mod atomic_file;
+mod recording_binary;
+mod recording_help;
+mod recording_mat;
+mod recording_text;
+mod scenario_file;
+mod signals;

@@ -1,0 +1,324 @@
+//! Recordings in Parquet, NPY, NPZ and WAV.
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+use std::fs::{self, File};
+use std::io::Cursor;
+use std::sync::Arc;
+
+use crate::recording_help::{rate, read, refused};
+use arrow::array::{
+    ArrayRef, Float32Array, Float64Array, Int64Array, StringArray, TimestampMicrosecondArray,
+};
+use arrow::record_batch::RecordBatch;
+use hound::{SampleFormat, WavSpec, WavWriter};
+use meshtone::scenario::Scenario;
+use meshtone::signal::Channels;
+use meshtone_io::recording::{Recording, RecordingOptions, read_recording};
+use meshtone_io::signals::write_signals;
+use ndarray::{Array1, Array2, Array3, ShapeBuilder, arr0};
+use ndarray_npy::{NpzWriter, WriteNpyExt};
+use parquet::arrow::ArrowWriter;
+
+fn defaults() -> RecordingOptions {
+    RecordingOptions::default()
+}
+
+fn names(recording: &Recording) -> Vec<&str> {
+    recording.channels.iter().map(|channel| &*channel.name).collect()
+}
+
+fn parquet(columns: Vec<(&str, ArrayRef)>) -> Vec<u8> {
+    let batch = RecordBatch::try_from_iter_with_nullable(
+        columns.into_iter().map(|(name, column)| (name.to_string(), column, true)),
+    );
+    let batch = batch.unwrap();
+    let mut bytes = Vec::new();
+    let mut writer = ArrowWriter::try_new(&mut bytes, batch.schema(), None).unwrap();
+    writer.write(&batch).unwrap();
+    writer.close().unwrap();
+    bytes
+}
+
+fn table() -> Array2<f64> {
+    Array2::from_shape_fn((60, 3), |(row, column)| row as f64 - 0.5 * column as f64)
+}
+
+#[test]
+fn signals_of_a_simulation_are_read_with_unit_rate_and_scenario() {
+    let directory = tempfile::tempdir().unwrap();
+    let signal = |scale: f64| (0..70_000).map(|i| scale * (f64::from(i) / 3.0).sin()).collect::<Vec<_>>();
+    let channels = Channels {
+        sampling_rate_hz: 258_400.0,
+        start_s: 0.95,
+        horizontal_g: signal(1.0),
+        vertical_g: signal(1e-300),
+        axial_g: signal(0.0),
+        pinion_speed_hz: signal(40.0),
+        gear_speed_hz: signal(17.0),
+        mesh_force_n: signal(1e9),
+    };
+    let scenario = Scenario::new(3.0, 20, 40, 15.0, 40.0, 10.0);
+    let file = File::create(directory.path().join("signals.parquet")).unwrap();
+    write_signals(file, &scenario, &channels).unwrap();
+    // The folder stands for its signals.
+    let recording = read_recording(directory.path(), &defaults()).unwrap();
+    assert_eq!((recording.sampling_rate_hz, recording.start_s), (258_400.0, 0.95));
+    assert_eq!(recording.scenario_toml, Some(scenario.to_toml()));
+    assert_eq!(recording.channels.len(), 6);
+    assert_eq!(recording.channels[0].samples, channels.horizontal_g);
+    assert_eq!(recording.channels[5].samples, channels.mesh_force_n);
+    assert!(recording.channels.iter().all(|channel| channel.unit.is_some()));
+    assert_eq!(recording.channels[0].unit.as_deref(), Some("g"));
+}
+
+#[test]
+fn parquet_of_others_is_read() {
+    let moments =
+        TimestampMicrosecondArray::from_iter_values((0..100).map(|i| 1_700_000_000_000_000 + 20 * i));
+    let bytes = parquet(vec![
+        ("timestamp", Arc::new(moments)),
+        ("a [g]", Arc::new(Float32Array::from_iter_values((0..100).map(|i| i as f32 / 4.0)))),
+        ("count", Arc::new(Int64Array::from_iter_values(0..100))),
+        ("note", Arc::new(StringArray::from_iter_values((0..100).map(|i| i.to_string())))),
+    ]);
+    let recording = read("a.parquet", &bytes, &defaults()).unwrap();
+    assert_eq!(recording.sampling_rate_hz, 50_000.0);
+    assert_eq!(names(&recording), ["a", "count"]);
+    assert_eq!(recording.channels[0].unit.as_deref(), Some("g"));
+    assert_eq!(recording.channels[0].samples[99], 24.75);
+    let message =
+        refused("a.parquet", &bytes, &RecordingOptions { channels: vec!["note".into()], ..defaults() });
+    assert!(message.contains("column note holds Utf8; must be real numbers"), "{message}");
+    let message =
+        refused("a.parquet", &bytes, &RecordingOptions { channels: vec!["b".into()], ..defaults() });
+    assert!(
+        message.contains("has no column `b`") && message.contains("it has timestamp, a [g]"),
+        "{message}"
+    );
+}
+
+#[test]
+fn gaps_in_binary_files_are_named() {
+    let nulls = parquet(vec![("a", Arc::new(Float64Array::from(vec![Some(1.0), None, Some(2.0)])))]);
+    let message = refused("a.parquet", &nulls, &rate(1.0));
+    assert!(message.contains("sample 2 of column a is empty (null)"), "{message}");
+    let mut bytes = Vec::new();
+    Array1::from(vec![1.0, 2.0, f64::NAN, 4.0]).write_npy(&mut bytes).unwrap();
+    let message = refused("a.npy", &bytes, &rate(1.0));
+    assert!(message.contains("sample 3 of column channel 1 is NaN"), "{message}");
+    let mut bytes = Vec::new();
+    Array1::from(vec![1.0_f32, f32::INFINITY]).write_npy(&mut bytes).unwrap();
+    assert!(refused("a.npy", &bytes, &rate(1.0)).contains("sample 2 of column channel 1 is infinite"));
+}
+
+#[test]
+fn arrays_of_every_order_and_type_are_read() {
+    let (table, options) = (table(), rate(1000.0));
+    let mut fortran = Array2::zeros((60, 3).f());
+    fortran.assign(&table);
+    for array in [table.clone(), fortran, table.t().to_owned(), table.t().as_standard_layout().to_owned()] {
+        let mut bytes = Vec::new();
+        array.write_npy(&mut bytes).unwrap();
+        let recording = read("a.npy", &bytes, &options).unwrap();
+        assert_eq!(recording.channels.len(), 3);
+        for (channel, column) in recording.channels.iter().zip(table.columns()) {
+            assert_eq!(channel.samples, column.to_vec());
+        }
+    }
+    let (mut short, mut single) = (Vec::new(), Vec::new());
+    Array1::from(vec![-3_i16, 4, 5]).write_npy(&mut short).unwrap();
+    assert_eq!(read("a.npy", &short, &options).unwrap().channels[0].samples, [-3.0, 4.0, 5.0]);
+    Array1::from(vec![0.1_f32, 4.0]).write_npy(&mut single).unwrap();
+    assert_eq!(read("a.npy", &single, &options).unwrap().channels[0].samples[0], f64::from(0.1_f32));
+    let mut cube = Vec::new();
+    Array3::<f64>::zeros((2, 3, 4)).write_npy(&mut cube).unwrap();
+    let message = refused("a.npy", &cube, &options);
+    assert!(
+        message.contains("column 1 holds an array of shape 2 × 3 × 4; must have one or two dimensions"),
+        "{message}"
+    );
+    let chosen = RecordingOptions { channels: vec![2.into()], ..options };
+    let mut bytes = Vec::new();
+    table.write_npy(&mut bytes).unwrap();
+    let recording = read("a.npy", &bytes, &chosen).unwrap();
+    assert_eq!(names(&recording), ["channel 2"]);
+    assert_eq!(recording.channels[0].samples, table.column(1).to_vec());
+}
+
+fn npz(compressed: bool) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    let mut archive =
+        if compressed { NpzWriter::new_compressed(&mut bytes) } else { NpzWriter::new(&mut bytes) };
+    archive.add_array("bench", &table()).unwrap();
+    archive.add_array("speed [Hz]", &Array1::from_elem(60, 24.5)).unwrap();
+    archive.add_array("fs", &arr0(12_800.0)).unwrap();
+    archive.finish().unwrap();
+    bytes.into_inner()
+}
+
+#[test]
+fn archives_are_read() {
+    for compressed in [false, true] {
+        let bytes = npz(compressed);
+        let recording = read("a.npz", &bytes, &defaults()).unwrap();
+        assert_eq!(names(&recording), ["bench 1", "bench 2", "bench 3", "speed"]);
+        assert_eq!(recording.channels[3].unit.as_deref(), Some("Hz"));
+        assert_eq!(recording.sampling_rate_hz, 12_800.0);
+        assert_eq!(recording.channels[2].samples, table().column(2).to_vec());
+        let variable = RecordingOptions { variable: Some("bench".to_string()), ..defaults() };
+        assert_eq!(read("a.npz", &bytes, &variable).unwrap().channels.len(), 3);
+        let variable = RecordingOptions { variable: Some("bank".to_string()), ..defaults() };
+        let message = refused("a.npz", &bytes, &variable);
+        assert!(message.contains("has no variable `bank`"), "{message}");
+        assert!(message.contains("bench (60 × 3 float64)"), "{message}");
+    }
+}
+
+#[test]
+fn a_stated_rate_and_a_time_array_must_agree() {
+    let with_rate = |rate_hz: f64| {
+        let mut bytes = Cursor::new(Vec::new());
+        let mut archive = NpzWriter::new(&mut bytes);
+        archive.add_array("t", &Array1::from_shape_fn(100, |index| 3.0 + index as f64 / 1000.0)).unwrap();
+        archive.add_array("a", &Array1::from_elem(100, 1.0)).unwrap();
+        archive.add_array("sampling_rate_khz", &arr0(rate_hz / 1000.0)).unwrap();
+        archive.finish().unwrap();
+        bytes.into_inner()
+    };
+    let recording = read("a.npz", &with_rate(1000.0), &defaults()).unwrap();
+    assert_eq!((recording.sampling_rate_hz, recording.start_s, names(&recording)), (1000.0, 3.0, vec!["a"]));
+    assert_eq!((recording.duration_s(), recording.time_s(10)), (0.1, 3.01));
+    let message = refused("a.npz", &with_rate(2000.0), &defaults());
+    assert!(message.contains("sampling_rate_khz says a sampling rate of 2000 S/s"), "{message}");
+    assert!(message.contains("time column t says 1000 S/s; give the sampling rate"), "{message}");
+    assert_eq!(read("a.npz", &with_rate(2000.0), &rate(50.0)).unwrap().sampling_rate_hz, 50.0);
+    assert!(refused("a.npz", &with_rate(-1.0), &defaults()).contains("must be above 0"));
+}
+
+#[test]
+fn channels_of_unequal_length_are_named() {
+    let mut bytes = Cursor::new(Vec::new());
+    let mut archive = NpzWriter::new(&mut bytes);
+    archive.add_array("a", &Array1::from_elem(100, 1.0)).unwrap();
+    archive.add_array("b", &Array1::from_elem(99, 1.0)).unwrap();
+    archive.finish().unwrap();
+    let message = refused("a.npz", &bytes.into_inner(), &rate(1.0));
+    assert!(
+        message.ends_with("(option channels, or variable): a (100 samples), b (99 samples)"),
+        "{message}"
+    );
+}
+
+#[test]
+fn changed_numbers_in_an_archive_are_noticed() {
+    let bytes = npz(false);
+    let number = 59.0_f64.to_le_bytes();
+    let at = bytes.windows(8).position(|window| window == number).unwrap();
+    let mut changed = bytes.clone();
+    changed[at] ^= 1;
+    let message = refused("a.npz", &changed, &defaults());
+    assert!(message.contains("array bench: ") && message.contains("checksum"), "{message}");
+}
+
+#[test]
+fn the_fields_of_a_structured_array_are_columns() {
+    let header = "{'descr': [('time', '<f8'), ('note', '|S2'), ('a [g]', '<f4')], 'fortran_order': False, \
+                  'shape': (3,), }\n";
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((header.len() as u16).to_le_bytes());
+    bytes.extend(header.as_bytes());
+    for (time, sample) in [(0.0_f64, 1.5_f32), (0.5, -2.0), (1.0, 3.0)] {
+        bytes.extend(time.to_le_bytes());
+        bytes.extend(b"xy");
+        bytes.extend(sample.to_le_bytes());
+    }
+    let recording = read("a.npy", &bytes, &defaults()).unwrap();
+    assert_eq!((recording.sampling_rate_hz, names(&recording)), (2.0, vec!["a"]));
+    assert_eq!(recording.channels[0].unit.as_deref(), Some("g"));
+    assert_eq!(recording.channels[0].samples, [1.5, -2.0, 3.0]);
+}
+
+fn wav(spec: WavSpec, write: impl Fn(&mut WavWriter<&mut Cursor<Vec<u8>>>)) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    let mut writer = WavWriter::new(&mut bytes, spec).unwrap();
+    write(&mut writer);
+    writer.finalize().unwrap();
+    bytes.into_inner()
+}
+
+#[test]
+fn wav_is_read() {
+    let spec = |bits_per_sample, sample_format| WavSpec {
+        channels: 2,
+        sample_rate: 51_200,
+        bits_per_sample,
+        sample_format,
+    };
+    for bits in [8, 16, 24, 32] {
+        let quarter = 1 << (bits - 3);
+        let bytes = wav(spec(bits, SampleFormat::Int), |writer| {
+            [quarter, -quarter, 0, 2 * quarter]
+                .iter()
+                .for_each(|sample| writer.write_sample(*sample).unwrap());
+        });
+        let recording = read("a.wav", &bytes, &defaults()).unwrap();
+        assert_eq!((recording.sampling_rate_hz, recording.len()), (51_200.0, 2));
+        assert_eq!(recording.channels[0].samples, [0.25, 0.0], "{bits}");
+        assert_eq!(recording.channels[1].samples, [-0.25, 0.5], "{bits}");
+    }
+    let bytes = wav(spec(32, SampleFormat::Float), |writer| {
+        [1.5_f32, -2.5].iter().for_each(|sample| writer.write_sample(*sample).unwrap());
+    });
+    assert_eq!(read("a.wav", &bytes, &defaults()).unwrap().channels[1].samples, [-2.5]);
+}
+
+#[test]
+fn files_that_are_empty_cut_or_unknown_are_refused() {
+    for name in ["a.csv", "a.parquet", "a.npy", "a.npz", "a.mat", "a.wav"] {
+        assert_eq!(refused(name, b"", &defaults()), format!("{name}: is empty (0 bytes)"));
+    }
+    let mut npy = Vec::new();
+    table().write_npy(&mut npy).unwrap();
+    let spec =
+        WavSpec { channels: 1, sample_rate: 8000, bits_per_sample: 16, sample_format: SampleFormat::Int };
+    let wav = wav(spec, |writer| (0..500).for_each(|sample| writer.write_sample(sample).unwrap()));
+    let parquet = parquet(vec![("a", Arc::new(Float64Array::from_iter_values((0..500).map(f64::from))))]);
+    for (name, bytes) in [("a.npy", npy), ("a.npz", npz(true)), ("a.wav", wav), ("a.parquet", parquet)] {
+        for end in [3, 9, 40, bytes.len() / 2, bytes.len() - 1] {
+            let message = refused(name, &bytes[..end], &rate(1.0));
+            assert!(message.starts_with(&format!("{name}: ")), "{end}: {message}");
+            assert!(message.contains("is not a whole"), "{end}: {message}");
+        }
+    }
+    let message = refused("a.xyz", b"hello", &defaults());
+    assert!(message.contains("is of no format that is known here (it ends in .xyz"), "{message}");
+    let missing = read_recording("no/such/file.csv".as_ref(), &defaults()).unwrap_err().to_string();
+    assert!(missing.starts_with("cannot read no/such/file.csv: "), "{missing}");
+}
+
+#[test]
+fn a_header_that_announces_more_than_there_is_takes_no_memory() {
+    let header = "{'descr': '<f8', 'fortran_order': False, 'shape': (1000000000000,), }\n";
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((header.len() as u16).to_le_bytes());
+    bytes.extend(header.as_bytes());
+    bytes.extend([0; 64]);
+    let message = refused("a.npy", &bytes, &rate(1.0));
+    assert!(message.contains("takes 8000000000000 bytes, but there are 64"), "{message}");
+}
+
+#[test]
+fn options_are_checked() {
+    let mut bytes = Vec::new();
+    table().write_npy(&mut bytes).unwrap();
+    for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(refused("a.npy", &bytes, &rate(wrong)).contains("must be a finite number above 0"));
+    }
+    let variable = RecordingOptions { variable: Some("x".to_string()), ..rate(1.0) };
+    assert!(refused("a.npy", &bytes, &variable).contains("only NPZ and MAT files hold variables"));
+    assert!(refused("a.npy", &bytes, &defaults()).contains("does not say its sampling rate"));
+    let directory = tempfile::tempdir().unwrap();
+    let empty = read_recording(directory.path(), &defaults()).unwrap_err().to_string();
+    assert!(empty.starts_with("cannot read "), "{empty}");
+    assert!(fs::read_dir(directory.path()).unwrap().next().is_none());
+}

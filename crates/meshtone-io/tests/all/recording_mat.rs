@@ -1,0 +1,113 @@
+//! Recordings in MATLAB files, against files that SciPy wrote.
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::recording_help::{rate, read, refused};
+use meshtone_io::recording::{Recording, RecordingOptions, read_recording};
+
+fn fixture(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/recordings").join(name)
+}
+
+fn bytes(name: &str) -> Vec<u8> {
+    fs::read(fixture(name)).unwrap()
+}
+
+fn names(recording: &Recording) -> Vec<&str> {
+    recording.channels.iter().map(|channel| &*channel.name).collect()
+}
+
+fn variable(name: &str) -> RecordingOptions {
+    RecordingOptions { variable: Some(name.to_string()), ..RecordingOptions::default() }
+}
+
+fn one() -> Vec<f64> {
+    (0..50).map(|index| 0.5 * f64::from(index) - 3.0).collect()
+}
+
+fn scaled(by: f64) -> Vec<f64> {
+    one().into_iter().map(|sample| by * sample).collect()
+}
+
+#[test]
+fn variables_are_channels() {
+    for file in ["flat.mat", "flat_compressed.mat"] {
+        let recording = read_recording(&fixture(file), &RecordingOptions::default()).unwrap();
+        assert_eq!(names(&recording), ["X097_DE_time", "X097_FE_time"]);
+        assert_eq!(recording.sampling_rate_hz, 12_800.0);
+        assert_eq!(recording.channels[0].samples, one());
+        let squares: Vec<f64> = (0..50).map(|index| f64::from(index * index)).collect();
+        assert_eq!(recording.channels[1].samples, squares);
+    }
+}
+
+#[test]
+fn structs_and_cells_are_reached_by_paths() {
+    for file in ["nested.mat", "nested_compressed.mat"] {
+        let of = |name: &str| read_recording(&fixture(file), &variable(name)).unwrap();
+        let sensors = of("bench.sensors");
+        assert_eq!(names(&sensors), ["pair 1", "pair 2", "speed"]);
+        assert_eq!(sensors.sampling_rate_hz, 12_800.0);
+        assert_eq!(sensors.channels[0].samples, one());
+        assert_eq!(sensors.channels[1].samples, scaled(-2.0));
+        assert_eq!(sensors.channels[2].samples, [24.5; 50]);
+        assert_eq!(of("bench.sensors.pair").channels.len(), 2);
+        assert_eq!(of("record(2).signal").channels[0].samples, scaled(2.0));
+        assert_eq!(of("runs{2}.signal").channels[0].samples, one()[..20]);
+        assert_eq!(of("runs{2}").channels[0].samples, one()[..20]);
+        assert_eq!(of("cells{3}").channels[1].samples, scaled(-2.0));
+        let chosen = RecordingOptions { channels: vec!["speed".into()], ..RecordingOptions::default() };
+        assert_eq!(names(&read_recording(&fixture(file), &chosen).unwrap()), ["bench.sensors.speed"]);
+    }
+}
+
+#[test]
+fn what_is_no_recording_is_named() {
+    let file = bytes("nested.mat");
+    let message = refused("n.mat", &file, &variable("bench.sensor"));
+    assert!(message.contains("has no variable `bench.sensor` that holds numbers"), "{message}");
+    assert!(message.contains("bench.sensors.pair (50 × 2 double)"), "{message}");
+    let message = refused("n.mat", &file, &variable("complex"));
+    assert!(message.contains("has no variable `complex` that holds numbers"), "{message}");
+    let message =
+        refused("n.mat", &file, &RecordingOptions { channels: vec!["complex".into()], ..rate(1.0) });
+    assert!(message.contains("column complex holds complex numbers; must be real numbers"), "{message}");
+    let message = refused("n.mat", &file, &rate(1.0));
+    assert!(message.contains("the channels are not equally long; choose those"), "{message}");
+    assert!(message.contains("runs{2}.signal (20 samples)"), "{message}");
+}
+
+#[test]
+fn other_versions_are_answered_with_how_to_convert() {
+    let version_4 = refused("old.mat", &bytes("version4.mat"), &RecordingOptions::default());
+    assert!(version_4.contains("another version than 5") && version_4.contains("'-v7'"), "{version_4}");
+    let mut hdf5 = b"MATLAB 7.3 MAT-file, Platform: GLNXA64".to_vec();
+    hdf5.resize(512, b' ');
+    hdf5.extend(b"\x89HDF\r\n\x1a\n");
+    let message = refused("new.mat", &hdf5, &RecordingOptions::default());
+    assert_eq!(
+        message,
+        "new.mat: is a MATLAB file of version 7.3 (HDF5), which is not read; save it again in MATLAB with `s = \
+         load('FILE.mat'); save('FILE7.mat', '-struct', 's', '-v7')`, or in Python with h5py and numpy.savez"
+    );
+}
+
+#[test]
+fn cut_files_are_refused_wherever_they_end() {
+    for name in ["flat.mat", "flat_compressed.mat", "nested_compressed.mat"] {
+        let file = bytes(name);
+        for end in (0..file.len()).step_by(7) {
+            let result = read("cut.mat", &file[..end], &rate(1.0));
+            // Whole variables are a whole file.
+            if let Ok(recording) = &result {
+                assert!(recording.channels.iter().all(|channel| channel.samples.len() == 50), "{name} {end}");
+            }
+        }
+    }
+    let file = bytes("flat.mat");
+    let message = refused("cut.mat", &file[..400], &rate(1.0));
+    assert!(message.contains("is not a whole MAT file: the variable at byte 128"), "{message}");
+    assert!(message.contains("is the file cut off?"), "{message}");
+}

@@ -1,0 +1,7 @@
+//! The library, used as its users use it. One test program, because each is linked with all libraries.
+
+mod dataset;
+mod indicators;
+mod panel;
+mod support;
+mod tuning;

@@ -1,0 +1,317 @@
+//! The results panel of every fault, of awkward wheels and of awkward signals.
+
+#![allow(clippy::unwrap_used)]
+
+use crate::support::check;
+use meshtone::scenario::*;
+use meshtone::signal::Channels;
+use meshtone::{Simulation, simulate};
+use meshtone_plot::{Figure, PlotError, panel};
+
+/// (bytes) Of an SVG.
+const LARGEST: usize = 400_000;
+
+fn simulated(scenario: &Scenario) -> Simulation {
+    let mut scenario = scenario.clone();
+    scenario.solver.sampling_rate_hz = 2e4;
+    scenario.gears.points_per_tooth = 2000;
+    simulate(&scenario).unwrap()
+}
+
+fn drawn(scenario: &Scenario) -> Figure {
+    let simulation = simulated(scenario);
+    let figure = panel::draw(&simulation.stages, &simulation.channels).unwrap();
+    check(&figure, LARGEST);
+    figure
+}
+
+fn assert_shows(figure: &Figure, words: &[&str]) {
+    for word in words {
+        let found = figure.labels().iter().any(|label| label.text.contains(word));
+        assert!(found, "no {word:?} in {:?}", figure.labels().iter().map(|l| &l.text).collect::<Vec<_>>());
+        assert!(figure.svg().contains(word), "{word}");
+    }
+}
+
+const EVERY_PANEL: [&str; 22] = [
+    "Pinion, input shaft",
+    "Gear, output shaft",
+    "First tooth, in its plane",
+    "From the wheel’s centre, x (mm)",
+    "Across the tooth, y (mm)",
+    "Tooth face",
+    "Face width, z (mm)",
+    "Profile errors",
+    "Error (µm)",
+    "Vertical acceleration (g)",
+    "Mesh stiffness over a gear revolution",
+    "Stiffness (N/µm)",
+    "working",
+    "back",
+    "root",
+    "pitch",
+    "tip",
+    "contact start",
+    "tip relief",
+    "module 3 mm",
+    "corrected model",
+    "(°)",
+];
+
+#[test]
+fn panels_of_the_gallery_show_what_they_should() {
+    let expected: [(&str, &[&str]); 6] = [
+        (
+            "healthy",
+            &["Healthy gear pair", "DIN 3962 grade 7", "17 and 38 teeth", "Average of 17 gear revolutions"],
+        ),
+        ("missing_tooth", &["Missing tooth", "tooth missing", "turn of the missing tooth", "healthy gear"]),
+        (
+            "tooth_breakage",
+            &["Tooth breakage: chip 5 mm high, 12 mm wide, tip loss 3 mm", "corner chipped off"],
+        ),
+        (
+            "partial_face",
+            &["Pit over part of the face: 2 mm wide", "hatched: lost over part of the face width"],
+        ),
+        (
+            "through_face",
+            &["Pit over the whole face: 15 mm wide", "damaged tooth in contact", "pit 15 mm wide,"],
+        ),
+        (
+            "tooth_destruction",
+            &["Tooth destruction: flank ground up to", "18 and 35 teeth", "flank ground down"],
+        ),
+    ];
+    for ((name, scenario), (expected_name, words)) in crate::support::gallery().iter().zip(expected) {
+        assert_eq!(*name, expected_name);
+        let figure = drawn(scenario);
+        assert_shows(&figure, &EVERY_PANEL);
+        assert_shows(&figure, words);
+    }
+}
+
+#[test]
+fn the_png_has_the_panels_size() {
+    let (_, scenario) = crate::support::gallery().remove(2);
+    let png = drawn(&scenario).png().unwrap();
+    let mut reader = png::Decoder::new(std::io::Cursor::new(&png)).read_info().unwrap();
+    assert_eq!((reader.info().width, reader.info().height), (panel::WIDTH, panel::HEIGHT));
+    assert!(png.len() < 300_000, "{} bytes", png.len());
+    // Neither blank nor without text: the title's corner has ink in it.
+    let mut indices = vec![0; reader.output_buffer_size().unwrap()];
+    let palette = reader.info().palette.clone().unwrap().into_owned();
+    reader.next_frame(&mut indices).unwrap();
+    let rows = indices.chunks(1600).skip(18).take(24);
+    let dark =
+        rows.flat_map(|row| &row[15..400]).filter(|index| palette[3 * usize::from(**index)] < 60).count();
+    assert!(dark > 500, "{dark}");
+}
+
+#[test]
+fn the_run_stands_in_both_files() {
+    let (_, scenario) = crate::support::gallery().remove(0);
+    let figure = drawn(&scenario).of_run("0123<ab>cd");
+    check(&figure, LARGEST);
+    assert!(figure.svg().contains("<metadata>meshtone.run: 0123abcd</metadata>"));
+    let png = figure.png().unwrap();
+    let reader = png::Decoder::new(std::io::Cursor::new(&png)).read_info().unwrap();
+    let texts = &reader.info().uncompressed_latin1_text;
+    assert_eq!((texts[0].keyword.as_str(), texts[0].text.as_str()), ("meshtone.run", "0123abcd"));
+}
+
+#[test]
+fn the_same_panel_twice_is_the_same() {
+    let (_, scenario) = crate::support::gallery().remove(3);
+    assert_eq!(drawn(&scenario), drawn(&scenario));
+}
+
+fn with_teeth(pinion: u32, gear: u32, fault: Option<Fault>) -> Scenario {
+    let mut scenario = Scenario::new(3.0, pinion, gear, 15.0, 40.0, 10.0);
+    let thinnest = 1.5 * f64::from(pinion.min(gear)) - 3.75;
+    scenario.rig.pinion_shaft.radius_mm = 10f64.min(0.8 * thinnest);
+    scenario.rig.gear_shaft.radius_mm = 10f64.min(0.8 * thinnest);
+    scenario.fault = fault;
+    scenario
+}
+
+#[test]
+fn small_and_large_wheels() {
+    let faults = || {
+        let pit = PitCircle::Fractions { start: 0.2, end: 0.8, depth: 0.5 };
+        [
+            None,
+            Some(Fault::MissingTooth),
+            Some(Fault::ToothBreakage(ToothBreakage {
+                chip_height_mm: 4.0,
+                chip_width_mm: 9.0,
+                tip_loss_mm: 0.0,
+            })),
+            Some(Fault::PartialFace(PartialFace { width_mm: 5.0, pit })),
+        ]
+    };
+    for (pinion, gear) in [(6, 200), (6, 6), (200, 6), (200, 200), (41, 42)] {
+        for fault in faults() {
+            // Six teeth against six, one missing: the wheels lose contact and the motion has no bound.
+            if pinion == gear && gear == 6 && fault == Some(Fault::MissingTooth) {
+                continue;
+            }
+            drawn(&with_teeth(pinion, gear, fault));
+        }
+    }
+}
+
+#[test]
+fn small_and_large_modules_and_no_relief() {
+    for module in [0.2, 50.0] {
+        let mut scenario = Scenario::new(module, 17, 38, 10.0 * module, 10.0, 10.0);
+        scenario.rig.pinion_shaft.radius_mm = 5.0 * module;
+        scenario.rig.gear_shaft.radius_mm = 5.0 * module;
+        scenario.gears.tip_relief = None;
+        scenario.quality.din_grade = if module < 1.0 { 12 } else { 1 };
+        scenario.fault = Some(Fault::ToothBreakage(ToothBreakage {
+            chip_height_mm: 1.5 * module,
+            chip_width_mm: 10.0 * module,
+            tip_loss_mm: module,
+        }));
+        drawn(&scenario);
+    }
+}
+
+#[test]
+fn ideal_teeth_say_so() {
+    assert_shows(&drawn(&with_teeth(17, 38, None)), &["ideal teeth"]);
+}
+
+#[test]
+fn base_circles_that_are_not_seen_are_told_of() {
+    let told =
+        |figure: &Figure| figure.labels().iter().filter(|l| l.text == "base circle below the root").count();
+    let named = |figure: &Figure| figure.labels().iter().filter(|l| l.text == "base").count();
+    for (pinion, gear, seen) in [(17, 38, 2), (38, 45, 2), (45, 60, 1), (60, 200, 0)] {
+        for fault in [None, Some(partial_face())] {
+            let figure = drawn(&with_teeth(pinion, gear, fault));
+            assert_eq!((named(&figure), told(&figure)), (seen, 2 - seen), "{pinion} and {gear}");
+        }
+    }
+}
+
+fn partial_face() -> Fault {
+    let pit = PitCircle::Fractions { start: 0.2, end: 0.8, depth: 0.4 };
+    Fault::PartialFace(PartialFace { width_mm: 5.0, pit })
+}
+
+/// The face shows the damage where the equations of motion take the width away.
+#[test]
+fn damage_is_at_the_end_from_which_the_load_moves_away() {
+    let chip = ToothBreakage { chip_height_mm: 4.0, chip_width_mm: 6.0, tip_loss_mm: 0.0 };
+    for fault in [partial_face(), Fault::ToothBreakage(chip)] {
+        let simulation = simulated(&with_teeth(17, 38, Some(fault)));
+        let states = &simulation.stages.system.mesh.faulty;
+        assert!(
+            states.iter().any(|state| state.mean_z_m < 0.0)
+                && states.iter().all(|state| state.mean_z_m <= 0.0)
+        );
+        let figure = panel::draw(&simulation.stages, &simulation.channels).unwrap();
+        let face_middle = figure.labels().iter().filter(|label| label.text == "Face width, z (mm)");
+        let face_middle = face_middle.map(|label| (label.left + label.right) / 2.0).fold(0.0, f64::max);
+        let document = roxmltree::Document::parse(figure.svg()).unwrap();
+        let edges = document.descendants().filter(|node| {
+            node.attribute("stroke") == Some("#d55e00") && node.attribute("stroke-width") == Some("1.8")
+        });
+        let mut places = edges.flat_map(|edge| {
+            let path = edge.attribute("d").unwrap().replace('Z', "");
+            let points =
+                path.split(['M', 'L']).filter_map(|point| point.split(' ').next()?.parse::<f64>().ok());
+            points.collect::<Vec<_>>()
+        });
+        assert!(places.next().is_some() && places.all(|x| x > face_middle));
+    }
+}
+
+#[test]
+fn a_rough_flank_below_the_start_of_contact() {
+    let (_, mut scenario) = crate::support::gallery().remove(5);
+    scenario.fault = Some(Fault::ToothDestruction(ToothDestruction {
+        start: -0.1,
+        line: DestructionLine::SlopeDeg(20.0),
+        offset_mm: 0.3,
+        noise_mm: 0.05,
+    }));
+    drawn(&scenario);
+}
+
+#[test]
+fn published_convention_and_given_errors() {
+    let (_, mut scenario) = crate::support::gallery().remove(4);
+    let errors = meshtone::stages(&scenario).unwrap().profile_errors;
+    scenario.quality = Quality { din_grade: 0, seed: None, profile_errors: errors };
+    scenario.convention = Convention::Published;
+    assert_shows(&drawn(&scenario), &["model as published", "given profile errors"]);
+}
+
+#[test]
+fn a_changing_speed_is_drawn_over_time() {
+    let mut scenario = with_teeth(17, 38, Some(Fault::MissingTooth));
+    let profile = Profile { time_s: vec![0.0, 1.0, 1.6], value: vec![20.0, 40.0, 30.0] };
+    scenario.operation.speed_profile_hz = Some(profile);
+    scenario.operation.torque_profile_nm = Some(Profile { time_s: vec![0.0, 1.0], value: vec![5.0, 12.0] });
+    let words = [
+        "at changing speed",
+        "Speed of both shafts",
+        "Speed (Hz)",
+        "pinion speed 20 to 40 Hz",
+        "5 to 12 N·m",
+    ];
+    assert_shows(&drawn(&scenario), &words);
+}
+
+#[test]
+fn kept_signals_that_start_within_a_revolution() {
+    // The impact must stay where the tooth is, wherever the kept signal starts.
+    let mut scenario = with_teeth(17, 38, Some(Fault::MissingTooth));
+    scenario.solver.settle_fraction = 0.33;
+    let Simulation { stages, channels, .. } = simulated(&scenario);
+    let per_gear = stages.time.samples_per_pinion_revolution * 38 / 17;
+    assert_ne!(stages.time.first_kept_sample % per_gear, 0);
+    check(&panel::draw(&stages, &channels).unwrap(), LARGEST);
+}
+
+#[test]
+fn awkward_signals() {
+    let Simulation { stages, channels, .. } = simulated(&with_teeth(17, 38, None));
+    let length = channels.len();
+    let like = |values: Vec<f64>| Channels { vertical_g: values, ..channels.clone() };
+    let panel = |channels: &Channels| {
+        let figure = panel::draw(&stages, channels).unwrap();
+        check(&figure, LARGEST);
+        figure.png().unwrap();
+        figure
+    };
+    assert_shows(&panel(&Channels::default()), &["no samples were kept"]);
+    assert_shows(&panel(&like(vec![1.0; 10])), &["the kept signal is shorter than a revolution"]);
+    for value in [0.0, 1.0, -1e-9, 3e8, f64::NAN, f64::INFINITY, 1e300] {
+        panel(&like(vec![value; length]));
+    }
+    let mut spiked = channels.vertical_g.clone();
+    spiked[length / 2] = f64::NAN;
+    panel(&like(spiked));
+}
+
+#[test]
+fn signals_of_another_rate_are_refused() {
+    let Simulation { stages, mut channels, .. } = simulated(&with_teeth(17, 38, None));
+    channels.sampling_rate_hz /= 2.0;
+    let error = panel::draw(&stages, &channels).unwrap_err();
+    assert!(matches!(error, PlotError::SamplingRate { .. }), "{error}");
+}
+
+#[test]
+fn no_samples_at_changing_speed() {
+    let mut scenario = with_teeth(17, 38, None);
+    scenario.operation.speed_profile_hz = Some(Profile { time_s: vec![0.0, 1.5], value: vec![20.0, 40.0] });
+    let simulation = simulated(&scenario);
+    let figure = panel::draw(&simulation.stages, &Channels::default()).unwrap();
+    check(&figure, LARGEST);
+    assert_shows(&figure, &["no samples were kept"]);
+}

@@ -1,0 +1,58 @@
+//! The scenarios of the gallery, and what holds for every figure.
+
+// The example that draws the gallery uses a part.
+#![allow(dead_code, clippy::unwrap_used)]
+
+use meshtone::scenario::*;
+use meshtone_plot::Figure;
+
+fn small_pair(fault: Option<Fault>) -> Scenario {
+    let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    scenario.quality.din_grade = 7;
+    scenario.fault = fault;
+    scenario
+}
+
+/// Names of files and what they show.
+pub fn gallery() -> Vec<(&'static str, Scenario)> {
+    let pit = PitCircle::Fractions { start: 0.2, end: 0.8, depth: 0.5 };
+    let breakage = ToothBreakage { chip_height_mm: 5.0, chip_width_mm: 12.0, tip_loss_mm: 3.0 };
+    let mut destruction = Scenario::new(3.0, 18, 35, 30.0, 45.0, 15.0);
+    destruction.quality.din_grade = 8;
+    destruction.fault = Some(Fault::ToothDestruction(ToothDestruction {
+        start: 3.0 / 14.0,
+        line: DestructionLine::End(13.0 / 14.0),
+        offset_mm: 0.0,
+        noise_mm: 0.0,
+    }));
+    vec![
+        ("healthy", small_pair(None)),
+        ("missing_tooth", small_pair(Some(Fault::MissingTooth))),
+        ("tooth_breakage", small_pair(Some(Fault::ToothBreakage(breakage)))),
+        ("partial_face", small_pair(Some(Fault::PartialFace(PartialFace { width_mm: 2.0, pit })))),
+        ("through_face", small_pair(Some(Fault::ThroughFace(ThroughFace { pit })))),
+        ("tooth_destruction", destruction),
+    ]
+}
+
+/// What holds for every figure: it can be drawn in at most `largest` bytes, no text leaves it, and none is over another.
+pub fn check(figure: &Figure, largest: usize) {
+    roxmltree::Document::parse(figure.svg()).unwrap();
+    assert!(figure.svg().len() < largest, "{} bytes", figure.svg().len());
+    for number in ["NaN", "inf"] {
+        assert!(!figure.svg().contains(&format!("{number} ")), "{number}");
+    }
+    let (width, height) = figure.size_px();
+    let labels = figure.labels();
+    for (index, label) in labels.iter().enumerate() {
+        let inside = label.left >= 0.0
+            && label.top >= 0.0
+            && label.right <= f64::from(width)
+            && label.bottom <= f64::from(height);
+        assert!(inside, "{label:?} leaves the figure");
+        for other in &labels[index + 1..] {
+            assert!(!label.overlaps(other), "{label:?} overlaps {other:?}");
+        }
+    }
+    assert!(figure.png().unwrap().starts_with(b"\x89PNG"));
+}

@@ -1,0 +1,135 @@
+//! The figure of a tuned experiment.
+
+#![allow(clippy::unwrap_used)]
+
+use crate::support::check;
+use meshtone::hybrid::*;
+use meshtone::scenario::*;
+use meshtone_plot::{Figure, PlotError, tuning_figure};
+
+/// (bytes) Of an SVG.
+const LARGEST: usize = 400_000;
+
+/// A pair with more and more of a tooth's tip lost.
+fn experiment(labels: &[&str], indicators: &[TuningIndicator]) -> Experiment {
+    let mut base = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    base.solver.sampling_rate_hz = 25e3;
+    let cases = labels.iter().enumerate().map(|(case, label)| {
+        let tip_loss_mm = 0.5 * case as f64;
+        let chip = ToothBreakage { chip_height_mm: 5.0, chip_width_mm: 12.0, tip_loss_mm };
+        let fault = (case > 0).then_some(Fault::ToothBreakage(chip));
+        Case { label: (*label).to_owned(), severity: case as f64, fault }
+    });
+    // Records that rise with the case and scatter.
+    let record =
+        |case: usize, k: usize| 0.3 + 0.9 * case as f64 / labels.len() as f64 + 0.05 * (k as f64 * 2.3).sin();
+    let values = (0..labels.len())
+        .map(|case| indicators.iter().map(|_| (0..40).map(|k| record(case, k)).collect()).collect())
+        .collect();
+    Experiment {
+        base,
+        cases: cases.collect(),
+        chain: DifferenceChain::new(25e3),
+        measured: Measurements::from_compared(indicators.to_vec(), values).unwrap(),
+        bounds: EnhancementBounds::default(),
+        keys: Vec::new(),
+        candidates: 0,
+        seed: 3,
+    }
+}
+
+fn result(experiment: &Experiment) -> ExperimentResult {
+    let control = ExperimentControl { progress: &|_, _| (), cancelled: &false.into() };
+    run_experiment(experiment, &control).unwrap()
+}
+
+fn drawn(experiment: &Experiment, title: &str) -> Figure {
+    let figure = tuning_figure(experiment, &result(experiment), title).unwrap();
+    check(&figure, LARGEST);
+    assert_eq!(figure.size_px(), (1600, 1000));
+    figure
+}
+
+fn has(figure: &Figure, text: &str) -> bool {
+    figure.labels().iter().any(|label| label.text == text)
+}
+
+const LABELS: [&str; 7] = [
+    "healthy",
+    "chipped, tip loss 0.50 mm",
+    "chipped_tip_loss_1.000_mm",
+    "chippedwithatiplossof1.5m",
+    "chip & tip loss < 2.00 mm",
+    "F5",
+    "chipped, tip loss 3.00 mm",
+];
+const TWO: [TuningIndicator; 2] = [TuningIndicator::Rms, TuningIndicator::Kurtosis];
+
+#[test]
+fn seven_cases_with_long_names() {
+    let figure = drawn(&experiment(&LABELS, &TWO), "A rig");
+    for text in [
+        "A rig",
+        "healthy",
+        "F5",
+        "Kurtosis",
+        "Original simulation",
+        "Noise level ν (–)",
+        "Width ratio w (–)",
+    ] {
+        assert!(has(&figure, text), "{text}");
+    }
+    assert!(figure.svg().matches("<circle").count() >= 7 * 2 * 40);
+    assert!(figure.png().unwrap().len() < 400_000);
+}
+
+#[test]
+fn two_cases_many_cases_and_one_to_three_indicators() {
+    let three = [TuningIndicator::Rms, TuningIndicator::Kurtosis, TuningIndicator::Skewness];
+    drawn(&experiment(&LABELS[..2], &three[..1]), "");
+    drawn(&experiment(&LABELS[..3], &three), &"a very long title ".repeat(30));
+    let many: Vec<String> = (0..14).map(|case| format!("chipped, tip loss no. {case}")).collect();
+    let many: Vec<&str> = many.iter().map(String::as_str).collect();
+    let figure = drawn(&experiment(&many, &TWO), "Many");
+    assert!(has(&figure, "case 0") && has(&figure, "case 13"));
+}
+
+#[test]
+fn every_indicator() {
+    let figure = drawn(&experiment(&LABELS, &TuningIndicator::ALL), "All");
+    assert!(has(&figure, "Skewness of the envelope"));
+}
+
+#[test]
+fn tuned_keys_are_told() {
+    let mut experiment = experiment(&LABELS[..4], &TWO);
+    let range = KeyRange::Between { least: 0.01, largest: 0.3, logarithmic: true };
+    experiment.keys = vec![TunedKey { key: "rig.damping_ratio".into(), range }];
+    experiment.candidates = 16;
+    let figure = drawn(&experiment, "With a key");
+    assert!(figure.labels().iter().any(|label| label.text.contains("rig.damping_ratio = ")));
+}
+
+#[test]
+fn parameters_that_are_held() {
+    let mut experiment = experiment(&LABELS[..2], &TWO);
+    experiment.bounds = EnhancementBounds {
+        width_ratio: [0.2; 2],
+        fault_to_harmonics_ratio: [1.0; 2],
+        noise_level: [1.0; 2],
+    };
+    drawn(&experiment, "Held");
+}
+
+#[test]
+fn the_same_figure_twice_is_the_same() {
+    let experiment = experiment(&LABELS[..3], &TWO);
+    assert_eq!(drawn(&experiment, "A rig"), drawn(&experiment, "A rig"));
+}
+
+#[test]
+fn a_result_of_other_cases_is_refused() {
+    let result = result(&experiment(&LABELS[..2], &TWO));
+    let error = tuning_figure(&experiment(&LABELS[..3], &TWO), &result, "").unwrap_err();
+    assert!(matches!(error, PlotError::Hybrid(HybridError::Cases { .. })), "{error}");
+}

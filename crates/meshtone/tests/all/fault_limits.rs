@@ -1,0 +1,135 @@
+//! Faults of vanishing size are no faults, and how fast they vanish.
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
+
+use crate::physics::*;
+use meshtone::scenario::*;
+use meshtone::simulate;
+
+fn scenario(fault: Option<Fault>) -> Scenario {
+    let mut scenario = Scenario::new(3.0, 20, 40, 15.0, 30.0, 100.0);
+    scenario.solver.sampling_rate_hz = 2e4;
+    scenario.fault = fault;
+    scenario
+}
+
+/// (mean relative change of the pair's stiffness, rms of the change of the vertical acceleration over its rms)
+fn effect(healthy: &[f64], fault: Fault) -> [f64; 2] {
+    let simulation = simulate(&scenario(Some(fault))).unwrap();
+    let pair = &simulation.stages.pair;
+    let faulty = pair.faulty_n_per_mm.as_ref().unwrap();
+    let change: Vec<f64> =
+        faulty.iter().zip(&pair.healthy_n_per_mm).map(|(f, h)| deviation(*f, *h).abs()).collect();
+    let signal = &simulation.channels.vertical_g;
+    let difference: Vec<f64> = signal.iter().zip(healthy).map(|(f, h)| f - h).collect();
+    [mean(&change), rms(&difference) / rms(healthy)]
+}
+
+/// What is left at 1, 1/2, …, 1/32 of a fault's size.
+struct Vanishing {
+    stiffness: Vec<f64>,
+    acceleration: Vec<f64>,
+}
+
+const SIZES: [f64; 6] = [1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125];
+
+impl Vanishing {
+    fn of(name: &str, fault: impl Fn(f64) -> Fault) -> Self {
+        let healthy = simulate(&scenario(None)).unwrap().channels.vertical_g;
+        let effects: Vec<[f64; 2]> = SIZES.iter().map(|&size| effect(&healthy, fault(size))).collect();
+        let column = |k: usize| effects.iter().map(|effect| effect[k]).collect::<Vec<f64>>();
+        let vanishing = Self { stiffness: column(0), acceleration: column(1) };
+        println!(
+            "{name}: stiffness {:.1e} to {:.1e}, order {:.2}; acceleration {:.1e} to {:.1e}, order {:.2}",
+            vanishing.stiffness[0],
+            vanishing.stiffness[5],
+            order(&vanishing.stiffness),
+            vanishing.acceleration[0],
+            vanishing.acceleration[5],
+            order(&vanishing.acceleration)
+        );
+        vanishing
+    }
+}
+
+/// Mean order over the last three halvings.
+fn order(effects: &[f64]) -> f64 {
+    (effects[2] / effects[5]).log2() / 3.0
+}
+
+fn chip(height_mm: f64, width_mm: f64) -> Fault {
+    Fault::ToothBreakage(ToothBreakage {
+        chip_height_mm: height_mm,
+        chip_width_mm: width_mm,
+        tip_loss_mm: 0.0,
+    })
+}
+
+fn pit(length: f64, depth: f64) -> PitCircle {
+    PitCircle::Fractions { start: 0.3, end: 0.3 + length, depth }
+}
+
+fn partial(width_mm: f64, pit: PitCircle) -> Fault {
+    Fault::PartialFace(PartialFace { width_mm, pit })
+}
+
+// The mean change is the missing part of the face: of first order in a chip's width, and in its height too where that
+// shrinks with it, hence 2. Its acceleration follows.
+#[test]
+fn a_vanishing_chip_is_no_chip() {
+    let width = Vanishing::of("chip, width", |s| chip(5.0, 10.0 * s));
+    assert!((order(&width.stiffness) - 1.0).abs() < 0.05 && (order(&width.acceleration) - 1.0).abs() < 0.05);
+    let both = Vanishing::of("chip, height and width", |s| chip(5.0 * s, 10.0 * s));
+    assert!((order(&both.stiffness) - 2.0).abs() < 0.1);
+    assert!(both.acceleration[5] < 0.01 * both.acceleration[0]);
+}
+
+#[test]
+fn a_vanishing_partial_pit_is_no_pit() {
+    let width = Vanishing::of("partial pit, width", |s| partial(5.0 * s, pit(0.5, 0.5)));
+    assert!((order(&width.stiffness) - 1.0).abs() < 0.05 && (order(&width.acceleration) - 1.0).abs() < 0.05);
+    // The step in width at the pit's ends stays and the signal's samples meet it or not: no order for the signal.
+    let length = Vanishing::of("partial pit, length", |s| partial(5.0, pit(0.5 * s, 0.5)));
+    assert!((order(&length.stiffness) - 1.0).abs() < 0.05);
+    assert!(length.acceleration[5] < 0.5 * length.acceleration[0]);
+}
+
+// In this model a pit, however shallow, carries no load: its depth only weakens the section. So depth does not lead
+// to the healthy tooth; the limit is a face that is narrower by the pit.
+#[test]
+fn a_shallow_pit_still_carries_nothing() {
+    let depth = Vanishing::of("partial pit, depth", |s| partial(5.0, pit(0.5, 0.5 * s)));
+    assert!(depth.stiffness[5] > 0.95 * depth.stiffness[0] && depth.stiffness[5] < depth.stiffness[0]);
+    let through = |s: f64| Fault::ThroughFace(ThroughFace { pit: pit(0.5, 0.5 * s) });
+    let depth = Vanishing::of("through pit, depth", through);
+    assert!(depth.stiffness[5] > 0.5 * depth.stiffness[0]);
+}
+
+// The mate's dip is the flanks' sagitta and its turning the square root's change over the pit: second order, and so is
+// the acceleration that they excite.
+#[test]
+fn a_vanishing_through_pit_is_no_pit() {
+    let through = |s: f64| Fault::ThroughFace(ThroughFace { pit: pit(0.5 * s, 0.5) });
+    let length = Vanishing::of("through pit, length", through);
+    assert!((order(&length.stiffness) - 2.0).abs() < 0.3 && (order(&length.acceleration) - 2.0).abs() < 0.3);
+}
+
+// A line between two points of the flank cuts it by its sagitta, of second order, over a length of first: 3.
+#[test]
+fn a_vanishing_destruction_is_no_destruction() {
+    let destruction = |s: f64| {
+        let line = DestructionLine::End(0.2 + 0.7 * s);
+        Fault::ToothDestruction(ToothDestruction { start: 0.2, line, offset_mm: 0.0, noise_mm: 0.0 })
+    };
+    let length = Vanishing::of("destruction, length", destruction);
+    assert!((order(&length.stiffness) - 3.0).abs() < 0.15);
+    assert!(length.acceleration[5] < 2e-3 * length.acceleration[0]);
+}
+
+// A missing tooth is the other end: its pair carries nothing, and so does one whose whole tip is lost.
+#[test]
+fn a_missing_tooth_carries_nothing() {
+    let pair = |fault: Fault| meshtone::stages(&scenario(Some(fault))).unwrap().pair.faulty_n_per_mm.unwrap();
+    assert!(pair(Fault::MissingTooth).iter().all(|k| *k == 0.0));
+    let lost = ToothBreakage { chip_height_mm: 1.0, chip_width_mm: 1.0, tip_loss_mm: 6.0 };
+    assert!(pair(Fault::ToothBreakage(lost)).iter().all(|k| *k == 0.0));
+}

@@ -1,0 +1,37 @@
+//! The library, used as its users use it. One test program, because each is linked with all libraries.
+
+mod batch;
+mod compliances;
+mod dense;
+mod dense_oracle;
+mod drive;
+mod fault_limits;
+mod hybrid;
+mod hybrid_experiment;
+mod hybrid_rig;
+mod integrator;
+mod other_programs;
+mod paper_original;
+mod physics;
+mod power_balance;
+mod properties;
+mod published;
+mod published_model;
+mod refused_shapes;
+mod scenario_from_toml;
+mod scenario_round_trip;
+mod scenario_template;
+mod scenario_validate;
+mod settling;
+mod signal;
+mod signal_chain;
+mod signal_indicators;
+mod signal_phase;
+mod signal_published;
+mod signal_refused;
+mod signal_scipy;
+mod signal_simulated;
+mod support;
+mod toml_reader;
+mod tooth_shape;
+mod unbounded;

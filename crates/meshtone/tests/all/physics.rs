@@ -1,0 +1,87 @@
+//! What the tests of the physics share.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use meshtone::scenario::{Convention, FoundationCoefficients, Gears, Rig};
+use meshtone::tooth::{Teeth, teeth};
+
+/// Deviation of `value` from `exact`, relative to `exact`.
+pub fn deviation(value: f64, exact: f64) -> f64 {
+    value / exact - 1.0
+}
+
+/// Asserts that the largest relative deviation of (value, exact) pairs is within `tolerance`, and prints it.
+#[track_caller]
+pub fn assert_close(what: &str, tolerance: f64, pairs: impl IntoIterator<Item = (f64, f64)>) -> f64 {
+    let mut largest = 0.0_f64;
+    let mut count = 0;
+    for (value, exact) in pairs {
+        let deviation = deviation(value, exact).abs();
+        assert!(deviation <= tolerance, "{what}: {value:e} instead of {exact:e}, off by {deviation:.2e}");
+        largest = largest.max(deviation);
+        count += 1;
+    }
+    assert!(count > 0, "{what}: nothing was compared");
+    println!("{what}: largest relative deviation {largest:.2e} of {count}");
+    largest
+}
+
+/// Mean.
+pub fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Root of the mean square.
+pub fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+/// Standard deviation.
+pub fn deviation_about_mean(values: &[f64]) -> f64 {
+    let mean = mean(values);
+    (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+/// Largest absolute value.
+pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
+}
+
+/// Wheels without tip relief.
+pub fn plain_gears(module_mm: f64, pinion_teeth: u32, gear_teeth: u32, width_mm: f64) -> Gears {
+    let mut gears = Gears::new(module_mm, pinion_teeth, gear_teeth, width_mm);
+    gears.tip_relief = None;
+    gears
+}
+
+/// Healthy teeth of wheels on shafts of the given diameter.
+pub fn corrected_teeth(gears: &Gears, bore_diameter_mm: f64) -> Teeth {
+    let mut rig = Rig::default();
+    rig.pinion_shaft.radius_mm = bore_diameter_mm / 2.0;
+    rig.gear_shaft.radius_mm = bore_diameter_mm / 2.0;
+    teeth(gears, &rig, Convention::Corrected)
+}
+
+/// A wheel's body that does not give way.
+pub fn rigid_foundation() -> FoundationCoefficients {
+    FoundationCoefficients { l: [0.0; 6], m: [0.0; 6], p: [0.0; 6], q: [0.0; 6] }
+}
+
+/// Abscissae and weights of Gauss and Legendre's rule with 5 points on \[−1, 1\]: exact up to degree 9.
+pub const GAUSS: [(f64, f64); 5] = [
+    (-0.906_179_845_938_664, 0.236_926_885_056_189_1),
+    (-0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
+    (0.0, 0.568_888_888_888_888_9),
+    (0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
+    (0.906_179_845_938_664, 0.236_926_885_056_189_1),
+];
+
+/// `∫ f` from `from` to `to`, in `pieces` pieces of five points.
+pub fn integral(from: f64, to: f64, pieces: usize, f: impl Fn(f64) -> f64) -> f64 {
+    let half = (to - from) / (2 * pieces) as f64;
+    (0..pieces)
+        .map(|k| {
+            let middle = from + half * (2 * k + 1) as f64;
+            GAUSS.iter().map(|(t, w)| w * half * f(middle + half * t)).sum::<f64>()
+        })
+        .sum()
+}

@@ -1,0 +1,121 @@
+//! What goes in comes out: torques and mesh force of ideal wheels over whole revolutions.
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
+
+use crate::physics::*;
+use meshtone::dynamics::coordinates::{COORDINATES, THETA_BRAKE, THETA_GEAR, THETA_PINION};
+use meshtone::scenario::{Convention, Fault, Scenario, ToothBreakage};
+use meshtone::solver::{Block, Output, Recorder};
+
+/// The kept part of each output.
+#[derive(Default)]
+struct Kept {
+    outputs: [Vec<f64>; 3],
+}
+
+impl Recorder for Kept {
+    fn record(&mut self, block: &Block) {
+        for (n, kept) in self.outputs.iter_mut().enumerate() {
+            kept.extend_from_slice(block.output(n));
+        }
+    }
+}
+
+/// (N m, N m, N) Mean motor torque, mean torque of the brake's shaft and mean mesh force.
+fn means(scenario: &Scenario) -> [f64; 3] {
+    let stages = meshtone::stages(scenario).unwrap();
+    let displacement = |terms: &[(usize, f64)]| {
+        let mut weights = [0.0; COORDINATES];
+        terms.iter().for_each(|&(coordinate, weight)| weights[coordinate] = weight);
+        Output::Displacement(weights)
+    };
+    let outputs = [
+        displacement(&[(THETA_PINION, 1.0)]),
+        displacement(&[(THETA_BRAKE, 1.0), (THETA_GEAR, -1.0)]),
+        Output::MeshForce,
+    ];
+    let first = stages.time.first_kept_sample;
+    let mut kept = Kept::default();
+    stages.integrate(&stages.reduced_model(), &outputs, first, &mut kept).unwrap();
+    let [pinion_rad, brake_torsion_rad, force_n] = kept.outputs;
+    assert_eq!(pinion_rad.len(), stages.time.kept_samples());
+    let motor_rad = stages.excitation().skip(first).map(|excitation| excitation.motor_angle_rad);
+    let motor_torsion_rad: Vec<f64> =
+        motor_rad.zip(&pinion_rad).map(|(motor, pinion)| motor - pinion).collect();
+    let [motor, brake] = stages.system.shaft_stiffness_nm_per_rad;
+    [motor * mean(&motor_torsion_rad), brake * mean(&brake_torsion_rad), mean(&force_n)]
+}
+
+/// (N m, N m, N) What the load asks for.
+fn expected(scenario: &Scenario) -> [f64; 3] {
+    let gears = &scenario.gears;
+    let torque = scenario.operation.brake_torque_nm;
+    let base_radius_m = gears.module_mm * 1e-3 * f64::from(gears.gear_teeth) / 2.0
+        * gears.pressure_angle_deg.to_radians().cos();
+    let ratio = f64::from(gears.pinion_teeth) / f64::from(gears.gear_teeth);
+    [torque * ratio, torque, torque / base_radius_m]
+}
+
+fn pair(module: f64, z1: u32, z2: u32, width: f64, speed: f64, torque: f64) -> Scenario {
+    let mut scenario = Scenario::new(module, z1, z2, width, speed, torque);
+    scenario.gears.points_per_tooth = 2_000;
+    scenario.solver.sampling_rate_hz = 2e4;
+    scenario
+}
+
+fn check(name: &str, scenario: &Scenario) {
+    let (means, expected) = (means(scenario), expected(scenario));
+    for ((quantity, mean), expected) in ["motor", "brake", "mesh"].iter().zip(means).zip(expected) {
+        let off = deviation(mean, expected);
+        println!("{name}, {quantity}: {mean:.4} instead of {expected:.4}, {:+.4} %", 100.0 * off);
+        assert!(off.abs() < 1e-3, "{name}, {quantity}: {mean} instead of {expected}");
+    }
+}
+
+// Over whole cycles of a periodic motion all accelerations and all velocities relative to the rigid rotation have mean
+// zero, so the mean torques are in equilibrium exactly; 0.1 % is what the decay of the start leaves.
+#[test]
+fn torques_balance_under_corrected() {
+    check("17/38 at 40 Hz", &pair(3.0, 17, 38, 15.0, 40.0, 10.0));
+    check("20/40 at 25 Hz", &pair(2.0, 20, 40, 20.0, 25.0, 30.0));
+    check("40/20 at 25 Hz", &pair(2.0, 40, 20, 20.0, 25.0, 30.0));
+    check("30/30 at 10 Hz", &pair(4.0, 30, 30, 25.0, 10.0, 200.0));
+    let mut high_contact = pair(2.0, 60, 80, 20.0, 20.0, 50.0);
+    high_contact.gears.pressure_angle_deg = 14.5;
+    check("60/80, 14.5°", &high_contact);
+}
+
+// A chipped tooth changes the stiffness and not the load.
+#[test]
+fn torques_balance_with_a_broken_tooth() {
+    let mut scenario = pair(3.0, 17, 38, 15.0, 40.0, 10.0);
+    let chip = ToothBreakage { chip_height_mm: 4.0, chip_width_mm: 10.0, tip_loss_mm: 0.0 };
+    scenario.fault = Some(Fault::ToothBreakage(chip));
+    check("17/38, broken", &scenario);
+}
+
+// The published damping acts on the whole velocity, so it takes a torque (C v) ω from the rigid rotation v; with it the
+// gear's and the pinion's mean torques balance. What the load asks for is 187 N and 4.5 N m.
+#[test]
+fn published_damping_takes_power_from_the_rigid_rotation() {
+    let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    scenario.convention = Convention::Published;
+    let [motor, brake, force] = means(&scenario);
+    println!("published: motor {motor:.3} N m, brake {brake:.3} N m, mesh {force:.2} N");
+    let system = meshtone::stages(&scenario).unwrap().system;
+    let damping = system.damping_matrix() * system.rigid_rotation() * (std::f64::consts::TAU * 40.0);
+    let cos = 20f64.to_radians().cos();
+    let (base_pinion, base_gear) = (0.0255 * cos, 0.057 * cos);
+    assert_close(
+        "published balance",
+        1e-6,
+        [
+            (force * base_gear, brake - damping[THETA_GEAR]),
+            (motor, force * base_pinion + damping[THETA_PINION]),
+            (brake, 10.0 - damping[THETA_BRAKE]),
+        ],
+    );
+    assert_close("mean mesh force, published", 1e-3, [(force, 1964.7)]);
+    assert_close("mean motor torque, published", 1e-3, [(motor, 57.75)]);
+    let [asked_motor, _, asked_force] = expected(&scenario);
+    assert!((asked_force - 186.7).abs() < 0.1 && (asked_motor - 4.474).abs() < 1e-3);
+}

@@ -1,0 +1,390 @@
+//! Scenario files: every key is read, and what is wrong is refused with its key and line.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use crate::support::{REQUIRED, appended, assert_refused, gears, replaced};
+use meshtone::scenario::{
+    Convention, DampingRatio, DestructionLine, Fault, FileProblem, FoundationCoefficients, Material,
+    PartialFace, PitCircle, Profile, ProfileErrors, ReliefShape, Scenario, ScenarioFiles, Shaft, ThroughFace,
+    TipRelief, ToothBreakage, ToothDestruction,
+};
+use nalgebra::DMatrix;
+
+const EVERY_KEY: &str = r#"
+convention = "published"
+seed = 18446744073709551615
+[gears]
+module_mm = 2
+pinion_teeth = 20
+gear_teeth = 41
+face_width_mm = 12.5
+pressure_angle_deg = 22.5
+material = "cast-iron"
+tip_relief = { shape = "linear", length_mm = 0.5, depth_mm = 0.25 }
+crowning_mm = 0.01
+points_per_tooth = 2000
+foundation = { L = [1, 2, 3, 4, 5, 6], M = [7, 8, 9, 10, 11, 12], Q = [0.5, 0, 0, 0, 0, 0] }
+[operation]
+pinion_speed_hz = 30.0
+brake_torque_nm = 12.0
+speed_fluctuation_hz = 0.1
+torque_fluctuation_nm = 0.2
+speed_profile_hz = { time_s = [0, 1.5], value = [29.0, 31.0] }
+torque_profile_nm = { time_s = [0, 2.5], value = [11.0, 13.0] }
+[quality]
+din_grade = 5
+[fault]
+kind = "tooth-breakage"
+chip_height_mm = 2.0
+chip_width_mm = 3.0
+tip_loss_mm = 1.0
+[rig]
+bearing_stiffness_n_per_m = 1e8
+wheel_rotational_stiffness_nm_per_rad = 2e8
+brake_inertia_kgm2 = 1e-3
+damping_ratio = [0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08, 0.09, 0.10, 0.11, 0.12]
+eccentricity_mm = 0.02
+pinion_shaft = { length_mm = 100, radius_mm = 8 }
+gear_shaft = { radius_mm = 9 }
+pinion_inertia = { mass_kg = 0.5 }
+gear_inertia = { polar_inertia_kgm2 = 1e-3, transverse_inertia_kgm2 = 2e-3 }
+[solver]
+sampling_rate_hz = 2e5
+settle_fraction = 0.25
+settle_tolerance = 1e-4
+initial_displacement = [1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2]
+initial_velocity = [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3]
+"#;
+
+#[test]
+fn every_key_is_read() {
+    let scenario = Scenario::from_toml(EVERY_KEY).unwrap();
+    let mut expected = Scenario::new(2.0, 20, 41, 12.5, 30.0, 12.0);
+    expected.convention = Convention::Published;
+    expected.seed = u64::MAX;
+    expected.gears.pressure_angle_deg = 22.5;
+    expected.gears.material = Material::CastIron;
+    expected.gears.tip_relief =
+        Some(TipRelief { shape: ReliefShape::Linear, length_mm: 0.5, depth_mm: 0.25 });
+    expected.gears.crowning_mm = 0.01;
+    expected.gears.points_per_tooth = 2000;
+    expected.gears.foundation = FoundationCoefficients {
+        l: [1.0, 2.0, 3.0, 4.0, 5.0, 6.0],
+        m: [7.0, 8.0, 9.0, 10.0, 11.0, 12.0],
+        q: [0.5, 0.0, 0.0, 0.0, 0.0, 0.0],
+        ..FoundationCoefficients::default()
+    };
+    expected.operation.speed_fluctuation_hz = 0.1;
+    expected.operation.torque_fluctuation_nm = 0.2;
+    expected.operation.speed_profile_hz = Some(Profile { time_s: vec![0.0, 1.5], value: vec![29.0, 31.0] });
+    expected.operation.torque_profile_nm = Some(Profile { time_s: vec![0.0, 2.5], value: vec![11.0, 13.0] });
+    expected.quality.din_grade = 5;
+    expected.fault = Some(Fault::ToothBreakage(ToothBreakage {
+        chip_height_mm: 2.0,
+        chip_width_mm: 3.0,
+        tip_loss_mm: 1.0,
+    }));
+    expected.rig.bearing_stiffness_n_per_m = 1e8;
+    expected.rig.wheel_rotational_stiffness_nm_per_rad = 2e8;
+    expected.rig.brake_inertia_kgm2 = 1e-3;
+    expected.rig.damping_ratio =
+        DampingRatio::PerMode([0.0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08, 0.09, 0.10, 0.11, 0.12]);
+    expected.rig.eccentricity_mm = 0.02;
+    expected.rig.pinion_shaft = Shaft { length_mm: 100.0, radius_mm: 8.0 };
+    expected.rig.gear_shaft = Shaft { length_mm: 600.0, radius_mm: 9.0 };
+    expected.rig.pinion_inertia.mass_kg = Some(0.5);
+    expected.rig.gear_inertia.polar_inertia_kgm2 = Some(1e-3);
+    expected.rig.gear_inertia.transverse_inertia_kgm2 = Some(2e-3);
+    expected.solver.sampling_rate_hz = 2e5;
+    expected.solver.settle_fraction = 0.25;
+    expected.solver.settle_tolerance = 1e-4;
+    let state = |first, last| {
+        let mut state = [0.0; 13];
+        (state[0], state[12]) = (first, last);
+        Some(state)
+    };
+    expected.solver.initial_displacement = state(1.0, 2.0);
+    expected.solver.initial_velocity = state(0.0, 3.0);
+    assert_eq!(scenario, expected);
+}
+
+#[test]
+fn every_fault_is_read() {
+    let fractions = PitCircle::Fractions { start: 0.2, end: 0.8, depth: 0.5 };
+    let circle = PitCircle::Circle { x_mm: 57.5, y_mm: 3.66, radius_mm: 2.5 };
+    let destruction = ToothDestruction {
+        start: -0.2,
+        line: DestructionLine::SlopeDeg(22.0),
+        offset_mm: 0.1,
+        noise_mm: 0.01,
+    };
+    let to_end =
+        ToothDestruction { start: 0.2, line: DestructionLine::End(0.9), offset_mm: 0.0, noise_mm: 0.0 };
+    let breakage = ToothBreakage { chip_height_mm: 5.0, chip_width_mm: 15.0, tip_loss_mm: 0.0 };
+    for (keys, fault) in [
+        ("kind = \"missing-tooth\"", Fault::MissingTooth),
+        ("kind = \"tooth-breakage\"\nchip_height_mm = 5\nchip_width_mm = 15", Fault::ToothBreakage(breakage)),
+        (
+            "kind = \"partial-face\"\nwidth_mm = 2\nstart = 0.2\nend = 0.8\ndepth = 0.5",
+            Fault::PartialFace(PartialFace { width_mm: 2.0, pit: fractions }),
+        ),
+        (
+            "kind = \"through-face\"\nstart = 0.2\nend = 0.8\ndepth = 0.5",
+            Fault::ThroughFace(ThroughFace { pit: fractions }),
+        ),
+        (
+            "kind = \"through-face\"\ncircle = { x_mm = 57.5, y_mm = 3.66, radius_mm = 2.5 }",
+            Fault::ThroughFace(ThroughFace { pit: circle }),
+        ),
+        (
+            "kind = \"tooth-destruction\"\nstart = -0.2\nslope_deg = 22\noffset_mm = 0.1\nnoise_mm = 0.01",
+            Fault::ToothDestruction(destruction),
+        ),
+        ("kind = \"tooth-destruction\"\nstart = 0.2\nend = 0.9", Fault::ToothDestruction(to_end)),
+    ] {
+        let scenario = Scenario::from_toml(&appended(&format!("[fault]\n{keys}"))).unwrap();
+        assert_eq!(scenario.fault, Some(fault));
+    }
+}
+
+#[test]
+fn relief_may_be_switched_off() {
+    assert_eq!(Scenario::from_toml(&gears("tip_relief = false")).unwrap().gears.tip_relief, None);
+    let table = ["a table { shape", "or false"];
+    assert_refused(&gears("tip_relief = true"), "gears.tip_relief", 6, &table);
+    assert_refused(&gears("tip_relief = 1.0"), "gears.tip_relief", 6, &table);
+}
+
+#[test]
+fn missing_keys() {
+    for (line_text, key, line) in [
+        ("module_mm = 3.0\n", "gears.module_mm", 1),
+        ("pinion_teeth = 17\n", "gears.pinion_teeth", 1),
+        ("gear_teeth = 38\n", "gears.gear_teeth", 1),
+        ("face_width_mm = 15.0\n", "gears.face_width_mm", 1),
+        ("pinion_speed_hz = 40.0\n", "operation.pinion_speed_hz", 6),
+        ("brake_torque_nm = 10.0\n", "operation.brake_torque_nm", 6),
+    ] {
+        assert_refused(&replaced(line_text, ""), key, line, &["missing", "no default"]);
+    }
+    let error = Scenario::from_toml("").unwrap_err();
+    assert_eq!(error.key, "gears.module_mm");
+}
+
+#[test]
+fn unknown_keys() {
+    let error = assert_refused(
+        &gears("pressure_angle = 20"),
+        "gears.pressure_angle",
+        6,
+        &["unknown key", "crowning_mm"],
+    );
+    assert_eq!(error.help.as_deref(), Some("did you mean `pressure_angle_deg`?"));
+    assert_refused(&replaced("[gears]", "[gear]"), "gear", 1, &["unknown key", "did you mean `gears`?"]);
+    assert_refused(&appended("[rigs]\na = 1"), "rigs", 9, &["unknown key", "did you mean `rig`?"]);
+    let breakage_key = "[fault]\nkind = \"missing-tooth\"\nchip_height_mm = 1";
+    assert_refused(
+        &appended(breakage_key),
+        "fault.chip_height_mm",
+        11,
+        &["unknown key", "allowed in `fault`: kind"],
+    );
+    assert_refused(
+        &gears("foundation = { L = [1,2,3,4,5,6], l = [1,2,3,4,5,6] }"),
+        "gears.foundation.l",
+        6,
+        &["unknown key", "L, M, P, Q"],
+    );
+    let shaft = appended("[rig]\npinion_shaft = { lenght_mm = 100.0 }");
+    assert_refused(&shaft, "rig.pinion_shaft.lenght_mm", 10, &["did you mean `length_mm`?"]);
+}
+
+#[test]
+fn wrong_types() {
+    assert_refused(&replaced("17", "17.0"), "gears.pinion_teeth", 3, &["17.0", "whole number"]);
+    assert_refused(
+        &replaced("15.0", "\"15\""),
+        "gears.face_width_mm",
+        5,
+        &["\"15\"", "must be a number, not text"],
+    );
+    assert_refused(&replaced("40.0", "nan"), "operation.pinion_speed_hz", 7, &["nan", "finite"]);
+    assert_refused(&replaced("10.0", "inf"), "operation.brake_torque_nm", 8, &["inf", "finite"]);
+    assert_refused(
+        &gears("material = \"steal\""),
+        "gears.material",
+        6,
+        &["\"steel\"", "did you mean \"steel\"?"],
+    );
+    assert_refused(
+        &format!("convention = \"old\"\n{REQUIRED}"),
+        "convention",
+        1,
+        &["\"corrected\", \"published\""],
+    );
+    assert_refused(&format!("seed = -1\n{REQUIRED}"), "seed", 1, &["from 0 to"]);
+    assert_refused(&gears("foundation = { L = [1, 2] }"), "gears.foundation.L", 6, &["has 2", "exactly 6"]);
+    let damping = appended("[rig]\ndamping_ratio = [0.05, 0.05]");
+    assert_refused(&damping, "rig.damping_ratio", 10, &["has 2 numbers", "exactly 13", "one per mode"]);
+    let state = appended("[solver]\ninitial_velocity = [0.0]");
+    assert_refused(&state, "solver.initial_velocity", 10, &["has 1 numbers", "exactly 13"]);
+    assert_refused(&appended("[quality]\ndin_grade = 13"), "quality.din_grade", 10, &["from 0 to 12"]);
+}
+
+#[test]
+fn faults_described_twice_or_not_at_all() {
+    let fault = |keys: &str| appended(&format!("[fault]\n{keys}"));
+    let circle = "circle = { x_mm = 57.5, y_mm = 3.66, radius_mm = 2.5 }";
+    let both = fault(&format!("kind = \"through-face\"\n{circle}\nstart = 0.2"));
+    assert_refused(&both, "fault.circle", 11, &["only one way", "remove circle"]);
+    assert_refused(
+        &fault("kind = \"through-face\""),
+        "fault.start",
+        9,
+        &["missing, and circle too", "circle = {"],
+    );
+    let no_depth = fault("kind = \"through-face\"\nstart = 0.2\nend = 0.8");
+    assert_refused(&no_depth, "fault.depth", 9, &["missing"]);
+    let no_radius = fault("kind = \"through-face\"\ncircle = { x_mm = 57.5, y_mm = 3.66 }");
+    assert_refused(&no_radius, "fault.circle.radius_mm", 11, &["missing"]);
+    let two_lines = fault("kind = \"tooth-destruction\"\nstart = 0.2\nend = 0.8\nslope_deg = 22");
+    assert_refused(&two_lines, "fault.slope_deg", 13, &["exactly one", "remove slope_deg"]);
+    let no_line = fault("kind = \"tooth-destruction\"\nstart = 0.2");
+    assert_refused(&no_line, "fault.end", 9, &["slope_deg", "exactly one"]);
+    assert_refused(&fault("start = 0.2"), "fault.kind", 9, &["missing", "\"missing-tooth\"", "healthy"]);
+    let misspelt = fault("kind = \"missing-teeth\"");
+    assert_refused(&misspelt, "fault.kind", 10, &["\"tooth-breakage\"", "did you mean \"missing-tooth\"?"]);
+}
+
+#[test]
+fn profiles_with_two_sources_or_half_of_one() {
+    let key = "operation.speed_profile_hz";
+    let both = appended("speed_profile_hz = { file = \"a.csv\", value = [1, 2] }");
+    assert_refused(&both, &format!("{key}.file"), 9, &["only one source"]);
+    let half = appended("speed_profile_hz = { value = [1, 2] }");
+    assert_refused(&half, &format!("{key}.time_s"), 9, &["missing", "file = "]);
+    let other_half = appended("speed_profile_hz = { time_s = [1, 2] }");
+    assert_refused(&other_half, &format!("{key}.value"), 9, &["missing"]);
+    assert_refused(&appended("speed_profile_hz = \"a.csv\""), key, 9, &["must be a table"]);
+}
+
+#[test]
+fn files_need_a_directory() {
+    let errors = appended("[quality]\nerrors_file = \"wheels.npz\"");
+    assert_refused(
+        &errors,
+        "quality.errors_file",
+        10,
+        &["\"wheels.npz\"", "text alone", "gear_profile_errors_mm"],
+    );
+    let profile = appended("speed_profile_hz = { file = \"a.csv\" }");
+    assert_refused(&profile, "operation.speed_profile_hz.file", 9, &["text alone", "time_s = "]);
+}
+
+/// Files that exist in the test alone.
+struct Shelf {
+    errors: ProfileErrors,
+}
+
+impl ScenarioFiles for Shelf {
+    fn profile_errors(&self, name: &str) -> Result<ProfileErrors, FileProblem> {
+        match name {
+            "wheels.npz" => Ok(self.errors.clone()),
+            _ => Err(FileProblem::new("there is no such file", "check the name")),
+        }
+    }
+
+    fn profile(&self, name: &str) -> Result<Profile, FileProblem> {
+        let value = if name == "negative.csv" { vec![40.0, -40.0] } else { vec![38.0, 40.0] };
+        Ok(Profile { time_s: vec![0.0, 1.0], value })
+    }
+}
+
+fn shelf() -> Shelf {
+    let errors = |teeth| DMatrix::from_fn(100, teeth, |row, column| 1e-5 * (row * 100 + column) as f64);
+    Shelf {
+        errors: ProfileErrors { pinion_profile_errors_mm: errors(17), gear_profile_errors_mm: errors(38) },
+    }
+}
+
+#[test]
+fn the_content_of_files_becomes_part_of_the_scenario() {
+    let text = appended(
+        "speed_profile_hz = { file = \"a.csv\" }\n[quality]\ndin_grade = 0\nerrors_file = \"wheels.npz\"",
+    );
+    let scenario = Scenario::from_toml_with_files(&text, &shelf()).unwrap();
+    assert_eq!(scenario.quality.profile_errors, Some(shelf().errors));
+    let profile = scenario.operation.speed_profile_hz.unwrap();
+    assert_eq!(profile.value, [38.0, 40.0]);
+}
+
+#[test]
+fn problems_of_files_are_told_at_the_key_that_names_them() {
+    let refused = |text: &str, shelf: &Shelf| Scenario::from_toml_with_files(text, shelf).unwrap_err();
+    let missing = refused(&appended("[quality]\nerrors_file = \"other.npz\""), &shelf());
+    assert_eq!((missing.key.as_str(), missing.line), ("quality.errors_file", Some(10)));
+    assert_eq!(
+        (missing.problem.as_str(), missing.help.as_deref()),
+        ("there is no such file", Some("check the name"))
+    );
+
+    let with_errors = appended("[quality]\nerrors_file = \"wheels.npz\"");
+    let mut short = shelf();
+    short.errors.gear_profile_errors_mm = DMatrix::zeros(99, 38);
+    let shape = refused(&with_errors, &short);
+    assert_eq!((shape.key.as_str(), shape.line), ("quality.errors_file", Some(10)));
+    assert!(shape.problem.starts_with("gear_profile_errors_mm: is 99 × 38; must be 100 × 38"), "{shape}");
+
+    let mut hole = shelf();
+    hole.errors.pinion_profile_errors_mm[(3, 5)] = f64::NAN;
+    let not_a_number = refused(&with_errors, &hole);
+    assert_eq!(not_a_number.key, "quality.errors_file");
+    assert!(
+        not_a_number.problem.contains("pinion_profile_errors_mm[3][5]: point 4 of tooth 6 is NaN"),
+        "{not_a_number}"
+    );
+
+    let negative = refused(&appended("speed_profile_hz = { file = \"negative.csv\" }"), &shelf());
+    assert_eq!((negative.key.as_str(), negative.line), ("operation.speed_profile_hz.value[1]", Some(9)));
+}
+
+fn inline_errors(teeth: usize, rows: usize) -> String {
+    let row = format!("[{}]", vec!["0.001"; teeth].join(","));
+    format!("[{}]", vec![row; rows].join(",\n"))
+}
+
+#[test]
+fn profile_errors_inline() {
+    let text = |pinion: &str, gear: &str| {
+        appended(&format!("[quality]\npinion_profile_errors_mm = {pinion}\ngear_profile_errors_mm = {gear}"))
+    };
+    let good = (inline_errors(17, 100), inline_errors(38, 100));
+    let errors = Scenario::from_toml(&text(&good.0, &good.1)).unwrap().quality.profile_errors.unwrap();
+    assert_eq!(errors.gear_profile_errors_mm, DMatrix::from_element(100, 38, 0.001));
+
+    let pinion = "quality.pinion_profile_errors_mm";
+    let shape = ["is 100 × 16; must be 100 × 17"];
+    assert_refused(&text(&inline_errors(16, 100), &good.1), pinion, 10, &shape);
+    let ragged = good.0.replacen("0.001,", "", 1);
+    let rows = ["has 17 numbers", "the first row has 16"];
+    assert_refused(&text(&ragged, &good.1), &format!("{pinion}[1]"), 11, &rows);
+    let alone = appended(&format!("[quality]\npinion_profile_errors_mm = {}", good.0));
+    assert_refused(&alone, "quality.gear_profile_errors_mm", 9, &["missing", "both wheels"]);
+    let microns = good.0.replacen("0.001", "4.5", 1);
+    let unit = ["point 1 of tooth 1 is 4.5 mm", "smaller than the module", "µm"];
+    assert_refused(&text(&microns, &good.1), &format!("{pinion}[0][0]"), 10, &unit);
+
+    let with_file = format!("{}errors_file = \"wheels.npz\"\n", text(&good.0, &good.1));
+    let error = Scenario::from_toml(&with_file).unwrap_err();
+    assert_eq!(error.key, "quality.errors_file");
+    assert!(error.problem.contains("only one source"), "{error}");
+    let with_grade = format!("{}din_grade = 7\n", text(&good.0, &good.1));
+    let error = Scenario::from_toml(&with_grade).unwrap_err();
+    assert_eq!((error.key.as_str(), error.value.as_str()), ("quality.din_grade", "7"));
+    assert!(error.problem.contains("beside profile errors"), "{error}");
+}
+
+#[test]
+fn text_that_is_not_toml() {
+    assert_refused(&replaced("= 17", "17"), "", 3, &["not valid TOML", "pinion_teeth 17"]);
+    assert_refused(&gears("module_mm = 4.0"), "", 6, &["not valid TOML", "duplicate key"]);
+}
