@@ -4,6 +4,7 @@
 
 mod docs;
 mod environment;
+mod kernels;
 mod python;
 mod scipy;
 mod step;
@@ -20,8 +21,8 @@ Tasks:
   test         Everything that a change must pass, in this order, stopping at the first failure:
                formatting, lints, tests (with the examples in the documentation, and against SciPy,
                pyarrow and polars, which are installed under target/scipy once: needs Python 3.11
-               or later, as python3 or under the name in the variable PYTHON), the library's
-               documentation, and the check of the book
+               or later, as python3 or under the name in the variable PYTHON), a look for vector
+               instructions that are calls, the library's documentation, and the check of the book
   wheel        Build the Python package's wheel into target/wheels
   check-docs   Only the check of the book: its table of contents, its links, pictures and formulas
   docs         Build the book into docs/book (needs mdbook)
@@ -74,6 +75,7 @@ fn test(root: &Path) -> Result<(), u8> {
     let [scipy, python] = scipy::reference(root)?;
     let python = [("MESHTONE_SCIPY_REFERENCE", scipy.as_os_str()), ("MESHTONE_PYTHON", python.as_os_str())];
     step::cargo(root, &["test", "--workspace", "--release"], &python)?;
+    step::run("kernels check", || kernels::check(root))?;
     python::test(root)?;
     step::cargo(
         root,

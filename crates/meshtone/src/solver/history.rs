@@ -143,7 +143,11 @@ impl<const L: usize> Task for Evaluate<'_, L> {
         let samples = self.output.len();
         let whole = samples - samples % CHUNK;
         for start in (0..whole).step_by(CHUNK) {
-            let mut sums: [Lanes<L>; CHUNK] = std::array::from_fn(|k| self.constant(simd, start + k));
+            // No `from_fn`: its closure would be compiled without the instruction set, and every intrinsic in it a call.
+            let mut sums = [Lanes::splat(0.0); CHUNK];
+            for k in 0..CHUNK {
+                sums[k] = self.constant(simd, start + k);
+            }
             for (weight, variable) in self.terms {
                 for (sum, value) in sums.iter_mut().zip(&variable[start..start + CHUNK]) {
                     *sum = weight.mul_add(simd, *value, *sum);
