@@ -3,7 +3,7 @@
 
 #[path = "cases/mod.rs"]
 mod cases;
-#[path = "../tests/all/dense.rs"]
+#[path = "../../meshtone/tests/all/dense.rs"]
 mod dense;
 
 use std::hint::black_box;
