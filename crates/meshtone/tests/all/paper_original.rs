@@ -67,14 +67,17 @@ fn the_paper_s_original_indicators_where_the_fault_dominates() {
     for name in ["breakage", "pitting", "destruction"] {
         let (base, rate_hz) = rig(name);
         let cases = dominating(name);
-        let mut sums = vec![[0.0; 2]; cases.len()];
-        for seed in 1..=DRAWS {
+        // All draws in one call, so that simulations of one kind run side by side.
+        let scenarios = (1..=DRAWS).flat_map(|seed| {
             let base = Scenario { seed, ..base.clone() };
-            let faulty =
-                cases.iter().map(|(_, fault)| Scenario { fault: Some(fault.clone()), ..base.clone() });
-            let scenarios = std::iter::once(base.clone()).chain(faulty).collect();
-            let signals = difference_signals(scenarios, &DifferenceChain::new(rate_hz)).unwrap();
-            let simulated = SimulatedCases::new(signals).unwrap();
+            let faulty = cases.iter().map(|(_, fault)| Some(fault.clone()));
+            let faults = std::iter::once(None).chain(faulty).collect::<Vec<_>>();
+            faults.into_iter().map(move |fault| Scenario { fault, ..base.clone() })
+        });
+        let signals = difference_signals(scenarios.collect(), &DifferenceChain::new(rate_hz)).unwrap();
+        let mut sums = vec![[0.0; 2]; cases.len()];
+        for of_draw in signals.chunks_exact(1 + cases.len()) {
+            let simulated = SimulatedCases::new(of_draw.to_vec()).unwrap();
             let values = simulated.predict(&indicators, &meshtone::hybrid::Enhancement::default()).unwrap();
             for (sum, value) in sums.iter_mut().zip(&values[1..]) {
                 (0..2).for_each(|j| sum[j] += value[j] / DRAWS as f64);
