@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import signal
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -61,3 +63,19 @@ def published(request: pytest.FixtureRequest) -> Published:
 def broken() -> meshtone.Simulation:
     """A simulation of a broken tooth."""
     return meshtone.simulate(meshtone.examples.tooth_breakage())
+
+
+@pytest.fixture
+def control_c() -> Iterator[None]:
+    """Control-C is a KeyboardInterrupt, also where Python was started with it ignored, as in the background of a script."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.fixture
+def control_c_ignored() -> Iterator[None]:
+    """Control-C does nothing."""
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    yield
+    signal.signal(signal.SIGINT, before)

@@ -20,7 +20,9 @@ def test_a_lost_worker_changes_nothing(tmp_path: Path) -> None:
     from meshtone import dask
 
     plan = write_plan(tmp_path)
-    plan.write_text(plan.read_text().replace("records = 24", "records = 400").replace("units = 6", "units = 40"))
+    text = plan.read_text(encoding="utf-8")
+    text = text.replace("records = 24", "records = 400").replace("units = 6", "units = 40")
+    plan.write_text(text, encoding="utf-8")
     local = datasets.generate_dataset(plan, tmp_path / "local")
     with (
         distributed.LocalCluster(

@@ -40,9 +40,9 @@ test = 0.5
 
 def write_plan(folder: Path) -> Path:
     machine = meshtone.examples.healthy().copy(sampling_rate_hz=5e4, settle_tolerance=1e-3)
-    (folder / "machine.toml").write_text(machine.to_toml())
+    (folder / "machine.toml").write_text(machine.to_toml(), encoding="utf-8")
     plan = folder / "plan.toml"
-    plan.write_text(PLAN)
+    plan.write_text(PLAN, encoding="utf-8")
     return plan
 
 
@@ -108,7 +108,7 @@ def test_signals_are_those_of_the_records(gears: datasets.Dataset) -> None:
 def test_repr(gears: datasets.Dataset) -> None:
     assert "24 records" in repr(gears) and "healthy" in repr(gears)
     assert gears.manifest["records"] == 24 and gears.manifest["complete"] is True
-    assert "24" in (gears.path / "README.md").read_text()
+    assert "24" in (gears.path / "README.md").read_text(encoding="utf-8")
 
 
 def test_parts_and_interruption_change_nothing(gears: datasets.Dataset, tmp_path: Path) -> None:
@@ -167,11 +167,11 @@ def test_refused(gears: datasets.Dataset, tmp_path: Path) -> None:
         datasets.generate_dataset(plan, tmp_path / "set", part=(3, 2))
     with pytest.raises(ValueError, match="jobs = 0"):
         datasets.generate_dataset(plan, tmp_path / "set", jobs=0)
-    plan.write_text(PLAN.replace("uniform = [20.0, 50.0]", "uniform = [50.0, 20.0]"))
+    plan.write_text(PLAN.replace("uniform = [20.0, 50.0]", "uniform = [50.0, 20.0]"), encoding="utf-8")
     with pytest.raises(ValueError, match="uniform"):
         datasets.generate_dataset(plan, tmp_path / "set")
     assert not (tmp_path / "set").exists()
-    plan.write_text(PLAN.replace("24", "30"))
+    plan.write_text(PLAN.replace("24", "30"), encoding="utf-8")
     with pytest.raises(ValueError):
         datasets.generate_dataset(plan, gears.path)
 

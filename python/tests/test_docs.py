@@ -17,12 +17,13 @@ def repository(folder: Path) -> None:
     """What a reader's working folder has: the examples, of which the tuned ones are made short."""
     shutil.copytree(ROOT / "examples", folder / "examples")
     for experiment in folder.glob("examples/experiments/*.toml"):
-        experiment.write_text(experiment.read_text().replace("candidates = 160", "candidates = 4"))
+        text = experiment.read_text(encoding="utf-8")
+        experiment.write_text(text.replace("candidates = 160", "candidates = 4"), encoding="utf-8")
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/src/guide/python.md", "docs/src/guide/matlab-users.md"])
 def test_blocks_run_in_order(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    text = (ROOT / page).read_text()
+    text = (ROOT / page).read_text(encoding="utf-8")
     repository(tmp_path)
     monkeypatch.chdir(tmp_path)
     # A picture that is shown would wait for somebody to close it.
@@ -39,7 +40,7 @@ def test_blocks_run_in_order(page: str, tmp_path: Path, monkeypatch: pytest.Monk
 
 def test_error_texts_of_the_guide(capsys: pytest.CaptureFixture[str]) -> None:
     """The guide shows what its block of errors prints."""
-    text = (ROOT / "docs/src/guide/python.md").read_text()
+    text = (ROOT / "docs/src/guide/python.md").read_text(encoding="utf-8")
     chapter = text[text.index("## If something is wrong") :]
     block = BLOCK.search(chapter)
     shown = re.search(r"^```text\n(.*?)^```$", chapter, re.MULTILINE | re.DOTALL)
@@ -53,8 +54,8 @@ SCRIPTS = sorted((ROOT / "python/gallery").glob("*.py"))
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
 def test_gallery_shows_its_scripts(script: Path) -> None:
-    page = (ROOT / "docs/src/gallery/gallery.md").read_text()
-    assert f"```python\n{script.read_text()}```\n" in page
+    page = (ROOT / "docs/src/gallery/gallery.md").read_text(encoding="utf-8")
+    assert f"```python\n{script.read_text(encoding='utf-8')}```\n" in page
     assert f"](python_{script.stem}.png)" in page
 
 
@@ -63,6 +64,6 @@ def test_gallery_scripts_draw(script: Path, tmp_path: Path, monkeypatch: pytest.
     repository(tmp_path)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("sys.argv", [str(script), str(tmp_path)])
-    exec(compile(script.read_text(), script, "exec"), {"__name__": "__main__"})
+    exec(compile(script.read_text(encoding="utf-8"), script, "exec"), {"__name__": "__main__"})
     plt.close("all")
     assert (tmp_path / f"python_{script.stem}.png").read_bytes().startswith(b"\x89PNG")

@@ -31,7 +31,7 @@ def test_modifications() -> None:
 
 def test_tune_and_enhance(tmp_path: Path) -> None:
     # The three parameters alone: the keys take most of the time.
-    text = TUNED.read_text()
+    text = TUNED.read_text(encoding="utf-8")
     folder = TUNED.parent
     alone = tmp_path / "breakage.toml"
     kept, skip = [], False
@@ -43,7 +43,7 @@ def test_tune_and_enhance(tmp_path: Path) -> None:
     for name in folder.iterdir():
         if name.name != TUNED.name:
             (tmp_path / name.name).symlink_to(name)
-    alone.write_text("\n".join(kept) + "\n")
+    alone.write_text("\n".join(kept) + "\n", encoding="utf-8")
     told: list[tuple[int, int]] = []
     tuning = hybrid.tune(alone, progress=lambda done, of: told.append((done, of)))
     assert told[-1][0] == told[-1][1] > 0
@@ -61,6 +61,7 @@ def test_tune_and_enhance(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         hybrid.tune(tmp_path / "absent.toml")
     wrong = tmp_path / "wrong.toml"
-    wrong.write_text(alone.read_text().replace("[tune]", "[tun]", 1) + "\nunknown = 1\n")
+    text = alone.read_text(encoding="utf-8")
+    wrong.write_text(text.replace("[tune]", "[tun]", 1) + "\nunknown = 1\n", encoding="utf-8")
     with pytest.raises(ValueError, match="wrong.toml"):
         hybrid.tune(wrong)

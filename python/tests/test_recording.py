@@ -13,7 +13,7 @@ from meshtone import read_recording
 
 def test_csv(tmp_path: Path) -> None:
     path = tmp_path / "run.csv"
-    path.write_text("bearing,tacho\n0.10,5\n-0.20,0\n0.05,5\n")
+    path.write_text("bearing,tacho\n0.10,5\n-0.20,0\n0.05,5\n", encoding="utf-8")
     recording = read_recording(
         path,
         channels=["bearing"],

@@ -71,7 +71,7 @@ def test_examples_are_the_files(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError, match="absent.toml"):
         Scenario.from_file(tmp_path / "absent.toml")
     wrong = tmp_path / "wrong.toml"
-    wrong.write_text(meshtone.template("healthy").replace("module_mm = 3.0", "modul_mm = 3.0"))
+    wrong.write_text(meshtone.template("healthy").replace("module_mm = 3.0", "modul_mm = 3.0"), encoding="utf-8")
     with pytest.raises(ValueError, match="module_mm"):
         Scenario.from_file(wrong)
 

@@ -158,10 +158,15 @@ def test_progress_that_raises_stops_the_rest() -> None:
         simulate_many((examples.healthy().copy(seed=seed) for seed in range(400)), progress=stop)
 
 
-def test_control_c_stops() -> None:
+def press_control_c() -> None:
     main = threading.main_thread().ident
     assert main is not None
-    timer = threading.Timer(0.3, lambda: signal.pthread_kill(main, signal.SIGINT))
+    signal.pthread_kill(main, signal.SIGINT)
+
+
+@pytest.mark.usefixtures("control_c")
+def test_control_c_stops() -> None:
+    timer = threading.Timer(0.3, press_control_c)
     scenarios = [examples.healthy().copy(seed=seed) for seed in range(4000)]
     timer.start()
     start = time.monotonic()
@@ -170,6 +175,19 @@ def test_control_c_stops() -> None:
     # All of them would take at least ten times as long on any machine.
     assert time.monotonic() - start < 10
     timer.join()
+
+
+@pytest.mark.usefixtures("control_c_ignored")
+def test_control_c_that_is_ignored_does_not_stop() -> None:
+    pressed: list[int] = []
+
+    def press(done: int, of: int) -> None:
+        press_control_c()
+        pressed.append(done)
+
+    results = simulate_many([examples.healthy().copy(seed=seed) for seed in range(4)], progress=press)
+    assert pressed
+    assert all(isinstance(result, meshtone.Signals) for result in results)
 
 
 def test_other_threads_run_meanwhile() -> None:

@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-use crate::support::{Workplace, stdout};
+#[cfg(unix)]
+use crate::support::program_with_small_files;
+use crate::support::{Workplace, program, stdout};
 
 /// 96 records of some milliseconds each.
 const PLAN: &str = r#"
@@ -94,7 +96,7 @@ fn killed_ten_times_and_gone_on_with() {
     // At any moments: multiples of the golden ratio leave no pattern.
     for moment in 1..=10 {
         let part = (f64::from(moment) * 0.618_033_988_749_895).fract();
-        let mut child = Command::new(env!("CARGO_BIN_EXE_meshtone"))
+        let mut child = program()
             .args(["dataset", "plan.toml", "-o", "killed", "--jobs", if moment % 2 == 0 { "1" } else { "3" }])
             .current_dir(workplace.directory.path())
             .stdout(Stdio::null())
@@ -210,19 +212,8 @@ fn the_benchmark_and_the_template_are_plans() {
 fn a_full_disk_leaves_what_can_be_gone_on_with() {
     let workplace = workplace();
     workplace.succeeds(&["dataset", "plan.toml", "-o", "whole"]);
-    let limited = "trap '' XFSZ; ulimit -f \"$1\"; shift; exec \"$@\"";
-    let output = Command::new("sh")
-        .args([
-            "-c",
-            limited,
-            "sh",
-            "100",
-            env!("CARGO_BIN_EXE_meshtone"),
-            "dataset",
-            "plan.toml",
-            "-o",
-            "full",
-        ])
+    let output = program_with_small_files(100)
+        .args(["dataset", "plan.toml", "-o", "full"])
         .current_dir(workplace.directory.path())
         .output()
         .unwrap();

@@ -1,10 +1,10 @@
 //! A run that is killed leaves the results of the run before it whole; where it is killed while it gives its files
 //! their names, this can be seen, and the next command puts the earlier results back.
 
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-use crate::support::{Workplace, fast_with, stderr};
+use crate::support::{Workplace, fast_with, program, stderr};
 use meshtone_io::signals::read_signals;
 use meshtone_io::summary::read_run;
 
@@ -34,7 +34,7 @@ impl Contest {
     /// Starts the other scenario, kills it when `now` says so, and looks at what is there. Returns whether it
     /// was killed before it was through.
     fn kill(&self, now: impl Fn() -> bool) -> bool {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_meshtone"))
+        let mut child = program()
             .args(["simulate", "b.toml", "-o", "out"])
             .current_dir(self.workplace.directory.path())
             .stdout(Stdio::null())

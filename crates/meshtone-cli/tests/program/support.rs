@@ -7,6 +7,8 @@ use assert_cmd::Command;
 use assert_cmd::assert::Assert;
 use tempfile::{TempDir, tempdir};
 
+const PROGRAM: &str = env!("CARGO_BIN_EXE_meshtone");
+
 /// A scenario that takes milliseconds: tooth counts with a large common factor need few samples a revolution.
 /// `[gears]` is line 1; `[quality]` and its grade are the last two lines, 10 and 11.
 pub const FAST: &str = "[gears]\nmodule_mm = 3.0\npinion_teeth = 20\ngear_teeth = 40\nface_width_mm = 15.0\n\
@@ -43,9 +45,9 @@ impl Workplace {
     }
 
     pub fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_meshtone"));
+        let mut command = program();
         command.current_dir(self.directory.path()).args(arguments);
-        command
+        Command::from_std(command)
     }
 
     #[track_caller]
@@ -65,6 +67,28 @@ impl Workplace {
         assert!(message.starts_with("error: "), "{message}");
         assert_eq!(self.names("."), before, "something was written although {message}");
     }
+}
+
+/// The program, where nobody asks for colours and messages find room on their lines.
+pub fn program() -> std::process::Command {
+    with_room(std::process::Command::new(PROGRAM))
+}
+
+/// The program, which cannot write files of more than some blocks: of 512 or 1024 bytes, as the shell likes.
+#[cfg(unix)]
+pub fn program_with_small_files(blocks: u32) -> std::process::Command {
+    let mut shell = std::process::Command::new("sh");
+    let limited = "trap '' XFSZ; ulimit -f \"$1\"; shift; exec \"$@\"";
+    shell.args(["-c", limited, "sh", &blocks.to_string(), PROGRAM]);
+    with_room(shell)
+}
+
+fn with_room(mut command: std::process::Command) -> std::process::Command {
+    for asks_for_colours in ["CLICOLOR_FORCE", "FORCE_COLOR"] {
+        command.env_remove(asks_for_colours);
+    }
+    command.envs([("NO_COLOR", "1"), ("COLUMNS", "100")]);
+    command
 }
 
 pub fn names(directory: &Path) -> Vec<String> {

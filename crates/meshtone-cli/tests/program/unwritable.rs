@@ -1,6 +1,8 @@
 //! What cannot be written is said before anything is simulated, and nothing half-written remains.
 
-use crate::support::{Workplace, fast_and, fast_with};
+#[cfg(target_os = "linux")]
+use crate::support::program_with_small_files;
+use crate::support::{Workplace, fast_and, fast_with, program};
 
 #[test]
 fn a_directory_that_is_a_file() {
@@ -121,8 +123,7 @@ fn a_result_that_is_a_directory() {
 #[test]
 fn standard_output_on_a_full_disk() {
     let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
-    let program = env!("CARGO_BIN_EXE_meshtone");
-    let output = std::process::Command::new(program).args(["init", "healthy"]).stdout(full).output().unwrap();
+    let output = program().args(["init", "healthy"]).stdout(full).output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&output.stderr).contains("cannot write to standard output"));
 }
@@ -134,12 +135,10 @@ fn results_on_a_full_disk() {
     let workplace = Workplace::new();
     workplace.write("worn.toml", fast_and("[quality]\ndin_grade = 7"));
     let all = ["panel.png", "panel.svg", "signals.parquet", "summary.json"];
-    // Blocks of 512 or 1024 bytes, as the shell likes: either way less than the signals need.
+    // Less than the signals need.
     let simulate = |blocks: u32, scenario: &str, directory: &str| {
-        let limited = "trap '' XFSZ; ulimit -f \"$1\"; shift; exec \"$@\"";
-        let program = env!("CARGO_BIN_EXE_meshtone");
-        let output = std::process::Command::new("sh")
-            .args(["-c", limited, "sh", &blocks.to_string(), program, "simulate", scenario, "-o", directory])
+        let output = program_with_small_files(blocks)
+            .args(["simulate", scenario, "-o", directory])
             .current_dir(workplace.directory.path())
             .output()
             .unwrap();
@@ -160,10 +159,10 @@ fn results_on_a_full_disk() {
 
 #[test]
 fn a_reader_that_goes_away_is_no_error() {
-    use std::process::{Command, Stdio};
+    use std::process::Stdio;
 
     for _ in 0..5 {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_meshtone"))
+        let mut child = program()
             .args(["init", "healthy"])
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())

@@ -13,7 +13,7 @@ import pyarrow.dataset as ds
 import pyarrow.parquet as pq
 
 directory = Path(sys.argv[1])
-manifest = json.loads((directory / "manifest.json").read_text())
+manifest = json.loads((directory / "manifest.json").read_text(encoding="utf-8"))
 rows = sum(file["rows"] for file in manifest["files"])
 
 # pyarrow: types, units, metadata, lists.
