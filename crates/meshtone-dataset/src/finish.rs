@@ -11,7 +11,7 @@ use crate::draw::Sampler;
 use crate::error::DatasetError;
 use crate::manifest::{self, CARD, MANIFEST, PREVIEW};
 use crate::plan::Plan;
-use crate::shard::{self, Column, ColumnKind, FailedRecord, Shards};
+use crate::shard::{self, Column, ColumnKind, FailedRecord, Shards, Wanted};
 use crate::store::Destination;
 
 /// Records that a preview shows at most.
@@ -92,7 +92,7 @@ fn contents(
     let every = shards.records.div_ceil(PREVIEWED).max(1) as i64;
     for shard in 0..shards.count() {
         let name = Shards::name(shard);
-        let read = to.shard(&name, &names);
+        let read = to.shard(&name, Wanted::columns(&names));
         let Some(read) = read.filter(|read| read.metadata.is_of(&hash, &shards.range(shard))) else {
             return Ok(None);
         };
@@ -223,7 +223,7 @@ fn is_varied(column: &Column, contents: &Contents) -> bool {
 
 /// One signal of one record.
 fn signal(to: &Destination, shard: u64, row: usize, column: &str) -> Vec<f64> {
-    let read = to.shard_row(&Shards::name(shard), &[column], row);
+    let read = to.shard(&Shards::name(shard), Wanted { columns: &[column], row: Some(row) });
     let values = read.and_then(|read| {
         let values = read.batches.first()?.column(0).as_list_opt::<i32>()?.value(0);
         Some(values.as_primitive_opt::<Float32Type>()?.values().iter().map(|&x| f64::from(x)).collect())
@@ -234,7 +234,7 @@ fn signal(to: &Destination, shard: u64, row: usize, column: &str) -> Vec<f64> {
 /// Speed, load and severity of one record, in words.
 fn conditions(to: &Destination, shard: u64, row: usize) -> String {
     let names = ["pinion_teeth", "gear_teeth", "pinion_speed_hz", "brake_torque_nm", "severity"];
-    let Some(read) = to.shard(&Shards::name(shard), &names) else { return String::new() };
+    let Some(read) = to.shard(&Shards::name(shard), Wanted::columns(&names)) else { return String::new() };
     let Some((batch, row)) = at(&read.batches, row) else { return String::new() };
     let [pinion, gear, speed, torque, severity] = names.map(|name| numbers(batch, name)[row]);
     let severity = if severity > 0.0 { format!(", severity {severity}") } else { String::new() };

@@ -15,7 +15,7 @@ use crate::finish;
 use crate::manifest::{self, Begun};
 use crate::plan::Plan;
 use crate::record::{KeepRecords, Role};
-use crate::shard::{self, Column, FailedRecord, Item, ShardMetadata, Shards};
+use crate::shard::{self, Column, FailedRecord, Item, ShardMetadata, Shards, Wanted};
 use crate::store::Destination;
 
 /// Records that may wait to be written.
@@ -140,7 +140,9 @@ pub fn generate(
     let is_there = |shard: u64| {
         let name = Shards::name(shard);
         there.contains(&name)
-            && to.shard(&name, &[]).is_some_and(|read| read.metadata.is_of(&hash, &shards.range(shard)))
+            && to
+                .shard(&name, Wanted::NOTHING)
+                .is_some_and(|read| read.metadata.is_of(&hash, &shards.range(shard)))
     };
     // What is called complete is looked at all the same: somebody may have lost or damaged a file since.
     if begun == Begun::Complete && (0..shards.count()).all(is_there) {

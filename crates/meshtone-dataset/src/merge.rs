@@ -6,7 +6,7 @@ use crate::finish;
 use crate::generate::Generated;
 use crate::manifest::{self, Begun, MANIFEST};
 use crate::plan::{Plan, PlanFile};
-use crate::shard::Shards;
+use crate::shard::{Shards, Wanted};
 use crate::store::Destination;
 
 /// Merges the parts of a data set.
@@ -36,7 +36,7 @@ pub fn merge(parts: &[Destination], to: &Destination) -> Result<Generated, Datas
     let shards = Shards::new(&plan, &sampler);
     let hash = plan.hash();
     let has = |place: &Destination, shard: u64| {
-        let read = place.shard(&Shards::name(shard), &[]);
+        let read = place.shard(&Shards::name(shard), Wanted::NOTHING);
         read.is_some_and(|read| read.metadata.is_of(&hash, &shards.range(shard)))
     };
     let mut sources = Vec::new();

@@ -90,25 +90,31 @@ pub(crate) struct ReadShard {
     pub batches: Vec<RecordBatch>,
 }
 
-/// Reads what a shard says about itself, and some of its columns.
+/// What is read of a shard besides what it says about itself.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Wanted<'n> {
+    /// Names of columns.
+    pub columns: &'n [&'n str],
+    /// The row that is read; all where there is none. The signals of a whole shard may be large.
+    pub row: Option<usize>,
+}
+
+impl<'n> Wanted<'n> {
+    /// No values.
+    pub const NOTHING: Wanted<'static> = Wanted { columns: &[], row: None };
+
+    /// All rows of some columns.
+    pub fn columns(columns: &'n [&'n str]) -> Self {
+        Self { columns, row: None }
+    }
+}
+
+/// Reads what a shard says about itself, and some of its values.
 ///
 /// # Arguments
 /// * `file` - the shard
-/// * `wanted` - names of columns
-pub(crate) fn read(file: impl ChunkReader + 'static, wanted: &[&str]) -> io::Result<ReadShard> {
-    read_rows(file, wanted, None)
-}
-
-/// Reads a shard's metadata, and some columns of one of its rows.
-pub(crate) fn read_row(
-    file: impl ChunkReader + 'static,
-    wanted: &[&str],
-    row: usize,
-) -> io::Result<ReadShard> {
-    read_rows(file, wanted, Some(row))
-}
-
-fn read_rows(file: impl ChunkReader + 'static, wanted: &[&str], row: Option<usize>) -> io::Result<ReadShard> {
+/// * `wanted` - the values
+pub(crate) fn read(file: impl ChunkReader + 'static, wanted: Wanted) -> io::Result<ReadShard> {
     let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(io::Error::other)?;
     let head = builder.metadata().file_metadata();
     let metadata = head.key_value_metadata().and_then(|values| ShardMetadata::from_key_values(values));
@@ -119,12 +125,12 @@ fn read_rows(file: impl ChunkReader + 'static, wanted: &[&str], row: Option<usiz
     if expected != Some(rows) {
         return Err(io::Error::other(format!("has {rows} rows, which is not what its metadata say")));
     }
-    if wanted.is_empty() {
+    if wanted.columns.is_empty() {
         return Ok(ReadShard { metadata, rows, batches: Vec::new() });
     }
-    let mask = ProjectionMask::columns(builder.parquet_schema(), wanted.iter().copied());
+    let mask = ProjectionMask::columns(builder.parquet_schema(), wanted.columns.iter().copied());
     let builder = builder.with_projection(mask);
-    let builder = match row {
+    let builder = match wanted.row {
         Some(row) => builder.with_offset(row).with_limit(1),
         None => builder,
     };

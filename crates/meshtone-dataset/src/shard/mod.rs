@@ -11,7 +11,7 @@ mod write;
 pub(crate) use columns::column_name;
 pub use columns::{Column, ColumnKind, columns};
 pub use metadata::{FailedRecord, ShardMetadata};
-pub(crate) use metadata::{ReadShard, read, read_row};
+pub(crate) use metadata::{ReadShard, Wanted, read};
 pub(crate) use write::{Item, write};
 
 use crate::draw::Sampler;

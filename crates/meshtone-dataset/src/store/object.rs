@@ -10,13 +10,15 @@ use futures::StreamExt;
 use object_store::path::Path;
 use object_store::{ObjectStore, ObjectStoreExt, PutPayload};
 
+use super::Place;
 use super::remote_file::RemoteFile;
+use crate::shard::{self, ReadShard, Wanted};
 
 /// (bytes) Larger objects are uploaded in parts of this size.
 const PART_BYTES: u64 = 8 << 20;
 
 /// Objects whose names begin alike.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Objects {
     store: Arc<dyn ObjectStore>,
     prefix: Path,
@@ -27,50 +29,14 @@ impl Objects {
         Self { store, prefix }
     }
 
-    fn path(&self, name: &str) -> Path {
+    fn location(&self, name: &str) -> Path {
         name.split('/').fold(self.prefix.clone(), |path, part| path.join(part))
     }
 
-    pub fn names(&self) -> io::Result<Vec<String>> {
-        let list = async {
-            let mut listed = self.store.list(Some(&self.prefix));
-            let mut names = Vec::new();
-            while let Some(object) = listed.next().await {
-                let object = object?;
-                let parts = object.location.prefix_match(&self.prefix);
-                let parts: Vec<String> =
-                    parts.into_iter().flatten().map(|part| part.as_ref().to_owned()).collect();
-                names.push(parts.join("/"));
-            }
-            Ok(names)
-        };
-        let mut names = wait(list)?;
-        names.sort();
-        Ok(names)
-    }
-
-    pub fn open(&self, name: &str) -> io::Result<RemoteFile> {
-        let path = self.path(name);
+    fn file(&self, name: &str) -> io::Result<RemoteFile> {
+        let path = self.location(name);
         let length = wait(async { Ok(self.store.head(&path).await?.size) })?;
         Ok(RemoteFile { store: self.store.clone(), path, length })
-    }
-
-    /// Writes to a file without a name on this machine first, so that an object is as large as it wants without being held in
-    /// memory, and then uploads it.
-    pub fn write<T>(&self, name: &str, write: impl FnOnce(&mut File) -> io::Result<T>) -> io::Result<T> {
-        let mut file = tempfile::tempfile()?;
-        let result = write(&mut file)?;
-        let length = file.stream_position()?;
-        file.rewind()?;
-        let path = self.path(name);
-        if length <= PART_BYTES {
-            let mut bytes = Vec::new();
-            file.read_to_end(&mut bytes)?;
-            wait(async { self.store.put(&path, PutPayload::from(bytes)).await.map(|_| ()) })?;
-        } else {
-            self.upload_parts(&path, file)?;
-        }
-        Ok(result)
     }
 
     fn upload_parts(&self, path: &Path, file: File) -> io::Result<()> {
@@ -90,6 +56,54 @@ impl Objects {
             let _ = wait(upload.abort());
         }
         sent
+    }
+}
+
+impl Place for Objects {
+    fn names(&self) -> io::Result<Vec<String>> {
+        let list = async {
+            let mut listed = self.store.list(Some(&self.prefix));
+            let mut names = Vec::new();
+            while let Some(object) = listed.next().await {
+                let object = object?;
+                let parts = object.location.prefix_match(&self.prefix);
+                let parts: Vec<String> =
+                    parts.into_iter().flatten().map(|part| part.as_ref().to_owned()).collect();
+                names.push(parts.join("/"));
+            }
+            Ok(names)
+        };
+        let mut names = wait(list)?;
+        names.sort();
+        Ok(names)
+    }
+
+    fn open(&self, name: &str) -> io::Result<Box<dyn Read + '_>> {
+        Ok(Box::new(self.file(name)?.reader(0)))
+    }
+
+    fn shard(&self, name: &str, wanted: Wanted) -> io::Result<ReadShard> {
+        shard::read(self.file(name)?, wanted)
+    }
+
+    /// Writes to a file without a name on this machine first, so that an object is as large as it wants without being held in
+    /// memory, and then uploads it.
+    fn write(&self, name: &str, content: &mut dyn FnMut(&mut File) -> io::Result<()>) -> io::Result<()> {
+        let mut file = tempfile::tempfile()?;
+        content(&mut file)?;
+        let length = file.stream_position()?;
+        file.rewind()?;
+        let path = self.location(name);
+        if length > PART_BYTES {
+            return self.upload_parts(&path, file);
+        }
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes)?;
+        wait(async { self.store.put(&path, PutPayload::from(bytes)).await.map(|_| ()) })
+    }
+
+    fn name_of(&self, name: &str) -> String {
+        format!("{self}/{name}")
     }
 }
 

@@ -2,7 +2,6 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::fs;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use crate::support::{FAST, bytes, differing, plan, run};
@@ -10,8 +9,6 @@ use meshtone_dataset::DatasetError;
 use meshtone_dataset::generate::{GenerateControl, Part, generate};
 use meshtone_dataset::merge::merge;
 use meshtone_dataset::store::Destination;
-use object_store::ObjectStoreExt;
-use object_store::memory::InMemory;
 
 #[test]
 fn jobs_and_parts_do_not_show() {
@@ -79,29 +76,6 @@ fn stopped_damaged_and_gone_on_with() {
     // The manifest still says that all is there, which it is not.
     assert!(run(&plan, &to, Part::WHOLE, 2).unwrap().complete);
     assert_eq!(differing(&bytes(&whole), &bytes(&stopped)), [""; 0]);
-}
-
-#[test]
-fn an_object_store_holds_the_same() {
-    let plan = plan(FAST);
-    let directory = tempfile::tempdir().unwrap();
-    run(&plan, &Destination::directory(directory.path()), Part::WHOLE, 2).unwrap();
-    let store = Arc::new(InMemory::new());
-    let to = Destination::objects(store.clone(), "gears/first");
-    // Parts of it before the rest, as on several machines.
-    assert!(!run(&plan, &to, Part { number: 2, of: 2 }, 2).unwrap().complete);
-    let rest = run(&plan, &to, Part::WHOLE, 2).unwrap();
-    assert_eq!((rest.kept_shards, rest.written_shards, rest.complete), (4, 4, true));
-    let get = |name: &str| {
-        let path = object_store::path::Path::from(format!("gears/first/{name}"));
-        futures::executor::block_on(async { store.get(&path).await?.bytes().await }).unwrap().to_vec()
-    };
-    for (name, bytes) in bytes(directory.path()) {
-        assert!(get(&name) == bytes, "{name}");
-    }
-    // Something else is in the bucket, but not below the prefix.
-    let again = run(&plan, &Destination::objects(store.clone(), "gears"), Part::WHOLE, 1).unwrap_err();
-    assert!(again.to_string().contains("has another file in it"), "{again}");
 }
 
 #[test]

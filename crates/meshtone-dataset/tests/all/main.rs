@@ -2,6 +2,9 @@
 
 mod drawn;
 mod exact;
+#[cfg(feature = "objects")]
+mod objects;
+mod places;
 mod python;
 mod records;
 mod refused;
