@@ -2,8 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use arrow::array::{AsArray, RecordBatch};
-use arrow::datatypes::{Float32Type, Float64Type, Int32Type, Int64Type};
 use meshtone_plot::dataset::{DatasetPreview, Example, Indicator, Key, dataset_figure};
 
 use crate::card;
@@ -11,7 +9,7 @@ use crate::draw::Sampler;
 use crate::error::DatasetError;
 use crate::manifest::{self, CARD, MANIFEST, PREVIEW};
 use crate::plan::Plan;
-use crate::shard::{self, Column, ColumnKind, FailedRecord, Shards, Wanted};
+use crate::shard::{self, Column, ColumnKind, FailedRecord, ReadShard, Shards, Wanted};
 use crate::store::Destination;
 
 /// Records that a preview shows at most.
@@ -92,16 +90,12 @@ fn contents(
     let every = shards.records.div_ceil(PREVIEWED).max(1) as i64;
     for shard in 0..shards.count() {
         let name = Shards::name(shard);
-        let read = to.shard(&name, Wanted::columns(&names));
+        let read = to.shard(&name, Wanted::Columns(&names));
         let Some(read) = read.filter(|read| read.metadata.is_of(&hash, &shards.range(shard))) else {
             return Ok(None);
         };
         let (sha256, bytes) = to.sha256(&name)?;
-        let mut row = 0;
-        for batch in &read.batches {
-            contents.add(batch, &plain, every, (shard, row));
-            row += batch.num_rows();
-        }
+        contents.add(&read, &plain, every, shard);
         contents.failures.extend(read.metadata.failures);
         contents.files.push(ShardFile { name, bytes, sha256, rows: read.rows });
     }
@@ -115,26 +109,22 @@ fn contents(
 }
 
 impl Contents {
-    fn add(&mut self, batch: &RecordBatch, columns: &[&Column], every: i64, (shard, row): (u64, usize)) {
-        let text = |name: &str| -> Vec<String> {
-            let column = batch.column_by_name(name).and_then(|column| column.as_string_opt::<i32>());
-            column.map(|column| column.iter().flatten().map(str::to_owned).collect()).unwrap_or_default()
-        };
-        let (labels, splits) = (text("label"), text("split"));
-        for (label, split) in labels.iter().zip(&splits) {
+    fn add(&mut self, read: &ReadShard, columns: &[&Column], every: i64, shard: u64) {
+        let (labels, splits) = (read.texts("label"), read.texts("split"));
+        for (label, split) in labels.iter().zip(splits) {
             *self.counts.entry((split.clone(), label.clone())).or_default() += 1;
         }
-        let records = numbers(batch, "record");
+        let records = read.numbers("record");
         let chosen: Vec<usize> = (0..records.len()).filter(|&i| (records[i] as i64) % every == 0).collect();
-        for (i, label) in labels.iter().enumerate() {
-            self.sampled.first.entry(label.clone()).or_insert((shard, row + i));
+        for (row, label) in labels.iter().enumerate() {
+            self.sampled.first.entry(label.clone()).or_insert((shard, row));
         }
         for &i in &chosen {
             self.sampled.labels.push(labels[i].clone());
             self.sampled.splits.push(splits[i].clone());
         }
         for column in columns {
-            let values = numbers(batch, &column.name);
+            let values = read.numbers(&column.name);
             if values.is_empty() {
                 continue;
             }
@@ -146,21 +136,6 @@ impl Contents {
             sampled.extend(chosen.iter().map(|&i| values[i]));
         }
     }
-}
-
-/// A column of numbers; NaN where there is none.
-fn numbers(batch: &RecordBatch, name: &str) -> Vec<f64> {
-    let Some(column) = batch.column_by_name(name) else { return Vec::new() };
-    if let Some(column) = column.as_primitive_opt::<Float64Type>() {
-        return column.iter().map(|value| value.unwrap_or(f64::NAN)).collect();
-    }
-    if let Some(column) = column.as_primitive_opt::<Int32Type>() {
-        return column.iter().map(|value| value.map_or(f64::NAN, f64::from)).collect();
-    }
-    let column = column.as_primitive_opt::<Int64Type>();
-    column
-        .map(|column| column.iter().map(|value| value.map_or(f64::NAN, |n| n as f64)).collect())
-        .unwrap_or_default()
 }
 
 fn preview(plan: &Plan, contents: &Contents, to: &Destination, columns: &[Column]) -> DatasetPreview {
@@ -223,30 +198,16 @@ fn is_varied(column: &Column, contents: &Contents) -> bool {
 
 /// One signal of one record.
 fn signal(to: &Destination, shard: u64, row: usize, column: &str) -> Vec<f64> {
-    let read = to.shard(&Shards::name(shard), Wanted { columns: &[column], row: Some(row) });
-    let values = read.and_then(|read| {
-        let values = read.batches.first()?.column(0).as_list_opt::<i32>()?.value(0);
-        Some(values.as_primitive_opt::<Float32Type>()?.values().iter().map(|&x| f64::from(x)).collect())
-    });
-    values.unwrap_or_default()
+    let read = to.shard(&Shards::name(shard), Wanted::Signal { column, row });
+    read.map_or_else(Vec::new, |read| read.signal.iter().map(|&x| f64::from(x)).collect())
 }
 
 /// Speed, load and severity of one record, in words.
 fn conditions(to: &Destination, shard: u64, row: usize) -> String {
     let names = ["pinion_teeth", "gear_teeth", "pinion_speed_hz", "brake_torque_nm", "severity"];
-    let Some(read) = to.shard(&Shards::name(shard), Wanted::columns(&names)) else { return String::new() };
-    let Some((batch, row)) = at(&read.batches, row) else { return String::new() };
-    let [pinion, gear, speed, torque, severity] = names.map(|name| numbers(batch, name)[row]);
+    let Some(read) = to.shard(&Shards::name(shard), Wanted::Columns(&names)) else { return String::new() };
+    let number = |name: &str| read.numbers(name).get(row).copied().unwrap_or(f64::NAN);
+    let [pinion, gear, speed, torque, severity] = names.map(number);
     let severity = if severity > 0.0 { format!(", severity {severity}") } else { String::new() };
     format!("{pinion}/{gear} teeth, {speed:.1} Hz, {torque:.1} N m{severity}")
-}
-
-fn at(batches: &[RecordBatch], mut row: usize) -> Option<(&RecordBatch, usize)> {
-    for batch in batches {
-        if row < batch.num_rows() {
-            return Some((batch, row));
-        }
-        row -= batch.num_rows();
-    }
-    None
 }

@@ -141,7 +141,7 @@ pub fn generate(
         let name = Shards::name(shard);
         there.contains(&name)
             && to
-                .shard(&name, Wanted::NOTHING)
+                .shard(&name, Wanted::Nothing)
                 .is_some_and(|read| read.metadata.is_of(&hash, &shards.range(shard)))
     };
     // What is called complete is looked at all the same: somebody may have lost or damaged a file since.

@@ -36,7 +36,7 @@ pub fn merge(parts: &[Destination], to: &Destination) -> Result<Generated, Datas
     let shards = Shards::new(&plan, &sampler);
     let hash = plan.hash();
     let has = |place: &Destination, shard: u64| {
-        let read = place.shard(&Shards::name(shard), Wanted::NOTHING);
+        let read = place.shard(&Shards::name(shard), Wanted::Nothing);
         read.is_some_and(|read| read.metadata.is_of(&hash, &shards.range(shard)))
     };
     let mut sources = Vec::new();

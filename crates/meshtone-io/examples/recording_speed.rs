@@ -11,15 +11,12 @@ use std::error::Error;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
-use std::sync::Arc;
 use std::time::Instant;
 
-use arrow::array::{ArrayRef, Float64Array};
-use arrow::record_batch::RecordBatch;
 use meshtone_io::recording::{RecordingOptions, read_recording};
+use meshtone_io::table::{CellType, Cells, TableColumn, TableWriter};
 use ndarray::Array2;
 use ndarray_npy::{NpzWriter, WriteNpyExt};
-use parquet::arrow::ArrowWriter;
 use peak_alloc::PeakAlloc;
 
 #[global_allocator]
@@ -116,12 +113,15 @@ fn text(path: &Path, time: bool, separator: &str, decimals: usize) -> Written {
 fn parquet(path: &Path) -> Written {
     let time = (0..SAMPLES).map(|index| index as f64 / RATE_HZ).collect();
     let columns = [("time", time), ("a", column(0)), ("b", column(1)), ("c", column(2)), ("d", column(3))];
-    let columns = columns.map(|(name, column)| (name, Arc::new(Float64Array::from(column)) as ArrayRef));
-    let batch = RecordBatch::try_from_iter(columns)?;
-    let mut writer = ArrowWriter::try_new(File::create(path)?, batch.schema(), None)?;
-    writer.write(&batch)?;
-    writer.close()?;
-    Ok(())
+    let heads = columns.iter().map(|(name, _)| TableColumn {
+        name: name.to_string(),
+        cells: CellType::Float64,
+        nullable: false,
+        metadata: Vec::new(),
+    });
+    let mut table = TableWriter::new(File::create(path)?, heads.collect(), Default::default())?;
+    table.write_rows(columns.iter().map(|(_, column)| Cells::Signal(column)).collect())?;
+    Ok(table.close()?)
 }
 
 fn npz(path: &Path) -> Written {

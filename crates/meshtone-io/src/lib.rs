@@ -5,12 +5,14 @@
 pub mod atomic_file;
 pub mod experiment;
 pub mod indicators;
+mod npz;
 mod read_results;
 pub mod recording;
 pub mod run_identity;
 pub mod scenario_file;
 pub mod signals;
 pub mod summary;
+pub mod table;
 pub mod trace_npz;
 
 pub use read_results::ReadResultsError;

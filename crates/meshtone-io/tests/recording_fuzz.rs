@@ -3,20 +3,21 @@
 //! A test program of its own, because it counts the memory of the whole program.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
+#[path = "all/parquet_help.rs"]
+#[allow(dead_code)]
+mod parquet_help;
 #[path = "all/recording_help.rs"]
 mod recording_help;
 
 use std::fs;
 use std::io::Cursor;
 use std::path::Path;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
-use arrow::array::{ArrayRef, Float64Array};
-use arrow::record_batch::RecordBatch;
 use meshtone_io::recording::{RecordingFormat, RecordingOptions};
 use ndarray::{Array2, arr0};
 use ndarray_npy::{NpzWriter, WriteNpyExt};
-use parquet::arrow::ArrowWriter;
+use parquet_help::{Plain, parquet};
 use peak_alloc::PeakAlloc;
 use proptest::prelude::*;
 use recording_help::{rate, read, refused};
@@ -46,12 +47,8 @@ fn whole() -> &'static [(&'static str, Vec<u8>)] {
     WHOLE.get_or_init(|| {
         let lines = (0..40).map(|row| format!("{:.2};{},5;\"{}\"\n", row, row % 7, row));
         let csv = "t [s];a [g];b\n".to_string() + &lines.collect::<String>();
-        let column = |column| Arc::new(Float64Array::from(table().column(column).to_vec())) as ArrayRef;
-        let batch = RecordBatch::try_from_iter([("a", column(0)), ("b", column(1))]).unwrap();
-        let mut parquet = Vec::new();
-        let mut writer = ArrowWriter::try_new(&mut parquet, batch.schema(), None).unwrap();
-        writer.write(&batch).unwrap();
-        writer.close().unwrap();
+        let column = |column| Plain::doubles(table().column(column).to_vec());
+        let parquet = parquet(vec![("a", column(0)), ("b", column(1))], Vec::new());
         let mut npy = Vec::new();
         table().write_npy(&mut npy).unwrap();
         let mut npz = Cursor::new(Vec::new());

@@ -3,13 +3,12 @@
 use std::fs::File;
 
 use crate::support::{Workplace, fast_and, stderr, stdout};
-use arrow::datatypes::Schema;
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::scenario_file::read_scenario;
 use meshtone_io::signals::read_signals;
+use meshtone_io::table::{FoundColumn, TableReader};
 use ndarray::{ArrayD, IxDyn};
 use ndarray_npy::NpzReader;
-use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use serde_json::Value;
 
 const ALL_FILES: [&str; 4] = ["panel.png", "panel.svg", "signals.parquet", "summary.json"];
@@ -53,13 +52,12 @@ fn columns_and_metadata() {
     let workplace = Workplace::new();
     workplace.succeeds(&["simulate", "fast.toml", "-o", "out", "--no-panel"]);
     let file = File::open(workplace.path("out/signals.parquet")).unwrap();
-    let builder = ParquetRecordBatchReaderBuilder::try_new(file).unwrap();
-    let schema: &Schema = builder.schema();
-    let columns: Vec<_> = schema
-        .fields()
-        .iter()
-        .map(|field| (field.name().as_str(), field.metadata()["unit"].as_str()))
-        .collect();
+    let table = TableReader::new(file).unwrap();
+    let unit = |column: &FoundColumn| {
+        let entry = column.metadata.iter().find(|(key, _)| key == "unit").unwrap();
+        (column.name.clone(), entry.1.clone())
+    };
+    let columns: Vec<_> = table.columns().iter().map(unit).collect();
     let expected = [
         ("time_s", "s"),
         ("horizontal_acceleration_g", "g"),
@@ -69,8 +67,8 @@ fn columns_and_metadata() {
         ("gear_shaft_speed_hz", "Hz"),
         ("mesh_force_n", "N"),
     ];
-    assert_eq!(columns, expected);
-    let metadata = builder.metadata().file_metadata().key_value_metadata().unwrap();
+    assert_eq!(columns, expected.map(|(name, unit)| (name.to_string(), unit.to_string())));
+    let metadata = table.metadata().file_metadata().key_value_metadata().unwrap();
     let value = |key: &str| {
         let entry = metadata.iter().find(|entry| entry.key == key).unwrap();
         entry.value.clone().unwrap()
@@ -79,7 +77,7 @@ fn columns_and_metadata() {
     assert_eq!(value("meshtone.run"), summary(&workplace, "out")["run"]);
     assert_eq!(value("meshtone.version"), env!("CARGO_PKG_VERSION"));
     assert!(value("meshtone.scenario").contains("pinion_teeth = 20\n"));
-    assert_eq!(builder.metadata().file_metadata().num_rows(), 11_200);
+    assert_eq!(table.metadata().file_metadata().num_rows(), 11_200);
 }
 
 #[test]

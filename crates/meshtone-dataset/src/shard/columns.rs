@@ -1,10 +1,7 @@
 //! Columns of a data set.
 
-use std::collections::HashMap;
-use std::sync::Arc;
-
-use arrow::datatypes::{DataType, Field, Schema};
 use meshtone::batch::ChannelKind;
+use meshtone_io::table::{CellType, TableColumn};
 
 use crate::draw::NOISE_KEYS;
 use crate::plan::Plan;
@@ -77,15 +74,13 @@ impl ColumnKind {
         matches!(self, Self::Channel(_) | Self::Average | Self::Difference | Self::EnhancedDifference)
     }
 
-    fn data_type(&self) -> DataType {
+    fn cells(&self) -> CellType {
         match self {
-            Self::Record | Self::Unit | Self::Seed | Self::WheelsSeed => DataType::Int64,
-            Self::Split | Self::Label => DataType::Utf8,
-            Self::Severity | Self::FaultTooth | Self::PinionTeeth | Self::GearTeeth => DataType::Int32,
-            kind if kind.is_signal() => {
-                DataType::List(Arc::new(Field::new("item", DataType::Float32, false)))
-            }
-            _ => DataType::Float64,
+            Self::Record | Self::Unit | Self::Seed | Self::WheelsSeed => CellType::Int64,
+            Self::Split | Self::Label => CellType::Text,
+            Self::Severity | Self::FaultTooth | Self::PinionTeeth | Self::GearTeeth => CellType::Int32,
+            kind if kind.is_signal() => CellType::Float32List { nullable_items: false },
+            _ => CellType::Float64,
         }
     }
 
@@ -147,20 +142,19 @@ pub fn columns(plan: &Plan) -> Vec<Column> {
     columns
 }
 
-/// The schema of the shards.
-pub(super) fn schema(columns: &[Column]) -> Arc<Schema> {
-    let field = |column: &Column| {
-        let mut metadata = HashMap::from([
-            ("unit".to_owned(), column.unit.clone()),
-            ("description".to_owned(), column.description.clone()),
-        ]);
+impl From<&Column> for TableColumn {
+    fn from(column: &Column) -> Self {
+        let mut metadata = vec![("unit", &column.unit), ("description", &column.description)];
         if let ColumnKind::Key(key) = &column.kind {
-            metadata.insert("key".to_owned(), key.clone());
+            metadata.push(("key", key));
         }
-        let kind = &column.kind;
-        Field::new(&column.name, kind.data_type(), kind.is_nullable()).with_metadata(metadata)
-    };
-    Arc::new(Schema::new(columns.iter().map(field).collect::<Vec<_>>()))
+        Self {
+            name: column.name.clone(),
+            cells: column.kind.cells(),
+            nullable: column.kind.is_nullable(),
+            metadata: metadata.into_iter().map(|(key, value)| (key.to_owned(), value.clone())).collect(),
+        }
+    }
 }
 
 fn column(name: &str, unit: &str, description: &str, kind: ColumnKind) -> Column {

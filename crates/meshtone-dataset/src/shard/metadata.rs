@@ -1,10 +1,9 @@
 //! What a shard says about itself.
 
+use std::collections::BTreeMap;
 use std::io;
 
-use arrow::array::RecordBatch;
-use parquet::arrow::ProjectionMask;
-use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+use meshtone_io::table::{FoundType, TableReader, into_io};
 use parquet::file::metadata::KeyValue;
 use parquet::file::reader::ChunkReader;
 use serde_json::{Value, json};
@@ -38,7 +37,7 @@ pub struct ShardMetadata {
 }
 
 impl ShardMetadata {
-    pub(super) fn key_values(&self) -> Vec<KeyValue> {
+    pub(super) fn key_values(&self) -> Vec<(String, String)> {
         let failures: Vec<Value> = self
             .failures
             .iter()
@@ -51,7 +50,7 @@ impl ShardMetadata {
             (RECORDS, (self.records.end - self.records.start).to_string()),
             (FAILURES, Value::from(failures).to_string()),
         ]
-        .map(|(key, value)| KeyValue::new(key.to_owned(), value))
+        .map(|(key, value)| (key.to_owned(), value))
         .to_vec()
     }
 
@@ -83,30 +82,42 @@ impl ShardMetadata {
     }
 }
 
-/// A shard that was read, without its signals.
+/// What was read of a shard.
 pub(crate) struct ReadShard {
     pub metadata: ShardMetadata,
     pub rows: u64,
-    pub batches: Vec<RecordBatch>,
+    numbers: BTreeMap<String, Vec<f64>>,
+    texts: BTreeMap<String, Vec<String>>,
+    /// The signal of one row.
+    pub signal: Vec<f32>,
+}
+
+impl ReadShard {
+    /// A column of numbers, NaN where a cell is empty; nothing where no such column was read.
+    pub fn numbers(&self, name: &str) -> &[f64] {
+        self.numbers.get(name).map_or(&[], Vec::as_slice)
+    }
+
+    /// A column of text; nothing where no such column was read.
+    pub fn texts(&self, name: &str) -> &[String] {
+        self.texts.get(name).map_or(&[], Vec::as_slice)
+    }
 }
 
 /// What is read of a shard besides what it says about itself.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Wanted<'n> {
-    /// Names of columns.
-    pub columns: &'n [&'n str],
-    /// The row that is read; all where there is none. The signals of a whole shard may be large.
-    pub row: Option<usize>,
-}
-
-impl<'n> Wanted<'n> {
+pub(crate) enum Wanted<'n> {
     /// No values.
-    pub const NOTHING: Wanted<'static> = Wanted { columns: &[], row: None };
-
-    /// All rows of some columns.
-    pub fn columns(columns: &'n [&'n str]) -> Self {
-        Self { columns, row: None }
-    }
+    Nothing,
+    /// Columns of numbers and text, those of them that there are.
+    Columns(&'n [&'n str]),
+    /// The signal of one row; those of a whole shard may be large.
+    Signal {
+        /// Name of the column.
+        column: &'n str,
+        /// The row.
+        row: usize,
+    },
 }
 
 /// Reads what a shard says about itself, and some of its values.
@@ -115,8 +126,8 @@ impl<'n> Wanted<'n> {
 /// * `file` - the shard
 /// * `wanted` - the values
 pub(crate) fn read(file: impl ChunkReader + 'static, wanted: Wanted) -> io::Result<ReadShard> {
-    let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(io::Error::other)?;
-    let head = builder.metadata().file_metadata();
+    let table = TableReader::new(file).map_err(into_io)?;
+    let head = table.metadata().file_metadata();
     let metadata = head.key_value_metadata().and_then(|values| ShardMetadata::from_key_values(values));
     let metadata = metadata.ok_or_else(|| io::Error::other("is no shard of a data set"))?;
     let rows = u64::try_from(head.num_rows()).unwrap_or(0);
@@ -125,16 +136,25 @@ pub(crate) fn read(file: impl ChunkReader + 'static, wanted: Wanted) -> io::Resu
     if expected != Some(rows) {
         return Err(io::Error::other(format!("has {rows} rows, which is not what its metadata say")));
     }
-    if wanted.columns.is_empty() {
-        return Ok(ReadShard { metadata, rows, batches: Vec::new() });
+    let (numbers, texts) = (BTreeMap::new(), BTreeMap::new());
+    let mut read = ReadShard { metadata, rows, numbers, texts, signal: Vec::new() };
+    match wanted {
+        Wanted::Nothing => {}
+        Wanted::Columns(names) => {
+            for column in names.iter().filter_map(|name| table.column(name)) {
+                let name = column.name.clone();
+                if column.kind == FoundType::Text {
+                    let texts = table.texts(column).map_err(into_io)?;
+                    read.texts.insert(name, texts.into_iter().flatten().collect());
+                } else {
+                    read.numbers.insert(name, table.numbers(column, 0).map_err(into_io)?.values);
+                }
+            }
+        }
+        Wanted::Signal { column, row } => {
+            let column = table.column(column).ok_or_else(|| io::Error::other("has no such column"))?;
+            read.signal = table.list(column, row).map_err(into_io)?;
+        }
     }
-    let mask = ProjectionMask::columns(builder.parquet_schema(), wanted.columns.iter().copied());
-    let builder = builder.with_projection(mask);
-    let builder = match wanted.row {
-        Some(row) => builder.with_offset(row).with_limit(1),
-        None => builder,
-    };
-    let reader = builder.build().map_err(io::Error::other)?;
-    let batches = reader.collect::<Result<_, _>>().map_err(io::Error::other)?;
-    Ok(ReadShard { metadata, rows, batches })
+    Ok(read)
 }

@@ -1,11 +1,6 @@
 //! Records as rows.
 
-use std::sync::Arc;
-
-use arrow::array::{
-    ArrayRef, Float32Builder, Float64Builder, Int32Builder, Int64Builder, ListBuilder, StringBuilder,
-};
-use arrow::datatypes::{DataType, Field};
+use meshtone_io::table::Cells;
 
 use super::{Column, ColumnKind};
 use crate::plan::Content;
@@ -27,37 +22,22 @@ impl Row {
 }
 
 /// One column of some rows.
-pub(super) fn array(column: &Column, rows: &[Row], content: &Content) -> ArrayRef {
+pub(super) fn cells<'r>(column: &Column, rows: &'r [Row], content: &Content) -> Cells<'r> {
     let names = content.splits.names();
-    let whole = |value: &dyn Fn(&Record) -> u64| -> ArrayRef {
-        let mut builder = Int64Builder::with_capacity(rows.len());
-        rows.iter().for_each(|row| builder.append_value(value(&row.record) as i64));
-        Arc::new(builder.finish())
+    let whole = |value: &dyn Fn(&Record) -> u64| {
+        Cells::Int64(rows.iter().map(|row| Some(value(&row.record) as i64)).collect())
     };
-    let small = |value: &dyn Fn(&Record) -> Option<u32>| -> ArrayRef {
-        let mut builder = Int32Builder::with_capacity(rows.len());
-        rows.iter().for_each(|row| builder.append_option(value(&row.record).map(|value| value as i32)));
-        Arc::new(builder.finish())
+    let small = |value: &dyn Fn(&Record) -> Option<u32>| {
+        Cells::Int32(rows.iter().map(|row| value(&row.record).map(|value| value as i32)).collect())
     };
-    let text = |value: &dyn Fn(&Record) -> String| -> ArrayRef {
-        let mut builder = StringBuilder::new();
-        rows.iter().for_each(|row| builder.append_value(value(&row.record)));
-        Arc::new(builder.finish())
+    let text = |value: &dyn Fn(&Record) -> String| {
+        Cells::Text(rows.iter().map(|row| Some(value(&row.record))).collect())
     };
-    let number = |value: &dyn Fn(&Record) -> Option<f64>| -> ArrayRef {
-        let mut builder = Float64Builder::with_capacity(rows.len());
-        rows.iter().for_each(|row| builder.append_option(value(&row.record)));
-        Arc::new(builder.finish())
+    let number = |value: &dyn Fn(&Record) -> Option<f64>| {
+        Cells::Float64(rows.iter().map(|row| value(&row.record)).collect())
     };
-    let signal = |values: &dyn Fn(&Row) -> &[f32]| -> ArrayRef {
-        let item = Field::new("item", DataType::Float32, false);
-        let mut builder = ListBuilder::new(Float32Builder::new()).with_field(item);
-        for row in rows {
-            builder.values().append_slice(values(row));
-            builder.append(true);
-        }
-        Arc::new(builder.finish())
-    };
+    let signal =
+        |values: &dyn Fn(&'r Row) -> &'r [f32]| Cells::Float32List(rows.iter().map(values).collect());
     match &column.kind {
         ColumnKind::Record => whole(&|r| r.drawn.index),
         ColumnKind::Unit => whole(&|r| r.drawn.unit),

@@ -1,19 +1,15 @@
 //! Writing a shard.
 
 use std::io::{self, Write};
-use std::sync::Arc;
 
-use arrow::datatypes::Schema;
-use arrow::record_batch::RecordBatch;
 use meshtone::hybrid::SimulatedCases;
 use meshtone_io::experiment::Tuned;
-use parquet::arrow::ArrowWriter;
+use meshtone_io::table::{TableColumn, TableWriter};
 use parquet::basic::{Compression, Encoding, ZstdLevel};
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::schema::types::ColumnPath;
 
-use super::columns::schema;
-use super::rows::{Row, array};
+use super::rows::{Row, cells};
 use super::{Column, FailedRecord, ShardMetadata};
 use crate::plan::Content;
 use crate::record::Record;
@@ -50,9 +46,8 @@ pub(crate) fn write(
     mut metadata: ShardMetadata,
     mut next: impl FnMut() -> Option<Item>,
 ) -> io::Result<ShardMetadata> {
-    let schema = schema(columns);
     let properties = properties(columns).map_err(io::Error::other)?;
-    let mut writer = ArrowWriter::try_new(to, schema.clone(), Some(properties)).map_err(io::Error::other)?;
+    let mut table = TableWriter::new(to, columns.iter().map(TableColumn::from).collect(), properties)?;
     let mut rows = Vec::new();
     let mut bytes = 0;
     let mut twin: Option<Box<Record>> = None;
@@ -81,21 +76,18 @@ pub(crate) fn write(
         }
         finished += 1;
         if bytes >= GROUP_BYTES {
-            write_group(&mut writer, &schema, content, columns, &mut rows)?;
+            write_group(&mut table, content, columns, &mut rows)?;
             bytes = 0;
         }
     }
-    write_group(&mut writer, &schema, content, columns, &mut rows)?;
-    for value in metadata.key_values() {
-        writer.append_key_value_metadata(value);
-    }
-    writer.close().map_err(into_io)?;
+    write_group(&mut table, content, columns, &mut rows)?;
+    table.add_metadata(metadata.key_values());
+    table.close()?;
     Ok(metadata)
 }
 
 fn write_group(
-    writer: &mut ArrowWriter<impl Write + Send>,
-    schema: &Arc<Schema>,
+    table: &mut TableWriter<impl Write + Send>,
     content: &Content,
     columns: &[Column],
     rows: &mut Vec<Row>,
@@ -103,22 +95,9 @@ fn write_group(
     if rows.is_empty() {
         return Ok(());
     }
-    let arrays = columns.iter().map(|column| array(column, rows, content)).collect();
-    let batch = RecordBatch::try_new(schema.clone(), arrays).map_err(io::Error::other)?;
+    table.write_rows(columns.iter().map(|column| cells(column, rows, content)).collect())?;
     rows.clear();
-    writer.write(&batch).map_err(into_io)?;
-    writer.flush().map_err(into_io)
-}
-
-/// The writer's error, as the file's where it is that one: a full disk stays one.
-fn into_io(error: parquet::errors::ParquetError) -> io::Error {
-    match error {
-        parquet::errors::ParquetError::External(source) => match source.downcast::<io::Error>() {
-            Ok(error) => *error,
-            Err(source) => io::Error::other(source),
-        },
-        error => io::Error::other(error),
-    }
+    Ok(())
 }
 
 fn properties(columns: &[Column]) -> Result<WriterProperties, parquet::errors::ParquetError> {
@@ -128,7 +107,7 @@ fn properties(columns: &[Column]) -> Result<WriterProperties, parquet::errors::P
         .set_data_page_size_limit(PAGE_BYTES);
     for column in columns.iter().filter(|column| column.kind.is_signal()) {
         // Hardly a number occurs twice, but signs and exponents resemble each other.
-        let path = ColumnPath::new(vec![column.name.clone(), "list".to_owned(), "item".to_owned()]);
+        let path = ColumnPath::new(TableColumn::list_path(&column.name));
         builder = builder
             .set_column_dictionary_enabled(path.clone(), false)
             .set_column_encoding(path.clone(), Encoding::BYTE_STREAM_SPLIT)

@@ -5,19 +5,17 @@ use std::fs::File;
 use std::path::Path;
 
 use crate::support::{FAST, plan, run};
-use arrow::array::{Array, AsArray, RecordBatch};
-use arrow::compute::concat_batches;
-use arrow::datatypes::{Float32Type, Float64Type, Int32Type, Int64Type};
 use meshtone::signal::{ChainSettings, Edge, ShaftPhase, process_channel, resample, resampling_ratio, rms};
 use meshtone_dataset::draw::Sampler;
 use meshtone_dataset::generate::Part;
 use meshtone_dataset::plan::Plan;
 use meshtone_dataset::store::Destination;
-use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::{Field, Row};
 
 struct Made {
     _directory: tempfile::TempDir,
-    rows: RecordBatch,
+    rows: Vec<Row>,
 }
 
 fn made(plan: &Plan) -> Made {
@@ -28,41 +26,59 @@ fn made(plan: &Plan) -> Made {
     Made { rows: read(&to), _directory: directory }
 }
 
-fn read(directory: &Path) -> RecordBatch {
+fn read(directory: &Path) -> Vec<Row> {
     let mut names: Vec<_> =
         std::fs::read_dir(directory.join("data")).unwrap().map(|entry| entry.unwrap().path()).collect();
     names.sort();
-    let batches: Vec<RecordBatch> = names
-        .iter()
-        .flat_map(|path| {
-            let builder = ParquetRecordBatchReaderBuilder::try_new(File::open(path).unwrap()).unwrap();
-            builder.build().unwrap().map(Result::unwrap)
-        })
-        .collect();
-    concat_batches(&batches[0].schema(), &batches).unwrap()
+    let rows = |path| {
+        let shard = SerializedFileReader::new(File::open(path).unwrap()).unwrap();
+        shard.get_row_iter(None).unwrap().map(Result::unwrap).collect::<Vec<_>>()
+    };
+    names.iter().flat_map(rows).collect()
 }
 
 impl Made {
+    fn field(&self, name: &str, row: usize) -> &Field {
+        let mut fields = self.rows[row].get_column_iter();
+        fields.find(|(other, _)| *other == name).unwrap_or_else(|| panic!("{name}")).1
+    }
+
     fn signal(&self, name: &str, row: usize) -> Vec<f64> {
-        let list = self.rows.column_by_name(name).unwrap().as_list::<i32>().value(row);
-        list.as_primitive::<Float32Type>().values().iter().map(|&x| f64::from(x)).collect()
+        let Field::ListInternal(list) = self.field(name, row) else { panic!("{name}") };
+        let number = |item: &Field| match item {
+            Field::Float(number) => f64::from(*number),
+            other => panic!("{name}: {other}"),
+        };
+        list.elements().iter().map(number).collect()
     }
 
     fn number(&self, name: &str, row: usize) -> f64 {
-        self.rows
-            .column_by_name(name)
-            .unwrap_or_else(|| panic!("{name}"))
-            .as_primitive::<Float64Type>()
-            .value(row)
+        match self.field(name, row) {
+            Field::Double(number) => *number,
+            other => panic!("{name}: {other}"),
+        }
+    }
+
+    fn integer(&self, name: &str, row: usize) -> i64 {
+        match self.field(name, row) {
+            Field::Long(number) => *number,
+            other => panic!("{name}: {other}"),
+        }
     }
 
     fn tooth(&self, row: usize) -> Option<i32> {
-        let column = self.rows.column_by_name("fault_tooth").unwrap().as_primitive::<Int32Type>();
-        column.is_valid(row).then(|| column.value(row))
+        match self.field("fault_tooth", row) {
+            Field::Int(number) => Some(*number),
+            Field::Null => None,
+            other => panic!("{other}"),
+        }
     }
 
     fn text(&self, name: &str, row: usize) -> String {
-        self.rows.column_by_name(name).unwrap().as_string::<i32>().value(row).to_owned()
+        match self.field(name, row) {
+            Field::Str(text) => text.clone(),
+            other => panic!("{name}: {other}"),
+        }
     }
 }
 
@@ -78,14 +94,12 @@ fn rows_are_the_plans_records() {
     let plan = plan(FAST);
     let made = made(&plan);
     let sampler = Sampler::new(&plan.content).unwrap();
-    assert_eq!(made.rows.num_rows(), 60);
-    let integers =
-        |name: &str| made.rows.column_by_name(name).unwrap().as_primitive::<Int64Type>().values().to_vec();
+    assert_eq!(made.rows.len(), 60);
     for row in 0..60 {
         let record = sampler.record(row as u64).unwrap();
-        assert_eq!(integers("record")[row], row as i64);
-        assert_eq!(integers("unit")[row], record.unit as i64);
-        assert_eq!(integers("seed")[row], record.seed as i64);
+        assert_eq!(made.integer("record", row), row as i64);
+        assert_eq!(made.integer("unit", row), record.unit as i64);
+        assert_eq!(made.integer("seed", row), record.seed as i64);
         assert_eq!(made.text("label", row), plan.content.classes[record.class].label);
         assert_eq!(made.text("split", row), plan.content.splits.names()[record.split]);
         let speed = record.values.iter().find(|(key, _)| key == "operation.pinion_speed_hz").unwrap().1;
@@ -227,7 +241,7 @@ fn a_fluctuating_speed_is_followed() {
 fn only_what_is_wanted_is_kept() {
     let keep = "[keep]\nchannels = [\"axial\"]\nduration_s = 0.25\naverage = false\nindicators = false";
     let made = made(&plan(&FAST.replace("[keep]", keep)));
-    let names: Vec<String> = made.rows.schema().fields().iter().map(|field| field.name().clone()).collect();
+    let names: Vec<String> = made.rows[0].get_column_iter().map(|(name, _)| name.clone()).collect();
     assert!(names.contains(&"difference_g".to_owned()) && names.contains(&"axial_g".to_owned()));
     for absent in ["average_g", "vertical_g", "fm4"] {
         assert!(!names.contains(&absent.to_owned()), "{absent}");

@@ -1,19 +1,15 @@
 //! Enhanced difference signals, and their Parquet file.
 
 use std::io::{self, Write};
-use std::sync::Arc;
 
-use arrow::array::{ArrayRef, Float32Builder, Float64Array, ListBuilder, StringArray, UInt64Array};
-use arrow::datatypes::{DataType, Field, Schema};
-use arrow::record_batch::RecordBatch;
 use meshtone::hybrid::{HybridError, SimulatedCases, TuningIndicator, difference_signals};
 use meshtone::scenario::{Fault, Scenario};
-use parquet::arrow::ArrowWriter;
 use parquet::basic::{Compression, ZstdLevel};
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 
 use super::Tuned;
+use crate::table::{CellType, Cells, TableColumn, TableWriter};
 
 const COMPRESSION_LEVEL: i32 = 1;
 
@@ -121,28 +117,27 @@ pub fn write_enhanced(
     head: EnhancedHead,
     records: &[EnhancedRecord],
 ) -> io::Result<()> {
-    let mut signals = ListBuilder::new(Float32Builder::new());
-    for record in records {
-        signals.values().append_slice(
-            &record.relative_difference.iter().map(|&value| value as f32).collect::<Vec<f32>>(),
-        );
-        signals.append(true);
-    }
-    let signals = signals.finish();
-    let field = |name: &str, kind: DataType| Field::new(name, kind, false);
-    let schema = Arc::new(Schema::new(vec![
-        field("label", DataType::Utf8),
-        field("draw", DataType::UInt64),
-        field("relative_rms", DataType::Float64),
-        field("kurtosis", DataType::Float64),
-        field("relative_difference", arrow::array::Array::data_type(&signals).clone()),
-    ]));
-    let arrays: Vec<ArrayRef> = vec![
-        Arc::new(StringArray::from_iter_values(records.iter().map(|record| &record.label))),
-        Arc::new(UInt64Array::from_iter_values(records.iter().map(|record| record.draw))),
-        Arc::new(Float64Array::from_iter_values(records.iter().map(|record| record.relative_rms))),
-        Arc::new(Float64Array::from_iter_values(records.iter().map(|record| record.kurtosis))),
-        Arc::new(signals),
+    let column = |name: &str, cells| TableColumn {
+        name: name.to_owned(),
+        cells,
+        nullable: false,
+        metadata: Vec::new(),
+    };
+    let columns = vec![
+        column("label", CellType::Text),
+        column("draw", CellType::UInt64),
+        column("relative_rms", CellType::Float64),
+        column("kurtosis", CellType::Float64),
+        column("relative_difference", CellType::Float32List { nullable_items: true }),
+    ];
+    let signal = |record: &EnhancedRecord| record.relative_difference.iter().map(|&x| x as f32).collect();
+    let signals: Vec<Vec<f32>> = records.iter().map(signal).collect();
+    let cells = vec![
+        Cells::Text(records.iter().map(|record| Some(record.label.clone())).collect()),
+        Cells::UInt64(records.iter().map(|record| Some(record.draw)).collect()),
+        Cells::Float64(records.iter().map(|record| Some(record.relative_rms)).collect()),
+        Cells::Float64(records.iter().map(|record| Some(record.kurtosis)).collect()),
+        Cells::Float32List(signals.iter().map(Vec::as_slice).collect()),
     ];
     let metadata = [
         ("meshtone.scenario", head.scenario.to_toml()),
@@ -159,9 +154,9 @@ pub fn write_enhanced(
             metadata.into_iter().map(|(key, value)| KeyValue::new(key.to_owned(), value)).collect(),
         ))
         .build();
-    let mut writer = ArrowWriter::try_new(to, schema.clone(), Some(properties)).map_err(io::Error::other)?;
-    let batch = RecordBatch::try_new(schema, arrays).map_err(io::Error::other)?;
-    writer.write(&batch).map_err(io::Error::other)?;
-    writer.close().map_err(io::Error::other)?;
-    Ok(())
+    let mut table = TableWriter::new(to, columns, properties)?;
+    if !records.is_empty() {
+        table.write_rows(cells)?;
+    }
+    table.close()
 }

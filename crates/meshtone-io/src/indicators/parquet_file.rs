@@ -1,27 +1,25 @@
 //! The results as a table in Parquet.
 
-use std::collections::HashMap;
 use std::io::{self, Write};
-use std::sync::Arc;
 
-use arrow::array::{ArrayRef, Float64Array, StringArray, UInt32Array, UInt64Array};
-use arrow::datatypes::{DataType, Field, Schema};
-use arrow::record_batch::RecordBatch;
 use meshtone::signal::IndicatorValue;
-use parquet::arrow::ArrowWriter;
 use parquet::basic::{Compression, ZstdLevel};
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 
 use super::{IndicatorResults, RecordEntry, SETTINGS_KEY};
 use crate::signals::VERSION_KEY;
+use crate::table::{CellType, Cells, TableColumn, TableWriter};
 
-/// A column: name, unit (empty for none) and values.
-struct Column {
-    name: String,
-    unit: String,
-    nullable: bool,
-    values: ArrayRef,
+/// A column and its cells.
+type Column = (TableColumn, Cells<'static>);
+
+fn column(name: &str, unit: &str, nullable: bool, (kind, cells): (CellType, Cells<'static>)) -> Column {
+    let unit = (!unit.is_empty()).then(|| ("unit".to_string(), unit.to_string()));
+    (
+        TableColumn { name: name.to_string(), cells: kind, nullable, metadata: unit.into_iter().collect() },
+        cells,
+    )
 }
 
 impl IndicatorResults {
@@ -33,72 +31,59 @@ impl IndicatorResults {
     /// # Errors
     /// Those of `to`.
     pub fn write_parquet(&self, to: impl Write + Send) -> io::Result<()> {
-        self.try_write(to).map_err(io::Error::other)
+        let (columns, cells) = self.circumstances().into_iter().chain(self.values()).unzip();
+        let properties = self.properties().map_err(io::Error::other)?;
+        let mut table = TableWriter::new(to, columns, properties)?;
+        if !self.records.is_empty() {
+            table.write_rows(cells)?;
+        }
+        table.close()
     }
 
-    fn try_write(&self, to: impl Write + Send) -> Result<(), parquet::errors::ParquetError> {
-        let columns: Vec<Column> = self.circumstances().into_iter().chain(self.values()).collect();
-        let fields = columns.iter().map(|column| {
-            let metadata: HashMap<_, _> = [("unit".to_string(), column.unit.clone())]
-                .into_iter()
-                .filter(|(_, unit)| !unit.is_empty())
-                .collect();
-            let kind: DataType = column.values.data_type().clone();
-            Field::new(&column.name, kind, column.nullable).with_metadata(metadata)
-        });
-        let schema = Arc::new(Schema::new(fields.collect::<Vec<_>>()));
-        let arrays = columns.into_iter().map(|column| column.values).collect();
-        let batch = RecordBatch::try_new(schema.clone(), arrays)?;
+    fn properties(&self) -> Result<WriterProperties, parquet::errors::ParquetError> {
         let metadata = [
             (VERSION_KEY, env!("CARGO_PKG_VERSION").to_string()),
             (SETTINGS_KEY, self.settings_json().to_string()),
         ];
         let metadata = metadata.map(|(key, value)| KeyValue::new(key.to_string(), value));
-        let properties = WriterProperties::builder()
+        Ok(WriterProperties::builder()
             .set_compression(Compression::ZSTD(ZstdLevel::try_new(1)?))
             .set_key_value_metadata(Some(metadata.to_vec()))
-            .build();
-        let mut writer = ArrowWriter::try_new(to, schema, Some(properties))?;
-        writer.write(&batch)?;
-        writer.close()?;
-        Ok(())
+            .build())
     }
 
     /// What each record is of.
     fn circumstances(&self) -> Vec<Column> {
-        let of = |name: &str, unit: &str, values: ArrayRef| Column {
-            name: name.to_string(),
-            unit: unit.to_string(),
-            nullable: values.null_count() > 0 || name == "segment" || name == "unit",
-            values,
-        };
         let file = |record: &RecordEntry| {
             let recording = record.recording.checked_sub(1).and_then(|index| self.recordings.get(index));
             recording.map_or_else(String::new, |entry| entry.source.display().to_string())
         };
-        let text = |value: &dyn Fn(&RecordEntry) -> Option<String>| -> ArrayRef {
-            Arc::new(self.records.iter().map(value).collect::<StringArray>())
+        let text = |value: &dyn Fn(&RecordEntry) -> Option<String>| {
+            (CellType::Text, Cells::Text(self.records.iter().map(value).collect()))
         };
-        let count = |value: &dyn Fn(&RecordEntry) -> Option<usize>| -> ArrayRef {
+        let count = |value: &dyn Fn(&RecordEntry) -> Option<usize>| {
             let counts = self.records.iter().map(|record| value(record).map(|count| count as u64));
-            Arc::new(counts.collect::<UInt64Array>())
+            (CellType::UInt64, Cells::UInt64(counts.collect()))
         };
-        let number = |value: &dyn Fn(&RecordEntry) -> f64| -> ArrayRef {
-            Arc::new(Float64Array::from_iter_values(self.records.iter().map(value)))
+        let number = |value: &dyn Fn(&RecordEntry) -> f64| {
+            (
+                CellType::Float64,
+                Cells::Float64(self.records.iter().map(|record| Some(value(record))).collect()),
+            )
         };
-        let teeth = UInt32Array::from_iter_values(self.records.iter().map(|record| record.teeth));
+        let teeth = self.records.iter().map(|record| Some(record.teeth)).collect();
         vec![
-            of("recording", "", count(&|record| Some(record.recording))),
-            of("file", "", text(&|record| Some(file(record)))),
-            of("segment", "", count(&|record| record.segment)),
-            of("channel", "", text(&|_| Some(self.channel.clone()))),
-            of("unit", "", text(&|_| self.unit.clone())),
-            of("wheel", "", text(&|record| Some(record.wheel.clone()))),
-            of("teeth", "", Arc::new(teeth)),
-            of("revolutions", "", count(&|record| Some(record.revolutions))),
-            of("mean_speed_hz", "Hz", number(&|record| record.mean_speed_hz)),
-            of("points_per_revolution", "", count(&|record| Some(record.points_per_revolution))),
-            of("nyquist_order", "", number(&|record| record.nyquist_order)),
+            column("recording", "", false, count(&|record| Some(record.recording))),
+            column("file", "", false, text(&|record| Some(file(record)))),
+            column("segment", "", true, count(&|record| record.segment)),
+            column("channel", "", false, text(&|_| Some(self.channel.clone()))),
+            column("unit", "", true, text(&|_| self.unit.clone())),
+            column("wheel", "", false, text(&|record| Some(record.wheel.clone()))),
+            column("teeth", "", false, (CellType::UInt32, Cells::UInt32(teeth))),
+            column("revolutions", "", false, count(&|record| Some(record.revolutions))),
+            column("mean_speed_hz", "Hz", false, number(&|record| record.mean_speed_hz)),
+            column("points_per_revolution", "", false, count(&|record| Some(record.points_per_revolution))),
+            column("nyquist_order", "", false, number(&|record| record.nyquist_order)),
         ]
     }
 
@@ -108,15 +93,10 @@ impl IndicatorResults {
         let tables: Vec<Vec<IndicatorValue>> =
             self.records.iter().map(|record| record.indicators.table(unit)).collect();
         let Some(first) = tables.first() else { return Vec::new() };
-        let column = |(index, entry): (usize, &IndicatorValue)| {
+        let indicator = |(index, entry): (usize, &IndicatorValue)| {
             let values = tables.iter().map(|table| table.get(index).and_then(|entry| entry.value));
-            Column {
-                name: entry.name.clone(),
-                unit: entry.unit.clone(),
-                nullable: true,
-                values: Arc::new(values.collect::<Float64Array>()),
-            }
+            column(&entry.name, &entry.unit, true, (CellType::Float64, Cells::Float64(values.collect())))
         };
-        first.iter().enumerate().map(column).collect()
+        first.iter().enumerate().map(indicator).collect()
     }
 }

@@ -121,7 +121,7 @@ pub(super) fn read_one(from: &mut dyn Read, numbers: Numbers) -> io::Result<f64>
 /// * `record` - bytes of one
 /// * `count` - how many there are
 /// * `take` - is given whole records
-pub(super) fn read_records(
+pub(crate) fn read_records(
     from: &mut dyn Read,
     record: usize,
     count: u64,

@@ -17,7 +17,7 @@ const MAX_COLUMNS: usize = 100_000;
 
 /// How the numbers of an array stand in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Numbers {
+pub(crate) struct Numbers {
     pub kind: NumberKind,
     pub big_endian: bool,
 }

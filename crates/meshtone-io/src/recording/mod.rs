@@ -9,15 +9,15 @@
 //! that ends early is a [`ReadRecordingError`] that names the place. Memory stays bounded by what the file
 //! really holds, whatever its headers claim.
 
-mod array;
+pub(crate) mod array;
 mod assemble;
-mod catalogue;
+pub(crate) mod catalogue;
 mod error;
 mod format;
 mod label;
 mod mat;
-mod number;
-mod numpy;
+pub(crate) mod number;
+pub(crate) mod numpy;
 mod options;
 mod parquet_check;
 mod parquet_depth;

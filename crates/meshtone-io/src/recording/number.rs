@@ -2,7 +2,7 @@
 
 /// How a number is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum NumberKind {
+pub(crate) enum NumberKind {
     I8,
     U8,
     I16,
@@ -17,7 +17,7 @@ pub(super) enum NumberKind {
 
 impl NumberKind {
     /// Bytes of a number.
-    pub(super) fn size(self) -> usize {
+    pub(crate) fn size(self) -> usize {
         match self {
             NumberKind::I8 | NumberKind::U8 => 1,
             NumberKind::I16 | NumberKind::U16 => 2,
@@ -26,7 +26,7 @@ impl NumberKind {
         }
     }
 
-    pub(super) fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             NumberKind::I8 => "int8",
             NumberKind::U8 => "uint8",
@@ -50,7 +50,7 @@ impl NumberKind {
 /// * `offset` - where the number begins in a record
 /// * `kind`, `big_endian` - how it is stored
 /// * `to` - what it is appended to
-pub(super) fn append_strided(
+pub(crate) fn append_strided(
     bytes: &[u8],
     record: usize,
     offset: usize,

@@ -4,15 +4,6 @@ use std::fs::File;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use arrow::array::{Array, ArrayRef, AsArray};
-use arrow::datatypes::{
-    ArrowPrimitiveType, DataType, DurationMicrosecondType, DurationMillisecondType, DurationNanosecondType,
-    DurationSecondType, Field, Float32Type, Float64Type, Int8Type, Int16Type, Int32Type, Int64Type, TimeUnit,
-    TimestampMicrosecondType, TimestampMillisecondType, TimestampNanosecondType, TimestampSecondType,
-    UInt8Type, UInt16Type, UInt32Type, UInt64Type,
-};
-use parquet::arrow::ProjectionMask;
-use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use parquet::file::metadata::FileMetaData;
 
 use super::assemble::{Parts, assemble};
@@ -24,10 +15,9 @@ use super::rate::StatedRate;
 use super::selection::select;
 use super::{Position, ReadRecordingError, Recording, RecordingOptions};
 use crate::signals::SCENARIO_KEY;
+use crate::table::{FoundColumn, FoundType, TableReader};
 
 const FORMAT: &str = "Parquet";
-/// Rows that are decoded at once.
-const ROWS_AT_ONCE: usize = 1 << 14;
 /// Bytes of samples that a byte of a file may well stand for; memory for more is taken only as they come.
 const USUAL_COMPRESSION: u64 = 16;
 
@@ -54,56 +44,43 @@ fn decode(path: &Path, mut file: File, options: &RecordingOptions) -> Result<Rec
     if too_deep {
         return Err(broken(path, FORMAT, "its list of columns is damaged, or nested more than 64 deep"));
     }
-    let builder =
-        ParquetRecordBatchReaderBuilder::try_new(file).map_err(|error| broken(path, FORMAT, error))?;
-    check(builder.metadata(), file_bytes).map_err(|problem| broken(path, FORMAT, problem))?;
-    let labels: Vec<Label> = builder.schema().fields().iter().map(|field| label(field)).collect();
-    let stated = stated_rates(builder.metadata().file_metadata());
-    let scenario_toml = scenario(builder.metadata().file_metadata());
+    let table = TableReader::new(file).map_err(|error| broken(path, FORMAT, error))?;
+    check(table.metadata(), file_bytes).map_err(|problem| broken(path, FORMAT, problem))?;
+    let head = table.metadata().file_metadata();
+    let labels: Vec<Label> = table.columns().iter().map(label).collect();
+    let stated = stated_rates(head);
+    let scenario_toml = scenario(head);
     let selection = select(path, &labels, options)?;
     let wanted = selection.wanted();
-    let rows = builder.metadata().file_metadata().num_rows();
-    let mut columns = reserved(wanted.len(), rows, file_bytes);
-    let mut first_times: Vec<Option<i64>> = vec![None; wanted.len()];
-    let projection = ProjectionMask::roots(builder.parquet_schema(), wanted.iter().copied());
-    let reader = builder.with_projection(projection).with_batch_size(ROWS_AT_ONCE).build();
-    for batch in reader.map_err(|error| broken(path, FORMAT, error))? {
-        let batch = batch.map_err(|error| broken(path, FORMAT, error))?;
-        for (slot, column) in batch.columns().iter().enumerate().take(wanted.len()) {
-            let label = &labels[wanted[slot]];
-            check_nulls(path, label, column, columns[slot].len())?;
-            append(column, &mut columns[slot], &mut first_times[slot]);
+    let capacity = capacity(wanted.len(), head.num_rows(), file_bytes);
+    let read = |index: &usize| {
+        let column = &table.columns()[*index];
+        let numbers = table.numbers(column, capacity).map_err(|error| broken(path, FORMAT, error))?;
+        match numbers.first_empty {
+            None => Ok(numbers.values),
+            Some(row) => Err(gap(path, &labels[*index], row)),
         }
-    }
+    };
+    let columns = wanted.iter().map(read).collect::<Result<_, _>>()?;
     let parts = Parts { path, labels: &labels, selection: &selection, samples: columns, stated: &stated };
     let recording = assemble(parts, options)?;
     Ok(Recording { scenario_toml, ..recording })
 }
 
-fn label(field: &Field) -> Label {
-    let metadata = field.metadata();
-    let unit = metadata.get("unit").or_else(|| metadata.get("units")).filter(|unit| !unit.is_empty());
-    let mut label = Label::from_header(field.name());
+fn label(column: &FoundColumn) -> Label {
+    let said = |key: &str| column.metadata.iter().find(|(name, _)| name == key).map(|(_, value)| value);
+    let unit = said("unit").or_else(|| said("units")).filter(|unit| !unit.is_empty());
+    let mut label = Label::from_header(&column.name);
     if let Some(unit) = unit {
         label.name.clone_from(&label.raw);
         label.unit = Some(unit.clone());
     }
-    if is_moment(field.data_type()) {
-        label.unit = Some("s".to_string());
-    }
-    if !is_numeric(field.data_type()) && !is_moment(field.data_type()) {
-        label.not_numeric = Some(field.data_type().to_string());
+    match &column.kind {
+        FoundType::Number(_) => {}
+        FoundType::Moment(_) => label.unit = Some("s".to_string()),
+        other => label.not_numeric = Some(other.to_string()),
     }
     label
-}
-
-fn is_numeric(kind: &DataType) -> bool {
-    use DataType::{Float32, Float64};
-    kind.is_integer() || matches!(kind, Float32 | Float64)
-}
-
-fn is_moment(kind: &DataType) -> bool {
-    matches!(kind, DataType::Timestamp(..) | DataType::Duration(_))
 }
 
 fn stated_rates(metadata: &FileMetaData) -> Vec<StatedRate> {
@@ -120,73 +97,19 @@ fn scenario(metadata: &FileMetaData) -> Option<String> {
     entries.find(|entry| entry.key == SCENARIO_KEY).and_then(|entry| entry.value.clone())
 }
 
-fn reserved(columns: usize, rows: i64, file_bytes: u64) -> Vec<Vec<f64>> {
+/// Numbers of a column for which memory is taken beforehand.
+fn capacity(columns: usize, rows: i64, file_bytes: u64) -> usize {
     let rows = u64::try_from(rows).unwrap_or(0);
     let bytes = rows.checked_mul(8 * columns as u64);
     let usual = bytes.is_some_and(|bytes| bytes <= file_bytes.saturating_mul(USUAL_COMPRESSION));
-    (0..columns).map(|_| Vec::with_capacity(if usual { rows as usize } else { 0 })).collect()
+    if usual { rows as usize } else { 0 }
 }
 
-fn check_nulls(
-    path: &Path,
-    label: &Label,
-    column: &ArrayRef,
-    before: usize,
-) -> Result<(), ReadRecordingError> {
-    if column.logical_null_count() == 0 {
-        return Ok(());
-    }
-    let index = (0..column.len()).find(|index| column.is_null(*index)).unwrap_or(0);
-    Err(ReadRecordingError::Gap {
+fn gap(path: &Path, label: &Label, row: usize) -> ReadRecordingError {
+    ReadRecordingError::Gap {
         path: path.to_path_buf(),
-        position: Position::Sample((before + index) as u64 + 1),
+        position: Position::Sample(row as u64 + 1),
         column: label.raw.clone(),
         what: "empty (null)".to_string(),
-    })
-}
-
-/// Appends numbers as they are, and moments as seconds since the first.
-fn append(column: &ArrayRef, to: &mut Vec<f64>, first: &mut Option<i64>) {
-    match column.data_type() {
-        DataType::Float64 => to.extend_from_slice(column.as_primitive::<Float64Type>().values()),
-        DataType::Float32 => numbers::<Float32Type>(column, to, f64::from),
-        DataType::Int8 => numbers::<Int8Type>(column, to, f64::from),
-        DataType::Int16 => numbers::<Int16Type>(column, to, f64::from),
-        DataType::Int32 => numbers::<Int32Type>(column, to, f64::from),
-        DataType::Int64 => numbers::<Int64Type>(column, to, |number| number as f64),
-        DataType::UInt8 => numbers::<UInt8Type>(column, to, f64::from),
-        DataType::UInt16 => numbers::<UInt16Type>(column, to, f64::from),
-        DataType::UInt32 => numbers::<UInt32Type>(column, to, f64::from),
-        DataType::UInt64 => numbers::<UInt64Type>(column, to, |number| number as f64),
-        DataType::Timestamp(unit, _) => match unit {
-            TimeUnit::Second => moments::<TimestampSecondType>(column, to, first, 1.0),
-            TimeUnit::Millisecond => moments::<TimestampMillisecondType>(column, to, first, 1e3),
-            TimeUnit::Microsecond => moments::<TimestampMicrosecondType>(column, to, first, 1e6),
-            TimeUnit::Nanosecond => moments::<TimestampNanosecondType>(column, to, first, 1e9),
-        },
-        DataType::Duration(unit) => match unit {
-            TimeUnit::Second => moments::<DurationSecondType>(column, to, first, 1.0),
-            TimeUnit::Millisecond => moments::<DurationMillisecondType>(column, to, first, 1e3),
-            TimeUnit::Microsecond => moments::<DurationMicrosecondType>(column, to, first, 1e6),
-            TimeUnit::Nanosecond => moments::<DurationNanosecondType>(column, to, first, 1e9),
-        },
-        // Columns of other types are refused before they are read.
-        _ => {}
     }
-}
-
-fn numbers<T: ArrowPrimitiveType>(column: &ArrayRef, to: &mut Vec<f64>, number: impl Fn(T::Native) -> f64) {
-    to.extend(column.as_primitive::<T>().values().iter().map(|value| number(*value)));
-}
-
-fn moments<T: ArrowPrimitiveType<Native = i64>>(
-    column: &ArrayRef,
-    to: &mut Vec<f64>,
-    first: &mut Option<i64>,
-    per_second: f64,
-) {
-    let values = column.as_primitive::<T>().values();
-    let Some(start) = values.first().map(|value| *first.get_or_insert(*value)) else { return };
-    // In 128 bits, as two moments may be farther apart than fits into 64.
-    to.extend(values.iter().map(|value| (i128::from(*value) - i128::from(start)) as f64 / per_second));
 }

@@ -1,28 +1,25 @@
 //! Profile errors of both wheels, in a NumPy archive.
 
 use std::fs::File;
-use std::io::{self, BufReader, BufWriter, Write};
+use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use meshtone::scenario::{FileProblem, ProfileErrors};
 use nalgebra::DMatrix;
-use ndarray::{Array2, ArrayD, Ix2};
-use ndarray_npy::{NpzReader, NpzWriter, ReadNpyError, ReadNpzError};
 
 use super::unreadable;
 use crate::atomic_file::{WriteFileError, write_atomically};
+use crate::npz::{NpzReader, NpzWriter};
 
 const PINION: &str = "pinion_profile_errors_mm";
 const GEAR: &str = "gear_profile_errors_mm";
 const HELP: &str = "save both wheels' errors with numpy.savez(name, pinion_profile_errors_mm=…, \
                     gear_profile_errors_mm=…), each 100 × teeth, in mm";
 
-type Archive = NpzReader<BufReader<File>>;
-
 pub(super) fn read(path: &Path) -> Result<ProfileErrors, FileProblem> {
     let file = File::open(path).map_err(|error| unreadable(path, &error))?;
-    let mut archive = NpzReader::new(BufReader::new(file))
-        .map_err(|error| problem(path, &format!("is not an .npz archive: {error}")))?;
+    let mut archive =
+        NpzReader::new(file).map_err(|error| problem(path, &format!("is not an .npz archive: {error}")))?;
     Ok(ProfileErrors {
         pinion_profile_errors_mm: read_entry(path, &mut archive, PINION)?,
         gear_profile_errors_mm: read_entry(path, &mut archive, GEAR)?,
@@ -33,32 +30,25 @@ fn problem(path: &Path, what: &str) -> FileProblem {
     FileProblem::new(format!("{} {what}", path.display()), HELP)
 }
 
-fn read_entry(path: &Path, archive: &mut Archive, name: &str) -> Result<DMatrix<f64>, FileProblem> {
+fn read_entry(path: &Path, archive: &mut NpzReader, name: &str) -> Result<DMatrix<f64>, FileProblem> {
     let present = archive.names().map_err(|error| problem(path, &format!("cannot be read: {error}")))?;
     if !present.iter().any(|entry| entry == name) {
         let present = if present.is_empty() { "nothing".to_string() } else { present.join(", ") };
         return Err(problem(path, &format!("has no entry {name}; it has {present}")));
     }
-    let errors = read_floats(archive, name)
+    let array = archive
+        .floats(name)
         .map_err(|error| problem(path, &format!("has an entry {name} that cannot be read: {error}")))?;
-    let shape = errors.shape().to_vec();
-    let errors = errors.into_dimensionality::<Ix2>().map_err(|_| {
+    let [rows, columns] = array.shape[..] else {
+        let shape = &array.shape;
         let what = format!("has an entry {name} of shape {shape:?}; must be of two dimensions, 100 × teeth");
-        problem(path, &what)
-    })?;
-    let (rows, columns) = errors.dim();
-    Ok(DMatrix::from_fn(rows, columns, |row, column| errors[[row, column]]))
-}
-
-/// Double precision, or single where the file has that.
-fn read_floats(archive: &mut Archive, name: &str) -> Result<ArrayD<f64>, ReadNpzError> {
-    match archive.by_name(name) {
-        Err(ReadNpzError::Npy(ReadNpyError::WrongDescriptor(_))) => {
-            let single: ArrayD<f32> = archive.by_name(name)?;
-            Ok(single.mapv(f64::from))
-        }
-        other => other,
-    }
+        return Err(problem(path, &what));
+    };
+    let (rows, columns) = (rows as usize, columns as usize);
+    Ok(match array.first_runs_fastest {
+        true => DMatrix::from_column_slice(rows, columns, &array.numbers),
+        false => DMatrix::from_row_slice(rows, columns, &array.numbers),
+    })
 }
 
 /// Writes profile errors to a NumPy archive, as `quality.errors_file` reads them.
@@ -87,13 +77,14 @@ fn read_floats(archive: &mut Archive, name: &str) -> Result<ArrayD<f64>, ReadNpz
 /// ```
 pub fn write_profile_errors_npz(path: &Path, errors: &ProfileErrors) -> Result<(), WriteFileError> {
     write_atomically(path, |file| {
-        let mut archive = NpzWriter::new_compressed(BufWriter::new(file));
+        let mut archive = NpzWriter::compressed(BufWriter::new(file));
         for (name, errors) in
             [(PINION, &errors.pinion_profile_errors_mm), (GEAR, &errors.gear_profile_errors_mm)]
         {
-            let rows = Array2::from_shape_fn(errors.shape(), |entry| errors[entry]);
-            archive.add_array(name, &rows).map_err(io::Error::other)?;
+            // Row after row, where the matrix has column after column.
+            let rows = errors.transpose();
+            archive.add(name, &[errors.nrows(), errors.ncols()], rows.as_slice())?;
         }
-        archive.finish().map_err(io::Error::other)?.flush()
+        archive.finish()?.flush()
     })
 }

@@ -3,16 +3,13 @@
 use std::fs::File;
 use std::path::Path;
 
-use arrow::array::{Array, AsArray};
-use arrow::datatypes::Float64Type;
-use arrow::record_batch::RecordBatch;
 use meshtone::scenario::Scenario;
 use meshtone::signal::Channels;
-use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use parquet::file::metadata::FileMetaData;
 
 use crate::ReadResultsError;
 use crate::run_identity::RunIdentity;
+use crate::table::{FoundType, NumberType, TableReader};
 
 use super::columns::columns_mut;
 use super::{RATE_KEY, RUN_KEY, SCENARIO_KEY, TIME, VERSION_KEY};
@@ -41,8 +38,8 @@ pub fn read_signals(path: &Path) -> Result<Recorded, ReadResultsError> {
     let file = File::open(path).map_err(|source| ReadResultsError::unreadable(path, source))?;
     let foreign = |problem: String| ReadResultsError::foreign(path, problem);
     let broken = |error: &dyn std::fmt::Display| foreign(format!("is not a whole Parquet file: {error}"));
-    let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|error| broken(&error))?;
-    let metadata = builder.metadata().file_metadata();
+    let table = TableReader::new(file).map_err(|error| broken(&error))?;
+    let metadata = table.metadata().file_metadata();
     let text = text_of(metadata, SCENARIO_KEY).map_err(foreign)?;
     let scenario = Scenario::from_toml(text)
         .map_err(|error| ReadResultsError::Scenario { path: path.to_path_buf(), error: Box::new(error) })?;
@@ -50,15 +47,10 @@ pub fn read_signals(path: &Path) -> Result<Recorded, ReadResultsError> {
     let run = text_of(metadata, RUN_KEY).map_err(foreign)?.parse::<RunIdentity>();
     let run = run.map_err(|error| foreign(format!("metadata {RUN_KEY}: {error}")))?;
     let mut channels = Channels { sampling_rate_hz: rate(metadata).map_err(foreign)?, ..Channels::default() };
-    let mut first = true;
-    for batch in builder.build().map_err(|error| broken(&error))? {
-        let batch = batch.map_err(|error| broken(&error))?;
-        if std::mem::take(&mut first) {
-            channels.start_s = column(&batch, TIME.name).map_err(foreign)?.first().copied().unwrap_or(0.0);
-        }
-        for (wanted, signal) in columns_mut(&mut channels) {
-            signal.extend_from_slice(column(&batch, wanted.name).map_err(foreign)?);
-        }
+    let numbers = |name: &str| numbers(&table, name).map_err(foreign);
+    channels.start_s = numbers(TIME.name)?.first().copied().unwrap_or(0.0);
+    for (column, signal) in columns_mut(&mut channels) {
+        *signal = numbers(column.name)?;
     }
     Ok(Recorded { scenario, channels, version, run })
 }
@@ -77,11 +69,13 @@ fn rate(metadata: &FileMetaData) -> Result<f64, String> {
     rate.ok_or_else(|| format!("metadata {RATE_KEY} is `{text}`; must be a number above 0"))
 }
 
-fn column<'b>(batch: &'b RecordBatch, name: &str) -> Result<&'b [f64], String> {
-    let column = batch.column_by_name(name).ok_or_else(|| format!("has no column {name}"))?;
-    let numbers = column.as_primitive_opt::<Float64Type>();
-    let numbers = numbers.filter(|numbers| numbers.logical_null_count() == 0);
-    numbers.map(|numbers| &numbers.values()[..]).ok_or_else(|| {
-        format!("has a column {name} of {}; must be of Float64 without nulls", column.data_type())
-    })
+fn numbers(table: &TableReader<File>, name: &str) -> Result<Vec<f64>, String> {
+    let column = table.column(name).ok_or_else(|| format!("has no column {name}"))?;
+    let wrong = || format!("has a column {name} of {}; must be of Float64 without nulls", column.kind);
+    if column.kind != FoundType::Number(NumberType::Float64) {
+        return Err(wrong());
+    }
+    let numbers =
+        table.numbers(column, 0).map_err(|error| format!("is not a whole Parquet file: {error}"))?;
+    if numbers.first_empty.is_none() { Ok(numbers.values) } else { Err(wrong()) }
 }

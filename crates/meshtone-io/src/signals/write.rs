@@ -1,25 +1,20 @@
 //! Writing signals.
 
-use std::collections::HashMap;
 use std::io::{self, Write};
-use std::sync::Arc;
 
-use arrow::array::{ArrayRef, Float64Array};
-use arrow::datatypes::{DataType, Field, Schema};
-use arrow::record_batch::RecordBatch;
 use meshtone::scenario::Scenario;
 use meshtone::signal::Channels;
-use parquet::arrow::ArrowWriter;
 use parquet::basic::{Compression, Encoding, ZstdLevel};
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 
 use crate::run_identity::RunIdentity;
+use crate::table::{CellType, Cells, TableColumn, TableWriter};
 
 use super::{Column, RATE_KEY, RUN_KEY, SCENARIO_KEY, TIME, VERSION_KEY, columns};
 
-/// Rows that are handed over at once: a compromise of memory and overhead.
-const ROWS_AT_ONCE: usize = 1 << 16;
+/// Rows of a group; a reader takes a group's column at once.
+const GROUP_ROWS: usize = 1 << 20;
 /// Higher levels hardly make the noise-like digits of a vibration smaller.
 const COMPRESSION_LEVEL: i32 = 1;
 
@@ -33,32 +28,27 @@ const COMPRESSION_LEVEL: i32 = 1;
 /// # Errors
 /// Those of `to`.
 pub fn write_signals(to: impl Write + Send, scenario: &Scenario, channels: &Channels) -> io::Result<()> {
-    let schema = schema(channels);
     let properties = properties(scenario, channels).map_err(io::Error::other)?;
-    let mut writer = ArrowWriter::try_new(to, schema.clone(), Some(properties)).map_err(io::Error::other)?;
-    for start in (0..channels.len()).step_by(ROWS_AT_ONCE) {
-        let rows = start..channels.len().min(start + ROWS_AT_ONCE);
-        let time: ArrayRef =
-            Arc::new(Float64Array::from_iter_values(rows.clone().map(|i| channels.time_s(i))));
-        let signals = columns(channels).map(|(_, signal)| -> ArrayRef {
-            Arc::new(Float64Array::from_iter_values(signal[rows.clone()].iter().copied()))
-        });
-        let arrays = std::iter::once(time).chain(signals).collect();
-        let batch = RecordBatch::try_new(schema.clone(), arrays).map_err(io::Error::other)?;
-        writer.write(&batch).map_err(io::Error::other)?;
+    let table = std::iter::once(TIME).chain(columns(channels).map(|(column, _)| column)).map(table_column);
+    let mut table = TableWriter::new(to, table.collect(), properties)?;
+    for start in (0..channels.len()).step_by(GROUP_ROWS) {
+        let rows = start..channels.len().min(start + GROUP_ROWS);
+        let time: Vec<f64> = rows.clone().map(|i| channels.time_s(i)).collect();
+        let signals = columns(channels).map(|(_, signal)| Cells::Signal(&signal[rows.clone()]));
+        table.write_rows(std::iter::once(Cells::Signal(&time)).chain(signals).collect())?;
     }
-    writer.close().map_err(io::Error::other)?;
-    Ok(())
+    table.close()
 }
 
-fn schema(channels: &Channels) -> Arc<Schema> {
-    let field = |column: Column| {
-        let metadata = [("unit", column.unit), ("description", column.description)]
-            .map(|(key, value)| (key.to_string(), value.to_string()));
-        Field::new(column.name, DataType::Float64, false).with_metadata(HashMap::from(metadata))
-    };
-    let signals = columns(channels).map(|(column, _)| field(column));
-    Arc::new(Schema::new(std::iter::once(field(TIME)).chain(signals).collect::<Vec<_>>()))
+fn table_column(column: Column) -> TableColumn {
+    let metadata = [("unit", column.unit), ("description", column.description)]
+        .map(|(key, value)| (key.to_string(), value.to_string()));
+    TableColumn {
+        name: column.name.to_string(),
+        cells: CellType::Float64,
+        nullable: false,
+        metadata: metadata.to_vec(),
+    }
 }
 
 fn properties(

@@ -3,13 +3,9 @@
 
 use std::fs::{self, File};
 use std::io::Cursor;
-use std::sync::Arc;
 
+use crate::parquet_help::{Plain, parquet};
 use crate::recording_help::{rate, read, refused};
-use arrow::array::{
-    ArrayRef, Float32Array, Float64Array, Int64Array, StringArray, TimestampMicrosecondArray,
-};
-use arrow::record_batch::RecordBatch;
 use hound::{SampleFormat, WavSpec, WavWriter};
 use meshtone::scenario::Scenario;
 use meshtone::signal::Channels;
@@ -17,7 +13,6 @@ use meshtone_io::recording::{Recording, RecordingOptions, read_recording};
 use meshtone_io::signals::write_signals;
 use ndarray::{Array1, Array2, Array3, ShapeBuilder, arr0};
 use ndarray_npy::{NpzWriter, WriteNpyExt};
-use parquet::arrow::ArrowWriter;
 
 fn defaults() -> RecordingOptions {
     RecordingOptions::default()
@@ -25,18 +20,6 @@ fn defaults() -> RecordingOptions {
 
 fn names(recording: &Recording) -> Vec<&str> {
     recording.channels.iter().map(|channel| &*channel.name).collect()
-}
-
-fn parquet(columns: Vec<(&str, ArrayRef)>) -> Vec<u8> {
-    let batch = RecordBatch::try_from_iter_with_nullable(
-        columns.into_iter().map(|(name, column)| (name.to_string(), column, true)),
-    );
-    let batch = batch.unwrap();
-    let mut bytes = Vec::new();
-    let mut writer = ArrowWriter::try_new(&mut bytes, batch.schema(), None).unwrap();
-    writer.write(&batch).unwrap();
-    writer.close().unwrap();
-    bytes
 }
 
 fn table() -> Array2<f64> {
@@ -73,14 +56,14 @@ fn signals_of_a_simulation_are_read_with_unit_rate_and_scenario() {
 
 #[test]
 fn parquet_of_others_is_read() {
-    let moments =
-        TimestampMicrosecondArray::from_iter_values((0..100).map(|i| 1_700_000_000_000_000 + 20 * i));
-    let bytes = parquet(vec![
-        ("timestamp", Arc::new(moments)),
-        ("a [g]", Arc::new(Float32Array::from_iter_values((0..100).map(|i| i as f32 / 4.0)))),
-        ("count", Arc::new(Int64Array::from_iter_values(0..100))),
-        ("note", Arc::new(StringArray::from_iter_values((0..100).map(|i| i.to_string())))),
-    ]);
+    let moments = (0..100).map(|i| Some(1_700_000_000_000_000 + 20 * i));
+    let columns = vec![
+        ("timestamp", Plain::Moments(moments.collect())),
+        ("a [g]", Plain::Single((0..100).map(|i| Some(i as f32 / 4.0)).collect())),
+        ("count", Plain::Whole((0..100).map(Some).collect())),
+        ("note", Plain::Text((0..100).map(|i| Some(i.to_string())).collect())),
+    ];
+    let bytes = parquet(columns, Vec::new());
     let recording = read("a.parquet", &bytes, &defaults()).unwrap();
     assert_eq!(recording.sampling_rate_hz, 50_000.0);
     assert_eq!(names(&recording), ["a", "count"]);
@@ -99,7 +82,7 @@ fn parquet_of_others_is_read() {
 
 #[test]
 fn gaps_in_binary_files_are_named() {
-    let nulls = parquet(vec![("a", Arc::new(Float64Array::from(vec![Some(1.0), None, Some(2.0)])))]);
+    let nulls = parquet(vec![("a", Plain::Double(vec![Some(1.0), None, Some(2.0)]))], Vec::new());
     let message = refused("a.parquet", &nulls, &rate(1.0));
     assert!(message.contains("sample 2 of column a is empty (null)"), "{message}");
     let mut bytes = Vec::new();
@@ -282,7 +265,7 @@ fn files_that_are_empty_cut_or_unknown_are_refused() {
     let spec =
         WavSpec { channels: 1, sample_rate: 8000, bits_per_sample: 16, sample_format: SampleFormat::Int };
     let wav = wav(spec, |writer| (0..500).for_each(|sample| writer.write_sample(sample).unwrap()));
-    let parquet = parquet(vec![("a", Arc::new(Float64Array::from_iter_values((0..500).map(f64::from))))]);
+    let parquet = parquet(vec![("a", Plain::doubles((0..500).map(f64::from)))], Vec::new());
     for (name, bytes) in [("a.npy", npy), ("a.npz", npz(true)), ("a.wav", wav), ("a.parquet", parquet)] {
         for end in [3, 9, 40, bytes.len() / 2, bytes.len() - 1] {
             let message = refused(name, &bytes[..end], &rate(1.0));

@@ -2,17 +2,13 @@
 #![allow(clippy::unwrap_used)]
 
 use std::fs::{self, File};
-use std::sync::Arc;
 
-use arrow::array::Float32Array;
-use arrow::datatypes::{DataType, Field, Schema};
-use arrow::record_batch::RecordBatch;
+use crate::parquet_help::{Plain, parquet};
 use meshtone::scenario::Scenario;
 use meshtone::signal::Channels;
 use meshtone_io::ReadResultsError;
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::signals::{RATE_KEY, RUN_KEY, SCENARIO_KEY, read_signals, write_signals};
-use parquet::arrow::ArrowWriter;
 use parquet::file::metadata::KeyValue;
 use tempfile::tempdir;
 
@@ -35,13 +31,8 @@ fn channels() -> Channels {
     }
 }
 
-fn refused(file: File, path: &std::path::Path, schema: Schema, metadata: Vec<KeyValue>, words: &str) {
-    let columns = schema.fields().iter().map(|_| Arc::new(Float32Array::from(vec![1.0])) as _).collect();
-    let schema = Arc::new(schema);
-    let mut writer = ArrowWriter::try_new(file, schema.clone(), None).unwrap();
-    metadata.into_iter().for_each(|entry| writer.append_key_value_metadata(entry));
-    writer.write(&RecordBatch::try_new(schema, columns).unwrap()).unwrap();
-    writer.close().unwrap();
+fn refused(path: &std::path::Path, metadata: Vec<KeyValue>, words: &str) {
+    fs::write(path, parquet(vec![("time_s", Plain::Single(vec![Some(1.0)]))], metadata)).unwrap();
     let error = read_signals(path).unwrap_err();
     assert!(matches!(error, ReadResultsError::Foreign { .. } | ReadResultsError::Scenario { .. }));
     assert!(error.to_string().contains(words), "{error}");
@@ -62,27 +53,19 @@ fn signals_are_read_back_exactly() {
 fn files_of_others_are_refused() {
     let directory = tempdir().unwrap();
     let path = directory.path().join("signals.parquet");
-    let new_file = || File::create(&path).unwrap();
-    let schema = || Schema::new(vec![Field::new("time_s", DataType::Float32, false)]);
-    refused(new_file(), &path, schema(), Vec::new(), "has no metadata meshtone.scenario");
+    refused(&path, Vec::new(), "has no metadata meshtone.scenario");
     let broken = KeyValue::new(SCENARIO_KEY.to_string(), "seed = -1".to_string());
-    refused(new_file(), &path, schema(), vec![broken], "seed = -1");
+    refused(&path, vec![broken], "seed = -1");
     let text = |key: &str, value: &str| KeyValue::new(key.to_string(), value.to_string());
     let good = || vec![text(SCENARIO_KEY, &scenario().to_toml()), text("meshtone.version", "0.1.0")];
-    refused(new_file(), &path, schema(), good(), "has no metadata meshtone.run");
+    refused(&path, good(), "has no metadata meshtone.run");
     let wrong_run = [good(), vec![text(RUN_KEY, "7")]].concat();
-    refused(
-        new_file(),
-        &path,
-        schema(),
-        wrong_run,
-        "`7` is no run's identity; must be 16 hexadecimal digits",
-    );
+    refused(&path, wrong_run, "`7` is no run's identity; must be 16 hexadecimal digits");
     let good = || [good(), vec![text(RUN_KEY, "00000000000000ff")]].concat();
     let wrong_rate = [good(), vec![text(RATE_KEY, "fast")]].concat();
-    refused(new_file(), &path, schema(), wrong_rate, "is `fast`; must be a number above 0");
+    refused(&path, wrong_rate, "is `fast`; must be a number above 0");
     let single = [good(), vec![text(RATE_KEY, "1000.0")]].concat();
-    refused(new_file(), &path, schema(), single, "column time_s of Float32; must be of Float64");
+    refused(&path, single, "column time_s of Float32; must be of Float64");
 }
 
 #[test]

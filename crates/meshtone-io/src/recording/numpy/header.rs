@@ -11,7 +11,7 @@ const MAX_HEADER_BYTES: u32 = 1 << 20;
 
 /// What stands before an array's numbers.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct NpyHeader {
+pub(crate) struct NpyHeader {
     /// Bytes before the numbers.
     pub length: u64,
     pub shape: Vec<u64>,
@@ -24,7 +24,7 @@ pub(super) struct NpyHeader {
 
 /// A number within an element.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Field {
+pub(crate) struct Field {
     pub name: String,
     pub type_name: String,
     pub numbers: Result<Numbers, String>,
@@ -34,7 +34,7 @@ pub(super) struct Field {
 
 impl NpyHeader {
     /// Reads a header; the numbers are next.
-    pub(super) fn read(from: &mut dyn Read) -> io::Result<NpyHeader> {
+    pub(crate) fn read(from: &mut dyn Read) -> io::Result<NpyHeader> {
         let mut start = [0; 8];
         from.read_exact(&mut start)?;
         if !start.starts_with(b"\x93NUMPY") {
@@ -74,7 +74,7 @@ impl NpyHeader {
     }
 
     /// Elements, if a file can hold so many.
-    pub(super) fn elements(&self) -> Option<u64> {
+    pub(crate) fn elements(&self) -> Option<u64> {
         self.shape.iter().try_fold(1_u64, |product, length| product.checked_mul(*length))
     }
 }

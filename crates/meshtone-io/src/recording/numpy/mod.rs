@@ -4,7 +4,7 @@
 //! headers are read here, and the numbers as they come.
 
 mod element;
-mod header;
+pub(crate) mod header;
 mod literal;
 
 use std::fs::File;
@@ -127,7 +127,8 @@ fn survey(
     let mut found = Vec::new();
     for index in 0..archive.len() {
         let mut file = archive.by_index(index).map_err(|error| zip_failed(path, error))?;
-        let Some(name) = file.name().strip_suffix(".npy").map(str::to_string) else { continue };
+        let name = file.name().map_err(|error| zip_failed(path, error))?;
+        let Some(name) = name.strip_suffix(".npy").map(str::to_string) else { continue };
         let header = NpyHeader::read(&mut file);
         let header = header.map_err(|error| in_array(path, &name, error))?;
         let single = single(&header, &mut file).map_err(|error| in_array(path, &name, error))?;

@@ -1,0 +1,325 @@
+//! Reading a table.
+
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::data_type::{DataType, DoubleType, Int96Type};
+use parquet::errors::{ParquetError, Result};
+use parquet::file::metadata::ParquetMetaData;
+use parquet::file::reader::{ChunkReader, FileReader, SerializedFileReader};
+use parquet::schema::types::Type;
+
+use super::arrow_schema::{self, ArrowField};
+use super::{FoundType, NumberType, TimeUnit};
+
+/// Rows that are decoded at once.
+const ROWS_AT_ONCE: usize = 1 << 14;
+
+/// A table that is read.
+pub struct TableReader<R: ChunkReader + 'static> {
+    file: SerializedFileReader<R>,
+    columns: Vec<FoundColumn>,
+}
+
+/// A column of a table that is read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FoundColumn {
+    /// Its name.
+    pub name: String,
+    /// What it holds.
+    pub kind: FoundType,
+    /// Whether cells may be empty.
+    pub nullable: bool,
+    /// What Arrow's schema says of it: keys and values.
+    pub metadata: Vec<(String, String)>,
+    /// Number of its first column of single values: Parquet stores what a column is made of apart.
+    leaf: usize,
+}
+
+/// The numbers of a column.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Numbers {
+    /// Each row's; NaN where the cell is empty.
+    pub values: Vec<f64>,
+    /// The first row whose cell is empty.
+    pub first_empty: Option<usize>,
+    /// The first moment, from which moments are counted.
+    first_moment: Option<i64>,
+}
+
+impl<R: ChunkReader + 'static> TableReader<R> {
+    /// Opens a table.
+    ///
+    /// # Arguments
+    /// * `file` - the Parquet file
+    ///
+    /// # Errors
+    /// The file cannot be read, or is no Parquet file.
+    pub fn new(file: R) -> Result<Self> {
+        let file = SerializedFileReader::new(file)?;
+        let head = file.metadata().file_metadata();
+        let entries = head.key_value_metadata().into_iter().flatten();
+        let arrow =
+            entries.filter(|entry| entry.key == arrow_schema::KEY).find_map(|entry| entry.value.as_deref());
+        let columns = columns(head.schema(), &arrow.and_then(arrow_schema::decode).unwrap_or_default());
+        Ok(Self { file, columns })
+    }
+
+    /// What the file says about itself.
+    pub fn metadata(&self) -> &ParquetMetaData {
+        self.file.metadata()
+    }
+
+    /// The columns, in the file's order.
+    pub fn columns(&self) -> &[FoundColumn] {
+        &self.columns
+    }
+
+    /// The column of a name.
+    ///
+    /// # Arguments
+    /// * `name` - the name
+    pub fn column(&self, name: &str) -> Option<&FoundColumn> {
+        self.columns.iter().find(|column| column.name == name)
+    }
+
+    /// Reads a column of numbers, or of moments as seconds since the first.
+    ///
+    /// # Arguments
+    /// * `column` - of this table
+    /// * `capacity` - numbers for which memory is taken beforehand
+    ///
+    /// # Errors
+    /// The file cannot be read; the column holds something else.
+    pub fn numbers(&self, column: &FoundColumn, capacity: usize) -> Result<Numbers> {
+        let mut numbers = Numbers { values: Vec::with_capacity(capacity), ..Numbers::default() };
+        self.each_group(column, |reader| match (reader, &column.kind) {
+            (ColumnReader::DoubleColumnReader(reader), FoundType::Number(_)) => {
+                numbers.append_stored(reader, column.nullable)
+            }
+            (ColumnReader::FloatColumnReader(reader), FoundType::Number(_)) => {
+                numbers.append(reader, column.nullable, |&number| f64::from(number))
+            }
+            (ColumnReader::Int32ColumnReader(reader), FoundType::Number(kind)) => match kind {
+                NumberType::UInt8 | NumberType::UInt16 | NumberType::UInt32 => {
+                    numbers.append(reader, column.nullable, |&number| f64::from(number.cast_unsigned()))
+                }
+                _ => numbers.append(reader, column.nullable, |&number| f64::from(number)),
+            },
+            (ColumnReader::Int64ColumnReader(reader), FoundType::Number(kind)) => match kind {
+                NumberType::UInt64 => {
+                    numbers.append(reader, column.nullable, |&number| number.cast_unsigned() as f64)
+                }
+                _ => numbers.append(reader, column.nullable, |&number| number as f64),
+            },
+            (ColumnReader::Int32ColumnReader(reader), FoundType::Moment(unit)) => {
+                numbers.append_moments(reader, column.nullable, *unit, |&moment| i64::from(moment))
+            }
+            (ColumnReader::Int64ColumnReader(reader), FoundType::Moment(unit)) => {
+                numbers.append_moments(reader, column.nullable, *unit, |&moment| moment)
+            }
+            (ColumnReader::Int96ColumnReader(reader), FoundType::Moment(unit)) => numbers
+                .append_moments::<Int96Type>(reader, column.nullable, *unit, |moment| moment.to_nanos()),
+            _ => Err(holds(column)),
+        })?;
+        Ok(numbers)
+    }
+
+    /// Reads a column of text; none where a cell is empty.
+    ///
+    /// # Arguments
+    /// * `column` - of this table
+    ///
+    /// # Errors
+    /// The file cannot be read; the column holds something else.
+    pub fn texts(&self, column: &FoundColumn) -> Result<Vec<Option<String>>> {
+        let mut texts = Vec::new();
+        self.each_group(column, |reader| match (reader, &column.kind) {
+            (ColumnReader::ByteArrayColumnReader(reader), FoundType::Text) => {
+                each_block(reader, column.nullable, |values, levels| {
+                    let mut values = values.iter();
+                    let mut next =
+                        || values.next().map(|value| value.as_utf8().map(str::to_owned)).transpose();
+                    for row in 0..levels.rows {
+                        texts.push(if levels.is_there(row) { next()? } else { None });
+                    }
+                    Ok(())
+                })
+            }
+            _ => Err(holds(column)),
+        })?;
+        Ok(texts)
+    }
+
+    /// Reads the list of single-precision numbers in one row.
+    ///
+    /// # Arguments
+    /// * `column` - of this table
+    /// * `row` - the row
+    ///
+    /// # Errors
+    /// The file cannot be read; the column holds something else; there is no such row.
+    pub fn list(&self, column: &FoundColumn, row: usize) -> Result<Vec<f32>> {
+        let mut row = row;
+        for number in 0..self.file.num_row_groups() {
+            let group = self.file.get_row_group(number)?;
+            let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
+            if row >= rows {
+                row -= rows;
+                continue;
+            }
+            let ColumnReader::FloatColumnReader(mut reader) = group.get_column_reader(column.leaf)? else {
+                return Err(holds(column));
+            };
+            let (mut values, mut definitions, mut repetitions) = (Vec::new(), Vec::new(), Vec::new());
+            reader.skip_records(row)?;
+            reader.read_records(1, Some(&mut definitions), Some(&mut repetitions), &mut values)?;
+            return Ok(values);
+        }
+        Err(ParquetError::General(format!("there is no row {row} more")))
+    }
+
+    /// Reads a column, one group of rows after the other, and checks that each has the rows that the file says.
+    fn each_group(
+        &self,
+        column: &FoundColumn,
+        mut read: impl FnMut(ColumnReader) -> Result<usize>,
+    ) -> Result<()> {
+        for number in 0..self.file.num_row_groups() {
+            let group = self.file.get_row_group(number)?;
+            let (stated, found) = (group.metadata().num_rows(), read(group.get_column_reader(column.leaf)?)?);
+            if usize::try_from(stated) != Ok(found) {
+                return Err(ParquetError::General(format!(
+                    "column {} has {found} rows in row group {}, not {stated}",
+                    column.name,
+                    number + 1
+                )));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn holds(column: &FoundColumn) -> ParquetError {
+    ParquetError::General(format!("column {} holds {}", column.name, column.kind))
+}
+
+/// The columns of a schema. What Arrow says counts where it is about the same columns.
+fn columns(schema: &Type, arrow: &[ArrowField]) -> Vec<FoundColumn> {
+    let mut leaf = 0;
+    let mut columns = Vec::new();
+    for (index, column) in schema.get_fields().iter().enumerate() {
+        let arrow = arrow.get(index).filter(|field| field.name == column.name());
+        columns.push(FoundColumn {
+            name: column.name().to_owned(),
+            kind: FoundType::of(column, arrow.and_then(|field| field.kind)),
+            nullable: column.is_optional(),
+            metadata: arrow.map(|field| field.metadata.clone()).unwrap_or_default(),
+            leaf,
+        });
+        leaf += leaves(column);
+    }
+    columns
+}
+
+fn leaves(column: &Type) -> usize {
+    if column.is_group() { column.get_fields().iter().map(|part| leaves(part)).sum() } else { 1 }
+}
+
+/// Which cells of a block are not empty.
+struct Levels<'l> {
+    rows: usize,
+    /// Of a column whose cells may be empty: 1 where the cell is not.
+    definitions: &'l [i16],
+}
+
+impl Levels<'_> {
+    fn is_there(&self, row: usize) -> bool {
+        self.definitions.get(row).is_none_or(|&level| level > 0)
+    }
+}
+
+/// Reads a column of single values in blocks, and returns how many rows it has.
+fn each_block<T: DataType>(
+    mut reader: ColumnReaderImpl<T>,
+    nullable: bool,
+    mut block: impl FnMut(&[T::T], Levels) -> Result<()>,
+) -> Result<usize> {
+    let (mut values, mut definitions) = (Vec::new(), Vec::new());
+    let mut all = 0;
+    loop {
+        values.clear();
+        definitions.clear();
+        let levels = nullable.then_some(&mut definitions);
+        let (rows, ..) = reader.read_records(ROWS_AT_ONCE, levels, None, &mut values)?;
+        if rows == 0 {
+            return Ok(all);
+        }
+        block(&values, Levels { rows, definitions: &definitions })?;
+        all += rows;
+    }
+}
+
+impl Numbers {
+    /// Numbers that are stored as they are wanted are decoded to where they belong.
+    fn append_stored(&mut self, mut reader: ColumnReaderImpl<DoubleType>, nullable: bool) -> Result<usize> {
+        let mut definitions = Vec::new();
+        let mut all = 0;
+        loop {
+            definitions.clear();
+            let levels = nullable.then_some(&mut definitions);
+            let (rows, found, _) = reader.read_records(ROWS_AT_ONCE, levels, None, &mut self.values)?;
+            if rows == 0 {
+                return Ok(all);
+            }
+            self.spread(found, &Levels { rows, definitions: &definitions });
+            all += rows;
+        }
+    }
+
+    fn append<T: DataType>(
+        &mut self,
+        reader: ColumnReaderImpl<T>,
+        nullable: bool,
+        number: impl Fn(&T::T) -> f64,
+    ) -> Result<usize> {
+        each_block(reader, nullable, |values, levels| {
+            self.values.extend(values.iter().map(&number));
+            self.spread(values.len(), &levels);
+            Ok(())
+        })
+    }
+
+    fn append_moments<T: DataType>(
+        &mut self,
+        reader: ColumnReaderImpl<T>,
+        nullable: bool,
+        unit: TimeUnit,
+        moment: impl Fn(&T::T) -> i64,
+    ) -> Result<usize> {
+        let per_second = unit.per_second();
+        each_block(reader, nullable, |values, levels| {
+            if let Some(first) = values.first() {
+                let first = *self.first_moment.get_or_insert_with(|| moment(first));
+                // In 128 bits, as two moments may be farther apart than fits into 64.
+                let seconds = |value| (i128::from(moment(value)) - i128::from(first)) as f64 / per_second;
+                self.values.extend(values.iter().map(seconds));
+            }
+            self.spread(values.len(), &levels);
+            Ok(())
+        })
+    }
+
+    /// Puts NaN where cells are empty.
+    ///
+    /// * `found` - numbers at the end that belong to the cells that are not
+    fn spread(&mut self, found: usize, levels: &Levels) {
+        if found == levels.rows {
+            return;
+        }
+        let start = self.values.len() - found;
+        let mut numbers = self.values.split_off(start).into_iter();
+        let cells = (0..levels.rows).map(|row| if levels.is_there(row) { numbers.next() } else { None });
+        self.values.extend(cells.map(|cell| cell.unwrap_or(f64::NAN)));
+        let empty = (0..levels.rows).find(|&row| !levels.is_there(row)).map(|row| start + row);
+        self.first_empty = self.first_empty.or(empty);
+    }
+}

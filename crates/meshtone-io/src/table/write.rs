@@ -1,0 +1,267 @@
+//! Writing a table.
+
+use std::io::{self, Write};
+use std::sync::Arc;
+
+use parquet::basic::{LogicalType, Repetition, Type as Physical};
+use parquet::data_type::{self, ByteArray, DataType};
+use parquet::errors::{ParquetError, Result};
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
+use parquet::schema::types::{Type, TypePtr};
+
+use super::{arrow_schema, into_io};
+
+/// Name of the table itself, as Arrow's writers give it.
+const TABLE: &str = "arrow_schema";
+/// Name of a list's repeated part.
+const LIST: &str = "list";
+/// Name of what a list consists of.
+pub(super) const LIST_ITEM: &str = "item";
+
+/// A column that is written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TableColumn {
+    /// Its name.
+    pub name: String,
+    /// What it holds.
+    pub cells: CellType,
+    /// Whether cells may be empty.
+    pub nullable: bool,
+    /// What Arrow's schema says of it: keys and values, such as `unit` and `Hz`.
+    pub metadata: Vec<(String, String)>,
+}
+
+/// What a column holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CellType {
+    /// Integers of 32 bits.
+    Int32,
+    /// Integers of 64 bits.
+    Int64,
+    /// Integers of 32 bits without sign.
+    UInt32,
+    /// Integers of 64 bits without sign.
+    UInt64,
+    /// Double precision.
+    Float64,
+    /// Text.
+    Text,
+    /// Lists of numbers in single precision.
+    Float32List {
+        /// Whether the column's type allows empty items, which are never written.
+        nullable_items: bool,
+    },
+}
+
+/// The cells of a column in some rows.
+#[derive(Debug)]
+pub enum Cells<'c> {
+    /// Of [`CellType::Int32`].
+    Int32(Vec<Option<i32>>),
+    /// Of [`CellType::Int64`].
+    Int64(Vec<Option<i64>>),
+    /// Of [`CellType::UInt32`].
+    UInt32(Vec<Option<u32>>),
+    /// Of [`CellType::UInt64`].
+    UInt64(Vec<Option<u64>>),
+    /// Of [`CellType::Float64`].
+    Float64(Vec<Option<f64>>),
+    /// Of [`CellType::Float64`], none of them empty.
+    Signal(&'c [f64]),
+    /// Of [`CellType::Text`].
+    Text(Vec<Option<String>>),
+    /// Of [`CellType::Float32List`].
+    Float32List(Vec<&'c [f32]>),
+}
+
+impl TableColumn {
+    /// The number of a column's leaf is its own: lists have one leaf too.
+    fn schema(&self) -> Result<TypePtr> {
+        let repetition = |nullable| if nullable { Repetition::OPTIONAL } else { Repetition::REQUIRED };
+        let of = |physical, logical| {
+            Type::primitive_type_builder(&self.name, physical)
+                .with_logical_type(logical)
+                .with_repetition(repetition(self.nullable))
+                .build()
+        };
+        let column = match self.cells {
+            CellType::Int32 => of(Physical::INT32, None),
+            CellType::Int64 => of(Physical::INT64, None),
+            CellType::UInt32 => of(Physical::INT32, Some(LogicalType::integer(32, false))),
+            CellType::UInt64 => of(Physical::INT64, Some(LogicalType::integer(64, false))),
+            CellType::Float64 => of(Physical::DOUBLE, None),
+            CellType::Text => of(Physical::BYTE_ARRAY, Some(LogicalType::String)),
+            CellType::Float32List { nullable_items } => {
+                let item = Type::primitive_type_builder(LIST_ITEM, Physical::FLOAT)
+                    .with_repetition(repetition(nullable_items))
+                    .build()?;
+                let list = Type::group_type_builder(LIST)
+                    .with_fields(vec![Arc::new(item)])
+                    .with_repetition(Repetition::REPEATED)
+                    .build()?;
+                Type::group_type_builder(&self.name)
+                    .with_fields(vec![Arc::new(list)])
+                    .with_logical_type(Some(LogicalType::List))
+                    .with_repetition(repetition(self.nullable))
+                    .build()
+            }
+        };
+        column.map(Arc::new)
+    }
+
+    /// Names from the column to where its numbers are, as properties of the file name them.
+    ///
+    /// # Arguments
+    /// * `name` - of a column of lists
+    pub fn list_path(name: &str) -> Vec<String> {
+        [name, LIST, LIST_ITEM].map(str::to_owned).to_vec()
+    }
+}
+
+/// A table that is written, one group of rows after the other.
+pub struct TableWriter<W: Write + Send> {
+    file: SerializedFileWriter<W>,
+    columns: Vec<TableColumn>,
+}
+
+impl<W: Write + Send> TableWriter<W> {
+    /// Begins a table.
+    ///
+    /// # Arguments
+    /// * `to` - where the file is written to; it needs no buffer
+    /// * `columns` - its columns
+    /// * `properties` - compression and encodings, and what the file says about itself
+    ///
+    /// # Errors
+    /// Those of `to`.
+    pub fn new(to: W, columns: Vec<TableColumn>, properties: WriterProperties) -> io::Result<Self> {
+        Self::try_new(to, columns, properties).map_err(into_io)
+    }
+
+    fn try_new(to: W, columns: Vec<TableColumn>, properties: WriterProperties) -> Result<Self> {
+        let fields = columns.iter().map(TableColumn::schema).collect::<Result<_>>()?;
+        let schema = Arc::new(Type::group_type_builder(TABLE).with_fields(fields).build()?);
+        let mut file = SerializedFileWriter::new(to, schema, Arc::new(properties))?;
+        let arrow = arrow_schema::encode(&columns);
+        file.append_key_value_metadata(KeyValue::new(arrow_schema::KEY.to_owned(), arrow));
+        Ok(Self { file, columns })
+    }
+
+    /// Writes rows as a group of their own.
+    ///
+    /// # Arguments
+    /// * `cells` - of each column, as many in each
+    ///
+    /// # Errors
+    /// Those of the file; cells that are none of their column.
+    pub fn write_rows(&mut self, cells: Vec<Cells>) -> io::Result<()> {
+        self.try_write(cells).map_err(into_io)
+    }
+
+    fn try_write(&mut self, cells: Vec<Cells>) -> Result<()> {
+        if cells.len() != self.columns.len() {
+            return Err(ParquetError::General(format!(
+                "{} columns instead of {}",
+                cells.len(),
+                self.columns.len()
+            )));
+        }
+        let mut group = self.file.next_row_group()?;
+        for (column, cells) in self.columns.iter().zip(cells) {
+            let mut writer = group
+                .next_column()?
+                .ok_or_else(|| ParquetError::General(format!("no place for column {}", column.name)))?;
+            write_cells(&mut writer, column, cells)?;
+            writer.close()?;
+        }
+        group.close().map(|_| ())
+    }
+
+    /// Adds to what the file says about itself.
+    ///
+    /// # Arguments
+    /// * `entries` - keys and values
+    pub fn add_metadata(&mut self, entries: impl IntoIterator<Item = (String, String)>) {
+        for (key, value) in entries {
+            self.file.append_key_value_metadata(KeyValue::new(key, value));
+        }
+    }
+
+    /// Ends the table.
+    ///
+    /// # Errors
+    /// Those of the file.
+    pub fn close(self) -> io::Result<()> {
+        self.file.close().map(|_| ()).map_err(into_io)
+    }
+}
+
+fn write_cells(writer: &mut SerializedColumnWriter, column: &TableColumn, cells: Cells) -> Result<()> {
+    match (column.cells, cells) {
+        (CellType::Int32, Cells::Int32(cells)) => {
+            write::<data_type::Int32Type>(writer, column, cells.into_iter())
+        }
+        (CellType::Int64, Cells::Int64(cells)) => {
+            write::<data_type::Int64Type>(writer, column, cells.into_iter())
+        }
+        // Parquet has no types without sign: their bits are stored.
+        (CellType::UInt32, Cells::UInt32(cells)) => {
+            let bits = cells.into_iter().map(|cell| cell.map(u32::cast_signed));
+            write::<data_type::Int32Type>(writer, column, bits)
+        }
+        (CellType::UInt64, Cells::UInt64(cells)) => {
+            let bits = cells.into_iter().map(|cell| cell.map(u64::cast_signed));
+            write::<data_type::Int64Type>(writer, column, bits)
+        }
+        (CellType::Float64, Cells::Float64(cells)) => {
+            write::<data_type::DoubleType>(writer, column, cells.into_iter())
+        }
+        (CellType::Float64, Cells::Signal(signal)) if !column.nullable => {
+            writer.typed::<data_type::DoubleType>().write_batch(signal, None, None).map(|_| ())
+        }
+        (CellType::Text, Cells::Text(cells)) => {
+            let texts = cells.into_iter().map(|cell| cell.map(|text| ByteArray::from(text.into_bytes())));
+            write::<data_type::ByteArrayType>(writer, column, texts)
+        }
+        (CellType::Float32List { nullable_items }, Cells::Float32List(lists)) if !column.nullable => {
+            write_lists(writer, nullable_items, &lists)
+        }
+        _ => Err(ParquetError::General(format!("column {} holds {:?}", column.name, column.cells))),
+    }
+}
+
+fn write<T: DataType>(
+    writer: &mut SerializedColumnWriter,
+    column: &TableColumn,
+    cells: impl Iterator<Item = Option<T::T>>,
+) -> Result<()> {
+    let (mut values, mut levels) = (Vec::new(), Vec::new());
+    for cell in cells {
+        levels.push(i16::from(cell.is_some()));
+        values.extend(cell);
+    }
+    if !column.nullable && values.len() < levels.len() {
+        return Err(ParquetError::General(format!("column {} has an empty cell", column.name)));
+    }
+    let levels = column.nullable.then_some(&levels[..]);
+    writer.typed::<T>().write_batch(&values, levels, None).map(|_| ())
+}
+
+/// Dremel's levels: an item that begins its list has no repetition, and an empty list no definition.
+fn write_lists(writer: &mut SerializedColumnWriter, nullable_items: bool, lists: &[&[f32]]) -> Result<()> {
+    let defined = 1 + i16::from(nullable_items);
+    let count = lists.iter().map(|list| list.len().max(1)).sum();
+    let (mut definitions, mut repetitions) = (Vec::with_capacity(count), Vec::with_capacity(count));
+    for list in lists {
+        definitions.resize(definitions.len() + list.len().max(1), if list.is_empty() { 0 } else { defined });
+        repetitions.push(0);
+        repetitions.resize(definitions.len(), 1);
+    }
+    let values = lists.concat();
+    writer
+        .typed::<data_type::FloatType>()
+        .write_batch(&values, Some(&definitions), Some(&repetitions))
+        .map(|_| ())
+}
