@@ -36,7 +36,7 @@ pub(crate) struct Axes {
     pub(crate) y: [f64; 2],
 }
 
-const FRAME: Stroke = Stroke::solid("#8a8a8a", 1.0);
+const FRAME: Stroke = Stroke::solid(colour::FRAME, 1.0);
 const GRID: Stroke = Stroke::solid(colour::GRID, 1.0);
 const TICK_LENGTH: f64 = 4.0;
 /// (px) From the frame to the baseline of the numbers below it, and of the axis' name.

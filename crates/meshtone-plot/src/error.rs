@@ -27,9 +27,6 @@ pub enum PlotError {
     /// An experiment and a result that do not belong together, or signals that cannot be enhanced.
     #[error(transparent)]
     Hybrid(#[from] meshtone::hybrid::HybridError),
-    /// The SVG could not be read back.
-    #[error("the figure could not be rasterised: {0}")]
-    Svg(#[from] resvg::usvg::Error),
     /// No bitmap of that size.
     #[error("no bitmap of {width} × {height} pixels could be made")]
     Bitmap {

@@ -1,144 +1,145 @@
-//! From SVG to PNG.
+//! A scene as pixels.
 
-use resvg::tiny_skia::{Pixmap, Transform};
-use resvg::usvg::{Options, Tree};
+use tiny_skia::{
+    FillRule, FilterQuality, Paint, Path, PathBuilder, Pattern, Pixmap, Rect, Shader, SpreadMode, StrokeDash,
+    Transform,
+};
 
+use crate::scene::{Element, Place, Scene};
+use crate::style::{
+    Colour, Fill, HALO_WIDTH, HATCH_ANGLE_DEG, HATCH_PITCH, HATCH_WIDTH, Stroke, TextStyle, colour,
+};
 use crate::{PlotError, font};
 
-/// Rasterises `svg` and encodes it with a palette, and with a text under its keyword.
-pub(crate) fn png(
-    svg: &str,
-    width: u32,
-    height: u32,
-    text: Option<(&str, &str)>,
-) -> Result<Vec<u8>, PlotError> {
-    let options =
-        Options { fontdb: font::database(), font_family: font::FAMILY.to_owned(), ..Options::default() };
-    let tree = Tree::from_str(svg, &options)?;
-    let mut pixmap = Pixmap::new(width, height).ok_or(PlotError::Bitmap { width, height })?;
-    resvg::render(&tree, Transform::default(), &mut pixmap.as_mut());
-    encode(pixmap.data(), width, height, text)
-}
-
-fn encode(rgba: &[u8], width: u32, height: u32, text: Option<(&str, &str)>) -> Result<Vec<u8>, PlotError> {
-    let Indexed { palette, pixels } = Indexed::new(rgba);
-    let mut file = Vec::with_capacity(1 << 18);
-    let mut encoder = png::Encoder::new(&mut file, width, height);
-    encoder.set_color(png::ColorType::Indexed);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_palette(palette);
-    // Most rows are the row above: its difference is zeros, which even the fastest compression makes short.
-    encoder.set_compression(png::Compression::Fast);
-    encoder.set_filter(png::Filter::Up);
-    if let Some((keyword, text)) = text {
-        encoder.add_text_chunk(keyword.to_owned(), text.to_owned())?;
+/// The scene in its own size, a pixel for a pixel.
+pub(crate) fn pixels(scene: &Scene) -> Result<Pixmap, PlotError> {
+    let Scene { width, height, .. } = *scene;
+    let mut raster = Raster { pixmap: pixmap(width, height)? };
+    raster.pixmap.fill(paint_colour(colour::WHITE, 1.0));
+    for element in &scene.elements {
+        raster.draw(element)?;
     }
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(&pixels)?;
-    writer.finish()?;
-    Ok(file)
+    Ok(raster.pixmap)
 }
 
-/// A picture of at most 256 colours.
-struct Indexed {
-    /// Red, green and blue of each colour.
-    palette: Vec<u8>,
-    pixels: Vec<u8>,
+struct Raster {
+    pixmap: Pixmap,
 }
 
-/// Number of cells that the colours are sorted into: five bits of each of red, green and blue.
-const CELLS: usize = 1 << 15;
-const MOST_COLOURS: usize = 256;
-
-/// Colours that share a cell.
-#[derive(Clone, Copy, Default)]
-struct Cell {
-    count: u64,
-    sum: [u64; 3],
-}
-
-impl Cell {
-    fn mean(&self) -> [u8; 3] {
-        self.sum.map(|sum| ((sum + self.count / 2) / self.count.max(1)) as u8)
+impl Raster {
+    fn draw(&mut self, element: &Element) -> Result<(), PlotError> {
+        match element {
+            Element::Path { points, closed, stroke, fill } => {
+                let Some(path) = through(points, *closed) else { return Ok(()) };
+                if let Some(fill) = fill {
+                    self.fill(&path, *fill)?;
+                }
+                if let Some(stroke) = stroke {
+                    self.stroke(&path, *stroke);
+                }
+            }
+            Element::Rectangles { corners, fill } => self.rectangles(corners, *fill),
+            Element::Dots { centres, radius, fill } => self.dots(centres, *radius, *fill),
+            Element::Text { at, text, style } => self.text(*at, text, *style),
+        }
+        Ok(())
     }
-}
 
-impl Indexed {
-    /// Keeps the 256 most frequent cells; the rare shades of smoothed edges go to the nearest of them.
-    fn new(rgba: &[u8]) -> Self {
-        let mut cells = vec![Cell::default(); CELLS];
-        for run in rgba.chunk_by_pixels() {
-            let cell = &mut cells[cell_of(run.pixel)];
-            cell.count += run.length;
-            for (sum, value) in cell.sum.iter_mut().zip(run.pixel) {
-                *sum += run.length * u64::from(value);
+    fn fill(&mut self, path: &Path, fill: Fill) -> Result<(), PlotError> {
+        if !fill.hatched {
+            self.fill_solid(path, fill.colour, fill.opacity);
+            return Ok(());
+        }
+        let tile = hatching(fill)?;
+        let turned = Transform::from_rotate(HATCH_ANGLE_DEG);
+        let stripes = Pattern::new(tile.as_ref(), SpreadMode::Repeat, FilterQuality::Bicubic, 1.0, turned);
+        self.pixmap.fill_path(path, &paint(stripes), FillRule::Winding, Transform::identity(), None);
+        Ok(())
+    }
+
+    fn fill_solid(&mut self, path: &Path, colour: Colour, opacity: f64) {
+        let paint = solid(colour, opacity);
+        self.pixmap.fill_path(path, &paint, FillRule::Winding, Transform::identity(), None);
+    }
+
+    fn stroke(&mut self, path: &Path, Stroke { colour, width, dash }: Stroke) {
+        let dash = dash.iter().map(|&length| length as f32).collect();
+        let stroke = tiny_skia::Stroke {
+            width: width as f32,
+            line_join: tiny_skia::LineJoin::Round,
+            dash: StrokeDash::new(dash, 0.0),
+            ..tiny_skia::Stroke::default()
+        };
+        self.pixmap.stroke_path(path, &solid(colour, 1.0), &stroke, Transform::identity(), None);
+    }
+
+    fn rectangles(&mut self, corners: &[[Place; 2]], fill: Fill) {
+        let mut path = PathBuilder::new();
+        for [from, to] in corners {
+            let rectangle = Rect::from_ltrb(from.x.px(), from.y.px(), to.x.px(), to.y.px());
+            rectangle.into_iter().for_each(|rectangle| path.push_rect(rectangle));
+        }
+        if let Some(path) = path.finish() {
+            self.fill_solid(&path, fill.colour, fill.opacity);
+        }
+    }
+
+    fn dots(&mut self, centres: &[Place], radius: f64, fill: Fill) {
+        for centre in centres {
+            if let Some(disc) = PathBuilder::from_circle(centre.x.px(), centre.y.px(), radius as f32) {
+                self.fill_solid(&disc, fill.colour, fill.opacity);
             }
         }
-        let mut used: Vec<usize> = (0..CELLS).filter(|&cell| cells[cell].count > 0).collect();
-        used.sort_by_key(|&cell| std::cmp::Reverse(cells[cell].count));
-        let colours: Vec<[u8; 3]> = used.iter().take(MOST_COLOURS).map(|&cell| cells[cell].mean()).collect();
-        let mut index_of = vec![0u8; CELLS];
-        for &cell in &used {
-            index_of[cell] = nearest(&colours, cells[cell].mean()) as u8;
+    }
+
+    fn text(&mut self, at: Place, text: &str, style: TextStyle) {
+        let before = style.anchor.before(font::text_width(text, style.size, style.bold)) as f32;
+        let turned = if style.upwards { Transform::from_rotate(-90.0) } else { Transform::identity() };
+        let moved = turned.pre_translate(-before, 0.0).post_translate(at.x.px(), at.y.px());
+        let outline = font::outline(text, style.size, style.bold).and_then(|path| path.transform(moved));
+        let Some(outline) = outline else { return };
+        if style.halo {
+            self.stroke(&outline, Stroke::solid(colour::WHITE, HALO_WIDTH));
         }
-        let mut pixels = Vec::with_capacity(rgba.len() / 4);
-        for run in rgba.chunk_by_pixels() {
-            pixels.resize(pixels.len() + run.length as usize, index_of[cell_of(run.pixel)]);
-        }
-        Self { palette: colours.into_flattened(), pixels }
+        self.fill_solid(&outline, style.colour, 1.0);
     }
 }
 
-fn cell_of([red, green, blue]: [u8; 3]) -> usize {
-    let top = |value: u8| usize::from(value >> 3);
-    top(red) << 10 | top(green) << 5 | top(blue)
-}
-
-fn nearest(colours: &[[u8; 3]], wanted: [u8; 3]) -> usize {
-    let distance = |colour: &[u8; 3]| -> i32 {
-        colour.iter().zip(wanted).map(|(&a, b)| (i32::from(a) - i32::from(b)).pow(2)).sum()
-    };
-    (0..colours.len()).min_by_key(|&index| distance(&colours[index])).unwrap_or(0)
-}
-
-/// Neighbouring pixels of one colour.
-struct Run {
-    pixel: [u8; 3],
-    length: u64,
-}
-
-trait Runs {
-    fn chunk_by_pixels(&self) -> impl Iterator<Item = Run>;
-}
-
-impl Runs for [u8] {
-    fn chunk_by_pixels(&self) -> impl Iterator<Item = Run> {
-        let (pixels, _) = self.as_chunks::<4>();
-        pixels
-            .chunk_by(|a, b| a == b)
-            .map(|run| Run { pixel: [run[0][0], run[0][1], run[0][2]], length: run.len() as u64 })
+/// Straight lines from point to point.
+fn through(points: &[Place], closed: bool) -> Option<Path> {
+    let mut path = PathBuilder::with_capacity(points.len() + 1, points.len());
+    for (index, point) in points.iter().enumerate() {
+        let (x, y) = (point.x.px(), point.y.px());
+        if index == 0 { path.move_to(x, y) } else { path.line_to(x, y) }
     }
+    if closed {
+        path.close();
+    }
+    path.finish()
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn few_colours_are_kept_exactly() {
-        let rgba = [255, 255, 255, 255, 0, 114, 178, 255, 255, 255, 255, 255, 213, 94, 0, 255];
-        let Indexed { palette, pixels } = Indexed::new(&rgba);
-        let colours: Vec<&[u8]> =
-            pixels.iter().map(|&index| &palette[3 * usize::from(index)..][..3]).collect();
-        assert_eq!(colours, [[255, 255, 255], [0, 114, 178], [255, 255, 255], [213, 94, 0]]);
+/// One stripe and what lies between it and the next.
+fn hatching(fill: Fill) -> Result<Pixmap, PlotError> {
+    let mut tile = pixmap(HATCH_PITCH, HATCH_PITCH)?;
+    tile.fill(paint_colour(fill.colour, fill.opacity));
+    if let Some(stripe) = Rect::from_xywh(0.0, 0.0, HATCH_WIDTH, HATCH_PITCH as f32) {
+        tile.fill_rect(stripe, &solid(fill.colour, 1.0), Transform::identity(), None);
     }
+    Ok(tile)
+}
 
-    #[test]
-    fn many_colours_go_to_near_ones() {
-        let rgba: Vec<u8> = (0..4096u32)
-            .flat_map(|k| [(k % 16 * 17) as u8, (k / 16 % 16 * 17) as u8, (k / 256 * 17) as u8, 255])
-            .collect();
-        let Indexed { palette, pixels } = Indexed::new(&rgba);
-        assert_eq!((palette.len(), pixels.len()), (768, 4096));
-    }
+fn pixmap(width: u32, height: u32) -> Result<Pixmap, PlotError> {
+    Pixmap::new(width, height).ok_or(PlotError::Bitmap { width, height })
+}
+
+fn paint(shader: Shader) -> Paint {
+    Paint { shader, ..Paint::default() }
+}
+
+fn solid(colour: Colour, opacity: f64) -> Paint<'static> {
+    paint(Shader::SolidColor(paint_colour(colour, opacity)))
+}
+
+fn paint_colour(Colour { red, green, blue }: Colour, opacity: f64) -> tiny_skia::Color {
+    tiny_skia::Color::from_rgba8(red, green, blue, (opacity * 255.0).round() as u8)
 }

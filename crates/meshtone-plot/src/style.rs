@@ -1,70 +1,106 @@
 //! Colours, strokes and text styles, the same in every figure.
 
+use std::fmt;
+
+/// An opaque colour of the sRGB space.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Colour {
+    pub(crate) red: u8,
+    pub(crate) green: u8,
+    pub(crate) blue: u8,
+}
+
+impl Colour {
+    /// From 0xrr_gg_bb.
+    pub(crate) const fn hex(value: u32) -> Self {
+        let [_, red, green, blue] = value.to_be_bytes();
+        Self { red, green, blue }
+    }
+}
+
+impl fmt::Display for Colour {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "#{:02x}{:02x}{:02x}", self.red, self.green, self.blue)
+    }
+}
+
 /// Colours that colour-blind readers can tell apart.
 ///
 /// Source: M. Okabe, K. Ito, "Color universal design", 2008.
 pub(crate) mod colour {
+    use super::Colour;
+
     /// Text and axes.
-    pub(crate) const INK: &str = "#1a1a1a";
+    pub(crate) const INK: Colour = Colour::hex(0x1a_1a_1a);
     /// Secondary text and lines.
-    pub(crate) const MUTED: &str = "#5a5a5a";
+    pub(crate) const MUTED: Colour = Colour::hex(0x5a_5a_5a);
+    /// Frames and ticks.
+    pub(crate) const FRAME: Colour = Colour::hex(0x8a_8a_8a);
     /// Grid lines.
-    pub(crate) const GRID: &str = "#e3e3e3";
+    pub(crate) const GRID: Colour = Colour::hex(0xe3_e3_e3);
     /// Material.
-    pub(crate) const STEEL: &str = "#e4e9ee";
+    pub(crate) const STEEL: Colour = Colour::hex(0xe4_e9_ee);
     /// What is simulated.
-    pub(crate) const BLUE: &str = "#0072b2";
+    pub(crate) const BLUE: Colour = Colour::hex(0x00_72_b2);
     /// Damage, and nothing else.
-    pub(crate) const VERMILLION: &str = "#d55e00";
+    pub(crate) const VERMILLION: Colour = Colour::hex(0xd5_5e_00);
     /// Start of contact; what is simulated, enhanced.
-    pub(crate) const GREEN: &str = "#009e73";
+    pub(crate) const GREEN: Colour = Colour::hex(0x00_9e_73);
     /// Start of the tip relief.
-    pub(crate) const PURPLE: &str = "#aa4a8a";
+    pub(crate) const PURPLE: Colour = Colour::hex(0xaa_4a_8a);
     /// Background.
-    pub(crate) const WHITE: &str = "#ffffff";
+    pub(crate) const WHITE: Colour = Colour::hex(0xff_ff_ff);
 }
 
 /// (px) Of the dots that stand for many values.
 pub(crate) const DOT_RADIUS: f64 = 1.7;
 
+/// (px) Of the white outline of a text, half of it outside the letters.
+pub(crate) const HALO_WIDTH: f64 = 3.0;
+
+/// (px, °) Of a hatching: from stripe to stripe, a stripe's width, and the angle of the stripes to the vertical.
+pub(crate) const HATCH_PITCH: u32 = 7;
+pub(crate) const HATCH_WIDTH: f32 = 1.5;
+pub(crate) const HATCH_ANGLE_DEG: f32 = 45.0;
+
 /// How a line is drawn.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stroke {
-    pub(crate) colour: &'static str,
+    pub(crate) colour: Colour,
     pub(crate) width: f64,
-    /// SVG's `stroke-dasharray`; empty for a solid line.
-    pub(crate) dash: &'static str,
+    /// (px) Lengths of dashes and gaps in turn, an even number; empty for a solid line.
+    pub(crate) dash: &'static [f64],
 }
 
 impl Stroke {
-    pub(crate) const fn solid(colour: &'static str, width: f64) -> Self {
-        Self { colour, width, dash: "" }
+    pub(crate) const fn solid(colour: Colour, width: f64) -> Self {
+        Self { colour, width, dash: &[] }
     }
 
-    pub(crate) const fn dashed(colour: &'static str, width: f64, dash: &'static str) -> Self {
+    pub(crate) const fn dashed(colour: Colour, width: f64, dash: &'static [f64]) -> Self {
         Self { colour, width, dash }
     }
 }
 
 /// How an area is filled.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Fill {
-    pub(crate) colour: &'static str,
+    pub(crate) colour: Colour,
     pub(crate) opacity: f64,
     /// Diagonal lines of the colour over the fill.
     pub(crate) hatched: bool,
 }
 
 impl Fill {
-    pub(crate) const fn solid(colour: &'static str) -> Self {
+    pub(crate) const fn solid(colour: Colour) -> Self {
         Self { colour, opacity: 1.0, hatched: false }
     }
 
-    pub(crate) const fn tint(colour: &'static str, opacity: f64) -> Self {
+    pub(crate) const fn tint(colour: Colour, opacity: f64) -> Self {
         Self { colour, opacity, hatched: false }
     }
 
-    pub(crate) const fn hatch(colour: &'static str) -> Self {
+    pub(crate) const fn hatch(colour: Colour) -> Self {
         Self { colour, opacity: 0.12, hatched: true }
     }
 }
@@ -77,16 +113,27 @@ pub(crate) enum Anchor {
     End,
 }
 
+impl Anchor {
+    /// What of a text's width lies before the point.
+    pub(crate) fn before(self, width: f64) -> f64 {
+        match self {
+            Self::Start => 0.0,
+            Self::Middle => width / 2.0,
+            Self::End => width,
+        }
+    }
+}
+
 /// How a text is set.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TextStyle {
     pub(crate) size: f64,
     pub(crate) bold: bool,
-    pub(crate) colour: &'static str,
+    pub(crate) colour: Colour,
     pub(crate) anchor: Anchor,
     /// Reads upwards.
     pub(crate) upwards: bool,
-    /// White outline, for text over lines.
+    /// White outline of [`HALO_WIDTH`], for text over lines.
     pub(crate) halo: bool,
 }
 
@@ -114,7 +161,7 @@ impl TextStyle {
         Self { bold: true, ..self }
     }
 
-    pub(crate) const fn coloured(self, colour: &'static str) -> Self {
+    pub(crate) const fn coloured(self, colour: Colour) -> Self {
         Self { colour, ..self }
     }
 

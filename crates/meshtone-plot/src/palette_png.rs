@@ -1,0 +1,133 @@
+//! Pictures of few colours as PNG.
+
+use tiny_skia::Pixmap;
+
+use crate::PlotError;
+
+/// Encodes pixels with a palette.
+///
+/// # Arguments
+/// * `pixmap` - the picture, without transparency
+/// * `text` - a keyword and the text that is to stand in the file under it
+pub(crate) fn encode(pixmap: &Pixmap, text: Option<(&str, &str)>) -> Result<Vec<u8>, PlotError> {
+    let Indexed { palette, pixels } = Indexed::new(pixmap.data());
+    let mut file = Vec::with_capacity(1 << 18);
+    let mut encoder = png::Encoder::new(&mut file, pixmap.width(), pixmap.height());
+    encoder.set_color(png::ColorType::Indexed);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_palette(palette);
+    // Most rows are the row above: its difference is zeros, which even the fastest compression makes short.
+    encoder.set_compression(png::Compression::Fast);
+    encoder.set_filter(png::Filter::Up);
+    if let Some((keyword, text)) = text {
+        encoder.add_text_chunk(keyword.to_owned(), text.to_owned())?;
+    }
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&pixels)?;
+    writer.finish()?;
+    Ok(file)
+}
+
+/// A picture of at most 256 colours.
+struct Indexed {
+    /// Red, green and blue of each colour.
+    palette: Vec<u8>,
+    pixels: Vec<u8>,
+}
+
+/// Number of cells that the colours are sorted into: five bits of each of red, green and blue.
+const CELLS: usize = 1 << 15;
+const MOST_COLOURS: usize = 256;
+
+/// Colours that share a cell.
+#[derive(Clone, Copy, Default)]
+struct Cell {
+    count: u64,
+    sum: [u64; 3],
+}
+
+impl Cell {
+    fn mean(&self) -> [u8; 3] {
+        self.sum.map(|sum| ((sum + self.count / 2) / self.count.max(1)) as u8)
+    }
+}
+
+impl Indexed {
+    /// Keeps the 256 most frequent cells; the rare shades of smoothed edges go to the nearest of them.
+    fn new(rgba: &[u8]) -> Self {
+        let mut cells = vec![Cell::default(); CELLS];
+        for run in rgba.chunk_by_pixels() {
+            let cell = &mut cells[cell_of(run.pixel)];
+            cell.count += run.length;
+            for (sum, value) in cell.sum.iter_mut().zip(run.pixel) {
+                *sum += run.length * u64::from(value);
+            }
+        }
+        let mut used: Vec<usize> = (0..CELLS).filter(|&cell| cells[cell].count > 0).collect();
+        used.sort_by_key(|&cell| std::cmp::Reverse(cells[cell].count));
+        let colours: Vec<[u8; 3]> = used.iter().take(MOST_COLOURS).map(|&cell| cells[cell].mean()).collect();
+        let mut index_of = vec![0u8; CELLS];
+        for &cell in &used {
+            index_of[cell] = nearest(&colours, cells[cell].mean()) as u8;
+        }
+        let mut pixels = Vec::with_capacity(rgba.len() / 4);
+        for run in rgba.chunk_by_pixels() {
+            pixels.resize(pixels.len() + run.length as usize, index_of[cell_of(run.pixel)]);
+        }
+        Self { palette: colours.into_flattened(), pixels }
+    }
+}
+
+fn cell_of([red, green, blue]: [u8; 3]) -> usize {
+    let top = |value: u8| usize::from(value >> 3);
+    top(red) << 10 | top(green) << 5 | top(blue)
+}
+
+fn nearest(colours: &[[u8; 3]], wanted: [u8; 3]) -> usize {
+    let distance = |colour: &[u8; 3]| -> i32 {
+        colour.iter().zip(wanted).map(|(&a, b)| (i32::from(a) - i32::from(b)).pow(2)).sum()
+    };
+    (0..colours.len()).min_by_key(|&index| distance(&colours[index])).unwrap_or(0)
+}
+
+/// Neighbouring pixels of one colour.
+struct Run {
+    pixel: [u8; 3],
+    length: u64,
+}
+
+trait Runs {
+    fn chunk_by_pixels(&self) -> impl Iterator<Item = Run>;
+}
+
+impl Runs for [u8] {
+    fn chunk_by_pixels(&self) -> impl Iterator<Item = Run> {
+        let (pixels, _) = self.as_chunks::<4>();
+        pixels
+            .chunk_by(|a, b| a == b)
+            .map(|run| Run { pixel: [run[0][0], run[0][1], run[0][2]], length: run.len() as u64 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_colours_are_kept_exactly() {
+        let rgba = [255, 255, 255, 255, 0, 114, 178, 255, 255, 255, 255, 255, 213, 94, 0, 255];
+        let Indexed { palette, pixels } = Indexed::new(&rgba);
+        let colours: Vec<&[u8]> =
+            pixels.iter().map(|&index| &palette[3 * usize::from(index)..][..3]).collect();
+        assert_eq!(colours, [[255, 255, 255], [0, 114, 178], [255, 255, 255], [213, 94, 0]]);
+    }
+
+    #[test]
+    fn many_colours_go_to_near_ones() {
+        let rgba: Vec<u8> = (0..4096u32)
+            .flat_map(|k| [(k % 16 * 17) as u8, (k / 16 % 16 * 17) as u8, (k / 256 * 17) as u8, 255])
+            .collect();
+        let Indexed { palette, pixels } = Indexed::new(&rgba);
+        assert_eq!((palette.len(), pixels.len()), (768, 4096));
+    }
+}
