@@ -81,10 +81,10 @@ impl Figure {
     /// The figure as a PNG file of [`Self::size_px`], which looks as [`Self::svg`] does with the font at hand.
     ///
     /// # Errors
-    /// A figure that cannot be rasterised, which no input should bring about.
+    /// A PNG that cannot be encoded, which no input should bring about.
     pub fn png(&self) -> Result<Vec<u8>, PlotError> {
-        let pixels = raster::pixels(&self.scene)?;
-        palette_png::encode(&pixels, self.run.as_deref().map(|run| (RUN_KEY, run)))
+        let picture = raster::picture(&self.scene);
+        palette_png::encode(&picture, self.run.as_deref().map(|run| (RUN_KEY, run)))
     }
 
     /// (px) Width and height.

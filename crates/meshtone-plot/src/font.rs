@@ -5,7 +5,7 @@
 
 use std::sync::LazyLock;
 
-use tiny_skia::{Path, PathBuilder};
+use tiny_skia_path::{Path, PathBuilder};
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
 use unicode_normalization::UnicodeNormalization;
 

@@ -1,18 +1,18 @@
 //! Pictures of few colours as PNG.
 
-use tiny_skia::Pixmap;
-
 use crate::PlotError;
+use crate::raster::Picture;
+use crate::style::Colour;
 
 /// Encodes pixels with a palette.
 ///
 /// # Arguments
-/// * `pixmap` - the picture, without transparency
+/// * `picture` - the pixels
 /// * `text` - a keyword and the text that is to stand in the file under it
-pub(crate) fn encode(pixmap: &Pixmap, text: Option<(&str, &str)>) -> Result<Vec<u8>, PlotError> {
-    let Indexed { palette, pixels } = Indexed::new(pixmap.data());
+pub(crate) fn encode(picture: &Picture, text: Option<(&str, &str)>) -> Result<Vec<u8>, PlotError> {
+    let Indexed { palette, pixels } = Indexed::new(&picture.pixels);
     let mut file = Vec::with_capacity(1 << 18);
-    let mut encoder = png::Encoder::new(&mut file, pixmap.width(), pixmap.height());
+    let mut encoder = png::Encoder::new(&mut file, picture.width, picture.height);
     encoder.set_color(png::ColorType::Indexed);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_palette(palette);
@@ -54,33 +54,35 @@ impl Cell {
 
 impl Indexed {
     /// Keeps the 256 most frequent cells; the rare shades of smoothed edges go to the nearest of them.
-    fn new(rgba: &[u8]) -> Self {
+    fn new(picture: &[Colour]) -> Self {
+        let runs = || picture.chunk_by(|a, b| a == b).map(|run| (run[0], run.len() as u64));
         let mut cells = vec![Cell::default(); CELLS];
-        for run in rgba.chunk_by_pixels() {
-            let cell = &mut cells[cell_of(run.pixel)];
-            cell.count += run.length;
-            for (sum, value) in cell.sum.iter_mut().zip(run.pixel) {
-                *sum += run.length * u64::from(value);
+        for (colour, length) in runs() {
+            let cell = &mut cells[cell_of(colour)];
+            cell.count += length;
+            for (sum, value) in cell.sum.iter_mut().zip(colour.rgb()) {
+                *sum += length * u64::from(value);
             }
         }
         let mut used: Vec<usize> = (0..CELLS).filter(|&cell| cells[cell].count > 0).collect();
         used.sort_by_key(|&cell| std::cmp::Reverse(cells[cell].count));
         let colours: Vec<[u8; 3]> = used.iter().take(MOST_COLOURS).map(|&cell| cells[cell].mean()).collect();
         let mut index_of = vec![0u8; CELLS];
-        for &cell in &used {
-            index_of[cell] = nearest(&colours, cells[cell].mean()) as u8;
+        for (place, &cell) in used.iter().enumerate() {
+            let index = if place < MOST_COLOURS { place } else { nearest(&colours, cells[cell].mean()) };
+            index_of[cell] = index as u8;
         }
-        let mut pixels = Vec::with_capacity(rgba.len() / 4);
-        for run in rgba.chunk_by_pixels() {
-            pixels.resize(pixels.len() + run.length as usize, index_of[cell_of(run.pixel)]);
+        let mut pixels = Vec::with_capacity(picture.len());
+        for (colour, length) in runs() {
+            pixels.resize(pixels.len() + length as usize, index_of[cell_of(colour)]);
         }
         Self { palette: colours.into_flattened(), pixels }
     }
 }
 
-fn cell_of([red, green, blue]: [u8; 3]) -> usize {
-    let top = |value: u8| usize::from(value >> 3);
-    top(red) << 10 | top(green) << 5 | top(blue)
+fn cell_of(colour: Colour) -> usize {
+    let [red, green, blue] = colour.rgb().map(|value| usize::from(value >> 3));
+    red << 10 | green << 5 | blue
 }
 
 fn nearest(colours: &[[u8; 3]], wanted: [u8; 3]) -> usize {
@@ -90,33 +92,14 @@ fn nearest(colours: &[[u8; 3]], wanted: [u8; 3]) -> usize {
     (0..colours.len()).min_by_key(|&index| distance(&colours[index])).unwrap_or(0)
 }
 
-/// Neighbouring pixels of one colour.
-struct Run {
-    pixel: [u8; 3],
-    length: u64,
-}
-
-trait Runs {
-    fn chunk_by_pixels(&self) -> impl Iterator<Item = Run>;
-}
-
-impl Runs for [u8] {
-    fn chunk_by_pixels(&self) -> impl Iterator<Item = Run> {
-        let (pixels, _) = self.as_chunks::<4>();
-        pixels
-            .chunk_by(|a, b| a == b)
-            .map(|run| Run { pixel: [run[0][0], run[0][1], run[0][2]], length: run.len() as u64 })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn few_colours_are_kept_exactly() {
-        let rgba = [255, 255, 255, 255, 0, 114, 178, 255, 255, 255, 255, 255, 213, 94, 0, 255];
-        let Indexed { palette, pixels } = Indexed::new(&rgba);
+        let picture = [0xff_ff_ff, 0x00_72_b2, 0xff_ff_ff, 0xd5_5e_00].map(Colour);
+        let Indexed { palette, pixels } = Indexed::new(&picture);
         let colours: Vec<&[u8]> =
             pixels.iter().map(|&index| &palette[3 * usize::from(index)..][..3]).collect();
         assert_eq!(colours, [[255, 255, 255], [0, 114, 178], [255, 255, 255], [213, 94, 0]]);
@@ -124,10 +107,10 @@ mod tests {
 
     #[test]
     fn many_colours_go_to_near_ones() {
-        let rgba: Vec<u8> = (0..4096u32)
-            .flat_map(|k| [(k % 16 * 17) as u8, (k / 16 % 16 * 17) as u8, (k / 256 * 17) as u8, 255])
+        let picture: Vec<Colour> = (0..4096u32)
+            .map(|k| Colour(0x11_00_00 * (k % 16) + 0x00_11_00 * (k / 16 % 16) + 0x00_00_11 * (k / 256)))
             .collect();
-        let Indexed { palette, pixels } = Indexed::new(&rgba);
+        let Indexed { palette, pixels } = Indexed::new(&picture);
         assert_eq!((palette.len(), pixels.len()), (768, 4096));
     }
 }

@@ -2,25 +2,30 @@
 
 use std::fmt;
 
-/// An opaque colour of the sRGB space.
+/// An opaque colour of sRGB, 0xrr_gg_bb.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Colour {
-    pub(crate) red: u8,
-    pub(crate) green: u8,
-    pub(crate) blue: u8,
-}
+pub(crate) struct Colour(pub(crate) u32);
 
 impl Colour {
-    /// From 0xrr_gg_bb.
-    pub(crate) const fn hex(value: u32) -> Self {
-        let [_, red, green, blue] = value.to_be_bytes();
-        Self { red, green, blue }
+    /// Red, green and blue.
+    pub(crate) fn rgb(self) -> [u8; 3] {
+        let [_, red, green, blue] = self.0.to_be_bytes();
+        [red, green, blue]
+    }
+
+    /// Itself with a part of another colour in its place.
+    pub(crate) fn mixed(self, other: Self, part: f32) -> Self {
+        // In 256ths, finer steps nobody sees; red and blue at once, with room for the products between them.
+        let part = (part * 256.0 + 0.5) as u32;
+        let mixed =
+            |of: u32, half: u32| (((self.0 & of) * (256 - part) + (other.0 & of) * part + half) >> 8) & of;
+        Self(mixed(0xff_00_ff, 0x80_00_80) | mixed(0x00_ff_00, 0x00_80_00))
     }
 }
 
 impl fmt::Display for Colour {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "#{:02x}{:02x}{:02x}", self.red, self.green, self.blue)
+        write!(f, "#{:06x}", self.0)
     }
 }
 
@@ -31,25 +36,25 @@ pub(crate) mod colour {
     use super::Colour;
 
     /// Text and axes.
-    pub(crate) const INK: Colour = Colour::hex(0x1a_1a_1a);
+    pub(crate) const INK: Colour = Colour(0x1a_1a_1a);
     /// Secondary text and lines.
-    pub(crate) const MUTED: Colour = Colour::hex(0x5a_5a_5a);
+    pub(crate) const MUTED: Colour = Colour(0x5a_5a_5a);
     /// Frames and ticks.
-    pub(crate) const FRAME: Colour = Colour::hex(0x8a_8a_8a);
+    pub(crate) const FRAME: Colour = Colour(0x8a_8a_8a);
     /// Grid lines.
-    pub(crate) const GRID: Colour = Colour::hex(0xe3_e3_e3);
+    pub(crate) const GRID: Colour = Colour(0xe3_e3_e3);
     /// Material.
-    pub(crate) const STEEL: Colour = Colour::hex(0xe4_e9_ee);
+    pub(crate) const STEEL: Colour = Colour(0xe4_e9_ee);
     /// What is simulated.
-    pub(crate) const BLUE: Colour = Colour::hex(0x00_72_b2);
+    pub(crate) const BLUE: Colour = Colour(0x00_72_b2);
     /// Damage, and nothing else.
-    pub(crate) const VERMILLION: Colour = Colour::hex(0xd5_5e_00);
+    pub(crate) const VERMILLION: Colour = Colour(0xd5_5e_00);
     /// Start of contact; what is simulated, enhanced.
-    pub(crate) const GREEN: Colour = Colour::hex(0x00_9e_73);
+    pub(crate) const GREEN: Colour = Colour(0x00_9e_73);
     /// Start of the tip relief.
-    pub(crate) const PURPLE: Colour = Colour::hex(0xaa_4a_8a);
+    pub(crate) const PURPLE: Colour = Colour(0xaa_4a_8a);
     /// Background.
-    pub(crate) const WHITE: Colour = Colour::hex(0xff_ff_ff);
+    pub(crate) const WHITE: Colour = Colour(0xff_ff_ff);
 }
 
 /// (px) Of the dots that stand for many values.
@@ -59,7 +64,7 @@ pub(crate) const DOT_RADIUS: f64 = 1.7;
 pub(crate) const HALO_WIDTH: f64 = 3.0;
 
 /// (px, °) Of a hatching: from stripe to stripe, a stripe's width, and the angle of the stripes to the vertical.
-pub(crate) const HATCH_PITCH: u32 = 7;
+pub(crate) const HATCH_PITCH: f32 = 7.0;
 pub(crate) const HATCH_WIDTH: f32 = 1.5;
 pub(crate) const HATCH_ANGLE_DEG: f32 = 45.0;
 
@@ -175,5 +180,19 @@ impl TextStyle {
 
     pub(crate) const fn with_halo(self) -> Self {
         Self { halo: true, ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_are_mixed_in_proportion() {
+        let [ink, white] = [Colour(0x10_20_f0), colour::WHITE];
+        assert_eq!((white.mixed(ink, 0.0), white.mixed(ink, 1.0)), (white, ink));
+        assert_eq!(white.mixed(ink, 0.5), Colour(0x88_90_f8));
+        assert_eq!(ink.mixed(white, 0.25), Colour(0x4c_58_f4));
+        assert_eq!(ink.to_string(), "#1020f0");
     }
 }

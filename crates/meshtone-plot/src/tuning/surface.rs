@@ -15,16 +15,16 @@ use crate::ticks::Ticks;
 const BANDS: [f64; 9] = [1.02, 1.05, 1.1, 1.2, 1.35, 1.6, 2.0, 3.0, 5.0];
 /// From the best to the worst: one hue, darker and darker, so that it reads in grey as well.
 const COLOURS: [Colour; 10] = [
-    Colour::hex(0xff_ff_ff),
-    Colour::hex(0xea_f2_f8),
-    Colour::hex(0xd3_e4_f0),
-    Colour::hex(0xb9_d3_e7),
-    Colour::hex(0x9c_c0_db),
-    Colour::hex(0x7d_aa_cd),
-    Colour::hex(0x5f_92_bb),
-    Colour::hex(0x44_79_a6),
-    Colour::hex(0x2d_5f_8c),
-    Colour::hex(0x19_45_6e),
+    Colour(0xff_ff_ff),
+    Colour(0xea_f2_f8),
+    Colour(0xd3_e4_f0),
+    Colour(0xb9_d3_e7),
+    Colour(0x9c_c0_db),
+    Colour(0x7d_aa_cd),
+    Colour(0x5f_92_bb),
+    Colour(0x44_79_a6),
+    Colour(0x2d_5f_8c),
+    Colour(0x19_45_6e),
 ];
 /// Errors below this count as this much for the bands.
 const LEAST_BASE: f64 = 0.005;

@@ -51,7 +51,9 @@ pub fn rms(signal: &[f64]) -> f64 {
 /// assert_eq!(meshtone::signal::peak(&[1.0, -4.0, 2.0]), 4.0);
 /// ```
 pub fn peak(signal: &[f64]) -> f64 {
-    reduced(signal, 0.0, |peak, x| peak.max(x.abs())).into_iter().fold(0.0, f64::max)
+    // NaN is never larger.
+    let larger = |peak: f64, x: f64| if x.abs() > peak { x.abs() } else { peak };
+    reduced(signal, 0.0, larger).into_iter().fold(0.0, larger)
 }
 
 /// Peak to peak, the largest value less the least.
@@ -102,7 +104,20 @@ pub fn central_moment(signal: &[f64], order: i32) -> f64 {
     // Seen from its first value a constant is exactly 0, and so is its mean.
     let first = signal.first().copied().unwrap_or(f64::NAN);
     let mean = sum(signal, |x| x - first) / count;
-    sum(signal, |x| (x - first - mean).powi(order)) / count
+    let sum = match order {
+        2 => powers::<2>(signal, first, mean),
+        3 => powers::<3>(signal, first, mean),
+        4 => powers::<4>(signal, first, mean),
+        6 => powers::<6>(signal, first, mean),
+        8 => powers::<8>(signal, first, mean),
+        _ => sum(signal, |x| (x - first - mean).powi(order)),
+    };
+    sum / count
+}
+
+/// `Σ(x − first − mean)ᵏ` for a k that is known beforehand, and so a few multiplications.
+fn powers<const ORDER: i32>(signal: &[f64], first: f64, mean: f64) -> f64 {
+    sum(signal, |x| (x - first - mean).powi(ORDER))
 }
 
 /// Standard deviation `√µ₂`, of the whole population.

@@ -11,7 +11,7 @@ use crate::ticks::{Ticks, number};
 
 /// Of the regular part.
 const REGULAR: Stroke = Stroke::solid(colour::BLUE, 1.2);
-const DIFFERENCE: Fill = Fill::solid(Colour::hex(0xc4_c4_c4));
+const DIFFERENCE: Fill = Fill::solid(Colour(0xc4_c4_c4));
 /// The orders that are shown below.
 const BELOW: Fill = Fill::tint(colour::GREEN, 0.25);
 /// (px) Least width of a bin.
