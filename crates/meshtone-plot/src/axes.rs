@@ -36,7 +36,7 @@ pub(crate) struct Axes {
     pub(crate) y: [f64; 2],
 }
 
-const FRAME: Stroke = Stroke::solid("#8a8a8a", 1.0);
+const FRAME: Stroke = Stroke::solid(colour::FRAME, 1.0);
 const GRID: Stroke = Stroke::solid(colour::GRID, 1.0);
 const TICK_LENGTH: f64 = 4.0;
 /// (px) From the frame to the baseline of the numbers below it, and of the axis' name.
@@ -59,13 +59,15 @@ const ROUNDING: f64 = 1e-9;
 
 /// Range of the drawable values with a margin; ±1 round 0 where there are none.
 pub(crate) fn range(values: impl Iterator<Item = f64>, margin: f64) -> [f64; 2] {
-    let values = values.map(|value| if value.abs() < ROUNDING { 0.0 } else { value });
-    let (low, high) = values
-        .filter(|&value| drawable(value))
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    values.filter(|&value| drawable(value)).for_each(|value| {
+        low = if value < low { value } else { low };
+        high = if value > high { value } else { high };
+    });
     if low > high {
         return [-1.0, 1.0];
     }
+    let [low, high] = [low, high].map(|end| if end.abs() < ROUNDING { 0.0 } else { end });
     let size = low.abs().max(high.abs());
     // A constant signal: from 0 to twice its size.
     let least = if size > 0.0 { size } else { 1.0 };

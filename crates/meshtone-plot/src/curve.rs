@@ -12,15 +12,14 @@ pub(crate) fn per_column(points: impl Iterator<Item = Pixel>) -> Vec<Pixel> {
     let mut kept = Vec::new();
     let mut column: Option<Column> = None;
     for point in points {
-        let number = (point.0 / COLUMN).floor();
         match &mut column {
-            Some(column) if column.number == number => column.add(point),
+            Some(column) if point.0 < column.right => column.add(point),
             _ => {
                 if let Some(column) = column.take() {
                     column.flush(&mut kept);
                 }
                 column = Some(Column {
-                    number,
+                    right: ((point.0 / COLUMN).floor() + 1.0) * COLUMN,
                     first: point,
                     low: (point, 0),
                     high: (point, 0),
@@ -38,7 +37,7 @@ pub(crate) fn per_column(points: impl Iterator<Item = Pixel>) -> Vec<Pixel> {
 
 /// Points in one column; extremes with their place in the order.
 struct Column {
-    number: f64,
+    right: f64,
     first: Pixel,
     low: (Pixel, usize),
     high: (Pixel, usize),
@@ -84,10 +83,15 @@ pub(crate) fn simplify(points: &[Pixel]) -> Vec<Pixel> {
     keep[points.len() - 1] = true;
     let mut ranges = vec![(0, points.len() - 1)];
     while let Some((first, last)) = ranges.pop() {
-        let farthest = (first + 1..last)
-            .map(|k| (squared_distance(points[k], points[first], points[last]), k))
-            .max_by(|a, b| a.0.total_cmp(&b.0));
-        if let Some((_, k)) = farthest.filter(|&(squared, _)| squared > TOLERANCE * TOLERANCE) {
+        let line = Line::new(points[first], points[last]);
+        let (mut farthest, mut largest) = (None, TOLERANCE * TOLERANCE);
+        for (k, &point) in points.iter().enumerate().take(last).skip(first + 1) {
+            let squared = line.squared_distance(point);
+            if squared > largest {
+                (farthest, largest) = (Some(k), squared);
+            }
+        }
+        if let Some(k) = farthest {
             keep[k] = true;
             ranges.extend([(first, k), (k, last)]);
         }
@@ -95,13 +99,28 @@ pub(crate) fn simplify(points: &[Pixel]) -> Vec<Pixel> {
     points.iter().zip(keep).filter(|(_, keep)| *keep).map(|(point, _)| *point).collect()
 }
 
-/// Squared distance of a point from the piece of line from `a` to `b`.
-fn squared_distance(point: Pixel, a: Pixel, b: Pixel) -> f64 {
-    let (dx, dy) = (b.0 - a.0, b.1 - a.1);
-    let square = dx * dx + dy * dy;
-    let (px, py) = (point.0 - a.0, point.1 - a.1);
-    let t = if square > 0.0 { ((px * dx + py * dy) / square).clamp(0.0, 1.0) } else { 0.0 };
-    (px - t * dx).powi(2) + (py - t * dy).powi(2)
+/// A piece of a straight line.
+struct Line {
+    start: Pixel,
+    /// To its end.
+    along: Pixel,
+    /// One over its length squared, or 0 where it has none.
+    inverse_square: f64,
+}
+
+impl Line {
+    fn new(start: Pixel, end: Pixel) -> Self {
+        let along = (end.0 - start.0, end.1 - start.1);
+        let square = along.0 * along.0 + along.1 * along.1;
+        Self { start, along, inverse_square: if square > 0.0 { 1.0 / square } else { 0.0 } }
+    }
+
+    fn squared_distance(&self, point: Pixel) -> f64 {
+        let (dx, dy) = self.along;
+        let (px, py) = (point.0 - self.start.0, point.1 - self.start.1);
+        let t = ((px * dx + py * dy) * self.inverse_square).clamp(0.0, 1.0);
+        (px - t * dx).powi(2) + (py - t * dy).powi(2)
+    }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-/// Why a figure could not be drawn or rasterised.
+/// Why a figure could not be drawn or encoded.
 #[derive(Debug, Error)]
 pub enum PlotError {
     /// A tooth without a profile.
@@ -27,17 +27,6 @@ pub enum PlotError {
     /// An experiment and a result that do not belong together, or signals that cannot be enhanced.
     #[error(transparent)]
     Hybrid(#[from] meshtone::hybrid::HybridError),
-    /// The SVG could not be read back.
-    #[error("the figure could not be rasterised: {0}")]
-    Svg(#[from] resvg::usvg::Error),
-    /// No bitmap of that size.
-    #[error("no bitmap of {width} × {height} pixels could be made")]
-    Bitmap {
-        /// (px) Width.
-        width: u32,
-        /// (px) Height.
-        height: u32,
-    },
     /// The PNG could not be written.
     #[error("the figure could not be encoded as PNG: {0}")]
     Png(#[from] png::EncodingError),

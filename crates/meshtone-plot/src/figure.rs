@@ -1,6 +1,7 @@
 //! A finished figure.
 
-use crate::{PlotError, raster};
+use crate::scene::Scene;
+use crate::{PlotError, palette_png, raster, svg};
 
 /// Name of the run's identity in the files.
 const RUN_KEY: &str = "meshtone.run";
@@ -10,9 +11,8 @@ const METADATA_BEFORE: &str = "<defs>";
 /// A finished figure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
+    scene: Scene,
     svg: String,
-    width: u32,
-    height: u32,
     labels: Vec<Label>,
     run: Option<String>,
 }
@@ -43,8 +43,9 @@ impl Label {
 }
 
 impl Figure {
-    pub(crate) fn new(svg: String, width: u32, height: u32, labels: Vec<Label>) -> Self {
-        Self { svg, width, height, labels, run: None }
+    pub(crate) fn new(scene: Scene, title: &str, description: &str, labels: Vec<Label>) -> Self {
+        let svg = svg::document(&scene, title, description);
+        Self { scene, svg, labels, run: None }
     }
 
     /// The same figure with the identity of the run that it shows in its files: in the SVG's element `metadata`,
@@ -77,17 +78,18 @@ impl Figure {
         &self.svg
     }
 
-    /// The figure as a PNG file of [`Self::size_px`], rasterised from [`Self::svg`].
+    /// The figure as a PNG file of [`Self::size_px`], which looks as [`Self::svg`] does with the font at hand.
     ///
     /// # Errors
-    /// A figure that cannot be rasterised, which no input should bring about.
+    /// A PNG that cannot be encoded, which no input should bring about.
     pub fn png(&self) -> Result<Vec<u8>, PlotError> {
-        raster::png(&self.svg, self.width, self.height, self.run.as_deref().map(|run| (RUN_KEY, run)))
+        let picture = raster::picture(&self.scene);
+        palette_png::encode(&picture, self.run.as_deref().map(|run| (RUN_KEY, run)))
     }
 
     /// (px) Width and height.
     pub fn size_px(&self) -> (u32, u32) {
-        (self.width, self.height)
+        (self.scene.width, self.scene.height)
     }
 
     /// Every text of the figure and where it is.

@@ -1,8 +1,8 @@
 //! Figures of a simulation, and of a simulation tuned to measurements, as SVG and PNG.
 //!
 //! One file or folder per figure; what they share (axes, ticks, legends, text that knows its own width) is
-//! `axes`, `canvas`, `legend`, `curve` and `style`. Figures are written as SVG and rasterised from that same SVG, with
-//! the font that this crate brings along, so that both look alike on every machine.
+//! `axes`, `canvas`, `legend`, `curve` and `style`. A figure is drawn once, as a `scene`, which `svg` writes out and `raster`
+//! fills in with the font that this crate brings along, so that both look alike on every machine.
 //!
 //! * [`panel`]: teeth, damage, profile errors, averages and mesh stiffness of one simulation
 //! * [`record`]: a recording, its average, order spectrum and difference signal
@@ -21,10 +21,13 @@ mod figure;
 mod font;
 mod legend;
 mod marker;
+mod palette_png;
 pub mod panel;
 mod raster;
 pub mod record;
+mod scene;
 mod style;
+mod svg;
 mod text;
 mod ticks;
 pub mod trend;

@@ -1,70 +1,111 @@
 //! Colours, strokes and text styles, the same in every figure.
 
+use std::fmt;
+
+/// An opaque colour of sRGB, 0xrr_gg_bb.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Colour(pub(crate) u32);
+
+impl Colour {
+    /// Red, green and blue.
+    pub(crate) fn rgb(self) -> [u8; 3] {
+        let [_, red, green, blue] = self.0.to_be_bytes();
+        [red, green, blue]
+    }
+
+    /// Itself with a part of another colour in its place.
+    pub(crate) fn mixed(self, other: Self, part: f32) -> Self {
+        // In 256ths, finer steps nobody sees; red and blue at once, with room for the products between them.
+        let part = (part * 256.0 + 0.5) as u32;
+        let mixed =
+            |of: u32, half: u32| (((self.0 & of) * (256 - part) + (other.0 & of) * part + half) >> 8) & of;
+        Self(mixed(0xff_00_ff, 0x80_00_80) | mixed(0x00_ff_00, 0x00_80_00))
+    }
+}
+
+impl fmt::Display for Colour {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "#{:06x}", self.0)
+    }
+}
+
 /// Colours that colour-blind readers can tell apart.
 ///
 /// Source: M. Okabe, K. Ito, "Color universal design", 2008.
 pub(crate) mod colour {
+    use super::Colour;
+
     /// Text and axes.
-    pub(crate) const INK: &str = "#1a1a1a";
+    pub(crate) const INK: Colour = Colour(0x1a_1a_1a);
     /// Secondary text and lines.
-    pub(crate) const MUTED: &str = "#5a5a5a";
+    pub(crate) const MUTED: Colour = Colour(0x5a_5a_5a);
+    /// Frames and ticks.
+    pub(crate) const FRAME: Colour = Colour(0x8a_8a_8a);
     /// Grid lines.
-    pub(crate) const GRID: &str = "#e3e3e3";
+    pub(crate) const GRID: Colour = Colour(0xe3_e3_e3);
     /// Material.
-    pub(crate) const STEEL: &str = "#e4e9ee";
+    pub(crate) const STEEL: Colour = Colour(0xe4_e9_ee);
     /// What is simulated.
-    pub(crate) const BLUE: &str = "#0072b2";
+    pub(crate) const BLUE: Colour = Colour(0x00_72_b2);
     /// Damage, and nothing else.
-    pub(crate) const VERMILLION: &str = "#d55e00";
+    pub(crate) const VERMILLION: Colour = Colour(0xd5_5e_00);
     /// Start of contact; what is simulated, enhanced.
-    pub(crate) const GREEN: &str = "#009e73";
+    pub(crate) const GREEN: Colour = Colour(0x00_9e_73);
     /// Start of the tip relief.
-    pub(crate) const PURPLE: &str = "#aa4a8a";
+    pub(crate) const PURPLE: Colour = Colour(0xaa_4a_8a);
     /// Background.
-    pub(crate) const WHITE: &str = "#ffffff";
+    pub(crate) const WHITE: Colour = Colour(0xff_ff_ff);
 }
 
 /// (px) Of the dots that stand for many values.
 pub(crate) const DOT_RADIUS: f64 = 1.7;
 
+/// (px) Of the white outline of a text, half of it outside the letters.
+pub(crate) const HALO_WIDTH: f64 = 3.0;
+
+/// (px, °) Of a hatching: from stripe to stripe, a stripe's width, and the angle of the stripes to the vertical.
+pub(crate) const HATCH_PITCH: f32 = 7.0;
+pub(crate) const HATCH_WIDTH: f32 = 1.5;
+pub(crate) const HATCH_ANGLE_DEG: f32 = 45.0;
+
 /// How a line is drawn.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stroke {
-    pub(crate) colour: &'static str,
+    pub(crate) colour: Colour,
     pub(crate) width: f64,
-    /// SVG's `stroke-dasharray`; empty for a solid line.
-    pub(crate) dash: &'static str,
+    /// (px) Lengths of dashes and gaps in turn, an even number; empty for a solid line.
+    pub(crate) dash: &'static [f64],
 }
 
 impl Stroke {
-    pub(crate) const fn solid(colour: &'static str, width: f64) -> Self {
-        Self { colour, width, dash: "" }
+    pub(crate) const fn solid(colour: Colour, width: f64) -> Self {
+        Self { colour, width, dash: &[] }
     }
 
-    pub(crate) const fn dashed(colour: &'static str, width: f64, dash: &'static str) -> Self {
+    pub(crate) const fn dashed(colour: Colour, width: f64, dash: &'static [f64]) -> Self {
         Self { colour, width, dash }
     }
 }
 
 /// How an area is filled.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Fill {
-    pub(crate) colour: &'static str,
+    pub(crate) colour: Colour,
     pub(crate) opacity: f64,
     /// Diagonal lines of the colour over the fill.
     pub(crate) hatched: bool,
 }
 
 impl Fill {
-    pub(crate) const fn solid(colour: &'static str) -> Self {
+    pub(crate) const fn solid(colour: Colour) -> Self {
         Self { colour, opacity: 1.0, hatched: false }
     }
 
-    pub(crate) const fn tint(colour: &'static str, opacity: f64) -> Self {
+    pub(crate) const fn tint(colour: Colour, opacity: f64) -> Self {
         Self { colour, opacity, hatched: false }
     }
 
-    pub(crate) const fn hatch(colour: &'static str) -> Self {
+    pub(crate) const fn hatch(colour: Colour) -> Self {
         Self { colour, opacity: 0.12, hatched: true }
     }
 }
@@ -77,16 +118,27 @@ pub(crate) enum Anchor {
     End,
 }
 
+impl Anchor {
+    /// What of a text's width lies before the point.
+    pub(crate) fn before(self, width: f64) -> f64 {
+        match self {
+            Self::Start => 0.0,
+            Self::Middle => width / 2.0,
+            Self::End => width,
+        }
+    }
+}
+
 /// How a text is set.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TextStyle {
     pub(crate) size: f64,
     pub(crate) bold: bool,
-    pub(crate) colour: &'static str,
+    pub(crate) colour: Colour,
     pub(crate) anchor: Anchor,
     /// Reads upwards.
     pub(crate) upwards: bool,
-    /// White outline, for text over lines.
+    /// White outline of [`HALO_WIDTH`], for text over lines.
     pub(crate) halo: bool,
 }
 
@@ -114,7 +166,7 @@ impl TextStyle {
         Self { bold: true, ..self }
     }
 
-    pub(crate) const fn coloured(self, colour: &'static str) -> Self {
+    pub(crate) const fn coloured(self, colour: Colour) -> Self {
         Self { colour, ..self }
     }
 
@@ -128,5 +180,19 @@ impl TextStyle {
 
     pub(crate) const fn with_halo(self) -> Self {
         Self { halo: true, ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_are_mixed_in_proportion() {
+        let [ink, white] = [Colour(0x10_20_f0), colour::WHITE];
+        assert_eq!((white.mixed(ink, 0.0), white.mixed(ink, 1.0)), (white, ink));
+        assert_eq!(white.mixed(ink, 0.5), Colour(0x88_90_f8));
+        assert_eq!(ink.mixed(white, 0.25), Colour(0x4c_58_f4));
+        assert_eq!(ink.to_string(), "#1020f0");
     }
 }

@@ -4,7 +4,7 @@ use crate::Figure;
 use crate::axes::{self, Area, Axes};
 use crate::canvas::{Canvas, Pixel};
 use crate::legend::{self, Entry, Sample};
-use crate::style::{Fill, Stroke, TextStyle, colour};
+use crate::style::{Colour, Fill, Stroke, TextStyle, colour};
 use crate::text::fitted;
 use crate::ticks::Ticks;
 
@@ -116,7 +116,7 @@ fn indicator(canvas: &mut Canvas, area: Area, trend: &Trend, counted: &str) {
     axes.frame(canvas);
 }
 
-fn marker(canvas: &mut Canvas, (x, y): Pixel, colour: &'static str) {
+fn marker(canvas: &mut Canvas, (x, y): Pixel, colour: Colour) {
     const HALF: f64 = 3.0;
     canvas.rectangle((x - HALF, y - HALF), (x + HALF, y + HALF), Fill::solid(colour));
 }

@@ -4,9 +4,10 @@ use std::io::{self, Write};
 
 use meshtone::scenario::Scenario;
 use meshtone::signal::Channels;
-use parquet::basic::{Compression, Encoding, ZstdLevel};
+use parquet::basic::{Compression, Encoding};
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
+use parquet::schema::types::ColumnPath;
 
 use crate::run_identity::RunIdentity;
 use crate::table::{CellType, Cells, TableColumn, TableWriter};
@@ -15,8 +16,6 @@ use super::{Column, RATE_KEY, RUN_KEY, SCENARIO_KEY, TIME, VERSION_KEY, columns}
 
 /// Rows of a group; a reader takes a group's column at once.
 const GROUP_ROWS: usize = 1 << 20;
-/// Higher levels hardly make the noise-like digits of a vibration smaller.
-const COMPRESSION_LEVEL: i32 = 1;
 
 /// Writes signals as Parquet.
 ///
@@ -28,7 +27,7 @@ const COMPRESSION_LEVEL: i32 = 1;
 /// # Errors
 /// Those of `to`.
 pub fn write_signals(to: impl Write + Send, scenario: &Scenario, channels: &Channels) -> io::Result<()> {
-    let properties = properties(scenario, channels).map_err(io::Error::other)?;
+    let properties = properties(scenario, channels);
     let table = std::iter::once(TIME).chain(columns(channels).map(|(column, _)| column)).map(table_column);
     let mut table = TableWriter::new(to, table.collect(), properties)?;
     for start in (0..channels.len()).step_by(GROUP_ROWS) {
@@ -51,10 +50,7 @@ fn table_column(column: Column) -> TableColumn {
     }
 }
 
-fn properties(
-    scenario: &Scenario,
-    channels: &Channels,
-) -> Result<WriterProperties, parquet::errors::ParquetError> {
+fn properties(scenario: &Scenario, channels: &Channels) -> WriterProperties {
     let metadata = [
         (SCENARIO_KEY, scenario.to_toml()),
         (VERSION_KEY, env!("CARGO_PKG_VERSION").to_string()),
@@ -62,12 +58,15 @@ fn properties(
         (RATE_KEY, format!("{:?}", channels.sampling_rate_hz)),
     ];
     let metadata = metadata.map(|(key, value)| KeyValue::new(key.to_string(), value));
-    Ok(WriterProperties::builder()
-        .set_compression(Compression::ZSTD(ZstdLevel::try_new(COMPRESSION_LEVEL)?))
+    WriterProperties::builder()
+        // Zstandard makes the noise-like digits of a vibration 7 % smaller and takes twice as long.
+        .set_compression(Compression::SNAPPY)
         // Hardly a number occurs twice, but signs and exponents resemble each other.
         .set_dictionary_enabled(false)
         .set_encoding(Encoding::BYTE_STREAM_SPLIT)
-        .set_statistics_enabled(EnabledStatistics::Chunk)
+        // Rows are looked up by their time; the extremes of a signal are found in every part of it.
+        .set_statistics_enabled(EnabledStatistics::None)
+        .set_column_statistics_enabled(ColumnPath::from(TIME.name), EnabledStatistics::Chunk)
         .set_key_value_metadata(Some(metadata.to_vec()))
-        .build())
+        .build()
 }

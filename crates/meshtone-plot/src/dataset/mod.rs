@@ -10,7 +10,7 @@ mod keys;
 use crate::axes::Area;
 use crate::canvas::Canvas;
 use crate::legend::{self, Entry, Sample};
-use crate::style::{Fill, Stroke, TextStyle, colour};
+use crate::style::{Colour, Fill, Stroke, TextStyle, colour};
 use crate::text::fitted;
 use crate::{Figure, font};
 
@@ -87,13 +87,13 @@ pub struct Indicator {
 }
 
 /// Colours of the splits after the training.
-const SPLIT_COLOURS: [&str; 5] =
+const SPLIT_COLOURS: [Colour; 5] =
     [colour::INK, colour::GREEN, colour::VERMILLION, colour::PURPLE, colour::MUTED];
 
 /// How a split's distribution is drawn.
 fn split_stroke(split: usize) -> Stroke {
     let after = split.saturating_sub(1);
-    let dash = if after < SPLIT_COLOURS.len() { "" } else { "4 3" };
+    let dash = if after < SPLIT_COLOURS.len() { &[][..] } else { &[4.0, 3.0] };
     Stroke { dash, ..Stroke::solid(SPLIT_COLOURS[after % SPLIT_COLOURS.len()], 1.5) }
 }
 

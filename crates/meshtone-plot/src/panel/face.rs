@@ -14,9 +14,9 @@ use crate::style::{Anchor, Fill, Stroke, TextStyle, colour};
 use crate::ticks::Ticks;
 
 /// Where contact starts, here and at the profile errors.
-pub(super) const CONTACT: Stroke = Stroke::dashed(colour::GREEN, 1.6, "7 3");
+pub(super) const CONTACT: Stroke = Stroke::dashed(colour::GREEN, 1.6, &[7.0, 3.0]);
 /// Where the tip relief starts.
-pub(super) const RELIEF: Stroke = Stroke::dashed(colour::PURPLE, 1.6, "2 2.5");
+pub(super) const RELIEF: Stroke = Stroke::dashed(colour::PURPLE, 1.6, &[2.0, 2.5]);
 /// (px) From line to line of the caption.
 const CAPTION_LINE: f64 = 16.0;
 const EDGE: Stroke = Stroke::solid(colour::VERMILLION, 1.8);

@@ -11,7 +11,7 @@ use crate::style::{Stroke, colour};
 use crate::ticks::Ticks;
 
 const MESH: Stroke = Stroke::solid(colour::BLUE, 1.6);
-const HEALTHY: Stroke = Stroke::dashed(colour::INK, 1.4, "5 3");
+const HEALTHY: Stroke = Stroke::dashed(colour::INK, 1.4, &[5.0, 3.0]);
 /// (px) Width of the enlarged part and the gap before it.
 const ENLARGED_WIDTH: f64 = 430.0;
 const GAP: f64 = 40.0;

@@ -7,14 +7,14 @@ use super::side::Side;
 use crate::axes::{Area, Axes};
 use crate::canvas::{Canvas, Pixel};
 use crate::curve;
-use crate::style::{Anchor, Fill, Stroke, TextStyle, colour};
+use crate::style::{Anchor, Colour, Fill, Stroke, TextStyle, colour};
 use crate::ticks::Ticks;
 
 const WORKING: Stroke = Stroke::solid(colour::BLUE, 2.4);
 const BACK: Stroke = Stroke::solid(colour::MUTED, 1.6);
 const DAMAGED: Stroke = Stroke::solid(colour::VERMILLION, 2.6);
-pub(super) const DAMAGE_EDGE: Stroke = Stroke::dashed(colour::VERMILLION, 1.6, "6 3");
-const GHOST: Stroke = Stroke::dashed(colour::INK, 1.2, "5 3");
+pub(super) const DAMAGE_EDGE: Stroke = Stroke::dashed(colour::VERMILLION, 1.6, &[6.0, 3.0]);
+const GHOST: Stroke = Stroke::dashed(colour::INK, 1.2, &[5.0, 3.0]);
 pub(super) const LOST: Fill = Fill::tint(colour::VERMILLION, 0.3);
 pub(super) const PARTLY_LOST: Fill = Fill::hatch(colour::VERMILLION);
 
@@ -192,7 +192,7 @@ impl Drawing<'_> {
     }
 
     /// Words in the wheel's body, in a row counted from the bottom.
-    fn remark(&self, canvas: &mut Canvas, row: usize, text: &str, colour: &'static str) {
+    fn remark(&self, canvas: &mut Canvas, row: usize, text: &str, colour: Colour) {
         let style = TextStyle::NOTE.coloured(colour).anchored(Anchor::Middle);
         let area = self.axes.area;
         let at = (area.left + area.width / 2.0, area.bottom() - 8.0 - 1.15 * style.size * row as f64);
@@ -227,8 +227,8 @@ impl Drawing<'_> {
         let wheel = self.side.wheel;
         let circles = [
             ("root", wheel.root_radius_mm, Stroke::solid(colour::MUTED, 0.9)),
-            ("base", wheel.base_radius_mm, Stroke::dashed(colour::MUTED, 0.9, "3 3")),
-            ("pitch", wheel.pitch_radius_mm, Stroke::dashed(colour::MUTED, 0.9, "10 3 2 3")),
+            ("base", wheel.base_radius_mm, Stroke::dashed(colour::MUTED, 0.9, &[3.0, 3.0])),
+            ("pitch", wheel.pitch_radius_mm, Stroke::dashed(colour::MUTED, 0.9, &[10.0, 3.0, 2.0, 3.0])),
             ("tip", wheel.tip_radius_mm, Stroke::solid(colour::MUTED, 0.9)),
         ];
         let mut names = Vec::new();

@@ -31,7 +31,11 @@ pub(super) fn axis(canvas: &mut Canvas, axes: &Axes, wheel: &WheelView) {
     let (top, bottom) = (axes.area.top, axes.area.bottom());
     for line in Ticks::every(f64::from(lines), 0.0, f64::from(wheel.teeth)).values {
         canvas.line((axes.px(line), top), (axes.px(line), bottom), GRID);
-        canvas.line((axes.px(line), bottom), (axes.px(line), bottom + 4.0), Stroke::solid("#8a8a8a", 1.0));
+        canvas.line(
+            (axes.px(line), bottom),
+            (axes.px(line), bottom + 4.0),
+            Stroke::solid(colour::FRAME, 1.0),
+        );
     }
     let first = if numbers > 2 { numbers } else { 1 };
     let others = (first..=wheel.teeth).step_by(numbers as usize).filter(|&tooth| tooth != 1);

@@ -8,15 +8,23 @@ use super::symbols::ENHANCED_MARKER;
 use crate::axes::{self, Area, Axes};
 use crate::canvas::{Canvas, Pixel};
 use crate::legend::{self, Entry, Sample};
-use crate::style::{Anchor, Fill, Stroke, TextStyle, colour};
+use crate::style::{Anchor, Colour, Fill, Stroke, TextStyle, colour};
 use crate::ticks::Ticks;
 
 /// Ends of the bands, over the best error. Narrow at first: the valley is flat.
 const BANDS: [f64; 9] = [1.02, 1.05, 1.1, 1.2, 1.35, 1.6, 2.0, 3.0, 5.0];
 /// From the best to the worst: one hue, darker and darker, so that it reads in grey as well.
-const COLOURS: [&str; 10] = [
-    "#ffffff", "#eaf2f8", "#d3e4f0", "#b9d3e7", "#9cc0db", "#7daacd", "#5f92bb", "#4479a6", "#2d5f8c",
-    "#19456e",
+const COLOURS: [Colour; 10] = [
+    Colour(0xff_ff_ff),
+    Colour(0xea_f2_f8),
+    Colour(0xd3_e4_f0),
+    Colour(0xb9_d3_e7),
+    Colour(0x9c_c0_db),
+    Colour(0x7d_aa_cd),
+    Colour(0x5f_92_bb),
+    Colour(0x44_79_a6),
+    Colour(0x2d_5f_8c),
+    Colour(0x19_45_6e),
 ];
 /// Errors below this count as this much for the bands.
 const LEAST_BASE: f64 = 0.005;
@@ -33,8 +41,8 @@ const OVERLAP: f64 = 0.3;
 const BAR_GAP: f64 = 16.0;
 const BAR_WIDTH: f64 = 16.0;
 const HALO: Stroke = Stroke::solid(colour::WHITE, 3.6);
-const INTERVAL: Stroke = Stroke::dashed(colour::INK, 1.4, "6 3");
-const UNIT_RATIO: Stroke = Stroke::dashed(colour::INK, 1.2, "1.5 3");
+const INTERVAL: Stroke = Stroke::dashed(colour::INK, 1.4, &[6.0, 3.0]);
+const UNIT_RATIO: Stroke = Stroke::dashed(colour::INK, 1.2, &[1.5, 3.0]);
 
 pub(super) fn draw(canvas: &mut Canvas, area: Area, data: &Data) -> Result<(), HybridError> {
     let Enhancement { width_ratio, fault_to_harmonics_ratio, noise_level } = data.tuning.enhancement;

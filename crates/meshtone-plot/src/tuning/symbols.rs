@@ -5,9 +5,9 @@ use crate::style::{Fill, Stroke, colour};
 
 pub(super) const RECORDS: Fill = Fill::tint(colour::MUTED, 0.35);
 pub(super) const MEDIAN: Stroke = Stroke::solid(colour::INK, 2.6);
-pub(super) const ORIGINAL: Stroke = Stroke::dashed(colour::BLUE, 1.6, "5 3");
+pub(super) const ORIGINAL: Stroke = Stroke::dashed(colour::BLUE, 1.6, &[5.0, 3.0]);
 pub(super) const ENHANCED: Stroke = Stroke::solid(colour::GREEN, 1.8);
-pub(super) const LEFT_OUT: Stroke = Stroke::dashed(colour::PURPLE, 1.4, "2 2.5");
+pub(super) const LEFT_OUT: Stroke = Stroke::dashed(colour::PURPLE, 1.4, &[2.0, 2.5]);
 pub(super) const ORIGINAL_CURVE: Stroke = Stroke::solid(colour::BLUE, 1.0);
 pub(super) const ENHANCED_CURVE: Stroke = Stroke::solid(colour::GREEN, 1.0);
 

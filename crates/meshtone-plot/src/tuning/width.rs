@@ -17,7 +17,7 @@ const PLACES: usize = 160;
 const FITS: usize = 33;
 const MARGIN: f64 = 0.06;
 const HELD: Stroke = ENHANCED;
-const ADJUSTED: Stroke = Stroke::dashed(colour::BLUE, 1.6, "7 3");
+const ADJUSTED: Stroke = Stroke::dashed(colour::BLUE, 1.6, &[7.0, 3.0]);
 const FLOOR: Stroke = Stroke { width: 1.6, ..MEDIAN };
 const INTERVAL: Fill = Fill::tint(colour::MUTED, 0.16);
 /// (px) Above the frame: title, then two rows of the legend.

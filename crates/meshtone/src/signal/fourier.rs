@@ -1,12 +1,47 @@
 //! Fourier transforms, without normalisation in either direction.
 
+use std::cell::RefCell;
+
 use realfft::RealFftPlanner;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
 
+/// The longest signal whose plans are kept: averages are shorter, and a whole recording is transformed once.
+const LONGEST_KEPT: usize = 1 << 17;
+
+/// Makes plans of transforms, and keeps those that it has made.
+struct Planners {
+    len: usize,
+    real: RealFftPlanner<f64>,
+    complex: FftPlanner<f64>,
+}
+
+impl Planners {
+    fn new(len: usize) -> Self {
+        Self { len, real: RealFftPlanner::new(), complex: FftPlanner::new() }
+    }
+}
+
+/// A plan for `len` values, that of the thread's last transform where it had as many: the chain transforms signals of one
+/// length over and over, and planning takes longer than transforming.
+fn plan<P>(len: usize, make: impl FnOnce(&mut Planners) -> P) -> P {
+    thread_local! {
+        static LAST: RefCell<Planners> = RefCell::new(Planners::new(0));
+    }
+    if len > LONGEST_KEPT {
+        return make(&mut Planners::new(len));
+    }
+    LAST.with_borrow_mut(|last| {
+        if last.len != len {
+            *last = Planners::new(len);
+        }
+        make(last)
+    })
+}
+
 /// `X_k = Σ_n x_n e^(−2πikn/N)` for k = 0 … ⌊N/2⌋.
 pub(super) fn real_spectrum(values: &[f64]) -> Vec<Complex64> {
-    let plan = RealFftPlanner::<f64>::new().plan_fft_forward(values.len());
+    let plan = plan(values.len(), |planners| planners.real.plan_fft_forward(values.len()));
     let mut input = values.to_vec();
     let mut output = plan.make_output_vec();
     // The lengths are the plan's own, which is all that can fail.
@@ -17,7 +52,7 @@ pub(super) fn real_spectrum(values: &[f64]) -> Vec<Complex64> {
 
 /// The `len` real values with the spectrum of [`real_spectrum`], divided by `len`.
 pub(super) fn from_real_spectrum(mut spectrum: Vec<Complex64>, len: usize) -> Vec<f64> {
-    let plan = RealFftPlanner::<f64>::new().plan_fft_inverse(len);
+    let plan = plan(len, |planners| planners.real.plan_fft_inverse(len));
     // Real values have real ends of the spectrum; rounding may have left something there.
     spectrum[0].im = 0.0;
     if len.is_multiple_of(2) {
@@ -32,7 +67,8 @@ pub(super) fn from_real_spectrum(mut spectrum: Vec<Complex64>, len: usize) -> Ve
 
 /// `x_n = Σ_k X_k e^(2πikn/N)`, not divided by N.
 pub(super) fn inverse_complex(mut spectrum: Vec<Complex64>) -> Vec<Complex64> {
-    FftPlanner::new().plan_fft_inverse(spectrum.len()).process(&mut spectrum);
+    let len = spectrum.len();
+    plan(len, |planners| planners.complex.plan_fft_inverse(len)).process(&mut spectrum);
     spectrum
 }
 

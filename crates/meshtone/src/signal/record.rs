@@ -184,10 +184,11 @@ pub fn process_average(
     let separation = settings.separation.clone().unwrap_or_else(|| SeparationSettings::new(teeth));
     let parts = separate(&average.values, &separation)?;
     let envelope = envelope(&parts.difference)?;
+    let spectrum = order_spectrum(&average.values)?;
     Ok(Record {
-        order_spectrum: order_spectrum(&average.values)?,
+        indicators: Indicators::of_record(&average.values, &parts, &spectrum, &envelope, teeth)?,
         envelope_spectrum: order_spectrum(&envelope)?,
-        indicators: Indicators::new(&average.values, &parts, teeth)?,
+        order_spectrum: spectrum,
         warnings: doubtful.then_some(near).into_iter().collect(),
         envelope,
         parts,

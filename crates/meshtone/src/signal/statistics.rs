@@ -1,5 +1,31 @@
 //! Numbers that sum up a signal.
 
+/// Partial sums that are formed side by side: in a single one every addition would wait for the one before.
+const LANES: usize = 8;
+
+/// The values taken in to as many partial results, every eighth to the same one, and those taken together at the end:
+/// always in the same order.
+#[inline(always)]
+fn reduced(signal: &[f64], start: f64, reduce: impl Fn(f64, f64) -> f64 + Copy) -> [f64; LANES] {
+    let mut lanes = [start; LANES];
+    let (blocks, rest) = signal.as_chunks::<LANES>();
+    for block in blocks {
+        for (lane, &x) in lanes.iter_mut().zip(block) {
+            *lane = reduce(*lane, x);
+        }
+    }
+    for (lane, &x) in lanes.iter_mut().zip(rest) {
+        *lane = reduce(*lane, x);
+    }
+    lanes
+}
+
+/// `Σ f(x)`.
+#[inline(always)]
+fn sum(signal: &[f64], f: impl Fn(f64) -> f64 + Copy) -> f64 {
+    reduced(signal, 0.0, |sum, x| sum + f(x)).iter().sum()
+}
+
 /// Root mean square, `√(Σx²/n)`.
 ///
 /// # Arguments
@@ -11,7 +37,7 @@
 /// assert_eq!(meshtone::signal::rms(&[3.0, -3.0, 3.0, -3.0]), 3.0);
 /// ```
 pub fn rms(signal: &[f64]) -> f64 {
-    (signal.iter().map(|x| x * x).sum::<f64>() / signal.len() as f64).sqrt()
+    (sum(signal, |x| x * x) / signal.len() as f64).sqrt()
 }
 
 /// Peak, the largest `|x|`.
@@ -25,7 +51,9 @@ pub fn rms(signal: &[f64]) -> f64 {
 /// assert_eq!(meshtone::signal::peak(&[1.0, -4.0, 2.0]), 4.0);
 /// ```
 pub fn peak(signal: &[f64]) -> f64 {
-    signal.iter().fold(0.0, |peak, x| peak.max(x.abs()))
+    // NaN is never larger.
+    let larger = |peak: f64, x: f64| if x.abs() > peak { x.abs() } else { peak };
+    reduced(signal, 0.0, larger).into_iter().fold(0.0, larger)
 }
 
 /// Peak to peak, the largest value less the least.
@@ -75,8 +103,21 @@ pub fn central_moment(signal: &[f64], order: i32) -> f64 {
     let count = signal.len() as f64;
     // Seen from its first value a constant is exactly 0, and so is its mean.
     let first = signal.first().copied().unwrap_or(f64::NAN);
-    let mean = signal.iter().map(|x| x - first).sum::<f64>() / count;
-    signal.iter().map(|x| (x - first - mean).powi(order)).sum::<f64>() / count
+    let mean = sum(signal, |x| x - first) / count;
+    let sum = match order {
+        2 => powers::<2>(signal, first, mean),
+        3 => powers::<3>(signal, first, mean),
+        4 => powers::<4>(signal, first, mean),
+        6 => powers::<6>(signal, first, mean),
+        8 => powers::<8>(signal, first, mean),
+        _ => sum(signal, |x| (x - first - mean).powi(order)),
+    };
+    sum / count
+}
+
+/// `Σ(x − first − mean)ᵏ` for a k that is known beforehand, and so a few multiplications.
+fn powers<const ORDER: i32>(signal: &[f64], first: f64, mean: f64) -> f64 {
+    sum(signal, |x| (x - first - mean).powi(ORDER))
 }
 
 /// Standard deviation `√µ₂`, of the whole population.

@@ -6,11 +6,11 @@ mod overview;
 use super::{NAME_LEFT, WheelView};
 use crate::axes::{self, Area, Axes};
 use crate::canvas::Canvas;
-use crate::style::{Anchor, Stroke, TextStyle};
+use crate::style::{Anchor, Colour, Stroke, TextStyle};
 use crate::ticks::{Ticks, log_text};
 
 /// What belongs to the difference.
-const REST: Stroke = Stroke::solid("#9a9a9a", 1.0);
+const REST: Stroke = Stroke::solid(Colour(0x9a_9a_9a), 1.0);
 /// (decades) What is shown below the largest amplitude, at least and at most.
 const DECADES: [f64; 2] = [2.0, 4.0];
 /// (px) Height of the axes with all orders.

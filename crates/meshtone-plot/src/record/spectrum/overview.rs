@@ -5,13 +5,13 @@ use crate::axes::{self, Area, Axes};
 use crate::canvas::Canvas;
 use crate::legend::{self, Entry, Sample};
 use crate::record::WheelView;
-use crate::style::{Fill, Stroke, TextStyle, colour};
+use crate::style::{Colour, Fill, Stroke, TextStyle, colour};
 use crate::text::fitted;
 use crate::ticks::{Ticks, number};
 
 /// Of the regular part.
 const REGULAR: Stroke = Stroke::solid(colour::BLUE, 1.2);
-const DIFFERENCE: Fill = Fill::solid("#c4c4c4");
+const DIFFERENCE: Fill = Fill::solid(Colour(0xc4_c4_c4));
 /// The orders that are shown below.
 const BELOW: Fill = Fill::tint(colour::GREEN, 0.25);
 /// (px) Least width of a bin.

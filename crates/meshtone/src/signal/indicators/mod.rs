@@ -80,6 +80,22 @@ impl Indicators {
     /// # Ok::<(), meshtone::signal::SignalError>(())
     /// ```
     pub fn new(average: &[f64], parts: &Separation, teeth: usize) -> Result<Self, SignalError> {
+        Self::of_record(average, parts, &order_spectrum(average)?, &envelope(&parts.difference)?, teeth)
+    }
+
+    /// As [`Self::new`], with what a record holds anyway.
+    ///
+    /// # Arguments
+    /// * `average`, `parts`, `teeth` - as there
+    /// * `spectrum` - order spectrum of the average
+    /// * `envelope` - of the difference
+    pub(super) fn of_record(
+        average: &[f64],
+        parts: &Separation,
+        spectrum: &[f64],
+        envelope: &[f64],
+        teeth: usize,
+    ) -> Result<Self, SignalError> {
         for (what, part) in [
             ("regular part", &parts.regular),
             ("residual", &parts.residual),
@@ -90,24 +106,25 @@ impl Indicators {
             }
         }
         let rounding = ROUNDING * peak(average);
-        let significant =
-            |part: &[f64]| if peak(part) > rounding { part.to_vec() } else { vec![0.0; part.len()] };
+        let zeros = vec![0.0; average.len()];
+        let is_significant = |part: &[f64]| peak(part) > rounding;
+        let significant = |part| if is_significant(part) { part } else { &zeros[..] };
         let [regular, residual, difference] =
             [&parts.regular, &parts.residual, &parts.difference].map(|part| significant(part));
-        let spectrum = order_spectrum(average)?;
+        let envelope = if is_significant(&parts.difference) { envelope } else { &zeros };
         Ok(Self {
             average: ShapeIndicators::new(average),
-            regular: ShapeIndicators::new(&regular),
-            residual: ShapeIndicators::new(&residual),
-            difference: ShapeIndicators::new(&difference),
-            envelope: ShapeIndicators::above(&envelope(&difference)?, rounding),
-            fm0: fm0(average, &spectrum, teeth)?,
-            fm4: fm4(&difference),
-            m6a: m6a(&difference),
-            m8a: m8a(&difference),
-            na4: na4(&[&residual])?[0],
-            energy_ratio: energy_ratio(&difference, &regular),
-            sideband_level_factor: sideband_level_factor(average, &spectrum, teeth)?,
+            regular: ShapeIndicators::new(regular),
+            residual: ShapeIndicators::new(residual),
+            difference: ShapeIndicators::new(difference),
+            envelope: ShapeIndicators::above(envelope, rounding),
+            fm0: fm0(average, spectrum, teeth)?,
+            fm4: fm4(difference),
+            m6a: m6a(difference),
+            m8a: m8a(difference),
+            na4: na4(&[residual])?[0],
+            energy_ratio: energy_ratio(difference, regular),
+            sideband_level_factor: sideband_level_factor(average, spectrum, teeth)?,
         })
     }
 
