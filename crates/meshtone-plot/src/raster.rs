@@ -160,7 +160,7 @@ impl Window {
         let bounds = path.bounds();
         let inside = |low: f32, high: f32, size: u32| {
             let (low, high) = (low.floor().max(0.0), high.ceil().min(size as f32));
-            (low < high).then(|| (low as usize, (high - low) as usize))
+            (low < high).then_some((low as usize, (high - low) as usize))
         };
         let (left, width) = inside(bounds.left(), bounds.right(), width)?;
         let (top, height) = inside(bounds.top(), bounds.bottom(), height)?;
