@@ -151,10 +151,13 @@ pub fn standard_deviation(signal: &[f64]) -> f64 {
 /// assert_eq!(standardised_moment(&[40.0; 8], 6), None);
 /// ```
 pub fn standardised_moment(signal: &[f64], order: i32) -> Option<f64> {
-    let deviation = standard_deviation(signal);
+    let variance = central_moment(signal, 2);
+    let deviation = variance.sqrt();
     // What differs by rounding only is no signal.
     let rounding = 4.0 * f64::EPSILON * peak(signal);
-    (deviation > rounding).then(|| central_moment(signal, order) / deviation.powi(order))
+    // Without the root where there is none, as in NA4 of a single record.
+    let scale = if order % 2 == 0 { variance.powi(order / 2) } else { deviation.powi(order) };
+    (deviation > rounding).then(|| central_moment(signal, order) / scale)
 }
 
 /// Skewness `µ₃/µ₂^1.5`: 0 for what is as often so far above as below its mean.
