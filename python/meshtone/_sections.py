@@ -8,7 +8,7 @@ from collections.abc import Iterable
 SECTION_OF_KEY: dict[str, str] = {
     key: section
     for section, keys in {
-        "": ("convention", "seed"),
+        "": ("model", "seed"),
         "gears": (
             "module_mm",
             "pinion_teeth",
@@ -55,7 +55,13 @@ SECTION_OF_KEY: dict[str, str] = {
 KEY_IN_FILE: dict[str, str] = {"wheels_seed": "seed"}
 """Keys that are called otherwise in their section of the scenario file: two sections have a ``seed``."""
 
-OTHER_ARGUMENTS = ("fault", "pinion_profile_errors_mm", "gear_profile_errors_mm")
+OTHER_ARGUMENTS = ("fault", "faults", "pinion_profile_errors_mm", "gear_profile_errors_mm")
+
+
+FORMER_KEYS: dict[str, str] = {
+    "convention": "is called 'model' now, and its value 'corrected' is called 'linear'",
+}
+"""What has become of keys that a scenario had before."""
 
 
 def hint(name: str, known: Iterable[str]) -> str:
@@ -66,6 +72,8 @@ def hint(name: str, known: Iterable[str]) -> str:
 
 def check_key(key: str) -> None:
     """Refuse a key that a scenario does not have."""
+    if key in FORMER_KEYS:
+        raise TypeError(f"'{key}' {FORMER_KEYS[key]}")
     known = [*SECTION_OF_KEY, *OTHER_ARGUMENTS]
     if key not in known:
         raise TypeError(f"a scenario has no key '{key}'{hint(key, known) or '; it has ' + ', '.join(known)}")

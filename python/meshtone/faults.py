@@ -1,13 +1,14 @@
-"""The damage on the gear's first tooth: one class for each kind.
+"""Damage to a tooth: one class for each kind.
 
-Their fields have the names, units and defaults of the scenario file's section ``[fault]``.
+Their fields have the names, units and defaults of the scenario file's sections ``[[fault]]``. Every fault has ``wheel``, 'gear' or
+'pinion', and ``tooth``, its number from 1; the gear's first tooth by default.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import Any, ClassVar, Union
+from typing import Any, ClassVar, Literal, Union
 
 __all__ = [
     "Fault",
@@ -32,7 +33,7 @@ def _keys(value: Any) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class PitCircle:
-    """The circle that a pit is cut by, in the gear tooth's own plane.
+    """The circle that a pit is cut by, in the tooth's own plane.
 
     Parameters
     ----------
@@ -51,13 +52,22 @@ class PitCircle:
 class MissingTooth:
     """The tooth is gone.
 
+    Parameters
+    ----------
+    wheel : {'gear', 'pinion'}, optional
+        The damaged wheel.
+    tooth : int, optional
+        The number of the damaged tooth, from 1, in the order in which the teeth enter contact.
+
     Examples
     --------
-    >>> MissingTooth()
-    MissingTooth()
+    >>> MissingTooth(wheel="pinion", tooth=3)
+    MissingTooth(wheel='pinion', tooth=3)
     """
 
     kind: ClassVar[str] = "missing-tooth"
+    wheel: Literal["gear", "pinion"] = "gear"
+    tooth: int = 1
 
 
 @dataclass(frozen=True)
@@ -72,17 +82,23 @@ class ToothBreakage:
         (mm) Extent of the chip along the face width, at the tip.
     tip_loss_mm : float, optional
         (mm) Length of the tip that is lost over the whole width. 0 by default.
+    wheel : {'gear', 'pinion'}, optional
+        The damaged wheel.
+    tooth : int, optional
+        The number of the damaged tooth, from 1, in the order in which the teeth enter contact.
 
     Examples
     --------
     >>> ToothBreakage(chip_height_mm=5.0, chip_width_mm=12.0)
-    ToothBreakage(chip_height_mm=5.0, chip_width_mm=12.0, tip_loss_mm=None)
+    ToothBreakage(chip_height_mm=5.0, chip_width_mm=12.0, tip_loss_mm=None, wheel='gear', tooth=1)
     """
 
     kind: ClassVar[str] = "tooth-breakage"
     chip_height_mm: float
     chip_width_mm: float
     tip_loss_mm: float | None = None
+    wheel: Literal["gear", "pinion"] = "gear"
+    tooth: int = 1
 
 
 @dataclass(frozen=True)
@@ -101,6 +117,10 @@ class PartialFace:
         (-) Depth over half its length.
     circle : PitCircle, optional
         The circle that cuts the pit out.
+    wheel : {'gear', 'pinion'}, optional
+        The damaged wheel.
+    tooth : int, optional
+        The number of the damaged tooth, from 1, in the order in which the teeth enter contact.
     """
 
     kind: ClassVar[str] = "partial-face"
@@ -109,6 +129,8 @@ class PartialFace:
     end: float | None = None
     depth: float | None = None
     circle: PitCircle | None = None
+    wheel: Literal["gear", "pinion"] = "gear"
+    tooth: int = 1
 
 
 @dataclass(frozen=True)
@@ -125,6 +147,10 @@ class ThroughFace:
         (-) Depth over half its length.
     circle : PitCircle, optional
         The circle that cuts the pit out.
+    wheel : {'gear', 'pinion'}, optional
+        The damaged wheel.
+    tooth : int, optional
+        The number of the damaged tooth, from 1, in the order in which the teeth enter contact.
     """
 
     kind: ClassVar[str] = "through-face"
@@ -132,6 +158,8 @@ class ThroughFace:
     end: float | None = None
     depth: float | None = None
     circle: PitCircle | None = None
+    wheel: Literal["gear", "pinion"] = "gear"
+    tooth: int = 1
 
 
 @dataclass(frozen=True)
@@ -150,6 +178,10 @@ class ToothDestruction:
         (mm) Shift of the line into the tooth. 0 by default.
     noise_mm : float, optional
         (mm) Roughness of the line. 0 by default.
+    wheel : {'gear', 'pinion'}, optional
+        The damaged wheel.
+    tooth : int, optional
+        The number of the damaged tooth, from 1, in the order in which the teeth enter contact.
     """
 
     kind: ClassVar[str] = "tooth-destruction"
@@ -158,6 +190,8 @@ class ToothDestruction:
     slope_deg: float | None = None
     offset_mm: float | None = None
     noise_mm: float | None = None
+    wheel: Literal["gear", "pinion"] = "gear"
+    tooth: int = 1
 
 
 Fault = Union[MissingTooth, ToothBreakage, PartialFace, ThroughFace, ToothDestruction]
@@ -169,7 +203,7 @@ _KINDS: dict[str, type[Any]] = {
 
 
 def to_section(fault: Any) -> dict[str, Any]:
-    """The section ``[fault]`` of a scenario file."""
+    """The section of a fault in a scenario file."""
     if fault in _KINDS.values():
         raise TypeError(f"fault is the class {fault.__name__}: give one of its objects, {fault.__name__}(…)")
     if type(fault) not in _KINDS.values():
@@ -182,10 +216,20 @@ def to_section(fault: Any) -> dict[str, Any]:
 
 
 def from_section(section: Mapping[str, Any]) -> Fault:
-    """The fault that a section ``[fault]`` describes."""
+    """The fault that a section of a scenario file describes."""
     keys = dict(section)
     kind = _KINDS[keys.pop("kind")]
     if "circle" in keys:
         keys["circle"] = PitCircle(**keys["circle"])
     fault: Fault = kind(**keys)
     return fault
+
+
+def in_words(faults: Sequence[Fault]) -> str:
+    """Kinds of the faults, and where they are if that is not the gear's first tooth; 'healthy' if there is none."""
+    if not faults:
+        return "healthy"
+    first = faults[0]
+    if len(faults) == 1 and (first.wheel, first.tooth) == ("gear", 1):
+        return first.kind
+    return ", ".join(f"{fault.kind} of {fault.wheel} tooth {fault.tooth}" for fault in faults)

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._sections import KEY_IN_FILE, OTHER_ARGUMENTS, SECTION_OF_KEY, check_key, hint
+from ._sections import FORMER_KEYS, KEY_IN_FILE, OTHER_ARGUMENTS, SECTION_OF_KEY, check_key, hint
 from .faults import Fault, from_section, to_section
 
 __all__ = ["Scenario", "Shaft", "TipRelief", "WheelInertia", "template"]
@@ -63,9 +63,11 @@ class Scenario:
     brake_torque_nm : float
         (N m) Nominal torque of the brake on the gear's shaft.
     fault : MissingTooth or ToothBreakage or PartialFace or ThroughFace or ToothDestruction, optional
-        The damage on the gear's first tooth; a healthy pair by default.
-    convention : {'corrected', 'published'}, optional
-        Which reading of the model.
+        The damage, if there is but one; a healthy pair by default.
+    faults : sequence of faults, optional
+        All damage, instead of ``fault``: any number of faults, on any teeth of either wheel.
+    model : {'linear', 'published'}, optional
+        The model of the mesh: what the theory says, or what the published code does, its slips included. 'linear' by default.
     seed : int, optional
         Of every random draw. 1 by default.
     pressure_angle_deg : float, optional
@@ -140,7 +142,7 @@ brake_torque_nm=10.0, din_grade=7)
     _flat: dict[str, Any]
     _native: _core.Scenario
 
-    convention: Literal["corrected", "published"]
+    model: Literal["linear", "published"]
     seed: int
     module_mm: float
     pinion_teeth: int
@@ -185,7 +187,8 @@ brake_torque_nm=10.0, din_grade=7)
         pinion_speed_hz: float,
         brake_torque_nm: float,
         fault: Fault | None = None,
-        convention: Literal["corrected", "published"] | None = None,
+        faults: Sequence[Fault] | None = None,
+        model: Literal["linear", "published"] | None = None,
         seed: int | None = None,
         pressure_angle_deg: float | None = None,
         material: Material | None = None,
@@ -231,7 +234,8 @@ brake_torque_nm=10.0, din_grade=7)
         for key, section in SECTION_OF_KEY.items():
             keys = sections.get(section, {}) if section else sections
             flat[key] = keys.get(KEY_IN_FILE.get(key, key))
-        flat["fault"] = from_section(sections["fault"]) if "fault" in sections else None
+        faults = sections.get("fault", [])
+        flat["faults"] = tuple(map(from_section, faults if isinstance(faults, list) else [faults]))
         object.__setattr__(self, "_flat", flat)
 
     @classmethod
@@ -257,7 +261,7 @@ brake_torque_nm=10.0, din_grade=7)
         Examples
         --------
         >>> Scenario.from_toml(template("missing-tooth")).fault
-        MissingTooth()
+        MissingTooth(wheel='gear', tooth=1)
         """
         if "\n" not in text and text.endswith(".toml"):
             raise ValueError(f"'{text}' is the name of a file, not its text: Scenario.from_file reads it")
@@ -297,7 +301,8 @@ brake_torque_nm=10.0, din_grade=7)
         Parameters
         ----------
         **changes
-            As the arguments of :class:`Scenario`; ``fault=None`` for a healthy pair, any other key None for its default.
+            As the arguments of :class:`Scenario`; ``fault=None`` for a healthy pair, any other key None for its default. ``fault``
+            and ``faults`` take the place of all faults that there are.
 
         Raises
         ------
@@ -313,6 +318,8 @@ brake_torque_nm=10.0, din_grade=7)
         for key in changes:
             check_key(key)
         arguments = dict(self._flat)
+        if "fault" in changes:
+            del arguments["faults"]
         errors = self._native.profile_errors_mm()
         if errors is not None:
             arguments["pinion_profile_errors_mm"], arguments["gear_profile_errors_mm"] = errors
@@ -320,9 +327,22 @@ brake_torque_nm=10.0, din_grade=7)
 
     @property
     def fault(self) -> Fault | None:
-        """The damage on the gear's first tooth; None for a healthy pair."""
-        fault: Fault | None = self._flat["fault"]
-        return fault
+        """The damage; None for a healthy pair.
+
+        Raises
+        ------
+        ValueError
+            There are several faults: ``faults`` has them.
+        """
+        if len(self.faults) > 1:
+            raise ValueError(f"there are {len(self.faults)} faults: scenario.faults has them")
+        return self.faults[0] if self.faults else None
+
+    @property
+    def faults(self) -> tuple[Fault, ...]:
+        """All damage; empty for a healthy pair."""
+        faults: tuple[Fault, ...] = self._flat["faults"]
+        return faults
 
     @property
     def pinion_profile_errors_mm(self) -> npt.NDArray[np.float64] | None:
@@ -347,6 +367,8 @@ brake_torque_nm=10.0, din_grade=7)
         try:
             return self._flat[name]
         except KeyError:
+            if name in FORMER_KEYS:
+                raise AttributeError(f"'{name}' {FORMER_KEYS[name]}") from None
             known = [*SECTION_OF_KEY, *OTHER_ARGUMENTS]
             raise AttributeError(f"a scenario has no key '{name}'{hint(name, known)}") from None
 
@@ -383,8 +405,10 @@ brake_torque_nm=10.0, din_grade=7)
             keys = default.get(section, {}) if section else default
             if key not in shown and self._flat[key] != keys.get(KEY_IN_FILE.get(key, key)):
                 shown[key] = self._flat[key]
-        if self.fault is not None:
-            shown["fault"] = self.fault
+        if len(self.faults) == 1:
+            shown["fault"] = self.faults[0]
+        elif self.faults:
+            shown["faults"] = list(self.faults)
         text = ", ".join(f"{key}={value!r}" for key, value in shown.items())
         if self._native.profile_errors_mm() is not None:
             text += ", pinion_profile_errors_mm=..., gear_profile_errors_mm=..."
@@ -421,10 +445,26 @@ def _sections_of(arguments: Mapping[str, Any]) -> dict[str, Any]:
         keys[KEY_IN_FILE.get(key, key)] = plain = _plain(value)
         if isinstance(plain, int) and abs(plain) >= 2**63:
             raise ValueError(f"{key} = {value}: must be below 2**63 = {2**63}")
-    fault = arguments.get("fault")
-    if fault is not None:
-        sections["fault"] = _plain(to_section(fault))
+    faults = [_plain(to_section(fault)) for fault in _faults_of(arguments)]
+    if faults:
+        sections["fault"] = faults[0] if len(faults) == 1 else faults
     return sections
+
+
+def _faults_of(arguments: Mapping[str, Any]) -> Sequence[Any]:
+    """The faults, whichever of the two arguments has them."""
+    fault, faults = arguments.get("fault"), arguments.get("faults")
+    if fault is not None and faults is not None:
+        raise TypeError("fault and faults are both given: faults has all of them, fault is one alone")
+    if isinstance(fault, (list, tuple)):
+        raise TypeError("fault is a sequence: faults takes several")
+    if fault is not None:
+        return [fault]
+    if faults is None:
+        return []
+    if not isinstance(faults, Sequence) or isinstance(faults, str):
+        raise TypeError(f"faults = {faults!r}: must be a sequence of faults; fault takes a single one")
+    return faults
 
 
 def _native_of(arguments: Mapping[str, Any]) -> _core.Scenario:

@@ -6,6 +6,7 @@ mod docs;
 mod environment;
 mod kernels;
 mod python;
+mod rooms;
 mod scipy;
 mod step;
 
@@ -19,11 +20,12 @@ Usage: cargo xtask TASK
 
 Tasks:
   test         Everything that a change must pass, in this order, stopping at the first failure:
-               formatting, lints, tests (with the examples in the documentation, and against SciPy,
+               formatting, lints, the direction of imports, tests (with the examples in the documentation, and against SciPy,
                pyarrow and polars, which are installed under target/scipy once: needs Python 3.11
                or later, as python3 or under the name in the variable PYTHON), a look for vector
                instructions that are calls, the library's documentation, and the check of the book
   wheel        Build the Python package's wheel into target/wheels
+  check-rooms  Only the check that no folder of the library imports against the direction of the data
   check-docs   Only the check of the book: its table of contents, its links, pictures and formulas
   docs         Build the book into docs/book (needs mdbook)
   help         Print this text (also -h, --help)
@@ -35,6 +37,7 @@ fn main() -> ExitCode {
     let root = workspace_root();
     let outcome = match words.as_slice() {
         ["test"] => test(root),
+        ["check-rooms"] => step::run("rooms check", || rooms::check(root)),
         ["check-docs"] => step::run("docs check", || docs::check_and_report(root)),
         ["docs"] => docs::build(root),
         ["wheel"] => python::wheel(root),
@@ -72,6 +75,7 @@ fn workspace_root() -> &'static Path {
 fn test(root: &Path) -> Result<(), u8> {
     step::cargo(root, &["fmt", "--all", "--check"], &[])?;
     step::cargo(root, &["clippy", "--workspace", "--all-targets", "--release", "--", "-D", "warnings"], &[])?;
+    step::run("rooms check", || rooms::check(root))?;
     let [scipy, python] = scipy::reference(root)?;
     let python = [("MESHTONE_SCIPY_REFERENCE", scipy.as_os_str()), ("MESHTONE_PYTHON", python.as_os_str())];
     step::cargo(root, &["test", "--workspace", "--release"], &python)?;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use meshtone_io::summary::{ChannelSummary, Summary};
+use meshtone_io::summary::{ChannelSummary, FaultSummary, Summary};
 
 /// The table of one run.
 pub fn table(summary: &Summary) -> String {
@@ -25,8 +25,8 @@ fn rows(summary: &Summary) -> [(&'static str, String); 8] {
     let frequencies: Vec<_> = summary.natural_frequencies_hz.iter().map(|f| frequency(*f)).collect();
     let duration_s = summary.samples as f64 / summary.sampling_rate_hz;
     [
-        ("model", format!("{}, seed {}", summary.convention, summary.seed)),
-        ("fault", summary.fault.unwrap_or("none").to_string()),
+        ("model", format!("{}, seed {}", summary.model, summary.seed)),
+        ("fault", faults(&summary.faults)),
         (
             "sampling",
             format!(
@@ -58,6 +58,16 @@ fn rows(summary: &Summary) -> [(&'static str, String); 8] {
         ("natural frequencies, Hz", frequencies.join(" ")),
         ("computing time", format!("{} ms", short(summary.total_time().as_secs_f64() * 1e3))),
     ]
+}
+
+/// `missing-tooth on tooth 1 of the gear`, one after the other.
+fn faults(faults: &[FaultSummary]) -> String {
+    let place =
+        |fault: &FaultSummary| format!("{} on tooth {} of the {}", fault.kind, fault.tooth, fault.wheel);
+    match faults {
+        [] => "none".to_string(),
+        faults => faults.iter().map(place).collect::<Vec<_>>().join(", "),
+    }
 }
 
 /// `horizontal acceleration, g` for `horizontal_acceleration_g`.

@@ -83,7 +83,7 @@ impl Scenario {
     /// What is doubtful about it.
     fn warnings(&self) -> PyResult<Vec<String>> {
         let mut warnings = self.0.validate().map_err(|error| scenario_error(&error))?;
-        warnings.extend(self.0.ignored_by_convention());
+        warnings.extend(self.0.ignored_by_model());
         Ok(warnings.iter().map(ToString::to_string).collect())
     }
 }
@@ -94,14 +94,14 @@ pub fn template(kind: &str) -> PyResult<String> {
     scenario::template(kind).ok_or_else(|| {
         PyValueError::new_err(format!(
             "kind = {kind}: must be one of {}",
-            scenario::TEMPLATE_KINDS.join(", ")
+            scenario::template_kinds().join(", ")
         ))
     })
 }
 
 /// The error without the line: the text was made from Python's values.
 fn without_line(error: ScenarioError) -> PyErr {
-    scenario_error(&ScenarioError { line: None, ..error })
+    scenario_error(&error.at_line(None))
 }
 
 fn describe(path: &Path, error: meshtone_io::scenario_file::ReadScenarioError) -> String {

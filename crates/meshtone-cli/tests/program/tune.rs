@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use meshtone::hybrid::{DifferenceChain, difference_signals};
 use meshtone::scenario::Scenario;
 use meshtone::signal::{Edge, kurtosis, resample};
+use meshtone::tuning::{DifferenceChain, difference_signals};
 use serde_json::Value;
 
 use crate::support::{FAST, Workplace, stderr, stdout};
@@ -174,6 +174,12 @@ fn wrong_experiments_are_refused() {
         &["the smaller first"],
     );
     refused(&workplace, &with("fault = { kind = \"missing-tooth\" }\n", ""), &["missing", "has no fault"]);
+    let twice = "fault = [{ kind = \"missing-tooth\" }, { kind = \"missing-tooth\" }]\n";
+    refused(
+        &workplace,
+        &with("fault = { kind = \"missing-tooth\" }\n", twice),
+        &["case[2]", "tooth 1 of the gear has fault[0] already"],
+    );
     let no_healthy = with(
         "label = \"healthy\"\nseverity = 0\n",
         "label = \"x\"\nseverity = 0\nfault = { kind = \"missing-tooth\" }\n",
@@ -401,5 +407,9 @@ fn what_enhance_refuses() {
         &enhance("wrong.toml", "1"),
         &["wrong.toml", "line 2", "enhancement.width_ratio", "more than 0"],
     );
+    workplace.write("earlier.toml", "convention = \"published\"\n[signal]\nsampling_rate_hz = 10e3\n");
+    let renamed =
+        ["earlier.toml", "line 1", "convention", "is called `model` now", "write model = \"published\""];
+    workplace.fails(2, &enhance("earlier.toml", "1"), &renamed);
     workplace.succeeds(&enhance("tuned.toml", "3"));
 }

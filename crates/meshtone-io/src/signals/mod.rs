@@ -7,10 +7,12 @@
 //! file is written: the same simulation gives the same bytes.
 
 mod columns;
+mod earlier;
 mod read;
 mod write;
 
 pub use columns::{Column, TIME, columns};
+pub(crate) use earlier::with_model;
 pub use read::{Recorded, read_signals};
 pub use write::write_signals;
 

@@ -12,6 +12,7 @@ use crate::run_identity::RunIdentity;
 use crate::table::{FoundType, NumberType, TableReader};
 
 use super::columns::columns_mut;
+use super::earlier::with_model;
 use super::{RATE_KEY, RUN_KEY, SCENARIO_KEY, TIME, VERSION_KEY};
 
 /// A simulation's signals, read back.
@@ -41,7 +42,7 @@ pub fn read_signals(path: &Path) -> Result<Recorded, ReadResultsError> {
     let table = TableReader::new(file).map_err(|error| broken(&error))?;
     let metadata = table.metadata().file_metadata();
     let text = text_of(metadata, SCENARIO_KEY).map_err(foreign)?;
-    let scenario = Scenario::from_toml(text)
+    let scenario = Scenario::from_toml(&with_model(text))
         .map_err(|error| ReadResultsError::Scenario { path: path.to_path_buf(), error: Box::new(error) })?;
     let version = text_of(metadata, VERSION_KEY).map_err(foreign)?.to_string();
     let run = text_of(metadata, RUN_KEY).map_err(foreign)?.parse::<RunIdentity>();

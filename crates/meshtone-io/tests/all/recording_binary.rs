@@ -7,7 +7,7 @@ use std::io::Cursor;
 use crate::parquet_help::{Plain, parquet};
 use crate::recording_help::{rate, read, refused};
 use hound::{SampleFormat, WavSpec, WavWriter};
-use meshtone::scenario::Scenario;
+use meshtone::scenario::{GearPair, Scenario};
 use meshtone::signal::Channels;
 use meshtone_io::recording::{Recording, RecordingOptions, read_recording};
 use meshtone_io::signals::write_signals;
@@ -40,7 +40,14 @@ fn signals_of_a_simulation_are_read_with_unit_rate_and_scenario() {
         gear_speed_hz: signal(17.0),
         mesh_force_n: signal(1e9),
     };
-    let scenario = Scenario::new(3.0, 20, 40, 15.0, 40.0, 10.0);
+    let scenario = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 20,
+        gear_teeth: 40,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    });
     let file = File::create(directory.path().join("signals.parquet")).unwrap();
     write_signals(file, &scenario, &channels).unwrap();
     // The folder stands for its signals.

@@ -45,7 +45,7 @@ fn assert_refused(
     for word in words {
         assert!(message.contains(word), "`{word}` is not in: {message}");
     }
-    *error
+    (*error).into()
 }
 
 fn errors(teeth: usize) -> Array2<f64> {

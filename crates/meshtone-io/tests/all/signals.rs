@@ -4,7 +4,7 @@
 use std::fs::{self, File};
 
 use crate::parquet_help::{Plain, parquet};
-use meshtone::scenario::Scenario;
+use meshtone::scenario::{GearPair, Scenario};
 use meshtone::signal::Channels;
 use meshtone_io::ReadResultsError;
 use meshtone_io::run_identity::RunIdentity;
@@ -13,7 +13,14 @@ use parquet::file::metadata::KeyValue;
 use tempfile::tempdir;
 
 fn scenario() -> Scenario {
-    Scenario::new(3.0, 20, 40, 15.0, 40.0, 10.0)
+    Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 20,
+        gear_teeth: 40,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    })
 }
 
 /// More rows than are written at once, with numbers that only exact writing keeps.
@@ -65,7 +72,12 @@ fn files_of_others_are_refused() {
     let wrong_rate = [good(), vec![text(RATE_KEY, "fast")]].concat();
     refused(&path, wrong_rate, "is `fast`; must be a number above 0");
     let single = [good(), vec![text(RATE_KEY, "1000.0")]].concat();
-    refused(&path, single, "column time_s of Float32; must be of Float64");
+    refused(&path, single.clone(), "column time_s of Float32; must be of Float64");
+    // Neither is a file foreign whose scenario names its convention, as the model was called.
+    let earlier = scenario().to_toml().replacen("model = \"linear\"", "convention = \"corrected\"", 1);
+    assert!(earlier.contains("convention"));
+    let named_earlier = [vec![text(SCENARIO_KEY, &earlier)], single[1..].to_vec()].concat();
+    refused(&path, named_earlier, "column time_s of Float32; must be of Float64");
 }
 
 #[test]

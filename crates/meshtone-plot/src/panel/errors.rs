@@ -1,8 +1,7 @@
-//! The first tooth's profile errors, among those of all teeth.
+//! The tooth's profile errors, among those of all teeth.
 
 use nalgebra::DMatrix;
 
-use super::damage;
 use super::face::{CONTACT, RELIEF};
 use super::side::Side;
 use crate::axes::{Area, Axes, drawable};
@@ -11,12 +10,12 @@ use crate::legend::{self, Entry, Sample};
 use crate::style::{Fill, Stroke, colour};
 use crate::ticks::Ticks;
 
-const FIRST: Stroke = Stroke::solid(colour::BLUE, 2.0);
+const THIS: Stroke = Stroke::solid(colour::BLUE, 2.0);
 const ALL: Fill = Fill::tint(colour::BLUE, 0.2);
 
 /// Draws the errors; `along` is the tooth's own range.
 pub(super) fn draw(canvas: &mut Canvas, area: Area, along: [f64; 2], side: &Side) {
-    let errors = side.errors_mm.filter(|errors| errors.nrows() > 1 && errors.ncols() > 0);
+    let errors = side.errors_mm.filter(|errors| errors.nrows() > 1 && errors.ncols() > side.tooth_index());
     let largest = errors
         .into_iter()
         .flat_map(|errors| errors.iter())
@@ -60,11 +59,14 @@ fn curves(canvas: &mut Canvas, axes: &Axes, side: &Side, errors: &DMatrix<f64>) 
     canvas.polygon(&band, ALL);
     let all = Entry { sample: Sample::Area(ALL), text: "all teeth" };
     let start = (axes.area.left + 6.0, axes.area.bottom() - 26.0);
-    if side.fault.is_some_and(damage::is_missing) {
+    if side.is_missing() {
         legend::column(canvas, start, &[all]);
         return;
     }
-    canvas
-        .polyline(&axes.along_y((0..rows).map(|place| (1e3 * errors[(row(place), 0)], x_mm[place]))), FIRST);
-    legend::column(canvas, start, &[Entry { sample: Sample::Line(FIRST), text: "first tooth" }, all]);
+    let tooth = side.tooth_index();
+    canvas.polyline(
+        &axes.along_y((0..rows).map(|place| (1e3 * errors[(row(place), tooth)], x_mm[place]))),
+        THIS,
+    );
+    legend::column(canvas, start, &[Entry { sample: Sample::Line(THIS), text: &side.tooth_name() }, all]);
 }

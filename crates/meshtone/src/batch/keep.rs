@@ -1,6 +1,6 @@
 //! What is kept of each simulation.
 
-use crate::sampling::TimeGrid;
+use crate::operation::TimeGrid;
 use crate::signal::{Channels, channel_outputs};
 use crate::simulate::{Simulation, Stages};
 use crate::solver::{Block, Output, Recorder};

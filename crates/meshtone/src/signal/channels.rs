@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use crate::dynamics::coordinates::*;
-use crate::sampling::TimeGrid;
+use crate::machine::coordinates::*;
+use crate::operation::TimeGrid;
 use crate::solver::{Block, Output, Recorder};
 
 /// (m/s²) One g, as the published model has it.

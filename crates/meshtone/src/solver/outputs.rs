@@ -1,7 +1,7 @@
 //! What is read off the solution.
 
 use super::reduce::ReducedModel;
-use crate::dynamics::coordinates::{COORDINATES, CoordinateVector};
+use crate::machine::coordinates::{COORDINATES, CoordinateVector};
 
 /// A signal that is read off the solution.
 #[derive(Debug, Clone, PartialEq)]

@@ -10,12 +10,10 @@ mod bending;
 mod energy;
 mod foundation;
 mod hertz;
-mod mesh;
-mod pair;
+mod loaded_flank;
 mod shear;
 mod tooth;
 
 pub use hertz::hertz_compliance_mm_per_n;
-pub use mesh::MeshStiffness;
-pub use pair::{PairCurve, PairStiffness};
+pub use loaded_flank::{FlankLoad, LoadedFlank};
 pub use tooth::ToothCompliance;

@@ -1,7 +1,7 @@
 //! Fields of the signal chain: the vertical signal's average over the gear's revolutions.
 
 use super::Trace;
-use crate::sampling::TimeGrid;
+use crate::operation::TimeGrid;
 use crate::signal::{
     AngularSettings, ChainSettings, Channels, Edge, Interpolation, Record, ShaftPhase, SignalError,
     process_channel, resample, resampling_ratio,

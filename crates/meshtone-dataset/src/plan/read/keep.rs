@@ -1,9 +1,9 @@
 //! The table `[keep]`.
 
 use meshtone::batch::ChannelKind;
-use meshtone::scenario::Scenario;
-use meshtone::toml_reader::{ReadResult, TomlTable};
+use meshtone::scenario::{Scenario, WheelName};
 use meshtone_io::experiment::Tuned;
+use meshtone_toml::{ReadResult, TomlTable};
 
 use super::super::{Keep, MOST_SHARD_RECORDS};
 
@@ -56,7 +56,9 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
     }
     let flag =
         |key| -> ReadResult<Option<bool>> { table.optional(key).map(|value| value.boolean()).transpose() };
-    let teeth = u64::from(base.gears.gear_teeth);
+    let wheels = WheelName::BOTH.map(|wheel| (wheel.name(), wheel));
+    let wheel = table.optional("wheel").map(|value| value.choice(&wheels)).transpose()?.unwrap_or_default();
+    let teeth = u64::from(base.gears.teeth(wheel));
     let analysed = table.optional("analysed").map(|value| value.choice(&ACCELERATIONS)).transpose()?;
     let sidebands = table
         .optional("sidebands")
@@ -69,6 +71,7 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
         sampling_rate_hz,
         duration_s: duration_s.map(|value| value.number()).transpose()?,
         channels,
+        wheel,
         analysed: analysed.unwrap_or(tuned.map_or(ChannelKind::Vertical, |tuned| tuned.channel)),
         sidebands: sidebands.map_or(tuned.map_or(2, |tuned| tuned.sidebands), |count| count as usize),
         shaft_orders: orders.map_or(tuned.map_or(7, |tuned| tuned.shaft_orders), |last| last as usize),
@@ -94,6 +97,7 @@ fn agree(table: &TomlTable<'_>, keep: &Keep, tuned: Option<&Tuned>) -> ReadResul
     for (key, same) in [
         ("sampling_rate_hz", keep.sampling_rate_hz == tuned.sampling_rate_hz),
         ("analysed", keep.analysed == tuned.channel),
+        ("wheel", keep.wheel == WheelName::Gear),
         ("sidebands", keep.sidebands == tuned.sidebands),
         ("shaft_orders", keep.shaft_orders == tuned.shaft_orders),
         ("duration_s", keep.duration_s.is_none()),
