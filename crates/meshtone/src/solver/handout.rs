@@ -61,12 +61,12 @@ impl<'r, const L: usize> Handout<'r, L> {
     /// # Arguments
     /// * `done` - number of steps before the block
     /// * `steps` - samples in the block
-    /// * `is_sound` - whether a lane's solution is one
-    pub(super) fn hand_out(&mut self, done: usize, steps: usize, is_sound: impl Fn(usize) -> bool) {
+    /// * `sound` - whether each lane's solution is one
+    pub(super) fn hand_out(&mut self, done: usize, steps: usize, sound: [bool; L]) {
         for l in 0..L {
             let Span { start, first_recorded, end } = self.spans[l];
             let first = start + done;
-            if first < end && !is_sound(l) {
+            if first < end && !sound[l] {
                 self.results[l] = self.results[l].and(Err(Diverged { sample: first + steps }));
             }
             let from = first_recorded.saturating_sub(first).min(steps);

@@ -5,64 +5,67 @@ use super::lanes::Lanes;
 use super::outputs::{EXTERNALS, OutputRow};
 use super::step::State;
 
-/// `V` variables over a block of samples.
-struct Columns<const L: usize, const V: usize, const BLOCK: usize>(Box<Aligned<[[Lanes<L>; BLOCK]; V]>>);
-
-/// Starts at a cache line.
-#[repr(align(64))]
-struct Aligned<T>(T);
-
-/// States of one block of samples, variable by variable, so that outputs are computed for many samples at once.
-pub(super) struct History<const L: usize, const N: usize, const R: usize, const BLOCK: usize> {
-    displacement: Columns<L, N, BLOCK>,
-    scaled_velocity: Columns<L, N, BLOCK>,
-    force: Columns<L, R, BLOCK>,
-    external: Columns<L, EXTERNALS, BLOCK>,
+/// One variable over a block of samples. Starts at a cache line.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+pub(super) struct Column<const L: usize, const BLOCK: usize> {
+    samples: [Lanes<L>; BLOCK],
+    /// A block is whole pages: without a line between them, the columns of a state would share one set of the cache.
+    apart: [f64; 8],
 }
 
-impl<const L: usize, const N: usize, const R: usize, const BLOCK: usize> History<L, N, R, BLOCK> {
-    pub(super) fn new() -> Self {
-        Self {
-            displacement: Columns::new(),
-            scaled_velocity: Columns::new(),
-            force: Columns::new(),
-            external: Columns::new(),
-        }
+/// States of one block of samples, variable by variable, so that outputs are computed for many samples at once.
+pub(super) struct History<const L: usize, const BLOCK: usize> {
+    /// Displacements first, then scaled velocities, forces and externals.
+    columns: Vec<Column<L, BLOCK>>,
+}
+
+/// A [`History`] for the states of `N` modes and `R` directions.
+pub(super) struct Columns<'a, const L: usize, const N: usize, const R: usize, const BLOCK: usize> {
+    displacement: &'a mut [Column<L, BLOCK>; N],
+    scaled_velocity: &'a mut [Column<L, BLOCK>; N],
+    force: &'a mut [Column<L, BLOCK>; R],
+    external: &'a mut [Column<L, BLOCK>; EXTERNALS],
+}
+
+impl<const L: usize, const BLOCK: usize> History<L, BLOCK> {
+    /// Room for a block of states.
+    ///
+    /// # Arguments
+    /// * `modes`, `directions` - that a state has
+    pub(super) fn new(modes: usize, directions: usize) -> Self {
+        let columns = 2 * modes + directions + EXTERNALS;
+        Self { columns: vec![Column { samples: [Lanes::splat(0.0); BLOCK], apart: [0.0; 8] }; columns] }
     }
 
+    /// The columns of a state; none where they are not as many.
+    pub(super) fn columns<const N: usize, const R: usize>(&mut self) -> Option<Columns<'_, L, N, R, BLOCK>> {
+        let (displacement, rest) = self.columns.split_first_chunk_mut()?;
+        let (scaled_velocity, rest) = rest.split_first_chunk_mut()?;
+        let (force, rest) = rest.split_first_chunk_mut()?;
+        let (external, _) = rest.split_first_chunk_mut()?;
+        Some(Columns { displacement, scaled_velocity, force, external })
+    }
+}
+
+impl<const L: usize, const N: usize, const R: usize, const BLOCK: usize> Columns<'_, L, N, R, BLOCK> {
     /// Stores the state of sample `k` of the block.
     #[inline(always)]
     pub(super) fn store<const STEADY: bool>(&mut self, k: usize, state: &State<L, N, R>) {
         // Never larger; lets the compiler see that.
         let k = k % BLOCK;
         for n in 0..N {
-            self.displacement.0.0[n][k] = state.displacement[n];
-            self.scaled_velocity.0.0[n][k] = state.scaled_velocity[n];
+            self.displacement[n].samples[k] = state.displacement[n];
+            self.scaled_velocity[n].samples[k] = state.scaled_velocity[n];
         }
         for r in 0..R {
-            self.force.0.0[r][k] = state.force[r];
+            self.force[r].samples[k] = state.force[r];
         }
         if !STEADY {
             for x in 0..EXTERNALS {
-                self.external.0.0[x][k] = state.external[x];
+                self.external[x].samples[k] = state.external[x];
             }
         }
-    }
-
-    /// Variable `index`: displacements first, then scaled velocities, forces and externals.
-    fn variable(&self, index: usize) -> &[Lanes<L>] {
-        let all = self.displacement.iter().chain(self.scaled_velocity.iter());
-        all.chain(self.force.iter()).chain(self.external.iter()).nth(index).map_or(&[], |column| column)
-    }
-}
-
-impl<const L: usize, const V: usize, const BLOCK: usize> Columns<L, V, BLOCK> {
-    fn new() -> Self {
-        Self(Box::new(Aligned([[Lanes::splat(0.0); BLOCK]; V])))
-    }
-
-    fn iter(&self) -> impl Iterator<Item = &[Lanes<L>; BLOCK]> {
-        self.0.0.iter()
     }
 }
 
@@ -80,19 +83,30 @@ impl<const L: usize> Row<L> {
     ///
     /// # Arguments
     /// * `rows` - of each lane
+    /// * `modes`, `directions` - of the [`History`]
     /// * `start` - number of the sample at which each lane starts
-    pub(super) fn new<const N: usize, const R: usize>(rows: [&OutputRow; L], start: Lanes<L>) -> Self {
-        let value = |values: &[f64], index: usize| values.get(index).copied().unwrap_or(0.0);
-        let displacement = (0..N).map(|n| (n, Lanes::from_fn(|l| value(&rows[l].displacement, n))));
-        let velocity = (0..N).map(|n| (N + n, Lanes::from_fn(|l| value(&rows[l].scaled_velocity, n))));
-        let force = (0..R).map(|r| (2 * N + r, Lanes::from_fn(|l| value(&rows[l].force, r))));
-        let external = (0..EXTERNALS).map(|x| (2 * N + R + x, Lanes::from_fn(|l| rows[l].external[x])));
-        let all = displacement.chain(velocity).chain(force).chain(external);
+    pub(super) fn new(rows: [&OutputRow; L], modes: usize, directions: usize, start: [f64; L]) -> Self {
+        let variables = |row: &OutputRow| -> Vec<f64> {
+            let mut values = vec![0.0; 2 * modes + directions + EXTERNALS];
+            let parts = [
+                (0, &row.displacement[..]),
+                (modes, &row.scaled_velocity),
+                (2 * modes, &row.force),
+                (2 * modes + directions, &row.external),
+            ];
+            for (first, part) in parts {
+                values[first..first + part.len()].copy_from_slice(part);
+            }
+            values
+        };
+        let by_lane = rows.map(variables);
+        let weights =
+            (0..by_lane[0].len()).map(|variable| (variable, Lanes::from_fn(|l| by_lane[l][variable])));
         Self {
-            weights: all.filter(|(_, weight): &(usize, Lanes<L>)| weight.0 != [0.0; L]).collect(),
+            weights: weights.filter(|(_, weight)| weight.0 != [0.0; L]).collect(),
             constant: Lanes::from_fn(|l| rows[l].constant),
             per_sample: Lanes::from_fn(|l| rows[l].per_sample),
-            start,
+            start: Lanes::from_fn(|l| start[l]),
         }
     }
 
@@ -103,15 +117,16 @@ impl<const L: usize> Row<L> {
     /// * `history` - the states
     /// * `first` - number of steps before the block's first sample
     /// * `output` - set, one per sample
-    pub(super) fn evaluate<const N: usize, const R: usize, const BLOCK: usize>(
+    pub(super) fn evaluate<const BLOCK: usize>(
         &self,
         instructions: InstructionSet,
-        history: &History<L, N, R, BLOCK>,
+        history: &History<L, BLOCK>,
         first: usize,
         output: &mut [Lanes<L>],
     ) {
+        let column = |variable: usize| &history.columns[variable].samples[..];
         let terms: Vec<_> =
-            self.weights.iter().map(|&(variable, weight)| (weight, history.variable(variable))).collect();
+            self.weights.iter().map(|&(variable, weight)| (weight, column(variable))).collect();
         instructions.run(Evaluate { row: self, terms: &terms, first, output });
     }
 }

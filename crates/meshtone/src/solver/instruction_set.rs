@@ -123,6 +123,17 @@ pub(super) trait Instructions: Copy {
     }
 }
 
+/// An array, number by number: in a loop, since `array::from_fn` takes several times as long to compile.
+macro_rules! by_number {
+    ($l:ident => $value:expr) => {{
+        let mut result = [0.0; L];
+        for $l in 0..L {
+            result[$l] = $value;
+        }
+        result
+    }};
+}
+
 /// Whatever the compiled architecture has; products are rounded before they are added.
 #[derive(Clone, Copy)]
 struct Plain;
@@ -130,37 +141,37 @@ struct Plain;
 impl Instructions for Plain {
     #[inline(always)]
     fn add<const L: usize>(self, a: [f64; L], b: [f64; L]) -> [f64; L] {
-        std::array::from_fn(|l| a[l] + b[l])
+        by_number!(l => a[l] + b[l])
     }
 
     #[inline(always)]
     fn sub<const L: usize>(self, a: [f64; L], b: [f64; L]) -> [f64; L] {
-        std::array::from_fn(|l| a[l] - b[l])
+        by_number!(l => a[l] - b[l])
     }
 
     #[inline(always)]
     fn mul<const L: usize>(self, a: [f64; L], b: [f64; L]) -> [f64; L] {
-        std::array::from_fn(|l| a[l] * b[l])
+        by_number!(l => a[l] * b[l])
     }
 
     #[inline(always)]
     fn mul_add<const L: usize>(self, a: [f64; L], b: [f64; L], c: [f64; L]) -> [f64; L] {
-        std::array::from_fn(|l| a[l] * b[l] + c[l])
+        by_number!(l => a[l] * b[l] + c[l])
     }
 
     #[inline(always)]
     fn negative_mul_add<const L: usize>(self, a: [f64; L], b: [f64; L], c: [f64; L]) -> [f64; L] {
-        std::array::from_fn(|l| c[l] - a[l] * b[l])
+        by_number!(l => c[l] - a[l] * b[l])
     }
 
     #[inline(always)]
     fn floor<const L: usize>(self, a: [f64; L]) -> [f64; L] {
-        a.map(f64::floor)
+        by_number!(l => a[l].floor())
     }
 
     #[inline(always)]
     fn where_less<const L: usize>(self, a: [f64; L], b: [f64; L], yes: [f64; L], no: [f64; L]) -> [f64; L] {
-        std::array::from_fn(|l| if a[l] < b[l] { yes[l] } else { no[l] })
+        by_number!(l => if a[l] < b[l] { yes[l] } else { no[l] })
     }
 }
 

@@ -5,12 +5,12 @@ use super::handout::Handout;
 use super::history::{History, Row};
 use super::instruction_set::InstructionSet;
 use super::outputs::Output;
-use super::prepare::Prepared;
+use super::prepare::{FirstState, Prepared};
 use super::reduce::ReducedModel;
 use super::shared_forcing::SharedForcing;
 use super::size::Size;
-use super::step::{Group, State};
-use super::stretch::Stretch;
+use super::step::Group;
+use super::stretch::{SizedLoop, TimeLoop};
 use crate::dynamics::Forcing;
 use crate::scenario::Convention;
 use crate::simulate::Stages;
@@ -114,70 +114,69 @@ fn by_size<const L: usize, const BLOCK: usize>(
     problems: [&Problem; L],
     recorders: [&mut dyn Recorder; L],
 ) -> [Result<(), Diverged>; L] {
-    let published = problems[0].stages.scenario.convention == Convention::Published;
-    macro_rules! solve {
-        ($modes:literal, $directions:literal, $steady:literal) => {
-            if published {
-                solve::<L, $modes, $directions, BLOCK, true, $steady>(problems, instructions, recorders)
-            } else {
-                solve::<L, $modes, $directions, BLOCK, false, $steady>(problems, instructions, recorders)
-            }
-        };
-    }
-    // Each line is compiled for every instruction set, so what is rare shares the largest size.
-    match size {
-        Size::Flat => solve!(5, 1, true),
-        Size::Tilting => solve!(8, 2, true),
-        Size::Rolling => solve!(8, 3, true),
-        Size::General => solve!(13, 5, false),
-    }
-}
-
-fn solve<
-    const L: usize,
-    const N: usize,
-    const R: usize,
-    const BLOCK: usize,
-    const PUBLISHED: bool,
-    const STEADY: bool,
->(
-    problems: [&Problem; L],
-    instructions: InstructionSet,
-    recorders: [&mut dyn Recorder; L],
-) -> [Result<(), Diverged>; L] {
-    let prepared: [Prepared<R>; L] = std::array::from_fn(|l| Prepared::new(problems[l]));
-    let coefficients = coefficients::<L, N, R>(&problems, &prepared);
-    let group = Group { coefficients: &coefficients, tables: std::array::from_fn(|l| &prepared[l].table) };
+    let (modes, directions, steady) = (size.modes(), size.directions(), size != Size::General);
+    let prepared = problems.map(|problem| Prepared::new(problem, directions));
+    let start = problems.map(|problem| problem.stages.time.first_simulated_sample as f64);
     let rows: Vec<Row<L>> = (0..prepared[0].rows.len())
-        .map(|row| Row::new::<N, R>(std::array::from_fn(|l| &prepared[l].rows[row]), coefficients.start))
+        .map(|row| Row::new(std::array::from_fn(|l| &prepared[l].rows[row]), modes, directions, start))
         .collect();
-    let mut forcings: [Forcing; L] =
-        std::array::from_fn(|l| Forcing::new(problems[l].stages, &problems[l].model.directions));
-    let mut forcing = SharedForcing::new(BLOCK);
-    forcing.fill(&mut forcings, 1, STEADY);
-    let mut state: State<L, N, R> = first_states(&problems, &prepared, &forcing);
-    let mut history = History::<L, N, R, BLOCK>::new();
+    let mut forcings = problems.map(|problem| Forcing::new(problem.stages, &problem.model.directions));
+    let mut forcing = SharedForcing::<L>::new(BLOCK, directions);
+    forcing.fill(&mut forcings, 1, steady);
+    let first = std::array::from_fn(|l| {
+        let (errors, external) = forcing.first(l);
+        prepared[l].first_state(problems[l], &errors, external)
+    });
+    let mut time_loop = time_loop::<L, BLOCK>(size, &problems, &prepared, &first);
+    let mut history = History::<L, BLOCK>::new(modes, directions);
     let mut out = Handout::new(&problems, rows.len(), BLOCK, recorders);
     let mut done = 0;
     while done < out.most_steps {
         let steps = BLOCK.min(out.most_steps - done);
-        forcing.fill(&mut forcings, steps, STEADY);
+        forcing.fill(&mut forcings, steps, steady);
         let recorded = out.is_recorded(done + steps);
-        instructions.run(Stretch::<L, N, R, BLOCK, PUBLISHED, STEADY> {
-            group: &group,
-            state: &mut state,
-            steps_before: done,
-            forcing: &forcing,
-            steps,
-            history: recorded.then_some(&mut history),
-        });
+        time_loop.advance(instructions, done, steps, &forcing, recorded.then_some(&mut history));
         if recorded {
             for (row, values) in rows.iter().zip(&mut out.values) {
                 row.evaluate(instructions, &history, done, &mut values[..steps]);
             }
         }
-        out.hand_out(done, steps, |l| state.is_sound(l));
+        out.hand_out(done, steps, std::array::from_fn(|l| time_loop.is_sound(l)));
         done += steps;
     }
     out.results
+}
+
+/// The time loop of a size, at the first sample.
+fn time_loop<'a, const L: usize, const BLOCK: usize>(
+    size: Size,
+    problems: &[&Problem; L],
+    prepared: &'a [Prepared; L],
+    first: &[FirstState; L],
+) -> Box<dyn TimeLoop<L, BLOCK> + 'a> {
+    let published = problems[0].stages.scenario.convention == Convention::Published;
+    macro_rules! time_loop {
+        ($size:expr, $published:literal, $steady:literal) => {{
+            let sized: SizedLoop<'a, L, { $size.modes() }, { $size.directions() }, $published, $steady> =
+                SizedLoop {
+                    group: Group {
+                        coefficients: coefficients(problems, prepared),
+                        tables: prepared.each_ref().map(|prepared| prepared.table.points()),
+                    },
+                    state: first_states(first),
+                };
+            Box::new(sized)
+        }};
+    }
+    // Each line is compiled for every instruction set, so what is rare shares the largest size.
+    match (size, published) {
+        (Size::Flat, false) => time_loop!(Size::Flat, false, true),
+        (Size::Tilting, false) => time_loop!(Size::Tilting, false, true),
+        (Size::Rolling, false) => time_loop!(Size::Rolling, false, true),
+        (Size::General, false) => time_loop!(Size::General, false, false),
+        (Size::Flat, true) => time_loop!(Size::Flat, true, true),
+        (Size::Tilting, true) => time_loop!(Size::Tilting, true, true),
+        (Size::Rolling, true) => time_loop!(Size::Rolling, true, true),
+        (Size::General, true) => time_loop!(Size::General, true, false),
+    }
 }

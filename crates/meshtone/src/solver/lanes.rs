@@ -15,8 +15,12 @@ impl<const L: usize> Lanes<L> {
     }
 
     #[inline(always)]
-    pub(super) fn from_fn(f: impl FnMut(usize) -> f64) -> Self {
-        Self(std::array::from_fn(f))
+    pub(super) fn from_fn(mut f: impl FnMut(usize) -> f64) -> Self {
+        let mut values = [0.0; L];
+        for l in 0..L {
+            values[l] = f(l);
+        }
+        Self(values)
     }
 
     #[inline(always)]
@@ -74,7 +78,12 @@ impl<const L: usize> Lanes<L> {
     pub(super) fn indices<I: Instructions>(self, simd: I) -> [usize; L] {
         // Adding 2⁵² leaves a whole number in the mantissa's low bits: unlike a cast it vectorises.
         const SHIFT: f64 = (1u64 << 52) as f64;
-        simd.add(self.0, [SHIFT; L]).map(|shifted| shifted.to_bits() as u32 as usize)
+        let shifted = simd.add(self.0, [SHIFT; L]);
+        let mut indices = [0; L];
+        for l in 0..L {
+            indices[l] = shifted[l].to_bits() as u32 as usize;
+        }
+        indices
     }
 }
 

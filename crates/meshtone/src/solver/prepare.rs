@@ -10,26 +10,27 @@ use crate::dynamics::coordinates::THETA_PINION;
 use crate::scenario::Convention;
 
 /// Everything about one simulation that does not change from step to step.
-pub(super) struct Prepared<const R: usize> {
+pub(super) struct Prepared {
     pub(super) factors: StepFactors,
     pub(super) scales: Scales,
-    pub(super) table: CycleTable<R>,
+    pub(super) table: CycleTable,
     pub(super) rows: Vec<OutputRow>,
     /// Angle of the pinion in coarse points of the cycle, per modal displacement.
     pub(super) angle: Vec<f64>,
     /// Angle under the constant loads, plus the half point that makes rounding down the nearest.
     pub(super) static_angle: f64,
-    /// Deflection under the constant loads.
-    pub(super) static_deflection: [f64; R],
+    /// Deflection under the constant loads, in each direction.
+    pub(super) static_deflection: Vec<f64>,
     /// Coarse points of the cycle per sample, at the nominal speed.
     pub(super) points_per_sample: f64,
 }
 
 /// State of the modes at the first sample.
-pub(super) struct FirstState<const R: usize> {
+pub(super) struct FirstState {
     pub(super) displacement: Vec<f64>,
     pub(super) scaled_velocity: Vec<f64>,
-    pub(super) force: [f64; R],
+    pub(super) force: Vec<f64>,
+    pub(super) external: [f64; EXTERNALS],
     pub(super) angle: f64,
     pub(super) entry: usize,
 }
@@ -37,9 +38,13 @@ pub(super) struct FirstState<const R: usize> {
 /// Most times that the point of the cycle is sought to which its own static equilibrium leads.
 const MOST_ITERATIONS: usize = 11;
 
-impl<const R: usize> Prepared<R> {
+impl Prepared {
     /// Tabulates a simulation.
-    pub(super) fn new(problem: &Problem) -> Self {
+    ///
+    /// # Arguments
+    /// * `problem` - the simulation
+    /// * `directions` - at least the mesh directions that it has; those that it has not got stay at rest
+    pub(super) fn new(problem: &Problem, directions: usize) -> Self {
         let (model, stages) = (problem.model, problem.stages);
         let half_step_s = stages.time.step_s() / 2.0;
         let factors = StepFactors::new(model, half_step_s);
@@ -58,33 +63,24 @@ impl<const R: usize> Prepared<R> {
         let followed_speed = if published { vec![0.0; model.modes()] } else { drag };
         let points_per_rad = 1.0 / (std::f64::consts::TAU * stages.cycle.coarse_step_rev);
         let angle: Vec<f64> = model.shapes.iter().map(|shape| shape[THETA_PINION] * points_per_rad).collect();
-        let column = |r: usize| model.mesh.get(r).map_or(&[][..], |column| column.as_slice());
         let scales = Scales {
             half_step_s,
             external: [model.motor.clone(), model.brake.clone(), followed_speed],
             static_displacement,
         };
         Self {
-            table: CycleTable::new(model, &stages.system, &factors.compliance),
+            table: CycleTable::new(model, &stages.system, &factors.compliance, directions),
             rows: problem.outputs.iter().map(|output| output.row(model, &scales)).collect(),
             static_angle: sum(&angle, &scales.static_displacement) + 0.5,
-            static_deflection: std::array::from_fn(|r| sum(column(r), &scales.static_displacement)),
+            static_deflection: (0..directions)
+                .map(|r| sum(column(model, r), &scales.static_displacement))
+                .collect(),
             points_per_sample: stages.cycle.points_per_pinion_revolution as f64
                 / stages.time.samples_per_pinion_revolution as f64,
             angle,
             factors,
             scales,
         }
-    }
-
-    /// (rad, m) `share · column`: what a force in mesh direction `r` adds to each mode in a step.
-    pub(super) fn push(&self, problem: &Problem, r: usize) -> Vec<f64> {
-        problem.model.mesh.get(r).map_or_else(Vec::new, |column| self.share(column.as_slice()))
-    }
-
-    /// `h² E` times a modal force.
-    pub(super) fn share(&self, force: &[f64]) -> Vec<f64> {
-        self.factors.share.iter().zip(force).map(|(share, force)| share * force).collect()
     }
 
     fn scaled_velocity(&self, model: &ReducedModel) -> Vec<f64> {
@@ -100,9 +96,9 @@ impl<const R: usize> Prepared<R> {
     pub(super) fn first_state(
         &self,
         problem: &Problem,
-        errors: &[f64; R],
-        external: &[f64; EXTERNALS],
-    ) -> FirstState<R> {
+        errors: &[f64],
+        external: [f64; EXTERNALS],
+    ) -> FirstState {
         let model = problem.model;
         let rotation = problem.stages.time.first_simulated_sample as f64 * self.points_per_sample;
         let Some(given) = &model.initial_displacement else {
@@ -115,15 +111,14 @@ impl<const R: usize> Prepared<R> {
             .collect();
         let angle = self.static_angle + sum(&self.angle, &displacement);
         let entry = self.table.entry(rotation + angle);
-        let deviation = &self.table.points[entry].deviation;
-        let force = std::array::from_fn(|r| {
-            let carried = (0..R).map(|c| {
-                let column = model.mesh.get(c).map_or(0.0, |column| sum(column.as_slice(), &displacement));
-                deviation[r][c] * (self.static_deflection[c] + column)
-            });
-            -(errors[r] + carried.sum::<f64>())
-        });
-        FirstState { displacement, scaled_velocity: self.scaled_velocity(model), force, angle, entry }
+        let directions = errors.len();
+        let deflection: Vec<f64> = (0..directions)
+            .map(|c| self.static_deflection[c] + sum(column(model, c), &displacement))
+            .collect();
+        let rows = self.table.deviation(entry).chunks_exact(directions);
+        let force = errors.iter().zip(rows).map(|(error, row)| -(error + sum(row, &deflection))).collect();
+        let scaled_velocity = self.scaled_velocity(model);
+        FirstState { displacement, scaled_velocity, force, external, angle, entry }
     }
 
     /// No acceleration: `ω² q = B w + p` with `w = −(f + S' y)` and p the externals' and the damping's force. A problem of the
@@ -132,17 +127,17 @@ impl<const R: usize> Prepared<R> {
     fn equilibrium(
         &self,
         problem: &Problem,
-        errors: &[f64; R],
-        external: &[f64; EXTERNALS],
+        errors: &[f64],
+        external: [f64; EXTERNALS],
         rotation: f64,
-    ) -> FirstState<R> {
+    ) -> FirstState {
         let model = problem.model;
         let columns = model.mesh.len();
         let stiffness = DVector::from_column_slice(&model.stiffness);
         let flexible: Vec<DVector<f64>> =
             model.mesh.iter().map(|column| column.component_div(&stiffness)).collect();
         let compliance = DMatrix::from_fn(columns, columns, |r, c| model.mesh[r].dot(&flexible[c]));
-        let forces = externals(self);
+        let forces = &self.scales.external;
         let alone = DVector::from_fn(model.modes(), |n, _| {
             let driven = forces.iter().zip(external).map(|(force, value)| force[n] * value);
             (driven.sum::<f64>() - model.damping[n] * model.initial_velocity[n]) / model.stiffness[n]
@@ -150,8 +145,8 @@ impl<const R: usize> Prepared<R> {
         let deflection_alone =
             DVector::from_fn(columns, |r, _| self.static_deflection[r] + model.mesh[r].dot(&alone));
         let solve = |entry: usize| {
-            let table = &self.table.points[entry].deviation;
-            let deviation = DMatrix::from_fn(columns, columns, |r, c| table[r][c]);
+            let table = self.table.deviation(entry);
+            let deviation = DMatrix::from_fn(columns, columns, |r, c| table[r * errors.len() + c]);
             let load = DVector::from_fn(columns, |r, _| errors[r]) + &deviation * &deflection_alone;
             // The static stiffness is positive definite, so the matrix has an inverse.
             let relief = (DMatrix::identity(columns, columns) + &deviation * &compliance).try_inverse();
@@ -177,16 +172,17 @@ impl<const R: usize> Prepared<R> {
         FirstState {
             displacement: displacement.as_slice().to_vec(),
             scaled_velocity: self.scaled_velocity(model),
-            force: std::array::from_fn(|r| force.get(r).copied().unwrap_or(0.0)),
+            force: force.as_slice().to_vec(),
+            external,
             angle,
             entry,
         }
     }
 }
 
-/// Modal force of each external, of a simulation.
-pub(super) fn externals<const R: usize>(prepared: &Prepared<R>) -> [&[f64]; EXTERNALS] {
-    std::array::from_fn(|x| prepared.scales.external[x].as_slice())
+/// Mesh direction `r` in the modes; empty where the simulation has not got it.
+pub(super) fn column(model: &ReducedModel, r: usize) -> &[f64] {
+    model.mesh.get(r).map_or(&[], |column| column.as_slice())
 }
 
 /// `Σ a_n b_n`.

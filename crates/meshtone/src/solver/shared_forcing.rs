@@ -5,22 +5,43 @@ use super::outputs::EXTERNALS;
 use crate::dynamics::{Forcing, ForcingBlock};
 
 /// Forcing of one block of samples.
-pub(super) struct SharedForcing<const L: usize, const R: usize> {
-    /// (N) Force of the profile errors in the mesh's directions.
-    pub(super) errors: Vec<[Lanes<L>; R]>,
+pub(super) struct SharedForcing<const L: usize> {
+    /// (N) Force of the profile errors in the mesh's directions, sample by sample.
+    errors: Vec<Lanes<L>>,
+    /// Number of the mesh's directions.
+    directions: usize,
     /// Motor lead, torque deviation and speed deviation; not set while motor and brake are steady.
     pub(super) external: Vec<[Lanes<L>; EXTERNALS]>,
     scratch: ForcingBlock,
 }
 
-impl<const L: usize, const R: usize> SharedForcing<L, R> {
+impl<const L: usize> SharedForcing<L> {
     /// Room for `samples` samples.
-    pub(super) fn new(samples: usize) -> Self {
+    ///
+    /// # Arguments
+    /// * `samples` - number of samples
+    /// * `directions` - number of the mesh's directions
+    pub(super) fn new(samples: usize, directions: usize) -> Self {
         Self {
-            errors: vec![[Lanes::splat(0.0); R]; samples],
+            errors: vec![Lanes::splat(0.0); samples * directions],
+            directions,
             external: vec![[Lanes::splat(0.0); EXTERNALS]; samples],
             scratch: ForcingBlock::default(),
         }
+    }
+
+    /// Force of the profile errors at every sample, in the `R` directions that there are.
+    pub(super) fn errors<const R: usize>(&self) -> &[[Lanes<L>; R]] {
+        self.errors.as_chunks().0
+    }
+
+    /// Force of the profile errors at the first sample, in each direction, and the externals there.
+    ///
+    /// # Arguments
+    /// * `lane` - which simulation
+    pub(super) fn first(&self, lane: usize) -> (Vec<f64>, [f64; EXTERNALS]) {
+        let errors = self.errors[..self.directions].iter().map(|error| error.0[lane]);
+        (errors.collect(), self.external[0].map(|external| external.0[lane]))
     }
 
     /// Takes the next `samples` samples of every lane.
@@ -33,7 +54,7 @@ impl<const L: usize, const R: usize> SharedForcing<L, R> {
         for (l, forcing) in forcings.iter_mut().enumerate() {
             forcing.next_block(samples, &mut self.scratch);
             for (r, errors) in self.scratch.errors.iter().enumerate() {
-                for (shared, error) in self.errors.iter_mut().zip(errors) {
+                for (shared, error) in self.errors.chunks_exact_mut(self.directions).zip(errors) {
                     shared[r].0[l] = *error;
                 }
             }

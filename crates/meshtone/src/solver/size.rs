@@ -1,6 +1,8 @@
 //! How large a problem the step is compiled for.
 
 use super::reduce::ReducedModel;
+use crate::dynamics::DIRECTIONS;
+use crate::dynamics::coordinates::COORDINATES;
 use crate::simulate::Stages;
 
 /// Number of modes and of mesh directions that a step is compiled for, the smaller sizes first. Fixed sizes let the compiler
@@ -28,6 +30,25 @@ impl Size {
             (0..=7, 0..=2) => Self::Tilting,
             (0..=7, 3) => Self::Rolling,
             _ => Self::General,
+        }
+    }
+
+    /// Number of modes that a step is compiled for.
+    pub(super) const fn modes(self) -> usize {
+        match self {
+            Self::Flat => 5,
+            Self::Tilting | Self::Rolling => 8,
+            Self::General => COORDINATES,
+        }
+    }
+
+    /// Number of mesh directions that a step is compiled for.
+    pub(super) const fn directions(self) -> usize {
+        match self {
+            Self::Flat => 1,
+            Self::Tilting => 2,
+            Self::Rolling => 3,
+            Self::General => DIRECTIONS,
         }
     }
 }

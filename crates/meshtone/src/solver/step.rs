@@ -11,7 +11,7 @@
 //! Source: N. M. Newmark, "A method of computation for structural dynamics", Journal of the Engineering Mechanics
 //! Division 85 (1959); the iteration on the angle-dependent stiffness is the paper's (section 4, item 3).
 
-use super::cycle_table::CycleTable;
+use super::cycle_table::{CyclePoint, DEVIATION, RELIEF};
 use super::instruction_set::Instructions;
 use super::lanes::{Lanes, dot};
 use super::outputs::EXTERNALS;
@@ -116,8 +116,9 @@ const MOST_POINTS: f64 = (1u64 << 40) as f64;
 
 /// Simulations that are stepped side by side.
 pub(super) struct Group<'a, const L: usize, const N: usize, const R: usize> {
-    pub(super) coefficients: &'a Coefficients<L, N, R>,
-    pub(super) tables: [&'a CycleTable<R>; L],
+    pub(super) coefficients: Coefficients<L, N, R>,
+    /// The mesh over the cycle, of each lane.
+    pub(super) tables: [&'a [CyclePoint<R>]; L],
 }
 
 impl<const L: usize, const N: usize, const R: usize> Group<'_, L, N, R> {
@@ -130,7 +131,7 @@ impl<const L: usize, const N: usize, const R: usize> Group<'_, L, N, R> {
     /// Entries of the cycle tables at the point `nearest`, counted from the start of the simulation.
     #[inline(always)]
     fn entries_of<I: Instructions>(&self, simd: I, nearest: Lanes<L>) -> [usize; L] {
-        let c = self.coefficients;
+        let c = &self.coefficients;
         let half = Lanes::splat(0.5);
         // The half keeps a whole number of cycles from being rounded into the cycle before.
         let cycles = nearest.add(simd, half).mul(simd, c.per_cycle).floor(simd);
@@ -140,7 +141,7 @@ impl<const L: usize, const N: usize, const R: usize> Group<'_, L, N, R> {
         let mut entries = in_cycle.where_less(simd, in_cycle, c.window, in_pitch).indices(simd);
         for l in 0..L {
             // The angle of a solution that has diverged has no entry.
-            entries[l] = entries[l].min(self.tables[l].points.len() - 1);
+            entries[l] = entries[l].min(self.tables[l].len() - 1);
         }
         entries
     }
@@ -157,14 +158,14 @@ impl<const L: usize, const N: usize, const R: usize> Group<'_, L, N, R> {
         let mut load = *errors;
         for r in 0..R {
             for c in 0..R {
-                let deviation = Lanes::from_fn(|l| self.tables[l].points[entries[l]].deviation[r][c]);
+                let deviation = Lanes::from_fn(|l| self.tables[l][entries[l]][DEVIATION][r][c]);
                 load[r] = deviation.mul_add(simd, deflection[c], load[r]);
             }
         }
         let mut force = [Lanes::splat(0.0); R];
         for r in 0..R {
             for c in 0..R {
-                let relief = Lanes::from_fn(|l| self.tables[l].points[entries[l]].relief[r][c]);
+                let relief = Lanes::from_fn(|l| self.tables[l][entries[l]][RELIEF][r][c]);
                 force[r] = relief.negative_mul_add(simd, load[c], force[r]);
             }
         }
@@ -185,7 +186,7 @@ impl<const L: usize, const N: usize, const R: usize> Group<'_, L, N, R> {
         for r in 0..R {
             force[r] = errors[r].neg(simd);
             for c in 0..R {
-                let deviation = Lanes::from_fn(|l| self.tables[l].points[entries[l]].deviation[r][c]);
+                let deviation = Lanes::from_fn(|l| self.tables[l][entries[l]][DEVIATION][r][c]);
                 force[r] = deviation.negative_mul_add(simd, deflection[c], force[r]);
             }
         }
@@ -226,7 +227,7 @@ impl<const L: usize, const N: usize, const R: usize> Group<'_, L, N, R> {
         errors: &[Lanes<L>; R],
         external: &[Lanes<L>; EXTERNALS],
     ) {
-        let c = self.coefficients;
+        let c = &self.coefficients;
         let mut change = [Lanes::splat(0.0); N];
         let mut displacement = [Lanes::splat(0.0); N];
         for n in 0..N {
@@ -350,7 +351,7 @@ impl<const L: usize, const N: usize, const R: usize> Group<'_, L, N, R> {
         errors: &[Lanes<L>; R],
         external: &[Lanes<L>; EXTERNALS],
     ) -> [Lanes<L>; N] {
-        let c = self.coefficients;
+        let c = &self.coefficients;
         let held = self.force_of_state(simd, &state.displacement, &state.entry, errors);
         let mut result = c.norm.rigid_increment;
         for n in 0..N {
@@ -381,7 +382,7 @@ impl<const L: usize, const N: usize, const R: usize> Group<'_, L, N, R> {
         before: &[Lanes<L>; R],
         after: &[Lanes<L>; R],
     ) -> Lanes<L> {
-        let c = self.coefficients;
+        let c = &self.coefficients;
         let mut moved = [Lanes::splat(0.0); R];
         for r in 0..R {
             for s in 0..R {
@@ -392,7 +393,7 @@ impl<const L: usize, const N: usize, const R: usize> Group<'_, L, N, R> {
         for r in 0..R {
             let mut load = after[r].sub(simd, before[r]);
             for s in 0..R {
-                let deviation = Lanes::from_fn(|l| self.tables[l].points[entries[l]].deviation[r][s]);
+                let deviation = Lanes::from_fn(|l| self.tables[l][entries[l]][DEVIATION][r][s]);
                 load = deviation.mul_add(simd, moved[s], load);
             }
             work = load.mul_add(simd, moved[r], work);

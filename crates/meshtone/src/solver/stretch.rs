@@ -1,12 +1,82 @@
 //! The time loop over one block of samples: all that is compiled for each instruction set.
 
-use super::history::History;
-use super::instruction_set::{Instructions, Task};
+use super::history::{Columns, History};
+use super::instruction_set::{InstructionSet, Instructions, Task};
 use super::shared_forcing::SharedForcing;
 use super::step::{Group, State};
 
-/// Some steps of `L` simulations.
-pub(super) struct Stretch<
+/// The time loop of `L` simulations, whatever size and convention it is compiled for.
+pub(super) trait TimeLoop<const L: usize, const BLOCK: usize> {
+    /// Makes steps.
+    ///
+    /// # Arguments
+    /// * `instructions` - what the processor may use
+    /// * `steps_before` - number of steps since the start of the integration
+    /// * `steps` - how many, at most `BLOCK`
+    /// * `forcing` - of the samples after the state's
+    /// * `history` - takes the states before each step
+    fn advance(
+        &mut self,
+        instructions: InstructionSet,
+        steps_before: usize,
+        steps: usize,
+        forcing: &SharedForcing<L>,
+        history: Option<&mut History<L, BLOCK>>,
+    );
+
+    /// Whether lane `l` is still a motion.
+    fn is_sound(&self, l: usize) -> bool;
+}
+
+/// The time loop of a size and convention.
+pub(super) struct SizedLoop<
+    'a,
+    const L: usize,
+    const N: usize,
+    const R: usize,
+    const PUBLISHED: bool,
+    const STEADY: bool,
+> {
+    pub(super) group: Group<'a, L, N, R>,
+    pub(super) state: State<L, N, R>,
+}
+
+impl<
+    const L: usize,
+    const N: usize,
+    const R: usize,
+    const BLOCK: usize,
+    const PUBLISHED: bool,
+    const STEADY: bool,
+> TimeLoop<L, BLOCK> for SizedLoop<'_, L, N, R, PUBLISHED, STEADY>
+{
+    fn advance(
+        &mut self,
+        instructions: InstructionSet,
+        steps_before: usize,
+        steps: usize,
+        forcing: &SharedForcing<L>,
+        history: Option<&mut History<L, BLOCK>>,
+    ) {
+        let history = history.and_then(History::columns);
+        let Self { group, state } = self;
+        instructions.run(Stretch::<L, N, R, BLOCK, PUBLISHED, STEADY> {
+            group,
+            state,
+            steps_before,
+            steps,
+            forcing,
+            history,
+        });
+    }
+
+    fn is_sound(&self, l: usize) -> bool {
+        self.state.is_sound(l)
+    }
+}
+
+/// Some steps.
+struct Stretch<
     'a,
     const L: usize,
     const N: usize,
@@ -15,16 +85,12 @@ pub(super) struct Stretch<
     const PUBLISHED: bool,
     const STEADY: bool,
 > {
-    pub(super) group: &'a Group<'a, L, N, R>,
-    pub(super) state: &'a mut State<L, N, R>,
-    /// Number of steps since the start of the integration.
-    pub(super) steps_before: usize,
-    /// Forcing of the samples after the state's.
-    pub(super) forcing: &'a SharedForcing<L, R>,
-    /// Number of steps.
-    pub(super) steps: usize,
-    /// Takes the states before each step.
-    pub(super) history: Option<&'a mut History<L, N, R, BLOCK>>,
+    group: &'a Group<'a, L, N, R>,
+    state: &'a mut State<L, N, R>,
+    steps_before: usize,
+    steps: usize,
+    forcing: &'a SharedForcing<L>,
+    history: Option<Columns<'a, L, N, R, BLOCK>>,
 }
 
 impl<
@@ -41,7 +107,7 @@ impl<
     #[inline(always)]
     fn run<I: Instructions>(mut self, simd: I) {
         let mut state = *self.state;
-        let forcing = self.forcing.errors.iter().zip(&self.forcing.external).take(self.steps);
+        let forcing = self.forcing.errors().iter().zip(&self.forcing.external).take(self.steps);
         for (k, (errors, external)) in forcing.enumerate() {
             if let Some(history) = &mut self.history {
                 history.store::<STEADY>(k, &state);
