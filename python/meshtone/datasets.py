@@ -23,7 +23,7 @@ Examples
 ... test = 0.5
 ... ''')
 >>> from meshtone import template
->>> _ = pathlib.Path(folder.name, "machine.toml").write_text(template("healthy"))
+>>> _ = pathlib.Path(folder.name, "machine.toml").write_text(template("healthy"), encoding="utf-8")
 >>> gears = datasets.generate_dataset(plan, path)
 >>> gears
 <Dataset of 8 records: 4 healthy, 4 missing-tooth; splits test (4), train (4)>

@@ -1,52 +1,77 @@
-//! Virtual environments of Python under `target`.
+//! The Python of the checks: a virtual environment under `target`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::step;
+use crate::step::Row;
 
 /// Names the Python interpreter that makes the virtual environments.
 const PYTHON: &str = "PYTHON";
+/// What is installed for the checks, from the workspace's root.
+const REQUIREMENTS: &str = "python/tests/requirements.txt";
 
-/// The interpreter of the virtual environment in `folder`, which is made anew when its requirements have changed.
-///
-/// # Arguments
-/// * `folder` - where it lies
-/// * `requirements` - the file of what is installed into it
+/// The interpreter of the checks' environment, which is made anew when its requirements have changed.
 ///
 /// # Errors
 /// The exit code of what failed: there is no Python, or the packages cannot be installed.
-pub fn environment(folder: &Path, requirements: &Path) -> Result<PathBuf, u8> {
-    let venv = folder.join("venv");
-    let python = if cfg!(windows) { venv.join("Scripts/python.exe") } else { venv.join("bin/python") };
-    let wanted = std::fs::read_to_string(requirements).map_err(|error| {
-        eprintln!("error: {}: {error}", requirements.display());
-        1
-    })?;
+pub fn of_checks(row: &Row) -> Result<PathBuf, u8> {
+    row.step("Python with what the checks need", || install(row))
+}
+
+fn install(row: &Row) -> Result<PathBuf, u8> {
+    let folder = row.root().join("target").join("python");
+    let requirements = row.root().join(REQUIREMENTS);
+    let python = interpreter(&folder.join("venv"));
+    let wanted =
+        std::fs::read_to_string(&requirements).map_err(|error| row.fail_at(&requirements, &error))?;
     // Written last, so that an installation that was cut off is done again.
     let installed = folder.join("installed.txt");
     if python.exists() && std::fs::read_to_string(&installed).is_ok_and(|text| text == wanted) {
         return Ok(python);
     }
     let base = std::env::var_os(PYTHON).unwrap_or_else(|| "python3".into());
-    step::program(Command::new(base).args(["-m", "venv", "--clear"]).arg(&venv))?;
-    pip_install(&python, |pip| pip.arg("--requirement").arg(requirements))?;
-    std::fs::write(&installed, wanted).map_err(|error| {
-        eprintln!("error: {}: {error}", installed.display());
-        1
-    })?;
+    row.program(Command::new(base).args(["-m", "venv", "--clear"]).arg(folder.join("venv")))?;
+    pip_install(row, &python, &python, |pip| pip.arg("--requirement").arg(&requirements))?;
+    std::fs::write(&installed, wanted).map_err(|error| row.fail_at(&installed, &error))?;
     Ok(python)
 }
 
-/// Installs packages into the environment of `python`.
+/// A new environment with nothing in it but Python; returns its interpreter.
 ///
 /// # Arguments
-/// * `python` - the environment's interpreter
+/// * `python` - makes it
+/// * `folder` - where; what lies there is removed
+///
+/// # Errors
+/// The exit code of what failed.
+pub fn empty(row: &Row, python: &Path, folder: &Path) -> Result<PathBuf, u8> {
+    row.program(Command::new(python).args(["-m", "venv", "--clear", "--without-pip"]).arg(folder))?;
+    Ok(interpreter(folder))
+}
+
+/// Installs packages.
+///
+/// # Arguments
+/// * `pip` - an interpreter with pip
+/// * `python` - the interpreter for which they are installed
 /// * `what` - adds pip's arguments
 ///
 /// # Errors
 /// Pip's exit code.
-pub fn pip_install(python: &Path, what: impl FnOnce(&mut Command) -> &mut Command) -> Result<(), u8> {
-    let mut pip = Command::new(python);
-    step::program(what(pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"])))
+pub fn pip_install(
+    row: &Row,
+    pip: &Path,
+    python: &Path,
+    what: impl FnOnce(&mut Command) -> &mut Command,
+) -> Result<(), u8> {
+    let mut command = Command::new(pip);
+    command.args(["-m", "pip", "--python"]).arg(python);
+    // What is imported is compiled then; most is not.
+    let install = ["--quiet", "--disable-pip-version-check", "install", "--no-compile"];
+    row.program(what(command.args(install)))
+}
+
+/// The interpreter of a virtual environment.
+fn interpreter(venv: &Path) -> PathBuf {
+    if cfg!(windows) { venv.join("Scripts/python.exe") } else { venv.join("bin/python") }
 }

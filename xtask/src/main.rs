@@ -2,15 +2,21 @@
 // A program that reports to the terminal.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod checks;
+mod dist;
 mod docs;
 mod environment;
 mod kernels;
 mod python;
 mod scipy;
 mod step;
+mod surroundings;
+mod toolchain;
 
 use std::path::Path;
 use std::process::ExitCode;
+
+use step::Row;
 
 const HELP: &str = "\
 Development tasks of Meshtone
@@ -18,12 +24,13 @@ Development tasks of Meshtone
 Usage: cargo xtask TASK
 
 Tasks:
-  test         Everything that a change must pass, in this order, stopping at the first failure:
-               formatting, lints, tests (with the examples in the documentation, and against SciPy,
-               pyarrow and polars, which are installed under target/scipy once: needs Python 3.11
-               or later, as python3 or under the name in the variable PYTHON), a look for vector
-               instructions that are calls, the library's documentation, and the check of the book
-  wheel        Build the Python package's wheel into target/wheels
+  check        What is quick: formatting, lints, and the tests of the core
+  test         Everything that a change must pass, which CONTRIBUTING.md lists; no step begins once
+               one has failed. Python 3.11 or later is needed, as python3 or under the name in the
+               variable PYTHON, and a package index
+  dist         Make what a release carries, in target/dist: the program, the Python package's wheel
+               and its source distribution
+  wheel        Of these, only the wheel
   check-docs   Only the check of the book: its table of contents, its links, pictures and formulas
   docs         Build the book into docs/book (needs mdbook)
   help         Print this text (also -h, --help)
@@ -34,10 +41,12 @@ fn main() -> ExitCode {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let root = workspace_root();
     let outcome = match words.as_slice() {
-        ["test"] => test(root),
-        ["check-docs"] => step::run("docs check", || docs::check_and_report(root)),
+        ["check"] => checks::quick(root),
+        ["test"] => checks::all(root),
+        ["dist"] => dist::make(&Row::at_terminal(root)),
         ["docs"] => docs::build(root),
-        ["wheel"] => python::wheel(root),
+        ["wheel"] => dist::make_wheel(&Row::at_terminal(root)),
+        ["check-docs"] => Row::at_terminal(root).step("docs check", || docs::check_and_report(root)),
         ["help" | "-h" | "--help"] => {
             print!("{HELP}");
             Ok(())
@@ -66,21 +75,4 @@ fn main() -> ExitCode {
 fn workspace_root() -> &'static Path {
     let package = Path::new(env!("CARGO_MANIFEST_DIR"));
     package.parent().unwrap_or(package)
-}
-
-/// Everything that a change must pass.
-fn test(root: &Path) -> Result<(), u8> {
-    step::cargo(root, &["fmt", "--all", "--check"], &[])?;
-    step::cargo(root, &["clippy", "--workspace", "--all-targets", "--release", "--", "-D", "warnings"], &[])?;
-    let [scipy, python] = scipy::reference(root)?;
-    let python = [("MESHTONE_SCIPY_REFERENCE", scipy.as_os_str()), ("MESHTONE_PYTHON", python.as_os_str())];
-    step::cargo(root, &["test", "--workspace", "--release"], &python)?;
-    step::run("kernels check", || kernels::check(root))?;
-    python::test(root)?;
-    step::cargo(
-        root,
-        &["doc", "--workspace", "--no-deps", "--release"],
-        &[("RUSTDOCFLAGS", "-D warnings".as_ref())],
-    )?;
-    step::run("docs check", || docs::check_and_report(root))
 }

@@ -1,31 +1,24 @@
-//! SciPy's results, for the tests that compare with them, and the Python that reads data sets in the tests.
+//! SciPy's results, for the tests that compare with them.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::environment::environment;
-use crate::step;
+use crate::step::Row;
 
-/// Folder of the script and of what it needs, from the workspace's root.
-const FOLDER: &str = "crates/meshtone/tests/scipy";
+/// The script that computes them, from the workspace's root.
+const SCRIPT: &str = "crates/meshtone/tests/scipy/reference.py";
 
-/// Makes a virtual environment with SciPy under `target`, once, and lets it write its results there.
-///
-/// Returns the file of the results, and the environment's interpreter, which also reads data sets in the tests.
+/// Lets SciPy write its results under `target`; returns their file.
 ///
 /// # Arguments
-/// * `root` - folder of the workspace
+/// * `python` - an interpreter with SciPy
 ///
 /// # Errors
-/// The exit code of what failed: there is no Python, or the packages cannot be installed.
-pub fn reference(root: &Path) -> Result<[PathBuf; 2], u8> {
-    let folder = root.join("target").join("scipy");
-    let results = folder.join("reference.npz");
-    let mut python = PathBuf::new();
-    step::run("SciPy's results", || {
-        python = environment(&folder, &root.join(FOLDER).join("requirements.txt"))?;
-        let script = root.join(FOLDER).join("reference.py");
-        step::program(Command::new(&python).arg(script).arg(&results))
+/// The script's exit code.
+pub fn reference(row: &Row, python: &Path) -> Result<PathBuf, u8> {
+    let results = row.root().join("target").join("python").join("scipy_reference.npz");
+    row.step("SciPy's results", || {
+        row.program(Command::new(python).arg(row.root().join(SCRIPT)).arg(&results))
     })?;
-    Ok([results, python])
+    Ok(results)
 }

@@ -1,0 +1,84 @@
+//! Everything that a change must pass, and the part of it that is quick.
+
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+use crate::step::{Row, beside};
+use crate::surroundings::unusual;
+use crate::{dist, docs, environment, kernels, python, scipy, toolchain};
+
+/// What the tests of the Rust packages need of Python.
+struct Prepared {
+    /// An interpreter with pyarrow and polars, which read data sets.
+    python: PathBuf,
+    /// SciPy's results.
+    scipy: PathBuf,
+}
+
+/// Formatting, lints and the tests of the core: what is worth waiting for after every small change.
+///
+/// # Errors
+/// The exit code of what failed.
+pub fn quick(root: &Path) -> Result<(), u8> {
+    let row = Row::at_terminal(root);
+    formatting(&row)?;
+    lints(&row)?;
+    row.cargo(&["test", "--release", "--package", "meshtone", "--lib", "--test", "all"], &[])
+}
+
+/// Everything.
+///
+/// Two rows of steps run at once: most of what Rust needs is done by both processors, most of what Python needs by one, or by
+/// none while packages are fetched.
+///
+/// # Errors
+/// The exit code of what failed first.
+pub fn all(root: &Path) -> Result<(), u8> {
+    let [rust, python] = Row::pair(root, &root.join("target").join("checks").join("log"))?;
+    formatting(&rust)?;
+    let (ready, prepared) = channel();
+    beside(|| rust_row(&rust, &prepared), move || python_row(&python, &ready))
+}
+
+fn rust_row(row: &Row, prepared: &Receiver<Prepared>) -> Result<(), u8> {
+    lints(row)?;
+    // Nothing comes where that has failed, which has been said.
+    let prepared = prepared.recv().map_err(|_| 1)?;
+    let mut surroundings = unusual(row)?;
+    surroundings.push(("MESHTONE_SCIPY_REFERENCE", prepared.scipy.into()));
+    surroundings.push(("MESHTONE_PYTHON", prepared.python.into()));
+    // Not the examples: the lints have looked at them, and nothing runs them.
+    row.cargo(&["test", "--workspace", "--release", "--tests"], &surroundings)?;
+    row.cargo(&["test", "--workspace", "--release", "--doc"], &surroundings)?;
+    row.step("kernels check", || kernels::check(row.root()))?;
+    let program = dist::program(row)?;
+    dist::try_program(row, &program)?;
+    documentation(row)?;
+    toolchain::check(row)
+}
+
+fn python_row(row: &Row, ready: &Sender<Prepared>) -> Result<(), u8> {
+    let python = environment::of_checks(row)?;
+    let scipy = scipy::reference(row, &python)?;
+    // Whoever waited for it has failed where it cannot be sent.
+    let _ = ready.send(Prepared { python: python.clone(), scipy });
+    let wheel = dist::wheel(row, &python)?;
+    python::test(row, &python, &wheel)?;
+    dist::try_wheel(row, &python, &wheel)?;
+    let source = dist::source(row, &python)?;
+    dist::try_source(row, &python, &source)
+}
+
+fn formatting(row: &Row) -> Result<(), u8> {
+    row.cargo(&["fmt", "--all", "--check"], &[])
+}
+
+fn lints(row: &Row) -> Result<(), u8> {
+    row.cargo(&["clippy", "--workspace", "--all-targets", "--release", "--", "-D", "warnings"], &[])
+}
+
+fn documentation(row: &Row) -> Result<(), u8> {
+    let arguments = ["doc", "--workspace", "--no-deps", "--release"];
+    row.cargo(&arguments, &[("RUSTDOCFLAGS", "-D warnings".into())])?;
+    row.step("docs check", || docs::check_and_report(row.root()))
+}

@@ -1,0 +1,186 @@
+//! What a release carries: the program, the wheel and the source distribution, each tried where there is nothing else.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::environment;
+use crate::step::Row;
+
+/// The project's packages in the wheel.
+const PACKAGES: [&str; 5] =
+    ["meshtone", "meshtone-io", "meshtone-plot", "meshtone-dataset", "meshtone-python"];
+/// What is tried of an installed package.
+const TRIAL: &str = "\
+import meshtone as mt
+simulation = mt.simulate(mt.examples.healthy().copy(sampling_rate_hz=1e4))
+assert simulation.vertical_g.std() > 0
+";
+
+/// Makes everything that a release carries.
+///
+/// # Errors
+/// The exit code of what failed.
+pub fn make(row: &Row) -> Result<(), u8> {
+    let python = environment::of_checks(row)?;
+    let made = [program(row)?, wheel(row, &python)?, source(row, &python)?];
+    report(row, &made);
+    Ok(())
+}
+
+/// Makes the wheel.
+///
+/// # Errors
+/// The exit code of what failed.
+pub fn make_wheel(row: &Row) -> Result<(), u8> {
+    let python = environment::of_checks(row)?;
+    report(row, &[wheel(row, &python)?]);
+    Ok(())
+}
+
+/// Says what was made, and how large it is.
+fn report(row: &Row, files: &[PathBuf]) {
+    for file in files {
+        let bytes = std::fs::metadata(file).map_or(0, |metadata| metadata.len());
+        row.say(&format!("{}: {:.1} MB", file.display(), bytes as f64 / 1e6));
+    }
+}
+
+/// The folder of what a release carries.
+fn folder(row: &Row) -> PathBuf {
+    row.root().join("target").join("dist")
+}
+
+/// Builds the program and leaves out of it the names that only those who work on it need.
+///
+/// # Errors
+/// The exit code of what failed.
+pub fn program(row: &Row) -> Result<PathBuf, u8> {
+    row.cargo(&["build", "--release", "--locked", "--package", "meshtone-cli"], &[])?;
+    row.step("Program, stripped", || {
+        let name = format!("meshtone{}", std::env::consts::EXE_SUFFIX);
+        let built = row.root().join("target").join("release").join(&name);
+        let program = folder(row).join(name);
+        std::fs::create_dir_all(folder(row)).map_err(|error| row.fail_at(&program, &error))?;
+        std::fs::copy(&built, &program).map_err(|error| row.fail_at(&built, &error))?;
+        // Windows has them in a file of their own.
+        if cfg!(unix) {
+            row.program(Command::new("strip").arg(&program))?;
+        }
+        Ok(program)
+    })
+}
+
+/// Builds the wheel.
+///
+/// # Arguments
+/// * `python` - an interpreter with maturin
+///
+/// # Errors
+/// The exit code of what failed.
+pub fn wheel(row: &Row, python: &Path) -> Result<PathBuf, u8> {
+    row.step("Python wheel", || {
+        maturin(row, python, "whl", &["build", "--release", "--locked", "--quiet", "--strip"])
+    })
+}
+
+/// Packs the source distribution.
+///
+/// # Arguments
+/// * `python` - an interpreter with maturin
+///
+/// # Errors
+/// The exit code of what failed.
+pub fn source(row: &Row, python: &Path) -> Result<PathBuf, u8> {
+    row.step("Source distribution", || maturin(row, python, "gz", &["sdist"]))
+}
+
+/// Lets maturin make one file; returns it. Earlier ones of its kind are removed.
+fn maturin(row: &Row, python: &Path, extension: &str, arguments: &[&str]) -> Result<PathBuf, u8> {
+    let folder = folder(row);
+    std::fs::create_dir_all(&folder).map_err(|error| row.fail_at(&folder, &error))?;
+    let of_kind = || -> Result<Vec<PathBuf>, u8> {
+        let entries = std::fs::read_dir(&folder).map_err(|error| row.fail_at(&folder, &error))?;
+        let paths = entries.flatten().map(|entry| entry.path());
+        Ok(paths.filter(|path| path.extension().is_some_and(|end| end == extension)).collect())
+    };
+    for old in of_kind()? {
+        std::fs::remove_file(&old).map_err(|error| row.fail_at(&old, &error))?;
+    }
+    row.program(Command::new(python).args(["-m", "maturin"]).args(arguments).arg("--out").arg(&folder))?;
+    of_kind()?.pop().ok_or_else(|| row.fail(&format!("{}: nothing was made", folder.display())))
+}
+
+/// Runs the program in an empty folder without any variables.
+///
+/// # Errors
+/// The exit code of what failed.
+pub fn try_program(row: &Row, program: &Path) -> Result<(), u8> {
+    row.step("Program, in an empty folder", || {
+        let folder = empty_folder(row, "program")?;
+        let run = |arguments: &[&str]| {
+            row.program(Command::new(program).args(arguments).env_clear().current_dir(&folder))
+        };
+        run(&["init", "tooth-breakage", "-o", "broken.toml"])?;
+        run(&["simulate", "broken.toml", "-o", "results"])?;
+        let results = ["panel.png", "panel.svg", "signals.parquet", "summary.json"];
+        match results.iter().find(|name| !folder.join("results").join(name).is_file()) {
+            None => Ok(()),
+            Some(name) => Err(row.fail(&format!("the program wrote no {name}"))),
+        }
+    })
+}
+
+/// Installs the wheel into an empty environment and simulates there.
+///
+/// # Arguments
+/// * `python` - an interpreter with pip
+///
+/// # Errors
+/// The exit code of what failed.
+pub fn try_wheel(row: &Row, python: &Path, wheel: &Path) -> Result<(), u8> {
+    row.step("Python wheel, in an empty environment", || try_package(row, python, "wheel", wheel, &[]))
+}
+
+/// Installs the source distribution into an empty environment, which compiles it, and simulates there.
+///
+/// What other projects' packages give is taken from what has been built, and the project's own packages, which are compiled from
+/// the source distribution's files, are not optimised: it takes a tenth of the time, and shows as well that nothing is missing.
+///
+/// # Arguments
+/// * `python` - an interpreter with pip
+///
+/// # Errors
+/// The exit code of what failed.
+pub fn try_source(row: &Row, python: &Path, source: &Path) -> Result<(), u8> {
+    row.step("Source distribution, in an empty environment", || {
+        let unoptimised =
+            PACKAGES.map(|package| format!("--config profile.release.package.{package}.opt-level=0"));
+        let environment = [
+            ("CARGO_TARGET_DIR", row.root().join("target").into_os_string()),
+            ("MATURIN_PEP517_ARGS", unoptimised.join(" ").into()),
+        ];
+        try_package(row, python, "source", source, &environment)
+    })
+}
+
+fn try_package(
+    row: &Row,
+    pip: &Path,
+    name: &str,
+    package: &Path,
+    environment: &[(&str, OsString)],
+) -> Result<(), u8> {
+    let folder = empty_folder(row, name)?;
+    let python = environment::empty(row, pip, &folder.join("venv"))?;
+    environment::pip_install(row, pip, &python, |pip| pip.envs(environment.iter().cloned()).arg(package))?;
+    row.program(Command::new(&python).args(["-c", TRIAL]).env_clear().current_dir(&folder))
+}
+
+/// A folder below `target/checks` with nothing in it.
+fn empty_folder(row: &Row, name: &str) -> Result<PathBuf, u8> {
+    let folder = row.root().join("target").join("checks").join(name);
+    let emptied = if folder.exists() { std::fs::remove_dir_all(&folder) } else { Ok(()) };
+    emptied.and_then(|()| std::fs::create_dir_all(&folder)).map_err(|error| row.fail_at(&folder, &error))?;
+    Ok(folder)
+}
