@@ -7,6 +7,10 @@ use crate::step::{Row, beside};
 use crate::surroundings::unusual;
 use crate::{dist, docs, environment, kernels, python, scipy, toolchain};
 
+/// Tests of the packages that have any. Benchmarks need packages of others with more features: they and all that stands on
+/// them would be built again.
+const TEST: [&str; 5] = ["test", "--workspace", "--exclude", "meshtone-bench", "--release"];
+
 /// What the tests of the Rust packages need of Python.
 struct Prepared {
     /// An interpreter with pyarrow and polars, which read data sets.
@@ -23,7 +27,9 @@ pub fn quick(root: &Path) -> Result<(), u8> {
     let row = Row::at_terminal(root);
     formatting(&row)?;
     lints(&row)?;
-    row.cargo(&["test", "--release", "--package", "meshtone", "--lib", "--test", "all"], &[])
+    // With the program, none of whose targets is built, so that the packages of others are those that it has built.
+    let packages = ["--package", "meshtone", "--package", "meshtone-cli"];
+    row.cargo(&[&["test", "--release", "--lib", "--test", "all"], &packages[..]].concat(), &[])
 }
 
 /// Everything.
@@ -48,8 +54,8 @@ fn rust_row(row: &Row, prepared: &Receiver<Prepared>) -> Result<(), u8> {
     surroundings.push(("MESHTONE_SCIPY_REFERENCE", prepared.scipy.into()));
     surroundings.push(("MESHTONE_PYTHON", prepared.python.into()));
     // Not the examples: the lints have looked at them, and nothing runs them.
-    row.cargo(&["test", "--workspace", "--release", "--tests"], &surroundings)?;
-    row.cargo(&["test", "--workspace", "--release", "--doc"], &surroundings)?;
+    row.cargo(&[&TEST, &["--tests"][..]].concat(), &surroundings)?;
+    row.cargo(&[&TEST, &["--doc"][..]].concat(), &surroundings)?;
     row.step("kernels check", || kernels::check(row.root()))?;
     let program = dist::program(row)?;
     dist::try_program(row, &program)?;
