@@ -5,11 +5,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use crate::step::{Row, beside};
 use crate::surroundings::unusual;
-use crate::{dist, docs, environment, kernels, python, scipy, toolchain};
-
-/// Tests of the packages that have any. Benchmarks need packages of others with more features: they and all that stands on
-/// them would be built again.
-const TEST: [&str; 5] = ["test", "--workspace", "--exclude", "meshtone-bench", "--release"];
+use crate::{dist, docs, environment, features, kernels, python, scipy, toolchain};
 
 /// What the tests of the Rust packages need of Python.
 struct Prepared {
@@ -54,12 +50,13 @@ fn rust_row(row: &Row, prepared: &Receiver<Prepared>) -> Result<(), u8> {
     surroundings.push(("MESHTONE_SCIPY_REFERENCE", prepared.scipy.into()));
     surroundings.push(("MESHTONE_PYTHON", prepared.python.into()));
     // Not the examples: the lints have looked at them, and nothing runs them.
-    row.cargo(&[&TEST, &["--tests"][..]].concat(), &surroundings)?;
-    row.cargo(&[&TEST, &["--doc"][..]].concat(), &surroundings)?;
+    row.cargo(&["test", "--workspace", "--release", "--tests"], &surroundings)?;
+    row.cargo(&["test", "--workspace", "--release", "--doc"], &surroundings)?;
     row.step("kernels check", || kernels::check(row.root()))?;
     let program = dist::program(row)?;
     dist::try_program(row, &program)?;
     documentation(row)?;
+    features::check(row, &surroundings)?;
     toolchain::check(row)
 }
 

@@ -7,9 +7,6 @@ use std::process::Command;
 use crate::environment;
 use crate::step::Row;
 
-/// The project's packages in the wheel.
-const PACKAGES: [&str; 5] =
-    ["meshtone", "meshtone-io", "meshtone-plot", "meshtone-dataset", "meshtone-python"];
 /// What is tried of an installed package.
 const TRIAL: &str = "\
 import meshtone as mt
@@ -154,14 +151,23 @@ pub fn try_wheel(row: &Row, python: &Path, wheel: &Path) -> Result<(), u8> {
 /// The exit code of what failed.
 pub fn try_source(row: &Row, python: &Path, source: &Path) -> Result<(), u8> {
     row.step("Source distribution, in an empty environment", || {
-        let unoptimised =
-            PACKAGES.map(|package| format!("--config profile.release.package.{package}.opt-level=0"));
+        let unoptimised: Vec<String> = packages(row)?
+            .iter()
+            .map(|package| format!("--config profile.release.package.{package}.opt-level=0"))
+            .collect();
         let environment = [
             ("CARGO_TARGET_DIR", row.root().join("target").into_os_string()),
             ("MATURIN_PEP517_ARGS", unoptimised.join(" ").into()),
         ];
         try_package(row, python, "source", source, &environment)
     })
+}
+
+/// The project's packages; the source distribution has not all of them, which cargo only remarks.
+fn packages(row: &Row) -> Result<Vec<String>, u8> {
+    let folder = row.root().join("crates");
+    let entries = std::fs::read_dir(&folder).map_err(|error| row.fail_at(&folder, &error))?;
+    Ok(entries.flatten().filter_map(|entry| entry.file_name().into_string().ok()).collect())
 }
 
 fn try_package(

@@ -6,6 +6,7 @@ mod checks;
 mod dist;
 mod docs;
 mod environment;
+mod features;
 mod kernels;
 mod python;
 mod scipy;

@@ -14,6 +14,7 @@ pub mod signal;
 mod simulate;
 pub mod solver;
 pub mod stiffness;
+mod threads;
 pub mod toml_reader;
 pub mod tooth;
 mod trace;

@@ -1,7 +1,9 @@
 //! The eight stages, in order.
 
 use std::fmt::{self, Debug, Formatter};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+
+use web_time::Instant;
 
 use crate::dynamics::coordinates::CoordinateVector;
 use crate::dynamics::{ErrorForce, Excitation, MeshLoad, Motion, MotionSample, System};

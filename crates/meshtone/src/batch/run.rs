@@ -10,6 +10,7 @@ use super::plan::groups;
 use crate::sampling::TimeGrid;
 use crate::scenario::{Scenario, ScenarioError};
 use crate::solver::{InstructionSet, LANES};
+use crate::threads;
 
 /// (bytes) What may be kept for each thread of simulations that are planned together.
 const WINDOW_BYTES: usize = 16 << 20;
@@ -85,13 +86,9 @@ pub fn simulate_many<K: Keep>(
         panicked: AtomicBool::new(false),
         keep,
         control,
-        threads: rayon::current_num_threads(),
+        threads: threads::count(),
     };
-    rayon::scope(|scope| {
-        for _ in 0..work.threads {
-            scope.spawn(|_| work.run());
-        }
-    });
+    threads::each(|| work.run());
     work.lock().next
 }
 

@@ -2,14 +2,13 @@
 
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use super::candidates::{place, rounds, value};
 use super::search::Grid;
 use super::simulations::{Differences, Simulations};
 use super::tune::{Common, tune_among};
 use super::{Experiment, Fit, HybridError, SimulatedCases, TunedKeys};
 use crate::scenario::Scenario;
+use crate::threads;
 
 /// The best candidates whose parameters the intervals hold, where their error allows it; no others are kept.
 const KEPT: usize = 12;
@@ -145,8 +144,7 @@ impl<'a> KeySearch<'a> {
         }
         let simulated = self.simulations.run(scenarios)?;
         let common = self.common;
-        let fits: Vec<Result<Fits, HybridError>> =
-            simulated.into_par_iter().map(|simulated| fits(&common, simulated?, round == 0)).collect();
+        let fits = threads::map(simulated, |simulated| fits(&common, simulated?, round == 0));
         for (places, fits) in places.into_iter().zip(fits) {
             match fits {
                 Ok(fits) => self.keep(places, fits),
@@ -180,14 +178,10 @@ impl<'a> KeySearch<'a> {
 
     /// Error of each case, predicted by what fits the others best.
     fn leave_one_out_error(&self) -> Result<Vec<f64>, HybridError> {
-        self.folds
-            .par_iter()
-            .enumerate()
-            .map(|(case, fold)| {
-                let simulated = SimulatedCases::new(fold.differences.to_vec())?;
-                self.common.left_out_error(&simulated, fold.fit, case)
-            })
-            .collect()
+        threads::try_map(self.folds.iter().enumerate(), |(case, fold)| {
+            let simulated = SimulatedCases::new(fold.differences.to_vec())?;
+            self.common.left_out_error(&simulated, fold.fit, case)
+        })
     }
 }
 

@@ -2,10 +2,9 @@
 
 use std::sync::atomic::AtomicBool;
 
-use rayon::prelude::*;
-
 use super::search::{Grid, Objective, Point, enhancement, equal_weights, point, refine};
 use super::{Enhancement, EnhancementBounds, Fit, HybridError, Measurements, SimulatedCases};
+use crate::threads;
 
 /// Bootstrap samples of the records.
 const BOOTSTRAP_SAMPLES: u64 = 200;
@@ -172,10 +171,9 @@ pub fn tune(
     let original = simulated.predict(measured.indicators(), &Enhancement::default())?;
     let common = Common { measured, bounds, seed, cancelled, original: &original };
     let mut tuning = tune_among(&[(simulated, best)], &common)?;
-    tuning.leave_one_out_error = (0..measured.cases())
-        .into_par_iter()
-        .map(|case| common.left_out_error(simulated, grid.fit(Some(case))?, case))
-        .collect::<Result<_, _>>()?;
+    tuning.leave_one_out_error = threads::try_map(0..measured.cases(), |case| {
+        common.left_out_error(simulated, grid.fit(Some(case))?, case)
+    })?;
     Ok(tuning)
 }
 
@@ -282,22 +280,18 @@ fn intervals(
 ) -> Result<EnhancementIntervals, HybridError> {
     let ranges = bounds.logarithms();
     let centre = point(&chosen.enhancement);
-    let mut excesses = (0..BOOTSTRAP_SAMPLES)
-        .into_par_iter()
-        .map(|sample| {
-            let (measured, weights) = objective.measured.resampled(seed, sample);
-            let again =
-                |simulated| Objective { simulated, measured: &measured, weights: &weights, ..*objective };
-            let here = again(objective.simulated).at(centre)?;
-            let mut least = here;
-            for (simulated, fit) in candidates {
-                let start = point(&fit.enhancement);
-                least = least.min(refine(&again(simulated), ranges, start, STEPS)?.0);
-            }
-            least = least.min(refine(&again(objective.simulated), ranges, centre, STEPS)?.0);
-            Ok(here - least)
-        })
-        .collect::<Result<Vec<f64>, HybridError>>()?;
+    let mut excesses = threads::try_map(0..BOOTSTRAP_SAMPLES, |sample| -> Result<f64, HybridError> {
+        let (measured, weights) = objective.measured.resampled(seed, sample);
+        let again = |simulated| Objective { simulated, measured: &measured, weights: &weights, ..*objective };
+        let here = again(objective.simulated).at(centre)?;
+        let mut least = here;
+        for (simulated, fit) in candidates {
+            let start = point(&fit.enhancement);
+            least = least.min(refine(&again(simulated), ranges, start, STEPS)?.0);
+        }
+        least = least.min(refine(&again(objective.simulated), ranges, centre, STEPS)?.0);
+        Ok(here - least)
+    })?;
     excesses.sort_unstable_by(f64::total_cmp);
     let least = candidates.first().map_or(chosen.error, |(_, best)| best.error);
     let limit = chosen.error.max(least + excesses[(CONFIDENCE * BOOTSTRAP_SAMPLES as f64) as usize]);
@@ -306,20 +300,16 @@ fn intervals(
         .filter(|(_, fit)| fit.error <= limit)
         .map(|(simulated, fit)| (*simulated, point(&fit.enhancement)))
         .chain([(objective.simulated, centre)]);
-    let ends: Vec<[[f64; 2]; 3]> = starts
-        .collect::<Vec<_>>()
-        .into_par_iter()
-        .map(|(simulated, centre)| {
-            let objective = Objective { simulated, ..*objective };
-            let mut ends = [[0.0; 2]; 3];
-            for (d, of_parameter) in ends.iter_mut().enumerate() {
-                for (side, end) in of_parameter.iter_mut().enumerate() {
-                    *end = end_of_profile(&objective, ranges, centre, d, side, limit)?.exp();
-                }
+    let ends = threads::try_map(starts, |(simulated, centre)| -> Result<[[f64; 2]; 3], HybridError> {
+        let objective = Objective { simulated, ..*objective };
+        let mut ends = [[0.0; 2]; 3];
+        for (d, of_parameter) in ends.iter_mut().enumerate() {
+            for (side, end) in of_parameter.iter_mut().enumerate() {
+                *end = end_of_profile(&objective, ranges, centre, d, side, limit)?.exp();
             }
-            Ok(ends)
-        })
-        .collect::<Result<_, HybridError>>()?;
+        }
+        Ok(ends)
+    })?;
     let widest = |d: usize| {
         let least = ends.iter().map(|ends| ends[d][0]).fold(f64::INFINITY, f64::min);
         [least, ends.iter().map(|ends| ends[d][1]).fold(0.0, f64::max)]

@@ -1,6 +1,6 @@
 //! Fields of the time loop.
 
-use std::time::Instant;
+use web_time::Instant;
 
 use super::average::average;
 use super::{Trace, static_stages};

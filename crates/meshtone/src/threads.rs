@@ -1,0 +1,55 @@
+//! The threads of the current rayon pool; without the feature `threads`, the one that asks.
+
+#[cfg(feature = "threads")]
+use rayon::prelude::*;
+
+/// How many there are.
+pub(crate) fn count() -> usize {
+    #[cfg(feature = "threads")]
+    return rayon::current_num_threads();
+    #[cfg(not(feature = "threads"))]
+    1
+}
+
+/// Lets each of them do the same work; comes back when all have ended.
+pub(crate) fn each(work: impl Fn() + Sync) {
+    #[cfg(feature = "threads")]
+    rayon::scope(|scope| {
+        for _ in 0..count() {
+            scope.spawn(|_| work());
+        }
+    });
+    #[cfg(not(feature = "threads"))]
+    work();
+}
+
+/// What `work` makes of each item, in the items' order.
+pub(crate) fn map<T: Send, R: Send>(
+    items: impl IntoIterator<Item = T>,
+    work: impl Fn(T) -> R + Sync + Send,
+) -> Vec<R> {
+    #[cfg(feature = "threads")]
+    return shared(items).map(work).collect();
+    #[cfg(not(feature = "threads"))]
+    items.into_iter().map(work).collect()
+}
+
+/// As [`map`], but once `work` has failed for an item, it is done for none that has not begun.
+///
+/// # Errors
+/// One of those that `work` gave.
+pub(crate) fn try_map<T: Send, R: Send, E: Send>(
+    items: impl IntoIterator<Item = T>,
+    work: impl Fn(T) -> Result<R, E> + Sync + Send,
+) -> Result<Vec<R>, E> {
+    #[cfg(feature = "threads")]
+    return shared(items).map(work).collect();
+    #[cfg(not(feature = "threads"))]
+    items.into_iter().map(work).collect()
+}
+
+/// Items to be shared among the threads.
+#[cfg(feature = "threads")]
+fn shared<T: Send>(items: impl IntoIterator<Item = T>) -> impl ParallelIterator<Item = T> {
+    items.into_iter().collect::<Vec<T>>().into_par_iter()
+}

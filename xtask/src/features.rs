@@ -1,0 +1,53 @@
+//! What is built of other features than the program's.
+
+use std::ffi::OsString;
+use std::path::Path;
+use std::process::Command;
+
+use crate::step::Row;
+
+/// Rust's name of the machine that a browser is.
+const BROWSER: &str = "wasm32-unknown-unknown";
+/// Compiles the core without threads.
+const CORE: [&str; 5] = ["check", "--release", "--package", "meshtone", "--no-default-features"];
+/// Tests data sets in object stores. With the program, none of whose targets is built, so that the packages of others are those that
+/// it has built.
+const OBJECT_STORES: [&str; 11] = [
+    "test",
+    "--release",
+    "--package",
+    "meshtone-dataset",
+    "--package",
+    "meshtone-cli",
+    "--features",
+    "meshtone-dataset/objects",
+    "--test",
+    "all",
+    "objects::",
+];
+
+/// Checks the core without threads, also for a browser where Rust's libraries for one are installed, and data sets in object
+/// stores.
+///
+/// # Arguments
+/// * `surroundings` - variables of the tests
+///
+/// # Errors
+/// The exit code of what failed.
+pub fn check(row: &Row, surroundings: &[(&str, OsString)]) -> Result<(), u8> {
+    row.cargo(&OBJECT_STORES, surroundings)?;
+    row.cargo(&CORE, &[])?;
+    if is_installed(row, BROWSER)? {
+        return row.cargo(&[&CORE[..], &["--target", BROWSER]].concat(), &[]);
+    }
+    println!("    {BROWSER} was not tried: it is not installed");
+    Ok(())
+}
+
+/// Whether Rust's libraries for a kind of machine are there.
+fn is_installed(row: &Row, machine: &str) -> Result<bool, u8> {
+    let mut rustc = Command::new("rustc");
+    rustc.args(["--print", "target-libdir", "--target", machine]).current_dir(row.root());
+    let output = rustc.output().map_err(|error| row.fail(&format!("cannot start rustc: {error}")))?;
+    Ok(output.status.success() && Path::new(String::from_utf8_lossy(&output.stdout).trim()).is_dir())
+}
