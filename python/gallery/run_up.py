@@ -20,7 +20,7 @@ rate_hz, teeth = run_up.sampling_rate_hz, scenario.pinion_teeth
 
 amplitude_g = 2 * np.abs(np.fft.rfft(run_up.vertical_g)) / run_up.vertical_g.size
 frequency_hz = np.fft.rfftfreq(run_up.vertical_g.size, 1 / rate_hz)
-phase = mt.ShaftPhase.from_speed_samples(run_up.pinion_speed_hz, rate_hz)
+phase = mt.ShaftPhase.from_speed_samples(run_up.pinion_shaft_speed_hz, rate_hz)
 angular = mt.signal.angular_resample(run_up.vertical_g, phase)
 order_amplitude_g = 2 * np.abs(np.fft.rfft(angular.values)) / angular.values.size
 orders = np.fft.rfftfreq(angular.values.size, 1 / angular.points_per_revolution)
@@ -29,7 +29,7 @@ figure, (speed_ax, frequency_ax, order_ax) = plt.subplots(
     3, 1, figsize=(9, 8), height_ratios=[1, 1.6, 1.6], layout="constrained"
 )
 step = 100
-speed_ax.plot(run_up.time_s[::step], run_up.pinion_speed_hz[::step], color=BLUE)
+speed_ax.plot(run_up.time_s[::step], run_up.pinion_shaft_speed_hz[::step], color=BLUE)
 speed_ax.set(title="Run-up", xlabel="Time (s)", ylabel="Pinion speed (rev/s)", ylim=(0, None))
 shown = frequency_hz < 8 * teeth * 60
 frequency_ax.plot(frequency_hz[shown], amplitude_g[shown], color=BLUE, linewidth=0.5)

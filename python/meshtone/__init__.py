@@ -1,4 +1,4 @@
-"""Vibration of spur gears, healthy or with a damaged tooth.
+"""Vibration of spur gears, healthy or with damaged teeth.
 
 >>> from meshtone import Scenario, ToothBreakage, simulate
 >>> scenario = Scenario(module_mm=3, pinion_teeth=17, gear_teeth=38, face_width_mm=15, pinion_speed_hz=40, brake_torque_nm=10,

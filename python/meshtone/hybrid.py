@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from .faults import in_words
 from .scenario import Scenario, native_scenario
 from .signal import _signal, whole
 
@@ -190,7 +191,7 @@ class EnhancedSignals:
     healthy_rms_g : float
         (g) That rms, of the simulation.
     label : str
-        The fault's kind, or 'healthy'.
+        The faults' kinds, or 'healthy'.
     """
 
     relative_difference: Array = field(repr=False)
@@ -224,5 +225,5 @@ def enhance(scenario: Scenario, tuned: str | PathLike[str], *, draws: int = 10, 
         A file that is not a ``tuned.toml``; a scenario that cannot be simulated.
     """
     signals, healthy_rms_g = _core.enhance(native_scenario(scenario), tuned, whole("draws", draws, 1), whole("seed", seed))
-    label = "healthy" if scenario.fault is None else scenario.fault.kind
+    label = in_words(scenario.faults)
     return EnhancedSignals(signals, healthy_rms_g, label)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from .faults import MissingTooth, PartialFace, ToothBreakage
+from .faults import Fault, MissingTooth, PartialFace, ToothBreakage, in_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -45,8 +45,8 @@ LABELS = {
     "horizontal_g": "Horizontal acceleration (g)",
     "vertical_g": "Vertical acceleration (g)",
     "axial_g": "Axial acceleration (g)",
-    "pinion_speed_hz": "Pinion speed (rev/s)",
-    "gear_speed_hz": "Gear speed (rev/s)",
+    "pinion_shaft_speed_hz": "Pinion speed (rev/s)",
+    "gear_shaft_speed_hz": "Gear speed (rev/s)",
     "mesh_force_n": "Mesh force (N)",
 }
 
@@ -121,12 +121,12 @@ def _samples_of(simulation: Simulation, revolutions: float) -> int:
     if scenario.speed_profile_hz is None:
         turns = simulation.sampling_rate_hz * scenario.gear_teeth / scenario.pinion_teeth / scenario.pinion_speed_hz
         return max(2, int(round(revolutions * turns)))
-    turned_rev = np.cumsum(simulation.gear_speed_hz) / simulation.sampling_rate_hz
+    turned_rev = np.cumsum(simulation.gear_shaft_speed_hz) / simulation.sampling_rate_hz
     return max(2, int(np.searchsorted(turned_rev, revolutions)))
 
 
 def plot_mesh_stiffness(simulation: Simulation, *, ax: Axes | None = None) -> Axes:
-    """Mesh stiffness over the first 8 of the gear's tooth pitches: that of the damaged tooth is the first.
+    """Mesh stiffness over 8 tooth pitches: the first damaged tooth enters contact at the first or the second.
 
     Parameters
     ----------
@@ -140,12 +140,13 @@ def plot_mesh_stiffness(simulation: Simulation, *, ax: Axes | None = None) -> Ax
     matplotlib.axes.Axes
     """
     ax = _axes(ax)
-    gear_rev, stiffness = simulation.mesh_stiffness_curve()
-    pitches = gear_rev * simulation.scenario.gear_teeth
-    shown = pitches < 8
-    ax.plot(pitches[shown], stiffness[shown], color=BLUE, linewidth=1.2)
+    # Tooth j of either wheel enters contact first after j - 1 pitches; one more shows what was before.
+    first = max(0, min((fault.tooth - 2 for fault in simulation.scenario.faults), default=0))
+    stiffness = simulation._native.mesh_stiffness_n_per_mm(first, 8)
+    pitches = first + np.arange(stiffness.size) / stiffness.size * 8
+    ax.plot(pitches, stiffness, color=BLUE, linewidth=1.2)
     ax.set(xlabel="Angle of the gear (tooth pitches; tooth 1 enters contact at 0)", ylabel="Mesh stiffness (N/mm)")
-    ax.set_xlim(0, 8)  # further on the stiffness repeats
+    ax.set_xlim(first, first + 8)
     ax.set_ylim(bottom=0)
     ax.grid(alpha=0.3)
     return ax
@@ -192,7 +193,7 @@ def plot_spectrum(simulation: Simulation, channel: str = "vertical_g", *, ax: Ax
 
 
 def plot_tooth(simulation: Simulation, wheel: Literal["gear", "pinion"] = "gear", *, ax: Axes | None = None) -> Axes:
-    """The first tooth of a wheel, at equal scales; of the gear with its damage.
+    """The first damaged tooth of a wheel, at equal scales and with its damage; of a sound wheel the first tooth.
 
     Parameters
     ----------
@@ -212,9 +213,10 @@ def plot_tooth(simulation: Simulation, wheel: Literal["gear", "pinion"] = "gear"
     outline_y = np.concatenate([y_mm, -y_mm[::-1]])
     outline_x = np.concatenate([x_mm, x_mm[::-1]])
     ax.fill(outline_y, outline_x, facecolor="#e8e8e8", edgecolor="black", linewidth=1.0)
-    flank = simulation._native.damaged_flank_y_mm() if wheel == "gear" else None
-    fault = simulation.scenario.fault
-    if fault is not None and wheel == "gear":
+    damaged = [(tooth, flank) for name, tooth, flank in simulation._native.damaged_teeth_mm() if name == wheel]
+    tooth, flank_y_mm = min(damaged, key=lambda entry: entry[0], default=(1, y_mm))
+    faults = [fault for fault in simulation.scenario.faults if (fault.wheel, fault.tooth) == (wheel, tooth)]
+    for fault in faults:
         if isinstance(fault, MissingTooth):
             ax.fill(outline_y, outline_x, facecolor="white", edgecolor=ORANGE, hatch="//", linewidth=1.0, label="missing")
         elif isinstance(fault, ToothBreakage):
@@ -226,17 +228,22 @@ def plot_tooth(simulation: Simulation, wheel: Literal["gear", "pinion"] = "gear"
                 lost = x_mm >= x_mm[-1] - height_mm
                 y = np.concatenate([y_mm[lost], -y_mm[lost][::-1]])
                 ax.fill(y, np.concatenate([x_mm[lost], x_mm[lost][::-1]]), label=label, **style)
-        elif flank is not None and flank.size == y_mm.size:
-            partial = isinstance(fault, PartialFace)
-            label = f"pit, {fault.width_mm:g} mm wide" if isinstance(fault, PartialFace) else fault.kind
-            lost = y_mm > flank + 1e-9
-            y = np.concatenate([y_mm[lost], flank[lost][::-1]])
-            ax.fill(y, np.concatenate([x_mm[lost], x_mm[lost][::-1]]), label=label, **(PART if partial else WHOLE))
+    cuts = [fault for fault in faults if not isinstance(fault, (MissingTooth, ToothBreakage))]
+    if cuts:
+        partial = all(isinstance(fault, PartialFace) for fault in cuts)
+        lost = y_mm > flank_y_mm + 1e-9
+        y = np.concatenate([y_mm[lost], flank_y_mm[lost][::-1]])
+        label = "; ".join(map(_cut_in_words, cuts))
+        ax.fill(y, np.concatenate([x_mm[lost], x_mm[lost][::-1]]), label=label, **(PART if partial else WHOLE))
     ax.set_aspect("equal")
-    ax.set(xlabel="Across the tooth (mm)", ylabel="From the wheel's centre (mm)", title=f"First tooth of the {wheel}")
+    ax.set(xlabel="Across the tooth (mm)", ylabel="From the wheel's centre (mm)", title=f"{'First tooth' if tooth == 1 else f'Tooth {tooth}'} of the {wheel}")
     if ax.get_legend_handles_labels()[0]:
         ax.legend(fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.22))
     return ax
+
+
+def _cut_in_words(fault: Fault) -> str:
+    return f"pit, {fault.width_mm:g} mm wide" if isinstance(fault, PartialFace) else fault.kind
 
 
 def plot_record(record: Record) -> Figure:
@@ -322,10 +329,9 @@ def plot_simulation(simulation: Simulation) -> Figure:
     for name in ("average", "difference"):
         axes[name].set_ylim(-limits, limits)
     scenario = simulation.scenario
-    kind = "healthy" if scenario.fault is None else scenario.fault.kind
     figure.suptitle(
         f"{scenario.pinion_teeth}/{scenario.gear_teeth} teeth, {_speed(simulation)}, "
-        f"{scenario.brake_torque_nm:g} N m: {kind}"
+        f"{scenario.brake_torque_nm:g} N m: {in_words(scenario.faults)}"
     )
     return figure
 

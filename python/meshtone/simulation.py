@@ -13,6 +13,7 @@ import numpy.typing as npt
 from . import _core
 from ._progress import on_terminal
 from ._sections import hint
+from .faults import in_words
 from .scenario import Scenario, native_scenario
 from .signal import Record, _settings, whole
 
@@ -25,7 +26,7 @@ __all__ = ["CHANNELS", "Signals", "Simulation", "simulate", "simulate_many", "tr
 Array = npt.NDArray[np.float64]
 Wheel = Literal["pinion", "gear"]
 
-CHANNELS = ("horizontal_g", "vertical_g", "axial_g", "pinion_speed_hz", "gear_speed_hz", "mesh_force_n")
+CHANNELS = ("horizontal_g", "vertical_g", "axial_g", "pinion_shaft_speed_hz", "gear_shaft_speed_hz", "mesh_force_n")
 """The signals of a simulation, with their units."""
 
 
@@ -44,7 +45,7 @@ class Simulation:
     >>> simulation.vertical_g.shape, simulation.vertical_g.dtype
     ((245480,), dtype('float64'))
     >>> simulation.natural_frequencies_hz.round(1)[:3]
-    array([ 104.9,  574.4, 1951.5])
+    array([ 105. ,  575.1, 1951.7])
     >>> round(float(simulation.contact_ratio), 3)
     1.609
     """
@@ -98,14 +99,14 @@ class Simulation:
         return self._native.axial_g
 
     @property
-    def pinion_speed_hz(self) -> Array:
+    def pinion_shaft_speed_hz(self) -> Array:
         """(rev/s) Speed of the pinion; shape (samples,)."""
-        return self._native.pinion_speed_hz
+        return self._native.pinion_shaft_speed_hz
 
     @property
-    def gear_speed_hz(self) -> Array:
+    def gear_shaft_speed_hz(self) -> Array:
         """(rev/s) Speed of the gear; shape (samples,)."""
-        return self._native.gear_speed_hz
+        return self._native.gear_shaft_speed_hz
 
     @property
     def mesh_force_n(self) -> Array:
@@ -142,7 +143,7 @@ class Simulation:
         return sorted({*super().__dir__(), *self.fields})
 
     def mesh_stiffness_curve(self) -> tuple[Array, Array]:
-        """Mesh stiffness at every point of a revolution of the gear.
+        """Mesh stiffness over a revolution of the gear: the first one, where damage to the pinion makes the next different.
 
         Returns
         -------
@@ -151,7 +152,7 @@ class Simulation:
         stiffness_n_per_mm : array, shape (points,)
             (N/mm) Mesh stiffness.
         """
-        stiffness = self._native.mesh_stiffness_curve_n_per_mm()
+        stiffness = self._native.mesh_stiffness_n_per_mm(0, self.scenario.gear_teeth)
         return np.arange(stiffness.size) / stiffness.size, stiffness
 
     def tooth_profile(self, wheel: Wheel = "gear") -> tuple[Array, Array]:
@@ -238,7 +239,7 @@ class Simulation:
         return plotting.plot_spectrum(self, channel, ax=ax)
 
     def plot_tooth(self, wheel: Wheel = "gear", *, ax: Axes | None = None) -> Axes:
-        """The first tooth, with its damage. See :func:`meshtone.plotting.plot_tooth`."""
+        """The first damaged tooth of a wheel, or its first one. See :func:`meshtone.plotting.plot_tooth`."""
         from . import plotting
 
         return plotting.plot_tooth(self, wheel, ax=ax)
@@ -253,9 +254,8 @@ class Simulation:
         return (simulate, (self.scenario,))
 
     def __repr__(self) -> str:
-        kind = "healthy" if self.scenario.fault is None else self.scenario.fault.kind
         return (
-            f"<Simulation of {self.scenario.pinion_teeth}/{self.scenario.gear_teeth} teeth, {kind}: "
+            f"<Simulation of {self.scenario.pinion_teeth}/{self.scenario.gear_teeth} teeth, {in_words(self.scenario.faults)}: "
             f"{self.vertical_g.size} samples at {self.sampling_rate_hz:.0f} S/s>"
         )
 

@@ -50,7 +50,7 @@ class Published:
         if name.endswith("din7"):
             errors = {f"{wheel}_profile_errors_mm": self.fields[f"{wheel}_profile_errors_mm"] for wheel in ("pinion", "gear")}
         arguments: dict[str, Any] = {**teeth, **operation, **errors}
-        self.scenario = meshtone.Scenario(module_mm=3, convention="published", fault=FAULTS[name], **arguments)
+        self.scenario = meshtone.Scenario(module_mm=3, model="published", fault=FAULTS[name], **arguments)
 
 
 @pytest.fixture(params=sorted(FAULTS), scope="module")

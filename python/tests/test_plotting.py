@@ -80,3 +80,15 @@ def test_what_is_lost_is_told_in_the_tooth() -> None:
     broken = meshtone.simulate(meshtone.examples.tooth_breakage()).plot_tooth()
     assert legend(broken) == ["chip, 12 mm wide at the tip", "tip lost, 3 mm"]
     plt.close("all")
+
+
+def test_damage_is_drawn_wherever_it_is() -> None:
+    scenario = meshtone.examples.partial_face().copy(sampling_rate_hz=1e4)
+    pit = meshtone.PartialFace(width_mm=2, start=0.2, end=0.8, depth=0.5, wheel="pinion", tooth=7)
+    simulation = meshtone.simulate(scenario.copy(faults=[pit, meshtone.MissingTooth(tooth=12)]))
+    pinion, gear = simulation.plot_tooth("pinion"), simulation.plot_tooth("gear")
+    assert (pinion.get_title(), legend(pinion)) == ("Tooth 7 of the pinion", ["pit, 2 mm wide"])
+    assert (gear.get_title(), legend(gear)) == ("Tooth 12 of the gear", ["missing"])
+    assert simulation.plot_mesh_stiffness().get_xlim() == (5, 13)
+    assert "partial-face of pinion tooth 7, missing-tooth of gear tooth 12" in simulation.plot().get_suptitle()
+    plt.close("all")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import pickle
 from pathlib import Path
 from typing import Any
@@ -33,8 +34,40 @@ def test_round_trips(fault: meshtone.Fault | None) -> None:
     assert eval(repr(scenario), vars(meshtone)) == scenario
 
 
+def test_lists_of_faults() -> None:
+    chip = meshtone.ToothBreakage(chip_height_mm=3.0, chip_width_mm=4.0, tip_loss_mm=0.0, wheel="pinion", tooth=3)
+    missing = meshtone.MissingTooth(tooth=6)
+    both = Scenario(**REQUIRED, faults=[chip, missing])
+    assert both.faults == (chip, missing)
+    for same in (Scenario.from_toml(both.to_toml()), pickle.loads(pickle.dumps(both)), both.copy()):
+        assert same == both
+    assert eval(repr(both), vars(meshtone)) == both
+    assert both.copy(fault=missing) == Scenario(**REQUIRED, fault=missing) == Scenario(**REQUIRED, faults=[missing])
+    assert both.copy(fault=None).faults == both.copy(faults=[]).faults == ()
+    assert both.copy(faults=[missing]).fault == missing
+    with pytest.raises(ValueError, match=r"there are 2 faults: scenario\.faults has them"):
+        _ = both.fault
+    with pytest.raises(TypeError, match="fault and faults are both given"):
+        Scenario(**REQUIRED, fault=chip, faults=[missing])
+    with pytest.raises(TypeError, match="fault is a sequence: faults takes several"):
+        Scenario(**REQUIRED, fault=[chip, missing])  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="faults = .*: must be a sequence of faults"):
+        Scenario(**REQUIRED, faults=missing)  # type: ignore[arg-type]
+
+
+def test_every_key_of_a_fault_is_a_field() -> None:
+    for kind, scenario in examples.all().items():
+        if scenario.fault is None:
+            continue
+        [section] = [part for part in meshtone.template(kind).split("\n[") if part.startswith("fault]")]
+        lines = [line.removeprefix("#") for line in section.splitlines() if " = " in line and not line.startswith("# ")]
+        keys = {line.split(" = ")[0] for line in lines}
+        assert keys - {"kind"} <= {field.name for field in dataclasses.fields(scenario.fault)}, kind
+        assert keys >= {"kind", "wheel", "tooth"}
+
+
 def test_every_key_of_a_scenario_file_is_an_argument() -> None:
-    from meshtone._sections import SECTION_OF_KEY
+    from meshtone._keys import SECTION_OF_KEY
 
     for kind in examples.all():
         text = meshtone.template(kind)
@@ -83,7 +116,10 @@ def test_examples_are_the_files(tmp_path: Path) -> None:
         ({"pinion_teeth": 3}, "gears.pinion_teeth = 3: must be from 6"),
         ({"din_grade": 13}, "quality.din_grade = 13"),
         ({"material": "wood"}, "gears.material"),
-        ({"convention": "other"}, "convention"),
+        ({"model": "other"}, "model"),
+        ({"model": "corrected"}, 'the corrected model is called "linear" now'),
+        ({"fault": meshtone.MissingTooth(tooth=39)}, "fault.tooth = 39: must be at most 38"),
+        ({"faults": [meshtone.MissingTooth(), meshtone.MissingTooth(wheel="pinion", tooth=0)]}, "fault[1].tooth = 0"),
         ({"fault": meshtone.ToothBreakage(chip_height_mm=-5, chip_width_mm=12)}, "fault.chip_height_mm = -5"),
         ({"damping_ratio": [0.05] * 12}, "rig.damping_ratio"),
         ({"seed": 2**63}, "seed = 9223372036854775808: must be below 2**63"),
@@ -94,7 +130,7 @@ def test_values_that_are_not_allowed(changes: dict[str, Any], message: str) -> N
     with pytest.raises(ValueError) as error:
         Scenario(**{**REQUIRED, **changes})
     assert message in str(error.value)
-    assert "line" not in str(error.value)
+    assert "line " not in str(error.value)
 
 
 def test_keys_that_there_are_not() -> None:
@@ -108,6 +144,10 @@ def test_keys_that_there_are_not() -> None:
         Scenario(**REQUIRED, fault=meshtone.MissingTooth)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match=r"circle = \(57, 3, 2\): must be a PitCircle"):
         Scenario(**REQUIRED, fault=meshtone.ThroughFace(circle=(57, 3, 2)))  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="'convention' is called 'model' now, and its value 'corrected' is called 'linear'"):
+        Scenario(**REQUIRED, convention="corrected")
+    with pytest.raises(AttributeError, match="'convention' is called 'model' now"):
+        _ = examples.healthy().convention
     with pytest.raises(AttributeError, match="no key 'modul_mm'; did you mean 'module_mm'"):
         _ = examples.healthy().modul_mm
     with pytest.raises(AttributeError, match=r"scenario.copy\(seed=2\)"):
@@ -132,5 +172,5 @@ def test_a_file_name_is_not_a_files_text() -> None:
 
 def test_warnings() -> None:
     assert examples.healthy().warnings == []
-    ignored = examples.healthy().copy(convention="published", eccentricity_mm=0.1)
+    ignored = examples.healthy().copy(model="published", eccentricity_mm=0.1)
     assert all(isinstance(warning, str) for warning in ignored.warnings)

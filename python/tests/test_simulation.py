@@ -206,3 +206,17 @@ def test_other_threads_run_meanwhile() -> None:
     done.set()
     thread.join()
     assert counted > 10
+
+
+def test_damage_to_either_wheel() -> None:
+    healthy = examples.healthy().copy(sampling_rate_hz=1e4, din_grade=0)
+    chip = meshtone.ToothBreakage(chip_height_mm=4, chip_width_mm=9, tip_loss_mm=2, wheel="pinion", tooth=5)
+    both = simulate(healthy.copy(faults=[chip, meshtone.MissingTooth(tooth=20)]))
+    assert repr(both).startswith("<Simulation of 17/38 teeth, tooth-breakage of pinion tooth 5, missing-tooth of gear tooth 20: ")
+    gear_rev, stiffness = both.mesh_stiffness_curve()
+    _, sound = simulate(healthy).mesh_stiffness_curve()
+    changed = gear_rev[np.abs(stiffness - sound) > 1e-9 * sound] * 38
+    # The pinion's tooth 5 meets every 17 pitches, from the fourth on; the gear's tooth 20 after 19.
+    turns = [(4, 6), (19, 21), (21, 23), (38, 38)]
+    assert all(any(start <= pitch <= end for start, end in turns) for pitch in changed)
+    assert all(((start <= changed) & (changed <= end)).any() for start, end in turns[:3])

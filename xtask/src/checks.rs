@@ -5,7 +5,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use crate::step::{Row, beside};
 use crate::surroundings::unusual;
-use crate::{dist, docs, environment, features, kernels, python, scipy, toolchain};
+use crate::{dist, docs, environment, features, kernels, python, rooms, scipy, toolchain};
 
 /// What the tests of the Rust packages need of Python.
 struct Prepared {
@@ -22,11 +22,13 @@ struct Prepared {
 pub fn quick(root: &Path) -> Result<(), u8> {
     let row = Row::at_terminal(root);
     formatting(&row)?;
+    row.step("rooms check", || rooms::check(root))?;
     lints(&row)?;
-    // With the program, none of whose targets is built, so that the packages of others are those that it has built.
-    let packages = ["--package", "meshtone", "--package", "meshtone-cli"];
-    row.cargo(&[&["test", "--release", "--lib", "--test", "all"], &packages[..]].concat(), &[])
+    row.cargo(&[&["test", "--release", "--lib", "--test", "all"], &CORE[..]].concat(), &[])
 }
+
+/// The core, with the program, none of whose targets is built, so that the packages of others are those that it has built.
+const CORE: [&str; 4] = ["--package", "meshtone", "--package", "meshtone-cli"];
 
 /// Everything.
 ///
@@ -38,6 +40,7 @@ pub fn quick(root: &Path) -> Result<(), u8> {
 pub fn all(root: &Path) -> Result<(), u8> {
     let [rust, python] = Row::pair(root, &root.join("target").join("checks").join("log"))?;
     formatting(&rust)?;
+    rust.step("rooms check", || rooms::check(root))?;
     let (ready, prepared) = channel();
     beside(|| rust_row(&rust, &prepared), move || python_row(&python, &ready))
 }
@@ -70,6 +73,15 @@ fn python_row(row: &Row, ready: &Sender<Prepared>) -> Result<(), u8> {
     dist::try_wheel(row, &python, &wheel)?;
     let source = dist::source(row, &python)?;
     dist::try_source(row, &python, &source)
+}
+
+/// Writes what the tests of the core compare with the rows of the keys.
+///
+/// # Errors
+/// The exit code of what failed.
+pub fn generate(row: &Row) -> Result<(), u8> {
+    let arguments = [&["test", "--release", "--test", "all"], &CORE[..], &["generated::"]].concat();
+    row.cargo(&arguments, &[("MESHTONE_GENERATE", "1".into())])
 }
 
 fn formatting(row: &Row) -> Result<(), u8> {

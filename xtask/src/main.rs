@@ -9,6 +9,7 @@ mod environment;
 mod features;
 mod kernels;
 mod python;
+mod rooms;
 mod scipy;
 mod step;
 mod surroundings;
@@ -32,6 +33,8 @@ Tasks:
   dist         Make what a release carries, in target/dist: the program, the Python package's wheel
                and its source distribution
   wheel        Of these, only the wheel
+  generate     Write what follows from the rows of the library's keys: Python's arguments and classes, the guide's tables
+  check-rooms  Only the check that no folder of the library imports against the direction of the data
   check-docs   Only the check of the book: its table of contents, its links, pictures and formulas
   docs         Build the book into docs/book (needs mdbook)
   help         Print this text (also -h, --help)
@@ -47,6 +50,8 @@ fn main() -> ExitCode {
         ["dist"] => dist::make(&Row::at_terminal(root)),
         ["docs"] => docs::build(root),
         ["wheel"] => dist::make_wheel(&Row::at_terminal(root)),
+        ["generate"] => checks::generate(&Row::at_terminal(root)),
+        ["check-rooms"] => Row::at_terminal(root).step("rooms check", || rooms::check(root)),
         ["check-docs"] => Row::at_terminal(root).step("docs check", || docs::check_and_report(root)),
         ["help" | "-h" | "--help"] => {
             print!("{HELP}");

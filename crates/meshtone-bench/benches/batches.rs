@@ -9,7 +9,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use meshtone::batch::{Control, KeepChannels, simulate_many};
-use meshtone::scenario::{Convention, Scenario};
+use meshtone::scenario::{Model, Scenario};
 
 /// Scenarios that differ by their profile errors.
 fn batch(of: &Scenario, count: u64) -> impl Iterator<Item = Scenario> + Send {
@@ -43,17 +43,17 @@ fn run(criterion: &mut Criterion, name: &str, scenario: &Scenario, count: u64, t
 }
 
 fn batches(criterion: &mut Criterion) {
-    let healthy = cases::healthy(Convention::Corrected);
+    let healthy = cases::healthy(Model::Linear);
     for count in [1, 8, 64, 512] {
         run(criterion, "healthy", &healthy, count, 1);
     }
     for count in [64, 512] {
         run(criterion, "healthy", &healthy, count, 2);
     }
-    for (name, scenario) in cases::with_full_settling(Convention::Corrected).into_iter().skip(1) {
+    for (name, scenario) in cases::with_full_settling(Model::Linear).into_iter().skip(1) {
         run(criterion, name, &scenario, 64, 1);
     }
-    for (name, scenario) in cases::with_full_settling(Convention::Published) {
+    for (name, scenario) in cases::with_full_settling(Model::Published) {
         run(criterion, &format!("{name}, published"), &scenario, 64, 1);
     }
 }

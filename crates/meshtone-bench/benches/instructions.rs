@@ -10,10 +10,10 @@ use std::hint::black_box;
 
 use gungraun::prelude::*;
 use meshtone::batch::{Control, KeepChannels, simulate_many};
-use meshtone::scenario::{Convention, Scenario};
-use meshtone::signal::channel_outputs;
+use meshtone::mesh::PairMesh;
+use meshtone::scenario::{Model, Scenario};
+use meshtone::sensor::channel_outputs;
 use meshtone::solver::{Block, Recorder, ReducedModel};
-use meshtone::stiffness::{MeshStiffness, PairStiffness};
 use meshtone::{Stages, stages};
 
 struct Nothing;
@@ -24,27 +24,27 @@ impl Recorder for Nothing {
     }
 }
 
-fn scenario(index: usize, convention: Convention) -> Scenario {
-    let mut scenario = cases::with_full_settling(convention).swap_remove(index).1;
+fn scenario(index: usize, model: Model) -> Scenario {
+    let mut scenario = cases::with_full_settling(model).swap_remove(index).1;
     // A tenth of the steps: counts are proportional.
     scenario.solver.sampling_rate_hz = 1e4;
     scenario
 }
 
-fn prepared(index: usize, convention: Convention) -> Box<Stages> {
-    Box::new(stages(&scenario(index, convention)).expect("an example is valid"))
+fn prepared(index: usize, model: Model) -> Box<Stages> {
+    Box::new(stages(&scenario(index, model)).expect("an example is valid"))
 }
 
-fn loop_of(index: usize, convention: Convention) -> (Box<Stages>, ReducedModel) {
-    let stages = prepared(index, convention);
+fn loop_of(index: usize, model: Model) -> (Box<Stages>, ReducedModel) {
+    let stages = prepared(index, model);
     let model = stages.reduced_model();
     (stages, model)
 }
 
 #[library_benchmark]
-#[bench::healthy(loop_of(0, Convention::Corrected))]
-#[bench::tooth_breakage(loop_of(2, Convention::Corrected))]
-#[bench::healthy_published(loop_of(0, Convention::Published))]
+#[bench::healthy(loop_of(0, Model::Linear))]
+#[bench::tooth_breakage(loop_of(2, Model::Linear))]
+#[bench::healthy_published(loop_of(0, Model::Published))]
 fn time_loop((stages, model): (Box<Stages>, ReducedModel)) -> Box<Stages> {
     let outputs = channel_outputs();
     stages.integrate(&model, &outputs, stages.time.first_kept_sample, &mut Nothing).expect("a solution");
@@ -52,18 +52,16 @@ fn time_loop((stages, model): (Box<Stages>, ReducedModel)) -> Box<Stages> {
 }
 
 #[library_benchmark]
-#[bench::healthy(prepared(0, Convention::Corrected))]
-#[bench::tooth_breakage(prepared(2, Convention::Corrected))]
-#[bench::partial_face(prepared(3, Convention::Corrected))]
-#[bench::through_face(prepared(4, Convention::Corrected))]
-fn stiffness(stages: Box<Stages>) -> (MeshStiffness, Box<Stages>) {
-    let Stages { teeth, fault, cycle, scenario, .. } = &*stages;
-    let pair = PairStiffness::new(&scenario.gears, teeth, fault.as_ref()).expect("an example is valid");
-    (MeshStiffness::new(&pair, cycle, scenario.convention), stages)
+#[bench::healthy(prepared(0, Model::Linear))]
+#[bench::tooth_breakage(prepared(2, Model::Linear))]
+#[bench::partial_face(prepared(3, Model::Linear))]
+#[bench::through_face(prepared(4, Model::Linear))]
+fn stiffness(stages: Box<Stages>) -> (PairMesh, Box<Stages>) {
+    (stages.pair_mesh(stages.mesh.points_per_pitch()), stages)
 }
 
 #[library_benchmark]
-#[bench::healthy(vec![scenario(0, Convention::Corrected); 8])]
+#[bench::healthy(vec![scenario(0, Model::Linear); 8])]
 fn eight_side_by_side(scenarios: Vec<Scenario>) -> usize {
     // In this thread: only its instructions are counted.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build().expect("a thread");

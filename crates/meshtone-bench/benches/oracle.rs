@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use dense::Dense;
 use meshtone::batch::{Control, KeepChannels, simulate_many};
-use meshtone::scenario::Convention;
+use meshtone::scenario::Model;
 use meshtone::{simulate, stages};
 
 const BATCH: u32 = 64;
@@ -32,7 +32,7 @@ fn shortest(mut run: impl FnMut()) -> Duration {
 fn main() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     println!("per simulation, one thread    dense        alone  ratio   in a batch of {BATCH}  ratio");
-    for (name, scenario) in cases::with_full_settling(Convention::Corrected) {
+    for (name, scenario) in cases::with_full_settling(Model::Linear) {
         let dense = shortest(|| {
             let stages = stages(&scenario).expect("an example is valid");
             black_box(Dense::new(&stages).accelerations());

@@ -7,16 +7,16 @@ mod cases;
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use meshtone::scenario::Convention;
+use meshtone::scenario::Model;
 use meshtone::simulate;
 
 fn simulations(criterion: &mut Criterion) {
-    for convention in [Convention::Corrected, Convention::Published] {
-        let mut group = criterion.benchmark_group(format!("simulation/{convention:?}").to_lowercase());
+    for model in [Model::Linear, Model::Published] {
+        let mut group = criterion.benchmark_group(format!("simulation/{model:?}").to_lowercase());
         group.sample_size(20);
-        for (name, mut scenario) in cases::with_full_settling(convention) {
+        for (name, mut scenario) in cases::with_full_settling(model) {
             group.bench_function(name, |bencher| bencher.iter(|| simulate(black_box(&scenario))));
-            if convention == Convention::Corrected {
+            if model == Model::Linear {
                 scenario.solver.settle_tolerance = 1e-6;
                 group.bench_function(format!("{name}, settled to 1e-6"), |bencher| {
                     bencher.iter(|| simulate(black_box(&scenario)));

@@ -7,14 +7,13 @@ mod cases;
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use meshtone::dynamics::{MeshLoad, System};
-use meshtone::fault::fault_geometry;
-use meshtone::quality::profile_errors;
-use meshtone::scenario::{Convention, Scenario};
+use meshtone::damage::damaged_teeth;
+use meshtone::machine::System;
+use meshtone::scenario::{Model, Scenario};
 use meshtone::solver::{Block, Output, Recorder};
-use meshtone::stiffness::{MeshStiffness, PairStiffness};
-use meshtone::tooth::teeth;
-use meshtone::{signal::channel_outputs, stages};
+use meshtone::wheel::quality::profile_errors;
+use meshtone::wheel::teeth;
+use meshtone::{sensor::channel_outputs, stages};
 
 /// Takes the samples as they come and keeps none.
 struct Nothing;
@@ -28,33 +27,25 @@ impl Recorder for Nothing {
 fn before_the_time_loop(criterion: &mut Criterion, name: &str, scenario: &Scenario) {
     let mut group = criterion.benchmark_group(format!("stages/{name}"));
     let whole = stages(scenario).expect("an example is valid");
-    let (gears, convention, cycle) = (&scenario.gears, scenario.convention, &whole.cycle);
-    let fault = whole.fault.as_ref();
+    let (gears, rig, model) = (&scenario.gears, &scenario.rig, scenario.model);
     group.bench_function("scenario", |bencher| bencher.iter(|| black_box(scenario).validate()));
     group.bench_function("tooth profiles", |bencher| {
-        bencher.iter(|| teeth(black_box(gears), &scenario.rig, convention));
+        bencher
+            .iter(|| teeth(black_box(gears), [rig.pinion_shaft.radius_mm, rig.gear_shaft.radius_mm], model));
     });
     group.bench_function("profile errors", |bencher| {
         bencher.iter(|| profile_errors(&scenario.quality, black_box(&whole.teeth), scenario.seed));
     });
-    if let Some(fault) = &scenario.fault {
+    if !scenario.faults.is_empty() {
         group.bench_function("fault", |bencher| {
-            bencher.iter(|| fault_geometry(fault, black_box(&whole.teeth), convention, scenario.seed));
+            bencher.iter(|| damaged_teeth(&scenario.faults, black_box(&whole.teeth), scenario.seed));
         });
     }
-    group.bench_function("pair stiffness", |bencher| {
-        bencher.iter(|| PairStiffness::new(gears, black_box(&whole.teeth), fault));
-    });
     group.bench_function("mesh stiffness", |bencher| {
-        bencher.iter(|| MeshStiffness::new(black_box(&whole.pair), cycle, convention));
+        bencher.iter(|| black_box(&whole).pair_mesh(whole.mesh.points_per_pitch()));
     });
-    let angle = whole.teeth.gear.pressure_angle_rad;
     group.bench_function("equations of motion", |bencher| {
-        bencher.iter(|| {
-            let load =
-                MeshLoad::new(black_box(&whole.mesh), fault, cycle, gears.face_width_mm, angle, convention);
-            System::new(scenario, &whole.teeth, load)
-        });
+        bencher.iter(|| System::new(gears, rig, &whole.teeth, black_box(&whole.mesh), model));
     });
     group.bench_function("modes", |bencher| bencher.iter(|| black_box(&whole).reduced_model()));
     group.bench_function("all", |bencher| bencher.iter(|| stages(black_box(scenario))));
@@ -77,11 +68,11 @@ fn time_loop(criterion: &mut Criterion, name: &str, scenario: &Scenario) {
 }
 
 fn all(criterion: &mut Criterion) {
-    for (name, scenario) in cases::with_full_settling(Convention::Corrected) {
+    for (name, scenario) in cases::with_full_settling(Model::Linear) {
         before_the_time_loop(criterion, name, &scenario);
         time_loop(criterion, name, &scenario);
     }
-    let published = cases::healthy(Convention::Published);
+    let published = cases::healthy(Model::Published);
     time_loop(criterion, "healthy, published", &published);
 }
 

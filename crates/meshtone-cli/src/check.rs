@@ -6,7 +6,7 @@ use meshtone::scenario::{Scenario, ScenarioError, ScenarioWarning};
 use crate::memory;
 
 /// Checks a scenario as far as that is possible without integrating in time: its values, the memory that it
-/// needs, and whether the fault fits the tooth.
+/// needs, and whether the faults fit their teeth.
 ///
 /// Returns what deserves attention, and the stages that were computed to know it.
 pub fn check(scenario: &Scenario) -> Result<(Vec<ScenarioWarning>, Stages), ScenarioError> {
@@ -15,7 +15,7 @@ pub fn check(scenario: &Scenario) -> Result<(Vec<ScenarioWarning>, Stages), Scen
     if stages.time.kept_samples() == 0 {
         return Err(nothing_is_kept(&stages.scenario));
     }
-    warnings.extend(scenario.ignored_by_convention());
+    warnings.extend(scenario.ignored_by_model());
     warnings.extend(stages.warnings());
     Ok((warnings, stages))
 }

@@ -3,7 +3,6 @@
 use std::io::ErrorKind;
 use std::process::ExitCode;
 
-use meshtone::scenario::ScenarioError;
 use meshtone_dataset::DatasetError;
 use meshtone_io::ReadResultsError;
 use meshtone_io::atomic_file::WriteFileError;
@@ -99,7 +98,7 @@ impl From<ReadScenarioError> for Failure {
                 .with_help("a scenario is a text file; save it in UTF-8, as every editor can"),
             ReadScenarioError::Invalid { path, text, error } => {
                 let file = path.display().to_string();
-                let ScenarioError { help, line, .. } = (*error).clone();
+                let (help, line) = (error.help.clone(), error.line);
                 let message = format!("{file}: {error}");
                 let snippet = line.map(|line| Snippet { file, text, line });
                 Self { kind: Kind::BadInput, message, help, snippet }

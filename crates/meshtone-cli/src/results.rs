@@ -6,7 +6,7 @@ use std::path::Path;
 use std::thread;
 
 use meshtone::scenario::Scenario;
-use meshtone::signal::Channels;
+use meshtone::sensor::Channels;
 use meshtone::{Simulation, Stages, Trace};
 use meshtone_io::atomic_file::{StagedFile, WriteFileError};
 use meshtone_io::run_identity::RunIdentity;

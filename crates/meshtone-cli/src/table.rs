@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use meshtone_io::summary::{ChannelSummary, Summary};
+use meshtone_io::summary::{ChannelSummary, FaultSummary, Summary};
 
 /// The table of one run.
 pub fn table(summary: &Summary) -> String {
@@ -25,8 +25,8 @@ fn rows(summary: &Summary) -> [(&'static str, String); 8] {
     let frequencies: Vec<_> = summary.natural_frequencies_hz.iter().map(|f| frequency(*f)).collect();
     let duration_s = summary.samples as f64 / summary.sampling_rate_hz;
     [
-        ("model", format!("{}, seed {}", summary.convention, summary.seed)),
-        ("fault", summary.fault.unwrap_or("none").to_string()),
+        ("model", format!("{}, seed {}", summary.model, summary.seed)),
+        ("fault", faults(&summary.faults)),
         (
             "sampling",
             format!(
@@ -60,7 +60,17 @@ fn rows(summary: &Summary) -> [(&'static str, String); 8] {
     ]
 }
 
-/// `horizontal acceleration, g` for `horizontal_acceleration_g`.
+/// `missing-tooth on tooth 1 of the gear`, one after the other.
+fn faults(faults: &[FaultSummary]) -> String {
+    let place =
+        |fault: &FaultSummary| format!("{} on tooth {} of the {}", fault.kind, fault.tooth, fault.wheel);
+    match faults {
+        [] => "none".to_string(),
+        faults => faults.iter().map(place).collect::<Vec<_>>().join(", "),
+    }
+}
+
+/// `pinion shaft speed, Hz` for `pinion_shaft_speed_hz`.
 fn label(channel: &ChannelSummary) -> String {
     let quantity = channel.name.rsplit_once('_').map_or(channel.name, |(quantity, _)| quantity);
     format!("{}, {}", quantity.replace('_', " "), channel.unit)

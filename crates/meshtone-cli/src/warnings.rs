@@ -1,7 +1,7 @@
 //! What can be simulated but deserves the user's attention.
 
 use meshtone::scenario::{ScenarioWarning, line_of_key};
-use meshtone::signal::Channels;
+use meshtone::sensor::Channels;
 use meshtone_io::scenario_file::ScenarioFile;
 
 use crate::terminal::print_error_line;

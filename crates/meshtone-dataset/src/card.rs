@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::finish::Contents;
 use crate::manifest::PREVIEW;
-use crate::plan::{Class, Plan, PlanFile, Severity};
+use crate::plan::{Class, Plan, PlanFile, Severity, kinds};
 use crate::shard::{Column, ColumnKind, Shards};
 
 /// The data card's text.
@@ -14,7 +14,7 @@ pub(crate) fn card(plan: &Plan, shards: Shards, contents: &Contents, columns: &[
     let _ = head(&mut text, plan, contents);
     let _ = counts(&mut text, plan, contents);
     let _ = classes(&mut text, plan, contents);
-    let _ = columns_table(&mut text, columns, contents);
+    let _ = columns_table(&mut text, plan.content.keep.wheel.name(), columns, contents);
     let _ = files(&mut text, shards, contents);
     let _ = loading(&mut text, columns);
     text
@@ -103,7 +103,7 @@ fn counts(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Resu
 fn classes(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Result {
     writeln!(text, "## Classes\n\n| label | fault | severity |\n|---|---|---|")?;
     for class in &plan.content.classes {
-        let fault = class.fault.as_ref().map_or("none", |fault| fault.kind());
+        let fault = kinds(&class.faults).unwrap_or_else(|| "none".to_owned());
         writeln!(text, "| {} | {fault} | {} |", class.label, severity(class))?;
     }
     writeln!(text, "\n## How it was drawn\n\nDesign: {}. \n", design(plan))?;
@@ -129,10 +129,10 @@ fn classes(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Res
 }
 
 fn severity(class: &Class) -> String {
-    match (&class.severity, &class.fault) {
-        (_, None) => "0".to_owned(),
-        (Severity::Grade(grade), _) => grade.to_string(),
-        (Severity::Measured { measure, breaks }, _) => {
+    match &class.severity {
+        _ if class.faults.is_empty() => "0".to_owned(),
+        Severity::Grade(grade) => grade.to_string(),
+        Severity::Measured { measure, breaks } => {
             let breaks: Vec<String> = breaks.iter().map(|limit| format!("{limit}")).collect();
             format!("1 to {} by `{measure}`, next grade from {} on", breaks.len() + 1, breaks.join(", "))
         }
@@ -148,7 +148,12 @@ fn design(plan: &Plan) -> &'static str {
     }
 }
 
-fn columns_table(text: &mut String, columns: &[Column], contents: &Contents) -> std::fmt::Result {
+fn columns_table(
+    text: &mut String,
+    wheel: &str,
+    columns: &[Column],
+    contents: &Contents,
+) -> std::fmt::Result {
     writeln!(text, "## Columns\n\nOne row a record. Units and meanings stand in the files' metadata too.\n")?;
     writeln!(text, "| column | unit | meaning |\n|---|---|---|")?;
     for column in columns.iter().filter(|column| !matches!(column.kind, ColumnKind::Indicator(_))) {
@@ -165,7 +170,7 @@ fn columns_table(text: &mut String, columns: &[Column], contents: &Contents) -> 
     if !indicators.is_empty() {
         writeln!(
             text,
-            "\nIndicators of the analysed channel over the gear's revolutions: {}.",
+            "\nIndicators of the analysed channel over the {wheel}'s revolutions: {}.",
             indicators.join(", ")
         )?;
     }

@@ -221,7 +221,7 @@ impl Run<'_> {
                 Ok(Ok(record)) => {
                     return send(match role {
                         Role::Record(_) => Item::Record(record),
-                        Role::HealthyTwin(_) => Item::HealthyTwin(record),
+                        Role::HealthyTwin(..) => Item::HealthyTwin(record),
                     });
                 }
                 Ok(Err(reason)) => reason,
@@ -331,7 +331,7 @@ impl Source<'_> {
     }
 
     fn ask(&mut self, record: DrawnRecord, scenario: Scenario) {
-        let twin = self.run.plan.content.tuned.is_some() && scenario.fault.is_some();
+        let twin = self.run.plan.content.tuned.is_some() && !scenario.faults.is_empty();
         let mut asked = lock(&self.asked);
         let mut add = |role: Role, scenario: Scenario| {
             let failed = std::mem::take(&mut asked.failed);
@@ -341,7 +341,8 @@ impl Source<'_> {
             self.ready.push_back(scenario);
         };
         if twin {
-            add(Role::HealthyTwin(record.clone()), Scenario { fault: None, ..scenario.clone() });
+            let twin = Role::HealthyTwin(record.clone(), scenario.faults.clone());
+            add(twin, Scenario { faults: Vec::new(), ..scenario.clone() });
         }
         add(Role::Record(record), scenario);
     }

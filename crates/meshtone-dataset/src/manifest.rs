@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use meshtone::scenario::ScenarioError;
 use meshtone_io::scenario_file::ReadScenarioError;
 use serde_json::{Map, Value, json};
 
@@ -175,8 +174,8 @@ fn text(manifest: &Map<String, Value>) -> String {
 }
 
 /// An error of a plan that was found after reading it.
-pub(crate) fn plan_error(plan: &Plan, error: ScenarioError) -> DatasetError {
+pub(crate) fn plan_error(plan: &Plan, error: impl Into<meshtone_toml::TomlError>) -> DatasetError {
     let path = plan.sources.first().cloned().unwrap_or_default();
     let text = plan.files.first().map(|file| file.text.clone()).unwrap_or_default();
-    DatasetError::Plan(ReadScenarioError::Invalid { path, text, error: Box::new(error) })
+    DatasetError::Plan(ReadScenarioError::Invalid { path, text, error: Box::new(error.into()) })
 }

@@ -3,6 +3,7 @@
 #![deny(missing_docs)]
 
 pub mod atomic_file;
+pub mod channel_name;
 pub mod experiment;
 pub mod indicators;
 mod npz;

@@ -7,15 +7,15 @@ use meshtone::scenario::Scenario;
 
 /// What every file of a run carries, so that files of different runs can be told apart.
 ///
-/// A fingerprint of all that the results depend on: the scenario, with its convention, its seed and everything that it
+/// A fingerprint of all that the results depend on: the scenario, with its model, its seed and everything that it
 /// takes from other files, and the version of Meshtone. The same scenario simulated again with the same version has
 /// the same identity, as it has the same results. Written as 16 hexadecimal digits.
 ///
 /// ```
-/// use meshtone::scenario::Scenario;
+/// use meshtone::scenario::{GearPair, Scenario};
 /// use meshtone_io::run_identity::RunIdentity;
 ///
-/// let scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+/// let scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
 /// let other = Scenario { seed: 2, ..scenario.clone() };
 /// let run = RunIdentity::of(&scenario);
 /// assert_eq!(run, RunIdentity::of(&scenario));

@@ -1,4 +1,7 @@
-//! The turn of the damaged tooth within a revolution of its wheel.
+//! The turns of the damaged teeth within a revolution of their wheel.
+
+use meshtone::damage::{Damage, Fault};
+use meshtone::wheel::WheelName;
 
 use crate::axes::Axes;
 use crate::canvas::Canvas;
@@ -6,10 +9,14 @@ use crate::legend::{Entry, Sample};
 use crate::style::{Fill, colour};
 
 const TINT: Fill = Fill::tint(colour::VERMILLION, 0.22);
+/// Teeth of a wheel that a legend names one by one; of more it says how many they are.
+const MOST_NAMED: usize = 3;
 
-/// The damaged tooth of a wheel whose revolution begins where that tooth enters contact.
+/// A damaged tooth of a wheel whose revolution begins where its tooth 1 enters contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DamagedTooth {
+    /// Its number, from 1, in the order in which the wheel's teeth enter contact.
+    pub tooth: u32,
     /// (pitches) How far the wheel turns while the tooth is in contact: the contact ratio.
     pub contact_pitches: f64,
     /// Whether the whole tooth is gone.
@@ -17,18 +24,159 @@ pub struct DamagedTooth {
 }
 
 impl DamagedTooth {
-    /// Tints the part of the revolution in which the tooth is in contact, or would be.
+    /// The damaged teeth of a wheel, each once and in the order of their numbers.
     ///
     /// # Arguments
-    /// * `canvas`, `axes` - where
-    /// * `pitch` - one pitch in the unit of the horizontal axis
-    pub(crate) fn tint(self, canvas: &mut Canvas, axes: &Axes, pitch: f64) {
-        axes.band(canvas, 0.0, self.contact_pitches * pitch, TINT);
+    /// * `faults` - what is broken, of both wheels
+    /// * `wheel` - whose teeth
+    /// * `contact_pitches` - (pitches) the contact ratio
+    ///
+    /// ```
+    /// use meshtone::damage::{Fault, MissingTooth};
+    /// use meshtone::wheel::WheelName;
+    /// use meshtone_plot::DamagedTooth;
+    ///
+    /// let faults = [Fault::new(WheelName::Pinion, 3, MissingTooth), Fault::on_first_gear_tooth(MissingTooth)];
+    /// let [tooth] = DamagedTooth::of_wheel(&faults, WheelName::Pinion, 1.6)[..] else { panic!() };
+    /// assert_eq!((tooth.tooth, tooth.is_missing), (3, true));
+    /// ```
+    pub fn of_wheel(faults: &[Fault], wheel: WheelName, contact_pitches: f64) -> Vec<Self> {
+        let of_fault = |fault: &Fault| {
+            let is_missing = matches!(fault.damage, Damage::MissingTooth(_));
+            Self { tooth: fault.tooth, contact_pitches, is_missing }
+        };
+        let mut teeth: Vec<Self> = faults.iter().filter(|fault| fault.wheel == wheel).map(of_fault).collect();
+        teeth.sort_by_key(|tooth| tooth.tooth);
+        teeth.dedup_by_key(|tooth| tooth.tooth);
+        teeth
+    }
+}
+
+/// Tints the parts of a wheel's revolution in which its damaged teeth are in contact, or would be.
+///
+/// # Arguments
+/// * `canvas`, `axes` - where
+/// * `damaged` - the wheel's damaged teeth
+/// * `teeth` - how many teeth it has
+/// * `pitch` - one pitch in the unit of the horizontal axis
+pub(crate) fn tint(canvas: &mut Canvas, axes: &Axes, damaged: &[DamagedTooth], teeth: u32, pitch: f64) {
+    let contact = damaged.first().map_or(0.0, |tooth| tooth.contact_pitches);
+    let is_damaged = |pair: i64| {
+        let tooth = pair.rem_euclid(i64::from(teeth.max(1)));
+        damaged.iter().any(|damaged| i64::from(damaged.tooth) == tooth + 1)
+    };
+    for turn in turns([0.0, f64::from(teeth)], contact, is_damaged) {
+        tint_turn(canvas, axes, turn.map(|pitches| pitches * pitch));
+    }
+}
+
+/// Tints one part of a revolution, in the unit of the horizontal axis.
+pub(crate) fn tint_turn(canvas: &mut Canvas, axes: &Axes, [from, to]: [f64; 2]) {
+    axes.band(canvas, from, to, TINT);
+}
+
+/// (pitches) The parts of a window in which damaged pairs are in contact; those that overlap are one.
+///
+/// # Arguments
+/// * `window` - (pitches) from and to
+/// * `contact` - (pitches) how long a pair is in contact
+/// * `is_damaged` - whether the pair that enters contact at a pitch is damaged
+pub(crate) fn turns([from, to]: [f64; 2], contact: f64, is_damaged: impl Fn(i64) -> bool) -> Vec<[f64; 2]> {
+    let mut turns: Vec<[f64; 2]> = Vec::new();
+    for pair in ((from - contact).floor() as i64..to.ceil() as i64).filter(|&pair| is_damaged(pair)) {
+        let (start, end) = ((pair as f64).max(from), (pair as f64 + contact).min(to));
+        match turns.last_mut() {
+            _ if start >= end => {}
+            Some(last) if last[1] >= start => last[1] = end,
+            _ => turns.push([start, end]),
+        }
+    }
+    turns
+}
+
+/// What the tint means, in the words of [`in_words`].
+pub(crate) fn legend_entry(text: &str) -> Entry<'_> {
+    Entry { sample: Sample::Area(TINT), text }
+}
+
+/// What the tint means; nothing where no tooth is damaged.
+///
+/// # Arguments
+/// * `wheels` - names of the wheels, each with its damaged teeth
+pub(crate) fn in_words(wheels: &[(&str, &[DamagedTooth])]) -> Option<String> {
+    let all: Vec<(&str, DamagedTooth)> =
+        wheels.iter().flat_map(|(name, teeth)| teeth.iter().map(|tooth| (*name, *tooth))).collect();
+    let missing = all.iter().filter(|(_, tooth)| tooth.is_missing).count();
+    // Where there is but the gear's tooth 1, as is usual, its number says nothing.
+    if let [(wheel, DamagedTooth { tooth: 1, is_missing, .. })] = all[..]
+        && wheel != "pinion"
+    {
+        let text = if is_missing { "turn of the missing tooth" } else { "damaged tooth in contact" };
+        return Some(text.to_owned());
+    }
+    let named = |state: &str| {
+        let damaged = wheels.iter().filter(|(_, teeth)| !teeth.is_empty());
+        let names = damaged.map(|(name, teeth)| numbered(&format!("{state} {name} "), teeth));
+        names.collect::<Vec<_>>().join(" and ")
+    };
+    match (all.len(), missing) {
+        (0, _) => None,
+        (_, 0) => Some(format!("{} in contact", named("damaged"))),
+        (1, _) => Some(format!("turn of {}", named("missing"))),
+        (count, missing) if count == missing => Some(format!("turns of {}", named("missing"))),
+        _ => Some(format!("turns of {}", named("damaged"))),
+    }
+}
+
+/// Teeth with their numbers, such as `gear tooth 6` or `gear teeth 2 and 6`; of many, how many they are.
+///
+/// # Arguments
+/// * `of` - what stands before `tooth`, with a space: which teeth, or nothing
+/// * `teeth` - at least one
+pub(crate) fn numbered(of: &str, teeth: &[DamagedTooth]) -> String {
+    let numbers: Vec<String> = teeth.iter().map(|tooth| tooth.tooth.to_string()).collect();
+    match &numbers[..] {
+        [one] => format!("{of}tooth {one}"),
+        [first @ .., last] if numbers.len() <= MOST_NAMED => {
+            format!("{of}teeth {} and {last}", first.join(", "))
+        }
+        _ => format!("{} {of}teeth", numbers.len()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tooth(tooth: u32, is_missing: bool) -> DamagedTooth {
+        DamagedTooth { tooth, contact_pitches: 1.6, is_missing }
     }
 
-    /// What the tint means.
-    pub(crate) fn legend_entry(self) -> Entry<'static> {
-        let text = if self.is_missing { "turn of the missing tooth" } else { "damaged tooth in contact" };
-        Entry { sample: Sample::Area(TINT), text }
+    #[test]
+    fn turns_go_round_and_join() {
+        let at =
+            |damaged: &'static [i64]| turns([0.0, 10.0], 1.6, |pair| damaged.contains(&pair.rem_euclid(10)));
+        assert_eq!(at(&[0]), [[0.0, 1.6]]);
+        assert_eq!(at(&[3, 4]), [[3.0, 5.6]]);
+        assert_eq!(at(&[2, 6]), [[2.0, 3.6], [6.0, 7.6]]);
+        let [start, end] = at(&[9])[..] else { unreachable!() };
+        assert!((start[1] - 0.6).abs() < 1e-12 && start[0] == 0.0 && end == [9.0, 10.0]);
+    }
+
+    #[test]
+    fn words_name_wheel_and_tooth() {
+        let words = |pinion: &[DamagedTooth], gear: &[DamagedTooth]| {
+            in_words(&[("pinion", pinion), ("gear", gear)]).unwrap_or_default()
+        };
+        assert_eq!(words(&[], &[]), "");
+        assert_eq!(words(&[], &[tooth(1, false)]), "damaged tooth in contact");
+        assert_eq!(words(&[], &[tooth(1, true)]), "turn of the missing tooth");
+        assert_eq!(words(&[tooth(1, false)], &[]), "damaged pinion tooth 1 in contact");
+        assert_eq!(words(&[], &[tooth(6, true)]), "turn of missing gear tooth 6");
+        let both = words(&[tooth(3, false)], &[tooth(2, false), tooth(6, false)]);
+        assert_eq!(both, "damaged pinion tooth 3 and damaged gear teeth 2 and 6 in contact");
+        assert_eq!(words(&[], &[tooth(2, true), tooth(6, false)]), "turns of damaged gear teeth 2 and 6");
+        let many: Vec<_> = (1..=5).map(|number| tooth(number, false)).collect();
+        assert_eq!(words(&[], &many), "5 damaged gear teeth in contact");
     }
 }

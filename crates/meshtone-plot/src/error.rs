@@ -26,7 +26,7 @@ pub enum PlotError {
     },
     /// An experiment and a result that do not belong together, or signals that cannot be enhanced.
     #[error(transparent)]
-    Hybrid(#[from] meshtone::hybrid::HybridError),
+    Hybrid(#[from] meshtone::tuning::HybridError),
     /// The PNG could not be written.
     #[error("the figure could not be encoded as PNG: {0}")]
     Png(#[from] png::EncodingError),

@@ -2,14 +2,14 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use meshtone::batch::{ChannelKind, Control, KeepChannels, Signals, simulate_many as simulate};
-use meshtone::scenario::ScenarioError;
+use meshtone::batch::{Control, KeepChannels, Signals, simulate_many as simulate};
+use meshtone::sensor::ChannelKind;
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::array::array;
-use crate::error::{scenario_error, value_error};
+use crate::error::{simulation_error, value_error};
 use crate::interrupt::interruptible;
 use crate::scenario::Scenario;
 
@@ -62,11 +62,11 @@ fn kind(name: &str) -> PyResult<ChannelKind> {
 fn signals<'py>(
     py: Python<'py>,
     names: &[String],
-    result: Result<Signals, ScenarioError>,
+    result: Result<Signals, meshtone::Error>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let signals = match result {
         Ok(signals) => signals,
-        Err(error) => return Ok(scenario_error(&error).into_value(py).into_bound(py).into_any()),
+        Err(error) => return Ok(simulation_error(&error).into_value(py).into_bound(py).into_any()),
     };
     let all = PyDict::new(py);
     all.set_item("sampling_rate_hz", signals.sampling_rate_hz)?;

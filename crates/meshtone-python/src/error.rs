@@ -21,6 +21,14 @@ pub fn scenario_error(error: &ScenarioError) -> PyErr {
     }
 }
 
+/// A scenario that gave no simulation, with the same words.
+pub fn simulation_error(error: &meshtone::Error) -> PyErr {
+    match error.help() {
+        Some(help) => PyValueError::new_err(format!("{error}\n{help}")),
+        None => value_error(error),
+    }
+}
+
 /// A scenario, plan or experiment file that could not be read: the problem, and below it what to do about it.
 pub fn read_error(path: &Path, error: &ReadScenarioError) -> PyErr {
     match error {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use meshtone::hybrid::{self, ExperimentControl};
+use meshtone::tuning::{self, ExperimentControl};
 use meshtone_io::experiment::{self, Tuned, read_experiment, read_tuned, tuning_json, write_tuned};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -21,7 +21,7 @@ pub fn change_duration<'py>(
     width_ratio: f64,
     centre_rev: f64,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let changed = hybrid::change_duration(samples(&signal)?, width_ratio, centre_rev).map_err(value_error)?;
+    let changed = tuning::change_duration(samples(&signal)?, width_ratio, centre_rev).map_err(value_error)?;
     Ok(array(py, changed))
 }
 
@@ -34,7 +34,7 @@ pub fn change_fault_to_harmonics_ratio<'py>(
     fault_to_harmonics_ratio: f64,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let (signal, healthy) = (samples(&signal)?, samples(&healthy)?);
-    let changed = hybrid::change_fault_to_harmonics_ratio(signal, healthy, fault_to_harmonics_ratio);
+    let changed = tuning::change_fault_to_harmonics_ratio(signal, healthy, fault_to_harmonics_ratio);
     Ok(array(py, changed.map_err(value_error)?))
 }
 
@@ -49,7 +49,7 @@ pub fn add_noise<'py>(
     draw: u64,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let noisy =
-        hybrid::add_noise(samples(&signal)?, noise_level, healthy_rms, seed, draw).map_err(value_error)?;
+        tuning::add_noise(samples(&signal)?, noise_level, healthy_rms, seed, draw).map_err(value_error)?;
     Ok(array(py, noisy))
 }
 
@@ -67,7 +67,7 @@ pub fn tune(py: Python<'_>, path: PathBuf, progress: Option<Bound<'_, PyAny>>) -
                 finished.store(done, Ordering::Relaxed);
                 all.store(of, Ordering::Relaxed);
             };
-            hybrid::run_experiment(&experiment, &ExperimentControl { progress: &told, cancelled })
+            tuning::run_experiment(&experiment, &ExperimentControl { progress: &told, cancelled })
         },
         |py| match &progress {
             Some(progress) => {

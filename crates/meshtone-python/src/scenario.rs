@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use meshtone::scenario::{self, ProfileErrors, ScenarioError};
+use meshtone::wheel::ErrorTable;
 use meshtone_io::scenario_file::read_scenario;
-use nalgebra::DMatrix;
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -83,7 +83,7 @@ impl Scenario {
     /// What is doubtful about it.
     fn warnings(&self) -> PyResult<Vec<String>> {
         let mut warnings = self.0.validate().map_err(|error| scenario_error(&error))?;
-        warnings.extend(self.0.ignored_by_convention());
+        warnings.extend(self.0.ignored_by_model());
         Ok(warnings.iter().map(ToString::to_string).collect())
     }
 }
@@ -94,14 +94,14 @@ pub fn template(kind: &str) -> PyResult<String> {
     scenario::template(kind).ok_or_else(|| {
         PyValueError::new_err(format!(
             "kind = {kind}: must be one of {}",
-            scenario::TEMPLATE_KINDS.join(", ")
+            scenario::template_kinds().join(", ")
         ))
     })
 }
 
 /// The error without the line: the text was made from Python's values.
 fn without_line(error: ScenarioError) -> PyErr {
-    scenario_error(&ScenarioError { line: None, ..error })
+    scenario_error(&error.at_line(None))
 }
 
 fn describe(path: &Path, error: meshtone_io::scenario_file::ReadScenarioError) -> String {
@@ -117,10 +117,10 @@ fn describe(path: &Path, error: meshtone_io::scenario_file::ReadScenarioError) -
     if text.contains(&path.display().to_string()) { text } else { format!("{}: {text}", path.display()) }
 }
 
-fn matrix(array: &PyReadonlyArray2<'_, f64>) -> DMatrix<f64> {
+fn matrix(array: &PyReadonlyArray2<'_, f64>) -> ErrorTable {
     let [rows, columns] = [array.shape()[0], array.shape()[1]];
     let view = array.as_array();
-    DMatrix::from_fn(rows, columns, |row, column| view[[row, column]])
+    ErrorTable::from_fn(rows, columns, |row, column| view[[row, column]])
 }
 
 /// An array each of the pinion and the gear.
@@ -132,7 +132,8 @@ pub fn both_wheels<'py>(py: Python<'py>, errors: &ProfileErrors) -> PyResult<Bot
 }
 
 /// A matrix as NumPy has it, rows first.
-fn rows<'py>(py: Python<'py>, matrix: &DMatrix<f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let values: Vec<f64> = matrix.transpose().as_slice().to_vec();
-    array(py, values).reshape([matrix.nrows(), matrix.ncols()]).map_err(value_error)
+fn rows<'py>(py: Python<'py>, errors: &ErrorTable) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let (points, teeth) = (errors.points(), errors.teeth());
+    let values: Vec<f64> = (0..points * teeth).map(|n| errors[(n / teeth, n % teeth)]).collect();
+    array(py, values).reshape([points, teeth]).map_err(value_error)
 }

@@ -1,13 +1,14 @@
 //! One simulation.
 
 use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
+use meshtone::wheel::WheelName;
 use meshtone::{Stages, Trace};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::array::{Signal, array, field, samples};
-use crate::error::{scenario_error, value_error};
+use crate::error::{simulation_error, value_error};
 use crate::process::Record;
 use crate::scenario::{BothWheels, Scenario, both_wheels};
 
@@ -28,9 +29,9 @@ pub struct Simulation {
     #[pyo3(get)]
     axial_g: Py<PyArray1<f64>>,
     #[pyo3(get)]
-    pinion_speed_hz: Py<PyArray1<f64>>,
+    pinion_shaft_speed_hz: Py<PyArray1<f64>>,
     #[pyo3(get)]
-    gear_speed_hz: Py<PyArray1<f64>>,
+    gear_shaft_speed_hz: Py<PyArray1<f64>>,
     #[pyo3(get)]
     mesh_force_n: Py<PyArray1<f64>>,
     /// (s) Of the stages, by name.
@@ -41,7 +42,8 @@ pub struct Simulation {
 /// Simulates a scenario.
 #[pyfunction]
 pub fn simulate(py: Python<'_>, scenario: &Scenario) -> PyResult<Simulation> {
-    let simulation = py.detach(|| meshtone::simulate(&scenario.0)).map_err(|error| scenario_error(&error))?;
+    let simulation =
+        py.detach(|| meshtone::simulate(&scenario.0)).map_err(|error| simulation_error(&error))?;
     Ok(Simulation::new(py, simulation))
 }
 
@@ -57,7 +59,7 @@ pub fn trace<'py>(
         Some(rate) => meshtone::trace_at(&scenario.0, rate),
         None => meshtone::trace(&scenario.0),
     });
-    let (_, trace) = traced.map_err(|error| scenario_error(&error))?;
+    let (_, trace) = traced.map_err(|error| simulation_error(&error))?;
     fields(py, trace)
 }
 
@@ -79,8 +81,8 @@ impl Simulation {
             horizontal_g: array(py, channels.horizontal_g).unbind(),
             vertical_g: array(py, channels.vertical_g).unbind(),
             axial_g: array(py, channels.axial_g).unbind(),
-            pinion_speed_hz: array(py, channels.pinion_speed_hz).unbind(),
-            gear_speed_hz: array(py, channels.gear_speed_hz).unbind(),
+            pinion_shaft_speed_hz: array(py, channels.pinion_shaft_speed_hz).unbind(),
+            gear_shaft_speed_hz: array(py, channels.gear_shaft_speed_hz).unbind(),
             mesh_force_n: array(py, channels.mesh_force_n).unbind(),
             computing_time_s: simulation
                 .timings
@@ -114,9 +116,25 @@ impl Simulation {
         array(py, values).reshape([shapes.nrows(), shapes.ncols()]).map_err(value_error)
     }
 
-    /// (N/mm) Mesh stiffness at every point of a revolution of the gear.
-    fn mesh_stiffness_curve_n_per_mm<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        array(py, self.stages.mesh.mesh_n_per_mm.clone())
+    /// (N/mm) Mesh stiffness at every point of some pitches, on the grid of the published code under every model.
+    fn mesh_stiffness_n_per_mm<'py>(
+        &self,
+        py: Python<'py>,
+        first_pitch: usize,
+        pitches: usize,
+    ) -> Bound<'py, PyArray1<f64>> {
+        let points_per_pitch = self.stages.cycle.points_per_pitch;
+        let stiffness = match self.stages.mesh.published() {
+            Some(mesh) => {
+                let cycle = mesh.stiffness.mesh_n_per_mm.iter().cycle();
+                cycle.skip(first_pitch * points_per_pitch).take(pitches * points_per_pitch).copied().collect()
+            }
+            None => {
+                let mesh = self.stages.pair_mesh(points_per_pitch);
+                mesh.stiffness_n_per_mm(first_pitch..first_pitch + pitches)
+            }
+        };
+        array(py, stiffness)
     }
 
     /// (mm) Profile of a wheel's tooth: x, y.
@@ -125,16 +143,18 @@ impl Simulation {
         py: Python<'py>,
         wheel: &str,
     ) -> PyResult<[Bound<'py, PyArray1<f64>>; 2]> {
-        let profile = match shaft(wheel)? {
-            Shaft::Pinion => &self.stages.teeth.pinion_profile,
-            Shaft::Gear => &self.stages.teeth.gear_profile,
-        };
+        let profile = self.stages.teeth.profile(wheel_name(wheel)?);
         Ok([array(py, profile.x_mm.clone()), array(py, profile.y_mm.clone())])
     }
 
-    /// (mm) The damaged flank's y, at the gear's profile points; none for a healthy pair.
-    fn damaged_flank_y_mm<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        self.stages.fault.as_ref().map(|fault| array(py, fault.flank_y_mm.clone()))
+    /// (mm) The damaged teeth: wheel, number from 1, and y of the flank, where it is cut furthest back, at the profile's
+    /// points.
+    fn damaged_teeth_mm<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> Vec<(&'static str, usize, Bound<'py, PyArray1<f64>>)> {
+        let teeth = self.stages.damaged.iter();
+        teeth.map(|tooth| (tooth.wheel.name(), tooth.tooth + 1, array(py, tooth.outline_y_mm()))).collect()
     }
 
     /// (mm) Profile errors of both wheels, a column a tooth; none for ideal teeth.
@@ -167,8 +187,14 @@ pub fn process_simulated(
 
 /// The shaft of a wheel.
 fn shaft(wheel: &str) -> PyResult<Shaft> {
-    Shaft::BOTH
-        .into_iter()
-        .find(|shaft| shaft.wheel() == wheel)
-        .ok_or_else(|| value_error(format!("'{wheel}': must be 'pinion' or 'gear'")))
+    Shaft::BOTH.into_iter().find(|shaft| shaft.wheel() == wheel).ok_or_else(|| no_wheel(wheel))
+}
+
+/// A wheel by its name.
+fn wheel_name(wheel: &str) -> PyResult<WheelName> {
+    WheelName::BOTH.into_iter().find(|name| name.name() == wheel).ok_or_else(|| no_wheel(wheel))
+}
+
+fn no_wheel(wheel: &str) -> PyErr {
+    value_error(format!("'{wheel}': must be 'pinion' or 'gear'"))
 }

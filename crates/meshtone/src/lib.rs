@@ -1,24 +1,59 @@
 //! Vibration of a spur gear pair, sound or damaged.
+//!
+//! A [scenario](scenario::Scenario) says what is simulated; [`simulate()`] gives the [channels](sensor::Channels) and every stage on the
+//! way to them.
+//!
+//! ```
+//! use meshtone::scenario::{Fault, GearPair, Scenario, ToothBreakage};
+//!
+//! let mut scenario = Scenario::new(GearPair {
+//!     module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0,
+//!     pinion_speed_hz: 40.0, brake_torque_nm: 10.0,
+//! });
+//! let chip = ToothBreakage { chip_height_mm: 5.0, chip_width_mm: 12.0, tip_loss_mm: 0.0 };
+//! scenario.faults = vec![Fault::on_first_gear_tooth(chip)];
+//! let simulation = meshtone::simulate(&scenario)?;
+//! assert_eq!(simulation.channels.vertical_g.len(), 245_480);
+//! # Ok::<(), meshtone::Error>(())
+//! ```
+//!
+//! * What is asked for: [`scenario`], with the keys of [`wheel`], [`damage`] and [`operation`].
+//! * Simulating: [`simulate()`], many at once with [`batch`], every stage's numbers by name with [`trace()`].
+//! * From a signal, simulated or measured, to indicators: [`signal`].
+//! * Making simulated signals resemble a rig's: [`tuning`].
+//!
+//! The stages between the scenario and the channels are [`mesh`] and those behind it; they are documented in the source.
 #![deny(missing_docs)]
 
 pub mod batch;
-pub mod dynamics;
-pub mod fault;
-pub mod hybrid;
+pub mod damage;
+mod error;
+mod error_table;
+#[doc(hidden)]
 pub mod interpolation;
-pub mod quality;
+mod keys;
+#[doc(hidden)]
+pub mod machine;
+pub mod mesh;
+mod model;
+pub mod operation;
 pub mod random;
-pub mod sampling;
 pub mod scenario;
+pub mod sensor;
 pub mod signal;
+mod simd;
 mod simulate;
+#[doc(hidden)]
 pub mod solver;
+#[doc(hidden)]
 pub mod stiffness;
 mod threads;
-pub mod toml_reader;
-pub mod tooth;
 mod trace;
+pub mod tuning;
 mod warnings;
+pub mod wheel;
 
+pub use error::Error;
+pub use simd::InstructionSet;
 pub use simulate::{Simulation, StageTime, Stages, simulate, stages};
 pub use trace::{Trace, TraceField, stage_trace, trace, trace_at};

@@ -10,6 +10,7 @@ use rand_chacha::ChaCha8Rng;
 /// What a random number is used for; draws for different purposes are independent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u64)]
+#[non_exhaustive]
 pub enum Purpose {
     /// Profile errors of the pinion's teeth; index: tooth.
     PinionProfileErrors = 1,

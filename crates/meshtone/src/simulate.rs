@@ -5,21 +5,31 @@ use std::time::Duration;
 
 use web_time::Instant;
 
-use crate::dynamics::coordinates::CoordinateVector;
-use crate::dynamics::{ErrorForce, Excitation, MeshLoad, Motion, MotionSample, System};
-use crate::fault::{FaultGeometry, fault_geometry};
-use crate::quality::profile_errors;
-use crate::sampling::{CycleGrid, TimeGrid};
-use crate::scenario::{Convention, DampingRatio, ProfileErrors, Scenario, ScenarioError, Solver};
-use crate::signal::{Channels, channel_outputs};
-use crate::solver::{Diverged, InstructionSet, Output, Problem, Recorder, ReducedModel, integrate};
-use crate::stiffness::{MeshStiffness, PairStiffness};
-use crate::tooth::{Teeth, teeth};
+use crate::damage::published::fault_geometry;
+use crate::damage::{DamagedTooth, damaged_teeth};
+use crate::error::{Error, ScenarioError};
+use crate::machine::coordinates::CoordinateVector;
+use crate::machine::{Excitation, System};
+use crate::mesh::forcing::{Forcing, ForcingBlock, ForcingSource};
+use crate::mesh::published::PublishedForcing;
+use crate::mesh::{
+    ALL_DIRECTIONS, DirectionVector, Mesh, PairDeviations, PairForcing, PairMesh, PairSequence, Pairs,
+    PublishedMesh,
+};
+use crate::model::Model;
+use crate::operation::{CycleGrid, Solver, TimeGrid};
+use crate::scenario::Scenario;
+use crate::sensor::{Channels, channel_outputs};
+use crate::simd::InstructionSet;
+use crate::solver::{Diverged, Output, Problem, Recorder, ReducedModel, integrate};
+use crate::wheel::quality::profile_errors;
+use crate::wheel::{ProfileErrors, Teeth, teeth};
 
 /// Results of every stage before the time loop.
 #[derive(Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Stages {
-    /// Stage 1: what is simulated. Under the published convention the keys that the published code ignores are
+    /// Stage 1: what is simulated. Under the published model the keys that the published code ignores are
     /// at their defaults.
     pub scenario: Scenario,
     /// Division of time.
@@ -30,12 +40,10 @@ pub struct Stages {
     pub teeth: Teeth,
     /// Stage 3: profile errors; none for ideal teeth.
     pub profile_errors: Option<ProfileErrors>,
-    /// Stage 4: the faulty pair; none for a healthy gear.
-    pub fault: Option<FaultGeometry>,
-    /// Stage 5: stiffness of a tooth pair.
-    pub pair: PairStiffness,
-    /// Stage 5: stiffness of the mesh.
-    pub mesh: MeshStiffness,
+    /// Stage 4: the damaged teeth; none of a healthy pair.
+    pub damaged: Vec<DamagedTooth>,
+    /// Stage 5: the mesh, pair by pair.
+    pub mesh: Mesh,
     /// Stage 6: the equations of motion.
     pub system: System,
     /// Time that each stage took.
@@ -53,6 +61,7 @@ pub struct StageTime {
 
 /// A simulation: every stage's results and the signals.
 #[derive(Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Simulation {
     /// Stages 1 to 6.
     pub stages: Stages,
@@ -68,20 +77,20 @@ pub struct Simulation {
 /// * `scenario` - what is simulated
 ///
 /// # Errors
-/// A scenario that is not valid, or a fault that does not fit the tooth.
+/// A scenario that is not valid, a fault that does not fit the tooth, a motion that grows without bound.
 ///
 /// ```
-/// use meshtone::scenario::Scenario;
+/// use meshtone::scenario::{GearPair, Scenario};
 ///
-/// let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+/// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
 /// scenario.solver.sampling_rate_hz = 2e4;
 /// let simulation = meshtone::simulate(&scenario)?;
 /// let force = &simulation.channels.mesh_force_n;
 /// let mean = force.iter().sum::<f64>() / force.len() as f64;
 /// assert!((mean / 187.0 - 1.0).abs() < 0.01);
-/// # Ok::<(), meshtone::scenario::ScenarioError>(())
+/// # Ok::<(), meshtone::Error>(())
 /// ```
-pub fn simulate(scenario: &Scenario) -> Result<Simulation, ScenarioError> {
+pub fn simulate(scenario: &Scenario) -> Result<Simulation, Error> {
     stages(scenario)?.simulate()
 }
 
@@ -91,57 +100,99 @@ pub fn simulate(scenario: &Scenario) -> Result<Simulation, ScenarioError> {
 /// * `scenario` - what is simulated
 ///
 /// # Errors
-/// As [`simulate`].
+/// A scenario that is not valid, or a fault that does not fit the tooth.
 pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
     let mut clock = Clock::default();
     scenario.validate()?;
     let scenario = scenario.as_honoured();
-    let (gears, convention) = (&scenario.gears, scenario.convention);
-    let time = TimeGrid::new(&scenario);
-    let cycle = CycleGrid::new(gears.pinion_teeth, gears.gear_teeth, time.sampling_rate_hz);
+    let (gears, rig, model) = (&scenario.gears, &scenario.rig, scenario.model);
+    let time = scenario.time_grid();
+    let mut cycle = CycleGrid::new(gears.pinion_teeth, gears.gear_teeth, time.sampling_rate_hz);
     clock.lap("scenario");
 
-    let teeth = teeth(gears, &scenario.rig, convention);
+    let teeth = teeth(gears, [rig.pinion_shaft.radius_mm, rig.gear_shaft.radius_mm], model);
     clock.lap("tooth profiles");
 
     let profile_errors = profile_errors(&scenario.quality, &teeth, scenario.seed);
     clock.lap("profile errors");
 
-    let fault = match &scenario.fault {
-        Some(fault) => Some(fault_geometry(fault, &teeth, convention, scenario.seed)?),
-        None => None,
+    let (damaged, mesh) = match model {
+        Model::Published => {
+            cycle = cycle.as_published(gears.pinion_teeth, gears.gear_teeth);
+            let fault = scenario.faults.first();
+            let fault =
+                fault.map(|fault| fault_geometry(&fault.damage, &teeth, scenario.seed)).transpose()?;
+            let damaged = fault.iter().map(|fault| fault.damaged_tooth(&teeth)).collect();
+            clock.lap("fault");
+            let mesh = PublishedMesh::new(gears, &teeth, fault, cycle)?;
+            (damaged, Mesh::Published(Box::new(mesh)))
+        }
+        Model::Linear => {
+            let damaged = damaged_teeth(&scenario.faults, &teeth, scenario.seed)?;
+            clock.lap("fault");
+            let points_per_pitch = points_per_pitch(&scenario, &time, &cycle);
+            let mesh = pair_mesh(&scenario, &teeth, &damaged, points_per_pitch);
+            if mesh.classes[0].stiffness_n_per_m.contains(&0.0) {
+                return Err(ScenarioError::not_stiff());
+            }
+            (damaged, Mesh::Pairs(Box::new(mesh)))
+        }
     };
-    clock.lap("fault");
-
-    let pair = PairStiffness::new(gears, &teeth, fault.as_ref())?;
-    let mesh = MeshStiffness::new(&pair, &cycle, convention);
     clock.lap("mesh stiffness");
 
-    let angle = teeth.gear.pressure_angle_rad;
-    let load = MeshLoad::new(&mesh, fault.as_ref(), &cycle, gears.face_width_mm, angle, convention);
-    let system = System::new(&scenario, &teeth, load);
-    let mut stages = Stages {
-        time,
-        cycle,
-        teeth,
-        profile_errors,
-        fault,
-        pair,
-        mesh,
-        system,
-        timings: Vec::new(),
-        scenario,
-    };
+    let system = System::new(gears, rig, &teeth, &mesh, model);
+    let mut stages =
+        Stages { time, cycle, teeth, profile_errors, damaged, mesh, system, timings: Vec::new(), scenario };
     stages.time.first_simulated_sample = stages.start_of_settling();
     clock.lap("equations of motion");
     stages.timings = clock.laps;
     Ok(stages)
 }
 
+/// Points from one pair to the next: while motor and brake are steady every sample is one, else the coarse points of the cycle.
+fn points_per_pitch(scenario: &Scenario, time: &TimeGrid, cycle: &CycleGrid) -> usize {
+    let motion = scenario.motion(time);
+    if motion.is_steady() && motion.has_constant_torque() {
+        time.samples_per_pinion_revolution / scenario.gears.pinion_teeth as usize
+    } else {
+        cycle.points_per_pitch
+    }
+}
+
+/// The tooth pairs of a scenario.
+fn pairs<'a>(scenario: &Scenario, teeth: &'a Teeth, damaged: &'a [DamagedTooth]) -> Pairs<'a> {
+    Pairs::new(teeth, damaged, scenario.gears.material, &scenario.gears.foundation)
+}
+
+/// The mesh as a sequence of tooth pairs.
+fn pair_mesh(
+    scenario: &Scenario,
+    teeth: &Teeth,
+    damaged: &[DamagedTooth],
+    points_per_pitch: usize,
+) -> PairMesh {
+    let sequence = PairSequence::new(scenario.gears.pinion_teeth, scenario.gears.gear_teeth, damaged);
+    let pairs = pairs(scenario, teeth, damaged);
+    PairMesh::new(&pairs, sequence, teeth.path.contact_ratio, points_per_pitch)
+}
+
 impl Stages {
+    /// The tooth pairs, at any position of their path; not under `published`, whose flanks are not conjugate.
+    pub fn pairs(&self) -> Pairs<'_> {
+        pairs(&self.scenario, &self.teeth, &self.damaged)
+    }
+
+    /// The mesh as a sequence of tooth pairs, with another number of points from one pair to the next than the time loop has.
+    ///
+    /// # Arguments
+    /// * `points_per_pitch` - how many
+    pub fn pair_mesh(&self, points_per_pitch: usize) -> PairMesh {
+        pair_mesh(&self.scenario, &self.teeth, &self.damaged, points_per_pitch)
+    }
+
     /// Whether motor speed and brake torque are constant.
     pub fn is_steady(&self) -> bool {
-        let motion = Motion::new(&self.scenario, &self.time);
+        let motion = self.scenario.motion(&self.time);
         motion.is_steady() && motion.has_constant_torque()
     }
 
@@ -152,7 +203,7 @@ impl Stages {
     fn start_of_settling(&self) -> usize {
         let Solver { settle_tolerance, initial_displacement, initial_velocity, .. } = &self.scenario.solver;
         let starts_in_equilibrium = initial_displacement.is_none() && initial_velocity.is_none();
-        let published = self.scenario.convention == Convention::Published;
+        let published = self.scenario.model == Model::Published;
         if published || !starts_in_equilibrium || *settle_tolerance == 0.0 || !self.is_steady() {
             return 0;
         }
@@ -168,16 +219,16 @@ impl Stages {
     /// As [`Self::integrate`].
     ///
     /// ```
-    /// use meshtone::scenario::Scenario;
+    /// use meshtone::scenario::{GearPair, Scenario};
     ///
-    /// let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    /// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
     /// scenario.solver.sampling_rate_hz = 2e4;
     /// let stages = meshtone::stages(&scenario)?;
     /// let samples = stages.time.kept_samples();
     /// assert_eq!(stages.simulate()?.channels.len(), samples);
-    /// # Ok::<(), meshtone::scenario::ScenarioError>(())
+    /// # Ok::<(), meshtone::Error>(())
     /// ```
-    pub fn simulate(self) -> Result<Simulation, ScenarioError> {
+    pub fn simulate(self) -> Result<Simulation, Error> {
         let mut clock = Clock::default();
         let model = self.reduced_model();
         let mut channels = Channels::new(&self.time);
@@ -192,49 +243,67 @@ impl Stages {
         self.time.samples as f64 / self.time.samples_per_pinion_revolution as f64
     }
 
-    /// Stage 6, the right-hand side: motor, brake and the profile errors' force, sample by sample from the start.
+    /// Stage 6, the right-hand side: motor, brake and the deviations' force, sample by sample from the start.
     pub fn excitation(&self) -> impl Iterator<Item = Excitation> {
-        let errors = self.error_force();
-        Motion::new(&self.scenario, &self.time).map(move |motion| self.excite(&motion, &errors))
+        let mut forcing = self.forcing_from(0, &ALL_DIRECTIONS);
+        let mut block = ForcingBlock::default();
+        self.scenario.motion(&self.time).map(move |motion| {
+            forcing.next_block(1, &mut block);
+            Excitation {
+                motor_angle_rad: std::f64::consts::TAU * motion.revolutions,
+                motor_speed_rad_per_s: std::f64::consts::TAU * motion.speed_hz,
+                brake_torque_nm: motion.torque_nm,
+                deviation_force_n: DirectionVector::from_fn(|direction, _| block.errors[direction][0]),
+            }
+        })
     }
 
-    pub(crate) fn error_force(&self) -> ErrorForce<'_> {
-        ErrorForce::new(
-            &self.scenario,
-            &self.pair,
-            self.profile_errors.as_ref(),
-            self.fault.as_ref(),
-            &self.system.mesh,
-            self.cycle,
-        )
-    }
-
-    pub(crate) fn excite(&self, motion: &MotionSample, errors: &ErrorForce) -> Excitation {
-        let (position_rev, coarse_point) = self.position(motion.revolutions);
-        Excitation {
-            motor_angle_rad: std::f64::consts::TAU * motion.revolutions,
-            motor_speed_rad_per_s: std::f64::consts::TAU * motion.speed_hz,
-            brake_torque_nm: motion.torque_nm,
-            error_force_n: errors.at(motion.revolutions, position_rev, coarse_point),
-            position_rev,
-            coarse_point,
+    fn forcing_from(&self, first_sample: usize, directions: &[usize]) -> Box<dyn Forcing + '_> {
+        let operation = &self.scenario.operation;
+        let motion = self.scenario.motion(&self.time);
+        let nominal = [operation.pinion_speed_hz, operation.brake_torque_nm];
+        let errors = self.profile_errors.as_ref();
+        match &self.mesh {
+            Mesh::Published(mesh) => {
+                Box::new(PublishedForcing::new(mesh, errors, motion, &self.time, nominal, directions))
+            }
+            Mesh::Pairs(mesh) => {
+                let deviations = PairDeviations {
+                    teeth: &self.teeth,
+                    errors,
+                    eccentricity_m: self.scenario.rig.eccentricity_mm * 1e-3,
+                };
+                let time = &self.time;
+                Box::new(PairForcing::new(mesh, &deviations, motion, time, nominal, directions, first_sample))
+            }
         }
     }
 
-    /// Motor revolutions since the gear's first tooth last entered contact, and the coarse point nearest to them.
-    pub(crate) fn position(&self, revolutions: f64) -> (f64, usize) {
-        let nearest = (revolutions / self.cycle.coarse_step_rev).round() as i64;
-        let coarse_point = nearest.rem_euclid(self.cycle.points_per_gear_revolution as i64) as usize;
-        (revolutions.rem_euclid(self.system.ratio), coarse_point)
+    /// The simulation as the solver sees it.
+    pub(crate) fn problem<'a>(&'a self, model: &'a ReducedModel, outputs: &'a [Output]) -> Problem<'a> {
+        Problem {
+            time: &self.time,
+            model,
+            mesh: &self.mesh,
+            points_per_revolution: match &self.mesh {
+                Mesh::Published(_) => self.cycle.points_per_pinion_revolution as f64,
+                Mesh::Pairs(mesh) => (mesh.points_per_pitch * self.teeth.pinion.teeth as usize) as f64,
+            },
+            source: self,
+            brake_torque_nm: self.scenario.operation.brake_torque_nm,
+            steady: self.is_steady(),
+            outputs,
+            first_sample: self.time.first_kept_sample,
+        }
     }
 
     /// The equations of motion in the modes that take part in the motion.
     pub fn reduced_model(&self) -> ReducedModel {
         let solver = &self.scenario.solver;
-        let displacement = match (solver.initial_displacement, self.scenario.convention) {
+        let displacement = match (solver.initial_displacement, self.scenario.model) {
             (Some(given), _) => Some(given.into()),
-            (None, Convention::Published) => Some(CoordinateVector::zeros()),
-            (None, Convention::Corrected) => None,
+            (None, Model::Published) => Some(CoordinateVector::zeros()),
+            (None, Model::Linear) => None,
         };
         let speed = self.initial_motor_speed_rad_per_s();
         let velocity = match solver.initial_velocity {
@@ -268,26 +337,22 @@ impl Stages {
         outputs: &[Output],
         first_sample: usize,
         recorder: &mut dyn Recorder,
-    ) -> Result<(), ScenarioError> {
-        let problem = Problem { stages: self, model, outputs, first_sample };
+    ) -> Result<(), Error> {
+        let problem = Problem { first_sample, ..self.problem(model, outputs) };
         let result = integrate(&problem, InstructionSet::fastest(), recorder);
         result.map_err(|diverged| self.divergence(diverged))
     }
 
     /// The error that a solution without bound is.
-    pub(crate) fn divergence(&self, diverged: Diverged) -> ScenarioError {
+    pub(crate) fn divergence(&self, diverged: Diverged) -> Error {
         let time_s = diverged.sample as f64 * self.time.step_s();
-        let value = match &self.scenario.rig.damping_ratio {
-            DampingRatio::Uniform(ratio) => format!("{ratio:?}"),
-            ratios => format!("{:?}", ratios.per_mode()),
-        };
-        let problem = format!(
-            "the motion grows without bound within {time_s:.4} s; damping must take what the varying mesh stiffness puts \
-             into a mode, and a missing tooth must leave another in contact"
-        );
-        ScenarioError::new("rig.damping_ratio", value, problem).with_help(
-            "raise the damping ratios (the default is 0.05), use more teeth, or change operation.pinion_speed_hz",
-        )
+        Error::Diverged { time_s, damping_ratios: self.scenario.rig.damping_ratio.per_mode() }
+    }
+}
+
+impl ForcingSource for Stages {
+    fn forcing(&self, directions: &[usize]) -> Box<dyn Forcing + '_> {
+        self.forcing_from(self.time.first_simulated_sample, directions)
     }
 }
 

@@ -1,7 +1,7 @@
 //! What the stages show to be doubtful about a simulation.
 
-use crate::dynamics::coordinates::{X_GEAR, X_PINION};
-use crate::scenario::ScenarioWarning;
+use crate::error::ScenarioWarning;
+use crate::machine::coordinates::{X_GEAR, X_PINION};
 use crate::simulate::Stages;
 
 /// (-) Part of the starting transient that may be left where the kept signal starts.

@@ -1,7 +1,7 @@
 //! The scenarios that are timed: the examples, one for each fault, 17/38 teeth at 40 Hz.
 #![allow(dead_code, clippy::expect_used)]
 
-use meshtone::scenario::{Convention, Scenario};
+use meshtone::scenario::{Model, Scenario};
 
 /// Name and scenario file of every example.
 const EXAMPLES: [(&str, &str); 6] = [
@@ -14,12 +14,12 @@ const EXAMPLES: [(&str, &str); 6] = [
 ];
 
 /// Every example, with its full settling: 490 960 steps.
-pub fn with_full_settling(convention: Convention) -> Vec<(&'static str, Scenario)> {
+pub fn with_full_settling(model: Model) -> Vec<(&'static str, Scenario)> {
     EXAMPLES
         .iter()
         .map(|(name, text)| {
             let mut scenario = Scenario::from_toml(text).expect("an example is valid");
-            scenario.convention = convention;
+            scenario.model = model;
             scenario.solver.settle_tolerance = 0.0;
             (*name, scenario)
         })
@@ -27,6 +27,6 @@ pub fn with_full_settling(convention: Convention) -> Vec<(&'static str, Scenario
 }
 
 /// The healthy example, with its full settling.
-pub fn healthy(convention: Convention) -> Scenario {
-    with_full_settling(convention).swap_remove(0).1
+pub fn healthy(model: Model) -> Scenario {
+    with_full_settling(model).swap_remove(0).1
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use meshtone::scenario::{TEMPLATE_KINDS, template};
+use meshtone::scenario::{template, template_kinds};
 use meshtone_dataset::plan;
 use meshtone_io::atomic_file::StagedFile;
 
@@ -19,8 +19,8 @@ const DATASET: &str = "dataset";
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Init {
-    /// A healthy pair, or what is broken on the gear's first tooth; or the plan of a data set
-    #[arg(value_parser = PossibleValuesParser::new(TEMPLATE_KINDS.into_iter().chain([DATASET])))]
+    /// A healthy pair, or what is broken, to begin with on the gear's first tooth; or the plan of a data set
+    #[arg(value_parser = PossibleValuesParser::new(template_kinds().into_iter().chain([DATASET])))]
     kind: String,
     /// File to write, instead of standard output
     #[arg(short, long, value_name = "FILE")]

@@ -1,12 +1,11 @@
 //! `meshtone simulate`
 
+use std::convert::Infallible;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
-use meshtone::scenario::{
-    Convention, ProfileErrors, Scenario, ScenarioError, ScenarioFiles, ScenarioWarning,
-};
+use meshtone::scenario::{Model, ProfileErrors, Scenario, ScenarioError, ScenarioFiles, ScenarioWarning};
 use meshtone::{Simulation, StageTime, Stages, Trace};
 use meshtone_io::experiment::{Tuned, read_tuned};
 use meshtone_io::run_identity::RunIdentity;
@@ -37,9 +36,12 @@ pub struct Simulate {
     /// [default: <file name without .toml>_results in the current directory]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Reading of the model, instead of the scenario's own
+    /// Model of the mesh, instead of the scenario's own
     #[arg(long)]
-    convention: Option<ConventionArgument>,
+    model: Option<ModelArgument>,
+    /// What --model was called
+    #[arg(long, hide = true, num_args = 0..=1, default_missing_value = "", value_parser = renamed_to_model)]
+    convention: Option<Infallible>,
     /// Profile errors, as `meshtone wheels` writes them, instead of the scenario's own
     #[arg(long, value_name = "WHEELS.npz")]
     errors_file: Option<PathBuf>,
@@ -65,20 +67,26 @@ Examples:
   meshtone simulate pit.toml chip.toml --errors-file wheels.npz -o out   both on the same wheels";
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
-enum ConventionArgument {
-    /// What the theory says
-    Corrected,
+enum ModelArgument {
+    /// What the theory of a linear mesh says
+    Linear,
     /// The published code, its slips included
     Published,
 }
 
-impl From<ConventionArgument> for Convention {
-    fn from(argument: ConventionArgument) -> Self {
+impl From<ModelArgument> for Model {
+    fn from(argument: ModelArgument) -> Self {
         match argument {
-            ConventionArgument::Corrected => Self::Corrected,
-            ConventionArgument::Published => Self::Published,
+            ModelArgument::Linear => Self::Linear,
+            ModelArgument::Published => Self::Published,
         }
     }
+}
+
+/// Refuses the option that was renamed, whatever its value.
+fn renamed_to_model(value: &str) -> Result<Infallible, String> {
+    let model = if value == "published" { value } else { "linear" };
+    Err(format!("the option is called --model now; write --model {model}"))
 }
 
 /// A scenario that can be simulated, and where its results go.
@@ -172,8 +180,8 @@ impl Simulate {
                 Failure::bad_input(format!("--tuned {tuned}: {error} ({path})"))
             })?;
         }
-        if let Some(convention) = self.convention {
-            scenario.convention = convention.into();
+        if let Some(model) = self.model {
+            scenario.model = model.into();
         }
         if let Some(errors) = errors {
             scenario.quality.din_grade = 0;
@@ -207,7 +215,7 @@ impl Simulate {
         let of = format!("({} of {})", number + 1, self.scenarios.len());
         let progress = Progress::start(format!("{} {of}", run.file.path.display()), !self.quiet);
         let (simulation, trace) = simulate(&run.scenario, run.stages, self.trace.is_some())
-            .map_err(|error| run.file.refuse(error))?;
+            .map_err(|error| not_simulated(&run.file, error))?;
         let tension = warnings::of_tension(&simulation.channels);
         let all_warnings: Vec<_> = run.warnings.iter().cloned().chain(tension.clone()).collect();
         let summary = Summary::new(&simulation, RunIdentity::of(&run.scenario), &all_warnings);
@@ -237,11 +245,23 @@ fn read_errors(path: &Path) -> Result<ProfileErrors, Failure> {
     })
 }
 
+/// A scenario that gave no simulation, named by its file.
+fn not_simulated(file: &ScenarioFile, error: meshtone::Error) -> Failure {
+    let help = error.help().map(str::to_owned);
+    match error {
+        meshtone::Error::Scenario(error) => file.refuse(error).into(),
+        error => {
+            let failure = Failure::bad_input(format!("{}: {error}", file.path.display()));
+            help.into_iter().fold(failure, Failure::with_help)
+        }
+    }
+}
+
 fn simulate(
     scenario: &Scenario,
     stages: Option<Stages>,
     with_trace: bool,
-) -> Result<(Simulation, Option<Trace>), ScenarioError> {
+) -> Result<(Simulation, Option<Trace>), meshtone::Error> {
     if !with_trace {
         let stages = stages.map_or_else(|| meshtone::stages(scenario), Ok)?;
         return Ok((stages.simulate()?, None));

@@ -8,7 +8,7 @@ use std::sync::atomic::AtomicBool;
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use meshtone::hybrid::{Experiment, ExperimentControl, ExperimentResult, Tuning, run_experiment};
+use meshtone::tuning::{Experiment, ExperimentControl, ExperimentResult, Tuning, run_experiment};
 use meshtone_io::atomic_file::StagedFile;
 use meshtone_io::experiment::{Tuned, read_experiment, tuning_json, write_tuned};
 use meshtone_plot::tuning_figure;

@@ -38,7 +38,7 @@ impl Wheels {
         }
         let mut scenario = file.scenario.clone();
         // The errors are those of the wheels before the damage.
-        scenario.fault = None;
+        scenario.faults.clear();
         let stages = meshtone::stages(&scenario).map_err(|error| file.refuse(error))?;
         let errors = stages.profile_errors.ok_or_else(|| file.refuse(ideal_teeth()))?;
         Ok(write_profile_errors_npz(&self.output, &errors)?)

@@ -38,17 +38,19 @@ pub fn of_record(
     }
     facts.push(format!("difference without {}", removed.join(", ")));
     facts.push(format!("Meshtone {}", env!("CARGO_PKG_VERSION")));
+    let first_teeth: Vec<String> = latest.wheels.iter().map(|(wheel, ..)| phase.first_tooth(wheel)).collect();
     let wheels: Vec<WheelView> = latest
         .wheels
         .iter()
-        .map(|(wheel, mean_speed_hz, record)| WheelView {
+        .zip(&first_teeth)
+        .map(|((wheel, mean_speed_hz, record), first_tooth)| WheelView {
             name: wheel.name,
             teeth: wheel.teeth,
             mean_speed_hz: *mean_speed_hz,
             sidebands: processing.sidebands as usize,
             low_orders: processing.low_orders as usize,
-            first_tooth: phase.first_tooth(wheel),
-            damaged_tooth: wheel.damaged_tooth,
+            first_tooth,
+            damaged_teeth: &wheel.damaged_teeth,
             record,
         })
         .collect();

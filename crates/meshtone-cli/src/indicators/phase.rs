@@ -74,22 +74,25 @@ impl PhaseOptions {
     }
 
     /// What tooth 1 of a wheel is.
-    pub fn first_tooth(&self, wheel: &Wheel) -> &'static str {
-        match self.source() {
-            "scenario" => match wheel.damaged_tooth {
-                None => "each enters contact at the left of its pitch",
-                Some(tooth) if tooth.is_missing => {
-                    "each enters contact at the left of its pitch; 1 is missing"
-                }
-                Some(_) => "each enters contact at the left of its pitch; 1 is damaged",
-            },
+    pub fn first_tooth(&self, wheel: &Wheel) -> String {
+        let words = match self.source() {
+            "scenario" => {
+                let of = |missing: bool| -> Vec<u32> {
+                    let teeth = wheel.damaged_teeth.iter().filter(|tooth| tooth.is_missing == missing);
+                    teeth.map(|tooth| tooth.tooth).collect()
+                };
+                let (missing, damaged) =
+                    (teeth_that_are("missing", &of(true)), teeth_that_are("damaged", &of(false)));
+                return format!("each enters contact at the left of its pitch{missing}{damaged}");
+            }
             "mesh tone" => "1: chosen by chance",
             "tachometer" | "pulse times" if wheel.is_on_shaft && self.pulses_per_rev == 1 => {
                 "1: in mesh at the pulse"
             }
             "tachometer" | "pulse times" => "1: in mesh at the first pulse",
             _ => "1: in mesh at the first sample",
-        }
+        };
+        words.to_owned()
     }
 
     /// The phase of the shaft, as measured, and what is doubtful about the file that it is from.
@@ -140,6 +143,18 @@ impl PhaseOptions {
             }
         };
         Ok((phase?, Vec::new()))
+    }
+}
+
+/// `; 1 is missing`, `; 3, 7 are damaged`, and of many teeth how many they are.
+fn teeth_that_are(state: &str, teeth: &[u32]) -> String {
+    const MOST_NAMED: usize = 3;
+    let named: Vec<_> = teeth.iter().map(u32::to_string).collect();
+    match named.len() {
+        0 => String::new(),
+        1 => format!("; {} is {state}", named[0]),
+        count if count > MOST_NAMED => format!("; {count} teeth are {state}"),
+        _ => format!("; {} are {state}", named.join(", ")),
     }
 }
 

@@ -2,12 +2,12 @@
 
 use std::borrow::Cow;
 
-use meshtone::scenario::{Fault, Gears, Scenario};
+use meshtone::scenario::{Gears, Scenario, WheelName};
 use meshtone::signal::{
     AngularSettings, ChainSettings, Record, SeparationSettings, Shaft, ShaftPhase, SignalError,
     SignalWarning, check_channel, process_channel, process_segments,
 };
-use meshtone::tooth::contact_ratio;
+use meshtone::wheel::contact_ratio;
 use meshtone_io::indicators::WarningEntry;
 use meshtone_plot::DamagedTooth;
 
@@ -26,8 +26,8 @@ pub struct Wheel {
     pub teeth: u32,
     /// Whether it is on the shaft that speed or pulses are of.
     pub is_on_shaft: bool,
-    /// The damaged tooth, where it is known to be tooth 1.
-    pub damaged_tooth: Option<DamagedTooth>,
+    /// The damaged teeth, where it is known which they are.
+    pub damaged_teeth: Vec<DamagedTooth>,
 }
 
 /// What one recording shows about one wheel.
@@ -129,14 +129,18 @@ fn turning(input: &Input, phase: &PhaseOptions) -> Result<(Turning, Vec<Wheel>, 
                 name: shaft.wheel(),
                 teeth: shafts.teeth(shaft),
                 is_on_shaft: shaft == Shaft::Pinion,
-                damaged_tooth: if shaft == Shaft::Gear { damaged_tooth(&scenario) } else { None },
+                damaged_teeth: damaged_teeth(&scenario, shaft),
             });
             Ok((Turning::Simulated(shafts), wheels.to_vec(), input.warnings.clone()))
         }
         _ => {
             phase.check(input)?;
-            let wheel =
-                |(name, teeth)| Wheel { name, teeth, is_on_shaft: name == "wheel", damaged_tooth: None };
+            let wheel = |(name, teeth)| Wheel {
+                name,
+                teeth,
+                is_on_shaft: name == "wheel",
+                damaged_teeth: Vec::new(),
+            };
             let teeth = [("wheel", phase.teeth), ("mate", phase.mate_teeth)];
             let wheels = teeth.into_iter().filter_map(|(name, teeth)| Some(wheel((name, teeth?))));
             let (shaft, of_phase) = phase.measured(input)?;
@@ -145,12 +149,15 @@ fn turning(input: &Input, phase: &PhaseOptions) -> Result<(Turning, Vec<Wheel>, 
     }
 }
 
-/// The gear's tooth that the scenario damages.
-fn damaged_tooth(scenario: &Scenario) -> Option<DamagedTooth> {
+/// The teeth on a shaft that the scenario damages.
+fn damaged_teeth(scenario: &Scenario, shaft: Shaft) -> Vec<DamagedTooth> {
     let Gears { pinion_teeth, gear_teeth, pressure_angle_deg, .. } = scenario.gears;
     let contact_pitches = contact_ratio(pinion_teeth, gear_teeth, pressure_angle_deg.to_radians());
-    let is_missing = |fault: &Fault| matches!(fault, Fault::MissingTooth);
-    scenario.fault.as_ref().map(|fault| DamagedTooth { contact_pitches, is_missing: is_missing(fault) })
+    let wheel = match shaft {
+        Shaft::Pinion => WheelName::Pinion,
+        Shaft::Gear => WheelName::Gear,
+    };
+    DamagedTooth::of_wheel(&scenario.faults, wheel, contact_pitches)
 }
 
 fn measured(

@@ -13,7 +13,7 @@ use super::refuse::unreadable;
 use crate::failure::Failure;
 
 /// The channel of a simulation that is processed unless another is chosen.
-const OF_SIMULATION: &str = "vertical_acceleration_g";
+const OF_SIMULATION: &str = "vertical_g";
 
 /// A recording with the channel that is processed and the one that tells the phase.
 #[derive(Debug)]

@@ -95,7 +95,7 @@ impl Series {
             return refuse("is in", here, format!("in {there}"));
         }
         for (wheel, here) in self.wheels.iter_mut().zip(wheels) {
-            wheel.damaged_tooth = here.damaged_tooth;
+            wheel.damaged_teeth = here.damaged_teeth;
         }
         Ok(())
     }

@@ -152,7 +152,7 @@ fn arguments() {
     workplace.fails(2, &two, &["would both write to fast_results"]);
     let other = ["simulate", "fast.toml", "other.toml", "--trace", "t.npz"];
     workplace.fails(2, &other, &["--trace", "2 scenarios", "must be one"]);
-    workplace.fails(2, &["simulate", "fast.toml", "--convention", "both"], &["corrected, published"]);
+    workplace.fails(2, &["simulate", "fast.toml", "--model", "both"], &["linear, published"]);
     workplace.fails(2, &["simulate", "fast.toml", "--outptu", "x"], &["--outptu", "--output"]);
     workplace.fails(2, &["simulate"], &["SCENARIO.toml"]);
     workplace.fails(2, &["simulat", "fast.toml"], &["simulate"]);

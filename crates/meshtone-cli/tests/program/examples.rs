@@ -20,7 +20,7 @@ fn examples_are_the_cases_of_the_templates() {
         let example = read_scenario(&examples().join(name).with_extension("toml")).unwrap();
         let mut case = Scenario::from_toml(&template(&name.replace('_', "-")).unwrap()).unwrap();
         if name == "through_face" {
-            case.fault.clone_from(&example.fault);
+            case.faults.clone_from(&example.faults);
         }
         assert_eq!(example, case, "{name}");
     }
@@ -29,7 +29,7 @@ fn examples_are_the_cases_of_the_templates() {
 #[test]
 fn every_example_is_simulated() {
     let workplace = Workplace::new();
-    for name in NAMES {
+    for name in NAMES.into_iter().chain(["several_faults"]) {
         let path = examples().join(name).with_extension("toml");
         workplace.succeeds(&["simulate", path.to_str().unwrap()]);
         assert_eq!(workplace.names(&format!("{name}_results")).len(), 4);

@@ -78,9 +78,7 @@ fn a_simulation_and_the_same_signal_from_other_files() {
     workplace.write("gone.toml", faulty);
     workplace.succeeds(&["simulate", "gone.toml", "-o", "gone", "--no-panel", "-q"]);
     let assert = workplace.succeeds(&["indicators", "gone"]);
-    for words in
-        ["gone -> gone_indicators", "vertical_acceleration_g, g", "gear, 40 teeth", "kurtosis", "FM4"]
-    {
+    for words in ["gone -> gone_indicators", "vertical_g, g", "gear, 40 teeth", "kurtosis", "FM4"] {
         assert!(stdout(&assert).contains(words), "{words}");
     }
     assert_eq!(workplace.names("gone_indicators"), [DATA[0], DATA[1], FIGURES[0], FIGURES[1]]);
@@ -111,7 +109,7 @@ fn a_simulation_and_the_same_signal_from_other_files() {
         &["gone.csv", "--tach", "tacho", "--shaft-hz", "39.5"],
         &["gone.csv", "-c", "2", "--tach", "3", "--edge", "falling", "--threshold", "2", "--hysteresis", "1"],
         &["gone.npy", "--sampling-rate-hz", &rate, "--shaft-hz", "40"],
-        &["gone/signals.parquet", "-c", "vertical_acceleration_g", "--shaft-hz", "40"],
+        &["gone/signals.parquet", "-c", "vertical_g", "--shaft-hz", "40"],
     ] {
         let arguments = [&["indicators"], arguments, &wheels].concat();
         let assert = workplace.succeeds(&arguments);

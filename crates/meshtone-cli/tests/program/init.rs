@@ -1,13 +1,13 @@
 //! `meshtone init`, `--version` and `--help`
 
 use crate::support::{Workplace, stdout};
-use meshtone::scenario::{TEMPLATE_KINDS, template};
+use meshtone::scenario::{template, template_kinds};
 use meshtone_io::scenario_file::read_scenario;
 
 #[test]
 fn every_kind_is_printed_and_can_be_read() {
     let workplace = Workplace::new();
-    for kind in TEMPLATE_KINDS {
+    for kind in template_kinds() {
         assert_eq!(stdout(&workplace.succeeds(&["init", kind])), template(kind).unwrap());
         let file = format!("{kind}.toml");
         workplace.succeeds(&["init", kind, "-o", &file]).stdout("");
@@ -29,7 +29,7 @@ fn an_existing_file_is_not_replaced_by_accident() {
 #[test]
 fn an_unknown_kind_lists_the_kinds() {
     let workplace = Workplace::new();
-    workplace.fails(2, &["init", "wear"], &TEMPLATE_KINDS);
+    workplace.fails(2, &["init", "wear"], &template_kinds());
     workplace.fails(2, &["init"], &["KIND"]);
 }
 

@@ -9,7 +9,7 @@ use meshtone_io::signals::read_signals;
 use meshtone_io::table::{FoundColumn, TableReader};
 use ndarray::{ArrayD, IxDyn};
 use ndarray_npy::NpzReader;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 const ALL_FILES: [&str; 4] = ["panel.png", "panel.svg", "signals.parquet", "summary.json"];
 
@@ -32,8 +32,8 @@ fn signals_are_those_of_the_library() {
 #[test]
 fn every_file_carries_the_runs_identity() {
     let workplace = Workplace::new();
-    let runs = ["corrected", "published"].map(|convention| {
-        workplace.succeeds(&["simulate", "fast.toml", "--convention", convention, "-o", "out"]);
+    let runs = ["linear", "published"].map(|model| {
+        workplace.succeeds(&["simulate", "fast.toml", "--model", model, "-o", "out"]);
         let run = summary(&workplace, "out")["run"].as_str().unwrap().to_string();
         let recorded = read_signals(&workplace.path("out/signals.parquet")).unwrap();
         assert_eq!(recorded.run.to_string(), run);
@@ -60,9 +60,9 @@ fn columns_and_metadata() {
     let columns: Vec<_> = table.columns().iter().map(unit).collect();
     let expected = [
         ("time_s", "s"),
-        ("horizontal_acceleration_g", "g"),
-        ("vertical_acceleration_g", "g"),
-        ("axial_acceleration_g", "g"),
+        ("horizontal_g", "g"),
+        ("vertical_g", "g"),
+        ("axial_g", "g"),
         ("pinion_shaft_speed_hz", "Hz"),
         ("gear_shaft_speed_hz", "Hz"),
         ("mesh_force_n", "N"),
@@ -97,10 +97,10 @@ fn summary_of_a_healthy_pair() {
     let workplace = Workplace::new();
     workplace.succeeds(&["simulate", "fast.toml", "-o", "out", "--no-panel"]);
     let summary = summary(&workplace, "out");
-    assert_eq!(summary["format_version"], 1);
-    assert_eq!(summary["convention"], "corrected");
+    assert_eq!(summary["format_version"], 2);
+    assert_eq!(summary["model"], "linear");
     assert_eq!(summary["seed"], 1);
-    assert_eq!(summary["fault"], Value::Null);
+    assert_eq!(summary["faults"], json!([]));
     assert_eq!(summary["sampling_rate_hz"], 11_200.0);
     assert_eq!(summary["samples"], 11_200);
     assert_eq!(summary["natural_frequencies_hz"].as_array().unwrap().len(), 13);
@@ -113,10 +113,10 @@ fn summary_of_a_healthy_pair() {
     let channels = &summary["channels"];
     let speed = channels["pinion_shaft_speed_hz"]["rms_hz"].as_f64().unwrap();
     assert!((speed - 40.0).abs() < 0.1, "{speed}");
-    assert!(channels["vertical_acceleration_g"]["kurtosis"].is_f64());
+    assert!(channels["vertical_g"]["kurtosis"].is_f64());
     // Nothing pushes along the axis.
-    assert_eq!(channels["axial_acceleration_g"]["rms_g"], 0.0);
-    assert_eq!(channels["axial_acceleration_g"]["kurtosis"], Value::Null);
+    assert_eq!(channels["axial_g"]["rms_g"], 0.0);
+    assert_eq!(channels["axial_g"]["kurtosis"], Value::Null);
     assert!(summary["computing_time_ms"]["time_integration"].is_f64());
     assert_eq!(summary["warnings"], Value::Array(Vec::new()));
 }
@@ -167,20 +167,49 @@ fn several_scenarios_on_the_same_wheels() {
 }
 
 #[test]
-fn convention_of_the_command_line_and_what_it_ignores() {
+fn model_of_the_command_line_and_what_it_ignores() {
     let workplace = Workplace::new();
     workplace.write("bent.toml", fast_and("[rig]\neccentricity_mm = 0.02"));
-    let assert = workplace.succeeds(&["simulate", "bent.toml", "--convention", "published", "--no-panel"]);
+    let assert = workplace.succeeds(&["simulate", "bent.toml", "--model", "published", "--no-panel"]);
     assert!(
         stderr(&assert).contains("bent.toml: line 12: rig.eccentricity_mm: is ignored"),
         "{}",
         stderr(&assert)
     );
     let summary = summary(&workplace, "bent_results");
-    assert_eq!(summary["convention"], "published");
+    assert_eq!(summary["model"], "published");
     assert_eq!(summary["warnings"][0]["key"], "rig.eccentricity_mm");
     let assert = workplace.succeeds(&["simulate", "bent.toml", "--no-panel"]);
     assert!(!stderr(&assert).contains("ignored"));
+}
+
+#[test]
+fn the_option_that_was_called_convention() {
+    let workplace = Workplace::new();
+    for (value, model) in [("corrected", "linear"), ("published", "published"), ("both", "linear")] {
+        let words = ["--convention", &format!("is called --model now; write --model {model}")];
+        workplace.fails(2, &["simulate", "fast.toml", "--convention", value], &words);
+    }
+    workplace.fails(2, &["simulate", "fast.toml", "--convention"], &["is called --model now"]);
+}
+
+#[test]
+fn faults_on_several_teeth_of_both_wheels() {
+    let workplace = Workplace::new();
+    let chip = "[[fault]]\nkind = \"tooth-breakage\"\nwheel = \"pinion\"\ntooth = 3\nchip_height_mm = 3.0\nchip_width_mm = 8.0\n";
+    workplace.write("two.toml", fast_and(&format!("{chip}[[fault]]\nkind = \"missing-tooth\"\ntooth = 7\n")));
+    let text = stdout(&workplace.succeeds(&["simulate", "two.toml", "-o", "out"]));
+    let words = "tooth-breakage on tooth 3 of the pinion, missing-tooth on tooth 7 of the gear";
+    assert!(text.contains(words), "{text}");
+    let expected = json!([
+        { "kind": "tooth-breakage", "wheel": "pinion", "tooth": 3 },
+        { "kind": "missing-tooth", "wheel": "gear", "tooth": 7 },
+    ]);
+    assert_eq!(summary(&workplace, "out")["faults"], expected);
+    workplace.succeeds(&["panel", "out"]);
+    workplace.succeeds(&["indicators", "out", "-o", "indicators"]);
+    let figure = String::from_utf8(workplace.read("indicators/indicators.svg")).unwrap();
+    assert!(figure.contains("; 3 is damaged") && figure.contains("; 7 is missing"));
 }
 
 #[test]

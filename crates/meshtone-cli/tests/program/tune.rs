@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use meshtone::hybrid::{DifferenceChain, difference_signals};
 use meshtone::scenario::Scenario;
 use meshtone::signal::{Edge, kurtosis, resample};
+use meshtone::tuning::{DifferenceChain, difference_signals};
 use serde_json::Value;
 
 use crate::support::{FAST, Workplace, stderr, stdout};
@@ -54,7 +54,7 @@ fn json(workplace: &Workplace, name: &str) -> Value {
 fn a_rig_is_tuned_and_signals_are_enhanced() {
     let workplace = workplace();
     let keys = "candidates = 16\n[[tune.key]]\nkey = \"rig.damping_ratio\"\nleast = 0.02\nlargest = 0.2\n\
-                [[tune.key]]\nkey = \"fault.chip_width_mm\"\nleast = 5.0\nlargest = 14.0\n";
+                [[tune.key]]\nkey = \"fault.tip_loss_mm\"\nleast = 1.0\nlargest = 4.0\n";
     workplace.write("rig.toml", experiment(keys));
     let output = stdout(&workplace.succeeds(&["tune", "rig.toml", "-o", "out"]));
     for word in ["width ratio", "rig.damping_ratio", "leave one out", "chipped"] {
@@ -174,6 +174,12 @@ fn wrong_experiments_are_refused() {
         &["the smaller first"],
     );
     refused(&workplace, &with("fault = { kind = \"missing-tooth\" }\n", ""), &["missing", "has no fault"]);
+    let twice = "fault = [{ kind = \"missing-tooth\" }, { kind = \"missing-tooth\" }]\n";
+    refused(
+        &workplace,
+        &with("fault = { kind = \"missing-tooth\" }\n", twice),
+        &["case[2]", "tooth 1 of the gear has fault[0] already"],
+    );
     let no_healthy = with(
         "label = \"healthy\"\nseverity = 0\n",
         "label = \"x\"\nseverity = 0\nfault = { kind = \"missing-tooth\" }\n",
@@ -275,7 +281,7 @@ fn recordings_are_taken_to_difference_signals() {
         }
     }
     let head = HEAD.replace("10e3", "11200.0");
-    let mut text = format!("{head}[measured]\nchannel = \"vertical_acceleration_g\"\n{CASES}");
+    let mut text = format!("{head}[measured]\nchannel = \"vertical_g\"\n{CASES}");
     for (severity, case) in ["healthy", "chipped", "missing"].iter().enumerate() {
         let files =
             (1..=3).map(|seed| format!("\"{case}{seed}/signals.parquet\"")).collect::<Vec<_>>().join(", ");
@@ -290,7 +296,7 @@ fn recordings_are_taken_to_difference_signals() {
     // The "measured" ones are simulated: nothing needs to be changed.
     let error = tuning.pointer("/error/original").and_then(Value::as_f64).unwrap();
     assert!(error < 0.5, "{tuning:#}");
-    refused(&workplace, &text.replace("vertical_acceleration_g", "vertikal"), &["healthy1", "vertikal"]);
+    refused(&workplace, &text.replace("vertical_g", "vertikal"), &["healthy1", "vertikal"]);
 }
 
 const RIG_HZ: f64 = 8000.0;
@@ -401,5 +407,9 @@ fn what_enhance_refuses() {
         &enhance("wrong.toml", "1"),
         &["wrong.toml", "line 2", "enhancement.width_ratio", "more than 0"],
     );
+    workplace.write("earlier.toml", "convention = \"published\"\n[signal]\nsampling_rate_hz = 10e3\n");
+    let renamed =
+        ["earlier.toml", "line 1", "convention", "is called `model` now", "write model = \"published\""];
+    workplace.fails(2, &enhance("earlier.toml", "1"), &renamed);
     workplace.succeeds(&enhance("tuned.toml", "3"));
 }

@@ -2,13 +2,13 @@
 
 use std::collections::HashMap;
 
-use meshtone::scenario::{Scenario, ScenarioError};
-use meshtone::toml_reader::{ReadResult, nearest_name};
+use meshtone::scenario::Scenario;
+use meshtone_toml::{ReadResult, TomlError, nearest_name};
 
 use super::values::SEVERITY;
 use super::{NOISE_KEYS, Sampler};
 use crate::expression::{Condition, derived_names, underlying};
-use crate::plan::{Content, Distribution, Level, Rule};
+use crate::plan::{Content, Distribution, Level, Rule, kinds};
 
 /// Keys that every record or unit has its own of.
 const OWN: [(&str, &str); 2] =
@@ -17,7 +17,7 @@ const OWN: [(&str, &str); 2] =
 /// What a class's records are drawn by.
 #[derive(Debug, Clone)]
 pub(super) struct ClassRules<'a> {
-    /// With the class's fault.
+    /// With the class's faults.
     pub base: Scenario,
     /// All its numbers, by their keys.
     pub numbers: HashMap<String, f64>,
@@ -35,14 +35,14 @@ pub(super) fn sampler(content: &Content) -> ReadResult<Sampler<'_>> {
         content.rules.iter().enumerate().map(|(i, rule)| (rule, format!("vary[{i}]"))).collect();
     let mut classes = Vec::with_capacity(content.classes.len());
     for (c, class) in content.classes.iter().enumerate() {
-        let base = Scenario { fault: class.fault.clone(), ..content.base.clone() };
+        let base = Scenario { faults: class.faults.clone(), ..content.base.clone() };
         let known: Vec<_> = base.numbers();
         let own: Vec<Placed> =
             class.rules.iter().enumerate().map(|(i, rule)| (rule, format!("class[{c}].vary[{i}]"))).collect();
         for (rule, place) in &own {
             if rule.level == Level::Unit {
                 let problem = "varies by unit; a rule of a class varies by record";
-                return Err(ScenarioError::new(place, "", problem)
+                return Err(TomlError::new(place, "", problem)
                     .with_help("move it to the top as [[vary]], or write per = \"record\""));
             }
         }
@@ -77,6 +77,11 @@ pub(super) fn sampler(content: &Content) -> ReadResult<Sampler<'_>> {
     Ok(Sampler { ends: ends.collect(), content, unit_rules, classes, unit_constraints, shift_levels })
 }
 
+/// Whether a key is a fault's: `fault.…`, or of several `fault[1].…`.
+fn is_of_fault(key: &str) -> bool {
+    key.starts_with("fault.") || key.starts_with("fault[")
+}
+
 /// Keys that exist, once each, of the right kind.
 fn check_keys(
     rules: &[Placed],
@@ -87,7 +92,7 @@ fn check_keys(
     for (rule, place) in rules {
         let named = if rule.keys.len() == 1 { "key" } else { "keys" };
         let refuse = |key: &str, problem: String| {
-            ScenarioError::new(format!("{place}.{named}"), format!("{key:?}"), problem)
+            TomlError::new(format!("{place}.{named}"), format!("{key:?}"), problem)
         };
         for (column, key) in rule.keys.iter().enumerate() {
             if let Some((_, why)) = OWN.iter().find(|(own, _)| own == key) {
@@ -121,7 +126,7 @@ fn check_keys(
                     refuse(key, problem).with_help("leave out per: it is \"unit\" for gears and quality")
                 );
             }
-            if key.starts_with("fault.") && rule.level == Level::Unit {
+            if is_of_fault(key) && rule.level == Level::Unit {
                 let problem = format!("`{key}` varies by unit; faults vary by record");
                 return Err(refuse(key, problem).with_help("leave out per"));
             }
@@ -149,10 +154,10 @@ fn unknown(
     key: &str,
     known: &[meshtone::scenario::ScenarioNumber],
     base: &Scenario,
-) -> ScenarioError {
-    let fault = base.fault.as_ref().map_or("a healthy pair", |fault| fault.kind());
+) -> TomlError {
+    let fault = kinds(&base.faults).unwrap_or_else(|| "a healthy pair".to_owned());
     let problem = format!("`{key}` is no number of the scenario ({fault}), so it cannot be varied");
-    let error = ScenarioError::new(format!("{place}.{named}"), format!("{key:?}"), problem);
+    let error = TomlError::new(format!("{place}.{named}"), format!("{key:?}"), problem);
     error.with_help(
         match nearest_name(key, known.iter().map(|number| number.key.as_str()).chain(NOISE_KEYS)) {
             Some(nearest) => format!("did you mean `{nearest}`?"),
@@ -213,7 +218,7 @@ fn in_order<'a>(
             let (rule, place) = waiting[0];
             let problem =
                 "depends on itself, by its own times or plus or those of the rules that it depends on";
-            return Err(ScenarioError::new(place, rule.keys.join(", "), problem));
+            return Err(TomlError::new(place, rule.keys.join(", "), problem));
         };
         ordered.push(waiting.remove(next).0);
     }
@@ -240,13 +245,13 @@ fn check_dependency(
         varied.filter(|(other, _)| rule.level == Level::Unit && other.level == Level::Record)
     {
         let problem = format!("depends on `{key}`, which {other} varies by record; what a unit has cannot");
-        return Err(ScenarioError::new(place, "", problem));
+        return Err(TomlError::new(place, "", problem));
     }
     Ok(())
 }
 
-fn no_such_number<'n>(place: &str, key: &str, known: impl Iterator<Item = &'n str>) -> ScenarioError {
-    let error = ScenarioError::new(place, "", format!("`{key}` is no number of the scenario"));
+fn no_such_number<'n>(place: &str, key: &str, known: impl Iterator<Item = &'n str>) -> TomlError {
+    let error = TomlError::new(place, "", format!("`{key}` is no number of the scenario"));
     let others = derived_names().chain([SEVERITY]).map(|name| -> &'n str { name });
     match nearest_name(key, known.chain(others)) {
         Some(nearest) => error.with_help(format!("did you mean `{nearest}`?")),
@@ -264,7 +269,7 @@ fn is_decided_by_unit(condition: &Condition, content: &Content) -> bool {
         .filter(|rule| rule.level == Level::Record)
         .flat_map(|rule| rule.keys.iter().map(String::as_str))
         .collect();
-    let varies = |key: &str| key == SEVERITY || key.starts_with("fault.") || by_record.contains(&key);
+    let varies = |key: &str| key == SEVERITY || is_of_fault(key) || by_record.contains(&key);
     !underlying(condition.keys()).into_iter().any(varies)
 }
 
@@ -287,9 +292,7 @@ fn check_conditions(content: &Content, classes: &[ClassRules]) -> ReadResult<()>
         let unvaried = !underlying(condition.keys()).iter().any(|key| *key == SEVERITY || varied(key));
         if unvaried {
             let problem = format!("`{condition}` is about nothing that varies");
-            return Err(
-                ScenarioError::new(place, "", problem).with_help("vary one of its keys, or remove it")
-            );
+            return Err(TomlError::new(place, "", problem).with_help("vary one of its keys, or remove it"));
         }
         Ok(())
     };

@@ -7,7 +7,7 @@ mod values;
 
 use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::{Scenario, ScenarioError};
-use meshtone::toml_reader::ReadResult;
+use meshtone_toml::ReadResult;
 
 use crate::expression::Condition;
 use crate::plan::{Content, Distribution, Rule};
@@ -235,7 +235,7 @@ impl<'a> Sampler<'a> {
             unit.values.iter().for_each(|(key, value)| values.set(key, *value));
             draw(&rules.rules, points, number, attempt, &mut values);
             let severity = plan.severity.of(&|key| values.number(key));
-            let (grade, measure) = severity.unwrap_or((u8::from(plan.fault.is_some()), None));
+            let (grade, measure) = severity.unwrap_or((u8::from(!plan.faults.is_empty()), None));
             // What is the same for a whole class can be held out by its class alone.
             if measure.is_some() {
                 values.set_severity(grade);

@@ -142,7 +142,7 @@ impl<'a> Reader<'a> {
     }
 
     fn key(&mut self) -> Node {
-        let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';
+        let is_part = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | '[' | ']');
         let len = self.rest.find(|c| !is_part(c)).unwrap_or(self.rest.len());
         let key = self.rest[..len].to_owned();
         self.skip(len);

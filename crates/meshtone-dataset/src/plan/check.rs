@@ -1,7 +1,8 @@
 //! What must hold of a plan as a whole.
 
-use meshtone::scenario::ScenarioError;
-use meshtone::toml_reader::{ReadResult, TomlTable};
+use std::collections::HashSet;
+
+use meshtone_toml::{ReadResult, TomlError, TomlTable};
 
 use super::{Content, Plan};
 use crate::draw::{DrawError, Sampler};
@@ -31,7 +32,7 @@ pub(super) fn check(content: &Content, root: &TomlTable<'_>) -> ReadResult<()> {
         (content.base.quality.seed.is_some(), "seed", "every unit has wheels of its own"),
     ] {
         if given {
-            return Err(ScenarioError::new(
+            return Err(TomlError::new(
                 format!("scenario.quality.{key}"),
                 "",
                 format!("cannot be given: {why}"),
@@ -52,13 +53,28 @@ pub(super) fn check(content: &Content, root: &TomlTable<'_>) -> ReadResult<()> {
     Sampler::new(content).map(|_| ())
 }
 
+/// No two columns of the data set have the same name.
+pub(super) fn unique_columns(plan: &Plan) -> ReadResult<()> {
+    let columns = crate::shard::columns(plan);
+    let mut names = HashSet::new();
+    match columns.iter().find(|column| !names.insert(&column.name)) {
+        None => Ok(()),
+        Some(twice) => Err(TomlError::new(
+            "keep",
+            "",
+            format!("two columns of the data set would be called `{}`", twice.name),
+        )
+        .with_help("keep or vary one of the two")),
+    }
+}
+
 /// The first records can be drawn, and of each class one can be simulated.
 pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
     let sampler = Sampler::new(&plan.content)?;
     let mut made = vec![Vec::new(); plan.content.classes.len()];
     for index in 0..plan.records().min(DRAWN) {
         let record = sampler.record(index).map_err(|DrawError { key, problem }| {
-            ScenarioError::new(key, "", problem)
+            TomlError::new(key, "", problem)
                 .with_help("widen the ranges of the keys that it is about, or the condition")
         })?;
         let of_class: &mut Vec<_> = &mut made[record.class];
@@ -66,7 +82,7 @@ pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
         if !tried_enough {
             let result = sampler.scenario(&record).and_then(|scenario| {
                 refuse_ignored(&scenario, &record.values)?;
-                meshtone::stages(&scenario).map(|_| ())
+                meshtone::stages(&scenario).map(drop)
             });
             of_class.push(result.err());
         }
@@ -74,27 +90,26 @@ pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
     for (c, errors) in made.into_iter().enumerate() {
         // None stands for a record that can be simulated.
         let tried = errors.len();
-        let errors: Vec<ScenarioError> = errors.into_iter().flatten().collect();
+        let errors: Vec<TomlError> = errors.into_iter().flatten().map(TomlError::from).collect();
         if tried > 0
             && errors.len() == tried
             && let Some(error) = errors.into_iter().next()
         {
             let label = &plan.content.classes[c].label;
             let problem = format!("no record of the class \"{label}\" can be simulated; the first: {error}");
-            return Err(ScenarioError {
-                help: error.help,
-                ..ScenarioError::new(format!("class[{c}]"), "", problem)
-            });
+            let mut told = TomlError::new(format!("class[{c}]"), "", problem);
+            told.help = error.help;
+            return Err(told);
         }
     }
     Ok(())
 }
 
-/// A varied key that the convention ignores would be a label without effect.
+/// A varied key that the model ignores would be a label without effect.
 fn refuse_ignored(scenario: &meshtone::scenario::Scenario, values: &[(String, f64)]) -> ReadResult<()> {
-    let ignored = scenario.ignored_by_convention();
+    let ignored = scenario.ignored_by_model();
     match ignored.iter().find(|warning| values.iter().any(|(key, _)| key.starts_with(&warning.key))) {
-        Some(warning) => Err(ScenarioError::new(&warning.key, "", warning.message.clone())),
+        Some(warning) => Err(TomlError::new(&warning.key, "", warning.message.clone())),
         None => Ok(()),
     }
 }

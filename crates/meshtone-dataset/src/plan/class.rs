@@ -10,14 +10,20 @@ use crate::expression::Expression;
 pub struct Class {
     /// The label.
     pub label: String,
-    /// The fault, before its varied keys are drawn; none for healthy records.
-    pub fault: Option<Fault>,
+    /// The faults, before their varied keys are drawn; none of healthy records.
+    pub faults: Vec<Fault>,
     /// How many records.
     pub count: u64,
     /// How severe they are.
     pub severity: Severity,
     /// Rules for this class alone.
     pub rules: Vec<Rule>,
+}
+
+/// The kinds of some faults, in their order; none of a healthy pair.
+pub(crate) fn kinds(faults: &[Fault]) -> Option<String> {
+    let kinds: Vec<_> = faults.iter().map(|fault| fault.damage.kind()).collect();
+    (!kinds.is_empty()).then(|| kinds.join(" + "))
 }
 
 /// How severe a record's fault is: a grade, 0 for healthy ones.

@@ -1,6 +1,7 @@
 //! What is kept of each record.
 
-use meshtone::batch::ChannelKind;
+use meshtone::scenario::WheelName;
+use meshtone::sensor::ChannelKind;
 
 /// Most records in a shard.
 pub const MOST_SHARD_RECORDS: u64 = 65_536;
@@ -16,17 +17,20 @@ pub struct Keep {
     pub channels: Vec<ChannelKind>,
     /// The channel that is averaged.
     pub analysed: ChannelKind,
+    /// The wheel over whose revolutions it is averaged.
+    pub wheel: WheelName,
     /// Sidebands that are taken away for the difference signal.
     pub sidebands: usize,
     /// Shaft orders that are taken away for it.
     pub shaft_orders: usize,
-    /// Whether the gear's synchronous average is kept.
+    /// Whether the synchronous average is kept.
     pub average: bool,
     /// Whether its difference signal is kept.
     pub difference: bool,
     /// Whether the indicators are kept.
     pub indicators: bool,
-    /// Whether every record begins when the damaged tooth comes into contact, instead of any tooth.
+    /// Whether every record begins when the damaged tooth, of several that of the first fault, comes into contact, instead of any
+    /// tooth.
     pub aligned: bool,
     /// Records in a shard; by default as many as make about 32 MB.
     pub records_per_shard: Option<u64>,

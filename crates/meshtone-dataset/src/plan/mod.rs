@@ -18,6 +18,7 @@ use meshtone::scenario::Scenario;
 use meshtone_io::experiment::Tuned;
 use sha2::{Digest, Sha256};
 
+pub(crate) use class::kinds;
 pub use class::{Class, Severity};
 pub use files::PlanFile;
 pub use keep::{Keep, MOST_SHARD_RECORDS};

@@ -4,15 +4,14 @@
 //! included: who reads the raw channel back finds the same average, unless `keep.duration_s` has cut it afterwards.
 
 use meshtone::Stages;
-use meshtone::batch::ChannelKind;
-use meshtone::dynamics::Motion;
-use meshtone::scenario::Scenario;
+use meshtone::scenario::{Fault, Scenario, WheelName};
+use meshtone::sensor::ChannelKind;
 use meshtone::signal::{
     AngularSettings, AntiAliasing, ChainSettings, Edge, Interpolation, MeanPart, Record as Analysis,
     SeparationSettings, ShaftPhase, SignalError, process_channel,
 };
 
-use super::{Record, Start, noise};
+use super::{Record, RecordFault, Start, noise};
 use crate::draw::DrawnRecord;
 use crate::plan::{Content, Keep};
 
@@ -25,7 +24,7 @@ pub(super) fn record(
 ) -> Result<Record, String> {
     let signals = |error: SignalError| error.to_string();
     let keep = &content.keep;
-    let view = View::new(content, &drawn, stages);
+    let view = View::new(content, &drawn, &stages.scenario.faults, stages);
     let simulated = keep.simulated();
     if view.offset.is_some() {
         refuse_growth(&simulated, samples)?;
@@ -38,7 +37,7 @@ pub(super) fn record(
         record.clean_difference = view.clean_difference(&channels[analysed], content).map_err(signals)?;
     }
     for (number, (kind, channel)) in simulated.iter().zip(&mut channels).enumerate() {
-        if is_acceleration(*kind) {
+        if ChannelKind::ACCELERATIONS.contains(kind) {
             noise::add(&record.drawn, number as u64, channel);
         }
     }
@@ -69,11 +68,12 @@ pub(super) fn record(
 pub(super) fn twin(
     content: &Content,
     drawn: DrawnRecord,
+    faults: &[Fault],
     stages: &Stages,
     samples: &[Vec<f32>],
 ) -> Result<Record, String> {
     let signals = |error: SignalError| error.to_string();
-    let view = View::new(content, &drawn, stages);
+    let view = View::new(content, &drawn, faults, stages);
     let analysed = content.keep.simulated().iter().position(|channel| *channel == content.keep.analysed);
     let mut record = view.empty(drawn);
     if let Some(analysed) = analysed {
@@ -92,7 +92,9 @@ const MOST_GROWTH: f64 = 10.0;
 fn refuse_growth(channels: &[ChannelKind], samples: &[Vec<f32>]) -> Result<(), String> {
     let square = |part: &[f32]| part.iter().map(|&x| f64::from(x) * f64::from(x)).sum::<f64>();
     let (mut first, mut last) = (0.0, 0.0);
-    for (_, samples) in channels.iter().zip(samples).filter(|(channel, _)| is_acceleration(**channel)) {
+    for (_, samples) in
+        channels.iter().zip(samples).filter(|(channel, _)| ChannelKind::ACCELERATIONS.contains(channel))
+    {
         let part = samples.len() / END;
         first += square(&samples[..part]);
         last += square(&samples[samples.len() - part..]);
@@ -107,10 +109,6 @@ fn refuse_growth(channels: &[ChannelKind], samples: &[Vec<f32>]) -> Result<(), S
     Ok(())
 }
 
-fn is_acceleration(channel: ChannelKind) -> bool {
-    matches!(channel, ChannelKind::Horizontal | ChannelKind::Vertical | ChannelKind::Axial)
-}
-
 /// A simulation as a recording: from the mark on, at the rate of the data set.
 struct View<'a> {
     keep: &'a Keep,
@@ -121,7 +119,7 @@ struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    fn new(content: &'a Content, drawn: &DrawnRecord, stages: &'a Stages) -> Self {
+    fn new(content: &'a Content, drawn: &DrawnRecord, faults: &[Fault], stages: &'a Stages) -> Self {
         let keep = &content.keep;
         let gears = &stages.scenario.gears;
         let (time, teeth) = (&stages.time, gears.gear_teeth as usize);
@@ -129,15 +127,21 @@ impl<'a> View<'a> {
         let per_revolution = per_tooth * teeth;
         let kept = time.kept_samples();
         let revolutions = kept / per_revolution.max(1);
-        let start = Start::new(drawn, gears.gear_teeth, revolutions as u32, keep.aligned);
+        let start = if keep.aligned {
+            Start::aligned(drawn, gears, revolutions as u32, faults)
+        } else {
+            Start::new(drawn, gears, revolutions as u32)
+        };
         // Only a steady motion over whole revolutions can be turned.
         let periodic = stages.is_steady() && kept > 0 && kept.is_multiple_of(per_revolution);
         let offset = periodic.then(|| {
-            let mark = start.mark_teeth(gears.gear_teeth) as usize * per_tooth;
+            let mark = start.mark_teeth as usize * per_tooth;
             let wanted = mark + start.revolution as usize * per_revolution;
             (wanted + kept - time.first_kept_sample % kept) % kept
         });
-        Self { keep, stages, start, offset }
+        // What cannot be turned is counted from the first time that the mark passes.
+        let revolution = if periodic { start.revolution } else { 0 };
+        Self { keep, stages, start: Start { revolution, ..start }, offset }
     }
 
     fn scenario(&self) -> &Scenario {
@@ -146,9 +150,14 @@ impl<'a> View<'a> {
 
     fn empty(&self, drawn: DrawnRecord) -> Record {
         let scenario = self.scenario();
+        let fault = |fault: &Fault| RecordFault {
+            kind: fault.damage.kind(),
+            wheel: fault.wheel,
+            tooth: self.start.tooth(fault, &scenario.gears),
+        };
         Record {
             drawn,
-            fault_tooth: scenario.fault.is_some().then_some(self.start.first_tooth),
+            faults: scenario.faults.iter().map(fault).collect(),
             gear_angle_rev: if self.offset.is_some() { 0.0 } else { self.gear_angles()[0] },
             teeth: [scenario.gears.pinion_teeth, scenario.gears.gear_teeth],
             pinion_speed_hz: scenario.operation.pinion_speed_hz,
@@ -193,27 +202,32 @@ impl<'a> View<'a> {
         let Stages { time, scenario, .. } = self.stages;
         let gears = &scenario.gears;
         let ratio = f64::from(gears.pinion_teeth) / f64::from(gears.gear_teeth);
-        let mark = f64::from(self.start.mark_teeth(gears.gear_teeth)) / f64::from(gears.gear_teeth);
-        let motion = Motion::new(scenario, time).skip(time.first_kept_sample).take(time.kept_samples());
+        let mark = f64::from(self.start.mark_teeth) / f64::from(gears.gear_teeth);
+        let motion = scenario.motion(time).skip(time.first_kept_sample).take(time.kept_samples());
         motion.map(|sample| sample.revolutions * ratio - mark).collect()
     }
 
-    /// Phase of the gear's shaft at the recording's samples.
+    /// Phase of the averaged wheel's shaft at the recording's samples.
     fn phase(&self, samples: usize) -> Result<ShaftPhase, SignalError> {
         let rate_hz = self.keep.sampling_rate_hz;
         let gears = &self.scenario().gears;
         if self.offset.is_some() {
             let pinion_hz = self.scenario().operation.pinion_speed_hz;
-            let gear_hz = pinion_hz * f64::from(gears.pinion_teeth) / f64::from(gears.gear_teeth);
-            return ShaftPhase::constant(gear_hz, rate_hz, samples);
+            let shaft_hz = match self.keep.wheel {
+                WheelName::Pinion => pinion_hz,
+                WheelName::Gear => pinion_hz * f64::from(gears.pinion_teeth) / f64::from(gears.gear_teeth),
+            };
+            return ShaftPhase::constant(shaft_hz, rate_hz, samples);
         }
         let angles = self.gear_angles();
+        let turns_per_gear_turn = f64::from(gears.gear_teeth) / f64::from(gears.teeth(self.keep.wheel));
         let step = self.stages.time.sampling_rate_hz / rate_hz;
         let at = |i: usize| {
             let place = i as f64 * step;
             let (whole, last) = (place as usize, angles.len() - 1);
             let from = angles[whole.min(last)];
-            from + (place - whole as f64) * (angles[(whole + 1).min(last)] - from)
+            let angle = from + (place - whole as f64) * (angles[(whole + 1).min(last)] - from);
+            angle * turns_per_gear_turn
         };
         ShaftPhase::new(0, (0..samples).map(at).collect())
     }
@@ -224,7 +238,7 @@ impl<'a> View<'a> {
         interpolation: Interpolation,
         mean: MeanPart,
     ) -> Result<Analysis, SignalError> {
-        let teeth = self.scenario().gears.gear_teeth;
+        let teeth = self.scenario().gears.teeth(self.keep.wheel);
         let separation = SeparationSettings {
             sidebands: self.keep.sidebands,
             shaft_orders: (1..=self.keep.shaft_orders).collect(),

@@ -8,7 +8,8 @@ pub use start::Start;
 
 use meshtone::Stages;
 use meshtone::batch::Keep as BatchKeep;
-use meshtone::sampling::TimeGrid;
+use meshtone::operation::TimeGrid;
+use meshtone::scenario::{Fault, WheelName};
 use meshtone::signal::IndicatorValue;
 use meshtone::solver::{Block, Output, Recorder};
 
@@ -20,9 +21,8 @@ use crate::plan::Content;
 pub struct Record {
     /// What it is.
     pub drawn: DrawnRecord,
-    /// Number of the damaged tooth, counted from 1 in the order in which the teeth come into contact from the start of the
-    /// record on; none for a healthy one.
-    pub fault_tooth: Option<u32>,
+    /// Its faults; none of a healthy one.
+    pub faults: Vec<RecordFault>,
     /// (rev) Angle of the gear at the first sample, from where tooth 1 comes into contact. 0 at constant speed.
     pub gear_angle_rev: f64,
     /// Teeth of pinion and gear.
@@ -33,7 +33,7 @@ pub struct Record {
     pub brake_torque_nm: f64,
     /// Raw channels, those of the plan.
     pub channels: Vec<Vec<f32>>,
-    /// Synchronous average of the analysed channel over the gear's revolutions.
+    /// Synchronous average of the analysed channel over the revolutions of the plan's wheel.
     pub average: Vec<f32>,
     /// Its difference signal.
     pub difference: Vec<f32>,
@@ -43,13 +43,25 @@ pub struct Record {
     pub clean_difference: Vec<f64>,
 }
 
+/// A fault of a record.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RecordFault {
+    /// Kind of damage, by its name in the scenario file.
+    pub kind: &'static str,
+    /// The damaged wheel.
+    pub wheel: WheelName,
+    /// Number of the damaged tooth, counted from 1 in the order in which its wheel's teeth come into contact from the start of
+    /// the record on.
+    pub tooth: u32,
+}
+
 /// What a simulation is for.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Role {
     /// It is the record.
     Record(DrawnRecord),
-    /// It shows what the record's pair would be like without its fault.
-    HealthyTwin(DrawnRecord),
+    /// It shows what the record's pair would be like without its faults, which say where it begins.
+    HealthyTwin(DrawnRecord, Vec<Fault>),
 }
 
 /// What is kept of each of many simulations.
@@ -93,7 +105,9 @@ impl<F: Fn(usize) -> Option<Role> + Sync> BatchKeep for KeepRecords<'_, F> {
     fn keep(&self, index: usize, stages: Stages, samples: Samples) -> Self::Kept {
         match (self.role)(index) {
             Some(Role::Record(drawn)) => chain::record(self.content, drawn, &stages, &samples.channels),
-            Some(Role::HealthyTwin(drawn)) => chain::twin(self.content, drawn, &stages, &samples.channels),
+            Some(Role::HealthyTwin(drawn, faults)) => {
+                chain::twin(self.content, drawn, &faults, &stages, &samples.channels)
+            }
             None => Err("it was not asked for".to_owned()),
         }
         .map(Box::new)

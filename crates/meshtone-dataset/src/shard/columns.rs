@@ -1,6 +1,6 @@
 //! Columns of a data set.
 
-use meshtone::batch::ChannelKind;
+use meshtone::sensor::ChannelKind;
 use meshtone_io::table::{CellType, TableColumn};
 
 use crate::draw::NOISE_KEYS;
@@ -34,8 +34,12 @@ pub enum ColumnKind {
     Severity,
     /// What the grade was taken from.
     SeverityMeasure,
-    /// Number of the damaged tooth.
-    FaultTooth,
+    /// Kind of a fault, by the fault's number.
+    FaultKind(usize),
+    /// Wheel that a fault is on, by the fault's number.
+    FaultWheel(usize),
+    /// Number of the damaged tooth, by the fault's number.
+    FaultTooth(usize),
     /// Seed of the record.
     Seed,
     /// Seed of the unit's profile errors.
@@ -77,15 +81,23 @@ impl ColumnKind {
     fn cells(&self) -> CellType {
         match self {
             Self::Record | Self::Unit | Self::Seed | Self::WheelsSeed => CellType::Int64,
-            Self::Split | Self::Label => CellType::Text,
-            Self::Severity | Self::FaultTooth | Self::PinionTeeth | Self::GearTeeth => CellType::Int32,
+            Self::Split | Self::Label | Self::FaultKind(_) | Self::FaultWheel(_) => CellType::Text,
+            Self::Severity | Self::FaultTooth(_) | Self::PinionTeeth | Self::GearTeeth => CellType::Int32,
             kind if kind.is_signal() => CellType::Float32List { nullable_items: false },
             _ => CellType::Float64,
         }
     }
 
     fn is_nullable(&self) -> bool {
-        matches!(self, Self::SeverityMeasure | Self::FaultTooth | Self::Key(_) | Self::Indicator(_))
+        matches!(
+            self,
+            Self::SeverityMeasure
+                | Self::FaultKind(_)
+                | Self::FaultWheel(_)
+                | Self::FaultTooth(_)
+                | Self::Key(_)
+                | Self::Indicator(_)
+        )
     }
 }
 
@@ -94,30 +106,25 @@ impl ColumnKind {
 /// # Arguments
 /// * `plan` - the plan
 pub fn columns(plan: &Plan) -> Vec<Column> {
-    let mut columns = of_record();
+    let most_faults = plan.content.classes.iter().map(|class| class.faults.len()).max().unwrap_or(0);
+    let mut columns = of_record(most_faults);
     let taken: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
     columns
         .extend(varied_keys(plan).into_iter().map(key_column).filter(|column| !taken.contains(&column.name)));
     let keep = &plan.content.keep;
+    let wheel = keep.wheel.name();
     if keep.indicators {
         columns.extend(indicator_names().into_iter().map(|(name, unit)| Column {
             name: if unit == "g" { format!("{name}_g") } else { name.clone() },
-            description: format!("indicator {name} of the analysed channel over the gear's revolutions"),
+            description: format!("indicator {name} of the analysed channel over the {wheel}'s revolutions"),
             unit,
             kind: ColumnKind::Indicator(name),
         }));
     }
     let channel = |(number, kind): (usize, &ChannelKind)| Column {
         name: kind.name().to_owned(),
-        unit: if kind.name().ends_with("_g") {
-            "g"
-        } else if kind.name().ends_with("_hz") {
-            "Hz"
-        } else {
-            "N"
-        }
-        .to_owned(),
-        description: "raw channel, its samples one after the other".to_owned(),
+        unit: kind.unit().to_owned(),
+        description: format!("raw channel, its samples one after the other: {}", kind.meaning()),
         kind: ColumnKind::Channel(number),
     };
     columns.extend(keep.channels.iter().enumerate().map(channel));
@@ -126,7 +133,9 @@ pub fn columns(plan: &Plan) -> Vec<Column> {
             columns.push(column(name, unit, description, kind));
         }
     };
-    let turn = "over one revolution of the gear, at equal angles from where tooth 1 comes into contact";
+    let turn = format!(
+        "over one revolution of the {wheel}, at equal angles from where its tooth 1 comes into contact"
+    );
     signal(keep.average, "average_g", "g", &format!("synchronous average {turn}"), ColumnKind::Average);
     signal(
         keep.difference,
@@ -161,44 +170,63 @@ fn column(name: &str, unit: &str, description: &str, kind: ColumnKind) -> Column
     Column { name: name.to_owned(), unit: unit.to_owned(), description: description.to_owned(), kind }
 }
 
-fn of_record() -> Vec<Column> {
+fn of_record(most_faults: usize) -> Vec<Column> {
     use ColumnKind::*;
-    vec![
+    let mut columns = vec![
         column("record", "", "number of the record; with the plan it determines everything else", Record),
         column("unit", "", "number of the unit: the pair of wheels, shared by several records", Unit),
         column("split", "", "the split that the unit belongs to", Split),
         column("label", "", "the class", Label),
         column("severity", "", "grade of the fault, from 1; 0 for healthy", Severity),
         column("severity_measure", "-", "the number that the grade was taken from", SeverityMeasure),
-        column(
-            "fault_tooth",
-            "",
-            "number of the damaged tooth of the gear, from 1, in the order in which teeth come into contact from the start of the record on",
-            FaultTooth,
-        ),
+    ];
+    // Also where every class is healthy: all data sets have the columns of one fault.
+    columns.extend((0..most_faults.max(1)).flat_map(of_fault));
+    columns.extend([
         column("seed", "", "seed of the record's noise and fluctuations", Seed),
         column("wheels_seed", "", "seed of the unit's profile errors", WheelsSeed),
         column("sampling_rate_hz", "Hz", "sampling rate of the raw channels", SamplingRate),
         column(
             "gear_angle_rev",
             "rev",
-            "angle of the gear at the first sample, from where tooth 1 comes into contact",
+            "angle of the gear at the first sample, from where its tooth 1 comes into contact",
             GearAngle,
         ),
         column("pinion_teeth", "", "teeth of the pinion, the driving wheel", PinionTeeth),
-        column("gear_teeth", "", "teeth of the gear, whose tooth is damaged", GearTeeth),
+        column("gear_teeth", "", "teeth of the gear, the driven wheel", GearTeeth),
         column("pinion_speed_hz", "Hz", "speed of the pinion's shaft", PinionSpeed),
         column("gear_speed_hz", "Hz", "speed of the gear's shaft", GearSpeed),
         column("brake_torque_nm", "N m", "brake torque on the gear's shaft", BrakeTorque),
+    ]);
+    columns
+}
+
+/// Kind and place of a fault.
+fn of_fault(number: usize) -> [Column; 3] {
+    let fault = fault_name(number);
+    let named = |last: &str, description: &str, kind: ColumnKind| {
+        column(&format!("{fault}_{last}"), "", description, kind)
+    };
+    let tooth = "number of the damaged tooth, from 1, in the order in which its wheel's teeth come into contact from the \
+                 start of the record on";
+    [
+        named("kind", "kind of damage", ColumnKind::FaultKind(number)),
+        named("wheel", "the damaged wheel: pinion or gear", ColumnKind::FaultWheel(number)),
+        named("tooth", tooth, ColumnKind::FaultTooth(number)),
     ]
 }
 
-/// The varied keys, in the plan's order.
+/// What the columns of a fault begin with: `fault`, and of further ones `fault_2` and so on.
+fn fault_name(number: usize) -> String {
+    if number == 0 { "fault".to_owned() } else { format!("fault_{}", number + 1) }
+}
+
+/// The varied keys, in the plan's order; one of those that are in the same column.
 fn varied_keys(plan: &Plan) -> Vec<&str> {
     let rules = plan.content.rules.iter().chain(plan.content.classes.iter().flat_map(|class| &class.rules));
     let mut keys: Vec<&str> = Vec::new();
     for key in rules.flat_map(|rule| &rule.keys) {
-        if !keys.contains(&key.as_str()) {
+        if !keys.iter().any(|other| column_name(other) == column_name(key)) {
             keys.push(key);
         }
     }
@@ -216,13 +244,21 @@ fn key_column(key: &str) -> Column {
     Column { name, unit, description, kind: ColumnKind::Key(key.to_owned()) }
 }
 
-/// Name of a varied key's column: without its section, unless that is the fault or the noise.
+/// Name of a varied key's column: without its section, unless that is a fault or the noise.
 pub(crate) fn column_name(key: &str) -> String {
     let name = match key.split_once('.') {
-        Some(("fault" | "noise", _)) | None => key,
-        Some((_, rest)) => rest,
+        Some(("fault" | "noise", _)) | None => key.to_owned(),
+        Some((section, rest)) => match number_of_fault(section) {
+            Some(number) => [&fault_name(number), rest].join("_"),
+            None => rest.to_owned(),
+        },
     };
     name.replace('.', "_")
+}
+
+/// The number of `fault[1]`, from 0.
+fn number_of_fault(section: &str) -> Option<usize> {
+    section.strip_prefix("fault[")?.strip_suffix(']')?.parse().ok()
 }
 
 /// The unit that a name ends in.
@@ -265,6 +301,8 @@ mod tests {
             ("rig.pinion_shaft.length_mm", "pinion_shaft_length_mm", "mm"),
             ("fault.start", "fault_start", "-"),
             ("fault.circle.x_mm", "fault_circle_x_mm", "mm"),
+            ("fault[0].start", "fault_start", "-"),
+            ("fault[1].circle.x_mm", "fault_2_circle_x_mm", "mm"),
             ("noise.snr_db", "noise_snr_db", "dB"),
             ("rig.bearing_stiffness_n_per_m", "bearing_stiffness_n_per_m", "N/m"),
             ("rig.wheel_rotational_stiffness_nm_per_rad", "wheel_rotational_stiffness_nm_per_rad", "N m/rad"),

@@ -43,7 +43,7 @@ impl Shards {
         let records_per_shard = plan.content.keep.records_per_shard.unwrap_or_else(|| {
             let bytes: Vec<usize> = (0..records.min(ESTIMATED_BY))
                 .filter_map(|index| sampler.scenario(&sampler.record(index).ok()?).ok())
-                .map(|scenario| kept_bytes(&plan.content, &meshtone::sampling::TimeGrid::new(&scenario)))
+                .map(|scenario| kept_bytes(&plan.content, &scenario.time_grid()))
                 .collect();
             let mean = bytes.iter().sum::<usize>() / bytes.len().max(1);
             let fitting = (SHARD_BYTES / mean.max(1)).max(1) as u64;

@@ -2,7 +2,7 @@
 
 use meshtone_io::table::Cells;
 
-use super::{Column, ColumnKind};
+use super::{Column, ColumnKind, column_name};
 use crate::plan::Content;
 use crate::record::Record;
 
@@ -33,6 +33,9 @@ pub(super) fn cells<'r>(column: &Column, rows: &'r [Row], content: &Content) -> 
     let text = |value: &dyn Fn(&Record) -> String| {
         Cells::Text(rows.iter().map(|row| Some(value(&row.record))).collect())
     };
+    let text_or_null = |value: &dyn Fn(&Record) -> Option<&'static str>| {
+        Cells::Text(rows.iter().map(|row| value(&row.record).map(str::to_string)).collect())
+    };
     let number = |value: &dyn Fn(&Record) -> Option<f64>| {
         Cells::Float64(rows.iter().map(|row| value(&row.record)).collect())
     };
@@ -47,7 +50,11 @@ pub(super) fn cells<'r>(column: &Column, rows: &'r [Row], content: &Content) -> 
         ColumnKind::Label => text(&|r| content.classes[r.drawn.class].label.clone()),
         ColumnKind::Severity => small(&|r| Some(u32::from(r.drawn.severity))),
         ColumnKind::SeverityMeasure => number(&|r| r.drawn.severity_measure),
-        ColumnKind::FaultTooth => small(&|r| r.fault_tooth),
+        ColumnKind::FaultKind(number) => text_or_null(&|r| r.faults.get(*number).map(|fault| fault.kind)),
+        ColumnKind::FaultWheel(number) => {
+            text_or_null(&|r| r.faults.get(*number).map(|fault| fault.wheel.name()))
+        }
+        ColumnKind::FaultTooth(number) => small(&|r| r.faults.get(*number).map(|fault| fault.tooth)),
         ColumnKind::SamplingRate => number(&|_| Some(content.keep.sampling_rate_hz)),
         ColumnKind::GearAngle => number(&|r| Some(r.gear_angle_rev)),
         ColumnKind::PinionTeeth => small(&|r| Some(r.teeth[0])),
@@ -58,7 +65,12 @@ pub(super) fn cells<'r>(column: &Column, rows: &'r [Row], content: &Content) -> 
         }
         ColumnKind::BrakeTorque => number(&|r| Some(r.brake_torque_nm)),
         ColumnKind::Key(key) => {
-            number(&|r| r.drawn.values.iter().find(|(other, _)| other == key).map(|(_, value)| *value))
+            let name = column_name(key);
+            let is_in_column = |other: &str| other == key || column_name(other) == name;
+            number(&|r| {
+                let drawn = r.drawn.values.iter().find(|(other, _)| is_in_column(other));
+                drawn.map(|(_, value)| *value)
+            })
         }
         ColumnKind::Indicator(name) => {
             number(&|r| r.indicators.iter().find(|value| value.name == *name).and_then(|value| value.value))

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use meshtone::hybrid::SimulatedCases;
+use meshtone::tuning::SimulatedCases;
 use meshtone_io::experiment::Tuned;
 use meshtone_io::table::{TableColumn, TableWriter};
 use parquet::basic::{Compression, Encoding, ZstdLevel};
@@ -63,7 +63,7 @@ pub(crate) fn write(
             Item::Record(record) => {
                 let healthy = twin.take().filter(|twin| twin.drawn.index == record.drawn.index);
                 let index = record.drawn.index;
-                let is_faulty = content.classes[record.drawn.class].fault.is_some();
+                let is_faulty = !content.classes[record.drawn.class].faults.is_empty();
                 match enhanced(content.tuned.as_ref(), &record, healthy.as_deref(), is_faulty) {
                     Ok(enhanced) => {
                         let row = Row { record, enhanced };
@@ -140,7 +140,7 @@ fn enhanced(
         let enhanced = tuned.enhancement.without_noise(difference, healthy, centre_rev)?;
         let rms = enhanced.healthy_rms * (1.0 + tuned.enhancement.noise_level.powi(2)).sqrt();
         let signal = enhanced.with_noise(record.drawn.seed, 0)?;
-        Ok::<_, meshtone::hybrid::HybridError>(signal.iter().map(|value| (value / rms) as f32).collect())
+        Ok::<_, meshtone::tuning::HybridError>(signal.iter().map(|value| (value / rms) as f32).collect())
     })();
     signal.map_err(|error| format!("it cannot be enhanced: {error}"))
 }

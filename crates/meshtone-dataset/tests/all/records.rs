@@ -195,6 +195,78 @@ fn the_fault_is_at_its_tooth() {
     assert!(seen.len() > 5, "{seen:?}");
 }
 
+/// A damaged tooth of the pinion shows at its number in the average over the pinion's revolutions.
+#[test]
+fn a_fault_of_the_pinion_is_at_its_tooth() {
+    let text = FAST
+        .replace("[[vary]]\nkey = \"noise.snr_db\"\nuniform = [10.0, 30.0]\n", "")
+        .replace(
+            "{ kind = \"missing-tooth\" }",
+            "{ kind = \"missing-tooth\", wheel = \"pinion\", tooth = 5 }",
+        )
+        .replace("[keep]", "[keep]\nwheel = \"pinion\"");
+    let random = made(&plan(&text));
+    let aligned = made(&plan(&text.replace("[keep]", "[keep]\naligned = true")));
+    let mut seen = Vec::new();
+    for (made, is_aligned) in [(&random, false), (&aligned, true)] {
+        for row in (0..60).filter(|&row| made.text("label", row) == "missing") {
+            assert_eq!(
+                ["fault_kind", "fault_wheel"].map(|name| made.text(name, row)),
+                ["missing-tooth", "pinion"]
+            );
+            let difference = made.signal("difference_g", row);
+            let largest = (0..difference.len())
+                .max_by(|&a, &b| difference[a].abs().total_cmp(&difference[b].abs()))
+                .unwrap();
+            let pitch = largest as f64 / difference.len() as f64 * 20.0;
+            let tooth = made.tooth(row).unwrap();
+            let after = (pitch - f64::from(tooth - 1)).rem_euclid(20.0);
+            assert!(after < 4.0, "row {row}: {after} pitches after tooth {tooth}");
+            assert!(!is_aligned || tooth == 1);
+            seen.push(tooth);
+        }
+    }
+    seen.sort_unstable();
+    seen.dedup();
+    assert!(seen.len() > 5, "{seen:?}");
+}
+
+/// Each fault has columns of its own; a key of the first is in one column, whether it is alone or not.
+#[test]
+fn several_faults_of_a_record() {
+    let chip = "{ kind = \"tooth-breakage\", wheel = \"pinion\", tooth = 2, chip_height_mm = 3.0, chip_width_mm = 8.0 }";
+    let missing = "{ kind = \"missing-tooth\", tooth = 9 }";
+    let text = FAST.replace(
+        "fault = { kind = \"missing-tooth\" }\nseverity = 4",
+        &format!("fault = [{chip}, {missing}]\nseverity = 4\n[[class.vary]]\nkey = \"fault[0].chip_height_mm\"\nuniform = [1.0, 2.0]"),
+    );
+    let made = made(&plan(&text));
+    let names: Vec<String> = made.rows[0].get_column_iter().map(|(name, _)| name.clone()).collect();
+    assert_eq!(names.iter().filter(|name| *name == "fault_chip_height_mm").count(), 1);
+    for row in 0..60 {
+        let is_double = made.text("label", row) == "missing";
+        let tooth = |name: &str| match made.field(name, row) {
+            Field::Int(tooth) => Some(*tooth),
+            Field::Null => None,
+            other => panic!("{name}: {other}"),
+        };
+        assert_eq!(tooth("fault_2_tooth").is_some(), is_double);
+        if !is_double {
+            continue;
+        }
+        let named = ["fault_kind", "fault_wheel", "fault_2_kind", "fault_2_wheel"];
+        assert_eq!(
+            named.map(|name| made.text(name, row)),
+            ["tooth-breakage", "pinion", "missing-tooth", "gear"]
+        );
+        assert!((1.0..=2.0).contains(&made.number("fault_chip_height_mm", row)));
+        assert!((1..=20).contains(&tooth("fault_tooth").unwrap()));
+        assert!((1..=40).contains(&tooth("fault_2_tooth").unwrap()));
+        // The pinion's second tooth and the gear's ninth enter contact 7 teeth apart, up to the pinion's revolutions.
+        assert_eq!((tooth("fault_2_tooth").unwrap() - tooth("fault_tooth").unwrap()).rem_euclid(20), 7);
+    }
+}
+
 #[test]
 fn noise_is_as_large_as_it_says_and_of_each_channel_its_own() {
     let without = made(&plan(&FAST.replace(

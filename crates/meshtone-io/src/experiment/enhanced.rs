@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
-use meshtone::hybrid::{HybridError, SimulatedCases, TuningIndicator, difference_signals};
 use meshtone::scenario::{Fault, Scenario};
+use meshtone::tuning::{HybridError, SimulatedCases, TuningIndicator, difference_signals};
 use parquet::basic::{Compression, ZstdLevel};
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
@@ -16,7 +16,7 @@ const COMPRESSION_LEVEL: i32 = 1;
 /// One draw of an enhanced difference signal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnhancedRecord {
-    /// The fault's kind, or `healthy`.
+    /// The faults' kinds, or `healthy`.
     pub label: String,
     /// Number of the draw.
     pub draw: u64,
@@ -53,8 +53,8 @@ pub fn enhance(
     seed: u64,
     draws: u64,
 ) -> Result<EnhancedDraws, HybridError> {
-    let healthy = Scenario { fault: None, ..scenario.clone() };
-    let both = if scenario.fault.is_some() { vec![healthy, scenario.clone()] } else { vec![healthy] };
+    let healthy = Scenario { faults: Vec::new(), ..scenario.clone() };
+    let both = if scenario.faults.is_empty() { vec![healthy] } else { vec![healthy, scenario.clone()] };
     let mut signals = difference_signals(both, &tuned.chain(scenario.gears.gear_teeth))?;
     // A healthy signal does not show where a fault would be.
     let centre_rev = match signals.len() {
@@ -66,14 +66,14 @@ pub fn enhance(
     let enhanced = tuned.enhancement.without_noise(&difference, &healthy, centre_rev)?;
     let noise = 1.0 + tuned.enhancement.noise_level.powi(2);
     let healthy_rms_g = enhanced.healthy_rms * noise.sqrt();
-    let label = scenario.fault.as_ref().map_or("healthy", Fault::kind);
+    let label = label(&scenario.faults);
     // Files of different scenarios must not share their noise.
     let noise_seed = seed ^ identity(scenario);
     let record = |draw: u64| {
         let mut signal = enhanced.with_noise(noise_seed, draw)?;
         signal.iter_mut().for_each(|value| *value /= healthy_rms_g);
         Ok(EnhancedRecord {
-            label: label.to_owned(),
+            label: label.clone(),
             draw,
             relative_rms: TuningIndicator::Rms.measure(&signal)?,
             kurtosis: TuningIndicator::Kurtosis.measure(&signal)?,
@@ -81,6 +81,15 @@ pub fn enhance(
         })
     };
     Ok(EnhancedDraws { healthy_rms_g, records: (0..draws).map(record).collect::<Result<_, HybridError>>()? })
+}
+
+/// The kinds of the faults, in their order.
+fn label(faults: &[Fault]) -> String {
+    if faults.is_empty() {
+        return "healthy".to_owned();
+    }
+    let kinds: Vec<_> = faults.iter().map(|fault| fault.damage.kind()).collect();
+    kinds.join(" + ")
 }
 
 /// A number that stands for the whole scenario (FNV-1a of its file).

@@ -5,9 +5,8 @@ use std::fs::File;
 use std::path::PathBuf;
 
 use csv::StringRecord;
-use meshtone::hybrid::{Case, Measurements};
-use meshtone::scenario::ScenarioError;
-use meshtone::toml_reader::{ReadResult, TomlTable, TomlValue};
+use meshtone::tuning::{Case, Measurements};
+use meshtone_toml::{ReadResult, TomlError, TomlTable, TomlValue};
 
 use super::measured::Wanted;
 
@@ -50,7 +49,7 @@ pub(super) fn read(
     }
     rows.check_complete(wanted).map_err(&problem)?;
     Measurements::from_compared(wanted.indicators.to_vec(), rows.values)
-        .map_err(|error: meshtone::hybrid::HybridError| -> ScenarioError { problem(error.to_string()) })
+        .map_err(|error: meshtone::tuning::HybridError| -> TomlError { problem(error.to_string()) })
 }
 
 /// Places of the columns.

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use meshtone::hybrid::{Case, DifferenceChain, Measurements, TuningIndicator};
-use meshtone::scenario::{Scenario, ScenarioError};
-use meshtone::toml_reader::{ReadResult, TomlTable, TomlValue};
+use meshtone::scenario::Scenario;
+use meshtone::tuning::{Case, DifferenceChain, Measurements, TuningIndicator};
+use meshtone_toml::{ReadResult, TomlError, TomlTable, TomlValue};
 
 use super::{indicator_table, recordings};
 use crate::recording::{ColumnChoice, RecordingOptions, TimeColumn, read_recording};
@@ -15,14 +15,14 @@ pub(super) struct CaseFiles {
     pub(super) difference: Option<Named>,
     pub(super) recordings: Vec<Named>,
     /// Of the case itself.
-    pub(super) place: Option<ScenarioError>,
+    pub(super) place: Option<TomlError>,
 }
 
 /// A file's name, and what an error about it starts from.
 #[derive(Debug, Clone)]
 pub(super) struct Named {
     pub(super) name: String,
-    place: ScenarioError,
+    place: TomlError,
 }
 
 impl Named {
@@ -30,8 +30,8 @@ impl Named {
         Ok(Self { name: value.string()?.to_owned(), place: value.error("") })
     }
 
-    pub(super) fn error(&self, problem: impl std::fmt::Display) -> ScenarioError {
-        ScenarioError { problem: problem.to_string(), ..self.place.clone() }
+    pub(super) fn error(&self, problem: impl std::fmt::Display) -> TomlError {
+        with_problem(self.place.clone(), problem.to_string())
     }
 }
 
@@ -85,7 +85,7 @@ pub(super) fn read(
 
 fn from_differences(wanted: &Wanted, signals: &[Vec<Vec<f64>>]) -> ReadResult<Measurements> {
     Measurements::from_difference_signals(wanted.indicators.to_vec(), signals)
-        .map_err(|error| ScenarioError::new("measured", "", error.to_string()))
+        .map_err(|error| TomlError::new("measured", "", error.to_string()))
 }
 
 /// One record per column, one file per case.
@@ -112,9 +112,15 @@ fn difference_files(wanted: &Wanted, sources: &mut Vec<PathBuf>) -> ReadResult<M
     from_differences(wanted, &signals)
 }
 
-pub(super) fn missing(files: &CaseFiles, problem: String) -> ScenarioError {
-    let place = files.place.clone().unwrap_or_else(|| ScenarioError::new("case", "", ""));
-    ScenarioError { problem, ..place }
+pub(super) fn missing(files: &CaseFiles, problem: String) -> TomlError {
+    let place = files.place.clone().unwrap_or_else(|| TomlError::new("case", "", ""));
+    with_problem(place, problem)
+}
+
+/// The same error with what is wrong.
+fn with_problem(mut error: TomlError, problem: String) -> TomlError {
+    error.problem = problem;
+    error
 }
 
 /// Columns to be read: one by name or number.

@@ -12,12 +12,3 @@ pub use enhanced::{EnhancedDraws, EnhancedHead, EnhancedRecord, enhance, write_e
 pub use read::{ExperimentFile, read_experiment};
 pub use tuned::{Tuned, read_tuned, write_tuned};
 pub use tuning_json::tuning_json;
-
-use meshtone::batch::ChannelKind;
-
-/// The channels that difference signals are taken from, by their names in both files.
-const CHANNELS: [(&str, ChannelKind); 3] = [
-    ("horizontal", ChannelKind::Horizontal),
-    ("vertical", ChannelKind::Vertical),
-    ("axial", ChannelKind::Axial),
-];

@@ -1,18 +1,18 @@
 //! The experiment file.
 
+use crate::channel_name::read_channel;
 use std::path::{Path, PathBuf};
 
-use meshtone::batch::ChannelKind;
-use meshtone::hybrid::{
+use meshtone::scenario::{Fault, Scenario};
+use meshtone::sensor::ChannelKind;
+use meshtone::signal::{MeanPart, SeparationSettings};
+use meshtone::stages;
+use meshtone::tuning::{
     Case, DifferenceChain, EnhancementBounds, Experiment, HybridError, KeyRange, MOST_CANDIDATES, TunedKey,
     TuningIndicator,
 };
-use meshtone::scenario::{Fault, Scenario, ScenarioError};
-use meshtone::signal::{MeanPart, SeparationSettings};
-use meshtone::stages;
-use meshtone::toml_reader::{ReadResult, TomlDocument, TomlTable, TomlValue};
+use meshtone_toml::{ReadResult, TomlDocument, TomlError, TomlTable, TomlValue};
 
-use super::CHANNELS;
 use super::measured::{self, CaseFiles};
 use super::recordings::RATE_TOLERANCE;
 use crate::scenario_file::{ReadScenarioError, ScenarioFile, read_text};
@@ -113,11 +113,11 @@ fn experiment(
     let mut files = Vec::new();
     for value in listed.array()? {
         let (case, of_case) = value.table()?.read(case)?;
-        let scenario = Scenario { fault: case.fault.clone(), ..base.clone() };
+        let scenario = Scenario { faults: case.faults.clone(), ..base.clone() };
         // Before anything is simulated.
         if let Err(error) = stages(&scenario) {
             let key = format!("{}.{}", value.path(), error.key);
-            return Err(ScenarioError { key, line: Some(value.line()), ..error });
+            return Err(TomlError::from(error).with_key(key).at_line(Some(value.line())));
         }
         cases.push(case);
         files.push(of_case);
@@ -143,17 +143,19 @@ fn experiment(
     for number in 0..experiment.keys.len() {
         experiment.check_key(number).map_err(|error| key_error(number, &error))?;
     }
-    experiment.check().map_err(|error| ScenarioError::new("tune", "", error.to_string()))?;
+    experiment.check().map_err(|error| TomlError::new("tune", "", error.to_string()))?;
     Ok(experiment)
 }
 
 /// An error about a tuned key, to be told at its own line.
-fn key_error(number: usize, error: &HybridError) -> ScenarioError {
+fn key_error(number: usize, error: &HybridError) -> TomlError {
     let help = match error {
         HybridError::Scenario(error) => error.help.clone(),
         _ => None,
     };
-    ScenarioError { help, ..ScenarioError::new(format!("tune.key[{number}].key"), "", error.to_string()) }
+    let mut told = TomlError::new(format!("tune.key[{number}].key"), "", error.to_string());
+    told.help = help;
+    told
 }
 
 fn check_cases(listed: &TomlValue<'_>, cases: &[Case]) -> ReadResult<()> {
@@ -161,7 +163,7 @@ fn check_cases(listed: &TomlValue<'_>, cases: &[Case]) -> ReadResult<()> {
         return Err(listed.error(format!("{} case; must be two or more, the healthy one first", cases.len())));
     }
     for (number, case) in cases.iter().enumerate() {
-        if case.fault.is_some() == (number == 0) {
+        if case.faults.is_empty() != (number == 0) {
             let error = HybridError::HealthyCase { case: number, label: case.label.clone() };
             return Err(listed.array()?[number].error(error.to_string()));
         }
@@ -177,12 +179,15 @@ fn check_cases(listed: &TomlValue<'_>, cases: &[Case]) -> ReadResult<()> {
 fn case(table: &TomlTable<'_>) -> ReadResult<(Case, CaseFiles)> {
     let label = table.required("label", "the case's name")?.string()?.to_owned();
     let severity = table.required("severity", "how severe the fault is, 0 for the healthy case")?.number()?;
-    let fault = Fault::from_table(table)?;
-    Ok((Case { label, severity, fault }, CaseFiles::read(table)?))
+    let faults = Fault::list_from_table(table)?;
+    Ok((Case { label, severity, faults }, CaseFiles::read(table)?))
 }
 
 fn signal(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<DifferenceChain> {
-    let channel = table.optional("channel").map(|value| value.choice(&CHANNELS)).transpose()?;
+    let channel = table
+        .optional("channel")
+        .map(|value| read_channel(&value, &ChannelKind::ACCELERATIONS))
+        .transpose()?;
     let rate = table.required("sampling_rate_hz", "(S/s) the sampling rate of the rig's recordings")?;
     let sampling_rate_hz = rate.number()?;
     let mesh_hz = base.operation.pinion_speed_hz * f64::from(base.gears.pinion_teeth);

@@ -2,13 +2,12 @@
 
 use std::path::PathBuf;
 
-use meshtone::hybrid::DifferenceChain;
-use meshtone::scenario::ScenarioError;
 use meshtone::signal::{
     AngularSettings, ChainSettings, MeshTone, ShaftPhase, SignalError, Tachometer, points_per_revolution,
     process_channel, process_segments, tachometer_pulses,
 };
-use meshtone::toml_reader::{ReadResult, TomlTable};
+use meshtone::tuning::DifferenceChain;
+use meshtone_toml::{ReadResult, TomlError, TomlTable};
 
 use super::measured::{Wanted, column, missing};
 use crate::recording::{Recording, RecordingOptions, read_recording};
@@ -86,10 +85,10 @@ fn settings(wanted: &Wanted) -> ReadResult<ChainSettings> {
         wanted.base.operation.pinion_speed_hz * f64::from(gears.pinion_teeth) / f64::from(gears.gear_teeth);
     let rate = wanted.chain.sampling_rate_hz;
     let revolution = ShaftPhase::constant(gear_hz, rate, (3.0 * rate / gear_hz).ceil() as usize)
-        .map_err(|error| ScenarioError::new("signal.sampling_rate_hz", rate, error.to_string()))?;
+        .map_err(|error| TomlError::new("signal.sampling_rate_hz", rate, error.to_string()))?;
     let angular = AngularSettings {
         points_per_revolution: Some(points_per_revolution(&revolution)),
-        ..DifferenceChain::angular_settings(wanted.base.convention)
+        ..DifferenceChain::angular_settings(wanted.base.model)
     };
     Ok(ChainSettings { angular, separation: wanted.chain.separation.clone() })
 }

@@ -1,22 +1,22 @@
 //! What tuning found, in a form that other commands use.
 
+use crate::channel_name::read_channel;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use meshtone::batch::ChannelKind;
-use meshtone::hybrid::{DifferenceChain, Enhancement, Experiment, ExperimentResult};
-use meshtone::scenario::{Convention, Scenario, ScenarioError};
+use meshtone::scenario::{Model, Scenario, ScenarioError};
+use meshtone::sensor::ChannelKind;
 use meshtone::signal::{MeanPart, SeparationSettings};
-use meshtone::toml_reader::{ReadResult, TomlDocument, TomlTable, TomlValue};
+use meshtone::tuning::{DifferenceChain, Enhancement, Experiment, ExperimentResult};
+use meshtone_toml::{ReadResult, TomlDocument, TomlTable, TomlValue};
 
-use super::CHANNELS;
 use crate::scenario_file::{ReadScenarioError, read_text};
 
 /// What tuning found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tuned {
     /// Reading of the model that was tuned: under another one the same numbers mean something else.
-    pub convention: Convention,
+    pub model: Model,
     /// The three parameters.
     pub enhancement: Enhancement,
     /// (rev) Where the faults' responses are in the gear's cycle, for signals that show none.
@@ -37,14 +37,14 @@ impl Tuned {
     /// What an experiment found.
     ///
     /// # Arguments
-    /// * `experiment`, `result` - as of [`meshtone::hybrid::run_experiment`]
+    /// * `experiment`, `result` - as of [`meshtone::tuning::run_experiment`]
     pub fn of(experiment: &Experiment, result: &ExperimentResult) -> Self {
         let values = result.with_keys.as_ref().map_or(&[][..], |keys| &keys.values);
         let gear_teeth = experiment.base.gears.gear_teeth as usize;
         let separation =
             experiment.chain.separation.clone().unwrap_or_else(|| SeparationSettings::new(gear_teeth));
         Self {
-            convention: experiment.base.convention,
+            model: experiment.base.model,
             enhancement: result.tuning().enhancement,
             centre_rev: result.simulated().centre_rev(),
             channel: experiment.chain.channel,
@@ -72,11 +72,11 @@ impl Tuned {
     /// # Arguments
     /// * `scenario` - that they are used for
     pub fn warning_for(&self, scenario: &Scenario) -> Option<String> {
-        (scenario.convention != self.convention).then(|| {
+        (scenario.model != self.model).then(|| {
             format!(
-                "was tuned with convention = \"{}\", but the scenario has \"{}\": the same numbers mean something else there",
-                self.convention.name(),
-                scenario.convention.name()
+                "was tuned with model = \"{}\", but the scenario has \"{}\": the same numbers mean something else there",
+                self.model.name(),
+                scenario.model.name()
             )
         })
     }
@@ -108,13 +108,13 @@ impl Tuned {
 /// * `from` - the experiment, told in a comment
 ///
 /// ```
-/// use meshtone::batch::ChannelKind;
-/// use meshtone::hybrid::Enhancement;
-/// use meshtone::scenario::Convention;
+/// use meshtone::sensor::ChannelKind;
+/// use meshtone::tuning::Enhancement;
+/// use meshtone::scenario::Model;
 /// use meshtone_io::experiment::{Tuned, read_tuned, write_tuned};
 ///
 /// let tuned = Tuned {
-///     convention: Convention::Published,
+///     model: Model::Published,
 ///     enhancement: Enhancement { width_ratio: 0.18, fault_to_harmonics_ratio: 2.25, noise_level: 1.585 },
 ///     centre_rev: 0.03,
 ///     channel: ChannelKind::Vertical,
@@ -131,11 +131,10 @@ impl Tuned {
 /// ```
 pub fn write_tuned(tuned: &Tuned, from: &str) -> String {
     let Enhancement { width_ratio, fault_to_harmonics_ratio, noise_level } = tuned.enhancement;
-    let channel =
-        CHANNELS.iter().find(|(_, kind)| *kind == tuned.channel).map_or("vertical", |(name, _)| name);
+    let channel = tuned.channel.name();
     let mut text = format!(
         "# Written by `meshtone tune` from {}.\n\
-         convention = \"{}\"       # of the simulations that were tuned\n\n\
+         model = \"{}\"            # of the simulations that were tuned\n\n\
          [enhancement]                 # of difference signals, in this order\n\
          width_ratio = {width_ratio:?}\n\
          fault_to_harmonics_ratio = {fault_to_harmonics_ratio:?}\n\
@@ -147,7 +146,7 @@ pub fn write_tuned(tuned: &Tuned, from: &str) -> String {
          sidebands = {}\n\
          shaft_orders = {}\n",
         from.replace(char::is_control, " "),
-        tuned.convention.name(),
+        tuned.model.name(),
         tuned.centre_rev,
         tuned.sampling_rate_hz,
         tuned.sidebands,
@@ -182,9 +181,13 @@ pub fn read_tuned(path: &Path) -> Result<Tuned, ReadScenarioError> {
 }
 
 fn tuned(root: &TomlTable<'_>) -> ReadResult<Tuned> {
-    let conventions =
-        [Convention::Corrected, Convention::Published].map(|convention| (convention.name(), convention));
-    let convention = root.optional("convention").map(|value| value.choice(&conventions)).transpose()?;
+    root.refuse_renamed("convention", "is called `model` now", |value| match value {
+        Some("published") => "write model = \"published\"".to_owned(),
+        _ => "tune again, or write model = \"linear\": the model was mended, so that the numbers are near those that fit it"
+            .to_owned(),
+    })?;
+    let models = [Model::Linear, Model::Published].map(|model| (model.name(), model));
+    let model = root.optional("model").map(|value| value.choice(&models)).transpose()?;
     let (enhancement, centre_rev) = root.table_or_empty("enhancement")?.read(|table| {
         let above_0 = |key, meaning: &str| {
             let value = table.required(key, meaning)?;
@@ -205,7 +208,10 @@ fn tuned(root: &TomlTable<'_>) -> ReadResult<Tuned> {
         Ok((enhancement, table.number_or("centre_rev", 0.0)?))
     })?;
     let (channel, rate, sidebands, orders) = root.table_or_empty("signal")?.read(|table| {
-        let channel = table.optional("channel").map(|value| value.choice(&CHANNELS)).transpose()?;
+        let channel = table
+            .optional("channel")
+            .map(|value| read_channel(&value, &ChannelKind::ACCELERATIONS))
+            .transpose()?;
         let rate = table.required("sampling_rate_hz", "(S/s) the rig's sampling rate")?;
         let sampling_rate_hz = rate.number()?;
         if sampling_rate_hz <= 0.0 {
@@ -226,7 +232,7 @@ fn tuned(root: &TomlTable<'_>) -> ReadResult<Tuned> {
         Some(value) => value.array()?.iter().map(key).collect::<ReadResult<_>>()?,
     };
     Ok(Tuned {
-        convention: convention.unwrap_or_default(),
+        model: model.unwrap_or_default(),
         enhancement,
         centre_rev,
         channel,

@@ -1,12 +1,12 @@
 //! The numbers of a tuning.
 
-use meshtone::hybrid::{Experiment, ExperimentResult, Tuning};
+use meshtone::tuning::{Experiment, ExperimentResult, Tuning};
 use serde_json::{Map, Value, json};
 
 /// The content of a `tuning.json`.
 ///
 /// # Arguments
-/// * `experiment`, `result` - as of [`meshtone::hybrid::run_experiment`]
+/// * `experiment`, `result` - as of [`meshtone::tuning::run_experiment`]
 ///
 /// `parameters`, `intervals` and `error` are those of the best that was found; where keys of the scenario were tuned,
 /// `enhancement_alone` holds what the three parameters reach without them.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use meshtone::toml_reader::nearest_name;
+use meshtone_toml::nearest_name;
 
 use super::array::{ArrayLayout, shape_text};
 use super::label::Label;

@@ -8,7 +8,8 @@ mod source;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use meshtone::scenario::{FileProblem, Profile, ProfileErrors, Scenario, ScenarioError, ScenarioFiles};
+use meshtone::scenario::{FileProblem, Profile, ProfileErrors, Scenario, ScenarioFiles};
+use meshtone_toml::TomlError;
 
 pub use profile_errors_npz::write_profile_errors_npz;
 pub use source::ScenarioFile;
@@ -43,7 +44,7 @@ pub enum ReadScenarioError {
         /// Its text, to show the line.
         text: String,
         /// What is wrong, with key and line.
-        error: Box<ScenarioError>,
+        error: Box<TomlError>,
     },
 }
 

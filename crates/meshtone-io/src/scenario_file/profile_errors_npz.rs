@@ -5,7 +5,7 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use meshtone::scenario::{FileProblem, ProfileErrors};
-use nalgebra::DMatrix;
+use meshtone::wheel::ErrorTable;
 
 use super::unreadable;
 use crate::atomic_file::{WriteFileError, write_atomically};
@@ -30,7 +30,7 @@ fn problem(path: &Path, what: &str) -> FileProblem {
     FileProblem::new(format!("{} {what}", path.display()), HELP)
 }
 
-fn read_entry(path: &Path, archive: &mut NpzReader, name: &str) -> Result<DMatrix<f64>, FileProblem> {
+fn read_entry(path: &Path, archive: &mut NpzReader, name: &str) -> Result<ErrorTable, FileProblem> {
     let present = archive.names().map_err(|error| problem(path, &format!("cannot be read: {error}")))?;
     if !present.iter().any(|entry| entry == name) {
         let present = if present.is_empty() { "nothing".to_string() } else { present.join(", ") };
@@ -46,8 +46,8 @@ fn read_entry(path: &Path, archive: &mut NpzReader, name: &str) -> Result<DMatri
     };
     let (rows, columns) = (rows as usize, columns as usize);
     Ok(match array.first_runs_fastest {
-        true => DMatrix::from_column_slice(rows, columns, &array.numbers),
-        false => DMatrix::from_row_slice(rows, columns, &array.numbers),
+        true => ErrorTable::from_fn(rows, columns, |row, column| array.numbers[column * rows + row]),
+        false => ErrorTable::from_fn(rows, columns, |row, column| array.numbers[row * columns + column]),
     })
 }
 
@@ -64,12 +64,12 @@ fn read_entry(path: &Path, archive: &mut NpzReader, name: &str) -> Result<DMatri
 /// use meshtone::scenario::ProfileErrors;
 /// use meshtone_io::scenario_file::{FilesBeside, write_profile_errors_npz};
 /// use meshtone::scenario::ScenarioFiles;
-/// use nalgebra::DMatrix;
+/// use meshtone::wheel::ErrorTable;
 ///
 /// let directory = tempfile::tempdir()?;
 /// let errors = ProfileErrors {
-///     pinion_profile_errors_mm: DMatrix::from_element(100, 17, 0.002),
-///     gear_profile_errors_mm: DMatrix::from_element(100, 38, 0.003),
+///     pinion_profile_errors_mm: ErrorTable::filled(100, 17, 0.002),
+///     gear_profile_errors_mm: ErrorTable::filled(100, 38, 0.003),
 /// };
 /// write_profile_errors_npz(&directory.path().join("wheels.npz"), &errors)?;
 /// assert_eq!(FilesBeside::new(directory.path()).profile_errors("wheels.npz")?, errors);
@@ -81,9 +81,9 @@ pub fn write_profile_errors_npz(path: &Path, errors: &ProfileErrors) -> Result<(
         for (name, errors) in
             [(PINION, &errors.pinion_profile_errors_mm), (GEAR, &errors.gear_profile_errors_mm)]
         {
-            // Row after row, where the matrix has column after column.
-            let rows = errors.transpose();
-            archive.add(name, &[errors.nrows(), errors.ncols()], rows.as_slice())?;
+            let (points, teeth) = (errors.points(), errors.teeth());
+            let rows: Vec<f64> = (0..points * teeth).map(|n| errors[(n / teeth, n % teeth)]).collect();
+            archive.add(name, &[points, teeth], &rows)?;
         }
         archive.finish()?.flush()
     })

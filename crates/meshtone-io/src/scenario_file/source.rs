@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use meshtone::scenario::{MemoryLimit, Scenario, ScenarioError};
-use meshtone::toml_reader::TomlDocument;
+use meshtone_toml::TomlDocument;
 
 use super::{FilesBeside, ReadScenarioError, remembering::Remembering};
 
@@ -47,7 +47,7 @@ impl ScenarioFile {
         let path = path.to_path_buf();
         match Scenario::from_toml_within(&text, &files, limit) {
             Ok(scenario) => Ok(Self { path, text, scenario, named_files: files.read() }),
-            Err(error) => Err(ReadScenarioError::Invalid { path, text, error: Box::new(error) }),
+            Err(error) => Err(ReadScenarioError::Invalid { path, text, error: Box::new(error.into()) }),
         }
     }
 
@@ -63,7 +63,7 @@ impl ScenarioFile {
     pub fn refuse(&self, error: ScenarioError) -> ReadScenarioError {
         let error = match TomlDocument::parse(&self.text) {
             Ok(document) => document.locate(error),
-            Err(_) => error,
+            Err(_) => error.into(),
         };
         let (path, text) = (self.path.clone(), self.text.clone());
         ReadScenarioError::Invalid { path, text, error: Box::new(error) }

@@ -6,14 +6,16 @@
 //! sampling rate ([`RATE_KEY`]). Each column's unit and meaning stand in the metadata of its Arrow field. Nothing depends on when or where the
 //! file is written: the same simulation gives the same bytes.
 
-mod columns;
+mod earlier;
 mod read;
 mod write;
 
-pub use columns::{Column, TIME, columns};
+pub(crate) use earlier::with_model;
 pub use read::{Recorded, read_signals};
 pub use write::write_signals;
 
+/// The first column: (s) time since the start of the simulation. The others are the [channels](meshtone::sensor::ChannelKind).
+pub const TIME: &str = "time_s";
 /// Metadata key of the scenario, as TOML.
 pub const SCENARIO_KEY: &str = "meshtone.scenario";
 /// Metadata key of the version of Meshtone that wrote the file.

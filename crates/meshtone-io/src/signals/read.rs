@@ -4,14 +4,15 @@ use std::fs::File;
 use std::path::Path;
 
 use meshtone::scenario::Scenario;
-use meshtone::signal::Channels;
+use meshtone::sensor::{ChannelKind, Channels};
 use parquet::file::metadata::FileMetaData;
 
 use crate::ReadResultsError;
+use crate::channel_name::former_column;
 use crate::run_identity::RunIdentity;
 use crate::table::{FoundType, NumberType, TableReader};
 
-use super::columns::columns_mut;
+use super::earlier::with_model;
 use super::{RATE_KEY, RUN_KEY, SCENARIO_KEY, TIME, VERSION_KEY};
 
 /// A simulation's signals, read back.
@@ -41,16 +42,19 @@ pub fn read_signals(path: &Path) -> Result<Recorded, ReadResultsError> {
     let table = TableReader::new(file).map_err(|error| broken(&error))?;
     let metadata = table.metadata().file_metadata();
     let text = text_of(metadata, SCENARIO_KEY).map_err(foreign)?;
-    let scenario = Scenario::from_toml(text)
+    let scenario = Scenario::from_toml(&with_model(text))
         .map_err(|error| ReadResultsError::Scenario { path: path.to_path_buf(), error: Box::new(error) })?;
     let version = text_of(metadata, VERSION_KEY).map_err(foreign)?.to_string();
     let run = text_of(metadata, RUN_KEY).map_err(foreign)?.parse::<RunIdentity>();
     let run = run.map_err(|error| foreign(format!("metadata {RUN_KEY}: {error}")))?;
-    let mut channels = Channels { sampling_rate_hz: rate(metadata).map_err(foreign)?, ..Channels::default() };
+    let mut channels = Channels::default();
+    channels.sampling_rate_hz = rate(metadata).map_err(foreign)?;
     let numbers = |name: &str| numbers(&table, name).map_err(foreign);
-    channels.start_s = numbers(TIME.name)?.first().copied().unwrap_or(0.0);
-    for (column, signal) in columns_mut(&mut channels) {
-        *signal = numbers(column.name)?;
+    channels.start_s = numbers(TIME)?.first().copied().unwrap_or(0.0);
+    for kind in ChannelKind::ALL {
+        let former = former_column(kind);
+        let name = if table.column(former).is_some() { former } else { kind.name() };
+        *channels.get_mut(kind) = numbers(name)?;
     }
     Ok(Recorded { scenario, channels, version, run })
 }

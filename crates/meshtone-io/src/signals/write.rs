@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use meshtone::scenario::Scenario;
-use meshtone::signal::Channels;
+use meshtone::sensor::{ChannelKind, Channels};
 use parquet::basic::{Compression, Encoding};
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
@@ -12,7 +12,7 @@ use parquet::schema::types::ColumnPath;
 use crate::run_identity::RunIdentity;
 use crate::table::{CellType, Cells, TableColumn, TableWriter};
 
-use super::{Column, RATE_KEY, RUN_KEY, SCENARIO_KEY, TIME, VERSION_KEY, columns};
+use super::{RATE_KEY, RUN_KEY, SCENARIO_KEY, TIME, VERSION_KEY};
 
 /// Rows of a group; a reader takes a group's column at once.
 const GROUP_ROWS: usize = 1 << 20;
@@ -28,22 +28,23 @@ const GROUP_ROWS: usize = 1 << 20;
 /// Those of `to`.
 pub fn write_signals(to: impl Write + Send, scenario: &Scenario, channels: &Channels) -> io::Result<()> {
     let properties = properties(scenario, channels);
-    let table = std::iter::once(TIME).chain(columns(channels).map(|(column, _)| column)).map(table_column);
-    let mut table = TableWriter::new(to, table.collect(), properties)?;
+    let time = table_column(TIME, "s", "time since the start of the simulation");
+    let signals = ChannelKind::ALL.map(|kind| table_column(kind.name(), kind.unit(), kind.meaning()));
+    let mut table = TableWriter::new(to, std::iter::once(time).chain(signals).collect(), properties)?;
     for start in (0..channels.len()).step_by(GROUP_ROWS) {
         let rows = start..channels.len().min(start + GROUP_ROWS);
         let time: Vec<f64> = rows.clone().map(|i| channels.time_s(i)).collect();
-        let signals = columns(channels).map(|(_, signal)| Cells::Signal(&signal[rows.clone()]));
+        let signals = ChannelKind::ALL.map(|kind| Cells::Signal(&channels.get(kind)[rows.clone()]));
         table.write_rows(std::iter::once(Cells::Signal(&time)).chain(signals).collect())?;
     }
     table.close()
 }
 
-fn table_column(column: Column) -> TableColumn {
-    let metadata = [("unit", column.unit), ("description", column.description)]
+fn table_column(name: &str, unit: &str, description: &str) -> TableColumn {
+    let metadata = [("unit", unit), ("description", description)]
         .map(|(key, value)| (key.to_string(), value.to_string()));
     TableColumn {
-        name: column.name.to_string(),
+        name: name.to_string(),
         cells: CellType::Float64,
         nullable: false,
         metadata: metadata.to_vec(),
@@ -66,7 +67,7 @@ fn properties(scenario: &Scenario, channels: &Channels) -> WriterProperties {
         .set_encoding(Encoding::BYTE_STREAM_SPLIT)
         // Rows are looked up by their time; the extremes of a signal are found in every part of it.
         .set_statistics_enabled(EnabledStatistics::None)
-        .set_column_statistics_enabled(ColumnPath::from(TIME.name), EnabledStatistics::Chunk)
+        .set_column_statistics_enabled(ColumnPath::from(TIME), EnabledStatistics::Chunk)
         .set_key_value_metadata(Some(metadata.to_vec()))
         .build()
 }

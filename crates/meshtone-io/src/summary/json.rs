@@ -25,13 +25,16 @@ impl Summary {
         let (stiffness, force) = (&self.mesh_stiffness, &self.mesh_force);
         let warnings = self.warnings.iter();
         let warnings = warnings.map(|warning| json!({ "key": warning.key, "message": warning.message }));
+        let faults = self.faults.iter();
+        let faults =
+            faults.map(|fault| json!({ "kind": fault.kind, "wheel": fault.wheel, "tooth": fault.tooth }));
         json!({
             "format_version": self.format_version,
             "meshtone_version": self.meshtone_version,
             "run": self.run.to_string(),
-            "convention": self.convention,
+            "model": self.model,
             "seed": self.seed,
-            "fault": self.fault,
+            "faults": faults.collect::<Vec<_>>(),
             "sampling_rate_hz": self.sampling_rate_hz,
             "samples": self.samples,
             "start_s": self.start_s,

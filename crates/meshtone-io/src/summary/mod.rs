@@ -9,16 +9,17 @@ mod read;
 use std::time::Duration;
 
 use meshtone::Simulation;
-use meshtone::scenario::ScenarioWarning;
+use meshtone::scenario::{Fault, ScenarioWarning};
 use meshtone::signal::{ChainSettings, Indicators, Shaft, SimulatedShafts, kurtosis, peak, rms};
 
 use crate::run_identity::RunIdentity;
-use crate::signals::columns;
+use meshtone::sensor::ChannelKind;
 
 pub use read::read_run;
 
-/// Version of the summary's format: it grows when a key changes its name or meaning.
-pub const FORMAT_VERSION: u32 = 1;
+/// Version of the summary's format: it grows when a key changes its name or meaning. Version 1 had `convention` for `model`
+/// and, for `faults`, the `fault` of the gear's first tooth by its kind alone.
+pub const FORMAT_VERSION: u32 = 2;
 
 /// The main numbers of a simulation.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,12 +30,12 @@ pub struct Summary {
     pub meshtone_version: &'static str,
     /// Identity of the run, which all its files carry.
     pub run: RunIdentity,
-    /// Convention, by its name in the scenario file.
-    pub convention: &'static str,
+    /// Model, by its name in the scenario file.
+    pub model: &'static str,
     /// Seed of the random draws.
     pub seed: u64,
-    /// Kind of fault, by its name in the scenario file; none for a healthy gear.
-    pub fault: Option<&'static str>,
+    /// The faults; none of a healthy pair.
+    pub faults: Vec<FaultSummary>,
     /// (S/s) Actual sampling rate.
     pub sampling_rate_hz: f64,
     /// Number of samples kept.
@@ -60,6 +61,23 @@ pub struct Summary {
     pub computing_time: Vec<(String, Duration)>,
     /// What deserves attention.
     pub warnings: Vec<ScenarioWarning>,
+}
+
+/// A fault: its kind and place, each as in the scenario file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FaultSummary {
+    /// Kind of damage.
+    pub kind: &'static str,
+    /// The damaged wheel.
+    pub wheel: &'static str,
+    /// Number of the damaged tooth, from 1.
+    pub tooth: u32,
+}
+
+impl From<&Fault> for FaultSummary {
+    fn from(fault: &Fault) -> Self {
+        Self { kind: fault.damage.kind(), wheel: fault.wheel.name(), tooth: fault.tooth }
+    }
 }
 
 /// Stiffness of the mesh over a revolution of the gear.
@@ -111,16 +129,16 @@ impl Summary {
     pub fn new(simulation: &Simulation, run: RunIdentity, warnings: &[ScenarioWarning]) -> Self {
         let (stages, channels) = (&simulation.stages, &simulation.channels);
         let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
-        let stiffness = Extremes::of(&stages.mesh.mesh_n_per_mm);
+        let stiffness = Extremes::of(&stages.mesh.stiffness_n_per_mm());
         let force = Extremes::of(&channels.mesh_force_n);
         let stage_times = simulation.timings.iter().map(|time| (time.stage.to_string(), time.elapsed));
         Self {
             format_version: FORMAT_VERSION,
             meshtone_version: env!("CARGO_PKG_VERSION"),
             run,
-            convention: stages.scenario.convention.name(),
+            model: stages.scenario.model.name(),
             seed: stages.scenario.seed,
-            fault: stages.scenario.fault.as_ref().map(|fault| fault.kind()),
+            faults: stages.scenario.faults.iter().map(FaultSummary::from).collect(),
             sampling_rate_hz: channels.sampling_rate_hz,
             samples: channels.len(),
             start_s: channels.start_s,
@@ -138,13 +156,16 @@ impl Summary {
                 max_n: force.max,
                 tension_fraction: channels.tension_fraction(),
             },
-            channels: columns(channels)
-                .map(|(column, signal)| ChannelSummary {
-                    name: column.name,
-                    unit: column.unit,
-                    rms: rms(signal),
-                    peak: peak(signal),
-                    kurtosis: kurtosis(signal),
+            channels: ChannelKind::ALL
+                .map(|kind| {
+                    let signal = channels.get(kind);
+                    ChannelSummary {
+                        name: kind.name(),
+                        unit: kind.unit(),
+                        rms: rms(signal),
+                        peak: peak(signal),
+                        kurtosis: kurtosis(signal),
+                    }
                 })
                 .to_vec(),
             indicators: Shaft::BOTH.map(|shaft| {

@@ -1,5 +1,6 @@
 //! Writing a table.
 
+use std::collections::HashSet;
 use std::io::{self, Write};
 use std::sync::Arc;
 
@@ -135,12 +136,16 @@ impl<W: Write + Send> TableWriter<W> {
     /// * `properties` - compression and encodings, and what the file says about itself
     ///
     /// # Errors
-    /// Those of `to`.
+    /// Those of `to`; two columns of one name, before anything is written: no reader opens such a file.
     pub fn new(to: W, columns: Vec<TableColumn>, properties: WriterProperties) -> io::Result<Self> {
         Self::try_new(to, columns, properties).map_err(into_io)
     }
 
     fn try_new(to: W, columns: Vec<TableColumn>, properties: WriterProperties) -> Result<Self> {
+        let mut names = HashSet::new();
+        if let Some(twice) = columns.iter().find(|column| !names.insert(&column.name)) {
+            return Err(ParquetError::General(format!("two columns are called {}", twice.name)));
+        }
         let fields = columns.iter().map(TableColumn::schema).collect::<Result<_>>()?;
         let schema = Arc::new(Type::group_type_builder(TABLE).with_fields(fields).build()?);
         let mut file = SerializedFileWriter::new(to, schema, Arc::new(properties))?;

@@ -7,8 +7,8 @@ use std::io::Cursor;
 use crate::parquet_help::{Plain, parquet};
 use crate::recording_help::{rate, read, refused};
 use hound::{SampleFormat, WavSpec, WavWriter};
-use meshtone::scenario::Scenario;
-use meshtone::signal::Channels;
+use meshtone::scenario::{GearPair, Scenario};
+use meshtone::sensor::Channels;
 use meshtone_io::recording::{Recording, RecordingOptions, read_recording};
 use meshtone_io::signals::write_signals;
 use ndarray::{Array1, Array2, Array3, ShapeBuilder, arr0};
@@ -30,17 +30,23 @@ fn table() -> Array2<f64> {
 fn signals_of_a_simulation_are_read_with_unit_rate_and_scenario() {
     let directory = tempfile::tempdir().unwrap();
     let signal = |scale: f64| (0..70_000).map(|i| scale * (f64::from(i) / 3.0).sin()).collect::<Vec<_>>();
-    let channels = Channels {
-        sampling_rate_hz: 258_400.0,
-        start_s: 0.95,
-        horizontal_g: signal(1.0),
-        vertical_g: signal(1e-300),
-        axial_g: signal(0.0),
-        pinion_speed_hz: signal(40.0),
-        gear_speed_hz: signal(17.0),
-        mesh_force_n: signal(1e9),
-    };
-    let scenario = Scenario::new(3.0, 20, 40, 15.0, 40.0, 10.0);
+    let mut channels = Channels::default();
+    channels.sampling_rate_hz = 258_400.0;
+    channels.start_s = 0.95;
+    channels.horizontal_g = signal(1.0);
+    channels.vertical_g = signal(1e-300);
+    channels.axial_g = signal(0.0);
+    channels.pinion_shaft_speed_hz = signal(40.0);
+    channels.gear_shaft_speed_hz = signal(17.0);
+    channels.mesh_force_n = signal(1e9);
+    let scenario = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 20,
+        gear_teeth: 40,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    });
     let file = File::create(directory.path().join("signals.parquet")).unwrap();
     write_signals(file, &scenario, &channels).unwrap();
     // The folder stands for its signals.

@@ -5,8 +5,8 @@ use std::fs::{self, File};
 use std::path::Path;
 
 use meshtone::scenario::{ProfileErrors, Scenario, ScenarioError, template};
+use meshtone::wheel::ErrorTable;
 use meshtone_io::scenario_file::{ReadScenarioError, read_scenario, write_profile_errors_npz};
-use nalgebra::DMatrix;
 use ndarray::{Array1, Array2, ArrayView2, ShapeBuilder};
 use ndarray_npy::NpzWriter;
 use tempfile::{TempDir, tempdir};
@@ -45,15 +45,15 @@ fn assert_refused(
     for word in words {
         assert!(message.contains(word), "`{word}` is not in: {message}");
     }
-    *error
+    (*error).into()
 }
 
 fn errors(teeth: usize) -> Array2<f64> {
     Array2::from_shape_fn((100, teeth), |(row, tooth)| 1e-6 * (row as f64 - 3.5 * tooth as f64))
 }
 
-fn matrix(errors: ArrayView2<'_, f64>) -> DMatrix<f64> {
-    DMatrix::from_fn(errors.nrows(), errors.ncols(), |row, column| errors[[row, column]])
+fn matrix(errors: ArrayView2<'_, f64>) -> ErrorTable {
+    ErrorTable::from_fn(errors.nrows(), errors.ncols(), |row, column| errors[[row, column]])
 }
 
 fn archive(directory: &TempDir) -> NpzWriter<File> {

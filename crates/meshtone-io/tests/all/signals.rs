@@ -4,31 +4,40 @@
 use std::fs::{self, File};
 
 use crate::parquet_help::{Plain, parquet};
-use meshtone::scenario::Scenario;
-use meshtone::signal::Channels;
+use meshtone::scenario::{GearPair, Scenario};
+use meshtone::sensor::{ChannelKind, Channels};
 use meshtone_io::ReadResultsError;
 use meshtone_io::run_identity::RunIdentity;
-use meshtone_io::signals::{RATE_KEY, RUN_KEY, SCENARIO_KEY, read_signals, write_signals};
+use meshtone_io::signals::{RATE_KEY, RUN_KEY, SCENARIO_KEY, VERSION_KEY, read_signals, write_signals};
+use meshtone_io::table::{CellType, TableColumn, TableWriter};
 use parquet::file::metadata::KeyValue;
+use parquet::file::properties::WriterProperties;
 use tempfile::tempdir;
 
 fn scenario() -> Scenario {
-    Scenario::new(3.0, 20, 40, 15.0, 40.0, 10.0)
+    Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 20,
+        gear_teeth: 40,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    })
 }
 
 /// More rows than are written at once, with numbers that only exact writing keeps.
 fn channels() -> Channels {
     let signal = |scale: f64| (0..70_000).map(|i| scale * (f64::from(i) / 3.0).sin()).collect::<Vec<_>>();
-    Channels {
-        sampling_rate_hz: 258_400.0,
-        start_s: 0.95,
-        horizontal_g: signal(1.0),
-        vertical_g: signal(1e-300),
-        axial_g: vec![-0.0; 70_000],
-        pinion_speed_hz: signal(40.0),
-        gear_speed_hz: signal(17.0),
-        mesh_force_n: signal(1e9),
-    }
+    let mut channels = Channels::default();
+    channels.sampling_rate_hz = 258_400.0;
+    channels.start_s = 0.95;
+    channels.horizontal_g = signal(1.0);
+    channels.vertical_g = signal(1e-300);
+    channels.axial_g = vec![-0.0; 70_000];
+    channels.pinion_shaft_speed_hz = signal(40.0);
+    channels.gear_shaft_speed_hz = signal(17.0);
+    channels.mesh_force_n = signal(1e9);
+    channels
 }
 
 fn refused(path: &std::path::Path, metadata: Vec<KeyValue>, words: &str) {
@@ -65,7 +74,12 @@ fn files_of_others_are_refused() {
     let wrong_rate = [good(), vec![text(RATE_KEY, "fast")]].concat();
     refused(&path, wrong_rate, "is `fast`; must be a number above 0");
     let single = [good(), vec![text(RATE_KEY, "1000.0")]].concat();
-    refused(&path, single, "column time_s of Float32; must be of Float64");
+    refused(&path, single.clone(), "column time_s of Float32; must be of Float64");
+    // Neither is a file foreign whose scenario names its convention, as the model was called.
+    let earlier = scenario().to_toml().replacen("model = \"linear\"", "convention = \"corrected\"", 1);
+    assert!(earlier.contains("convention"));
+    let named_earlier = [vec![text(SCENARIO_KEY, &earlier)], single[1..].to_vec()].concat();
+    refused(&path, named_earlier, "column time_s of Float32; must be of Float64");
 }
 
 #[test]
@@ -79,4 +93,49 @@ fn cut_files_are_refused() {
     assert!(error.to_string().contains("not a whole Parquet file"), "{error}");
     let error = read_signals(&directory.path().join("absent")).unwrap_err();
     assert!(matches!(error, ReadResultsError::Unreadable { .. }));
+}
+
+#[test]
+fn columns_of_one_name_are_refused_before_anything_is_written() {
+    let column = || TableColumn {
+        name: "speed".into(),
+        cells: CellType::Float64,
+        nullable: false,
+        metadata: Vec::new(),
+    };
+    let mut file = Vec::new();
+    let refused = TableWriter::new(&mut file, vec![column(), column()], WriterProperties::builder().build());
+    assert!(refused.map(drop).unwrap_err().to_string().contains("two columns are called speed"));
+    assert!(file.is_empty());
+}
+
+/// A file whose accelerations are called as earlier versions called them.
+#[test]
+fn signals_of_an_earlier_version_are_read() {
+    let directory = tempdir().unwrap();
+    let path = directory.path().join("signals.parquet");
+    let metadata = |key: &str, value: String| KeyValue::new(key.to_owned(), value);
+    let toml = scenario().to_toml().replacen("model = \"linear\"", "convention = \"corrected\"", 1);
+    assert!(toml.starts_with("convention"));
+    let named = |name: &'static str, value: f64| (name, Plain::doubles([value; 3]));
+    let columns = vec![
+        named("time_s", 0.5),
+        named("horizontal_acceleration_g", 1.0),
+        named("vertical_acceleration_g", 2.0),
+        named("axial_acceleration_g", 3.0),
+        named("pinion_shaft_speed_hz", 4.0),
+        named("gear_shaft_speed_hz", 5.0),
+        named("mesh_force_n", 6.0),
+    ];
+    let metadata = vec![
+        metadata(SCENARIO_KEY, toml),
+        metadata(VERSION_KEY, "0.0.9".into()),
+        metadata(RUN_KEY, RunIdentity::of(&scenario()).to_string()),
+        metadata(RATE_KEY, "1000.0".into()),
+    ];
+    fs::write(&path, parquet(columns, metadata)).unwrap();
+    let recorded = read_signals(&path).unwrap();
+    let read = ChannelKind::ALL.map(|kind| recorded.channels.get(kind).to_vec());
+    assert_eq!(read, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(|value| vec![value; 3]));
+    assert_eq!(recorded.scenario, scenario());
 }

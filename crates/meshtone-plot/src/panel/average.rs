@@ -1,11 +1,14 @@
 //! The vertical acceleration, averaged over the revolutions of either shaft.
 
 use meshtone::Stages;
-use meshtone::signal::{ChainSettings, Channels, Shaft, SimulatedShafts, revolution_average};
+use meshtone::sensor::Channels;
+use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts, revolution_average};
+use meshtone::wheel::WheelName;
 
 use super::damage;
 use crate::axes::{self, Area, Axes};
 use crate::canvas::Canvas;
+use crate::damaged_tooth;
 use crate::legend::{self, Entry, Sample};
 use crate::style::{Stroke, colour};
 use crate::ticks::Ticks;
@@ -26,22 +29,20 @@ pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], stages: &Stages, chann
     let averages = Shaft::BOTH.map(|shaft| Average::new(channels, &shafts, shaft));
     let values = averages.iter().flat_map(|average| average.values.iter().copied());
     let y = axes::range(values, MARGIN);
-    let damaged = damage::damaged_tooth(stages);
-    let pitch_deg = 360.0 / f64::from(stages.teeth.gear.teeth.max(1));
-    let since = [
-        "Pinion angle since its first tooth enters contact (°)".to_owned(),
-        format!("Gear angle since its {} (°)", damage::start_of_revolution(stages.fault.as_ref())),
-    ];
     for (column, average) in averages.iter().enumerate() {
         let axes = Axes::new(areas[column], [0.0, 360.0], y);
-        let wheel = ["pinion", "gear"][column];
-        axes.title(canvas, &average.title(wheel));
-        if let Some(tooth) = damaged.filter(|_| column == 1) {
+        let wheel = WheelName::BOTH[column];
+        let damaged = damage::damaged_teeth(stages, wheel);
+        axes.title(canvas, &average.title(wheel.name()));
+        if let Some(text) = damaged_tooth::in_words(&[(wheel.name(), &damaged)]) {
             let end_of_title = (axes.area.right(), axes.area.top - axes::TITLE_ABOVE);
-            legend::row(canvas, end_of_title, &[tooth.legend_entry()]);
-            tooth.tint(canvas, &axes, pitch_deg);
+            legend::row(canvas, end_of_title, &[damaged_tooth::legend_entry(&text)]);
         }
-        axes.x_axis(canvas, &Ticks::every(45.0, 0.0, 360.0), &since[column]);
+        let teeth = stages.teeth.wheel(wheel).teeth;
+        damaged_tooth::tint(canvas, &axes, &damaged, teeth, 360.0 / f64::from(teeth.max(1)));
+        let name = if wheel == WheelName::Pinion { "Pinion" } else { "Gear" };
+        let since = format!("{name} angle since its {} (°)", damage::start_of_revolution(&damaged));
+        axes.x_axis(canvas, &Ticks::every(45.0, 0.0, 360.0), &since);
         axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), ACCELERATION, super::NAME_LEFT);
         average.draw(canvas, &axes);
         axes.frame(canvas);
@@ -104,8 +105,10 @@ fn over_time(canvas: &mut Canvas, areas: [Area; 2], channels: &Channels) {
     };
     let time = if time[1] > time[0] && time.iter().all(|&t| axes::drawable(t)) { time } else { [0.0, 1.0] };
     let acceleration = [(channels.vertical_g.as_slice(), CURVE)];
-    let speeds =
-        [(channels.pinion_speed_hz.as_slice(), CURVE), (channels.gear_speed_hz.as_slice(), SECOND_CURVE)];
+    let speeds = [
+        (channels.pinion_shaft_speed_hz.as_slice(), CURVE),
+        (channels.gear_shaft_speed_hz.as_slice(), SECOND_CURVE),
+    ];
     signals(canvas, areas[0], time, "Vertical acceleration, at changing speed", ACCELERATION, &acceleration);
     let axes = signals(canvas, areas[1], time, "Speed of both shafts", "Speed (Hz)", &speeds);
     let entries = [("pinion", CURVE), ("gear", SECOND_CURVE)]

@@ -1,46 +1,103 @@
-//! The damage in words and as ranges of the gear's profile.
+//! The damage in words and as ranges of a profile.
 
 use meshtone::Stages;
-use meshtone::fault::{FaultDescription, FaultGeometry};
-use meshtone::scenario::Fault;
-use meshtone::tooth::Teeth;
+use meshtone::damage::{Damage, DamageDescription, DamagedTooth, Fault};
+use meshtone::wheel::{ToothProfile, WheelName};
 
 use super::side::Side;
-use crate::DamagedTooth;
 use crate::ticks::number;
 
-/// Profile indices, first and last, of the damaged part of the flank.
-pub(super) fn damaged_range(fault: &FaultGeometry, side: &Side) -> (usize, usize) {
+/// Profile indices, first and last, of the part of the flank that one of a tooth's damages has taken.
+pub(super) fn damaged_range(damage: &DamageDescription, tooth: &DamagedTooth, side: &Side) -> (usize, usize) {
     let last = side.last();
-    let (first, end) = match &fault.description {
-        FaultDescription::MissingTooth => (0, last),
-        FaultDescription::ToothBreakage { chip_start_index, .. } => {
-            ((*chip_start_index).min(fault.no_contact.start), last)
+    let (first, end) = match damage {
+        DamageDescription::MissingTooth => (0, last),
+        DamageDescription::ToothBreakage { chip_start_index, .. } => {
+            ((*chip_start_index).min(tooth.gone_from_index), last)
         }
-        FaultDescription::FaceFault { pit, .. } => (pit.start_index, pit.end_index),
-        FaultDescription::ToothDestruction { start_index, end_index, .. } => {
+        DamageDescription::FaceFault { pit, .. } => (pit.start_index, pit.end_index),
+        DamageDescription::ToothDestruction { start_index, end_index, .. } => {
             ((*start_index).max(side.contact_index), *end_index)
         }
+        _ => cut_range(side.profile, &tooth.outline_y_mm()).unwrap_or((last, last)),
     };
     (first.min(last), end.min(last))
 }
 
+/// Where the flank lies further back than the sound one.
+fn cut_range(profile: &ToothProfile, outline_y_mm: &[f64]) -> Option<(usize, usize)> {
+    let is_cut = |(sound, cut): (&f64, &f64)| cut < sound;
+    let mut pairs = profile.y_mm.iter().zip(outline_y_mm);
+    let first = pairs.clone().position(is_cut)?;
+    Some((first, pairs.rposition(is_cut)?))
+}
+
+/// The damages in words: what they are, where they are not on the gear's tooth 1, and, as far as there is room, their sizes.
+///
+/// # Arguments
+/// * `stages` - what was simulated
+/// * `fits` - whether there is room
+pub(super) fn title(stages: &Stages, fits: impl Fn(&str) -> bool) -> String {
+    let faults = &stages.scenario.faults;
+    if faults.is_empty() {
+        return "Healthy gear pair".to_owned();
+    }
+    let usual = Fault::on_first_gear_tooth(faults[0].damage.clone());
+    let is_usual = faults.len() == 1 && faults[0] == usual;
+    let title = |with_sizes: bool| {
+        let all = faults.iter().enumerate().map(|(number, fault)| {
+            let place = format!(", {} tooth {}", fault.wheel.name(), fault.tooth);
+            let sizes = if with_sizes { sizes_of_fault(stages, number) } else { Vec::new() };
+            let sizes = if sizes.is_empty() { String::new() } else { format!(": {}", sizes.join(", ")) };
+            let name = name(&fault.damage);
+            let name = if number == 0 { capitalised(&name) } else { name };
+            format!("{name}{}{sizes}", if is_usual { "" } else { &place })
+        });
+        all.collect::<Vec<_>>().join("; ")
+    };
+    let full = title(true);
+    if is_usual || fits(&full) { full } else { title(false) }
+}
+
 /// What the damage is called.
-pub(super) fn name(fault: Option<&Fault>) -> &'static str {
-    match fault {
-        None => "Healthy gear pair",
-        Some(Fault::MissingTooth) => "Missing tooth",
-        Some(Fault::ToothBreakage(_)) => "Tooth breakage",
-        Some(Fault::PartialFace(_)) => "Pit over part of the face",
-        Some(Fault::ThroughFace(_)) => "Pit over the whole face",
-        Some(Fault::ToothDestruction(_)) => "Tooth destruction",
+fn name(damage: &Damage) -> String {
+    match damage {
+        Damage::PartialFace(_) => "pit over part of the face".to_owned(),
+        Damage::ThroughFace(_) => "pit over the whole face".to_owned(),
+        other => other.kind().replace('-', " "),
     }
 }
 
-/// The damage's sizes, in short phrases; none for a missing tooth.
-pub(super) fn sizes(fault: &Fault, geometry: &FaultGeometry, teeth: &Teeth) -> Vec<String> {
-    match (fault, &geometry.description) {
-        (Fault::ToothBreakage(breakage), _) => {
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).collect()
+}
+
+/// The sizes of one of the faults. A tooth describes its damages in the order of the faults.
+fn sizes_of_fault(stages: &Stages, number: usize) -> Vec<String> {
+    let faults = &stages.scenario.faults;
+    let fault = &faults[number];
+    let on_same_tooth = |other: &&Fault| (other.wheel, other.tooth) == (fault.wheel, fault.tooth);
+    let before = faults[..number].iter().filter(on_same_tooth).count();
+    let tooth = (stages.damaged.iter())
+        .find(|tooth| tooth.wheel == fault.wheel && tooth.tooth == fault.tooth_index());
+    match tooth.and_then(|tooth| Some((tooth, tooth.descriptions.get(before)?))) {
+        Some((tooth, description)) => {
+            sizes(&fault.damage, description, tooth, stages.teeth.profile(fault.wheel))
+        }
+        None => Vec::new(),
+    }
+}
+
+/// A damage's sizes, in short phrases; none for a missing tooth.
+fn sizes(
+    damage: &Damage,
+    description: &DamageDescription,
+    tooth: &DamagedTooth,
+    profile: &ToothProfile,
+) -> Vec<String> {
+    match (damage, description) {
+        (Damage::ToothBreakage(breakage), _) => {
             let chip = format!(
                 "chip {} mm high, {} mm wide",
                 number(breakage.chip_height_mm),
@@ -49,71 +106,76 @@ pub(super) fn sizes(fault: &Fault, geometry: &FaultGeometry, teeth: &Teeth) -> V
             let loss = format!("tip loss {} mm", number(breakage.tip_loss_mm));
             [chip].into_iter().chain((breakage.tip_loss_mm > 0.0).then_some(loss)).collect()
         }
-        (_, FaultDescription::FaceFault { pit, width_mm }) => vec![
-            format!("{} mm wide", hundredths(*width_mm)),
-            format!("{} mm long", hundredths(pit.length_mm)),
-            format!("up to {} mm deep across the tooth", hundredths(depth_mm(geometry, teeth))),
-        ],
-        (_, FaultDescription::ToothDestruction { slope_rad, .. }) => vec![
-            format!("flank ground up to {} mm deep across the tooth", hundredths(depth_mm(geometry, teeth))),
-            format!("line at {}° to the centre line", tenths(slope_rad.to_degrees().abs())),
-        ],
+        (_, DamageDescription::FaceFault { pit, width_mm }) => {
+            let depth_mm = depth_mm(tooth, profile, (pit.start_index, pit.end_index));
+            vec![
+                format!("{} mm wide", hundredths(*width_mm)),
+                format!("{} mm long", hundredths(pit.length_mm)),
+                format!("up to {} mm deep across the tooth", hundredths(depth_mm)),
+            ]
+        }
+        (_, DamageDescription::ToothDestruction { start_index, end_index, slope_rad }) => {
+            let depth_mm = depth_mm(tooth, profile, (*start_index, *end_index));
+            vec![
+                format!("flank ground up to {} mm deep across the tooth", hundredths(depth_mm)),
+                format!("line at {}° to the centre line", tenths(slope_rad.to_degrees().abs())),
+            ]
+        }
         _ => Vec::new(),
     }
 }
 
 /// One or two short lines for the tooth's face.
-pub(super) fn caption(geometry: &FaultGeometry) -> Vec<String> {
-    match &geometry.description {
-        FaultDescription::MissingTooth => vec!["tooth missing".to_owned()],
-        FaultDescription::ToothBreakage { tip_loss_mm, .. } => {
+pub(super) fn caption(damage: &DamageDescription) -> Vec<String> {
+    match damage {
+        DamageDescription::MissingTooth => vec!["tooth missing".to_owned()],
+        DamageDescription::ToothBreakage { tip_loss_mm, .. } => {
             let chip = "corner chipped off".to_owned();
             let loss = format!("tip loss {} mm", number(*tip_loss_mm));
             [chip].into_iter().chain((*tip_loss_mm > 0.0).then_some(loss)).collect()
         }
-        FaultDescription::FaceFault { pit, width_mm } => {
+        DamageDescription::FaceFault { pit, width_mm } => {
             vec![
                 format!("pit {} mm wide,", hundredths(*width_mm)),
                 format!("{} mm long", hundredths(pit.length_mm)),
             ]
         }
-        FaultDescription::ToothDestruction { .. } => vec!["flank ground down".to_owned()],
+        DamageDescription::ToothDestruction { .. } => vec!["flank ground down".to_owned()],
+        _ => Vec::new(),
     }
 }
 
-/// Whether the whole tooth is gone.
-pub(super) fn is_missing(geometry: &FaultGeometry) -> bool {
-    matches!(geometry.description, FaultDescription::MissingTooth)
-}
-
-/// Where the gear's revolution starts.
-pub(super) fn start_of_revolution(geometry: Option<&FaultGeometry>) -> &'static str {
-    match geometry {
-        None => "first tooth enters contact",
-        Some(geometry) if is_missing(geometry) => "missing tooth would enter contact",
-        Some(_) => "damaged tooth enters contact",
+/// Where a wheel's revolution starts.
+///
+/// # Arguments
+/// * `damaged` - the wheel's damaged teeth
+pub(super) fn start_of_revolution(damaged: &[crate::DamagedTooth]) -> &'static str {
+    match damaged {
+        [crate::DamagedTooth { tooth: 1, is_missing: true, .. }] => "missing tooth would enter contact",
+        [crate::DamagedTooth { tooth: 1, .. }] => "damaged tooth enters contact",
+        _ => "first tooth enters contact",
     }
 }
 
-/// The damaged tooth, if there is one.
-pub(super) fn damaged_tooth(stages: &Stages) -> Option<DamagedTooth> {
+/// The damaged teeth of a wheel, to be marked.
+pub(super) fn damaged_teeth(stages: &Stages, wheel: WheelName) -> Vec<crate::DamagedTooth> {
     let contact_pitches = stages.teeth.contact.contact_ratio;
-    let of = |fault| DamagedTooth { contact_pitches, is_missing: is_missing(fault) };
-    stages.fault.as_ref().map(of)
+    crate::DamagedTooth::of_wheel(&stages.scenario.faults, wheel, contact_pitches)
 }
 
-/// Whether a part of the face width is sound where the flank is damaged.
-pub(super) fn is_partial(geometry: &FaultGeometry, face_width_mm: f64) -> bool {
-    match &geometry.description {
-        FaultDescription::ToothBreakage { .. } => true,
-        FaultDescription::FaceFault { width_mm, .. } => *width_mm < face_width_mm,
+/// Whether a part of the face width is sound where a damage has taken the flank.
+pub(super) fn is_partial(damage: &DamageDescription, face_width_mm: f64) -> bool {
+    match damage {
+        DamageDescription::ToothBreakage { .. } => true,
+        DamageDescription::FaceFault { width_mm, .. } => *width_mm < face_width_mm,
         _ => false,
     }
 }
 
-fn depth_mm(geometry: &FaultGeometry, teeth: &Teeth) -> f64 {
-    let depths = teeth.gear_profile.y_mm.iter().zip(&geometry.flank_y_mm).map(|(sound, cut)| sound - cut);
-    depths.fold(0.0, f64::max)
+/// (mm) How far the flank is cut back between two profile points.
+fn depth_mm(tooth: &DamagedTooth, profile: &ToothProfile, (first, end): (usize, usize)) -> f64 {
+    let depths = profile.y_mm.iter().zip(tooth.outline_y_mm()).map(|(sound, cut)| sound - cut);
+    depths.skip(first).take((end + 1).saturating_sub(first)).fold(0.0, f64::max)
 }
 
 fn hundredths(value: f64) -> String {

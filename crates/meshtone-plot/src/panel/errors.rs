@@ -1,8 +1,5 @@
-//! The first tooth's profile errors, among those of all teeth.
+//! The tooth's profile errors, among those of all teeth.
 
-use nalgebra::DMatrix;
-
-use super::damage;
 use super::face::{CONTACT, RELIEF};
 use super::side::Side;
 use crate::axes::{Area, Axes, drawable};
@@ -10,16 +7,18 @@ use crate::canvas::{Canvas, Pixel};
 use crate::legend::{self, Entry, Sample};
 use crate::style::{Fill, Stroke, colour};
 use crate::ticks::Ticks;
+use meshtone::wheel::ErrorTable;
 
-const FIRST: Stroke = Stroke::solid(colour::BLUE, 2.0);
+const THIS: Stroke = Stroke::solid(colour::BLUE, 2.0);
 const ALL: Fill = Fill::tint(colour::BLUE, 0.2);
 
 /// Draws the errors; `along` is the tooth's own range.
 pub(super) fn draw(canvas: &mut Canvas, area: Area, along: [f64; 2], side: &Side) {
-    let errors = side.errors_mm.filter(|errors| errors.nrows() > 1 && errors.ncols() > 0);
+    let errors = side.errors_mm.filter(|errors| errors.points() > 1 && errors.teeth() > side.tooth_index());
     let largest = errors
         .into_iter()
-        .flat_map(|errors| errors.iter())
+        .flat_map(ErrorTable::each_tooth)
+        .flatten()
         .map(|error| 1e3 * error.abs())
         .filter(|&error| drawable(error))
         .fold(0.0, f64::max);
@@ -41,8 +40,8 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, along: [f64; 2], side: &Side
     axes.frame(canvas);
 }
 
-fn curves(canvas: &mut Canvas, axes: &Axes, side: &Side, errors: &DMatrix<f64>) {
-    let rows = errors.nrows();
+fn curves(canvas: &mut Canvas, axes: &Axes, side: &Side, errors: &ErrorTable) {
+    let rows = errors.points();
     let (low, high) = (side.profile.radius_mm(side.contact_index), side.wheel.tip_radius_mm);
     let x_mm: Vec<f64> = (0..rows)
         .map(|row| side.x_at_radius_mm(low + (high - low) * row as f64 / (rows - 1) as f64))
@@ -50,21 +49,23 @@ fn curves(canvas: &mut Canvas, axes: &Axes, side: &Side, errors: &DMatrix<f64>) 
     // From the start of contact to the tip, whichever way the rows run.
     let row = |place: usize| if side.errors_from_tip { rows - 1 - place } else { place };
     let extreme = |pick: fn(f64, f64) -> f64, start: f64| -> Vec<Pixel> {
-        axes.along_y(
-            (0..rows)
-                .map(|place| (1e3 * errors.row(row(place)).iter().copied().fold(start, pick), x_mm[place])),
-        )
+        axes.along_y((0..rows).map(|place| {
+            (1e3 * errors.each_tooth().map(|tooth| tooth[row(place)]).fold(start, pick), x_mm[place])
+        }))
     };
     let mut band = extreme(f64::min, f64::INFINITY);
     band.extend(extreme(f64::max, f64::NEG_INFINITY).into_iter().rev());
     canvas.polygon(&band, ALL);
     let all = Entry { sample: Sample::Area(ALL), text: "all teeth" };
     let start = (axes.area.left + 6.0, axes.area.bottom() - 26.0);
-    if side.fault.is_some_and(damage::is_missing) {
+    if side.is_missing() {
         legend::column(canvas, start, &[all]);
         return;
     }
-    canvas
-        .polyline(&axes.along_y((0..rows).map(|place| (1e3 * errors[(row(place), 0)], x_mm[place]))), FIRST);
-    legend::column(canvas, start, &[Entry { sample: Sample::Line(FIRST), text: "first tooth" }, all]);
+    let tooth = side.tooth_index();
+    canvas.polyline(
+        &axes.along_y((0..rows).map(|place| (1e3 * errors[(row(place), tooth)], x_mm[place]))),
+        THIS,
+    );
+    legend::column(canvas, start, &[Entry { sample: Sample::Line(THIS), text: &side.tooth_name() }, all]);
 }

@@ -1,9 +1,9 @@
-//! The first tooth's face: the working flank seen along the normal of the tooth's plane of symmetry.
+//! The tooth's face: the working flank seen along the normal of the tooth's plane of symmetry.
 //!
 //! z is that of the equations of motion: a fault that reaches from one end of the face reaches from positive z
-//! ([`meshtone::dynamics::MeshLoad`]).
+//! ([`meshtone::mesh::LoadState`]).
 
-use meshtone::fault::{FaultDescription, FaultGeometry};
+use meshtone::damage::{DamageDescription, DamagedTooth};
 
 use super::damage;
 use super::side::Side;
@@ -19,6 +19,8 @@ pub(super) const CONTACT: Stroke = Stroke::dashed(colour::GREEN, 1.6, &[7.0, 3.0
 pub(super) const RELIEF: Stroke = Stroke::dashed(colour::PURPLE, 1.6, &[2.0, 2.5]);
 /// (px) From line to line of the caption.
 const CAPTION_LINE: f64 = 16.0;
+/// Lines of the caption for which there is room.
+const MOST_LINES: usize = 4;
 const EDGE: Stroke = Stroke::solid(colour::VERMILLION, 1.8);
 
 /// Draws the face; `along` is the tooth's own range.
@@ -29,11 +31,12 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, along: [f64; 2], side: &Side
     axes.x_axis(canvas, &Ticks::about_zero(half), "Face width, z (mm)");
     axes.y_grid(canvas, &Ticks::nice(along[0], along[1], 8));
     let (root, tip) = (side.profile.x_mm[0], side.profile.tip_x_mm());
-    let missing = side.fault.is_some_and(damage::is_missing);
-    let top = if missing { root } else { tip };
+    let top = if side.is_missing() { root } else { tip };
     canvas.rectangle(axes.at(-half, along[0]), axes.at(half, top), Fill::solid(colour::STEEL));
-    if let Some(fault) = side.fault {
-        damaged(canvas, &axes, side, fault);
+    if let Some(tooth) = side.tooth {
+        for description in &tooth.descriptions {
+            damaged(canvas, &axes, side, tooth, description);
+        }
     }
     let outline = Stroke::solid(colour::MUTED, 1.6);
     canvas.line(axes.at(-half, root), axes.at(half, root), Stroke::solid(colour::MUTED, 0.9));
@@ -43,8 +46,8 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, along: [f64; 2], side: &Side
     if let Some(relief) = side.relief_x_mm.filter(|relief| *relief > side.contact_x_mm()) {
         landmark(canvas, &axes, relief, "tip relief", RELIEF);
     }
-    if let Some(fault) = side.fault {
-        caption(canvas, &axes, side, fault);
+    if let Some(tooth) = side.tooth {
+        caption(canvas, &axes, side, tooth);
     }
     axes.frame(canvas);
 }
@@ -56,20 +59,26 @@ fn landmark(canvas: &mut Canvas, axes: &Axes, x_mm: f64, name: &str, stroke: Str
     canvas.text((axes.px(axes.x[0] / 1.12) + 5.0, axes.py(x_mm) - 5.0), name, style);
 }
 
-fn damaged(canvas: &mut Canvas, axes: &Axes, side: &Side, fault: &FaultGeometry) {
+fn damaged(
+    canvas: &mut Canvas,
+    axes: &Axes,
+    side: &Side,
+    tooth: &DamagedTooth,
+    description: &DamageDescription,
+) {
     let half = side.wheel.face_width_mm / 2.0;
-    let (first, end) = damage::damaged_range(fault, side);
+    let (first, end) = damage::damaged_range(description, tooth, side);
     let x = |index: usize| side.profile.x_mm[index.min(side.last())];
     let tip = side.profile.tip_x_mm();
-    match &fault.description {
-        FaultDescription::MissingTooth => {
+    match description {
+        DamageDescription::MissingTooth => {
             canvas.rectangle(axes.at(-half, x(0)), axes.at(half, tip), LOST);
             let ghost = [(-half, x(0)), (-half, tip), (half, tip), (half, x(0))];
             canvas.polyline(&ghost.map(|(z, x)| axes.at(z, x)), DAMAGE_EDGE);
         }
-        FaultDescription::ToothBreakage { chip_start_index, missing_width_mm, tip_loss_mm, .. } => {
+        DamageDescription::ToothBreakage { chip_start_index, missing_width_mm, tip_loss_mm, .. } => {
             let bottom = x(*chip_start_index);
-            let top = fault.no_contact.start.min(side.last());
+            let top = tooth.gone_from_index.min(side.last());
             let width = missing_width_mm.last().copied().unwrap_or(0.0);
             // The lost tip takes the chip's upper part with it.
             let end = if *tip_loss_mm > 0.0 { x(top) } else { tip };
@@ -84,10 +93,10 @@ fn damaged(canvas: &mut Canvas, axes: &Axes, side: &Side, fault: &FaultGeometry)
                 canvas.line(axes.at(-half, end), axes.at(half, end), EDGE);
             }
         }
-        FaultDescription::FaceFault { width_mm, .. } => {
+        DamageDescription::FaceFault { width_mm, .. } => {
             rectangle(canvas, axes, [half - width_mm, half], [x(first), x(end)]);
         }
-        FaultDescription::ToothDestruction { .. } => {
+        _ => {
             rectangle(canvas, axes, [-half, half], [x(first), x(end)]);
         }
     }
@@ -100,14 +109,19 @@ fn rectangle(canvas: &mut Canvas, axes: &Axes, z: [f64; 2], x: [f64; 2]) {
 }
 
 /// Below the start of contact and the damage, as far as there is room.
-fn caption(canvas: &mut Canvas, axes: &Axes, side: &Side, fault: &FaultGeometry) {
+fn caption(canvas: &mut Canvas, axes: &Axes, side: &Side, tooth: &DamagedTooth) {
     let middle = axes.area.left + axes.area.width / 2.0;
     let style = TextStyle::NOTE.coloured(colour::VERMILLION).anchored(Anchor::Middle).with_halo();
-    let lines = damage::caption(fault);
-    let below = if damage::is_missing(fault) { side.last() } else { damage::damaged_range(fault, side).0 };
+    let lines: Vec<String> = tooth.descriptions.iter().flat_map(damage::caption).take(MOST_LINES).collect();
+    let below = if side.is_missing() {
+        side.last()
+    } else {
+        let starts = tooth.descriptions.iter().map(|damage| damage::damaged_range(damage, tooth, side).0);
+        starts.min().unwrap_or(side.last())
+    };
     let lowest = side.contact_x_mm().min(side.profile.x_mm[below]);
     let first = axes.py(lowest) + 18.0;
-    let first = first.min(axes.area.bottom() - 6.0 - CAPTION_LINE * (lines.len() as f64 - 1.0));
+    let first = first.min(axes.area.bottom() - 6.0 - CAPTION_LINE * lines.len().saturating_sub(1) as f64);
     for (row, text) in lines.iter().enumerate() {
         canvas.text((middle, first + CAPTION_LINE * row as f64), text, style);
     }

@@ -1,23 +1,24 @@
 //! Title, key facts and the columns' headings.
 
 use meshtone::Stages;
-use meshtone::scenario::{Convention, Operation, Scenario};
+use meshtone::scenario::{Model, Operation, Scenario};
 
 use super::damage;
 use super::side::Side;
 use crate::canvas::{Canvas, Pixel};
 use crate::style::{Stroke, TextStyle, colour};
+use crate::text::fitted;
 use crate::ticks::number;
+use crate::{DamagedTooth, damaged_tooth, font};
 
-/// The fault and its sizes.
+/// (px) From the panel's edge to the headings.
+const EDGE: f64 = super::LEFT - super::NAME_LEFT - 11.0;
+
+/// The faults and their sizes.
 pub(super) fn title(stages: &Stages) -> String {
-    let fault = stages.scenario.fault.as_ref();
-    let name = damage::name(fault);
-    let sizes = match (fault, &stages.fault) {
-        (Some(fault), Some(geometry)) => damage::sizes(fault, geometry, &stages.teeth),
-        _ => Vec::new(),
-    };
-    if sizes.is_empty() { name.to_owned() } else { format!("{name}: {}", sizes.join(", ")) }
+    let room = f64::from(super::WIDTH) - 2.0 * EDGE;
+    let width = |text: &str| font::text_width(text, TextStyle::TITLE.size, TextStyle::TITLE.bold);
+    fitted(&damage::title(stages, |text| width(text) <= room), TextStyle::TITLE, room)
 }
 
 /// The panel in a sentence, for readers who cannot see it.
@@ -30,17 +31,13 @@ pub(super) fn description(stages: &Stages) -> String {
 }
 
 pub(super) fn draw(canvas: &mut Canvas, title: &str, stages: &Stages) {
-    canvas.text((super::LEFT - super::NAME_LEFT - 11.0, 36.0), title, TextStyle::TITLE);
+    canvas.text((EDGE, 36.0), title, TextStyle::TITLE);
     let facts = facts(&stages.scenario).join("  ·  ");
-    canvas.text((super::LEFT - super::NAME_LEFT - 11.0, 61.0), &facts, TextStyle::FACTS);
+    canvas.text((EDGE, 61.0), &facts, TextStyle::FACTS);
 }
 
 pub(super) fn column(canvas: &mut Canvas, (left, baseline): Pixel, width: f64, side: &Side) {
-    let damage = match side.fault {
-        None => "",
-        Some(fault) if damage::is_missing(fault) => ", the first one missing",
-        Some(_) => ", the first one damaged",
-    };
+    let damage = damaged_teeth(&side.damaged);
     let text = format!("{}, {}: {} teeth{damage}", side.name, side.shaft, side.wheel.teeth);
     canvas.text((left, baseline), &text, TextStyle::HEADING);
     let rule = Stroke::solid(colour::INK, 1.2);
@@ -57,11 +54,23 @@ fn facts(scenario: &Scenario) -> Vec<String> {
         speed(&scenario.operation),
         torque(&scenario.operation),
         quality(scenario),
-        match scenario.convention {
-            Convention::Corrected => "corrected model".to_owned(),
-            Convention::Published => "model as published".to_owned(),
+        match scenario.model {
+            Model::Published => "model as published".to_owned(),
+            other => format!("{} model", other.name()),
         },
     ]
+}
+
+/// Which teeth are missing and which are damaged.
+fn damaged_teeth(damaged: &[DamagedTooth]) -> String {
+    let (missing, others): (Vec<DamagedTooth>, Vec<DamagedTooth>) =
+        damaged.iter().partition(|tooth| tooth.is_missing);
+    let named = |teeth: &[DamagedTooth], state: &str| match teeth {
+        [] => String::new(),
+        [DamagedTooth { tooth: 1, .. }] => format!(", the first one {state}"),
+        teeth => format!(", {} {state}", damaged_tooth::numbered("", teeth)),
+    };
+    named(&missing, "missing") + &named(&others, "damaged")
 }
 
 fn speed(operation: &Operation) -> String {

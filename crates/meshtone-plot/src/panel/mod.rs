@@ -14,7 +14,8 @@ mod stiffness;
 mod tooth;
 
 use meshtone::Stages;
-use meshtone::signal::Channels;
+use meshtone::sensor::Channels;
+use meshtone::wheel::WheelName;
 
 use crate::axes::Area;
 use crate::canvas::Canvas;
@@ -58,10 +59,10 @@ const ERRORS_WIDTH: f64 = COLUMN_WIDTH - TOOTH_WIDTH - CIRCLE_NAMES - FACE_WIDTH
 /// Signals at another sampling rate than the simulation's.
 ///
 /// ```
-/// use meshtone::scenario::{Fault, Scenario};
+/// use meshtone::scenario::{Fault, GearPair, MissingTooth, Scenario};
 ///
-/// let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
-/// scenario.fault = Some(Fault::MissingTooth);
+/// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+/// scenario.faults = vec![Fault::on_first_gear_tooth(MissingTooth)];
 /// scenario.solver.sampling_rate_hz = 2e4;
 /// let simulation = meshtone::simulate(&scenario)?;
 /// let panel = meshtone_plot::panel::draw(&simulation.stages, &simulation.channels)?;
@@ -73,8 +74,8 @@ pub fn draw(stages: &Stages, channels: &Channels) -> Result<Figure, PlotError> {
     let mut canvas = Canvas::new(WIDTH, HEIGHT);
     let title = heading::title(stages);
     heading::draw(&mut canvas, &title, stages);
-    for (column, side) in [Side::pinion(stages)?, Side::gear(stages)?].iter().enumerate() {
-        teeth(&mut canvas, column, side);
+    for (column, wheel) in WheelName::BOTH.into_iter().enumerate() {
+        teeth(&mut canvas, column, &Side::new(stages, wheel)?);
     }
     average::draw(&mut canvas, [0, 1].map(averages_area), stages, channels);
     stiffness::draw(&mut canvas, Area::new(LEFT, STIFFNESS_TOP, FULL_WIDTH, STIFFNESS_HEIGHT), stages);

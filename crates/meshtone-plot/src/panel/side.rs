@@ -1,14 +1,15 @@
 //! One of the two wheels, as the panel sees it.
 
 use meshtone::Stages;
-use meshtone::fault::FaultGeometry;
-use meshtone::tooth::{ToothProfile, Wheel};
-use nalgebra::DMatrix;
+use meshtone::damage::DamagedTooth;
+use meshtone::wheel::ErrorTable;
+use meshtone::wheel::{ToothProfile, Wheel, WheelName};
 
+use super::damage;
 use crate::PlotError;
 use crate::axes::Area;
 
-/// A wheel, its first tooth and what is wrong with it.
+/// A wheel, and one of its teeth: the first damaged one, or the first.
 pub(super) struct Side<'a> {
     pub(super) name: &'static str,
     pub(super) shaft: &'static str,
@@ -18,43 +19,58 @@ pub(super) struct Side<'a> {
     pub(super) contact_index: usize,
     /// (mm) x where the tip relief starts.
     pub(super) relief_x_mm: Option<f64>,
-    /// The damage; only the gear has one.
-    pub(super) fault: Option<&'a FaultGeometry>,
+    /// What is left of the tooth; none of a sound one.
+    pub(super) tooth: Option<&'a DamagedTooth>,
+    /// All damaged teeth of the wheel.
+    pub(super) damaged: Vec<crate::DamagedTooth>,
     /// (mm) One column per tooth.
-    pub(super) errors_mm: Option<&'a DMatrix<f64>>,
+    pub(super) errors_mm: Option<&'a ErrorTable>,
     /// Whether the rows of `errors_mm` run from tip to contact start.
     pub(super) errors_from_tip: bool,
 }
 
 impl<'a> Side<'a> {
-    pub(super) fn pinion(stages: &'a Stages) -> Result<Self, PlotError> {
+    pub(super) fn new(stages: &'a Stages, name: WheelName) -> Result<Self, PlotError> {
+        let (title, shaft) = match name {
+            WheelName::Pinion => ("Pinion", "input shaft"),
+            WheelName::Gear => ("Gear", "output shaft"),
+        };
+        let errors = stages.profile_errors.as_ref();
+        let damaged = stages.damaged.iter().filter(|tooth| tooth.wheel == name);
         let side = Self {
-            name: "Pinion",
-            shaft: "input shaft",
-            wheel: &stages.teeth.pinion,
-            profile: &stages.teeth.pinion_profile,
-            contact_index: stages.teeth.contact.initial_contact_index,
-            relief_x_mm: relief_x_mm(stages, &stages.teeth.pinion_profile),
-            fault: None,
-            errors_mm: stages.profile_errors.as_ref().map(|errors| &errors.pinion_profile_errors_mm),
-            errors_from_tip: false,
+            name: title,
+            shaft,
+            wheel: stages.teeth.wheel(name),
+            profile: stages.teeth.profile(name),
+            contact_index: stages.teeth.initial_contact_index(name),
+            relief_x_mm: relief_x_mm(stages, stages.teeth.profile(name)),
+            tooth: damaged.min_by_key(|tooth| tooth.tooth),
+            damaged: damage::damaged_teeth(stages, name),
+            errors_mm: errors.map(|errors| match name {
+                WheelName::Pinion => &errors.pinion_profile_errors_mm,
+                WheelName::Gear => &errors.gear_profile_errors_mm,
+            }),
+            errors_from_tip: name == WheelName::Gear,
         };
         side.checked()
     }
 
-    pub(super) fn gear(stages: &'a Stages) -> Result<Self, PlotError> {
-        let side = Self {
-            name: "Gear",
-            shaft: "output shaft",
-            wheel: &stages.teeth.gear,
-            profile: &stages.teeth.gear_profile,
-            contact_index: stages.teeth.contact.initial_contact_index,
-            relief_x_mm: relief_x_mm(stages, &stages.teeth.gear_profile),
-            fault: stages.fault.as_ref(),
-            errors_mm: stages.profile_errors.as_ref().map(|errors| &errors.gear_profile_errors_mm),
-            errors_from_tip: true,
-        };
-        side.checked()
+    /// Index of the tooth, from 0.
+    pub(super) fn tooth_index(&self) -> usize {
+        self.tooth.map_or(0, |tooth| tooth.tooth)
+    }
+
+    /// What the tooth is called.
+    pub(super) fn tooth_name(&self) -> String {
+        match self.tooth_index() {
+            0 => "first tooth".to_owned(),
+            index => format!("{} tooth {}", self.name.to_lowercase(), index + 1),
+        }
+    }
+
+    /// Whether the whole tooth is gone.
+    pub(super) fn is_missing(&self) -> bool {
+        self.tooth.is_some_and(DamagedTooth::is_missing)
     }
 
     fn checked(self) -> Result<Self, PlotError> {

@@ -1,11 +1,14 @@
-//! The mesh stiffness over a revolution of the gear, and its first pitches enlarged.
+//! The mesh stiffness over a revolution of the gear, and some of its pitches enlarged.
+
+use std::ops::Range;
 
 use meshtone::Stages;
+use meshtone::wheel::WheelName;
 
 use super::damage;
-use crate::DamagedTooth;
 use crate::axes::{self, Area, Axes};
 use crate::canvas::Canvas;
+use crate::damaged_tooth::{self, DamagedTooth};
 use crate::legend::{self, Entry, Sample};
 use crate::style::{Stroke, colour};
 use crate::ticks::Ticks;
@@ -15,99 +18,164 @@ const HEALTHY: Stroke = Stroke::dashed(colour::INK, 1.4, &[5.0, 3.0]);
 /// (px) Width of the enlarged part and the gap before it.
 const ENLARGED_WIDTH: f64 = 430.0;
 const GAP: f64 = 40.0;
-/// Pitches that the enlarged part shows, counted from where the first tooth enters contact.
-const ENLARGED: [f64; 2] = [-1.0, 3.0];
+/// Pitches that the enlarged part shows, counted from where the first damaged pair enters contact.
+const ENLARGED: [i64; 2] = [-1, 3];
 
 /// Draws both.
 pub(super) fn draw(canvas: &mut Canvas, area: Area, stages: &Stages) {
-    let mesh = Mesh::new(stages);
-    let damaged = damage::damaged_tooth(stages);
+    let damage = DamagedPairs::new(stages);
+    let revolution = damage.revolution();
+    let around = damage.first + ENLARGED[0]..damage.first + ENLARGED[1];
+    let mesh = Mesh::new(stages, revolution.start.min(around.start)..revolution.end.max(around.end));
     let y = axes::range(mesh.values().map(|stiffness| stiffness / 1e3), 0.07);
     let ticks = Ticks::nice(y[0], y[1], 5);
+    let x = |pitches: &Range<i64>| [pitches.start as f64, pitches.end as f64];
     let whole = Axes::new(
         Area::new(area.left, area.top, area.width - ENLARGED_WIDTH - GAP, area.height),
-        [0.0, mesh.pitches()],
+        x(&revolution),
         y,
     );
     let enlarged =
-        Axes::new(Area::new(whole.area.right() + GAP, area.top, ENLARGED_WIDTH, area.height), ENLARGED, y);
+        Axes::new(Area::new(whole.area.right() + GAP, area.top, ENLARGED_WIDTH, area.height), x(&around), y);
     for axes in [&whole, &enlarged] {
-        if let Some(tooth) = damaged {
-            tooth.tint(canvas, axes, 1.0);
+        for turn in damage.turns(axes.x) {
+            damaged_tooth::tint_turn(canvas, axes, turn);
         }
     }
     whole.title(canvas, "Mesh stiffness over a gear revolution");
-    let start = damage::start_of_revolution(stages.fault.as_ref());
+    let start = damage::start_of_revolution(&damage.gear);
     let name = format!("Pitches since the gear’s {start}");
-    whole.x_axis(canvas, &Ticks::whole(0.0, mesh.pitches(), 20), &name);
+    whole.x_axis(canvas, &Ticks::whole(whole.x[0], whole.x[1], 20), &name);
     whole.y_axis(canvas, &ticks, "Stiffness (N/µm)", super::NAME_LEFT);
-    enlarged.title(
-        canvas,
-        if damaged.is_some() { "Its first pitches, enlarged" } else { "Four pitches, enlarged" },
-    );
-    enlarged.x_axis(canvas, &Ticks::nice(ENLARGED[0], ENLARGED[1], 8), "Pitches");
+    enlarged.title(canvas, &damage.title_of_enlarged());
+    enlarged.x_axis(canvas, &Ticks::nice(enlarged.x[0], enlarged.x[1], 8), "Pitches");
     enlarged.y_grid(canvas, &ticks);
     for axes in [&whole, &enlarged] {
-        mesh.draw(canvas, axes, damaged.map(|tooth| tooth.contact_pitches));
+        mesh.draw(canvas, axes, &damage.turns(axes.x));
         axes.frame(canvas);
     }
-    if let Some(tooth) = damaged {
-        legend(canvas, &whole, tooth);
-    }
+    damage.legend(canvas, &whole);
 }
 
-fn legend(canvas: &mut Canvas, axes: &Axes, tooth: DamagedTooth) {
-    let entries = [
-        Entry { sample: Sample::Line(MESH), text: "this gear" },
-        Entry { sample: Sample::Line(HEALTHY), text: "healthy gear" },
-        tooth.legend_entry(),
-    ];
-    legend::row(canvas, (axes.area.right(), axes.area.top - axes::TITLE_ABOVE), &entries);
+/// The pairs that a damaged tooth is in. Pair n enters contact n pitches after the start of the simulation.
+struct DamagedPairs {
+    pinion: Vec<DamagedTooth>,
+    gear: Vec<DamagedTooth>,
+    pinion_teeth: i64,
+    gear_teeth: i64,
+    /// The first of them; 0 where there is none.
+    first: i64,
 }
 
-/// Stiffness on the grid of the cycle.
-struct Mesh<'a> {
-    mesh_n_per_mm: &'a [f64],
-    healthy_n_per_mm: &'a [f64],
-}
-
-impl<'a> Mesh<'a> {
-    fn new(stages: &'a Stages) -> Self {
+impl DamagedPairs {
+    fn new(stages: &Stages) -> Self {
+        let [pinion, gear] = WheelName::BOTH.map(|wheel| damage::damaged_teeth(stages, wheel));
+        let teeth = |wheel| i64::from(stages.teeth.wheel(wheel).teeth.max(1));
+        let first = pinion.iter().chain(&gear).map(|tooth| i64::from(tooth.tooth) - 1).min().unwrap_or(0);
         Self {
-            mesh_n_per_mm: &stages.mesh.mesh_n_per_mm,
-            healthy_n_per_mm: &stages.mesh.healthy_mesh_n_per_mm,
+            pinion,
+            gear,
+            pinion_teeth: teeth(WheelName::Pinion),
+            gear_teeth: teeth(WheelName::Gear),
+            first,
         }
     }
 
+    /// The gear's revolution that the first one is in.
+    fn revolution(&self) -> Range<i64> {
+        let start = self.first / self.gear_teeth * self.gear_teeth;
+        start..start + self.gear_teeth
+    }
+
+    /// (pitches) The parts of a window in which one of them is in contact.
+    fn turns(&self, window: [f64; 2]) -> Vec<[f64; 2]> {
+        let contact = self.pinion.iter().chain(&self.gear).map(|tooth| tooth.contact_pitches);
+        let meets = |damaged: &[DamagedTooth], teeth: i64, pair: i64| {
+            damaged.iter().any(|tooth| i64::from(tooth.tooth) == pair.rem_euclid(teeth) + 1)
+        };
+        damaged_tooth::turns(window, contact.fold(0.0, f64::max), |pair| {
+            meets(&self.pinion, self.pinion_teeth, pair) || meets(&self.gear, self.gear_teeth, pair)
+        })
+    }
+
+    fn title_of_enlarged(&self) -> String {
+        let is_first = |tooth: &&DamagedTooth| i64::from(tooth.tooth) == self.first + 1;
+        let gear = self.gear.iter().find(is_first).map(|_| "gear");
+        match gear.or(self.pinion.iter().find(is_first).map(|_| "pinion")) {
+            None => "Four pitches, enlarged".to_owned(),
+            Some("gear") if self.first == 0 => "Its first pitches, enlarged".to_owned(),
+            Some(wheel) => format!("Around {wheel} tooth {}, enlarged", self.first + 1),
+        }
+    }
+
+    fn legend(&self, canvas: &mut Canvas, axes: &Axes) {
+        let Some(text) = damaged_tooth::in_words(&[("pinion", &self.pinion), ("gear", &self.gear)]) else {
+            return;
+        };
+        let [this, healthy] = if self.pinion.is_empty() {
+            ["this gear", "healthy gear"]
+        } else {
+            ["this pair", "healthy pair"]
+        };
+        let entries = [
+            Entry { sample: Sample::Line(MESH), text: this },
+            Entry { sample: Sample::Line(HEALTHY), text: healthy },
+            damaged_tooth::legend_entry(&text),
+        ];
+        legend::row(canvas, (axes.area.right(), axes.area.top - axes::TITLE_ABOVE), &entries);
+    }
+}
+
+/// Stiffness of the mesh.
+struct Mesh {
+    /// From pitch `first_pitch` on, and a pitch more than is shown.
+    mesh_n_per_mm: Vec<f64>,
+    first_pitch: i64,
+    /// Of a pitch.
+    healthy_n_per_mm: Vec<f64>,
+}
+
+impl Mesh {
+    fn new(stages: &Stages, pitches: Range<i64>) -> Self {
+        let count = (pitches.end + 1 - pitches.start).max(0) as usize;
+        let mesh_n_per_mm = match stages.mesh.pairs() {
+            Some(mesh) => {
+                // The cycle repeats: what comes before the first pair is its end.
+                let start = pitches.start.rem_euclid(mesh.sequence.cycle() as i64) as usize;
+                mesh.stiffness_n_per_mm(start..start + count)
+            }
+            None => {
+                let cycle = stages.mesh.stiffness_n_per_mm();
+                let points = stages.mesh.points_per_pitch();
+                let start = pitches.start * points as i64;
+                let start = start.checked_rem_euclid(cycle.len() as i64).unwrap_or(0) as usize;
+                cycle.iter().cycle().skip(start).take(count * points).copied().collect()
+            }
+        };
+        let healthy_n_per_mm = stages.mesh.healthy_stiffness_n_per_mm();
+        Self { mesh_n_per_mm, first_pitch: pitches.start, healthy_n_per_mm }
+    }
+
     fn values(&self) -> impl Iterator<Item = f64> {
-        self.mesh_n_per_mm.iter().chain(self.healthy_n_per_mm).copied()
+        self.mesh_n_per_mm.iter().chain(&self.healthy_n_per_mm).copied()
     }
 
-    /// Number of points from one tooth to the next.
-    fn per_pitch(&self) -> usize {
-        self.healthy_n_per_mm.len().max(1)
-    }
-
-    fn pitches(&self) -> f64 {
-        (self.mesh_n_per_mm.len() as f64 / self.per_pitch() as f64).max(1.0)
-    }
-
-    fn draw(&self, canvas: &mut Canvas, axes: &Axes, damaged_contact: Option<f64>) {
+    /// Draws the mesh, and over the damaged `turns` the healthy one; elsewhere the two are the same.
+    fn draw(&self, canvas: &mut Canvas, axes: &Axes, turns: &[[f64; 2]]) {
         if self.mesh_n_per_mm.is_empty() || self.healthy_n_per_mm.is_empty() {
             axes.note(canvas, "no mesh stiffness");
             return;
         }
-        let per_pitch = self.per_pitch() as f64;
-        // The cycle repeats: what comes before the first tooth is the revolution's end.
-        let curve = |values: &'a [f64], [from, to]: [f64; 2]| {
-            let length = values.len() as i64;
+        let per_pitch = self.healthy_n_per_mm.len() as f64;
+        let curve = |values: &[f64], first_pitch: i64, [from, to]: [f64; 2]| {
+            let first_point = first_pitch * self.healthy_n_per_mm.len() as i64;
             let (first, last) = ((from * per_pitch).ceil() as i64, (to * per_pitch).floor() as i64);
-            (first..=last).map(move |k| (k as f64 / per_pitch, values[k.rem_euclid(length) as usize] / 1e3))
+            let value = |k: i64| values[(k - first_point).rem_euclid(values.len() as i64) as usize];
+            (first..=last).map(|k| (k as f64 / per_pitch, value(k) / 1e3)).collect::<Vec<_>>()
         };
-        // Elsewhere the two are the same.
-        if let Some(contact) = damaged_contact {
-            axes.line(canvas, curve(self.healthy_n_per_mm, [0.0, contact.min(axes.x[1])]), HEALTHY);
+        for &turn in turns {
+            axes.line(canvas, curve(&self.healthy_n_per_mm, 0, turn).into_iter(), HEALTHY);
         }
-        axes.line(canvas, curve(self.mesh_n_per_mm, axes.x), MESH);
+        axes.line(canvas, curve(&self.mesh_n_per_mm, self.first_pitch, axes.x).into_iter(), MESH);
     }
 }

@@ -1,6 +1,6 @@
-//! The first tooth in its own plane.
+//! The tooth in its own plane.
 
-use meshtone::fault::{FaultDescription, FaultGeometry};
+use meshtone::damage::{DamageDescription, DamagedTooth};
 
 use super::damage;
 use super::side::Side;
@@ -21,7 +21,7 @@ pub(super) const PARTLY_LOST: Fill = Fill::hatch(colour::VERMILLION);
 /// Draws the tooth; `across` and `along` have the same scale.
 pub(super) fn draw(canvas: &mut Canvas, area: Area, across: [f64; 2], along: [f64; 2], side: &Side) {
     let axes = Axes::new(area, across, along);
-    axes.title(canvas, "First tooth, in its plane");
+    axes.title(canvas, &title(side));
     axes.x_axis(canvas, &Ticks::nice(across[0], across[1], 9), "Across the tooth, y (mm)");
     axes.y_axis(
         canvas,
@@ -32,16 +32,36 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, across: [f64; 2], along: [f6
     let tooth = Drawing { axes, side };
     tooth.body(canvas);
     tooth.circles(canvas);
-    match side.fault {
-        Some(fault) => tooth.damaged(canvas, fault),
+    match side.tooth {
+        Some(damaged) if damaged.is_missing() => tooth.missing(canvas),
+        Some(damaged) => tooth.damaged(canvas, damaged),
         None => tooth.sound(canvas),
     }
     tooth.flank_names(canvas);
     axes.frame(canvas);
 }
 
+fn title(side: &Side) -> String {
+    match side.tooth_index() {
+        0 => "First tooth, in its plane".to_owned(),
+        index => format!("{} tooth {}, in its plane", side.name, index + 1),
+    }
+}
+
 /// (px) Room that a row of remarks takes from the bottom.
 const ROW_OF_REMARKS: f64 = 24.0;
+
+/// A piece of the working flank from which material is gone.
+struct Cut {
+    /// First profile index.
+    first: usize,
+    /// Last profile index.
+    end: usize,
+    /// The flank that is left.
+    flank: Vec<Pixel>,
+    /// Whether it is gone over a part of the face width only.
+    is_partial: bool,
+}
 
 struct Drawing<'a> {
     axes: Axes,
@@ -55,17 +75,14 @@ impl Drawing<'_> {
         let last = side.last();
         let mut outline = self.space(-1.0);
         outline.reverse();
-        match side.fault.map(|fault| (fault, &fault.description)) {
-            Some((_, FaultDescription::MissingTooth)) => outline.extend(self.root_gap()),
-            Some((fault, FaultDescription::ToothBreakage { .. })) => {
-                let top = fault.no_contact.start.clamp(1, last);
+        match side.tooth {
+            Some(tooth) if tooth.is_missing() => outline.extend(self.root_gap()),
+            Some(tooth) => {
+                let top = tooth.gone_from_index.clamp(1, last);
                 outline.extend(self.flank(-1.0, 0, top));
-                outline.extend(self.flank(1.0, 0, top).into_iter().rev());
-            }
-            Some((fault, _)) => {
-                outline.extend(self.flank(-1.0, 0, last));
-                let cut = |index: usize| (fault.flank_y_mm[index], side.profile.x_mm[index]);
-                outline.extend(self.axes.along_y((0..=last).map(cut)).into_iter().rev());
+                let outline_y_mm = tooth.outline_y_mm();
+                let working = |index: usize| (outline_y_mm[index], side.profile.x_mm[index]);
+                outline.extend(self.axes.along_y((0..=top).map(working)).into_iter().rev());
             }
             None => {
                 outline.extend(self.flank(-1.0, 0, last));
@@ -80,7 +97,7 @@ impl Drawing<'_> {
         for rim in rim {
             canvas.polyline(&rim, BACK);
         }
-        if side.fault.is_some_and(damage::is_missing) {
+        if side.is_missing() {
             canvas.polyline(&self.root_gap(), BACK);
         }
     }
@@ -153,42 +170,90 @@ impl Drawing<'_> {
         canvas.polyline(&self.flank(1.0, 0, last), WORKING);
     }
 
-    fn damaged(&self, canvas: &mut Canvas, fault: &FaultGeometry) {
+    fn missing(&self, canvas: &mut Canvas) {
         let last = self.side.last();
-        match &fault.description {
-            FaultDescription::MissingTooth => {
-                let mut ghost = self.flank(-1.0, 0, last);
-                ghost.extend(self.flank(1.0, 0, last).into_iter().rev());
-                canvas.polyline(&ghost, DAMAGE_EDGE);
-                // Down to the root that is left, which rises between the feet.
-                ghost.extend(self.root_gap().into_iter().rev());
-                canvas.polygon(&ghost, LOST);
-                let wheel = self.side.wheel;
-                // Between the circles, and beside the names of the flanks.
-                let at = self.axes.at(0.0, (wheel.pitch_radius_mm + wheel.tip_radius_mm) / 2.0);
-                let style = TextStyle::NOTE.coloured(colour::VERMILLION).anchored(Anchor::Middle).bold();
-                canvas.text(at, "missing", style);
-            }
-            FaultDescription::ToothBreakage { chip_start_index, .. } => {
-                let top = fault.no_contact.start.min(last);
-                let chip = (*chip_start_index).min(top);
-                canvas.polygon(&self.slab(chip, top), PARTLY_LOST);
-                canvas.polygon(&self.slab(top, last), LOST);
-                canvas.polyline(&self.flank(-1.0, top, last), GHOST);
-                canvas.polyline(&self.flank(1.0, top, last), GHOST);
-                self.across_at(canvas, last, if top < last { GHOST } else { BACK });
-                canvas.polyline(&self.flank(-1.0, 0, top), BACK);
-                canvas.polyline(&self.flank(1.0, 0, top), WORKING);
-                self.across_at(canvas, chip, DAMAGE_EDGE);
-                if top < last {
-                    self.across_at(canvas, top, DAMAGED);
-                }
-            }
-            _ => self.cut(canvas, fault),
+        let mut ghost = self.flank(-1.0, 0, last);
+        ghost.extend(self.flank(1.0, 0, last).into_iter().rev());
+        canvas.polyline(&ghost, DAMAGE_EDGE);
+        // Down to the root that is left, which rises between the feet.
+        ghost.extend(self.root_gap().into_iter().rev());
+        canvas.polygon(&ghost, LOST);
+        let wheel = self.side.wheel;
+        // Between the circles, and beside the names of the flanks.
+        let at = self.axes.at(0.0, (wheel.pitch_radius_mm + wheel.tip_radius_mm) / 2.0);
+        let style = TextStyle::NOTE.coloured(colour::VERMILLION).anchored(Anchor::Middle).bold();
+        canvas.text(at, "missing", style);
+    }
+
+    fn damaged(&self, canvas: &mut Canvas, tooth: &DamagedTooth) {
+        let last = self.side.last();
+        let top = tooth.gone_from_index.min(last);
+        let chips = tooth.descriptions.iter().filter_map(|damage| match damage {
+            DamageDescription::ToothBreakage { chip_start_index, .. } => Some((*chip_start_index).min(top)),
+            _ => None,
+        });
+        let chips: Vec<usize> = chips.collect();
+        let cuts = self.cuts(tooth, top);
+        for &chip in &chips {
+            canvas.polygon(&self.slab(chip, top), PARTLY_LOST);
+            canvas.polygon(&self.slab(top, last), LOST);
         }
-        if damage::is_partial(fault, self.side.wheel.face_width_mm) {
+        for cut in &cuts {
+            let sound = self.flank(1.0, cut.first, cut.end);
+            let between: Vec<Pixel> = cut.flank.iter().chain(sound.iter().rev()).copied().collect();
+            canvas.polygon(&between, if cut.is_partial { PARTLY_LOST } else { LOST });
+            canvas.polyline(&sound, GHOST);
+        }
+        if top < last {
+            canvas.polyline(&self.flank(-1.0, top, last), GHOST);
+            canvas.polyline(&self.flank(1.0, top, last), GHOST);
+        }
+        self.across_at(canvas, last, if top < last { GHOST } else { BACK });
+        canvas.polyline(&self.flank(-1.0, 0, top), BACK);
+        let mut sound_from = 0;
+        for cut in &cuts {
+            canvas.polyline(&self.flank(1.0, sound_from, cut.first.max(sound_from)), WORKING);
+            sound_from = cut.end;
+        }
+        canvas.polyline(&self.flank(1.0, sound_from, top), WORKING);
+        for cut in &cuts {
+            // From edge to edge of the sound flank, so that the damaged one leaves no gap to it.
+            let (head, tail) = (self.side.flank(cut.first, 1.0), self.side.flank(cut.end, 1.0));
+            let mut closed = vec![self.axes.at(head.0, head.1)];
+            closed.extend(&cut.flank);
+            closed.push(self.axes.at(tail.0, tail.1));
+            canvas.polyline(&closed, DAMAGED);
+        }
+        for &chip in &chips {
+            self.across_at(canvas, chip, DAMAGE_EDGE);
+        }
+        if top < last {
+            self.across_at(canvas, top, DAMAGED);
+        }
+        let face_width_mm = self.side.wheel.face_width_mm;
+        if tooth.descriptions.iter().any(|damage| damage::is_partial(damage, face_width_mm)) {
             self.remark(canvas, 0, "hatched: lost over part of the face width", colour::VERMILLION);
         }
+    }
+
+    /// Where material is gone from the flank below `top`, from the root outwards.
+    fn cuts(&self, tooth: &DamagedTooth, top: usize) -> Vec<Cut> {
+        let outline_y_mm = tooth.outline_y_mm();
+        let at = |index: usize| (outline_y_mm[index], self.side.profile.x_mm[index]);
+        let cut = |damage: &DamageDescription| {
+            let (first, end) = damage::damaged_range(damage, tooth, self.side);
+            let (first, end) = (first.min(top), end.min(top));
+            Cut {
+                first,
+                end,
+                flank: self.axes.along_y((first..=end).map(at)),
+                is_partial: damage::is_partial(damage, self.side.wheel.face_width_mm),
+            }
+        };
+        let is_cut = |damage: &&DamageDescription| !matches!(damage, DamageDescription::ToothBreakage { .. });
+        let mut cuts: Vec<Cut> = tooth.descriptions.iter().filter(is_cut).map(cut).collect();
+        cuts.sort_by_key(|cut| cut.first);
+        cuts
     }
 
     /// Words in the wheel's body, in a row counted from the bottom.
@@ -197,29 +262,6 @@ impl Drawing<'_> {
         let area = self.axes.area;
         let at = (area.left + area.width / 2.0, area.bottom() - 8.0 - 1.15 * style.size * row as f64);
         canvas.text(at, text, style);
-    }
-
-    /// A flank from which material is gone.
-    fn cut(&self, canvas: &mut Canvas, fault: &FaultGeometry) {
-        let last = self.side.last();
-        let (first, end) = damage::damaged_range(fault, self.side);
-        let partial = damage::is_partial(fault, self.side.wheel.face_width_mm);
-        let cut = |index: usize| (fault.flank_y_mm[index], self.side.profile.x_mm[index]);
-        let damaged = self.axes.along_y((first..=end).map(cut));
-        let sound = self.flank(1.0, first, end);
-        let between: Vec<Pixel> = damaged.iter().chain(sound.iter().rev()).copied().collect();
-        canvas.polygon(&between, if partial { PARTLY_LOST } else { LOST });
-        canvas.polyline(&sound, GHOST);
-        self.across_at(canvas, last, BACK);
-        canvas.polyline(&self.flank(-1.0, 0, last), BACK);
-        canvas.polyline(&self.flank(1.0, 0, first), WORKING);
-        canvas.polyline(&self.flank(1.0, end, last), WORKING);
-        // From edge to edge of the sound flank, so that the damaged one leaves no gap to it.
-        let (head, tail) = (self.side.flank(first, 1.0), self.side.flank(end, 1.0));
-        let mut closed = vec![self.axes.at(head.0, head.1)];
-        closed.extend(damaged);
-        closed.push(self.axes.at(tail.0, tail.1));
-        canvas.polyline(&closed, DAMAGED);
     }
 
     /// Root, base, pitch and tip circle, with their names right of the frame.

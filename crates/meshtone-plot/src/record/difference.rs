@@ -1,9 +1,9 @@
 //! The difference signal with its envelope.
 
 use super::{CURVE, WheelView, teeth, value_axis};
-use crate::DamagedTooth;
 use crate::axes::{self, Axes};
 use crate::canvas::Canvas;
+use crate::damaged_tooth;
 use crate::legend::{self, Entry, Sample};
 use crate::style::{Stroke, colour};
 
@@ -19,7 +19,8 @@ pub(super) fn draw(canvas: &mut Canvas, axes: Axes, wheel: &WheelView, unit: &st
     axes.title(canvas, "Difference signal");
     let curves = [("difference", CURVE), ("envelope", ENVELOPE)]
         .map(|(text, line)| Entry { sample: Sample::Line(line), text });
-    let damaged = wheel.damaged_tooth.map(DamagedTooth::legend_entry);
+    let damaged = wheel.damage_in_words();
+    let damaged = damaged.as_deref().map(damaged_tooth::legend_entry);
     let entries: Vec<Entry> = damaged.into_iter().chain(curves).collect();
     legend::row(canvas, (axes.area.right(), axes.area.top - axes::TITLE_ABOVE), &entries);
     teeth::axis(canvas, &axes, wheel);

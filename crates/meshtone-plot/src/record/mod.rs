@@ -16,7 +16,7 @@ use crate::axes::{self, Area, Axes};
 use crate::canvas::Canvas;
 use crate::legend;
 use crate::style::{Stroke, colour};
-use crate::{DamagedTooth, Figure};
+use crate::{DamagedTooth, Figure, damaged_tooth};
 
 /// (px) Size of the figure.
 pub const WIDTH: u32 = 1600;
@@ -82,10 +82,17 @@ pub struct WheelView<'a> {
     pub low_orders: usize,
     /// What marks tooth 1, such as `tooth 1 is in mesh at the tachometer's pulse`.
     pub first_tooth: &'a str,
-    /// The damaged tooth, where it is known to be tooth 1; its turn is tinted.
-    pub damaged_tooth: Option<DamagedTooth>,
+    /// The damaged teeth, where they are known; their turns are tinted.
+    pub damaged_teeth: &'a [DamagedTooth],
     /// The record.
     pub record: &'a Record,
+}
+
+impl WheelView<'_> {
+    /// What the tinted parts of its revolution are.
+    fn damage_in_words(&self) -> Option<String> {
+        damaged_tooth::in_words(&[(self.name, self.damaged_teeth)])
+    }
 }
 
 /// Draws the figure of one record.
@@ -109,7 +116,7 @@ pub struct WheelView<'a> {
 ///     sidebands: 2,
 ///     low_orders: 7,
 ///     first_tooth: "tooth 1 is in mesh at the first sample",
-///     damaged_tooth: None,
+///     damaged_teeth: &[],
 ///     record: &record,
 /// };
 /// let figure = record::draw(&RecordFigure { title: "run.csv: bearing", facts: &[], signal, wheels: &[wheel] });
@@ -140,9 +147,9 @@ pub fn draw(figure: &RecordFigure) -> Figure {
 
 fn average(canvas: &mut Canvas, axes: Axes, wheel: &WheelView, unit: &str) {
     axes.title(canvas, &format!("Average over a revolution of the {}", wheel.name));
-    if let Some(tooth) = wheel.damaged_tooth {
+    if let Some(text) = wheel.damage_in_words() {
         let end_of_title = (axes.area.right(), axes.area.top - axes::TITLE_ABOVE);
-        legend::row(canvas, end_of_title, &[tooth.legend_entry()]);
+        legend::row(canvas, end_of_title, &[damaged_tooth::legend_entry(&text)]);
     }
     teeth::axis(canvas, &axes, wheel);
     value_axis(canvas, &axes, unit);

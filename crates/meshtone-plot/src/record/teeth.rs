@@ -3,6 +3,7 @@
 use super::WheelView;
 use crate::axes::Axes;
 use crate::canvas::Canvas;
+use crate::damaged_tooth;
 use crate::style::{Stroke, TextStyle, colour};
 use crate::ticks::Ticks;
 
@@ -17,11 +18,9 @@ pub(super) fn over(values: &[f64], teeth: u32) -> impl Iterator<Item = (f64, f64
     values.iter().enumerate().map(move |(k, &value)| (k as f64 * per_value, value))
 }
 
-/// Numbers of the teeth in the middle of their pitches, lines between them; the turn of the damaged one is tinted.
+/// Numbers of the teeth in the middle of their pitches, lines between them; the turns of damaged ones are tinted.
 pub(super) fn axis(canvas: &mut Canvas, axes: &Axes, wheel: &WheelView) {
-    if let Some(tooth) = wheel.damaged_tooth {
-        tooth.tint(canvas, axes, 1.0);
-    }
+    damaged_tooth::tint(canvas, axes, wheel.damaged_teeth, wheel.teeth, 1.0);
     let pitch = axes.area.width / f64::from(wheel.teeth.max(1));
     let step = |least: f64| {
         let steps = [1u32, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000];

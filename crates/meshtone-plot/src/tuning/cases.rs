@@ -1,6 +1,6 @@
 //! Indicators and errors against the cases.
 
-use meshtone::hybrid::{Case, TuningIndicator};
+use meshtone::tuning::{Case, TuningIndicator};
 
 use super::data::{DRAWS, Data};
 use super::symbols::{

@@ -1,6 +1,6 @@
 //! What the figure shows.
 
-use meshtone::hybrid::{
+use meshtone::tuning::{
     Enhancement, Experiment, ExperimentResult, HybridError, Measurements, SimulatedCases, Tuning,
     TuningIndicator,
 };

@@ -1,6 +1,6 @@
 //! Title and key facts.
 
-use meshtone::hybrid::Tuning;
+use meshtone::tuning::Tuning;
 
 use super::data::Data;
 use crate::canvas::Canvas;

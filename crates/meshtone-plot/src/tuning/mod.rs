@@ -12,7 +12,7 @@ mod surface;
 mod symbols;
 mod width;
 
-use meshtone::hybrid::{Experiment, ExperimentResult};
+use meshtone::tuning::{Experiment, ExperimentResult};
 
 use crate::axes::Area;
 use crate::canvas::Canvas;
@@ -61,19 +61,22 @@ const WIDTH_PLOT_HEIGHT: f64 = 326.0;
 /// A result of another number of cases than the experiment's; signals that cannot be enhanced.
 ///
 /// ```
-/// use meshtone::hybrid::*;
-/// use meshtone::scenario::{Fault, Scenario};
+/// use meshtone::tuning::*;
+/// use meshtone::scenario::{Fault, GearPair, MissingTooth, Scenario};
 ///
-/// let case = |label: &str, fault: Option<Fault>| Case {
+/// let case = |label: &str, faults: Vec<Fault>| Case {
 ///     label: label.into(),
-///     severity: f64::from(u8::from(fault.is_some())),
-///     fault,
+///     severity: faults.len() as f64,
+///     faults,
 /// };
-/// let mut base = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+/// let mut base = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
 /// base.solver.sampling_rate_hz = 25e3;
 /// let experiment = Experiment {
 ///     base,
-///     cases: vec![case("healthy", None), case("missing tooth", Some(Fault::MissingTooth))],
+///     cases: vec![
+///         case("healthy", vec![]),
+///         case("missing tooth", vec![Fault::on_first_gear_tooth(MissingTooth)]),
+///     ],
 ///     chain: DifferenceChain::new(25e3),
 ///     measured: Measurements::from_compared(
 ///         vec![TuningIndicator::Rms],

@@ -1,6 +1,6 @@
 //! The error over the fault-to-harmonics ratio and the noise level.
 
-use meshtone::hybrid::{Enhancement, HybridError};
+use meshtone::tuning::{Enhancement, HybridError};
 
 use super::data::Data;
 use super::heading::short;

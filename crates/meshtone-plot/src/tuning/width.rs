@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use meshtone::hybrid::{Enhancement, EnhancementBounds, HybridError, fit};
+use meshtone::tuning::{Enhancement, EnhancementBounds, HybridError, fit};
 
 use super::data::Data;
 use super::symbols::{ENHANCED, ENHANCED_MARKER, MEDIAN};

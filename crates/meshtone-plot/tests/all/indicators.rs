@@ -39,6 +39,8 @@ fn shown(figure: &Figure, words: &[&str]) {
     }
 }
 
+const FIRST: [DamagedTooth; 1] = [DamagedTooth { tooth: 1, contact_pitches: 1.6, is_missing: false }];
+
 #[test]
 fn one_wheel_and_both_of_a_pair() {
     for size in [1.0, 1e-7, 1e9] {
@@ -55,8 +57,7 @@ fn one_wheel_and_both_of_a_pair() {
             sidebands,
             low_orders,
             first_tooth: "1: in mesh at the first sample",
-            damaged_tooth: (name == "gear")
-                .then_some(DamagedTooth { contact_pitches: 1.6, is_missing: false }),
+            damaged_teeth: if name == "gear" { &FIRST } else { &[] },
             record,
         };
         let wheels = [
@@ -96,7 +97,7 @@ fn tones(order: usize, points: usize) -> Record {
     process_average(average, 38, &ChainSettings::default()).unwrap()
 }
 
-fn of_tones(record: &Record, damaged_tooth: Option<DamagedTooth>) -> Figure {
+fn of_tones(record: &Record, damaged_teeth: &[DamagedTooth]) -> Figure {
     let samples = [0.0, 1.0];
     let signal = SignalView {
         quantity: "bearing",
@@ -112,7 +113,7 @@ fn of_tones(record: &Record, damaged_tooth: Option<DamagedTooth>) -> Figure {
         sidebands: 2,
         low_orders: 7,
         first_tooth: "each enters contact at the left of its pitch",
-        damaged_tooth,
+        damaged_teeth,
         record,
     };
     let figure = record::draw(&RecordFigure { title: "tones", facts: &[], signal, wheels: &[wheel; 2] });
@@ -123,7 +124,7 @@ fn of_tones(record: &Record, damaged_tooth: Option<DamagedTooth>) -> Figure {
 // In one column of two there is room for some 200 orders, one by one.
 #[test]
 fn no_order_is_off_the_chart() {
-    let figure = of_tones(&tones(5555, 14_440), None);
+    let figure = of_tones(&tones(5555, 14_440), &[]);
     shown(
         &figure,
         &[
@@ -133,10 +134,10 @@ fn no_order_is_off_the_chart() {
         ],
     );
     shown(&figure, &["Orders 1 to 209", "7000"]);
-    let figure = of_tones(&tones(100, 14_440), None);
+    let figure = of_tones(&tones(100, 14_440), &[]);
     shown(&figure, &["shown below, 100 % of the power"]);
     // Where all orders have room they are shown once.
-    let figure = of_tones(&tones(100, 300), None);
+    let figure = of_tones(&tones(100, 300), &[]);
     assert!(!figure.labels().iter().any(|label| label.text.contains("shown below")));
     shown(&figure, &["Order spectrum"]);
 }
@@ -145,7 +146,7 @@ fn no_order_is_off_the_chart() {
 fn the_damaged_tooth_is_tinted_as_long_as_it_is_in_contact() {
     let tones = tones(5555, 14_440);
     let left_to_right = |contact_pitches: f64| {
-        let figure = of_tones(&tones, Some(DamagedTooth { contact_pitches, is_missing: false }));
+        let figure = of_tones(&tones, &[DamagedTooth { contact_pitches, ..FIRST[0] }]);
         let document = roxmltree::Document::parse(figure.svg()).unwrap();
         let tinted = |node: &roxmltree::Node| node.attribute("fill") == Some("#d55e00");
         let paths: Vec<String> =
@@ -160,8 +161,8 @@ fn the_damaged_tooth_is_tinted_as_long_as_it_is_in_contact() {
     };
     let pitch = left_to_right(1.0);
     assert!((left_to_right(1.609) / pitch - 1.609).abs() < 2e-3);
-    let missing = DamagedTooth { contact_pitches: 1.6, is_missing: true };
-    shown(&of_tones(&tones, Some(missing)), &["turn of the missing tooth"]);
+    let missing = DamagedTooth { is_missing: true, ..FIRST[0] };
+    shown(&of_tones(&tones, &[missing]), &["turn of the missing tooth"]);
 }
 
 #[test]
@@ -184,7 +185,7 @@ fn nothing_but_the_mesh_tone() {
         sidebands: 2,
         low_orders: 7,
         first_tooth: "1: in mesh at the pulse",
-        damaged_tooth: None,
+        damaged_teeth: &[],
         record: &record,
     };
     let figure = record::draw(&RecordFigure { title: "tone", facts: &[], signal, wheels: &[wheel] });

@@ -4,7 +4,7 @@
 
 use crate::support::check;
 use meshtone::scenario::*;
-use meshtone::signal::Channels;
+use meshtone::sensor::Channels;
 use meshtone::{Simulation, simulate};
 use meshtone_plot::{Figure, PlotError, panel};
 
@@ -54,7 +54,7 @@ const EVERY_PANEL: [&str; 22] = [
     "contact start",
     "tip relief",
     "module 3 mm",
-    "corrected model",
+    "linear model",
     "(°)",
 ];
 
@@ -126,37 +126,40 @@ fn the_same_panel_twice_is_the_same() {
     assert_eq!(drawn(&scenario), drawn(&scenario));
 }
 
-fn with_teeth(pinion: u32, gear: u32, fault: Option<Fault>) -> Scenario {
-    let mut scenario = Scenario::new(3.0, pinion, gear, 15.0, 40.0, 10.0);
+fn with_teeth(pinion: u32, gear: u32, damage: Option<Damage>) -> Scenario {
+    let mut scenario = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: pinion,
+        gear_teeth: gear,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    });
     let thinnest = 1.5 * f64::from(pinion.min(gear)) - 3.75;
     scenario.rig.pinion_shaft.radius_mm = 10f64.min(0.8 * thinnest);
     scenario.rig.gear_shaft.radius_mm = 10f64.min(0.8 * thinnest);
-    scenario.fault = fault;
+    scenario.faults = damage.into_iter().map(Fault::on_first_gear_tooth).collect();
     scenario
 }
 
 #[test]
 fn small_and_large_wheels() {
-    let faults = || {
+    let damages = || {
         let pit = PitCircle::Fractions { start: 0.2, end: 0.8, depth: 0.5 };
         [
             None,
-            Some(Fault::MissingTooth),
-            Some(Fault::ToothBreakage(ToothBreakage {
-                chip_height_mm: 4.0,
-                chip_width_mm: 9.0,
-                tip_loss_mm: 0.0,
-            })),
-            Some(Fault::PartialFace(PartialFace { width_mm: 5.0, pit })),
+            Some(MissingTooth.into()),
+            Some(ToothBreakage { chip_height_mm: 4.0, chip_width_mm: 9.0, tip_loss_mm: 0.0 }.into()),
+            Some(PartialFace { width_mm: 5.0, pit }.into()),
         ]
     };
     for (pinion, gear) in [(6, 200), (6, 6), (200, 6), (200, 200), (41, 42)] {
-        for fault in faults() {
+        for damage in damages() {
             // Six teeth against six, one missing: the wheels lose contact and the motion has no bound.
-            if pinion == gear && gear == 6 && fault == Some(Fault::MissingTooth) {
+            if pinion == gear && gear == 6 && damage == Some(MissingTooth.into()) {
                 continue;
             }
-            drawn(&with_teeth(pinion, gear, fault));
+            drawn(&with_teeth(pinion, gear, damage));
         }
     }
 }
@@ -164,16 +167,23 @@ fn small_and_large_wheels() {
 #[test]
 fn small_and_large_modules_and_no_relief() {
     for module in [0.2, 50.0] {
-        let mut scenario = Scenario::new(module, 17, 38, 10.0 * module, 10.0, 10.0);
+        let mut scenario = Scenario::new(GearPair {
+            module_mm: module,
+            pinion_teeth: 17,
+            gear_teeth: 38,
+            face_width_mm: 10.0 * module,
+            pinion_speed_hz: 10.0,
+            brake_torque_nm: 10.0,
+        });
         scenario.rig.pinion_shaft.radius_mm = 5.0 * module;
         scenario.rig.gear_shaft.radius_mm = 5.0 * module;
         scenario.gears.tip_relief = None;
         scenario.quality.din_grade = if module < 1.0 { 12 } else { 1 };
-        scenario.fault = Some(Fault::ToothBreakage(ToothBreakage {
+        scenario.faults = vec![Fault::on_first_gear_tooth(ToothBreakage {
             chip_height_mm: 1.5 * module,
             chip_width_mm: 10.0 * module,
             tip_loss_mm: module,
-        }));
+        })];
         drawn(&scenario);
     }
 }
@@ -189,25 +199,25 @@ fn base_circles_that_are_not_seen_are_told_of() {
         |figure: &Figure| figure.labels().iter().filter(|l| l.text == "base circle below the root").count();
     let named = |figure: &Figure| figure.labels().iter().filter(|l| l.text == "base").count();
     for (pinion, gear, seen) in [(17, 38, 2), (38, 45, 2), (45, 60, 1), (60, 200, 0)] {
-        for fault in [None, Some(partial_face())] {
-            let figure = drawn(&with_teeth(pinion, gear, fault));
+        for damage in [None, Some(partial_face())] {
+            let figure = drawn(&with_teeth(pinion, gear, damage));
             assert_eq!((named(&figure), told(&figure)), (seen, 2 - seen), "{pinion} and {gear}");
         }
     }
 }
 
-fn partial_face() -> Fault {
+fn partial_face() -> Damage {
     let pit = PitCircle::Fractions { start: 0.2, end: 0.8, depth: 0.4 };
-    Fault::PartialFace(PartialFace { width_mm: 5.0, pit })
+    PartialFace { width_mm: 5.0, pit }.into()
 }
 
 /// The face shows the damage where the equations of motion take the width away.
 #[test]
 fn damage_is_at_the_end_from_which_the_load_moves_away() {
     let chip = ToothBreakage { chip_height_mm: 4.0, chip_width_mm: 6.0, tip_loss_mm: 0.0 };
-    for fault in [partial_face(), Fault::ToothBreakage(chip)] {
-        let simulation = simulated(&with_teeth(17, 38, Some(fault)));
-        let states = &simulation.stages.system.mesh.faulty;
+    for damage in [partial_face(), chip.into()] {
+        let simulation = simulated(&with_teeth(17, 38, Some(damage)));
+        let states = &simulation.stages.mesh.pairs().unwrap().classes[1].load;
         assert!(
             states.iter().any(|state| state.mean_z_m < 0.0)
                 && states.iter().all(|state| state.mean_z_m <= 0.0)
@@ -232,27 +242,27 @@ fn damage_is_at_the_end_from_which_the_load_moves_away() {
 #[test]
 fn a_rough_flank_below_the_start_of_contact() {
     let (_, mut scenario) = crate::support::gallery().remove(5);
-    scenario.fault = Some(Fault::ToothDestruction(ToothDestruction {
+    scenario.faults = vec![Fault::on_first_gear_tooth(ToothDestruction {
         start: -0.1,
         line: DestructionLine::SlopeDeg(20.0),
         offset_mm: 0.3,
         noise_mm: 0.05,
-    }));
+    })];
     drawn(&scenario);
 }
 
 #[test]
-fn published_convention_and_given_errors() {
+fn published_model_and_given_errors() {
     let (_, mut scenario) = crate::support::gallery().remove(4);
     let errors = meshtone::stages(&scenario).unwrap().profile_errors;
     scenario.quality = Quality { din_grade: 0, seed: None, profile_errors: errors };
-    scenario.convention = Convention::Published;
+    scenario.model = Model::Published;
     assert_shows(&drawn(&scenario), &["model as published", "given profile errors"]);
 }
 
 #[test]
 fn a_changing_speed_is_drawn_over_time() {
-    let mut scenario = with_teeth(17, 38, Some(Fault::MissingTooth));
+    let mut scenario = with_teeth(17, 38, Some(MissingTooth.into()));
     let profile = Profile { time_s: vec![0.0, 1.0, 1.6], value: vec![20.0, 40.0, 30.0] };
     scenario.operation.speed_profile_hz = Some(profile);
     scenario.operation.torque_profile_nm = Some(Profile { time_s: vec![0.0, 1.0], value: vec![5.0, 12.0] });
@@ -269,7 +279,7 @@ fn a_changing_speed_is_drawn_over_time() {
 #[test]
 fn kept_signals_that_start_within_a_revolution() {
     // The impact must stay where the tooth is, wherever the kept signal starts.
-    let mut scenario = with_teeth(17, 38, Some(Fault::MissingTooth));
+    let mut scenario = with_teeth(17, 38, Some(MissingTooth.into()));
     scenario.solver.settle_fraction = 0.33;
     let Simulation { stages, channels, .. } = simulated(&scenario);
     let per_gear = stages.time.samples_per_pinion_revolution * 38 / 17;
@@ -281,7 +291,11 @@ fn kept_signals_that_start_within_a_revolution() {
 fn awkward_signals() {
     let Simulation { stages, channels, .. } = simulated(&with_teeth(17, 38, None));
     let length = channels.len();
-    let like = |values: Vec<f64>| Channels { vertical_g: values, ..channels.clone() };
+    let like = |values: Vec<f64>| {
+        let mut like = channels.clone();
+        like.vertical_g = values;
+        like
+    };
     let panel = |channels: &Channels| {
         let figure = panel::draw(&stages, channels).unwrap();
         check(&figure, LARGEST);
@@ -314,4 +328,97 @@ fn no_samples_at_changing_speed() {
     let figure = panel::draw(&simulation.stages, &Channels::default()).unwrap();
     check(&figure, LARGEST);
     assert_shows(&figure, &["no samples were kept"]);
+}
+
+/// The parts of the horizontal axes that are tinted as a damaged tooth's turn, from left to right, in the figure's order.
+fn tinted(figure: &Figure) -> Vec<[f64; 2]> {
+    let document = roxmltree::Document::parse(figure.svg()).unwrap();
+    let tints = document.descendants().filter(|node| {
+        node.attribute("fill") == Some("#d55e00") && node.attribute("fill-opacity") == Some("0.22")
+    });
+    let span = |node: roxmltree::Node| {
+        let path = node.attribute("d").unwrap().replace('Z', "");
+        let x = path.split(['M', 'L']).filter_map(|point| point.split(' ').next()?.parse::<f64>().ok());
+        x.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+    };
+    tints.map(span).collect()
+}
+
+#[test]
+fn damaged_teeth_are_marked_and_named_wherever_they_are() {
+    let mut scenario = with_teeth(17, 38, None);
+    scenario.faults = vec![Fault::new(WheelName::Gear, 6, partial_face())];
+    let gear = drawn(&scenario);
+    assert_shows(
+        &gear,
+        &[
+            "Pit over part of the face, gear tooth 6: 5 mm wide",
+            "Gear tooth 6, in its plane",
+            "38 teeth, tooth 6 damaged",
+            "damaged gear tooth 6 in contact",
+            "Gear angle since its first tooth enters contact",
+            "Around gear tooth 6, enlarged",
+        ],
+    );
+    let chip = ToothBreakage { chip_height_mm: 4.0, chip_width_mm: 6.0, tip_loss_mm: 1.0 };
+    scenario.faults = vec![
+        Fault::new(WheelName::Pinion, 3, chip),
+        Fault::new(WheelName::Gear, 38, partial_face()),
+        Fault::new(WheelName::Pinion, 3, partial_face()),
+    ];
+    let both = drawn(&scenario);
+    assert_shows(
+        &both,
+        &[
+            "Tooth breakage, pinion tooth 3",
+            "; pit over part of the face, gear tooth 38",
+            "Pinion tooth 3, in its plane",
+            "Gear tooth 38, in its plane",
+            "damaged pinion tooth 3 in contact",
+            "damaged gear tooth 38 in contact",
+            "healthy pair",
+            "corner chipped off",
+            "Around pinion tooth 3, enlarged",
+        ],
+    );
+    let missing = drawn(&{
+        scenario.faults = vec![Fault::new(WheelName::Pinion, 1, MissingTooth)];
+        scenario
+    });
+    assert_shows(
+        &missing,
+        &[
+            "Missing tooth, pinion tooth 1",
+            "17 teeth, the first one missing",
+            "missing tooth would enter contact",
+        ],
+    );
+}
+
+#[test]
+fn a_damaged_tooth_turns_at_its_own_angle() {
+    let contact = |tooth: u32| {
+        let mut scenario = with_teeth(17, 38, None);
+        scenario.faults = vec![Fault::new(WheelName::Gear, tooth, partial_face())];
+        let figure = drawn(&scenario);
+        let tints = tinted(&figure);
+        // The legend's sample of the average, and the turn.
+        (tints[0], tints[1])
+    };
+    let (_, first) = contact(1);
+    let pitch = 710.0 / 38.0;
+    let (_, sixth) = contact(6);
+    assert!((sixth[0] - first[0] - 5.0 * pitch).abs() < 0.1, "{first:?} {sixth:?}");
+    assert!((sixth[1] - first[1] - 5.0 * pitch).abs() < 0.1);
+    assert!(((first[1] - first[0]) / pitch - 1.612).abs() < 0.01);
+}
+
+#[test]
+fn a_pinion_tooth_that_the_gears_first_revolution_does_not_meet() {
+    let mut scenario = with_teeth(40, 20, None);
+    scenario.faults = vec![Fault::new(WheelName::Pinion, 27, partial_face())];
+    assert_shows(
+        &drawn(&scenario),
+        &["Around pinion tooth 27, enlarged", "20 teeth", "40 teeth, tooth 27 damaged"],
+    );
 }

@@ -6,10 +6,17 @@
 use meshtone::scenario::*;
 use meshtone_plot::Figure;
 
-fn small_pair(fault: Option<Fault>) -> Scenario {
-    let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+fn small_pair(damage: Option<Damage>) -> Scenario {
+    let mut scenario = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 17,
+        gear_teeth: 38,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    });
     scenario.quality.din_grade = 7;
-    scenario.fault = fault;
+    scenario.faults = damage.into_iter().map(Fault::on_first_gear_tooth).collect();
     scenario
 }
 
@@ -17,20 +24,27 @@ fn small_pair(fault: Option<Fault>) -> Scenario {
 pub fn gallery() -> Vec<(&'static str, Scenario)> {
     let pit = PitCircle::Fractions { start: 0.2, end: 0.8, depth: 0.5 };
     let breakage = ToothBreakage { chip_height_mm: 5.0, chip_width_mm: 12.0, tip_loss_mm: 3.0 };
-    let mut destruction = Scenario::new(3.0, 18, 35, 30.0, 45.0, 15.0);
+    let mut destruction = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 18,
+        gear_teeth: 35,
+        face_width_mm: 30.0,
+        pinion_speed_hz: 45.0,
+        brake_torque_nm: 15.0,
+    });
     destruction.quality.din_grade = 8;
-    destruction.fault = Some(Fault::ToothDestruction(ToothDestruction {
+    destruction.faults = vec![Fault::on_first_gear_tooth(ToothDestruction {
         start: 3.0 / 14.0,
         line: DestructionLine::End(13.0 / 14.0),
         offset_mm: 0.0,
         noise_mm: 0.0,
-    }));
+    })];
     vec![
         ("healthy", small_pair(None)),
-        ("missing_tooth", small_pair(Some(Fault::MissingTooth))),
-        ("tooth_breakage", small_pair(Some(Fault::ToothBreakage(breakage)))),
-        ("partial_face", small_pair(Some(Fault::PartialFace(PartialFace { width_mm: 2.0, pit })))),
-        ("through_face", small_pair(Some(Fault::ThroughFace(ThroughFace { pit })))),
+        ("missing_tooth", small_pair(Some(MissingTooth.into()))),
+        ("tooth_breakage", small_pair(Some(breakage.into()))),
+        ("partial_face", small_pair(Some(PartialFace { width_mm: 2.0, pit }.into()))),
+        ("through_face", small_pair(Some(ThroughFace { pit }.into()))),
         ("tooth_destruction", destruction),
     ]
 }

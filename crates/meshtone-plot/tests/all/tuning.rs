@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::support::check;
-use meshtone::hybrid::*;
 use meshtone::scenario::*;
+use meshtone::tuning::*;
 use meshtone_plot::{Figure, PlotError, tuning_figure};
 
 /// (bytes) Of an SVG.
@@ -12,13 +12,20 @@ const LARGEST: usize = 400_000;
 
 /// A pair with more and more of a tooth's tip lost.
 fn experiment(labels: &[&str], indicators: &[TuningIndicator]) -> Experiment {
-    let mut base = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    let mut base = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 17,
+        gear_teeth: 38,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    });
     base.solver.sampling_rate_hz = 25e3;
     let cases = labels.iter().enumerate().map(|(case, label)| {
         let tip_loss_mm = 0.5 * case as f64;
         let chip = ToothBreakage { chip_height_mm: 5.0, chip_width_mm: 12.0, tip_loss_mm };
-        let fault = (case > 0).then_some(Fault::ToothBreakage(chip));
-        Case { label: (*label).to_owned(), severity: case as f64, fault }
+        let faults = (case > 0).then(|| Fault::on_first_gear_tooth(chip)).into_iter().collect();
+        Case { label: (*label).to_owned(), severity: case as f64, faults }
     });
     // Records that rise with the case and scatter.
     let record =

@@ -1,18 +1,19 @@
 //! One group: simulations that are stepped side by side in one thread.
 
 use super::keep::Keep;
-use crate::scenario::{Scenario, ScenarioError};
+use crate::error::Error;
+use crate::scenario::Scenario;
+use crate::simd::InstructionSet;
 use crate::simulate::{Stages, stages};
 use crate::solver::{
-    Block, InstructionSet, LANES, Output, Problem, Recorder, ReducedModel, Size, integrate,
-    integrate_side_by_side,
+    Block, LANES, Output, Problem, Recorder, ReducedModel, Size, integrate, integrate_side_by_side,
 };
 
 /// A scenario and its number.
 pub(super) type Numbered = (usize, Scenario);
 
 /// Result of a scenario and its number.
-pub(super) type NumberedResult<T> = (usize, Result<T, ScenarioError>);
+pub(super) type NumberedResult<T> = (usize, Result<T, Error>);
 
 /// A simulation that is ready for the time loop.
 struct Ready<R> {
@@ -29,7 +30,7 @@ impl Recorder for Nobody {
     fn record(&mut self, _: &Block) {}
 }
 
-/// Simulates at most [`LANES`] scenarios of one convention.
+/// Simulates at most [`LANES`] scenarios of one mesh law.
 pub(super) fn simulate_group<K: Keep>(
     scenarios: Vec<Numbered>,
     keep: &K,
@@ -44,7 +45,7 @@ pub(super) fn simulate_group<K: Keep>(
                 let recorder = keep.recorder(&stages);
                 ready.push(Ready { index, stages, model, recorder });
             }
-            Err(error) => results.push((index, Err(error))),
+            Err(error) => results.push((index, Err(error.into()))),
         }
     }
     let outputs = keep.outputs();
@@ -63,26 +64,25 @@ fn integrate_ready<R: Recorder>(
     ready: &mut [Ready<R>],
     outputs: &[Output],
     instructions: InstructionSet,
-) -> Vec<Result<(), ScenarioError>> {
+) -> Vec<Result<(), Error>> {
     if ready.len() < FEWEST_LANES {
         let single = |ready: &mut Ready<R>| {
-            let problem = problem(&ready.stages, &ready.model, outputs);
+            let problem = ready.stages.problem(&ready.model, outputs);
             integrate(&problem, instructions, &mut ready.recorder)
                 .map_err(|diverged| ready.stages.divergence(diverged))
         };
         return ready.iter_mut().map(single).collect();
     }
-    let size = ready.iter().map(|ready| Size::of(&ready.stages, &ready.model)).max();
-    let size = size.unwrap_or(Size::Flat);
     let mut problems = Vec::with_capacity(LANES);
     let mut recorders: Vec<&mut dyn Recorder> = Vec::with_capacity(LANES);
     let mut nobody: [Nobody; LANES] = std::array::from_fn(|_| Nobody);
     let mut stages = Vec::with_capacity(ready.len());
     for ready in ready.iter_mut() {
-        problems.push(problem(&ready.stages, &ready.model, outputs));
+        problems.push(ready.stages.problem(&ready.model, outputs));
         recorders.push(&mut ready.recorder);
         stages.push(&ready.stages);
     }
+    let size = problems.iter().map(Size::of).max().unwrap_or(Size::Flat);
     recorders.extend(nobody.iter_mut().map(|nobody| nobody as &mut dyn Recorder));
     let mut recorders = recorders.into_iter();
     // A lane that is left over repeats the last simulation, for nobody.
@@ -94,8 +94,4 @@ fn integrate_ready<R: Recorder>(
     let results = integrate_side_by_side(size, lanes, instructions, taken);
     let each = results.into_iter().zip(stages);
     each.map(|(result, stages)| result.map_err(|diverged| stages.divergence(diverged))).collect()
-}
-
-fn problem<'a>(stages: &'a Stages, model: &'a ReducedModel, outputs: &'a [Output]) -> Problem<'a> {
-    Problem { stages, model, outputs, first_sample: stages.time.first_kept_sample }
 }

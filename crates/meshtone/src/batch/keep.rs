@@ -1,7 +1,7 @@
 //! What is kept of each simulation.
 
-use crate::sampling::TimeGrid;
-use crate::signal::{Channels, channel_outputs};
+use crate::operation::TimeGrid;
+use crate::sensor::{ChannelKind, Channels, channel_outputs};
 use crate::simulate::{Simulation, Stages};
 use crate::solver::{Block, Output, Recorder};
 
@@ -57,54 +57,6 @@ impl Keep for KeepSimulation {
     fn keep(&self, _: usize, stages: Stages, channels: Channels) -> Simulation {
         let timings = stages.timings.clone();
         Simulation { stages, channels, timings }
-    }
-}
-
-/// A signal of [`Channels`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum ChannelKind {
-    /// (g) Horizontal acceleration.
-    Horizontal,
-    /// (g) Vertical acceleration.
-    Vertical,
-    /// (g) Axial acceleration.
-    Axial,
-    /// (Hz) Speed of the pinion's shaft.
-    PinionSpeed,
-    /// (Hz) Speed of the gear's shaft.
-    GearSpeed,
-    /// (N) Mesh force.
-    MeshForce,
-}
-
-impl ChannelKind {
-    /// All of them, in the order of [`Channels`]' fields.
-    pub const ALL: [Self; 6] =
-        [Self::Horizontal, Self::Vertical, Self::Axial, Self::PinionSpeed, Self::GearSpeed, Self::MeshForce];
-
-    /// What is read off the solution for this signal.
-    pub fn output(self) -> Output {
-        let [horizontal, vertical, axial, pinion_speed, gear_speed, mesh_force] = channel_outputs();
-        match self {
-            Self::Horizontal => horizontal,
-            Self::Vertical => vertical,
-            Self::Axial => axial,
-            Self::PinionSpeed => pinion_speed,
-            Self::GearSpeed => gear_speed,
-            Self::MeshForce => mesh_force,
-        }
-    }
-
-    /// Name with unit, as the signals' file has it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Horizontal => "horizontal_g",
-            Self::Vertical => "vertical_g",
-            Self::Axial => "axial_g",
-            Self::PinionSpeed => "pinion_speed_hz",
-            Self::GearSpeed => "gear_speed_hz",
-            Self::MeshForce => "mesh_force_n",
-        }
     }
 }
 

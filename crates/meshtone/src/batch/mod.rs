@@ -10,5 +10,5 @@ mod keep;
 mod plan;
 mod run;
 
-pub use keep::{ChannelKind, Keep, KeepChannels, KeepSimulation, Signals};
+pub use keep::{Keep, KeepChannels, KeepSimulation, Signals};
 pub use run::{Control, simulate_many};

@@ -1,8 +1,9 @@
 //! Which scenarios are simulated side by side.
 
 use super::group::Numbered;
-use crate::sampling::TimeGrid;
-use crate::scenario::{Convention, Fault, Scenario};
+use crate::damage::Damage;
+use crate::model::Model;
+use crate::scenario::Scenario;
 use crate::solver::LANES;
 
 /// What decides how much a step costs; a group costs what its most expensive simulation does.
@@ -29,13 +30,13 @@ impl Kind {
             && operation.speed_fluctuation_hz == 0.0
             && operation.torque_fluctuation_nm == 0.0;
         let at_rest = solver.initial_displacement.is_none() && solver.initial_velocity.is_none();
-        let motion = match &scenario.fault {
+        let motion = match scenario.faults.first().map(|fault| &fault.damage) {
             _ if !steady || !at_rest => Motion::General,
-            None | Some(Fault::MissingTooth | Fault::ToothDestruction(_)) => Motion::Flat,
-            Some(Fault::ToothBreakage(_) | Fault::PartialFace(_)) => Motion::Tilting,
-            Some(Fault::ThroughFace(_)) => Motion::Rolling,
+            None | Some(Damage::MissingTooth(_) | Damage::ToothDestruction(_)) => Motion::Flat,
+            Some(Damage::ToothBreakage(_) | Damage::PartialFace(_)) => Motion::Tilting,
+            Some(Damage::ThroughFace(_)) => Motion::Rolling,
         };
-        Self { published: scenario.convention == Convention::Published, motion }
+        Self { published: scenario.model == Model::Published, motion }
     }
 }
 
@@ -71,5 +72,5 @@ pub(super) fn groups(scenarios: Vec<Numbered>) -> Vec<Vec<Numbered>> {
 
 /// Number of samples of a scenario, which need not be valid.
 fn samples(scenario: &Scenario) -> usize {
-    TimeGrid::new(scenario).samples
+    scenario.time_grid().samples
 }

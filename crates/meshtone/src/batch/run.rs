@@ -7,9 +7,10 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use super::group::{Numbered, NumberedResult, simulate_group};
 use super::keep::Keep;
 use super::plan::groups;
-use crate::sampling::TimeGrid;
-use crate::scenario::{Scenario, ScenarioError};
-use crate::solver::{InstructionSet, LANES};
+use crate::error::Error;
+use crate::scenario::Scenario;
+use crate::simd::InstructionSet;
+use crate::solver::LANES;
 use crate::threads;
 
 /// (bytes) What may be kept for each thread of simulations that are planned together.
@@ -51,10 +52,10 @@ impl Default for Control<'_> {
 ///
 /// ```
 /// use meshtone::batch::{Control, KeepChannels, simulate_many};
-/// use meshtone::scenario::Scenario;
+/// use meshtone::scenario::{GearPair, Scenario};
 ///
 /// let scenarios = (0..20).map(|n| {
-///     let mut scenario = Scenario::new(3.0, 17, 34, 15.0, 40.0, 1.0 + f64::from(n));
+///     let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 34, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 1.0 + f64::from(n) });
 ///     scenario.solver.sampling_rate_hz = 1e4;
 ///     scenario
 /// });
@@ -69,7 +70,7 @@ pub fn simulate_many<K: Keep>(
     scenarios: impl IntoIterator<Item = Scenario, IntoIter: Send>,
     keep: &K,
     control: &Control,
-    take: impl FnMut(usize, Result<K::Kept, ScenarioError>) + Send,
+    take: impl FnMut(usize, Result<K::Kept, Error>) + Send,
 ) -> usize {
     let work = Work {
         state: Mutex::new(State {
@@ -110,7 +111,7 @@ struct State<T, I, F> {
     queue: VecDeque<Vec<Numbered>>,
     in_flight: usize,
     /// Results that wait for an earlier one.
-    waiting: BTreeMap<usize, Result<T, ScenarioError>>,
+    waiting: BTreeMap<usize, Result<T, Error>>,
     /// Number of the next result to hand out.
     next: usize,
     take: F,
@@ -134,7 +135,7 @@ impl<K, I, F> Work<'_, K, I, F>
 where
     K: Keep,
     I: Iterator<Item = Scenario> + Send,
-    F: FnMut(usize, Result<K::Kept, ScenarioError>) + Send,
+    F: FnMut(usize, Result<K::Kept, Error>) + Send,
 {
     fn lock(&self) -> MutexGuard<'_, State<K::Kept, I, F>> {
         // A thread that panicked has poisoned the lock; rayon passes its panic on when the scope ends.
@@ -186,7 +187,7 @@ where
         let mut bytes = 0;
         while !window_is_full(window.len(), bytes, self.threads) {
             let Some(scenario) = state.source.next() else { break };
-            bytes += self.keep.kept_bytes(&TimeGrid::new(&scenario));
+            bytes += self.keep.kept_bytes(&scenario.time_grid());
             window.push((state.numbered, scenario));
             state.numbered += 1;
         }

@@ -20,6 +20,10 @@ fn collect(table: &Table, path: &str, numbers: &mut Vec<ScenarioNumber>) {
         let key = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
         match value {
             Value::Table(table) => collect(table, &key, numbers),
+            Value::Array(entries) => {
+                let tables = entries.iter().filter_map(Value::as_table).enumerate();
+                tables.for_each(|(index, table)| collect(table, &format!("{key}[{index}]"), numbers));
+            }
             Value::Float(value) => numbers.push(ScenarioNumber { key, value: *value, whole: false }),
             Value::Integer(value) => numbers.push(ScenarioNumber { key, value: *value as f64, whole: true }),
             _ => {}
@@ -31,14 +35,14 @@ impl Scenario {
     /// The number at a key of the scenario file, defaults included.
     ///
     /// # Arguments
-    /// * `key` - dotted, as in the file
+    /// * `key` - dotted, as in the file; of several faults, `fault[1].…` is the second
     ///
     /// None where there is no such key in this scenario, or no single number at it.
     ///
     /// ```
-    /// use meshtone::scenario::Scenario;
+    /// use meshtone::scenario::{GearPair, Scenario};
     ///
-    /// let scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    /// let scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
     /// assert_eq!(scenario.number("rig.damping_ratio"), Some(0.05));
     /// assert_eq!(scenario.number("fault.chip_width_mm"), None); // it is healthy
     /// ```
@@ -60,9 +64,9 @@ impl Scenario {
     /// A key that the scenario does not have, a value that is not allowed there, as for the scenario file.
     ///
     /// ```
-    /// use meshtone::scenario::Scenario;
+    /// use meshtone::scenario::{GearPair, Scenario};
     ///
-    /// let scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    /// let scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
     /// let graded = scenario.with_number("quality.din_grade", 7.0)?;
     /// assert_eq!(graded.quality.din_grade, 7);
     /// let error = scenario.with_number("quality.din_grade", 13.0).unwrap_err();
@@ -83,7 +87,7 @@ impl Scenario {
     /// A key that the scenario does not have, a value that is not allowed there, as for the scenario file.
     ///
     /// ```
-    /// use meshtone::scenario::Scenario;
+    /// use meshtone::scenario::{GearPair, Scenario};
     ///
     /// let line = "[fault]\nkind = \"tooth-destruction\"\nstart = 0.1\nend = 0.3";
     /// let gears = "[gears]\nmodule_mm = 3.0\npinion_teeth = 17\ngear_teeth = 38\nface_width_mm = 15.0";
@@ -142,9 +146,9 @@ impl Scenario {
     /// Every key of the scenario file at which this scenario has a single number, defaults included.
     ///
     /// ```
-    /// use meshtone::scenario::Scenario;
+    /// use meshtone::scenario::{GearPair, Scenario};
     ///
-    /// let numbers = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0).numbers();
+    /// let numbers = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 }).numbers();
     /// let teeth = numbers.iter().find(|number| number.key == "gears.pinion_teeth").unwrap();
     /// assert!(teeth.whole && teeth.value == 17.0);
     /// ```
@@ -165,15 +169,35 @@ impl Scenario {
 }
 
 fn at<'a>(table: &'a Table, key: &str) -> Option<&'a Value> {
-    match key.split_once('.') {
-        Some((section, rest)) => at(table.get(section)?.as_table()?, rest),
-        None => table.get(key),
+    let (segment, rest) = key.split_once('.').map_or((key, None), |(segment, rest)| (segment, Some(rest)));
+    let (name, index) = name_and_index(segment)?;
+    let value = match index {
+        Some(index) => table.get(name)?.as_array()?.get(index)?,
+        None => table.get(name)?,
+    };
+    match rest {
+        Some(rest) => at(value.as_table()?, rest),
+        None => Some(value),
     }
 }
 
 fn at_mut<'a>(table: &'a mut Table, key: &str) -> Option<&'a mut Value> {
-    match key.split_once('.') {
-        Some((section, rest)) => at_mut(table.get_mut(section)?.as_table_mut()?, rest),
-        None => table.get_mut(key),
+    let (segment, rest) = key.split_once('.').map_or((key, None), |(segment, rest)| (segment, Some(rest)));
+    let (name, index) = name_and_index(segment)?;
+    let value = match index {
+        Some(index) => table.get_mut(name)?.as_array_mut()?.get_mut(index)?,
+        None => table.get_mut(name)?,
+    };
+    match rest {
+        Some(rest) => at_mut(value.as_table_mut()?, rest),
+        None => Some(value),
+    }
+}
+
+/// `fault[1]` as name and index from 0.
+fn name_and_index(segment: &str) -> Option<(&str, Option<usize>)> {
+    match segment.split_once('[') {
+        Some((name, index)) => Some((name, Some(index.strip_suffix(']')?.parse().ok()?))),
+        None => Some((segment, None)),
     }
 }

@@ -6,61 +6,48 @@
 //! The names are the same everywhere (Rust fields, TOML keys, Python arguments).
 
 mod edit;
-mod error;
-mod fault;
 mod from_toml;
-mod gears;
 mod honoured;
-mod material;
-mod operation;
-mod quality;
-mod rig;
-mod solver;
+mod sections;
+mod serialise;
 mod template;
 mod to_toml;
 mod validate;
 
-pub use edit::ScenarioNumber;
-pub use error::{ScenarioError, ScenarioWarning};
-pub use fault::{
-    DestructionLine, Fault, PartialFace, PitCircle, ThroughFace, ToothBreakage, ToothDestruction,
+pub use crate::damage::{
+    Damage, DamageKind, DestructionLine, Fault, MissingTooth, PartialFace, PitCircle, ThroughFace,
+    ToothBreakage, ToothDestruction, damage_kinds,
 };
-pub use from_toml::{FileProblem, ScenarioFiles, line_of_key};
-pub use gears::{FoundationCoefficients, Gears, ReliefShape, TipRelief};
-pub use material::Material;
-pub use operation::{Operation, Profile};
-pub use quality::{ERROR_POINTS, ProfileErrors, Quality};
-pub use rig::{DampingRatio, Rig, Shaft, WheelInertia};
-pub use solver::Solver;
-pub use template::{TEMPLATE_KINDS, template};
+pub use crate::error::{ScenarioError, ScenarioWarning};
+pub use crate::keys::{FileProblem, KeyDescription, KeyKind};
+pub use crate::machine::{DampingRatio, Rig, Shaft, WheelInertia};
+pub use crate::model::Model;
+pub use crate::operation::{Operation, Profile, Solver};
+pub use crate::wheel::{
+    ERROR_POINTS, FoundationCoefficients, Gears, Material, ProfileErrors, Quality, ReliefShape, TipRelief,
+    WheelName,
+};
+pub use edit::ScenarioNumber;
+pub use from_toml::{ScenarioFiles, line_of_key};
+pub use sections::{SectionDescription, sections};
+pub use template::{template, template_kinds};
 pub use validate::{MEMORY_LIMIT_BYTES, MemoryLimit};
 
-/// Which of two readings of the model is simulated.
-///
-/// The published code differs from the theory of its own paper in several places (listed in the
-/// chapter "Published and corrected" of the documentation).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Convention {
-    /// What the paper's own theory says. The default.
-    #[default]
-    Corrected,
-    /// The published code, its slips included, so that results can be compared number by number.
-    Published,
-}
+use crate::operation::{Motion, TimeGrid};
 
 /// Everything that one simulation depends on.
 ///
 /// ```
-/// use meshtone::scenario::Scenario;
+/// use meshtone::scenario::{GearPair, Scenario};
 ///
-/// let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+/// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
 /// scenario.quality.din_grade = 7;
 /// assert_eq!(scenario.gears.pressure_angle_deg, 20.0);
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scenario {
-    /// Published or corrected model.
-    pub convention: Convention,
+    /// Which model of the mesh.
+    pub model: Model,
     /// Seed of every random draw (profile errors, fluctuations, destruction noise).
     pub seed: u64,
     /// The two wheels.
@@ -69,40 +56,61 @@ pub struct Scenario {
     pub operation: Operation,
     /// Manufacturing quality.
     pub quality: Quality,
-    /// The damage on the gear's first tooth; none for a healthy pair.
-    pub fault: Option<Fault>,
+    /// What is broken; nothing in a healthy pair.
+    pub faults: Vec<Fault>,
     /// The rig around the wheels.
     pub rig: Rig,
     /// Sampling, settling and initial state.
     pub solver: Solver,
 }
 
+/// What a scenario cannot be without: everything else has a default.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GearPair {
+    /// (mm) Module of both wheels.
+    pub module_mm: f64,
+    /// Tooth count of the driving wheel.
+    pub pinion_teeth: u32,
+    /// Tooth count of the driven wheel.
+    pub gear_teeth: u32,
+    /// (mm) Face width of both wheels.
+    pub face_width_mm: f64,
+    /// (rev/s) Speed of the driving wheel.
+    pub pinion_speed_hz: f64,
+    /// (N m) Load on the driven shaft.
+    pub brake_torque_nm: f64,
+}
+
 impl Scenario {
     /// A healthy pair with every other key at its default.
     ///
     /// # Arguments
-    /// * `module_mm` - (mm) module of both wheels
-    /// * `pinion_teeth`, `gear_teeth` - tooth counts of the driving and the driven wheel
-    /// * `face_width_mm` - (mm) face width of both wheels
-    /// * `pinion_speed_hz` - (rev/s) speed of the driving wheel
-    /// * `brake_torque_nm` - (N m) load on the driven shaft
-    pub fn new(
-        module_mm: f64,
-        pinion_teeth: u32,
-        gear_teeth: u32,
-        face_width_mm: f64,
-        pinion_speed_hz: f64,
-        brake_torque_nm: f64,
-    ) -> Self {
+    /// * `pair` - what has no default
+    pub fn new(pair: GearPair) -> Self {
+        let GearPair { module_mm, pinion_teeth, gear_teeth, face_width_mm, pinion_speed_hz, brake_torque_nm } =
+            pair;
         Self {
-            convention: Convention::default(),
+            model: Model::default(),
             seed: 1,
             gears: Gears::new(module_mm, pinion_teeth, gear_teeth, face_width_mm),
             operation: Operation::new(pinion_speed_hz, brake_torque_nm),
             quality: Quality::default(),
-            fault: None,
+            faults: Vec::new(),
             rig: Rig::default(),
             solver: Solver::default(),
         }
+    }
+
+    /// Division of time: sampling, length, what is discarded.
+    pub fn time_grid(&self) -> TimeGrid {
+        TimeGrid::new(&self.gears, &self.operation, &self.solver)
+    }
+
+    /// What motor and brake do, sample by sample from the start of the simulation.
+    ///
+    /// # Arguments
+    /// * `time` - division of time
+    pub fn motion(&self, time: &TimeGrid) -> Motion<'_> {
+        Motion::new(&self.operation, self.seed, self.model, time)
     }
 }

@@ -16,7 +16,6 @@
 mod angular;
 mod anti_aliasing;
 mod average;
-mod channels;
 mod check;
 mod edge;
 mod envelope;
@@ -37,7 +36,6 @@ mod warning;
 pub use angular::{AngularSettings, AngularSignal, Interpolation, angular_resample, points_per_revolution};
 pub use anti_aliasing::AntiAliasing;
 pub use average::{SynchronousAverage, revolution_average, segmented_averages, synchronous_average};
-pub use channels::{Channels, GRAVITY_M_PER_S2, channel_outputs};
 pub use check::check_channel;
 pub use edge::Edge;
 pub use envelope::{analytic_signal, envelope, envelope_spectrum};

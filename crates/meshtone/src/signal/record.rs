@@ -13,6 +13,7 @@ pub struct ChainSettings {
 
 /// What one recording, or one segment of it, shows about one wheel.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Record {
     /// The synchronous average.
     pub average: SynchronousAverage,

@@ -2,12 +2,11 @@
 
 use super::check::check_channel;
 use super::{
-    AngularSignal, ChainSettings, Channels, Interpolation, Record, ShaftPhase, SignalError, angular_resample,
+    AngularSignal, ChainSettings, Interpolation, Record, ShaftPhase, SignalError, angular_resample,
     process_average, process_segments_of, synchronous_average,
 };
-use crate::dynamics::Motion;
-use crate::sampling::TimeGrid;
 use crate::scenario::Scenario;
+use crate::sensor::Channels;
 
 /// A shaft of the simulated pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,9 +57,9 @@ impl SimulatedShafts {
     /// * `samples` - how many were kept
     pub fn new(scenario: &Scenario, start_s: f64, samples: usize) -> Self {
         let scenario = scenario.as_honoured();
-        let time = TimeGrid::new(&scenario);
+        let time = scenario.time_grid();
         let start = ((start_s * time.sampling_rate_hz).round().max(0.0) as usize).min(time.samples);
-        let motion = Motion::new(&scenario, &time);
+        let motion = scenario.motion(&time);
         let turning = if motion.is_steady() {
             let samples_per_pinion_revolution = time.samples_per_pinion_revolution;
             Turning::Steady { start, samples_per_pinion_revolution }
@@ -129,10 +128,10 @@ impl SimulatedShafts {
     /// A signal of another length; where the speed varies, what [`angular_resample`] refuses.
     ///
     /// ```
-    /// use meshtone::scenario::Scenario;
+    /// use meshtone::scenario::{GearPair, Scenario};
     /// use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
     ///
-    /// let mut scenario = Scenario::new(3.0, 20, 40, 15.0, 40.0, 10.0);
+    /// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 20, gear_teeth: 40, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
     /// scenario.solver.sampling_rate_hz = 1e4;
     /// let channels = meshtone::simulate(&scenario)?.channels;
     /// let shafts = SimulatedShafts::of_channels(&scenario, &channels);

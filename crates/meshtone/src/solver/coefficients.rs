@@ -1,10 +1,10 @@
 //! The coefficients of several simulations, side by side.
 
 use super::integrate::Problem;
-use super::lanes::Lanes;
 use super::prepare::{Prepared, externals, sum};
 use super::shared_forcing::SharedForcing;
 use super::step::{Coefficients, Norm, State};
+use crate::simd::Lanes;
 
 /// A value of each lane.
 fn lanes<const L: usize>(f: impl FnMut(usize) -> f64) -> Lanes<L> {
@@ -47,13 +47,8 @@ pub(super) fn coefficients<const L: usize, const N: usize, const R: usize>(
         }),
         static_deflection: std::array::from_fn(|r| lanes(|l| prepared[l].static_deflection[r])),
         static_angle: lanes(|l| prepared[l].static_angle),
-        start: lanes(|l| problems[l].stages.time.first_simulated_sample as f64),
+        start: lanes(|l| problems[l].time.first_simulated_sample as f64),
         points_per_sample: lanes(|l| prepared[l].points_per_sample),
-        cycle: lanes(|l| prepared[l].table.cycle as f64),
-        per_cycle: lanes(|l| 1.0 / prepared[l].table.cycle as f64),
-        pitch: lanes(|l| prepared[l].table.pitch as f64),
-        per_pitch: lanes(|l| 1.0 / prepared[l].table.pitch as f64),
-        window: lanes(|l| prepared[l].table.window as f64),
         norm: Norm {
             rigid_displacement: computed(|l| {
                 let step_rad = model(l).rotation_rad_per_s * 2.0 * half_step(l);
@@ -91,16 +86,13 @@ pub(super) fn first_states<const L: usize, const N: usize, const R: usize>(
     let first: [_; L] = std::array::from_fn(|l| {
         let errors = forcing.errors[0].map(|error| error.0[l]);
         let external = forcing.external[0].map(|external| external.0[l]);
-        prepared[l].first_state(problems[l], &errors, &external)
+        prepared[l].first_state(problems[l], &errors, &external, forcing.entries[0][l] as usize)
     });
-    let angle = lanes(|l| first[l].angle);
     State {
         displacement: modal(|l| &first[l].displacement),
         scaled_velocity: modal(|l| &first[l].scaled_velocity),
         force: std::array::from_fn(|r| lanes(|l| first[l].force[r])),
         external: forcing.external[0],
-        angle,
-        angles_before: [angle; 2],
         entry: std::array::from_fn(|l| first[l].entry),
     }
 }

@@ -1,7 +1,7 @@
 //! Hands the outputs of simulations side by side to the recorder of each.
 
 use super::integrate::{Block, Diverged, Problem, Recorder};
-use super::lanes::Lanes;
+use crate::simd::Lanes;
 
 /// Outputs of one block of samples, and who takes them.
 pub(super) struct Handout<'r, const L: usize> {
@@ -34,7 +34,7 @@ impl<'r, const L: usize> Handout<'r, L> {
         recorders: [&'r mut dyn Recorder; L],
     ) -> Self {
         let spans = problems.map(|problem| {
-            let time = &problem.stages.time;
+            let time = problem.time;
             Span {
                 start: time.first_simulated_sample,
                 first_recorded: problem.first_sample,

@@ -1,9 +1,8 @@
 //! States of one block of samples, and what is read off them.
 
-use super::instruction_set::{InstructionSet, Instructions, Task};
-use super::lanes::Lanes;
 use super::outputs::{EXTERNALS, OutputRow};
 use super::step::State;
+use crate::simd::{InstructionSet, Instructions, Lanes, Task};
 
 /// `V` variables over a block of samples.
 struct Columns<const L: usize, const V: usize, const BLOCK: usize>(Box<Aligned<[[Lanes<L>; BLOCK]; V]>>);

@@ -3,17 +3,18 @@
 use super::coefficients::{coefficients, first_states};
 use super::handout::Handout;
 use super::history::{History, Row};
-use super::instruction_set::InstructionSet;
 use super::outputs::Output;
 use super::prepare::Prepared;
 use super::reduce::ReducedModel;
 use super::shared_forcing::SharedForcing;
 use super::size::Size;
-use super::step::{Group, State};
+use super::step::{Coefficients, State};
 use super::stretch::Stretch;
-use crate::dynamics::Forcing;
-use crate::scenario::Convention;
-use crate::simulate::Stages;
+use crate::mesh::Mesh;
+use crate::mesh::forcing::{Forcing, ForcingSource};
+use crate::mesh::law::{LinearLaw, MeshLaw, MeshTable, PublishedLaw};
+use crate::operation::TimeGrid;
+use crate::simd::InstructionSet;
 
 /// Samples of one simulation that are forced, solved and handed out at a time.
 const SINGLE_BLOCK: usize = 512;
@@ -62,8 +63,21 @@ pub trait Recorder {
 
 /// One simulation to integrate.
 pub(crate) struct Problem<'a> {
-    pub(crate) stages: &'a Stages,
+    /// Division of time.
+    pub(crate) time: &'a TimeGrid,
+    /// The modes.
     pub(crate) model: &'a ReducedModel,
+    /// The mesh, with its law.
+    pub(crate) mesh: &'a Mesh,
+    /// Points of the mesh's cycle in a revolution of the pinion.
+    pub(crate) points_per_revolution: f64,
+    /// What forces them.
+    pub(crate) source: &'a dyn ForcingSource,
+    /// (N m) Nominal torque of the brake.
+    pub(crate) brake_torque_nm: f64,
+    /// Whether motor and brake are steady.
+    pub(crate) steady: bool,
+    /// What is read off the solution.
     pub(crate) outputs: &'a [Output],
     /// Samples before it are computed, but not recorded.
     pub(crate) first_sample: usize,
@@ -85,7 +99,7 @@ pub(crate) fn integrate(
     instructions: InstructionSet,
     recorder: &mut dyn Recorder,
 ) -> Result<(), Diverged> {
-    let size = Size::of(problem.stages, problem.model);
+    let size = Size::of(problem);
     let [result] = by_size::<1, SINGLE_BLOCK>(size, instructions, [problem], [recorder]);
     result
 }
@@ -94,7 +108,7 @@ pub(crate) fn integrate(
 ///
 /// # Arguments
 /// * `size` - at least each problem's own
-/// * `problems` - of one convention, with as many outputs each
+/// * `problems` - of one mesh law, with as many outputs each
 /// * `recorders` - take the outputs of each
 ///
 /// # Errors
@@ -114,14 +128,9 @@ fn by_size<const L: usize, const BLOCK: usize>(
     problems: [&Problem; L],
     recorders: [&mut dyn Recorder; L],
 ) -> [Result<(), Diverged>; L] {
-    let published = problems[0].stages.scenario.convention == Convention::Published;
     macro_rules! solve {
         ($modes:literal, $directions:literal, $steady:literal) => {
-            if published {
-                solve::<L, $modes, $directions, BLOCK, true, $steady>(problems, instructions, recorders)
-            } else {
-                solve::<L, $modes, $directions, BLOCK, false, $steady>(problems, instructions, recorders)
-            }
+            solve::<L, $modes, $directions, BLOCK, $steady>(problems, instructions, recorders)
         };
     }
     // Each line is compiled for every instruction set, so what is rare shares the largest size.
@@ -133,51 +142,74 @@ fn by_size<const L: usize, const BLOCK: usize>(
     }
 }
 
-fn solve<
-    const L: usize,
-    const N: usize,
-    const R: usize,
-    const BLOCK: usize,
-    const PUBLISHED: bool,
-    const STEADY: bool,
->(
+/// Simulations that are ready for the time loop.
+struct Run<'a, 'r, const L: usize, const N: usize, const R: usize> {
+    coefficients: Coefficients<L, N, R>,
+    rows: Vec<Row<L>>,
+    forcings: [Box<dyn Forcing + 'a>; L],
+    forcing: SharedForcing<L, R>,
+    state: State<L, N, R>,
+    out: Handout<'r, L>,
+}
+
+fn solve<const L: usize, const N: usize, const R: usize, const BLOCK: usize, const STEADY: bool>(
     problems: [&Problem; L],
     instructions: InstructionSet,
     recorders: [&mut dyn Recorder; L],
 ) -> [Result<(), Diverged>; L] {
     let prepared: [Prepared<R>; L] = std::array::from_fn(|l| Prepared::new(problems[l]));
     let coefficients = coefficients::<L, N, R>(&problems, &prepared);
-    let group = Group { coefficients: &coefficients, tables: std::array::from_fn(|l| &prepared[l].table) };
     let rows: Vec<Row<L>> = (0..prepared[0].rows.len())
         .map(|row| Row::new::<N, R>(std::array::from_fn(|l| &prepared[l].rows[row]), coefficients.start))
         .collect();
-    let mut forcings: [Forcing; L] =
-        std::array::from_fn(|l| Forcing::new(problems[l].stages, &problems[l].model.directions));
+    let mut forcings: [Box<dyn Forcing + '_>; L] =
+        std::array::from_fn(|l| problems[l].source.forcing(&problems[l].model.directions));
     let mut forcing = SharedForcing::new(BLOCK);
     forcing.fill(&mut forcings, 1, STEADY);
-    let mut state: State<L, N, R> = first_states(&problems, &prepared, &forcing);
-    let mut history = History::<L, N, R, BLOCK>::new();
-    let mut out = Handout::new(&problems, rows.len(), BLOCK, recorders);
-    let mut done = 0;
-    while done < out.most_steps {
-        let steps = BLOCK.min(out.most_steps - done);
-        forcing.fill(&mut forcings, steps, STEADY);
-        let recorded = out.is_recorded(done + steps);
-        instructions.run(Stretch::<L, N, R, BLOCK, PUBLISHED, STEADY> {
-            group: &group,
-            state: &mut state,
-            steps_before: done,
-            forcing: &forcing,
-            steps,
-            history: recorded.then_some(&mut history),
-        });
-        if recorded {
-            for (row, values) in rows.iter().zip(&mut out.values) {
-                row.evaluate(instructions, &history, done, &mut values[..steps]);
-            }
+    let state: State<L, N, R> = first_states(&problems, &prepared, &forcing);
+    let out = Handout::new(&problems, rows.len(), BLOCK, recorders);
+    let run = Run { coefficients, rows, forcings, forcing, state, out };
+    let tables: [&MeshTable<R>; L] = std::array::from_fn(|l| &prepared[l].table);
+    let cycles = prepared.each_ref().map(|prepared| prepared.cycle);
+    match cycles.iter().copied().collect::<Option<Vec<_>>>() {
+        Some(cycles) => {
+            let law = PublishedLaw::new(tables, std::array::from_fn(|l| cycles[l]));
+            run.finish::<_, BLOCK, STEADY>(&law, instructions)
         }
-        out.hand_out(done, steps, |l| state.is_sound(l));
-        done += steps;
+        None => run.finish::<_, BLOCK, STEADY>(&LinearLaw { tables }, instructions),
     }
-    out.results
+}
+
+impl<const L: usize, const N: usize, const R: usize> Run<'_, '_, L, N, R> {
+    fn finish<M: MeshLaw<L, R>, const BLOCK: usize, const STEADY: bool>(
+        mut self,
+        law: &M,
+        instructions: InstructionSet,
+    ) -> [Result<(), Diverged>; L] {
+        let mut history = History::<L, N, R, BLOCK>::new();
+        let mut done = 0;
+        while done < self.out.most_steps {
+            let steps = BLOCK.min(self.out.most_steps - done);
+            self.forcing.fill(&mut self.forcings, steps, STEADY);
+            let recorded = self.out.is_recorded(done + steps);
+            instructions.run(Stretch::<M, L, N, R, BLOCK, STEADY> {
+                coefficients: &self.coefficients,
+                law,
+                state: &mut self.state,
+                steps_before: done,
+                forcing: &self.forcing,
+                steps,
+                history: recorded.then_some(&mut history),
+            });
+            if recorded {
+                for (row, values) in self.rows.iter().zip(&mut self.out.values) {
+                    row.evaluate(instructions, &history, done, &mut values[..steps]);
+                }
+            }
+            let (coefficients, state) = (&self.coefficients, &self.state);
+            self.out.hand_out(done, steps, |l| coefficients.is_sound(state, l));
+            done += steps;
+        }
+        self.out.results
+    }
 }

@@ -6,21 +6,18 @@
 //! force nor the mesh reaches stay at rest and are left out ([`ReducedModel`]).
 
 mod coefficients;
-mod cycle_table;
 mod handout;
 mod history;
-mod instruction_set;
 mod integrate;
-mod lanes;
 mod outputs;
 mod prepare;
 mod reduce;
 mod shared_forcing;
 mod size;
 mod step;
+mod step_factors;
 mod stretch;
 
-pub use instruction_set::InstructionSet;
 pub use integrate::{Block, Recorder};
 pub(crate) use integrate::{Diverged, LANES, Problem, integrate, integrate_side_by_side};
 pub use outputs::Output;

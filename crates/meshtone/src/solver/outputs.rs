@@ -1,10 +1,11 @@
 //! What is read off the solution.
 
 use super::reduce::ReducedModel;
-use crate::dynamics::coordinates::{COORDINATES, CoordinateVector};
+use crate::machine::coordinates::{COORDINATES, CoordinateVector};
 
 /// A signal that is read off the solution.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Output {
     /// (m or rad) Linear combination of the displacements, by the weight of each of the 13 coordinates.
     Displacement([f64; COORDINATES]),

@@ -2,18 +2,20 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::cycle_table::{CycleTable, StepFactors};
 use super::integrate::Problem;
 use super::outputs::{EXTERNALS, OutputRow, Scales};
 use super::reduce::ReducedModel;
-use crate::dynamics::coordinates::THETA_PINION;
-use crate::scenario::Convention;
+use super::step_factors::StepFactors;
+use crate::machine::coordinates::THETA_PINION;
+use crate::mesh::law::{MeshTable, PublishedCycle, Reduction};
 
 /// Everything about one simulation that does not change from step to step.
 pub(super) struct Prepared<const R: usize> {
     pub(super) factors: StepFactors,
     pub(super) scales: Scales,
-    pub(super) table: CycleTable<R>,
+    pub(super) table: MeshTable<R>,
+    /// How the table's entries follow one another, where the motor's angle does not decide.
+    pub(super) cycle: Option<PublishedCycle>,
     pub(super) rows: Vec<OutputRow>,
     /// Angle of the pinion in coarse points of the cycle, per modal displacement.
     pub(super) angle: Vec<f64>,
@@ -30,33 +32,25 @@ pub(super) struct FirstState<const R: usize> {
     pub(super) displacement: Vec<f64>,
     pub(super) scaled_velocity: Vec<f64>,
     pub(super) force: [f64; R],
-    pub(super) angle: f64,
     pub(super) entry: usize,
 }
-
-/// Most times that the point of the cycle is sought to which its own static equilibrium leads.
-const MOST_ITERATIONS: usize = 11;
 
 impl<const R: usize> Prepared<R> {
     /// Tabulates a simulation.
     pub(super) fn new(problem: &Problem) -> Self {
-        let (model, stages) = (problem.model, problem.stages);
-        let half_step_s = stages.time.step_s() / 2.0;
+        let model = problem.model;
+        let half_step_s = problem.time.step_s() / 2.0;
         let factors = StepFactors::new(model, half_step_s);
-        let published = stages.scenario.convention == Convention::Published;
         let drag: Vec<f64> =
             model.damping.iter().zip(&model.rigid_velocity).map(|(damping, rigid)| damping * rigid).collect();
-        let torque = stages.scenario.operation.brake_torque_nm;
         let static_displacement: Vec<f64> = (0..model.modes())
             .map(|n| {
-                // Convention: under `published` damping brakes the rigid rotation too, under `corrected` it acts on the
-                // velocity relative to the motor's.
-                let brake = if published { drag[n] * model.rotation_rad_per_s } else { 0.0 };
-                (model.brake[n] * torque - brake) / model.stiffness[n]
+                let brake = if model.damps_rotation { drag[n] * model.rotation_rad_per_s } else { 0.0 };
+                (model.brake[n] * problem.brake_torque_nm - brake) / model.stiffness[n]
             })
             .collect();
-        let followed_speed = if published { vec![0.0; model.modes()] } else { drag };
-        let points_per_rad = 1.0 / (std::f64::consts::TAU * stages.cycle.coarse_step_rev);
+        let followed_speed = if model.damps_rotation { vec![0.0; model.modes()] } else { drag };
+        let points_per_rad = problem.points_per_revolution / std::f64::consts::TAU;
         let angle: Vec<f64> = model.shapes.iter().map(|shape| shape[THETA_PINION] * points_per_rad).collect();
         let column = |r: usize| model.mesh.get(r).map_or(&[][..], |column| column.as_slice());
         let scales = Scales {
@@ -65,12 +59,17 @@ impl<const R: usize> Prepared<R> {
             static_displacement,
         };
         Self {
-            table: CycleTable::new(model, &stages.system, &factors.compliance),
+            table: problem.mesh.table(&Reduction {
+                directions: &model.directions,
+                mean_stiffness: &model.mean_mesh_stiffness,
+                compliance: &factors.compliance,
+            }),
+            cycle: problem.mesh.cycle(),
             rows: problem.outputs.iter().map(|output| output.row(model, &scales)).collect(),
             static_angle: sum(&angle, &scales.static_displacement) + 0.5,
             static_deflection: std::array::from_fn(|r| sum(column(r), &scales.static_displacement)),
-            points_per_sample: stages.cycle.points_per_pinion_revolution as f64
-                / stages.time.samples_per_pinion_revolution as f64,
+            points_per_sample: problem.points_per_revolution
+                / problem.time.samples_per_pinion_revolution as f64,
             angle,
             factors,
             scales,
@@ -97,16 +96,17 @@ impl<const R: usize> Prepared<R> {
     /// * `problem` - the simulation
     /// * `errors` - force of the profile errors at that sample, in the mesh's directions
     /// * `external` - motor lead, torque deviation and speed deviation there
+    /// * `known_entry` - entry of the mesh's table there, where the motor's angle decides it
     pub(super) fn first_state(
         &self,
         problem: &Problem,
         errors: &[f64; R],
         external: &[f64; EXTERNALS],
+        known_entry: usize,
     ) -> FirstState<R> {
         let model = problem.model;
-        let rotation = problem.stages.time.first_simulated_sample as f64 * self.points_per_sample;
         let Some(given) = &model.initial_displacement else {
-            return self.equilibrium(problem, errors, external, rotation);
+            return self.equilibrium(problem, errors, external, known_entry);
         };
         let displacement: Vec<f64> = given
             .iter()
@@ -114,16 +114,14 @@ impl<const R: usize> Prepared<R> {
             .map(|(given, at_rest)| given - at_rest)
             .collect();
         let angle = self.static_angle + sum(&self.angle, &displacement);
-        let entry = self.table.entry(rotation + angle);
-        let deviation = &self.table.points[entry].deviation;
-        let force = std::array::from_fn(|r| {
-            let carried = (0..R).map(|c| {
-                let column = model.mesh.get(c).map_or(0.0, |column| sum(column.as_slice(), &displacement));
-                deviation[r][c] * (self.static_deflection[c] + column)
-            });
-            -(errors[r] + carried.sum::<f64>())
+        let rotation = problem.time.first_simulated_sample as f64 * self.points_per_sample;
+        let entry = self.cycle.map_or(known_entry, |cycle| cycle.entry(rotation + angle));
+        let deflection = std::array::from_fn(|r| {
+            let column = model.mesh.get(r).map_or(0.0, |column| sum(column.as_slice(), &displacement));
+            self.static_deflection[r] + column
         });
-        FirstState { displacement, scaled_velocity: self.scaled_velocity(model), force, angle, entry }
+        let force = self.table.points[entry].force_on(errors, &deflection);
+        FirstState { displacement, scaled_velocity: self.scaled_velocity(model), force, entry }
     }
 
     /// No acceleration: `ω² q = B w + p` with `w = −(f + S' y)` and p the externals' and the damping's force. A problem of the
@@ -134,7 +132,7 @@ impl<const R: usize> Prepared<R> {
         problem: &Problem,
         errors: &[f64; R],
         external: &[f64; EXTERNALS],
-        rotation: f64,
+        entry: usize,
     ) -> FirstState<R> {
         let model = problem.model;
         let columns = model.mesh.len();
@@ -149,36 +147,15 @@ impl<const R: usize> Prepared<R> {
         });
         let deflection_alone =
             DVector::from_fn(columns, |r, _| self.static_deflection[r] + model.mesh[r].dot(&alone));
-        let solve = |entry: usize| {
-            let table = &self.table.points[entry].deviation;
-            let deviation = DMatrix::from_fn(columns, columns, |r, c| table[r][c]);
-            let load = DVector::from_fn(columns, |r, _| errors[r]) + &deviation * &deflection_alone;
-            // The static stiffness is positive definite, so the matrix has an inverse.
-            let relief = (DMatrix::identity(columns, columns) + &deviation * &compliance).try_inverse();
-            let force = relief.map_or_else(|| DVector::zeros(columns), |relief| -(relief * load));
-            let mut displacement = alone.clone();
-            for (column, force) in flexible.iter().zip(force.iter()) {
-                displacement.axpy(*force, column, 1.0);
-            }
-            let angle = self.static_angle + sum(&self.angle, displacement.as_slice());
-            (force, displacement, angle)
-        };
-        let mut entry = self.table.entry(rotation + self.static_angle);
-        let mut solution = solve(entry);
-        for _ in 0..MOST_ITERATIONS {
-            let next = self.table.entry(rotation + solution.2);
-            if next == entry {
-                break;
-            }
-            entry = next;
-            solution = solve(entry);
+        let force = self.table.points[entry].static_force(errors, &deflection_alone, &compliance);
+        let mut displacement = alone;
+        for (column, force) in flexible.iter().zip(force.iter()) {
+            displacement.axpy(*force, column, 1.0);
         }
-        let (force, displacement, angle) = solution;
         FirstState {
             displacement: displacement.as_slice().to_vec(),
             scaled_velocity: self.scaled_velocity(model),
             force: std::array::from_fn(|r| force.get(r).copied().unwrap_or(0.0)),
-            angle,
             entry,
         }
     }

@@ -1,10 +1,10 @@
 //! The equations of motion in modal coordinates, without what stays at rest.
 
-use nalgebra::{DMatrix, DVector, SMatrix};
+use nalgebra::{DMatrix, DVector};
 
-use crate::dynamics::DIRECTIONS;
-use crate::dynamics::System;
-use crate::dynamics::coordinates::*;
+use crate::machine::System;
+use crate::machine::coordinates::*;
+use crate::mesh::ROTATION;
 
 /// Which of the five constant mesh directions one column of `B` stands for, and its vector.
 struct Column {
@@ -35,6 +35,8 @@ pub struct ReducedModel {
     pub rigid_velocity: Vec<f64>,
     /// The rigid rotation in the 13 coordinates.
     pub rigid_rotation: CoordinateVector,
+    /// Whether damping acts on the rigid rotation too.
+    pub damps_rotation: bool,
     /// (rad/s) Speed of the rigid rotation on top of which the modes move: the nominal one.
     pub rotation_rad_per_s: f64,
     /// Modal displacement at the start, relative to the rigid rotation; none for the static equilibrium there.
@@ -43,9 +45,8 @@ pub struct ReducedModel {
     pub initial_velocity: Vec<f64>,
 }
 
-/// Numbers of two of the constant mesh directions.
+/// Number of the constant mesh direction along the nominal line of action.
 const ALONG: usize = 0;
-const ROTATION: usize = 2;
 
 /// Below this part of the largest entry a modal entry is rounding.
 const ROUNDING: f64 = 1e-13;
@@ -70,7 +71,7 @@ impl ReducedModel {
         let modal_motion =
             |motion: &CoordinateVector| modal(&(turn.transpose() * motion).component_mul(&mass));
         let columns = columns(system);
-        let coupled = couplings(system);
+        let coupled = &system.mesh.coupled;
         let mesh: Vec<CoordinateVector> = columns.iter().map(|column| modal(&column.vector)).collect();
         let mut unit = CoordinateVector::zeros();
         unit[THETA_PINION] = system.shaft_stiffness_nm_per_rad[0];
@@ -108,7 +109,7 @@ impl ReducedModel {
         let kept: Vec<usize> = (0..columns.len()).filter(|&c| active_columns[c]).collect();
         let pick = |vector: &CoordinateVector| modes.iter().map(|&n| vector[n]).collect::<Vec<f64>>();
         let directions: Vec<usize> = kept.iter().map(|&c| columns[c].direction).collect();
-        let mean = system.mesh.mean_stiffness();
+        let mean = &system.mesh.mean_stiffness;
         Self {
             shapes: modes.iter().map(|&n| turn * system.modes.shapes.column(n)).collect(),
             stiffness: modes.iter().map(|&n| system.modes.angular_frequencies[n].powi(2)).collect(),
@@ -122,6 +123,7 @@ impl ReducedModel {
             brake: pick(&brake),
             rigid_velocity: pick(&rigid),
             rigid_rotation,
+            damps_rotation: system.damps_rotation,
             rotation_rad_per_s,
             initial_displacement: displacement.as_ref().map(pick),
             initial_velocity: pick(&velocity),
@@ -150,9 +152,7 @@ impl ReducedModel {
 /// itself and its tilt.
 fn columns(system: &System) -> Vec<Column> {
     let turned = &system.directions.turned;
-    let nominal = system.mesh.nominal.pressure_angle_rad;
-    let constant_angle = system.mesh.faulty.iter().all(|state| state.pressure_angle_rad == nominal);
-    if constant_angle {
+    if system.mesh.constant_angle {
         vec![
             Column { direction: 0, vector: turned[0] + turned[2] },
             Column { direction: 3, vector: turned[3] },
@@ -160,18 +160,6 @@ fn columns(system: &System) -> Vec<Column> {
     } else {
         (0..turned.len()).map(|direction| Column { direction, vector: turned[direction] }).collect()
     }
-}
-
-/// Which of the mesh's constant directions the mesh couples at any point of the cycle.
-fn couplings(system: &System) -> SMatrix<bool, DIRECTIONS, DIRECTIONS> {
-    let nominal = system.mesh.nominal.pressure_angle_rad;
-    let states = std::iter::once(&system.mesh.nominal).chain(&system.mesh.faulty);
-    let mut coupled = SMatrix::<bool, DIRECTIONS, DIRECTIONS>::from_element(false);
-    let mut last = None;
-    for state in states.filter(|state| last.replace(**state) != Some(**state)) {
-        coupled.zip_apply(&state.mean_square(nominal), |coupled, entry| *coupled |= entry != 0.0);
-    }
-    coupled
 }
 
 fn clean(vector: CoordinateVector) -> CoordinateVector {

@@ -1,8 +1,8 @@
 //! The forcing of several simulations, side by side.
 
-use super::lanes::Lanes;
 use super::outputs::EXTERNALS;
-use crate::dynamics::{Forcing, ForcingBlock};
+use crate::mesh::forcing::{Forcing, ForcingBlock};
+use crate::simd::Lanes;
 
 /// Forcing of one block of samples.
 pub(super) struct SharedForcing<const L: usize, const R: usize> {
@@ -10,6 +10,8 @@ pub(super) struct SharedForcing<const L: usize, const R: usize> {
     pub(super) errors: Vec<[Lanes<L>; R]>,
     /// Motor lead, torque deviation and speed deviation; not set while motor and brake are steady.
     pub(super) external: Vec<[Lanes<L>; EXTERNALS]>,
+    /// Entries of the mesh's tables, where they are known beforehand.
+    pub(super) entries: Vec<[u32; L]>,
     scratch: ForcingBlock,
 }
 
@@ -19,6 +21,7 @@ impl<const L: usize, const R: usize> SharedForcing<L, R> {
         Self {
             errors: vec![[Lanes::splat(0.0); R]; samples],
             external: vec![[Lanes::splat(0.0); EXTERNALS]; samples],
+            entries: vec![[0; L]; samples],
             scratch: ForcingBlock::default(),
         }
     }
@@ -29,13 +32,16 @@ impl<const L: usize, const R: usize> SharedForcing<L, R> {
     /// * `forcings` - of each lane
     /// * `samples` - at most as many as there is room for
     /// * `steady` - whether motor and brake of all lanes are steady
-    pub(super) fn fill(&mut self, forcings: &mut [Forcing; L], samples: usize, steady: bool) {
+    pub(super) fn fill(&mut self, forcings: &mut [Box<dyn Forcing + '_>; L], samples: usize, steady: bool) {
         for (l, forcing) in forcings.iter_mut().enumerate() {
             forcing.next_block(samples, &mut self.scratch);
             for (r, errors) in self.scratch.errors.iter().enumerate() {
                 for (shared, error) in self.errors.iter_mut().zip(errors) {
                     shared[r].0[l] = *error;
                 }
+            }
+            for (shared, entry) in self.entries.iter_mut().zip(&self.scratch.entries) {
+                shared[l] = *entry;
             }
             if !steady {
                 let parts = [

@@ -1,7 +1,6 @@
 //! How large a problem the step is compiled for.
 
-use super::reduce::ReducedModel;
-use crate::simulate::Stages;
+use super::integrate::Problem;
 
 /// Number of modes and of mesh directions that a step is compiled for, the smaller sizes first. Fixed sizes let the compiler
 /// unroll the step and keep it in registers.
@@ -19,11 +18,11 @@ pub(crate) enum Size {
 
 impl Size {
     /// The smallest size that holds a simulation.
-    pub(crate) fn of(stages: &Stages, model: &ReducedModel) -> Self {
-        if !stages.is_steady() {
+    pub(crate) fn of(problem: &Problem) -> Self {
+        if !problem.steady {
             return Self::General;
         }
-        match (model.modes(), model.directions.len()) {
+        match (problem.model.modes(), problem.model.directions.len()) {
             (0..=5, 0..=1) => Self::Flat,
             (0..=7, 0..=2) => Self::Tilting,
             (0..=7, 3) => Self::Rolling,

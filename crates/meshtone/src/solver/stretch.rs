@@ -1,21 +1,23 @@
 //! The time loop over one block of samples: all that is compiled for each instruction set.
 
 use super::history::History;
-use super::instruction_set::{Instructions, Task};
 use super::shared_forcing::SharedForcing;
-use super::step::{Group, State};
+use super::step::{Coefficients, State, StepForcing};
+use crate::mesh::law::MeshLaw;
+use crate::simd::{Instructions, Task};
 
-/// Some steps of `L` simulations.
+/// Some steps of `L` simulations under the mesh law `M`.
 pub(super) struct Stretch<
     'a,
+    M,
     const L: usize,
     const N: usize,
     const R: usize,
     const BLOCK: usize,
-    const PUBLISHED: bool,
     const STEADY: bool,
 > {
-    pub(super) group: &'a Group<'a, L, N, R>,
+    pub(super) coefficients: &'a Coefficients<L, N, R>,
+    pub(super) law: &'a M,
     pub(super) state: &'a mut State<L, N, R>,
     /// Number of steps since the start of the integration.
     pub(super) steps_before: usize,
@@ -27,27 +29,22 @@ pub(super) struct Stretch<
     pub(super) history: Option<&'a mut History<L, N, R, BLOCK>>,
 }
 
-impl<
-    const L: usize,
-    const N: usize,
-    const R: usize,
-    const BLOCK: usize,
-    const PUBLISHED: bool,
-    const STEADY: bool,
-> Task for Stretch<'_, L, N, R, BLOCK, PUBLISHED, STEADY>
+impl<M: MeshLaw<L, R>, const L: usize, const N: usize, const R: usize, const BLOCK: usize, const STEADY: bool>
+    Task for Stretch<'_, M, L, N, R, BLOCK, STEADY>
 {
     type Output = ();
 
     #[inline(always)]
     fn run<I: Instructions>(mut self, simd: I) {
         let mut state = *self.state;
-        let forcing = self.forcing.errors.iter().zip(&self.forcing.external).take(self.steps);
-        for (k, (errors, external)) in forcing.enumerate() {
+        let samples = self.forcing.errors.iter().zip(&self.forcing.external).zip(&self.forcing.entries);
+        for (k, ((errors, external), entries)) in samples.take(self.steps).enumerate() {
             if let Some(history) = &mut self.history {
                 history.store::<STEADY>(k, &state);
             }
             let step = self.steps_before + k + 1;
-            self.group.step::<I, PUBLISHED, STEADY>(simd, &mut state, step, errors, external);
+            let forcing = StepForcing { errors, external, entries };
+            self.coefficients.step::<I, M, STEADY>(simd, self.law, &mut state, step, &forcing);
         }
         *self.state = state;
     }

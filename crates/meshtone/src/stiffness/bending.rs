@@ -5,7 +5,7 @@
 //! `−∫ σ z dA`. Everything that depends on the loaded point i is moved out of the integrals.
 
 use super::energy::{EnergyCoefficients, LoadedTooth};
-use crate::fault::LateralBending;
+use crate::damage::published::LateralBending;
 
 pub(super) fn energy(tooth: &LoadedTooth) -> Vec<EnergyCoefficients> {
     match &tooth.section.lateral {
@@ -50,7 +50,7 @@ fn main_moment(x_i: f64, y_i: f64, [xx, x, one, xyc, yc, ycyc]: [f64; 6]) -> Ene
 fn about_both(tooth: &LoadedTooth, lateral: &LateralBending) -> Vec<EnergyCoefficients> {
     let flexibility = 1.0 / (2.0 * tooth.youngs_modulus_mpa);
     let y_mm = &tooth.profile.y_mm;
-    // Convention: the published energy adds the coupling, as if M_y had the opposite sign.
+    // Model: the published energy adds the coupling, as if M_y had the opposite sign.
     let coupling = if lateral.published_coupling { 1.0 } else { -1.0 };
     let centre_y = |i: usize| tooth.section.yc_mm.as_ref().map_or(0.0, |yc| yc[i]);
     tooth.integrate(

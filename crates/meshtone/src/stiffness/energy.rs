@@ -1,7 +1,7 @@
 //! Strain energy of a tooth per unit force, split by force component.
 
-use crate::fault::ToothSection;
-use crate::tooth::ToothProfile;
+use crate::damage::published::ToothSection;
+use crate::wheel::ToothProfile;
 
 /// Strain energy under a force `F` along the line of action, at each contact point:
 /// `U = F_s² ss + F_s F_a sa + F_a² aa`, with `F_s = F cos α` across and `F_a = F sin α` along the

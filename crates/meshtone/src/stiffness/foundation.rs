@@ -4,8 +4,8 @@
 //! Source: P. Sainsot, P. Velex, O. Duverger, Journal of Mechanical Design 126 (2004).
 
 use super::energy::LoadDirection;
-use crate::scenario::FoundationCoefficients;
-use crate::tooth::{ToothProfile, Wheel};
+use crate::wheel::FoundationCoefficients;
+use crate::wheel::{ToothProfile, Wheel};
 
 /// The polynomials of one wheel.
 pub(super) struct Foundation {

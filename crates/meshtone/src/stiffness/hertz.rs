@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::scenario::Material;
+use crate::wheel::Material;
 
 /// (mm/N) Compliance of the contact of two flanks, `4 (1 − ν²)/(π E W)`.
 ///

@@ -3,9 +3,9 @@
 use super::energy::{EnergyCoefficients, LoadDirection, LoadedTooth};
 use super::foundation::Foundation;
 use super::{axial, bending, shear};
-use crate::fault::ToothSection;
-use crate::scenario::{FoundationCoefficients, Material};
-use crate::tooth::{ToothProfile, Wheel};
+use crate::damage::published::ToothSection;
+use crate::wheel::{FoundationCoefficients, Material};
+use crate::wheel::{ToothProfile, Wheel};
 
 /// Displacement of a tooth along the line of action under a unit force there, at the contact points
 /// from the root side to the tip.

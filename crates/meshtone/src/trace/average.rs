@@ -1,10 +1,11 @@
 //! Fields of the signal chain: the vertical signal's average over the gear's revolutions.
 
 use super::Trace;
-use crate::sampling::TimeGrid;
+use crate::operation::TimeGrid;
+use crate::sensor::Channels;
 use crate::signal::{
-    AngularSettings, ChainSettings, Channels, Edge, Interpolation, Record, ShaftPhase, SignalError,
-    process_channel, resample, resampling_ratio,
+    AngularSettings, ChainSettings, Edge, Interpolation, Record, ShaftPhase, SignalError, process_channel,
+    resample, resampling_ratio,
 };
 use crate::simulate::Stages;
 
@@ -19,7 +20,7 @@ const CONTINUATION: usize = 40;
 /// kept signal is continued periodically before, so that nothing rings.
 pub(super) fn average(trace: &mut Trace, stages: &Stages, channels: &Channels, rate_hz: f64) {
     let rate_hz = rate_hz.min(stages.time.sampling_rate_hz);
-    let Channels { vertical_g, pinion_speed_hz, .. } = channels;
+    let Channels { vertical_g, pinion_shaft_speed_hz: pinion_speed_hz, .. } = channels;
     let Ok(record) = gear_record(
         stages,
         vertical_g,

@@ -27,12 +27,12 @@ pub struct TraceField {
 /// * `stages` - of a simulation
 ///
 /// ```
-/// use meshtone::scenario::Scenario;
+/// use meshtone::scenario::{GearPair, Scenario};
 ///
-/// let stages = meshtone::stages(&Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0))?;
+/// let stages = meshtone::stages(&Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 }))?;
 /// let trace = meshtone::stage_trace(&stages);
 /// assert_eq!(trace.get("natural_frequencies_hz").map(|field| field.values.len()), Some(13));
-/// # Ok::<(), meshtone::scenario::ScenarioError>(())
+/// # Ok::<(), meshtone::Error>(())
 /// ```
 pub fn stage_trace(stages: &Stages) -> Trace {
     let mut trace = Trace::default();

@@ -4,9 +4,10 @@ use web_time::Instant;
 
 use super::average::average;
 use super::{Trace, static_stages};
-use crate::dynamics::coordinates::{COORDINATES, CoordinateVector};
-use crate::scenario::{Scenario, ScenarioError};
-use crate::signal::{Channels, channel_outputs};
+use crate::error::Error;
+use crate::machine::coordinates::{COORDINATES, CoordinateVector};
+use crate::scenario::Scenario;
+use crate::sensor::{Channels, channel_outputs};
 use crate::simulate::{Simulation, Stages, stages};
 use crate::solver::{Block, Output, Recorder};
 
@@ -31,7 +32,7 @@ const AVERAGE_RATE_HZ: f64 = 25e3;
 ///
 /// The average's fields are at 25 kS/s; [`trace_at`] takes another rate. They are missing where there is no average: fewer
 /// than two revolutions of the gear, a vertical signal that is 0, a mesh frequency beyond half of that rate.
-pub fn trace(scenario: &Scenario) -> Result<(Simulation, Trace), ScenarioError> {
+pub fn trace(scenario: &Scenario) -> Result<(Simulation, Trace), Error> {
     trace_at(scenario, AVERAGE_RATE_HZ)
 }
 
@@ -44,7 +45,7 @@ pub fn trace(scenario: &Scenario) -> Result<(Simulation, Trace), ScenarioError> 
 ///
 /// # Errors
 /// As [`crate::simulate`].
-pub fn trace_at(scenario: &Scenario, average_rate_hz: f64) -> Result<(Simulation, Trace), ScenarioError> {
+pub fn trace_at(scenario: &Scenario, average_rate_hz: f64) -> Result<(Simulation, Trace), Error> {
     let start = Instant::now();
     let stages = stages(scenario)?;
     let mut trace = Trace::default();
@@ -68,12 +69,12 @@ fn forces(trace: &mut Trace, stages: &Stages) {
     let mut of_kept = Vec::with_capacity(KEPT_FORCES);
     let mut errors = Vec::with_capacity(ERROR_FORCES);
     for (sample, excitation) in stages.excitation().take(stages.time.samples).enumerate() {
-        let force = || system.force(&excitation, stages.scenario.convention);
+        let force = || system.force(&excitation);
         if sample < FIRST_FORCES {
             first.push(force());
         }
         if sample >= kept {
-            errors.push(excitation.error_force_n);
+            errors.push(excitation.error_force_n());
             if sample < kept + KEPT_FORCES {
                 of_kept.push(force());
             }

@@ -1,10 +1,11 @@
 //! Fields of the stages before the time loop.
 
 use super::Trace;
-use crate::fault::{Displacement, FaultDescription, FaultGeometry};
-use crate::sampling::FINE_PER_COARSE;
+use crate::damage::DamageDescription;
+use crate::damage::published::{Displacement, FaultGeometry};
+use crate::mesh::Mesh;
 use crate::simulate::Stages;
-use crate::tooth::{ToothProfile, Wheel};
+use crate::wheel::{ToothProfile, Wheel};
 
 /// Every how many points a profile, a flank and a section are given.
 const PROFILE_STRIDE: usize = 50;
@@ -31,72 +32,99 @@ pub(crate) fn static_stages(trace: &mut Trace, stages: &Stages) {
     trace.vector("shaft_stiffness_nm_per_rad", stages.system.shaft_stiffness_nm_per_rad);
     stiffness(trace, stages);
     matrices(trace, stages);
-    if let Some(fault) = &stages.fault {
-        fault_geometry(trace, stages, fault);
+    damages(trace, stages);
+    if let Some(fault) = stages.mesh.published().and_then(|mesh| mesh.fault.as_ref()) {
+        published_fault(trace, stages, fault);
     }
 }
 
 fn wheels(trace: &mut Trace, stages: &Stages) {
     let teeth = &stages.teeth;
-    let wheel =
-        |trace: &mut Trace, name: &str, wheel: &Wheel, profile: &ToothProfile, contact_radius: f64| {
-            let every = |values: &[f64]| values.iter().copied().step_by(PROFILE_STRIDE).collect::<Vec<_>>();
-            let last = profile.len() - 1;
-            trace.vector(&format!("{name}_profile_x_mm"), every(&profile.x_mm));
-            trace.vector(&format!("{name}_profile_y_mm"), every(&profile.y_mm));
-            trace.vector(&format!("{name}_tip_xy_mm"), [profile.x_mm[last], profile.y_mm[last]]);
-            trace.vector(
-                &format!("{name}_radii_mm"),
-                [
-                    wheel.pitch_radius_mm,
-                    wheel.tip_radius_mm,
-                    wheel.root_radius_mm,
-                    wheel.base_radius_mm,
-                    contact_radius,
-                ],
-            );
-            if let Some(index) = profile.tip_relief_index {
-                trace.scalar(&format!("{name}_tip_relief_index"), (index + FIRST_INDEX) as f64);
-            }
-            trace.scalar(
-                &format!("{name}_initial_contact_index"),
-                (teeth.contact.initial_contact_index + FIRST_INDEX) as f64,
-            );
-        };
+    let wheel = |trace: &mut Trace,
+                 name: &str,
+                 wheel: &Wheel,
+                 profile: &ToothProfile,
+                 (contact_index, contact_radius): (usize, f64)| {
+        let every = |values: &[f64]| values.iter().copied().step_by(PROFILE_STRIDE).collect::<Vec<_>>();
+        let last = profile.len() - 1;
+        trace.vector(&format!("{name}_profile_x_mm"), every(&profile.x_mm));
+        trace.vector(&format!("{name}_profile_y_mm"), every(&profile.y_mm));
+        trace.vector(&format!("{name}_tip_xy_mm"), [profile.x_mm[last], profile.y_mm[last]]);
+        trace.vector(
+            &format!("{name}_radii_mm"),
+            [
+                wheel.pitch_radius_mm,
+                wheel.tip_radius_mm,
+                wheel.root_radius_mm,
+                wheel.base_radius_mm,
+                contact_radius,
+            ],
+        );
+        if let Some(index) = profile.tip_relief_index {
+            trace.scalar(&format!("{name}_tip_relief_index"), (index + FIRST_INDEX) as f64);
+        }
+        trace.scalar(&format!("{name}_initial_contact_index"), (contact_index + FIRST_INDEX) as f64);
+    };
     let contact = &teeth.contact;
-    wheel(trace, "pinion", &teeth.pinion, &teeth.pinion_profile, contact.pinion_initial_radius_mm);
-    wheel(trace, "gear", &teeth.gear, &teeth.gear_profile, contact.gear_initial_radius_mm);
+    wheel(
+        trace,
+        "pinion",
+        &teeth.pinion,
+        &teeth.pinion_profile,
+        (contact.pinion_initial_contact_index, contact.pinion_initial_radius_mm),
+    );
+    wheel(
+        trace,
+        "gear",
+        &teeth.gear,
+        &teeth.gear_profile,
+        (contact.initial_contact_index, contact.gear_initial_radius_mm),
+    );
     for (name, inertia) in [("pinion", &stages.system.pinion), ("gear", &stages.system.gear)] {
         trace.scalar(&format!("{name}_mass_kg"), inertia.mass_kg);
         trace.scalar(&format!("{name}_transverse_inertia_kgm2"), inertia.transverse_kgm2);
         trace.scalar(&format!("{name}_polar_inertia_kgm2"), inertia.polar_kgm2);
     }
     if let Some(errors) = &stages.profile_errors {
-        for (name, matrix) in
+        for (name, table) in
             [("pinion", &errors.pinion_profile_errors_mm), ("gear", &errors.gear_profile_errors_mm)]
         {
-            trace.matrix(&format!("{name}_profile_errors_mm"), matrix.nrows(), matrix.ncols(), |r, c| {
-                matrix[(r, c)]
+            trace.matrix(&format!("{name}_profile_errors_mm"), table.points(), table.teeth(), |r, c| {
+                table[(r, c)]
             });
         }
     }
 }
 
+/// Pair and mesh stiffness on the grids of the published code, under every model.
 fn stiffness(trace: &mut Trace, stages: &Stages) {
-    let fine = stages.cycle.fine_step_rev;
-    let points = stages.cycle.fine_points_in(stages.pair.span_rev);
-    let sample = |curve: crate::stiffness::PairCurve| -> Vec<f64> {
-        (0..points).step_by(PAIR_STRIDE).map(|i| curve.at(i as f64 * fine)).collect()
+    let grid = &stages.cycle;
+    let points = grid.fine_points_in(stages.teeth.contact.span_rev);
+    let pair = |trace: &mut Trace, name: &str, at: &dyn Fn(f64) -> f64| {
+        let positions = (0..points).step_by(PAIR_STRIDE).map(|point| point as f64 * grid.fine_step_rev);
+        trace.vector(&format!("pair_stiffness_{name}_n_per_mm"), positions.map(at).collect::<Vec<_>>());
     };
-    trace.vector("pair_stiffness_healthy_n_per_mm", sample(stages.pair.healthy_curve()));
-    if stages.fault.is_some() {
-        trace.vector("pair_stiffness_faulty_n_per_mm", sample(stages.pair.faulty_curve()));
-    }
+    let mesh = match &stages.mesh {
+        Mesh::Published(mesh) => {
+            pair(trace, "healthy", &|position| mesh.pair.healthy_curve().at(position));
+            if mesh.fault.is_some() {
+                pair(trace, "faulty", &|position| mesh.pair.faulty_curve().at(position));
+            }
+            mesh.stiffness.mesh_n_per_mm.clone()
+        }
+        Mesh::Pairs(_) => {
+            let pairs = stages.pairs();
+            let pitches = f64::from(stages.teeth.pinion.teeth);
+            let mesh = stages.pair_mesh(grid.points_per_pitch);
+            for (kind, name) in mesh.sequence.classes().iter().zip(["healthy", "faulty"]) {
+                pair(trace, name, &|position| pairs.at(kind, position * pitches).stiffness_n_per_mm);
+            }
+            mesh.stiffness_n_per_mm(0..mesh.sequence.gear_teeth())
+        }
+    };
     trace.scalar("pair_stiffness_len", points as f64);
-    let mesh = &stages.mesh.mesh_n_per_mm;
     trace.vector("mesh_stiffness_n_per_mm", mesh.iter().copied().step_by(MESH_STRIDE));
     trace.scalar("mesh_stiffness_len", mesh.len() as f64);
-    debug_assert_eq!(points.div_ceil(FINE_PER_COARSE), stages.cycle.coarse_points_in(stages.pair.span_rev));
 }
 
 fn matrices(trace: &mut Trace, stages: &Stages) {
@@ -107,32 +135,55 @@ fn matrices(trace: &mut Trace, stages: &Stages) {
     trace.vector("natural_frequencies_hz", system.natural_frequencies_hz());
     trace.vector("mass_diagonal", system.mass_diagonal);
     square(trace, "damping_matrix", &system.damping_matrix());
+    // On the coarse grid of the published code, under every model.
+    let coarse = match &stages.mesh {
+        Mesh::Published(_) => None,
+        Mesh::Pairs(_) => Some(stages.pair_mesh(stages.cycle.points_per_pitch)),
+    };
     for point in [0, 499] {
-        square(trace, &format!("stiffness_matrix_at_{point}"), &system.stiffness_matrix_at(point));
+        let matrix = match &coarse {
+            None => system.stiffness_matrix_at(&stages.mesh, point),
+            Some(mesh) => system.stiffness_matrix(&mesh.stiffness_at(mesh.entry(point))),
+        };
+        square(trace, &format!("stiffness_matrix_at_{point}"), &matrix);
     }
     square(trace, "stiffness_matrix_mean", &system.mean_stiffness_matrix());
 }
 
-fn fault_geometry(trace: &mut Trace, stages: &Stages, fault: &FaultGeometry) {
-    let every = |values: &[f64]| values.iter().copied().step_by(FAULT_STRIDE).collect::<Vec<_>>();
+/// What the damages are: fields `fault_…` of the first, `fault_2_…` of the next.
+fn damages(trace: &mut Trace, stages: &Stages) {
     let index = |i: usize| (i + FIRST_INDEX) as f64;
-    match &fault.description {
-        FaultDescription::MissingTooth => {}
-        FaultDescription::ToothBreakage { exit_rev, .. } => trace.scalar("fault_exit_rev", *exit_rev),
-        FaultDescription::FaceFault { pit, .. } => {
-            let indices = [pit.start_index, pit.mid_index, pit.end_index];
-            trace.vector("fault_indices", indices.map(index));
-            trace.scalar("fault_length_mm", pit.length_mm);
-            trace.scalar("fault_length_fraction", pit.length_fraction);
-            trace.vector("fault_positions_rev", [pit.start_rev, pit.end_rev]);
-            trace.vector("fault_flank_y_mm", every(&fault.flank_y_mm));
+    let all = stages.damaged.iter().flat_map(|tooth| {
+        tooth.descriptions.iter().map(move |description| (tooth.outline_y_mm(), description))
+    });
+    for (number, (flank_y_mm, description)) in all.enumerate() {
+        let prefix = if number == 0 { "fault".to_string() } else { format!("fault_{}", number + 1) };
+        let name = |field: &str| format!("{prefix}_{field}");
+        match description {
+            DamageDescription::MissingTooth => continue,
+            DamageDescription::ToothBreakage { exit_rev, .. } => {
+                trace.scalar(&name("exit_rev"), *exit_rev);
+                continue;
+            }
+            DamageDescription::FaceFault { pit, .. } => {
+                let indices = [pit.start_index, pit.mid_index, pit.end_index];
+                trace.vector(&name("indices"), indices.map(index));
+                trace.scalar(&name("length_mm"), pit.length_mm);
+                trace.scalar(&name("length_fraction"), pit.length_fraction);
+                trace.vector(&name("positions_rev"), [pit.start_rev, pit.end_rev]);
+            }
+            DamageDescription::ToothDestruction { start_index, end_index, slope_rad } => {
+                trace.vector(&name("indices"), [*start_index, *end_index].map(index));
+                trace.scalar(&name("slope_rad"), *slope_rad);
+            }
         }
-        FaultDescription::ToothDestruction { start_index, end_index, slope_rad } => {
-            trace.vector("fault_indices", [*start_index, *end_index].map(index));
-            trace.scalar("fault_slope_rad", *slope_rad);
-            trace.vector("fault_flank_y_mm", every(&fault.flank_y_mm));
-        }
+        trace.vector(&name("flank_y_mm"), flank_y_mm.iter().copied().step_by(FAULT_STRIDE));
     }
+}
+
+/// What the published code makes of its fault.
+fn published_fault(trace: &mut Trace, stages: &Stages, fault: &FaultGeometry) {
+    let every = |values: &[f64]| values.iter().copied().step_by(FAULT_STRIDE).collect::<Vec<_>>();
     match &fault.displacement {
         Displacement::None => {}
         Displacement::Pair { displacement_mm } => {
@@ -146,8 +197,10 @@ fn fault_geometry(trace: &mut Trace, stages: &Stages, fault: &FaultGeometry) {
     if let Some(angles) = &fault.gear.pressure_angle_rad {
         trace.vector("fault_pressure_angle_rad", every(angles));
         let points = ANGLE_POINTS.min(stages.cycle.points_per_gear_revolution);
-        let mesh = &stages.system.mesh;
-        trace.vector("mesh_pressure_angle_rad", (0..points).map(|i| mesh.pressure_angle_rad(i)));
+        if let Some(mesh) = stages.mesh.published() {
+            let angles = (0..points).map(|point| mesh.load.pressure_angle_rad(point));
+            trace.vector("mesh_pressure_angle_rad", angles);
+        }
     }
     if let (Some(lateral), Some(yc)) = (&fault.gear.lateral, &fault.gear.yc_mm) {
         trace.vector("fault_section_area_mm2", every(&fault.gear.area_mm2));

@@ -4,34 +4,41 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+use meshtone::InstructionSet;
 use meshtone::batch::{Control, KeepChannels, KeepSimulation, simulate_many};
 use meshtone::scenario::*;
-use meshtone::signal::Channels;
+use meshtone::sensor::Channels;
 use meshtone::simulate;
-use meshtone::solver::InstructionSet;
 
-fn small(pinion: u32, gear: u32, fault: Option<Fault>) -> Scenario {
-    let mut scenario = Scenario::new(3.0, pinion, gear, 15.0, 30.0, 60.0);
+fn small(pinion: u32, gear: u32, damage: Option<Damage>) -> Scenario {
+    let mut scenario = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: pinion,
+        gear_teeth: gear,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 30.0,
+        brake_torque_nm: 60.0,
+    });
     scenario.gears.points_per_tooth = 1000;
     scenario.solver.sampling_rate_hz = 1e4;
     scenario.quality.din_grade = 6;
-    scenario.fault = fault;
+    scenario.faults = damage.map(Fault::on_first_gear_tooth).into_iter().collect();
     scenario
 }
 
-fn faults() -> Vec<Option<Fault>> {
+fn damages() -> Vec<Option<Damage>> {
     let pit = PitCircle::Fractions { start: 0.2, end: 0.8, depth: 0.4 };
     vec![
         None,
-        Some(Fault::MissingTooth),
-        Some(Fault::ToothBreakage(ToothBreakage {
+        Some(MissingTooth.into()),
+        Some(Damage::ToothBreakage(ToothBreakage {
             chip_height_mm: 3.0,
             chip_width_mm: 9.0,
             tip_loss_mm: 0.0,
         })),
-        Some(Fault::PartialFace(PartialFace { width_mm: 5.0, pit })),
-        Some(Fault::ThroughFace(ThroughFace { pit })),
-        Some(Fault::ToothDestruction(ToothDestruction {
+        Some(Damage::PartialFace(PartialFace { width_mm: 5.0, pit })),
+        Some(Damage::ThroughFace(ThroughFace { pit })),
+        Some(Damage::ToothDestruction(ToothDestruction {
             start: 0.2,
             line: DestructionLine::SlopeDeg(22.0),
             offset_mm: 0.0,
@@ -40,17 +47,17 @@ fn faults() -> Vec<Option<Fault>> {
     ]
 }
 
-/// Everything that may be mixed: faults, teeth, lengths, conventions, drives, initial states, and one that is refused.
+/// Everything that may be mixed: faults, teeth, lengths, models, drives, initial states, and one that is refused.
 fn mixed() -> Vec<Scenario> {
     let mut scenarios = Vec::new();
-    for (n, fault) in faults().into_iter().enumerate() {
+    for (n, damage) in damages().into_iter().enumerate() {
         for (k, (pinion, gear)) in [(17, 38), (20, 20), (18, 27)].into_iter().enumerate() {
-            let mut scenario = small(pinion, gear, fault.clone());
+            let mut scenario = small(pinion, gear, damage.clone());
             scenario.seed = (10 * n + k) as u64;
             scenario.operation.pinion_speed_hz = 20.0 + 7.0 * n as f64 + k as f64;
             scenario.solver.settle_tolerance = if k == 1 { 0.0 } else { 1e-6 };
             if k == 2 && n % 2 == 0 {
-                scenario.convention = Convention::Published;
+                scenario.model = Model::Published;
             }
             if k == 1 && n == 3 {
                 scenario.operation.speed_fluctuation_hz = 0.2;
@@ -81,9 +88,16 @@ fn shuffled<T>(mut items: Vec<T>, seed: u64) -> Vec<T> {
 }
 
 fn bits(channels: &Channels) -> Vec<Vec<u64>> {
-    let Channels { horizontal_g, vertical_g, axial_g, pinion_speed_hz, gear_speed_hz, mesh_force_n, .. } =
-        channels;
-    [horizontal_g, vertical_g, axial_g, pinion_speed_hz, gear_speed_hz, mesh_force_n]
+    let Channels {
+        horizontal_g,
+        vertical_g,
+        axial_g,
+        pinion_shaft_speed_hz,
+        gear_shaft_speed_hz,
+        mesh_force_n,
+        ..
+    } = channels;
+    [horizontal_g, vertical_g, axial_g, pinion_shaft_speed_hz, gear_shaft_speed_hz, mesh_force_n]
         .map(|channel| channel.iter().map(|value| value.to_bits()).collect())
         .to_vec()
 }
@@ -92,7 +106,7 @@ fn in_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(work)
 }
 
-fn all(scenarios: &[Scenario], control: &Control) -> Vec<Result<Channels, ScenarioError>> {
+fn all(scenarios: &[Scenario], control: &Control) -> Vec<Result<Channels, meshtone::Error>> {
     let mut results = Vec::new();
     let handed_out = simulate_many(scenarios.to_vec(), &KeepSimulation, control, |index, result| {
         assert_eq!(index, results.len());

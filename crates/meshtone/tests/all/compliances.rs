@@ -5,10 +5,16 @@
 use std::f64::consts::PI;
 
 use crate::physics::*;
-use meshtone::fault::{FaultDescription, LateralBending, ToothSection, fault_geometry};
-use meshtone::scenario::{Convention, Fault, FoundationCoefficients, Material, PartialFace, PitCircle};
-use meshtone::stiffness::{MeshStiffness, PairStiffness, ToothCompliance, hertz_compliance_mm_per_n};
-use meshtone::tooth::{ToothProfile, Wheel};
+use meshtone::damage::published::{LateralBending, ToothSection, fault_geometry};
+use meshtone::damage::{DamageDescription, DamagedTooth, Section, damaged_teeth};
+use meshtone::mesh::published::{MeshStiffness, PairStiffness};
+use meshtone::mesh::{PairKind, PairMesh, PairSequence, Pairs};
+use meshtone::scenario::{
+    Damage, DestructionLine, Fault, FoundationCoefficients, Gears, Material, PartialFace, PitCircle,
+    ThroughFace, ToothBreakage, ToothDestruction, WheelName,
+};
+use meshtone::stiffness::{FlankLoad, LoadedFlank, ToothCompliance, hertz_compliance_mm_per_n};
+use meshtone::wheel::{Flank, FlankPoint, Teeth, ToothProfile, Wheel};
 
 const E: f64 = 210e3;
 const G: f64 = E / 2.6;
@@ -20,6 +26,8 @@ fn bar(points: usize, length: f64, alpha_deg: f64, half: impl Fn(f64) -> f64) ->
     let profile = ToothProfile {
         x_mm: (0..points).map(|i| 40.0 + depth(i)).collect(),
         y_mm: (0..points).map(|i| half(depth(i))).collect(),
+        // Of no involute.
+        involute_radius_mm: vec![0.0; points],
         tip_relief_index: None,
     };
     let mut gears = plain_gears(3.0, 30, 30, WIDTH);
@@ -30,6 +38,49 @@ fn bar(points: usize, length: f64, alpha_deg: f64, half: impl Fn(f64) -> f64) ->
 fn compliance(wheel: &Wheel, profile: &ToothProfile, section: &ToothSection) -> ToothCompliance {
     let foundation = FoundationCoefficients::default();
     ToothCompliance::new(wheel, profile, section, Material::Steel, &foundation, 0)
+}
+
+/// A tooth as a load at any of its points sees it.
+fn loaded<'a>(
+    wheel: &'a Wheel,
+    profile: &'a ToothProfile,
+    damage: Option<&DamagedTooth>,
+    foundation: &FoundationCoefficients,
+) -> LoadedFlank<'a> {
+    LoadedFlank::new(Flank { wheel, profile }, damage, Material::Steel, foundation)
+}
+
+/// A load at the last point of a bar, at `alpha_deg` to the normal of its centre line and `z_mm` from the middle of its face.
+fn load_at_the_end(profile: &ToothProfile, alpha_deg: f64, z_mm: f64, width_mm: f64) -> FlankLoad {
+    let (sin, cos) = f64::to_radians(alpha_deg).sin_cos();
+    let last = profile.len() - 1;
+    let (x_mm, y_mm) = (profile.x_mm[last], profile.y_mm[last]);
+    let point = FlankPoint { index: last - 1, fraction: 1.0, x_mm, y_mm, load_sin: sin, load_cos: cos };
+    FlankLoad { point, sin, cos, z_mm, width_mm }
+}
+
+/// The damaged tooth of one or more faults that are all on it.
+fn damaged_tooth(teeth: &Teeth, faults: &[Fault]) -> DamagedTooth {
+    let mut damaged = damaged_teeth(faults, teeth, 1).unwrap();
+    assert_eq!(damaged.len(), 1);
+    damaged.remove(0)
+}
+
+/// A tooth of which nothing is missing, but that is taken for a damaged one.
+fn untouched(wheel: WheelName, profile: &ToothProfile) -> DamagedTooth {
+    let points = profile.len();
+    DamagedTooth {
+        wheel,
+        tooth: 0,
+        flank_y_mm: profile.y_mm.clone(),
+        missing_width_mm: vec![0.0; points],
+        corner_width_mm: vec![0.0; points],
+        corner_y_mm: profile.y_mm.clone(),
+        gone_from_index: points,
+        deviation_mm: vec![0.0; points],
+        rolling: Vec::new(),
+        descriptions: Vec::new(),
+    }
 }
 
 // Steel: ν 0.3. The trapezoidal rule is exact for the linear and constant integrands; that of bending is quadratic,
@@ -65,6 +116,35 @@ fn cantilever_of_constant_section() {
             );
         }
         assert_eq!(tooth.bending_mm_per_n[0], 0.0, "no lever at the clamp");
+    }
+}
+
+// The same under any load: beside the face's middle it bends the bar sideways too. A sound bar and one that is taken for damaged
+// have the same compliance.
+#[test]
+fn cantilever_under_a_load_beside_the_middle() {
+    let (points, length, half) = (10_000, 6.0, 1.7);
+    let n = (points - 1) as f64;
+    let (area, inertia) = (WIDTH * 2.0 * half, WIDTH * (2.0 * half).powi(3) / 12.0);
+    let sideways = 2.0 * half * WIDTH.powi(3) / 12.0;
+    for (alpha_deg, z_mm) in [(0.0, 0.0), (14.5, 2.0), (31.0, -5.0)] {
+        let (wheel, profile) = bar(points, length, alpha_deg, |_| half);
+        let (fa, fs) = f64::to_radians(alpha_deg).sin_cos();
+        let across = fs * fs * length.powi(3) / 3.0 * (1.0 + 0.5 / (n * n));
+        let along = -fs * fa * half * length * length + fa * fa * half * half * length;
+        let exact = (across + along) / (E * inertia)
+            + fa * fa * z_mm * z_mm * length / (E * sideways)
+            + fs * fs * 1.2 * length / (G * area)
+            + fa * fa * length / (E * area);
+        let load = load_at_the_end(&profile, alpha_deg, z_mm, WIDTH);
+        let damaged = untouched(WheelName::Gear, &profile);
+        let compliances = [None, Some(&damaged)]
+            .map(|damage| loaded(&wheel, &profile, damage, &rigid_foundation()).compliance_mm_per_n(&load));
+        assert_close(
+            &format!("cantilever at {alpha_deg}°, z = {z_mm} mm"),
+            1e-11,
+            compliances.map(|compliance| (compliance, exact)),
+        );
     }
 }
 
@@ -131,55 +211,115 @@ fn quadrature(steps: &[f64], strip: impl Fn(f64) -> (f64, f64)) -> Quadrature {
     }
 }
 
+/// A section's area, centre and moments, its shear flexibility, and its exact values by quadrature.
+struct Compared {
+    section: [(f64, f64); 5],
+    product: (f64, f64),
+    shear: (f64, f64),
+}
+
+/// The exact section of half thickness `y` that is narrower by `width_mm` above the height `cut`.
+fn cornered_section(y: f64, cut: f64, width_mm: f64) -> (Quadrature, f64) {
+    let left = |at: f64| if at < cut { -WIDTH / 2.0 } else { -WIDTH / 2.0 + width_mm };
+    let steps = [-y, cut, y];
+    let section = quadrature(&steps, |at| (left(at), WIDTH / 2.0));
+    // Jourawski's shear stress Q/(Iz b) on the strips.
+    let width = |at: f64| WIDTH / 2.0 - left(at);
+    let moment_above = |from: f64| -> f64 {
+        let up_to = |a: f64, b: f64| integral(a, b, 1, |at| (at - section.yc) * width(at));
+        if from < cut { up_to(from, cut) + up_to(cut, y) } else { up_to(from, y) }
+    };
+    let energy: f64 = steps
+        .windows(2)
+        .map(|ends| integral(ends[0], ends[1], 1, |at| moment_above(at).powi(2) / width(at)))
+        .sum();
+    let shear = energy / (2.0 * section.iz.powi(2));
+    (section, shear)
+}
+
+fn assert_sections(name: &str, compared: Vec<Compared>) {
+    assert_close(
+        &format!("section of a partial pit, {name}"),
+        1e-12,
+        compared.iter().flat_map(|c| c.section),
+    );
+    // Iyz is a difference of larger terms at the pit's edges, where the cut is shallow.
+    assert_close("product of inertia of a partial pit", 1e-9, compared.iter().map(|c| c.product));
+    assert_close("shear integral of a partial pit", 1e-12, compared.iter().map(|c| c.shear));
+}
+
+fn partial_pit(width_mm: f64) -> Damage {
+    let pit = PitCircle::Fractions { start: 0.2, end: 0.8, depth: 0.7 };
+    Damage::PartialFace(PartialFace { width_mm, pit })
+}
+
 // The integrands are polynomials of degree 4 at most, for which five Gauss points are exact: rounding only.
 #[test]
 fn section_of_a_partial_pit_by_quadrature() {
     let mut gears = plain_gears(3.0, 17, 38, WIDTH);
     gears.points_per_tooth = 2_000;
-    let teeth = corrected_teeth(&gears, 20.0);
-    let pit = PitCircle::Fractions { start: 0.2, end: 0.8, depth: 0.7 };
+    let teeth = published_teeth(&gears, 20.0);
     let width_mm = 6.0;
-    let fault = Fault::PartialFace(PartialFace { width_mm, pit });
-    let fault = fault_geometry(&fault, &teeth, Convention::Corrected, 1).unwrap();
-    let FaultDescription::FaceFault { pit, .. } = fault.description else { panic!("a pit") };
+    let fault = fault_geometry(&partial_pit(width_mm), &teeth, 1).unwrap();
+    let DamageDescription::FaceFault { pit, .. } = fault.description else { panic!("a pit") };
     let lateral = fault.gear.lateral.as_ref().unwrap();
     let yc = fault.gear.yc_mm.as_ref().unwrap();
-    let mut pairs: [Vec<(f64, f64)>; 3] = Default::default();
-    for i in (pit.start_index..=pit.end_index).step_by(37) {
-        let (y, cut) = (teeth.gear_profile.y_mm[i], fault.flank_y_mm[i]);
-        let left = |at: f64| if at < cut { -WIDTH / 2.0 } else { -WIDTH / 2.0 + width_mm };
-        let steps = [-y, cut, y];
-        let section = quadrature(&steps, |at| (left(at), WIDTH / 2.0));
-        pairs[0].extend([
-            (fault.gear.area_mm2[i], section.area),
-            (yc[i], section.yc),
-            (lateral.zc_mm[i], section.zc),
-            (fault.gear.iz_mm4[i], section.iz),
-            (lateral.iy_mm4[i], section.iy),
-        ]);
-        pairs[1].push((lateral.iyz_mm4[i], section.iyz));
-        // Jourawski's shear stress Q/(Iz b) on the strips.
-        let width = |at: f64| WIDTH / 2.0 - left(at);
-        let moment_above = |from: f64| -> f64 {
-            let up_to = |a: f64, b: f64| integral(a, b, 1, |at| (at - section.yc) * width(at));
-            if from < cut { up_to(from, cut) + up_to(cut, y) } else { up_to(from, y) }
+    let at = |i: usize| {
+        let (exact, shear) = cornered_section(teeth.gear_profile.y_mm[i], fault.flank_y_mm[i], width_mm);
+        Compared {
+            section: [
+                (fault.gear.area_mm2[i], exact.area),
+                (yc[i], exact.yc),
+                (lateral.zc_mm[i], exact.zc),
+                (fault.gear.iz_mm4[i], exact.iz),
+                (lateral.iy_mm4[i], exact.iy),
+            ],
+            product: (lateral.iyz_mm4[i], exact.iyz),
+            shear: (fault.gear.shear_per_mm2[i], shear),
+        }
+    };
+    assert_sections("published", (pit.start_index..=pit.end_index).step_by(37).map(at).collect());
+}
+
+#[test]
+fn section_of_a_damaged_tooth_by_quadrature() {
+    let mut gears = plain_gears(3.0, 17, 38, WIDTH);
+    gears.points_per_tooth = 2_000;
+    let teeth = linear_teeth(&gears, 20.0);
+    for (wheel, width_mm) in [(WheelName::Gear, 6.0), (WheelName::Pinion, 2.5)] {
+        let tooth = damaged_tooth(&teeth, &[Fault::new(wheel, 3, partial_pit(width_mm))]);
+        let [DamageDescription::FaceFault { pit, .. }] = &tooth.descriptions[..] else { panic!("a pit") };
+        let profile = teeth.profile(wheel);
+        let at = |i: usize| {
+            let (exact, shear) = cornered_section(profile.y_mm[i], tooth.corner_y_mm[i], width_mm);
+            let section = Section::damaged(&tooth, profile, WIDTH, i);
+            Compared {
+                section: [
+                    (section.area_mm2, exact.area),
+                    (section.yc_mm, exact.yc),
+                    (section.zc_mm, exact.zc),
+                    (section.iz_mm4, exact.iz),
+                    (section.iy_mm4, exact.iy),
+                ],
+                product: (section.iyz_mm4, exact.iyz),
+                shear: (section.shear_per_mm2, shear),
+            }
         };
-        let energy: f64 = steps
-            .windows(2)
-            .map(|ends| integral(ends[0], ends[1], 1, |at| moment_above(at).powi(2) / width(at)))
-            .sum();
-        pairs[2].push((fault.gear.shear_per_mm2[i], energy / (2.0 * section.iz.powi(2))));
+        // Not at the very edges, where nothing but rounding is missing.
+        let inside = pit.start_index + 5..=pit.end_index - 5;
+        assert_sections(wheel.name(), inside.step_by(37).map(at).collect());
+        // Where nothing is missing it is the sound tooth's.
+        let below = pit.start_index - 1;
+        assert_eq!(
+            Section::damaged(&tooth, profile, WIDTH, below),
+            Section::sound(WIDTH, profile.y_mm[below])
+        );
     }
-    let [section, product, shear] = pairs;
-    assert_close("section of a partial pit", 1e-12, section);
-    // Iyz is a difference of larger terms at the pit's edges, where the cut is shallow.
-    assert_close("product of inertia of a partial pit", 1e-9, product);
-    assert_close("shear integral of a partial pit", 1e-12, shear);
 }
 
 /// (N mm) Strain energy per mm of length of the section made of `steps` and `strip` under the axial force `−force`
 /// at (y, z) and the moment `∫ σ y dA = moment`, both about the section's centre: the linear stress that is in
-/// equilibrium with them, squared and integrated. No sign convention of moments enters.
+/// equilibrium with them, squared and integrated. No sign model of moments enters.
 fn energy_of_equilibrium(cut: &Quadrature, force: f64, [y, z]: [f64; 2], moment: f64) -> f64 {
     // σ = a + b y + c z with ∫ σ = −force, ∫ σ y = moment − force y, ∫ σ z = −force z.
     let (first, second) = (moment - force * y, -force * z);
@@ -220,13 +360,141 @@ fn unsymmetric_bending_from_equilibrium() {
     assert!(slip.abs() > 0.01, "the section is asymmetric enough to tell the two signs apart");
 }
 
+#[test]
+fn unsymmetric_bending_of_a_damaged_tooth_from_equilibrium() {
+    let (points, length, half, alpha_deg, load_z, corner_mm, step) = (4_001, 6.0, 1.7, 20.0, 3.0, 6.0, 0.4);
+    let n = (points - 1) as f64;
+    let (wheel, profile) = bar(points, length, alpha_deg, |_| half);
+    let (cut, shear) = cornered_section(half, step, corner_mm);
+    let (fa, fs) = f64::to_radians(alpha_deg).sin_cos();
+    let arm = [half - cut.yc, load_z - cut.zc];
+    let bending = 2.0 * integral(0.0, length, 1, |s| energy_of_equilibrium(&cut, fa, arm, fs * (length - s)));
+    let trapezoid = length.powi(3) / (3.0 * n * n) * energy_of_equilibrium(&cut, 0.0, [0.0; 2], fs);
+    let exact = bending + trapezoid + 2.0 * fs * fs * shear * length / G + fa * fa * length / (E * cut.area);
+    let mut damage = untouched(WheelName::Pinion, &profile);
+    damage.corner_width_mm.fill(corner_mm);
+    damage.corner_y_mm.fill(step);
+    let tooth = loaded(&wheel, &profile, Some(&damage), &rigid_foundation());
+    let load = load_at_the_end(&profile, alpha_deg, load_z, WIDTH - corner_mm);
+    assert_close(
+        "unsymmetric bending of a damaged tooth",
+        1e-11,
+        [(tooth.compliance_mm_per_n(&load), exact)],
+    );
+}
+
+// What misses one end of its whole height is a narrower tooth, if it is loaded in the middle of what is left.
+#[test]
+fn a_tooth_without_one_end_is_a_narrower_one() {
+    let mut gears = plain_gears(3.0, 17, 38, WIDTH);
+    gears.points_per_tooth = 2_000;
+    let missing_mm = 4.5;
+    let narrow = Gears { face_width_mm: WIDTH - missing_mm, ..gears.clone() };
+    let (teeth, narrow_teeth) = (linear_teeth(&gears, 20.0), linear_teeth(&narrow, 20.0));
+    for name in WheelName::BOTH {
+        let flank = teeth.flank(name);
+        let mut damage = untouched(name, flank.profile);
+        damage.missing_width_mm.fill(missing_mm);
+        let cut = loaded(flank.wheel, flank.profile, Some(&damage), &gears.foundation);
+        let narrow = narrow_teeth.flank(name);
+        let whole = loaded(narrow.wheel, narrow.profile, None, &gears.foundation);
+        let compliances = (0..=20).map(|k| {
+            let position = teeth.path.contact_ratio * f64::from(k) / 20.0;
+            let point = flank.at_curvature(teeth.path.curvature_mm(name, position));
+            let load = |z_mm: f64| FlankLoad {
+                point,
+                sin: point.load_sin,
+                cos: point.load_cos,
+                z_mm,
+                width_mm: WIDTH - missing_mm,
+            };
+            (cut.compliance_mm_per_n(&load(missing_mm / 2.0)), whole.compliance_mm_per_n(&load(0.0)))
+        });
+        assert_close(&format!("{} without one end", name.name()), 1e-11, compliances);
+    }
+}
+
+// Two flanks touch where the line of action crosses both, and push along it: ρ_p + ρ_g is the line's length, R² = Rb² + ρ², and
+// to the tooth's centre line the flank's normal stands at α₁ = tan a − (θ0 + inv α), cos a = Rb/R. The points of the profile are
+// joined by straight lines: to second order in their distance.
+#[test]
+fn pairs_touch_on_the_line_of_action() {
+    let involute = |angle: f64| angle.tan() - angle;
+    for (z1, z2, angle_deg) in [(17, 38, 20.0), (62, 62, 20.0), (80, 90, 14.5)] {
+        let mut gears = plain_gears(3.0, z1, z2, WIDTH);
+        gears.pressure_angle_deg = angle_deg;
+        let teeth = linear_teeth(&gears, 20.0);
+        let distance = teeth.pinion.pitch_radius_mm + teeth.gear.pitch_radius_mm;
+        let line = distance * f64::to_radians(angle_deg).sin();
+        let mut radii = Vec::new();
+        for k in 0..=40 {
+            let position = teeth.path.contact_ratio * f64::from(k) / 40.0;
+            let mut from_tangents = 0.0;
+            for name in WheelName::BOTH {
+                let (flank, base) = (teeth.flank(name), teeth.wheel(name).base_radius_mm);
+                let curvature = teeth.path.curvature_mm(name, position);
+                from_tangents += curvature;
+                let point = flank.at_curvature(curvature);
+                let radius = base.hypot(curvature);
+                radii.push((point.x_mm.hypot(point.y_mm), radius));
+                let at = (base / radius).acos();
+                let half_tooth = PI / (2.0 * f64::from(flank.wheel.teeth));
+                let load_angle = at.tan() - (half_tooth + involute(f64::to_radians(angle_deg)));
+                let angle = point.load_sin.atan2(point.load_cos);
+                assert!((angle - load_angle).abs() < 1e-12, "{z1}/{z2}, {name:?}: {angle} and {load_angle}");
+            }
+            assert!((from_tangents - line).abs() < 1e-12 * line);
+        }
+        assert_close(&format!("{z1}/{z2}, radii of contact"), 1e-8, radii);
+    }
+}
+
+// Equal wheels: what damage on the gear does on the way out, the same damage on the pinion does on the way in.
+#[test]
+fn damage_on_either_of_two_equal_wheels_is_mirrored() {
+    let mut gears = plain_gears(3.0, 31, 31, WIDTH);
+    gears.points_per_tooth = 3_000;
+    let teeth = linear_teeth(&gears, 20.0);
+    let pit = PitCircle::Fractions { start: 0.3, end: 0.7, depth: 0.4 };
+    let ground =
+        ToothDestruction { start: 0.2, line: DestructionLine::End(0.9), offset_mm: 0.0, noise_mm: 0.0 };
+    let chip = ToothBreakage { chip_height_mm: 3.0, chip_width_mm: 9.0, tip_loss_mm: 1.0 };
+    for damage in [partial_pit(6.0), ThroughFace { pit }.into(), ground.into(), chip.into()] {
+        let faults = WheelName::BOTH.map(|wheel| Fault::new(wheel, 2, damage.clone()));
+        let damaged = damaged_teeth(&faults, &teeth, 1).unwrap();
+        let pairs = Pairs::new(&teeth, &damaged, gears.material, &gears.foundation);
+        let [of_pinion, of_gear] =
+            [PairKind { pinion: Some(0), ..SOUND_PAIR }, PairKind { gear: Some(1), ..SOUND_PAIR }];
+        let ratio = teeth.path.contact_ratio;
+        let states = (0..=300).map(|k| {
+            let position = ratio * (f64::from(k) + 0.31) / 301.0;
+            (pairs.at(&of_pinion, position), pairs.at(&of_gear, ratio - position))
+        });
+        let states: Vec<_> = states.collect();
+        let carrying = states.iter().filter(|(pinion, _)| pinion.stiffness_n_per_mm > 0.0);
+        let stiffness = carrying.map(|(pinion, gear)| (pinion.stiffness_n_per_mm, gear.stiffness_n_per_mm));
+        assert_close(&format!("{} on either wheel", damage.kind()), 1e-9, stiffness);
+        for (pinion, gear) in &states {
+            assert!((pinion.deviation_mm - gear.deviation_mm).abs() < 1e-9, "{pinion:?} {gear:?}");
+            assert!((pinion.load.mean_z_m - gear.load.mean_z_m).abs() < 1e-12);
+        }
+        // Each is felt: in the stiffness, or, where little material is missing, as a deviation.
+        let sound = |position: f64| pairs.at(&SOUND_PAIR, position).stiffness_n_per_mm;
+        let softest = (0..=300)
+            .map(|k| f64::from(k) / 300.0 * ratio)
+            .map(|at| pairs.at(&of_gear, at).stiffness_n_per_mm / sound(at));
+        let deepest = states.iter().map(|(_, gear)| gear.deviation_mm).fold(0.0, f64::min);
+        assert!(softest.fold(1.0, f64::min) < 0.99 || deepest < -1e-2, "{}", damage.kind());
+    }
+}
+
 // Evaluated for every loaded point at once, the integrals are expanded in powers of the loaded point; here each is
 // evaluated on its own by the same trapezoid: only rounding remains, enlarged by what cancels in the expansion.
 #[test]
 fn expanded_integrals_equal_the_direct_ones() {
     let mut gears = plain_gears(3.0, 17, 38, WIDTH);
     gears.points_per_tooth = 2_000;
-    let teeth = corrected_teeth(&gears, 20.0);
+    let teeth = linear_teeth(&gears, 20.0);
     let (wheel, profile) = (&teeth.pinion, &teeth.pinion_profile);
     let tooth = compliance(wheel, profile, &ToothSection::sound(wheel, profile));
     let (fa, fs) = wheel.pressure_angle_rad.sin_cos();
@@ -296,7 +564,7 @@ fn foundation_at_a_known_point() {
 fn pair_is_its_parts_in_series() {
     let mut gears = plain_gears(3.0, 17, 38, WIDTH);
     gears.points_per_tooth = 1_000;
-    let teeth = corrected_teeth(&gears, 20.0);
+    let teeth = published_teeth(&gears, 20.0);
     let pair = PairStiffness::new(&gears, &teeth, None).unwrap();
     let first = teeth.contact.initial_contact_index;
     let tooth = |wheel: &Wheel, profile: &ToothProfile| {
@@ -316,6 +584,52 @@ fn pair_is_its_parts_in_series() {
     );
 }
 
+#[test]
+fn pair_of_conjugate_teeth_is_its_parts_in_series() {
+    let mut gears = plain_gears(3.0, 17, 38, WIDTH);
+    gears.points_per_tooth = 1_000;
+    let teeth = linear_teeth(&gears, 20.0);
+    let pairs = sound_pairs(&gears, &teeth);
+    let whole = pairs.nominal_load();
+    assert_close(
+        "pair in series",
+        1e-13,
+        (0..=100).map(|k| {
+            let position = teeth.path.contact_ratio * f64::from(k) / 100.0;
+            let state = pairs.at(&SOUND_PAIR, position);
+            assert_eq!((state.deviation_mm, state.load), (0.0, whole));
+            let parts = WheelName::BOTH.map(|name| {
+                let flank = teeth.flank(name);
+                let point = flank.at_curvature(teeth.path.curvature_mm(name, position));
+                let load =
+                    FlankLoad { point, sin: point.load_sin, cos: point.load_cos, z_mm: 0.0, width_mm: WIDTH };
+                loaded(flank.wheel, flank.profile, None, &gears.foundation).compliance_mm_per_n(&load)
+            });
+            let contact = hertz_compliance_mm_per_n(Material::Steel, WIDTH);
+            (1.0 / state.stiffness_n_per_mm, parts[0] + parts[1] + contact)
+        }),
+    );
+}
+
+// The same of conjugate teeth, which start contact wherever they do: of second order in the points' distance.
+#[test]
+fn conjugate_pair_s_stiffness_converges_with_the_points_of_the_profile() {
+    let pair = |points: usize| -> Vec<f64> {
+        let mut gears = plain_gears(3.0, 17, 38, WIDTH);
+        gears.points_per_tooth = points;
+        let teeth = linear_teeth(&gears, 20.0);
+        let pairs = sound_pairs(&gears, &teeth);
+        let at = |k: i32| teeth.path.contact_ratio * f64::from(k) / 500.0;
+        (0..=500).map(|k| pairs.at(&SOUND_PAIR, at(k)).stiffness_n_per_mm).collect()
+    };
+    let exact = pair(160_000);
+    for points in [1_000, 2_000, 5_000, 10_000, 20_000] {
+        let error = largest(pair(points).iter().zip(&exact).map(|(k, exact)| deviation(*k, *exact)));
+        println!("stiffness of a conjugate pair at {points} points: {error:.1e}");
+        assert!(error * (points as f64).powi(2) <= 20.0, "{points}: {error:e}");
+    }
+}
+
 // The default of 10 000 points a tooth against 160 000: the largest difference at equal positions.
 // What is left is of first order, since contact starts at a point of the grid: at most a quarter of a step.
 #[test]
@@ -323,7 +637,7 @@ fn pair_stiffness_converges_with_the_points_of_the_profile() {
     let pair = |points: usize| {
         let mut gears = plain_gears(3.0, 17, 38, WIDTH);
         gears.points_per_tooth = points;
-        PairStiffness::new(&gears, &corrected_teeth(&gears, 20.0), None).unwrap()
+        PairStiffness::new(&gears, &published_teeth(&gears, 20.0), None).unwrap()
     };
     let exact = pair(160_000);
     let exact = exact.healthy_curve();
@@ -345,20 +659,34 @@ fn pair_stiffness_converges_with_the_points_of_the_profile() {
 // Stiffness has one scale: E times a length. Module, width and E only scale it where the bore does too.
 #[test]
 fn stiffness_scales_with_modulus_and_width_and_not_with_module() {
-    let pair = |module: f64, width: f64, material: Material| {
+    let gears = |module: f64, width: f64, material: Material| {
         let mut gears = plain_gears(module, 20, 33, width);
         gears.points_per_tooth = 1_000;
         gears.material = material;
-        PairStiffness::new(&gears, &corrected_teeth(&gears, 6.0 * module), None).unwrap().healthy_n_per_mm
+        gears
     };
-    let reference = pair(3.0, 15.0, Material::Copper);
-    let zip = |other: Vec<f64>, factor: f64| {
-        other.into_iter().zip(reference.clone()).map(move |(a, b)| (a, b * factor)).collect::<Vec<_>>()
+    let published = |gears: Gears| -> Vec<f64> {
+        let teeth = published_teeth(&gears, 6.0 * gears.module_mm);
+        PairStiffness::new(&gears, &teeth, None).unwrap().healthy_n_per_mm
     };
-    assert_close("twice the module", 1e-10, zip(pair(6.0, 15.0, Material::Copper), 1.0));
-    assert_close("twice the width", 1e-10, zip(pair(3.0, 30.0, Material::Copper), 2.0));
-    // Copper and aluminium have the same Poisson's ratio.
-    assert_close("another modulus", 1e-10, zip(pair(3.0, 15.0, Material::Aluminium), 70.0 / 120.0));
+    let linear = |gears: Gears| -> Vec<f64> {
+        let teeth = linear_teeth(&gears, 6.0 * gears.module_mm);
+        let pairs = sound_pairs(&gears, &teeth);
+        let at = |k: i32| teeth.path.contact_ratio * f64::from(k) / 200.0;
+        (0..=200).map(|k| pairs.at(&SOUND_PAIR, at(k)).stiffness_n_per_mm).collect()
+    };
+    type Pair<'a> = &'a dyn Fn(Gears) -> Vec<f64>;
+    for (name, pair) in [("published", &published as Pair<'_>), ("linear", &linear)] {
+        let reference = pair(gears(3.0, 15.0, Material::Copper));
+        let check = |what: &str, other: Gears, factor: f64| {
+            let expected = reference.iter().map(|k| k * factor);
+            assert_close(&format!("{name}, {what}"), 1e-10, pair(other).into_iter().zip(expected));
+        };
+        check("twice the module", gears(6.0, 15.0, Material::Copper), 1.0);
+        check("twice the width", gears(3.0, 30.0, Material::Copper), 2.0);
+        // Copper and aluminium have the same Poisson's ratio.
+        check("another modulus", gears(3.0, 15.0, Material::Aluminium), 70.0 / 120.0);
+    }
 }
 
 // With a contact ratio above 2 the mesh is the sum of all pairs; the published sum loses the third.
@@ -367,9 +695,26 @@ fn mesh_sums_every_pair_in_contact() {
     let mut gears = plain_gears(2.0, 80, 90, 20.0);
     gears.pressure_angle_deg = 14.5;
     gears.points_per_tooth = 1_000;
-    let teeth = corrected_teeth(&gears, 20.0);
-    assert!(teeth.contact.contact_ratio > 2.2, "{}", teeth.contact.contact_ratio);
-    let grid = meshtone::sampling::CycleGrid::new(80, 90, 1e5);
+    let conjugate = linear_teeth(&gears, 20.0);
+    let ratio = conjugate.path.contact_ratio;
+    assert!(ratio > 2.2, "{ratio}");
+    let pairs = sound_pairs(&gears, &conjugate);
+    let pitch = 300;
+    let mesh = PairMesh::new(&pairs, PairSequence::new(80, 90, &[]), ratio, pitch);
+    // A point stands for the interval around it: where the path ends within it, the pair counts for the part on the path.
+    let half = 0.5 / pitch as f64;
+    let counts = |at: f64| ((at + half).min(ratio) - (at - half).max(0.0)) / (2.0 * half);
+    let sum = (0..pitch).map(|i| {
+        let positions = (0..9).map(|age| i as f64 / pitch as f64 + f64::from(age));
+        positions
+            .filter(|&at| at - half < ratio)
+            .map(|at| counts(at) * pairs.at(&SOUND_PAIR, at.min(ratio)).stiffness_n_per_mm)
+            .sum()
+    });
+    assert_close("linear, up to 9 pairs", 1e-12, mesh.healthy_stiffness_n_per_mm().into_iter().zip(sum));
+
+    let teeth = published_teeth(&gears, 20.0);
+    let grid = meshtone::operation::CycleGrid::new(80, 90, 1e5);
     let pair = PairStiffness::new(&gears, &teeth, None).unwrap();
     let curve = pair.healthy_curve();
     let sum = |most: usize| -> Vec<f64> {
@@ -383,14 +728,8 @@ fn mesh_sums_every_pair_in_contact() {
             })
             .collect()
     };
-    for (convention, most) in [(Convention::Corrected, 9), (Convention::Published, 2)] {
-        let mesh = MeshStiffness::new(&pair, &grid, convention);
-        assert_close(
-            &format!("{convention:?}, up to {most} pairs"),
-            1e-12,
-            mesh.healthy_mesh_n_per_mm.into_iter().zip(sum(most)),
-        );
-    }
+    let mesh = MeshStiffness::new(&pair, &grid);
+    assert_close("published, up to 2 pairs", 1e-12, mesh.healthy_mesh_n_per_mm.into_iter().zip(sum(2)));
     let lost = mean(&sum(2)) / mean(&sum(9)) - 1.0;
     println!(
         "contact ratio {:.4}: the published mean is off by {:.1} %",

@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use meshtone::Stages;
-use meshtone::dynamics::Excitation;
-use meshtone::dynamics::coordinates::{CoordinateMatrix, CoordinateVector, THETA_PINION};
-use meshtone::scenario::Convention;
+use meshtone::machine::Excitation;
+use meshtone::machine::coordinates::{CoordinateMatrix, CoordinateVector, THETA_PINION};
+use meshtone::scenario::Model;
 
 const MOST_ITERATIONS: usize = 11;
 
@@ -26,7 +26,9 @@ pub struct Dense<'a> {
 impl<'a> Dense<'a> {
     /// Nothing is computed yet.
     pub fn new(stages: &'a Stages) -> Self {
-        let points = stages.cycle.points_per_gear_revolution;
+        // What differs of the mesh: entries of the pairs' table, or all coarse points of a gear revolution.
+        let points =
+            stages.mesh.pairs().map_or(stages.cycle.points_per_gear_revolution, |pairs| pairs.entries());
         Self {
             stages,
             mass: CoordinateMatrix::from_diagonal(&CoordinateVector::from(stages.system.mass_diagonal)),
@@ -38,7 +40,8 @@ impl<'a> Dense<'a> {
     }
 
     fn stiffness(&mut self, point: usize) -> CoordinateMatrix {
-        *self.stiffness[point].get_or_insert_with(|| self.stages.system.stiffness_matrix_at(point))
+        *self.stiffness[point]
+            .get_or_insert_with(|| self.stages.system.stiffness_matrix_at(&self.stages.mesh, point))
     }
 
     fn effective(&mut self, point: usize) -> CoordinateMatrix {
@@ -50,6 +53,7 @@ impl<'a> Dense<'a> {
         *self.inverse[point].get_or_insert_with(|| effective.try_inverse().unwrap())
     }
 
+    /// Published: the coarse point of the cycle nearest to the pinion's own angle.
     fn point(&self, angle: f64) -> usize {
         let turns = angle / std::f64::consts::TAU / self.stages.cycle.coarse_step_rev;
         (turns.round() as i64).rem_euclid(self.stages.cycle.points_per_gear_revolution as i64) as usize
@@ -64,18 +68,17 @@ impl<'a> Dense<'a> {
     }
 
     fn force(&self, sample: usize, excitation: Excitation) -> CoordinateVector {
-        let convention = self.stages.scenario.convention;
-        let relative = Excitation {
-            motor_angle_rad: excitation.motor_angle_rad - self.rotation(sample),
-            motor_speed_rad_per_s: excitation.motor_speed_rad_per_s - self.nominal_speed(),
-            ..excitation
-        };
-        let force = self.stages.system.force(&relative, convention);
-        match convention {
-            Convention::Corrected => force,
-            Convention::Published => {
+        let model = self.stages.scenario.model;
+        let mut relative = excitation;
+        relative.motor_angle_rad -= self.rotation(sample);
+        relative.motor_speed_rad_per_s -= self.nominal_speed();
+        let force = self.stages.system.force(&relative);
+        match model {
+            Model::Linear => force,
+            Model::Published => {
                 force - self.damping * self.stages.system.rigid_rotation() * self.nominal_speed()
             }
+            _ => panic!("a model that this oracle does not know"),
         }
     }
 
@@ -105,28 +108,29 @@ impl<'a> Dense<'a> {
         p
     }
 
-    /// The corrected iteration: the step solved for one point of the cycle, until it leads to that point.
-    fn corrected_step(
+    /// Linear: the mesh's point nearest to the motor's angle, at every sample. Nothing of the solution decides it.
+    fn known_points(&self) -> Vec<usize> {
+        let Some(pairs) = self.stages.mesh.pairs() else { return Vec::new() };
+        let points_per_revolution = (pairs.points_per_pitch * self.stages.teeth.pinion.teeth as usize) as f64;
+        self.stages
+            .scenario
+            .motion(&self.stages.time)
+            .take(self.stages.time.samples)
+            .map(|motion| pairs.entry((motion.revolutions * points_per_revolution).round() as usize))
+            .collect()
+    }
+
+    /// The linear step: no iteration, since the point at its end is known.
+    fn linear_step(
         &mut self,
         increment: &CoordinateVector,
         u: &CoordinateVector,
-        angle: f64,
-        guess: f64,
         point: &mut usize,
+        next: usize,
     ) -> CoordinateVector {
         let start_stiffness = self.stiffness(*point);
-        *point = self.point(guess);
-        let mut p = self.inverse(*point) * (increment + (start_stiffness - self.stiffness(*point)) * u);
-        for _ in 0..MOST_ITERATIONS {
-            let next = self.point(angle + p[THETA_PINION]);
-            if next == *point {
-                break;
-            }
-            *point = next;
-            let residual = increment + (start_stiffness - self.stiffness(next)) * u;
-            p = self.inverse(next) * residual;
-        }
-        p
+        *point = next;
+        self.inverse(next) * (increment + (start_stiffness - self.stiffness(next)) * u)
     }
 
     /// Displacement and velocity at the start, relative to the rigid rotation.
@@ -144,37 +148,24 @@ impl<'a> Dense<'a> {
 
     fn starts_in_equilibrium(&self) -> bool {
         let scenario = &self.stages.scenario;
-        scenario.convention == Convention::Corrected && scenario.solver.initial_displacement.is_none()
-    }
-
-    /// `K(θ_p) u = F − C u̇`, at the point that the solution itself leads to.
-    fn equilibrium(&mut self, force: &CoordinateVector) -> (CoordinateVector, usize) {
-        let mut point = self.point(0.0);
-        for _ in 0..MOST_ITERATIONS {
-            let u = self.stiffness(point).lu().solve(force).unwrap();
-            let next = self.point(u[THETA_PINION]);
-            if next == point {
-                return (u, point);
-            }
-            point = next;
-        }
-        panic!("no equilibrium");
+        scenario.model == Model::Linear && scenario.solver.initial_displacement.is_none()
     }
 
     /// Accelerations of all samples.
     pub fn accelerations(&mut self) -> Vec<CoordinateVector> {
-        let convention = self.stages.scenario.convention;
+        let model = self.stages.scenario.model;
         let rigid = self.stages.system.rigid_rotation();
         let rigid_step = rigid * self.nominal_speed() * self.dt;
         let rigid_increment = self.effective(0) * rigid_step;
         let (mut u, mut v) = self.start();
         let mut excitation = self.stages.excitation();
         let mut force = self.force(0, excitation.next().unwrap());
-        let mut point = self.point(u[THETA_PINION]);
+        let known = self.known_points();
+        let mut point = known.first().copied().unwrap_or_else(|| self.point(u[THETA_PINION]));
         if self.starts_in_equilibrium() {
-            (u, point) = self.equilibrium(&(force - self.damping * v));
+            // K u = F − C u̇.
+            u = self.stiffness(point).lu().solve(&(force - self.damping * v)).unwrap();
         }
-        let mut before = [u[THETA_PINION]; 2];
         let mass_inverse = self.mass.try_inverse().unwrap();
         let mut a = mass_inverse * (force - self.damping * v - self.stiffness(point) * u);
         let mut accelerations = vec![a];
@@ -184,18 +175,14 @@ impl<'a> Dense<'a> {
                 + (self.mass * (4.0 / self.dt) + self.damping * 2.0) * v
                 + self.mass * a * 2.0;
             let angle = u[THETA_PINION] + self.rotation(sample);
-            let p = match convention {
-                Convention::Published => {
+            let p = match model {
+                Model::Published => {
                     let whole = |p: &CoordinateVector| (increment + rigid_increment).dot(&(p + rigid_step));
                     self.published_step(&increment, &u, angle, &mut point, whole)
                 }
-                Convention::Corrected => {
-                    // Where the angles before the last lead, continued along a line.
-                    let guess = self.rotation(sample) + before[0] + 2.0 * (before[0] - before[1]);
-                    self.corrected_step(&increment, &u, angle, guess, &mut point)
-                }
+                Model::Linear => self.linear_step(&increment, &u, &mut point, known[sample]),
+                _ => panic!("a model that this oracle does not know"),
             };
-            before = [u[THETA_PINION], before[0]];
             let velocity_change = p * (2.0 / self.dt) - v * 2.0;
             a += p * (4.0 / (self.dt * self.dt)) - v * (4.0 / self.dt) - a * 2.0;
             v += velocity_change;

@@ -1,15 +1,20 @@
-//! What drives and disturbs the pair under `corrected`: profiles of speed and torque, fluctuations, eccentricity.
+//! What drives and disturbs the pair under `linear`: profiles of speed and torque, fluctuations, eccentricity.
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
 use crate::physics::*;
-use meshtone::dynamics::Motion;
-use meshtone::sampling::TimeGrid;
-use meshtone::scenario::{Profile, Scenario};
-use meshtone::signal::Channels;
+use meshtone::scenario::{GearPair, Profile, Scenario};
+use meshtone::sensor::Channels;
 use meshtone::simulate;
 
 fn pair() -> Scenario {
-    let mut scenario = Scenario::new(3.0, 20, 40, 15.0, 30.0, 20.0);
+    let mut scenario = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 20,
+        gear_teeth: 40,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 30.0,
+        brake_torque_nm: 20.0,
+    });
     scenario.gears.points_per_tooth = 2_000;
     scenario.solver.sampling_rate_hz = 2e4;
     scenario
@@ -75,8 +80,8 @@ fn shafts_follow_a_speed_profile() {
             continue;
         }
         let range = start..start + window;
-        let pinion = mean(&channels.pinion_speed_hz[range.clone()]);
-        let gear = mean(&channels.gear_speed_hz[range]);
+        let pinion = mean(&channels.pinion_shaft_speed_hz[range.clone()]);
+        let gear = mean(&channels.gear_shaft_speed_hz[range]);
         worst = worst.max(deviation(pinion, speed_at(middle)).abs()).max(deviation(2.0 * gear, pinion).abs());
     }
     println!("speed profile: followed within {worst:.1e}");
@@ -112,11 +117,11 @@ fn fluctuations_have_their_distribution_and_their_seed() {
     let mut scenario = pair();
     scenario.operation.speed_fluctuation_hz = 0.3;
     scenario.operation.torque_fluctuation_nm = 2.0;
-    let time = TimeGrid::new(&scenario);
+    let time = scenario.time_grid();
     let draw = |seed: u64| -> [Vec<f64>; 2] {
         let mut scenario = scenario.clone();
         scenario.seed = seed;
-        let motion: Vec<_> = Motion::new(&scenario, &time).take(time.samples).collect();
+        let motion: Vec<_> = scenario.motion(&time).take(time.samples).collect();
         [
             motion.iter().map(|sample| (sample.speed_hz - 30.0) / 0.3).collect(),
             motion.iter().map(|sample| (sample.torque_nm - 20.0) / 2.0).collect(),

@@ -3,8 +3,8 @@
 
 use std::sync::atomic::AtomicBool;
 
-use meshtone::hybrid::*;
 use meshtone::signal::{kurtosis, rms, skewness};
+use meshtone::tuning::*;
 
 static NEVER: AtomicBool = AtomicBool::new(false);
 

@@ -3,29 +3,36 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use meshtone::hybrid::*;
-use meshtone::scenario::{DestructionLine, Fault, Scenario, ToothDestruction};
+use meshtone::scenario::{DestructionLine, Fault, GearPair, MissingTooth, Scenario, ToothDestruction};
 use meshtone::signal::SeparationSettings;
+use meshtone::tuning::*;
 
 /// Tooth counts with a large common factor need few samples a revolution.
 fn base() -> Scenario {
-    let mut scenario = Scenario::new(3.0, 20, 40, 15.0, 40.0, 200.0);
+    let mut scenario = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 20,
+        gear_teeth: 40,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 200.0,
+    });
     scenario.quality.din_grade = 8;
     scenario.solver.sampling_rate_hz = 1e4;
     scenario
 }
 
-fn destroyed(start: f64, end: f64) -> Option<Fault> {
+fn destroyed(start: f64, end: f64) -> Vec<Fault> {
     let line = DestructionLine::End(end);
-    Some(Fault::ToothDestruction(ToothDestruction { start, line, offset_mm: 0.0, noise_mm: 0.0 }))
+    vec![Fault::on_first_gear_tooth(ToothDestruction { start, line, offset_mm: 0.0, noise_mm: 0.0 })]
 }
 
 /// A healthy pair, a destroyed flank and a missing tooth.
 fn cases() -> Vec<Case> {
-    [None, destroyed(0.1, 0.3), Some(Fault::MissingTooth)]
+    [vec![], destroyed(0.1, 0.3), vec![Fault::on_first_gear_tooth(MissingTooth)]]
         .into_iter()
         .enumerate()
-        .map(|(n, fault)| Case { label: format!("case {n}"), severity: n as f64, fault })
+        .map(|(n, faults)| Case { label: format!("case {n}"), severity: n as f64, faults })
         .collect()
 }
 
@@ -35,7 +42,7 @@ fn chain() -> DifferenceChain {
 
 /// What the scenario itself would show with an enhancement: its expected indicators, with a little scatter.
 fn measured(hidden: &Enhancement) -> Measurements {
-    let scenarios = cases().into_iter().map(|case| Scenario { fault: case.fault, ..base() }).collect();
+    let scenarios = cases().into_iter().map(|case| Scenario { faults: case.faults, ..base() }).collect();
     let simulated = SimulatedCases::new(difference_signals(scenarios, &chain()).unwrap()).unwrap();
     let indicators = vec![TuningIndicator::Rms, TuningIndicator::Kurtosis];
     let records = simulated.predict(&indicators, hidden).unwrap().into_iter().map(|case| {

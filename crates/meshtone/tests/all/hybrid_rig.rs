@@ -3,8 +3,8 @@
 
 use std::sync::atomic::AtomicBool;
 
-use meshtone::hybrid::*;
-use meshtone::scenario::{DampingRatio, Fault, Scenario, ToothBreakage};
+use meshtone::scenario::{DampingRatio, Fault, GearPair, MissingTooth, Scenario, ToothBreakage};
+use meshtone::tuning::*;
 
 const HIDDEN: Enhancement =
     Enhancement { width_ratio: 0.35, fault_to_harmonics_ratio: 1.4, noise_level: 0.9 };
@@ -12,7 +12,14 @@ const HIDDEN_DAMPING: f64 = 0.09;
 const RECORDS: u64 = 30;
 
 fn base() -> Scenario {
-    let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    let mut scenario = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 17,
+        gear_teeth: 38,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    });
     scenario.quality.din_grade = 7;
     scenario.solver.sampling_rate_hz = 6e4;
     scenario.gears.points_per_tooth = 2000;
@@ -21,12 +28,13 @@ fn base() -> Scenario {
 
 fn cases() -> Vec<Case> {
     let chip = |tip_loss_mm| {
-        Some(Fault::ToothBreakage(ToothBreakage { chip_height_mm: 5.0, chip_width_mm: 12.0, tip_loss_mm }))
+        let chip = ToothBreakage { chip_height_mm: 5.0, chip_width_mm: 12.0, tip_loss_mm };
+        vec![Fault::on_first_gear_tooth(chip)]
     };
-    [None, chip(1.0), chip(2.0), chip(3.0), Some(Fault::MissingTooth)]
+    [vec![], chip(1.0), chip(2.0), chip(3.0), vec![Fault::on_first_gear_tooth(MissingTooth)]]
         .into_iter()
         .enumerate()
-        .map(|(n, fault)| Case { label: format!("case {n}"), severity: n as f64, fault })
+        .map(|(n, faults)| Case { label: format!("case {n}"), severity: n as f64, faults })
         .collect()
 }
 
@@ -44,7 +52,7 @@ fn transmitted(signal: &[f64], echoes: &[(usize, f64)]) -> Vec<f64> {
 fn measured(echoes: &[(usize, f64)]) -> Measurements {
     let mut rig = base();
     rig.rig.damping_ratio = DampingRatio::Uniform(HIDDEN_DAMPING);
-    let scenarios = cases().into_iter().map(|case| Scenario { fault: case.fault, ..rig.clone() }).collect();
+    let scenarios = cases().into_iter().map(|case| Scenario { faults: case.faults, ..rig.clone() }).collect();
     let signals = difference_signals(scenarios, &DifferenceChain::new(25e3)).unwrap();
     let simulated = SimulatedCases::new(signals.clone()).unwrap();
     let records: Vec<Vec<Vec<f64>>> = signals

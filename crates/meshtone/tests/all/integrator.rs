@@ -1,17 +1,34 @@
 //! The time integration on problems whose solution is known: constant mesh stiffness.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, clippy::panic)]
 
-use meshtone::dynamics::coordinates::*;
-use meshtone::scenario::{DampingRatio, Profile, Scenario};
+use meshtone::machine::coordinates::*;
+use meshtone::mesh::Mesh;
+use meshtone::scenario::{DampingRatio, GearPair, Profile, Scenario};
 use meshtone::solver::{Block, Output, Recorder};
 use meshtone::{Stages, stages};
 
 const PINION_SPEED_HZ: f64 = 1.0;
 
+/// Makes the mesh's stiffness its mean at every point: each pair carries it for one pitch, and then nothing.
+fn level_the_mesh(stages: &mut Stages) {
+    let mean_n_per_m = stages.mesh.mean_stiffness_n_per_mm() * 1e3;
+    let Mesh::Pairs(mesh) = &mut stages.mesh else { panic!("not of pairs") };
+    let (carrying, after) = mesh.classes[0].stiffness_n_per_m.split_at_mut(mesh.points_per_pitch);
+    carrying.fill(mean_n_per_m);
+    after.fill(0.0);
+}
+
 /// Stages of a pair whose mesh stiffness does not change, and which turns little, so that little is lost when the
 /// rigid rotation is subtracted.
 fn constant_stiffness(sampling_rate_hz: f64, damping_ratio: f64, torque_nm: f64, seconds: f64) -> Stages {
-    let mut scenario = Scenario::new(3.0, 17, 38, 15.0, PINION_SPEED_HZ, torque_nm);
+    let mut scenario = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 17,
+        gear_teeth: 38,
+        face_width_mm: 15.0,
+        pinion_speed_hz: PINION_SPEED_HZ,
+        brake_torque_nm: torque_nm,
+    });
     scenario.gears.points_per_tooth = 1000;
     scenario.rig.damping_ratio = DampingRatio::Uniform(damping_ratio);
     scenario.solver.sampling_rate_hz = sampling_rate_hz;
@@ -19,9 +36,7 @@ fn constant_stiffness(sampling_rate_hz: f64, damping_ratio: f64, torque_nm: f64,
     scenario.solver.initial_displacement = Some([0.0; 13]);
     scenario.solver.settle_tolerance = 0.0;
     let mut stages = stages(&scenario).unwrap();
-    let mesh = &mut stages.system.mesh.stiffness_n_per_m;
-    let mean = mesh.iter().sum::<f64>() / mesh.len() as f64;
-    mesh.fill(mean);
+    level_the_mesh(&mut stages);
     stages.time.samples = (seconds * stages.time.sampling_rate_hz).round() as usize + 1;
     stages
 }
@@ -125,7 +140,14 @@ fn push() -> CoordinateVector {
 
 /// Smoothly forced, all coordinates pushed, and no mode beyond what the coarsest step resolves.
 fn smoothly_forced(sampling_rate_hz: f64, seconds: f64) -> Stages {
-    let mut scenario = Scenario::new(3.0, 17, 38, 15.0, PINION_SPEED_HZ, 10.0);
+    let mut scenario = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 17,
+        gear_teeth: 38,
+        face_width_mm: 15.0,
+        pinion_speed_hz: PINION_SPEED_HZ,
+        brake_torque_nm: 10.0,
+    });
     scenario.gears.points_per_tooth = 1000;
     // Tilting at some 5 kHz instead of 100 kHz and more, and every mode damped otherwise.
     scenario.rig.wheel_rotational_stiffness_nm_per_rad = 1e5;
@@ -134,9 +156,7 @@ fn smoothly_forced(sampling_rate_hz: f64, seconds: f64) -> Stages {
     scenario.solver.initial_displacement = Some(push().into());
     scenario.solver.settle_tolerance = 0.0;
     let mut stages = stages(&scenario).unwrap();
-    let mesh = &mut stages.system.mesh.stiffness_n_per_m;
-    let mean = mesh.iter().sum::<f64>() / mesh.len() as f64;
-    mesh.fill(mean);
+    level_the_mesh(&mut stages);
     let dt = stages.time.step_s();
     stages.time.samples = (seconds / dt).round() as usize + 1;
     // A point at every sample: the profile's straight lines are not seen.

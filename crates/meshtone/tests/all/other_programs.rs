@@ -5,12 +5,12 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
 use crate::physics::*;
-use meshtone::dynamics::coordinates::*;
-use meshtone::dynamics::{MeshDirections, Modes};
-use meshtone::fault::ToothSection;
+use meshtone::damage::published::ToothSection;
+use meshtone::machine::coordinates::*;
+use meshtone::machine::{MeshDirections, Modes};
 use meshtone::scenario::{FoundationCoefficients, Gears, Material};
-use meshtone::stiffness::{PairStiffness, ToothCompliance, hertz_compliance_mm_per_n};
-use meshtone::tooth::{Teeth, ToothProfile, Wheel, contact_ratio};
+use meshtone::stiffness::{ToothCompliance, hertz_compliance_mm_per_n};
+use meshtone::wheel::{Teeth, ToothProfile, Wheel, contact_ratio};
 
 /// Means (and extremes) of the mesh stiffness where two pairs and where one pair carry the load, and over a pitch.
 struct Mesh {
@@ -33,10 +33,8 @@ fn mesh(ratio: f64, pair: impl Fn(f64) -> f64) -> Mesh {
 
 /// (N/m) The library's own mesh, for a modulus of `e_gpa`.
 fn library_mesh(gears: &Gears, teeth: &Teeth, e_gpa: f64) -> Mesh {
-    let pair = PairStiffness::new(gears, teeth, None).unwrap();
-    let curve = pair.healthy_curve();
-    let pitch = 1.0 / f64::from(gears.pinion_teeth);
-    mesh(teeth.contact.contact_ratio, |at| curve.at(at * pitch) * 1e3 * e_gpa / 210.0)
+    let pairs = sound_pairs(gears, teeth);
+    mesh(teeth.path.contact_ratio, |at| pairs.at(&SOUND_PAIR, at).stiffness_n_per_mm * 1e3 * e_gpa / 210.0)
 }
 
 fn extremes(values: &[f64]) -> (f64, f64) {
@@ -130,8 +128,9 @@ impl Flank {
 }
 
 fn as_profile(points: Vec<(f64, f64)>) -> ToothProfile {
+    let involute_radius_mm = points.iter().map(|(x, y)| x.hypot(*y)).collect();
     let (x_mm, y_mm) = points.into_iter().unzip();
-    ToothProfile { x_mm, y_mm, tip_relief_index: None }
+    ToothProfile { x_mm, y_mm, involute_radius_mm, tip_relief_index: None }
 }
 
 /// A tooth's compliance, by the library, of a profile that is not the library's.
@@ -196,17 +195,18 @@ const ROSS: [(u32, u32, f64, f64, [f64; 3]); 3] = [
     (25, 30, 20.0, 1.6326, [4.6403e8, 2.6972e8, 3.9262e8]),
 ];
 
-// As it is the library is softer by up to 10 %: it has no fillet where the root circle lies outside the base circle, and
-// a load that does not turn. With the other program's root (a rack cutter's trochoid) and load direction fed to the
-// library's compliances, 5 % remain, which are the foundation's (next test).
+// As it is the library is 4 to 6 % softer with many teeth, where its root circle lies outside the base circle and it has no
+// fillet, and 2 to 4 % stiffer with few. With the other program's root (a rack cutter's trochoid) fed to the library's
+// compliances, up to 5 % remain, which are the foundation's (next test).
 #[test]
 fn mesh_with_fillet_and_foundation() {
     for (z1, z2, bore, ratio, means) in ROSS {
         let gears = plain_gears(2.0, z1, z2, 20.0);
-        let teeth = corrected_teeth(&gears, bore);
+        let teeth = linear_teeth(&gears, bore);
         assert!((teeth.contact.contact_ratio - ratio).abs() < 5e-5);
         let own = compare(&format!("{z1}/{z2}"), &library_mesh(&gears, &teeth, 206.0), means);
-        assert!(own.iter().all(|deviation| (-0.10..-0.05).contains(deviation)), "{own:?}");
+        let expected = if z1 > 41 { -0.06..-0.04 } else { 0.02..0.04 };
+        assert!(own.iter().all(|deviation| expected.contains(deviation)), "{own:?}");
         let alike = conjugate_mesh(&gears, 206.0, bore, |wheel| {
             let profile = Flank::new(&wheel).with_trochoid(&wheel);
             Tooth::new(wheel, profile, true, &FoundationCoefficients::default())
@@ -223,7 +223,7 @@ fn one_tooth_part_by_part() {
     let gears = plain_gears(2.0, 62, 62, 20.0);
     let wheel = Wheel::new(&gears, 62, 17.5);
     let scale = 1e3 * 206.0 / 210.0;
-    let own = corrected_teeth(&gears, 35.0).gear_profile;
+    let own = linear_teeth(&gears, 35.0).gear_profile;
     let trochoid = Flank::new(&wheel).with_trochoid(&wheel);
     for (shape, profile, turned) in [
         ("own, nominal angle", &own, false),
@@ -311,7 +311,7 @@ fn classic_potential_energy() {
         assert!(nominal.iter().all(|deviation| deviation.abs() < 0.03), "{nominal:?}");
         let mut rigid = gears.clone();
         rigid.foundation = rigid_foundation();
-        let own = library_mesh(&rigid, &corrected_teeth(&rigid, 20.0), e);
+        let own = library_mesh(&rigid, &linear_teeth(&rigid, 20.0), e);
         let own = compare(&format!("{z1}/{z2}, clamped at the root"), &own, means);
         assert!(own.iter().all(|deviation| (*deviation > 0.0) == (z1 > 41)), "{own:?}");
     }
@@ -334,22 +334,32 @@ fn iso_theoretical([z1, z2]: [f64; 2], [x1, x2]: [f64; 2]) -> f64 {
 
 // The standard's wheels are solid; Sainsot's body is a ring whose bore is clamped, and its compliance grows with the
 // square of root over bore radius (formula fitted from 1.4 to 7). At 1.4 for the smaller wheel, the nearest to a solid
-// one, single stiffness and c' agree within 15 %; with small bores the model is far softer than the standard.
+// one, c' and c_gamma agree within 6 % for many teeth. For few they lie between the standard's practical stiffness and its
+// theoretical one, 12 to 27 % above the former, whose factor 0.8 comes from measurements; the other program with this
+// foundation agrees to 4 % there. With small bores the model is far softer than the standard.
 #[test]
 fn iso_single_stiffness() {
     let golden = iso_theoretical([19.0, 17.0], [0.617, 0.802]);
     assert_close("ISO", 1e-13, [(golden, 18.829_182_051_335_184)]);
-    for (z1, z2, theoretical) in [(62, 62, 18.5535), (55, 75, 18.6929), (25, 30, 16.1167), (18, 35, 15.8132)]
-    {
+    for (z1, z2, theoretical, above) in [
+        (62, 62, 18.5535, [-0.006, -0.023]),
+        (55, 75, 18.6929, [-0.045, -0.058]),
+        (25, 30, 16.1167, [0.271, 0.242]),
+        (18, 35, 15.8132, [0.140, 0.121]),
+    ] {
         let iso = iso_theoretical([f64::from(z1), f64::from(z2)], [0.0; 2]);
         assert_close("ISO", 3e-6, [(iso, theoretical)]);
         let gears = plain_gears(2.0, z1, z2, 20.0);
         let smallest_ratio = 2.0 * (f64::from(z1) - 2.5) / 1.4;
         let mut before = f64::INFINITY;
         for bore in [smallest_ratio, if z1 > 50 { 35.0 } else { 20.0 }] {
-            let teeth = corrected_teeth(&gears, bore);
-            let pair = PairStiffness::new(&gears, &teeth, None).unwrap();
-            let single = largest(pair.healthy_n_per_mm) * 206.0 / 210.0 / 20.0 * 1e-3;
+            let teeth = linear_teeth(&gears, bore);
+            let pairs = sound_pairs(&gears, &teeth);
+            let at = |k: i32| teeth.path.contact_ratio * f64::from(k) / 2000.0;
+            let single = largest((0..=2000).map(|k| pairs.at(&SOUND_PAIR, at(k)).stiffness_n_per_mm)) * 206.0
+                / 210.0
+                / 20.0
+                * 1e-3;
             let cycle = library_mesh(&gears, &teeth, 206.0).cycle / 20.0 * 1e-6;
             let practical = 0.8 * 0.975 * iso;
             let gamma = practical * (0.75 * teeth.contact.contact_ratio + 0.25);
@@ -364,7 +374,9 @@ fn iso_single_stiffness() {
                 "softer than the theoretical stiffness, and with the bore"
             );
             if bore == smallest_ratio {
-                assert!(deviation(single, practical).abs() < 0.15 && deviation(cycle, gamma).abs() < 0.15);
+                let found = [deviation(single, practical), deviation(cycle, gamma)];
+                let differs = found.iter().zip(above).any(|(found, above)| (found - above).abs() > 2e-3);
+                assert!(!differs, "{z1}/{z2}: {found:?} instead of {above:?}");
             }
             before = single;
         }
@@ -430,7 +442,14 @@ fn natural_frequencies_of_a_pair_with_8_coordinates() {
 // Without the mesh every wheel stands alone on its bearings and its shaft; only the gear shares its shaft with the brake.
 #[test]
 fn natural_frequencies_without_the_mesh() {
-    let mut scenario = meshtone::scenario::Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    let mut scenario = meshtone::scenario::Scenario::new(meshtone::scenario::GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 17,
+        gear_teeth: 38,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    });
     scenario.gears.points_per_tooth = 1_000;
     let system = meshtone::stages(&scenario).unwrap().system;
     let mass = CoordinateVector::from(system.mass_diagonal);

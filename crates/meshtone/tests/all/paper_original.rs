@@ -4,40 +4,62 @@
 use std::fs;
 use std::path::Path;
 
-use meshtone::hybrid::{DifferenceChain, SimulatedCases, TuningIndicator, difference_signals};
 use meshtone::scenario::*;
+use meshtone::tuning::{DifferenceChain, SimulatedCases, TuningIndicator, difference_signals};
 
 /// Draws of the wheels' profile errors that are averaged. One draw scatters by up to 0.08, the paper shows a single one.
 const DRAWS: u64 = 64;
 
 fn rig(name: &str) -> (Scenario, f64) {
     let (mut scenario, grade, rate_hz) = match name {
-        "destruction" => (Scenario::new(3.0, 18, 35, 30.0, 45.0, 15.0), 8, 50e3),
-        _ => (Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0), 7, 25e3),
+        "destruction" => (
+            Scenario::new(GearPair {
+                module_mm: 3.0,
+                pinion_teeth: 18,
+                gear_teeth: 35,
+                face_width_mm: 30.0,
+                pinion_speed_hz: 45.0,
+                brake_torque_nm: 15.0,
+            }),
+            8,
+            50e3,
+        ),
+        _ => (
+            Scenario::new(GearPair {
+                module_mm: 3.0,
+                pinion_teeth: 17,
+                gear_teeth: 38,
+                face_width_mm: 15.0,
+                pinion_speed_hz: 40.0,
+                brake_torque_nm: 10.0,
+            }),
+            7,
+            25e3,
+        ),
     };
-    scenario.convention = Convention::Published;
+    scenario.model = Model::Published;
     scenario.quality.din_grade = grade;
     (scenario, rate_hz)
 }
 
 /// The cases whose fault dominates, with their severity.
 fn dominating(name: &str) -> Vec<(usize, Fault)> {
-    let faults: Vec<Fault> = match name {
+    let damages: Vec<Damage> = match name {
         "breakage" => [3.0, 4.0]
             .map(|tip_loss_mm| {
-                Fault::ToothBreakage(ToothBreakage { chip_height_mm: 5.0, chip_width_mm: 12.0, tip_loss_mm })
+                Damage::ToothBreakage(ToothBreakage { chip_height_mm: 5.0, chip_width_mm: 12.0, tip_loss_mm })
             })
             .into_iter()
-            .chain([Fault::MissingTooth])
+            .chain([MissingTooth.into()])
             .collect(),
         "pitting" => [(57.12, 3.59, 1.7), (57.69, 3.71, 2.1), (57.37, 4.00, 2.4), (57.49, 3.66, 2.4)]
             .map(|(x_mm, y_mm, radius_mm)| {
-                Fault::ThroughFace(ThroughFace { pit: PitCircle::Circle { x_mm, y_mm, radius_mm } })
+                Damage::ThroughFace(ThroughFace { pit: PitCircle::Circle { x_mm, y_mm, radius_mm } })
             })
             .to_vec(),
         _ => [(0.2, 13.0), (-0.6, 13.2), (-0.8, 13.2), (-1.0, 13.8)]
             .map(|(start, end)| {
-                Fault::ToothDestruction(ToothDestruction {
+                Damage::ToothDestruction(ToothDestruction {
                     start: start / 14.0,
                     line: DestructionLine::End(end / 14.0),
                     offset_mm: 0.0,
@@ -51,7 +73,7 @@ fn dominating(name: &str) -> Vec<(usize, Fault)> {
         "pitting" => 1,
         _ => 3,
     };
-    (first..).zip(faults).collect()
+    (first..).zip(damages.into_iter().map(Fault::on_first_gear_tooth)).collect()
 }
 
 fn original(name: &str, indicator: TuningIndicator, severity: usize) -> f64 {
@@ -70,15 +92,15 @@ fn the_paper_s_original_indicators_where_the_fault_dominates() {
         // All draws in one call, so that simulations of one kind run side by side.
         let scenarios = (1..=DRAWS).flat_map(|seed| {
             let base = Scenario { seed, ..base.clone() };
-            let faulty = cases.iter().map(|(_, fault)| Some(fault.clone()));
-            let faults = std::iter::once(None).chain(faulty).collect::<Vec<_>>();
-            faults.into_iter().map(move |fault| Scenario { fault, ..base.clone() })
+            let faulty = cases.iter().map(|(_, fault)| vec![fault.clone()]);
+            let faults = std::iter::once(Vec::new()).chain(faulty).collect::<Vec<_>>();
+            faults.into_iter().map(move |faults| Scenario { faults, ..base.clone() })
         });
         let signals = difference_signals(scenarios.collect(), &DifferenceChain::new(rate_hz)).unwrap();
         let mut sums = vec![[0.0; 2]; cases.len()];
         for of_draw in signals.chunks_exact(1 + cases.len()) {
             let simulated = SimulatedCases::new(of_draw.to_vec()).unwrap();
-            let values = simulated.predict(&indicators, &meshtone::hybrid::Enhancement::default()).unwrap();
+            let values = simulated.predict(&indicators, &meshtone::tuning::Enhancement::default()).unwrap();
             for (sum, value) in sums.iter_mut().zip(&values[1..]) {
                 (0..2).for_each(|j| sum[j] += value[j] / DRAWS as f64);
             }

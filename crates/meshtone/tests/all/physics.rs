@@ -1,8 +1,10 @@
 //! What the tests of the physics share.
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
-use meshtone::scenario::{Convention, FoundationCoefficients, Gears, Rig};
-use meshtone::tooth::{Teeth, teeth};
+use meshtone::Stages;
+use meshtone::mesh::{PairKind, PairMesh, PairTable, Pairs};
+use meshtone::scenario::{FoundationCoefficients, Gears, Model};
+use meshtone::wheel::{Teeth, teeth};
 
 /// Deviation of `value` from `exact`, relative to `exact`.
 pub fn deviation(value: f64, exact: f64) -> f64 {
@@ -54,11 +56,32 @@ pub fn plain_gears(module_mm: f64, pinion_teeth: u32, gear_teeth: u32, width_mm:
 }
 
 /// Healthy teeth of wheels on shafts of the given diameter.
-pub fn corrected_teeth(gears: &Gears, bore_diameter_mm: f64) -> Teeth {
-    let mut rig = Rig::default();
-    rig.pinion_shaft.radius_mm = bore_diameter_mm / 2.0;
-    rig.gear_shaft.radius_mm = bore_diameter_mm / 2.0;
-    teeth(gears, &rig, Convention::Corrected)
+pub fn linear_teeth(gears: &Gears, bore_diameter_mm: f64) -> Teeth {
+    teeth(gears, [bore_diameter_mm / 2.0; 2], Model::Linear)
+}
+
+/// The same as the published code has them: the pinion's profile resampled, pairs that are not conjugate.
+pub fn published_teeth(gears: &Gears, bore_diameter_mm: f64) -> Teeth {
+    teeth(gears, [bore_diameter_mm / 2.0; 2], Model::Published)
+}
+
+/// The class of two sound teeth.
+pub const SOUND_PAIR: PairKind = PairKind { pinion: None, gear: None, pairs_per_cycle: 1 };
+
+/// Sound pairs of the wheels.
+pub fn sound_pairs<'a>(gears: &Gears, teeth: &'a Teeth) -> Pairs<'a> {
+    Pairs::new(teeth, &[], gears.material, &gears.foundation)
+}
+
+/// The mesh's pairs of a scenario under `linear`.
+pub fn pairs(stages: &Stages) -> &PairMesh {
+    stages.mesh.pairs().unwrap()
+}
+
+/// Pairs of two sound teeth, and those of the first damaged tooth with sound mates, over their path.
+pub fn sound_and_damaged(mesh: &PairMesh) -> [&PairTable; 2] {
+    let [sound, damaged, ..] = &mesh.classes[..] else { panic!("no damaged tooth") };
+    [sound, damaged]
 }
 
 /// A wheel's body that does not give way.

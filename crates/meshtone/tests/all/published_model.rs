@@ -6,7 +6,7 @@ use std::fs::File;
 use std::path::PathBuf;
 
 use meshtone::scenario::*;
-use nalgebra::DMatrix;
+use meshtone::wheel::ErrorTable;
 use ndarray::{ArrayD, IxDyn};
 use ndarray_npy::NpzReader;
 
@@ -53,15 +53,29 @@ pub fn reference(name: &str) -> Reference {
 /// The scenario itself.
 pub fn scenario(name: &str, reference: &Reference) -> Scenario {
     let mut scenario = if name.starts_with("destruction") {
-        Scenario::new(3.0, 18, 35, 30.0, 45.0, 15.0)
+        Scenario::new(GearPair {
+            module_mm: 3.0,
+            pinion_teeth: 18,
+            gear_teeth: 35,
+            face_width_mm: 30.0,
+            pinion_speed_hz: 45.0,
+            brake_torque_nm: 15.0,
+        })
     } else {
-        Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0)
+        Scenario::new(GearPair {
+            module_mm: 3.0,
+            pinion_teeth: 17,
+            gear_teeth: 38,
+            face_width_mm: 15.0,
+            pinion_speed_hz: 40.0,
+            brake_torque_nm: 10.0,
+        })
     };
-    scenario.convention = Convention::Published;
+    scenario.model = Model::Published;
     if name.ends_with("din7") {
         let matrix = |key: &str| {
             let values = &reference[key];
-            DMatrix::from_fn(values.shape()[0], values.shape()[1], |r, c| values[[r, c]])
+            ErrorTable::from_fn(values.shape()[0], values.shape()[1], |r, c| values[[r, c]])
         };
         scenario.quality.profile_errors = Some(ProfileErrors {
             pinion_profile_errors_mm: matrix("pinion_profile_errors_mm"),
@@ -70,25 +84,26 @@ pub fn scenario(name: &str, reference: &Reference) -> Scenario {
     }
     let pit = PitCircle::Fractions { start: 0.2, end: 0.8, depth: 0.5 };
     let destruction = |start, line| ToothDestruction { start, line, offset_mm: 0.0, noise_mm: 0.0 };
-    scenario.fault = match name {
-        "missing_din0" => Some(Fault::MissingTooth),
-        "breakage_din7" => Some(Fault::ToothBreakage(ToothBreakage {
+    let damage = match name {
+        "missing_din0" => Some(MissingTooth.into()),
+        "breakage_din7" => Some(Damage::ToothBreakage(ToothBreakage {
             chip_height_mm: 5.0,
             chip_width_mm: 12.0,
             tip_loss_mm: 3.0,
         })),
-        "partial_din0" => Some(Fault::PartialFace(PartialFace { width_mm: 2.0, pit })),
-        "through_din0" => Some(Fault::ThroughFace(ThroughFace { pit })),
-        "through_circ_din7" => Some(Fault::ThroughFace(ThroughFace {
+        "partial_din0" => Some(Damage::PartialFace(PartialFace { width_mm: 2.0, pit })),
+        "through_din0" => Some(Damage::ThroughFace(ThroughFace { pit })),
+        "through_circ_din7" => Some(Damage::ThroughFace(ThroughFace {
             pit: PitCircle::Circle { x_mm: 57.5, y_mm: 3.66, radius_mm: 2.5 },
         })),
         "destruction_din0" => {
-            Some(Fault::ToothDestruction(destruction(3.0 / 14.0, DestructionLine::End(13.0 / 14.0))))
+            Some(Damage::ToothDestruction(destruction(3.0 / 14.0, DestructionLine::End(13.0 / 14.0))))
         }
         "destruction_slope_din0" => {
-            Some(Fault::ToothDestruction(destruction(0.2, DestructionLine::SlopeDeg(22.0))))
+            Some(Damage::ToothDestruction(destruction(0.2, DestructionLine::SlopeDeg(22.0))))
         }
         _ => None,
     };
+    scenario.faults = damage.into_iter().map(|damage: Damage| Fault::on_first_gear_tooth(damage)).collect();
     scenario
 }

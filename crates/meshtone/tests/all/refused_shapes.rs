@@ -1,24 +1,39 @@
 //! Scenarios that can only give numbers without meaning are refused.
 #![allow(clippy::unwrap_used)]
 
-use meshtone::scenario::{Convention, Profile, Scenario};
+use crate::physics::pairs;
+use meshtone::scenario::{GearPair, Model, Profile, Scenario};
 
 // 1 mm × 1 mm of relief takes the whole tip of a small tooth and more: half thicknesses below 0 and stiffness of 0.
 #[test]
 fn relief_leaves_some_of_the_tip() {
     for teeth in [17, 60] {
         for module in [1.3, 1.4, 1.5, 1.6, 2.0, 3.0] {
-            let mut scenario = Scenario::new(module, teeth, 38, 15.0, 40.0, 10.0);
+            let mut scenario = Scenario::new(GearPair {
+                module_mm: module,
+                pinion_teeth: teeth,
+                gear_teeth: 38,
+                face_width_mm: 15.0,
+                pinion_speed_hz: 40.0,
+                brake_torque_nm: 10.0,
+            });
             scenario.rig.pinion_shaft.radius_mm = 4.0;
             let refused = scenario.validate().err().map(|error| error.key);
             let expected = (module <= 1.5).then(|| "gears.tip_relief.depth_mm".to_owned());
             assert_eq!(refused, expected, "module {module}, {teeth} teeth");
             scenario.gears.tip_relief = None;
             let stages = meshtone::stages(&scenario).unwrap();
-            assert!(stages.pair.healthy_n_per_mm.iter().all(|k| *k > 1e4));
+            assert!(pairs(&stages).classes[0].stiffness_n_per_m.iter().all(|k| *k > 1e7));
         }
     }
-    let mut crowned = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    let mut crowned = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 17,
+        gear_teeth: 38,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    });
     crowned.gears.tip_relief = None;
     crowned.gears.crowning_mm = 1.3;
     assert_eq!(crowned.validate().unwrap_err().key, "gears.crowning_mm");
@@ -27,7 +42,14 @@ fn relief_leaves_some_of_the_tip() {
 // What the rule computes is what the profile has.
 #[test]
 fn the_limit_is_the_profiles_own() {
-    let mut scenario = Scenario::new(2.0, 25, 30, 15.0, 40.0, 10.0);
+    let mut scenario = Scenario::new(GearPair {
+        module_mm: 2.0,
+        pinion_teeth: 25,
+        gear_teeth: 30,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    });
     scenario.gears.tip_relief.as_mut().unwrap().depth_mm = 0.0;
     let stages = meshtone::stages(&scenario).unwrap();
     let limit = [&stages.teeth.pinion_profile, &stages.teeth.gear_profile]
@@ -44,7 +66,14 @@ fn the_limit_is_the_profiles_own() {
 
 #[test]
 fn a_speed_profile_outlasts_the_settling() {
-    let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    let mut scenario = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 17,
+        gear_teeth: 38,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    });
     let profile = |end: f64| Some(Profile { time_s: vec![0.0, end], value: vec![40.0, 41.0] });
     // Half of 76 revolutions at 40 Hz are discarded: 0.95 s.
     scenario.operation.speed_profile_hz = profile(0.9);
@@ -52,7 +81,7 @@ fn a_speed_profile_outlasts_the_settling() {
     scenario.operation.speed_profile_hz = profile(1.0);
     assert!(scenario.validate().is_ok());
     // The published code ignores speed profiles.
-    scenario.convention = Convention::Published;
+    scenario.model = Model::Published;
     scenario.operation.speed_profile_hz = profile(0.9);
     assert!(scenario.validate().is_ok());
 }

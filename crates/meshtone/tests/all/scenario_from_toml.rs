@@ -3,14 +3,14 @@
 
 use crate::support::{REQUIRED, appended, assert_refused, gears, replaced};
 use meshtone::scenario::{
-    Convention, DampingRatio, DestructionLine, Fault, FileProblem, FoundationCoefficients, Material,
-    PartialFace, PitCircle, Profile, ProfileErrors, ReliefShape, Scenario, ScenarioFiles, Shaft, ThroughFace,
-    TipRelief, ToothBreakage, ToothDestruction,
+    Damage, DampingRatio, DestructionLine, Fault, FileProblem, FoundationCoefficients, GearPair, Material,
+    MissingTooth, Model, PartialFace, PitCircle, Profile, ProfileErrors, ReliefShape, Scenario,
+    ScenarioFiles, Shaft, ThroughFace, TipRelief, ToothBreakage, ToothDestruction,
 };
-use nalgebra::DMatrix;
+use meshtone::wheel::ErrorTable;
 
 const EVERY_KEY: &str = r#"
-convention = "published"
+model = "published"
 seed = 18446744073709551615
 [gears]
 module_mm = 2
@@ -58,8 +58,15 @@ initial_velocity = [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3]
 #[test]
 fn every_key_is_read() {
     let scenario = Scenario::from_toml(EVERY_KEY).unwrap();
-    let mut expected = Scenario::new(2.0, 20, 41, 12.5, 30.0, 12.0);
-    expected.convention = Convention::Published;
+    let mut expected = Scenario::new(GearPair {
+        module_mm: 2.0,
+        pinion_teeth: 20,
+        gear_teeth: 41,
+        face_width_mm: 12.5,
+        pinion_speed_hz: 30.0,
+        brake_torque_nm: 12.0,
+    });
+    expected.model = Model::Published;
     expected.seed = u64::MAX;
     expected.gears.pressure_angle_deg = 22.5;
     expected.gears.material = Material::CastIron;
@@ -78,11 +85,11 @@ fn every_key_is_read() {
     expected.operation.speed_profile_hz = Some(Profile { time_s: vec![0.0, 1.5], value: vec![29.0, 31.0] });
     expected.operation.torque_profile_nm = Some(Profile { time_s: vec![0.0, 2.5], value: vec![11.0, 13.0] });
     expected.quality.din_grade = 5;
-    expected.fault = Some(Fault::ToothBreakage(ToothBreakage {
+    expected.faults = vec![Fault::on_first_gear_tooth(ToothBreakage {
         chip_height_mm: 2.0,
         chip_width_mm: 3.0,
         tip_loss_mm: 1.0,
-    }));
+    })];
     expected.rig.bearing_stiffness_n_per_m = 1e8;
     expected.rig.wheel_rotational_stiffness_nm_per_rad = 2e8;
     expected.rig.brake_inertia_kgm2 = 1e-3;
@@ -120,29 +127,29 @@ fn every_fault_is_read() {
     let to_end =
         ToothDestruction { start: 0.2, line: DestructionLine::End(0.9), offset_mm: 0.0, noise_mm: 0.0 };
     let breakage = ToothBreakage { chip_height_mm: 5.0, chip_width_mm: 15.0, tip_loss_mm: 0.0 };
-    for (keys, fault) in [
-        ("kind = \"missing-tooth\"", Fault::MissingTooth),
-        ("kind = \"tooth-breakage\"\nchip_height_mm = 5\nchip_width_mm = 15", Fault::ToothBreakage(breakage)),
+    for (keys, damage) in [
+        ("kind = \"missing-tooth\"", Damage::from(MissingTooth)),
+        ("kind = \"tooth-breakage\"\nchip_height_mm = 5\nchip_width_mm = 15", Damage::from(breakage)),
         (
             "kind = \"partial-face\"\nwidth_mm = 2\nstart = 0.2\nend = 0.8\ndepth = 0.5",
-            Fault::PartialFace(PartialFace { width_mm: 2.0, pit: fractions }),
+            Damage::from(PartialFace { width_mm: 2.0, pit: fractions }),
         ),
         (
             "kind = \"through-face\"\nstart = 0.2\nend = 0.8\ndepth = 0.5",
-            Fault::ThroughFace(ThroughFace { pit: fractions }),
+            Damage::from(ThroughFace { pit: fractions }),
         ),
         (
             "kind = \"through-face\"\ncircle = { x_mm = 57.5, y_mm = 3.66, radius_mm = 2.5 }",
-            Fault::ThroughFace(ThroughFace { pit: circle }),
+            Damage::from(ThroughFace { pit: circle }),
         ),
         (
             "kind = \"tooth-destruction\"\nstart = -0.2\nslope_deg = 22\noffset_mm = 0.1\nnoise_mm = 0.01",
-            Fault::ToothDestruction(destruction),
+            Damage::from(destruction),
         ),
-        ("kind = \"tooth-destruction\"\nstart = 0.2\nend = 0.9", Fault::ToothDestruction(to_end)),
+        ("kind = \"tooth-destruction\"\nstart = 0.2\nend = 0.9", Damage::from(to_end)),
     ] {
         let scenario = Scenario::from_toml(&appended(&format!("[fault]\n{keys}"))).unwrap();
-        assert_eq!(scenario.fault, Some(fault));
+        assert_eq!(scenario.faults, [Fault::on_first_gear_tooth(damage)]);
     }
 }
 
@@ -215,12 +222,7 @@ fn wrong_types() {
         6,
         &["\"steel\"", "did you mean \"steel\"?"],
     );
-    assert_refused(
-        &format!("convention = \"old\"\n{REQUIRED}"),
-        "convention",
-        1,
-        &["\"corrected\", \"published\""],
-    );
+    assert_refused(&format!("model = \"old\"\n{REQUIRED}"), "model", 1, &["\"linear\", \"published\""]);
     assert_refused(&format!("seed = -1\n{REQUIRED}"), "seed", 1, &["from 0 to"]);
     assert_refused(&gears("foundation = { L = [1, 2] }"), "gears.foundation.L", 6, &["has 2", "exactly 6"]);
     let damping = appended("[rig]\ndamping_ratio = [0.05, 0.05]");
@@ -300,7 +302,7 @@ impl ScenarioFiles for Shelf {
 }
 
 fn shelf() -> Shelf {
-    let errors = |teeth| DMatrix::from_fn(100, teeth, |row, column| 1e-5 * (row * 100 + column) as f64);
+    let errors = |teeth| ErrorTable::from_fn(100, teeth, |row, column| 1e-5 * (row * 100 + column) as f64);
     Shelf {
         errors: ProfileErrors { pinion_profile_errors_mm: errors(17), gear_profile_errors_mm: errors(38) },
     }
@@ -329,7 +331,7 @@ fn problems_of_files_are_told_at_the_key_that_names_them() {
 
     let with_errors = appended("[quality]\nerrors_file = \"wheels.npz\"");
     let mut short = shelf();
-    short.errors.gear_profile_errors_mm = DMatrix::zeros(99, 38);
+    short.errors.gear_profile_errors_mm = ErrorTable::filled(99, 38, 0.0);
     let shape = refused(&with_errors, &short);
     assert_eq!((shape.key.as_str(), shape.line), ("quality.errors_file", Some(10)));
     assert!(shape.problem.starts_with("gear_profile_errors_mm: is 99 × 38; must be 100 × 38"), "{shape}");
@@ -359,7 +361,7 @@ fn profile_errors_inline() {
     };
     let good = (inline_errors(17, 100), inline_errors(38, 100));
     let errors = Scenario::from_toml(&text(&good.0, &good.1)).unwrap().quality.profile_errors.unwrap();
-    assert_eq!(errors.gear_profile_errors_mm, DMatrix::from_element(100, 38, 0.001));
+    assert_eq!(errors.gear_profile_errors_mm, ErrorTable::filled(100, 38, 0.001));
 
     let pinion = "quality.pinion_profile_errors_mm";
     let shape = ["is 100 × 16; must be 100 × 17"];

@@ -1,11 +1,12 @@
 //! Whatever scenario is valid is written as a scenario file that is read back exactly.
 
 use meshtone::scenario::{
-    Convention, DampingRatio, DestructionLine, Fault, FoundationCoefficients, Gears, Material, Operation,
-    PartialFace, PitCircle, Profile, ProfileErrors, Quality, ReliefShape, Rig, Scenario, Shaft, Solver,
-    ThroughFace, TipRelief, ToothBreakage, ToothDestruction, WheelInertia,
+    Damage, DampingRatio, DestructionLine, Fault, FoundationCoefficients, GearPair, Gears, Material,
+    MissingTooth, Model, Operation, PartialFace, PitCircle, Profile, ProfileErrors, Quality, ReliefShape,
+    Rig, Scenario, Shaft, Solver, ThroughFace, TipRelief, ToothBreakage, ToothDestruction, WheelInertia,
+    WheelName,
 };
-use nalgebra::DMatrix;
+use meshtone::wheel::ErrorTable;
 use proptest::array::{uniform4, uniform6, uniform13};
 use proptest::option;
 use proptest::prelude::*;
@@ -79,7 +80,7 @@ fn quality(pinion_teeth: u32, gear_teeth: u32) -> impl Strategy<Value = Quality>
     // Every draw of the 100 × teeth errors would be slow; their digits matter, not their spread.
     let drawn = move |first: f64, step: f64| {
         let errors = |teeth: u32| {
-            DMatrix::from_fn(100, teeth as usize, |row, column| {
+            ErrorTable::from_fn(100, teeth as usize, |row, column| {
                 first + step * (row as f64 + 0.1).sqrt() / (column as f64 + 0.3)
             })
         };
@@ -111,7 +112,7 @@ fn pit() -> impl Strategy<Value = PitCircle> {
     ]
 }
 
-fn fault(module_mm: f64, face_width_mm: f64) -> impl Strategy<Value = Option<Fault>> {
+fn damage(module_mm: f64, face_width_mm: f64) -> impl Strategy<Value = Damage> {
     let breakage = (0.01..2.24, 0.01..=1.0, 0.0..2.24).prop_map(move |(height, width, loss)| ToothBreakage {
         chip_height_mm: height * module_mm,
         chip_width_mm: width * face_width_mm,
@@ -127,13 +128,24 @@ fn fault(module_mm: f64, face_width_mm: f64) -> impl Strategy<Value = Option<Fau
         ToothDestruction { start, line, offset_mm: offset * module_mm, noise_mm: noise * module_mm }
     });
     prop_oneof![
-        Just(None),
-        Just(Some(Fault::MissingTooth)),
-        breakage.prop_map(|breakage| Some(Fault::ToothBreakage(breakage))),
-        partial.prop_map(|face| Some(Fault::PartialFace(face))),
-        pit().prop_map(|pit| Some(Fault::ThroughFace(ThroughFace { pit }))),
-        destruction.prop_map(|destruction| Some(Fault::ToothDestruction(destruction))),
+        Just(Damage::from(MissingTooth)),
+        breakage.prop_map(Damage::from),
+        partial.prop_map(Damage::from),
+        pit().prop_map(|pit| Damage::from(ThroughFace { pit })),
+        destruction.prop_map(Damage::from),
     ]
+}
+
+/// Any number, each on a tooth of its own.
+fn faults(gears: &Gears) -> impl Strategy<Value = Vec<Fault>> + use<> {
+    let damages = prop::collection::vec(damage(gears.module_mm, gears.face_width_mm), 0..4);
+    damages.prop_map(|damages| {
+        let place = |(index, damage): (usize, Damage)| {
+            let wheel = WheelName::BOTH[(index + 1) % 2];
+            Fault::new(wheel, 1 + 3 * index as u32, damage)
+        };
+        damages.into_iter().enumerate().map(place).collect()
+    })
 }
 
 fn rig() -> impl Strategy<Value = Rig> {
@@ -189,19 +201,19 @@ fn solver() -> impl Strategy<Value = Solver> {
 }
 
 fn scenario() -> impl Strategy<Value = Scenario> {
-    let convention = prop_oneof![Just(Convention::Corrected), Just(Convention::Published)];
+    let model = prop_oneof![Just(Model::Linear), Just(Model::Published)];
     gears().prop_flat_map(move |gears| {
         let quality = quality(gears.pinion_teeth, gears.gear_teeth);
-        let fault = fault(gears.module_mm, gears.face_width_mm);
-        let parts = (Just(gears), operation(), quality, fault, rig(), solver());
-        (convention.clone(), any::<u64>(), parts).prop_map(
-            |(convention, seed, (gears, operation, quality, fault, rig, solver))| Scenario {
-                convention,
+        let faults = faults(&gears);
+        let parts = (Just(gears), operation(), quality, faults, rig(), solver());
+        (model.clone(), any::<u64>(), parts).prop_map(
+            |(model, seed, (gears, operation, quality, faults, rig, solver))| Scenario {
+                model,
                 seed,
                 gears,
                 operation,
                 quality,
-                fault,
+                faults,
                 rig,
                 solver,
             },
@@ -215,7 +227,7 @@ proptest! {
     #[test]
     fn scenarios_survive_being_written_and_read(scenario in scenario()) {
         // A long speed profile may need more memory than is allowed, and a tooth that is small may not bear the default
-        // relief, which the published convention always has.
+        // relief, which the published model always has.
         prop_assume!(scenario.validate().is_ok());
         let text = scenario.to_toml();
         let read = Scenario::from_toml(&text);
@@ -225,8 +237,15 @@ proptest! {
 
 #[test]
 fn sections_come_in_the_order_of_the_documentation() {
-    let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
-    scenario.fault = Some(Fault::MissingTooth);
+    let mut scenario = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 17,
+        gear_teeth: 38,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    });
+    scenario.faults = vec![Fault::on_first_gear_tooth(MissingTooth)];
     let text = scenario.to_toml();
     let headers: Vec<&str> = text.lines().filter(|line| line.starts_with('[')).collect();
     assert_eq!(headers, ["[gears]", "[operation]", "[quality]", "[fault]", "[rig]", "[solver]"]);
@@ -234,7 +253,14 @@ fn sections_come_in_the_order_of_the_documentation() {
 
 #[test]
 fn a_number_that_is_none_is_written_and_refused() {
-    let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    let mut scenario = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 17,
+        gear_teeth: 38,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    });
     scenario.rig.eccentricity_mm = f64::NAN;
     let error = Scenario::from_toml(&scenario.to_toml()).unwrap_err();
     assert_eq!((error.key.as_str(), error.value.as_str()), ("rig.eccentricity_mm", "nan"));

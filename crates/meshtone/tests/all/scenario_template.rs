@@ -1,10 +1,10 @@
 //! The commented scenario files to start from.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use meshtone::scenario::{DestructionLine, Fault, PitCircle, Scenario, TEMPLATE_KINDS, template};
+use meshtone::scenario::{Damage, DestructionLine, GearPair, PitCircle, Scenario, template, template_kinds};
 
 fn all() -> impl Iterator<Item = (&'static str, String)> {
-    TEMPLATE_KINDS.into_iter().map(|kind| (kind, template(kind).unwrap()))
+    template_kinds().into_iter().map(|kind| (kind, template(kind).unwrap()))
 }
 
 /// The file with every key that is commented out as optional set.
@@ -20,7 +20,7 @@ fn uncommented(text: &str) -> String {
 fn templates_are_valid_and_of_their_kind() {
     for (kind, text) in all() {
         let scenario = Scenario::from_toml(&text).unwrap_or_else(|error| panic!("{kind}: {error}"));
-        assert_eq!(scenario.fault.as_ref().map_or("healthy", Fault::kind), kind);
+        assert_eq!(scenario.faults.first().map_or("healthy", |fault| fault.damage.kind()), kind);
         assert_eq!(scenario.validate().unwrap(), [], "{kind}");
     }
 }
@@ -30,11 +30,25 @@ fn templates_are_of_the_two_machines() {
     for (kind, text) in all() {
         let scenario = Scenario::from_toml(&text).unwrap();
         let mut expected = match kind {
-            "tooth-destruction" => Scenario::new(3.0, 18, 35, 30.0, 45.0, 15.0),
-            _ => Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0),
+            "tooth-destruction" => Scenario::new(GearPair {
+                module_mm: 3.0,
+                pinion_teeth: 18,
+                gear_teeth: 35,
+                face_width_mm: 30.0,
+                pinion_speed_hz: 45.0,
+                brake_torque_nm: 15.0,
+            }),
+            _ => Scenario::new(GearPair {
+                module_mm: 3.0,
+                pinion_teeth: 17,
+                gear_teeth: 38,
+                face_width_mm: 15.0,
+                pinion_speed_hz: 40.0,
+                brake_torque_nm: 10.0,
+            }),
         };
         expected.quality.din_grade = if kind == "tooth-destruction" { 8 } else { 7 };
-        expected.fault = scenario.fault.clone();
+        expected.faults.clone_from(&scenario.faults);
         assert_eq!(scenario, expected, "{kind}");
     }
 }
@@ -62,11 +76,12 @@ fn alternatives_are_valid_in_place_of_what_they_replace() {
 
     for kind in ["partial-face", "through-face"] {
         let text = template(kind).unwrap();
-        let text =
-            text.replace("start = 0.2\nend = 0.8\ndepth = 0.5\n", "").replace("# circle =", "circle =");
-        let pit = match Scenario::from_toml(&text).unwrap().fault {
-            Some(Fault::PartialFace(face)) => face.pit,
-            Some(Fault::ThroughFace(face)) => face.pit,
+        let fractions = ["start = 0.2\n", "end = 0.8\n", "depth = 0.5\n"];
+        let text = fractions.iter().fold(text, |text, line| text.replace(line, ""));
+        let text = text.replace("# circle =", "circle =");
+        let pit = match &Scenario::from_toml(&text).unwrap().faults[0].damage {
+            Damage::PartialFace(face) => face.pit,
+            Damage::ThroughFace(face) => face.pit,
             other => panic!("{other:?}"),
         };
         assert_eq!(pit, PitCircle::Circle { x_mm: 57.5, y_mm: 3.66, radius_mm: 2.5 });
@@ -74,7 +89,7 @@ fn alternatives_are_valid_in_place_of_what_they_replace() {
 
     let text = template("tooth-destruction").unwrap();
     let text = text.replace("\nend = 0.9286", "").replace("# slope_deg", "slope_deg");
-    let Some(Fault::ToothDestruction(destruction)) = Scenario::from_toml(&text).unwrap().fault else {
+    let Damage::ToothDestruction(destruction) = Scenario::from_toml(&text).unwrap().faults[0].damage else {
         panic!("{text}");
     };
     assert_eq!(destruction.line, DestructionLine::SlopeDeg(22.0));

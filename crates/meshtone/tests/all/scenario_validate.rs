@@ -2,10 +2,10 @@
 
 use crate::support::{REQUIRED, appended, assert_refused, gears, replaced};
 use meshtone::scenario::{
-    DampingRatio, DestructionLine, Fault, MEMORY_LIMIT_BYTES, MemoryLimit, Profile, ProfileErrors, Scenario,
-    ToothDestruction,
+    DampingRatio, DestructionLine, Fault, GearPair, MEMORY_LIMIT_BYTES, MemoryLimit, Profile, ProfileErrors,
+    Scenario, ToothDestruction,
 };
-use nalgebra::DMatrix;
+use meshtone::wheel::ErrorTable;
 
 #[test]
 fn gears_out_of_range() {
@@ -53,7 +53,14 @@ fn gears_out_of_range() {
 #[test]
 fn undercut_is_a_warning() {
     let warned = |pinion, gear, angle| {
-        let mut scenario = Scenario::new(3.0, pinion, gear, 15.0, 40.0, 10.0);
+        let mut scenario = Scenario::new(GearPair {
+            module_mm: 3.0,
+            pinion_teeth: pinion,
+            gear_teeth: gear,
+            face_width_mm: 15.0,
+            pinion_speed_hz: 40.0,
+            brake_torque_nm: 10.0,
+        });
         scenario.gears.pressure_angle_deg = angle;
         let warnings = scenario.validate().unwrap();
         warnings.into_iter().map(|warning| (warning.key, warning.message)).collect::<Vec<_>>()
@@ -219,7 +226,14 @@ fn rig_and_solver_out_of_range() {
 
 #[test]
 fn values_that_only_code_can_give() {
-    let base = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    let base = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 17,
+        gear_teeth: 38,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    });
     let refused = |change: &dyn Fn(&mut Scenario)| {
         let mut scenario = base.clone();
         change(&mut scenario);
@@ -249,16 +263,23 @@ fn values_that_only_code_can_give() {
     assert_eq!((key.as_str(), problem.as_str()), ("operation.speed_profile_hz.time_s[1]", not_a_number));
     let slope = DestructionLine::SlopeDeg(f64::NAN);
     let destruction = ToothDestruction { start: 0.1, line: slope, offset_mm: 0.0, noise_mm: 0.0 };
-    let (key, _) = refused(&|s| s.fault = Some(Fault::ToothDestruction(destruction)));
+    let (key, _) = refused(&|s| s.faults = vec![Fault::on_first_gear_tooth(destruction)]);
     assert_eq!(key, "fault.slope_deg");
 }
 
 #[test]
 fn transposed_profile_errors_are_recognised() {
-    let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    let mut scenario = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 17,
+        gear_teeth: 38,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    });
     scenario.quality.profile_errors = Some(ProfileErrors {
-        pinion_profile_errors_mm: DMatrix::zeros(17, 100),
-        gear_profile_errors_mm: DMatrix::zeros(100, 38),
+        pinion_profile_errors_mm: ErrorTable::filled(17, 100, 0.0),
+        gear_profile_errors_mm: ErrorTable::filled(100, 38, 0.0),
     });
     let error = scenario.validate().unwrap_err();
     assert_eq!(error.key, "quality.pinion_profile_errors_mm");
@@ -269,8 +290,22 @@ fn transposed_profile_errors_are_recognised() {
 
 #[test]
 fn sampling_rates_of_the_published_model() {
-    let healthy = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
-    let destruction = Scenario::new(3.0, 18, 35, 30.0, 45.0, 15.0);
+    let healthy = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 17,
+        gear_teeth: 38,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    });
+    let destruction = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 18,
+        gear_teeth: 35,
+        face_width_mm: 30.0,
+        pinion_speed_hz: 45.0,
+        brake_torque_nm: 15.0,
+    });
     assert_eq!(healthy.actual_sampling_rate_hz(), 258_400.0);
     assert_eq!(destruction.actual_sampling_rate_hz(), 283_500.0);
 }

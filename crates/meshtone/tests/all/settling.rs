@@ -30,31 +30,38 @@ fn differences(scenario: &Scenario, tolerance: f64) -> (usize, usize, [f64; 2]) 
 #[test]
 fn the_kept_signal_is_that_of_the_long_settling() {
     let pit = PitCircle::Fractions { start: 0.2, end: 0.8, depth: 0.4 };
-    for fault in [
+    for damage in [
         None,
-        Some(Fault::MissingTooth),
-        Some(Fault::ToothBreakage(ToothBreakage {
+        Some(Damage::MissingTooth(MissingTooth)),
+        Some(Damage::ToothBreakage(ToothBreakage {
             chip_height_mm: 5.0,
             chip_width_mm: 12.0,
             tip_loss_mm: 0.0,
         })),
-        Some(Fault::PartialFace(PartialFace { width_mm: 5.0, pit })),
-        Some(Fault::ThroughFace(ThroughFace { pit })),
-        Some(Fault::ToothDestruction(ToothDestruction {
+        Some(Damage::PartialFace(PartialFace { width_mm: 5.0, pit })),
+        Some(Damage::ThroughFace(ThroughFace { pit })),
+        Some(Damage::ToothDestruction(ToothDestruction {
             start: 0.2,
             line: DestructionLine::SlopeDeg(22.0),
             offset_mm: 0.0,
             noise_mm: 0.0,
         })),
     ] {
-        let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 60.0);
+        let mut scenario = Scenario::new(GearPair {
+            module_mm: 3.0,
+            pinion_teeth: 17,
+            gear_teeth: 38,
+            face_width_mm: 15.0,
+            pinion_speed_hz: 40.0,
+            brake_torque_nm: 60.0,
+        });
         scenario.quality.din_grade = 7;
-        scenario.fault = fault;
+        scenario.faults = damage.map(Fault::on_first_gear_tooth).into_iter().collect();
         for tolerance in [1e-3, 1e-6] {
             let (kept, start, differences) = differences(&scenario, tolerance);
             println!(
                 "{} at {tolerance:e}: {} of {kept} samples of settling left out; vertical {:.1e}, force {:.1e}",
-                scenario.fault.as_ref().map_or("healthy", Fault::kind),
+                scenario.faults.first().map_or("healthy", |fault| fault.damage.kind()),
                 start,
                 differences[0],
                 differences[1]
@@ -68,14 +75,21 @@ fn the_kept_signal_is_that_of_the_long_settling() {
 
 #[test]
 fn what_does_not_repeat_settles_for_long() {
-    let steady = Scenario::new(3.0, 17, 38, 15.0, 40.0, 60.0);
+    let steady = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 17,
+        gear_teeth: 38,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 60.0,
+    });
     let start = |change: &dyn Fn(&mut Scenario)| {
         let mut scenario = steady.clone();
         change(&mut scenario);
         meshtone::stages(&scenario).unwrap().time.first_simulated_sample
     };
     assert!(start(&|_| {}) > 0);
-    assert_eq!(start(&|scenario| scenario.convention = Convention::Published), 0);
+    assert_eq!(start(&|scenario| scenario.model = Model::Published), 0);
     assert_eq!(start(&|scenario| scenario.operation.torque_fluctuation_nm = 1.0), 0);
     assert_eq!(start(&|scenario| scenario.operation.speed_fluctuation_hz = 1.0), 0);
     assert_eq!(start(&|scenario| scenario.solver.initial_displacement = Some([0.0; 13])), 0);

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use crate::signal::{largest_difference, noise, relative_rms, wave};
-use meshtone::scenario::{Profile, Scenario};
+use meshtone::scenario::{GearPair, Profile, Scenario};
 use meshtone::signal::*;
 use meshtone::simulate;
 
@@ -184,7 +184,14 @@ fn response_of_the_resampling_filter() {
 // A simulated run-up: over time the mesh lines are smeared, over the angle of the shaft each is one order wide.
 #[test]
 fn a_run_up_has_mesh_lines_one_bin_wide() {
-    let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    let mut scenario = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 17,
+        gear_teeth: 38,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    });
     scenario.solver.sampling_rate_hz = 5e4;
     let profile = Profile { time_s: vec![0.0, 1.0, 3.0], value: vec![20.0, 20.0, 60.0] };
     scenario.operation.speed_profile_hz = Some(profile);
@@ -193,14 +200,14 @@ fn a_run_up_has_mesh_lines_one_bin_wide() {
     let rate_hz = channels.sampling_rate_hz;
     // The mesh force carries the teeth's variation whatever the speed; resonances make its amplitude vary.
     let signal = &channels.mesh_force_n;
-    let phase = ShaftPhase::from_speed_samples(&channels.pinion_speed_hz, rate_hz).unwrap();
+    let phase = ShaftPhase::from_speed_samples(&channels.pinion_shaft_speed_hz, rate_hz).unwrap();
     let angular = angular_resample(signal, &phase, &AngularSettings::default()).unwrap();
     let points = angular.points_per_revolution;
     println!(
         "{} revolutions from {:.1} to {:.1} Hz",
         angular.revolutions(),
-        channels.pinion_speed_hz[0],
-        channels.pinion_speed_hz[signal.len() - 1]
+        channels.pinion_shaft_speed_hz[0],
+        channels.pinion_shaft_speed_hz[signal.len() - 1]
     );
     assert!(angular.revolutions() > 40);
 

@@ -2,17 +2,25 @@
 
 #![allow(clippy::unwrap_used)]
 
-use meshtone::scenario::{Fault, Scenario};
+use meshtone::scenario::{Fault, GearPair, MissingTooth, Scenario};
+use meshtone::sensor::Channels;
 use meshtone::signal::{
-    ChainSettings, Channels, Shaft, ShaftPhase, SignalError, SimulatedShafts, process_channel,
-    process_segments, revolution_average,
+    ChainSettings, Shaft, ShaftPhase, SignalError, SimulatedShafts, process_channel, process_segments,
+    revolution_average,
 };
 
 fn faulty() -> Scenario {
-    let mut scenario = Scenario::new(3.0, 20, 40, 15.0, 40.0, 200.0);
+    let mut scenario = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 20,
+        gear_teeth: 40,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 200.0,
+    });
     scenario.solver.sampling_rate_hz = 4e4;
     scenario.quality.din_grade = 7;
-    scenario.fault = Some(Fault::MissingTooth);
+    scenario.faults = vec![Fault::on_first_gear_tooth(MissingTooth)];
     scenario
 }
 

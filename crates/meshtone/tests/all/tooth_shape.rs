@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 
 use crate::physics::*;
 use meshtone::interpolation::{NaturalSpline, NotAKnotSpline, Pchip, UniformLinear};
-use meshtone::scenario::Convention;
-use meshtone::tooth::{ToothProfile, Wheel, contact_ratio, tooth_profile};
+use meshtone::scenario::Model;
+use meshtone::wheel::{ToothProfile, Wheel, contact_ratio, tooth_profile};
 
 fn involute(angle: f64) -> f64 {
     angle.tan() - angle
@@ -27,7 +27,7 @@ fn wheels() -> impl Iterator<Item = Wheel> {
 }
 
 fn profile(wheel: &Wheel) -> ToothProfile {
-    tooth_profile(wheel, 1_000, 0.0, None, Convention::Corrected)
+    tooth_profile(wheel, 1_000, 0.0, None, Model::Linear)
 }
 
 /// (rad) Polar angle of the involute's foot.
@@ -162,7 +162,7 @@ fn contact_ratio_is_the_path_over_the_base_pitch() {
         let mut gears = plain_gears(2.5, z1, z2, 10.0);
         gears.pressure_angle_deg = angle;
         gears.points_per_tooth = 500;
-        let teeth = corrected_teeth(&gears, 10.0);
+        let teeth = linear_teeth(&gears, 10.0);
         let (pinion, gear) = (&teeth.pinion, &teeth.gear);
         let distance = (pinion.pitch_radius_mm + gear.pitch_radius_mm) * pinion.pressure_angle_rad.sin();
         let reach = |wheel: &Wheel| (wheel.tip_radius_mm.powi(2) - wheel.base_radius_mm.powi(2)).sqrt();

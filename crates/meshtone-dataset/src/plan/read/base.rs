@@ -1,9 +1,9 @@
 //! The base scenario.
 
-use meshtone::scenario::{Scenario, ScenarioError};
-use meshtone::toml_reader::{ReadResult, TomlTable, TomlValue};
+use meshtone::scenario::Scenario;
 use meshtone_io::experiment::Tuned;
 use meshtone_io::scenario_file::{FilesBeside, ScenarioFile};
+use meshtone_toml::{ReadResult, TomlError, TomlTable, TomlValue};
 
 use super::{PlanFile, Reading, in_another_file};
 
@@ -16,7 +16,7 @@ pub(super) fn read(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Sc
     let scenario = if value.is_table() && !reading.is_copy {
         let files = FilesBeside::new(reading.directory);
         let scenario = value.table()?.read(|table| Scenario::from_table(table, &files))?;
-        scenario.validate().map_err(within)?;
+        scenario.validate().map_err(|error| within(error.into()))?;
         scenario
     } else {
         let name = if value.is_table() { "" } else { value.string()? };
@@ -30,12 +30,12 @@ pub(super) fn read(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Sc
     };
     // Also of one that is written in the plan: it may name files.
     reading.files.push(PlanFile { name: PlanFile::NAMES[1], text: scenario.to_toml() });
-    if let Some(ignored) = scenario.ignored_by_convention().into_iter().next() {
-        return Err(ScenarioError::new(format!("{KEY}.{}", ignored.key), "", ignored.message));
+    if let Some(ignored) = scenario.ignored_by_model().into_iter().next() {
+        return Err(TomlError::new(format!("{KEY}.{}", ignored.key), "", ignored.message));
     }
-    if scenario.fault.is_some() {
+    if !scenario.faults.is_empty() {
         let problem = "the base scenario has a fault; must be healthy";
-        return Err(ScenarioError::new(format!("{KEY}.fault"), "", problem)
+        return Err(TomlError::new(format!("{KEY}.fault"), "", problem)
             .with_help("faults belong to the classes: [[class]] with fault = { kind = … }"));
     }
     Ok(scenario)
@@ -50,6 +50,7 @@ pub(super) fn tuned(base: &Scenario, tuned: &Tuned, value: &TomlValue<'_>) -> Re
 }
 
 /// An error about a key of the scenario within the plan.
-fn within(error: ScenarioError) -> ScenarioError {
-    ScenarioError { key: format!("{KEY}.{}", error.key), ..error }
+fn within(error: TomlError) -> TomlError {
+    let key = format!("{KEY}.{}", error.key);
+    error.with_key(key)
 }

@@ -1,7 +1,7 @@
 //! The array `[[class]]`.
 
 use meshtone::scenario::Fault;
-use meshtone::toml_reader::{ReadResult, TomlTable, TomlValue};
+use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
 use super::super::split::largest_remainder;
 use super::super::{Class, Severity};
@@ -98,8 +98,8 @@ fn class(table: &TomlTable<'_>) -> ReadResult<(Class, Share)> {
     if name.is_empty() {
         return Err(label.error("must not be empty"));
     }
-    let fault = Fault::from_table(table)?;
-    let severity = severity(table, fault.is_some())?;
+    let faults = Fault::list_from_table(table)?;
+    let severity = severity(table, !faults.is_empty())?;
     let share = match (table.optional("count"), table.optional("weight")) {
         (Some(count), None) => Share::Count(count.integer(1..=MOST_RECORDS)?),
         (None, Some(weight)) => {
@@ -113,7 +113,7 @@ fn class(table: &TomlTable<'_>) -> ReadResult<(Class, Share)> {
         (Some(_), Some(_)) => return Err(table.error("weight", "given beside count; give one of the two")),
     };
     let rules = rule::read_all(table)?;
-    Ok((Class { label: name.to_owned(), fault, count: 0, severity, rules }, share))
+    Ok((Class { label: name.to_owned(), faults, count: 0, severity, rules }, share))
 }
 
 fn severity(table: &TomlTable<'_>, faulty: bool) -> ReadResult<Severity> {

@@ -1,25 +1,13 @@
 //! The table `[keep]`.
 
-use meshtone::batch::ChannelKind;
-use meshtone::scenario::Scenario;
-use meshtone::toml_reader::{ReadResult, TomlTable};
+use meshtone::scenario::{Scenario, WheelName};
+use meshtone::sensor::ChannelKind;
+use meshtone_io::channel_name::read_channel;
 use meshtone_io::experiment::Tuned;
+use meshtone_toml::{ReadResult, TomlTable};
 
 use super::super::{Keep, MOST_SHARD_RECORDS};
 
-const ACCELERATIONS: [(&str, ChannelKind); 3] = [
-    ("horizontal", ChannelKind::Horizontal),
-    ("vertical", ChannelKind::Vertical),
-    ("axial", ChannelKind::Axial),
-];
-const CHANNELS: [(&str, ChannelKind); 6] = [
-    ACCELERATIONS[0],
-    ACCELERATIONS[1],
-    ACCELERATIONS[2],
-    ("pinion-speed", ChannelKind::PinionSpeed),
-    ("gear-speed", ChannelKind::GearSpeed),
-    ("mesh-force", ChannelKind::MeshForce),
-];
 const RATE_HZ: f64 = 25e3;
 const LARGEST_RATE_HZ: f64 = 1e7;
 
@@ -40,8 +28,11 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
     let channels = match table.optional("channels") {
         None => vec![ChannelKind::Horizontal, ChannelKind::Vertical],
         Some(value) => {
-            let chosen =
-                value.array()?.iter().map(|value| value.choice(&CHANNELS)).collect::<ReadResult<Vec<_>>>()?;
+            let chosen = value
+                .array()?
+                .iter()
+                .map(|value| read_channel(value, &ChannelKind::ALL))
+                .collect::<ReadResult<Vec<_>>>()?;
             if let Some(twice) = (1..chosen.len()).find(|&n| chosen[..n].contains(&chosen[n])) {
                 return Err(value.array()?[twice].error("is named twice"));
             }
@@ -56,8 +47,13 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
     }
     let flag =
         |key| -> ReadResult<Option<bool>> { table.optional(key).map(|value| value.boolean()).transpose() };
-    let teeth = u64::from(base.gears.gear_teeth);
-    let analysed = table.optional("analysed").map(|value| value.choice(&ACCELERATIONS)).transpose()?;
+    let wheels = WheelName::BOTH.map(|wheel| (wheel.name(), wheel));
+    let wheel = table.optional("wheel").map(|value| value.choice(&wheels)).transpose()?.unwrap_or_default();
+    let teeth = u64::from(base.gears.teeth(wheel));
+    let analysed = table
+        .optional("analysed")
+        .map(|value| read_channel(&value, &ChannelKind::ACCELERATIONS))
+        .transpose()?;
     let sidebands = table
         .optional("sidebands")
         .map(|value| value.integer(0..=teeth.saturating_sub(2) / 2))
@@ -69,6 +65,7 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
         sampling_rate_hz,
         duration_s: duration_s.map(|value| value.number()).transpose()?,
         channels,
+        wheel,
         analysed: analysed.unwrap_or(tuned.map_or(ChannelKind::Vertical, |tuned| tuned.channel)),
         sidebands: sidebands.map_or(tuned.map_or(2, |tuned| tuned.sidebands), |count| count as usize),
         shaft_orders: orders.map_or(tuned.map_or(7, |tuned| tuned.shaft_orders), |last| last as usize),
@@ -94,6 +91,7 @@ fn agree(table: &TomlTable<'_>, keep: &Keep, tuned: Option<&Tuned>) -> ReadResul
     for (key, same) in [
         ("sampling_rate_hz", keep.sampling_rate_hz == tuned.sampling_rate_hz),
         ("analysed", keep.analysed == tuned.channel),
+        ("wheel", keep.wheel == WheelName::Gear),
         ("sidebands", keep.sidebands == tuned.sidebands),
         ("shaft_orders", keep.shaft_orders == tuned.shaft_orders),
         ("duration_s", keep.duration_s.is_none()),

@@ -8,10 +8,9 @@ mod split;
 
 use std::path::{Path, PathBuf};
 
-use meshtone::scenario::ScenarioError;
-use meshtone::toml_reader::{ReadResult, TomlDocument, TomlTable, TomlValue};
 use meshtone_io::experiment::{Tuned, read_tuned};
 use meshtone_io::scenario_file::{ReadScenarioError, read_text};
+use meshtone_toml::{ReadResult, TomlDocument, TomlError, TomlTable, TomlValue};
 
 use super::{About, Content, Plan, PlanFile, Splits, check};
 use crate::expression::Condition;
@@ -73,7 +72,11 @@ fn read(text: String, path: &Path, is_copy: bool) -> Result<Plan, ReadScenarioEr
         Reading { directory, is_copy, files: Vec::new(), sources: vec![path.to_path_buf()], elsewhere: None };
     let read = TomlDocument::parse(&text).and_then(|document| {
         let plan = document.root().read(|root| plan(root, &mut reading));
-        let checked = plan.and_then(|plan| check::first_records(&plan).map(|()| plan));
+        let checked = plan.and_then(|plan| {
+            check::unique_columns(&plan)?;
+            check::first_records(&plan)?;
+            Ok(plan)
+        });
         checked.map_err(|error| document.locate(error))
     });
     match (read, reading.elsewhere) {
@@ -159,7 +162,7 @@ fn tuned<'a>(value: &TomlValue<'a>, reading: &mut Reading) -> ReadResult<(TomlVa
 }
 
 /// An error in a file that the plan names.
-fn in_another_file(value: &TomlValue<'_>, error: ReadScenarioError, reading: &mut Reading) -> ScenarioError {
+fn in_another_file(value: &TomlValue<'_>, error: ReadScenarioError, reading: &mut Reading) -> TomlError {
     let told = value.error(error.to_string());
     // A name that leads nowhere is the plan's mistake.
     if !matches!(error, ReadScenarioError::Unreadable { .. }) {

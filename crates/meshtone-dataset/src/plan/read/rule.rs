@@ -1,6 +1,6 @@
 //! The array `[[vary]]`, at the top or in a class.
 
-use meshtone::toml_reader::{ReadResult, TomlTable, TomlValue};
+use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
 use super::super::{Distribution, Level, Rule};
 use crate::expression::Expression;

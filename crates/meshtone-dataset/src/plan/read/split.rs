@@ -1,6 +1,6 @@
 //! The table `[split]`.
 
-use meshtone::toml_reader::{ReadResult, TomlTable, TomlValue};
+use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
 use super::super::{Shift, Splits};
 use super::conditions;

@@ -1,9 +1,8 @@
 //! The files that a scenario file may name.
 
-use std::fmt;
-
-use super::super::{Profile, ProfileErrors, ScenarioError};
-use crate::toml_reader::TomlValue;
+use super::super::{FileProblem, Profile, ProfileErrors};
+use crate::error_table::ErrorTable;
+use crate::keys::NumberFiles;
 
 /// Loads the files that a scenario file names, so that the library itself touches no files.
 pub trait ScenarioFiles {
@@ -28,58 +27,16 @@ pub trait ScenarioFiles {
     fn profile(&self, name: &str) -> Result<Profile, FileProblem>;
 }
 
-/// What is wrong with a file that a scenario names.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct FileProblem {
-    /// What is wrong and what is allowed.
-    pub problem: String,
-    /// What the user can do.
-    pub help: String,
-}
+/// The numbers in the files that a scenario names.
+pub(super) struct Numbers<'f>(pub(super) &'f dyn ScenarioFiles);
 
-impl FileProblem {
-    /// A problem with its remedy.
-    ///
-    /// # Arguments
-    /// * `problem` - what is wrong and what is allowed
-    /// * `help` - what the user can do
-    pub fn new(problem: impl Into<String>, help: impl Into<String>) -> Self {
-        Self { problem: problem.into(), help: help.into() }
-    }
-}
-
-impl fmt::Display for FileProblem {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(&self.problem)
-    }
-}
-
-impl std::error::Error for FileProblem {}
-
-/// For a text that was not read from a file, so that no directory is known to look in.
-pub(super) struct NoFiles;
-
-impl ScenarioFiles for NoFiles {
-    fn profile_errors(&self, _name: &str) -> Result<ProfileErrors, FileProblem> {
-        Err(no_files("pinion_profile_errors_mm and gear_profile_errors_mm"))
+impl NumberFiles for Numbers<'_> {
+    fn times_and_values(&self, name: &str) -> Result<[Vec<f64>; 2], FileProblem> {
+        self.0.profile(name).map(|profile| [profile.time_s, profile.value])
     }
 
-    fn profile(&self, _name: &str) -> Result<Profile, FileProblem> {
-        Err(no_files("{ time_s = […], value = […] }"))
+    fn matrices(&self, name: &str) -> Result<[ErrorTable; 2], FileProblem> {
+        let errors = self.0.profile_errors(name)?;
+        Ok([errors.pinion_profile_errors_mm, errors.gear_profile_errors_mm])
     }
-}
-
-fn no_files(inline: &str) -> FileProblem {
-    FileProblem::new(
-        "names a file, but the scenario was given as text alone, without a directory to look in",
-        format!("read the scenario from its file, or write the values here as {inline}"),
-    )
-}
-
-/// The content of the file that a value names, or its problem at the value's line.
-pub(super) fn load<T>(
-    value: &TomlValue<'_>,
-    load: impl FnOnce(&str) -> Result<T, FileProblem>,
-) -> Result<T, ScenarioError> {
-    load(value.string()?).map_err(|problem| value.error(problem.problem).with_help(problem.help))
 }

@@ -1,31 +1,14 @@
 //! A scenario from TOML.
 
-mod fault;
 mod files;
-mod gears;
-mod operation;
-mod quality;
-mod rig;
-mod solver;
 
-pub use files::{FileProblem, ScenarioFiles};
+use meshtone_toml::{ReadResult, TomlDocument, TomlTable};
 
-use self::files::NoFiles;
-use super::{Convention, MemoryLimit, Scenario, ScenarioError};
-use crate::toml_reader::{ReadResult, TomlDocument, TomlTable};
+pub use self::files::ScenarioFiles;
 
-const CONVENTIONS: [(&str, Convention); 2] =
-    [("corrected", Convention::Corrected), ("published", Convention::Published)];
-
-impl Convention {
-    /// The name in the scenario file.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Corrected => "corrected",
-            Self::Published => "published",
-        }
-    }
-}
+use self::files::Numbers;
+use super::{Fault, MemoryLimit, Scenario, ScenarioError};
+use crate::keys::{Keys, NoFiles, NumberFiles, read_keys};
 
 impl Scenario {
     /// Reads and validates a scenario that names no other file.
@@ -39,7 +22,7 @@ impl Scenario {
     /// names a file is refused too: see [`Scenario::from_toml_with_files`].
     ///
     /// ```
-    /// use meshtone::scenario::Scenario;
+    /// use meshtone::scenario::{GearPair, Scenario};
     ///
     /// let scenario = Scenario::from_toml(
     ///     r#"
@@ -53,11 +36,11 @@ impl Scenario {
     ///     brake_torque_nm = 10.0
     ///     "#,
     /// )?;
-    /// assert_eq!(scenario, Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0));
+    /// assert_eq!(scenario, Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 }));
     /// # Ok::<(), meshtone::scenario::ScenarioError>(())
     /// ```
     pub fn from_toml(text: &str) -> Result<Self, ScenarioError> {
-        Self::from_toml_with_files(text, &NoFiles)
+        read_and_validate(text, &NoFiles, MemoryLimit::default())
     }
 
     /// Reads and validates a scenario that may name other files, whose content becomes part of it.
@@ -86,12 +69,7 @@ impl Scenario {
         files: &dyn ScenarioFiles,
         limit: MemoryLimit,
     ) -> Result<Self, ScenarioError> {
-        let document = TomlDocument::parse(text)?;
-        let scenario = document.root().read(|root| Self::from_table(root, files))?;
-        match scenario.validate_within(limit) {
-            Ok(_) => Ok(scenario),
-            Err(error) => Err(document.locate(quality::in_its_file(&document, error))),
-        }
+        read_and_validate(text, &Numbers(files), limit)
     }
 
     /// Reads a scenario that is a table of another file, without validating it.
@@ -103,7 +81,7 @@ impl Scenario {
     /// # Errors
     /// An unknown or missing key, a value of the wrong type, what `files` reports.
     pub fn from_table(table: &TomlTable<'_>, files: &dyn ScenarioFiles) -> ReadResult<Self> {
-        read_scenario(table, files)
+        read_scenario(table, &Numbers(files))
     }
 }
 
@@ -129,17 +107,55 @@ pub fn line_of_key(text: &str, key: &str) -> Option<usize> {
     TomlDocument::parse(text).ok()?.line_of_key(key)
 }
 
-fn read_scenario(root: &TomlTable<'_>, files: &dyn ScenarioFiles) -> ReadResult<Scenario> {
-    let convention = root.optional("convention").map(|value| value.choice(&CONVENTIONS)).transpose()?;
-    let seed = root.optional("seed").map(|value| value.integer(0..=u64::MAX)).transpose()?;
-    Ok(Scenario {
-        convention: convention.unwrap_or_default(),
-        seed: seed.unwrap_or(1),
-        gears: root.table_or_empty("gears")?.read(gears::read)?,
-        operation: root.table_or_empty("operation")?.read(|table| operation::read(table, files))?,
-        quality: root.table_or_empty("quality")?.read(|table| quality::read(table, files))?,
-        fault: fault::read_optional(root)?,
-        rig: root.table_or_empty("rig")?.read(rig::read)?,
-        solver: root.table_or_empty("solver")?.read(solver::read)?,
-    })
+fn read_and_validate(
+    text: &str,
+    files: &dyn NumberFiles,
+    limit: MemoryLimit,
+) -> Result<Scenario, ScenarioError> {
+    let document = TomlDocument::parse(text)?;
+    let scenario = document.root().read(|root| read_scenario(root, files))?;
+    match scenario.validate_within(limit) {
+        Ok(_) => Ok(scenario),
+        Err(error) => Err(document.locate(in_its_file(&document, error)).into()),
+    }
+}
+
+fn read_scenario(root: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<Scenario> {
+    root.refuse_renamed("convention", "is called `model` now", |value| match value {
+        Some("corrected") => "write model = \"linear\", or nothing: it is the default".to_string(),
+        Some("published") => "write model = \"published\"".to_string(),
+        _ => "write model = \"linear\" or model = \"published\"".to_string(),
+    })?;
+    let mut scenario = Scenario::start();
+    read_keys(&mut scenario, root, files)?;
+    section(&mut scenario.gears, root, "gears", files)?;
+    section(&mut scenario.operation, root, "operation", files)?;
+    section(&mut scenario.quality, root, "quality", files)?;
+    scenario.faults = Fault::list_from_table(root)?;
+    section(&mut scenario.rig, root, "rig", files)?;
+    section(&mut scenario.solver, root, "solver", files)?;
+    Ok(scenario)
+}
+
+fn section<S: Keys>(
+    parameters: &mut S,
+    root: &TomlTable<'_>,
+    name: &'static str,
+    files: &dyn NumberFiles,
+) -> ReadResult<()> {
+    root.table_or_empty(name)?.read(|table| read_keys(parameters, table, files))
+}
+
+/// An error about profile errors that came from a file is about the key that names the file.
+fn in_its_file(document: &TomlDocument<'_>, mut error: ScenarioError) -> ScenarioError {
+    const FILE: &str = "quality.errors_file";
+    let Some(entry) = error.key.strip_prefix("quality.").filter(|entry| entry.contains("profile_errors_mm"))
+    else {
+        return error;
+    };
+    if document.value_as_written(FILE).is_some() {
+        error.problem = format!("{entry}: {}", error.problem);
+        error.key = FILE.to_string();
+    }
+    error
 }

@@ -1,7 +1,7 @@
 //! Which key makes a simulation too large.
 
 use super::super::{Scenario, ScenarioError, Solver};
-use crate::sampling::least_common_multiple;
+use crate::operation::least_common_multiple;
 
 /// (rev/s) An ordinary speed of a pinion.
 const ORDINARY_SPEED_HZ: f64 = 40.0;
@@ -60,7 +60,7 @@ fn speed(scenario: &Scenario) -> Option<Candidate> {
     let speed_hz = scenario.operation.pinion_speed_hz;
     let mut ordinary = scenario.clone();
     ordinary.operation.pinion_speed_hz = ORDINARY_SPEED_HZ;
-    let revolutions = crate::sampling::nominal_revolutions(scenario.gears.gear_teeth);
+    let revolutions = crate::operation::nominal_revolutions(scenario.gears.gear_teeth);
     let seconds = f64::from(revolutions) / speed_hz;
     Some(Candidate {
         key: "operation.pinion_speed_hz",

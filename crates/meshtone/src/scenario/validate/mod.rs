@@ -1,19 +1,15 @@
 //! What a scenario must satisfy before anything is computed.
 
-mod fault;
-mod gears;
+mod duration;
 mod largest_cause;
 mod memory_limit;
-mod operation;
-mod quality;
-mod rig;
-mod rules;
 mod size;
-mod solver;
 
 pub use memory_limit::{MEMORY_LIMIT_BYTES, MemoryLimit};
 
-use super::{Scenario, ScenarioError, ScenarioWarning};
+use super::{Model, Scenario, ScenarioError, ScenarioWarning, WheelName};
+use crate::damage::check_faults;
+use crate::keys::check_keys;
 
 impl Scenario {
     /// Checks every value, alone and against the others, as far as no tooth geometry is needed.
@@ -26,9 +22,9 @@ impl Scenario {
     /// than [`MEMORY_LIMIT_BYTES`] is refused too.
     ///
     /// ```
-    /// use meshtone::scenario::Scenario;
+    /// use meshtone::scenario::{GearPair, Scenario};
     ///
-    /// let mut scenario = Scenario::new(3.0, 14, 38, 15.0, 40.0, 10.0);
+    /// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 14, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
     /// let warnings = scenario.validate()?;
     /// assert_eq!(warnings[0].key, "gears.pinion_teeth");
     ///
@@ -49,9 +45,9 @@ impl Scenario {
     /// As [`Scenario::validate`].
     ///
     /// ```
-    /// use meshtone::scenario::{MemoryLimit, Scenario};
+    /// use meshtone::scenario::{GearPair, MemoryLimit, Scenario};
     ///
-    /// let mut scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    /// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
     /// scenario.solver.sampling_rate_hz = 1e8;
     /// let error = scenario.validate_within(MemoryLimit::Machine { free_bytes: 1 << 30 }).unwrap_err();
     /// assert_eq!(error.key, "solver.sampling_rate_hz");
@@ -63,23 +59,46 @@ impl Scenario {
         if honoured != *self {
             check_values(&honoured).map_err(|error| {
                 let problem = format!("{} (the published model always has the default)", error.problem);
-                ScenarioError { problem, help: Some(PUBLISHED_HELP.to_string()), ..error }
+                ScenarioError { problem, ..error }.with_help(PUBLISHED_HELP)
             })?;
         }
-        operation::check_duration(&honoured)?;
+        duration::check(&honoured)?;
         size::check(&honoured, limit)?;
-        Ok(gears::warnings(&honoured.gears))
+        Ok(honoured.gears.warnings())
     }
 }
 
-const PUBLISHED_HELP: &str = "set convention = \"corrected\", which honours every key";
+const PUBLISHED_HELP: &str = "set model = \"linear\", which honours every key";
 
-/// Every value, whether or not the convention honours it.
+/// Every value, whether or not the model honours it.
 fn check_values(scenario: &Scenario) -> Result<(), ScenarioError> {
-    gears::check(&scenario.gears)?;
-    operation::check(&scenario.operation)?;
-    quality::check(&scenario.quality, &scenario.gears)?;
-    fault::check(scenario.fault.as_ref(), &scenario.gears)?;
-    rig::check(&scenario.rig, &scenario.gears)?;
-    solver::check(&scenario.solver)
+    scenario.gears.check()?;
+    scenario.operation.check()?;
+    scenario.quality.check(&scenario.gears)?;
+    check_faults(&scenario.faults, &scenario.gears)?;
+    known_to_the_model(scenario)?;
+    scenario.rig.check(&scenario.gears)?;
+    check_keys(&scenario.solver, "solver")
 }
+
+/// The published code has one damaged tooth, and always the same.
+fn known_to_the_model(scenario: &Scenario) -> Result<(), ScenarioError> {
+    if scenario.model != Model::Published {
+        return Ok(());
+    }
+    let faults = &scenario.faults;
+    let error = match faults.as_slice() {
+        [] => return Ok(()),
+        [fault] if fault.wheel != WheelName::Gear => {
+            ScenarioError::new("fault.wheel", format!("\"{}\"", fault.wheel.name()), ONE_PLACE)
+        }
+        [fault] if fault.tooth != 1 => ScenarioError::new("fault.tooth", fault.tooth, ONE_PLACE),
+        [_] => return Ok(()),
+        several => {
+            ScenarioError::new("fault[1]", "", format!("is one of {} faults; {ONE_PLACE}", several.len()))
+        }
+    };
+    Err(error.with_help(PUBLISHED_HELP))
+}
+
+const ONE_PLACE: &str = "the published model knows only one fault, on the gear's first tooth";

@@ -3,8 +3,8 @@
 use super::super::Scenario;
 use super::largest_cause;
 use super::memory_limit::{MemoryLimit, in_words};
-use super::rules::Check;
-use crate::sampling::{CycleGrid, TimeGrid};
+use crate::keys::Check;
+use crate::operation::CycleGrid;
 
 /// Signals that are kept of every sample after settling.
 const KEPT_CHANNELS: f64 = 8.0;
@@ -22,13 +22,13 @@ impl Scenario {
     /// and each tooth.
     ///
     /// ```
-    /// use meshtone::scenario::Scenario;
+    /// use meshtone::scenario::{GearPair, Scenario};
     ///
-    /// let scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    /// let scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
     /// assert_eq!(scenario.actual_sampling_rate_hz(), 258_400.0);
     /// ```
     pub fn actual_sampling_rate_hz(&self) -> f64 {
-        TimeGrid::new(self).sampling_rate_hz
+        self.time_grid().sampling_rate_hz
     }
 
     /// (bytes) Estimate of the memory that the simulation needs: 8 signals of every kept sample,
@@ -38,13 +38,13 @@ impl Scenario {
     /// `u64::MAX` stands for anything above it.
     ///
     /// ```
-    /// use meshtone::scenario::Scenario;
+    /// use meshtone::scenario::{GearPair, Scenario};
     ///
-    /// let scenario = Scenario::new(3.0, 17, 38, 15.0, 40.0, 10.0);
+    /// let scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
     /// assert_eq!(scenario.memory_estimate_bytes() / 1_000_000, 39);
     /// ```
     pub fn memory_estimate_bytes(&self) -> u64 {
-        let time = TimeGrid::new(self);
+        let time = self.time_grid();
         let cycle = CycleGrid::new(self.gears.pinion_teeth, self.gears.gear_teeth, time.sampling_rate_hz);
         let numbers = time.kept_samples() as f64 * KEPT_CHANNELS
             + time.samples as f64 * EXCITATION_CHANNELS

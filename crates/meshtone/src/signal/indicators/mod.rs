@@ -15,6 +15,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// All indicators of one record. None where one is not defined, as the kurtosis of a part that is 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Indicators {
     /// Of the synchronous average.
     pub average: ShapeIndicators,

@@ -1,0 +1,105 @@
+//! A parsed TOML text.
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::key_path::find;
+use crate::{ReadResult, TomlError, TomlTable};
+
+/// A parsed TOML text, to be read through [`TomlDocument::root`].
+#[derive(Debug)]
+pub struct TomlDocument<'i> {
+    text: &'i str,
+    root: DeTable<'i>,
+}
+
+impl<'i> TomlDocument<'i> {
+    /// Parses a text.
+    ///
+    /// # Arguments
+    /// * `text` - the TOML text
+    ///
+    /// # Errors
+    /// The first place where the text is not TOML: its line, what is written there, and what the
+    /// parser expected. Its key is empty.
+    pub fn parse(text: &'i str) -> ReadResult<Self> {
+        match DeTable::parse(text) {
+            Ok(root) => Ok(Self { text, root: root.into_inner() }),
+            Err(error) => Err(syntax_error(text, &error)),
+        }
+    }
+
+    /// The table of the top-level keys.
+    pub fn root(&self) -> TomlTable<'_> {
+        TomlTable::new(self.text, String::new(), None, Some(&self.root))
+    }
+
+    /// The 1-based line of a key; where the text leaves the key out, that of the nearest table
+    /// around it; none where it has neither.
+    ///
+    /// # Arguments
+    /// * `key` - dotted key; `[n]` after a name is the array's entry n, counted from 0
+    pub fn line_of_key(&self, key: &str) -> Option<usize> {
+        find(&self.root, key).map(|found| line_at(self.text, found.start))
+    }
+
+    /// A key's value as it is written, shortened; none where the text leaves it out or where it
+    /// is a section.
+    ///
+    /// # Arguments
+    /// * `key` - as for [`Self::line_of_key`]
+    pub fn value_as_written(&self, key: &str) -> Option<String> {
+        let value = find(&self.root, key)?.value?;
+        Some(written(self.text, value)).filter(|written| !written.is_empty())
+    }
+
+    /// The same error, about a key of this text, with the key's line and its value as written.
+    ///
+    /// # Arguments
+    /// * `error` - found after reading
+    pub fn locate(&self, error: impl Into<TomlError>) -> TomlError {
+        let mut error = error.into();
+        if error.line.is_none() {
+            error.line = self.line_of_key(&error.key);
+            if let Some(written) = self.value_as_written(&error.key) {
+                error.value = written;
+            }
+        }
+        error
+    }
+}
+
+fn syntax_error(text: &str, error: &toml::de::Error) -> TomlError {
+    let start = error.span().map_or(text.len(), |span| span.start).min(text.len());
+    let line = line_at(text, start);
+    let written = text.lines().nth(line - 1).unwrap_or_default().trim();
+    TomlError::new("", shorten(written), format!("not valid TOML: {}", error.message()))
+        .with_help("write `key = value`, one key a line, text in double quotes, below a `[section]`")
+        .at_line(Some(line))
+}
+
+/// The 1-based line of a byte position.
+pub(crate) fn line_at(text: &str, position: usize) -> usize {
+    let before = &text.as_bytes()[..position.min(text.len())];
+    1 + before.iter().filter(|&&byte| byte == b'\n').count()
+}
+
+/// A value as written, on one line and of bounded length; empty for a section, which is not
+/// written in one place.
+pub(crate) fn written(text: &str, value: &Spanned<DeValue<'_>>) -> String {
+    let source = text.get(value.span()).unwrap_or_default();
+    if value.get_ref().is_table() && !source.starts_with('{') {
+        return String::new();
+    }
+    let mut lines = source.lines();
+    let first = shorten(lines.next().unwrap_or_default());
+    if lines.next().is_some() { format!("{first} …") } else { first }
+}
+
+fn shorten(text: &str) -> String {
+    const LONGEST: usize = 60;
+    if text.chars().count() <= LONGEST {
+        return text.to_string();
+    }
+    text.chars().take(LONGEST).chain([' ', '…']).collect()
+}

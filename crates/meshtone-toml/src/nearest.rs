@@ -1,0 +1,39 @@
+//! The right name for a misspelt one.
+
+/// Similarity below which two names are rather different words than one word misspelt.
+const LEAST_SIMILARITY: f64 = 0.7;
+
+/// The candidate that a misspelt name most probably means, if any is near.
+///
+/// # Arguments
+/// * `written` - the name that is not among the candidates
+/// * `candidates` - the names that exist
+///
+/// ```
+/// use meshtone_toml::nearest_name;
+///
+/// assert_eq!(nearest_name("modul", ["module_mm", "pinion_teeth"]), Some("module_mm"));
+/// assert_eq!(nearest_name("colour", ["module_mm", "pinion_teeth"]), None);
+/// ```
+pub fn nearest_name<'n>(written: &str, candidates: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
+    candidates
+        .into_iter()
+        .map(|candidate| (similarity(written, candidate), candidate))
+        .filter(|(similarity, _)| *similarity >= LEAST_SIMILARITY)
+        .max_by(|(left, _), (right, _)| left.total_cmp(right))
+        .map(|(_, candidate)| candidate)
+}
+
+/// Whether one of the two names is surely the other misspelt: a slip of one or two letters.
+pub(crate) fn is_slip(written: &str, name: &str) -> bool {
+    name.len() >= 4 && strsim::damerau_levenshtein(written, name) <= 2
+}
+
+fn similarity(written: &str, candidate: &str) -> f64 {
+    // A forgotten unit suffix or prefix is the likeliest slip, and weighs heavily by letters.
+    let contained = written.len() >= 4 && (candidate.contains(written) || written.contains(candidate));
+    let by_letters = strsim::normalized_damerau_levenshtein(written, candidate);
+    let by_start = strsim::jaro_winkler(written, candidate);
+    let bonus = if contained { 0.5 } else { 0.0 };
+    by_letters.max(by_start * 0.9) + bonus
+}

@@ -1,0 +1,252 @@
+//! One table of a TOML text.
+
+use std::cell::RefCell;
+
+use toml::de::DeTable;
+
+use crate::document::{line_at, written};
+use crate::nearest::{is_slip, nearest_name};
+use crate::{ReadResult, TomlError, TomlValue};
+
+/// One table of a TOML text, read key by key.
+///
+/// It remembers which keys were asked for, so that [`TomlTable::finish`] can refuse the others.
+#[derive(Debug)]
+#[must_use = "call `finish` or `read`, so that unknown keys are refused"]
+pub struct TomlTable<'a> {
+    text: &'a str,
+    path: String,
+    line: Option<usize>,
+    /// None where the text leaves the table out: every key is then at its default.
+    table: Option<&'a DeTable<'a>>,
+    asked: RefCell<Vec<&'static str>>,
+}
+
+impl<'a> TomlTable<'a> {
+    pub(crate) fn new(
+        text: &'a str,
+        path: String,
+        line: Option<usize>,
+        table: Option<&'a DeTable<'a>>,
+    ) -> Self {
+        Self { text, path, line, table, asked: RefCell::default() }
+    }
+
+    /// The dotted key of this table, empty for the top level.
+    pub fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// The dotted key of one of this table's keys.
+    ///
+    /// # Arguments
+    /// * `key` - its name in this table
+    pub fn path_of(&self, key: &str) -> String {
+        if self.path.is_empty() { key.to_string() } else { format!("{}.{key}", self.path) }
+    }
+
+    /// The value of a key, if it is there.
+    ///
+    /// # Arguments
+    /// * `key` - its name in this table
+    pub fn optional(&self, key: &'static str) -> Option<TomlValue<'a>> {
+        self.remember(key);
+        let (written, value) = self.table?.get_key_value(key)?;
+        Some(TomlValue::new(self.text, self.path_of(key), written.span().start, value))
+    }
+
+    /// The value of a key that must be there.
+    ///
+    /// # Arguments
+    /// * `key` - its name in this table
+    /// * `meaning` - unit and meaning, told to a user who left it out
+    ///
+    /// # Errors
+    /// The key is missing; where another key looks like it misspelt, that key is named instead.
+    pub fn required(&self, key: &'static str, meaning: &str) -> ReadResult<TomlValue<'a>> {
+        if let Some(value) = self.optional(key) {
+            return Ok(value);
+        }
+        self.refuse_slip_of(key)?;
+        Err(self.error(key, format!("missing, and it has no default; it is {meaning}")))
+    }
+
+    /// A finite number, if it is there.
+    ///
+    /// # Arguments
+    /// * `key` - its name in this table
+    ///
+    /// # Errors
+    /// The value is not a finite number.
+    pub fn number(&self, key: &'static str) -> ReadResult<Option<f64>> {
+        self.optional(key).map(|value| value.number()).transpose()
+    }
+
+    /// A finite number, or its default.
+    ///
+    /// # Arguments
+    /// * `key` - its name in this table
+    /// * `default` - taken where the key is absent
+    ///
+    /// # Errors
+    /// The value is not a finite number.
+    pub fn number_or(&self, key: &'static str, default: f64) -> ReadResult<f64> {
+        Ok(self.number(key)?.unwrap_or(default))
+    }
+
+    /// A table, or an empty one where it is absent, so that every key in it takes its default.
+    ///
+    /// # Arguments
+    /// * `key` - its name in this table
+    ///
+    /// # Errors
+    /// The value is no table, or it is absent and another key looks like it misspelt.
+    pub fn table_or_empty(&self, key: &'static str) -> ReadResult<TomlTable<'a>> {
+        match self.optional(key) {
+            Some(value) => value.table(),
+            None => {
+                self.refuse_slip_of(key)?;
+                Ok(Self::new(self.text, self.path_of(key), self.line, None))
+            }
+        }
+    }
+
+    /// A list of tables: `[key]` once, or `[[key]]` any number of times; none where the key is absent.
+    ///
+    /// The keys of a single one are named `key.…`, those of entry n of several `key[n].…`, counted from 0.
+    ///
+    /// # Arguments
+    /// * `key` - its name in this table
+    ///
+    /// # Errors
+    /// The value, or an entry of it, is no table.
+    ///
+    /// ```
+    /// use meshtone_toml::TomlDocument;
+    ///
+    /// let document = TomlDocument::parse("[[motor]]\nname = \"a\"\n[[motor]]\nname = \"b\"\n")?;
+    /// let motors = document.root().tables("motor")?;
+    /// assert_eq!((motors.len(), motors[1].path()), (2, "motor[1]"));
+    ///
+    /// let document = TomlDocument::parse("[[motor]]\nname = \"a\"\n")?;
+    /// assert_eq!(document.root().tables("motor")?[0].path(), "motor");
+    /// # Ok::<(), meshtone_toml::TomlError>(())
+    /// ```
+    pub fn tables(&self, key: &'static str) -> ReadResult<Vec<TomlTable<'a>>> {
+        let Some(value) = self.optional(key) else {
+            return Ok(Vec::new());
+        };
+        if !value.is_array() {
+            return Ok(vec![value.table()?]);
+        }
+        let entries = value.array()?;
+        let only = entries.len() == 1;
+        let named = |entry: &TomlValue<'a>| if only { entry.table_at(value.path()) } else { entry.table() };
+        entries.iter().map(named).collect()
+    }
+
+    /// Refuses a key that was once read here, so that whoever still writes it is told what to write instead.
+    ///
+    /// # Arguments
+    /// * `key` - the name that it had
+    /// * `problem` - that it is renamed, and to what
+    /// * `remedy` - gives the advice for the value, where that is a text
+    ///
+    /// # Errors
+    /// The key is there.
+    pub fn refuse_renamed(
+        &self,
+        key: &str,
+        problem: &str,
+        remedy: impl FnOnce(Option<&str>) -> String,
+    ) -> ReadResult<()> {
+        let Some(value) = self.table.and_then(|table| table.get(key)) else {
+            return Ok(());
+        };
+        Err(self.error(key, problem).with_help(remedy(value.get_ref().as_str())))
+    }
+
+    /// Reads the table and then refuses what was not asked for.
+    ///
+    /// # Arguments
+    /// * `read` - asks for every key that may be here
+    ///
+    /// # Errors
+    /// Those of `read`, then those of [`Self::finish`].
+    pub fn read<T>(self, read: impl FnOnce(&Self) -> ReadResult<T>) -> ReadResult<T> {
+        let value = read(&self)?;
+        self.finish()?;
+        Ok(value)
+    }
+
+    /// Refuses the first key that nobody asked for.
+    ///
+    /// # Errors
+    /// The unknown key, its line, the nearest right name and all the names allowed here.
+    pub fn finish(self) -> ReadResult<()> {
+        let asked = self.asked.borrow();
+        match self.unasked().min_by_key(|(start, _)| *start) {
+            None => Ok(()),
+            Some((_, name)) => Err(self.unknown(name, nearest_name(name, asked.iter().copied()))),
+        }
+    }
+
+    /// An error about a key of this table, at its line or else at the table's.
+    ///
+    /// # Arguments
+    /// * `key` - its name in this table
+    /// * `problem` - what is wrong and what is allowed
+    pub fn error(&self, key: &str, problem: impl Into<String>) -> TomlError {
+        let entry = self.table.and_then(|table| table.get_key_value(key));
+        let value = entry.map(|(_, value)| written(self.text, value)).unwrap_or_default();
+        let line = entry.map(|(key, _)| line_at(self.text, key.span().start)).or(self.line);
+        TomlError::new(self.path_of(key), value, problem).at_line(line)
+    }
+
+    fn remember(&self, key: &'static str) {
+        let mut asked = self.asked.borrow_mut();
+        if !asked.contains(&key) {
+            asked.push(key);
+        }
+    }
+
+    fn unasked(&self) -> impl Iterator<Item = (usize, &'a str)> {
+        let asked = self.asked.borrow().clone();
+        self.table
+            .into_iter()
+            .flat_map(|table| table.keys())
+            .map(|key| (key.span().start, key.get_ref().as_ref()))
+            .filter(move |(_, name)| !asked.contains(name))
+    }
+
+    /// A key that is missing while a misspelt one stands in its place: the misspelt one is the
+    /// mistake that the user has to mend.
+    ///
+    /// # Arguments
+    /// * `key` - its name in this table
+    ///
+    /// # Errors
+    /// A key that nobody has asked for looks like this one misspelt.
+    pub fn refuse_slip_of(&self, key: &'static str) -> ReadResult<()> {
+        match self.unasked().find(|(_, name)| is_slip(name, key)) {
+            None => Ok(()),
+            // Which other keys are allowed is not known yet: they have not been asked for.
+            Some((_, name)) => Err(self
+                .error(name, format!("unknown key, while `{key}` is missing"))
+                .with_help(format!("did you mean `{key}`?"))),
+        }
+    }
+
+    fn unknown(&self, name: &str, nearest: Option<&str>) -> TomlError {
+        let allowed = self.asked.borrow().join(", ");
+        let place = match self.path.as_str() {
+            "" => "at the top level".to_string(),
+            path => format!("in `{path}`"),
+        };
+        let error = self.error(name, format!("unknown key; allowed {place}: {allowed}"));
+        error.with_help(match nearest {
+            Some(nearest) => format!("did you mean `{nearest}`?"),
+            None => "remove it, or move it to the section it belongs to".to_string(),
+        })
+    }
+}

@@ -1,0 +1,177 @@
+//! The reader of TOML files: types, missing and unknown keys, lines.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use meshtone_toml::{TomlDocument, TomlError, TomlTable, TomlValue};
+
+fn value_error<T>(text: &str, read: impl FnOnce(TomlValue<'_>) -> Result<T, TomlError>) -> Option<TomlError> {
+    let document = TomlDocument::parse(text).unwrap();
+    document.root().read(|root| read(root.required("k", "a value")?)).err()
+}
+
+#[track_caller]
+fn assert_error(error: Option<TomlError>, key: &str, line: usize, value: &str, words: &str) {
+    let error = error.expect("must be refused");
+    assert_eq!((error.key.as_str(), error.line, error.value.as_str()), (key, Some(line), value), "{error}");
+    assert!(error.problem.contains(words), "{error}");
+}
+
+#[test]
+fn integers_are_numbers_in_every_notation() {
+    for (text, expected) in
+        [("k = 3", 3.0), ("k = 0x1f", 31.0), ("k = 1_000", 1000.0), ("k = -2.5e-3", -2.5e-3)]
+    {
+        let document = TomlDocument::parse(text).unwrap();
+        assert_eq!(document.root().read(|root| root.number("k")).unwrap(), Some(expected), "{text}");
+    }
+}
+
+#[test]
+fn numbers_must_be_finite_numbers() {
+    assert_error(value_error("k = nan", |value| value.number()), "k", 1, "nan", "finite");
+    assert_error(value_error("\nk = -inf", |value| value.number()), "k", 2, "-inf", "finite");
+    assert_error(value_error("k = 1e999", |value| value.number()), "k", 1, "1e999", "");
+    assert_error(
+        value_error("k = \"3\"", |value| value.number()),
+        "k",
+        1,
+        "\"3\"",
+        "must be a number, not text",
+    );
+    assert_error(value_error("k = true", |value| value.number()), "k", 1, "true", "must be a number");
+}
+
+#[test]
+fn integers_must_be_whole_and_in_range() {
+    let integer = |value: TomlValue<'_>| value.integer(1..=5);
+    assert_error(value_error("k = 3.0", integer), "k", 1, "3.0", "whole number");
+    assert_error(value_error("k = 6", integer), "k", 1, "6", "from 1 to 5");
+    assert_error(value_error("k = -1", integer), "k", 1, "-1", "from 1 to 5");
+    let document = TomlDocument::parse("k = 18446744073709551615").unwrap();
+    let largest = document.root().read(|root| root.required("k", "")?.integer(0..=u64::MAX)).unwrap();
+    assert_eq!(largest, u64::MAX);
+}
+
+#[test]
+fn choices_suggest_the_nearest() {
+    let choice = |value: TomlValue<'_>| value.choice(&[("parabolic", 1), ("linear", 2)]);
+    let error = value_error("k = \"linaer\"", choice).unwrap();
+    assert_eq!(error.help.as_deref(), Some("did you mean \"linear\"?"));
+    assert_error(Some(error), "k", 1, "\"linaer\"", "one of \"parabolic\", \"linear\"");
+    assert_error(value_error("k = 1", choice), "k", 1, "1", "must be one of \"parabolic\"");
+    let far = value_error("k = \"cubic spline\"", choice).unwrap();
+    assert_eq!(far.help, None);
+}
+
+#[test]
+fn entries_of_arrays_have_their_own_key_and_line() {
+    let text = "k = [\n  1.0,\n  2.0,\n  nan,\n]";
+    assert_error(value_error(text, |value| value.numbers()), "k[2]", 4, "nan", "finite");
+    let short = value_error(text.replace("nan", "3").as_str(), |value| value.exactly::<13>());
+    assert_error(short, "k", 1, "[ …", "has 3 numbers; must have exactly 13");
+    assert_error(value_error("k = 1", |value| value.numbers()), "k", 1, "1", "an array");
+}
+
+#[test]
+fn other_types_are_named() {
+    assert_error(
+        value_error("k = 1", |value| value.boolean()),
+        "k",
+        1,
+        "1",
+        "true or false, not a whole number",
+    );
+    assert_error(
+        value_error("k = [1]", |value| value.string().map(str::len)),
+        "k",
+        1,
+        "[1]",
+        "double quotes",
+    );
+    assert_error(value_error("k = 1.5", |value| value.table()?.finish()), "k", 1, "1.5", "a table");
+    let date = value_error("k = 2024-01-01", |value| value.number());
+    assert_error(date, "k", 1, "2024-01-01", "not a date");
+}
+
+fn read_motor(text: &str) -> Result<f64, TomlError> {
+    fn motor(table: &TomlTable<'_>) -> Result<f64, TomlError> {
+        let speed = table.required("speed_hz", "(rev/s) the motor's speed")?.number()?;
+        Ok(speed + table.number_or("torque_nm", 0.5)?)
+    }
+    TomlDocument::parse(text)?.root().read(|root| root.table_or_empty("motor")?.read(motor))
+}
+
+#[test]
+fn defaults_apply_where_keys_are_absent() {
+    assert_eq!(read_motor("[motor]\nspeed_hz = 2").unwrap(), 2.5);
+    assert_eq!(read_motor("motor.speed_hz = 2\nmotor.torque_nm = 1").unwrap(), 3.0);
+}
+
+#[test]
+fn missing_keys_are_named_with_their_meaning() {
+    let words = "missing, and it has no default; it is (rev/s) the motor's speed";
+    assert_error(read_motor("\n[motor]\n").err(), "motor.speed_hz", 2, "", words);
+    let absent = read_motor("").unwrap_err();
+    assert_eq!((absent.key.as_str(), absent.line), ("motor.speed_hz", None));
+}
+
+#[test]
+fn unknown_keys_are_named_with_the_nearest() {
+    let error = read_motor("[motor]\nspeed_hz = 2\ntorque = 1\n").unwrap_err();
+    assert_eq!(error.help.as_deref(), Some("did you mean `torque_nm`?"));
+    assert_error(Some(error), "motor.torque", 3, "1", "unknown key; allowed in `motor`: speed_hz, torque_nm");
+    let far = read_motor("colour = 1\n[motor]\nspeed_hz = 2\n").unwrap_err();
+    assert!(far.help.as_deref().unwrap().contains("remove it"), "{far:?}");
+    assert_error(Some(far), "colour", 1, "1", "allowed at the top level: motor");
+}
+
+#[test]
+fn the_first_of_several_unknown_keys_is_reported() {
+    let error = read_motor("[motor]\nspeed_hz = 2\nzebra = 1\nant = 1\n").unwrap_err();
+    assert_eq!(error.key, "motor.zebra");
+}
+
+#[test]
+fn a_slip_in_a_required_name_is_the_mistake_rather_than_the_missing_key() {
+    let key = read_motor("[motor]\nsped_hz = 2\n").unwrap_err();
+    assert_eq!(key.help.as_deref(), Some("did you mean `speed_hz`?"));
+    assert_error(Some(key), "motor.sped_hz", 2, "2", "unknown key");
+    let section = read_motor("[moter]\nspeed_hz = 2\n").unwrap_err();
+    assert_eq!(section.help.as_deref(), Some("did you mean `motor`?"));
+    assert_error(Some(section), "moter", 1, "", "unknown key");
+}
+
+#[test]
+fn text_that_is_not_toml_is_refused_with_its_line() {
+    let error = TomlDocument::parse("a = 1\nb = = 2\n").unwrap_err();
+    assert_eq!(error.line, Some(2));
+    assert!(error.to_string().starts_with("line 2: b = = 2: not valid TOML: "), "{error}");
+    let twice = TomlDocument::parse("a = 1\na = 2\n").unwrap_err();
+    assert_eq!(twice.line, Some(2));
+    assert!(twice.problem.contains("duplicate key"), "{twice}");
+    let open = TomlDocument::parse("a = [1,\n2\n").unwrap_err();
+    assert!(open.line.is_some(), "{open:?}");
+}
+
+#[test]
+fn keys_are_found_inside_tables_and_arrays() {
+    let text = "seed = 1\n[a]\nb = { c = 1 }\nd = [\n1,\n2,\n]\ne.f = 3\n";
+    let document = TomlDocument::parse(text).unwrap();
+    for (key, line) in [
+        ("seed", Some(1)),
+        ("a", Some(2)),
+        ("a.b.c", Some(3)),
+        ("a.d", Some(4)),
+        ("a.d[1]", Some(6)),
+        ("a.d[7]", Some(4)),
+        ("a.e.f", Some(8)),
+        ("a.absent", Some(2)),
+        ("absent", None),
+        ("absent.too", None),
+    ] {
+        assert_eq!(document.line_of_key(key), line, "{key}");
+    }
+    assert_eq!(document.value_as_written("a.d[1]").as_deref(), Some("2"));
+    assert_eq!(document.value_as_written("a.b").as_deref(), Some("{ c = 1 }"));
+    assert_eq!(document.value_as_written("a"), None);
+    assert_eq!(document.value_as_written("a.absent"), None);
+}

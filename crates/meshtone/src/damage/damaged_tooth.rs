@@ -1,0 +1,189 @@
+//! A tooth with all its damage.
+
+use std::ops::RangeInclusive;
+
+use super::{DamageDescription, Fault};
+use crate::error::ScenarioError;
+use crate::random::{Draws, Purpose};
+use crate::wheel::{Flank, Teeth, ToothProfile, Wheel, WheelName};
+
+/// What is left of one tooth.
+///
+/// Vectors run over the points of the tooth's profile. Widths are missing from one end of the face, the same for all
+/// damages and for both wheels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DamagedTooth {
+    /// Whose tooth it is.
+    pub wheel: WheelName,
+    /// Its index, from 0.
+    pub tooth: usize,
+    /// (mm) The working flank, where it is cut over the whole width.
+    pub flank_y_mm: Vec<f64>,
+    /// (mm) Width that is gone, through the whole thickness.
+    pub missing_width_mm: Vec<f64>,
+    /// (mm) Width over which the flank is cut further back, to `corner_y_mm`.
+    pub corner_width_mm: Vec<f64>,
+    /// (mm) The working flank over `corner_width_mm`.
+    pub corner_y_mm: Vec<f64>,
+    /// First index from which on nothing of the tooth is left; the number of points where nothing is lost.
+    pub gone_from_index: usize,
+    /// (mm) How far the flank lies back along the line of action when it is touched there; 0 or less.
+    pub deviation_mm: Vec<f64>,
+    /// Where the mate does not touch the flank but turns about two edges.
+    pub rolling: Vec<RollingPit>,
+    /// What the damages are.
+    pub descriptions: Vec<DamageDescription>,
+}
+
+/// A pit over the whole width: the mate turns about its edges.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RollingPit {
+    /// First profile index inside the pit: the edge about which the mate turns up to `mid_index`.
+    pub start_index: usize,
+    /// Last index of the first half.
+    pub mid_index: usize,
+    /// Last profile index inside the pit: the edge about which the mate turns after `mid_index`.
+    pub end_index: usize,
+    /// (mm) Largest displacement: how far the two flanks bulge over the chords between their edges.
+    pub deviation_mm: f64,
+}
+
+/// The healthy tooth that a damage is done to.
+pub(crate) struct HealthyTooth<'a> {
+    teeth: &'a Teeth,
+    name: WheelName,
+    tooth: usize,
+    seed: u64,
+}
+
+impl<'a> HealthyTooth<'a> {
+    pub(super) fn wheel(&self) -> &'a Wheel {
+        self.teeth.wheel(self.name)
+    }
+
+    pub(super) fn profile(&self) -> &'a ToothProfile {
+        self.teeth.profile(self.name)
+    }
+
+    pub(super) fn flank(&self) -> Flank<'a> {
+        self.teeth.flank(self.name)
+    }
+
+    /// Profile index where contact starts at the root side.
+    pub(super) fn first_contact(&self) -> usize {
+        self.teeth.initial_contact_index(self.name)
+    }
+
+    /// (rev) Position of a profile point in contact: pinion revolutions since the tooth entered contact.
+    pub(super) fn position_rev(&self, index: usize) -> f64 {
+        let position = self.teeth.path.position(self.name, self.flank().curvature_mm(index));
+        position.clamp(0.0, self.teeth.path.contact_ratio) / f64::from(self.teeth.pinion.teeth)
+    }
+
+    /// The mate's flank, and the index of its point nearest to the one that meets a point of this tooth.
+    pub(super) fn met_by(&self, index: usize) -> (Flank<'a>, usize) {
+        let mate = self.teeth.flank(self.name.mate());
+        let curvature = self.teeth.path.line_mm - self.flank().curvature_mm(index);
+        (mate, mate.at_curvature(curvature).nearest())
+    }
+
+    /// Draws for the roughness of this tooth.
+    pub(super) fn roughness(&self) -> Draws {
+        // The pinion's teeth count from 2³² on.
+        let first = if self.name == WheelName::Pinion { 1 << 32 } else { 0 };
+        Draws::new(self.seed, Purpose::DestructionNoise, first + self.tooth as u64)
+    }
+}
+
+impl DamagedTooth {
+    /// A tooth of which nothing is missing.
+    pub(super) fn sound(name: WheelName, tooth: usize, profile: &ToothProfile) -> Self {
+        let points = profile.len();
+        Self {
+            wheel: name,
+            tooth,
+            flank_y_mm: profile.y_mm.clone(),
+            missing_width_mm: vec![0.0; points],
+            corner_width_mm: vec![0.0; points],
+            corner_y_mm: profile.y_mm.clone(),
+            gone_from_index: points,
+            deviation_mm: vec![0.0; points],
+            rolling: Vec::new(),
+            descriptions: Vec::new(),
+        }
+    }
+
+    /// (mm) The working flank where it is cut furthest back.
+    pub fn outline_y_mm(&self) -> Vec<f64> {
+        self.flank_y_mm.iter().zip(&self.corner_y_mm).map(|(flank, corner)| flank.min(*corner)).collect()
+    }
+
+    /// Whether nothing of the tooth is left.
+    pub fn is_missing(&self) -> bool {
+        self.gone_from_index == 0
+    }
+
+    /// The rolling pit that a profile index lies in.
+    pub(crate) fn rolling_at(&self, index: usize) -> Option<&RollingPit> {
+        self.rolling.iter().find(|pit| (pit.start_index..=pit.end_index).contains(&index))
+    }
+
+    /// Profile indices at which the flank is cut by one of the damages.
+    fn cut_range(description: &DamageDescription) -> Option<RangeInclusive<usize>> {
+        match description {
+            DamageDescription::FaceFault { pit, .. } => Some(pit.start_index..=pit.end_index),
+            DamageDescription::ToothDestruction { start_index, end_index, .. } => {
+                Some(*start_index..=*end_index)
+            }
+            DamageDescription::MissingTooth | DamageDescription::ToothBreakage { .. } => None,
+        }
+    }
+
+    /// Refuses a cut where there is one already: what two of them make of a flank is not known.
+    fn refuse_overlap(&self) -> Result<(), ScenarioError> {
+        let Some((last, earlier)) = self.descriptions.split_last() else { return Ok(()) };
+        let Some(range) = Self::cut_range(last) else { return Ok(()) };
+        let overlaps =
+            |other: RangeInclusive<usize>| range.start() <= other.end() && other.start() <= range.end();
+        if earlier.iter().filter_map(Self::cut_range).any(overlaps) {
+            let problem = format!(
+                "cuts the flank of the {}'s tooth {} where another fault has cut it; must leave a piece of sound flank between them",
+                self.wheel.name(),
+                self.tooth + 1
+            );
+            return Err(ScenarioError::new("fault", "", problem)
+                .with_help("move one of them along the flank, or to another tooth"));
+        }
+        Ok(())
+    }
+}
+
+/// The teeth that are damaged, each with all its damages; in the order in which they are first named.
+///
+/// # Arguments
+/// * `faults` - what is broken, checked by [`crate::scenario::Scenario::validate`]
+/// * `teeth` - the healthy teeth
+/// * `seed` - seed of a destruction's roughness
+///
+/// # Errors
+/// A fault that does not fit its tooth: a pit that misses the flank or is deeper than the tooth, a chip larger than the
+/// tooth, a line that leaves no tooth; faults that cut the same piece of a flank.
+pub fn damaged_teeth(faults: &[Fault], teeth: &Teeth, seed: u64) -> Result<Vec<DamagedTooth>, ScenarioError> {
+    let mut damaged: Vec<DamagedTooth> = Vec::new();
+    for (number, fault) in faults.iter().enumerate() {
+        let (name, tooth) = (fault.wheel, fault.tooth_index());
+        let place = damaged.iter().position(|other| other.wheel == name && other.tooth == tooth);
+        let place = place.unwrap_or_else(|| {
+            damaged.push(DamagedTooth::sound(name, tooth, teeth.profile(name)));
+            damaged.len() - 1
+        });
+        let healthy = HealthyTooth { teeth, name, tooth, seed };
+        let of_tooth = &mut damaged[place];
+        fault
+            .damage
+            .damage(of_tooth, &healthy)
+            .and_then(|()| of_tooth.refuse_overlap())
+            .map_err(|error| error.in_fault(number, faults.len()))?;
+    }
+    Ok(damaged)
+}

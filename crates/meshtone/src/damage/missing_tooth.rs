@@ -1,0 +1,39 @@
+//! A tooth that is gone.
+
+use super::damaged_tooth::{DamagedTooth, HealthyTooth};
+use super::{DamageDescription, Kind};
+use crate::error::ScenarioError;
+use crate::keys::{Check, Keys, Row};
+use crate::wheel::Gears;
+
+/// A tooth that is gone: it carries nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct MissingTooth;
+
+impl Keys for MissingTooth {
+    fn start() -> Self {
+        Self
+    }
+
+    fn rows() -> Vec<Row<Self>> {
+        Vec::new()
+    }
+}
+
+impl Kind for MissingTooth {
+    const NAME: &str = "missing-tooth";
+
+    fn example() -> Self {
+        Self
+    }
+
+    fn check(&self, _gears: &Gears) -> Check {
+        Ok(())
+    }
+
+    fn damage(&self, tooth: &mut DamagedTooth, _: &HealthyTooth) -> Result<(), ScenarioError> {
+        tooth.gone_from_index = 0;
+        tooth.descriptions.push(DamageDescription::MissingTooth);
+        Ok(())
+    }
+}

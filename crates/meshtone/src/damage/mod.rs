@@ -1,0 +1,163 @@
+//! What is broken: one file a kind of damage.
+//!
+//! A kind's file holds its parameters, their rules and what it does to a tooth ([`DamagedTooth`]). What the published model
+//! makes of the kinds that it knows is apart, in [`published`].
+
+mod damaged_tooth;
+mod description;
+mod fault;
+mod kind;
+mod missing_tooth;
+mod partial_face;
+mod pit_circle;
+#[doc(hidden)]
+pub mod published;
+mod section;
+mod through_face;
+mod tooth_breakage;
+mod tooth_destruction;
+
+use damaged_tooth::HealthyTooth;
+pub use damaged_tooth::{DamagedTooth, RollingPit, damaged_teeth};
+pub use description::{DamageDescription, Pit};
+pub use fault::Fault;
+pub(crate) use fault::check_faults;
+pub(crate) use kind::{Kind, PaperRig};
+pub use missing_tooth::MissingTooth;
+pub use partial_face::PartialFace;
+pub use pit_circle::PitCircle;
+pub use section::Section;
+pub use through_face::ThroughFace;
+pub use tooth_breakage::ToothBreakage;
+pub use tooth_destruction::{DestructionLine, ToothDestruction};
+
+use meshtone_toml::{ReadResult, TomlTable};
+
+use crate::error::ScenarioError;
+use crate::keys::{Check, KeyDescription, Keys, NoFiles, commented, describe, read_keys, write_keys};
+use crate::wheel::Gears;
+
+/// The kinds of damage, each with what it is in a sentence: a struct of its name, in a file of its own, implements [`Kind`].
+macro_rules! kinds {
+    ($(#[doc = $summary:literal] $kind:ident,)+) => {
+        /// What is wrong with a tooth.
+        #[derive(Debug, Clone, PartialEq)]
+        #[non_exhaustive]
+        pub enum Damage {
+            $(#[doc = $summary] $kind($kind),)+
+        }
+
+        $(impl From<$kind> for Damage {
+            fn from(damage: $kind) -> Self {
+                Self::$kind(damage)
+            }
+        })+
+
+        impl Damage {
+            /// The value of `kind` in the scenario file.
+            pub fn kind(&self) -> &'static str {
+                match self {
+                    $(Self::$kind(_) => $kind::NAME,)+
+                }
+            }
+
+            /// What it is, in a sentence.
+            pub fn summary(&self) -> &'static str {
+                match self {
+                    $(Self::$kind(_) => $summary.trim_ascii(),)+
+                }
+            }
+
+            fn read(&mut self, table: &TomlTable<'_>) -> ReadResult<()> {
+                match self {
+                    $(Self::$kind(damage) => read_keys(damage, table, &NoFiles),)+
+                }
+            }
+
+            fn write(&self) -> String {
+                match self {
+                    $(Self::$kind(damage) => write_keys(damage),)+
+                }
+            }
+
+            fn commented(&self) -> String {
+                match self {
+                    $(Self::$kind(damage) => commented(damage),)+
+                }
+            }
+
+            fn check(&self, gears: &Gears) -> Check {
+                match self {
+                    $(Self::$kind(damage) => Kind::check(damage, gears),)+
+                }
+            }
+
+            fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> Result<(), ScenarioError> {
+                match self {
+                    $(Self::$kind(damage) => damage.damage(tooth, healthy),)+
+                }
+            }
+        }
+
+        /// Every kind of damage.
+        pub fn damage_kinds() -> Vec<DamageKind> {
+            vec![$(DamageKind {
+                name: $kind::NAME,
+                type_name: stringify!($kind),
+                summary: $summary.trim_ascii(),
+                keys: describe::<$kind>(),
+                start: Damage::$kind($kind::start()),
+                example: Damage::$kind($kind::example()),
+                rig: $kind::RIG,
+            }),+]
+        }
+    };
+}
+
+kinds! {
+    /// The tooth is gone.
+    MissingTooth,
+    /// A corner of the tooth has chipped off.
+    ToothBreakage,
+    /// A pit in the flank, over a part of the face width, from one side.
+    PartialFace,
+    /// A pit in the flank, over the whole face width.
+    ThroughFace,
+    /// The working flank is ground down along a straight line.
+    ToothDestruction,
+}
+
+/// A kind of damage, for documentation.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct DamageKind {
+    /// The value of `kind` in the scenario file.
+    pub name: &'static str,
+    /// Its type in Rust and Python.
+    pub type_name: &'static str,
+    /// What it is, in a sentence.
+    pub summary: &'static str,
+    /// Its keys, beside those of every fault.
+    pub keys: Vec<KeyDescription>,
+    /// What a file to start from has.
+    pub example: Damage,
+    pub(crate) start: Damage,
+    pub(crate) rig: PaperRig,
+}
+
+/// The keys that every fault has beside `kind`.
+pub fn keys_of_every_fault() -> Vec<KeyDescription> {
+    fault::keys_of_every_fault()
+}
+
+impl Damage {
+    /// A damage of the kind that a table names, its keys not read yet.
+    fn start_of(table: &TomlTable<'_>) -> ReadResult<Self> {
+        let kinds = damage_kinds();
+        let names: Vec<_> = kinds.iter().map(|kind| format!("\"{}\"", kind.name)).collect();
+        let meaning =
+            format!("one of {}; for a healthy pair, leave out the section [fault]", names.join(", "));
+        let starts: Vec<_> = kinds.into_iter().map(|kind| (kind.name, kind.start)).collect();
+        table.required("kind", &meaning)?.choice(&starts)
+    }
+}

@@ -1,0 +1,71 @@
+//! A pit over a part of the face width, from one side.
+
+use meshtone_toml::{ReadResult, TomlTable};
+
+use super::DamageDescription;
+use super::damaged_tooth::{DamagedTooth, HealthyTooth};
+use super::{Kind, PitCircle};
+use crate::error::ScenarioError;
+use crate::keys::{Check, Keys, NumberFiles, Range, Row, check_keys, field, flatten, require, row};
+use crate::wheel::Gears;
+
+/// A pit over a part of the face width, from one side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PartialFace {
+    /// (mm) Width of the pit along the face.
+    pub width_mm: f64,
+    /// The circle that is cut into the flank.
+    pub pit: PitCircle,
+}
+
+impl Keys for PartialFace {
+    fn start() -> Self {
+        Self { width_mm: f64::NAN, pit: PitCircle::start() }
+    }
+
+    fn rows() -> Vec<Row<Self>> {
+        let width =
+            row("width_mm", "mm", "the width of the pit along the face, from one side", field!(width_mm))
+                .required()
+                .range(Range::positive())
+                .rule("less than the face width");
+        std::iter::once(width).chain(flatten(field!(pit))).collect()
+    }
+
+    fn choose(&mut self, table: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
+        self.pit.choose(table, files)
+    }
+}
+
+impl Kind for PartialFace {
+    const NAME: &str = "partial-face";
+
+    fn example() -> Self {
+        Self { width_mm: 2.0, pit: PitCircle::example() }
+    }
+
+    fn check(&self, gears: &Gears) -> Check {
+        check_keys(self, "fault")?;
+        let problem = format!("must be less than {} mm, gears.face_width_mm", gears.face_width_mm);
+        require("fault.width_mm", self.width_mm, self.width_mm < gears.face_width_mm, problem).map_err(
+            |error| error.with_help("for a pit over the whole width, use kind = \"through-face\""),
+        )?;
+        self.pit.check_edges()
+    }
+
+    fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> Result<(), ScenarioError> {
+        let face_width = healthy.wheel().face_width_mm;
+        if self.width_mm >= face_width {
+            let problem = format!("must be below the face width, {face_width} mm");
+            return Err(ScenarioError::new("fault.width_mm", self.width_mm, problem)
+                .with_help("a pit over the whole width is kind = \"through-face\""));
+        }
+        let (pit, flank_y_mm) = healthy.cut(&self.pit)?;
+        for i in pit.start_index..=pit.end_index {
+            tooth.corner_width_mm[i] = self.width_mm;
+            tooth.corner_y_mm[i] = flank_y_mm[i];
+        }
+        tooth.descriptions.push(DamageDescription::FaceFault { pit, width_mm: self.width_mm });
+        Ok(())
+    }
+}

@@ -1,0 +1,139 @@
+//! A corner of the tooth that has chipped off, and a tip that is lost over the whole width.
+
+use super::DamageDescription;
+use super::Kind;
+use super::damaged_tooth::{DamagedTooth, HealthyTooth};
+use crate::error::ScenarioError;
+use crate::keys::{Check, Keys, Range, Row, below, check_keys, field, require, row};
+use crate::wheel::Gears;
+use crate::wheel::ToothProfile;
+
+/// A corner chipped off, and the tip lost over the whole width.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ToothBreakage {
+    /// (mm) Extent of the chip from the tip along the tooth's centre line.
+    pub chip_height_mm: f64,
+    /// (mm) Extent of the chip along the face width, at the tip.
+    pub chip_width_mm: f64,
+    /// (mm) Length of the tip that is lost over the whole width. Default 0.
+    pub tip_loss_mm: f64,
+}
+
+impl Keys for ToothBreakage {
+    fn start() -> Self {
+        Self { chip_height_mm: f64::NAN, chip_width_mm: f64::NAN, tip_loss_mm: 0.0 }
+    }
+
+    fn rows() -> Vec<Row<Self>> {
+        vec![
+            row(
+                "chip_height_mm",
+                "mm",
+                "the extent of the chipped corner from the tip along the tooth",
+                field!(chip_height_mm),
+            )
+            .required()
+            .range(Range::positive())
+            .rule("less than the tooth's height, 2.25 modules"),
+            row("chip_width_mm", "mm", "its extent along the face width, at the tip", field!(chip_width_mm))
+                .required()
+                .range(Range::positive())
+                .rule("at most the face width"),
+            row(
+                "tip_loss_mm",
+                "mm",
+                "the length of tip that is lost over the whole width",
+                field!(tip_loss_mm),
+            )
+            .range(Range::not_negative())
+            .rule("less than the tooth's height"),
+        ]
+    }
+}
+
+impl Kind for ToothBreakage {
+    const NAME: &str = "tooth-breakage";
+
+    fn example() -> Self {
+        Self { chip_height_mm: 5.0, chip_width_mm: 12.0, tip_loss_mm: 3.0 }
+    }
+
+    fn check(&self, gears: &Gears) -> Check {
+        check_keys(self, "fault")?;
+        let height = gears.tooth_height_mm();
+        let height_is = "the tooth's height (2.25 modules)";
+        below("fault.chip_height_mm", self.chip_height_mm, height, height_is)?;
+        let width = self.chip_width_mm;
+        let problem = format!("must be at most {} mm, gears.face_width_mm", gears.face_width_mm);
+        require("fault.chip_width_mm", width, width <= gears.face_width_mm, problem)?;
+        below("fault.tip_loss_mm", self.tip_loss_mm, height, height_is)
+    }
+
+    fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> Result<(), ScenarioError> {
+        let chipped = self.chip(healthy.profile(), healthy.wheel().face_width_mm)?;
+        for (missing, of_chip) in tooth.missing_width_mm.iter_mut().zip(&chipped.missing_width_mm) {
+            *missing = missing.max(*of_chip);
+        }
+        tooth.gone_from_index = tooth.gone_from_index.min(chipped.lost_from_index);
+        let reached = healthy.position_rev(chipped.chip_start_index);
+        tooth.descriptions.push(DamageDescription::ToothBreakage {
+            exit_rev: reached,
+            chip_start_index: chipped.chip_start_index,
+            tip_loss_mm: self.tip_loss_mm,
+            missing_width_mm: chipped.missing_width_mm,
+        });
+        Ok(())
+    }
+}
+
+/// What a breakage leaves of a flank.
+pub(super) struct ChippedFlank {
+    /// Last profile index below the chip.
+    pub(super) chip_start_index: usize,
+    /// First profile index of the lost tip.
+    pub(super) lost_from_index: usize,
+    /// (mm) Missing width over the profile points.
+    pub(super) missing_width_mm: Vec<f64>,
+}
+
+impl ToothBreakage {
+    /// Chips a flank's corner off.
+    ///
+    /// # Arguments
+    /// * `profile` - the healthy flank
+    /// * `face_width_mm` - (mm) its width
+    ///
+    /// # Errors
+    /// A chip or a lost tip that is larger than the tooth.
+    pub(super) fn chip(
+        &self,
+        profile: &ToothProfile,
+        face_width_mm: f64,
+    ) -> Result<ChippedFlank, ScenarioError> {
+        let tip = profile.tip_x_mm();
+        let height = tip - profile.x_mm[0];
+        for (key, value) in
+            [("fault.chip_height_mm", self.chip_height_mm), ("fault.tip_loss_mm", self.tip_loss_mm)]
+        {
+            if value >= height {
+                let problem = format!("must be below the tooth's height, {height:.3} mm");
+                return Err(ScenarioError::new(key, value, problem));
+            }
+        }
+        if self.chip_width_mm > face_width_mm {
+            let problem = format!("must be at most the face width, {face_width_mm} mm");
+            return Err(ScenarioError::new("fault.chip_width_mm", self.chip_width_mm, problem));
+        }
+        let chip_bottom = tip - self.chip_height_mm;
+        let chip_start = profile.x_mm.partition_point(|&x| x <= chip_bottom).max(1) - 1;
+        let slope = if self.chip_height_mm > 0.0 { self.chip_width_mm / self.chip_height_mm } else { 0.0 };
+        let missing_width_mm = (profile.x_mm.iter().enumerate())
+            .map(|(i, x)| if i < chip_start { 0.0 } else { slope * (x - profile.x_mm[chip_start]) })
+            .collect();
+        Ok(ChippedFlank {
+            chip_start_index: chip_start,
+            lost_from_index: profile.x_mm.partition_point(|&x| x <= tip - self.tip_loss_mm),
+            missing_width_mm,
+        })
+    }
+}

@@ -1,0 +1,268 @@
+//! A working flank that has been ground down along a straight line.
+
+use std::ops::Bound::Excluded;
+
+use meshtone_toml::{ReadResult, TomlTable};
+
+use super::DamageDescription;
+use super::damaged_tooth::{DamagedTooth, HealthyTooth};
+use super::fault::end_after;
+use super::pit_circle::flank_index;
+use super::{Kind, PaperRig};
+use crate::error::ScenarioError;
+use crate::keys::{Check, Keys, NumberFiles, Range, Row, below, check_keys, field, flatten, row};
+use crate::model::Model;
+use crate::random::Draws;
+use crate::wheel::ToothProfile;
+use crate::wheel::{Gears, HALF_THICKNESS};
+
+/// A flank ground down along a straight line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ToothDestruction {
+    /// (-) Where the line starts, as a fraction of the flank's contact part from its root side,
+    /// in (−1, 1); negative: below the contact part.
+    pub start: f64,
+    /// Where the line goes.
+    pub line: DestructionLine,
+    /// (mm) How far the line lies inside the flank, across the tooth. Default 0.
+    pub offset_mm: f64,
+    /// (mm) Half width of a uniform roughness of the ground flank. Default 0.
+    pub noise_mm: f64,
+}
+
+/// Direction of a destruction's line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DestructionLine {
+    /// (-) Towards the flank point of this fraction, in (start, 1].
+    End(f64),
+    /// (°) Falling towards the tip at this angle to the tooth's centre line.
+    SlopeDeg(f64),
+}
+
+impl Keys for ToothDestruction {
+    fn start() -> Self {
+        Self { start: f64::NAN, line: DestructionLine::start(), offset_mm: 0.0, noise_mm: 0.0 }
+    }
+
+    fn rows() -> Vec<Row<Self>> {
+        let start = row(
+            "start",
+            "-",
+            "where the ground line begins, as a fraction of the flank's contact part from its root side; negative: below the \
+             part in contact",
+            field!(start),
+        )
+        .required()
+        .range(
+            Range::between(Excluded(-1.0), Excluded(1.0))
+                .message("must be more than -1 and less than 1 (negative: below contact)"),
+        );
+        let rest = [
+            row("offset_mm", "mm", "how far inside the flank the line begins", field!(offset_mm))
+                .range(Range::not_negative())
+                .rule("less than half the tooth's thickness at the pitch circle, π/4 modules"),
+            row(
+                "noise_mm",
+                "mm",
+                "the half width of a uniform roughness of the ground flank",
+                field!(noise_mm),
+            )
+            .range(Range::not_negative())
+            .rule("likewise"),
+        ];
+        std::iter::once(start).chain(flatten(field!(line))).chain(rest).collect()
+    }
+
+    fn choose(&mut self, table: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
+        self.line.choose(table, files)
+    }
+}
+
+impl Keys for DestructionLine {
+    fn start() -> Self {
+        Self::End(f64::NAN)
+    }
+
+    fn rows() -> Vec<Row<Self>> {
+        vec![
+            row(
+                "end",
+                "-",
+                "the flank point that the line is aimed at, as a fraction",
+                field!(Self::End, 0),
+            )
+            .required_unless("slope_deg")
+            .rule("more than `start`, ≤ 1"),
+            row(
+                "slope_deg",
+                "°",
+                "the angle to the tooth's centre line by which the line falls towards the tip, instead of end",
+                field!(Self::SlopeDeg, 0),
+            )
+            .otherwise("none")
+            .range(Range::between(Excluded(0.0), Excluded(90.0)))
+            .alternative("22.0"),
+        ]
+    }
+
+    fn choose(&mut self, table: &TomlTable<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
+        match (table.optional("end").is_some(), table.optional("slope_deg").is_some()) {
+            (true, false) => Ok(()),
+            (false, true) => {
+                *self = Self::SlopeDeg(f64::NAN);
+                Ok(())
+            }
+            (true, true) => Err(table
+                .error("slope_deg", "given beside end; exactly one of the two says where the line goes")
+                .with_help("remove slope_deg, or remove end")),
+            (false, false) => Err(table
+                .error("end", "missing, and slope_deg too; exactly one of the two says where the line goes")
+                .with_help("give end, a fraction of the flank after start, or slope_deg, an angle")),
+        }
+    }
+}
+
+impl Kind for ToothDestruction {
+    const NAME: &str = "tooth-destruction";
+    const RIG: PaperRig = PaperRig::Destruction;
+
+    fn example() -> Self {
+        Self { start: 0.2143, line: DestructionLine::End(0.9286), offset_mm: 0.0, noise_mm: 0.0 }
+    }
+
+    fn check(&self, gears: &Gears) -> Check {
+        check_keys(self, "fault")?;
+        if let DestructionLine::End(end) = self.line {
+            end_after(self.start, end)?;
+        }
+        let thickness = gears.half_thickness_mm();
+        below("fault.offset_mm", self.offset_mm, thickness, HALF_THICKNESS)?;
+        below("fault.noise_mm", self.noise_mm, thickness, HALF_THICKNESS)
+    }
+
+    fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> Result<(), ScenarioError> {
+        let ground =
+            self.grind(healthy.profile(), healthy.first_contact(), healthy.roughness(), Model::Linear)?;
+        for i in 0..ground.flank_y_mm.len() {
+            if ground.deviation_mm[i] < 0.0 {
+                tooth.flank_y_mm[i] = ground.flank_y_mm[i];
+                tooth.corner_y_mm[i] = ground.flank_y_mm[i];
+                tooth.deviation_mm[i] = ground.deviation_mm[i];
+            }
+        }
+        tooth.descriptions.push(DamageDescription::ToothDestruction {
+            start_index: ground.start_index,
+            end_index: ground.end_index,
+            slope_rad: ground.slope_rad,
+        });
+        Ok(())
+    }
+}
+
+/// A flank that has been ground down.
+pub(super) struct GroundFlank {
+    /// Profile index of the line's start.
+    pub(super) start_index: usize,
+    /// Last profile index that is ground.
+    pub(super) end_index: usize,
+    /// (rad) Angle of the line to the tooth's centre line.
+    pub(super) slope_rad: f64,
+    /// (mm) The flank, over the profile points.
+    pub(super) flank_y_mm: Vec<f64>,
+    /// (mm) How far the flank lies back along its own normal, the line of action when it is touched there; less than 0 where
+    /// material is missing. Over the profile points.
+    pub(super) deviation_mm: Vec<f64>,
+}
+
+/// Part of the flank's height below which a line that meets the flank does so by rounding.
+const ROUNDING: f64 = 1e-12;
+
+impl ToothDestruction {
+    /// Grinds a flank down.
+    ///
+    /// # Arguments
+    /// * `profile` - the healthy flank
+    /// * `first_contact` - profile index where contact starts at the root side
+    /// * `roughness` - draws of the ground flank's roughness
+    /// * `model` - whether a line outside the flank adds metal
+    ///
+    /// # Errors
+    /// A line that starts below the root, does not cut the flank, or leaves no tooth.
+    pub(super) fn grind(
+        &self,
+        profile: &ToothProfile,
+        first_contact: usize,
+        mut roughness: Draws,
+        model: Model,
+    ) -> Result<GroundFlank, ScenarioError> {
+        let contact_points = profile.len() - first_contact;
+        let least_start = -(first_contact as f64) / (contact_points - 1) as f64;
+        if self.start < least_start {
+            let problem = format!("must be at least {least_start:.4}, where this tooth has its root");
+            return Err(ScenarioError::new("fault.start", format!("{:?}", self.start), problem));
+        }
+        let start = flank_index(self.start, profile, first_contact);
+        let (x_start, y_start) = (profile.x_mm[start], profile.y_mm[start] - self.offset_mm);
+        let tangent = match self.line {
+            DestructionLine::SlopeDeg(slope) => -slope.abs().to_radians().tan(),
+            DestructionLine::End(end) => {
+                let end = flank_index(end, profile, first_contact);
+                if end == start {
+                    return Err(ScenarioError::new("fault.end", "", "must lie beyond the start of the line"));
+                }
+                (profile.y_mm[end] - self.offset_mm - y_start) / (profile.x_mm[end] - x_start)
+            }
+        };
+        let line = |x: f64| y_start + tangent * (x - x_start);
+        let first = start.max(first_contact);
+        // Without an offset the line meets the flank at the end's own point: there it does not lie below the flank, whichever
+        // way the last bit is rounded.
+        let last = (first..profile.len())
+            .rev()
+            .find(|&i| line(profile.x_mm[i]) < profile.y_mm[i] * (1.0 - ROUNDING))
+            .filter(|&last| last > first)
+            .ok_or_else(|| {
+                ScenarioError::new(
+                    "fault.start",
+                    self.start,
+                    "the line must cut the flank: nowhere beyond its start does it lie below the flank",
+                )
+                .with_help("increase fault.offset_mm, or the slope or the distance from start to end")
+            })?;
+
+        let mut flank_y_mm = profile.y_mm.clone();
+        for i in first..=last {
+            let ground = line(profile.x_mm[i]) + roughness.uniform(0.0, self.noise_mm);
+            flank_y_mm[i] = match model {
+                // Model: where line or roughness lie outside the flank, the published code adds metal.
+                Model::Published => ground,
+                Model::Linear => ground.min(profile.y_mm[i]),
+            };
+            if flank_y_mm[i] <= -profile.y_mm[i] {
+                return Err(ScenarioError::new(
+                    "fault",
+                    format!("offset_mm = {}, slope {:.3}°", self.offset_mm, tangent.atan().to_degrees()),
+                    format!(
+                        "must leave some of the tooth, which is {:.3} mm thick at x = {:.3} mm",
+                        2.0 * profile.y_mm[i],
+                        profile.x_mm[i]
+                    ),
+                ));
+            }
+        }
+
+        let slope_rad = tangent.atan();
+        let flank_angle = |i: usize| {
+            let before = i.checked_sub(1)?;
+            let (dx, dy) = (profile.x_mm[i] - profile.x_mm[before], profile.y_mm[i] - profile.y_mm[before]);
+            Some((dy / dx).atan().abs())
+        };
+        let deviation_mm = (0..profile.len())
+            .map(|i| {
+                let angle = flank_angle(i).unwrap_or(0.0);
+                -(profile.y_mm[i] - flank_y_mm[i]) * slope_rad.cos() / (angle + slope_rad).cos()
+            })
+            .collect();
+        Ok(GroundFlank { start_index: start, end_index: last, slope_rad, flank_y_mm, deviation_mm })
+    }
+}

@@ -1,0 +1,202 @@
+//! What is wrong, or doubtful, about a scenario.
+
+use std::fmt;
+
+use meshtone_toml::TomlError;
+
+/// A scenario that cannot be simulated: which key, what it says, what is allowed.
+///
+/// ```
+/// use meshtone::scenario::Scenario;
+///
+/// let text = "[gears]\nmodule_mm = -3.0\npinion_teeth = 17\ngear_teeth = 38\nface_width_mm = 15.0\n\
+///             [operation]\npinion_speed_hz = 40.0\nbrake_torque_nm = 10.0\n";
+/// let error = Scenario::from_toml(text).unwrap_err();
+/// assert_eq!(error.key, "gears.module_mm");
+/// assert_eq!(error.line, Some(2));
+/// assert_eq!(error.to_string(), "line 2: gears.module_mm = -3.0: must be more than 0 mm");
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ScenarioError {
+    /// Dotted key in the scenario file, for example `gears.module_mm`, or
+    /// `rig.damping_ratio[2]` for the third entry of an array. Empty where the text is not TOML.
+    pub key: String,
+    /// The offending value as it was given; empty where a key is missing.
+    pub value: String,
+    /// What is wrong with it and what is allowed.
+    pub problem: String,
+    /// What to do about it, where that is not plain from `problem`.
+    pub help: Option<String>,
+    /// 1-based line in the TOML text, where the scenario came from one.
+    pub line: Option<usize>,
+}
+
+impl std::error::Error for ScenarioError {}
+
+impl fmt::Display for ScenarioError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        TomlError::from(self.clone()).fmt(formatter)
+    }
+}
+
+/// A scenario file that cannot be read is a scenario that cannot be simulated.
+impl From<TomlError> for ScenarioError {
+    fn from(error: TomlError) -> Self {
+        let TomlError { key, value, problem, help, line, .. } = error;
+        Self { key, value, problem, help, line }
+    }
+}
+
+/// A scenario that cannot be simulated, as an error of the text that it stands in.
+impl From<ScenarioError> for TomlError {
+    fn from(error: ScenarioError) -> Self {
+        let ScenarioError { key, value, problem, help, line } = error;
+        let mut told = Self::new(key, value, problem).at_line(line);
+        told.help = help;
+        told
+    }
+}
+
+impl ScenarioError {
+    /// An error about `key`, whose `value` breaks a rule.
+    ///
+    /// # Arguments
+    /// * `key` - dotted key in the scenario file
+    /// * `value` - the value as given; empty where it is missing
+    /// * `problem` - what is wrong and what is allowed
+    pub fn new(key: impl Into<String>, value: impl ToString, problem: impl Into<String>) -> Self {
+        Self { key: key.into(), value: value.to_string(), problem: problem.into(), help: None, line: None }
+    }
+
+    /// The same error with advice.
+    ///
+    /// # Arguments
+    /// * `help` - what the user can do
+    pub fn with_help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// Foundation coefficients with which a healthy pair of teeth would not be stiff.
+    pub(crate) fn not_stiff() -> Self {
+        let problem = "the compliance of the healthy tooth pair would not be positive at every point of contact; must be";
+        Self::new("gears.foundation", "", problem)
+            .with_help("leave gears.foundation out for Sainsot's coefficients")
+    }
+
+    /// The same error under another key, as of a scenario that stands within another file.
+    ///
+    /// # Arguments
+    /// * `key` - dotted key
+    pub fn with_key(mut self, key: impl Into<String>) -> Self {
+        self.key = key.into();
+        self
+    }
+
+    /// An error about `fault.…` as one about that entry of the list of faults.
+    ///
+    /// # Arguments
+    /// * `index` - which of them, from 0
+    /// * `faults` - how many there are; a single one needs no number
+    pub(crate) fn in_fault(mut self, index: usize, faults: usize) -> Self {
+        if let Some(rest) = self.key.strip_prefix("fault").filter(|_| faults > 1) {
+            self.key = format!("fault[{index}]{rest}");
+        }
+        self
+    }
+
+    /// The same error at a line of the file.
+    ///
+    /// # Arguments
+    /// * `line` - 1-based line, where known
+    pub fn at_line(mut self, line: Option<usize>) -> Self {
+        self.line = line;
+        self
+    }
+}
+
+/// Why there is no simulation.
+///
+/// ```
+/// use meshtone::Error;
+/// use meshtone::scenario::{GearPair, Scenario};
+///
+/// let mut scenario = Scenario::new(GearPair {
+///     module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0,
+///     pinion_speed_hz: 40.0, brake_torque_nm: 10.0,
+/// });
+/// scenario.rig.eccentricity_mm = -0.1;
+/// match meshtone::simulate(&scenario).map(drop) {
+///     Err(Error::Scenario(error)) => assert_eq!(error.key, "rig.eccentricity_mm"),
+///     Err(Error::Diverged { time_s, .. }) => println!("no motion is left after {time_s} s"),
+///     other => println!("{other:?}"),
+/// }
+/// ```
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The scenario is not valid, or a fault does not fit its tooth.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// The motion grows without bound.
+    #[error(
+        "the motion grows without bound within {time_s:.4} s, with rig.damping_ratio = {}; damping must take what the varying \
+         mesh stiffness puts into a mode, and a missing tooth must leave another in contact",
+        in_short(.damping_ratios)
+    )]
+    Diverged {
+        /// (s) When that was noticed, from the start of the simulation.
+        time_s: f64,
+        /// (-) The damping ratio of each mode, in the order of rising natural frequency.
+        damping_ratios: [f64; 13],
+    },
+}
+
+impl Error {
+    /// What to do about it, where that is not plain from the message.
+    pub fn help(&self) -> Option<&str> {
+        match self {
+            Self::Scenario(error) => error.help.as_deref(),
+            Self::Diverged { .. } => Some(
+                "raise the damping ratios (the default is 0.05), use more teeth, or change operation.pinion_speed_hz",
+            ),
+        }
+    }
+}
+
+/// One number where all are the same.
+fn in_short(ratios: &[f64; 13]) -> String {
+    if ratios.iter().all(|ratio| *ratio == ratios[0]) {
+        format!("{:?}", ratios[0])
+    } else {
+        format!("{ratios:?}")
+    }
+}
+
+/// Something about a scenario that can be simulated but deserves the user's attention.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct ScenarioWarning {
+    /// Dotted key in the scenario file.
+    pub key: String,
+    /// What is doubtful, and what could be done.
+    pub message: String,
+}
+
+impl ScenarioWarning {
+    /// A warning about `key`.
+    ///
+    /// # Arguments
+    /// * `key` - dotted key in the scenario file
+    /// * `message` - what is doubtful, and what could be done
+    pub fn new(key: impl Into<String>, message: impl Into<String>) -> Self {
+        Self { key: key.into(), message: message.into() }
+    }
+}
+
+impl fmt::Display for ScenarioWarning {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}: {}", self.key, self.message)
+    }
+}

@@ -1,0 +1,162 @@
+//! Where in a section a row's value is kept.
+
+use meshtone_toml::{ReadResult, TomlValue};
+
+use super::check::Check;
+use super::description::{KeyDescription, KeyKind};
+use super::files::NumberFiles;
+use super::range::Range;
+use super::row::Row;
+use super::table::{Keys, written_pairs};
+use super::text::inline_table;
+use super::value::{KeyValue, Written};
+
+/// The value of one row of a section, whatever its type.
+pub(super) trait Cell<S> {
+    /// Reads the value; a form of the section that has no such key keeps what it has.
+    fn read(&self, section: &mut S, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()>;
+    /// What is written; none where the section has a form without this key.
+    fn write(&self, section: &S) -> Option<Written>;
+    fn check(&self, section: &S, key: &str, range: &Range, unit: &str) -> Check;
+    fn copy(&self, from: &S, to: &mut S);
+    fn kind(&self) -> KeyKind;
+    fn inside(&self, section: &S) -> Vec<KeyDescription>;
+}
+
+/// A value that is read together with others, in [`Keys::choose`], and never written: it has another key for that.
+pub(super) struct ReadElsewhere(pub(super) KeyKind);
+
+impl<S> Cell<S> for ReadElsewhere {
+    fn read(&self, _section: &mut S, _value: &TomlValue<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
+        Ok(())
+    }
+
+    fn write(&self, _section: &S) -> Option<Written> {
+        Some(Written::Nothing)
+    }
+
+    fn check(&self, _section: &S, _key: &str, _range: &Range, _unit: &str) -> Check {
+        Ok(())
+    }
+
+    fn copy(&self, _from: &S, _to: &mut S) {}
+
+    fn kind(&self) -> KeyKind {
+        self.0.clone()
+    }
+
+    fn inside(&self, _section: &S) -> Vec<KeyDescription> {
+        Vec::new()
+    }
+}
+
+/// A table inside a section whose values are the section's own.
+pub(super) struct SubTable<S>(pub(super) Vec<Row<S>>);
+
+impl<S> Cell<S> for SubTable<S> {
+    fn read(&self, section: &mut S, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
+        value.table()?.read(|table| self.0.iter().try_for_each(|row| row.read(section, table, files)))
+    }
+
+    fn write(&self, section: &S) -> Option<Written> {
+        let pairs = written_pairs(&self.0, section);
+        (!pairs.is_empty()).then(|| Written::Value(inline_table(&pairs)))
+    }
+
+    fn check(&self, section: &S, key: &str, _range: &Range, _unit: &str) -> Check {
+        self.0.iter().try_for_each(|row| row.check(section, key))
+    }
+
+    fn copy(&self, from: &S, to: &mut S) {
+        self.0.iter().for_each(|row| row.copy(from, to));
+    }
+
+    fn kind(&self) -> KeyKind {
+        KeyKind::Table
+    }
+
+    fn inside(&self, section: &S) -> Vec<KeyDescription> {
+        self.0.iter().flat_map(|row| row.describe(section)).collect()
+    }
+}
+
+/// A field of a section: see [`field!`](super::field).
+pub(crate) struct Field<S, V> {
+    get: fn(&S) -> Option<&V>,
+    get_mut: fn(&mut S) -> Option<&mut V>,
+}
+
+impl<S, V> Field<S, V> {
+    pub(crate) fn new(get: fn(&S) -> Option<&V>, get_mut: fn(&mut S) -> Option<&mut V>) -> Self {
+        Self { get, get_mut }
+    }
+}
+
+impl<S, V: KeyValue> Cell<S> for Field<S, V> {
+    fn read(&self, section: &mut S, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
+        (self.get_mut)(section).map_or(Ok(()), |field| field.read(value, files))
+    }
+
+    fn write(&self, section: &S) -> Option<Written> {
+        (self.get)(section).map(KeyValue::write)
+    }
+
+    fn check(&self, section: &S, key: &str, range: &Range, unit: &str) -> Check {
+        (self.get)(section).map_or(Ok(()), |field| field.check(key, range, unit))
+    }
+
+    fn copy(&self, from: &S, to: &mut S) {
+        if let (Some(from), Some(to)) = ((self.get)(from), (self.get_mut)(to)) {
+            to.clone_from(from);
+        }
+    }
+
+    fn kind(&self) -> KeyKind {
+        V::kind()
+    }
+
+    fn inside(&self, section: &S) -> Vec<KeyDescription> {
+        (self.get)(section).map(V::inside).unwrap_or_default()
+    }
+}
+
+/// A row of a part of a section, whose keys stand among the section's own.
+struct InPart<S, P> {
+    get: fn(&S) -> Option<&P>,
+    get_mut: fn(&mut S) -> Option<&mut P>,
+    cell: Box<dyn Cell<P>>,
+}
+
+impl<S, P> Cell<S> for InPart<S, P> {
+    fn read(&self, section: &mut S, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
+        (self.get_mut)(section).map_or(Ok(()), |part| self.cell.read(part, value, files))
+    }
+
+    fn write(&self, section: &S) -> Option<Written> {
+        (self.get)(section).and_then(|part| self.cell.write(part))
+    }
+
+    fn check(&self, section: &S, key: &str, range: &Range, unit: &str) -> Check {
+        (self.get)(section).map_or(Ok(()), |part| self.cell.check(part, key, range, unit))
+    }
+
+    fn copy(&self, from: &S, to: &mut S) {
+        if let (Some(from), Some(to)) = ((self.get)(from), (self.get_mut)(to)) {
+            self.cell.copy(from, to);
+        }
+    }
+
+    fn kind(&self) -> KeyKind {
+        self.cell.kind()
+    }
+
+    fn inside(&self, section: &S) -> Vec<KeyDescription> {
+        (self.get)(section).map(|part| self.cell.inside(part)).unwrap_or_default()
+    }
+}
+
+/// The rows of a part of a section, whose keys stand among the section's own rather than in a table of theirs.
+pub(crate) fn flatten<S: 'static, P: Keys>(part: Field<S, P>) -> impl Iterator<Item = Row<S>> {
+    let Field { get, get_mut } = part;
+    P::rows().into_iter().map(move |row| row.moved(|cell| Box::new(InPart { get, get_mut, cell })))
+}

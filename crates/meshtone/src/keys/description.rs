@@ -1,0 +1,48 @@
+//! What a key of the scenario file is, for documentation.
+
+/// What a key of the scenario file is: what the guide's tables, the commented files of `meshtone init` and Python's signatures
+/// are made from.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct KeyDescription {
+    /// Dotted key within its section, for example `tip_relief.depth_mm`.
+    pub key: String,
+    /// Unit of its numbers; empty where there is none.
+    pub unit: &'static str,
+    /// What it says.
+    pub meaning: &'static str,
+    /// Whether it must be given.
+    pub required: bool,
+    /// What is taken where it is left out: a TOML value, or words; empty where it is required whatever else is given.
+    pub default: String,
+    /// What is allowed; empty where that is plain from `kind`.
+    pub allowed: String,
+    /// What kind of value it has.
+    pub kind: KeyKind,
+}
+
+/// What kind of value a key has.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum KeyKind {
+    /// A number.
+    Number,
+    /// A whole number.
+    Whole,
+    /// One of some names, in double quotes.
+    Name(Vec<&'static str>),
+    /// An array of that many numbers.
+    Numbers(usize),
+    /// A number, or an array of that many.
+    NumberOrNumbers(usize),
+    /// A table, whose keys are described too.
+    Table,
+    /// A table, whose keys are described too, or `false`.
+    TableOrFalse,
+    /// A table of the arrays `time_s` and `value`, or of a `file`.
+    Profile,
+    /// An array of rows of numbers.
+    Matrix,
+    /// The name of a file.
+    File,
+}

@@ -1,0 +1,82 @@
+//! Keys of the scenario file: one row a key.
+//!
+//! A struct of parameters says in [`Keys::rows`] what its keys are: name, unit, meaning, range and the field that holds the
+//! value. From these rows come the reading of a scenario file, its writing, the checks of single values, the commented files
+//! of `meshtone init`, the guide's tables and the arguments of the Python classes. What concerns several keys at once is a
+//! function beside the rows.
+//!
+//! ```ignore
+//! impl Keys for Shaft {
+//!     fn start() -> Self {
+//!         Shaft { length_mm: 200.0, radius_mm: 10.0 }
+//!     }
+//!
+//!     fn rows() -> Vec<Row<Self>> {
+//!         vec![
+//!             row("length_mm", "mm", "length between wheel and motor or brake", field!(length_mm))
+//!                 .range(Range::positive().slip_above(1e6)),
+//!             row("radius_mm", "mm", "radius, which is also the wheel's bore", field!(radius_mm))
+//!                 .range(Range::positive())
+//!                 .rule("less than the root radius"),
+//!         ]
+//!     }
+//! }
+//! ```
+
+mod cell;
+mod check;
+mod description;
+mod files;
+mod names;
+mod range;
+mod row;
+mod table;
+mod text;
+mod value;
+
+pub(crate) use cell::{Field, flatten};
+pub(crate) use check::{Check, below, refuse, require};
+pub use description::{KeyDescription, KeyKind};
+pub use files::FileProblem;
+pub(crate) use files::{NoFiles, NumberFiles, load};
+pub(crate) use names::by_name;
+pub(crate) use range::Range;
+pub(crate) use row::{Row, documented, row, sub_table};
+pub(crate) use table::{Keys, check_keys, commented, describe, read_keys, write_keys};
+pub(crate) use text::array;
+pub(crate) use value::{KeyValue, Written};
+
+/// The field of a section that a row's value is kept in.
+///
+/// `field!(name)` is a field, `field!(place.name)` one further inside; `field!(Form::Variant, name)` is there only where the
+/// section, an enum, has that form; `field!(Form::Variant, 0)` is its only value.
+macro_rules! field {
+    ($($name:ident).+) => {
+        $crate::keys::Field::new(|section: &Self| Some(&section.$($name).+), |section: &mut Self| Some(&mut section.$($name).+))
+    };
+    ($form:path, 0) => {
+        $crate::keys::Field::new(
+            |section: &Self| match section {
+                $form(value) => Some(value),
+                _ => None,
+            },
+            |section: &mut Self| match section {
+                $form(value) => Some(value),
+                _ => None,
+            },
+        )
+    };
+    ($form:path, $name:ident) => {
+        $crate::keys::Field::new(
+            |section: &Self| match section {
+                $form { $name, .. } => Some($name),
+                _ => None,
+            },
+            |section: &mut Self| match section {
+                $form { $name, .. } => Some($name),
+                _ => None,
+            },
+        )
+    };
+}
+pub(crate) use field;

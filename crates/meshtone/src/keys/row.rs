@@ -1,0 +1,318 @@
+//! One key of a section.
+
+use meshtone_toml::{ReadResult, TomlTable};
+
+use super::cell::{Cell, Field, ReadElsewhere, SubTable};
+use super::check::Check;
+use super::description::{KeyDescription, KeyKind};
+use super::files::NumberFiles;
+use super::range::Range;
+use super::text::short_number;
+use super::value::{KeyValue, Written};
+
+/// One key of a section: everything about it that does not depend on other keys.
+pub(crate) struct Row<S> {
+    name: &'static str,
+    unit: &'static str,
+    meaning: &'static str,
+    absent: Absent,
+    range: Range,
+    rule: &'static str,
+    shown: Shown,
+    ignored_by_published: bool,
+    cell: Box<dyn Cell<S>>,
+}
+
+/// What an absent key means.
+enum Absent {
+    /// It must be given.
+    Refused,
+    /// It must be given, unless another key is.
+    RefusedUnless(&'static str),
+    /// What [`Keys::start`](super::Keys::start) has.
+    Default,
+    /// Something that is found elsewhere, in words.
+    Words(&'static str),
+}
+
+/// How a commented file shows a key that is not set in it.
+enum Shown {
+    /// With its default, to be set by taking the `#` away.
+    Default,
+    /// With an example, likewise.
+    Example(&'static str),
+    /// With an example that can stand only in place of other keys.
+    Alternative(&'static str),
+}
+
+/// A row with a default that the section starts with and no limit to its numbers.
+///
+/// # Arguments
+/// * `name` - the key
+/// * `unit` - of its numbers; empty for none
+/// * `meaning` - what it says, in words that follow "it is"; without full stop
+/// * `field` - where the value is kept: [`field!`](super::field)
+pub(crate) fn row<S: 'static, V: KeyValue>(
+    name: &'static str,
+    unit: &'static str,
+    meaning: &'static str,
+    field: Field<S, V>,
+) -> Row<S> {
+    Row::new(name, unit, meaning, Box::new(field))
+}
+
+/// A row of a table inside the section whose keys are values of the section itself.
+///
+/// # Arguments
+/// * `name` - the key
+/// * `meaning` - what it says
+/// * `rows` - the keys inside it
+pub(crate) fn sub_table<S: 'static>(name: &'static str, meaning: &'static str, rows: Vec<Row<S>>) -> Row<S> {
+    Row::new(name, "", meaning, Box::new(SubTable(rows)))
+}
+
+/// A row that is read together with others, in [`Keys::choose`](super::Keys::choose).
+///
+/// # Arguments
+/// * `name` - the key
+/// * `meaning` - what it says
+/// * `kind` - of its value
+pub(crate) fn documented<S>(name: &'static str, meaning: &'static str, kind: KeyKind) -> Row<S> {
+    Row::new(name, "", meaning, Box::new(ReadElsewhere(kind)))
+}
+
+impl<S> Row<S> {
+    fn new(name: &'static str, unit: &'static str, meaning: &'static str, cell: Box<dyn Cell<S>>) -> Self {
+        Self {
+            name,
+            unit,
+            meaning,
+            absent: Absent::Default,
+            range: Range::finite(),
+            rule: "",
+            shown: Shown::Default,
+            ignored_by_published: false,
+            cell,
+        }
+    }
+
+    /// The key must be given.
+    pub(crate) fn required(self) -> Self {
+        Self { absent: Absent::Refused, ..self }
+    }
+
+    /// The key must be given, unless `other` is, which the section reads in its place.
+    pub(crate) fn required_unless(self, other: &'static str) -> Self {
+        Self { absent: Absent::RefusedUnless(other), ..self }
+    }
+
+    fn is_required(&self) -> bool {
+        matches!(self.absent, Absent::Refused | Absent::RefusedUnless(_))
+    }
+
+    /// What is taken where the key is left out, in words; the section starts without a value.
+    pub(crate) fn otherwise(self, words: &'static str) -> Self {
+        Self { absent: Absent::Words(words), ..self }
+    }
+
+    /// The numbers that are allowed whatever the other keys say.
+    pub(crate) fn range(self, range: Range) -> Self {
+        Self { range, ..self }
+    }
+
+    /// What else is allowed, in the words of the documentation; a function beside the rows checks it.
+    pub(crate) fn rule(self, rule: &'static str) -> Self {
+        Self { rule, ..self }
+    }
+
+    /// How a commented file shows the key: with an example that may be set as it stands.
+    pub(crate) fn example(self, value: &'static str) -> Self {
+        Self { shown: Shown::Example(value), ..self }
+    }
+
+    /// How a commented file shows the key: with an example that stands in place of other keys.
+    pub(crate) fn alternative(self, value: &'static str) -> Self {
+        Self { shown: Shown::Alternative(value), ..self }
+    }
+
+    /// The published model simulates the default whatever the key says.
+    pub(crate) fn ignored_by_published(self) -> Self {
+        Self { ignored_by_published: true, ..self }
+    }
+
+    /// The same row of another section, with the value elsewhere.
+    pub(super) fn moved<T>(self, move_cell: impl FnOnce(Box<dyn Cell<S>>) -> Box<dyn Cell<T>>) -> Row<T> {
+        let Self { name, unit, meaning, absent, range, rule, shown, ignored_by_published, cell } = self;
+        let cell = move_cell(cell);
+        Row { name, unit, meaning, absent, range, rule, shown, ignored_by_published, cell }
+    }
+
+    pub(crate) fn name(&self) -> &'static str {
+        self.name
+    }
+
+    pub(crate) fn is_ignored_by_published(&self) -> bool {
+        self.ignored_by_published
+    }
+
+    /// Sets the key in one section to its value in another.
+    pub(crate) fn copy(&self, from: &S, to: &mut S) {
+        self.cell.copy(from, to);
+    }
+
+    pub(super) fn read(
+        &self,
+        section: &mut S,
+        table: &TomlTable<'_>,
+        files: &dyn NumberFiles,
+    ) -> ReadResult<()> {
+        let required = self.is_required() && self.cell.write(section).is_some();
+        let value = if required {
+            table.required(self.name, &self.with_unit()).map(Some)?
+        } else {
+            table.optional(self.name)
+        };
+        match value {
+            Some(value) => self.cell.read(section, &value, files),
+            // A misspelt table would be told with a list of keys that has nothing like it.
+            None if self.cell.kind() == KeyKind::Table => table.refuse_slip_of(self.name),
+            None => Ok(()),
+        }
+    }
+
+    pub(super) fn write(&self, section: &S) -> Written {
+        self.cell.write(section).unwrap_or(Written::Nothing)
+    }
+
+    pub(super) fn check(&self, section: &S, path: &str) -> Check {
+        self.cell.check(section, &dotted(path, self.name), &self.range, self.unit)
+    }
+
+    /// Unit and meaning: `(mm) the module`.
+    fn with_unit(&self) -> String {
+        let unit = if self.unit.is_empty() { String::new() } else { format!("({}) ", self.unit) };
+        let unless = match self.absent {
+            Absent::RefusedUnless(other) => format!("; required, unless {other} is given"),
+            _ => String::new(),
+        };
+        format!("{unit}{}{unless}", self.meaning)
+    }
+
+    /// What the key is, and then the keys inside it.
+    pub(super) fn describe(&self, start: &S) -> Vec<KeyDescription> {
+        let kind = self.cell.kind();
+        let mut allowed = Vec::new();
+        match &kind {
+            KeyKind::Name(names) => {
+                allowed.push(names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", "));
+            }
+            KeyKind::Whole => allowed.push(format!("whole number {}", self.range.in_short())),
+            _ => allowed.push(self.range.in_short()),
+        }
+        allowed.push(self.rule.to_string());
+        let allowed: Vec<_> =
+            allowed.iter().map(|words| words.trim()).filter(|words| !words.is_empty()).collect();
+        let own = KeyDescription {
+            key: self.name.to_string(),
+            unit: self.unit,
+            meaning: self.meaning,
+            required: matches!(self.absent, Absent::Refused),
+            default: match self.absent {
+                Absent::Refused => String::new(),
+                Absent::RefusedUnless(other) => format!("required, unless `{other}` is given"),
+                Absent::Words(words) => words.to_string(),
+                Absent::Default => self.shown_value(start).unwrap_or_default(),
+            },
+            allowed: allowed.join("; "),
+            kind,
+        };
+        let inside = self
+            .cell
+            .inside(start)
+            .into_iter()
+            .map(|inner| KeyDescription { key: dotted(self.name, &inner.key), ..inner });
+        std::iter::once(own).chain(inside).collect()
+    }
+
+    /// The value as a reader finds it easiest to read.
+    fn shown_value(&self, section: &S) -> Option<String> {
+        match self.cell.write(section)? {
+            Written::Nothing => None,
+            Written::Lines(_) => Some("as below".to_string()),
+            Written::Value(text) if self.cell.kind() == KeyKind::Number => {
+                Some(text.parse().map_or(text, short_number))
+            }
+            Written::Value(text) => Some(text),
+        }
+    }
+
+    /// The key in a commented file: what it is, and a line that sets it.
+    pub(super) fn commented(&self, section: &S, start: &S) -> String {
+        let written = self.cell.write(section).unwrap_or(Written::Nothing);
+        let is_default = self.cell.write(start).is_some_and(|default| default == written);
+        let is_set = written != Written::Nothing && (self.is_required() || !is_default);
+        let lines = match (written, &self.shown) {
+            (Written::Lines(pairs), _) => {
+                let mark = if is_set { "" } else { "#" };
+                let line = |(key, value): &(String, String)| format!("{mark}{}.{key} = {value}", self.name);
+                pairs.iter().map(line).collect()
+            }
+            (Written::Value(_), _) if is_set => {
+                vec![format!("{} = {}", self.name, self.shown_value(section).unwrap_or_default())]
+            }
+            (_, Shown::Example(value)) => vec![format!("#{} = {value}", self.name)],
+            (_, Shown::Alternative(value)) => vec![format!("# {} = {value}", self.name)],
+            (Written::Value(_), Shown::Default) => {
+                vec![format!("#{} = {}", self.name, self.shown_value(section).unwrap_or_default())]
+            }
+            (Written::Nothing, Shown::Default) => Vec::new(),
+        };
+        let mut text = comment(&self.sentences(start));
+        for line in lines {
+            text.extend([line.as_str(), "\n"]);
+        }
+        text
+    }
+
+    /// Meaning and default, in sentences.
+    fn sentences(&self, start: &S) -> String {
+        let unit = if self.unit.is_empty() { String::new() } else { format!("({}) ", self.unit) };
+        let mut letters = self.meaning.chars();
+        let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
+        let names = match self.cell.kind() {
+            KeyKind::Name(names) => {
+                format!(": {}", names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", "))
+            }
+            _ => String::new(),
+        };
+        let absent = match self.absent {
+            Absent::Refused => "Required.".to_string(),
+            Absent::RefusedUnless(other) => format!("Required, unless {other} is given."),
+            Absent::Words(words) => format!("Default: {words}."),
+            Absent::Default => match self.shown_value(start) {
+                Some(default) if default.len() <= 20 => format!("Default {default}."),
+                _ => "Default as here.".to_string(),
+            },
+        };
+        format!("{unit}{first}{}{names}. {absent}", letters.as_str())
+    }
+}
+
+pub(super) fn dotted(path: &str, name: &str) -> String {
+    if path.is_empty() { name.to_string() } else { format!("{path}.{name}") }
+}
+
+/// A text as lines of a comment.
+pub(super) fn comment(text: &str) -> String {
+    const WIDTH: usize = 100;
+    let mut lines = vec![String::from("#")];
+    for word in text.split_whitespace() {
+        let line = lines.len() - 1;
+        if lines[line].chars().count() + 1 + word.chars().count() > WIDTH {
+            lines.push(format!("# {word}"));
+        } else {
+            lines[line].extend([" ", word]);
+        }
+    }
+    lines.join("\n") + "\n"
+}

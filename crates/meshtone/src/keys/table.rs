@@ -1,0 +1,87 @@
+//! A table of the scenario file.
+
+use meshtone_toml::{ReadResult, TomlTable};
+
+use super::check::Check;
+use super::description::KeyDescription;
+use super::files::NumberFiles;
+use super::row::Row;
+use super::value::Written;
+
+/// Parameters that stand in one table of the scenario file.
+pub(crate) trait Keys: Clone + PartialEq + 'static {
+    /// Whether a table inside another one is written key by key, each on its own line.
+    const IN_LINES: bool = false;
+
+    /// Every key at its default, those without one at whatever is refused or replaced.
+    fn start() -> Self;
+
+    /// What the keys are, in the order in which they are read and written.
+    fn rows() -> Vec<Row<Self>>;
+
+    /// Which of several forms the table has, for parameters that can be given in several ways; the form's keys are read
+    /// afterwards.
+    ///
+    /// # Errors
+    /// Keys of two forms, or of none.
+    fn choose(&mut self, _table: &TomlTable<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
+        Ok(())
+    }
+}
+
+/// Reads a table over what the section has.
+pub(crate) fn read_keys<S: Keys>(
+    section: &mut S,
+    table: &TomlTable<'_>,
+    files: &dyn NumberFiles,
+) -> ReadResult<()> {
+    section.choose(table, files)?;
+    S::rows().iter().try_for_each(|row| row.read(section, table, files))
+}
+
+/// The keys and values of a section.
+pub(super) fn write_pairs<S: Keys>(section: &S) -> Vec<(String, String)> {
+    written_pairs(&S::rows(), section)
+}
+
+/// The keys and values of some rows.
+pub(super) fn written_pairs<S>(rows: &[Row<S>], section: &S) -> Vec<(String, String)> {
+    let pairs = |row: &Row<S>| match row.write(section) {
+        Written::Nothing => Vec::new(),
+        Written::Value(value) => vec![(row.name().to_string(), value)],
+        Written::Lines(pairs) => {
+            pairs.into_iter().map(|(key, value)| (format!("{}.{key}", row.name()), value)).collect()
+        }
+    };
+    rows.iter().flat_map(pairs).collect()
+}
+
+/// The lines of a section, without its header.
+pub(crate) fn write_keys<S: Keys>(section: &S) -> String {
+    write_pairs(section).iter().map(|(key, value)| format!("{key} = {value}\n")).collect()
+}
+
+/// Every key alone.
+///
+/// # Arguments
+/// * `section` - the parameters
+/// * `path` - dotted key of the table
+pub(crate) fn check_keys<S: Keys>(section: &S, path: &str) -> Check {
+    S::rows().iter().try_for_each(|row| row.check(section, path))
+}
+
+/// What the keys of a section are.
+pub(crate) fn describe<S: Keys>() -> Vec<KeyDescription> {
+    describe_from(&S::start())
+}
+
+/// The same, with what `start` has as defaults.
+pub(crate) fn describe_from<S: Keys>(start: &S) -> Vec<KeyDescription> {
+    S::rows().iter().flat_map(|row| row.describe(start)).collect()
+}
+
+/// The lines of a section with a comment for every key, without its header.
+pub(crate) fn commented<S: Keys>(section: &S) -> String {
+    let start = S::start();
+    S::rows().iter().map(|row| row.commented(section, &start)).collect()
+}

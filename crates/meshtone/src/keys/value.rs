@@ -1,0 +1,158 @@
+//! Values of keys: how they are read, written and checked.
+
+use meshtone_toml::{ReadResult, TomlValue};
+
+use super::check::Check;
+use super::description::{KeyDescription, KeyKind};
+use super::files::NumberFiles;
+use super::range::Range;
+use super::table::{Keys, check_keys, describe_from, read_keys, write_pairs};
+use super::text::{array, inline_table, number};
+
+/// What a key's value is written as.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Written {
+    /// The key is left out.
+    Nothing,
+    /// The value.
+    Value(String),
+    /// Keys inside it, each on its own line with its dotted name.
+    Lines(Vec<(String, String)>),
+}
+
+/// A value that a key may have.
+pub(crate) trait KeyValue: Clone + PartialEq + 'static {
+    /// Reads it over what is there, which is the default.
+    fn read(&mut self, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()>;
+
+    /// What it is written as.
+    fn write(&self) -> Written;
+
+    /// Whether its numbers are allowed.
+    fn check(&self, _key: &str, _range: &Range, _unit: &str) -> Check {
+        Ok(())
+    }
+
+    /// What kind of value it is.
+    fn kind() -> KeyKind;
+
+    /// The keys inside it.
+    fn inside(&self) -> Vec<KeyDescription> {
+        Vec::new()
+    }
+}
+
+impl KeyValue for f64 {
+    fn read(&mut self, value: &TomlValue<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
+        *self = value.number()?;
+        Ok(())
+    }
+
+    fn write(&self) -> Written {
+        Written::Value(number(*self))
+    }
+
+    fn check(&self, key: &str, range: &Range, unit: &str) -> Check {
+        range.check(key, *self, &format!("{self:?}"), unit)
+    }
+
+    fn kind() -> KeyKind {
+        KeyKind::Number
+    }
+}
+
+macro_rules! whole_numbers {
+    ($($type:ty),+) => {$(
+        impl KeyValue for $type {
+            fn read(&mut self, value: &TomlValue<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
+                // What is more than the type can hold is refused with what is more than the key may have.
+                *self = <$type>::try_from(value.integer(0..=u64::MAX)?).unwrap_or(<$type>::MAX);
+                Ok(())
+            }
+
+            fn write(&self) -> Written {
+                Written::Value(self.to_string())
+            }
+
+            fn check(&self, key: &str, range: &Range, unit: &str) -> Check {
+                range.check(key, *self as f64, &self.to_string(), unit)
+            }
+
+            fn kind() -> KeyKind {
+                KeyKind::Whole
+            }
+        }
+    )+};
+}
+whole_numbers!(u8, u32, u64, usize);
+
+impl<const N: usize> KeyValue for [f64; N] {
+    fn read(&mut self, value: &TomlValue<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
+        *self = value.exactly()?;
+        Ok(())
+    }
+
+    fn write(&self) -> Written {
+        Written::Value(array(self.iter().copied()))
+    }
+
+    fn check(&self, key: &str, range: &Range, unit: &str) -> Check {
+        let mut entries = self.iter().enumerate();
+        entries.try_for_each(|(index, entry)| entry.check(&format!("{key}[{index}]"), range, unit))
+    }
+
+    fn kind() -> KeyKind {
+        KeyKind::Numbers(N)
+    }
+}
+
+/// What may be left out.
+macro_rules! optional {
+    ($($type:ty, $blank:expr);+) => {$(
+        impl KeyValue for Option<$type> {
+            fn read(&mut self, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
+                self.insert($blank).read(value, files)
+            }
+
+            fn write(&self) -> Written {
+                self.as_ref().map_or(Written::Nothing, KeyValue::write)
+            }
+
+            fn check(&self, key: &str, range: &Range, unit: &str) -> Check {
+                self.as_ref().map_or(Ok(()), |value| value.check(key, range, unit))
+            }
+
+            fn kind() -> KeyKind {
+                <$type>::kind()
+            }
+        }
+    )+};
+}
+optional!(f64, 0.0; u64, 0; [f64; 13], [0.0; 13]);
+
+/// A table of keys of its own.
+impl<S: Keys> KeyValue for S {
+    fn read(&mut self, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
+        value.table()?.read(|table| read_keys(self, table, files))
+    }
+
+    fn write(&self) -> Written {
+        match write_pairs(self) {
+            pairs if pairs.is_empty() => Written::Nothing,
+            pairs if S::IN_LINES => Written::Lines(pairs),
+            pairs => Written::Value(inline_table(&pairs)),
+        }
+    }
+
+    fn check(&self, key: &str, _range: &Range, _unit: &str) -> Check {
+        check_keys(self, key)
+    }
+
+    fn kind() -> KeyKind {
+        KeyKind::Table
+    }
+
+    fn inside(&self) -> Vec<KeyDescription> {
+        describe_from(self)
+    }
+}

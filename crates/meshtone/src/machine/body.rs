@@ -1,0 +1,47 @@
+//! Mass and inertias of a wheel.
+
+use std::f64::consts::PI;
+
+use crate::machine::WheelInertia;
+use crate::model::Model;
+use crate::wheel::Material;
+use crate::wheel::Wheel;
+
+/// Mass and inertias of one wheel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WheelBody {
+    /// (kg) Mass.
+    pub mass_kg: f64,
+    /// (kg m²) Moment of inertia about the shaft.
+    pub polar_kgm2: f64,
+    /// (kg m²) Moment of inertia about a diameter.
+    pub transverse_kgm2: f64,
+}
+
+impl WheelBody {
+    /// A solid disc of pitch radius `R` and face width `W`: `m = ρ π R² W`, `J = m R²/2`,
+    /// `I = m (3R² + W²)/12`; what the user gives replaces it.
+    ///
+    /// # Arguments
+    /// * `wheel` - geometry
+    /// * `material` - for the density
+    /// * `given` - values of the user
+    /// * `model` - the published code leaves out the division by 12
+    pub fn new(wheel: &Wheel, material: Material, given: &WheelInertia, model: Model) -> Self {
+        let radius = wheel.pitch_radius_mm * 1e-3;
+        let width = wheel.face_width_mm * 1e-3;
+        let solid_mass = PI * radius * radius * width * material.density_kg_per_m3();
+        let mass_kg = given.mass_kg.unwrap_or(solid_mass);
+        let twelfths = match model {
+            Model::Published => 1.0,
+            Model::Linear => 12.0,
+        };
+        Self {
+            mass_kg,
+            polar_kgm2: given.polar_inertia_kgm2.unwrap_or(mass_kg * radius * radius / 2.0),
+            transverse_kgm2: given
+                .transverse_inertia_kgm2
+                .unwrap_or(mass_kg * (3.0 * radius * radius + width * width) / twelfths),
+        }
+    }
+}

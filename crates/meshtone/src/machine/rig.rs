@@ -1,0 +1,240 @@
+//! The rig around the wheels: bearings, shafts, brake.
+
+use meshtone_toml::{ReadResult, TomlValue};
+
+use crate::keys::{
+    Check, KeyKind, KeyValue, Keys, NumberFiles, Range, Row, Written, below, check_keys, field, row,
+};
+use crate::wheel::{Gears, WheelName};
+
+/// Bearings, shafts, brake and wheel bodies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rig {
+    /// (N/m) Stiffness of each wheel's bearing in x, y and z. Default 1.9e8.
+    pub bearing_stiffness_n_per_m: f64,
+    /// (N m/rad) Stiffness of each wheel against tilting about x and y. Default 1e8.
+    pub wheel_rotational_stiffness_nm_per_rad: f64,
+    /// (kg m²) Inertia of the brake. Default 4.5e-3.
+    pub brake_inertia_kgm2: f64,
+    /// (-) Modal damping. Default 0.05 for every mode.
+    pub damping_ratio: DampingRatio,
+    /// (mm) Eccentricity of both wheels. Default 0.
+    pub eccentricity_mm: f64,
+    /// The motor's shaft. Default 200 mm long, radius 10 mm.
+    pub pinion_shaft: Shaft,
+    /// The brake's shaft. Default 600 mm long, radius 10 mm.
+    pub gear_shaft: Shaft,
+    /// Mass and inertias of the pinion, instead of those of a solid disc.
+    pub pinion_inertia: WheelInertia,
+    /// Mass and inertias of the gear, instead of those of a solid disc.
+    pub gear_inertia: WheelInertia,
+}
+
+impl Default for Rig {
+    fn default() -> Self {
+        Self {
+            bearing_stiffness_n_per_m: 1.9e8,
+            wheel_rotational_stiffness_nm_per_rad: 1e8,
+            brake_inertia_kgm2: 4.5e-3,
+            damping_ratio: DampingRatio::Uniform(0.05),
+            eccentricity_mm: 0.0,
+            pinion_shaft: Shaft { length_mm: 200.0, radius_mm: 10.0 },
+            gear_shaft: Shaft { length_mm: 600.0, radius_mm: 10.0 },
+            pinion_inertia: WheelInertia::default(),
+            gear_inertia: WheelInertia::default(),
+        }
+    }
+}
+
+/// Beyond these the equations are solved in rounding errors.
+const STIFFNESS: Range = Range::positive().slip_above(1e15);
+const MASS: Range = Range::positive().slip_above(1e9);
+
+impl Keys for Rig {
+    fn start() -> Self {
+        Self::default()
+    }
+
+    fn rows() -> Vec<Row<Self>> {
+        const DISC: &str = "a solid disc's, of pitch radius";
+        vec![
+            row(
+                "bearing_stiffness_n_per_m",
+                "N/m",
+                "the stiffness of each wheel's bearings in x, y and z",
+                field!(bearing_stiffness_n_per_m),
+            )
+            .range(STIFFNESS)
+            .ignored_by_published(),
+            row(
+                "wheel_rotational_stiffness_nm_per_rad",
+                "N m/rad",
+                "the stiffness of each wheel against tilting, about x and about y",
+                field!(wheel_rotational_stiffness_nm_per_rad),
+            )
+            .range(STIFFNESS),
+            row("brake_inertia_kgm2", "kg m²", "the inertia of the brake", field!(brake_inertia_kgm2)).range(MASS),
+            row(
+                "damping_ratio",
+                "-",
+                "the modal damping over critical damping: one number for all modes, or 13 in the order of rising frequency",
+                field!(damping_ratio),
+            )
+            .range(
+                Range::below_one()
+                    .message("must be from 0 to less than 1 (1 is critical damping)")
+                    .help("a usual ratio is 0.05, which is 5 %"),
+            ),
+            row("eccentricity_mm", "mm", "the eccentricity of both wheels", field!(eccentricity_mm))
+                .range(Range::not_negative())
+                .rule("less than the module")
+                .ignored_by_published(),
+            row("pinion_shaft", "", "the motor's shaft", field!(pinion_shaft)),
+            row("gear_shaft", "", "the brake's shaft", field!(gear_shaft)),
+            row(
+                "pinion_inertia",
+                "",
+                "the mass and inertias of the pinion, instead of a solid disc's; any of the three may be left out",
+                field!(pinion_inertia),
+            )
+            .otherwise(DISC)
+            .alternative("{ mass_kg = 0.24, polar_inertia_kgm2 = 7.8e-5, transverse_inertia_kgm2 = 4.4e-5 }"),
+            row("gear_inertia", "", "the same of the gear", field!(gear_inertia))
+                .otherwise(DISC)
+                .alternative("{ mass_kg = 1.20, polar_inertia_kgm2 = 1.95e-3, transverse_inertia_kgm2 = 1.0e-3 }"),
+        ]
+    }
+}
+
+impl Rig {
+    /// Every key alone, and with the wheels that run in the rig.
+    pub(crate) fn check(&self, gears: &Gears) -> Check {
+        check_keys(self, "rig")?;
+        below("rig.eccentricity_mm", self.eccentricity_mm, gears.module_mm, "the module")?;
+        for (wheel, shaft) in [(WheelName::Pinion, &self.pinion_shaft), (WheelName::Gear, &self.gear_shaft)] {
+            let root_radius_mm = gears.module_mm * (f64::from(gears.teeth(wheel)) / 2.0 - 1.25);
+            let limit_is = format!("the root radius of the {}, whose bore it fills", wheel.name());
+            below(
+                &format!("rig.{}_shaft.radius_mm", wheel.name()),
+                shaft.radius_mm,
+                root_radius_mm,
+                &limit_is,
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// Ratio of each mode's damping to its critical damping.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DampingRatio {
+    /// The same for all modes.
+    Uniform(f64),
+    /// One per mode, in the order of rising natural frequency.
+    PerMode([f64; 13]),
+}
+
+impl DampingRatio {
+    /// (-) The ratio of each mode, in the order of rising natural frequency.
+    pub fn per_mode(&self) -> [f64; 13] {
+        match *self {
+            Self::Uniform(ratio) => [ratio; 13],
+            Self::PerMode(ratios) => ratios,
+        }
+    }
+}
+
+impl KeyValue for DampingRatio {
+    fn read(&mut self, value: &TomlValue<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
+        *self = if value.is_array() {
+            let ratios = value.exactly().map(Self::PerMode);
+            ratios.map_err(|error| error.with_help("give one number for all modes, or 13, one per mode"))?
+        } else {
+            Self::Uniform(value.number()?)
+        };
+        Ok(())
+    }
+
+    fn write(&self) -> Written {
+        match self {
+            Self::Uniform(ratio) => ratio.write(),
+            Self::PerMode(ratios) => ratios.write(),
+        }
+    }
+
+    fn check(&self, key: &str, range: &Range, unit: &str) -> Check {
+        match self {
+            Self::Uniform(ratio) => ratio.check(key, range, unit),
+            Self::PerMode(ratios) => ratios.check(key, range, unit),
+        }
+    }
+
+    fn kind() -> KeyKind {
+        KeyKind::NumberOrNumbers(13)
+    }
+}
+
+/// A round shaft; its radius is also the bore of the wheel on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shaft {
+    /// (mm) Length between wheel and motor or brake.
+    pub length_mm: f64,
+    /// (mm) Radius.
+    pub radius_mm: f64,
+}
+
+impl Keys for Shaft {
+    fn start() -> Self {
+        Self { length_mm: f64::NAN, radius_mm: f64::NAN }
+    }
+
+    fn rows() -> Vec<Row<Self>> {
+        vec![
+            row("length_mm", "mm", "the length between wheel and motor or brake", field!(length_mm))
+                .range(Range::positive().slip_above(1e6)),
+            row("radius_mm", "mm", "the radius, which is also that of the wheel's bore", field!(radius_mm))
+                .range(Range::positive())
+                .rule("less than the wheel's root radius"),
+        ]
+    }
+}
+
+/// Mass and inertias of one wheel; what is `None` is that of a solid disc of pitch radius.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct WheelInertia {
+    /// (kg) Mass.
+    pub mass_kg: Option<f64>,
+    /// (kg m²) Moment of inertia about the shaft.
+    pub polar_inertia_kgm2: Option<f64>,
+    /// (kg m²) Moment of inertia about a diameter.
+    pub transverse_inertia_kgm2: Option<f64>,
+}
+
+impl Keys for WheelInertia {
+    fn start() -> Self {
+        Self::default()
+    }
+
+    fn rows() -> Vec<Row<Self>> {
+        const DISC: &str = "the disc's";
+        vec![
+            row("mass_kg", "kg", "the mass", field!(mass_kg)).otherwise(DISC).range(MASS),
+            row(
+                "polar_inertia_kgm2",
+                "kg m²",
+                "the moment of inertia about the shaft",
+                field!(polar_inertia_kgm2),
+            )
+            .otherwise(DISC)
+            .range(MASS),
+            row(
+                "transverse_inertia_kgm2",
+                "kg m²",
+                "the moment of inertia about a diameter",
+                field!(transverse_inertia_kgm2),
+            )
+            .otherwise(DISC)
+            .range(MASS),
+        ]
+    }
+}

@@ -1,0 +1,31 @@
+//! The linear law: `f = Σ k_n (δ_n + e_n)` over the pairs on their path of contact. Pairs push and pull.
+//!
+//! Stiffness and deviations are known functions of the motor's angle, so a step is linear and solved at once.
+
+use super::table::solve;
+use super::{MeshLaw, MeshTable, Trial};
+use crate::simd::{Instructions, Lanes};
+
+/// Linear meshes side by side.
+pub(crate) struct LinearLaw<'a, const L: usize, const R: usize> {
+    /// The mesh of each simulation.
+    pub(crate) tables: [&'a MeshTable<R>; L],
+}
+
+impl<const L: usize, const R: usize> MeshLaw<L, R> for LinearLaw<'_, L, R> {
+    #[inline(always)]
+    fn force<I: Instructions, T: Trial<I, L, R>>(
+        &self,
+        simd: I,
+        trial: &T,
+        errors: &[Lanes<L>; R],
+        known: &[u32; L],
+        entries: &mut [usize; L],
+    ) -> [Lanes<L>; R] {
+        for l in 0..L {
+            // A lane that has ended keeps stepping, without a mesh of its own to step over.
+            entries[l] = (known[l] as usize).min(self.tables[l].points.len() - 1);
+        }
+        solve(simd, &self.tables, entries, errors, trial.deflection())
+    }
+}

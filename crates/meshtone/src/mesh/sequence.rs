@@ -1,0 +1,149 @@
+//! Which teeth meet, and which pairs are alike.
+
+use crate::damage::DamagedTooth;
+use crate::operation::{greatest_common_divisor, least_common_multiple};
+use crate::wheel::WheelName;
+
+/// The sequence of tooth pairs: pair n meets the pinion's tooth `n mod z_p` and the gear's tooth `n mod z_g`, and enters contact
+/// n pitches after the start of the simulation.
+///
+/// Pairs are of one *class* where both teeth are alike; most are of the class of two sound teeth, which is the first.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairSequence {
+    pinion_teeth: usize,
+    gear_teeth: usize,
+    /// Which damaged tooth each tooth is, 0 for a sound one.
+    pinion_damage: Vec<usize>,
+    gear_damage: Vec<usize>,
+    /// Class of each combination of damages, by the pinion's and then the gear's.
+    class_of_damages: Vec<usize>,
+    gear_kinds: usize,
+    classes: Vec<PairKind>,
+}
+
+/// What is common to the pairs of a class.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PairKind {
+    /// Which damaged tooth the pinion's is; none for a sound one.
+    pub pinion: Option<usize>,
+    /// Which damaged tooth the gear's is.
+    pub gear: Option<usize>,
+    /// How many pairs of this class meet until the same two teeth meet again.
+    pub pairs_per_cycle: usize,
+}
+
+impl PairSequence {
+    /// The sequence of two wheels.
+    ///
+    /// # Arguments
+    /// * `pinion_teeth`, `gear_teeth` - tooth counts
+    /// * `damaged` - the damaged teeth, each named once
+    pub fn new(pinion_teeth: u32, gear_teeth: u32, damaged: &[DamagedTooth]) -> Self {
+        let of_wheel = |wheel: WheelName, teeth: u32| {
+            let mut damages = vec![0; teeth as usize];
+            for (index, tooth) in damaged.iter().enumerate().filter(|(_, tooth)| tooth.wheel == wheel) {
+                damages[tooth.tooth] = index + 1;
+            }
+            damages
+        };
+        let pinion_damage = of_wheel(WheelName::Pinion, pinion_teeth);
+        let gear_damage = of_wheel(WheelName::Gear, gear_teeth);
+        let kinds = damaged.len() + 1;
+        // Two teeth meet once a cycle if their indices are congruent modulo the greatest common divisor, else never.
+        let divisor = greatest_common_divisor(pinion_teeth, gear_teeth) as usize;
+        let mut pairs = vec![0; kinds * kinds];
+        let count = |damages: &[usize], residue: usize| {
+            let mut counts = vec![0; kinds];
+            damages.iter().skip(residue).step_by(divisor).for_each(|&damage| counts[damage] += 1);
+            counts
+        };
+        for residue in 0..divisor {
+            let (of_pinion, of_gear) = (count(&pinion_damage, residue), count(&gear_damage, residue));
+            for (p, pinions) in of_pinion.iter().enumerate() {
+                for (g, gears) in of_gear.iter().enumerate() {
+                    pairs[p * kinds + g] += pinions * gears;
+                }
+            }
+        }
+        let mut classes = Vec::new();
+        let mut class_of_damages = vec![0; kinds * kinds];
+        for (place, &pairs_per_cycle) in pairs.iter().enumerate() {
+            // Sound pairs have a class even where every tooth of a wheel is damaged.
+            if pairs_per_cycle > 0 || place == 0 {
+                class_of_damages[place] = classes.len();
+                let (pinion, gear) = ((place / kinds).checked_sub(1), (place % kinds).checked_sub(1));
+                classes.push(PairKind { pinion, gear, pairs_per_cycle });
+            }
+        }
+        Self {
+            pinion_teeth: pinion_teeth as usize,
+            gear_teeth: gear_teeth as usize,
+            pinion_damage,
+            gear_damage,
+            class_of_damages,
+            gear_kinds: kinds,
+            classes,
+        }
+    }
+
+    /// The classes; the first is that of two sound teeth.
+    pub fn classes(&self) -> &[PairKind] {
+        &self.classes
+    }
+
+    /// Indices of the pinion's and of the gear's tooth in pair `pair`; pairs before the start count down from −1.
+    ///
+    /// # Arguments
+    /// * `pair` - its number
+    pub fn teeth(&self, pair: i64) -> (usize, usize) {
+        let tooth = |teeth: usize| pair.rem_euclid(teeth as i64) as usize;
+        (tooth(self.pinion_teeth), tooth(self.gear_teeth))
+    }
+
+    /// Class of pair `pair`.
+    ///
+    /// # Arguments
+    /// * `pair` - its number
+    pub fn class(&self, pair: i64) -> usize {
+        let (pinion, gear) = self.teeth(pair);
+        self.class_of_damages[self.pinion_damage[pinion] * self.gear_kinds + self.gear_damage[gear]]
+    }
+
+    /// Number of pairs until the same two teeth meet again: the least common multiple of the tooth counts.
+    pub fn cycle(&self) -> usize {
+        least_common_multiple(self.pinion_teeth as u32, self.gear_teeth as u32) as usize
+    }
+
+    /// Number of gear teeth: of pairs in a gear revolution.
+    pub fn gear_teeth(&self) -> usize {
+        self.gear_teeth
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_class_is_met_as_often_as_counted() {
+        use crate::damage::damaged_teeth;
+        use crate::model::Model;
+        use crate::scenario::{Fault, Gears, MissingTooth};
+        use crate::wheel::{WheelName, teeth};
+
+        for (z_p, z_g) in [(17, 38), (20, 45), (25, 30), (12, 36)] {
+            let healthy = teeth(&Gears::new(3.0, z_p, z_g, 15.0), [10.0; 2], Model::Linear);
+            let missing = |wheel, tooth| Fault { wheel, tooth, damage: MissingTooth.into() };
+            let faults =
+                [missing(WheelName::Pinion, 1), missing(WheelName::Gear, 1), missing(WheelName::Gear, 6)];
+            let damaged = damaged_teeth(&faults, &healthy, 1).unwrap();
+            let sequence = PairSequence::new(z_p, z_g, &damaged);
+            let mut counts = vec![0; sequence.classes().len()];
+            for pair in 0..sequence.cycle() {
+                counts[sequence.class(pair as i64)] += 1;
+            }
+            let told: Vec<usize> = sequence.classes().iter().map(|kind| kind.pairs_per_cycle).collect();
+            assert_eq!(counts, told, "{z_p}/{z_g}");
+        }
+    }
+}

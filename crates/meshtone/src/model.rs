@@ -1,0 +1,50 @@
+//! Which model is simulated.
+
+use meshtone_toml::{ReadResult, TomlValue};
+
+use crate::keys::{KeyKind, KeyValue, NumberFiles, Written};
+
+/// Which reading of the mesh is simulated.
+///
+/// The published code differs from the theory of its own paper in several places (listed in the
+/// chapter "Published and linear" of the documentation).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+#[non_exhaustive]
+pub enum Model {
+    /// The theory of a linear mesh: flanks that are conjugate, loads that act at the flank's own angle, one angle for
+    /// stiffness and deviations. The default.
+    #[default]
+    Linear,
+    /// The published code, its slips included, so that results can be compared number by number.
+    Published,
+}
+
+impl Model {
+    /// The name in the scenario file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Linear => "linear",
+            Self::Published => "published",
+        }
+    }
+}
+
+impl KeyValue for Model {
+    fn read(&mut self, value: &TomlValue<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
+        *self = value.choice(&NAMES).map_err(|error| match value.string() {
+            Ok("corrected") => error.with_help("the corrected model is called \"linear\" now"),
+            _ => error,
+        })?;
+        Ok(())
+    }
+
+    fn write(&self) -> Written {
+        Written::Value(format!("\"{}\"", self.name()))
+    }
+
+    fn kind() -> KeyKind {
+        KeyKind::Name(NAMES.map(|(name, _)| name).to_vec())
+    }
+}
+
+const NAMES: [(&str, Model); 2] = [("linear", Model::Linear), ("published", Model::Published)];

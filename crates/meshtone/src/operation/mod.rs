@@ -1,0 +1,170 @@
+//! How time and the mesh cycle are divided.
+
+mod motion;
+mod parameters;
+mod rules;
+mod settings;
+
+pub use motion::{Motion, MotionSample};
+pub use parameters::{Operation, Profile};
+pub use settings::Solver;
+
+use crate::wheel::Gears;
+
+/// Pinion revolutions that are simulated, settling included: `2 z_g`.
+pub(crate) fn nominal_revolutions(gear_teeth: u32) -> u32 {
+    2 * gear_teeth
+}
+
+/// Division of time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TimeGrid {
+    /// (S/s) Actual sampling rate, a whole number of samples per revolution of either wheel.
+    pub sampling_rate_hz: f64,
+    /// Number of samples, the whole settling included.
+    pub samples: usize,
+    /// First sample that is simulated: 0, or later where a short settling suffices.
+    pub first_simulated_sample: usize,
+    /// First sample that is kept.
+    pub first_kept_sample: usize,
+    /// Number of samples per (nominal) pinion revolution.
+    pub samples_per_pinion_revolution: usize,
+}
+
+impl TimeGrid {
+    /// The division of time for a pair in operation; all values are valid.
+    ///
+    /// `f_s = ⌈f_nom/(L f_p) + 6⌉ L f_p`, with `L` the least common multiple of the tooth counts and
+    /// `f_p` the nominal pinion speed. Without a speed profile `2 z_g` pinion revolutions are
+    /// simulated; with one, the time that it spans.
+    ///
+    /// # Arguments
+    /// * `gears` - for the tooth counts
+    /// * `operation` - nominal speed, and the profile that may replace it
+    /// * `solver` - nominal sampling rate and settling
+    pub fn new(gears: &Gears, operation: &Operation, solver: &Solver) -> Self {
+        let speed = operation.pinion_speed_hz;
+        let multiple = least_common_multiple(gears.pinion_teeth, gears.gear_teeth);
+        let samples_per_pinion_revolution = samples_per_pinion_revolution(solver, multiple, speed);
+        let sampling_rate_hz = samples_per_pinion_revolution as f64 * speed;
+        let revolutions = nominal_revolutions(gears.gear_teeth) as usize;
+        // Saturating: a scenario may ask for more than any machine holds, and is then refused.
+        let nominal_samples = revolutions.saturating_mul(samples_per_pinion_revolution);
+        let samples = match &operation.speed_profile_hz {
+            Some(profile) => {
+                let duration_s = profile.time_s.last().copied().unwrap_or(0.0);
+                (duration_s * sampling_rate_hz).round() as usize
+            }
+            None => nominal_samples,
+        };
+        let settling = (solver.settle_fraction * nominal_samples as f64).round() as usize;
+        Self {
+            sampling_rate_hz,
+            samples,
+            first_simulated_sample: 0,
+            first_kept_sample: settling.min(samples),
+            samples_per_pinion_revolution,
+        }
+    }
+
+    /// Number of samples that are kept.
+    pub fn kept_samples(&self) -> usize {
+        self.samples - self.first_kept_sample
+    }
+
+    /// (s) Time between two samples.
+    pub fn step_s(&self) -> f64 {
+        1.0 / self.sampling_rate_hz
+    }
+}
+
+fn samples_per_pinion_revolution(solver: &Solver, multiple: u32, pinion_speed_hz: f64) -> usize {
+    let per_multiple = (solver.sampling_rate_hz / (f64::from(multiple) * pinion_speed_hz) + 6.0).ceil();
+    (per_multiple as usize).saturating_mul(multiple as usize)
+}
+
+/// Division of the mesh cycle (one gear revolution), in fractions of a pinion revolution.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CycleGrid {
+    /// (rev) Step of the fine grid, on which the error forces are given.
+    pub fine_step_rev: f64,
+    /// (rev) Step of the coarse grid, on which the mesh stiffness is given.
+    pub coarse_step_rev: f64,
+    /// Number of fine points from one tooth to the next.
+    pub fine_points_per_pitch: usize,
+    /// Number of coarse points from one tooth to the next.
+    pub points_per_pitch: usize,
+    /// Number of coarse points in a pinion revolution.
+    pub points_per_pinion_revolution: usize,
+    /// Number of coarse points in a gear revolution.
+    pub points_per_gear_revolution: usize,
+}
+
+/// Number of fine steps in a coarse one.
+pub(crate) const FINE_PER_COARSE: usize = 50;
+/// Least number of fine points in a pinion revolution.
+const LEAST_FINE_POINTS: f64 = 1e6;
+
+impl CycleGrid {
+    /// The division of the cycle: `d_f = 1/(50 L ⌈max(f_s, 1e6)/(50 L)⌉)`, `d_c = 50 d_f`.
+    ///
+    /// # Arguments
+    /// * `pinion_teeth`, `gear_teeth` - tooth counts
+    /// * `sampling_rate_hz` - (S/s) the actual sampling rate
+    pub fn new(pinion_teeth: u32, gear_teeth: u32, sampling_rate_hz: f64) -> Self {
+        let multiple = least_common_multiple(pinion_teeth, gear_teeth) as usize;
+        let unit = (FINE_PER_COARSE * multiple) as f64;
+        let refinement = (sampling_rate_hz.max(LEAST_FINE_POINTS) / unit).ceil() as usize;
+        let per_pinion_revolution = multiple.saturating_mul(refinement);
+        let points_per_pitch = per_pinion_revolution / pinion_teeth as usize;
+        Self {
+            fine_step_rev: 1.0 / (FINE_PER_COARSE as f64 * per_pinion_revolution as f64),
+            coarse_step_rev: FINE_PER_COARSE as f64 / (FINE_PER_COARSE as f64 * per_pinion_revolution as f64),
+            fine_points_per_pitch: FINE_PER_COARSE * points_per_pitch,
+            points_per_pitch,
+            points_per_pinion_revolution: per_pinion_revolution,
+            points_per_gear_revolution: points_per_pitch.saturating_mul(gear_teeth as usize),
+        }
+    }
+
+    /// The division of the cycle as the published code has it: a pitch has `⌈(1/z_p)/d_f⌉` fine points, in floating point. Where
+    /// that quotient is a rounding error above a whole number (20 and 25 teeth), every pitch is a fine point too long.
+    pub(crate) fn as_published(mut self, pinion_teeth: u32, gear_teeth: u32) -> Self {
+        let quotient = (1.0 / f64::from(pinion_teeth)) / self.fine_step_rev;
+        self.fine_points_per_pitch = quotient.ceil() as usize;
+        if !self.pitch_is_whole() {
+            let fine_points = self.fine_points_per_pitch.saturating_mul(gear_teeth as usize);
+            self.points_per_gear_revolution = fine_points.div_ceil(FINE_PER_COARSE);
+        }
+        self
+    }
+
+    /// Whether a pitch is a whole number of coarse points.
+    pub(crate) fn pitch_is_whole(&self) -> bool {
+        self.fine_points_per_pitch == FINE_PER_COARSE * self.points_per_pitch
+    }
+
+    /// Number of coarse points at which a pair that spans `span_rev` is in contact.
+    pub fn coarse_points_in(&self, span_rev: f64) -> usize {
+        self.fine_points_in(span_rev).div_ceil(FINE_PER_COARSE)
+    }
+
+    /// Number of fine points at which a pair that spans `span_rev` is in contact.
+    pub fn fine_points_in(&self, span_rev: f64) -> usize {
+        (span_rev / self.fine_step_rev * (1.0 + 1e-14)) as usize + 1
+    }
+}
+
+/// Greatest common divisor of two tooth counts.
+pub(crate) fn greatest_common_divisor(a: u32, b: u32) -> u32 {
+    let (mut x, mut y) = (a, b);
+    while y != 0 {
+        (x, y) = (y, x % y);
+    }
+    x
+}
+
+/// Least common multiple of two tooth counts.
+pub(crate) fn least_common_multiple(a: u32, b: u32) -> u32 {
+    a / greatest_common_divisor(a, b) * b
+}

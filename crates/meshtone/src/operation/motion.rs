@@ -1,0 +1,124 @@
+//! What motor and brake do, sample by sample.
+
+use super::{Operation, Profile, TimeGrid};
+use crate::model::Model;
+use crate::random::{Draws, Purpose};
+
+/// The motor's angle and speed and the brake's torque at successive samples: an iterator without end.
+pub struct Motion<'a> {
+    operation: &'a Operation,
+    model: Model,
+    step_s: f64,
+    samples_per_revolution: f64,
+    sample: usize,
+    revolutions: f64,
+    speed_hz: f64,
+    speed_draws: Option<Draws>,
+    torque_draws: Option<Draws>,
+}
+
+/// Motor and brake at one sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MotionSample {
+    /// (rev) Revolutions of the motor since the start.
+    pub revolutions: f64,
+    /// (Hz) Speed of the motor.
+    pub speed_hz: f64,
+    /// (N m) Torque of the brake.
+    pub torque_nm: f64,
+}
+
+impl<'a> Motion<'a> {
+    /// Motion from the start of the simulation.
+    ///
+    /// # Arguments
+    /// * `operation` - speed, load, their profiles and fluctuations
+    /// * `seed` - of the fluctuations
+    /// * `model` - how the angle follows from the speed
+    /// * `time` - division of time
+    pub fn new(operation: &'a Operation, seed: u64, model: Model, time: &TimeGrid) -> Self {
+        let draws = |half_width: f64, purpose| (half_width > 0.0).then(|| Draws::new(seed, purpose, 0));
+        let mut motion = Self {
+            operation,
+            model,
+            step_s: time.step_s(),
+            samples_per_revolution: time.samples_per_pinion_revolution as f64,
+            sample: 0,
+            revolutions: 0.0,
+            speed_hz: 0.0,
+            speed_draws: draws(operation.speed_fluctuation_hz, Purpose::SpeedFluctuation),
+            torque_draws: draws(operation.torque_fluctuation_nm, Purpose::TorqueFluctuation),
+        };
+        motion.speed_hz = motion.draw_speed();
+        motion
+    }
+
+    fn draw_speed(&mut self) -> f64 {
+        let operation = self.operation;
+        let nominal = self.at_sample(operation.speed_profile_hz.as_ref(), operation.pinion_speed_hz);
+        nominal + fluctuation(&mut self.speed_draws, operation.speed_fluctuation_hz)
+    }
+
+    fn draw_torque(&mut self) -> f64 {
+        let operation = self.operation;
+        let nominal = self.at_sample(operation.torque_profile_nm.as_ref(), operation.brake_torque_nm);
+        nominal + fluctuation(&mut self.torque_draws, operation.torque_fluctuation_nm)
+    }
+
+    /// The profile at the present sample, or the constant where there is none.
+    fn at_sample(&self, profile: Option<&Profile>, constant: f64) -> f64 {
+        profile.map_or(constant, |profile| profile_at(profile, self.sample as f64 * self.step_s))
+    }
+
+    /// Whether the motor's speed is constant.
+    pub(crate) fn is_steady(&self) -> bool {
+        self.speed_draws.is_none() && self.operation.speed_profile_hz.is_none()
+    }
+
+    /// Whether the brake's torque is constant.
+    pub(crate) fn has_constant_torque(&self) -> bool {
+        self.torque_draws.is_none() && self.operation.torque_profile_nm.is_none()
+    }
+}
+
+impl Iterator for Motion<'_> {
+    type Item = MotionSample;
+
+    fn next(&mut self) -> Option<MotionSample> {
+        let here = MotionSample {
+            revolutions: self.revolutions,
+            speed_hz: self.speed_hz,
+            torque_nm: self.draw_torque(),
+        };
+        self.sample += 1;
+        self.speed_hz = self.draw_speed();
+        self.revolutions = match self.model {
+            // Model: the published code adds up sample by sample, and its rounding errors decide which
+            // of two equally near grid points a sample is given.
+            Model::Published => self.revolutions + here.speed_hz * self.step_s,
+            Model::Linear if self.is_steady() => self.sample as f64 / self.samples_per_revolution,
+            Model::Linear => self.revolutions + 0.5 * (here.speed_hz + self.speed_hz) * self.step_s,
+        };
+        Some(here)
+    }
+}
+
+/// The next draw, evenly from within ± `half_width`; 0 where nothing fluctuates.
+fn fluctuation(draws: &mut Option<Draws>, half_width: f64) -> f64 {
+    draws.as_mut().map_or(0.0, |draws| draws.uniform(0.0, half_width))
+}
+
+/// The profile at `time_s`: straight lines between its points, constant outside.
+fn profile_at(profile: &Profile, time_s: f64) -> f64 {
+    let (time, value) = (&profile.time_s, &profile.value);
+    let after = time.partition_point(|&t| t <= time_s);
+    if after == 0 {
+        value[0]
+    } else if after == time.len() {
+        value[after - 1]
+    } else {
+        let before = after - 1;
+        let t = (time_s - time[before]) / (time[after] - time[before]);
+        value[before] + t * (value[after] - value[before])
+    }
+}

@@ -1,0 +1,153 @@
+//! Speed and load.
+
+use meshtone_toml::{ReadResult, TomlTable, TomlValue};
+
+use crate::keys::{
+    Check, KeyKind, KeyValue, Keys, NumberFiles, Range, Row, Written, array, field, load, row,
+};
+
+/// How the pair is driven and loaded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Operation {
+    /// (rev/s) Nominal speed of the motor, which turns the pinion.
+    pub pinion_speed_hz: f64,
+    /// (N m) Nominal torque of the brake on the gear's shaft.
+    pub brake_torque_nm: f64,
+    /// (Hz) Half width of a uniform error of the motor's speed, drawn for every sample. Default 0.
+    pub speed_fluctuation_hz: f64,
+    /// (N m) Half width of a uniform error of the brake's torque, drawn for every sample. Default 0.
+    pub torque_fluctuation_nm: f64,
+    /// Speed of the motor against time, instead of the constant `pinion_speed_hz`, which stays
+    /// the speed that the sampling rate is chosen for.
+    pub speed_profile_hz: Option<Profile>,
+    /// Torque of the brake against time, instead of the constant `brake_torque_nm`.
+    pub torque_profile_nm: Option<Profile>,
+}
+
+impl Operation {
+    /// Constant speed and load.
+    ///
+    /// # Arguments
+    /// As the fields of the same names.
+    pub fn new(pinion_speed_hz: f64, brake_torque_nm: f64) -> Self {
+        Self {
+            pinion_speed_hz,
+            brake_torque_nm,
+            speed_fluctuation_hz: 0.0,
+            torque_fluctuation_nm: 0.0,
+            speed_profile_hz: None,
+            torque_profile_nm: None,
+        }
+    }
+}
+
+impl Keys for Operation {
+    fn start() -> Self {
+        Self::new(f64::NAN, f64::NAN)
+    }
+
+    fn rows() -> Vec<Row<Self>> {
+        vec![
+            row(
+                "pinion_speed_hz",
+                "rev/s",
+                "the nominal speed of the motor, which turns the pinion; the sampling rate is chosen for it",
+                field!(pinion_speed_hz),
+            )
+            .required()
+            .range(Range::positive().slip_above(1e5)),
+            row("brake_torque_nm", "N m", "the nominal torque of the brake on the gear's shaft", field!(brake_torque_nm))
+                .required()
+                .range(Range::not_negative().slip_above(1e9)),
+            row(
+                "speed_fluctuation_hz",
+                "Hz",
+                "the half width of a uniform error of the speed, drawn anew for every sample",
+                field!(speed_fluctuation_hz),
+            )
+            .range(Range::not_negative())
+            .rule("less than the lowest speed"),
+            row(
+                "torque_fluctuation_nm",
+                "N m",
+                "the half width of a uniform error of the torque, drawn anew for every sample",
+                field!(torque_fluctuation_nm),
+            )
+            .range(Range::not_negative())
+            .rule("less than the lowest torque"),
+            row(
+                "speed_profile_hz",
+                "s, Hz",
+                "the speed against time, instead of the constant: straight lines between the points, constant outside them. Times \
+                 count from the start of the simulation. A CSV file of two columns, time_s and value, is { file = \"….csv\" }",
+                field!(speed_profile_hz),
+            )
+            .otherwise("none")
+            .rule("at least 2 points, times increasing, values > 0")
+            .example("{ time_s = [0.0, 1.0], value = [40.0, 40.0] }")
+            .ignored_by_published(),
+            row("torque_profile_nm", "s, N m", "the torque against time, likewise", field!(torque_profile_nm))
+                .otherwise("none")
+                .rule("likewise, values ≥ 0")
+                .example("{ time_s = [0.0, 1.0], value = [10.0, 10.0] }"),
+        ]
+    }
+}
+
+/// A quantity against time: straight lines between the points, constant outside them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Profile {
+    /// (s) Strictly increasing times; 0 is the start of the simulation, before settling.
+    pub time_s: Vec<f64>,
+    /// (Hz or N m) The quantity at those times.
+    pub value: Vec<f64>,
+}
+
+impl KeyValue for Option<Profile> {
+    fn read(&mut self, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
+        *self = Some(value.table()?.read(|table| profile(table, files))?);
+        Ok(())
+    }
+
+    fn write(&self) -> Written {
+        let lines = |profile: &Profile| {
+            Written::Lines(vec![
+                ("time_s".to_string(), array(profile.time_s.iter().copied())),
+                ("value".to_string(), array(profile.value.iter().copied())),
+            ])
+        };
+        self.as_ref().map_or(Written::Nothing, lines)
+    }
+
+    fn check(&self, key: &str, _range: &Range, _unit: &str) -> Check {
+        self.as_ref().map_or(Ok(()), |profile| profile.check(key))
+    }
+
+    fn kind() -> KeyKind {
+        KeyKind::Profile
+    }
+}
+
+fn profile(table: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<Profile> {
+    let file = table.optional("file");
+    let inline = (table.optional("time_s"), table.optional("value"));
+    match (file, inline) {
+        (Some(file), (None, None)) => {
+            let [time_s, value] = load(&file, |name| files.times_and_values(name))?;
+            Ok(Profile { time_s, value })
+        }
+        (None, (Some(time_s), Some(value))) => {
+            Ok(Profile { time_s: time_s.numbers()?, value: value.numbers()? })
+        }
+        (Some(_), _) => Err(table
+            .error("file", "given beside time_s or value; a profile has only one source")
+            .with_help("remove the file, or the inline values")),
+        (None, (time_s, _)) => {
+            let missing = if time_s.is_some() { "value" } else { "time_s" };
+            Err(table.error(
+                missing,
+                "missing; a profile is { time_s = […], value = […] } or { file = \"….csv\" }",
+            ))
+        }
+    }
+}

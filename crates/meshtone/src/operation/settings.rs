@@ -1,0 +1,82 @@
+//! Sampling, length, settling and initial state.
+
+use crate::keys::{Keys, Range, Row, field, row};
+
+/// How the equations of motion are solved.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solver {
+    /// (S/s) Nominal sampling rate; the actual one is the next that divides both shafts'
+    /// revolutions. Default 1e5.
+    pub sampling_rate_hz: f64,
+    /// (-) Part of `2 z_g` pinion revolutions that is simulated first and discarded. Default 0.5.
+    pub settle_fraction: f64,
+    /// (-) How far the transient of the slowest mode must have decayed where the kept signal starts: `linear` starts
+    /// in the static equilibrium of the loaded mesh, and leaves out what is not needed for that. 0 for
+    /// the whole settling. Default 1e-6.
+    pub settle_tolerance: f64,
+    /// (m, rad) Initial displacement of the 13 coordinates. Default 0 under `published`, the static
+    /// equilibrium of the loaded mesh under `linear`.
+    pub initial_displacement: Option<[f64; 13]>,
+    /// (m/s, rad/s) Initial velocity of the 13 coordinates. Default the rigid rotation.
+    pub initial_velocity: Option<[f64; 13]>,
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Self {
+            sampling_rate_hz: 1e5,
+            settle_fraction: 0.5,
+            settle_tolerance: 1e-6,
+            initial_displacement: None,
+            initial_velocity: None,
+        }
+    }
+}
+
+impl Keys for Solver {
+    fn start() -> Self {
+        Self::default()
+    }
+
+    fn rows() -> Vec<Row<Self>> {
+        vec![
+            row(
+                "sampling_rate_hz",
+                "S/s",
+                "the nominal sampling rate; the actual one is higher, so that both wheels turn a whole number of samples",
+                field!(sampling_rate_hz),
+            )
+            .range(Range::positive()),
+            row(
+                "settle_fraction",
+                "-",
+                "the part of the simulated time that is discarded from its start, while the vibration settles",
+                field!(settle_fraction),
+            )
+            .range(Range::below_one().message(
+                "must be from 0 to less than 1, the part of the simulation that is discarded",
+            )),
+            row(
+                "settle_tolerance",
+                "-",
+                "how far the slowest mode's transient must have decayed where the kept signal starts. Under the linear model a \
+                 steady simulation starts in the static equilibrium of the loaded mesh, and what is discarded is simulated only \
+                 as far back as this needs; 0 for all of it",
+                field!(settle_tolerance),
+            )
+            .range(Range::below_one().message("must be from 0 (the whole settling is simulated) to less than 1")),
+            row(
+                "initial_displacement",
+                "m, rad",
+                "the displacement of the 13 coordinates at the start: x, y of the gear, x, y of the pinion, rotation of gear, \
+                 pinion and brake, z of gear and pinion, tilt φ of both, tilt ψ of both",
+                field!(initial_displacement),
+            )
+            .otherwise("the static equilibrium of the loaded mesh; zeros under the published model")
+            .example("[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]"),
+            row("initial_velocity", "m/s, rad/s", "the velocity of the same coordinates at the start", field!(initial_velocity))
+                .otherwise("rigid rotation at the nominal speed")
+                .alternative("[ 13 numbers ]"),
+        ]
+    }
+}

@@ -1,0 +1,92 @@
+//! Commented scenario files to start from.
+
+use super::to_toml::Style;
+use super::{Fault, GearPair, Scenario};
+use crate::damage::{PaperRig, damage_kinds};
+use crate::keys::{Keys, commented};
+
+const HEALTHY: &str = "healthy";
+
+const HEAD: &str = "\
+# A Meshtone scenario: a pair of spur gears, how it is driven, and what is broken.
+# What stands behind \"# \" is a comment. What stands directly behind \"#\" is a key that may be left
+# out: take the \"#\" away to set it.
+
+";
+
+/// The names that [`template`] knows: a healthy pair, and each kind of damage.
+pub fn template_kinds() -> Vec<&'static str> {
+    std::iter::once(HEALTHY).chain(damage_kinds().into_iter().map(|kind| kind.name)).collect()
+}
+
+/// A commented scenario file: every key with its unit, meaning and default.
+///
+/// What follows `# ` is a comment. What follows `#` directly is a key that may be left out: take the
+/// `#` away to set it.
+///
+/// # Arguments
+/// * `kind` - one of [`template_kinds`]
+///
+/// # Returns
+/// The file's text; none for another kind.
+///
+/// ```
+/// use meshtone::scenario::{GearPair, Scenario, template};
+///
+/// let scenario = Scenario::from_toml(&template("through-face").unwrap())?;
+/// assert_eq!(scenario.faults[0].damage.kind(), "through-face");
+/// assert_eq!(template("wear"), None);
+/// # Ok::<(), meshtone::scenario::ScenarioError>(())
+/// ```
+pub fn template(kind: &str) -> Option<String> {
+    let scenario = if kind == HEALTHY {
+        of_the_paper(PaperRig::Breakage)
+    } else {
+        let kind = damage_kinds().into_iter().find(|known| known.name == kind)?;
+        Scenario { faults: vec![Fault::on_first_gear_tooth(kind.example)], ..of_the_paper(kind.rig) }
+    };
+    Some(format!("{HEAD}{}", scenario.in_sections(&Commented)))
+}
+
+/// The pairs of the paper's experiments.
+fn of_the_paper(rig: PaperRig) -> Scenario {
+    let (mut scenario, din_grade) = match rig {
+        PaperRig::Breakage => (
+            Scenario::new(GearPair {
+                module_mm: 3.0,
+                pinion_teeth: 17,
+                gear_teeth: 38,
+                face_width_mm: 15.0,
+                pinion_speed_hz: 40.0,
+                brake_torque_nm: 10.0,
+            }),
+            7,
+        ),
+        PaperRig::Destruction => (
+            Scenario::new(GearPair {
+                module_mm: 3.0,
+                pinion_teeth: 18,
+                gear_teeth: 35,
+                face_width_mm: 30.0,
+                pinion_speed_hz: 45.0,
+                brake_torque_nm: 15.0,
+            }),
+            8,
+        ),
+    };
+    scenario.quality.din_grade = din_grade;
+    scenario
+}
+
+/// Every key with a comment; those at their default are commented out.
+struct Commented;
+
+impl Style for Commented {
+    fn keys<S: Keys>(&self, section: &S) -> String {
+        commented(section)
+    }
+
+    fn fault(&self, fault: &Fault) -> String {
+        fault.commented()
+    }
+}

@@ -1,0 +1,59 @@
+//! A scenario as TOML.
+
+use super::{Fault, Scenario};
+use crate::keys::{Keys, write_keys};
+
+impl Scenario {
+    /// The scenario as a scenario file that needs no other file: profile errors and profiles are
+    /// written inline, defaults explicitly.
+    ///
+    /// A valid scenario is read back exactly by [`Scenario::from_toml`]. A seed above `i64::MAX` is
+    /// read back by it too, but not by other TOML readers.
+    ///
+    /// ```
+    /// use meshtone::scenario::{GearPair, Scenario};
+    ///
+    /// let scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+    /// let text = scenario.to_toml();
+    /// assert!(text.starts_with("model = \"linear\"\nseed = 1\n"));
+    /// assert_eq!(Scenario::from_toml(&text)?, scenario);
+    /// # Ok::<(), meshtone::scenario::ScenarioError>(())
+    /// ```
+    pub fn to_toml(&self) -> String {
+        self.in_sections(&Plain)
+    }
+
+    /// The file's text, each section in its own style.
+    pub(super) fn in_sections(&self, style: &impl Style) -> String {
+        let mut sections = vec![
+            style.keys(self),
+            format!("[gears]\n{}", style.keys(&self.gears)),
+            format!("[operation]\n{}", style.keys(&self.operation)),
+            format!("[quality]\n{}", style.keys(&self.quality)),
+        ];
+        let header = if self.faults.len() > 1 { "[[fault]]" } else { "[fault]" };
+        sections.extend(self.faults.iter().map(|fault| format!("{header}\n{}", style.fault(fault))));
+        sections.push(format!("[rig]\n{}", style.keys(&self.rig)));
+        sections.push(format!("[solver]\n{}", style.keys(&self.solver)));
+        sections.join("\n")
+    }
+}
+
+/// How the keys of a section are written.
+pub(super) trait Style {
+    fn keys<S: Keys>(&self, section: &S) -> String;
+    fn fault(&self, fault: &Fault) -> String;
+}
+
+/// Every key with its value.
+struct Plain;
+
+impl Style for Plain {
+    fn keys<S: Keys>(&self, section: &S) -> String {
+        write_keys(section)
+    }
+
+    fn fault(&self, fault: &Fault) -> String {
+        fault.write()
+    }
+}

@@ -1,0 +1,246 @@
+//! Vector instructions that the time loop may use, chosen at run time.
+
+/// A set of vector instructions.
+///
+/// All sets with fused multiply-add give the same bits; [`Self::Plain`] rounds products apart and differs by rounding.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum InstructionSet {
+    /// AVX-512 (x86-64).
+    Avx512,
+    /// AVX2 and FMA (x86-64).
+    Avx2,
+    /// NEON (aarch64).
+    Neon,
+    /// What every processor of the compiled architecture has.
+    Plain,
+}
+
+impl InstructionSet {
+    /// All sets, the fastest first.
+    const ALL: [Self; 4] = [Self::Avx512, Self::Avx2, Self::Neon, Self::Plain];
+
+    /// The sets that this machine can run, the fastest first.
+    ///
+    /// ```
+    /// use meshtone::InstructionSet;
+    /// assert!(InstructionSet::available().contains(&InstructionSet::Plain));
+    /// ```
+    pub fn available() -> Vec<Self> {
+        Self::ALL.into_iter().filter(|set| set.is_available()).collect()
+    }
+
+    /// The fastest set that this machine can run.
+    pub fn fastest() -> Self {
+        Self::ALL.into_iter().find(|set| set.is_available()).unwrap_or(Self::Plain)
+    }
+
+    fn is_available(self) -> bool {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => pulp::x86::V4::try_new().is_some(),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => pulp::x86::V3::try_new().is_some(),
+            #[cfg(target_arch = "aarch64")]
+            Self::Neon => pulp::aarch64::Neon::try_new().is_some(),
+            Self::Plain => true,
+            #[allow(unreachable_patterns)]
+            _ => false,
+        }
+    }
+
+    /// Runs a task with this set's instructions, or plainly where the machine has not got them.
+    pub(crate) fn run<T: Task>(self, task: T) -> T::Output {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => {
+                if let Some(simd) = pulp::x86::V4::try_new() {
+                    return pulp::Simd::vectorize(simd, Vectorized(task));
+                }
+            }
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => {
+                if let Some(simd) = pulp::x86::V3::try_new() {
+                    return pulp::Simd::vectorize(simd, Vectorized(task));
+                }
+            }
+            #[cfg(target_arch = "aarch64")]
+            Self::Neon => {
+                if let Some(simd) = pulp::aarch64::Neon::try_new() {
+                    return pulp::Simd::vectorize(simd, Vectorized(task));
+                }
+            }
+            _ => {}
+        }
+        task.run(Plain)
+    }
+}
+
+/// Work that is compiled once per instruction set.
+pub(crate) trait Task {
+    /// The work's result.
+    type Output;
+
+    /// Does the work; must be inlined always, down to its loops.
+    fn run<I: Instructions>(self, simd: I) -> Self::Output;
+}
+
+struct Vectorized<T>(T);
+
+impl<T: Task> pulp::WithSimd for Vectorized<T> {
+    type Output = T::Output;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> T::Output {
+        self.0.run(Fused(simd))
+    }
+}
+
+/// Arithmetic on numbers side by side.
+pub(crate) trait Instructions: Copy {
+    /// `a + b`.
+    fn add<const L: usize>(self, a: [f64; L], b: [f64; L]) -> [f64; L];
+    /// `a − b`.
+    fn sub<const L: usize>(self, a: [f64; L], b: [f64; L]) -> [f64; L];
+    /// `a b`.
+    fn mul<const L: usize>(self, a: [f64; L], b: [f64; L]) -> [f64; L];
+    /// `a b + c`.
+    fn mul_add<const L: usize>(self, a: [f64; L], b: [f64; L], c: [f64; L]) -> [f64; L];
+    /// `c − a b`.
+    fn negative_mul_add<const L: usize>(self, a: [f64; L], b: [f64; L], c: [f64; L]) -> [f64; L];
+    /// Rounded down; for numbers below 2⁵¹ in size.
+    fn floor<const L: usize>(self, a: [f64; L]) -> [f64; L];
+    /// `yes` where `a < b`, else `no`.
+    fn where_less<const L: usize>(self, a: [f64; L], b: [f64; L], yes: [f64; L], no: [f64; L]) -> [f64; L];
+}
+
+/// Whatever the compiled architecture has; products are rounded before they are added.
+#[derive(Clone, Copy)]
+struct Plain;
+
+impl Instructions for Plain {
+    #[inline(always)]
+    fn add<const L: usize>(self, a: [f64; L], b: [f64; L]) -> [f64; L] {
+        std::array::from_fn(|l| a[l] + b[l])
+    }
+
+    #[inline(always)]
+    fn sub<const L: usize>(self, a: [f64; L], b: [f64; L]) -> [f64; L] {
+        std::array::from_fn(|l| a[l] - b[l])
+    }
+
+    #[inline(always)]
+    fn mul<const L: usize>(self, a: [f64; L], b: [f64; L]) -> [f64; L] {
+        std::array::from_fn(|l| a[l] * b[l])
+    }
+
+    #[inline(always)]
+    fn mul_add<const L: usize>(self, a: [f64; L], b: [f64; L], c: [f64; L]) -> [f64; L] {
+        std::array::from_fn(|l| a[l] * b[l] + c[l])
+    }
+
+    #[inline(always)]
+    fn negative_mul_add<const L: usize>(self, a: [f64; L], b: [f64; L], c: [f64; L]) -> [f64; L] {
+        std::array::from_fn(|l| c[l] - a[l] * b[l])
+    }
+
+    #[inline(always)]
+    fn floor<const L: usize>(self, a: [f64; L]) -> [f64; L] {
+        a.map(f64::floor)
+    }
+
+    #[inline(always)]
+    fn where_less<const L: usize>(self, a: [f64; L], b: [f64; L], yes: [f64; L], no: [f64; L]) -> [f64; L] {
+        std::array::from_fn(|l| if a[l] < b[l] { yes[l] } else { no[l] })
+    }
+}
+
+/// Vector instructions with fused multiply-add. What does not fill a register is computed number by number, with the
+/// same result.
+#[derive(Clone, Copy)]
+struct Fused<S>(S);
+
+/// Registers full of numbers, and the rest.
+macro_rules! by_register {
+    ($simd:expr, $vector:expr, $single:expr, $($input:ident),+) => {{
+        let mut result = [0.0; L];
+        {
+            let (whole, rest) = S::as_mut_simd_f64s(&mut result);
+            $(let $input = S::as_simd_f64s(&$input);)+
+            for (k, result) in whole.iter_mut().enumerate() {
+                *result = $vector($($input.0[k]),+);
+            }
+            for (k, result) in rest.iter_mut().enumerate() {
+                *result = $single($($input.1[k]),+);
+            }
+        }
+        result
+    }};
+}
+
+impl<S: pulp::Simd> Instructions for Fused<S> {
+    #[inline(always)]
+    fn add<const L: usize>(self, a: [f64; L], b: [f64; L]) -> [f64; L] {
+        by_register!(self, |a, b| self.0.add_f64s(a, b), |a: f64, b: f64| a + b, a, b)
+    }
+
+    #[inline(always)]
+    fn sub<const L: usize>(self, a: [f64; L], b: [f64; L]) -> [f64; L] {
+        by_register!(self, |a, b| self.0.sub_f64s(a, b), |a: f64, b: f64| a - b, a, b)
+    }
+
+    #[inline(always)]
+    fn mul<const L: usize>(self, a: [f64; L], b: [f64; L]) -> [f64; L] {
+        by_register!(self, |a, b| self.0.mul_f64s(a, b), |a: f64, b: f64| a * b, a, b)
+    }
+
+    #[inline(always)]
+    fn mul_add<const L: usize>(self, a: [f64; L], b: [f64; L], c: [f64; L]) -> [f64; L] {
+        by_register!(
+            self,
+            |a, b, c| self.0.mul_add_f64s(a, b, c),
+            |a: f64, b: f64, c: f64| a.mul_add(b, c),
+            a,
+            b,
+            c
+        )
+    }
+
+    #[inline(always)]
+    fn negative_mul_add<const L: usize>(self, a: [f64; L], b: [f64; L], c: [f64; L]) -> [f64; L] {
+        by_register!(
+            self,
+            |a, b, c| self.0.negate_mul_add_f64s(a, b, c),
+            |a: f64, b: f64, c: f64| (-a).mul_add(b, c),
+            a,
+            b,
+            c
+        )
+    }
+
+    #[inline(always)]
+    fn floor<const L: usize>(self, a: [f64; L]) -> [f64; L] {
+        // Adding and subtracting 1.5 · 2⁵² rounds to the nearest.
+        const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
+        let simd = self.0;
+        let floor = |a: S::f64s| {
+            let shift = simd.splat_f64s(ROUND);
+            let nearest = simd.sub_f64s(simd.add_f64s(a, shift), shift);
+            let below = simd.sub_f64s(nearest, simd.splat_f64s(1.0));
+            simd.select_f64s(simd.less_than_f64s(a, nearest), below, nearest)
+        };
+        by_register!(self, floor, |a: f64| a.floor(), a)
+    }
+
+    #[inline(always)]
+    fn where_less<const L: usize>(self, a: [f64; L], b: [f64; L], yes: [f64; L], no: [f64; L]) -> [f64; L] {
+        by_register!(
+            self,
+            |a, b, yes, no| self.0.select_f64s(self.0.less_than_f64s(a, b), yes, no),
+            |a: f64, b: f64, yes: f64, no: f64| if a < b { yes } else { no },
+            a,
+            b,
+            yes,
+            no
+        )
+    }
+}

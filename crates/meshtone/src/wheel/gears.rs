@@ -1,0 +1,252 @@
+//! The two wheels of the pair.
+
+use meshtone_toml::{ReadResult, TomlValue};
+
+use super::rules::NO_RELIEF;
+use super::{Material, WheelName};
+use crate::keys::{
+    Check, KeyDescription, KeyKind, KeyValue, Keys, NumberFiles, Range, Row, Written, by_name, check_keys,
+    describe, field, row,
+};
+
+/// Geometry and material of the two wheels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Gears {
+    /// (mm) Module of both wheels.
+    pub module_mm: f64,
+    /// Tooth count of the driving wheel.
+    pub pinion_teeth: u32,
+    /// Tooth count of the driven wheel.
+    pub gear_teeth: u32,
+    /// (mm) Face width of both wheels.
+    pub face_width_mm: f64,
+    /// (°) Pressure angle at the pitch circle. Default 20.
+    pub pressure_angle_deg: f64,
+    /// Material of wheels and shafts. Default steel.
+    pub material: Material,
+    /// Relief of the flank near the tip; `None` for none. Default parabolic, 1 mm × 1 mm.
+    pub tip_relief: Option<TipRelief>,
+    /// (mm) Constant reduction of the working flank. Default 0.
+    pub crowning_mm: f64,
+    /// Number of points along a tooth's profile. Default 10 000.
+    pub points_per_tooth: usize,
+    /// Coefficients of the fillet foundation's compliance. Default: Sainsot et al. 2004.
+    pub foundation: FoundationCoefficients,
+}
+
+impl Gears {
+    /// Two wheels with everything but the arguments at its default.
+    ///
+    /// # Arguments
+    /// As the fields of the same names.
+    pub fn new(module_mm: f64, pinion_teeth: u32, gear_teeth: u32, face_width_mm: f64) -> Self {
+        Self {
+            module_mm,
+            pinion_teeth,
+            gear_teeth,
+            face_width_mm,
+            pressure_angle_deg: 20.0,
+            material: Material::default(),
+            tip_relief: Some(TipRelief::default()),
+            crowning_mm: 0.0,
+            points_per_tooth: 10_000,
+            foundation: FoundationCoefficients::default(),
+        }
+    }
+}
+
+impl Keys for Gears {
+    fn start() -> Self {
+        Self::new(f64::NAN, 0, 0, f64::NAN)
+    }
+
+    fn rows() -> Vec<Row<Self>> {
+        const TEETH: Range = Range::from_to(6.0, 10_000.0).message("must be from 6 to 10000 teeth");
+        vec![
+            row("module_mm", "mm", "the module of both wheels", field!(module_mm))
+                .required()
+                .range(Range::positive().slip_above(100.0)),
+            row("pinion_teeth", "", "the tooth count of the pinion, the driving wheel", field!(pinion_teeth))
+                .required()
+                .range(TEETH)
+                .rule(
+                    "the contact ratio must be at least 1. Undercut teeth (fewer than 17 at 20°) are simulated without \
+                     undercut, with a warning",
+                ),
+            row("gear_teeth", "", "the tooth count of the gear, the driven wheel", field!(gear_teeth))
+                .required()
+                .range(TEETH)
+                .rule("likewise"),
+            row("face_width_mm", "mm", "the face width of both wheels", field!(face_width_mm))
+                .required()
+                .range(Range::positive().slip_above(10_000.0)),
+            row("pressure_angle_deg", "°", "the pressure angle at the pitch circle", field!(pressure_angle_deg))
+                .range(Range::from_to(10.0, 35.0).help("usual pressure angles are 14.5°, 20° and 25°"))
+                .rule("teeth must not become pointed below full height"),
+            row("material", "", "the material of wheels and shafts", field!(material)),
+            row("tip_relief", "", "the material removed near the tips, or `false` for none", field!(tip_relief))
+                .ignored_by_published(),
+            row("crowning_mm", "mm", "a constant reduction of the working flank", field!(crowning_mm))
+                .range(Range::not_negative())
+                .rule("less than half the tooth's thickness at the pitch circle, π/4 modules"),
+            row("points_per_tooth", "", "the number of points along a tooth's profile", field!(points_per_tooth))
+                .range(
+                    Range::from_to(500.0, 1e6).message("must be from 500 to 1000000; the default is 10000"),
+                ),
+            row(
+                "foundation",
+                "",
+                "the coefficients A to F of the four polynomials of the fillet foundation's compliance; the default is of \
+                 Sainsot, Velex and Duverger (2004)",
+                field!(foundation),
+            )
+            .ignored_by_published(),
+        ]
+    }
+}
+
+impl Gears {
+    /// Tooth count of a wheel.
+    ///
+    /// # Arguments
+    /// * `wheel` - which of the two
+    pub fn teeth(&self, wheel: WheelName) -> u32 {
+        match wheel {
+            WheelName::Pinion => self.pinion_teeth,
+            WheelName::Gear => self.gear_teeth,
+        }
+    }
+}
+
+/// Form of the relieved part of the flank.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ReliefShape {
+    /// A parabola that leaves the flank with the flank's own slope.
+    Parabolic,
+    /// A straight line.
+    Linear,
+}
+
+/// Material removed from the flank near the tip so that teeth enter contact softly.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TipRelief {
+    /// Line or parabola.
+    pub shape: ReliefShape,
+    /// (mm) Length along the tooth's centre line, from the tip inwards.
+    pub length_mm: f64,
+    /// (mm) How far the tip lies below the flank point where the relief starts.
+    pub depth_mm: f64,
+}
+
+by_name!(ReliefShape, ["parabolic" => ReliefShape::Parabolic, "linear" => ReliefShape::Linear]);
+
+impl Keys for TipRelief {
+    fn start() -> Self {
+        Self::default()
+    }
+
+    fn rows() -> Vec<Row<Self>> {
+        vec![
+            row("shape", "", "a parabola that leaves the flank with its slope, or a straight line", field!(shape)),
+            row("length_mm", "mm", "the length along the tooth's centre line, from the tip inwards", field!(length_mm))
+                .rule("> 0, less than 2 modules"),
+            row(
+                "depth_mm",
+                "mm",
+                "how far the tip ends below the flank point where the relief starts. The unrelieved tooth itself thins from \
+                 there to the tip (by 0.54 mm on 1 mm for 17 teeth of module 3), so less than that adds metal, and is warned of",
+                field!(depth_mm),
+            )
+            .range(Range::not_negative().help(NO_RELIEF))
+            .rule("less than half the tooth's thickness at the pitch circle, π/4 modules"),
+        ]
+    }
+}
+
+/// A table, or `false` for none.
+impl KeyValue for Option<TipRelief> {
+    fn read(&mut self, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
+        const TABLE: &str = "a table { shape = …, length_mm = …, depth_mm = … }, or false";
+        if value.is_table() {
+            return self.insert(TipRelief::default()).read(value, files);
+        }
+        match value.boolean() {
+            Ok(false) => {
+                *self = None;
+                Ok(())
+            }
+            Ok(true) => Err(value
+                .error(format!("must be {TABLE} for no relief"))
+                .with_help("remove the line for the default relief: parabolic, 1 mm × 1 mm")),
+            Err(_) => Err(value.wrong_type(TABLE)),
+        }
+    }
+
+    fn write(&self) -> Written {
+        self.as_ref().map_or_else(|| Written::Value("false".to_string()), KeyValue::write)
+    }
+
+    fn check(&self, key: &str, _range: &Range, _unit: &str) -> Check {
+        self.as_ref().map_or(Ok(()), |relief| check_keys(relief, key))
+    }
+
+    fn kind() -> KeyKind {
+        KeyKind::TableOrFalse
+    }
+
+    fn inside(&self) -> Vec<KeyDescription> {
+        describe::<TipRelief>()
+    }
+}
+
+impl Default for TipRelief {
+    fn default() -> Self {
+        Self { shape: ReliefShape::Parabolic, length_mm: 1.0, depth_mm: 1.0 }
+    }
+}
+
+/// Coefficients `A…F` of the four polynomials `L, M, P, Q` of the fillet foundation's compliance,
+/// `X = A/θ_f² + B h² + C h/θ_f + D/θ_f + E h + F`.
+///
+/// Source: P. Sainsot, P. Velex, O. Duverger, "Contribution of gear body to tooth deflections",
+/// Journal of Mechanical Design 126 (2004), table 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FoundationCoefficients {
+    /// (-) `A…F` of `L`, the factor of `u²`.
+    pub l: [f64; 6],
+    /// (-) `A…F` of `M`, the factor of `u`.
+    pub m: [f64; 6],
+    /// (-) `A…F` of `P`, the constant term.
+    pub p: [f64; 6],
+    /// (-) `A…F` of `Q`, the factor of `tan²α`.
+    pub q: [f64; 6],
+}
+
+impl Default for FoundationCoefficients {
+    fn default() -> Self {
+        Self {
+            l: [-5.574e-5, -1.9986e-3, -2.3015e-4, 4.77021e-3, 0.0271, 6.8045],
+            m: [60.111e-5, 28.100e-3, -83.431e-4, -9.9256e-3, 0.1624, 0.9086],
+            p: [-50.952e-5, 185.50e-3, 0.0538e-4, 53.300e-3, 0.2895, 0.9236],
+            q: [-6.2042e-5, 9.0889e-3, -4.0964e-4, 7.8297e-3, -0.1472, 0.6904],
+        }
+    }
+}
+
+impl Keys for FoundationCoefficients {
+    const IN_LINES: bool = true;
+
+    fn start() -> Self {
+        Self::default()
+    }
+
+    fn rows() -> Vec<Row<Self>> {
+        vec![
+            row("L", "", "A to F of L, the factor of u²", field!(l)),
+            row("M", "", "A to F of M, the factor of u", field!(m)),
+            row("P", "", "A to F of P, the constant term", field!(p)),
+            row("Q", "", "A to F of Q, the factor of tan²α", field!(q)),
+        ]
+    }
+}

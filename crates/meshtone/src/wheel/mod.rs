@@ -1,0 +1,111 @@
+//! Stage 2: the healthy tooth and the line along which two teeth touch.
+
+mod contact;
+mod flank;
+mod gears;
+mod material;
+mod name;
+mod path;
+mod profile;
+pub mod quality;
+mod radii;
+mod rules;
+
+pub use contact::{ContactLine, contact_line, contact_ratio, published_contact_line};
+pub use flank::{Flank, FlankPoint};
+pub use gears::{FoundationCoefficients, Gears, ReliefShape, TipRelief};
+pub use material::Material;
+pub use name::WheelName;
+pub use path::PathOfContact;
+pub(crate) use profile::first_minimum;
+pub use profile::{ToothProfile, tooth_profile};
+pub use quality::{ERROR_POINTS, ErrorTable, ProfileErrors, Quality};
+pub use radii::Wheel;
+pub(crate) use rules::HALF_THICKNESS;
+
+use crate::model::Model;
+
+/// Stage 2's result: both wheels with their teeth, ready to mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Teeth {
+    /// The driving wheel.
+    pub pinion: Wheel,
+    /// The driven wheel.
+    pub gear: Wheel,
+    /// Profile of a healthy pinion tooth; under `published` resampled so that its index `N − 1 + i_c − i` meets index `i` of
+    /// the gear.
+    pub pinion_profile: ToothProfile,
+    /// Profile of a healthy gear tooth.
+    pub gear_profile: ToothProfile,
+    /// Where along the profiles the teeth touch.
+    pub contact: ContactLine,
+    /// The path along which conjugate flanks touch.
+    pub path: PathOfContact,
+}
+
+impl Teeth {
+    /// One of the two wheels.
+    ///
+    /// # Arguments
+    /// * `wheel` - which
+    pub fn wheel(&self, wheel: WheelName) -> &Wheel {
+        match wheel {
+            WheelName::Pinion => &self.pinion,
+            WheelName::Gear => &self.gear,
+        }
+    }
+
+    /// Profile of a healthy tooth of one of the two wheels.
+    ///
+    /// # Arguments
+    /// * `wheel` - which
+    pub fn profile(&self, wheel: WheelName) -> &ToothProfile {
+        match wheel {
+            WheelName::Pinion => &self.pinion_profile,
+            WheelName::Gear => &self.gear_profile,
+        }
+    }
+
+    /// Working flank of a healthy tooth of one of the two wheels; not under `published`, which resamples the pinion's.
+    ///
+    /// # Arguments
+    /// * `wheel` - which
+    pub fn flank(&self, wheel: WheelName) -> Flank<'_> {
+        Flank { wheel: self.wheel(wheel), profile: self.profile(wheel) }
+    }
+
+    /// Index of the profile where contact starts at its root side.
+    ///
+    /// # Arguments
+    /// * `wheel` - which of the two
+    pub fn initial_contact_index(&self, wheel: WheelName) -> usize {
+        match wheel {
+            WheelName::Pinion => self.contact.pinion_initial_contact_index,
+            WheelName::Gear => self.contact.initial_contact_index,
+        }
+    }
+}
+
+/// Generates the healthy teeth of both wheels and their line of contact.
+///
+/// # Arguments
+/// * `gears` - geometry of the pair
+/// * `bore_radii_mm` - (mm) radii of the pinion's and of the gear's bore
+/// * `model` - published or linear
+///
+/// Source: paper, stage 2.
+pub fn teeth(gears: &Gears, bore_radii_mm: [f64; 2], model: Model) -> Teeth {
+    let pinion = Wheel::new(gears, gears.pinion_teeth, bore_radii_mm[0]);
+    let gear = Wheel::new(gears, gears.gear_teeth, bore_radii_mm[1]);
+    let profile =
+        |wheel| tooth_profile(wheel, gears.points_per_tooth, gears.crowning_mm, gears.tip_relief, model);
+    let gear_profile = profile(&gear);
+    let own_profile = profile(&pinion);
+    let (contact, pinion_profile) = match model {
+        // Model: the published code pairs points uniform in x; conjugate ones pair by their radii of curvature.
+        Model::Published => published_contact_line(&pinion, &own_profile, &gear, &gear_profile),
+        Model::Linear => (contact_line(&pinion, &own_profile, &gear, &gear_profile), own_profile),
+    };
+    let path = PathOfContact::new(&pinion, &gear);
+    Teeth { pinion, gear, pinion_profile, gear_profile, contact, path }
+}

@@ -1,0 +1,28 @@
+//! Which of the two wheels.
+
+use crate::keys::by_name;
+
+/// One of the two wheels of the pair.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub enum WheelName {
+    /// The driving wheel.
+    Pinion,
+    /// The driven wheel.
+    #[default]
+    Gear,
+}
+
+by_name!(WheelName, ["pinion" => WheelName::Pinion, "gear" => WheelName::Gear]);
+
+impl WheelName {
+    /// Both, the pinion first.
+    pub const BOTH: [Self; 2] = [Self::Pinion, Self::Gear];
+
+    /// The other wheel.
+    pub fn mate(self) -> Self {
+        match self {
+            Self::Pinion => Self::Gear,
+            Self::Gear => Self::Pinion,
+        }
+    }
+}

@@ -1,0 +1,354 @@
+//! The profile of a healthy tooth: fillet, involute, crowning, tip relief.
+
+use super::radii::{Wheel, involute};
+use crate::interpolation::NaturalSpline;
+use crate::model::Model;
+use crate::wheel::{ReliefShape, TipRelief};
+
+/// Working flank of a tooth in its own plane: x along the tooth's centre line from the wheel's
+/// centre, y towards the flank. Points are uniform in x from root to tip.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ToothProfile {
+    /// (mm) Distance from the wheel's centre along the tooth's centre line, rising.
+    pub x_mm: Vec<f64>,
+    /// (mm) Half thickness of the tooth.
+    pub y_mm: Vec<f64>,
+    /// (mm) Distance of the points from the wheel's centre before crowning and relief: how far the wheel has rolled when its
+    /// mate is there.
+    pub involute_radius_mm: Vec<f64>,
+    /// Index of the point where the tip relief starts, in the wheel's own sampling (the pinion's before it is resampled).
+    pub tip_relief_index: Option<usize>,
+}
+
+impl ToothProfile {
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.x_mm.len()
+    }
+
+    /// Whether there are no points.
+    pub fn is_empty(&self) -> bool {
+        self.x_mm.is_empty()
+    }
+
+    /// (mm) Distance of point `index` from the wheel's centre.
+    pub fn radius_mm(&self, index: usize) -> f64 {
+        self.x_mm[index].hypot(self.y_mm[index])
+    }
+
+    /// (mm) x of the tip.
+    pub fn tip_x_mm(&self) -> f64 {
+        self.x_mm[self.len() - 1]
+    }
+
+    /// Index of the point nearest to `radius_mm` from the wheel's centre (the first of equals).
+    pub fn nearest_to_radius(&self, radius_mm: f64) -> usize {
+        let squared = |i: usize| self.x_mm[i] * self.x_mm[i] + self.y_mm[i] * self.y_mm[i];
+        // The square finds the neighbourhood, the radius itself the point.
+        let near = first_minimum((0..self.len()).map(|i| (squared(i) - radius_mm * radius_mm).abs()));
+        let around = near.saturating_sub(2)..(near + 3).min(self.len());
+        around.start + first_minimum(around.map(|i| (self.radius_mm(i) - radius_mm).abs()))
+    }
+
+    /// Index of the point whose x is nearest to `x_mm` (the first of equals).
+    pub fn nearest_to_x(&self, x_mm: f64) -> usize {
+        first_minimum(self.x_mm.iter().map(|x| (x - x_mm).abs()))
+    }
+}
+
+/// Index of the first smallest value.
+pub(crate) fn first_minimum(values: impl Iterator<Item = f64>) -> usize {
+    let mut best = (0, f64::INFINITY);
+    for (index, value) in values.enumerate() {
+        if value < best.1 {
+            best = (index, value);
+        }
+    }
+    best.0
+}
+
+/// Generates the working flank of a healthy tooth.
+///
+/// # Arguments
+/// * `wheel` - the tooth's wheel
+/// * `points` - (≥ 2) number of points, uniform in x
+/// * `crowning_mm` - (mm) constant reduction of y
+/// * `relief` - tip relief, or none
+/// * `model` - how fillet and involute are joined
+pub fn tooth_profile(
+    wheel: &Wheel,
+    points: usize,
+    crowning_mm: f64,
+    relief: Option<TipRelief>,
+    model: Model,
+) -> ToothProfile {
+    let flank = Curve::new(wheel, model);
+    let start = flank.start_x_mm();
+    let step = (flank.tip_x_mm() - start) / (points - 1) as f64;
+    let mut x_mm: Vec<f64> = (0..points).map(|i| start + step * i as f64).collect();
+    x_mm[points - 1] = flank.tip_x_mm();
+    let mut roll = RollAngle::default();
+    let mut y_mm: Vec<f64> = x_mm.iter().map(|&x| flank.half_thickness_mm(x, &mut roll)).collect();
+    let involute_radius_mm = x_mm.iter().zip(&y_mm).map(|(x, y)| (x * x + y * y).sqrt()).collect();
+    for y in &mut y_mm {
+        *y -= crowning_mm;
+    }
+    let mut profile = ToothProfile { x_mm, y_mm, involute_radius_mm, tip_relief_index: None };
+    if let Some(relief) = relief {
+        relieve_tip(&mut profile, relief);
+    }
+    profile
+}
+
+/// The exact curve that the profile samples.
+///
+/// With the roll angle `u = tan a` and `β = θ0 + inv α − u` the involute `r = Rb/cos a`,
+/// `θ = θ0 + inv α − inv a` reads `x = Rb (cos β − u sin β)`, `y = Rb (sin β + u cos β)`.
+struct Curve {
+    base_radius_mm: f64,
+    /// (rad) `θ0 + inv α`: polar angle of the involute's foot on the base circle.
+    foot_angle_rad: f64,
+    /// Roll angle where the sampled part of the involute starts.
+    first_roll: f64,
+    last_roll: f64,
+    fillet: Option<Fillet>,
+    bridge: Option<NaturalSpline>,
+}
+
+/// A circular arc from the root circle, mid-way between two teeth, to the foot of the involute.
+///
+/// Along the ray at angle γ from the arc's centre the near intersection is
+/// `r = c − √(c² − Rd (Rd + 2ρ))`, `c = (Rd + ρ) cos γ`: a circle of radius ρ round the point
+/// (Rd + ρ, 2 θ0) in polar coordinates.
+struct Fillet {
+    radius_mm: f64,
+    centre_x_mm: f64,
+    centre_y_mm: f64,
+    start_x_mm: f64,
+    end_x_mm: f64,
+    /// (rad) γ of the involute's foot, `ψ`.
+    foot_gamma_rad: f64,
+}
+
+/// Number of points on the fillet of the published code, and of steps from base to tip circle on its
+/// involute near the base circle. Inferred from the published profiles, which they reproduce to 1e-10 mm.
+const FILLET_SAMPLES: usize = 5_001;
+const INVOLUTE_STEPS: f64 = 14_800.0;
+/// Number of points on either side of the joint between fillet and involute that a spline through it still
+/// feels: the effect of a point shrinks by 0.27 from one to the next.
+const BRIDGE_KNOTS: usize = 60;
+/// Number of points on the involute among which the published code seeks the root circle.
+const INVOLUTE_SAMPLES: usize = 15_001;
+
+impl Curve {
+    fn new(wheel: &Wheel, model: Model) -> Self {
+        let (base, root) = (wheel.base_radius_mm, wheel.root_radius_mm);
+        let half_thickness = wheel.half_thickness_angle_rad();
+        let foot_angle_rad = half_thickness + involute(wheel.pressure_angle_rad);
+        let tip_angle = (base / wheel.tip_radius_mm).acos();
+        let fillet = Fillet::new(wheel, half_thickness, foot_angle_rad);
+        let angle = |k: usize| tip_angle * k as f64 / (INVOLUTE_SAMPLES - 1) as f64;
+        let first_roll = if fillet.is_some() {
+            0.0
+        } else {
+            // The radius rises with k: the nearest is next to the exact solution.
+            let exact = (base / root).acos() / angle(1);
+            let first = (exact as usize).saturating_sub(1);
+            let distance = |k: usize| ((base / angle(k).cos()).powi(2) - root * root).abs();
+            let near = (first..first + 4).filter(|&k| k < INVOLUTE_SAMPLES);
+            angle(first + first_minimum(near.map(distance))).tan()
+        };
+        let mut flank = Self {
+            base_radius_mm: base,
+            foot_angle_rad,
+            first_roll,
+            last_roll: tip_angle.tan(),
+            fillet,
+            bridge: None,
+        };
+        // Model: the published code takes the fillet's nearer intersection with each ray. Where the involute's
+        // foot lies on the arc's farther side (small tooth counts) that leaves a gap, which its resampling
+        // bridges by a cubic spline through both curves' points.
+        if let (Model::Published, Some(fillet)) = (model, &flank.fillet) {
+            let (mut x, mut y) = fillet.last_published_points();
+            for k in 0..BRIDGE_KNOTS {
+                let knot = tip_angle * k as f64 / INVOLUTE_STEPS;
+                let (involute_x, involute_y) = flank.involute_point_mm(knot.tan());
+                x.push(involute_x);
+                y.push(involute_y);
+            }
+            flank.bridge = Some(NaturalSpline::new(x, y));
+        }
+        flank
+    }
+
+    fn involute_point_mm(&self, roll: f64) -> (f64, f64) {
+        let (sin, cos) = (self.foot_angle_rad - roll).sin_cos();
+        (self.base_radius_mm * (cos - roll * sin), self.base_radius_mm * (sin + roll * cos))
+    }
+
+    fn start_x_mm(&self) -> f64 {
+        self.fillet.as_ref().map_or_else(|| self.involute_point_mm(self.first_roll).0, |f| f.start_x_mm)
+    }
+
+    fn tip_x_mm(&self) -> f64 {
+        self.involute_point_mm(self.last_roll).0
+    }
+
+    /// y at `x`; `roll` carries the solution from one point to the next, rising x.
+    fn half_thickness_mm(&self, x: f64, roll: &mut RollAngle) -> f64 {
+        if let Some(bridge) = &self.bridge
+            && x > bridge.range().0
+            && x < bridge.range().1
+        {
+            return bridge.at(x);
+        }
+        if let Some(fillet) = &self.fillet
+            && x < fillet.end_x_mm
+        {
+            return fillet.y_mm(x);
+        }
+        // dx/d(u²) = Rb cos β / 2 does not vanish at the base circle, dx/du does: solve for u².
+        let mut squared = roll.predicted().max(self.first_roll * self.first_roll);
+        let mut y = 0.0;
+        for _ in 0..MAX_NEWTON_STEPS {
+            let u = squared.sqrt();
+            let (sin, cos) = roll.sin_cos(self.foot_angle_rad - u);
+            let step = 2.0 * (x / self.base_radius_mm - (cos - u * sin)) / cos;
+            squared = (squared + step).max(0.0);
+            // y at the end of the step, to first order.
+            y = self.base_radius_mm * (sin + u * cos + 0.5 * step * sin);
+            // The next step, and the error of y, are quadratic in this one: below rounding.
+            if step.abs() < 1e-9 * (1e-6 + squared) {
+                break;
+            }
+        }
+        roll.remember(squared);
+        y
+    }
+}
+
+const MAX_NEWTON_STEPS: usize = 20;
+
+/// Squares of the roll angle at the last three points, from which the next is predicted, and the last angle's sine and cosine.
+#[derive(Default)]
+struct RollAngle {
+    squared: [f64; 3],
+    known: usize,
+    turned: TurnedAngle,
+}
+
+/// An angle whose sine and cosine are known, and from which those of angles nearby follow.
+#[derive(Default)]
+struct TurnedAngle {
+    angle_rad: f64,
+    sin: f64,
+    cos: f64,
+    turns_left: usize,
+}
+
+impl TurnedAngle {
+    /// (rad) Largest turn: the series' first neglected terms are below 1e-24.
+    const LARGEST_RAD: f64 = 1e-3;
+    /// Turns until rounding errors, one more with each, are forgotten.
+    const MOST_TURNS: usize = 32;
+
+    /// Sine and cosine, by the addition theorem where the angle before is near.
+    fn sin_cos(&mut self, angle_rad: f64) -> (f64, f64) {
+        let turn = angle_rad - self.angle_rad;
+        if self.turns_left == 0 || turn.abs() > Self::LARGEST_RAD {
+            (self.sin, self.cos) = angle_rad.sin_cos();
+            self.turns_left = Self::MOST_TURNS;
+        } else {
+            let square = turn * turn;
+            let sin = turn * (1.0 - square / 6.0 * (1.0 - square / 20.0));
+            let versine = square / 2.0 * (1.0 - square / 12.0 * (1.0 - square / 30.0));
+            let (before_sin, before_cos) = (self.sin, self.cos);
+            self.sin = before_sin + (before_cos * sin - before_sin * versine);
+            self.cos = before_cos - (before_sin * sin + before_cos * versine);
+            self.turns_left -= 1;
+        }
+        self.angle_rad = angle_rad;
+        (self.sin, self.cos)
+    }
+}
+
+impl RollAngle {
+    /// The parabola through the last three points, which are uniform in x.
+    fn predicted(&self) -> f64 {
+        let [a, b, c] = self.squared;
+        if self.known < 3 { c } else { (3.0 * (c - b) + a).max(0.0) }
+    }
+
+    fn sin_cos(&mut self, angle_rad: f64) -> (f64, f64) {
+        self.turned.sin_cos(angle_rad)
+    }
+
+    fn remember(&mut self, squared: f64) {
+        self.squared = [self.squared[1], self.squared[2], squared];
+        self.known += 1;
+    }
+}
+
+impl Fillet {
+    /// None where the root circle lies outside the base circle or leaves no room for an arc.
+    fn new(wheel: &Wheel, half_thickness: f64, foot_angle: f64) -> Option<Self> {
+        let (base, root) = (wheel.base_radius_mm, wheel.root_radius_mm);
+        // ψ = θ0 − inv α: from the middle of the tooth space to the foot of the involute.
+        let psi = 2.0 * half_thickness - foot_angle;
+        let room = 2.0 * base * psi.cos() - 2.0 * root;
+        if root >= base || room <= 0.0 || psi <= 0.0 {
+            return None;
+        }
+        let radius_mm = (root * root + base * base - 2.0 * root * base * psi.cos()) / room;
+        let (sin, cos) = (2.0 * half_thickness).sin_cos();
+        Some(Self {
+            radius_mm,
+            centre_x_mm: (root + radius_mm) * cos,
+            centre_y_mm: (root + radius_mm) * sin,
+            start_x_mm: root * cos,
+            end_x_mm: base * foot_angle.cos(),
+            foot_gamma_rad: psi,
+        })
+    }
+
+    /// The published code's points nearest to the joint; its very last one is left to the involute.
+    fn last_published_points(&self) -> (Vec<f64>, Vec<f64>) {
+        let distance = self.centre_x_mm.hypot(self.centre_y_mm);
+        let centre_angle = self.centre_y_mm.atan2(self.centre_x_mm);
+        let last = FILLET_SAMPLES - 1;
+        (last - BRIDGE_KNOTS..last)
+            .map(|k| {
+                let gamma = self.foot_gamma_rad * k as f64 / last as f64;
+                let c = distance * gamma.cos();
+                let squared = self.radius_mm.powi(2) - (distance * gamma.sin()).powi(2);
+                let r = c - squared.max(0.0).sqrt();
+                let theta = centre_angle - gamma;
+                (r * theta.cos(), r * theta.sin())
+            })
+            .unzip()
+    }
+
+    fn y_mm(&self, x: f64) -> f64 {
+        let dx = x - self.centre_x_mm;
+        self.centre_y_mm - (self.radius_mm * self.radius_mm - dx * dx).max(0.0).sqrt()
+    }
+}
+
+fn relieve_tip(profile: &mut ToothProfile, relief: TipRelief) {
+    let tip = profile.tip_x_mm();
+    let edge = profile.nearest_to_x(tip - relief.length_mm);
+    let (x_edge, y_edge) = (profile.x_mm[edge], profile.y_mm[edge]);
+    let slope =
+        if edge == 0 { 0.0 } else { (y_edge - profile.y_mm[edge - 1]) / (x_edge - profile.x_mm[edge - 1]) };
+    let reach = tip - x_edge;
+    let (linear, quadratic) = match relief.shape {
+        ReliefShape::Linear => (-relief.depth_mm / relief.length_mm, 0.0),
+        ReliefShape::Parabolic => (slope, (-relief.depth_mm - slope * reach) / (reach * reach)),
+    };
+    for (x, y) in profile.x_mm.iter().zip(&mut profile.y_mm).skip(edge) {
+        let dx = x - x_edge;
+        *y = y_edge + dx * (linear + quadratic * dx);
+    }
+    profile.tip_relief_index = Some(edge);
+}

@@ -1,0 +1,159 @@
+//! Manufacturing quality.
+
+use meshtone_toml::{ReadResult, TomlTable, TomlValue};
+
+use crate::error_table::ErrorTable;
+use crate::keys::{
+    Field, KeyKind, KeyValue, Keys, NumberFiles, Range, Row, Written, array, documented, field, load, row,
+};
+
+/// Number of radii at which a tooth's profile error is given.
+pub const ERROR_POINTS: usize = 100;
+
+/// How well the teeth are made.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Quality {
+    /// Grade of DIN 3962, 1 (best) to 12; 0 for ideal teeth. Default 0.
+    pub din_grade: u8,
+    /// Seed of the draw by `din_grade`: which wheels they are. Default: the scenario's seed.
+    pub seed: Option<u64>,
+    /// The errors themselves, instead of a draw by `din_grade`: several simulations that are
+    /// given the same errors share one pair of wheels.
+    pub profile_errors: Option<ProfileErrors>,
+}
+
+const ERROR_KEYS: [&str; 2] = ["pinion_profile_errors_mm", "gear_profile_errors_mm"];
+
+impl Keys for Quality {
+    fn start() -> Self {
+        Self::default()
+    }
+
+    fn rows() -> Vec<Row<Self>> {
+        vec![
+            row(
+                "din_grade",
+                "",
+                "the grade of DIN 3962 that profile errors are drawn for, 1 (best) to 12; 0 for ideal teeth",
+                field!(din_grade),
+            )
+            .range(Range::from_to(0.0, 12.0).message(
+                "must be a whole number from 0 to 12: a grade of DIN 3962, from 1 (best) to 12, or 0 for ideal teeth",
+            )),
+            row(
+                "seed",
+                "",
+                "the seed of that draw alone, so that scenarios of different seeds share their wheels",
+                field!(seed),
+            )
+            .otherwise("the scenario's `seed`")
+            .alternative("2"),
+            documented(
+                "errors_file",
+                "a file with the teeth's profile errors themselves, instead of a draw by din_grade: an .npz with the entries \
+                 pinion_profile_errors_mm and gear_profile_errors_mm, as `meshtone wheels` writes it",
+                KeyKind::File,
+            )
+            .otherwise("none")
+            .alternative("\"wheels.npz\""),
+            row(
+                ERROR_KEYS[0],
+                "mm",
+                "the pinion's profile errors, instead of a draw: 100 rows of one number per tooth",
+                Field::new(
+                    |quality: &Self| quality.profile_errors.as_ref().map(|errors| &errors.pinion_profile_errors_mm),
+                    |quality| quality.profile_errors.as_mut().map(|errors| &mut errors.pinion_profile_errors_mm),
+                ),
+            )
+            .otherwise("none")
+            .rule("100 × pinion teeth, each smaller than the module"),
+            row(
+                ERROR_KEYS[1],
+                "mm",
+                "the gear's profile errors, likewise",
+                Field::new(
+                    |quality: &Self| quality.profile_errors.as_ref().map(|errors| &errors.gear_profile_errors_mm),
+                    |quality| quality.profile_errors.as_mut().map(|errors| &mut errors.gear_profile_errors_mm),
+                ),
+            )
+            .otherwise("none")
+            .rule("100 × gear teeth, likewise"),
+        ]
+    }
+
+    /// Profile errors from a file, from the two inline keys, or none.
+    fn choose(&mut self, table: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
+        let file = table.optional("errors_file");
+        let [pinion, gear] = ERROR_KEYS.map(|key| table.optional(key));
+        self.profile_errors = match (file, pinion, gear) {
+            (None, None, None) => None,
+            (Some(file), None, None) => {
+                let [pinion_profile_errors_mm, gear_profile_errors_mm] =
+                    load(&file, |name| files.matrices(name))?;
+                Some(ProfileErrors { pinion_profile_errors_mm, gear_profile_errors_mm })
+            }
+            (None, Some(_), Some(_)) => Some(ProfileErrors {
+                pinion_profile_errors_mm: ErrorTable::default(),
+                gear_profile_errors_mm: ErrorTable::default(),
+            }),
+            (Some(_), _, _) => {
+                return Err(table
+                    .error("errors_file", "given beside inline profile errors; they have only one source")
+                    .with_help(
+                        "remove errors_file, or pinion_profile_errors_mm and gear_profile_errors_mm",
+                    ));
+            }
+            (None, pinion, _) => {
+                let missing = if pinion.is_some() { ERROR_KEYS[1] } else { ERROR_KEYS[0] };
+                let problem = "missing; profile errors are given for both wheels or for neither";
+                return Err(table.error(missing, problem));
+            }
+        };
+        Ok(())
+    }
+}
+
+/// An array of rows, one line a row.
+impl KeyValue for ErrorTable {
+    fn read(&mut self, value: &TomlValue<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
+        let rows = value.array()?;
+        let columns = rows.first().map_or(Ok(0), |row| row.array().map(|entries| entries.len()))?;
+        let mut entries = Vec::with_capacity(rows.len());
+        for row in &rows {
+            let numbers = row.numbers()?;
+            if numbers.len() != columns {
+                let problem = format!(
+                    "has {} numbers, the first row has {columns}; every row must have one number per tooth",
+                    numbers.len()
+                );
+                return Err(row.error(problem));
+            }
+            entries.push(numbers);
+        }
+        *self = Self::from_fn(rows.len(), columns, |row, column| entries[row][column]);
+        Ok(())
+    }
+
+    fn write(&self) -> Written {
+        let numbers = |point| (0..self.teeth()).map(move |tooth| self[(point, tooth)]);
+        let rows = (0..self.points()).map(|point| format!("    {},\n", array(numbers(point))));
+        Written::Value(format!("[\n{}]", rows.collect::<String>()))
+    }
+
+    fn kind() -> KeyKind {
+        KeyKind::Matrix
+    }
+}
+
+/// Deviation of every tooth's flank from the ideal profile.
+///
+/// Each table has [`ERROR_POINTS`] rows, uniform in radius, and one column per tooth. The
+/// pinion's rows run from the initial contact radius to the tip, the gear's from the tip to the
+/// initial contact radius: both in the order in which a tooth pair passes through contact.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProfileErrors {
+    /// (mm) Pinion, 100 × pinion teeth.
+    pub pinion_profile_errors_mm: ErrorTable,
+    /// (mm) Gear, 100 × gear teeth.
+    pub gear_profile_errors_mm: ErrorTable,
+}

@@ -1,0 +1,217 @@
+//! Damage on any tooth of either wheel, and several damages at once, under `linear`.
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
+
+use crate::physics::*;
+use meshtone::damage::DamageDescription;
+use meshtone::scenario::*;
+use meshtone::{Simulation, simulate, stages};
+
+/// Ideal wheels of 17 and 38 teeth.
+fn pair(faults: Vec<Fault>) -> Scenario {
+    let mut scenario = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 17,
+        gear_teeth: 38,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 60.0,
+    });
+    scenario.gears.points_per_tooth = 2_000;
+    scenario.solver.sampling_rate_hz = 2e4;
+    // Nothing of the start is left.
+    scenario.solver.settle_tolerance = 0.0;
+    scenario.faults = faults;
+    scenario
+}
+
+fn pit(start: f64, end: f64) -> PitCircle {
+    PitCircle::Fractions { start, end, depth: 0.4 }
+}
+
+fn chip() -> ToothBreakage {
+    ToothBreakage { chip_height_mm: 4.0, chip_width_mm: 9.0, tip_loss_mm: 0.5 }
+}
+
+fn ground() -> ToothDestruction {
+    ToothDestruction { start: 0.2, line: DestructionLine::End(0.9), offset_mm: 0.0, noise_mm: 0.0 }
+}
+
+/// Every kind of damage.
+fn damages() -> [Damage; 5] {
+    [
+        MissingTooth.into(),
+        chip().into(),
+        PartialFace { width_mm: 5.0, pit: pit(0.2, 0.8) }.into(),
+        ThroughFace { pit: pit(0.2, 0.8) }.into(),
+        ground().into(),
+    ]
+}
+
+/// Largest difference of two signals over the largest value of the second, the first one turned back by `samples`.
+fn off(turned: &[f64], signal: &[f64], samples: usize) -> f64 {
+    let mut turned = turned.to_vec();
+    turned.rotate_left(samples);
+    largest(turned.iter().zip(signal).map(|(a, b)| a - b)) / largest(signal.iter().copied())
+}
+
+fn samples_per_pitch(simulation: &Simulation) -> usize {
+    simulation.stages.time.samples_per_pinion_revolution / 17
+}
+
+// The kept signal is a whole cycle, after which the same two teeth meet again. A tooth of index j is in contact j pitches after
+// the first, and on ideal wheels the rest is the same then.
+#[test]
+fn the_signal_turns_with_the_damaged_tooth() {
+    for (wheel, teeth) in [(WheelName::Pinion, [1, 2, 9, 17]), (WheelName::Gear, [1, 3, 20, 38])] {
+        for damage in damages() {
+            let signals = teeth.map(|tooth| {
+                let simulation = simulate(&pair(vec![Fault::new(wheel, tooth, damage.clone())])).unwrap();
+                let pitch = samples_per_pitch(&simulation);
+                assert_eq!(simulation.channels.len(), 17 * 38 * pitch);
+                (simulation.channels.vertical_g, (tooth as usize - 1) * pitch)
+            });
+            let (first, _) = &signals[0];
+            for (signal, turn) in &signals[1..] {
+                let left = off(signal, first, *turn);
+                println!("{} of the {}: turned, but for {left:.1e}", damage.kind(), wheel.name());
+                assert!(left < 1e-8, "{} of the {}: {left:e}", damage.kind(), wheel.name());
+                assert!(off(signal, first, 0) > 1e-3, "another tooth is another signal");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_damaged_tooth_repeats_at_its_own_shaft_s_order() {
+    for (wheel, own, other) in [(WheelName::Pinion, 17, 38), (WheelName::Gear, 38, 17)] {
+        let simulation = simulate(&pair(vec![Fault::new(wheel, 4, MissingTooth)])).unwrap();
+        let (pitch, signal) = (samples_per_pitch(&simulation), &simulation.channels.vertical_g);
+        assert!(off(signal, signal, own * pitch) < 1e-8, "{} once a revolution", wheel.name());
+        for turn in [1, other, own - 1] {
+            assert!(off(signal, signal, turn * pitch) > 0.1, "{}, {turn} pitches", wheel.name());
+        }
+        // Where it is in contact the mesh is softer; a revolution of its wheel is a whole number of pitches.
+        let mesh = pairs(&simulation.stages);
+        let (per_pitch, healthy) = (mesh.points_per_pitch, mesh.healthy_stiffness_n_per_mm());
+        let cycle = mesh.stiffness_n_per_mm(0..17 * 38);
+        for (pitch, points) in cycle.chunks(per_pitch).enumerate() {
+            let softer = points.iter().zip(&healthy).any(|(k, healthy)| *k < 0.99 * healthy);
+            // Tooth 4 is in contact for 1.6 pitches.
+            assert_eq!(softer, (3..=4).contains(&(pitch % own)), "{}, pitch {pitch}", wheel.name());
+        }
+    }
+}
+
+#[test]
+fn faults_on_different_teeth_are_each_its_own() {
+    let one = Fault::new(WheelName::Gear, 3, chip());
+    let two = Fault::new(WheelName::Pinion, 11, PartialFace { width_mm: 5.0, pit: pit(0.2, 0.8) });
+    let meshes =
+        [vec![], vec![one.clone()], vec![two.clone()], vec![one.clone(), two.clone()]].map(|faults| {
+            let stages = stages(&pair(faults)).unwrap();
+            (stages.damaged.len(), pairs(&stages).stiffness_n_per_mm(0..17 * 38))
+        });
+    assert_eq!(meshes.each_ref().map(|(damaged, _)| *damaged), [0, 1, 1, 2]);
+    let [(_, sound), (_, of_one), (_, of_two), (_, of_both)] = &meshes;
+    let (mut alone, mut together) = (0, 0);
+    for i in 0..sound.len() {
+        let changed = |of: &[f64]| (of[i] / sound[i] - 1.0).abs() > 1e-12;
+        match (changed(of_one), changed(of_two)) {
+            // In neighbouring pairs, or in the same one.
+            (true, true) => {
+                together += 1;
+                assert!(of_both[i] <= of_one[i].min(of_two[i]) * (1.0 + 1e-12), "point {i}");
+            }
+            (one, two) => {
+                alone += usize::from(one || two);
+                let expected = if one { of_one[i] } else { of_two[i] };
+                assert!((of_both[i] / expected - 1.0).abs() < 1e-12, "point {i}");
+            }
+        }
+    }
+    assert!(alone > 1000 && together > 0, "{alone} {together}");
+
+    // The order in which they are named says nothing.
+    let signal = |faults: Vec<Fault>| simulate(&pair(faults)).unwrap().channels.vertical_g;
+    let both = signal(vec![one.clone(), two.clone()]);
+    assert!(off(&signal(vec![two.clone(), one.clone()]), &both, 0) < 1e-10);
+    assert!(off(&signal(vec![one]), &both, 0) > 1e-3 && off(&signal(vec![two]), &both, 0) > 1e-3);
+}
+
+#[test]
+fn a_tooth_may_be_broken_and_ground() {
+    let on_tooth = |damages: &[Damage]| {
+        let faults = damages.iter().map(|damage| Fault::new(WheelName::Gear, 5, damage.clone())).collect();
+        stages(&pair(faults)).unwrap()
+    };
+    let [broken, flat, both] = [
+        on_tooth(&[chip().into()]),
+        on_tooth(&[ground().into()]),
+        on_tooth(&[chip().into(), ground().into()]),
+    ];
+    let [tooth] = &both.damaged[..] else { panic!("one tooth") };
+    assert_eq!((tooth.wheel, tooth.tooth), (WheelName::Gear, 4));
+    assert!(matches!(
+        tooth.descriptions[..],
+        [DamageDescription::ToothBreakage { .. }, DamageDescription::ToothDestruction { .. }]
+    ));
+    assert_eq!(tooth.missing_width_mm, broken.damaged[0].missing_width_mm);
+    assert_eq!(tooth.flank_y_mm, flat.damaged[0].flank_y_mm);
+    assert_eq!(tooth.deviation_mm, flat.damaged[0].deviation_mm);
+    let [broken, flat, both] = [&broken, &flat, &both].map(|stages| sound_and_damaged(pairs(stages))[1]);
+    assert_eq!(both.deviation_m, flat.deviation_m);
+    assert_eq!(both.load, broken.load);
+    let of_each = broken.stiffness_n_per_m.iter().zip(&flat.stiffness_n_per_m);
+    let mut softer = 0;
+    for (both, (broken, flat)) in both.stiffness_n_per_m.iter().zip(of_each) {
+        assert!(*both <= broken.min(*flat) * (1.0 + 1e-12), "{both}, {broken} and {flat}");
+        softer += usize::from(*both < 0.999 * broken.min(*flat));
+    }
+    assert!(softer > 10, "{softer}");
+}
+
+#[test]
+fn cuts_that_overlap_are_refused() {
+    let refused = |one: Damage, other: Damage, tooth: u32| {
+        let faults = vec![Fault::new(WheelName::Gear, 3, one), Fault::new(WheelName::Gear, tooth, other)];
+        stages(&pair(faults)).err().map(|error| {
+            assert!(error.problem.contains("gear's tooth 3"), "{error}");
+            error.key
+        })
+    };
+    let through = |start, end| ThroughFace { pit: pit(start, end) };
+    let partial = |start, end| PartialFace { width_mm: 4.0, pit: pit(start, end) };
+    let key = Some("fault[1]".to_owned());
+    assert_eq!(refused(through(0.2, 0.5).into(), through(0.4, 0.7).into(), 3), key);
+    assert_eq!(refused(through(0.2, 0.5).into(), partial(0.3, 0.4).into(), 3), key);
+    assert_eq!(refused(partial(0.6, 0.9).into(), ground().into(), 3), key);
+    // Apart, or on another tooth.
+    assert_eq!(refused(through(0.2, 0.4).into(), through(0.5, 0.7).into(), 3), None);
+    assert_eq!(refused(through(0.2, 0.5).into(), through(0.4, 0.7).into(), 4), None);
+}
+
+// Without an offset the line meets the flank at the end's own point. There it does not lie below the flank, so that the ground
+// part ends one point before, whichever way the last bit is rounded.
+#[test]
+fn a_ground_flank_ends_before_the_point_where_the_line_meets_it() {
+    for model in [Model::Linear, Model::Published] {
+        let mut scenario = Scenario::new(GearPair {
+            module_mm: 3.0,
+            pinion_teeth: 18,
+            gear_teeth: 35,
+            face_width_mm: 30.0,
+            pinion_speed_hz: 45.0,
+            brake_torque_nm: 15.0,
+        });
+        scenario.model = model;
+        let line = DestructionLine::End(13.2 / 14.0);
+        let ground = ToothDestruction { start: -0.6 / 14.0, line, offset_mm: 0.0, noise_mm: 0.0 };
+        scenario.faults = vec![Fault::on_first_gear_tooth(ground)];
+        let tooth = &stages(&scenario).unwrap().damaged[0];
+        let [DamageDescription::ToothDestruction { start_index, end_index, .. }] = tooth.descriptions[..]
+        else {
+            panic!("a destruction")
+        };
+        assert_eq!((start_index, end_index), (2507, 9587), "{model:?}");
+    }
+}

@@ -1,0 +1,85 @@
+//! `python/meshtone/_damage.py`: a class for each kind of damage.
+
+use std::fmt::Write;
+
+use meshtone::damage::{DamageKind, damage_kinds, keys_of_every_fault};
+use meshtone::scenario::{KeyDescription, KeyKind};
+
+use super::python::{HEAD, argument_type, class_name, inside, lines, parameter};
+
+/// The file.
+pub fn text() -> String {
+    let kinds = damage_kinds();
+    let mut text = format!(
+        "\"\"\"A class for each kind of damage.\n\n{HEAD}\n\"\"\"\n\nfrom __future__ import annotations\n\n\
+         from dataclasses import dataclass\nfrom typing import Any, ClassVar, Literal, Union\n"
+    );
+    let mut tables: Vec<(String, String)> = Vec::new();
+    for kind in &kinds {
+        for table in kind.keys.iter().filter(|key| key.kind == KeyKind::Table) {
+            let entry = (table.key.clone(), class_name(&table.key));
+            if !tables.contains(&entry) {
+                text.push_str(&table_class(table, &inside(&kind.keys, &table.key)));
+                tables.push(entry);
+            }
+        }
+    }
+    for kind in &kinds {
+        text.push_str(&damage_class(kind));
+    }
+    let names = kinds.iter().map(|kind| kind.type_name).collect::<Vec<_>>().join(", ");
+    write!(
+        text,
+        "\n\nFault = Union[{names}]\n\"\"\"Any kind of damage.\"\"\"\n\nKINDS: tuple[type[Any], ...] = ({names})\n\
+         \"\"\"The classes.\"\"\"\n\nTABLES: dict[str, type[Any]] = {{"
+    )
+    .unwrap();
+    let pairs =
+        tables.iter().map(|(key, class)| format!("\"{key}\": {class}")).collect::<Vec<_>>().join(", ");
+    write!(text, "{pairs}}}\n\"\"\"Classes of the tables inside a fault, by key.\"\"\"\n").unwrap();
+    text
+}
+
+fn table_class(table: &KeyDescription, keys: &[KeyDescription]) -> String {
+    let summary = sentence(table.meaning);
+    let mut text = format!("\n\n@dataclass(frozen=True)\nclass {}:\n", class_name(&table.key));
+    text.push_str(&docstring(&summary, keys.iter()));
+    for key in keys {
+        writeln!(text, "    {}: {}", key.key, argument_type(key)).unwrap();
+    }
+    text
+}
+
+fn damage_class(kind: &DamageKind) -> String {
+    let place = keys_of_every_fault();
+    let mut own: Vec<&KeyDescription> = kind.keys.iter().filter(|key| !key.key.contains('.')).collect();
+    // A field without a default cannot follow one that has one.
+    own.sort_by_key(|key| !key.required);
+    let mut text = format!("\n\n@dataclass(frozen=True)\nclass {}:\n", kind.type_name);
+    text.push_str(&docstring(kind.summary, own.iter().copied().chain(&place)));
+    writeln!(text, "    kind: ClassVar[str] = \"{}\"", kind.name).unwrap();
+    for key in own {
+        let none = if key.required { "" } else { " | None = None" };
+        writeln!(text, "    {}: {}{none}", key.key, argument_type(key)).unwrap();
+    }
+    for key in &place {
+        writeln!(text, "    {}: {} = {}", key.key, argument_type(key), key.default).unwrap();
+    }
+    text
+}
+
+fn docstring<'a>(summary: &str, keys: impl Iterator<Item = &'a KeyDescription>) -> String {
+    let mut text = lines("    ", &format!("\"\"\"{summary}"));
+    text.push_str("\n    Parameters\n    ----------\n");
+    for key in keys {
+        text.push_str(&parameter("    ", key, &key.key, !key.required));
+    }
+    text.push_str("    \"\"\"\n\n");
+    text
+}
+
+fn sentence(meaning: &str) -> String {
+    let mut letters = meaning.chars();
+    let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
+    format!("{first}{}.", letters.as_str())
+}

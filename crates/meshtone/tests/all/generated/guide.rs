@@ -1,0 +1,55 @@
+//! Tables of the guide, between `<!-- keys of SECTION -->` and `<!-- end -->`.
+
+use std::fmt::Write;
+
+use meshtone::damage::{damage_kinds, keys_of_every_fault};
+use meshtone::scenario::{KeyDescription, sections};
+
+/// The pages that have such tables.
+pub const PAGES: [&str; 1] = ["docs/src/guide/scenario-file.md"];
+
+const START: &str = "<!-- keys of ";
+const END: &str = "<!-- end -->";
+
+/// The page with its tables made anew.
+pub fn with_tables(page: &str) -> String {
+    let mut text = String::new();
+    let mut rest = page;
+    while let Some((before, after)) = rest.split_once(START) {
+        let (name, after) = after.split_once(" -->").unwrap();
+        let (_, after) = after.split_once(END).unwrap_or_else(|| panic!("no {END} after the keys of {name}"));
+        write!(text, "{before}{START}{name} -->\n\n{}\n{END}", table(name)).unwrap();
+        rest = after;
+    }
+    text + rest
+}
+
+/// The table of a section, named as in the file and `top` for what stands above all sections, or of a kind of damage.
+fn table(name: &str) -> String {
+    let own = if name == "top" { "" } else { name };
+    if name == "fault" {
+        let names = damage_kinds().iter().map(|kind| format!("`\"{}\"`", kind.name)).collect::<Vec<_>>();
+        let kind = format!("| `kind` | what is broken | | required | {} |\n", names.join(", "));
+        return rows(&keys_of_every_fault(), &kind);
+    }
+    if let Some(kind) = damage_kinds().into_iter().find(|kind| kind.name == own) {
+        return rows(&kind.keys, "");
+    }
+    let sections = sections();
+    let section = sections.iter().find(|section| section.name == own).unwrap_or_else(|| panic!("{name}"));
+    rows(&section.keys, "")
+}
+
+fn rows(keys: &[KeyDescription], first: &str) -> String {
+    let mut text = format!("| key | meaning | unit | default | allowed |\n|---|---|---|---|---|\n{first}");
+    for key in keys {
+        let default = match key.default.as_str() {
+            "" => "required".to_owned(),
+            value if format!("x = {value}").parse::<toml::Table>().is_ok() => format!("`{value}`"),
+            words => words.to_owned(),
+        };
+        let KeyDescription { key, meaning, unit, allowed, .. } = key;
+        writeln!(text, "| `{key}` | {meaning} | {unit} | {default} | {allowed} |").unwrap();
+    }
+    text
+}

@@ -1,0 +1,130 @@
+//! `python/meshtone/_keys.py`: the arguments of a scenario.
+
+use std::fmt::Write;
+
+use meshtone::scenario::{KeyDescription, KeyKind, sections};
+
+use super::python::{HEAD, argument_type, attribute_type, class_name, has_default_value, inside, parameter};
+
+/// Keys that are called otherwise in Python: two sections have a `seed`.
+const RENAMED: [(&str, &str, &str); 1] = [("quality", "seed", "wheels_seed")];
+
+/// An argument: a key of the file, its section, and its name in Python.
+struct Argument {
+    section: &'static str,
+    name: String,
+    key: KeyDescription,
+}
+
+fn arguments() -> Vec<Argument> {
+    let mut arguments = Vec::new();
+    for section in sections().into_iter().filter(|section| section.name != "fault") {
+        for key in section.keys {
+            if key.key.contains('.') || key.kind == KeyKind::File {
+                continue;
+            }
+            let renamed = RENAMED.iter().find(|(of, from, _)| *of == section.name && *from == key.key);
+            let name = renamed.map_or_else(|| key.key.clone(), |(.., to)| (*to).to_owned());
+            arguments.push(Argument { section: section.name, name, key });
+        }
+    }
+    // Those without which there is no scenario come first.
+    arguments.sort_by_key(|argument| !argument.key.required);
+    arguments
+}
+
+/// Classes of tables, each once.
+fn tables() -> String {
+    let mut text = String::new();
+    let mut known: Vec<String> = Vec::new();
+    for section in sections().iter().filter(|section| section.name != "fault") {
+        for table in &section.keys {
+            let name = class_name(&table.key);
+            let is_table = matches!(table.kind, KeyKind::Table | KeyKind::TableOrFalse);
+            if !is_table || known.contains(&name) {
+                continue;
+            }
+            let keys = inside(&section.keys, &table.key);
+            write!(text, "\n\nclass {name}(TypedDict, total=False):\n    \"\"\"A table of a scenario.\n\n")
+                .unwrap();
+            text.push_str("    Attributes\n    ----------\n");
+            for key in &keys {
+                // Of two tables of one class each has its own defaults.
+                let mut key = key.clone();
+                key.default.clear();
+                text.push_str(&parameter("    ", &key, &key.key, false));
+            }
+            text.push_str("    \"\"\"\n\n");
+            for key in &keys {
+                writeln!(text, "    {}: {}", key.key, argument_type(key)).unwrap();
+            }
+            known.push(name);
+        }
+    }
+    text
+}
+
+/// The file.
+pub fn text() -> String {
+    let arguments = arguments();
+    let mut text = format!(
+        "\"\"\"The keys of a scenario.\n\n{HEAD}\n\"\"\"\n\nfrom __future__ import annotations\n\n\
+         from collections.abc import Mapping, Sequence\nfrom typing import Any, Literal, TypedDict, Union\n\n\
+         import numpy as np\nimport numpy.typing as npt\n\nfrom .faults import Fault\n\n\
+         Profile = Mapping[str, Union[Sequence[float], npt.NDArray[np.float64]]]\n\
+         \"\"\"``time_s`` and ``value``: speed or torque against time.\"\"\"\n"
+    );
+    text.push_str(&tables());
+    let in_section = |argument: &&Argument| argument.key.kind != KeyKind::Matrix;
+    text.push_str("\n\nSECTION_OF_KEY: dict[str, str] = {\n");
+    for argument in arguments.iter().filter(in_section) {
+        writeln!(text, "    \"{}\": \"{}\",", argument.name, argument.section).unwrap();
+    }
+    text.push_str("}\n\"\"\"Which section of the scenario file each key stands in.\"\"\"\n\nKEY_IN_FILE: dict[str, str] = {");
+    let renamed = RENAMED.map(|(_, from, to)| format!("\"{to}\": \"{from}\"")).join(", ");
+    write!(
+        text,
+        "{renamed}}}\n\"\"\"Keys that are called otherwise in their section.\"\"\"\n\nREQUIRED_KEYS = (\n"
+    )
+    .unwrap();
+    for argument in arguments.iter().filter(|argument| argument.key.required) {
+        writeln!(text, "    \"{}\",", argument.name).unwrap();
+    }
+    text.push_str(")\n\"\"\"Keys without a default.\"\"\"\n\n\nclass ScenarioKeys:\n    \"\"\"The arguments and attributes of a scenario.\"\"\"\n\n    __slots__ = ()\n\n");
+    for argument in arguments.iter().filter(in_section) {
+        let none = if argument.key.required || has_default_value(&argument.key) { "" } else { " | None" };
+        writeln!(text, "    {}: {}{none}", argument.name, attribute_type(&argument.key)).unwrap();
+    }
+    text.push_str("\n    def __init__(\n        self,\n        *,\n");
+    let mut faults = "        fault: Fault | None = None,\n        faults: Sequence[Fault] | None = None,\n";
+    for Argument { name, key, .. } in &arguments {
+        if !key.required {
+            text.push_str(std::mem::take(&mut faults));
+        }
+        let kind = argument_type(key);
+        let default = if key.required { "" } else { " | None = None" };
+        writeln!(text, "        {name}: {kind}{default},").unwrap();
+    }
+    text.push_str(
+        "        **unknown: Any,\n    ) -> None:\n        \"\"\"A scenario; ``None`` is the default of a key.\n\n        \
+         Parameters\n        ----------\n",
+    );
+    let mut faults = "        fault : a fault, optional\n            The damage, if there is but one; a healthy pair by default.\n        \
+         faults : sequence of faults, optional\n            All damage, instead of ``fault``: any number of faults, on any teeth of \
+         either wheel.\n";
+    for Argument { name, key, .. } in &arguments {
+        if !key.required {
+            text.push_str(std::mem::take(&mut faults));
+        }
+        text.push_str(&parameter("        ", key, name, !key.required));
+    }
+    text.push_str(
+        "\n        Raises\n        ------\n        ValueError\n            A value that is not allowed: the text names the key, the value and \
+         what is allowed.\n        TypeError\n            A key that a scenario does not have.\n        \"\"\"\n        \
+         arguments = dict(locals())\n        del arguments[\"self\"], arguments[\"unknown\"]\n        \
+         self._from_keys(arguments, unknown)\n\n    \
+         def _from_keys(self, arguments: dict[str, Any], unknown: dict[str, Any]) -> None:\n        \
+         raise NotImplementedError\n",
+    );
+    text
+}

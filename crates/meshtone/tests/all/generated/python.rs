@@ -1,0 +1,124 @@
+//! Words and types as Python has them.
+
+use meshtone::scenario::{KeyDescription, KeyKind};
+
+pub const HEAD: &str =
+    "Written by `cargo xtask generate` from the rows of the Rust library: a change belongs there.";
+/// Widest line of a docstring.
+const WIDTH: usize = 120;
+
+/// Classes of tables that are not called as their key.
+const TABLE_NAMES: [(&str, &str); 5] = [
+    ("pinion_shaft", "Shaft"),
+    ("gear_shaft", "Shaft"),
+    ("pinion_inertia", "WheelInertia"),
+    ("gear_inertia", "WheelInertia"),
+    ("circle", "PitCircle"),
+];
+
+/// The class of a table.
+pub fn class_name(key: &str) -> String {
+    if let Some((_, name)) = TABLE_NAMES.iter().find(|(table, _)| *table == key) {
+        return (*name).to_owned();
+    }
+    let capital = |word: &str| word[..1].to_uppercase() + &word[1..];
+    key.split('_').map(capital).collect()
+}
+
+/// The keys inside a table, with their own names.
+pub fn inside(keys: &[KeyDescription], table: &str) -> Vec<KeyDescription> {
+    let inner = |key: &KeyDescription| {
+        let name = key.key.strip_prefix(table)?.strip_prefix('.')?.to_owned();
+        let mut inner = key.clone();
+        inner.key = name;
+        Some(inner)
+    };
+    keys.iter().filter_map(inner).collect()
+}
+
+/// Type of an argument.
+pub fn argument_type(key: &KeyDescription) -> String {
+    match &key.kind {
+        KeyKind::Number => "float".into(),
+        KeyKind::Whole => "int".into(),
+        KeyKind::Name(names) => literal(names),
+        KeyKind::Numbers(_) => "Sequence[float]".into(),
+        KeyKind::NumberOrNumbers(_) => "float | Sequence[float]".into(),
+        KeyKind::Table => class_name(&key.key),
+        KeyKind::TableOrFalse => format!("{} | Literal[False]", class_name(&key.key)),
+        KeyKind::Profile => "Profile".into(),
+        KeyKind::Matrix => "npt.ArrayLike".into(),
+        other => panic!("a type for {other:?}"),
+    }
+}
+
+/// Type of an attribute, without `None`.
+pub fn attribute_type(key: &KeyDescription) -> String {
+    match &key.kind {
+        KeyKind::Numbers(_) => "list[float]".into(),
+        KeyKind::NumberOrNumbers(_) => "float | list[float]".into(),
+        KeyKind::Profile => "dict[str, list[float]]".into(),
+        _ => argument_type(key),
+    }
+}
+
+fn literal(names: &[&str]) -> String {
+    format!("Literal[{}]", names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", "))
+}
+
+/// Whether an absent key has a value of its own, rather than words that say what is done without one.
+pub fn has_default_value(key: &KeyDescription) -> bool {
+    key.default == "as below" || format!("x = {}", key.default).parse::<toml::Table>().is_ok()
+}
+
+/// An entry of a numpydoc list, `    name : type` and its description.
+pub fn parameter(indent: &str, key: &KeyDescription, name: &str, optional: bool) -> String {
+    let words = match &key.kind {
+        KeyKind::Name(names) => {
+            format!("{{{}}}", names.iter().map(|name| format!("'{name}'")).collect::<Vec<_>>().join(", "))
+        }
+        KeyKind::Numbers(count) => format!("sequence of {count} floats"),
+        KeyKind::NumberOrNumbers(count) => format!("float or sequence of {count} floats"),
+        KeyKind::TableOrFalse => format!("{} or False", class_name(&key.key)),
+        KeyKind::Profile => "dict of time_s and value".into(),
+        KeyKind::Matrix => "array of float64, shape (100, teeth)".into(),
+        _ => argument_type(key),
+    };
+    let optional = if optional { ", optional" } else { "" };
+    format!("{indent}{name} : {words}{optional}\n{}", lines(&format!("{indent}    "), &sentences(key)))
+}
+
+/// Unit, meaning, limits and default, as sentences.
+pub fn sentences(key: &KeyDescription) -> String {
+    let unit = if key.unit.is_empty() { String::new() } else { format!("({}) ", key.unit) };
+    let mut letters = key.meaning.chars();
+    let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
+    let meaning = format!("{unit}{first}{}.", letters.as_str()).replace('`', "``");
+    let is_plain = matches!(key.kind, KeyKind::Name(_)) || key.allowed.is_empty();
+    let allowed =
+        if is_plain { String::new() } else { format!(" Allowed: {}.", key.allowed.replace('`', "``")) };
+    let default = if key.default.is_empty() || key.default == "as below" {
+        String::new()
+    } else if key.default.starts_with("required") {
+        format!(" R{}.", key.default[1..].replace('`', "``"))
+    } else {
+        format!(" Default: {}.", key.default.replace('`', "``"))
+    };
+    format!("{meaning}{allowed}{default}")
+}
+
+/// A text in lines.
+pub fn lines(indent: &str, text: &str) -> String {
+    let mut lines = vec![indent.to_owned()];
+    for word in text.split_whitespace() {
+        let last = lines.len() - 1;
+        let is_empty = lines[last].len() == indent.len();
+        if !is_empty && lines[last].chars().count() + 1 + word.chars().count() > WIDTH {
+            lines.push(format!("{indent}{word}"));
+        } else {
+            lines[last].push_str(if is_empty { "" } else { " " });
+            lines[last].push_str(word);
+        }
+    }
+    lines.join("\n") + "\n"
+}

@@ -1,0 +1,193 @@
+"""A class for each kind of damage.
+
+Written by `cargo xtask generate` from the rows of the Rust library: a change belongs there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal, Union
+
+
+@dataclass(frozen=True)
+class PitCircle:
+    """The circle that is cut into the flank, instead of start, end and depth.
+
+    Parameters
+    ----------
+    x_mm : float
+        (mm) The centre's position along the tooth's centre line, from the wheel's centre. Allowed: > 0.
+    y_mm : float
+        (mm) The centre's distance from the tooth's centre line, towards the working flank.
+    radius_mm : float
+        (mm) The circle's radius. Allowed: > 0.
+    """
+
+    x_mm: float
+    y_mm: float
+    radius_mm: float
+
+
+@dataclass(frozen=True)
+class MissingTooth:
+    """The tooth is gone.
+
+    Parameters
+    ----------
+    wheel : {'pinion', 'gear'}, optional
+        The damaged wheel. Default: "gear".
+    tooth : int, optional
+        The number of the damaged tooth, in the order in which the teeth enter contact. Allowed: whole number > 0; at
+        most the wheel's teeth. Default: 1.
+    """
+
+    kind: ClassVar[str] = "missing-tooth"
+    wheel: Literal["pinion", "gear"] = "gear"
+    tooth: int = 1
+
+
+@dataclass(frozen=True)
+class ToothBreakage:
+    """A corner of the tooth has chipped off.
+
+    Parameters
+    ----------
+    chip_height_mm : float
+        (mm) The extent of the chipped corner from the tip along the tooth. Allowed: > 0; less than the tooth's height,
+        2.25 modules.
+    chip_width_mm : float
+        (mm) Its extent along the face width, at the tip. Allowed: > 0; at most the face width.
+    tip_loss_mm : float, optional
+        (mm) The length of tip that is lost over the whole width. Allowed: ≥ 0; less than the tooth's height. Default:
+        0.0.
+    wheel : {'pinion', 'gear'}, optional
+        The damaged wheel. Default: "gear".
+    tooth : int, optional
+        The number of the damaged tooth, in the order in which the teeth enter contact. Allowed: whole number > 0; at
+        most the wheel's teeth. Default: 1.
+    """
+
+    kind: ClassVar[str] = "tooth-breakage"
+    chip_height_mm: float
+    chip_width_mm: float
+    tip_loss_mm: float | None = None
+    wheel: Literal["pinion", "gear"] = "gear"
+    tooth: int = 1
+
+
+@dataclass(frozen=True)
+class PartialFace:
+    """A pit in the flank, over a part of the face width, from one side.
+
+    Parameters
+    ----------
+    width_mm : float
+        (mm) The width of the pit along the face, from one side. Allowed: > 0; less than the face width.
+    start : float, optional
+        (-) The pit's first edge as a fraction of the flank's contact part, from its root side. Allowed: ≥ 0, < 1.
+        Required, unless ``circle`` is given.
+    end : float, optional
+        (-) The pit's second edge, likewise. Allowed: more than ``start``, ≤ 1. Required, unless ``circle`` is given.
+    depth : float, optional
+        (-) The pit's depth over half its chord. Allowed: > 0, ≤ 1; so small that the circle does not undercut the
+        flank, which depends on the flank's slope: about 0.7 in its middle, 0.4 at the tip. Required, unless ``circle``
+        is given.
+    circle : PitCircle, optional
+        The circle that is cut into the flank, instead of start, end and depth. Allowed: must cut the flank twice.
+        Default: none.
+    wheel : {'pinion', 'gear'}, optional
+        The damaged wheel. Default: "gear".
+    tooth : int, optional
+        The number of the damaged tooth, in the order in which the teeth enter contact. Allowed: whole number > 0; at
+        most the wheel's teeth. Default: 1.
+    """
+
+    kind: ClassVar[str] = "partial-face"
+    width_mm: float
+    start: float | None = None
+    end: float | None = None
+    depth: float | None = None
+    circle: PitCircle | None = None
+    wheel: Literal["pinion", "gear"] = "gear"
+    tooth: int = 1
+
+
+@dataclass(frozen=True)
+class ThroughFace:
+    """A pit in the flank, over the whole face width.
+
+    Parameters
+    ----------
+    start : float, optional
+        (-) The pit's first edge as a fraction of the flank's contact part, from its root side. Allowed: ≥ 0, < 1.
+        Required, unless ``circle`` is given.
+    end : float, optional
+        (-) The pit's second edge, likewise. Allowed: more than ``start``, ≤ 1. Required, unless ``circle`` is given.
+    depth : float, optional
+        (-) The pit's depth over half its chord. Allowed: > 0, ≤ 1; so small that the circle does not undercut the
+        flank, which depends on the flank's slope: about 0.7 in its middle, 0.4 at the tip. Required, unless ``circle``
+        is given.
+    circle : PitCircle, optional
+        The circle that is cut into the flank, instead of start, end and depth. Allowed: must cut the flank twice.
+        Default: none.
+    wheel : {'pinion', 'gear'}, optional
+        The damaged wheel. Default: "gear".
+    tooth : int, optional
+        The number of the damaged tooth, in the order in which the teeth enter contact. Allowed: whole number > 0; at
+        most the wheel's teeth. Default: 1.
+    """
+
+    kind: ClassVar[str] = "through-face"
+    start: float | None = None
+    end: float | None = None
+    depth: float | None = None
+    circle: PitCircle | None = None
+    wheel: Literal["pinion", "gear"] = "gear"
+    tooth: int = 1
+
+
+@dataclass(frozen=True)
+class ToothDestruction:
+    """The working flank is ground down along a straight line.
+
+    Parameters
+    ----------
+    start : float
+        (-) Where the ground line begins, as a fraction of the flank's contact part from its root side; negative: below
+        the part in contact. Allowed: > −1, < 1.
+    end : float, optional
+        (-) The flank point that the line is aimed at, as a fraction. Allowed: more than ``start``, ≤ 1. Required,
+        unless ``slope_deg`` is given.
+    slope_deg : float, optional
+        (°) The angle to the tooth's centre line by which the line falls towards the tip, instead of end. Allowed: > 0,
+        < 90. Default: none.
+    offset_mm : float, optional
+        (mm) How far inside the flank the line begins. Allowed: ≥ 0; less than half the tooth's thickness at the pitch
+        circle, π/4 modules. Default: 0.0.
+    noise_mm : float, optional
+        (mm) The half width of a uniform roughness of the ground flank. Allowed: ≥ 0; likewise. Default: 0.0.
+    wheel : {'pinion', 'gear'}, optional
+        The damaged wheel. Default: "gear".
+    tooth : int, optional
+        The number of the damaged tooth, in the order in which the teeth enter contact. Allowed: whole number > 0; at
+        most the wheel's teeth. Default: 1.
+    """
+
+    kind: ClassVar[str] = "tooth-destruction"
+    start: float
+    end: float | None = None
+    slope_deg: float | None = None
+    offset_mm: float | None = None
+    noise_mm: float | None = None
+    wheel: Literal["pinion", "gear"] = "gear"
+    tooth: int = 1
+
+
+Fault = Union[MissingTooth, ToothBreakage, PartialFace, ThroughFace, ToothDestruction]
+"""Any kind of damage."""
+
+KINDS: tuple[type[Any], ...] = (MissingTooth, ToothBreakage, PartialFace, ThroughFace, ToothDestruction)
+"""The classes."""
+
+TABLES: dict[str, type[Any]] = {"circle": PitCircle}
+"""Classes of the tables inside a fault, by key."""

@@ -1,0 +1,347 @@
+"""The keys of a scenario.
+
+Written by `cargo xtask generate` from the rows of the Rust library: a change belongs there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal, TypedDict, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from .faults import Fault
+
+Profile = Mapping[str, Union[Sequence[float], npt.NDArray[np.float64]]]
+"""``time_s`` and ``value``: speed or torque against time."""
+
+
+class TipRelief(TypedDict, total=False):
+    """A table of a scenario.
+
+    Attributes
+    ----------
+    shape : {'parabolic', 'linear'}
+        A parabola that leaves the flank with its slope, or a straight line.
+    length_mm : float
+        (mm) The length along the tooth's centre line, from the tip inwards. Allowed: > 0, less than 2 modules.
+    depth_mm : float
+        (mm) How far the tip ends below the flank point where the relief starts. The unrelieved tooth itself thins from
+        there to the tip (by 0.54 mm on 1 mm for 17 teeth of module 3), so less than that adds metal, and is warned of.
+        Allowed: ≥ 0; less than half the tooth's thickness at the pitch circle, π/4 modules.
+    """
+
+    shape: Literal["parabolic", "linear"]
+    length_mm: float
+    depth_mm: float
+
+
+class Foundation(TypedDict, total=False):
+    """A table of a scenario.
+
+    Attributes
+    ----------
+    L : sequence of 6 floats
+        A to F of L, the factor of u².
+    M : sequence of 6 floats
+        A to F of M, the factor of u.
+    P : sequence of 6 floats
+        A to F of P, the constant term.
+    Q : sequence of 6 floats
+        A to F of Q, the factor of tan²α.
+    """
+
+    L: Sequence[float]
+    M: Sequence[float]
+    P: Sequence[float]
+    Q: Sequence[float]
+
+
+class Shaft(TypedDict, total=False):
+    """A table of a scenario.
+
+    Attributes
+    ----------
+    length_mm : float
+        (mm) The length between wheel and motor or brake. Allowed: > 0, ≤ 1000000.
+    radius_mm : float
+        (mm) The radius, which is also that of the wheel's bore. Allowed: > 0; less than the wheel's root radius.
+    """
+
+    length_mm: float
+    radius_mm: float
+
+
+class WheelInertia(TypedDict, total=False):
+    """A table of a scenario.
+
+    Attributes
+    ----------
+    mass_kg : float
+        (kg) The mass. Allowed: > 0, ≤ 1e9.
+    polar_inertia_kgm2 : float
+        (kg m²) The moment of inertia about the shaft. Allowed: > 0, ≤ 1e9.
+    transverse_inertia_kgm2 : float
+        (kg m²) The moment of inertia about a diameter. Allowed: > 0, ≤ 1e9.
+    """
+
+    mass_kg: float
+    polar_inertia_kgm2: float
+    transverse_inertia_kgm2: float
+
+
+SECTION_OF_KEY: dict[str, str] = {
+    "module_mm": "gears",
+    "pinion_teeth": "gears",
+    "gear_teeth": "gears",
+    "face_width_mm": "gears",
+    "pinion_speed_hz": "operation",
+    "brake_torque_nm": "operation",
+    "model": "",
+    "seed": "",
+    "pressure_angle_deg": "gears",
+    "material": "gears",
+    "tip_relief": "gears",
+    "crowning_mm": "gears",
+    "points_per_tooth": "gears",
+    "foundation": "gears",
+    "speed_fluctuation_hz": "operation",
+    "torque_fluctuation_nm": "operation",
+    "speed_profile_hz": "operation",
+    "torque_profile_nm": "operation",
+    "din_grade": "quality",
+    "wheels_seed": "quality",
+    "bearing_stiffness_n_per_m": "rig",
+    "wheel_rotational_stiffness_nm_per_rad": "rig",
+    "brake_inertia_kgm2": "rig",
+    "damping_ratio": "rig",
+    "eccentricity_mm": "rig",
+    "pinion_shaft": "rig",
+    "gear_shaft": "rig",
+    "pinion_inertia": "rig",
+    "gear_inertia": "rig",
+    "sampling_rate_hz": "solver",
+    "settle_fraction": "solver",
+    "settle_tolerance": "solver",
+    "initial_displacement": "solver",
+    "initial_velocity": "solver",
+}
+"""Which section of the scenario file each key stands in."""
+
+KEY_IN_FILE: dict[str, str] = {"wheels_seed": "seed"}
+"""Keys that are called otherwise in their section."""
+
+REQUIRED_KEYS = (
+    "module_mm",
+    "pinion_teeth",
+    "gear_teeth",
+    "face_width_mm",
+    "pinion_speed_hz",
+    "brake_torque_nm",
+)
+"""Keys without a default."""
+
+
+class ScenarioKeys:
+    """The arguments and attributes of a scenario."""
+
+    __slots__ = ()
+
+    module_mm: float
+    pinion_teeth: int
+    gear_teeth: int
+    face_width_mm: float
+    pinion_speed_hz: float
+    brake_torque_nm: float
+    model: Literal["linear", "published"]
+    seed: int
+    pressure_angle_deg: float
+    material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"]
+    tip_relief: TipRelief | Literal[False]
+    crowning_mm: float
+    points_per_tooth: int
+    foundation: Foundation
+    speed_fluctuation_hz: float
+    torque_fluctuation_nm: float
+    speed_profile_hz: dict[str, list[float]] | None
+    torque_profile_nm: dict[str, list[float]] | None
+    din_grade: int
+    wheels_seed: int | None
+    bearing_stiffness_n_per_m: float
+    wheel_rotational_stiffness_nm_per_rad: float
+    brake_inertia_kgm2: float
+    damping_ratio: float | list[float]
+    eccentricity_mm: float
+    pinion_shaft: Shaft
+    gear_shaft: Shaft
+    pinion_inertia: WheelInertia | None
+    gear_inertia: WheelInertia | None
+    sampling_rate_hz: float
+    settle_fraction: float
+    settle_tolerance: float
+    initial_displacement: list[float] | None
+    initial_velocity: list[float] | None
+
+    def __init__(
+        self,
+        *,
+        module_mm: float,
+        pinion_teeth: int,
+        gear_teeth: int,
+        face_width_mm: float,
+        pinion_speed_hz: float,
+        brake_torque_nm: float,
+        fault: Fault | None = None,
+        faults: Sequence[Fault] | None = None,
+        model: Literal["linear", "published"] | None = None,
+        seed: int | None = None,
+        pressure_angle_deg: float | None = None,
+        material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | None = None,
+        tip_relief: TipRelief | Literal[False] | None = None,
+        crowning_mm: float | None = None,
+        points_per_tooth: int | None = None,
+        foundation: Foundation | None = None,
+        speed_fluctuation_hz: float | None = None,
+        torque_fluctuation_nm: float | None = None,
+        speed_profile_hz: Profile | None = None,
+        torque_profile_nm: Profile | None = None,
+        din_grade: int | None = None,
+        wheels_seed: int | None = None,
+        pinion_profile_errors_mm: npt.ArrayLike | None = None,
+        gear_profile_errors_mm: npt.ArrayLike | None = None,
+        bearing_stiffness_n_per_m: float | None = None,
+        wheel_rotational_stiffness_nm_per_rad: float | None = None,
+        brake_inertia_kgm2: float | None = None,
+        damping_ratio: float | Sequence[float] | None = None,
+        eccentricity_mm: float | None = None,
+        pinion_shaft: Shaft | None = None,
+        gear_shaft: Shaft | None = None,
+        pinion_inertia: WheelInertia | None = None,
+        gear_inertia: WheelInertia | None = None,
+        sampling_rate_hz: float | None = None,
+        settle_fraction: float | None = None,
+        settle_tolerance: float | None = None,
+        initial_displacement: Sequence[float] | None = None,
+        initial_velocity: Sequence[float] | None = None,
+        **unknown: Any,
+    ) -> None:
+        """A scenario; ``None`` is the default of a key.
+
+        Parameters
+        ----------
+        module_mm : float
+            (mm) The module of both wheels. Allowed: > 0, ≤ 100.
+        pinion_teeth : int
+            The tooth count of the pinion, the driving wheel. Allowed: whole number 6…10000; the contact ratio must be
+            at least 1. Undercut teeth (fewer than 17 at 20°) are simulated without undercut, with a warning.
+        gear_teeth : int
+            The tooth count of the gear, the driven wheel. Allowed: whole number 6…10000; likewise.
+        face_width_mm : float
+            (mm) The face width of both wheels. Allowed: > 0, ≤ 10000.
+        pinion_speed_hz : float
+            (rev/s) The nominal speed of the motor, which turns the pinion; the sampling rate is chosen for it. Allowed:
+            > 0, ≤ 100000.
+        brake_torque_nm : float
+            (N m) The nominal torque of the brake on the gear's shaft. Allowed: ≥ 0, ≤ 1e9.
+        fault : a fault, optional
+            The damage, if there is but one; a healthy pair by default.
+        faults : sequence of faults, optional
+            All damage, instead of ``fault``: any number of faults, on any teeth of either wheel.
+        model : {'linear', 'published'}, optional
+            The model of the mesh: what the theory says, or what the published code does, its slips included. Default:
+            "linear".
+        seed : int, optional
+            The seed of every random draw: profile errors, fluctuations, roughness of a destroyed flank. Allowed: whole
+            number. Default: 1.
+        pressure_angle_deg : float, optional
+            (°) The pressure angle at the pitch circle. Allowed: 10…35; teeth must not become pointed below full height.
+            Default: 20.0.
+        material : {'steel', 'copper', 'aluminium', 'brass', 'cast-iron', 'bronze'}, optional
+            The material of wheels and shafts. Default: "steel".
+        tip_relief : TipRelief or False, optional
+            The material removed near the tips, or ``false`` for none. Default: { shape = "parabolic", length_mm = 1.0,
+            depth_mm = 1.0 }.
+        crowning_mm : float, optional
+            (mm) A constant reduction of the working flank. Allowed: ≥ 0; less than half the tooth's thickness at the
+            pitch circle, π/4 modules. Default: 0.0.
+        points_per_tooth : int, optional
+            The number of points along a tooth's profile. Allowed: whole number 500…1000000. Default: 10000.
+        foundation : Foundation, optional
+            The coefficients A to F of the four polynomials of the fillet foundation's compliance; the default is of
+            Sainsot, Velex and Duverger (2004).
+        speed_fluctuation_hz : float, optional
+            (Hz) The half width of a uniform error of the speed, drawn anew for every sample. Allowed: ≥ 0; less than
+            the lowest speed. Default: 0.0.
+        torque_fluctuation_nm : float, optional
+            (N m) The half width of a uniform error of the torque, drawn anew for every sample. Allowed: ≥ 0; less than
+            the lowest torque. Default: 0.0.
+        speed_profile_hz : dict of time_s and value, optional
+            (s, Hz) The speed against time, instead of the constant: straight lines between the points, constant outside
+            them. Times count from the start of the simulation. A CSV file of two columns, time_s and value, is { file =
+            "….csv" }. Allowed: at least 2 points, times increasing, values > 0. Default: none.
+        torque_profile_nm : dict of time_s and value, optional
+            (s, N m) The torque against time, likewise. Allowed: likewise, values ≥ 0. Default: none.
+        din_grade : int, optional
+            The grade of DIN 3962 that profile errors are drawn for, 1 (best) to 12; 0 for ideal teeth. Allowed: whole
+            number 0…12. Default: 0.
+        wheels_seed : int, optional
+            The seed of that draw alone, so that scenarios of different seeds share their wheels. Allowed: whole number.
+            Default: the scenario's ``seed``.
+        pinion_profile_errors_mm : array of float64, shape (100, teeth), optional
+            (mm) The pinion's profile errors, instead of a draw: 100 rows of one number per tooth. Allowed: 100 × pinion
+            teeth, each smaller than the module. Default: none.
+        gear_profile_errors_mm : array of float64, shape (100, teeth), optional
+            (mm) The gear's profile errors, likewise. Allowed: 100 × gear teeth, likewise. Default: none.
+        bearing_stiffness_n_per_m : float, optional
+            (N/m) The stiffness of each wheel's bearings in x, y and z. Allowed: > 0, ≤ 1e15. Default: 1.9e8.
+        wheel_rotational_stiffness_nm_per_rad : float, optional
+            (N m/rad) The stiffness of each wheel against tilting, about x and about y. Allowed: > 0, ≤ 1e15. Default:
+            1e8.
+        brake_inertia_kgm2 : float, optional
+            (kg m²) The inertia of the brake. Allowed: > 0, ≤ 1e9. Default: 0.0045.
+        damping_ratio : float or sequence of 13 floats, optional
+            (-) The modal damping over critical damping: one number for all modes, or 13 in the order of rising
+            frequency. Allowed: ≥ 0, < 1. Default: 0.05.
+        eccentricity_mm : float, optional
+            (mm) The eccentricity of both wheels. Allowed: ≥ 0; less than the module. Default: 0.0.
+        pinion_shaft : Shaft, optional
+            The motor's shaft. Default: { length_mm = 200.0, radius_mm = 10.0 }.
+        gear_shaft : Shaft, optional
+            The brake's shaft. Default: { length_mm = 600.0, radius_mm = 10.0 }.
+        pinion_inertia : WheelInertia, optional
+            The mass and inertias of the pinion, instead of a solid disc's; any of the three may be left out. Default: a
+            solid disc's, of pitch radius.
+        gear_inertia : WheelInertia, optional
+            The same of the gear. Default: a solid disc's, of pitch radius.
+        sampling_rate_hz : float, optional
+            (S/s) The nominal sampling rate; the actual one is higher, so that both wheels turn a whole number of
+            samples. Allowed: > 0. Default: 1e5.
+        settle_fraction : float, optional
+            (-) The part of the simulated time that is discarded from its start, while the vibration settles. Allowed: ≥
+            0, < 1. Default: 0.5.
+        settle_tolerance : float, optional
+            (-) How far the slowest mode's transient must have decayed where the kept signal starts. Under the linear
+            model a steady simulation starts in the static equilibrium of the loaded mesh, and what is discarded is
+            simulated only as far back as this needs; 0 for all of it. Allowed: ≥ 0, < 1. Default: 1e-6.
+        initial_displacement : sequence of 13 floats, optional
+            (m, rad) The displacement of the 13 coordinates at the start: x, y of the gear, x, y of the pinion, rotation
+            of gear, pinion and brake, z of gear and pinion, tilt φ of both, tilt ψ of both. Default: the static
+            equilibrium of the loaded mesh; zeros under the published model.
+        initial_velocity : sequence of 13 floats, optional
+            (m/s, rad/s) The velocity of the same coordinates at the start. Default: rigid rotation at the nominal
+            speed.
+
+        Raises
+        ------
+        ValueError
+            A value that is not allowed: the text names the key, the value and what is allowed.
+        TypeError
+            A key that a scenario does not have.
+        """
+        arguments = dict(locals())
+        del arguments["self"], arguments["unknown"]
+        self._from_keys(arguments, unknown)
+
+    def _from_keys(self, arguments: dict[str, Any], unknown: dict[str, Any]) -> None:
+        raise NotImplementedError

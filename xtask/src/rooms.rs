@@ -1,0 +1,150 @@
+//! Looks for folders of the library that import against the direction of the data.
+//!
+//! Data flows down the list of rooms and never back, so a room may import only rooms of the floors above its own: no two of them
+//! import each other, and what a room depends on is found without a search.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The rooms of `crates/meshtone/src`, floor by floor. A room imports rooms of earlier floors.
+const FLOORS: &[&[&str]] = &[
+    &["error", "error_table", "random", "interpolation", "simd", "threads"],
+    &["keys"],
+    &["model"],
+    &["wheel"],
+    &["damage"],
+    &["operation"],
+    &["stiffness"],
+    &["mesh"],
+    &["machine"],
+    &["solver"],
+    &["scenario"],
+    &["sensor"],
+    &["simulate"],
+    &["warnings", "signal"],
+    &["batch", "trace"],
+    &["tuning"],
+];
+
+/// Checks that every room imports rooms of earlier floors only.
+///
+/// # Arguments
+/// * `root` - folder of the workspace
+///
+/// # Errors
+/// 1 where one does not, and where a source cannot be read.
+pub fn check(root: &Path) -> Result<(), u8> {
+    let library = root.join("crates").join("meshtone").join("src");
+    let mut sources = Vec::new();
+    collect(&library, &mut sources).map_err(|error| {
+        eprintln!("error: {}: {error}", library.display());
+        1
+    })?;
+    sources.sort();
+    let mut refused = 0;
+    for path in &sources {
+        let text = fs::read_to_string(path).map_err(|error| {
+            eprintln!("error: {}: {error}", path.display());
+            1
+        })?;
+        let room = room_of(path.strip_prefix(&library).unwrap_or(path));
+        for (line, imported) in imports(&text) {
+            if let Some(problem) = problem(&room, imported) {
+                eprintln!("error: {}:{line}: {problem}", path.strip_prefix(root).unwrap_or(path).display());
+                refused += 1;
+            }
+        }
+    }
+    if refused == 0 { Ok(()) } else { Err(1) }
+}
+
+/// Every Rust file of a folder.
+fn collect(folder: &Path, sources: &mut Vec<PathBuf>) -> std::io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            collect(&path, sources)?;
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            sources.push(path);
+        }
+    }
+    Ok(())
+}
+
+/// The room that a file, relative to the library's sources, belongs to.
+fn room_of(file: &Path) -> String {
+    let first = file.components().next().map(|part| part.as_os_str().to_string_lossy().into_owned());
+    first.unwrap_or_default().trim_end_matches(".rs").to_string()
+}
+
+/// What a text names of its own crate, as `crate::name`: the line, from 1, and the name. Comments and tests are left out.
+fn imports(text: &str) -> Vec<(usize, &str)> {
+    const MARK: &str = "crate::";
+    let code = text.lines().enumerate().take_while(|(_, line)| line.trim() != "#[cfg(test)]");
+    let code = code.filter(|(_, line)| !line.trim_start().starts_with("//"));
+    code.flat_map(|(index, line)| {
+        let starts = line.match_indices(MARK).filter(|&(start, _)| is_start(line, start));
+        starts.map(move |(start, _)| (index + 1, name(&line[start + MARK.len()..])))
+    })
+    .collect()
+}
+
+/// Whether no longer word ends here, as in `$crate::` or `my_crate::`.
+fn is_start(line: &str, start: usize) -> bool {
+    !line[..start].ends_with(|before: char| before.is_alphanumeric() || before == '_' || before == '$')
+}
+
+fn name(text: &str) -> &str {
+    let end = text.find(|letter: char| !(letter.is_alphanumeric() || letter == '_')).unwrap_or(text.len());
+    &text[..end]
+}
+
+/// What is wrong with an import, if anything.
+fn problem(room: &str, imported: &str) -> Option<String> {
+    if room == imported || room == "lib" {
+        return None;
+    }
+    let floor = |room: &str| FLOORS.iter().position(|rooms| rooms.contains(&room));
+    match (floor(room), floor(imported)) {
+        (None, _) => Some(format!("`{room}` has no floor: give it one in xtask/src/rooms.rs")),
+        // A name of the library's own root, such as `crate::Error`, is told by its room.
+        (_, None) => Some(format!("names `crate::{imported}`, which is no room: name it by its room")),
+        (Some(own), Some(other)) if other < own => None,
+        _ => Some(format!(
+            "`{room}` imports `{imported}`: data flows down the list in xtask/src/rooms.rs and never back"
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn imports_are_found_outside_comments_and_tests() {
+        let text = "use crate::wheel::Gears;\n// crate::batch\nfn f(a: crate::keys::Row, b: $crate::x) {}\n\
+                    #[cfg(test)]\nmod tests { use crate::simulate; }\n";
+        assert_eq!(imports(text), [(1, "wheel"), (3, "keys")]);
+    }
+
+    #[test]
+    fn data_flows_down() {
+        assert_eq!(problem("damage", "wheel"), None);
+        assert!(
+            problem("wheel", "damage").is_some_and(|problem| problem.contains("`wheel` imports `damage`"))
+        );
+        assert!(problem("error", "random").is_some());
+        assert!(problem("attic", "wheel").is_some_and(|problem| problem.contains("no floor")));
+        assert_eq!(room_of(Path::new("wheel/quality/mod.rs")), "wheel");
+        assert_eq!(room_of(Path::new("model.rs")), "model");
+    }
+
+    #[test]
+    fn every_room_is_on_one_floor() {
+        let mut rooms: Vec<_> = FLOORS.concat();
+        let count = rooms.len();
+        rooms.sort_unstable();
+        rooms.dedup();
+        assert_eq!(rooms.len(), count);
+    }
+}
