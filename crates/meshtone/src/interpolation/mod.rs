@@ -15,6 +15,7 @@ pub use pchip_through::PchipThrough;
 /// Interval of a uniform grid that holds `x`, and the position within it.
 ///
 /// Outside the grid the nearest interval is used, so that the curve's end piece extrapolates.
+#[inline]
 pub(crate) fn locate(x: f64, start: f64, step: f64, points: usize) -> (usize, f64) {
     let position = (x - start) / step;
     let interval = (position.max(0.0) as usize).min(points - 2);

@@ -44,6 +44,7 @@ impl<'a> Pchip<'a> {
     }
 
     /// The curve at `x`; outside the points the end pieces extrapolate.
+    #[inline]
     pub fn at(&self, x: f64) -> f64 {
         let (i, t) = locate(x, self.start, self.step, self.values.len());
         let (y0, y1, d0, d1) = (self.values[i], self.values[i + 1], self.slopes[i], self.slopes[i + 1]);

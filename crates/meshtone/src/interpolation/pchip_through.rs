@@ -41,7 +41,7 @@ impl PchipThrough {
 
     /// The curve at `x`; outside the points the end pieces extrapolate.
     pub fn at(&self, x: f64) -> f64 {
-        self.on_piece(self.x.partition_point(|&knot| knot <= x).clamp(1, self.x.len() - 1) - 1, x)
+        self.piece(self.x.partition_point(|&knot| knot <= x).clamp(1, self.x.len() - 1) - 1).at(x)
     }
 
     /// The curve at rising places, each found from the one before.
@@ -49,22 +49,39 @@ impl PchipThrough {
     /// # Arguments
     /// * `places` - never falling
     pub fn at_rising(&self, places: impl IntoIterator<Item = f64>) -> Vec<f64> {
-        let mut piece = 0;
+        let (mut number, mut piece) = (0, self.piece(0));
         let value = |x: f64| {
-            while piece + 2 < self.x.len() && self.x[piece + 1] <= x {
-                piece += 1;
+            while number + 2 < self.x.len() && self.x[number + 1] <= x {
+                number += 1;
+                piece = self.piece(number);
             }
-            self.on_piece(piece, x)
+            piece.at(x)
         };
         places.into_iter().map(value).collect()
     }
 
-    fn on_piece(&self, i: usize, x: f64) -> f64 {
+    fn piece(&self, i: usize) -> Piece {
         let step = self.x[i + 1] - self.x[i];
-        let t = (x - self.x[i]) / step;
         let (d0, d1) = (self.slopes[i] * step, self.slopes[i + 1] * step);
         let rise = self.y[i + 1] - self.y[i];
-        self.y[i] + t * (d0 + t * (3.0 * rise - 2.0 * d0 - d1 + t * (d0 + d1 - 2.0 * rise)))
+        let factors = [self.y[i], d0, 3.0 * rise - 2.0 * d0 - d1, d0 + d1 - 2.0 * rise];
+        Piece { start: self.x[i], step, factors }
+    }
+}
+
+/// The curve between two of its points.
+struct Piece {
+    start: f64,
+    step: f64,
+    /// Of the powers of the part of the way from the one to the other.
+    factors: [f64; 4],
+}
+
+impl Piece {
+    fn at(&self, x: f64) -> f64 {
+        let t = (x - self.start) / self.step;
+        let [constant, linear, quadratic, cubic] = self.factors;
+        constant + t * (linear + t * (quadratic + t * cubic))
     }
 }
 

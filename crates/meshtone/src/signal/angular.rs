@@ -1,7 +1,8 @@
 //! A signal over the angle of a shaft instead of over time.
 
 use super::check::check_channel;
-use super::{Edge, ShaftPhase, SignalError, interpolate_band_limited, interpolate_pchip};
+use super::interpolate::{band_limited, pchip};
+use super::{Edge, ShaftPhase, SignalError};
 
 /// Relative excess over a power of two that is taken for rounding.
 const ROUNDING: f64 = 1e-6;
@@ -14,9 +15,9 @@ const MOST_POINTS: usize = 1 << 26;
 /// How the signal is read between its samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Interpolation {
-    /// PCHIP, as the published code: [`interpolate_pchip`]. It flattens peaks: a tone of 5 samples a period loses 5 %.
+    /// PCHIP, as the published code: [`super::interpolate_pchip`]. It flattens peaks: a tone of 5 samples a period loses 5 %.
     Pchip,
-    /// Sinc under Kaiser's window: [`interpolate_band_limited`]. Exact to 1.2e-5 of a tone up to 0.8 of half the sampling
+    /// Sinc under Kaiser's window: [`super::interpolate_band_limited`]. Exact to 1.2e-5 of a tone up to 0.8 of half the sampling
     /// rate.
     #[default]
     BandLimited,
@@ -87,8 +88,9 @@ pub fn points_per_revolution(phase: &ShaftPhase) -> usize {
             start += 1;
         }
         let turned = revolutions[end] - revolutions[start];
-        if turned >= 1.0 {
-            longest = longest.max((end - start) as f64 / turned);
+        let samples = (end - start) as f64;
+        if turned >= 1.0 && samples > longest * turned {
+            longest = samples / turned;
         }
     }
     if longest == 0.0 {
@@ -152,8 +154,8 @@ pub fn angular_resample(
     }
     let places = places(phase, next_rev, start_rev, points, count);
     let values = match settings.interpolation {
-        Interpolation::Pchip => interpolate_pchip(signal, &places, settings.edge)?,
-        Interpolation::BandLimited => interpolate_band_limited(signal, &places, settings.edge)?,
+        Interpolation::Pchip => pchip(signal, places, settings.edge),
+        Interpolation::BandLimited => band_limited(signal, places, settings.edge),
     };
     Ok(AngularSignal {
         points_per_revolution: points,
@@ -197,24 +199,45 @@ fn whole_recording(signal: &[f64], phase: &ShaftPhase) -> Result<Revolutions, Si
 }
 
 /// Places of the values between the samples, straight lines between the samples' phases.
-fn places(phase: &ShaftPhase, next_rev: f64, start_rev: f64, points: usize, revolutions: usize) -> Vec<f64> {
+fn places(
+    phase: &ShaftPhase,
+    next_rev: f64,
+    start_rev: f64,
+    points: usize,
+    revolutions: usize,
+) -> impl Iterator<Item = f64> {
     let known = &phase.revolutions;
-    let at = |sample: usize| known.get(sample).copied().unwrap_or(next_rev);
+    let at = move |sample: usize| known.get(sample).copied().unwrap_or(next_rev);
     let last = if next_rev > phase.last() { known.len() } else { known.len() - 1 };
-    let mut sample = 0;
-    (0..points * revolutions)
-        .map(|i| {
-            let angle = start_rev + (i / points) as f64 + (i % points) as f64 / points as f64;
-            while sample + 1 < last && at(sample + 1) <= angle {
-                sample += 1;
-            }
-            let (from, to) = (at(sample), at(sample + 1));
-            (phase.first_sample + sample) as f64 + (angle - from) / (to - from)
-        })
-        .collect()
+    let within: Vec<f64> = (0..points).map(|point| point as f64 / points as f64).collect();
+    let (mut revolution, mut revolution_start, mut point) = (0, start_rev, 0);
+    let (mut sample, mut from, mut to) = (0, at(0), at(1));
+    (0..points * revolutions).map(move |_| {
+        if point == points {
+            revolution += 1;
+            (point, revolution_start) = (0, start_rev + revolution as f64);
+        }
+        let angle = revolution_start + within[point];
+        point += 1;
+        while sample + 1 < last && to <= angle {
+            sample += 1;
+            (from, to) = (to, at(sample + 1));
+        }
+        (phase.first_sample + sample) as f64 + (angle - from) / (to - from)
+    })
 }
 
 fn nyquist_order(phase: &ShaftPhase) -> f64 {
-    let quickest = phase.revolutions.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
-    0.5 / quickest
+    /// Maxima that are found side by side.
+    const LANES: usize = 8;
+    let larger = |a: f64, b: f64| if b > a { b } else { a };
+    let mut quickest = [0.0; LANES];
+    for steps in phase.revolutions.windows(LANES + 1).step_by(LANES) {
+        for lane in 0..LANES {
+            quickest[lane] = larger(quickest[lane], steps[lane + 1] - steps[lane]);
+        }
+    }
+    let last = phase.revolutions.len().saturating_sub(LANES + 1);
+    let rest = phase.revolutions[last..].windows(2).map(|pair| pair[1] - pair[0]);
+    0.5 / rest.chain(quickest).fold(0.0, larger)
 }

@@ -1,21 +1,16 @@
 //! Reading signals at any places behind an anti-aliasing filter.
 
-use std::sync::OnceLock;
+use std::sync::LazyLock;
 
 use super::check::check_positive;
-use super::kaiser::{kaiser, sinc};
+use super::filter_bank::{FilterBank, Place, SincCurve};
+use super::resample::{BETA, ZERO_CROSSINGS};
 use super::{Edge, SignalError};
 
-/// Zero crossings of the filter on each side and Kaiser's β: those of [`super::resample`].
-const ZERO_CROSSINGS: usize = 10;
-const BETA: f64 = 5.0;
-/// Values of the filter that are tabulated between two zero crossings: straight lines between them are off by 1.2e-6 of the
-/// middle tap at most.
-const PROTOTYPE_STEPS: usize = 1024;
 /// Rows of taps between two samples, times the ratio of the rates: straight lines between them are off by 4.7e-6 at most.
 const ROW_STEPS: f64 = 512.0;
-/// Sums that run side by side: as many as processors have in four vector registers, so that none waits for the one before.
-const LANES: usize = 32;
+/// The filter of [`super::resample`].
+static CURVE: LazyLock<SincCurve> = LazyLock::new(|| SincCurve::new(ZERO_CROSSINGS, BETA));
 
 /// A low-pass filter at half the lower of two sampling rates, whatever their ratio, that reads signals in single precision at
 /// any places.
@@ -24,13 +19,11 @@ const LANES: usize = 32;
 /// half that rate, and below 0.2 % from 1.2 of it on. The ratio of the rates need not be one of whole numbers.
 #[derive(Debug, Clone)]
 pub struct AntiAliasing {
+    bank: FilterBank,
     /// Samples on each side of a place.
     reach: usize,
-    /// Taps in a row: twice the reach, made a multiple of [`LANES`] with zeros.
-    taps: usize,
+    /// Rows of taps from one sample to the next.
     steps: usize,
-    /// `steps + 1` rows, one for each place between two samples.
-    rows: Vec<f32>,
 }
 
 impl AntiAliasing {
@@ -62,17 +55,12 @@ impl AntiAliasing {
         if rate > 1e5 {
             return Err(SignalError::parameter("to_hz", to_hz, "at least 1e-5 of from_hz"));
         }
-        let reach = (ZERO_CROSSINGS as f64 * rate).ceil() as usize;
-        let taps = (2 * reach).next_multiple_of(LANES);
         let steps = (ROW_STEPS / rate).ceil() as usize;
-        let mut rows = vec![0.0; taps * (steps + 1)];
-        for (step, row) in rows.chunks_exact_mut(taps).enumerate() {
-            let place = step as f64 / steps as f64 + (reach - 1) as f64;
-            let weights: Vec<f64> = (0..2 * reach).map(|i| prototype((place - i as f64) / rate)).collect();
-            let sum: f64 = weights.iter().sum();
-            row.iter_mut().zip(weights).for_each(|(tap, weight)| *tap = (weight / sum) as f32);
-        }
-        Ok(Self { reach, taps, steps, rows })
+        Ok(Self {
+            bank: FilterBank::low_pass(&CURVE, rate, steps),
+            reach: FilterBank::reach(&CURVE, rate),
+            steps,
+        })
     }
 
     /// Reads signals of one length at places between their samples.
@@ -82,104 +70,11 @@ impl AntiAliasing {
     /// * `places` - in samples from the first; fractions are places between samples
     /// * `edge` - how the signals go on beyond their ends
     ///
-    /// Returns the values of each signal. The order of all additions is fixed: the same bits on every machine.
+    /// Returns the values of each signal.
     pub fn read(&self, signals: &[&[f32]], places: impl Iterator<Item = f64>, edge: Edge) -> Vec<Vec<f32>> {
-        // Compiled for several sets of vector instructions. None of them fuses a multiplication with an addition here.
-        pulp::Arch::new().dispatch(Reading { filter: self, signals, places, edge })
+        let places = places.map(|place| Place::between_samples(place, self.reach, self.steps));
+        self.bank.read(signals, places, edge, |value| value as f32)
     }
-
-    #[inline(always)]
-    fn read_at(&self, signals: &[&[f32]], places: impl Iterator<Item = f64>, edge: Edge) -> Vec<Vec<f32>> {
-        let expected = places.size_hint().0;
-        let mut values: Vec<Vec<f32>> = signals.iter().map(|_| Vec::with_capacity(expected)).collect();
-        let mut taps = vec![0.0; self.taps];
-        let mut window = vec![0.0; self.taps];
-        for place in places {
-            let whole = place.floor();
-            self.taps_at(place - whole, &mut taps);
-            let first = whole as isize + 1 - self.reach as isize;
-            for (values, signal) in values.iter_mut().zip(signals) {
-                let inside = usize::try_from(first).ok().and_then(|i| signal.get(i..i + self.taps));
-                let samples = inside.unwrap_or_else(|| {
-                    for (x, i) in window.iter_mut().zip(first..) {
-                        *x = edge.index(i, signal.len()).map_or(0.0, |i| signal[i]);
-                    }
-                    &window
-                });
-                values.push(weighted(&taps, samples));
-            }
-        }
-        values
-    }
-
-    /// Taps for a place of `fraction` between two samples.
-    #[inline(always)]
-    fn taps_at(&self, fraction: f64, taps: &mut [f32]) {
-        let step = fraction * self.steps as f64;
-        let row = (step as usize).min(self.steps - 1);
-        let t = (step - row as f64) as f32;
-        let [a, b] = [row, row + 1].map(|row| &self.rows[row * self.taps..(row + 1) * self.taps]);
-        for ((tap, a), b) in taps.iter_mut().zip(a).zip(b) {
-            *tap = a + t * (b - a);
-        }
-    }
-}
-
-/// One call of [`AntiAliasing::read`].
-struct Reading<'a, P> {
-    filter: &'a AntiAliasing,
-    signals: &'a [&'a [f32]],
-    places: P,
-    edge: Edge,
-}
-
-impl<P: Iterator<Item = f64>> pulp::NullaryFnOnce for Reading<'_, P> {
-    type Output = Vec<Vec<f32>>;
-
-    #[inline(always)]
-    fn call(self) -> Self::Output {
-        self.filter.read_at(self.signals, self.places, self.edge)
-    }
-}
-
-/// `Σ taps x`, in as many sums as run side by side.
-#[inline(always)]
-fn weighted(taps: &[f32], x: &[f32]) -> f32 {
-    let mut sums = [0.0f32; LANES];
-    for (taps, x) in taps.chunks_exact(LANES).zip(x.chunks_exact(LANES)) {
-        for lane in 0..LANES {
-            sums[lane] += taps[lane] * x[lane];
-        }
-    }
-    // Halves onto halves, down to one.
-    let mut width = LANES / 2;
-    while width > 0 {
-        for lane in 0..width {
-            sums[lane] += sums[lane + width];
-        }
-        width /= 2;
-    }
-    sums[0]
-}
-
-/// The filter at `t` zero crossings from its middle, of height 1.
-fn prototype(t: f64) -> f64 {
-    static TABLE: OnceLock<Vec<f64>> = OnceLock::new();
-    let last = ZERO_CROSSINGS * PROTOTYPE_STEPS;
-    let table = TABLE.get_or_init(|| {
-        let value = |i: usize| {
-            let t = i as f64 / PROTOTYPE_STEPS as f64;
-            sinc(t) * kaiser(t / ZERO_CROSSINGS as f64, BETA)
-        };
-        (0..=last).map(value).collect()
-    });
-    let place = t.abs() * PROTOTYPE_STEPS as f64;
-    let index = place as usize;
-    if index >= last {
-        return 0.0;
-    }
-    let fraction = place - index as f64;
-    table[index] + fraction * (table[index + 1] - table[index])
 }
 
 #[cfg(test)]

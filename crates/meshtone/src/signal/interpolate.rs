@@ -1,20 +1,21 @@
 //! Values of a signal between its samples.
 
-use std::sync::OnceLock;
+use std::sync::LazyLock;
 
 use super::check::check_finite;
-use super::kaiser::{kaiser, sinc};
+use super::filter_bank::{FilterBank, Place, SincCurve};
 use super::{Edge, SignalError};
 use crate::interpolation::Pchip;
 
 /// Samples on each side that the band-limited interpolation reads.
 const REACH: usize = 16;
-const TAPS: usize = 2 * REACH;
 /// Kaiser's β: 100 dB.
 const BETA: f64 = 10.0;
 /// Places between two samples for which the taps are tabulated; straight lines between them are off by
 /// `(π/STEPS)²/8` at most, 1.2e-6.
 const STEPS: usize = 1024;
+static BANK: LazyLock<FilterBank> =
+    LazyLock::new(|| FilterBank::low_pass(&SincCurve::new(REACH, BETA), 1.0, STEPS));
 /// Beyond this a place has no fraction any more.
 const FARTHEST: f64 = 1e15;
 /// Samples that PCHIP reads beyond an end.
@@ -45,10 +46,15 @@ pub fn interpolate_pchip(signal: &[f64], places: &[f64], edge: Edge) -> Result<V
         return Err(SignalError::TooFew { what: "samples", given: signal.len(), needed: 2 });
     }
     check_places(places)?;
+    Ok(pchip(signal, places.iter().copied(), edge))
+}
+
+/// As [`interpolate_pchip`], of samples and at places that are known to be numbers.
+pub(super) fn pchip(signal: &[f64], places: impl Iterator<Item = f64>, edge: Edge) -> Vec<f64> {
     // PCHIP has its own ends where there is nothing beyond them.
     if edge == Edge::Zero {
         let curve = Pchip::uniform(0.0, 1.0, signal);
-        return Ok(places.iter().map(|&place| curve.at(place)).collect());
+        return places.map(|place| curve.at(place)).collect();
     }
     let n = signal.len() as isize;
     let beyond = |i: isize| edge.index(i, signal.len()).map_or(0.0, |i| signal[i]);
@@ -57,7 +63,7 @@ pub fn interpolate_pchip(signal: &[f64], places: &[f64], edge: Edge) -> Result<V
     extended.extend_from_slice(signal);
     extended.extend((n..n + PCHIP_REACH).map(beyond));
     let curve = Pchip::uniform(-PCHIP_REACH as f64, 1.0, &extended);
-    Ok(places.iter().map(|&place| curve.at(place)).collect())
+    places.map(|place| curve.at(place)).collect()
 }
 
 /// Reads a signal at places between its samples by the sinc under Kaiser's window with β = 10, 16 samples on each side.
@@ -89,45 +95,13 @@ pub fn interpolate_band_limited(signal: &[f64], places: &[f64], edge: Edge) -> R
         return Err(SignalError::TooFew { what: "samples", given: 0, needed: 1 });
     }
     check_places(places)?;
-    // Compiled for several sets of vector instructions. None of them fuses a multiplication with an addition here.
-    Ok(pulp::Arch::new().dispatch(BandLimited { signal, places, edge }))
+    Ok(band_limited(signal, places.iter().copied(), edge))
 }
 
-/// One call of [`interpolate_band_limited`].
-struct BandLimited<'a> {
-    signal: &'a [f64],
-    places: &'a [f64],
-    edge: Edge,
-}
-
-impl pulp::NullaryFnOnce for BandLimited<'_> {
-    type Output = Vec<f64>;
-
-    #[inline(always)]
-    fn call(self) -> Vec<f64> {
-        band_limited(self.signal, self.places, self.edge)
-    }
-}
-
-#[inline(always)]
-fn band_limited(signal: &[f64], places: &[f64], edge: Edge) -> Vec<f64> {
-    let table = taps();
-    let mut window = [0.0; TAPS];
-    let value = |&place: &f64| {
-        let whole = place.floor();
-        let step = (place - whole) * STEPS as f64;
-        let row = (step as usize).min(STEPS - 1);
-        let first = whole as isize + 1 - REACH as isize;
-        let inside = usize::try_from(first).ok().and_then(|i| signal.get(i..i + TAPS));
-        let samples = inside.and_then(|samples| samples.try_into().ok()).unwrap_or_else(|| {
-            for (x, i) in window.iter_mut().zip(first..) {
-                *x = edge.index(i, signal.len()).map_or(0.0, |i| signal[i]);
-            }
-            &window
-        });
-        weighted(samples, &table[row], &table[row + 1], step - row as f64)
-    };
-    places.iter().map(value).collect()
+/// As [`interpolate_band_limited`], of samples and at places that are known to be numbers.
+pub(super) fn band_limited(signal: &[f64], places: impl Iterator<Item = f64>, edge: Edge) -> Vec<f64> {
+    let places = places.map(|place| Place::between_samples(place, REACH, STEPS));
+    BANK.read(&[signal], places, edge, |value| value).swap_remove(0)
 }
 
 fn check_places(places: &[f64]) -> Result<(), SignalError> {
@@ -136,36 +110,4 @@ fn check_places(places: &[f64]) -> Result<(), SignalError> {
         Some(&place) => Err(SignalError::parameter("place", place, "within 1e15 samples")),
         None => Ok(()),
     }
-}
-
-/// `Σ x ((1 − t) a + t b)`, in four sums that the processor can run side by side.
-#[inline(always)]
-fn weighted(x: &[f64; TAPS], a: &[f64; TAPS], b: &[f64; TAPS], t: f64) -> f64 {
-    let mut sums = [0.0; 4];
-    for i in (0..TAPS).step_by(4) {
-        for lane in 0..4 {
-            let tap = a[i + lane] + t * (b[i + lane] - a[i + lane]);
-            sums[lane] += tap * x[i + lane];
-        }
-    }
-    (sums[0] + sums[1]) + (sums[2] + sums[3])
-}
-
-/// Taps for each place between two samples, `STEPS + 1` of them, scaled so that a constant stays one.
-fn taps() -> &'static [[f64; TAPS]] {
-    static TABLE: OnceLock<Vec<[f64; TAPS]>> = OnceLock::new();
-    TABLE.get_or_init(|| {
-        (0..=STEPS)
-            .map(|step| {
-                let place = step as f64 / STEPS as f64 + (REACH - 1) as f64;
-                let mut row: [f64; TAPS] = std::array::from_fn(|i| {
-                    let away = place - i as f64;
-                    sinc(away) * kaiser(away / REACH as f64, BETA)
-                });
-                let sum: f64 = row.iter().sum();
-                row.iter_mut().for_each(|tap| *tap /= sum);
-                row
-            })
-            .collect()
-    })
 }

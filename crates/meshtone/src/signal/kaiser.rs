@@ -20,9 +20,15 @@ pub fn kaiser(position: f64, beta: f64) -> f64 {
     if inside < 0.0 { 0.0 } else { bessel_i0(beta * inside.sqrt()) / bessel_i0(beta) }
 }
 
-/// `sin πx/(πx)`.
-pub(super) fn sinc(x: f64) -> f64 {
-    if x == 0.0 { 1.0 } else { (PI * x).sin() / (PI * x) }
+/// The ideal low-pass filter under Kaiser's window: `sin πt/(πt)` times the window, 1 in the middle.
+///
+/// # Arguments
+/// * `t` - (zero crossings) from the middle
+/// * `zero_crossings` - on each side, the last one at the window's end
+/// * `beta` - (-) the window's shape
+pub(super) fn windowed_sinc(t: f64, zero_crossings: f64, beta: f64) -> f64 {
+    let sinc = if t == 0.0 { 1.0 } else { (PI * t).sin() / (PI * t) };
+    sinc * kaiser(t / zero_crossings, beta)
 }
 
 /// Modified Bessel function `I₀(x) = Σ ((x/2)^k/k!)²`.

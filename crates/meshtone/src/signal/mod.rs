@@ -20,6 +20,7 @@ mod check;
 mod edge;
 mod envelope;
 mod error;
+mod filter_bank;
 mod fourier;
 mod indicators;
 mod interpolate;

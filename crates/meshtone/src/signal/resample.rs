@@ -1,13 +1,14 @@
 //! Another sampling rate.
 
 use super::check::check_positive;
-use super::kaiser::{kaiser, sinc};
+use super::filter_bank::{FilterBank, Place};
+use super::kaiser::windowed_sinc;
 use super::{Edge, SignalError};
 
 /// Zero crossings of the default filter on each side, in samples of the lower rate.
-const ZERO_CROSSINGS: usize = 10;
+pub(super) const ZERO_CROSSINGS: usize = 10;
 /// Kaiser's β of the default filter.
-const BETA: f64 = 5.0;
+pub(super) const BETA: f64 = 5.0;
 /// Largest `up` and `down`: the filter has 20 times as many taps.
 const LARGEST_FACTOR: usize = 100_000;
 /// Relative deviation of a ratio of rates that is taken for rounding.
@@ -84,10 +85,21 @@ pub fn resample_with(
     if taps.len().is_multiple_of(2) {
         return Err(SignalError::parameter("number of taps", taps.len() as f64, "odd"));
     }
-    let branches = Branches::new(taps, up);
-    let half = taps.len() / 2;
+    let length = taps.len().div_ceil(up);
+    let bank = FilterBank::new((0..up).map(|position| branch(taps, up, position, length)));
     let samples = (signal.len() * up).div_ceil(down);
-    Ok((0..samples).map(|m| branches.output(signal, m * down + half, edge)).collect())
+    // Where the filter's first tap lies at first: on a sample, or so many steps of the high rate behind it.
+    let (mut newest, mut behind) = (taps.len() / 2 / up, taps.len() / 2 % up);
+    let places = (0..samples).map(|_| {
+        let place = Place { first: newest as isize + 1 - length as isize, row: behind, between: 0.0 };
+        newest += down / up;
+        behind += down % up;
+        if behind >= up {
+            (newest, behind) = (newest + 1, behind - up);
+        }
+        place
+    });
+    Ok(bank.read(&[signal], places, edge, |value| value).swap_remove(0))
 }
 
 /// The default filter: an ideal low-pass at half the lower rate under Kaiser's window with β = 5 and 10 zero crossings on
@@ -115,7 +127,7 @@ pub fn resampling_taps(up: usize, down: usize) -> Result<Vec<f64>, SignalError> 
     let mut taps: Vec<f64> = (0..=2 * half)
         .map(|i| {
             let offset = i as f64 - half as f64;
-            sinc(offset / rate as f64) * kaiser(offset / half as f64, BETA)
+            windowed_sinc(offset / rate as f64, ZERO_CROSSINGS as f64, BETA)
         })
         .collect();
     let scale = up as f64 / taps.iter().sum::<f64>();
@@ -162,35 +174,13 @@ pub fn resampling_ratio(from_hz: f64, to_hz: f64) -> Result<(usize, usize), Sign
     Ok((up.1 as usize, down.1 as usize))
 }
 
-/// The filter's taps by the position of a new sample between two old ones.
-struct Branches {
-    up: usize,
-    /// For each of the `up` positions the taps, the one of the oldest sample first.
-    taps: Vec<Vec<f64>>,
-}
-
-impl Branches {
-    fn new(taps: &[f64], up: usize) -> Self {
-        let branch = |first: usize| {
-            let mut branch: Vec<f64> = taps.iter().skip(first).step_by(up).copied().collect();
-            branch.reverse();
-            branch
-        };
-        Self { up, taps: (0..up).map(branch).collect() }
-    }
-
-    /// What the filter gives when its first tap has come to `tick`, in steps of the high rate.
-    fn output(&self, signal: &[f64], tick: usize, edge: Edge) -> f64 {
-        let branch = &self.taps[tick % self.up];
-        let newest = (tick / self.up) as isize;
-        let oldest = newest + 1 - branch.len() as isize;
-        if oldest >= 0 && (newest as usize) < signal.len() {
-            let window = &signal[oldest as usize..=newest as usize];
-            return branch.iter().zip(window).map(|(tap, x)| tap * x).sum();
-        }
-        let at = |n: isize| edge.index(n, signal.len()).map_or(0.0, |i| signal[i]);
-        branch.iter().zip(oldest..).map(|(tap, n)| tap * at(n)).sum()
-    }
+/// The filter's taps for a new sample at one of `up` positions between two old ones: every `up`-th of them, that of the oldest
+/// sample first, behind zeros where there are fewer than `length`.
+fn branch(taps: &[f64], up: usize, position: usize, length: usize) -> Vec<f64> {
+    let mut branch: Vec<f64> = taps.iter().skip(position).step_by(up).copied().collect();
+    branch.resize(length, 0.0);
+    branch.reverse();
+    branch
 }
 
 fn check_factors(up: usize, down: usize) -> Result<(), SignalError> {

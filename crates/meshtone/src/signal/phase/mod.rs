@@ -107,6 +107,10 @@ impl ShaftPhase {
             });
         }
         super::check::check_finite(revolutions)?;
+        // All of them first, many at a time: hardly any phase has to be searched.
+        if revolutions.windows(2).fold(true, |rising, pair| rising & (pair[1] > pair[0])) {
+            return Ok(());
+        }
         if let Some(i) = revolutions.windows(2).position(|pair| pair[1] <= pair[0]) {
             return Err(SignalError::NotForwards {
                 sample: self.first_sample.saturating_add(i + 1),
