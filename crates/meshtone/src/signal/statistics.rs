@@ -1,29 +1,132 @@
 //! Numbers that sum up a signal.
 
-/// Partial sums that are formed side by side: in a single one every addition would wait for the one before.
+use crate::simd::{InstructionSet, Instructions, Lanes, Task};
+
+/// Partial results that are formed side by side, every eighth value going to the same one: in a single one every addition
+/// would wait for the one before. They are taken together at the end, always in the same order, and nothing is fused: the
+/// same bits whatever vector instructions there are.
 const LANES: usize = 8;
 
-/// The values taken in to as many partial results, every eighth to the same one, and those taken together at the end:
-/// always in the same order.
-#[inline(always)]
-fn reduced(signal: &[f64], start: f64, reduce: impl Fn(f64, f64) -> f64 + Copy) -> [f64; LANES] {
-    let mut lanes = [start; LANES];
-    let (blocks, rest) = signal.as_chunks::<LANES>();
-    for block in blocks {
-        for (lane, &x) in lanes.iter_mut().zip(block) {
-            *lane = reduce(*lane, x);
-        }
-    }
-    for (lane, &x) in lanes.iter_mut().zip(rest) {
-        *lane = reduce(*lane, x);
-    }
-    lanes
+/// What one pass over a signal gives.
+struct Sums {
+    /// `Σx²`.
+    squares: f64,
+    /// `Σ(x − x₀)`, x₀ the first value: seen from there a constant is exactly 0, and so is its mean.
+    from_first: f64,
+    /// The largest `|x|`.
+    peak: f64,
 }
 
-/// `Σ f(x)`.
-#[inline(always)]
-fn sum(signal: &[f64], f: impl Fn(f64) -> f64 + Copy) -> f64 {
-    reduced(signal, 0.0, |sum, x| sum + f(x)).iter().sum()
+impl Sums {
+    fn of(signal: &[f64]) -> Self {
+        InstructionSet::fastest().run(SumsOf(signal))
+    }
+
+    /// The mean, from the first value.
+    fn mean_from_first(&self, signal: &[f64]) -> f64 {
+        self.from_first / signal.len() as f64
+    }
+}
+
+/// A pass for [`Sums`].
+struct SumsOf<'a>(&'a [f64]);
+
+impl Task for SumsOf<'_> {
+    type Output = Sums;
+
+    #[inline(always)]
+    fn run<I: Instructions>(self, simd: I) -> Sums {
+        let zero = Lanes::<LANES>::splat(0.0);
+        let first = self.0.first().copied().unwrap_or(f64::NAN);
+        let (mut squares, mut from_first, mut peak) = (zero, zero, zero);
+        let (blocks, rest) = self.0.as_chunks::<LANES>();
+        for &block in blocks {
+            let x = Lanes(block);
+            squares = squares.add(simd, x.mul(simd, x));
+            from_first = from_first.add(simd, x.sub(simd, Lanes::splat(first)));
+            let size = x.neg(simd).where_less(simd, x, zero, x);
+            // NaN is never larger.
+            peak = size.where_less(simd, peak, size, peak);
+        }
+        for (lane, &x) in rest.iter().enumerate() {
+            squares.0[lane] += x * x;
+            from_first.0[lane] += x - first;
+            peak.0[lane] = larger(peak.0[lane], x.abs());
+        }
+        Sums {
+            squares: total(squares.0),
+            from_first: total(from_first.0),
+            peak: peak.0.into_iter().fold(0.0, larger),
+        }
+    }
+}
+
+/// A pass for `Σ(x − x̄)²` and `Σ(x − x̄)ᵏ`, k being `ORDER`.
+struct Powers<'a, const ORDER: i32> {
+    signal: &'a [f64],
+    /// The first value, and the mean as seen from there.
+    first: f64,
+    mean: f64,
+}
+
+impl<const ORDER: i32> Task for Powers<'_, ORDER> {
+    type Output = [f64; 2];
+
+    #[inline(always)]
+    fn run<I: Instructions>(self, simd: I) -> [f64; 2] {
+        let Self { signal, first, mean } = self;
+        let [mut squares, mut powers] = [Lanes::<LANES>::splat(0.0); 2];
+        let (blocks, rest) = signal.as_chunks::<LANES>();
+        for &block in blocks {
+            let off = Lanes(block).sub(simd, Lanes::splat(first)).sub(simd, Lanes::splat(mean));
+            let square = off.mul(simd, off);
+            squares = squares.add(simd, square);
+            let power = match ORDER {
+                2 => square,
+                3 => square.mul(simd, off),
+                _ => {
+                    let fourth = square.mul(simd, square);
+                    match ORDER {
+                        6 => fourth.mul(simd, square),
+                        8 => fourth.mul(simd, fourth),
+                        _ => fourth,
+                    }
+                }
+            };
+            powers = powers.add(simd, power);
+        }
+        for (lane, &x) in rest.iter().enumerate() {
+            let off = x - first - mean;
+            squares.0[lane] += off * off;
+            powers.0[lane] += off.powi(ORDER);
+        }
+        [total(squares.0), total(powers.0)]
+    }
+}
+
+/// `Σ(x − x̄)²` and `Σ(x − x̄)ᵏ`.
+fn central_sums(signal: &[f64], mean: f64, order: i32) -> [f64; 2] {
+    let first = signal.first().copied().unwrap_or(f64::NAN);
+    let instructions = InstructionSet::fastest();
+    match order {
+        2 => instructions.run(Powers::<2> { signal, first, mean }),
+        3 => instructions.run(Powers::<3> { signal, first, mean }),
+        4 => instructions.run(Powers::<4> { signal, first, mean }),
+        6 => instructions.run(Powers::<6> { signal, first, mean }),
+        8 => instructions.run(Powers::<8> { signal, first, mean }),
+        _ => {
+            let [squares, _] = instructions.run(Powers::<2> { signal, first, mean });
+            [squares, signal.iter().map(|x| (x - first - mean).powi(order)).sum()]
+        }
+    }
+}
+
+fn larger(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
+}
+
+fn total(lanes: [f64; LANES]) -> f64 {
+    lanes.iter().sum()
 }
 
 /// Root mean square, `√(Σx²/n)`.
@@ -37,7 +140,7 @@ fn sum(signal: &[f64], f: impl Fn(f64) -> f64 + Copy) -> f64 {
 /// assert_eq!(meshtone::signal::rms(&[3.0, -3.0, 3.0, -3.0]), 3.0);
 /// ```
 pub fn rms(signal: &[f64]) -> f64 {
-    (sum(signal, |x| x * x) / signal.len() as f64).sqrt()
+    (Sums::of(signal).squares / signal.len() as f64).sqrt()
 }
 
 /// Peak, the largest `|x|`.
@@ -51,9 +154,7 @@ pub fn rms(signal: &[f64]) -> f64 {
 /// assert_eq!(meshtone::signal::peak(&[1.0, -4.0, 2.0]), 4.0);
 /// ```
 pub fn peak(signal: &[f64]) -> f64 {
-    // NaN is never larger.
-    let larger = |peak: f64, x: f64| if x.abs() > peak { x.abs() } else { peak };
-    reduced(signal, 0.0, larger).into_iter().fold(0.0, larger)
+    Sums::of(signal).peak
 }
 
 /// Peak to peak, the largest value less the least.
@@ -84,8 +185,9 @@ pub fn peak_to_peak(signal: &[f64]) -> f64 {
 /// assert_eq!(meshtone::signal::crest_factor(&[0.0; 3]), None);
 /// ```
 pub fn crest_factor(signal: &[f64]) -> Option<f64> {
-    let rms = rms(signal);
-    (rms > 0.0).then(|| peak(signal) / rms)
+    let sums = Sums::of(signal);
+    let rms = (sums.squares / signal.len() as f64).sqrt();
+    (rms > 0.0).then(|| sums.peak / rms)
 }
 
 /// Central moment `µ_k = Σ(x − x̄)ᵏ/n`, of the whole population.
@@ -100,24 +202,8 @@ pub fn crest_factor(signal: &[f64]) -> Option<f64> {
 /// assert_eq!(meshtone::signal::central_moment(&[1.0, 2.0, 3.0, 6.0], 2), 3.5);
 /// ```
 pub fn central_moment(signal: &[f64], order: i32) -> f64 {
-    let count = signal.len() as f64;
-    // Seen from its first value a constant is exactly 0, and so is its mean.
-    let first = signal.first().copied().unwrap_or(f64::NAN);
-    let mean = sum(signal, |x| x - first) / count;
-    let sum = match order {
-        2 => powers::<2>(signal, first, mean),
-        3 => powers::<3>(signal, first, mean),
-        4 => powers::<4>(signal, first, mean),
-        6 => powers::<6>(signal, first, mean),
-        8 => powers::<8>(signal, first, mean),
-        _ => sum(signal, |x| (x - first - mean).powi(order)),
-    };
-    sum / count
-}
-
-/// `Σ(x − first − mean)ᵏ` for a k that is known beforehand, and so a few multiplications.
-fn powers<const ORDER: i32>(signal: &[f64], first: f64, mean: f64) -> f64 {
-    sum(signal, |x| (x - first - mean).powi(ORDER))
+    let [_, powers] = central_sums(signal, Sums::of(signal).mean_from_first(signal), order);
+    powers / signal.len() as f64
 }
 
 /// Standard deviation `√µ₂`, of the whole population.
@@ -151,13 +237,15 @@ pub fn standard_deviation(signal: &[f64]) -> f64 {
 /// assert_eq!(standardised_moment(&[40.0; 8], 6), None);
 /// ```
 pub fn standardised_moment(signal: &[f64], order: i32) -> Option<f64> {
-    let variance = central_moment(signal, 2);
+    let sums = Sums::of(signal);
+    let [variance, moment] =
+        central_sums(signal, sums.mean_from_first(signal), order).map(|sum| sum / signal.len() as f64);
     let deviation = variance.sqrt();
     // What differs by rounding only is no signal.
-    let rounding = 4.0 * f64::EPSILON * peak(signal);
+    let rounding = 4.0 * f64::EPSILON * sums.peak;
     // Without the root where there is none, as in NA4 of a single record.
     let scale = if order % 2 == 0 { variance.powi(order / 2) } else { deviation.powi(order) };
-    (deviation > rounding).then(|| central_moment(signal, order) / scale)
+    (deviation > rounding).then(|| moment / scale)
 }
 
 /// Skewness `µ₃/µ₂^1.5`: 0 for what is as often so far above as below its mean.
