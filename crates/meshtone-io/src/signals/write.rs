@@ -33,9 +33,10 @@ pub fn write_signals(to: impl Write + Send, scenario: &Scenario, channels: &Chan
     let mut table = TableWriter::new(to, std::iter::once(time).chain(signals).collect(), properties)?;
     for start in (0..channels.len()).step_by(GROUP_ROWS) {
         let rows = start..channels.len().min(start + GROUP_ROWS);
-        let time: Vec<f64> = rows.clone().map(|i| channels.time_s(i)).collect();
+        let time = |row: usize| channels.time_s(start + row);
+        let time = Cells::Sequence { rows: rows.len(), at: &time };
         let signals = ChannelKind::ALL.map(|kind| Cells::Signal(&channels.get(kind)[rows.clone()]));
-        table.write_rows(std::iter::once(Cells::Signal(&time)).chain(signals).collect())?;
+        table.write_rows(std::iter::once(time).chain(signals).collect())?;
     }
     table.close()
 }

@@ -56,8 +56,10 @@ pub enum CellType {
     },
 }
 
+/// Cells of a sequence that are computed at a time.
+const SEQUENCE_BATCH: usize = 1024;
+
 /// The cells of a column in some rows.
-#[derive(Debug)]
 pub enum Cells<'c> {
     /// Of [`CellType::Int32`].
     Int32(Vec<Option<i32>>),
@@ -71,6 +73,13 @@ pub enum Cells<'c> {
     Float64(Vec<Option<f64>>),
     /// Of [`CellType::Float64`], none of them empty.
     Signal(&'c [f64]),
+    /// Of [`CellType::Float64`], none of them empty, computed when they are written.
+    Sequence {
+        /// How many.
+        rows: usize,
+        /// The cell of a row, counted from 0.
+        at: &'c dyn Fn(usize) -> f64,
+    },
     /// Of [`CellType::Text`].
     Text(Vec<Option<String>>),
     /// Of [`CellType::Float32List`].
@@ -225,6 +234,16 @@ fn write_cells(writer: &mut SerializedColumnWriter, column: &TableColumn, cells:
         }
         (CellType::Float64, Cells::Signal(signal)) if !column.nullable => {
             writer.typed::<data_type::DoubleType>().write_batch(signal, None, None).map(|_| ())
+        }
+        (CellType::Float64, Cells::Sequence { rows, at }) if !column.nullable => {
+            let writer = writer.typed::<data_type::DoubleType>();
+            let mut batch = Vec::with_capacity(SEQUENCE_BATCH);
+            for start in (0..rows).step_by(SEQUENCE_BATCH) {
+                batch.clear();
+                batch.extend((start..rows.min(start + SEQUENCE_BATCH)).map(at));
+                writer.write_batch(&batch, None, None)?;
+            }
+            Ok(())
         }
         (CellType::Text, Cells::Text(cells)) => {
             let texts = cells.into_iter().map(|cell| cell.map(|text| ByteArray::from(text.into_bytes())));

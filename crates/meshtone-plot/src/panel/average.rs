@@ -2,7 +2,7 @@
 
 use meshtone::Stages;
 use meshtone::sensor::Channels;
-use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts, revolution_average};
+use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
 use meshtone::wheel::WheelName;
 
 use super::damage;
@@ -59,13 +59,9 @@ struct Average {
 impl Average {
     fn new(channels: &Channels, shafts: &SimulatedShafts, shaft: Shaft) -> Self {
         // Where there is no whole revolution there is no average.
-        let angular = shafts.angular(&channels.vertical_g, shaft, &ChainSettings::default());
-        let (values, revolutions) = angular.map_or_else(
-            |_| (Vec::new(), 0),
-            |angular| {
-                (revolution_average(&angular.values, angular.points_per_revolution), angular.revolutions())
-            },
-        );
+        let average = shafts.average(&channels.vertical_g, shaft, &ChainSettings::default());
+        let (values, revolutions) =
+            average.map_or_else(|_| (Vec::new(), 0), |average| (average.values, average.revolutions));
         Self { values, revolutions, is_empty: channels.is_empty() }
     }
 

@@ -44,6 +44,17 @@ pub struct SynchronousAverage {
     pub values: Vec<f64>,
 }
 
+impl SynchronousAverage {
+    /// The average, unless there are too few revolutions to speak of one.
+    pub(super) fn of_enough_revolutions(self) -> Result<Self, SignalError> {
+        if self.revolutions < FEWEST_REVOLUTIONS {
+            let revolutions = self.revolutions as f64;
+            return Err(SignalError::TooFewRevolutions { revolutions, needed: FEWEST_REVOLUTIONS });
+        }
+        Ok(self)
+    }
+}
+
 /// Time synchronous average: the mean of all revolutions, angle by angle.
 ///
 /// Tones that do not repeat with the shaft and noise fall with the square root of the number of revolutions (a tone at a
@@ -107,16 +118,10 @@ pub fn segmented_averages(
 }
 
 fn average_of(angular: &AngularSignal, values: &[f64]) -> Result<SynchronousAverage, SignalError> {
-    let revolutions = values.len().checked_div(angular.points_per_revolution).unwrap_or(0);
-    if revolutions < FEWEST_REVOLUTIONS {
-        return Err(SignalError::TooFewRevolutions {
-            revolutions: revolutions as f64,
-            needed: FEWEST_REVOLUTIONS,
-        });
-    }
-    Ok(SynchronousAverage {
-        revolutions,
+    let average = SynchronousAverage {
+        revolutions: values.len().checked_div(angular.points_per_revolution).unwrap_or(0),
         nyquist_order: angular.nyquist_order,
         values: revolution_average(values, angular.points_per_revolution),
-    })
+    };
+    average.of_enough_revolutions()
 }

@@ -2,8 +2,8 @@
 
 use super::check::check_channel;
 use super::{
-    AngularSignal, ChainSettings, Interpolation, Record, ShaftPhase, SignalError, angular_resample,
-    process_average, process_segments_of, synchronous_average,
+    AngularSignal, ChainSettings, Interpolation, Record, ShaftPhase, SignalError, SynchronousAverage,
+    angular_resample, process_average, process_segments_of, revolution_average,
 };
 use crate::scenario::Scenario;
 use crate::sensor::Channels;
@@ -165,6 +165,47 @@ impl SimulatedShafts {
         }
     }
 
+    /// Average over the whole revolutions of [`Self::angular`]; of fewer than two it is no more than what there is.
+    ///
+    /// # Arguments
+    /// * `signal`, `shaft`, `settings` - as for [`Self::angular`]
+    ///
+    /// # Errors
+    /// As [`Self::angular`].
+    ///
+    /// ```
+    /// use meshtone::scenario::{GearPair, Scenario};
+    /// use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
+    ///
+    /// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 20, gear_teeth: 40, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+    /// scenario.solver.sampling_rate_hz = 1e4;
+    /// let channels = meshtone::simulate(&scenario)?.channels;
+    /// let shafts = SimulatedShafts::of_channels(&scenario, &channels);
+    /// let average = shafts.average(&channels.vertical_g, Shaft::Gear, &ChainSettings::default())?;
+    /// assert_eq!(average.revolutions, 20);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn average(
+        &self,
+        signal: &[f64],
+        shaft: Shaft,
+        settings: &ChainSettings,
+    ) -> Result<SynchronousAverage, SignalError> {
+        if let (Turning::Steady { start, .. }, true) = (&self.turning, signal.len() == self.samples) {
+            return Ok(average_from_first_tooth(
+                signal,
+                *start,
+                self.samples_per_revolution(shaft).unwrap_or(1),
+            ));
+        }
+        let angular = self.angular(signal, shaft, settings)?;
+        Ok(SynchronousAverage {
+            revolutions: angular.revolutions(),
+            nyquist_order: angular.nyquist_order,
+            values: revolution_average(&angular.values, angular.points_per_revolution),
+        })
+    }
+
     fn samples_per_revolution(&self, shaft: Shaft) -> Option<usize> {
         let Turning::Steady { samples_per_pinion_revolution, .. } = self.turning else { return None };
         let [pinion, gear] = self.teeth.map(|teeth| teeth.max(1) as usize);
@@ -190,8 +231,8 @@ impl SimulatedShafts {
         settings: &ChainSettings,
     ) -> Result<Record, SignalError> {
         check_channel(signal)?;
-        let angular = self.angular(signal, shaft, settings)?;
-        process_average(synchronous_average(&angular)?, self.teeth(shaft), &self.settings(settings))
+        let average = self.average(signal, shaft, settings)?.of_enough_revolutions()?;
+        process_average(average, self.teeth(shaft), &self.settings(settings))
     }
 
     /// As [`super::process_segments`], for one wheel of a simulated pair.
@@ -241,9 +282,52 @@ fn from_first_tooth(signal: &[f64], start: usize, points: usize) -> AngularSigna
     }
 }
 
+/// The average over the revolutions of [`from_first_tooth`], without a copy of the signal.
+fn average_from_first_tooth(signal: &[f64], start: usize, points: usize) -> SynchronousAverage {
+    let before = (points - start % points) % points;
+    let (earlier, later) = signal.split_at(before.min(signal.len()));
+    let mut sums = vec![0.0; points];
+    let mut add = |from: usize, values: &[f64]| {
+        sums[from..].iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+    };
+    let whole = later.chunks_exact(points);
+    let last = whole.remainder();
+    let mut revolutions = whole.len();
+    whole.for_each(|revolution| add(0, revolution));
+    if signal.len().is_multiple_of(points) && !earlier.is_empty() {
+        add(0, last);
+        add(last.len(), earlier);
+        revolutions += 1;
+    }
+    let values = if revolutions == 0 { Vec::new() } else { sums };
+    let values = values.into_iter().map(|sum: f64| sum / revolutions as f64).collect();
+    SynchronousAverage { revolutions, nyquist_order: points as f64 / 2.0, values }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::from_first_tooth;
+    use super::{average_from_first_tooth, from_first_tooth};
+    use crate::signal::revolution_average;
+
+    #[test]
+    fn the_average_is_that_of_the_turned_signal() {
+        let signal: Vec<f64> = (0..24).map(|i| f64::from(i * i % 17)).collect();
+        for (len, points) in [(24, 6), (24, 5), (24, 24), (23, 4), (7, 8), (0, 3)] {
+            for start in 0..30 {
+                let turned = from_first_tooth(&signal[..len], start, points);
+                let average = average_from_first_tooth(&signal[..len], start, points);
+                assert_eq!(
+                    average.values,
+                    revolution_average(&turned.values, points),
+                    "{len} {points} {start}"
+                );
+                assert_eq!(
+                    (average.revolutions, average.nyquist_order),
+                    (turned.revolutions(), turned.nyquist_order)
+                );
+            }
+        }
+    }
 
     #[test]
     fn whole_revolutions_are_turned_and_others_cut() {
