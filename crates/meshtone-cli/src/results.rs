@@ -90,12 +90,16 @@ pub fn stage_panel(
 ) -> Result<[StagedFile; 2], Failure> {
     let cannot = |error| Failure::failed(format!("cannot draw the panel: {error}"));
     let figure = panel::draw(stages, channels).map_err(cannot)?.of_run(&run.to_string());
-    let png = figure.png().map_err(cannot)?;
     let [svg_path, png_path] = PANEL.map(|name| directory.join(name));
-    Ok([
-        StagedFile::write(&svg_path, |file| file.write_all(figure.svg().as_bytes()))?,
-        StagedFile::write(&png_path, |file| file.write_all(&png))?,
-    ])
+    thread::scope(|scope| {
+        // Until it lies on the disk the other file can be drawn.
+        let svg =
+            scope.spawn(|| StagedFile::write(&svg_path, |file| file.write_all(figure.svg().as_bytes())));
+        let png = figure.png().map_err(cannot)?;
+        let png = StagedFile::write(&png_path, |file| file.write_all(&png))?;
+        let svg = svg.join().map_err(|_| Failure::failed("cannot write the panel"))??;
+        Ok([svg, png])
+    })
 }
 
 /// Gives the files their names, in the place of an earlier run's.

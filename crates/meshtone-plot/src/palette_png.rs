@@ -55,15 +55,14 @@ impl Cell {
 impl Indexed {
     /// Keeps the 256 most frequent cells; the rare shades of smoothed edges go to the nearest of them.
     fn new(picture: &[Colour]) -> Self {
-        let runs = || picture.chunk_by(|a, b| a == b).map(|run| (run[0], run.len() as u64));
         let mut cells = vec![Cell::default(); CELLS];
-        for (colour, length) in runs() {
+        for_each_run(picture, |colour, length| {
             let cell = &mut cells[cell_of(colour)];
-            cell.count += length;
+            cell.count += length as u64;
             for (sum, value) in cell.sum.iter_mut().zip(colour.rgb()) {
-                *sum += length * u64::from(value);
+                *sum += length as u64 * u64::from(value);
             }
-        }
+        });
         let mut used: Vec<usize> = (0..CELLS).filter(|&cell| cells[cell].count > 0).collect();
         used.sort_by_key(|&cell| std::cmp::Reverse(cells[cell].count));
         let colours: Vec<[u8; 3]> = used.iter().take(MOST_COLOURS).map(|&cell| cells[cell].mean()).collect();
@@ -73,11 +72,33 @@ impl Indexed {
             index_of[cell] = index as u8;
         }
         let mut pixels = Vec::with_capacity(picture.len());
-        for (colour, length) in runs() {
-            pixels.resize(pixels.len() + length as usize, index_of[cell_of(colour)]);
-        }
+        for_each_run(picture, |colour, length| {
+            pixels.resize(pixels.len() + length, index_of[cell_of(colour)]);
+        });
         Self { palette: colours.into_flattened(), pixels }
     }
+}
+
+/// Calls `f` with the colour and the length of each run of pixels of one colour.
+fn for_each_run(picture: &[Colour], mut f: impl FnMut(Colour, usize)) {
+    /// Pixels that are compared at once: most are background.
+    const BLOCK: usize = 16;
+    let Some(&first) = picture.first() else { return };
+    let (mut colour, mut length) = (first, 0);
+    for block in picture.chunks(BLOCK) {
+        if block.iter().fold(true, |same, pixel| same & (*pixel == colour)) {
+            length += block.len();
+            continue;
+        }
+        for &pixel in block {
+            if pixel != colour {
+                f(colour, length);
+                (colour, length) = (pixel, 0);
+            }
+            length += 1;
+        }
+    }
+    f(colour, length);
 }
 
 fn cell_of(colour: Colour) -> usize {
