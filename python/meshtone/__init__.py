@@ -13,10 +13,10 @@ takes signals, simulated or measured, to condition indicators; :mod:`meshtone.hy
 :mod:`meshtone.datasets` makes and loads labelled data sets; :mod:`meshtone.plotting` draws; :mod:`meshtone.examples` has scenarios to start from.
 """
 
-from . import datasets, examples, hybrid, signal
+from . import _damage, datasets, examples, hybrid, signal
 from ._core import __version__
+from ._damage import *
 from .datasets import Dataset, generate_dataset, load_dataset
-from .faults import Fault, MissingTooth, PartialFace, PitCircle, ThroughFace, ToothBreakage, ToothDestruction
 from .hybrid import enhance, tune
 from .recording import Recording, read_recording
 from .scenario import Scenario, template
@@ -26,19 +26,12 @@ from .simulation import CHANNELS, Signals, Simulation, simulate, simulate_many, 
 __all__ = [
     "CHANNELS",
     "Dataset",
-    "Fault",
-    "MissingTooth",
-    "PartialFace",
-    "PitCircle",
     "Record",
     "Recording",
     "Scenario",
     "ShaftPhase",
     "Signals",
     "Simulation",
-    "ThroughFace",
-    "ToothBreakage",
-    "ToothDestruction",
     "__version__",
     "datasets",
     "enhance",
@@ -56,3 +49,4 @@ __all__ = [
     "trace",
     "tune",
 ]
+__all__ += _damage.__all__

@@ -8,6 +8,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal, Union
 
+__all__ = [
+    "Fault",
+    "MissingTooth",
+    "PartialFace",
+    "PitCircle",
+    "ThroughFace",
+    "ToothBreakage",
+    "ToothDestruction",
+]
+
 
 @dataclass(frozen=True)
 class PitCircle:

@@ -15,27 +15,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any
 
-from ._damage import (
-    KINDS,
-    TABLES,
-    Fault,
-    MissingTooth,
-    PartialFace,
-    PitCircle,
-    ThroughFace,
-    ToothBreakage,
-    ToothDestruction,
-)
+from . import _damage
+from ._damage import *
+from ._damage import KINDS, TABLES, Fault, MissingTooth, ToothBreakage
 
-__all__ = [
-    "Fault",
-    "MissingTooth",
-    "PartialFace",
-    "PitCircle",
-    "ThroughFace",
-    "ToothBreakage",
-    "ToothDestruction",
-]
+__all__ = [*_damage.__all__]
 
 
 def _keys(value: Any) -> dict[str, Any]:

@@ -47,6 +47,11 @@ macro_rules! kinds {
             $(#[doc = $summary] $kind($kind),)+
         }
 
+        /// The parameters of each kind.
+        pub(crate) mod kinds {
+            pub use super::{$($kind),+};
+        }
+
         $(impl From<$kind> for Damage {
             fn from(damage: $kind) -> Self {
                 Self::$kind(damage)

@@ -12,8 +12,18 @@ pub fn text() -> String {
     let kinds = damage_kinds();
     let mut text = format!(
         "\"\"\"A class for each kind of damage.\n\n{HEAD}\n\"\"\"\n\nfrom __future__ import annotations\n\n\
-         from dataclasses import dataclass\nfrom typing import Any, ClassVar, Literal, Union\n"
+         from dataclasses import dataclass\nfrom typing import Any, ClassVar, Literal, Union\n\n__all__ = [\n"
     );
+    let mut names: Vec<String> = kinds.iter().map(|kind| kind.type_name.to_owned()).collect();
+    let tables = kinds.iter().flat_map(|kind| kind.keys.iter().filter(|key| key.kind == KeyKind::Table));
+    names.extend(tables.map(|table| class_name(&table.key)));
+    names.push("Fault".to_owned());
+    names.sort();
+    names.dedup();
+    for name in names {
+        writeln!(text, "    \"{name}\",").unwrap();
+    }
+    text.push_str("]\n");
     let mut tables: Vec<(String, String)> = Vec::new();
     for kind in &kinds {
         for table in kind.keys.iter().filter(|key| key.kind == KeyKind::Table) {
