@@ -1,18 +1,25 @@
-//! A batch against the dense 13 × 13 solver, in one run, per simulation: prints the ratio.
+//! Alone and in a batch against two dense 13 × 13 solvers, in one run, per simulation: prints the ratios.
+//!
+//! The first is the oracle that the tests compare with, written from the equations; the second is as fast as careful work
+//! makes a dense solver.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
 #[path = "cases/mod.rs"]
 mod cases;
 #[path = "../../meshtone/tests/all/dense.rs"]
 mod dense;
+#[path = "solvers/newmark.rs"]
+mod newmark;
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use dense::Dense;
 use meshtone::batch::{Control, KeepChannels, simulate_many};
-use meshtone::scenario::Model;
+use meshtone::scenario::{Model, Scenario};
+use meshtone::sensor::ChannelKind;
 use meshtone::{simulate, stages};
+use newmark::Newmark;
 
 const BATCH: u32 = 64;
 const REPEATS: usize = 3;
@@ -29,13 +36,47 @@ fn shortest(mut run: impl FnMut()) -> Duration {
         .unwrap_or_default()
 }
 
+/// Rms of the careful solver's difference to the library, over the signal's rms; the largest of the three directions.
+fn difference(scenario: &Scenario) -> f64 {
+    let stages = stages(scenario).expect("an example is valid");
+    let dense = Newmark::new(&stages).signals();
+    let simulation = simulate(scenario).expect("an example is valid");
+    let differences = ChannelKind::ACCELERATIONS.iter().zip(&dense).map(|(kind, dense)| {
+        let signal = simulation.channels.get(*kind);
+        assert_eq!(signal.len(), dense.len());
+        let square = |values: &mut dyn Iterator<Item = f64>| values.map(|value| value * value).sum::<f64>();
+        let power = square(&mut signal.iter().copied());
+        // What does not move has no scale.
+        let error = square(&mut signal.iter().zip(dense).map(|(one, other)| one - other));
+        if power > 0.0 { (error / power).sqrt() } else { error.sqrt() }
+    });
+    differences.fold(0.0, f64::max)
+}
+
 fn main() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
-    println!("per simulation, one thread    dense        alone  ratio   in a batch of {BATCH}  ratio");
+    println!(
+        "per simulation, one thread; two dense solvers: oracle and careful\n\
+         {:<18} {:>9} {:>9} {:>10}   {:>9} {:>7} {:>8}   {:>14} {:>7} {:>8}",
+        "",
+        "oracle",
+        "careful",
+        "difference",
+        "alone",
+        "oracle",
+        "careful",
+        "batch of 64",
+        "oracle",
+        "careful"
+    );
     for (name, scenario) in cases::with_full_settling(Model::Linear) {
-        let dense = shortest(|| {
+        let oracle = shortest(|| {
             let stages = stages(&scenario).expect("an example is valid");
             black_box(Dense::new(&stages).accelerations());
+        });
+        let careful = shortest(|| {
+            let stages = stages(&scenario).expect("an example is valid");
+            black_box(Newmark::new(&stages).signals());
         });
         let alone = shortest(|| {
             black_box(simulate(&scenario)).expect("an example is valid");
@@ -48,14 +89,19 @@ fn main() {
                 });
             });
         }) / BATCH;
-        let ratio = |time: Duration| dense.as_secs_f64() / time.as_secs_f64();
+        let ms = |time: Duration| time.as_secs_f64() * 1e3;
+        let ratio = |dense: Duration, time: Duration| dense.as_secs_f64() / time.as_secs_f64();
         println!(
-            "{name:<24} {:>8.1} ms  {:>8.2} ms {:>5.0} ×  {:>16.2} ms {:>5.0} ×",
-            dense.as_secs_f64() * 1e3,
-            alone.as_secs_f64() * 1e3,
-            ratio(alone),
-            batch.as_secs_f64() * 1e3,
-            ratio(batch)
+            "{name:<18} {:>6.0} ms {:>6.1} ms {:>10.1e}   {:>6.1} ms {:>5.0} × {:>6.1} ×   {:>11.2} ms {:>5.0} × {:>6.1} ×",
+            ms(oracle),
+            ms(careful),
+            difference(&scenario),
+            ms(alone),
+            ratio(oracle, alone),
+            ratio(careful, alone),
+            ms(batch),
+            ratio(oracle, batch),
+            ratio(careful, batch)
         );
     }
 }

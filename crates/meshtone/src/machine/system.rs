@@ -7,7 +7,7 @@ use super::coordinates::*;
 use super::mesh_directions::MeshDirections;
 use super::modes::Modes;
 use super::{Rig, Shaft};
-use crate::mesh::{DirectionMatrix, DirectionVector, Mesh, MeshSpan, ROTATION};
+use crate::mesh::{DIRECTIONS, DirectionMatrix, DirectionVector, Mesh, MeshSpan, ROTATION};
 use crate::model::Model;
 use crate::wheel::{Gears, Teeth};
 
@@ -28,6 +28,11 @@ impl Excitation {
     /// (N) Force of the flanks' deviations, stiffness × deviation, summed over the pairs in contact.
     pub fn error_force_n(&self) -> f64 {
         self.deviation_force_n[ROTATION]
+    }
+
+    /// (N) Force of the flanks' deviations, in the mesh's constant directions, [`MeshDirections::turned`].
+    pub fn deviation_force_n(&self) -> [f64; DIRECTIONS] {
+        self.deviation_force_n.into()
     }
 }
 
