@@ -17,6 +17,10 @@ const MAX_UNCERTAINTY: f64 = 1e-3;
 const MAX_DECIMALS: i32 = 15;
 /// Largest whole number up to which a double has digits to spare for telling it from its neighbours.
 const MAX_WHOLE: f64 = (1_u64 << 46) as f64;
+/// To this, no double below [`MAX_WHOLE`] can be added without being rounded to a whole number.
+const NO_DECIMALS: f64 = 1.5 * (1_u64 << 52) as f64;
+/// Values that are summed or compared side by side.
+const LANES: usize = 8;
 /// Steps that are alike, out of all, for times to be on a grid of their own rather than rounded to one.
 const ALIKE: f64 = 0.99;
 
@@ -29,11 +33,15 @@ pub(super) struct Timing {
     pub uncertainty: f64,
 }
 
-/// The straight line through the times, and what is farthest from it.
+/// The straight line through the times.
 struct Line {
-    interval: f64,
-    largest_deviation: f64,
-    deviation_index: usize,
+    first: f64,
+    /// Mean step from the first time to the last.
+    chord: f64,
+    /// What least squares correct of that line: its middle and its slope.
+    mean: f64,
+    slope: f64,
+    middle: f64,
 }
 
 /// The steps from each time to the next.
@@ -41,8 +49,8 @@ struct Steps {
     median: f64,
     /// Part of all that is the median.
     alike: f64,
-    worst_index: usize,
-    worst: f64,
+    /// Of a step from the median.
+    largest_difference: f64,
 }
 
 /// Finds the sampling rate.
@@ -76,23 +84,28 @@ pub(super) fn timing(
     let steps = steps(times);
     let line = line(times);
     let largest = first.abs().max(last.abs());
+    let largest_deviation = largest_of(times.len(), |index| line.deviation(times, index));
     let rounding = 4.0 * f64::EPSILON * largest;
     let resolution = resolution(times, largest, &steps);
     let sampling_noise = 1.0 + 4.0 / (count as f64).sqrt();
     // Where rounding is finer than the interval, a missing sample shows in any case, so that room can be left
     // for the slow beat between the interval and the rounding step.
     // A little more than half a step otherwise: ties are rounded away from 0, on both sides of it.
-    let share = if resolution < 0.5 * line.interval { 0.75 } else { 0.52 };
-    let allowed = share * sampling_noise * resolution + JITTER * line.interval + rounding;
-    if line.largest_deviation > allowed {
+    let share = if resolution < 0.5 * line.interval() { 0.75 } else { 0.52 };
+    let allowed = share * sampling_noise * resolution + JITTER * line.interval() + rounding;
+    if largest_deviation > allowed {
+        let step = |index: usize| times[index + 1] - times[index];
+        let from_median = |index: &usize| (step(*index) - steps.median).abs() == steps.largest_difference;
+        let worst = (0..count - 1).find(from_median).unwrap_or(0);
+        let deviates = |index: &usize| line.deviation(times, *index) == largest_deviation;
         return Err(ReadRecordingError::NonUniformTime {
             path: path.to_path_buf(),
             column: column.to_string(),
-            from_sample: steps.worst_index as u64 + 1,
-            step_s: readable(steps.worst * unit_s),
-            interval_s: readable(if steps.median > 0.0 { steps.median } else { line.interval } * unit_s),
-            largest_deviation_s: readable(line.largest_deviation * unit_s),
-            deviation_sample: line.deviation_index as u64 + 1,
+            from_sample: worst as u64 + 1,
+            step_s: readable(step(worst) * unit_s),
+            interval_s: readable(if steps.median > 0.0 { steps.median } else { line.interval() } * unit_s),
+            largest_deviation_s: readable(largest_deviation * unit_s),
+            deviation_sample: (0..count).find(deviates).unwrap_or(0) as u64 + 1,
         });
     }
     let uncertainty = (1.5 * resolution + rounding) / (last - first) + 1e-12;
@@ -103,8 +116,24 @@ pub(super) fn timing(
             "is rounded to {resolution_s} s over {span_s} s, which tells the sampling rate only to {percent} %"
         )));
     }
-    let rate_hz = shortest_within(1.0 / (line.interval * unit_s), uncertainty);
+    let rate_hz = shortest_within(1.0 / (line.interval() * unit_s), uncertainty);
     Ok(Timing { rate_hz, start_s: first * unit_s, uncertainty })
+}
+
+impl Line {
+    fn interval(&self) -> f64 {
+        self.chord + self.slope
+    }
+
+    fn from_chord(&self, times: &[f64], index: usize) -> f64 {
+        (times[index] - self.first) - index as f64 * self.chord
+    }
+
+    /// Of a time from the line.
+    #[inline]
+    fn deviation(&self, times: &[f64], index: usize) -> f64 {
+        (self.from_chord(times, index) - self.mean - self.slope * (index as f64 - self.middle)).abs()
+    }
 }
 
 /// Least squares, as a correction of the line from the first to the last time: that keeps all digits.
@@ -113,39 +142,53 @@ fn line(times: &[f64]) -> Line {
     let count = times.len() as f64;
     let chord = (last - first) / (count - 1.0);
     let middle = 0.5 * (count - 1.0);
-    let from_chord = |index: usize| (times[index] - first) - index as f64 * chord;
-    let (mut sum, mut moment) = (0.0, 0.0);
-    for index in 0..times.len() {
-        let deviation = from_chord(index);
-        sum += deviation;
-        moment += (index as f64 - middle) * deviation;
-    }
-    let slope = moment * 12.0 / (count * (count * count - 1.0));
-    let mean = sum / count;
-    let (mut largest_deviation, mut deviation_index) = (0.0, 0);
-    for index in 0..times.len() {
-        let deviation = (from_chord(index) - mean - slope * (index as f64 - middle)).abs();
-        if deviation > largest_deviation {
-            (largest_deviation, deviation_index) = (deviation, index);
+    let chord = Line { first, chord, mean: 0.0, slope: 0.0, middle };
+    // Sums side by side, as one would wait for itself.
+    let (mut sums, mut moments) = ([0.0; LANES], [0.0; LANES]);
+    let whole = times.len() - times.len() % LANES;
+    let mut add = |index: usize, lane: usize| {
+        let deviation = chord.from_chord(times, index);
+        sums[lane] += deviation;
+        moments[lane] += (index as f64 - middle) * deviation;
+    };
+    for start in (0..whole).step_by(LANES) {
+        for lane in 0..LANES {
+            add(start + lane, lane);
         }
     }
-    Line { interval: chord + slope, largest_deviation, deviation_index }
+    for index in whole..times.len() {
+        add(index, 0);
+    }
+    let slope = moments.iter().sum::<f64>() * 12.0 / (count * (count * count - 1.0));
+    Line { mean: sums.iter().sum::<f64>() / count, slope, ..chord }
+}
+
+/// The largest of some values that are not negative.
+fn largest_of(count: usize, value: impl Fn(usize) -> f64) -> f64 {
+    let larger = |a: f64, b: f64| if b > a { b } else { a };
+    let mut largest = [0.0; LANES];
+    let whole = count - count % LANES;
+    for start in (0..whole).step_by(LANES) {
+        for lane in 0..LANES {
+            largest[lane] = larger(largest[lane], value(start + lane));
+        }
+    }
+    let rest = (whole..count).map(value);
+    largest.into_iter().chain(rest).fold(0.0, larger)
 }
 
 fn steps(times: &[f64]) -> Steps {
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let middle = steps.len() / 2;
     let median = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
-    let alike = steps.iter().filter(|step| (**step - median).abs() <= JITTER * median).count();
-    let alike = alike as f64 / steps.len() as f64;
-    let (mut worst_index, mut worst) = (0, median);
-    for (index, pair) in times.windows(2).enumerate() {
-        let step = pair[1] - pair[0];
-        if (step - median).abs() > (worst - median).abs() {
-            (worst_index, worst) = (index, step);
-        }
-    }
-    Steps { median, alike, worst_index, worst }
+    let largest_difference = largest_of(steps.len(), |index| (steps[index] - median).abs());
+    let is_alike = |step: &&f64| (**step - median).abs() <= JITTER * median;
+    let alike = if largest_difference <= JITTER * median {
+        steps.len()
+    } else {
+        steps.iter().filter(is_alike).count()
+    };
+    Steps { median, alike: alike as f64 / steps.len() as f64, largest_difference }
 }
 
 /// The step to which the times are rounded; 0 where they are as exact as numbers are.
@@ -153,7 +196,7 @@ fn resolution(times: &[f64], largest: f64, steps: &Steps) -> f64 {
     let found = decimal_step(times, largest).unwrap_or_else(|| single_precision_step(times, largest));
     if steps.alike == 1.0 {
         // On a grid of their own; single precision makes even those steps differ a little.
-        found.min((steps.worst - steps.median).abs())
+        found.min(steps.largest_difference)
     } else if steps.alike >= ALIKE && found >= 0.5 * steps.median {
         0.0
     } else {
@@ -168,7 +211,9 @@ fn decimal_step(times: &[f64], largest: f64) -> Option<f64> {
     for time in times.iter().filter(|time| time.abs() >= 0.1 * largest) {
         loop {
             let scaled = time * scale;
-            if (scaled - scaled.round()).abs() <= 4.0 * f64::EPSILON * scaled.abs() {
+            // The nearest whole number, as the sum has no room for digits behind the point.
+            let whole = (scaled + NO_DECIMALS) - NO_DECIMALS;
+            if (scaled - whole).abs() <= 4.0 * f64::EPSILON * scaled.abs() {
                 break;
             }
             decimals += 1;

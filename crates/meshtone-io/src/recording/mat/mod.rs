@@ -28,6 +28,9 @@ const TAG_BYTES: u64 = 8;
 /// The type of an element that is a compressed array.
 const COMPRESSED: u32 = 15;
 
+/// Bytes of samples that a compressed byte may well stand for; memory for more is taken only as they come.
+const USUAL_COMPRESSION: u64 = 16;
+
 /// Reads a recording from a MAT-file.
 pub(super) fn read(
     path: &Path,
@@ -52,7 +55,8 @@ pub(super) fn read(
             }
         };
         source.skip_to(offset).map_err(failed)?;
-        let samples = read_channels(&mut source, layout, numbers.kind, numbers.big_endian, channels, bytes)
+        let present = if variable.compressed { bytes.min(USUAL_COMPRESSION * variable.bytes) } else { bytes };
+        let samples = read_channels(&mut source, layout, numbers.kind, numbers.big_endian, channels, present)
             .map_err(failed)?;
         open = Some((variable, source));
         Ok(samples)

@@ -17,6 +17,8 @@ const MAX_NAME_BYTES: u64 = 4096;
 const MAX_FIELD_BYTES: u64 = 1 << 20;
 /// Bytes of the names of all arrays together.
 const MAX_NAMES_BYTES: usize = 1 << 24;
+/// Bytes that are not looked through before they are wanted.
+const MIN_SAMPLES_BYTES: u64 = 1 << 16;
 const COMPLEX: u32 = 0x0800;
 
 /// Where an array's real numbers are.
@@ -96,7 +98,7 @@ impl Walk {
                 }
             }
         }
-        source.skip_to(end)
+        leave(source, end, depth)
     }
 
     fn cells(&mut self, source: &mut Source, inside: Inside) -> io::Result<()> {
@@ -176,7 +178,7 @@ impl Walk {
         };
         if tag.inline.is_none() {
             let data_end = offset + tag.bytes;
-            source.skip_to((data_end + padding(tag.bytes)).min(inside.end))?;
+            leave(source, (data_end + padding(tag.bytes)).min(inside.end), inside.depth)?;
         }
         self.push(inside, shape, type_name, numbers, single, (offset, tag.bytes))
     }
@@ -200,6 +202,13 @@ impl Walk {
         self.arrays.push((entry, Place { variable: inside.variable, offset, bytes }));
         Ok(())
     }
+}
+
+/// Goes to the end of an element. Behind the samples of a variable of its own comes nothing that is looked for, and they are
+/// not decompressed only to be decompressed again.
+fn leave(source: &mut Source, end: u64, depth: usize) -> io::Result<()> {
+    let samples = depth == 0 && end.saturating_sub(source.at) > MIN_SAMPLES_BYTES;
+    if samples { Ok(()) } else { source.skip_to(end) }
 }
 
 /// What is known about an array before its content.
