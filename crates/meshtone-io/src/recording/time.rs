@@ -73,7 +73,10 @@ pub(super) fn timing(
     let (&[first, .., last], count) = (times, times.len()) else {
         return Err(refuse("has one sample only, which tells no sampling rate".to_string()));
     };
-    if let Some(index) = times.windows(2).position(|pair| pair[1] < pair[0]) {
+    // All are compared first: without a way out in between, in vectors.
+    let goes_back = times.iter().zip(&times[1..]).fold(false, |back, (from, to)| back | (to < from));
+    let back = || times.windows(2).position(|pair| pair[1] < pair[0]);
+    if let Some(index) = goes_back.then(back).flatten() {
         let (from, to) = (times[index] * unit_s, times[index + 1] * unit_s);
         let problem = format!("goes back from {from} s to {to} s at sample {}", index + 2);
         return Err(refuse(problem));
