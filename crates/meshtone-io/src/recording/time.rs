@@ -128,14 +128,14 @@ impl Line {
         self.chord + self.slope
     }
 
-    fn from_chord(&self, times: &[f64], index: usize) -> f64 {
+    fn beyond_chord(&self, times: &[f64], index: usize) -> f64 {
         (times[index] - self.first) - index as f64 * self.chord
     }
 
     /// Of a time from the line.
     #[inline]
     fn deviation(&self, times: &[f64], index: usize) -> f64 {
-        (self.from_chord(times, index) - self.mean - self.slope * (index as f64 - self.middle)).abs()
+        (self.beyond_chord(times, index) - self.mean - self.slope * (index as f64 - self.middle)).abs()
     }
 }
 
@@ -150,7 +150,7 @@ fn line(times: &[f64]) -> Line {
     let (mut sums, mut moments) = ([0.0; LANES], [0.0; LANES]);
     let whole = times.len() - times.len() % LANES;
     let mut add = |index: usize, lane: usize| {
-        let deviation = chord.from_chord(times, index);
+        let deviation = chord.beyond_chord(times, index);
         sums[lane] += deviation;
         moments[lane] += (index as f64 - middle) * deviation;
     };
