@@ -187,7 +187,7 @@ class EnhancedSignals:
     Attributes
     ----------
     relative_difference : array, shape (draws, points)
-        One cycle of the gear a row, over the rms of the enhanced healthy signal.
+        One revolution of the tuned wheel a row, over the rms of the enhanced healthy signal.
     healthy_rms_g : float
         (g) That rms, of the simulation.
     label : str

@@ -22,7 +22,7 @@ const MOST_DRAWS: u64 = 20_000;
 
 /// Make enhanced difference signals of a scenario, with what `tune` found
 ///
-/// Simulates the scenario and its healthy counterpart, takes the difference signals of the gear and modifies them: duration,
+/// Simulates the scenario and its healthy counterpart, takes the difference signals of the wheel that was tuned to and modifies them: duration,
 /// fault-to-harmonics ratio, noise. Writes enhanced.parquet with one row for each draw of the noise.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]

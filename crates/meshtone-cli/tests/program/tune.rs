@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use meshtone::scenario::Scenario;
+use meshtone::scenario::{Scenario, WheelName};
 use meshtone::signal::{Edge, kurtosis, resample};
 use meshtone::tuning::{DifferenceChain, difference_signals};
 use serde_json::Value;
@@ -215,6 +215,11 @@ fn wrong_experiments_are_refused() {
         &with("sampling_rate_hz = 10e3", "sampling_rate_hz = 50e3"),
         &["line 3", "signal.sampling_rate_hz", "solver.sampling_rate_hz"],
     );
+    refused(
+        &workplace,
+        &with("sampling_rate_hz = 10e3", "sampling_rate_hz = 10e3\nwheel = \"pinon\""),
+        &["line 4", "signal.wheel", "did you mean \"pinion\"?"],
+    );
     refused(&workplace, &with(MEASURED, ""), &["nothing measured"]);
     workplace.write(
         "table.csv",
@@ -329,9 +334,25 @@ fn recording(scenario: &Scenario, offset: usize) -> String {
 /// The rig's shaft phase and sampling rate are its own; its indicators are not changed by them.
 #[test]
 fn recordings_have_their_own_phase_and_sampling_rate() {
+    recordings_are_as_simulated(WheelName::Gear);
+}
+
+#[test]
+fn recordings_of_a_damaged_pinion_are_averaged_over_its_revolutions() {
+    recordings_are_as_simulated(WheelName::Pinion);
+}
+
+fn recordings_are_as_simulated(wheel: WheelName) {
     let workplace = workplace();
-    let mut cases = CASES.to_owned();
-    for (case, fault) in FAULTS.into_iter().enumerate() {
+    let on = |fault: &str, between: &str| match wheel {
+        WheelName::Pinion => {
+            fault.replace("kind", &format!("wheel = \"pinion\"{between}tooth = 7{between}kind"))
+        }
+        WheelName::Gear => fault.to_owned(),
+    };
+    let faults = FAULTS.map(|fault| on(fault, "\n"));
+    let mut cases = on(CASES, ", ");
+    for (case, fault) in faults.iter().enumerate() {
         for seed in 1..=3 {
             let offset = 57 * seed as usize + 101 * case;
             workplace.write(&format!("{case}{seed}.csv"), recording(&rig(fault, seed), offset));
@@ -343,11 +364,12 @@ fn recordings_have_their_own_phase_and_sampling_rate() {
         );
     }
     // As the simulation itself has them, at the rig's rate.
-    let expected: Vec<f64> = FAULTS
+    let chain = DifferenceChain { wheel, ..DifferenceChain::new(RIG_HZ) };
+    let expected: Vec<f64> = faults
         .iter()
         .map(|fault| {
             let scenarios = (1..=3).map(|seed| rig(fault, seed)).collect();
-            let signals = difference_signals(scenarios, &DifferenceChain::new(RIG_HZ)).unwrap();
+            let signals = difference_signals(scenarios, &chain).unwrap();
             let mut values: Vec<f64> =
                 signals.iter().map(|signal| kurtosis(signal).unwrap().log10()).collect();
             values.sort_by(f64::total_cmp);
@@ -360,7 +382,8 @@ fn recordings_have_their_own_phase_and_sampling_rate() {
         ("tone", "phase_from_mesh_tone = true\n"),
     ] {
         let measured = format!("[measured]\nchannel = \"acc\"\nsampling_rate_hz = {RIG_HZ}\n{phase}");
-        workplace.write("rig.toml", format!("{}{measured}{cases}", HEAD.replace("10e3", "8e3")));
+        let head = HEAD.replace("10e3", &format!("8e3\nwheel = \"{}\"", wheel.name()));
+        workplace.write("rig.toml", format!("{head}{measured}{cases}"));
         workplace.succeeds(&["tune", "rig.toml", "-o", name, "-q", "--no-figure"]);
         let tuning = json(&workplace, &format!("{name}/tuning.json"));
         for (case, expected) in expected.iter().enumerate() {
@@ -372,7 +395,13 @@ fn recordings_have_their_own_phase_and_sampling_rate() {
         // Simulated as well: nothing needs to be changed.
         let error = tuning.pointer("/error/original").and_then(Value::as_f64).unwrap();
         assert!(error < 0.5, "{name}: {error}");
+        let tuned = String::from_utf8(workplace.read(&format!("{name}/tuned.toml"))).unwrap();
+        assert!(tuned.contains(&format!("\nwheel = \"{}\" ", wheel.name())), "{tuned}");
     }
+    // Signals of the same wheel's revolutions.
+    workplace.succeeds(&["enhance", "fast.toml", "--tuned", "tone/tuned.toml", "-o", "enhanced"]);
+    let metadata = String::from_utf8_lossy(&workplace.read("enhanced/enhanced.parquet")).into_owned();
+    assert!(metadata.contains(&format!("over one revolution of the {}", wheel.name())));
 }
 
 #[test]
@@ -407,6 +436,10 @@ fn what_enhance_refuses() {
         &enhance("wrong.toml", "1"),
         &["wrong.toml", "line 2", "enhancement.width_ratio", "more than 0"],
     );
+    let other = ["other.toml", "line 7", "signal.wheel", "\"pinion\", \"gear\""];
+    let with_wheel = [workplace.read("tuned.toml"), b"wheel = \"rack\"\n".to_vec()].concat();
+    workplace.write("other.toml", with_wheel);
+    workplace.fails(2, &enhance("other.toml", "1"), &other);
     workplace.write("earlier.toml", "convention = \"published\"\n[signal]\nsampling_rate_hz = 10e3\n");
     let renamed =
         ["earlier.toml", "line 1", "convention", "is called `model` now", "write model = \"published\""];

@@ -5,6 +5,7 @@ use std::fs::File;
 use std::path::Path;
 
 use crate::support::{FAST, plan, run};
+use meshtone::scenario::WheelName;
 use meshtone::signal::{ChainSettings, Edge, ShaftPhase, process_channel, resample, resampling_ratio, rms};
 use meshtone_dataset::draw::Sampler;
 use meshtone_dataset::generate::Part;
@@ -351,4 +352,25 @@ fn enhanced_signals_are_those_of_the_hybrid_stage() {
         .unwrap();
     let parts = [Destination::directory(&set), Destination::directory(directory.path().join("other"))];
     assert!(meshtone_dataset::merge::merge(&parts, &parts[0]).unwrap().complete);
+}
+
+#[test]
+fn what_is_enhanced_is_averaged_over_the_wheel_that_was_tuned_to() {
+    let directory = tempfile::tempdir().unwrap();
+    let tuned = "[enhancement]\nwidth_ratio = 0.5\nfault_to_harmonics_ratio = 1.0\nnoise_level = 0.0\n\
+                 [signal]\nsampling_rate_hz = 8e3\nwheel = \"pinion\"\n";
+    std::fs::write(directory.path().join("tuned.toml"), tuned).unwrap();
+    let path = directory.path().join("plan.toml");
+    let plan = |keep: &str| {
+        let text = FAST.replace("seed = 3", "seed = 3\ntuned = \"tuned.toml\"").replace("[keep]", keep);
+        std::fs::write(&path, text.replace("records = 60", "records = 24")).unwrap();
+        Plan::read(&path)
+    };
+    let of_pinion = plan("[keep]").unwrap();
+    assert_eq!(of_pinion.content.keep.wheel, WheelName::Pinion);
+    let made = made(&of_pinion);
+    let points = made.signal("enhanced_relative_difference", 0).len();
+    assert_eq!(points, made.signal("difference_g", 0).len());
+    let error = plan("[keep]\nwheel = \"gear\"").unwrap_err().to_string();
+    assert!(error.contains("keep.wheel") && error.contains("tuned to"), "{error}");
 }

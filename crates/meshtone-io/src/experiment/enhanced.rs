@@ -24,7 +24,7 @@ pub struct EnhancedRecord {
     pub relative_rms: f64,
     /// Kurtosis.
     pub kurtosis: f64,
-    /// One cycle of the gear, over the rms of the enhanced healthy signal.
+    /// One revolution of the wheel, over the rms of the enhanced healthy signal.
     pub relative_difference: Vec<f64>,
 }
 
@@ -37,7 +37,7 @@ pub struct EnhancedDraws {
     pub records: Vec<EnhancedRecord>,
 }
 
-/// Simulates a scenario and its healthy counterpart, and enhances the gear's difference signal.
+/// Simulates a scenario and its healthy counterpart, and enhances the difference signal of the wheel that was tuned to.
 ///
 /// # Arguments
 /// * `scenario` - what is simulated; where keys were tuned, [`Tuned::apply`] has put them in
@@ -55,7 +55,7 @@ pub fn enhance(
 ) -> Result<EnhancedDraws, HybridError> {
     let healthy = Scenario { faults: Vec::new(), ..scenario.clone() };
     let both = if scenario.faults.is_empty() { vec![healthy] } else { vec![healthy, scenario.clone()] };
-    let mut signals = difference_signals(both, &tuned.chain(scenario.gears.gear_teeth))?;
+    let mut signals = difference_signals(both, &tuned.chain(&scenario.gears))?;
     // A healthy signal does not show where a fault would be.
     let centre_rev = match signals.len() {
         1 => tuned.centre_rev,
@@ -154,7 +154,13 @@ pub fn write_enhanced(
         ("meshtone.version", env!("CARGO_PKG_VERSION").to_owned()),
         ("meshtone.seed", head.seed.to_string()),
         ("meshtone.healthy_rms_g", format!("{:?}", head.healthy_rms_g)),
-        ("meshtone.relative_difference", "difference signal over one revolution of the gear, over the rms of the enhanced healthy signal, meshtone.healthy_rms_g".to_owned()),
+        (
+            "meshtone.relative_difference",
+            format!(
+                "difference signal over one revolution of the {}, over the rms of the enhanced healthy signal, meshtone.healthy_rms_g",
+                head.tuned.wheel.name()
+            ),
+        ),
     ];
     let level = ZstdLevel::try_new(COMPRESSION_LEVEL).map_err(io::Error::other)?;
     let properties = WriterProperties::builder()

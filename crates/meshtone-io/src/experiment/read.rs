@@ -1,6 +1,7 @@
 //! The experiment file.
 
 use crate::channel_name::read_channel;
+use crate::wheel_name::read_wheel;
 use std::path::{Path, PathBuf};
 
 use meshtone::scenario::{Fault, Scenario};
@@ -203,7 +204,8 @@ fn signal(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<DifferenceChain>
         let help = "raise solver.sampling_rate_hz in the scenario, or resample the recordings";
         return Err(rate.error(problem).with_help(help));
     }
-    let teeth = base.gears.gear_teeth as usize;
+    let wheel = table.optional("wheel").map(|value| read_wheel(&value)).transpose()?.unwrap_or_default();
+    let teeth = base.gears.teeth(wheel) as usize;
     let default = SeparationSettings::new(teeth);
     let most_sidebands = (teeth as u64).saturating_sub(2) / 2;
     let sidebands = table.optional("sidebands").map(|value| value.integer(0..=most_sidebands)).transpose()?;
@@ -218,6 +220,7 @@ fn signal(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<DifferenceChain>
     Ok(DifferenceChain {
         channel: channel.unwrap_or(ChannelKind::Vertical),
         sampling_rate_hz,
+        wheel,
         separation: Some(separation),
     })
 }

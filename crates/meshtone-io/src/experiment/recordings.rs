@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use meshtone::scenario::WheelName;
 use meshtone::signal::{
     AngularSettings, ChainSettings, MeshTone, ShaftPhase, SignalError, Tachometer, points_per_revolution,
     process_channel, process_segments, tachometer_pulses,
@@ -11,6 +12,7 @@ use meshtone_toml::{ReadResult, TomlError, TomlTable};
 
 use super::measured::{Wanted, column, missing};
 use crate::recording::{Recording, RecordingOptions, read_recording};
+use crate::wheel_name::read_wheel;
 
 /// Of a sampling rate, relative: what a file's rounded times are off.
 pub(super) const RATE_TOLERANCE: f64 = 1e-4;
@@ -20,7 +22,7 @@ enum Phase<'a> {
     /// The gear's shaft turns at a constant speed.
     Constant { gear_shaft_hz: f64 },
     /// Pulses of a tachometer's channel.
-    Tachometer { channel: &'a str, pulses_per_revolution: u32, on_pinion: bool },
+    Tachometer { channel: &'a str, pulses_per_revolution: u32, shaft: WheelName },
     /// The mesh tone itself.
     MeshTone { gear_shaft_hz: f64 },
 }
@@ -38,7 +40,7 @@ pub(super) fn differences(
         .map(|value| value.integer(2..=u64::from(u32::MAX)))
         .transpose()?;
     let phase = phase(table, wanted)?;
-    let teeth = wanted.base.gears.gear_teeth;
+    let teeth = wanted.base.gears.teeth(wanted.chain.wheel);
     let settings = settings(wanted)?;
     let mut all = Vec::new();
     for (case, files) in wanted.cases.iter().zip(wanted.files) {
@@ -65,11 +67,11 @@ pub(super) fn differences(
                     named.name
                 )));
             }
-            let gear = gear_phase(&recording, &phase, wanted).map_err(refuse)?;
+            let phase = shaft_phase(&recording, &phase, wanted).map_err(refuse)?;
             let signal = &recording.channels[0].samples;
             let found = match segment {
-                None => process_channel(signal, &gear, teeth, &settings).map(|record| vec![record]),
-                Some(count) => process_segments(signal, &gear, teeth, &settings, count as usize),
+                None => process_channel(signal, &phase, teeth, &settings).map(|record| vec![record]),
+                Some(count) => process_segments(signal, &phase, teeth, &settings, count as usize),
             };
             records.extend(found.map_err(refuse)?.into_iter().map(|record| record.parts.difference));
         }
@@ -81,10 +83,10 @@ pub(super) fn differences(
 /// As simulated signals are processed: so many points a revolution, read in the same way.
 fn settings(wanted: &Wanted) -> ReadResult<ChainSettings> {
     let gears = &wanted.base.gears;
-    let gear_hz =
-        wanted.base.operation.pinion_speed_hz * f64::from(gears.pinion_teeth) / f64::from(gears.gear_teeth);
+    let shaft_hz = wanted.base.operation.pinion_speed_hz * f64::from(gears.pinion_teeth)
+        / f64::from(gears.teeth(wanted.chain.wheel));
     let rate = wanted.chain.sampling_rate_hz;
-    let revolution = ShaftPhase::constant(gear_hz, rate, (3.0 * rate / gear_hz).ceil() as usize)
+    let revolution = ShaftPhase::constant(shaft_hz, rate, (3.0 * rate / shaft_hz).ceil() as usize)
         .map_err(|error| TomlError::new("signal.sampling_rate_hz", rate, error.to_string()))?;
     let angular = AngularSettings {
         points_per_revolution: Some(points_per_revolution(&revolution)),
@@ -102,8 +104,7 @@ fn phase<'a>(table: &TomlTable<'a>, wanted: &Wanted) -> ReadResult<Phase<'a>> {
     let tachometer = table.optional("tachometer_channel");
     let pulses =
         table.optional("pulses_per_revolution").map(|value| value.integer(1..=100_000)).transpose()?;
-    let on = table.optional("tachometer_shaft");
-    let on = on.map(|value| value.choice(&[("gear", false), ("pinion", true)])).transpose()?;
+    let on = table.optional("tachometer_shaft").map(|value| read_wheel(&value)).transpose()?;
     let mesh_tone = table.optional("phase_from_mesh_tone").map(|value| value.boolean()).transpose()?;
     if tachometer.is_none() {
         for (key, given) in [("pulses_per_revolution", pulses.is_some()), ("tachometer_shaft", on.is_some())]
@@ -123,28 +124,33 @@ fn phase<'a>(table: &TomlTable<'a>, wanted: &Wanted) -> ReadResult<Phase<'a>> {
         (Some(channel), false) => Ok(Phase::Tachometer {
             channel: channel.string()?,
             pulses_per_revolution: pulses.unwrap_or(1) as u32,
-            on_pinion: on.unwrap_or(false),
+            shaft: on.unwrap_or_default(),
         }),
         (None, true) => Ok(Phase::MeshTone { gear_shaft_hz }),
         (None, false) => Ok(Phase::Constant { gear_shaft_hz }),
     }
 }
 
-fn gear_phase(recording: &Recording, phase: &Phase, wanted: &Wanted) -> Result<ShaftPhase, SignalError> {
+/// Phase of the shaft over whose revolutions is averaged.
+fn shaft_phase(recording: &Recording, phase: &Phase, wanted: &Wanted) -> Result<ShaftPhase, SignalError> {
     let rate = recording.sampling_rate_hz;
     let gears = &wanted.base.gears;
-    match *phase {
-        Phase::Constant { gear_shaft_hz } => ShaftPhase::constant(gear_shaft_hz, rate, recording.len()),
+    let (of, phase) = match *phase {
+        Phase::Constant { gear_shaft_hz } => {
+            (WheelName::Gear, ShaftPhase::constant(gear_shaft_hz, rate, recording.len())?)
+        }
         Phase::MeshTone { gear_shaft_hz } => {
             let tone = MeshTone::new(gears.gear_teeth, gear_shaft_hz);
-            ShaftPhase::from_mesh_tone(&recording.channels[0].samples, rate, &tone)
+            (WheelName::Gear, ShaftPhase::from_mesh_tone(&recording.channels[0].samples, rate, &tone)?)
         }
-        Phase::Tachometer { pulses_per_revolution, on_pinion, .. } => {
+        Phase::Tachometer { pulses_per_revolution, shaft, .. } => {
             let waveform = &recording.channels[1].samples;
             let times_s = tachometer_pulses(waveform, rate, &Tachometer::default())?;
-            let shaft =
+            let phase =
                 ShaftPhase::from_pulses(&times_s, pulses_per_revolution, None, rate, recording.len())?;
-            if on_pinion { shaft.of_mate(gears.pinion_teeth, gears.gear_teeth) } else { Ok(shaft) }
+            (shaft, phase)
         }
-    }
+    };
+    let wheel = wanted.chain.wheel;
+    if of == wheel { Ok(phase) } else { phase.of_mate(gears.teeth(of), gears.teeth(wheel)) }
 }

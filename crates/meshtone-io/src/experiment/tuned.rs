@@ -1,10 +1,11 @@
 //! What tuning found, in a form that other commands use.
 
 use crate::channel_name::read_channel;
+use crate::wheel_name::read_wheel;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use meshtone::scenario::{Model, Scenario, ScenarioError};
+use meshtone::scenario::{Gears, Model, Scenario, ScenarioError, WheelName};
 use meshtone::sensor::ChannelKind;
 use meshtone::signal::{MeanPart, SeparationSettings};
 use meshtone::tuning::{DifferenceChain, Enhancement, Experiment, ExperimentResult};
@@ -19,12 +20,14 @@ pub struct Tuned {
     pub model: Model,
     /// The three parameters.
     pub enhancement: Enhancement,
-    /// (rev) Where the faults' responses are in the gear's cycle, for signals that show none.
+    /// (rev) Where the faults' responses are in the wheel's cycle, for signals that show none.
     pub centre_rev: f64,
     /// (-) Channel, rate and separation of the difference signals.
     pub channel: ChannelKind,
     /// (S/s) The rig's sampling rate.
     pub sampling_rate_hz: f64,
+    /// Over whose revolutions they are averaged.
+    pub wheel: WheelName,
     /// Sidebands that are taken away.
     pub sidebands: usize,
     /// The last of the shaft orders that are taken away.
@@ -40,15 +43,17 @@ impl Tuned {
     /// * `experiment`, `result` - as of [`meshtone::tuning::run_experiment`]
     pub fn of(experiment: &Experiment, result: &ExperimentResult) -> Self {
         let values = result.with_keys.as_ref().map_or(&[][..], |keys| &keys.values);
-        let gear_teeth = experiment.base.gears.gear_teeth as usize;
+        let wheel = experiment.chain.wheel;
+        let teeth = experiment.base.gears.teeth(wheel) as usize;
         let separation =
-            experiment.chain.separation.clone().unwrap_or_else(|| SeparationSettings::new(gear_teeth));
+            experiment.chain.separation.clone().unwrap_or_else(|| SeparationSettings::new(teeth));
         Self {
             model: experiment.base.model,
             enhancement: result.tuning().enhancement,
             centre_rev: result.simulated().centre_rev(),
             channel: experiment.chain.channel,
             sampling_rate_hz: experiment.chain.sampling_rate_hz,
+            wheel,
             sidebands: separation.sidebands,
             shaft_orders: separation.shaft_orders.len(),
             keys: experiment.keys.iter().map(|key| key.key.clone()).zip(values.iter().copied()).collect(),
@@ -84,18 +89,19 @@ impl Tuned {
     /// How difference signals are taken.
     ///
     /// # Arguments
-    /// * `gear_teeth` - of the scenario
-    pub fn chain(&self, gear_teeth: u32) -> DifferenceChain {
+    /// * `gears` - of the scenario
+    pub fn chain(&self, gears: &Gears) -> DifferenceChain {
         let separation = SeparationSettings {
             sidebands: self.sidebands,
             shaft_orders: (1..=self.shaft_orders).collect(),
             // A sensor's offset is no vibration.
             mean: MeanPart::Removed,
-            ..SeparationSettings::new(gear_teeth as usize)
+            ..SeparationSettings::new(gears.teeth(self.wheel) as usize)
         };
         DifferenceChain {
             channel: self.channel,
             sampling_rate_hz: self.sampling_rate_hz,
+            wheel: self.wheel,
             separation: Some(separation),
         }
     }
@@ -110,7 +116,7 @@ impl Tuned {
 /// ```
 /// use meshtone::sensor::ChannelKind;
 /// use meshtone::tuning::Enhancement;
-/// use meshtone::scenario::Model;
+/// use meshtone::scenario::{Model, WheelName};
 /// use meshtone_io::experiment::{Tuned, read_tuned, write_tuned};
 ///
 /// let tuned = Tuned {
@@ -119,6 +125,7 @@ impl Tuned {
 ///     centre_rev: 0.03,
 ///     channel: ChannelKind::Vertical,
 ///     sampling_rate_hz: 25e3,
+///     wheel: WheelName::Pinion,
 ///     sidebands: 2,
 ///     shaft_orders: 7,
 ///     keys: vec![("rig.damping_ratio".into(), 0.034)],
@@ -139,16 +146,18 @@ pub fn write_tuned(tuned: &Tuned, from: &str) -> String {
          width_ratio = {width_ratio:?}\n\
          fault_to_harmonics_ratio = {fault_to_harmonics_ratio:?}\n\
          noise_level = {noise_level:?}            # times the rms of the healthy signal\n\
-         centre_rev = {:?}             # where a fault shows in the gear's cycle\n\n\
+         centre_rev = {:?}             # where a fault shows in the wheel's cycle\n\n\
          [signal]                      # how they are taken from a simulation\n\
          channel = \"{channel}\"\n\
          sampling_rate_hz = {:?}\n\
+         wheel = \"{}\"                # over whose revolutions they are averaged\n\
          sidebands = {}\n\
          shaft_orders = {}\n",
         from.replace(char::is_control, " "),
         tuned.model.name(),
         tuned.centre_rev,
         tuned.sampling_rate_hz,
+        tuned.wheel.name(),
         tuned.sidebands,
         tuned.shaft_orders
     );
@@ -207,7 +216,7 @@ fn tuned(root: &TomlTable<'_>) -> ReadResult<Tuned> {
         };
         Ok((enhancement, table.number_or("centre_rev", 0.0)?))
     })?;
-    let (channel, rate, sidebands, orders) = root.table_or_empty("signal")?.read(|table| {
+    let (channel, rate, wheel, sidebands, orders) = root.table_or_empty("signal")?.read(|table| {
         let channel = table
             .optional("channel")
             .map(|value| read_channel(&value, &ChannelKind::ACCELERATIONS))
@@ -217,12 +226,14 @@ fn tuned(root: &TomlTable<'_>) -> ReadResult<Tuned> {
         if sampling_rate_hz <= 0.0 {
             return Err(rate.error("must be more than 0"));
         }
+        let wheel = table.optional("wheel").map(|value| read_wheel(&value)).transpose()?;
         let count = |key, default: u64| -> ReadResult<u64> {
             Ok(table.optional(key).map(|value| value.integer(0..=10_000)).transpose()?.unwrap_or(default))
         };
         Ok((
             channel.unwrap_or(ChannelKind::Vertical),
             sampling_rate_hz,
+            wheel.unwrap_or_default(),
             count("sidebands", 2)?,
             count("shaft_orders", 7)?,
         ))
@@ -237,6 +248,7 @@ fn tuned(root: &TomlTable<'_>) -> ReadResult<Tuned> {
         centre_rev,
         channel,
         sampling_rate_hz: rate,
+        wheel,
         sidebands: sidebands as usize,
         shaft_orders: orders as usize,
         keys,

@@ -14,6 +14,7 @@ pub fn tuning_json(experiment: &Experiment, result: &ExperimentResult) -> String
     let mut all = tuning(experiment, result.tuning());
     all.insert("meshtone_version".into(), json!(env!("CARGO_PKG_VERSION")));
     all.insert("seed".into(), json!(experiment.seed));
+    all.insert("wheel".into(), json!(experiment.chain.wheel.name()));
     all.insert("centre_rev".into(), json!(result.simulated().centre_rev()));
     if let Some(keys) = &result.with_keys {
         let values = experiment.keys.iter().zip(&keys.values);

@@ -1,5 +1,7 @@
 //! Difference signals of the cases, original and enhanced.
 
+use meshtone::scenario::WheelName;
+
 use super::data::Data;
 use super::symbols::{ENHANCED_CURVE, ORIGINAL_CURVE};
 use crate::axes::{self, Area, Axes};
@@ -7,16 +9,25 @@ use crate::canvas::Canvas;
 use crate::style::{Anchor, Stroke, TextStyle};
 use crate::ticks::Ticks;
 
-pub(super) const HEADING: &str = "Difference signals over one gear revolution, each on its own scale";
 const TITLES: [&str; 2] = ["Original simulation", "Enhanced, one draw of the noise"];
 const UNIT: &str = "(healthy rms)";
-const ANGLE: &str = "Gear angle from the middle of the fault’s response (rev)";
 /// (px) Numbers left of each plot, and the gap right of it.
 const NUMBERS: f64 = 33.0;
 const GAP: f64 = 7.0;
 const MARGIN: f64 = 1.08;
 /// The case's number, where the columns are not those of the indicators.
 const NUMBER: TextStyle = TextStyle::TICK.anchored(Anchor::Start).with_halo();
+
+pub(super) fn heading(wheel: WheelName) -> String {
+    format!("Difference signals over one {} revolution, each on its own scale", wheel.name())
+}
+
+fn angle(wheel: WheelName) -> &'static str {
+    match wheel {
+        WheelName::Pinion => "Pinion angle from the middle of the fault’s response (rev)",
+        WheelName::Gear => "Gear angle from the middle of the fault’s response (rev)",
+    }
+}
 
 /// Draws the original signals in the first area and enhanced in the second.
 pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], data: &Data) {
@@ -38,7 +49,8 @@ pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], data: &Data) {
         }
     }
     let middle = areas[1].left + areas[1].width / 2.0;
-    canvas.text((middle, areas[1].bottom() + axes::NAME_BELOW), ANGLE, TextStyle::AXIS);
+    let angle = angle(data.experiment.chain.wheel);
+    canvas.text((middle, areas[1].bottom() + axes::NAME_BELOW), angle, TextStyle::AXIS);
 }
 
 fn signal(canvas: &mut Canvas, area: Area, values: &[f64], stroke: Stroke, numbered: bool) {

@@ -117,7 +117,7 @@ pub fn tuning_figure(
     cases::draw(&mut canvas, &areas, &data);
 
     let baseline = bottom + labels + BELOW_LABELS;
-    section(&mut canvas, (LEFT, baseline), CASES_WIDTH, differences::HEADING);
+    section(&mut canvas, (LEFT, baseline), CASES_WIDTH, &differences::heading(experiment.chain.wheel));
     let top = baseline + BELOW_HEADING;
     let height = (BOTTOM - top - DIFFERENCES_GAP) / 2.0;
     let both = [top, top + height + DIFFERENCES_GAP].map(|top| Area::new(LEFT, top, CASES_WIDTH, height));

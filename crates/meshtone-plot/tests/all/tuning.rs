@@ -102,6 +102,22 @@ fn two_cases_many_cases_and_one_to_three_indicators() {
 }
 
 #[test]
+fn the_shaft_that_is_averaged_over_is_named() {
+    let mut experiment = experiment(&LABELS[..2], &TWO[..1]);
+    for (wheel, over, angle) in [
+        (WheelName::Gear, "over one gear revolution", "Gear angle from the middle"),
+        (WheelName::Pinion, "over one pinion revolution", "Pinion angle from the middle"),
+    ] {
+        experiment.chain.wheel = wheel;
+        experiment.cases.iter_mut().flat_map(|case| &mut case.faults).for_each(|fault| fault.wheel = wheel);
+        let figure = drawn(&experiment, "A rig");
+        for text in [over, angle] {
+            assert!(figure.labels().iter().any(|label| label.text.contains(text)), "{text}");
+        }
+    }
+}
+
+#[test]
 fn every_indicator() {
     let figure = drawn(&experiment(&LABELS, &TuningIndicator::ALL), "All");
     assert!(has(&figure, "Skewness of the envelope"));

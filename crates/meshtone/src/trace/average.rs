@@ -8,6 +8,7 @@ use crate::signal::{
     resample, resampling_ratio,
 };
 use crate::simulate::Stages;
+use crate::wheel::WheelName;
 
 /// Samples of the lower rate by which a periodic signal is continued at each end: more than the resampling filter and the
 /// interpolation reach.
@@ -21,8 +22,9 @@ const CONTINUATION: usize = 40;
 pub(super) fn average(trace: &mut Trace, stages: &Stages, channels: &Channels, rate_hz: f64) {
     let rate_hz = rate_hz.min(stages.time.sampling_rate_hz);
     let Channels { vertical_g, pinion_shaft_speed_hz: pinion_speed_hz, .. } = channels;
-    let Ok(record) = gear_record(
+    let Ok(record) = wheel_record(
         stages,
+        WheelName::Gear,
         vertical_g,
         pinion_speed_hz,
         rate_hz,
@@ -47,9 +49,10 @@ fn published() -> AngularSettings {
     AngularSettings { interpolation: Interpolation::Pchip, ..AngularSettings::default() }
 }
 
-/// The gear's average of a simulated channel and what follows from it, resampled to `rate_hz` first.
-pub(crate) fn gear_record(
+/// A wheel's average of a simulated channel and what follows from it, resampled to `rate_hz` first.
+pub(crate) fn wheel_record(
     stages: &Stages,
+    wheel: WheelName,
     signal: &[f64],
     pinion_speed_hz: &[f64],
     rate_hz: f64,
@@ -58,7 +61,7 @@ pub(crate) fn gear_record(
     let sampling_rate_hz = stages.time.sampling_rate_hz;
     let gears = &stages.scenario.gears;
     let ratio = resampling_ratio(sampling_rate_hz, rate_hz)?;
-    let (signal, phase) = match whole_revolutions(stages) {
+    let (signal, phase) = match whole_revolutions(stages, wheel) {
         Some(revolutions) => periodic(signal, ratio, revolutions)?,
         None => {
             let pinion = if stages.scenario.operation.speed_profile_hz.is_some() {
@@ -67,19 +70,19 @@ pub(crate) fn gear_record(
                 let speed_hz = stages.scenario.operation.pinion_speed_hz;
                 ShaftPhase::constant(speed_hz, sampling_rate_hz, signal.len())?
             };
-            let gear = pinion.of_mate(gears.pinion_teeth, gears.gear_teeth)?;
-            (resample(signal, ratio.0, ratio.1, Edge::Reflect)?, at_rate(&gear, ratio)?)
+            let shaft = pinion.of_mate(gears.pinion_teeth, gears.teeth(wheel))?;
+            (resample(signal, ratio.0, ratio.1, Edge::Reflect)?, at_rate(&shaft, ratio)?)
         }
     };
-    process_channel(&signal, &phase, gears.gear_teeth, &settings)
+    process_channel(&signal, &phase, gears.teeth(wheel), &settings)
 }
 
-/// The whole number of gear revolutions that the kept signal spans, where it does and is periodic.
-fn whole_revolutions(stages: &Stages) -> Option<usize> {
+/// The whole number of a wheel's revolutions that the kept signal spans, where it does and is periodic.
+fn whole_revolutions(stages: &Stages, wheel: WheelName) -> Option<usize> {
     let TimeGrid { samples_per_pinion_revolution, .. } = stages.time;
     let gears = &stages.scenario.gears;
     let per_revolution =
-        samples_per_pinion_revolution / gears.pinion_teeth as usize * gears.gear_teeth as usize;
+        samples_per_pinion_revolution / gears.pinion_teeth as usize * gears.teeth(wheel) as usize;
     let kept = stages.time.kept_samples();
     let steady = stages.scenario.operation.speed_profile_hz.is_none();
     (steady && kept > 0 && kept.is_multiple_of(per_revolution)).then(|| kept / per_revolution)

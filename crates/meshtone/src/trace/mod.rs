@@ -4,7 +4,7 @@ mod average;
 mod run;
 mod stages;
 
-pub(crate) use average::gear_record;
+pub(crate) use average::wheel_record;
 pub use run::{trace, trace_at};
 use stages::static_stages;
 

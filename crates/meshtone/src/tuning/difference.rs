@@ -8,26 +8,29 @@ use crate::sensor::ChannelKind;
 use crate::signal::{AngularSettings, ChainSettings, Interpolation, Record, SeparationSettings};
 use crate::simulate::Stages;
 use crate::solver::{Block, Output, Recorder};
+use crate::wheel::WheelName;
 
-/// How a difference signal is taken from a simulation: of the gear, which carries the fault.
+/// How a difference signal is taken from a simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DifferenceChain {
     /// The channel.
     pub channel: ChannelKind,
     /// (S/s) The rig's sampling rate, to which the simulated signal is brought first; at most the simulation's.
     pub sampling_rate_hz: f64,
+    /// Over whose revolutions the signal is averaged: those of the wheel that carries the fault.
+    pub wheel: WheelName,
     /// Sidebands and shaft orders that are taken away; by default as the paper has them. The mesh order is always that of the
-    /// gear that is simulated, whatever `teeth` says.
+    /// wheel as it is simulated, whatever `teeth` says.
     pub separation: Option<SeparationSettings>,
 }
 
 impl DifferenceChain {
-    /// The vertical acceleration at a rig's sampling rate.
+    /// The vertical acceleration of the gear's revolutions at a rig's sampling rate.
     ///
     /// # Arguments
     /// * `sampling_rate_hz` - (S/s)
     pub fn new(sampling_rate_hz: f64) -> Self {
-        Self { channel: ChannelKind::Vertical, sampling_rate_hz, separation: None }
+        Self { channel: ChannelKind::Vertical, sampling_rate_hz, wheel: WheelName::Gear, separation: None }
     }
 
     /// How signals, simulated or measured, are read at equal angles: under `published` by PCHIP as in the paper, which flattens a
@@ -43,7 +46,7 @@ impl DifferenceChain {
         AngularSettings { interpolation, ..AngularSettings::default() }
     }
 
-    /// The gear's average, its difference signal and indicators.
+    /// The wheel's average, its difference signal and indicators.
     ///
     /// # Arguments
     /// * `stages` - of the simulation
@@ -59,11 +62,11 @@ impl DifferenceChain {
         pinion_speed_hz: &[f64],
     ) -> Result<Record, HybridError> {
         let rate_hz = self.sampling_rate_hz.min(stages.time.sampling_rate_hz);
-        let teeth = stages.scenario.gears.gear_teeth as usize;
+        let teeth = stages.scenario.gears.teeth(self.wheel) as usize;
         let separation = self.separation.clone().map(|settings| SeparationSettings { teeth, ..settings });
         let angular = Self::angular_settings(stages.scenario.model);
         let settings = ChainSettings { angular, separation };
-        Ok(crate::trace::gear_record(stages, signal, pinion_speed_hz, rate_hz, settings)?)
+        Ok(crate::trace::wheel_record(stages, self.wheel, signal, pinion_speed_hz, rate_hz, settings)?)
     }
 }
 

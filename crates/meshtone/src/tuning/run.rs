@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use super::key_search::KeySearch;
 use super::simulations::Simulations;
 use super::tune::Common;
-use super::{Enhancement, Experiment, HybridError, SimulatedCases, Tuning, TuningWarning, tune};
+use super::{Case, Enhancement, Experiment, HybridError, SimulatedCases, Tuning, TuningWarning, tune};
 use crate::scenario::Scenario;
 
 /// What an experiment gave.
@@ -87,7 +87,22 @@ pub fn run_experiment(
         let keys = KeySearch::new(experiment, &simulations, common, &original)?.run()?;
         with_keys = kept(keys, &mut enhancement_alone);
     }
+    let reported = with_keys.as_mut().map_or(&mut enhancement_alone, |keys| &mut keys.tuning);
+    reported.warnings.extend(damaged_on_the_mate(experiment));
     Ok(ExperimentResult { original, enhancement_alone, with_keys })
+}
+
+/// Cases whose damage meets another place of the averaged wheel in each of its revolutions.
+fn damaged_on_the_mate(experiment: &Experiment) -> impl Iterator<Item = TuningWarning> {
+    let averaged = experiment.chain.wheel;
+    let gears = &experiment.base.gears;
+    // Where the mate turns a whole number of times meanwhile, its damage is averaged as well.
+    let fades = !gears.teeth(averaged).is_multiple_of(gears.teeth(averaged.mate()));
+    let on_the_mate = move |case: &Case| !case.faults.iter().any(|fault| fault.wheel == averaged);
+    let faulty = experiment.cases.iter().enumerate().skip(1);
+    faulty
+        .filter(move |(_, case)| fades && on_the_mate(case))
+        .map(move |(case, _)| TuningWarning::OtherWheel { case, averaged })
 }
 
 /// The tuned keys, where they are better than the scenario as it is; what is doubtful is told to whichever is reported.

@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 use super::search::{Grid, Objective, Point, enhancement, equal_weights, point, refine};
 use super::{Enhancement, EnhancementBounds, Fit, HybridError, Measurements, SimulatedCases};
 use crate::threads;
+use crate::wheel::WheelName;
 
 /// Bootstrap samples of the records.
 const BOOTSTRAP_SAMPLES: u64 = 200;
@@ -92,6 +93,13 @@ pub enum TuningWarning {
         /// Its records.
         records: usize,
     },
+    /// The faults of a case are on the mate of the wheel over whose revolutions the signals are averaged.
+    OtherWheel {
+        /// Number of the case.
+        case: usize,
+        /// The wheel that is averaged over.
+        averaged: WheelName,
+    },
     /// The enhancement is no better than the simulation was.
     NoBetter,
     /// No combination of the keys' values that was tried is better than the scenario as it is, which was kept.
@@ -126,6 +134,13 @@ impl std::fmt::Display for TuningWarning {
             Self::FewRecords { case, records } => write!(
                 formatter,
                 "case {case} has only {records} records, too few for the intervals to mean much (5 or more would do)"
+            ),
+            Self::OtherWheel { case, averaged } => write!(
+                formatter,
+                "case {case} is damaged on the {} alone, but its signals are averaged over revolutions of the {}, in which \
+                 that damage fades",
+                averaged.mate().name(),
+                averaged.name()
             ),
             Self::KeysDoNotHelp => formatter.write_str(
                 "no values of the keys that were tried are better than the scenario's own, which are kept; try more candidates",

@@ -3,7 +3,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use meshtone::scenario::{DampingRatio, Fault, GearPair, MissingTooth, Scenario, ToothBreakage};
+use meshtone::scenario::{DampingRatio, Fault, GearPair, MissingTooth, Scenario, ToothBreakage, WheelName};
 use meshtone::tuning::*;
 
 const HIDDEN: Enhancement =
@@ -100,6 +100,87 @@ fn holds(tuning: &Tuning) -> [bool; 3] {
         holds(fault_to_harmonics_ratio, HIDDEN.fault_to_harmonics_ratio),
         holds(noise_level, HIDDEN.noise_level),
     ]
+}
+
+/// A healthy pair, a chip, and a missing tooth, on a tooth of the pinion.
+fn on_the_pinion(tooth: u32) -> Vec<Case> {
+    let chip = ToothBreakage { chip_height_mm: 5.0, chip_width_mm: 12.0, tip_loss_mm: 2.0 };
+    let chipped = Fault::new(WheelName::Pinion, tooth, chip);
+    let missing = Fault::new(WheelName::Pinion, tooth, MissingTooth);
+    [vec![], vec![chipped], vec![missing]]
+        .into_iter()
+        .enumerate()
+        .map(|(n, faults)| Case { label: format!("case {n}"), severity: n as f64, faults })
+        .collect()
+}
+
+/// What an experiment with damage on the pinion is, its signals averaged over the revolutions of a wheel.
+fn experiment_on_the_pinion(tooth: u32, wheel: WheelName) -> Experiment {
+    let mut base = base();
+    base.solver.sampling_rate_hz = 25e3;
+    base.gears.points_per_tooth = 1000;
+    let chain = DifferenceChain { wheel, ..DifferenceChain::new(25e3) };
+    let scenarios = on_the_pinion(tooth).into_iter();
+    let scenarios = scenarios.map(|case| Scenario { faults: case.faults, ..base.clone() }).collect();
+    let signals = difference_signals(scenarios, &chain).unwrap();
+    let centre_rev = SimulatedCases::new(signals.clone()).unwrap().centre_rev();
+    let records: Vec<Vec<Vec<f64>>> = signals
+        .iter()
+        .enumerate()
+        .map(|(case, signal)| {
+            let enhanced = HIDDEN.without_noise(signal, &signals[0], centre_rev).unwrap();
+            (0..RECORDS).map(|draw| enhanced.with_noise(9, 1000 * case as u64 + draw).unwrap()).collect()
+        })
+        .collect();
+    let indicators = vec![TuningIndicator::Rms, TuningIndicator::Kurtosis];
+    Experiment {
+        base,
+        cases: on_the_pinion(tooth),
+        chain,
+        measured: Measurements::from_difference_signals(indicators, &records).unwrap(),
+        bounds: EnhancementBounds::default(),
+        keys: Vec::new(),
+        candidates: 0,
+        seed: 3,
+    }
+}
+
+fn tuned(experiment: &Experiment) -> ExperimentResult {
+    let cancelled = AtomicBool::new(false);
+    run_experiment(experiment, &ExperimentControl { progress: &|_, _| (), cancelled: &cancelled }).unwrap()
+}
+
+#[test]
+fn damage_on_the_pinion_is_tuned_over_its_own_revolutions() {
+    let experiment = experiment_on_the_pinion(1, WheelName::Pinion);
+    let result = tuned(&experiment);
+    let tuning = result.tuning();
+    println!("{:.3?} {:.3?}", tuning.enhancement, tuning.intervals);
+    println!("{:.3} of {:.3}, scatter {:.3}", tuning.enhanced_error, tuning.original_error, tuning.scatter);
+    assert_eq!(holds(tuning), [true; 3]);
+    assert!(tuning.enhanced_error < 1.05 * tuning.scatter);
+    let other = |warning: &TuningWarning| matches!(warning, TuningWarning::OtherWheel { .. });
+    assert!(!tuning.warnings.iter().any(other), "{:?}", tuning.warnings);
+
+    // A revolution of 17 teeth, in which the damage is four teeth later.
+    let teeth = f64::from(experiment.base.gears.pinion_teeth);
+    let later = tuned(&experiment_on_the_pinion(5, WheelName::Pinion));
+    let moved_rev = (later.simulated().centre_rev() - result.simulated().centre_rev()).rem_euclid(1.0);
+    println!("{:.3} teeth", moved_rev * teeth);
+    assert!((moved_rev * teeth - 4.0).abs() < 0.2);
+
+    // Over the gear's revolutions it meets another place in each.
+    let over_gear = tuned(&experiment_on_the_pinion(1, WheelName::Gear));
+    let kurtosis = |result: &ExperimentResult| {
+        TuningIndicator::Kurtosis.measure(&result.original.differences()[2]).unwrap()
+    };
+    println!("kurtosis {:.2}, over the gear {:.2}", kurtosis(&result), kurtosis(&over_gear));
+    assert!(kurtosis(&result) > 2.0 * kurtosis(&over_gear));
+    let averaged = WheelName::Gear;
+    for case in [1, 2] {
+        let warned = TuningWarning::OtherWheel { case, averaged };
+        assert!(over_gear.tuning().warnings.contains(&warned), "{:?}", over_gear.tuning().warnings);
+    }
 }
 
 #[test]

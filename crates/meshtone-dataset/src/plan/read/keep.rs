@@ -1,9 +1,10 @@
 //! The table `[keep]`.
 
-use meshtone::scenario::{Scenario, WheelName};
+use meshtone::scenario::Scenario;
 use meshtone::sensor::ChannelKind;
 use meshtone_io::channel_name::read_channel;
 use meshtone_io::experiment::Tuned;
+use meshtone_io::wheel_name::read_wheel;
 use meshtone_toml::{ReadResult, TomlTable};
 
 use super::super::{Keep, MOST_SHARD_RECORDS};
@@ -47,8 +48,8 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
     }
     let flag =
         |key| -> ReadResult<Option<bool>> { table.optional(key).map(|value| value.boolean()).transpose() };
-    let wheels = WheelName::BOTH.map(|wheel| (wheel.name(), wheel));
-    let wheel = table.optional("wheel").map(|value| value.choice(&wheels)).transpose()?.unwrap_or_default();
+    let wheel = table.optional("wheel").map(|value| read_wheel(&value)).transpose()?;
+    let wheel = wheel.or(tuned.map(|tuned| tuned.wheel)).unwrap_or_default();
     let teeth = u64::from(base.gears.teeth(wheel));
     let analysed = table
         .optional("analysed")
@@ -91,7 +92,7 @@ fn agree(table: &TomlTable<'_>, keep: &Keep, tuned: Option<&Tuned>) -> ReadResul
     for (key, same) in [
         ("sampling_rate_hz", keep.sampling_rate_hz == tuned.sampling_rate_hz),
         ("analysed", keep.analysed == tuned.channel),
-        ("wheel", keep.wheel == WheelName::Gear),
+        ("wheel", keep.wheel == tuned.wheel),
         ("sidebands", keep.sidebands == tuned.sidebands),
         ("shaft_orders", keep.shaft_orders == tuned.shaft_orders),
         ("duration_s", keep.duration_s.is_none()),
