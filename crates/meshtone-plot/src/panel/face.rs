@@ -10,6 +10,7 @@ use super::side::Side;
 use super::tooth::{DAMAGE_EDGE, LOST};
 use crate::axes::{Area, Axes};
 use crate::canvas::Canvas;
+use crate::font;
 use crate::style::{Anchor, Fill, Stroke, TextStyle, colour};
 use crate::ticks::Ticks;
 
@@ -17,6 +18,12 @@ use crate::ticks::Ticks;
 pub(super) const CONTACT: Stroke = Stroke::dashed(colour::GREEN, 1.6, &[7.0, 3.0]);
 /// Where the tip relief starts.
 pub(super) const RELIEF: Stroke = Stroke::dashed(colour::PURPLE, 1.6, &[2.0, 2.5]);
+const CONTACT_NAME: &str = "contact start";
+/// (px) From a line to the baseline of its name.
+const ABOVE: f64 = -5.0;
+const BELOW: f64 = 15.0;
+/// (px) From a line to the top of the name above it.
+const NAME_HEIGHT: f64 = 19.0;
 /// (px) From line to line of the caption.
 const CAPTION_LINE: f64 = 16.0;
 /// Lines of the caption for which there is room.
@@ -42,21 +49,45 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, along: [f64; 2], side: &Side
     canvas.line(axes.at(-half, root), axes.at(half, root), Stroke::solid(colour::MUTED, 0.9));
     let corners = [(-half, along[0]), (-half, top), (half, top), (half, along[0])];
     canvas.polyline(&corners.map(|(z, x)| axes.at(z, x)), outline);
-    landmark(canvas, &axes, side.contact_x_mm(), "contact start", CONTACT);
+    let is_below = contact_name_is_below(&axes, side);
+    let contact_name = if is_below { BELOW } else { ABOVE };
+    landmark(canvas, &axes, (side.contact_x_mm(), CONTACT_NAME), CONTACT, contact_name);
     if let Some(relief) = side.relief_x_mm.filter(|relief| *relief > side.contact_x_mm()) {
-        landmark(canvas, &axes, relief, "tip relief", RELIEF);
+        landmark(canvas, &axes, (relief, "tip relief"), RELIEF, ABOVE);
     }
     if let Some(tooth) = side.tooth {
-        caption(canvas, &axes, side, tooth);
+        caption(canvas, &axes, side, tooth, if is_below { CAPTION_LINE } else { 0.0 });
     }
     axes.frame(canvas);
 }
 
-fn landmark(canvas: &mut Canvas, axes: &Axes, x_mm: f64, name: &str, stroke: Stroke) {
+/// A line across the face, with its name at a height from it.
+fn landmark(canvas: &mut Canvas, axes: &Axes, (x_mm, name): (f64, &str), stroke: Stroke, height: f64) {
     axes.horizontal(canvas, x_mm, stroke);
     // At the end of the face that no one-sided fault reaches first.
     let style = TextStyle::NOTE.coloured(stroke.colour).with_halo();
-    canvas.text((axes.px(axes.x[0] / 1.12) + 5.0, axes.py(x_mm) - 5.0), name, style);
+    canvas.text((name_left(axes), axes.py(x_mm) + height), name, style);
+}
+
+fn name_left(axes: &Axes) -> f64 {
+    axes.px(axes.x[0] / 1.12) + 5.0
+}
+
+/// Whether the lower edge of a damage would cross the name above the start of contact.
+fn contact_name_is_below(axes: &Axes, side: &Side) -> bool {
+    let Some(tooth) = side.tooth.filter(|tooth| !tooth.is_missing()) else { return false };
+    let half = side.wheel.face_width_mm / 2.0;
+    let name_right = name_left(axes) + font::text_width(CONTACT_NAME, TextStyle::NOTE.size, false);
+    tooth.descriptions.iter().any(|description| {
+        let z_mm = match description {
+            DamageDescription::ToothBreakage { .. } => return false,
+            DamageDescription::FaceFault { width_mm, .. } => half - width_mm,
+            _ => -half,
+        };
+        let edge_x_mm = side.profile.x_mm[damage::damaged_range(description, tooth, side).0];
+        let above = axes.py(side.contact_x_mm()) - axes.py(edge_x_mm);
+        axes.px(z_mm) < name_right && above > 0.0 && above < NAME_HEIGHT
+    })
 }
 
 fn damaged(
@@ -109,7 +140,7 @@ fn rectangle(canvas: &mut Canvas, axes: &Axes, z: [f64; 2], x: [f64; 2]) {
 }
 
 /// Below the start of contact and the damage, as far as there is room.
-fn caption(canvas: &mut Canvas, axes: &Axes, side: &Side, tooth: &DamagedTooth) {
+fn caption(canvas: &mut Canvas, axes: &Axes, side: &Side, tooth: &DamagedTooth, lowered: f64) {
     let middle = axes.area.left + axes.area.width / 2.0;
     let style = TextStyle::NOTE.coloured(colour::VERMILLION).anchored(Anchor::Middle).with_halo();
     let lines: Vec<String> = tooth.descriptions.iter().flat_map(damage::caption).take(MOST_LINES).collect();
@@ -120,7 +151,7 @@ fn caption(canvas: &mut Canvas, axes: &Axes, side: &Side, tooth: &DamagedTooth) 
         starts.min().unwrap_or(side.last())
     };
     let lowest = side.contact_x_mm().min(side.profile.x_mm[below]);
-    let first = axes.py(lowest) + 18.0;
+    let first = axes.py(lowest) + 18.0 + lowered;
     let first = first.min(axes.area.bottom() - 6.0 - CAPTION_LINE * lines.len().saturating_sub(1) as f64);
     for (row, text) in lines.iter().enumerate() {
         canvas.text((middle, first + CAPTION_LINE * row as f64), text, style);

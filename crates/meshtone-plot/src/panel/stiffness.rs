@@ -166,16 +166,46 @@ impl Mesh {
             axes.note(canvas, "no mesh stiffness");
             return;
         }
-        let per_pitch = self.healthy_n_per_mm.len() as f64;
-        let curve = |values: &[f64], first_pitch: i64, [from, to]: [f64; 2]| {
-            let first_point = first_pitch * self.healthy_n_per_mm.len() as i64;
-            let (first, last) = ((from * per_pitch).ceil() as i64, (to * per_pitch).floor() as i64);
-            let value = |k: i64| values[(k - first_point).rem_euclid(values.len() as i64) as usize];
-            (first..=last).map(|k| (k as f64 / per_pitch, value(k) / 1e3)).collect::<Vec<_>>()
-        };
         for &turn in turns {
-            axes.line(canvas, curve(&self.healthy_n_per_mm, 0, turn).into_iter(), HEALTHY);
+            axes.line(canvas, self.curve(&self.healthy_n_per_mm, 0, turn), HEALTHY);
         }
-        axes.line(canvas, curve(&self.mesh_n_per_mm, self.first_pitch, axes.x).into_iter(), MESH);
+        axes.line(canvas, self.curve(&self.mesh_n_per_mm, self.first_pitch, axes.x), MESH);
+    }
+    /// (pitches, N/µm) Values of a window.
+    ///
+    /// Where a pair enters or leaves contact, a point holds a part of that pair; to the window's edges reach the values beside them.
+    fn curve<'a>(
+        &self,
+        values: &'a [f64],
+        first_pitch: i64,
+        [from, to]: [f64; 2],
+    ) -> impl Iterator<Item = (f64, f64)> + use<'a> {
+        let points_per_pitch = self.healthy_n_per_mm.len();
+        let per_pitch = points_per_pitch as f64;
+        let first_point = first_pitch * points_per_pitch as i64;
+        let (first, last) = ((from * per_pitch).ceil() as i64, (to * per_pitch).floor() as i64);
+        let inside = move |k: i64| if last - first > 1 { k.clamp(first + 1, last - 1) } else { k };
+        let value = move |k: i64| values[(k - first_point).rem_euclid(values.len() as i64) as usize];
+        (first..=last).map(move |k| (k as f64 / per_pitch, value(inside(k)) / 1e3))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two pairs in contact over the first half of a pitch, one over the second; half of a pair where one enters.
+    #[test]
+    fn a_window_has_no_parts_of_pairs_at_its_edges() {
+        let pitch: Vec<f64> =
+            (0..10).map(|k| [1.5e3, 2e3, 1e3][if k == 0 { 0 } else { 1 + k / 5 }]).collect();
+        let mesh = Mesh { mesh_n_per_mm: pitch.repeat(4), first_pitch: -1, healthy_n_per_mm: pitch.clone() };
+        let of = |window| mesh.curve(&mesh.mesh_n_per_mm, mesh.first_pitch, window).collect::<Vec<_>>();
+        let whole = of([0.0, 2.0]);
+        assert_eq!((whole[0], whole[1]), ((0.0, 2.0), (0.1, 2.0)));
+        assert_eq!((whole[20], whole[19]), ((2.0, 1.0), (1.9, 1.0)));
+        // Within the window a pair enters as it does.
+        assert_eq!(whole[10], (1.0, 1.5));
+        assert_eq!(of([0.25, 0.35]), [(0.3, 2.0)]);
     }
 }

@@ -7,6 +7,7 @@ use super::side::Side;
 use crate::axes::{Area, Axes};
 use crate::canvas::{Canvas, Pixel};
 use crate::curve;
+use crate::damaged_tooth;
 use crate::style::{Anchor, Colour, Fill, Stroke, TextStyle, colour};
 use crate::ticks::Ticks;
 
@@ -42,9 +43,15 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, across: [f64; 2], along: [f6
 }
 
 fn title(side: &Side) -> String {
-    match side.tooth_index() {
+    let title = match side.tooth_index() {
         0 => "First tooth, in its plane".to_owned(),
         index => format!("{} tooth {}, in its plane", side.name, index + 1),
+    };
+    let drawn = side.tooth_index() as u32 + 1;
+    let others: Vec<_> = side.damaged.iter().copied().filter(|tooth| tooth.tooth != drawn).collect();
+    match &others[..] {
+        [] => title,
+        others => format!("{title} (also damaged: {})", damaged_tooth::numbered("", others)),
     }
 }
 

@@ -396,6 +396,35 @@ fn damaged_teeth_are_marked_and_named_wherever_they_are() {
 }
 
 #[test]
+fn of_several_damaged_teeth_the_one_that_is_drawn_is_named_and_so_are_the_others() {
+    let mut scenario = with_teeth(17, 38, None);
+    let pits = |teeth: &[u32]| {
+        teeth.iter().map(|&tooth| Fault::new(WheelName::Gear, tooth, partial_face())).collect()
+    };
+    scenario.faults = pits(&[20, 6]);
+    assert_shows(&drawn(&scenario), &["Gear tooth 6, in its plane (also damaged: tooth 20)"]);
+    scenario.faults = pits(&[1, 6, 11, 16, 21]);
+    assert_shows(&drawn(&scenario), &["First tooth, in its plane (also damaged: 4 teeth)"]);
+}
+
+#[test]
+fn the_edge_of_a_pit_does_not_cross_the_name_of_the_contact_start() {
+    let mut scenario = with_teeth(17, 38, None);
+    let names = |figure: &Figure| {
+        let names = figure.labels().iter().filter(|label| label.text == "contact start");
+        names.map(|label| label.top).collect::<Vec<_>>()
+    };
+    let healthy = names(&drawn(&scenario));
+    for (start, count) in [(0.03, 1), (0.5, 0)] {
+        let pit = PitCircle::Fractions { start, end: 0.7, depth: 0.3 };
+        scenario.faults = vec![Fault::on_first_gear_tooth(ThroughFace { pit })];
+        let pitted = names(&drawn(&scenario));
+        let lowered = healthy.iter().zip(&pitted).filter(|(before, after)| after > before).count();
+        assert_eq!((pitted.len(), lowered), (healthy.len(), count), "{healthy:?} {pitted:?}");
+    }
+}
+
+#[test]
 fn a_damaged_tooth_turns_at_its_own_angle() {
     let contact = |tooth: u32| {
         let mut scenario = with_teeth(17, 38, None);
