@@ -19,7 +19,7 @@ import numpy.typing as npt
 from . import _core
 from .faults import in_words
 from .scenario import Scenario, native_scenario
-from .signal import _signal, whole
+from .signal._arguments import signal_array, whole
 
 __all__ = [
     "EnhancedSignals",
@@ -61,7 +61,7 @@ def change_duration(signal: npt.ArrayLike, width_ratio: float, centre_rev: float
     >>> bool(np.allclose(change_duration(np.arange(8.0), 1.0, 0.5), np.arange(8.0)))
     True
     """
-    return _core.change_duration(_signal(signal), width_ratio, centre_rev)
+    return _core.change_duration(signal_array(signal), width_ratio, centre_rev)
 
 
 def change_fault_to_harmonics_ratio(
@@ -85,7 +85,7 @@ def change_fault_to_harmonics_ratio(
     >>> change_fault_to_harmonics_ratio([1.0, 3.0, 1.0, 1.0], [1.0, 1.0, 1.0, 1.0], 2.0)
     array([1., 5., 1., 1.])
     """
-    return _core.change_fault_to_harmonics_ratio(_signal(signal), _signal(healthy), fault_to_harmonics_ratio)
+    return _core.change_fault_to_harmonics_ratio(signal_array(signal), signal_array(healthy), fault_to_harmonics_ratio)
 
 
 def add_noise(
@@ -114,7 +114,7 @@ def add_noise(
     >>> round(float(add_noise(np.zeros(100_000), 0.5, 2.0).std()), 1)
     1.0
     """
-    return _core.add_noise(_signal(signal), noise_level, healthy_rms, whole("seed", seed), whole("draw", draw))
+    return _core.add_noise(signal_array(signal), noise_level, healthy_rms, whole("seed", seed), whole("draw", draw))
 
 
 @dataclass(frozen=True)

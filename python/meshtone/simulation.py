@@ -15,7 +15,8 @@ from ._progress import on_terminal
 from ._sections import hint
 from .faults import in_words
 from .scenario import Scenario, native_scenario
-from .signal import Record, _settings, whole
+from .signal import Record
+from .signal._arguments import separation_settings, whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -328,7 +329,7 @@ def _process(
 ) -> Record:
     _check_wheel(wheel)
     teeth = scenario.gear_teeth if wheel == "gear" else scenario.pinion_teeth
-    settings = _settings(teeth, sidebands, None)
+    settings = separation_settings(teeth, sidebands, None)
     values = np.ascontiguousarray(signal, dtype=np.float64)
     return Record(_core.process_simulated(scenario._native, values, wheel, start_s, settings), teeth=teeth, name=channel)
 

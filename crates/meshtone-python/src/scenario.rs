@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use meshtone::scenario::{self, ProfileErrors, ScenarioError};
 use meshtone::wheel::ErrorTable;
-use meshtone_io::scenario_file::read_scenario;
+use meshtone_io::scenario_file::{ReadScenarioError, read_scenario};
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -59,7 +59,14 @@ impl Scenario {
     /// From a scenario file, and the files that it names.
     #[staticmethod]
     fn from_file(path: PathBuf) -> PyResult<Self> {
-        read_scenario(&path).map(Self).map_err(|error| file_error(&path, describe(&path, error)))
+        read_scenario(&path).map(Self).map_err(|error| {
+            let help = match &error {
+                ReadScenarioError::Invalid { error, .. } => error.help.clone(),
+                _ => None,
+            };
+            let problem = describe(&path, error);
+            file_error(&path, help.map_or_else(|| problem.clone(), |help| format!("{problem}\n{help}")))
+        })
     }
 
     /// As the text of a scenario file.
@@ -104,7 +111,7 @@ fn without_line(error: ScenarioError) -> PyErr {
     scenario_error(&error.at_line(None))
 }
 
-fn describe(path: &Path, error: meshtone_io::scenario_file::ReadScenarioError) -> String {
+fn describe(path: &Path, error: ReadScenarioError) -> String {
     let mut text = error.to_string();
     let mut source = std::error::Error::source(&error);
     while let Some(cause) = source {

@@ -73,8 +73,14 @@ fn syntax_error(text: &str, error: &toml::de::Error) -> TomlError {
     let start = error.span().map_or(text.len(), |span| span.start).min(text.len());
     let line = line_at(text, start);
     let written = text.lines().nth(line - 1).unwrap_or_default().trim();
+    // A table stands once, or is one of a list from its first time on.
+    let help = if written.starts_with("[[") {
+        "write the table's name in double brackets wherever it stands, the first time too"
+    } else {
+        "write `key = value`, one key a line, text in double quotes, below a `[section]`"
+    };
     TomlError::new("", shorten(written), format!("not valid TOML: {}", error.message()))
-        .with_help("write `key = value`, one key a line, text in double quotes, below a `[section]`")
+        .with_help(help)
         .at_line(Some(line))
 }
 

@@ -175,3 +175,10 @@ fn keys_are_found_inside_tables_and_arrays() {
     assert_eq!(document.value_as_written("a"), None);
     assert_eq!(document.value_as_written("a.absent"), None);
 }
+
+#[test]
+fn a_table_that_becomes_a_list_is_told_how() {
+    let error = TomlDocument::parse("[fault]\ntooth = 1\n[[fault]]\ntooth = 2\n").map(drop).unwrap_err();
+    assert_eq!(error.line, Some(3));
+    assert!(error.help.unwrap().contains("double brackets"));
+}

@@ -5,7 +5,6 @@ use std::time::Duration;
 
 use web_time::Instant;
 
-use crate::damage::published::fault_geometry;
 use crate::damage::{DamagedTooth, damaged_teeth};
 use crate::error::{Error, ScenarioError};
 use crate::machine::coordinates::CoordinateVector;
@@ -121,7 +120,7 @@ pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
             cycle = cycle.as_published(gears.pinion_teeth, gears.gear_teeth);
             let fault = scenario.faults.first();
             let fault =
-                fault.map(|fault| fault_geometry(&fault.damage, &teeth, scenario.seed)).transpose()?;
+                fault.map(|fault| fault.damage.published_geometry(&teeth, scenario.seed)).transpose()?;
             let damaged = fault.iter().map(|fault| fault.damaged_tooth(&teeth)).collect();
             clock.lap("fault");
             let mesh = PublishedMesh::new(gears, &teeth, fault, cycle)?;

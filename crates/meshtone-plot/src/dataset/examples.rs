@@ -38,7 +38,11 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, preview: &DatasetPreview) {
             axes.x_axis(
                 canvas,
                 &ticks,
-                if preview.over_angle { "Gear angle from tooth 1 (rev)" } else { "Part of the record (–)" },
+                if preview.over_angle {
+                    "Shaft angle from tooth 1 (rev)"
+                } else {
+                    "Part of the record (–)"
+                },
             );
         }
         axes.y_axis(canvas, &Ticks::about_zero(half), "", NAME_LEFT);

@@ -74,7 +74,7 @@ fn everything_has_its_place() {
         "fm4",
         "train",
         "severe",
-        "Gear angle from tooth 1 (rev)",
+        "Shaft angle from tooth 1 (rev)",
     ] {
         assert!(has(&figure, text), "{text}");
     }

@@ -1,7 +1,7 @@
 //! Which scenarios are simulated side by side.
 
 use super::group::Numbered;
-use crate::damage::Damage;
+use crate::damage::MeshEffect;
 use crate::model::Model;
 use crate::scenario::Scenario;
 use crate::solver::LANES;
@@ -16,9 +16,7 @@ struct Kind {
 /// What the time loop of a scenario is compiled for; see [`crate::solver`]'s sizes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Motion {
-    Flat,
-    Tilting,
-    Rolling,
+    Steady(MeshEffect),
     General,
 }
 
@@ -30,12 +28,9 @@ impl Kind {
             && operation.speed_fluctuation_hz == 0.0
             && operation.torque_fluctuation_nm == 0.0;
         let at_rest = solver.initial_displacement.is_none() && solver.initial_velocity.is_none();
-        let motion = match scenario.faults.first().map(|fault| &fault.damage) {
-            _ if !steady || !at_rest => Motion::General,
-            None | Some(Damage::MissingTooth(_) | Damage::ToothDestruction(_)) => Motion::Flat,
-            Some(Damage::ToothBreakage(_) | Damage::PartialFace(_)) => Motion::Tilting,
-            Some(Damage::ThroughFace(_)) => Motion::Rolling,
-        };
+        let effects = scenario.faults.iter().map(|fault| fault.damage.effect());
+        let effect = effects.max().unwrap_or(MeshEffect::Flat);
+        let motion = if steady && at_rest { Motion::Steady(effect) } else { Motion::General };
         Self { published: scenario.model == Model::Published, motion }
     }
 }

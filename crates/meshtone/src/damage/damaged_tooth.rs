@@ -88,10 +88,13 @@ impl<'a> HealthyTooth<'a> {
     }
 
     /// Draws for the roughness of this tooth.
-    pub(super) fn roughness(&self) -> Draws {
+    ///
+    /// # Arguments
+    /// * `earlier` - number of rough damages that the tooth has already
+    pub(super) fn roughness(&self, earlier: usize) -> Draws {
         // The pinion's teeth count from 2³² on.
         let first = if self.name == WheelName::Pinion { 1 << 32 } else { 0 };
-        Draws::new(self.seed, Purpose::DestructionNoise, first + self.tooth as u64)
+        Draws::new(self.seed, Purpose::DestructionNoise, first + self.tooth as u64 + ((earlier as u64) << 33))
     }
 }
 
@@ -139,8 +142,19 @@ impl DamagedTooth {
         }
     }
 
-    /// Refuses a cut where there is one already: what two of them make of a flank is not known.
+    /// Refuses a cut where there is one already, and a pit without an edge that the mate can turn about: what becomes of such a
+    /// flank is not known.
     fn refuse_overlap(&self) -> Result<(), ScenarioError> {
+        if self.rolling.iter().any(|pit| pit.end_index >= self.gone_from_index) {
+            let problem = format!(
+                "leaves a pit without its edge at the tip on the {}'s tooth {}; a pit over the whole face must end below what has \
+                 broken off",
+                self.wheel.name(),
+                self.tooth + 1
+            );
+            return Err(ScenarioError::new("fault", "", problem)
+                .with_help("move the pit towards the root, or lessen fault.tip_loss_mm"));
+        }
         let Some((last, earlier)) = self.descriptions.split_last() else { return Ok(()) };
         let Some(range) = Self::cut_range(last) else { return Ok(()) };
         let overlaps =

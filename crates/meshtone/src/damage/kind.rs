@@ -1,9 +1,10 @@
 //! What a kind of damage has to say about itself.
 
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
+use super::published::FaultGeometry;
 use crate::error::ScenarioError;
 use crate::keys::{Check, Keys};
-use crate::wheel::Gears;
+use crate::wheel::{Gears, Teeth};
 
 /// A kind of damage: its parameters are the keys of its section, beside those that every fault has.
 pub(crate) trait Kind: Keys {
@@ -12,6 +13,9 @@ pub(crate) trait Kind: Keys {
 
     /// The rig of a file to start from.
     const RIG: PaperRig = PaperRig::Breakage;
+
+    /// What it makes of the mesh.
+    const EFFECT: MeshEffect;
 
     /// The damage in a file to start from.
     fn example() -> Self;
@@ -29,6 +33,31 @@ pub(crate) trait Kind: Keys {
     /// # Errors
     /// A damage that does not fit the tooth. Its keys are named `fault.…`.
     fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> Result<(), ScenarioError>;
+
+    /// What the published model makes of it, on the gear's first tooth.
+    ///
+    /// # Arguments
+    /// * `teeth` - both healthy teeth
+    /// * `seed` - of random draws
+    ///
+    /// # Errors
+    /// A damage that does not fit the tooth, and one that the published model does not know, as by default.
+    fn published_geometry(&self, _teeth: &Teeth, _seed: u64) -> Result<FaultGeometry, ScenarioError> {
+        let problem = "is not known to the published model";
+        Err(ScenarioError::new("fault.kind", format!("\"{}\"", Self::NAME), problem)
+            .with_help("write model = \"linear\", or nothing: it is the default"))
+    }
+}
+
+/// What a damage makes of the forces of its pairs, in the order of what a step of the solver costs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum MeshEffect {
+    /// They act in the middle of the face and at the nominal angle.
+    Flat,
+    /// They act beside the middle of the face, which tilts the wheels.
+    Tilting,
+    /// They act at another angle.
+    Rolling,
 }
 
 /// The rigs of the paper's experiments.

@@ -1,10 +1,13 @@
 //! A tooth that is gone.
 
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
+use super::kind::MeshEffect;
+use super::published::{self, FaultGeometry};
 use super::{DamageDescription, Kind};
 use crate::error::ScenarioError;
 use crate::keys::{Check, Keys, Row};
 use crate::wheel::Gears;
+use crate::wheel::Teeth;
 
 /// A tooth that is gone: it carries nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -22,6 +25,7 @@ impl Keys for MissingTooth {
 
 impl Kind for MissingTooth {
     const NAME: &str = "missing-tooth";
+    const EFFECT: MeshEffect = MeshEffect::Flat;
 
     fn example() -> Self {
         Self
@@ -35,5 +39,9 @@ impl Kind for MissingTooth {
         tooth.gone_from_index = 0;
         tooth.descriptions.push(DamageDescription::MissingTooth);
         Ok(())
+    }
+
+    fn published_geometry(&self, teeth: &Teeth, _seed: u64) -> Result<FaultGeometry, ScenarioError> {
+        Ok(published::missing_tooth::geometry(teeth))
     }
 }

@@ -22,7 +22,7 @@ pub use damaged_tooth::{DamagedTooth, RollingPit, damaged_teeth};
 pub use description::{DamageDescription, Pit};
 pub use fault::Fault;
 pub(crate) use fault::check_faults;
-pub(crate) use kind::{Kind, PaperRig};
+pub(crate) use kind::{Kind, MeshEffect, PaperRig};
 pub use missing_tooth::MissingTooth;
 pub use partial_face::PartialFace;
 pub use pit_circle::PitCircle;
@@ -35,7 +35,7 @@ use meshtone_toml::{ReadResult, TomlTable};
 
 use crate::error::ScenarioError;
 use crate::keys::{Check, KeyDescription, Keys, NoFiles, commented, describe, read_keys, write_keys};
-use crate::wheel::Gears;
+use crate::wheel::{Gears, Teeth};
 
 /// The kinds of damage, each with what it is in a sentence: a struct of its name, in a file of its own, implements [`Kind`].
 macro_rules! kinds {
@@ -94,6 +94,33 @@ macro_rules! kinds {
             fn check(&self, gears: &Gears) -> Check {
                 match self {
                     $(Self::$kind(damage) => Kind::check(damage, gears),)+
+                }
+            }
+
+            /// What it makes of the mesh.
+            pub(crate) fn effect(&self) -> MeshEffect {
+                match self {
+                    $(Self::$kind(_) => $kind::EFFECT,)+
+                }
+            }
+
+            /// What the published model makes of it, on the gear's first tooth.
+            ///
+            /// # Arguments
+            /// * `teeth` - both healthy teeth
+            /// * `seed` - seed of a destruction's roughness
+            ///
+            /// # Errors
+            /// A fault that does not fit the tooth: a pit that misses the flank or is deeper than the tooth, a
+            /// chip larger than the tooth, a line that leaves no tooth; a kind that the published model does not know.
+            #[doc(hidden)]
+            pub fn published_geometry(
+                &self,
+                teeth: &Teeth,
+                seed: u64,
+            ) -> Result<published::FaultGeometry, ScenarioError> {
+                match self {
+                    $(Self::$kind(damage) => damage.published_geometry(teeth, seed),)+
                 }
             }
 

@@ -1,5 +1,8 @@
 //! A pit over a part of the face width, from one side.
 
+use super::kind::MeshEffect;
+use super::published::{self, FaultGeometry};
+use crate::wheel::Teeth;
 use meshtone_toml::{ReadResult, TomlTable};
 
 use super::DamageDescription;
@@ -39,6 +42,7 @@ impl Keys for PartialFace {
 
 impl Kind for PartialFace {
     const NAME: &str = "partial-face";
+    const EFFECT: MeshEffect = MeshEffect::Tilting;
 
     fn example() -> Self {
         Self { width_mm: 2.0, pit: PitCircle::example() }
@@ -67,5 +71,9 @@ impl Kind for PartialFace {
         }
         tooth.descriptions.push(DamageDescription::FaceFault { pit, width_mm: self.width_mm });
         Ok(())
+    }
+
+    fn published_geometry(&self, teeth: &Teeth, _seed: u64) -> Result<FaultGeometry, ScenarioError> {
+        published::partial_face::geometry(self, teeth)
     }
 }

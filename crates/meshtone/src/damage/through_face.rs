@@ -1,5 +1,8 @@
 //! A pit over the whole face width: while the mate passes it, it turns about the pit's two edges.
 
+use super::kind::MeshEffect;
+use super::published::{self, FaultGeometry};
+use crate::wheel::Teeth;
 use meshtone_toml::{ReadResult, TomlTable};
 
 use super::DamageDescription;
@@ -33,6 +36,7 @@ impl Keys for ThroughFace {
 
 impl Kind for ThroughFace {
     const NAME: &str = "through-face";
+    const EFFECT: MeshEffect = MeshEffect::Rolling;
 
     fn example() -> Self {
         Self { pit: PitCircle::example() }
@@ -60,6 +64,10 @@ impl Kind for ThroughFace {
         let width_mm = healthy.wheel().face_width_mm;
         tooth.descriptions.push(DamageDescription::FaceFault { pit, width_mm });
         Ok(())
+    }
+
+    fn published_geometry(&self, teeth: &Teeth, _seed: u64) -> Result<FaultGeometry, ScenarioError> {
+        published::through_face::geometry(self, teeth)
     }
 }
 

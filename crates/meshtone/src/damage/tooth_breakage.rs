@@ -3,9 +3,12 @@
 use super::DamageDescription;
 use super::Kind;
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
+use super::kind::MeshEffect;
+use super::published::{self, FaultGeometry};
 use crate::error::ScenarioError;
 use crate::keys::{Check, Keys, Range, Row, below, check_keys, field, require, row};
 use crate::wheel::Gears;
+use crate::wheel::Teeth;
 use crate::wheel::ToothProfile;
 
 /// A corner chipped off, and the tip lost over the whole width.
@@ -53,6 +56,7 @@ impl Keys for ToothBreakage {
 
 impl Kind for ToothBreakage {
     const NAME: &str = "tooth-breakage";
+    const EFFECT: MeshEffect = MeshEffect::Tilting;
 
     fn example() -> Self {
         Self { chip_height_mm: 5.0, chip_width_mm: 12.0, tip_loss_mm: 3.0 }
@@ -83,6 +87,10 @@ impl Kind for ToothBreakage {
             missing_width_mm: chipped.missing_width_mm,
         });
         Ok(())
+    }
+
+    fn published_geometry(&self, teeth: &Teeth, _seed: u64) -> Result<FaultGeometry, ScenarioError> {
+        published::tooth_breakage::geometry(self, teeth)
     }
 }
 

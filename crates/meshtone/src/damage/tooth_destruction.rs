@@ -1,5 +1,8 @@
 //! A working flank that has been ground down along a straight line.
 
+use super::kind::MeshEffect;
+use super::published::{self, FaultGeometry};
+use crate::wheel::Teeth;
 use std::ops::Bound::Excluded;
 
 use meshtone_toml::{ReadResult, TomlTable};
@@ -125,6 +128,7 @@ impl Keys for DestructionLine {
 impl Kind for ToothDestruction {
     const NAME: &str = "tooth-destruction";
     const RIG: PaperRig = PaperRig::Destruction;
+    const EFFECT: MeshEffect = MeshEffect::Flat;
 
     fn example() -> Self {
         Self { start: 0.2143, line: DestructionLine::End(0.9286), offset_mm: 0.0, noise_mm: 0.0 }
@@ -141,8 +145,10 @@ impl Kind for ToothDestruction {
     }
 
     fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> Result<(), ScenarioError> {
-        let ground =
-            self.grind(healthy.profile(), healthy.first_contact(), healthy.roughness(), Model::Linear)?;
+        let is_rough =
+            |damage: &&DamageDescription| matches!(damage, DamageDescription::ToothDestruction { .. });
+        let roughness = healthy.roughness(tooth.descriptions.iter().filter(is_rough).count());
+        let ground = self.grind(healthy.profile(), healthy.first_contact(), roughness, Model::Linear)?;
         for i in 0..ground.flank_y_mm.len() {
             if ground.deviation_mm[i] < 0.0 {
                 tooth.flank_y_mm[i] = ground.flank_y_mm[i];
@@ -156,6 +162,10 @@ impl Kind for ToothDestruction {
             slope_rad: ground.slope_rad,
         });
         Ok(())
+    }
+
+    fn published_geometry(&self, teeth: &Teeth, seed: u64) -> Result<FaultGeometry, ScenarioError> {
+        published::tooth_destruction::geometry(self, teeth, seed)
     }
 }
 

@@ -103,11 +103,14 @@ impl<'a> Pairs<'a> {
                 None => tooth.point,
                 Some(rolling) => tooth.flank.at_curvature(rolling.edge_curvature_mm(tooth.name)),
             };
+            // The load acts at the edge; the wheels have turned on, so that its angle is the one of where they would touch, and
+            // the turn of the line of action: on the mate, the mate's own normal at the edge.
             let (sin, cos) = turn_rad.sin_cos();
+            let nominal = tooth.point;
             tooth.loaded.compliance_mm_per_n(&FlankLoad {
                 point,
-                sin: point.load_sin * cos + point.load_cos * sin,
-                cos: point.load_cos * cos - point.load_sin * sin,
+                sin: nominal.load_sin * cos + nominal.load_cos * sin,
+                cos: nominal.load_cos * cos - nominal.load_sin * sin,
                 z_mm: unloaded / 2.0,
                 width_mm: width,
             })

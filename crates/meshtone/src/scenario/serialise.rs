@@ -1,4 +1,4 @@
-//! A scenario in any format that serde knows, with the sections and keys of the scenario file.
+//! A scenario in any self-describing format that serde knows, such as JSON, with the sections and keys of the scenario file.
 
 use serde::de::Error as _;
 use serde::ser::Error as _;
@@ -6,7 +6,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::Scenario;
 
-/// The sections and keys of the scenario file; nothing refers to another file.
+/// The sections and keys of the scenario file; nothing refers to another file. As in a scenario file, seeds above 2⁶³ − 1 cannot be
+/// written: an error.
 ///
 /// ```
 /// use meshtone::scenario::{GearPair, Scenario};

@@ -3,7 +3,7 @@
 use super::Trace;
 use crate::damage::DamageDescription;
 use crate::damage::published::{Displacement, FaultGeometry};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, PairKind};
 use crate::simulate::Stages;
 use crate::wheel::{ToothProfile, Wheel};
 
@@ -116,7 +116,11 @@ fn stiffness(trace: &mut Trace, stages: &Stages) {
             let pairs = stages.pairs();
             let pitches = f64::from(stages.teeth.pinion.teeth);
             let mesh = stages.pair_mesh(grid.points_per_pitch);
-            for (kind, name) in mesh.sequence.classes().iter().zip(["healthy", "faulty"]) {
+            let is_first =
+                |kind: &&PairKind| matches!((kind.pinion, kind.gear), (Some(0), None) | (None, Some(0)));
+            let classes = mesh.sequence.classes();
+            for (kind, name) in [(classes.first(), "healthy"), (classes.iter().find(is_first), "faulty")] {
+                let Some(kind) = kind else { continue };
                 pair(trace, name, &|position| pairs.at(kind, position * pitches).stiffness_n_per_mm);
             }
             mesh.stiffness_n_per_mm(0..mesh.sequence.gear_teeth())

@@ -5,7 +5,7 @@
 use std::f64::consts::PI;
 
 use crate::physics::*;
-use meshtone::damage::published::{LateralBending, ToothSection, fault_geometry};
+use meshtone::damage::published::{LateralBending, ToothSection};
 use meshtone::damage::{DamageDescription, DamagedTooth, Section, damaged_teeth};
 use meshtone::mesh::published::{MeshStiffness, PairStiffness};
 use meshtone::mesh::{PairKind, PairMesh, PairSequence, Pairs};
@@ -260,7 +260,7 @@ fn section_of_a_partial_pit_by_quadrature() {
     gears.points_per_tooth = 2_000;
     let teeth = published_teeth(&gears, 20.0);
     let width_mm = 6.0;
-    let fault = fault_geometry(&partial_pit(width_mm), &teeth, 1).unwrap();
+    let fault = partial_pit(width_mm).published_geometry(&teeth, 1).unwrap();
     let DamageDescription::FaceFault { pit, .. } = fault.description else { panic!("a pit") };
     let lateral = fault.gear.lateral.as_ref().unwrap();
     let yc = fault.gear.yc_mm.as_ref().unwrap();

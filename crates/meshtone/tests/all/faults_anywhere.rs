@@ -2,8 +2,11 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
 use crate::physics::*;
-use meshtone::damage::DamageDescription;
+use meshtone::damage::{DamageDescription, damaged_teeth};
+use meshtone::mesh::PairKind;
 use meshtone::scenario::*;
+use meshtone::stiffness::{FlankLoad, LoadedFlank, hertz_compliance_mm_per_n};
+use meshtone::wheel::FlankPoint;
 use meshtone::{Simulation, simulate, stages};
 
 /// Ideal wheels of 17 and 38 teeth.
@@ -214,4 +217,101 @@ fn a_ground_flank_ends_before_the_point_where_the_line_meets_it() {
         };
         assert_eq!((start_index, end_index), (2507, 9587), "{model:?}");
     }
+}
+
+// The path of equal wheels read from its other end is the path with the wheels exchanged, and a pinion's pit a gear's.
+#[test]
+fn a_pit_of_the_pinion_is_the_gear_s_on_the_path_turned_round() {
+    let of = |wheel| {
+        let mut scenario = pair(vec![Fault::new(wheel, 1, ThroughFace { pit: pit(0.2, 0.8) })]);
+        scenario.gears.gear_teeth = 17;
+        scenario
+    };
+    let [on_pinion, on_gear] = [WheelName::Pinion, WheelName::Gear].map(|wheel| stages(&of(wheel)).unwrap());
+    let kind = |pinion, gear| PairKind { pinion, gear, pairs_per_cycle: 1 };
+    let [pinion_pairs, gear_pairs] = [on_pinion.pairs(), on_gear.pairs()];
+    let ratio = on_gear.teeth.path.contact_ratio;
+    for step in 1..200 {
+        let position = ratio * f64::from(step) / 200.0 + 1e-5;
+        let gear = gear_pairs.at(&kind(None, Some(0)), position);
+        let pinion = pinion_pairs.at(&kind(Some(0), None), ratio - position);
+        assert_close("pinion and gear", 1e-6, [(pinion.stiffness_n_per_mm, gear.stiffness_n_per_mm)]);
+        assert!((pinion.deviation_mm - gear.deviation_mm).abs() < 1e-9);
+        assert!((pinion.load.pressure_angle_rad - gear.load.pressure_angle_rad).abs() < 1e-9);
+    }
+}
+
+// While the mate turns about the pit's edge its own point of contact stays, and so does the load's direction on it, which is its
+// normal there. The pitted tooth turns on under a line of action that turns too.
+#[test]
+fn the_mate_of_a_pit_is_loaded_along_its_own_normal() {
+    let scenario = pair(vec![Fault::on_first_gear_tooth(ThroughFace { pit: pit(0.2, 0.8) })]);
+    let stages = stages(&scenario).unwrap();
+    let damaged = &damaged_teeth(&scenario.faults, &stages.teeth, 1).unwrap()[0];
+    let (path, pit) = (stages.teeth.path, &damaged.rolling[0]);
+    let (gear, pinion) = (stages.teeth.flank(WheelName::Gear), stages.teeth.flank(WheelName::Pinion));
+    let sound = |flank| LoadedFlank::new(flank, None, Material::Steel, &scenario.gears.foundation);
+    let pitted = LoadedFlank::new(gear, Some(damaged), Material::Steel, &scenario.gears.foundation);
+    let edge_mm = gear.curvature_mm(pit.end_index);
+    let edge = gear.at_curvature(edge_mm);
+    let mate = pinion.at_curvature(path.line_mm - edge_mm);
+    let width_mm = scenario.gears.face_width_mm;
+    let load = |point: FlankPoint, [sin, cos]: [f64; 2]| FlankLoad { point, sin, cos, z_mm: 0.0, width_mm };
+    let pairs = stages.pairs();
+    for part in [0.6, 0.75, 0.9] {
+        let [low, high] = [pit.start_index, pit.end_index].map(|index| gear.curvature_mm(index));
+        let rho_mm = low + part * (high - low);
+        // The angle of the pitted tooth's load: where it would touch, and what the line of action has turned by.
+        let turn = (rho_mm - edge_mm) / stages.teeth.pinion.base_radius_mm;
+        let nominal = gear.at_curvature(rho_mm);
+        let angle = nominal.load_sin.atan2(nominal.load_cos) + turn;
+        let own = [mate.load_sin, mate.load_cos];
+        let compliance = sound(pinion).compliance_mm_per_n(&load(mate, own))
+            + pitted.compliance_mm_per_n(&load(edge, [angle.sin(), angle.cos()]))
+            + hertz_compliance_mm_per_n(Material::Steel, width_mm);
+        let kind = PairKind { pinion: None, gear: Some(0), pairs_per_cycle: 1 };
+        let state = pairs.at(&kind, path.position(WheelName::Gear, rho_mm));
+        assert_close("pair over a pit", 1e-9, [(state.stiffness_n_per_mm, 1.0 / compliance)]);
+    }
+}
+
+#[test]
+fn a_pit_whose_edge_has_broken_off_is_refused() {
+    let broken = ToothBreakage { chip_height_mm: 4.0, chip_width_mm: 2.0, tip_loss_mm: 3.0 };
+    let [pitted, broken]: [Damage; 2] = [ThroughFace { pit: pit(0.2, 0.8) }.into(), broken.into()];
+    for faults in [[pitted.clone(), broken.clone()], [broken, pitted]] {
+        let faults = faults.map(Fault::on_first_gear_tooth).to_vec();
+        let error = stages(&pair(faults)).map(drop).unwrap_err().to_string();
+        assert!(error.contains("without its edge"), "{error}");
+    }
+}
+
+#[test]
+fn two_ground_lines_have_their_own_roughness() {
+    let line = |start, end| ToothDestruction {
+        start,
+        line: DestructionLine::End(end),
+        offset_mm: 0.0,
+        noise_mm: 0.02,
+    };
+    let faults = [line(-0.1, 0.3), line(0.55, 0.95)].map(Fault::on_first_gear_tooth).to_vec();
+    let scenario = pair(faults);
+    let stages = stages(&scenario).unwrap();
+    let damaged = &damaged_teeth(&scenario.faults, &stages.teeth, 1).unwrap()[0];
+    let cuts = damaged.descriptions.iter().map(|damage| match damage {
+        DamageDescription::ToothDestruction { start_index, end_index, .. } => *start_index..*end_index,
+        other => panic!("{other:?}"),
+    });
+    let [first, second] = cuts
+        .map(|range| {
+            let flank = &damaged.flank_y_mm[range];
+            // Roughness is what differs from point to point; the lines are straight.
+            flank.windows(3).map(|y| y[0] - 2.0 * y[1] + y[2]).take(100).collect::<Vec<f64>>()
+        })
+        .collect::<Vec<_>>()
+        .try_into()
+        .unwrap();
+    assert!(first.len() > 50 && second.len() > 50);
+    let alike = first.iter().zip(&second).filter(|(a, b)| (*a - *b).abs() < 1e-9).count();
+    assert!(alike < 5, "{alike}");
 }

@@ -4,7 +4,7 @@ use super::{ContactWidth, Displacement, FaultGeometry, ToothSection};
 use crate::damage::DamageDescription;
 use crate::wheel::Teeth;
 
-pub(super) fn geometry(teeth: &Teeth) -> FaultGeometry {
+pub(in crate::damage) fn geometry(teeth: &Teeth) -> FaultGeometry {
     FaultGeometry {
         gear: ToothSection::sound(&teeth.gear, &teeth.gear_profile),
         pinion: ToothSection::sound(&teeth.pinion, &teeth.pinion_profile),

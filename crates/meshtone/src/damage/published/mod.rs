@@ -5,20 +5,19 @@
 //! not touch, over which width, at which pressure angle and with which displacement.
 
 mod face_circle;
-mod missing_tooth;
-mod partial_face;
+pub(super) mod missing_tooth;
+pub(super) mod partial_face;
 mod section;
-mod through_face;
-mod tooth_breakage;
-mod tooth_destruction;
+pub(super) mod through_face;
+pub(super) mod tooth_breakage;
+pub(super) mod tooth_destruction;
 
-use super::{Damage, DamageDescription, DamagedTooth};
+use super::{DamageDescription, DamagedTooth};
 pub use section::{LateralBending, Pivot, ToothSection};
 pub use through_face::{Half, RollingAngle};
 
 use std::ops::Range;
 
-use crate::error::ScenarioError;
 use crate::wheel::{Teeth, WheelName};
 
 /// The faulty tooth pair. The fault is on the gear's first tooth.
@@ -117,24 +116,4 @@ pub enum Displacement {
     },
     /// The mate turns about the pit's edges: `−h (1 − cos 2πξ)/2`, acting on the whole mesh.
     Rolling(RollingAngle),
-}
-
-/// Generates the geometry of the faulty pair.
-///
-/// # Arguments
-/// * `damage` - what is wrong with the gear's tooth
-/// * `teeth` - both healthy teeth
-/// * `seed` - seed of a destruction's roughness
-///
-/// # Errors
-/// A fault that does not fit the tooth: a pit that misses the flank or is deeper than the tooth, a
-/// chip larger than the tooth, a line that leaves no tooth.
-pub fn fault_geometry(damage: &Damage, teeth: &Teeth, seed: u64) -> Result<FaultGeometry, ScenarioError> {
-    match damage {
-        Damage::MissingTooth(_) => Ok(missing_tooth::geometry(teeth)),
-        Damage::ToothBreakage(fault) => tooth_breakage::geometry(fault, teeth),
-        Damage::PartialFace(fault) => partial_face::geometry(fault, teeth),
-        Damage::ThroughFace(fault) => through_face::geometry(fault, teeth),
-        Damage::ToothDestruction(fault) => tooth_destruction::geometry(fault, teeth, seed),
-    }
 }

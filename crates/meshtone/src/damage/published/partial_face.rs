@@ -8,7 +8,10 @@ use crate::damage::PartialFace;
 use crate::error::ScenarioError;
 use crate::wheel::Teeth;
 
-pub(super) fn geometry(fault: &PartialFace, teeth: &Teeth) -> Result<FaultGeometry, ScenarioError> {
+pub(in crate::damage) fn geometry(
+    fault: &PartialFace,
+    teeth: &Teeth,
+) -> Result<FaultGeometry, ScenarioError> {
     let (pit, flank_y_mm) = pit_on_gear(&fault.pit, teeth)?;
     let face_width = teeth.gear.face_width_mm;
     if fault.width_mm >= face_width {

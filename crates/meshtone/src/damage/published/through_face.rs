@@ -75,7 +75,10 @@ impl RollingAngle {
     }
 }
 
-pub(super) fn geometry(fault: &ThroughFace, teeth: &Teeth) -> Result<FaultGeometry, ScenarioError> {
+pub(in crate::damage) fn geometry(
+    fault: &ThroughFace,
+    teeth: &Teeth,
+) -> Result<FaultGeometry, ScenarioError> {
     let (pit, flank_y_mm) = pit_on_gear(&fault.pit, teeth)?;
     let contact = &teeth.contact;
     let mate = [pit.start_index, pit.mid_index, pit.end_index].map(|i| contact.mate_index(i));

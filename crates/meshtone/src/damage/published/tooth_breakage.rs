@@ -6,7 +6,10 @@ use crate::damage::ToothBreakage;
 use crate::error::ScenarioError;
 use crate::wheel::Teeth;
 
-pub(super) fn geometry(fault: &ToothBreakage, teeth: &Teeth) -> Result<FaultGeometry, ScenarioError> {
+pub(in crate::damage) fn geometry(
+    fault: &ToothBreakage,
+    teeth: &Teeth,
+) -> Result<FaultGeometry, ScenarioError> {
     let profile = &teeth.gear_profile;
     let contact = &teeth.contact;
     let face_width = teeth.gear.face_width_mm;

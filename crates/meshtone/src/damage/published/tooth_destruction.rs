@@ -7,7 +7,7 @@ use crate::model::Model;
 use crate::random::{Draws, Purpose};
 use crate::wheel::Teeth;
 
-pub(super) fn geometry(
+pub(in crate::damage) fn geometry(
     fault: &ToothDestruction,
     teeth: &Teeth,
     seed: u64,

@@ -1,0 +1,54 @@
+"""From a channel, simulated or measured, to condition indicators; every step can be used alone.
+
+The chain, its definitions and their sources: the book's chapter "From a recording to indicators". Arrays are float64; others are
+converted. Values that are not defined (the kurtosis of a constant) are NaN.
+
+Examples
+--------
+A rig's recording with a tachometer:
+
+>>> import numpy as np
+>>> from meshtone import signal
+>>> rate_hz, shaft_hz, teeth = 10_000.0, 20.0, 19
+>>> time_s = np.arange(20_000) / rate_hz
+>>> vibration = np.cos(2 * np.pi * shaft_hz * teeth * time_s) + 0.1 * np.cos(2 * np.pi * 253 * time_s)
+>>> tachometer = np.where((time_s * shaft_hz) % 1 < 0.1, 5.0, 0.0)
+>>> pulses_s = signal.tachometer_pulses(tachometer, rate_hz)
+>>> phase = signal.ShaftPhase.from_pulses(pulses_s, 1, rate_hz, vibration.size)
+>>> record = signal.process_channel(vibration, phase, teeth)
+>>> record.revolutions, round(float(record.order_spectrum[teeth]), 2)
+(38, 1.0)
+"""
+
+from .angular import AngularSignal, angular_resample, resample, synchronous_average
+from .indicators import energy_ratio, fm0, fm4, m6a, m8a, na4, sideband_level_factor, statistics
+from .phase import ShaftPhase, repair_pulses, tachometer_pulses
+from .record import Record, process_channel, process_series
+from .separation import Parts, separate
+from .spectra import envelope, envelope_spectrum, order_spectrum
+
+__all__ = [
+    "AngularSignal",
+    "Parts",
+    "Record",
+    "ShaftPhase",
+    "angular_resample",
+    "energy_ratio",
+    "envelope",
+    "envelope_spectrum",
+    "fm0",
+    "fm4",
+    "m6a",
+    "m8a",
+    "na4",
+    "order_spectrum",
+    "process_channel",
+    "process_series",
+    "repair_pulses",
+    "resample",
+    "separate",
+    "sideband_level_factor",
+    "statistics",
+    "synchronous_average",
+    "tachometer_pulses",
+]

@@ -1,0 +1,53 @@
+"""Arguments as the compiled module takes them."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+
+def signal_array(values: npt.ArrayLike) -> Array:
+    """A real signal of one dimension."""
+    array = np.asarray(values)
+    if array.ndim != 1:
+        raise ValueError(f"a signal has one dimension; given is an array of shape {array.shape}")
+    if np.iscomplexobj(array):
+        raise TypeError("a signal is real; given is an array of complex numbers")
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def whole(name: str, value: int, least: int = 0) -> int:
+    """A whole number that an argument is, or an error that names it."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} = {value!r}: must be a whole number") from None
+    if number < least:
+        raise ValueError(f"{name} = {number}: must be at least {least}")
+    return number
+
+
+def teeth_number(teeth: int) -> int:
+    """A number of teeth."""
+    return whole("teeth", teeth, 1)
+
+
+def regular_part(sidebands: int | None, shaft_orders: Sequence[int] | None) -> tuple[int | None, list[int] | None]:
+    """What belongs to the regular part, where it is given."""
+    return (
+        None if sidebands is None else whole("sidebands", sidebands),
+        None if shaft_orders is None else [whole("shaft_orders", order) for order in shaft_orders],
+    )
+
+
+def separation_settings(teeth: int, sidebands: int | None, shaft_orders: Sequence[int] | None) -> dict[str, object] | None:
+    """The same with the teeth; None where nothing is given."""
+    if sidebands is None and shaft_orders is None:
+        return None
+    bands, orders = regular_part(sidebands, shaft_orders)
+    return {"teeth": teeth_number(teeth), "sidebands": bands, "shaft_orders": orders}

@@ -1,0 +1,176 @@
+"""The whole chain: what one channel shows about one wheel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy.typing as npt
+
+from .. import _core
+from ._arguments import Array, separation_settings, signal_array, teeth_number
+from .phase import ShaftPhase, native_phase
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+class Record:
+    """What one channel shows about one wheel.
+
+    Made by :func:`process_channel`, :func:`process_series` and :meth:`meshtone.Simulation.process`. Signals are in the channel's
+    unit, over one revolution at equal angles; shape (points,).
+    """
+
+    def __init__(self, native: _core.Record, *, teeth: int, name: str = "signal") -> None:
+        self._native = native
+        self.teeth = teeth
+        """Teeth of the wheel."""
+        self.name = name
+        """Of the channel."""
+
+    @property
+    def average(self) -> Array:
+        """Synchronous average."""
+        return self._native.average
+
+    @property
+    def revolutions(self) -> int:
+        """Revolutions that were averaged."""
+        return self._native.revolutions
+
+    @property
+    def nyquist_order(self) -> float:
+        """Highest order that the sampling rate shows."""
+        return self._native.nyquist_order
+
+    @property
+    def regular(self) -> Array:
+        """Mesh harmonics and their sidebands."""
+        return self._native.regular
+
+    @property
+    def residual(self) -> Array:
+        """What is left without the mesh harmonics."""
+        return self._native.residual
+
+    @property
+    def difference(self) -> Array:
+        """What is left without the mesh harmonics and their sidebands."""
+        return self._native.difference
+
+    @property
+    def envelope(self) -> Array:
+        """Envelope of the difference."""
+        return self._native.envelope
+
+    @property
+    def order_spectrum(self) -> Array:
+        """Amplitude at each order of the shaft; the index is the order."""
+        return self._native.order_spectrum
+
+    @property
+    def envelope_spectrum(self) -> Array:
+        """The envelope's amplitude at each order; the index is the order."""
+        return self._native.envelope_spectrum
+
+    @property
+    def indicators(self) -> dict[str, float]:
+        """Condition indicators by name: ``difference_kurtosis``, ``fm0``, ``fm4``, ``na4``, ...; NaN where one is not defined."""
+        return self._native.indicators
+
+    @property
+    def warnings(self) -> list[str]:
+        """What is doubtful."""
+        return self._native.warnings
+
+    def plot(self) -> Figure:
+        """Average, order spectrum, difference with its envelope. See :func:`meshtone.plotting.plot_record`."""
+        from .. import plotting
+
+        return plotting.plot_record(self)
+
+    def _repr_png_(self) -> bytes:
+        from .. import plotting
+
+        return plotting.png(self.plot())
+
+    def __repr__(self) -> str:
+        return f"<Record of {self.name}: average of {self.revolutions} revolutions, {self.average.size} points>"
+
+
+def process_channel(
+    signal: npt.ArrayLike,
+    phase: ShaftPhase,
+    teeth: int,
+    *,
+    sidebands: int | None = None,
+    shaft_orders: Sequence[int] | None = None,
+    name: str = "signal",
+) -> Record:
+    """Take one channel to its average, its parts, spectra and indicators.
+
+    Parameters
+    ----------
+    signal : array_like, shape (samples,)
+        The channel.
+    phase : ShaftPhase
+        Of the wheel's shaft.
+    teeth : int
+        Of the wheel.
+    sidebands : int, optional
+        Sidebands on either side of each mesh harmonic that belong to the regular part.
+    shaft_orders : sequence of int, optional
+        Orders of the shaft that belong to the regular part.
+    name : str
+        Of the channel, for figures.
+
+    Returns
+    -------
+    Record
+
+    Raises
+    ------
+    ValueError
+        NaN, a constant channel, fewer than two revolutions, a mesh order beyond the Nyquist order.
+    """
+    settings = separation_settings(teeth, sidebands, shaft_orders)
+    record = _core.process_channel(signal_array(signal), native_phase(phase), teeth_number(teeth), settings)
+    return Record(record, teeth=teeth, name=name)
+
+
+def process_series(
+    signals: Sequence[npt.ArrayLike],
+    phases: Sequence[ShaftPhase],
+    teeth: int,
+    *,
+    sidebands: int | None = None,
+    shaft_orders: Sequence[int] | None = None,
+    name: str = "signal",
+) -> list[Record]:
+    """Take the recordings of a series, in order, to their indicators: NA4 refers to all the earlier ones.
+
+    Parameters
+    ----------
+    signals : sequence of array_like, shape (samples,)
+        The channel in each recording.
+    phases : sequence of ShaftPhase
+        Of the wheel's shaft in each recording.
+    teeth, sidebands, shaft_orders, name
+        As of :func:`process_channel`.
+
+    Returns
+    -------
+    list of Record
+
+    Raises
+    ------
+    ValueError
+        As :func:`process_channel`; another number of phases than of signals.
+    """
+    settings = separation_settings(teeth, sidebands, shaft_orders)
+    if isinstance(phases, ShaftPhase):
+        raise TypeError("phases: must be a list of one ShaftPhase for each signal, not one alone")
+    native = [native_phase(phase) for phase in phases]
+    records = _core.process_series([signal_array(signal) for signal in signals], native, teeth_number(teeth), settings)
+    return [Record(record, teeth=teeth, name=name) for record in records]
