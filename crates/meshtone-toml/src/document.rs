@@ -4,7 +4,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::key_path::find;
-use crate::{ReadResult, TomlError, TomlTable};
+use crate::{ErrorKind, ReadResult, TomlError, TomlTable};
 
 /// A parsed TOML text, to be read through [`TomlDocument::root`].
 #[derive(Debug)]
@@ -80,6 +80,7 @@ fn syntax_error(text: &str, error: &toml::de::Error) -> TomlError {
         "write `key = value`, one key a line, text in double quotes, below a `[section]`"
     };
     TomlError::new("", shorten(written), format!("not valid TOML: {}", error.message()))
+        .of_kind(ErrorKind::NotToml)
         .with_help(help)
         .at_line(Some(line))
 }

@@ -2,21 +2,39 @@
 
 use std::fmt;
 
+/// What kind of thing is wrong, for programs; people read [`TomlError::problem`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum ErrorKind {
+    /// The text is not TOML.
+    NotToml,
+    /// A key that has no default is absent.
+    MissingKey,
+    /// There is no such key.
+    UnknownKey,
+    /// The value is of another type than the key's.
+    WrongType,
+    /// The value breaks a rule, alone or beside others.
+    NotAllowed,
+}
+
 /// A key of a TOML text that cannot be read or that breaks a rule: which key, what it says, what is allowed.
 ///
 /// ```
-/// use meshtone_toml::{TomlDocument, TomlTable};
+/// use meshtone_toml::{ErrorKind, TomlDocument, TomlTable};
 ///
 /// let document = TomlDocument::parse("[motor]\nspeed_hz = \"fast\"\n")?;
 /// let speed = |motor: &TomlTable| motor.required("speed_hz", "(rev/s) speed")?.number();
 /// let error = document.root().table_or_empty("motor")?.read(speed).unwrap_err();
-/// assert_eq!((error.key.as_str(), error.line), ("motor.speed_hz", Some(2)));
+/// assert_eq!((error.kind, error.key.as_str(), error.line), (ErrorKind::WrongType, "motor.speed_hz", Some(2)));
 /// assert_eq!(error.to_string(), "line 2: motor.speed_hz = \"fast\": must be a number, not text");
 /// # Ok::<(), meshtone_toml::TomlError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct TomlError {
+    /// What kind of thing is wrong.
+    pub kind: ErrorKind,
     /// Dotted key, for example `motor.speed_hz`, or `motor.weights[2]` for the third entry of an array. Empty where
     /// the text is not TOML.
     pub key: String,
@@ -48,14 +66,24 @@ impl fmt::Display for TomlError {
 }
 
 impl TomlError {
-    /// An error about `key`, whose `value` breaks a rule.
+    /// An error about `key`, whose `value` breaks a rule: [`ErrorKind::NotAllowed`].
     ///
     /// # Arguments
     /// * `key` - dotted key
     /// * `value` - the value as given; empty where it is missing
     /// * `problem` - what is wrong and what is allowed
     pub fn new(key: impl Into<String>, value: impl ToString, problem: impl Into<String>) -> Self {
-        Self { key: key.into(), value: value.to_string(), problem: problem.into(), help: None, line: None }
+        let (key, value, problem) = (key.into(), value.to_string(), problem.into());
+        Self { kind: ErrorKind::NotAllowed, key, value, problem, help: None, line: None }
+    }
+
+    /// The same error, of another kind.
+    ///
+    /// # Arguments
+    /// * `kind` - what kind of thing is wrong
+    pub fn of_kind(mut self, kind: ErrorKind) -> Self {
+        self.kind = kind;
+        self
     }
 
     /// The same error with advice.

@@ -23,7 +23,7 @@ mod table;
 mod value;
 
 pub use document::TomlDocument;
-pub use error::TomlError;
+pub use error::{ErrorKind, TomlError};
 pub use nearest::nearest_name;
 pub use table::TomlTable;
 pub use value::TomlValue;

@@ -6,7 +6,7 @@ use toml::de::DeTable;
 
 use crate::document::{line_at, written};
 use crate::nearest::{is_slip, nearest_name};
-use crate::{ReadResult, TomlError, TomlValue};
+use crate::{ErrorKind, ReadResult, TomlError, TomlValue};
 
 /// One table of a TOML text, read key by key.
 ///
@@ -68,7 +68,8 @@ impl<'a> TomlTable<'a> {
             return Ok(value);
         }
         self.refuse_slip_of(key)?;
-        Err(self.error(key, format!("missing, and it has no default; it is {meaning}")))
+        let problem = format!("missing, and it has no default; it is {meaning}");
+        Err(self.error(key, problem).of_kind(ErrorKind::MissingKey))
     }
 
     /// A finite number, if it is there.
@@ -163,7 +164,8 @@ impl<'a> TomlTable<'a> {
         let Some(value) = self.table.and_then(|table| table.get(key)) else {
             return Ok(());
         };
-        Err(self.error(key, problem).with_help(remedy(value.get_ref().as_str())))
+        let error = self.error(key, problem).of_kind(ErrorKind::UnknownKey);
+        Err(error.with_help(remedy(value.get_ref().as_str())))
     }
 
     /// Reads the table and then refuses what was not asked for.
@@ -233,6 +235,7 @@ impl<'a> TomlTable<'a> {
             // Which other keys are allowed is not known yet: they have not been asked for.
             Some((_, name)) => Err(self
                 .error(name, format!("unknown key, while `{key}` is missing"))
+                .of_kind(ErrorKind::UnknownKey)
                 .with_help(format!("did you mean `{key}`?"))),
         }
     }
@@ -244,7 +247,7 @@ impl<'a> TomlTable<'a> {
             path => format!("in `{path}`"),
         };
         let error = self.error(name, format!("unknown key; allowed {place}: {allowed}"));
-        error.with_help(match nearest {
+        error.of_kind(ErrorKind::UnknownKey).with_help(match nearest {
             Some(nearest) => format!("did you mean `{nearest}`?"),
             None => "remove it, or move it to the section it belongs to".to_string(),
         })

@@ -6,7 +6,7 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 use crate::document::{line_at, written};
-use crate::{ReadResult, TomlError, TomlTable, nearest_name};
+use crate::{ErrorKind, ReadResult, TomlError, TomlTable, nearest_name};
 
 /// One value of a TOML text, with its key and line.
 #[derive(Debug, Clone)]
@@ -193,6 +193,6 @@ impl<'a> TomlValue<'a> {
             DeValue::Array(_) => "an array",
             DeValue::Table(_) => "a table",
         };
-        self.error(format!("must be {wanted}, not {found}"))
+        self.error(format!("must be {wanted}, not {found}")).of_kind(ErrorKind::WrongType)
     }
 }

@@ -1,7 +1,7 @@
 //! The reader of TOML files: types, missing and unknown keys, lines.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use meshtone_toml::{TomlDocument, TomlError, TomlTable, TomlValue};
+use meshtone_toml::{ErrorKind, TomlDocument, TomlError, TomlTable, TomlValue};
 
 fn value_error<T>(text: &str, read: impl FnOnce(TomlValue<'_>) -> Result<T, TomlError>) -> Option<TomlError> {
     let document = TomlDocument::parse(text).unwrap();
@@ -181,4 +181,18 @@ fn a_table_that_becomes_a_list_is_told_how() {
     let error = TomlDocument::parse("[fault]\ntooth = 1\n[[fault]]\ntooth = 2\n").map(drop).unwrap_err();
     assert_eq!(error.line, Some(3));
     assert!(error.help.unwrap().contains("double brackets"));
+}
+
+#[test]
+fn errors_are_told_apart_by_their_kind() {
+    let kind = |text: &str| {
+        let speed = |root: &TomlTable<'_>| root.required("speed_hz", "(rev/s) speed")?.number();
+        TomlDocument::parse(text).and_then(|document| document.root().read(speed)).unwrap_err().kind
+    };
+    assert_eq!(kind("speed_hz = "), ErrorKind::NotToml);
+    assert_eq!(kind(""), ErrorKind::MissingKey);
+    assert_eq!(kind("speed_hz = 1\nsped = 2"), ErrorKind::UnknownKey);
+    assert_eq!(kind("spede_hz = 1"), ErrorKind::UnknownKey);
+    assert_eq!(kind("speed_hz = true"), ErrorKind::WrongType);
+    assert_eq!(kind("speed_hz = inf"), ErrorKind::NotAllowed);
 }

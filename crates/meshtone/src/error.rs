@@ -2,23 +2,25 @@
 
 use std::fmt;
 
-use meshtone_toml::TomlError;
+use meshtone_toml::{ErrorKind, TomlError};
 
 /// A scenario that cannot be simulated: which key, what it says, what is allowed.
 ///
 /// ```
-/// use meshtone::scenario::Scenario;
+/// use meshtone::scenario::{ErrorKind, Scenario};
 ///
 /// let text = "[gears]\nmodule_mm = -3.0\npinion_teeth = 17\ngear_teeth = 38\nface_width_mm = 15.0\n\
 ///             [operation]\npinion_speed_hz = 40.0\nbrake_torque_nm = 10.0\n";
 /// let error = Scenario::from_toml(text).unwrap_err();
 /// assert_eq!(error.key, "gears.module_mm");
-/// assert_eq!(error.line, Some(2));
+/// assert_eq!((error.kind, error.line), (ErrorKind::NotAllowed, Some(2)));
 /// assert_eq!(error.to_string(), "line 2: gears.module_mm = -3.0: must be more than 0 mm");
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ScenarioError {
+    /// What kind of thing is wrong.
+    pub kind: ErrorKind,
     /// Dotted key in the scenario file, for example `gears.module_mm`, or
     /// `rig.damping_ratio[2]` for the third entry of an array. Empty where the text is not TOML.
     pub key: String,
@@ -43,16 +45,16 @@ impl fmt::Display for ScenarioError {
 /// A scenario file that cannot be read is a scenario that cannot be simulated.
 impl From<TomlError> for ScenarioError {
     fn from(error: TomlError) -> Self {
-        let TomlError { key, value, problem, help, line, .. } = error;
-        Self { key, value, problem, help, line }
+        let TomlError { kind, key, value, problem, help, line, .. } = error;
+        Self { kind, key, value, problem, help, line }
     }
 }
 
 /// A scenario that cannot be simulated, as an error of the text that it stands in.
 impl From<ScenarioError> for TomlError {
     fn from(error: ScenarioError) -> Self {
-        let ScenarioError { key, value, problem, help, line } = error;
-        let mut told = Self::new(key, value, problem).at_line(line);
+        let ScenarioError { kind, key, value, problem, help, line } = error;
+        let mut told = Self::new(key, value, problem).of_kind(kind).at_line(line);
         told.help = help;
         told
     }
@@ -66,7 +68,7 @@ impl ScenarioError {
     /// * `value` - the value as given; empty where it is missing
     /// * `problem` - what is wrong and what is allowed
     pub fn new(key: impl Into<String>, value: impl ToString, problem: impl Into<String>) -> Self {
-        Self { key: key.into(), value: value.to_string(), problem: problem.into(), help: None, line: None }
+        TomlError::new(key, value, problem).into()
     }
 
     /// The same error with advice.

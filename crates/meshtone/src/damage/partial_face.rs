@@ -58,12 +58,6 @@ impl Kind for PartialFace {
     }
 
     fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> Result<(), ScenarioError> {
-        let face_width = healthy.wheel().face_width_mm;
-        if self.width_mm >= face_width {
-            let problem = format!("must be below the face width, {face_width} mm");
-            return Err(ScenarioError::new("fault.width_mm", self.width_mm, problem)
-                .with_help("a pit over the whole width is kind = \"through-face\""));
-        }
         let (pit, flank_y_mm) = healthy.cut(&self.pit)?;
         for i in pit.start_index..=pit.end_index {
             tooth.corner_width_mm[i] = self.width_mm;

@@ -74,7 +74,7 @@ impl Kind for ToothBreakage {
     }
 
     fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> Result<(), ScenarioError> {
-        let chipped = self.chip(healthy.profile(), healthy.wheel().face_width_mm)?;
+        let chipped = self.chip(healthy.profile())?;
         for (missing, of_chip) in tooth.missing_width_mm.iter_mut().zip(&chipped.missing_width_mm) {
             *missing = missing.max(*of_chip);
         }
@@ -109,15 +109,10 @@ impl ToothBreakage {
     ///
     /// # Arguments
     /// * `profile` - the healthy flank
-    /// * `face_width_mm` - (mm) its width
     ///
     /// # Errors
-    /// A chip or a lost tip that is larger than the tooth.
-    pub(super) fn chip(
-        &self,
-        profile: &ToothProfile,
-        face_width_mm: f64,
-    ) -> Result<ChippedFlank, ScenarioError> {
+    /// A chip or a lost tip that is larger than the tooth, whose corner at the tip lies a little below the tip circle.
+    pub(super) fn chip(&self, profile: &ToothProfile) -> Result<ChippedFlank, ScenarioError> {
         let tip = profile.tip_x_mm();
         let height = tip - profile.x_mm[0];
         for (key, value) in
@@ -127,10 +122,6 @@ impl ToothBreakage {
                 let problem = format!("must be below the tooth's height, {height:.3} mm");
                 return Err(ScenarioError::new(key, value, problem));
             }
-        }
-        if self.chip_width_mm > face_width_mm {
-            let problem = format!("must be at most the face width, {face_width_mm} mm");
-            return Err(ScenarioError::new("fault.chip_width_mm", self.chip_width_mm, problem));
         }
         let chip_bottom = tip - self.chip_height_mm;
         let chip_start = profile.x_mm.partition_point(|&x| x <= chip_bottom).max(1) - 1;

@@ -27,6 +27,7 @@ pub use crate::wheel::{
 };
 pub use edit::ScenarioNumber;
 pub use from_toml::{ScenarioFiles, line_of_key};
+pub use meshtone_toml::ErrorKind;
 pub use sections::{SectionDescription, sections};
 pub use template::{template, template_kinds};
 pub use validate::{MEMORY_LIMIT_BYTES, MemoryLimit};

@@ -140,7 +140,7 @@ pub enum HybridError {
     Cancelled,
     /// A scenario cannot be simulated.
     #[error(transparent)]
-    Scenario(#[from] ScenarioError),
+    Scenario(Box<ScenarioError>),
     /// A simulation fails.
     #[error(transparent)]
     Simulation(Error),
@@ -152,7 +152,7 @@ pub enum HybridError {
 impl From<Error> for HybridError {
     fn from(error: Error) -> Self {
         match error {
-            Error::Scenario(error) => Self::Scenario(error),
+            Error::Scenario(error) => Self::Scenario(Box::new(error)),
             error => Self::Simulation(error),
         }
     }
@@ -162,5 +162,11 @@ impl HybridError {
     /// A parameter that is out of its range.
     pub(super) fn parameter(name: &str, value: f64, allowed: &str) -> Self {
         Self::Parameter { name: name.into(), value: format!("{value}"), allowed: allowed.into() }
+    }
+}
+
+impl From<ScenarioError> for HybridError {
+    fn from(error: ScenarioError) -> Self {
+        Self::Scenario(Box::new(error))
     }
 }

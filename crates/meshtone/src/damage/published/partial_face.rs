@@ -14,14 +14,6 @@ pub(in crate::damage) fn geometry(
 ) -> Result<FaultGeometry, ScenarioError> {
     let (pit, flank_y_mm) = pit_on_gear(&fault.pit, teeth)?;
     let face_width = teeth.gear.face_width_mm;
-    if fault.width_mm >= face_width {
-        return Err(ScenarioError::new(
-            "fault.width_mm",
-            fault.width_mm,
-            format!("must be below the face width, {face_width} mm"),
-        )
-        .with_help("a pit over the whole width is kind = \"through-face\""));
-    }
     let inside = pit.start_index..=pit.end_index;
     let mut gear = ToothSection::sound(&teeth.gear, &teeth.gear_profile);
     cut_corner(&mut gear, face_width, fault.width_mm, &teeth.gear_profile.y_mm, &flank_y_mm, inside.clone());

@@ -14,7 +14,7 @@ pub(in crate::damage) fn geometry(
     let contact = &teeth.contact;
     let face_width = teeth.gear.face_width_mm;
     let points = profile.len();
-    let chip = fault.chip(profile, face_width)?;
+    let chip = fault.chip(profile)?;
     let (chip_start, lost_tip, missing_width) =
         (chip.chip_start_index, chip.lost_from_index, chip.missing_width_mm);
     let exit_rev = (points - 1 - chip_start) as f64 / (contact.points - 1) as f64 * contact.span_rev;
