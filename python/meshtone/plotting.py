@@ -6,7 +6,8 @@ Needs matplotlib: ``pip install 'meshtone[plot]'``.
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -17,6 +18,7 @@ from .faults import Fault, MissingTooth, PartialFace, ToothBreakage, in_words
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.patches import Patch
 
     from .signal import Record
     from .simulation import Simulation
@@ -40,6 +42,11 @@ LINES = ((BLUE, "o"), (ORANGE, "s"), ("#009e73", "^"), ("#cc79a7", "D"), ("#56b4
 
 PART: dict[str, Any] = {"facecolor": "none", "edgecolor": ORANGE, "hatch": "////", "linewidth": 1.0}
 WHOLE: dict[str, Any] = {"facecolor": ORANGE, "edgecolor": "none", "alpha": 0.7}
+TURN: dict[str, Any] = {"facecolor": ORANGE, "edgecolor": "none", "alpha": 0.2}
+"""The parts of a revolution in which a damaged tooth is in contact."""
+
+AROUND_DAMAGE = 8
+"""(pitches) What the mesh stiffness is shown over."""
 
 LABELS = {
     "horizontal_g": "Horizontal acceleration (g)",
@@ -125,31 +132,95 @@ def _samples_of(simulation: Simulation, revolutions: float) -> int:
     return max(2, int(np.searchsorted(turned_rev, revolutions)))
 
 
-def plot_mesh_stiffness(simulation: Simulation, *, ax: Axes | None = None) -> Axes:
-    """Mesh stiffness over 8 tooth pitches: the first damaged tooth enters contact at the first or the second.
+def plot_mesh_stiffness(
+    simulation: Simulation, *, pitches: tuple[int, int] | None = None, ax: Axes | None = None
+) -> Axes:
+    """Mesh stiffness over some tooth pitches, with the contact of all damaged teeth of either wheel tinted.
 
     Parameters
     ----------
     simulation : Simulation
         What is shown.
+    pitches : tuple of int, optional
+        (pitches) From and to, since tooth 1 of either wheel entered contact. By default 8 pitches: the first damaged tooth enters
+        contact at the first or the second.
     ax : matplotlib.axes.Axes, optional
         Where it is drawn; a new figure by default.
 
     Returns
     -------
     matplotlib.axes.Axes
+
+    Raises
+    ------
+    ValueError
+        Pitches before the first one, or none.
     """
+    first, last = pitches if pitches is not None else _around_damage(simulation)
+    if not 0 <= first < last:
+        raise ValueError(f"pitches = {pitches}: must be from 0 or more to more than that")
     ax = _axes(ax)
-    # Tooth j of either wheel enters contact first after j - 1 pitches; one more shows what was before.
-    first = max(0, min((fault.tooth - 2 for fault in simulation.scenario.faults), default=0))
-    stiffness = simulation._native.mesh_stiffness_n_per_mm(first, 8)
-    pitches = first + np.arange(stiffness.size) / stiffness.size * 8
-    ax.plot(pitches, stiffness, color=BLUE, linewidth=1.2)
+    stiffness = simulation._native.mesh_stiffness_n_per_mm(first, last - first)
+    ax.plot(first + np.arange(stiffness.size) / stiffness.size * (last - first), stiffness, color=BLUE, linewidth=1.2)
     ax.set(xlabel="Angle of the gear (tooth pitches; tooth 1 enters contact at 0)", ylabel="Mesh stiffness (N/mm)")
-    ax.set_xlim(first, first + 8)
-    ax.set_ylim(bottom=0)
+    ax.set_xlim(first, last)
+    # Room for the legend above the curve.
+    ax.set_ylim(0, 1.3 * stiffness.max())
+    _tint(ax, simulation, ("pinion", "gear"), (first, last))
     ax.grid(alpha=0.3)
     return ax
+
+
+def _around_damage(simulation: Simulation) -> tuple[int, int]:
+    # Tooth j of either wheel enters contact first after j - 1 pitches; one more shows what was before.
+    first = max(0, min((fault.tooth - 2 for fault in simulation.scenario.faults), default=0))
+    return first, first + AROUND_DAMAGE
+
+
+def _damaged_teeth(simulation: Simulation, wheel: str) -> list[int]:
+    """The numbers of a wheel's damaged teeth, in their order."""
+    return sorted({fault.tooth for fault in simulation.scenario.faults if fault.wheel == wheel})
+
+
+def _tint(ax: Axes, simulation: Simulation, wheels: Sequence[str], pitches: tuple[float, float]) -> None:
+    """Tints where damaged teeth of the wheels are in contact, or would be, and says in a legend which ones."""
+    scenario = simulation.scenario
+    teeth_of = {"pinion": scenario.pinion_teeth, "gear": scenario.gear_teeth}
+    damaged = {wheel: _damaged_teeth(simulation, wheel) for wheel in wheels}
+    is_damaged = lambda pair: any(pair % teeth_of[wheel] + 1 in damaged[wheel] for wheel in wheels)
+    for start, end in _turns(pitches, float(simulation.contact_ratio), is_damaged):
+        ax.axvspan(start, end, zorder=0, **TURN)
+    if any(damaged.values()):
+        label = "in contact: " + " and ".join(f"{wheel} {_numbered(teeth)}" for wheel, teeth in damaged.items() if teeth)
+        ax.legend(handles=[_patch(label)], fontsize="small", loc="upper right", framealpha=1.0)
+
+
+def _turns(
+    pitches: tuple[float, float], contact: float, is_damaged: Callable[[int], bool]
+) -> list[tuple[float, float]]:
+    """(pitches) The parts of a window in which damaged pairs are in contact; those that overlap are one."""
+    turns: list[tuple[float, float]] = []
+    for pair in range(math.floor(pitches[0] - contact), math.ceil(pitches[1])):
+        start, end = max(pair, pitches[0]), min(pair + contact, pitches[1])
+        if not is_damaged(pair) or start >= end:
+            continue
+        if turns and turns[-1][1] >= start:
+            start = turns.pop()[0]
+        turns.append((start, end))
+    return turns
+
+
+def _patch(label: str) -> Patch:
+    from matplotlib.patches import Patch
+
+    return Patch(label=label, **TURN)
+
+
+def _numbered(teeth: Sequence[int]) -> str:
+    """``tooth 6``, ``teeth 2 and 6``."""
+    if len(teeth) == 1:
+        return f"tooth {teeth[0]}"
+    return f"teeth {', '.join(map(str, teeth[:-1]))} and {teeth[-1]}"
 
 
 def plot_spectrum(simulation: Simulation, channel: str = "vertical_g", *, ax: Axes | None = None) -> Axes:
@@ -192,8 +263,10 @@ def plot_spectrum(simulation: Simulation, channel: str = "vertical_g", *, ax: Ax
     return ax
 
 
-def plot_tooth(simulation: Simulation, wheel: Literal["gear", "pinion"] = "gear", *, ax: Axes | None = None) -> Axes:
-    """The first damaged tooth of a wheel, at equal scales and with its damage; of a sound wheel the first tooth.
+def plot_tooth(
+    simulation: Simulation, wheel: Literal["gear", "pinion"] = "gear", *, tooth: int | None = None, ax: Axes | None = None
+) -> Axes:
+    """A tooth at equal scales, with its damage; the title names the other damaged teeth of its wheel.
 
     Parameters
     ----------
@@ -201,6 +274,8 @@ def plot_tooth(simulation: Simulation, wheel: Literal["gear", "pinion"] = "gear"
         What is shown.
     wheel : {'gear', 'pinion'}
         Whose tooth.
+    tooth : int, optional
+        Its number, from 1. By default the wheel's first damaged tooth; of a sound wheel its first tooth.
     ax : matplotlib.axes.Axes, optional
         Where it is drawn; a new figure by default.
 
@@ -208,13 +283,19 @@ def plot_tooth(simulation: Simulation, wheel: Literal["gear", "pinion"] = "gear"
     -------
     matplotlib.axes.Axes
     """
-    ax = _axes(ax, (4.0, 4.0))
     x_mm, y_mm = simulation.tooth_profile(wheel)
+    damaged = _damaged_teeth(simulation, wheel)
+    if tooth is None:
+        tooth = damaged[0] if damaged else 1
+    teeth = simulation.scenario.pinion_teeth if wheel == "pinion" else simulation.scenario.gear_teeth
+    if not 1 <= tooth <= teeth:
+        raise ValueError(f"tooth = {tooth}: must be from 1 to {teeth}, as many as the {wheel} has")
+    ax = _axes(ax, (4.0, 4.0))
     outline_y = np.concatenate([y_mm, -y_mm[::-1]])
     outline_x = np.concatenate([x_mm, x_mm[::-1]])
     ax.fill(outline_y, outline_x, facecolor="#e8e8e8", edgecolor="black", linewidth=1.0)
-    damaged = [(tooth, flank) for name, tooth, flank in simulation._native.damaged_teeth_mm() if name == wheel]
-    tooth, flank_y_mm = min(damaged, key=lambda entry: entry[0], default=(1, y_mm))
+    flanks = {(name, number): flank for name, number, flank in simulation._native.damaged_teeth_mm()}
+    flank_y_mm = flanks.get((wheel, tooth), y_mm)
     faults = [fault for fault in simulation.scenario.faults if (fault.wheel, fault.tooth) == (wheel, tooth)]
     for fault in faults:
         if isinstance(fault, MissingTooth):
@@ -236,10 +317,16 @@ def plot_tooth(simulation: Simulation, wheel: Literal["gear", "pinion"] = "gear"
         label = "; ".join(map(_cut_in_words, cuts))
         ax.fill(y, np.concatenate([x_mm[lost], x_mm[lost][::-1]]), label=label, **(PART if partial else WHOLE))
     ax.set_aspect("equal")
-    ax.set(xlabel="Across the tooth (mm)", ylabel="From the wheel's centre (mm)", title=f"{'First tooth' if tooth == 1 else f'Tooth {tooth}'} of the {wheel}")
+    ax.set(xlabel="Across the tooth (mm)", ylabel="From the wheel's centre (mm)", title=_title_of_tooth(wheel, tooth, damaged))
     if ax.get_legend_handles_labels()[0]:
         ax.legend(fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.22))
     return ax
+
+
+def _title_of_tooth(wheel: str, tooth: int, damaged: Sequence[int]) -> str:
+    title = f"{'First tooth' if tooth == 1 else f'Tooth {tooth}'} of the {wheel}"
+    others = [number for number in damaged if number != tooth]
+    return f"{title}\n(also damaged: {_numbered(others)})" if others else title
 
 
 def _cut_in_words(fault: Fault) -> str:
@@ -299,6 +386,9 @@ def _plot_over_teeth(ax: Axes, values: npt.NDArray[np.float64], teeth: int, colo
 def plot_simulation(simulation: Simulation) -> Figure:
     """The panel: tooth, mesh stiffness, signal, spectrum, average and difference over a revolution of the gear.
 
+    Where the pinion is damaged, its tooth is shown too, and average and difference over its revolution. The contact of all damaged
+    teeth is tinted.
+
     Parameters
     ----------
     simulation : Simulation
@@ -308,32 +398,51 @@ def plot_simulation(simulation: Simulation) -> Figure:
     -------
     matplotlib.figure.Figure
     """
-    figure = _new_figure((11.0, 10.0))
+    scenario = simulation.scenario
+    wheels: tuple[Literal["gear", "pinion"], ...] = ("pinion", "gear") if _damaged_teeth(simulation, "pinion") else ("gear",)
+    if len(wheels) == 1:
+        top = [["tooth gear"] * 2 + ["stiffness"] * 4]
+    else:
+        top = [[f"tooth {wheel}" for wheel in wheels for _ in range(3)], ["stiffness"] * 6]
     layout: list[Any] = [
-        ["tooth"] * 2 + ["stiffness"] * 4,
+        *top,
         ["signal"] * 6,
         ["spectrum"] * 6,
-        ["average"] * 3 + ["difference"] * 3,
+        *([f"average {wheel}"] * 3 + [f"difference {wheel}"] * 3 for wheel in wheels),
     ]
-    axes = figure.subplot_mosaic(layout, height_ratios=[1.5, 1, 1, 1])
-    plot_tooth(simulation, ax=axes["tooth"])
-    plot_mesh_stiffness(simulation, ax=axes["stiffness"])
+    figure = _new_figure((11.0, 2.5 * len(layout)))
+    axes = figure.subplot_mosaic(layout, height_ratios=[1.5] + [1] * (len(layout) - 1))
+    for wheel in wheels:
+        plot_tooth(simulation, wheel, ax=axes[f"tooth {wheel}"])
+        _plot_revolution(simulation, wheel, axes[f"average {wheel}"], axes[f"difference {wheel}"])
+    plot_mesh_stiffness(simulation, pitches=_all_damage(simulation), ax=axes["stiffness"])
     plot_signal(simulation, ax=axes["signal"])
     plot_spectrum(simulation, ax=axes["spectrum"])
-    record = simulation.process()
-    teeth = simulation.scenario.gear_teeth
-    for name, values in [("average", record.average), ("difference", record.difference)]:
-        _plot_over_teeth(axes[name], values, teeth, BLUE, name)
-        axes[name].set(title=f"{name.capitalize()}, gear shaft", ylabel="Vertical (g)")
-    limits = max(np.abs(record.average).max(), np.abs(record.difference).max()) * 1.1
-    for name in ("average", "difference"):
-        axes[name].set_ylim(-limits, limits)
-    scenario = simulation.scenario
     figure.suptitle(
         f"{scenario.pinion_teeth}/{scenario.gear_teeth} teeth, {_speed(simulation)}, "
-        f"{scenario.brake_torque_nm:g} N m: {in_words(scenario.faults)}"
+        f"{scenario.brake_torque_nm:g} N m: {in_words(scenario.faults)}",
+        wrap=True,
     )
     return figure
+
+
+def _all_damage(simulation: Simulation) -> tuple[int, int]:
+    """(pitches) Around the first damaged tooth; a revolution of the gear where other damaged teeth are not in contact there."""
+    around = _around_damage(simulation)
+    if all(fault.tooth < around[1] for fault in simulation.scenario.faults):
+        return around
+    return 0, simulation.scenario.gear_teeth
+
+
+def _plot_revolution(simulation: Simulation, wheel: Literal["gear", "pinion"], average_ax: Axes, difference_ax: Axes) -> None:
+    """Average and difference over a wheel's revolution, on one scale, with the contact of its damaged teeth tinted."""
+    record = simulation.process("vertical_g", wheel)
+    limit = max(np.abs(record.average).max(), np.abs(record.difference).max()) * 1.25
+    parts = [(average_ax, "average", record.average), (difference_ax, "difference", record.difference)]
+    for ax, name, values in parts:
+        _plot_over_teeth(ax, values, record.teeth, BLUE, name)
+        _tint(ax, simulation, (wheel,), (0, record.teeth))
+        ax.set(title=f"{name.capitalize()}, {wheel} shaft", ylabel="Vertical (g)", ylim=(-limit, limit))
 
 
 def _speed(simulation: Simulation) -> str:

@@ -179,7 +179,15 @@ brake_torque_nm=10.0, din_grade=7)
 
     @property
     def warnings(self) -> list[str]:
-        """What is doubtful about the scenario, though it can be simulated."""
+        """What is doubtful about the scenario, though it can be simulated, as far as that can be told before simulating.
+
+        These are what ``meshtone simulate`` prints before it simulates; :attr:`Simulation.warnings` has the others too.
+
+        Raises
+        ------
+        ValueError
+            A fault that does not fit the tooth.
+        """
         return self._native.warnings()
 
     def __getattr__(self, name: str) -> Any:

@@ -115,6 +115,16 @@ class Simulation:
         return self._native.mesh_force_n
 
     @property
+    def tension_fraction(self) -> float:
+        """Part of the kept time in which the mesh force is negative: a linear mesh pulls where real teeth would part."""
+        return self._native.tension_fraction
+
+    @property
+    def warnings(self) -> list[str]:
+        """What is doubtful, as ``meshtone simulate`` prints it: the scenario's warnings, then those of the signals."""
+        return self._native.warnings
+
+    @property
     def mode_shapes(self) -> Array:
         """Mode shapes in the columns, in the order of ``natural_frequencies_hz``, of unit modal mass; shape (13, 13)."""
         return self._native.mode_shapes
@@ -216,7 +226,7 @@ class Simulation:
         return _process(self.scenario, getattr(self, channel), self.start_s, channel, wheel, sidebands)
 
     def plot(self) -> Figure:
-        """The panel: teeth, mesh stiffness, signal, spectrum, average, difference. See :mod:`meshtone.plotting`."""
+        """The panel: teeth, mesh stiffness, signal, spectrum, average, difference; damage is marked. See :mod:`meshtone.plotting`."""
         from . import plotting
 
         return plotting.plot_simulation(self)
@@ -227,11 +237,11 @@ class Simulation:
 
         return plotting.plot_signal(self, channel, revolutions=revolutions, ax=ax)
 
-    def plot_mesh_stiffness(self, *, ax: Axes | None = None) -> Axes:
-        """Mesh stiffness over a revolution of the gear. See :func:`meshtone.plotting.plot_mesh_stiffness`."""
+    def plot_mesh_stiffness(self, *, pitches: tuple[int, int] | None = None, ax: Axes | None = None) -> Axes:
+        """Mesh stiffness over some tooth pitches. See :func:`meshtone.plotting.plot_mesh_stiffness`."""
         from . import plotting
 
-        return plotting.plot_mesh_stiffness(self, ax=ax)
+        return plotting.plot_mesh_stiffness(self, pitches=pitches, ax=ax)
 
     def plot_spectrum(self, channel: str = "vertical_g", *, ax: Axes | None = None) -> Axes:
         """Amplitude against frequency. See :func:`meshtone.plotting.plot_spectrum`."""
@@ -239,11 +249,11 @@ class Simulation:
 
         return plotting.plot_spectrum(self, channel, ax=ax)
 
-    def plot_tooth(self, wheel: Wheel = "gear", *, ax: Axes | None = None) -> Axes:
-        """The first damaged tooth of a wheel, or its first one. See :func:`meshtone.plotting.plot_tooth`."""
+    def plot_tooth(self, wheel: Wheel = "gear", *, tooth: int | None = None, ax: Axes | None = None) -> Axes:
+        """A tooth of a wheel: its first damaged one, or another. See :func:`meshtone.plotting.plot_tooth`."""
         from . import plotting
 
-        return plotting.plot_tooth(self, wheel, ax=ax)
+        return plotting.plot_tooth(self, wheel, tooth=tooth, ax=ax)
 
     def _repr_png_(self) -> bytes:
         from . import plotting

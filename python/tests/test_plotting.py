@@ -6,6 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.patches import Rectangle
 
 import meshtone
 from meshtone import plotting
@@ -92,3 +93,56 @@ def test_damage_is_drawn_wherever_it_is() -> None:
     assert simulation.plot_mesh_stiffness().get_xlim() == (5, 13)
     assert "partial-face of pinion tooth 7, missing-tooth of gear tooth 12" in simulation.plot().get_suptitle()
     plt.close("all")
+
+
+def tinted(ax: Axes) -> list[list[float]]:
+    """From and to of the tinted parts."""
+    spans = [patch for patch in ax.patches if isinstance(patch, Rectangle)]
+    return rounded([[span.get_x(), span.get_x() + span.get_width()] for span in spans])
+
+
+def rounded(spans: list[list[float]]) -> list[list[float]]:
+    return [[round(place, 6) for place in span] for span in spans]
+
+
+def test_all_damaged_teeth_are_marked_where_they_mesh() -> None:
+    faults = [
+        meshtone.ToothBreakage(chip_height_mm=3, chip_width_mm=8, wheel="pinion", tooth=3),
+        meshtone.ToothBreakage(chip_height_mm=3, chip_width_mm=8, tooth=2),
+        meshtone.MissingTooth(tooth=38),
+    ]
+    scenario = meshtone.examples.healthy().copy(sampling_rate_hz=1e4, faults=faults)
+    simulation = meshtone.simulate(scenario)
+    panel = simulation.plot()
+    axes = {ax.get_title().replace("\n", " "): ax for ax in panel.axes}
+    assert "Tooth 3 of the pinion" in axes and "Tooth 2 of the gear (also damaged: tooth 38)" in axes
+    contact = float(simulation.contact_ratio)
+    for part in ("Average", "Difference"):
+        assert tinted(axes[f"{part}, pinion shaft"]) == rounded([[2, 2 + contact]])
+        assert legend(axes[f"{part}, pinion shaft"]) == ["in contact: pinion tooth 3"]
+        # The last tooth is still in contact when the first one enters.
+        assert tinted(axes[f"{part}, gear shaft"]) == rounded([[0, contact - 1], [1, 1 + contact], [37, 38]])
+        assert legend(axes[f"{part}, gear shaft"]) == ["in contact: gear teeth 2 and 38"]
+    [stiffness] = [ax for ax in panel.axes if ax.get_ylabel() == "Mesh stiffness (N/mm)"]
+    # The pinion's tooth comes round in every 17th pair, and from the gear's 2nd tooth to the pinion's 3rd it is one part.
+    assert stiffness.get_xlim() == (0, 38)
+    assert tinted(stiffness) == rounded([[0, contact - 1], [1, 2 + contact], [19, 19 + contact], [36, 38]])
+    assert legend(stiffness) == ["in contact: pinion tooth 3 and gear teeth 2 and 38"]
+    plt.close("all")
+
+
+def test_a_sound_pair_has_no_marks() -> None:
+    panel = meshtone.simulate(meshtone.examples.healthy().copy(sampling_rate_hz=1e4)).plot()
+    assert [tinted(ax) for ax in panel.axes if ax.get_xlabel().startswith("Angle")] == [[], [], []]
+    plt.close("all")
+
+
+def test_any_tooth_and_any_pitches(broken: meshtone.Simulation) -> None:
+    sound = broken.plot_tooth("gear", tooth=5)
+    assert sound.get_title() == "Tooth 5 of the gear\n(also damaged: tooth 1)" and sound.get_legend() is None
+    assert broken.plot_mesh_stiffness(pitches=(3, 41)).get_xlim() == (3, 41)
+    plt.close("all")
+    with pytest.raises(ValueError, match="tooth = 39: must be from 1 to 38"):
+        broken.plot_tooth(tooth=39)
+    with pytest.raises(ValueError, match=r"pitches = \(4, 4\)"):
+        broken.plot_mesh_stiffness(pitches=(4, 4))

@@ -220,3 +220,13 @@ def test_damage_to_either_wheel() -> None:
     turns = [(4, 6), (19, 21), (21, 23), (38, 38)]
     assert all(any(start <= pitch <= end for start, end in turns) for pitch in changed)
     assert all(((start <= changed) & (changed <= end)).any() for start, end in turns[:3])
+
+
+def test_warnings_are_those_of_the_program() -> None:
+    scenario = meshtone.examples.healthy().copy(pinion_teeth=14)
+    simulation = meshtone.simulate(scenario)
+    before, *by_signals = simulation.warnings
+    assert [before] == scenario.warnings and before.startswith("gears.pinion_teeth: ")
+    [tension] = by_signals
+    assert tension.startswith(f"operation.brake_torque_nm: the mesh force is negative for {100 * simulation.tension_fraction:.1f} % of")
+    assert simulation.tension_fraction == np.mean(simulation.mesh_force_n < 0)

@@ -10,13 +10,10 @@ use crate::memory;
 ///
 /// Returns what deserves attention, and the stages that were computed to know it.
 pub fn check(scenario: &Scenario) -> Result<(Vec<ScenarioWarning>, Stages), ScenarioError> {
-    let mut warnings = scenario.validate_within(memory::limit())?;
-    let stages = meshtone::stages(scenario)?;
+    let (stages, warnings) = meshtone::stages_and_warnings(scenario, memory::limit())?;
     if stages.time.kept_samples() == 0 {
         return Err(nothing_is_kept(&stages.scenario));
     }
-    warnings.extend(scenario.ignored_by_model());
-    warnings.extend(stages.warnings());
     Ok((warnings, stages))
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use meshtone::scenario::{self, ProfileErrors, ScenarioError};
+use meshtone::scenario::{self, MemoryLimit, ProfileErrors, ScenarioError};
 use meshtone::wheel::ErrorTable;
 use meshtone_io::scenario_file::{ReadScenarioError, read_scenario};
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
@@ -87,10 +87,10 @@ impl Scenario {
         self.0.quality.profile_errors.as_ref().map(|errors| both_wheels(py, errors)).transpose()
     }
 
-    /// What is doubtful about it.
-    fn warnings(&self) -> PyResult<Vec<String>> {
-        let mut warnings = self.0.validate().map_err(|error| scenario_error(&error))?;
-        warnings.extend(self.0.ignored_by_model());
+    /// What is doubtful about it, as far as that can be told before the time loop.
+    fn warnings(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        let checked = py.detach(|| meshtone::stages_and_warnings(&self.0, MemoryLimit::default()));
+        let (_, warnings) = checked.map_err(|error| scenario_error(&error))?;
         Ok(warnings.iter().map(ToString::to_string).collect())
     }
 }

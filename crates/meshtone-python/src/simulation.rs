@@ -1,5 +1,6 @@
 //! One simulation.
 
+use meshtone::scenario::{MemoryLimit, ScenarioWarning};
 use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
 use meshtone::wheel::WheelName;
 use meshtone::{Stages, Trace};
@@ -34,6 +35,12 @@ pub struct Simulation {
     gear_shaft_speed_hz: Py<PyArray1<f64>>,
     #[pyo3(get)]
     mesh_force_n: Py<PyArray1<f64>>,
+    /// (-) Part of the kept time in which the mesh force is negative.
+    #[pyo3(get)]
+    tension_fraction: f64,
+    /// What is doubtful about it.
+    #[pyo3(get)]
+    warnings: Vec<String>,
     /// (s) Of the stages, by name.
     #[pyo3(get)]
     computing_time_s: Vec<(&'static str, f64)>,
@@ -42,9 +49,14 @@ pub struct Simulation {
 /// Simulates a scenario.
 #[pyfunction]
 pub fn simulate(py: Python<'_>, scenario: &Scenario) -> PyResult<Simulation> {
-    let simulation =
-        py.detach(|| meshtone::simulate(&scenario.0)).map_err(|error| simulation_error(&error))?;
-    Ok(Simulation::new(py, simulation))
+    let simulated = py.detach(|| {
+        let (stages, mut warnings) = meshtone::stages_and_warnings(&scenario.0, MemoryLimit::default())?;
+        let simulation = stages.simulate()?;
+        warnings.extend(simulation.warnings_of_signals());
+        Ok((simulation, warnings))
+    });
+    let (simulation, warnings) = simulated.map_err(|error| simulation_error(&error))?;
+    Ok(Simulation::new(py, simulation, &warnings))
 }
 
 /// Simulates a scenario and gives every stage's output by name.
@@ -73,9 +85,11 @@ fn fields(py: Python<'_>, trace: Trace) -> PyResult<Bound<'_, PyDict>> {
 }
 
 impl Simulation {
-    fn new(py: Python<'_>, simulation: meshtone::Simulation) -> Self {
+    fn new(py: Python<'_>, simulation: meshtone::Simulation, warnings: &[ScenarioWarning]) -> Self {
         let channels = simulation.channels;
         Self {
+            tension_fraction: channels.tension_fraction(),
+            warnings: warnings.iter().map(ToString::to_string).collect(),
             sampling_rate_hz: channels.sampling_rate_hz,
             start_s: channels.start_s,
             horizontal_g: array(py, channels.horizontal_g).unbind(),

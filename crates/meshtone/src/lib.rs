@@ -57,3 +57,4 @@ pub use error::Error;
 pub use simd::InstructionSet;
 pub use simulate::{Simulation, StageTime, Stages, simulate, stages};
 pub use trace::{Trace, TraceField, stage_trace, trace, trace_at};
+pub use warnings::stages_and_warnings;

@@ -1,11 +1,77 @@
-//! What the stages show to be doubtful about a simulation.
+//! What is doubtful about a simulation: before the time loop, and by its signals.
 
-use crate::error::ScenarioWarning;
+use crate::error::{ScenarioError, ScenarioWarning};
 use crate::machine::coordinates::{X_GEAR, X_PINION};
-use crate::simulate::Stages;
+use crate::scenario::{MemoryLimit, Scenario};
+use crate::sensor::Channels;
+use crate::simulate::{Simulation, Stages, stages};
 
 /// (-) Part of the starting transient that may be left where the kept signal starts.
 const TOLERATED_TRANSIENT: f64 = 0.01;
+/// (-) Part of the time that the mesh may pull without a warning.
+const TOLERATED_TENSION: f64 = 0.01;
+/// (-) Where damage makes the mesh pull, a load that so many times its own would hold the teeth together is worth a word.
+const SENSIBLE_LOAD_FACTOR: f64 = 30.0;
+
+/// Runs stages 1 to 6, as [`stages`] does, and tells all that deserves attention before the time loop.
+///
+/// # Arguments
+/// * `scenario` - what is simulated
+/// * `limit` - most memory that the simulation may need
+///
+/// # Errors
+/// As [`stages`].
+///
+/// ```
+/// use meshtone::scenario::{GearPair, MemoryLimit, Scenario};
+///
+/// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 14, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+/// scenario.solver.sampling_rate_hz = 2e4;
+/// let (stages, warnings) = meshtone::stages_and_warnings(&scenario, MemoryLimit::default())?;
+/// assert_eq!(warnings[0].key, "gears.pinion_teeth");
+/// // What the signals show comes after.
+/// assert!(stages.simulate()?.warnings_of_signals().iter().all(|warning| warning.key == "operation.brake_torque_nm"));
+/// # Ok::<(), meshtone::Error>(())
+/// ```
+pub fn stages_and_warnings(
+    scenario: &Scenario,
+    limit: MemoryLimit,
+) -> Result<(Stages, Vec<ScenarioWarning>), ScenarioError> {
+    let mut warnings = scenario.validate_within(limit)?;
+    let stages = stages(scenario)?;
+    warnings.extend(scenario.ignored_by_model());
+    warnings.extend(stages.warnings());
+    Ok((stages, warnings))
+}
+
+impl Simulation {
+    /// What the signals show to be doubtful: a mesh that pulls.
+    pub fn warnings_of_signals(&self) -> Vec<ScenarioWarning> {
+        tension(&self.channels, !self.stages.damaged.is_empty()).into_iter().collect()
+    }
+}
+
+/// A mesh that pulls, and what brings that down.
+fn tension(channels: &Channels, is_damaged: bool) -> Option<ScenarioWarning> {
+    let fraction = channels.tension_fraction();
+    (fraction > TOLERATED_TENSION).then(|| {
+        let force = &channels.mesh_force_n;
+        let least_n = force.iter().copied().fold(f64::INFINITY, f64::min);
+        let mean_n = force.iter().sum::<f64>() / force.len() as f64;
+        // The force that deviations and lost material add hardly depends on the load.
+        let advice = if is_damaged && mean_n - least_n > SENSIBLE_LOAD_FACTOR * mean_n {
+            "no sensible load would hold these teeth together; less damage brings it down"
+        } else {
+            "a heavier load or better teeth bring it down"
+        };
+        let message = format!(
+            "the mesh force is negative for {:.1} % of the time, down to {least_n:.0} N at a mean of {mean_n:.0} N: this linear \
+             mesh pulls where real teeth would part; {advice}",
+            100.0 * fraction
+        );
+        ScenarioWarning::new("operation.brake_torque_nm", message)
+    })
+}
 
 impl Stages {
     /// What deserves attention though it can be simulated: wheels whose accelerations cancel in the sum that the channels
@@ -47,5 +113,29 @@ impl Stages {
             );
             ScenarioWarning::new("solver.settle_fraction", message)
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mesh_that_pulls_is_told_with_what_mends_it() {
+        let of = |least_n: f64, pulling: usize, is_damaged: bool| {
+            let mut mesh_force_n = vec![200.0; 100];
+            mesh_force_n[..pulling].fill(least_n);
+            let channels = Channels { mesh_force_n, ..Channels::default() };
+            tension(&channels, is_damaged).map(|warning| warning.message).unwrap_or_default()
+        };
+        assert_eq!(of(-50.0, 1, true), "");
+        let told = of(-50.0, 2, true);
+        assert!(told.starts_with(
+            "the mesh force is negative for 2.0 % of the time, down to -50 N at a mean of 195 N"
+        ));
+        assert!(told.ends_with("a heavier load or better teeth bring it down"), "{told}");
+        assert_eq!(of(-4000.0, 2, false).rsplit("; ").next(), told.rsplit("; ").next());
+        let damage = of(-4000.0, 2, true);
+        assert!(damage.ends_with("hold these teeth together; less damage brings it down"), "{damage}");
     }
 }

@@ -216,8 +216,8 @@ impl Simulate {
         let progress = Progress::start(format!("{} {of}", run.file.path.display()), !self.quiet);
         let (simulation, trace) = simulate(&run.scenario, run.stages, self.trace.is_some())
             .map_err(|error| not_simulated(&run.file, error))?;
-        let tension = warnings::of_tension(&simulation.channels);
-        let all_warnings: Vec<_> = run.warnings.iter().cloned().chain(tension.clone()).collect();
+        let by_signals = simulation.warnings_of_signals();
+        let all_warnings: Vec<_> = run.warnings.iter().chain(&by_signals).cloned().collect();
         let summary = Summary::new(&simulation, RunIdentity::of(&run.scenario), &all_warnings);
         let results = Results {
             scenario: &run.scenario,
@@ -228,7 +228,7 @@ impl Simulate {
         };
         let written = results.write(directory.path());
         drop(progress);
-        tension.iter().for_each(|warning| warnings::print(&run.file, warning));
+        by_signals.iter().for_each(|warning| warnings::print(&run.file, warning));
         written?;
         if self.quiet {
             return Ok(());
