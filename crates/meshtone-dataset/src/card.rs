@@ -6,6 +6,7 @@ use crate::finish::Contents;
 use crate::manifest::PREVIEW;
 use crate::plan::{Class, Plan, PlanFile, Severity, kinds};
 use crate::shard::{Column, ColumnKind, Shards};
+use crate::words::counted;
 
 /// The data card's text.
 pub(crate) fn card(plan: &Plan, shards: Shards, contents: &Contents, columns: &[Column]) -> String {
@@ -34,10 +35,11 @@ fn head(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Result
     };
     writeln!(
         text,
-        "{rows} simulated records of spur gear vibration from {} units (pairs of wheels), raw channels at {} S/s over {length}. \
+        "{} of spur gear vibration from {} (pairs of wheels), raw channels at {} S/s over {length}. \
          Made with Meshtone {} from `{}`, which makes the same bytes again; the base scenario \
          is `{}`.\n",
-        plan.content.units,
+        counted(rows, "simulated record"),
+        counted(plan.content.units, "unit"),
         keep.sampling_rate_hz,
         env!("CARGO_PKG_VERSION"),
         PlanFile::NAMES[0],
@@ -181,10 +183,10 @@ fn files(text: &mut String, shards: Shards, contents: &Contents) -> std::fmt::Re
     let bytes: u64 = contents.files.iter().map(|file| file.bytes).sum();
     writeln!(
         text,
-        "## Files\n\n{} Parquet files in `data/`, {} records each, {:.1} MB together. Records are in random order, so that every file \
+        "## Files\n\n{} in `data/`, {} each, {:.1} MB together. Records are in random order, so that every file \
          is a mixture of all classes. `manifest.json` has counts, failures and the SHA-256 of every file.\n",
-        contents.files.len(),
-        shards.records_per_shard,
+        counted(contents.files.len() as u64, "Parquet file"),
+        counted(shards.records_per_shard, "record"),
         bytes as f64 / 1e6
     )
 }

@@ -11,6 +11,7 @@ use crate::manifest::{self, CARD, MANIFEST, PREVIEW};
 use crate::plan::Plan;
 use crate::shard::{self, Column, ColumnKind, FailedRecord, ReadShard, Shards, Wanted};
 use crate::store::Destination;
+use crate::words::counted;
 
 /// Records that a preview shows at most.
 const PREVIEWED: u64 = 4_000;
@@ -165,10 +166,10 @@ fn preview(plan: &Plan, contents: &Contents, to: &Destination, columns: &[Column
     DatasetPreview {
         title: plan.about.title.clone(),
         facts: format!(
-            "{} records of {} units, {} shards",
-            plan.records() - failures,
-            plan.content.units,
-            contents.files.len()
+            "{} of {}, {}",
+            counted(plan.records() - failures, "record"),
+            counted(plan.content.units, "unit"),
+            counted(contents.files.len() as u64, "shard")
         ),
         signal_name: shown.map_or_else(String::new, |column| column.name.clone()),
         over_angle: shown.is_some_and(|column| !matches!(column.kind, ColumnKind::Channel(_))),

@@ -62,8 +62,19 @@ pub struct Generated {
     pub written_records: u64,
     /// Of those, the ones that failed.
     pub failures: Vec<FailedRecord>,
+    /// Records that failed before, of the shards that were there already.
+    pub earlier_failures: Vec<FailedRecord>,
     /// Whether the data set is complete, with manifest, data card and preview.
     pub complete: bool,
+}
+
+impl Generated {
+    /// All records that failed, of the written shards and of those that were there, in their order.
+    pub fn missing(&self) -> Vec<&FailedRecord> {
+        let mut missing: Vec<_> = self.earlier_failures.iter().chain(&self.failures).collect();
+        missing.sort_by_key(|failed| failed.record);
+        missing
+    }
 }
 
 /// Generates a data set, or goes on with it, in the threads of the current rayon pool.
@@ -133,29 +144,39 @@ pub fn generate(
         written_shards: 0,
         written_records: 0,
         failures: Vec::new(),
+        earlier_failures: Vec::new(),
         complete: true,
     };
     let there = manifest::names(to)?;
     let hash = plan.hash();
-    let is_there = |shard: u64| {
+    // The failures of a shard that is there; none where it is not.
+    let failures_there = |shard: u64| {
         let name = Shards::name(shard);
-        there.contains(&name)
-            && to
-                .shard(&name, Wanted::Nothing)
-                .is_some_and(|read| read.metadata.is_of(&hash, &shards.range(shard)))
+        let read = there.contains(&name).then(|| to.shard(&name, Wanted::Nothing)).flatten()?;
+        read.metadata.is_of(&hash, &shards.range(shard)).then_some(read.metadata.failures)
     };
     // What is called complete is looked at all the same: somebody may have lost or damaged a file since.
-    if begun == Begun::Complete && (0..shards.count()).all(is_there) {
+    if begun == Begun::Complete
+        && let Some(failures) = (0..shards.count()).map(failures_there).collect::<Option<Vec<_>>>()
+    {
         generated.kept_shards = shards.count();
+        generated.earlier_failures = failures.concat();
         return Ok(generated);
     }
     // A part leaves them alone: another part may be writing.
     if part == Part::WHOLE {
         to.remove_leftovers();
     }
-    let (kept, missing): (Vec<u64>, Vec<u64>) =
-        (0..shards.count()).filter(|&shard| part.has(shard)).partition(|&shard| is_there(shard));
-    generated.kept_shards = kept.len() as u64;
+    let mut missing = Vec::new();
+    for shard in (0..shards.count()).filter(|&shard| part.has(shard)) {
+        match failures_there(shard) {
+            Some(failures) => {
+                generated.kept_shards += 1;
+                generated.earlier_failures.extend(failures);
+            }
+            None => missing.push(shard),
+        }
+    }
     let run = Run { plan, sampler: &sampler, shards, to, control };
     run.generate(&missing, &mut generated)?;
     generated.complete = finish::finish_if_complete(plan, shards, to)?;

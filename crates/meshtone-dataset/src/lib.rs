@@ -18,5 +18,7 @@ pub mod record;
 pub mod sampling;
 pub mod shard;
 pub mod store;
+mod words;
 
 pub use error::DatasetError;
+pub use words::counted;

@@ -35,15 +35,20 @@ pub fn merge(parts: &[Destination], to: &Destination) -> Result<Generated, Datas
     let sampler = Sampler::new(&plan.content).map_err(|error| manifest::plan_error(&plan, error))?;
     let shards = Shards::new(&plan, &sampler);
     let hash = plan.hash();
-    let has = |place: &Destination, shard: u64| {
-        let read = place.shard(&Shards::name(shard), Wanted::Nothing);
-        read.is_some_and(|read| read.metadata.is_of(&hash, &shards.range(shard)))
+    // The failures of a shard that a place has; none where it has it not.
+    let failures = |place: &Destination, shard: u64| {
+        let read = place.shard(&Shards::name(shard), Wanted::Nothing)?;
+        read.metadata.is_of(&hash, &shards.range(shard)).then_some(read.metadata.failures)
     };
     let mut sources = Vec::new();
     let mut missing = Vec::new();
+    let mut failed = Vec::new();
     for shard in 0..shards.count() {
-        match parts.iter().find(|part| has(part, shard)) {
-            Some(part) => sources.push((shard, part)),
+        match parts.iter().find_map(|part| Some((part, failures(part, shard)?))) {
+            Some((part, of_shard)) => {
+                sources.push((shard, part));
+                failed.extend(of_shard);
+            }
             None => missing.push(shard),
         }
     }
@@ -63,6 +68,7 @@ pub fn merge(parts: &[Destination], to: &Destination) -> Result<Generated, Datas
         written_shards: 0,
         written_records: 0,
         failures: Vec::new(),
+        earlier_failures: failed,
         complete: true,
     };
     if manifest::begin(&plan, to)? == Begun::Complete {
@@ -71,7 +77,7 @@ pub fn merge(parts: &[Destination], to: &Destination) -> Result<Generated, Datas
         return Ok(merged);
     }
     for (shard, part) in sources {
-        if has(to, shard) {
+        if failures(to, shard).is_some() {
             merged.kept_shards += 1;
         } else {
             to.take_over(part, &Shards::name(shard))?;

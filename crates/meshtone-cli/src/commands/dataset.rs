@@ -7,6 +7,7 @@ use std::sync::atomic::AtomicBool;
 
 use clap::{Args, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use meshtone_dataset::counted;
 use meshtone_dataset::draw::Sampler;
 use meshtone_dataset::generate::{GenerateControl, Generated, Part, generate};
 use meshtone_dataset::merge::merge;
@@ -19,6 +20,8 @@ use crate::terminal::{print, print_error_line};
 
 /// Failed records that are told one by one.
 const TOLD: usize = 3;
+/// Failed records whose numbers are told.
+const NAMED: usize = 20;
 
 /// Make a labelled data set after a plan
 ///
@@ -136,7 +139,10 @@ impl Make {
         bar.finish_and_clear();
         let generated = generated?;
         warn(&generated);
-        if self.quiet { Ok(()) } else { print(&summary(&plan, &generated, &to, part)) }
+        if !self.quiet {
+            print(&summary(&plan, &generated, &to, part))?;
+        }
+        refuse_missing(&self.plan.display().to_string(), &generated)
     }
 
     fn destination(&self) -> Result<Destination, Failure> {
@@ -168,8 +174,11 @@ impl Merge {
             self.parts.iter().map(|part| Destination::parse(part)).collect::<Result<_, _>>()?;
         let to = Destination::parse(&self.output)?;
         let merged = merge(&parts, &to)?;
-        let shards = merged.kept_shards + merged.written_shards;
-        if self.quiet { Ok(()) } else { print(&format!("  {shards} shards\n\n{to}\n")) }
+        let shards = counted(merged.kept_shards + merged.written_shards, "shard");
+        if !self.quiet {
+            print(&format!("  {shards}\n\n{to}\n"))?;
+        }
+        refuse_missing(&to.to_string(), &merged)
     }
 }
 
@@ -187,10 +196,13 @@ impl Scenario {
         let scenario = sampler.scenario(&record).map_err(|error| refuse(error.to_string()))?;
         let label = &plan.content.classes[record.class].label;
         let split = plan.content.splits.names()[record.split];
-        let head = format!(
+        let mut head = format!(
             "# Record {} of {name}: \"{label}\", severity {}, unit {}, {split}.\n",
             self.record, record.severity, record.unit
         );
+        if !scenario.faults.is_empty() {
+            head += "# Teeth count from where the first two meet; in the data set, fault_tooth counts from the record's start.\n";
+        }
         print(&(head + &scenario.to_toml()))
     }
 }
@@ -204,9 +216,37 @@ fn warn(generated: &Generated) {
         print_error_line(format!("warning: record {} failed: {}", failed.record, failed.reason));
     }
     if generated.failures.len() > TOLD {
-        let rest = generated.failures.len() - TOLD;
-        print_error_line(format!("warning: {rest} more records failed; manifest.json lists them"));
+        let rest = counted((generated.failures.len() - TOLD) as u64, "more record");
+        print_error_line(format!("warning: {rest} failed; manifest.json lists them"));
     }
+}
+
+/// A data set that lacks records of its plan is there, and not what was asked for.
+///
+/// # Arguments
+/// * `of` - the plan's file, or the place of the data set
+fn refuse_missing(of: &str, generated: &Generated) -> Result<(), Failure> {
+    let missing = generated.missing();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let mut numbers: Vec<String> =
+        missing.iter().take(NAMED).map(|failed| failed.record.to_string()).collect();
+    if missing.len() > NAMED {
+        numbers.push("…".to_owned());
+    }
+    let (records, are) = match missing.len() {
+        1 => ("record", "is"),
+        _ => ("records", "are"),
+    };
+    let problem = format!(
+        "{of}: {} that could not be simulated {are} missing: {records} {}; all others were written",
+        counted(missing.len() as u64, "record"),
+        numbers.join(", ")
+    );
+    Err(Failure::bad_input(problem).with_help(
+        "manifest.json lists them with their reasons; narrow what the plan varies, or add a constraint, and none is missing",
+    ))
 }
 
 fn summary(plan: &Plan, generated: &Generated, to: &Destination, part: Part) -> String {
@@ -214,17 +254,20 @@ fn summary(plan: &Plan, generated: &Generated, to: &Destination, part: Part) -> 
     // Writing to a text cannot fail.
     let _ = writeln!(
         text,
-        "  {} records in {} shards written, {} shards were there already",
-        generated.written_records - generated.failures.len() as u64,
-        generated.written_shards,
-        generated.kept_shards
+        "  {} in {} written, {} {} there already",
+        counted(generated.written_records - generated.failures.len() as u64, "record"),
+        counted(generated.written_shards, "shard"),
+        counted(generated.kept_shards, "shard"),
+        if generated.kept_shards == 1 { "was" } else { "were" }
     );
+    let missing = generated.missing().len() as u64;
+    let of_plan = if missing == 0 { String::new() } else { format!(" of the plan's {}", plan.records()) };
     let _ = match (generated.complete, part == Part::WHOLE) {
         (true, _) => writeln!(
             text,
-            "  complete: {} records of {} units, see README.md there",
-            plan.records(),
-            plan.content.units
+            "  complete: {}{of_plan} of {}, see README.md there",
+            counted(plan.records() - missing, "record"),
+            counted(plan.content.units, "unit")
         ),
         (false, _) => writeln!(
             text,

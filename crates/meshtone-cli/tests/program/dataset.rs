@@ -86,6 +86,56 @@ fn a_data_set_and_what_is_said_about_it() {
     workplace.succeeds(&["dataset", "plan.toml", "-o", "quiet", "--quiet"]).stdout("");
 }
 
+/// Where only the draw shows that two faults meet on one tooth, what is missing is told, and by the exit code too.
+#[test]
+fn missing_records_are_told_every_time() {
+    let workplace = workplace();
+    let chip = "fault = { kind = \"tooth-breakage\", chip_height_mm = 3.0, chip_width_mm = 8.0 }";
+    let two = "fault = [{ kind = \"missing-tooth\" }, { kind = \"missing-tooth\", tooth = 2 }]
+               [[class.vary]]
+               key = \"fault[0].tooth\"
+               choice = [1, 2, 3, 4, 5, 6]
+               [[class.vary]]
+               key = \"fault[1].tooth\"
+               choice = [1, 2, 3, 4, 5, 6]";
+    let plan = PLAN
+        .replace(chip, two)
+        .replace("records = 96", "records = 48")
+        .replace("per_shard = 8", "per_shard = 48");
+    workplace.write("plan.toml", &plan);
+    let run = |options: &[&str]| {
+        let command =
+            program().arg("dataset").args(options).current_dir(workplace.directory.path()).output().unwrap();
+        assert_eq!(command.status.code(), Some(2));
+        [command.stdout, command.stderr].map(|text| String::from_utf8(text).unwrap())
+    };
+    let [_, told] = run(&["plan.toml"]);
+    assert!(told.contains("error: plan.toml: ") && told.contains("fault[0] already"), "{told}");
+    let numbers = told.split(" missing: ").nth(1).and_then(|rest| rest.split(';').next()).unwrap();
+    let missing =
+        numbers.matches(|c: char| c.is_ascii_digit() || c == ',').collect::<String>().split(',').count();
+    assert!(missing > 0 && missing < 20, "{told}");
+    assert!(told.contains(&format!("{missing} record")), "{told}");
+    // What is there is complete, and says so; and the next time too.
+    let manifest = String::from_utf8(workplace.read("plan_dataset/manifest.json")).unwrap();
+    assert_eq!(manifest.matches("\"reason\"").count(), missing);
+    let [said, _] = run(&["plan.toml"]);
+    let complete = format!("complete: {} records of the plan's 48 of 12 units", 48 - missing);
+    for words in [complete.as_str(), "0 records in 0 shards written, 1 shard was there already"] {
+        assert!(said.contains(words), "{said}");
+    }
+    let [said, quiet] = run(&["plan.toml", "--quiet"]);
+    assert!(said.is_empty() && quiet.contains(numbers), "{said}{quiet}");
+    // A tooth that there is not is told before anything is made.
+    workplace.write("plan.toml", plan.replacen("5, 6]", "5, 41]", 1));
+    workplace.fails(
+        2,
+        &["dataset", "plan.toml", "-o", "other"],
+        &["line 21", "choice[5]", "must be at most 40"],
+    );
+    assert!(!workplace.path("other").exists());
+}
+
 #[test]
 fn killed_ten_times_and_gone_on_with() {
     let workplace = workplace();

@@ -2,15 +2,20 @@
 
 use std::collections::HashSet;
 
+use meshtone::scenario::ScenarioError;
 use meshtone_toml::{ReadResult, TomlError, TomlTable};
 
-use super::{Content, Plan};
-use crate::draw::{DrawError, Sampler};
+use super::{Content, Distribution, Plan, Rule};
+use crate::draw::{DrawError, DrawnRecord, NOISE_KEYS, Sampler};
 
 /// Records whose values are drawn before anything is written.
 const DRAWN: u64 = 5_000;
 /// Records of each class whose scenarios are made.
 const MADE: usize = 8;
+/// Records of each class beside whose other values a value of a choice is tried, until one can be.
+const TRIED: usize = 24;
+/// Values of choices and grids that are tried.
+const MOST_VALUES: usize = 2_000;
 
 /// Rules, units and splits agree.
 pub(super) fn check(content: &Content, root: &TomlTable<'_>) -> ReadResult<()> {
@@ -68,10 +73,11 @@ pub(super) fn unique_columns(plan: &Plan) -> ReadResult<()> {
     }
 }
 
-/// The first records can be drawn, and of each class one can be simulated.
+/// The first records can be drawn, of each class one can be simulated, and every value of a choice is allowed.
 pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
     let sampler = Sampler::new(&plan.content)?;
     let mut made = vec![Vec::new(); plan.content.classes.len()];
+    let mut first = vec![Vec::new(); plan.content.classes.len()];
     for index in 0..plan.records().min(DRAWN) {
         let record = sampler.record(index).map_err(|DrawError { key, problem }| {
             TomlError::new(key, "", problem)
@@ -85,6 +91,10 @@ pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
                 meshtone::stages(&scenario).map(drop)
             });
             of_class.push(result.err());
+        }
+        let first_of_class: &mut Vec<DrawnRecord> = &mut first[record.class];
+        if first_of_class.len() < TRIED {
+            first_of_class.push(record);
         }
     }
     for (c, errors) in made.into_iter().enumerate() {
@@ -102,7 +112,79 @@ pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
             return Err(told);
         }
     }
+    every_choice(&plan.content, &sampler, &first)
+}
+
+/// Every value of a choice or a grid is allowed beside the other values of some record, as far as no profile is needed.
+///
+/// # Arguments
+/// * `first` - the first records of each class
+fn every_choice(content: &Content, sampler: &Sampler, first: &[Vec<DrawnRecord>]) -> ReadResult<()> {
+    let mut left = MOST_VALUES;
+    for (c, (class, records)) in content.classes.iter().zip(first).enumerate() {
+        let top = content.rules.iter().enumerate().map(|(i, rule)| (rule, format!("vary[{i}]")));
+        let own = class.rules.iter().enumerate().map(|(i, rule)| (rule, format!("class[{c}].vary[{i}]")));
+        for (rule, place) in top.chain(own).filter(|(rule, _)| rule.times.is_none() && rule.plus.is_none()) {
+            for (key, row) in values_of(&rule.distribution).into_iter().take(left) {
+                left -= 1;
+                refuse_value(sampler, records, rule, &row).map_err(|error| {
+                    let listed: Vec<String> = row.iter().map(f64::to_string).collect();
+                    let problem = format!(
+                        "no record of the class \"{}\" can have {} = {}: {error}",
+                        class.label,
+                        rule.keys.join(", "),
+                        listed.join(", ")
+                    );
+                    let mut told = TomlError::new(format!("{place}.{key}"), listed.join(", "), problem);
+                    told.help = error.help;
+                    told
+                })?;
+            }
+        }
+    }
     Ok(())
+}
+
+/// The rows of a choice or a grid that may come, each with its key beside the rule's.
+fn values_of(distribution: &Distribution) -> Vec<(String, Vec<f64>)> {
+    let keyed = |name: &str, (i, row): (usize, &Vec<f64>)| (format!("{name}[{i}]"), row.clone());
+    match distribution {
+        Distribution::Fixed(value) => vec![("fixed".to_owned(), vec![*value])],
+        Distribution::Grid(rows) => rows.iter().enumerate().map(|row| keyed("grid", row)).collect(),
+        Distribution::Choice { rows, weights } => {
+            let chosen = rows.iter().enumerate().filter(|(i, _)| weights[*i] > 0.0);
+            chosen.map(|row| keyed("choice", row)).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// The error that a rule's values make with the other values of every one of some records; none where one of them may have
+/// them, or the rule does not concern them.
+fn refuse_value(
+    sampler: &Sampler,
+    records: &[DrawnRecord],
+    rule: &Rule,
+    row: &[f64],
+) -> Result<(), ScenarioError> {
+    if rule.keys.iter().all(|key| NOISE_KEYS.contains(&key.as_str())) {
+        return Ok(());
+    }
+    let mut refused = Ok(());
+    for record in records {
+        let mut changed = record.clone();
+        for (key, value) in rule.keys.iter().zip(row) {
+            let Some(place) = changed.values.iter_mut().find(|(drawn, _)| drawn == key) else {
+                return Ok(());
+            };
+            place.1 = *value;
+        }
+        match sampler.scenario(&changed) {
+            Ok(_) => return Ok(()),
+            Err(error) => refused = refused.and(Err(error)),
+        }
+    }
+    refused
 }
 
 /// A varied key that the model ignores would be a label without effect.

@@ -208,7 +208,7 @@ fn of_fault(number: usize) -> [Column; 3] {
         column(&format!("{fault}_{last}"), "", description, kind)
     };
     let tooth = "number of the damaged tooth, from 1, in the order in which its wheel's teeth come into contact from the \
-                 start of the record on";
+                 start of the record on; in the plan and the scenario teeth are counted from where the first two meet";
     [
         named("kind", "kind of damage", ColumnKind::FaultKind(number)),
         named("wheel", "the damaged wheel: pinion or gear", ColumnKind::FaultWheel(number)),
@@ -239,6 +239,10 @@ fn key_column(key: &str) -> Column {
     let description = match NOISE_KEYS.iter().position(|noise| *noise == key) {
         Some(0) => "signal-to-noise ratio of the added noise".to_owned(),
         Some(_) => "standard deviation of the added noise".to_owned(),
+        None if is_tooth(key) => format!(
+            "{key} of the scenario, from 1: the same tooth counted from where the scenario's first teeth meet, as the plan \
+             and `meshtone dataset scenario` have it"
+        ),
         None => format!("{key} of the scenario"),
     };
     Column { name, unit, description, kind: ColumnKind::Key(key.to_owned()) }
@@ -253,7 +257,16 @@ pub(crate) fn column_name(key: &str) -> String {
             None => rest.to_owned(),
         },
     };
-    name.replace('.', "_")
+    let name = name.replace('.', "_");
+    // `fault_tooth` counts from the record's start.
+    if is_tooth(key) { format!("{name}_of_scenario") } else { name }
+}
+
+/// Whether a key is the number of a damaged tooth.
+fn is_tooth(key: &str) -> bool {
+    key.split_once('.').is_some_and(|(section, last)| {
+        last == "tooth" && (section == "fault" || number_of_fault(section).is_some())
+    })
 }
 
 /// The number of `fault[1]`, from 0.
@@ -303,6 +316,8 @@ mod tests {
             ("fault.circle.x_mm", "fault_circle_x_mm", "mm"),
             ("fault[0].start", "fault_start", "-"),
             ("fault[1].circle.x_mm", "fault_2_circle_x_mm", "mm"),
+            ("fault.tooth", "fault_tooth_of_scenario", "-"),
+            ("fault[1].tooth", "fault_2_tooth_of_scenario", "-"),
             ("noise.snr_db", "noise_snr_db", "dB"),
             ("rig.bearing_stiffness_n_per_m", "bearing_stiffness_n_per_m", "N/m"),
             ("rig.wheel_rotational_stiffness_nm_per_rad", "wheel_rotational_stiffness_nm_per_rad", "N m/rad"),

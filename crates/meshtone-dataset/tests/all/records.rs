@@ -268,6 +268,28 @@ fn several_faults_of_a_record() {
     }
 }
 
+/// A drawn tooth has a column beside that of the same tooth counted from the record's start.
+#[test]
+fn a_drawn_tooth_is_told_twice() {
+    let missing = "fault = { kind = \"missing-tooth\" }\nseverity = 4";
+    let drawn = format!("{missing}\n[[class.vary]]\nkey = \"fault.tooth\"\nchoice = [3, 17]");
+    let plan = plan(
+        &FAST.replace(missing, &drawn).replace("records_per_shard", "aligned = true\nrecords_per_shard"),
+    );
+    let made = made(&plan);
+    let sampler = Sampler::new(&plan.content).unwrap();
+    let mut seen = Vec::new();
+    for row in (0..60).filter(|&row| made.text("label", row) == "missing") {
+        let scenario = sampler.scenario(&sampler.record(row as u64).unwrap()).unwrap();
+        let of_scenario = made.number("fault_tooth_of_scenario", row);
+        assert_eq!(of_scenario, f64::from(scenario.faults[0].tooth));
+        // An aligned record begins with it.
+        assert_eq!(made.tooth(row), Some(1));
+        seen.push(of_scenario as u32);
+    }
+    assert!(seen.contains(&3) && seen.contains(&17), "{seen:?}");
+}
+
 #[test]
 fn noise_is_as_large_as_it_says_and_of_each_channel_its_own() {
     let without = made(&plan(&FAST.replace(

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use crate::support::FAST;
+use crate::support::{FAST, plan};
 use meshtone_dataset::plan::Plan;
 
 /// Asserts that a plan is refused with all of `words`.
@@ -181,6 +181,35 @@ fn constraints_that_cannot_be_met() {
         "uniform = [8.0, 9.0]",
         &["no record of the class \"breakage\" can be simulated", "fault.chip_height_mm"],
     );
+}
+
+/// A value of a choice that no other value can save is told before anything is made.
+#[test]
+fn choices_that_are_impossible() {
+    let missing = "fault = { kind = \"missing-tooth\" }\nseverity = 4";
+    let tooth = |choice: &str| format!("{missing}\n[[class.vary]]\nkey = \"fault.tooth\"\n{choice}");
+    let words = [
+        "line 37",
+        "class[2].vary[0].choice[1] = 41",
+        "class \"missing\"",
+        "must be at most 40, the gear's teeth",
+    ];
+    refused_with(missing, &tooth("choice = [3, 41]"), &words);
+    refused_with(missing, &tooth("grid = [3, 0]"), &["class[2].vary[0].grid[1] = 0", "must be at least 1"]);
+    refused_with(missing, &tooth("fixed = 41"), &["can be simulated", "must be at most 40"]);
+    // At no time chosen.
+    plan(&FAST.replacen(missing, &tooth("choice = [3, 41]\nweights = [1, 0]"), 1));
+    // Beside other faults on the same tooth.
+    let two = "fault = [{ kind = \"missing-tooth\", tooth = 5 }, { kind = \"missing-tooth\", tooth = 7 }]\nseverity = 4";
+    let second = format!("{two}\n[[class.vary]]\nkey = \"fault[1].tooth\"\nchoice = [4, 5, 6]");
+    refused_with(
+        missing,
+        &second,
+        &["class[2].vary[0].choice[1] = 5", "tooth 5 of the gear has fault[0] already"],
+    );
+    // A number that is too large for some of the drawn teeth is not impossible.
+    let teeth = "[[vary]]\nkey = \"gears.gear_teeth\"\nchoice = [40, 60]\n[keep]";
+    plan(&FAST.replacen(missing, &tooth("choice = [3, 41]"), 1).replacen("[keep]", teeth, 1));
 }
 
 #[test]
