@@ -30,13 +30,22 @@ def _keys(value: Any) -> dict[str, Any]:
     }
 
 
-def to_section(fault: Any) -> dict[str, Any]:
-    """The section of a fault in a scenario file."""
+def to_section(fault: Any, argument: str = "fault") -> dict[str, Any]:
+    """The section of a fault in a scenario file.
+
+    Parameters
+    ----------
+    fault : Fault
+        The fault.
+    argument : str
+        What it was given as, for messages.
+    """
     if fault in KINDS:
-        raise TypeError(f"fault is the class {fault.__name__}: give one of its objects, {fault.__name__}(…)")
+        raise TypeError(f"{argument} is the class {fault.__name__}: give one of its objects, {fault.__name__}(…)")
     if type(fault) not in KINDS:
         kinds = ", ".join(kind.__name__ for kind in KINDS)
-        raise TypeError(f"fault = {fault!r}: must be an object of {kinds}, or None for a healthy pair")
+        end = ", or None for a healthy pair" if argument == "fault" else ""
+        raise TypeError(f"{argument} = {fault!r}: must be an object of {kinds}{end}")
     for name, table in TABLES.items():
         entry = getattr(fault, name, None)
         if entry is not None and not isinstance(entry, table):

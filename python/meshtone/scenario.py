@@ -264,26 +264,26 @@ def _sections_of(arguments: Mapping[str, Any]) -> dict[str, Any]:
         keys[KEY_IN_FILE.get(key, key)] = plain = _plain(value)
         if isinstance(plain, int) and abs(plain) >= 2**63:
             raise ValueError(f"{key} = {value}: must be below 2**63 = {2**63}")
-    faults = [_plain(to_section(fault)) for fault in _faults_of(arguments)]
+    faults = [_plain(to_section(fault, name)) for name, fault in _faults_of(arguments)]
     if faults:
         sections["fault"] = faults[0] if len(faults) == 1 else faults
     return sections
 
 
-def _faults_of(arguments: Mapping[str, Any]) -> Sequence[Any]:
-    """The faults, whichever of the two arguments has them."""
+def _faults_of(arguments: Mapping[str, Any]) -> list[tuple[str, Any]]:
+    """The faults, whichever of the two arguments has them, each with its name in messages."""
     fault, faults = arguments.get("fault"), arguments.get("faults")
     if fault is not None and faults is not None:
         raise TypeError("fault and faults are both given: faults has all of them, fault is one alone")
     if isinstance(fault, (list, tuple)):
         raise TypeError("fault is a sequence: faults takes several")
     if fault is not None:
-        return [fault]
+        return [("fault", fault)]
     if faults is None:
         return []
     if not isinstance(faults, Sequence) or isinstance(faults, str):
         raise TypeError(f"faults = {faults!r}: must be a sequence of faults; fault takes a single one")
-    return faults
+    return [(f"faults[{index}]", fault) for index, fault in enumerate(faults)]
 
 
 def _native_of(arguments: Mapping[str, Any]) -> _core.Scenario:

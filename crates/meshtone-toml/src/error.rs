@@ -55,11 +55,12 @@ impl fmt::Display for TomlError {
         if let Some(line) = self.line {
             write!(formatter, "line {line}: ")?;
         }
+        let place = self.place_in_words().map(|place| format!(" ({place})")).unwrap_or_default();
         match (self.key.as_str(), self.value.as_str()) {
             ("", "") => {}
             ("", value) => write!(formatter, "{value}: ")?,
-            (key, "") => write!(formatter, "{key}: ")?,
-            (key, value) => write!(formatter, "{key} = {value}: ")?,
+            (key, "") => write!(formatter, "{key}{place}: ")?,
+            (key, value) => write!(formatter, "{key} = {value}{place}: ")?,
         }
         formatter.write_str(&self.problem)
     }
@@ -75,6 +76,17 @@ impl TomlError {
     pub fn new(key: impl Into<String>, value: impl ToString, problem: impl Into<String>) -> Self {
         let (key, value, problem) = (key.into(), value.to_string(), problem.into());
         Self { kind: ErrorKind::NotAllowed, key, value, problem, help: None, line: None }
+    }
+
+    /// Which tables of lists the key is in, as people count: `the 2nd fault` for `fault[1].tooth`, `the 1st vary of the 3rd class`
+    /// for `class[2].vary[0].key`. None where it is in no list.
+    fn place_in_words(&self) -> Option<String> {
+        let segments: Vec<&str> = self.key.split('.').collect();
+        // What the key itself is a number of is a table only where it has no value, or one in braces.
+        let is_table = self.value.is_empty() || self.value.starts_with('{');
+        let tables = if is_table { &segments[..] } else { &segments[..segments.len() - 1] };
+        let words: Vec<String> = tables.iter().rev().filter_map(|segment| entry_in_words(segment)).collect();
+        (!words.is_empty()).then(|| words.join(" of "))
     }
 
     /// The same error, of another kind.
@@ -111,5 +123,39 @@ impl TomlError {
     pub fn with_key(mut self, key: impl Into<String>) -> Self {
         self.key = key.into();
         self
+    }
+}
+
+/// `the 2nd fault` for `fault[1]`.
+fn entry_in_words(segment: &str) -> Option<String> {
+    let (name, index) = segment.strip_suffix(']')?.split_once('[')?;
+    let number = index.parse::<u64>().ok()?.checked_add(1)?;
+    let end = match (number % 10, number % 100) {
+        (1, hundred) if hundred != 11 => "st",
+        (2, hundred) if hundred != 12 => "nd",
+        (3, hundred) if hundred != 13 => "rd",
+        _ => "th",
+    };
+    let one = name.strip_suffix('s').filter(|one| !one.ends_with('s')).unwrap_or(name);
+    Some(format!("the {number}{end} {one}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_of_lists_are_counted_as_people_do() {
+        let told = |key: &str, value: &str| TomlError::new(key, value, "no").to_string();
+        assert_eq!(told("fault[1].tooth", "39"), "fault[1].tooth = 39 (the 2nd fault): no");
+        assert_eq!(told("fault[0]", ""), "fault[0] (the 1st fault): no");
+        assert_eq!(
+            told("class[2].vary[11].key", ""),
+            "class[2].vary[11].key (the 12th vary of the 3rd class): no"
+        );
+        assert_eq!(told("constraints[22]", ""), "constraints[22] (the 23rd constraint): no");
+        // A number in a list is no place.
+        assert_eq!(told("rig.damping_ratio[2]", "0.5"), "rig.damping_ratio[2] = 0.5: no");
+        assert_eq!(told("gears.module_mm", "0"), "gears.module_mm = 0: no");
     }
 }

@@ -104,6 +104,8 @@ impl ScenarioError {
     pub(crate) fn in_fault(mut self, index: usize, faults: usize) -> Self {
         if let Some(rest) = self.key.strip_prefix("fault").filter(|_| faults > 1) {
             self.key = format!("fault[{index}]{rest}");
+            self.problem = with_number(&self.problem, index);
+            self.help = self.help.map(|help| with_number(&help, index));
         }
         self
     }
@@ -116,6 +118,19 @@ impl ScenarioError {
         self.line = line;
         self
     }
+}
+
+/// A text about one of several faults, whose keys `fault.…` get its number.
+fn with_number(text: &str, index: usize) -> String {
+    let mut parts = text.split("fault.");
+    let mut numbered = parts.next().unwrap_or_default().to_owned();
+    for rest in parts {
+        // A sentence may end with the word.
+        let is_key = rest.starts_with(|letter: char| letter.is_ascii_lowercase());
+        numbered += &if is_key { format!("fault[{index}].") } else { "fault.".to_owned() };
+        numbered += rest;
+    }
+    numbered
 }
 
 /// Why there is no simulation.
@@ -200,5 +215,25 @@ impl ScenarioWarning {
 impl fmt::Display for ScenarioWarning {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "{}: {}", self.key, self.message)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_about_one_of_several_faults_name_it() {
+        let error = || {
+            ScenarioError::new("fault.end", 0.1, "must be more than fault.start, 0.2")
+                .with_help("mend the fault. Or raise fault.end")
+        };
+        let second = error().in_fault(1, 2);
+        assert_eq!(
+            (second.key.as_str(), second.problem.as_str()),
+            ("fault[1].end", "must be more than fault[1].start, 0.2")
+        );
+        assert_eq!(second.help.as_deref(), Some("mend the fault. Or raise fault[1].end"));
+        assert_eq!(error().in_fault(0, 1), error());
     }
 }

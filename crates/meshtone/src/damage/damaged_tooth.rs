@@ -144,32 +144,46 @@ impl DamagedTooth {
 
     /// Refuses a cut where there is one already, and a pit without an edge that the mate can turn about: what becomes of such a
     /// flank is not known.
-    fn refuse_overlap(&self) -> Result<(), ScenarioError> {
+    ///
+    /// # Arguments
+    /// * `faults` - numbers and kinds of the damages, in the order of the descriptions; the last is the one that is refused
+    fn refuse_overlap(&self, faults: &[(usize, &'static str)]) -> Result<(), ScenarioError> {
+        let place = format!("the {}'s tooth {}", self.wheel.name(), self.tooth + 1);
         if self.rolling.iter().any(|pit| pit.end_index >= self.gone_from_index) {
             let problem = format!(
-                "leaves a pit without its edge at the tip on the {}'s tooth {}; a pit over the whole face must end below what has \
-                 broken off",
-                self.wheel.name(),
-                self.tooth + 1
+                "leaves a pit without its edge at the tip on {place}{}; a pit over the whole face must end below what has broken off",
+                beside(faults.split_last().map_or(&[], |(_, earlier)| earlier))
             );
             return Err(ScenarioError::new("fault", "", problem)
-                .with_help("move the pit towards the root, or lessen fault.tip_loss_mm"));
+                .with_help("move the pit towards the root, or lessen the breakage's tip_loss_mm"));
         }
         let Some((last, earlier)) = self.descriptions.split_last() else { return Ok(()) };
         let Some(range) = Self::cut_range(last) else { return Ok(()) };
         let overlaps =
             |other: RangeInclusive<usize>| range.start() <= other.end() && other.start() <= range.end();
-        if earlier.iter().filter_map(Self::cut_range).any(overlaps) {
-            let problem = format!(
-                "cuts the flank of the {}'s tooth {} where another fault has cut it; must leave a piece of sound flank between them",
-                self.wheel.name(),
-                self.tooth + 1
-            );
-            return Err(ScenarioError::new("fault", "", problem)
-                .with_help("move one of them along the flank, or to another tooth"));
+        match earlier.iter().position(|earlier| Self::cut_range(earlier).is_some_and(overlaps)) {
+            None => Ok(()),
+            Some(other) => {
+                let problem = format!(
+                    "cuts the flank of {place} where {} has cut it; must leave a piece of sound flank between them",
+                    faults.get(other).map_or_else(|| "another fault".to_owned(), named)
+                );
+                Err(ScenarioError::new("fault", "", problem)
+                    .with_help("move one of them along the flank, or to another tooth"))
+            }
         }
-        Ok(())
     }
+}
+
+/// A fault by its number and kind.
+fn named((number, kind): &(usize, &'static str)) -> String {
+    format!("fault[{number}] ({kind})")
+}
+
+/// ` beside fault[0] (tooth-breakage)`; nothing where there is no other.
+fn beside(others: &[(usize, &'static str)]) -> String {
+    let names: Vec<String> = others.iter().map(named).collect();
+    if names.is_empty() { String::new() } else { format!(" beside {}", names.join(" and ")) }
 }
 
 /// The teeth that are damaged, each with all its damages; in the order in which they are first named.
@@ -196,7 +210,13 @@ pub fn damaged_teeth(faults: &[Fault], teeth: &Teeth, seed: u64) -> Result<Vec<D
         fault
             .damage
             .damage(of_tooth, &healthy)
-            .and_then(|()| of_tooth.refuse_overlap())
+            .and_then(|()| {
+                let on_tooth = faults[..=number].iter().enumerate();
+                let on_tooth =
+                    on_tooth.filter(|(_, other)| (other.wheel, other.tooth_index()) == (name, tooth));
+                let on_tooth: Vec<_> = on_tooth.map(|(other, fault)| (other, fault.damage.kind())).collect();
+                of_tooth.refuse_overlap(&on_tooth)
+            })
             .map_err(|error| error.in_fault(number, faults.len()))?;
     }
     Ok(damaged)

@@ -137,7 +137,7 @@ pub(crate) fn check_faults(faults: &[Fault], gears: &Gears) -> Check {
             (other.wheel, other.tooth) == (fault.wheel, fault.tooth) && excludes(&other.damage, &fault.damage)
         });
         let checked = match beside {
-            Some((other, _)) => Err(second_damage(fault, other)),
+            Some((number, other)) => Err(second_damage(fault, number, other)),
             None => fault.check(gears),
         };
         checked.map_err(|error| error.in_fault(index, faults.len()))?;
@@ -153,10 +153,11 @@ fn excludes(damage: &Damage, other: &Damage) -> bool {
     missing(damage) || missing(other) || (broken(damage) && broken(other))
 }
 
-fn second_damage(fault: &Fault, other: usize) -> ScenarioError {
+fn second_damage(fault: &Fault, number: usize, other: &Fault) -> ScenarioError {
     let (wheel, tooth, kind) = (fault.wheel.name(), fault.tooth, fault.damage.kind());
     let problem = format!(
-        "tooth {tooth} of the {wheel} has fault[{other}] already; a missing tooth has no other damage, and a tooth breaks once"
+        "tooth {tooth} of the {wheel} has fault[{number}] already ({}); a missing tooth has no other damage, and a tooth breaks once",
+        other.damage.kind()
     );
     ScenarioError::new("fault.kind", format!("\"{kind}\""), problem)
         .with_help("remove one of the two, or give it another tooth")

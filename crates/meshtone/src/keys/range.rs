@@ -100,6 +100,15 @@ impl Range {
         }
     }
 
+    /// What is allowed; none where every finite number is.
+    ///
+    /// # Arguments
+    /// * `unit` - the key's
+    pub fn words(&self, unit: &str) -> Option<String> {
+        let is_bounded = !matches!((self.least, self.most), (Unbounded, Unbounded));
+        is_bounded.then(|| self.message.map_or_else(|| self.must(unit), str::to_string))
+    }
+
     fn must(&self, unit: &str) -> String {
         let number = |value| with_unit(value, unit);
         match (self.least, self.most) {

@@ -1,6 +1,6 @@
 //! One key of a section.
 
-use meshtone_toml::{ReadResult, TomlTable};
+use meshtone_toml::{ErrorKind, ReadResult, TomlError, TomlTable};
 
 use super::cell::{Cell, Field, ReadElsewhere, SubTable};
 use super::check::Check;
@@ -173,11 +173,23 @@ impl<S> Row<S> {
             table.optional(self.name)
         };
         match value {
-            Some(value) => self.cell.read(section, &value, files),
+            Some(value) => self.cell.read(section, &value, files).map_err(|error| self.as_below_range(error)),
             // A misspelt table would be told with a list of keys that has nothing like it.
             None if self.cell.kind() == KeyKind::Table => table.refuse_slip_of(self.name),
             None => Ok(()),
         }
+    }
+
+    /// A negative number where only whole ones from 0 on can be held: what the key allows says more than what a type does.
+    fn as_below_range(&self, mut error: TomlError) -> TomlError {
+        let is_negative = error.kind == ErrorKind::NotAllowed && error.value.starts_with('-');
+        if is_negative
+            && self.cell.kind() == KeyKind::Whole
+            && let Some(words) = self.range.words(self.unit)
+        {
+            error.problem = words;
+        }
+        error
     }
 
     pub(super) fn write(&self, section: &S) -> Written {

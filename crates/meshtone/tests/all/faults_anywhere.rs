@@ -176,9 +176,11 @@ fn a_tooth_may_be_broken_and_ground() {
 #[test]
 fn cuts_that_overlap_are_refused() {
     let refused = |one: Damage, other: Damage, tooth: u32| {
+        let named = format!("where fault[0] ({}) has cut it", one.kind());
         let faults = vec![Fault::new(WheelName::Gear, 3, one), Fault::new(WheelName::Gear, tooth, other)];
         stages(&pair(faults)).err().map(|error| {
             assert!(error.problem.contains("gear's tooth 3"), "{error}");
+            assert!(error.problem.contains(&named), "{error}");
             error.key
         })
     };

@@ -57,6 +57,9 @@ fn errors_name_the_fault_and_its_line() {
     );
     let text = faults(&[PIT, "tooth = 2\nkind = \"through-face\""]);
     assert_refused(&text, "fault[1].start", 14, &["missing, and circle too"]);
+    let line = "kind = \"tooth-destruction\"\nstart = 0.5\nend = 0.4";
+    let words = ["fault[1].end = 0.4 (the 2nd fault): must be more than fault[1].start, 0.5"];
+    assert_refused(&faults(&[PIT, &format!("tooth = 2\n{line}")]), "fault[1].end", 18, &words);
     // One alone needs no number, in whichever way it is written.
     assert_refused(&faults(&[&CHIP.replace("5.0", "50.0")]), "fault.chip_height_mm", 11, &["less than 6.75"]);
     assert_refused(&format!("fault = [1, 2]\n{}", support::REQUIRED), "fault[0]", 1, &["must be a table"]);
@@ -68,6 +71,12 @@ fn a_tooth_must_exist() {
     assert_refused(&at("gear", "39"), "fault.tooth", 11, &["at most 38, the gear's teeth"]);
     assert_refused(&at("pinion", "18"), "fault.tooth", 11, &["at most 17, the pinion's teeth"]);
     assert_refused(&at("gear", "0"), "fault.tooth", 11, &["at least 1"]);
+    assert_refused(
+        &at("gear", "-1"),
+        "fault.tooth",
+        11,
+        &["fault.tooth = -1: must be at least 1, the first tooth"],
+    );
     assert_refused(&at("gear", "1.0"), "fault.tooth", 11, &["whole number"]);
     assert_refused(&at("wheel", "1"), "fault.wheel", 10, &["\"pinion\", \"gear\""]);
 }
@@ -81,6 +90,8 @@ fn a_missing_tooth_has_no_other_damage_and_a_tooth_breaks_once() {
     {
         assert_refused(&faults(&[one, other]), "fault[1].kind", line, &twice);
     }
+    let chipped = ["(the 2nd fault)", "has fault[0] already (tooth-breakage)"];
+    assert_refused(&faults(&[CHIP, missing]), "fault[1].kind", 14, &chipped);
     // What leaves room for the other may be on one tooth; and anything on another.
     for (one, other) in [(CHIP, PIT.to_string()), (missing, format!("tooth = 2\n{missing}"))] {
         assert!(Scenario::from_toml(&faults(&[one, &other])).is_ok());
