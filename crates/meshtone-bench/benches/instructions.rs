@@ -7,6 +7,7 @@
 mod cases;
 
 use std::hint::black_box;
+use std::num::NonZeroUsize;
 
 use gungraun::prelude::*;
 use meshtone::batch::{Control, KeepChannels, simulate_many};
@@ -57,7 +58,8 @@ fn time_loop((stages, model): (Box<Stages>, ReducedModel)) -> Box<Stages> {
 #[bench::partial_face(prepared(3, Model::Linear))]
 #[bench::through_face(prepared(4, Model::Linear))]
 fn stiffness(stages: Box<Stages>) -> (PairMesh, Box<Stages>) {
-    (stages.pair_mesh(stages.mesh.points_per_pitch()), stages)
+    let points = NonZeroUsize::new(stages.mesh.points_per_pitch()).expect("a pitch has points");
+    (stages.pair_mesh(points).expect("an example is valid"), stages)
 }
 
 #[library_benchmark]

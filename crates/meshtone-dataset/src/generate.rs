@@ -363,7 +363,7 @@ impl Source<'_> {
         };
         if twin {
             let twin = Role::HealthyTwin(record.clone(), scenario.faults.clone());
-            add(twin, Scenario { faults: Vec::new(), ..scenario.clone() });
+            add(twin, scenario.clone().with_faults(Vec::new()));
         }
         add(Role::Record(record), scenario);
     }

@@ -1,5 +1,7 @@
 //! One simulation.
 
+use std::num::NonZeroUsize;
+
 use meshtone::scenario::{MemoryLimit, ScenarioWarning};
 use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
 use meshtone::wheel::WheelName;
@@ -9,7 +11,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::array::{Signal, array, field, samples};
-use crate::error::{simulation_error, value_error};
+use crate::error::{scenario_error, simulation_error, value_error};
 use crate::process::Record;
 use crate::scenario::{BothWheels, Scenario, both_wheels};
 
@@ -136,7 +138,7 @@ impl Simulation {
         py: Python<'py>,
         first_pitch: usize,
         pitches: usize,
-    ) -> Bound<'py, PyArray1<f64>> {
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let points_per_pitch = self.stages.cycle.points_per_pitch;
         let stiffness = match self.stages.mesh.published() {
             Some(mesh) => {
@@ -144,11 +146,12 @@ impl Simulation {
                 cycle.skip(first_pitch * points_per_pitch).take(pitches * points_per_pitch).copied().collect()
             }
             None => {
-                let mesh = self.stages.pair_mesh(points_per_pitch);
+                let points = NonZeroUsize::new(points_per_pitch).unwrap_or(NonZeroUsize::MIN);
+                let mesh = self.stages.pair_mesh(points).map_err(|error| scenario_error(&error))?;
                 mesh.stiffness_n_per_mm(first_pitch..first_pitch + pitches)
             }
         };
-        array(py, stiffness)
+        Ok(array(py, stiffness))
     }
 
     /// (mm) Profile of a wheel's tooth: x, y.

@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let count: u64 = std::env::args().nth(1).map_or(Ok(64), |count| count.parse())?;
     let text = include_str!("../../../examples/healthy.toml");
     let base = Scenario::from_toml(text)?;
-    let scenarios = (0..count).map(|seed| Scenario { seed, ..base.clone() });
+    let scenarios = (0..count).map(|seed| base.clone().with_seed(seed));
 
     let start = Instant::now();
     let progress = |finished: usize| eprint!("\r{finished} of {count}");

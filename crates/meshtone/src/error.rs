@@ -166,7 +166,7 @@ pub enum Error {
         /// (s) When that was noticed, from the start of the simulation.
         time_s: f64,
         /// (-) The damping ratio of each mode, in the order of rising natural frequency.
-        damping_ratios: [f64; 13],
+        damping_ratios: Vec<f64>,
     },
 }
 
@@ -183,11 +183,10 @@ impl Error {
 }
 
 /// One number where all are the same.
-fn in_short(ratios: &[f64; 13]) -> String {
-    if ratios.iter().all(|ratio| *ratio == ratios[0]) {
-        format!("{:?}", ratios[0])
-    } else {
-        format!("{ratios:?}")
+fn in_short(ratios: &[f64]) -> String {
+    match ratios {
+        [first, rest @ ..] if rest.iter().all(|ratio| ratio == first) => format!("{first:?}"),
+        _ => format!("{ratios:?}"),
     }
 }
 

@@ -54,6 +54,7 @@ mod warnings;
 pub mod wheel;
 
 pub use error::Error;
+pub use machine::Excitation;
 pub use simd::InstructionSet;
 pub use simulate::{Simulation, StageTime, Stages, simulate, stages};
 pub use trace::{Trace, TraceField, stage_trace, trace, trace_at};

@@ -1,6 +1,7 @@
 //! The eight stages, in order.
 
 use std::fmt::{self, Debug, Formatter};
+use std::num::NonZeroUsize;
 use std::time::Duration;
 
 use web_time::Instant;
@@ -44,6 +45,7 @@ pub struct Stages {
     /// Stage 5: the mesh, pair by pair.
     pub mesh: Mesh,
     /// Stage 6: the equations of motion.
+    #[doc(hidden)]
     pub system: System,
     /// Time that each stage took.
     pub timings: Vec<StageTime>,
@@ -130,7 +132,8 @@ pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
             let damaged = damaged_teeth(&scenario.faults, &teeth, scenario.seed)?;
             clock.lap("fault");
             let points_per_pitch = points_per_pitch(&scenario, &time, &cycle);
-            let mesh = pair_mesh(&scenario, &teeth, &damaged, points_per_pitch);
+            let sequence = PairSequence::new(gears.pinion_teeth, gears.gear_teeth, &damaged)?;
+            let mesh = pair_mesh(&scenario, &teeth, &damaged, sequence, points_per_pitch);
             if mesh.classes[0].stiffness_n_per_m.contains(&0.0) {
                 return Err(ScenarioError::not_stiff());
             }
@@ -149,13 +152,14 @@ pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
 }
 
 /// Points from one pair to the next: while motor and brake are steady every sample is one, else the coarse points of the cycle.
-fn points_per_pitch(scenario: &Scenario, time: &TimeGrid, cycle: &CycleGrid) -> usize {
+fn points_per_pitch(scenario: &Scenario, time: &TimeGrid, cycle: &CycleGrid) -> NonZeroUsize {
     let motion = scenario.motion(time);
-    if motion.is_steady() && motion.has_constant_torque() {
+    let points = if motion.is_steady() && motion.has_constant_torque() {
         time.samples_per_pinion_revolution / scenario.gears.pinion_teeth as usize
     } else {
         cycle.points_per_pitch
-    }
+    };
+    NonZeroUsize::new(points).unwrap_or(NonZeroUsize::MIN)
 }
 
 /// The tooth pairs of a scenario.
@@ -168,9 +172,9 @@ fn pair_mesh(
     scenario: &Scenario,
     teeth: &Teeth,
     damaged: &[DamagedTooth],
-    points_per_pitch: usize,
+    sequence: PairSequence,
+    points_per_pitch: NonZeroUsize,
 ) -> PairMesh {
-    let sequence = PairSequence::new(scenario.gears.pinion_teeth, scenario.gears.gear_teeth, damaged);
     let pairs = pairs(scenario, teeth, damaged);
     PairMesh::new(&pairs, sequence, teeth.path.contact_ratio, points_per_pitch)
 }
@@ -185,8 +189,13 @@ impl Stages {
     ///
     /// # Arguments
     /// * `points_per_pitch` - how many
-    pub fn pair_mesh(&self, points_per_pitch: usize) -> PairMesh {
-        pair_mesh(&self.scenario, &self.teeth, &self.damaged, points_per_pitch)
+    ///
+    /// # Errors
+    /// Damaged teeth that were put beyond a wheel's last one.
+    pub fn pair_mesh(&self, points_per_pitch: NonZeroUsize) -> Result<PairMesh, ScenarioError> {
+        let [pinion, gear] = [self.teeth.pinion.teeth, self.teeth.gear.teeth];
+        let sequence = PairSequence::new(pinion, gear, &self.damaged)?;
+        Ok(pair_mesh(&self.scenario, &self.teeth, &self.damaged, sequence, points_per_pitch))
     }
 
     /// Whether motor speed and brake torque are constant.
@@ -297,6 +306,7 @@ impl Stages {
     }
 
     /// The equations of motion in the modes that take part in the motion.
+    #[doc(hidden)]
     pub fn reduced_model(&self) -> ReducedModel {
         let solver = &self.scenario.solver;
         let displacement = match (solver.initial_displacement, self.scenario.model) {
@@ -330,6 +340,7 @@ impl Stages {
     ///
     /// # Errors
     /// A motion that grows without bound, as with too little damping the varying mesh stiffness can make it.
+    #[doc(hidden)]
     pub fn integrate(
         &self,
         model: &ReducedModel,
@@ -345,7 +356,7 @@ impl Stages {
     /// The error that a solution without bound is.
     pub(crate) fn divergence(&self, diverged: Diverged) -> Error {
         let time_s = diverged.sample as f64 * self.time.step_s();
-        Error::Diverged { time_s, damping_ratios: self.scenario.rig.damping_ratio.per_mode() }
+        Error::Diverged { time_s, damping_ratios: self.scenario.rig.damping_ratio.per_mode().to_vec() }
     }
 }
 

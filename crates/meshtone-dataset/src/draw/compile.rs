@@ -35,7 +35,7 @@ pub(super) fn sampler(content: &Content) -> ReadResult<Sampler<'_>> {
         content.rules.iter().enumerate().map(|(i, rule)| (rule, format!("vary[{i}]"))).collect();
     let mut classes = Vec::with_capacity(content.classes.len());
     for (c, class) in content.classes.iter().enumerate() {
-        let base = Scenario { faults: class.faults.clone(), ..content.base.clone() };
+        let base = content.base.clone().with_faults(class.faults.clone());
         let known: Vec<_> = base.numbers();
         let own: Vec<Placed> =
             class.rules.iter().enumerate().map(|(i, rule)| (rule, format!("class[{c}].vary[{i}]"))).collect();

@@ -7,9 +7,11 @@ use meshtone::Stages;
 use meshtone::scenario::{Fault, Scenario, WheelName};
 use meshtone::sensor::ChannelKind;
 use meshtone::signal::{
-    AngularSettings, AntiAliasing, ChainSettings, Edge, Interpolation, MeanPart, Record as Analysis,
-    SeparationSettings, ShaftPhase, SignalError, process_channel,
+    AngularSettings, AntiAliasing, ChainSettings, Edge, MeanPart, Record as Analysis, SeparationSettings,
+    ShaftPhase, SignalError, process_channel,
 };
+
+use meshtone::tuning::DifferenceChain;
 
 use super::{Record, RecordFault, Start, noise};
 use crate::draw::DrawnRecord;
@@ -43,7 +45,7 @@ pub(super) fn record(
     }
     if let (Some(analysed), true) = (analysed, keep.is_analysed()) {
         let analysis = view
-            .analyse(&channels[analysed], Interpolation::default(), MeanPart::default())
+            .analyse(&channels[analysed], AngularSettings::default(), MeanPart::default())
             .map_err(signals)?;
         let single = |values: &[f64]| values.iter().map(|&value| value as f32).collect();
         if keep.average {
@@ -235,7 +237,7 @@ impl<'a> View<'a> {
     fn analyse(
         &self,
         signal: &[f32],
-        interpolation: Interpolation,
+        angular: AngularSettings,
         mean: MeanPart,
     ) -> Result<Analysis, SignalError> {
         let teeth = self.scenario().gears.teeth(self.keep.wheel);
@@ -245,7 +247,6 @@ impl<'a> View<'a> {
             mean,
             ..SeparationSettings::new(teeth as usize)
         };
-        let angular = AngularSettings { interpolation, ..AngularSettings::default() };
         let settings = ChainSettings { angular, separation: Some(separation) };
         let double: Vec<f64> = signal.iter().map(|&x| f64::from(x)).collect();
         process_channel(&double, &self.phase(signal.len())?, teeth, &settings)
@@ -257,7 +258,8 @@ impl<'a> View<'a> {
             return Ok(Vec::new());
         }
         // As the signals were taken that the enhancement was tuned with.
-        Ok(self.analyse(signal, Interpolation::Pchip, MeanPart::Removed)?.parts.difference)
+        let angular = DifferenceChain::angular_settings(self.scenario().model);
+        Ok(self.analyse(signal, angular, MeanPart::Removed)?.parts.difference)
     }
 
     /// Cuts the channels to a duration.

@@ -376,6 +376,33 @@ fn enhanced_signals_are_those_of_the_hybrid_stage() {
     assert!(meshtone_dataset::merge::merge(&parts, &parts[0]).unwrap().complete);
 }
 
+/// Enhancement that changes nothing leaves the record's own difference signal, but for where it begins and its scale: it is read as
+/// the model of the scenario has it, here band-limited.
+#[test]
+fn what_is_enhanced_is_read_as_the_model_has_it() {
+    let directory = tempfile::tempdir().unwrap();
+    let tuned = "[enhancement]\nwidth_ratio = 1.0\nfault_to_harmonics_ratio = 1.0\nnoise_level = 0.0\n\
+                 [signal]\nsampling_rate_hz = 8e3\n";
+    std::fs::write(directory.path().join("tuned.toml"), tuned).unwrap();
+    let text = FAST
+        .replace("seed = 3", "seed = 3\ntuned = \"tuned.toml\"")
+        .replace("records = 60", "records = 24")
+        .replace("[[vary]]\nkey = \"noise.snr_db\"\nuniform = [10.0, 30.0]\n", "");
+    let path = directory.path().join("plan.toml");
+    std::fs::write(&path, text).unwrap();
+    let made = made(&Plan::read(&path).unwrap());
+    for row in (0..24).filter(|&row| made.text("label", row) == "missing") {
+        let shape = |name: &str| {
+            let signal = made.signal(name, row);
+            let largest = signal.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+            largest / rms(&signal)
+        };
+        let (enhanced, own) = (shape("enhanced_relative_difference"), shape("difference_g"));
+        // Both are in single precision.
+        assert!((enhanced / own - 1.0).abs() < 1e-4, "{enhanced} and {own}");
+    }
+}
+
 #[test]
 fn what_is_enhanced_is_averaged_over_the_wheel_that_was_tuned_to() {
     let directory = tempfile::tempdir().unwrap();

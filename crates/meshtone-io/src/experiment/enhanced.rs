@@ -53,7 +53,7 @@ pub fn enhance(
     seed: u64,
     draws: u64,
 ) -> Result<EnhancedDraws, HybridError> {
-    let healthy = Scenario { faults: Vec::new(), ..scenario.clone() };
+    let healthy = scenario.clone().with_faults(Vec::new());
     let both = if scenario.faults.is_empty() { vec![healthy] } else { vec![healthy, scenario.clone()] };
     let mut signals = difference_signals(both, &tuned.chain(&scenario.gears))?;
     // A healthy signal does not show where a fault would be.

@@ -114,7 +114,7 @@ fn experiment(
     let mut files = Vec::new();
     for value in listed.array()? {
         let (case, of_case) = value.table()?.read(case)?;
-        let scenario = Scenario { faults: case.faults.clone(), ..base.clone() };
+        let scenario = base.clone().with_faults(case.faults.clone());
         // Before anything is simulated.
         if let Err(error) = stages(&scenario) {
             let key = format!("{}.{}", value.path(), error.key);

@@ -255,7 +255,7 @@ fn a_rough_flank_below_the_start_of_contact() {
 fn published_model_and_given_errors() {
     let (_, mut scenario) = crate::support::gallery().remove(4);
     let errors = meshtone::stages(&scenario).unwrap().profile_errors;
-    scenario.quality = Quality { din_grade: 0, seed: None, profile_errors: errors };
+    scenario.quality = Quality::of_errors(errors.unwrap());
     scenario.model = Model::Published;
     assert_shows(&drawn(&scenario), &["model as published", "given profile errors"]);
 }

@@ -10,5 +10,6 @@ mod keep;
 mod plan;
 mod run;
 
+pub use crate::solver::{Block, Output, Recorder};
 pub use keep::{Keep, KeepChannels, KeepSimulation, Signals};
 pub use run::{Control, simulate_many};

@@ -15,6 +15,7 @@ pub(crate) use load_state::{DIRECTIONS, DirectionMatrix, DirectionVector, ROTATI
 pub use pair::{PairState, Pairs};
 pub(crate) use pair_forcing::{ALL_DIRECTIONS, PairDeviations, PairForcing};
 pub use pair_mesh::{PairMesh, PairTable};
+#[doc(hidden)]
 pub use published::PublishedMesh;
 pub use sequence::{PairKind, PairSequence};
 
@@ -26,6 +27,7 @@ use nalgebra::SMatrix;
 #[non_exhaustive]
 pub enum Mesh {
     /// As the published code has it.
+    #[doc(hidden)]
     Published(Box<PublishedMesh>),
     /// A sequence of tooth pairs.
     Pairs(Box<PairMesh>),
@@ -52,6 +54,7 @@ impl Mesh {
     }
 
     /// The published mesh; none under the other models.
+    #[doc(hidden)]
     pub fn published(&self) -> Option<&PublishedMesh> {
         match self {
             Self::Published(mesh) => Some(mesh),

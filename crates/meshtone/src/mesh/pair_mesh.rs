@@ -1,6 +1,7 @@
 //! All pairs of the mesh, tabulated by class.
 
 use std::collections::HashMap;
+use std::num::NonZeroUsize;
 use std::ops::Range;
 
 use super::load_state::{DirectionMatrix, DirectionVector, LoadState};
@@ -102,7 +103,13 @@ impl PairMesh {
     /// * `sequence` - which of them meet
     /// * `contact_ratio` - (-) length of their path in base pitches
     /// * `points_per_pitch` - number of points from one pair to the next
-    pub fn new(pairs: &Pairs, sequence: PairSequence, contact_ratio: f64, points_per_pitch: usize) -> Self {
+    pub fn new(
+        pairs: &Pairs,
+        sequence: PairSequence,
+        contact_ratio: f64,
+        points_per_pitch: NonZeroUsize,
+    ) -> Self {
+        let points_per_pitch = points_per_pitch.get();
         let path = SampledPath { contact_ratio, points_per_pitch: points_per_pitch as f64 };
         let classes: Vec<PairTable> =
             sequence.classes().iter().map(|&kind| PairTable::new(pairs, kind, &path)).collect();

@@ -1,6 +1,7 @@
 //! Which teeth meet, and which pairs are alike.
 
 use crate::damage::DamagedTooth;
+use crate::error::ScenarioError;
 use crate::operation::{greatest_common_divisor, least_common_multiple};
 use crate::wheel::WheelName;
 
@@ -38,7 +39,20 @@ impl PairSequence {
     /// # Arguments
     /// * `pinion_teeth`, `gear_teeth` - tooth counts
     /// * `damaged` - the damaged teeth, each named once
-    pub fn new(pinion_teeth: u32, gear_teeth: u32, damaged: &[DamagedTooth]) -> Self {
+    ///
+    /// # Errors
+    /// A wheel without teeth, a damaged tooth beyond its wheel's last one.
+    ///
+    /// ```
+    /// use meshtone::mesh::PairSequence;
+    ///
+    /// let sequence = PairSequence::new(17, 38, &[])?;
+    /// assert_eq!((sequence.teeth(40), sequence.cycle()), ((6, 2), 17 * 38));
+    /// assert_eq!(PairSequence::new(0, 38, &[]).unwrap_err().key, "gears.pinion_teeth");
+    /// # Ok::<(), meshtone::scenario::ScenarioError>(())
+    /// ```
+    pub fn new(pinion_teeth: u32, gear_teeth: u32, damaged: &[DamagedTooth]) -> Result<Self, ScenarioError> {
+        check_teeth([pinion_teeth, gear_teeth], damaged)?;
         let of_wheel = |wheel: WheelName, teeth: u32| {
             let mut damages = vec![0; teeth as usize];
             for (index, tooth) in damaged.iter().enumerate().filter(|(_, tooth)| tooth.wheel == wheel) {
@@ -75,7 +89,7 @@ impl PairSequence {
                 classes.push(PairKind { pinion, gear, pairs_per_cycle });
             }
         }
-        Self {
+        Ok(Self {
             pinion_teeth: pinion_teeth as usize,
             gear_teeth: gear_teeth as usize,
             pinion_damage,
@@ -83,7 +97,7 @@ impl PairSequence {
             class_of_damages,
             gear_kinds: kinds,
             classes,
-        }
+        })
     }
 
     /// The classes; the first is that of two sound teeth.
@@ -120,6 +134,26 @@ impl PairSequence {
     }
 }
 
+/// Both wheels have teeth, and among them the damaged ones.
+fn check_teeth([pinion_teeth, gear_teeth]: [u32; 2], damaged: &[DamagedTooth]) -> Result<(), ScenarioError> {
+    for (key, teeth) in [("gears.pinion_teeth", pinion_teeth), ("gears.gear_teeth", gear_teeth)] {
+        if teeth == 0 {
+            return Err(ScenarioError::new(key, teeth, "must be at least 1"));
+        }
+    }
+    let beyond = |tooth: &&DamagedTooth| match tooth.wheel {
+        WheelName::Pinion => tooth.tooth >= pinion_teeth as usize,
+        WheelName::Gear => tooth.tooth >= gear_teeth as usize,
+    };
+    match damaged.iter().find(beyond) {
+        None => Ok(()),
+        Some(tooth) => {
+            let problem = format!("is beyond the last tooth of the {}", tooth.wheel.name());
+            Err(ScenarioError::new("fault.tooth", tooth.tooth + 1, problem))
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -137,13 +171,15 @@ mod tests {
             let faults =
                 [missing(WheelName::Pinion, 1), missing(WheelName::Gear, 1), missing(WheelName::Gear, 6)];
             let damaged = damaged_teeth(&faults, &healthy, 1).unwrap();
-            let sequence = PairSequence::new(z_p, z_g, &damaged);
+            let sequence = PairSequence::new(z_p, z_g, &damaged).unwrap();
             let mut counts = vec![0; sequence.classes().len()];
             for pair in 0..sequence.cycle() {
                 counts[sequence.class(pair as i64)] += 1;
             }
             let told: Vec<usize> = sequence.classes().iter().map(|kind| kind.pairs_per_cycle).collect();
             assert_eq!(counts, told, "{z_p}/{z_g}");
+            let error = PairSequence::new(z_p, 5, &damaged).unwrap_err();
+            assert_eq!(error.to_string(), "fault.tooth = 6: is beyond the last tooth of the gear");
         }
     }
 }

@@ -8,6 +8,7 @@ use crate::keys::{
 
 /// How the pair is driven and loaded.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Operation {
     /// (rev/s) Nominal speed of the motor, which turns the pinion.
     pub pinion_speed_hz: f64,

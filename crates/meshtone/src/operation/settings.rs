@@ -4,6 +4,7 @@ use crate::keys::{Keys, Range, Row, field, row};
 
 /// How the equations of motion are solved.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Solver {
     /// (S/s) Nominal sampling rate; the actual one is the next that divides both shafts'
     /// revolutions. Default 1e5.

@@ -37,7 +37,8 @@ impl Scenario {
     /// # Arguments
     /// * `key` - dotted, as in the file; of several faults, `fault[1].…` is the second
     ///
-    /// None where there is no such key in this scenario, or no single number at it.
+    /// None where there is no such key in this scenario, or no single number at it; where a seed is more than 2⁶³ − 1, which no
+    /// number of a TOML table can be, none at any key.
     ///
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};
@@ -47,7 +48,7 @@ impl Scenario {
     /// assert_eq!(scenario.number("fault.chip_width_mm"), None); // it is healthy
     /// ```
     pub fn number(&self, key: &str) -> Option<f64> {
-        match at(&self.table()?, key)? {
+        match at(&self.table().ok()?, key)? {
             Value::Float(number) => Some(*number),
             Value::Integer(number) => Some(*number as f64),
             _ => None,
@@ -111,7 +112,7 @@ impl Scenario {
     /// * `numbers` - dotted key, as in the file, and value in the key's unit
     ///
     /// # Errors
-    /// A value that is not allowed.
+    /// A value that is not allowed; a seed of more than 2⁶³ − 1.
     pub fn with_known_numbers(&self, numbers: &[(&str, f64)]) -> Result<Self, ScenarioError> {
         self.with_numbers_that(numbers, |_, _| Ok(()))
     }
@@ -121,7 +122,7 @@ impl Scenario {
         numbers: &[(&str, f64)],
         missing: impl Fn(&str, f64) -> Result<(), ScenarioError>,
     ) -> Result<Self, ScenarioError> {
-        let mut table = self.table().unwrap_or_default();
+        let mut table = self.table()?;
         let mut known = false;
         for &(key, value) in numbers {
             match at_mut(&mut table, key) {
@@ -154,17 +155,29 @@ impl Scenario {
     /// ```
     pub fn numbers(&self) -> Vec<ScenarioNumber> {
         let mut numbers = Vec::new();
-        if let Some(table) = self.table() {
+        if let Ok(table) = self.table() {
             collect(&table, "", &mut numbers);
         }
         numbers
     }
 
     /// The scenario file as a table, without the profile errors given, which are large.
-    fn table(&self) -> Option<Table> {
+    ///
+    /// # Errors
+    /// A seed that is too large for a number of the table.
+    fn table(&self) -> Result<Table, ScenarioError> {
+        const MOST: u64 = i64::MAX as u64;
+        let seeds = [("seed", Some(self.seed)), ("quality.seed", self.quality.seed)];
+        if let Some((key, Some(seed))) =
+            seeds.into_iter().find(|(_, seed)| seed.is_some_and(|seed| seed > MOST))
+        {
+            let problem =
+                format!("must be at most {MOST}, where a scenario's numbers are read or set by their keys");
+            return Err(ScenarioError::new(key, seed, problem).with_help("take a smaller seed"));
+        }
         let mut small = self.clone();
         small.quality.profile_errors = None;
-        small.to_toml().parse().ok()
+        small.to_toml().parse().map_err(|error: toml::de::Error| ScenarioError::new("", "", error.message()))
     }
 }
 

@@ -43,7 +43,11 @@ use crate::operation::{Motion, TimeGrid};
 /// scenario.quality.din_grade = 7;
 /// assert_eq!(scenario.gears.pressure_angle_deg, 20.0);
 /// ```
+///
+/// Later versions may know more of it: start from [`Scenario::new`] and set fields, or use [`Scenario::with_faults`],
+/// [`Scenario::with_seed`] and [`Scenario::with_numbers`].
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Scenario {
     /// Which model of the mesh.
     pub model: Model,
@@ -98,6 +102,30 @@ impl Scenario {
             rig: Rig::default(),
             solver: Solver::default(),
         }
+    }
+
+    /// The same scenario with other damage.
+    ///
+    /// # Arguments
+    /// * `faults` - what is broken; nothing in a healthy pair
+    ///
+    /// ```
+    /// use meshtone::scenario::{Fault, GearPair, MissingTooth, Scenario};
+    ///
+    /// let healthy = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+    /// let missing = healthy.clone().with_faults(vec![Fault::on_first_gear_tooth(MissingTooth)]);
+    /// assert_eq!(missing.with_faults(Vec::new()), healthy);
+    /// ```
+    pub fn with_faults(self, faults: Vec<Fault>) -> Self {
+        Self { faults, ..self }
+    }
+
+    /// The same scenario with another seed.
+    ///
+    /// # Arguments
+    /// * `seed` - of every random draw
+    pub fn with_seed(self, seed: u64) -> Self {
+        Self { seed, ..self }
     }
 
     /// Division of time: sampling, length, what is discarded.

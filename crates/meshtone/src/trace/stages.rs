@@ -1,9 +1,12 @@
 //! Fields of the stages before the time loop.
 
+use std::num::NonZeroUsize;
+
 use super::Trace;
 use crate::damage::DamageDescription;
 use crate::damage::published::{Displacement, FaultGeometry};
-use crate::mesh::{Mesh, PairKind};
+use crate::mesh::{Mesh, PairKind, PairMesh};
+use crate::operation::CycleGrid;
 use crate::simulate::Stages;
 use crate::wheel::{ToothProfile, Wheel};
 
@@ -115,7 +118,7 @@ fn stiffness(trace: &mut Trace, stages: &Stages) {
         Mesh::Pairs(_) => {
             let pairs = stages.pairs();
             let pitches = f64::from(stages.teeth.pinion.teeth);
-            let mesh = stages.pair_mesh(grid.points_per_pitch);
+            let Some(mesh) = mesh_on(stages, grid) else { return };
             let is_first =
                 |kind: &&PairKind| matches!((kind.pinion, kind.gear), (Some(0), None) | (None, Some(0)));
             let classes = mesh.sequence.classes();
@@ -131,6 +134,11 @@ fn stiffness(trace: &mut Trace, stages: &Stages) {
     trace.scalar("mesh_stiffness_len", mesh.len() as f64);
 }
 
+/// The pairs at the points of a grid; none for stages that somebody has changed so that they do not fit together.
+fn mesh_on(stages: &Stages, grid: &CycleGrid) -> Option<PairMesh> {
+    stages.pair_mesh(NonZeroUsize::new(grid.points_per_pitch)?).ok()
+}
+
 fn matrices(trace: &mut Trace, stages: &Stages) {
     let system = &stages.system;
     let square = |trace: &mut Trace, name: &str, matrix: &nalgebra::SMatrix<f64, 13, 13>| {
@@ -142,7 +150,7 @@ fn matrices(trace: &mut Trace, stages: &Stages) {
     // On the coarse grid of the published code, under every model.
     let coarse = match &stages.mesh {
         Mesh::Published(_) => None,
-        Mesh::Pairs(_) => Some(stages.pair_mesh(stages.cycle.points_per_pitch)),
+        Mesh::Pairs(_) => mesh_on(stages, &stages.cycle),
     };
     for point in [0, 499] {
         let matrix = match &coarse {

@@ -85,7 +85,7 @@ impl DifferenceChain {
 ///
 /// let mut healthy = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
 /// healthy.quality.din_grade = 7;
-/// let broken = Scenario { faults: vec![Fault::on_first_gear_tooth(MissingTooth)], ..healthy.clone() };
+/// let broken = healthy.clone().with_faults(vec![Fault::on_first_gear_tooth(MissingTooth)]);
 /// let signals = difference_signals(vec![healthy, broken], &DifferenceChain::new(25e3))?;
 /// assert_eq!((signals.len(), signals[0].len()), (2, 2048));
 /// # Ok::<(), meshtone::tuning::HybridError>(())

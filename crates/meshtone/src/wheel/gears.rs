@@ -11,6 +11,7 @@ use crate::keys::{
 
 /// Geometry and material of the two wheels.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Gears {
     /// (mm) Module of both wheels.
     pub module_mm: f64,

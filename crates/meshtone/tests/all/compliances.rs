@@ -2,6 +2,8 @@
 //! quadrature, and what a tooth's compliances do as the profile is refined.
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
+use std::num::NonZeroUsize;
+
 use std::f64::consts::PI;
 
 use crate::physics::*;
@@ -389,7 +391,8 @@ fn a_tooth_without_one_end_is_a_narrower_one() {
     let mut gears = plain_gears(3.0, 17, 38, WIDTH);
     gears.points_per_tooth = 2_000;
     let missing_mm = 4.5;
-    let narrow = Gears { face_width_mm: WIDTH - missing_mm, ..gears.clone() };
+    let mut narrow = gears.clone();
+    narrow.face_width_mm = WIDTH - missing_mm;
     let (teeth, narrow_teeth) = (linear_teeth(&gears, 20.0), linear_teeth(&narrow, 20.0));
     for name in WheelName::BOTH {
         let flank = teeth.flank(name);
@@ -700,7 +703,8 @@ fn mesh_sums_every_pair_in_contact() {
     assert!(ratio > 2.2, "{ratio}");
     let pairs = sound_pairs(&gears, &conjugate);
     let pitch = 300;
-    let mesh = PairMesh::new(&pairs, PairSequence::new(80, 90, &[]), ratio, pitch);
+    let sequence = PairSequence::new(80, 90, &[]).unwrap();
+    let mesh = PairMesh::new(&pairs, sequence, ratio, NonZeroUsize::new(pitch).unwrap());
     // A point stands for the interval around it: where the path ends within it, the pair counts for the part on the path.
     let half = 0.5 / pitch as f64;
     let counts = |at: f64| ((at + half).min(ratio) - (at - half).max(0.0)) / (2.0 * half);

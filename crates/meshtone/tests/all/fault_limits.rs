@@ -1,6 +1,8 @@
 //! Faults of vanishing size are no faults, and how fast they vanish.
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
+use std::num::NonZeroUsize;
+
 use crate::physics::*;
 use meshtone::scenario::*;
 use meshtone::simulate;
@@ -30,7 +32,7 @@ fn sampled_scenario(damage: Option<Damage>, sampling_rate_hz: f64) -> Scenario {
 fn effect(healthy: &[f64], damage: Damage) -> [f64; 2] {
     let simulation = simulate(&scenario(Some(damage))).unwrap();
     // On a grid of its own, finer than the time loop's.
-    let mesh = simulation.stages.pair_mesh(5_000);
+    let mesh = simulation.stages.pair_mesh(NonZeroUsize::new(5_000).unwrap()).unwrap();
     let [sound, damaged] = sound_and_damaged(&mesh);
     let stiffness = damaged.stiffness_n_per_m.iter().zip(&sound.stiffness_n_per_m);
     let change: Vec<f64> = stiffness.map(|(f, h)| deviation(*f, *h).abs()).collect();

@@ -42,7 +42,7 @@ fn chain() -> DifferenceChain {
 
 /// What the scenario itself would show with an enhancement: its expected indicators, with a little scatter.
 fn measured(hidden: &Enhancement) -> Measurements {
-    let scenarios = cases().into_iter().map(|case| Scenario { faults: case.faults, ..base() }).collect();
+    let scenarios = cases().into_iter().map(|case| base().with_faults(case.faults)).collect();
     let simulated = SimulatedCases::new(difference_signals(scenarios, &chain()).unwrap()).unwrap();
     let indicators = vec![TuningIndicator::Rms, TuningIndicator::Kurtosis];
     let records = simulated.predict(&indicators, hidden).unwrap().into_iter().map(|case| {

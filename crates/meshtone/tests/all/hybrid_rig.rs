@@ -52,7 +52,7 @@ fn transmitted(signal: &[f64], echoes: &[(usize, f64)]) -> Vec<f64> {
 fn measured(echoes: &[(usize, f64)]) -> Measurements {
     let mut rig = base();
     rig.rig.damping_ratio = DampingRatio::Uniform(HIDDEN_DAMPING);
-    let scenarios = cases().into_iter().map(|case| Scenario { faults: case.faults, ..rig.clone() }).collect();
+    let scenarios = cases().into_iter().map(|case| rig.clone().with_faults(case.faults)).collect();
     let signals = difference_signals(scenarios, &DifferenceChain::new(25e3)).unwrap();
     let simulated = SimulatedCases::new(signals.clone()).unwrap();
     let records: Vec<Vec<Vec<f64>>> = signals
@@ -121,7 +121,7 @@ fn experiment_on_the_pinion(tooth: u32, wheel: WheelName) -> Experiment {
     base.gears.points_per_tooth = 1000;
     let chain = DifferenceChain { wheel, ..DifferenceChain::new(25e3) };
     let scenarios = on_the_pinion(tooth).into_iter();
-    let scenarios = scenarios.map(|case| Scenario { faults: case.faults, ..base.clone() }).collect();
+    let scenarios = scenarios.map(|case| base.clone().with_faults(case.faults)).collect();
     let signals = difference_signals(scenarios, &chain).unwrap();
     let centre_rev = SimulatedCases::new(signals.clone()).unwrap().centre_rev();
     let records: Vec<Vec<Vec<f64>>> = signals

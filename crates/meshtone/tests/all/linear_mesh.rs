@@ -1,6 +1,8 @@
 //! The mesh under `linear`: conjugate flanks, loads at the flank's own angle, one angle for stiffness and deviations.
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
+use std::num::NonZeroUsize;
+
 use crate::physics::*;
 use meshtone::scenario::{GearPair, Model, Scenario};
 use meshtone::{simulate, stages};
@@ -23,7 +25,9 @@ fn pair(module_mm: f64, pinion_teeth: u32, gear_teeth: u32, face_width_mm: f64) 
 // Least, mean and largest stiffness of an implementation of its own (numpy), given to 0.1 kN/mm.
 #[test]
 fn mesh_stiffness_of_a_trial() {
-    let mesh = stages(&pair(3.0, 17, 38, 15.0)).unwrap().pair_mesh(4_000).healthy_stiffness_n_per_mm();
+    let points = NonZeroUsize::new(4_000).unwrap();
+    let mesh = stages(&pair(3.0, 17, 38, 15.0)).unwrap().pair_mesh(points).unwrap();
+    let mesh = mesh.healthy_stiffness_n_per_mm();
     let least = mesh.iter().copied().fold(f64::INFINITY, f64::min);
     assert_close(
         "mesh stiffness",
@@ -39,7 +43,8 @@ fn mesh_stiffness_does_not_depend_on_the_points() {
     let stages = stages(&pair(3.0, 17, 38, 15.0)).unwrap();
     let own = stages.mesh.healthy_stiffness_n_per_mm();
     assert_eq!(stages.mesh.points_per_pitch() * 17, stages.time.samples_per_pinion_revolution);
-    let fine = stages.pair_mesh(3 * own.len()).healthy_stiffness_n_per_mm();
+    let points = NonZeroUsize::new(3 * own.len()).unwrap();
+    let fine = stages.pair_mesh(points).unwrap().healthy_stiffness_n_per_mm();
     let leaves = (stages.teeth.path.contact_ratio * own.len() as f64) as usize % own.len();
     let changes = [0, leaves, leaves + 1];
     let alike = own.iter().zip(fine.iter().step_by(3)).enumerate().filter(|(i, _)| !changes.contains(i));

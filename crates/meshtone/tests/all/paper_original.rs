@@ -91,10 +91,10 @@ fn the_paper_s_original_indicators_where_the_fault_dominates() {
         let cases = dominating(name);
         // All draws in one call, so that simulations of one kind run side by side.
         let scenarios = (1..=DRAWS).flat_map(|seed| {
-            let base = Scenario { seed, ..base.clone() };
+            let base = base.clone().with_seed(seed);
             let faulty = cases.iter().map(|(_, fault)| vec![fault.clone()]);
             let faults = std::iter::once(Vec::new()).chain(faulty).collect::<Vec<_>>();
-            faults.into_iter().map(move |faults| Scenario { faults, ..base.clone() })
+            faults.into_iter().map(move |faults| base.clone().with_faults(faults))
         });
         let signals = difference_signals(scenarios.collect(), &DifferenceChain::new(rate_hz)).unwrap();
         let mut sums = vec![[0.0; 2]; cases.len()];

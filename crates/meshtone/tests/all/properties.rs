@@ -165,14 +165,10 @@ fn off_proportion(once: &[f64], more: &[f64], rest: &[f64], factor: f64) -> f64 
 /// The scenario with given profile errors, `factor` times as large.
 fn with_errors(scenario: &Scenario, errors: &ProfileErrors, factor: f64) -> Scenario {
     let mut scenario = scenario.clone();
-    scenario.quality = Quality {
-        din_grade: 0,
-        seed: None,
-        profile_errors: Some(ProfileErrors {
-            pinion_profile_errors_mm: errors.pinion_profile_errors_mm.map(|error| error * factor),
-            gear_profile_errors_mm: errors.gear_profile_errors_mm.map(|error| error * factor),
-        }),
-    };
+    scenario.quality = Quality::of_errors(ProfileErrors {
+        pinion_profile_errors_mm: errors.pinion_profile_errors_mm.map(|error| error * factor),
+        gear_profile_errors_mm: errors.gear_profile_errors_mm.map(|error| error * factor),
+    });
     scenario
 }
 
@@ -347,14 +343,10 @@ proptest! {
         let drawn = fitting(&scenario)?.profile_errors.unwrap();
         let force = |pinion: f64, gear: f64| -> Vec<f64> {
             let mut scenario = scenario.clone();
-            scenario.quality = Quality {
-                din_grade: 0,
-                seed: None,
-                profile_errors: Some(ProfileErrors {
-                    pinion_profile_errors_mm: drawn.pinion_profile_errors_mm.map(|error| error * pinion),
-                    gear_profile_errors_mm: drawn.gear_profile_errors_mm.map(|error| error * gear),
-                }),
-            };
+            scenario.quality = Quality::of_errors(ProfileErrors {
+                pinion_profile_errors_mm: drawn.pinion_profile_errors_mm.map(|error| error * pinion),
+                gear_profile_errors_mm: drawn.gear_profile_errors_mm.map(|error| error * gear),
+            });
             let stages = stages(&scenario).unwrap();
             stages.excitation().take(4_000).map(|sample| sample.error_force_n()).collect()
         };
@@ -407,7 +399,7 @@ proptest! {
 
         let drawn = first.stages.profile_errors.clone();
         let mut given = scenario.clone();
-        given.quality = Quality { din_grade: 0, seed: None, profile_errors: drawn.clone() };
+        given.quality = drawn.clone().map_or_else(Quality::default, Quality::of_errors);
         prop_assert_eq!(&first.channels, &simulate(&given).unwrap().channels);
 
         let mut reseeded = scenario.clone();

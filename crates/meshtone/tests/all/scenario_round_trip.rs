@@ -27,15 +27,14 @@ fn gears() -> impl Strategy<Value = Gears> {
             depth_mm: relief.depth_mm * module_mm,
             ..relief
         };
-        Gears {
-            pressure_angle_deg,
-            material: Material::ALL[material],
-            tip_relief: relief.map(scaled),
-            crowning_mm,
-            points_per_tooth,
-            foundation,
-            ..Gears::new(module_mm, pinion_teeth, gear_teeth, face_width_mm)
-        }
+        let mut gears = Gears::new(module_mm, pinion_teeth, gear_teeth, face_width_mm);
+        gears.pressure_angle_deg = pressure_angle_deg;
+        gears.material = Material::ALL[material];
+        gears.tip_relief = relief.map(scaled);
+        gears.crowning_mm = crowning_mm;
+        gears.points_per_tooth = points_per_tooth;
+        gears.foundation = foundation;
+        gears
     })
 }
 
@@ -65,13 +64,12 @@ fn operation() -> impl Strategy<Value = Operation> {
             speed_profile_hz,
             torque_profile_nm,
         )| {
-            Operation {
-                speed_fluctuation_hz,
-                torque_fluctuation_nm,
-                speed_profile_hz,
-                torque_profile_nm,
-                ..Operation::new(speed, torque)
-            }
+            let mut operation = Operation::new(speed, torque);
+            operation.speed_fluctuation_hz = speed_fluctuation_hz;
+            operation.torque_fluctuation_nm = torque_fluctuation_nm;
+            operation.speed_profile_hz = speed_profile_hz;
+            operation.torque_profile_nm = torque_profile_nm;
+            operation
         },
     )
 }
@@ -90,16 +88,12 @@ fn quality(pinion_teeth: u32, gear_teeth: u32) -> impl Strategy<Value = Quality>
         }
     };
     prop_oneof![
-        (0u8..=12, prop::option::of(any::<u64>())).prop_map(|(din_grade, seed)| Quality {
-            din_grade,
-            seed,
-            profile_errors: None
+        (0u8..=12, prop::option::of(any::<u64>())).prop_map(|(din_grade, seed)| {
+            let mut quality = Quality::of_grade(din_grade);
+            quality.seed = seed;
+            quality
         }),
-        (-0.01..0.01, -1e-3..1e-3).prop_map(move |(first, step)| Quality {
-            din_grade: 0,
-            seed: None,
-            profile_errors: Some(drawn(first, step))
-        }),
+        (-0.01..0.01, -1e-3..1e-3).prop_map(move |(first, step)| Quality::of_errors(drawn(first, step))),
     ]
 }
 
@@ -189,15 +183,27 @@ fn solver() -> impl Strategy<Value = Solver> {
     let state = || option::of(uniform13(-1e3..1e3));
     (1.0..2e5, 0.0..1.0, 0.0..1.0, state(), state()).prop_map(
         |(sampling_rate_hz, settle_fraction, settle_tolerance, initial_displacement, initial_velocity)| {
-            Solver {
-                sampling_rate_hz,
-                settle_fraction,
-                settle_tolerance,
-                initial_displacement,
-                initial_velocity,
-            }
+            let mut solver = Solver::default();
+            solver.sampling_rate_hz = sampling_rate_hz;
+            solver.settle_fraction = settle_fraction;
+            solver.settle_tolerance = settle_tolerance;
+            solver.initial_displacement = initial_displacement;
+            solver.initial_velocity = initial_velocity;
+            solver
         },
     )
+}
+
+/// Any scenario, whose every part is then another.
+fn base() -> Scenario {
+    Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 17,
+        gear_teeth: 38,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    })
 }
 
 fn scenario() -> impl Strategy<Value = Scenario> {
@@ -207,15 +213,15 @@ fn scenario() -> impl Strategy<Value = Scenario> {
         let faults = faults(&gears);
         let parts = (Just(gears), operation(), quality, faults, rig(), solver());
         (model.clone(), any::<u64>(), parts).prop_map(
-            |(model, seed, (gears, operation, quality, faults, rig, solver))| Scenario {
-                model,
-                seed,
-                gears,
-                operation,
-                quality,
-                faults,
-                rig,
-                solver,
+            |(model, seed, (gears, operation, quality, faults, rig, solver))| {
+                let mut scenario = base().with_faults(faults).with_seed(seed);
+                scenario.model = model;
+                scenario.gears = gears;
+                scenario.operation = operation;
+                scenario.quality = quality;
+                scenario.rig = rig;
+                scenario.solver = solver;
+                scenario
             },
         )
     })

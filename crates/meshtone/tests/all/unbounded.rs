@@ -23,7 +23,7 @@ fn contact_that_is_lost() {
     scenario.rig.damping_ratio = DampingRatio::Uniform(0.0005);
     let error = simulate(&scenario).map(drop).unwrap_err();
     assert!(
-        matches!(error, Error::Diverged { damping_ratios, .. } if damping_ratios == [0.0005; 13]),
+        matches!(&error, Error::Diverged { damping_ratios, .. } if *damping_ratios == [0.0005; 13]),
         "{error:?}"
     );
     let text = error.to_string();

@@ -12,6 +12,7 @@ pub const ERROR_POINTS: usize = 100;
 
 /// How well the teeth are made.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Quality {
     /// Grade of DIN 3962, 1 (best) to 12; 0 for ideal teeth. Default 0.
     pub din_grade: u8,
@@ -20,6 +21,24 @@ pub struct Quality {
     /// The errors themselves, instead of a draw by `din_grade`: several simulations that are
     /// given the same errors share one pair of wheels.
     pub profile_errors: Option<ProfileErrors>,
+}
+
+impl Quality {
+    /// Teeth of a grade of DIN 3962, drawn by the scenario's seed.
+    ///
+    /// # Arguments
+    /// * `din_grade` - 1 (best) to 12; 0 for ideal teeth
+    pub fn of_grade(din_grade: u8) -> Self {
+        Self { din_grade, ..Self::default() }
+    }
+
+    /// Teeth with given errors, such as measured ones.
+    ///
+    /// # Arguments
+    /// * `errors` - of every tooth
+    pub fn of_errors(errors: ProfileErrors) -> Self {
+        Self { profile_errors: Some(errors), ..Self::default() }
+    }
 }
 
 const ERROR_KEYS: [&str; 2] = ["pinion_profile_errors_mm", "gear_profile_errors_mm"];
