@@ -234,6 +234,10 @@ brake_torque_nm=10.0, din_grade=7)
         return f"Scenario({text})"
 
 
+# The generated base class is no name that a user knows: what is missing is missing in a call of Scenario.
+ScenarioKeys.__init__.__qualname__ = "Scenario"
+
+
 def _plain(value: Any) -> Any:
     """NumPy's numbers and arrays as Python's own."""
     if isinstance(value, np.ndarray):

@@ -174,6 +174,13 @@ def test_a_file_name_is_not_a_files_text() -> None:
         Scenario.from_toml("healthy.toml")
 
 
+def test_what_is_missing_is_missing_in_a_scenario() -> None:
+    with pytest.raises(TypeError, match=r"^Scenario\(\) missing 6 required keyword-only arguments: 'module_mm', 'pinion_teeth'"):
+        Scenario()  # type: ignore[call-arg]
+    with pytest.raises(ValueError, match='the corrected model is called "linear" now'):
+        examples.healthy().copy(model="corrected")
+
+
 def test_warnings() -> None:
     assert examples.healthy().warnings == []
     ignored = examples.healthy().copy(model="published", eccentricity_mm=0.1)

@@ -25,7 +25,7 @@ use clap::Parser;
 
 use crate::commands::Command;
 
-/// Simulates the vibration of spur gears, healthy or with a damaged tooth, and takes recordings to indicators.
+/// Simulates the vibration of spur gears, healthy or with damaged teeth, and takes recordings to indicators.
 #[derive(Debug, Parser)]
 #[command(name = "meshtone", version, after_help = EXAMPLES, arg_required_else_help = true)]
 struct Arguments {

@@ -77,6 +77,9 @@ fn a_simulation_and_the_same_signal_from_other_files() {
         + "[quality]\ndin_grade = 7\n[fault]\nkind = \"missing-tooth\"\n";
     workplace.write("gone.toml", faulty);
     workplace.succeeds(&["simulate", "gone.toml", "-o", "gone", "--no-panel", "-q"]);
+    // A channel's name of earlier versions is answered with those that there are.
+    let words = ["has no column `vertical`", "did you mean `vertical_g`?", "pinion_shaft_speed_hz"];
+    workplace.fails(2, &["indicators", "gone", "-c", "vertical"], &words);
     let assert = workplace.succeeds(&["indicators", "gone"]);
     for words in ["gone -> gone_indicators", "vertical_g, g", "gear, 40 teeth", "kurtosis", "FM4"] {
         assert!(stdout(&assert).contains(words), "{words}");

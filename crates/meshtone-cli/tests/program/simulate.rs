@@ -191,6 +191,10 @@ fn the_option_that_was_called_convention() {
         workplace.fails(2, &["simulate", "fast.toml", "--convention", value], &words);
     }
     workplace.fails(2, &["simulate", "fast.toml", "--convention"], &["is called --model now"]);
+    // So is what the option's value was called; what never was a name is told those that are.
+    let words = ["\"corrected\" is called \"linear\" now", "write --model linear"];
+    workplace.fails(2, &["simulate", "fast.toml", "--model", "corrected"], &words);
+    workplace.fails(2, &["simulate", "fast.toml", "--model", "both"], &["linear, published"]);
 }
 
 #[test]
