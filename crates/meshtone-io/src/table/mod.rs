@@ -6,9 +6,11 @@
 //! Meshtone.
 
 mod arrow_schema;
+mod file;
 mod flat_buffer;
 mod found_type;
 mod read;
+mod split_signal;
 mod write;
 
 pub use found_type::{FoundType, NumberType, TimeUnit};

@@ -5,13 +5,14 @@ use std::io::{self, Write};
 use std::sync::Arc;
 
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
+use parquet::column::writer::{ColumnWriter, get_typed_column_writer_mut};
 use parquet::data_type::{self, ByteArray, DataType};
 use parquet::errors::{ParquetError, Result};
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
-use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::{Type, TypePtr};
 
+use super::file::TableFile;
 use super::{arrow_schema, into_io};
 
 /// Name of the table itself, as Arrow's writers give it.
@@ -132,7 +133,7 @@ impl TableColumn {
 
 /// A table that is written, one group of rows after the other.
 pub struct TableWriter<W: Write + Send> {
-    file: SerializedFileWriter<W>,
+    file: TableFile<W>,
     columns: Vec<TableColumn>,
 }
 
@@ -157,9 +158,9 @@ impl<W: Write + Send> TableWriter<W> {
         }
         let fields = columns.iter().map(TableColumn::schema).collect::<Result<_>>()?;
         let schema = Arc::new(Type::group_type_builder(TABLE).with_fields(fields).build()?);
-        let mut file = SerializedFileWriter::new(to, schema, Arc::new(properties))?;
+        let mut file = TableFile::new(to, schema, properties)?;
         let arrow = arrow_schema::encode(&columns);
-        file.append_key_value_metadata(KeyValue::new(arrow_schema::KEY.to_owned(), arrow));
+        file.add_metadata(KeyValue::new(arrow_schema::KEY.to_owned(), arrow));
         Ok(Self { file, columns })
     }
 
@@ -182,15 +183,17 @@ impl<W: Write + Send> TableWriter<W> {
                 self.columns.len()
             )));
         }
-        let mut group = self.file.next_row_group()?;
+        let start = self.file.bytes_written();
         for (column, cells) in self.columns.iter().zip(cells) {
-            let mut writer = group
-                .next_column()?
-                .ok_or_else(|| ParquetError::General(format!("no place for column {}", column.name)))?;
-            write_cells(&mut writer, column, cells)?;
-            writer.close()?;
+            match cells {
+                Cells::Signal(signal)
+                    if column.cells == CellType::Float64
+                        && !column.nullable
+                        && self.file.try_write_split(signal)? => {}
+                cells => self.file.write_column(|writer| write_cells(writer, column, cells))?,
+            }
         }
-        group.close().map(|_| ())
+        self.file.end_group(start)
     }
 
     /// Adds to what the file says about itself.
@@ -199,7 +202,7 @@ impl<W: Write + Send> TableWriter<W> {
     /// * `entries` - keys and values
     pub fn add_metadata(&mut self, entries: impl IntoIterator<Item = (String, String)>) {
         for (key, value) in entries {
-            self.file.append_key_value_metadata(KeyValue::new(key, value));
+            self.file.add_metadata(KeyValue::new(key, value));
         }
     }
 
@@ -208,11 +211,11 @@ impl<W: Write + Send> TableWriter<W> {
     /// # Errors
     /// Those of the file.
     pub fn close(self) -> io::Result<()> {
-        self.file.close().map(|_| ()).map_err(into_io)
+        self.file.close().map_err(into_io)
     }
 }
 
-fn write_cells(writer: &mut SerializedColumnWriter, column: &TableColumn, cells: Cells) -> Result<()> {
+fn write_cells(writer: &mut ColumnWriter, column: &TableColumn, cells: Cells) -> Result<()> {
     match (column.cells, cells) {
         (CellType::Int32, Cells::Int32(cells)) => {
             write::<data_type::Int32Type>(writer, column, cells.into_iter())
@@ -233,10 +236,12 @@ fn write_cells(writer: &mut SerializedColumnWriter, column: &TableColumn, cells:
             write::<data_type::DoubleType>(writer, column, cells.into_iter())
         }
         (CellType::Float64, Cells::Signal(signal)) if !column.nullable => {
-            writer.typed::<data_type::DoubleType>().write_batch(signal, None, None).map(|_| ())
+            get_typed_column_writer_mut::<data_type::DoubleType>(writer)
+                .write_batch(signal, None, None)
+                .map(|_| ())
         }
         (CellType::Float64, Cells::Sequence { rows, at }) if !column.nullable => {
-            let writer = writer.typed::<data_type::DoubleType>();
+            let writer = get_typed_column_writer_mut::<data_type::DoubleType>(writer);
             let mut batch = Vec::with_capacity(SEQUENCE_BATCH);
             for start in (0..rows).step_by(SEQUENCE_BATCH) {
                 batch.clear();
@@ -257,7 +262,7 @@ fn write_cells(writer: &mut SerializedColumnWriter, column: &TableColumn, cells:
 }
 
 fn write<T: DataType>(
-    writer: &mut SerializedColumnWriter,
+    writer: &mut ColumnWriter,
     column: &TableColumn,
     cells: impl Iterator<Item = Option<T::T>>,
 ) -> Result<()> {
@@ -270,11 +275,11 @@ fn write<T: DataType>(
         return Err(ParquetError::General(format!("column {} has an empty cell", column.name)));
     }
     let levels = column.nullable.then_some(&levels[..]);
-    writer.typed::<T>().write_batch(&values, levels, None).map(|_| ())
+    get_typed_column_writer_mut::<T>(writer).write_batch(&values, levels, None).map(|_| ())
 }
 
 /// Dremel's levels: an item that begins its list has no repetition, and an empty list no definition.
-fn write_lists(writer: &mut SerializedColumnWriter, nullable_items: bool, lists: &[&[f32]]) -> Result<()> {
+fn write_lists(writer: &mut ColumnWriter, nullable_items: bool, lists: &[&[f32]]) -> Result<()> {
     let defined = 1 + i16::from(nullable_items);
     let count = lists.iter().map(|list| list.len().max(1)).sum();
     let (mut definitions, mut repetitions) = (Vec::with_capacity(count), Vec::with_capacity(count));
@@ -284,8 +289,7 @@ fn write_lists(writer: &mut SerializedColumnWriter, nullable_items: bool, lists:
         repetitions.resize(definitions.len(), 1);
     }
     let values = lists.concat();
-    writer
-        .typed::<data_type::FloatType>()
+    get_typed_column_writer_mut::<data_type::FloatType>(writer)
         .write_batch(&values, Some(&definitions), Some(&repetitions))
         .map(|_| ())
 }

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use std::fs::{self, File};
+use std::io::{self, Write};
 
 use crate::parquet_help::{Plain, parquet};
 use meshtone::scenario::{GearPair, Scenario};
@@ -9,9 +10,10 @@ use meshtone::sensor::{ChannelKind, Channels};
 use meshtone_io::ReadResultsError;
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::signals::{RATE_KEY, RUN_KEY, SCENARIO_KEY, VERSION_KEY, read_signals, write_signals};
-use meshtone_io::table::{CellType, TableColumn, TableWriter};
+use meshtone_io::table::{CellType, Cells, TableColumn, TableWriter};
+use parquet::basic::{Compression, Encoding};
 use parquet::file::metadata::KeyValue;
-use parquet::file::properties::WriterProperties;
+use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use tempfile::tempdir;
 
 fn scenario() -> Scenario {
@@ -107,6 +109,64 @@ fn columns_of_one_name_are_refused_before_anything_is_written() {
     let refused = TableWriter::new(&mut file, vec![column(), column()], WriterProperties::builder().build());
     assert!(refused.map(drop).unwrap_err().to_string().contains("two columns are called speed"));
     assert!(file.is_empty());
+}
+
+fn signal_file(to: impl Write + Send, cells: Cells) -> io::Result<()> {
+    let column = TableColumn {
+        name: "vertical_g".into(),
+        cells: CellType::Float64,
+        nullable: false,
+        metadata: Vec::new(),
+    };
+    let properties = WriterProperties::builder()
+        .set_compression(Compression::SNAPPY)
+        .set_dictionary_enabled(false)
+        .set_encoding(Encoding::BYTE_STREAM_SPLIT)
+        .set_statistics_enabled(EnabledStatistics::None)
+        .build();
+    let mut table = TableWriter::new(to, vec![column], properties)?;
+    table.write_rows(vec![cells])?;
+    table.close()
+}
+
+/// What is computed while it is written goes through the library's encoder, a signal through our own.
+#[test]
+fn signals_are_split_as_the_library_splits_them() {
+    let at = |row: usize| (row as f64).sin() + if row.is_multiple_of(1000) { f64::NAN } else { 0.0 };
+    for rows in [1, 63, 64, 20_479, 20_480, 20_481, 70_000] {
+        let (mut ours, mut library) = (Vec::new(), Vec::new());
+        signal_file(&mut ours, Cells::Signal(&(0..rows).map(at).collect::<Vec<_>>())).unwrap();
+        signal_file(&mut library, Cells::Sequence { rows, at: &at }).unwrap();
+        assert!(ours == library, "{rows} rows");
+    }
+}
+
+/// A disk with room for some bytes.
+struct Full {
+    room: usize,
+}
+
+impl Write for Full {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.room = self.room.checked_sub(bytes.len()).ok_or(io::ErrorKind::StorageFull)?;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn a_full_disk_is_told_wherever_it_happens() {
+    let signal = vec![1.0; 30_000];
+    let mut file = Vec::new();
+    signal_file(&mut file, Cells::Signal(&signal)).unwrap();
+    signal_file(Full { room: file.len() }, Cells::Signal(&signal)).unwrap();
+    for room in [0, 4, file.len() / 2, file.len() - 1] {
+        let error = signal_file(Full { room }, Cells::Signal(&signal)).unwrap_err();
+        assert_eq!(error.kind(), io::ErrorKind::StorageFull, "{room} of {}", file.len());
+    }
 }
 
 /// A file whose accelerations are called as earlier versions called them.
