@@ -1,6 +1,5 @@
 //! What a release carries: the program, the wheel and the source distribution, each tried where there is nothing else.
 
-use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -96,16 +95,19 @@ pub fn source(row: &Row, python: &Path) -> Result<PathBuf, u8> {
 fn maturin(row: &Row, python: &Path, extension: &str, arguments: &[&str]) -> Result<PathBuf, u8> {
     let folder = folder(row);
     std::fs::create_dir_all(&folder).map_err(|error| row.fail_at(&folder, &error))?;
-    let of_kind = || -> Result<Vec<PathBuf>, u8> {
-        let entries = std::fs::read_dir(&folder).map_err(|error| row.fail_at(&folder, &error))?;
-        let paths = entries.flatten().map(|entry| entry.path());
-        Ok(paths.filter(|path| path.extension().is_some_and(|end| end == extension)).collect())
-    };
-    for old in of_kind()? {
+    for old in of_kind(row, &folder, extension)? {
         std::fs::remove_file(&old).map_err(|error| row.fail_at(&old, &error))?;
     }
     row.program(Command::new(python).args(["-m", "maturin"]).args(arguments).arg("--out").arg(&folder))?;
-    of_kind()?.pop().ok_or_else(|| row.fail(&format!("{}: nothing was made", folder.display())))
+    let made = of_kind(row, &folder, extension)?.pop();
+    made.ok_or_else(|| row.fail(&format!("{}: nothing was made", folder.display())))
+}
+
+/// The files of a folder whose names end alike.
+fn of_kind(row: &Row, folder: &Path, extension: &str) -> Result<Vec<PathBuf>, u8> {
+    let entries = std::fs::read_dir(folder).map_err(|error| row.fail_at(folder, &error))?;
+    let paths = entries.flatten().map(|entry| entry.path());
+    Ok(paths.filter(|path| path.extension().is_some_and(|end| end == extension)).collect())
 }
 
 /// Runs the program in an empty folder without any variables.
@@ -136,13 +138,14 @@ pub fn try_program(row: &Row, program: &Path) -> Result<(), u8> {
 /// # Errors
 /// The exit code of what failed.
 pub fn try_wheel(row: &Row, python: &Path, wheel: &Path) -> Result<(), u8> {
-    row.step("Python wheel, in an empty environment", || try_package(row, python, "wheel", wheel, &[]))
+    row.step("Python wheel, in an empty environment", || try_package(row, python, "wheel", wheel))
 }
 
-/// Installs the source distribution into an empty environment, which compiles it, and simulates there.
+/// Builds a wheel from the source distribution as pip does, installs it into an empty environment and simulates there.
 ///
 /// What other projects' packages give is taken from what has been built, and the project's own packages, which are compiled from
 /// the source distribution's files, are not optimised: it takes a tenth of the time, and shows as well that nothing is missing.
+/// The interpreter that builds is the one that built the wheel, as PyO3 is compiled anew for every other.
 ///
 /// # Arguments
 /// * `python` - an interpreter with pip
@@ -159,7 +162,11 @@ pub fn try_source(row: &Row, python: &Path, source: &Path) -> Result<(), u8> {
             ("CARGO_TARGET_DIR", row.root().join("target").into_os_string()),
             ("MATURIN_PEP517_ARGS", unoptimised.join(" ").into()),
         ];
-        try_package(row, python, "source", source, &environment)
+        let built = empty_folder(row, "source wheel")?;
+        environment::pip_wheel(row, python, &built, |pip| pip.envs(environment).arg(source))?;
+        let wheel = of_kind(row, &built, "whl")?.pop();
+        let wheel = wheel.ok_or_else(|| row.fail(&format!("{}: nothing was made", built.display())))?;
+        try_package(row, python, "source", &wheel)
     })
 }
 
@@ -170,16 +177,10 @@ fn packages(row: &Row) -> Result<Vec<String>, u8> {
     Ok(entries.flatten().filter_map(|entry| entry.file_name().into_string().ok()).collect())
 }
 
-fn try_package(
-    row: &Row,
-    pip: &Path,
-    name: &str,
-    package: &Path,
-    environment: &[(&str, OsString)],
-) -> Result<(), u8> {
+fn try_package(row: &Row, pip: &Path, name: &str, wheel: &Path) -> Result<(), u8> {
     let folder = empty_folder(row, name)?;
     let python = environment::empty(row, pip, &folder.join("venv"))?;
-    environment::pip_install(row, pip, &python, |pip| pip.envs(environment.iter().cloned()).arg(package))?;
+    environment::pip_install(row, pip, &python, |pip| pip.arg(wheel))?;
     row.program(Command::new(&python).args(["-c", TRIAL]).env_clear().current_dir(&folder))
 }
 

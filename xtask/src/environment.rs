@@ -71,6 +71,34 @@ pub fn pip_install(
     row.program(what(command.args(install)))
 }
 
+/// Builds the wheel of a package from its sources, where there is nothing but what it says that it needs.
+///
+/// # Arguments
+/// * `pip` - an interpreter with pip, which builds
+/// * `folder` - where the wheel is put
+/// * `what` - adds pip's arguments
+///
+/// # Errors
+/// Pip's exit code.
+pub fn pip_wheel(
+    row: &Row,
+    pip: &Path,
+    folder: &Path,
+    what: impl FnOnce(&mut Command) -> &mut Command,
+) -> Result<(), u8> {
+    let mut command = Command::new(pip);
+    command.args([
+        "-m",
+        "pip",
+        "--quiet",
+        "--disable-pip-version-check",
+        "wheel",
+        "--no-deps",
+        "--wheel-dir",
+    ]);
+    row.program(what(command.arg(folder)))
+}
+
 /// The interpreter of a virtual environment.
 fn interpreter(venv: &Path) -> PathBuf {
     if cfg!(windows) { venv.join("Scripts/python.exe") } else { venv.join("bin/python") }
