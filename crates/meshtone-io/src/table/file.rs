@@ -19,7 +19,7 @@ use parquet::file::properties::{WriterProperties, WriterPropertiesPtr};
 use parquet::file::writer::{SerializedPageWriter, TrackedWrite};
 use parquet::schema::types::{SchemaDescPtr, SchemaDescriptor, TypePtr};
 
-use super::split_signal::SplitSignal;
+use super::split_signal::{Signal, SplitSignal};
 
 /// What a Parquet file begins with.
 const MAGIC: &[u8; 4] = b"PAR1";
@@ -82,17 +82,14 @@ impl<W: Write + Send> TableFile<W> {
         Ok(())
     }
 
-    /// Writes the next column of a group, if its values are to be split into their bytes and compressed by Snappy, without
-    /// statistics; returns whether it did.
-    ///
-    /// # Arguments
-    /// * `values` - of double precision, none of them empty
-    pub(super) fn try_write_split(&mut self, values: &[f64]) -> Result<bool> {
+    /// Writes the next column of a group, if it is to be split into its bytes and compressed by Snappy; returns whether it did.
+    pub(super) fn try_write_split(&mut self, signal: &Signal) -> Result<bool> {
         let column = self.schema.column(self.columns.len());
-        let is_meant = SplitSignal::is_meant(&self.properties, column.path()) && !values.is_empty();
+        let is_meant = SplitSignal::is_meant(&self.properties, column.path()) && signal.rows() > 0;
         if is_meant {
+            let statistics = self.properties.statistics_enabled(column.path());
             let mut pages = SerializedPageWriter::new(&mut self.to);
-            self.columns.push(self.split_signal.write(&mut pages, column, values)?);
+            self.columns.push(self.split_signal.write(&mut pages, column, signal, statistics)?);
         }
         Ok(is_meant)
     }

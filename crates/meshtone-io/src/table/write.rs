@@ -13,6 +13,7 @@ use parquet::file::properties::WriterProperties;
 use parquet::schema::types::{Type, TypePtr};
 
 use super::file::TableFile;
+use super::split_signal::Signal;
 use super::{arrow_schema, into_io};
 
 /// Name of the table itself, as Arrow's writers give it.
@@ -122,6 +123,16 @@ impl TableColumn {
         column.map(Arc::new)
     }
 
+    /// The cells of a column in double precision without empty ones.
+    fn signal<'c>(&self, cells: &Cells<'c>) -> Option<Signal<'c>> {
+        let is_signal = self.cells == CellType::Float64 && !self.nullable;
+        match *cells {
+            Cells::Signal(values) if is_signal => Some(Signal::Stored(values)),
+            Cells::Sequence { rows, at } if is_signal => Some(Signal::Computed { rows, at }),
+            _ => None,
+        }
+    }
+
     /// Names from the column to where its numbers are, as properties of the file name them.
     ///
     /// # Arguments
@@ -185,12 +196,9 @@ impl<W: Write + Send> TableWriter<W> {
         }
         let start = self.file.bytes_written();
         for (column, cells) in self.columns.iter().zip(cells) {
-            match cells {
-                Cells::Signal(signal)
-                    if column.cells == CellType::Float64
-                        && !column.nullable
-                        && self.file.try_write_split(signal)? => {}
-                cells => self.file.write_column(|writer| write_cells(writer, column, cells))?,
+            let signal = column.signal(&cells);
+            if !signal.map_or(Ok(false), |signal| self.file.try_write_split(&signal))? {
+                self.file.write_column(|writer| write_cells(writer, column, cells))?;
             }
         }
         self.file.end_group(start)

@@ -111,7 +111,7 @@ fn columns_of_one_name_are_refused_before_anything_is_written() {
     assert!(file.is_empty());
 }
 
-fn signal_file(to: impl Write + Send, cells: Cells) -> io::Result<()> {
+fn signal_file(to: impl Write + Send, cells: Cells, statistics: EnabledStatistics) -> io::Result<()> {
     let column = TableColumn {
         name: "vertical_g".into(),
         cells: CellType::Float64,
@@ -122,22 +122,34 @@ fn signal_file(to: impl Write + Send, cells: Cells) -> io::Result<()> {
         .set_compression(Compression::SNAPPY)
         .set_dictionary_enabled(false)
         .set_encoding(Encoding::BYTE_STREAM_SPLIT)
-        .set_statistics_enabled(EnabledStatistics::None)
+        .set_statistics_enabled(statistics)
         .build();
     let mut table = TableWriter::new(to, vec![column], properties)?;
     table.write_rows(vec![cells])?;
     table.close()
 }
 
-/// What is computed while it is written goes through the library's encoder, a signal through our own.
+/// Single cells go through the library's encoder, signals and sequences through our own.
 #[test]
 fn signals_are_split_as_the_library_splits_them() {
-    let at = |row: usize| (row as f64).sin() + if row.is_multiple_of(1000) { f64::NAN } else { 0.0 };
+    let wave = |row: usize| (row as f64).sin() + if row.is_multiple_of(1000) { f64::NAN } else { 0.0 };
+    let (time, nowhere) = (|row: usize| row as f64 / 3.0, |_: usize| f64::NAN);
+    let signals: [&dyn Fn(usize) -> f64; 3] = [&wave, &time, &nowhere];
     for rows in [1, 63, 64, 20_479, 20_480, 20_481, 70_000] {
-        let (mut ours, mut library) = (Vec::new(), Vec::new());
-        signal_file(&mut ours, Cells::Signal(&(0..rows).map(at).collect::<Vec<_>>())).unwrap();
-        signal_file(&mut library, Cells::Sequence { rows, at: &at }).unwrap();
-        assert!(ours == library, "{rows} rows");
+        for (at, statistics) in signals
+            .into_iter()
+            .flat_map(|at| [EnabledStatistics::None, EnabledStatistics::Chunk].map(|kind| (at, kind)))
+        {
+            let written = |cells: Cells| {
+                let mut file = Vec::new();
+                signal_file(&mut file, cells, statistics).unwrap();
+                file
+            };
+            let library = written(Cells::Float64((0..rows).map(|row| Some(at(row))).collect()));
+            assert!(library == written(Cells::Sequence { rows, at }), "{rows} rows, {statistics:?}");
+            let signal: Vec<f64> = (0..rows).map(at).collect();
+            assert!(library == written(Cells::Signal(&signal)), "{rows} rows, {statistics:?}");
+        }
     }
 }
 
@@ -161,10 +173,12 @@ impl Write for Full {
 fn a_full_disk_is_told_wherever_it_happens() {
     let signal = vec![1.0; 30_000];
     let mut file = Vec::new();
-    signal_file(&mut file, Cells::Signal(&signal)).unwrap();
-    signal_file(Full { room: file.len() }, Cells::Signal(&signal)).unwrap();
+    let write =
+        |to: &mut (dyn Write + Send)| signal_file(to, Cells::Signal(&signal), EnabledStatistics::None);
+    write(&mut file).unwrap();
+    write(&mut Full { room: file.len() }).unwrap();
     for room in [0, 4, file.len() / 2, file.len() - 1] {
-        let error = signal_file(Full { room }, Cells::Signal(&signal)).unwrap_err();
+        let error = write(&mut Full { room }).unwrap_err();
         assert_eq!(error.kind(), io::ErrorKind::StorageFull, "{room} of {}", file.len());
     }
 }
