@@ -21,10 +21,11 @@ from .hybrid import enhance, tune
 from .recording import Recording, read_recording
 from .scenario import Scenario, template
 from .signal import Record, ShaftPhase, process_channel, process_series
-from .simulation import CHANNELS, Signals, Simulation, simulate, simulate_many, trace
+from .simulation import CHANNELS, ContactFigures, Signals, Simulation, StaticMesh, simulate, simulate_many, trace
 
 __all__ = [
     "CHANNELS",
+    "ContactFigures",
     "Dataset",
     "Record",
     "Recording",
@@ -32,6 +33,7 @@ __all__ = [
     "ShaftPhase",
     "Signals",
     "Simulation",
+    "StaticMesh",
     "__version__",
     "datasets",
     "enhance",

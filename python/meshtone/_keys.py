@@ -37,6 +37,24 @@ class TipRelief(TypedDict, total=False):
     depth_mm: float
 
 
+class FlankRelief(TypedDict, total=False):
+    """A table of a scenario.
+
+    Attributes
+    ----------
+    shape : {'parabolic', 'linear'}
+        A parabola that leaves the flank with its slope, or a straight line.
+    length_mm : float
+        (mm) The length along the tooth's centre line, from the tip inwards. Allowed: > 0; less than 2 modules.
+    amount_um : float
+        (µm) How far the flank lies back at the tip, along its normal; 10 to 40 in practice. Allowed: ≥ 0, ≤ 1000.
+    """
+
+    shape: Literal["parabolic", "linear"]
+    length_mm: float
+    amount_um: float
+
+
 class Foundation(TypedDict, total=False):
     """A table of a scenario.
 
@@ -67,10 +85,22 @@ class Shaft(TypedDict, total=False):
         (mm) The length between wheel and motor or brake. Allowed: > 0, ≤ 1000000.
     radius_mm : float
         (mm) The radius, which is also that of the wheel's bore. Allowed: > 0; less than the wheel's root radius.
+    bearing_span_mm : float
+        (mm) The distance between the two bearings on which the shaft bends. Allowed: > 0, ≤ 100000.
+    wheel_at : float
+        (-) Where between the bearings the wheel sits, as a part of their distance. Allowed: > 0, < 1.
+    bearing_stiffness_n_per_m : float
+        (N/m) The stiffness of both bearings together, across the shaft. Allowed: > 0, ≤ 1e15.
+    damping_ratio : float
+        (-) The damping ratio of the shaft and its bearings. Allowed: ≥ 0, < 1.
     """
 
     length_mm: float
     radius_mm: float
+    bearing_span_mm: float
+    wheel_at: float
+    bearing_stiffness_n_per_m: float
+    damping_ratio: float
 
 
 class WheelInertia(TypedDict, total=False):
@@ -91,6 +121,27 @@ class WheelInertia(TypedDict, total=False):
     transverse_inertia_kgm2: float
 
 
+class Support(TypedDict, total=False):
+    """A table of a scenario.
+
+    Attributes
+    ----------
+    mass_kg : float
+        (kg) The mass of each support. Allowed: > 0, ≤ 1e9.
+    stiffness_n_per_m : float
+        (N/m) The stiffness between each support and the base, in x and in y. Allowed: > 0, ≤ 1e15.
+    coupling_n_per_m : float
+        (N/m) The stiffness between the two supports, in x and in y. Allowed: ≥ 0, ≤ 1e15.
+    damping_ratio : float
+        (-) The damping ratio of the supports and of what holds them. Allowed: ≥ 0, < 1.
+    """
+
+    mass_kg: float
+    stiffness_n_per_m: float
+    coupling_n_per_m: float
+    damping_ratio: float
+
+
 SECTION_OF_KEY: dict[str, str] = {
     "module_mm": "gears",
     "pinion_teeth": "gears",
@@ -103,6 +154,9 @@ SECTION_OF_KEY: dict[str, str] = {
     "pressure_angle_deg": "gears",
     "material": "gears",
     "tip_relief": "gears",
+    "flank_relief": "gears",
+    "tip_chamfer_mm": "gears",
+    "backlash_mm": "gears",
     "crowning_mm": "gears",
     "points_per_tooth": "gears",
     "foundation": "gears",
@@ -112,6 +166,10 @@ SECTION_OF_KEY: dict[str, str] = {
     "torque_profile_nm": "operation",
     "din_grade": "quality",
     "wheels_seed": "quality",
+    "iso_class": "quality",
+    "tooth_share": "quality",
+    "pitch_share": "quality",
+    "run_out_share": "quality",
     "bearing_stiffness_n_per_m": "rig",
     "wheel_rotational_stiffness_nm_per_rad": "rig",
     "brake_inertia_kgm2": "rig",
@@ -121,6 +179,8 @@ SECTION_OF_KEY: dict[str, str] = {
     "gear_shaft": "rig",
     "pinion_inertia": "rig",
     "gear_inertia": "rig",
+    "support": "rig",
+    "mesh_damping_ratio": "rig",
     "sampling_rate_hz": "solver",
     "settle_fraction": "solver",
     "settle_tolerance": "solver",
@@ -154,11 +214,14 @@ class ScenarioKeys:
     face_width_mm: float
     pinion_speed_hz: float
     brake_torque_nm: float
-    model: Literal["linear", "published"]
+    model: Literal["contact", "linear", "published"]
     seed: int
     pressure_angle_deg: float
     material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"]
     tip_relief: TipRelief | Literal[False]
+    flank_relief: FlankRelief
+    tip_chamfer_mm: float | None
+    backlash_mm: float | None
     crowning_mm: float
     points_per_tooth: int
     foundation: Foundation
@@ -168,6 +231,10 @@ class ScenarioKeys:
     torque_profile_nm: dict[str, list[float]] | None
     din_grade: int
     wheels_seed: int | None
+    iso_class: int
+    tooth_share: float
+    pitch_share: float
+    run_out_share: float
     bearing_stiffness_n_per_m: float
     wheel_rotational_stiffness_nm_per_rad: float
     brake_inertia_kgm2: float
@@ -177,6 +244,8 @@ class ScenarioKeys:
     gear_shaft: Shaft
     pinion_inertia: WheelInertia | None
     gear_inertia: WheelInertia | None
+    support: Support
+    mesh_damping_ratio: float
     sampling_rate_hz: float
     settle_fraction: float
     settle_tolerance: float
@@ -194,11 +263,14 @@ class ScenarioKeys:
         brake_torque_nm: float,
         fault: Fault | None = None,
         faults: Sequence[Fault] | None = None,
-        model: Literal["linear", "published"] | None = None,
+        model: Literal["contact", "linear", "published"] | None = None,
         seed: int | None = None,
         pressure_angle_deg: float | None = None,
         material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | None = None,
         tip_relief: TipRelief | Literal[False] | None = None,
+        flank_relief: FlankRelief | None = None,
+        tip_chamfer_mm: float | None = None,
+        backlash_mm: float | None = None,
         crowning_mm: float | None = None,
         points_per_tooth: int | None = None,
         foundation: Foundation | None = None,
@@ -208,6 +280,10 @@ class ScenarioKeys:
         torque_profile_nm: Profile | None = None,
         din_grade: int | None = None,
         wheels_seed: int | None = None,
+        iso_class: int | None = None,
+        tooth_share: float | None = None,
+        pitch_share: float | None = None,
+        run_out_share: float | None = None,
         pinion_profile_errors_mm: npt.ArrayLike | None = None,
         gear_profile_errors_mm: npt.ArrayLike | None = None,
         bearing_stiffness_n_per_m: float | None = None,
@@ -219,6 +295,8 @@ class ScenarioKeys:
         gear_shaft: Shaft | None = None,
         pinion_inertia: WheelInertia | None = None,
         gear_inertia: WheelInertia | None = None,
+        support: Support | None = None,
+        mesh_damping_ratio: float | None = None,
         sampling_rate_hz: float | None = None,
         settle_fraction: float | None = None,
         settle_tolerance: float | None = None,
@@ -248,9 +326,9 @@ class ScenarioKeys:
             The damage, if there is but one; a healthy pair by default.
         faults : sequence of faults, optional
             All damage, instead of ``fault``: any number of faults, on any teeth of either wheel.
-        model : {'linear', 'published'}, optional
-            The model of the mesh: what the theory says, or what the published code does, its slips included. Default:
-            "linear".
+        model : {'contact', 'linear', 'published'}, optional
+            The model: teeth that touch and part, the theory of a linear mesh, or what the published code does, its
+            slips included. Default: "linear".
         seed : int, optional
             The seed of every random draw: profile errors, fluctuations, roughness of a destroyed flank. Allowed: whole
             number. Default: 1.
@@ -262,6 +340,15 @@ class ScenarioKeys:
         tip_relief : TipRelief or False, optional
             The material removed near the tips, or ``false`` for none. Default: { shape = "parabolic", length_mm = 1.0,
             depth_mm = 1.0 }.
+        flank_relief : FlankRelief, optional
+            The relief of the flanks near the tips, as a gap in µm. Default: { shape = "parabolic", length_mm = 1.0,
+            amount_um = 0.0 }.
+        tip_chamfer_mm : float, optional
+            (mm) The height of the chamfer or rounding of all tips, which the flank ends below. Allowed: ≥ 0; less than
+            1 module. Default: 0.2 modules.
+        backlash_mm : float, optional
+            (mm) The backlash along the line of action. Allowed: ≥ 0; less than 1 module. Default: two thirds of 0.06 +
+            0.0005 a + 0.03 m, a the centre distance.
         crowning_mm : float, optional
             (mm) A constant reduction of the working flank. Allowed: ≥ 0; less than half the tooth's thickness at the
             pitch circle, π/4 modules. Default: 0.0.
@@ -288,6 +375,17 @@ class ScenarioKeys:
         wheels_seed : int, optional
             The seed of that draw alone, so that scenarios of different seeds share their wheels. Allowed: whole number.
             Default: the scenario's ``seed``.
+        iso_class : int, optional
+            The class of ISO 1328-1:2013 that deviations are drawn for, 1 (best) to 11, instead of din_grade; 0 for
+            none. Allowed: whole number 0…11. Default: 0.
+        tooth_share : float, optional
+            (-) The part of the tolerances of profile slope and form that each tooth has of its own; the rest all teeth
+            of a wheel have in common, as one tool makes them. Allowed: 0…1. Default: 0.4.
+        pitch_share : float, optional
+            (-) The largest single pitch deviation of a wheel as a part of its tolerance f_p. Allowed: 0…1. Default:
+            0.15.
+        run_out_share : float, optional
+            (-) The run-out of each wheel as a part of its tolerance F_r. Allowed: 0…1. Default: 0.3.
         pinion_profile_errors_mm : array of float64, shape (100, teeth), optional
             (mm) The pinion's profile errors, instead of a draw: 100 rows of one number per tooth. Allowed: 100 × pinion
             teeth, each smaller than the module. Default: none.
@@ -306,14 +404,23 @@ class ScenarioKeys:
         eccentricity_mm : float, optional
             (mm) The eccentricity of both wheels. Allowed: ≥ 0; less than the module. Default: 0.0.
         pinion_shaft : Shaft, optional
-            The motor's shaft. Default: { length_mm = 200.0, radius_mm = 10.0 }.
+            The motor's shaft. Default: { length_mm = 200.0, radius_mm = 10.0, bearing_span_mm = 130.0, wheel_at = 0.5,
+            damping_ratio = 0.025 }.
         gear_shaft : Shaft, optional
-            The brake's shaft. Default: { length_mm = 600.0, radius_mm = 10.0 }.
+            The brake's shaft. Default: { length_mm = 600.0, radius_mm = 10.0, bearing_span_mm = 130.0, wheel_at = 0.5,
+            damping_ratio = 0.025 }.
         pinion_inertia : WheelInertia, optional
             The mass and inertias of the pinion, instead of a solid disc's; any of the three may be left out. Default: a
             solid disc's, of pitch radius.
         gear_inertia : WheelInertia, optional
             The same of the gear. Default: a solid disc's, of pitch radius.
+        support : Support, optional
+            What the bearings of each shaft sit in, two alike: mass, stiffness to the base and to one another, damping.
+            Default: { mass_kg = 1.6, stiffness_n_per_m = 160000000.0, coupling_n_per_m = 500000000.0, damping_ratio =
+            0.025 }.
+        mesh_damping_ratio : float, optional
+            (-) The damping of teeth in contact over the critical damping of the wheels' rotation on the mean mesh
+            stiffness. Allowed: ≥ 0, < 1. Default: 0.15.
         sampling_rate_hz : float, optional
             (S/s) The nominal sampling rate; the actual one is higher, so that both wheels turn a whole number of
             samples. Allowed: > 0. Default: 1e5.

@@ -22,13 +22,63 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["CHANNELS", "Signals", "Simulation", "simulate", "simulate_many", "trace"]
+__all__ = ["CHANNELS", "ContactFigures", "Signals", "Simulation", "StaticMesh", "simulate", "simulate_many", "trace"]
 
 Array = npt.NDArray[np.float64]
 Wheel = Literal["pinion", "gear"]
 
 CHANNELS = ("horizontal_g", "vertical_g", "axial_g", "pinion_shaft_speed_hz", "gear_shaft_speed_hz", "mesh_force_n")
 """The signals of a simulation, with their units."""
+
+
+@dataclass(frozen=True)
+class ContactFigures:
+    """How the teeth of a mesh touched over the kept time.
+
+    Attributes
+    ----------
+    apart_fraction : float
+        Part of the time in which no teeth touched.
+    back_flank_fraction : float
+        Part of the time in which back flanks touched.
+    back_flank_hits : int
+        How often back flanks hit.
+    largest_force_n : float
+        (N) Largest force, of either sign.
+    """
+
+    apart_fraction: float
+    back_flank_fraction: float
+    back_flank_hits: int
+    largest_force_n: float
+
+
+@dataclass(frozen=True)
+class StaticMesh:
+    """A mesh at rest under a force.
+
+    Attributes
+    ----------
+    pitch : array, shape (points,)
+        Pitches since the start of the simulation.
+    transmission_error_um : array, shape (points,)
+        (µm) Deflection along the line of action, the static transmission error; NaN where no pair can touch.
+    pairs : array of int, shape (pairs,)
+        Numbers of the pairs; pair n enters contact n pitches after the start, between the pinion's tooth n mod z_p and the gear's
+        n mod z_g, counted from 0.
+    pair_force_n : array, shape (pairs, points)
+        (N) Force of each pair.
+    """
+
+    pitch: Array
+    transmission_error_um: Array
+    pairs: npt.NDArray[np.int_]
+    pair_force_n: Array
+
+    @property
+    def peak_to_peak_um(self) -> float:
+        """(µm) Largest less smallest transmission error."""
+        return float(np.nanmax(self.transmission_error_um) - np.nanmin(self.transmission_error_um))
 
 
 class Simulation:
@@ -86,12 +136,12 @@ class Simulation:
 
     @property
     def horizontal_g(self) -> Array:
-        """(g) Horizontal acceleration of the two wheels, summed; shape (samples,)."""
+        """(g) Horizontal acceleration of the two supports, their mean; under ``linear`` and ``published`` the sum of both wheels'; shape (samples,)."""
         return self._native.horizontal_g
 
     @property
     def vertical_g(self) -> Array:
-        """(g) Vertical acceleration of the two wheels, summed; shape (samples,)."""
+        """(g) Vertical acceleration of the two supports, their mean; under ``linear`` and ``published`` the sum of both wheels'; shape (samples,)."""
         return self._native.vertical_g
 
     @property
@@ -111,7 +161,8 @@ class Simulation:
 
     @property
     def mesh_force_n(self) -> Array:
-        """(N) Force of the mesh along the line of action; shape (samples,)."""
+        """(N) Force of the mesh along the line of action; shape (samples,). Under ``contact`` 0 while no teeth touch, negative while back
+        flanks do."""
         return self._native.mesh_force_n
 
     @property
@@ -120,13 +171,20 @@ class Simulation:
         return self._native.tension_fraction
 
     @property
+    def contact_figures(self) -> ContactFigures | None:
+        """How the teeth touched; None but under ``contact``."""
+        figures = self._native.contact_figures
+        return None if figures is None else ContactFigures(*figures)
+
+    @property
     def warnings(self) -> list[str]:
         """What is doubtful, as ``meshtone simulate`` prints it: the scenario's warnings, then those of the signals."""
         return self._native.warnings
 
     @property
     def mode_shapes(self) -> Array:
-        """Mode shapes in the columns, in the order of ``natural_frequencies_hz``, of unit modal mass; shape (13, 13)."""
+        """Mode shapes in the columns, in the order of ``natural_frequencies_hz``, of unit modal mass; shape (13, 13), under ``contact``
+        (17, 17): x and y of the gear's and of the pinion's support come last."""
         return self._native.mode_shapes
 
     @property
@@ -165,6 +223,48 @@ class Simulation:
         """
         stiffness = self._native.mesh_stiffness_n_per_mm(0, self.scenario.gear_teeth)
         return np.arange(stiffness.size) / stiffness.size, stiffness
+
+    def static_mesh(
+        self, force_n: float | None = None, *, pitches: tuple[int, int] = (0, 2), points_per_pitch: int = 500
+    ) -> StaticMesh:
+        """How the pairs share a force at rest, without deviations, with relief, chamfer and damage. Only under ``contact``.
+
+        Parameters
+        ----------
+        force_n : float, optional
+            (N) Along the line of action; that of the brake's torque by default.
+        pitches : tuple of two int
+            First and last of the pitches shown, from the start of the simulation.
+        points_per_pitch : int
+            Number of points in each.
+
+        Returns
+        -------
+        StaticMesh
+
+        Raises
+        ------
+        ValueError
+            Another model; a negative force.
+
+        Examples
+        --------
+        >>> from meshtone import examples, simulate
+        >>> at_rest = simulate(examples.healthy().copy(model="contact")).static_mesh(500)
+        >>> bool(abs(at_rest.pair_force_n.sum(axis=0) - 500).max() < 1e-6)
+        True
+        """
+        if force_n is not None and not force_n >= 0:
+            raise ValueError(f"force_n = {force_n}: must be 0 or more")
+        first, last = whole("pitches[0]", pitches[0], 0), whole("pitches[1]", pitches[1], 1)
+        points = whole("points_per_pitch", points_per_pitch, 1)
+        deflection_m, first_pair, pair_force_n = self._native.static_mesh(force_n, (first, last), points)
+        return StaticMesh(
+            pitch=first + np.arange(deflection_m.size) / points,
+            transmission_error_um=1e6 * deflection_m,
+            pairs=first_pair + np.arange(len(pair_force_n)),
+            pair_force_n=pair_force_n,
+        )
 
     def tooth_profile(self, wheel: Wheel = "gear") -> tuple[Array, Array]:
         """Half of a healthy tooth.

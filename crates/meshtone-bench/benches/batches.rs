@@ -53,8 +53,10 @@ fn batches(criterion: &mut Criterion) {
     for (name, scenario) in cases::with_full_settling(Model::Linear).into_iter().skip(1) {
         run(criterion, name, &scenario, 64, 1);
     }
-    for (name, scenario) in cases::with_full_settling(Model::Published) {
-        run(criterion, &format!("{name}, published"), &scenario, 64, 1);
+    for (model, word) in [(Model::Published, "published"), (Model::Contact, "contact")] {
+        for (name, scenario) in cases::with_full_settling(model) {
+            run(criterion, &format!("{name}, {word}"), &scenario, 64, 1);
+        }
     }
 }
 

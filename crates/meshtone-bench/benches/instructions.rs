@@ -46,6 +46,8 @@ fn loop_of(index: usize, model: Model) -> (Box<Stages>, ReducedModel) {
 #[bench::healthy(loop_of(0, Model::Linear))]
 #[bench::tooth_breakage(loop_of(2, Model::Linear))]
 #[bench::healthy_published(loop_of(0, Model::Published))]
+#[bench::healthy_contact(loop_of(0, Model::Contact))]
+#[bench::tooth_breakage_contact(loop_of(2, Model::Contact))]
 fn time_loop((stages, model): (Box<Stages>, ReducedModel)) -> Box<Stages> {
     let outputs = channel_outputs();
     stages.integrate(&model, &outputs, stages.time.first_kept_sample, &mut Nothing).expect("a solution");
@@ -64,6 +66,8 @@ fn stiffness(stages: Box<Stages>) -> (PairMesh, Box<Stages>) {
 
 #[library_benchmark]
 #[bench::healthy(vec![scenario(0, Model::Linear); 8])]
+#[bench::healthy_contact(vec![scenario(0, Model::Contact); 8])]
+#[bench::tooth_breakage_contact(vec![scenario(2, Model::Contact); 8])]
 fn eight_side_by_side(scenarios: Vec<Scenario>) -> usize {
     // In this thread: only its instructions are counted.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build().expect("a thread");

@@ -11,7 +11,7 @@ use meshtone::scenario::Model;
 use meshtone::simulate;
 
 fn simulations(criterion: &mut Criterion) {
-    for model in [Model::Linear, Model::Published] {
+    for model in [Model::Linear, Model::Published, Model::Contact] {
         let mut group = criterion.benchmark_group(format!("simulation/{model:?}").to_lowercase());
         group.sample_size(20);
         for (name, mut scenario) in cases::with_full_settling(model) {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use meshtone_io::summary::{ChannelSummary, FaultSummary, Summary};
+use meshtone_io::summary::{ChannelSummary, FaultSummary, MeshForce, Summary};
 
 /// The table of one run.
 pub fn table(summary: &Summary) -> String {
@@ -48,16 +48,35 @@ fn rows(summary: &Summary) -> [(&'static str, String); 8] {
         (
             "mesh force, N",
             format!(
-                "min {}, mean {}, max {}; in tension {:.1} % of the time",
+                "min {}, mean {}, max {}{}",
                 short(force.min_n),
                 short(force.mean_n),
                 short(force.max_n),
-                100.0 * force.tension_fraction
+                touching(force)
             ),
         ),
         ("natural frequencies, Hz", frequencies.join(" ")),
         ("computing time", format!("{} ms", short(summary.total_time().as_secs_f64() * 1e3))),
     ]
+}
+
+/// For how long the mesh pulls, or its teeth do not touch or touch with their backs.
+fn touching(force: &MeshForce) -> String {
+    let percent = |fraction: f64| format!("{:.1} %", 100.0 * fraction);
+    match (&force.contact, force.tension_fraction) {
+        (Some(contact), _) => {
+            let back = match contact.back_flank_hits {
+                0 => "no back flank hits".to_string(),
+                hits => {
+                    let hits = if hits == 1 { "1 hit".to_string() } else { format!("{hits} hits") };
+                    format!("{hits} of back flanks, {} of the time", percent(contact.back_flank_fraction))
+                }
+            };
+            format!("; apart {} of the time, {back}", percent(contact.apart_fraction))
+        }
+        (None, Some(fraction)) => format!("; in tension {} of the time", percent(fraction)),
+        (None, None) => String::new(),
+    }
 }
 
 /// `missing-tooth on tooth 1 of the gear`, one after the other.

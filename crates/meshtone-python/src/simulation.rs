@@ -3,6 +3,7 @@
 use std::num::NonZeroUsize;
 
 use meshtone::scenario::{MemoryLimit, ScenarioWarning};
+use meshtone::sensor::ContactFigures;
 use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
 use meshtone::wheel::WheelName;
 use meshtone::{Stages, Trace};
@@ -14,6 +15,9 @@ use crate::array::{Signal, array, field, samples};
 use crate::error::{scenario_error, simulation_error, value_error};
 use crate::process::Record;
 use crate::scenario::{BothWheels, Scenario, both_wheels};
+
+/// Deflection, number of the first pair and the forces of the pairs.
+type StaticMesh<'py> = (Bound<'py, PyArray1<f64>>, i64, Bound<'py, PyArray2<f64>>);
 
 /// A simulation: every stage's results and the signals.
 #[pyclass(frozen, module = "meshtone._core")]
@@ -40,6 +44,10 @@ pub struct Simulation {
     /// (-) Part of the kept time in which the mesh force is negative.
     #[pyo3(get)]
     tension_fraction: f64,
+    /// How the teeth touched, under `contact`: (-) part of the time apart, (-) part of it with back flanks in touch, how often
+    /// these hit, (N) largest force.
+    #[pyo3(get)]
+    contact_figures: Option<(f64, f64, usize, f64)>,
     /// What is doubtful about it.
     #[pyo3(get)]
     warnings: Vec<String>,
@@ -88,8 +96,14 @@ fn fields(py: Python<'_>, trace: Trace) -> PyResult<Bound<'_, PyDict>> {
 
 impl Simulation {
     fn new(py: Python<'_>, simulation: meshtone::Simulation, warnings: &[ScenarioWarning]) -> Self {
+        let contact_figures = simulation.contact_figures().map(|figures| {
+            let ContactFigures { apart_fraction, back_flank_fraction, back_flank_hits, largest_force_n } =
+                figures;
+            (apart_fraction, back_flank_fraction, back_flank_hits, largest_force_n)
+        });
         let channels = simulation.channels;
         Self {
+            contact_figures,
             tension_fraction: channels.tension_fraction(),
             warnings: warnings.iter().map(ToString::to_string).collect(),
             sampling_rate_hz: channels.sampling_rate_hz,
@@ -126,9 +140,9 @@ impl Simulation {
     /// (-) Mode shapes, a column each, normalised to unit modal mass.
     #[getter]
     fn mode_shapes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let shapes = self.stages.system.mode_shapes();
+        let shapes = self.stages.mode_shapes();
         let values: Vec<f64> =
-            (0..shapes.nrows()).flat_map(|row| (0..shapes.ncols()).map(move |n| shapes[(row, n)])).collect();
+            shapes.row_iter().flat_map(|row| row.iter().copied().collect::<Vec<_>>()).collect();
         array(py, values).reshape([shapes.nrows(), shapes.ncols()]).map_err(value_error)
     }
 
@@ -147,11 +161,37 @@ impl Simulation {
             }
             None => {
                 let points = NonZeroUsize::new(points_per_pitch).unwrap_or(NonZeroUsize::MIN);
-                let mesh = self.stages.pair_mesh(points).map_err(|error| scenario_error(&error))?;
-                mesh.stiffness_n_per_mm(first_pitch..first_pitch + pitches)
+                let shown = first_pitch..first_pitch + pitches;
+                match self.stages.contact_mesh(points).map_err(|error| scenario_error(&error))? {
+                    Some(mesh) => mesh.stiffness_n_per_mm(shown),
+                    None => {
+                        let mesh = self.stages.pair_mesh(points).map_err(|error| scenario_error(&error))?;
+                        mesh.stiffness_n_per_mm(shown)
+                    }
+                }
             }
         };
         Ok(array(py, stiffness))
+    }
+
+    /// The mesh at rest under a force: (m) deflection, number of the first pair, (N) each pair's force; only under `contact`.
+    fn static_mesh<'py>(
+        &self,
+        py: Python<'py>,
+        force_n: Option<f64>,
+        pitches: (usize, usize),
+        points_per_pitch: NonZeroUsize,
+    ) -> PyResult<StaticMesh<'py>> {
+        let mesh = self.stages.contact_mesh(points_per_pitch).map_err(|error| scenario_error(&error))?;
+        let Some(mesh) = mesh else {
+            return Err(value_error("only teeth that can part share a force: set model = 'contact'"));
+        };
+        let force_n = force_n.unwrap_or_else(|| self.stages.static_force_n());
+        let at_rest = py.detach(|| mesh.at_rest(force_n, pitches.0..pitches.1));
+        let (rows, columns) = (at_rest.pair_force_n.len(), at_rest.deflection_m.len());
+        let forces =
+            array(py, at_rest.pair_force_n.concat()).reshape([rows, columns]).map_err(value_error)?;
+        Ok((array(py, at_rest.deflection_m), at_rest.first_pair, forces))
     }
 
     /// (mm) Profile of a wheel's tooth: x, y.

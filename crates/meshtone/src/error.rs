@@ -87,6 +87,21 @@ impl ScenarioError {
             .with_help("leave gears.foundation out for Sainsot's coefficients")
     }
 
+    /// More pairs in contact at once than the model of contact looks at.
+    pub(crate) fn too_many_pairs(contact_ratio: f64, most: f64) -> Self {
+        let problem = format!(
+            "has a contact ratio of {contact_ratio:.2} between the chamfers; must be at most {most:.1} under the model of contact"
+        );
+        Self::new("gears", "", problem)
+            .with_help("raise gears.pressure_angle_deg, or set model = \"linear\", which has no such limit")
+    }
+
+    /// Damage that leaves no tooth that could carry a load.
+    pub(crate) fn nothing_left() -> Self {
+        let problem = "leave no pair of teeth that could touch; one at least must";
+        Self::new("fault", "", problem).with_help("remove some of the faults")
+    }
+
     /// The same error under another key, as of a scenario that stands within another file.
     ///
     /// # Arguments
@@ -158,13 +173,15 @@ pub enum Error {
     Scenario(#[from] ScenarioError),
     /// The motion grows without bound.
     #[error(
-        "the motion grows without bound within {time_s:.4} s, with rig.damping_ratio = {}; damping must take what the varying \
+        "the motion grows without bound within {time_s:.4} s, with {key} = {}; damping must take what the varying \
          mesh stiffness puts into a mode, and a missing tooth must leave another in contact",
         in_short(.damping_ratios)
     )]
     Diverged {
         /// (s) When that was noticed, from the start of the simulation.
         time_s: f64,
+        /// The key that damps the modes.
+        key: &'static str,
         /// (-) The damping ratio of each mode, in the order of rising natural frequency.
         damping_ratios: Vec<f64>,
     },
@@ -175,9 +192,9 @@ impl Error {
     pub fn help(&self) -> Option<&str> {
         match self {
             Self::Scenario(error) => error.help.as_deref(),
-            Self::Diverged { .. } => Some(
-                "raise the damping ratios (the default is 0.05), use more teeth, or change operation.pinion_speed_hz",
-            ),
+            Self::Diverged { .. } => {
+                Some("raise the damping ratios of [rig], use more teeth, or change operation.pinion_speed_hz")
+            }
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::keys::{KeyKind, KeyValue, NumberFiles, Written};
 /// Which reading of the mesh is simulated.
 ///
 /// The published code differs from the theory of its own paper in several places (listed in the
-/// chapter "Published and linear" of the documentation).
+/// chapter "Published, linear and contact" of the documentation).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 #[non_exhaustive]
 pub enum Model {
@@ -17,6 +17,8 @@ pub enum Model {
     Linear,
     /// The published code, its slips included, so that results can be compared number by number.
     Published,
+    /// Teeth that push and never pull, on shafts that bend, in supports that a sensor sits on.
+    Contact,
 }
 
 impl Model {
@@ -25,6 +27,7 @@ impl Model {
         match self {
             Self::Linear => "linear",
             Self::Published => "published",
+            Self::Contact => "contact",
         }
     }
 }
@@ -47,4 +50,5 @@ impl KeyValue for Model {
     }
 }
 
-const NAMES: [(&str, Model); 2] = [("linear", Model::Linear), ("published", Model::Published)];
+const NAMES: [(&str, Model); 3] =
+    [("contact", Model::Contact), ("linear", Model::Linear), ("published", Model::Published)];

@@ -42,6 +42,10 @@ pub enum Purpose {
     DatasetStart = 14,
     /// Noise of a recorded channel, value by value; index: channel.
     RecordNoise = 15,
+    /// Deviations of the pinion under `contact`; index: common, run-out, pitches, then the teeth.
+    PinionDeviations = 16,
+    /// Likewise of the gear.
+    GearDeviations = 17,
 }
 
 /// A sequence of random numbers.

@@ -4,26 +4,27 @@ use std::fmt::{self, Debug, Formatter};
 use std::num::NonZeroUsize;
 use std::time::Duration;
 
+use nalgebra::DMatrix;
 use web_time::Instant;
 
 use crate::damage::{DamagedTooth, damaged_teeth};
 use crate::error::{Error, ScenarioError};
 use crate::machine::coordinates::CoordinateVector;
-use crate::machine::{Excitation, System};
+use crate::machine::{ClosedMesh, Excitation, Structure, System};
 use crate::mesh::forcing::{Forcing, ForcingBlock, ForcingSource};
 use crate::mesh::published::PublishedForcing;
 use crate::mesh::{
-    ALL_DIRECTIONS, DirectionVector, Mesh, PairDeviations, PairForcing, PairMesh, PairSequence, Pairs,
-    PublishedMesh,
+    ALL_DIRECTIONS, ContactForcing, ContactMesh, ContactParameters, ContactTable, DirectionVector, Mesh,
+    PairDeviations, PairForcing, PairMesh, PairSequence, Pairs, PublishedMesh, TipShape,
 };
 use crate::model::Model;
 use crate::operation::{CycleGrid, Solver, TimeGrid};
 use crate::scenario::Scenario;
-use crate::sensor::{Channels, channel_outputs};
+use crate::sensor::{Channels, ContactFigures, channel_outputs};
 use crate::simd::InstructionSet;
 use crate::solver::{Diverged, Output, Problem, Recorder, ReducedModel, integrate};
-use crate::wheel::quality::profile_errors;
-use crate::wheel::{ProfileErrors, Teeth, teeth};
+use crate::wheel::quality::{deviations, profile_errors};
+use crate::wheel::{ProfileErrors, RunOut, Teeth, teeth};
 
 /// Results of every stage before the time loop.
 #[derive(Clone, PartialEq)]
@@ -40,13 +41,17 @@ pub struct Stages {
     pub teeth: Teeth,
     /// Stage 3: profile errors; none for ideal teeth.
     pub profile_errors: Option<ProfileErrors>,
+    /// Stage 3 under `contact`: run-out of the pinion and of the gear.
+    pub run_out: [RunOut; 2],
     /// Stage 4: the damaged teeth; none of a healthy pair.
     pub damaged: Vec<DamagedTooth>,
     /// Stage 5: the mesh, pair by pair.
     pub mesh: Mesh,
-    /// Stage 6: the equations of motion.
+    /// Stage 6: the equations of motion of the wheels on rigid supports.
     #[doc(hidden)]
     pub system: System,
+    /// Stage 6 under `contact`: those of wheels, shafts and supports, in place of [`Self::system`].
+    pub structure: Option<Structure>,
     /// Time that each stage took.
     pub timings: Vec<StageTime>,
 }
@@ -114,9 +119,16 @@ pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
     let teeth = teeth(gears, [rig.pinion_shaft.radius_mm, rig.gear_shaft.radius_mm], model);
     clock.lap("tooth profiles");
 
-    let profile_errors = profile_errors(&scenario.quality, &teeth, scenario.seed);
+    let (profile_errors, run_out) = match model {
+        Model::Published | Model::Linear => {
+            (profile_errors(&scenario.quality, &teeth, scenario.seed), [RunOut::default(); 2])
+        }
+        Model::Contact => deviations(&scenario.quality, &teeth, scenario.seed)
+            .map_or((None, [RunOut::default(); 2]), |drawn| (Some(drawn.flanks), drawn.run_out)),
+    };
     clock.lap("profile errors");
 
+    let mut structure = None;
     let (damaged, mesh) = match model {
         Model::Published => {
             cycle = cycle.as_published(gears.pinion_teeth, gears.gear_teeth);
@@ -137,14 +149,52 @@ pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
             if mesh.classes[0].stiffness_n_per_m.contains(&0.0) {
                 return Err(ScenarioError::not_stiff());
             }
+            if mesh.mean_whole_stiffness_n_per_m() == 0.0 {
+                return Err(ScenarioError::nothing_left());
+            }
             (damaged, Mesh::Pairs(Box::new(mesh)))
+        }
+        Model::Contact => {
+            let damaged = damaged_teeth(&scenario.faults, &teeth, scenario.seed)?;
+            clock.lap("fault");
+            let built = Structure::new(gears, rig, &teeth);
+            let points_per_pitch = points_per_pitch(&scenario, &time, &cycle);
+            let sequence = PairSequence::new(gears.pinion_teeth, gears.gear_teeth, &damaged)?;
+            let mass = built.mesh_mass_kg;
+            let mesh = contact_mesh(&scenario, &teeth, &damaged, sequence, points_per_pitch, mass);
+            if mesh.mean_stiffness_n_per_m.is_nan() || mesh.mean_stiffness_n_per_m <= 0.0 {
+                return Err(ScenarioError::not_stiff());
+            }
+            if mesh.contact_ratio > ContactMesh::MOST_CONTACT_RATIO {
+                return Err(ScenarioError::too_many_pairs(
+                    mesh.contact_ratio,
+                    ContactMesh::MOST_CONTACT_RATIO,
+                ));
+            }
+            let meets = |table: &ContactTable| table.kind.pairs_per_cycle > 0 && table.can_touch();
+            if !mesh.classes.iter().any(meets) {
+                return Err(ScenarioError::nothing_left());
+            }
+            structure = Some(built);
+            (damaged, Mesh::Contact(Box::new(mesh)))
         }
     };
     clock.lap("mesh stiffness");
 
     let system = System::new(gears, rig, &teeth, &mesh, model);
-    let mut stages =
-        Stages { time, cycle, teeth, profile_errors, damaged, mesh, system, timings: Vec::new(), scenario };
+    let mut stages = Stages {
+        time,
+        cycle,
+        teeth,
+        profile_errors,
+        run_out,
+        damaged,
+        mesh,
+        system,
+        structure,
+        timings: Vec::new(),
+        scenario,
+    };
     stages.time.first_simulated_sample = stages.start_of_settling();
     clock.lap("equations of motion");
     stages.timings = clock.laps;
@@ -179,7 +229,53 @@ fn pair_mesh(
     PairMesh::new(&pairs, sequence, teeth.path.contact_ratio, points_per_pitch)
 }
 
+/// The mesh under `contact`.
+fn contact_mesh(
+    scenario: &Scenario,
+    teeth: &Teeth,
+    damaged: &[DamagedTooth],
+    sequence: PairSequence,
+    points_per_pitch: NonZeroUsize,
+    mesh_mass_kg: f64,
+) -> ContactMesh {
+    let gears = &scenario.gears;
+    let shape = TipShape { chamfer_mm: gears.chamfer_mm(), relief: gears.flank_relief };
+    let parameters = ContactParameters {
+        damping_ratio: scenario.rig.mesh_damping_ratio,
+        mesh_mass_kg,
+        backlash_m: gears.normal_backlash_mm() * 1e-3,
+    };
+    ContactMesh::new(&pairs(scenario, teeth, damaged), shape, sequence, points_per_pitch, parameters)
+}
+
+impl Simulation {
+    /// How the teeth touched; none under the models whose mesh is closed always.
+    pub fn contact_figures(&self) -> Option<ContactFigures> {
+        self.stages.mesh.contact().map(|_| ContactFigures::of(&self.channels))
+    }
+}
+
 impl Stages {
+    /// (Hz) Natural frequencies, rising: of the mean mesh, closed.
+    pub fn natural_frequencies_hz(&self) -> Vec<f64> {
+        match &self.structure {
+            None => self.system.natural_frequencies_hz().to_vec(),
+            Some(structure) => structure.closed_modes(self.mesh.mean_stiffness_n_per_mm() * 1e3).0,
+        }
+    }
+
+    /// Mode shapes in the order of [`Self::natural_frequencies_hz`], a column each, of unit modal mass: in the wheels' and the
+    /// brake's 13 coordinates, and under `contact` in those of the supports.
+    pub fn mode_shapes(&self) -> DMatrix<f64> {
+        match &self.structure {
+            None => {
+                let shapes = self.system.mode_shapes();
+                DMatrix::from_fn(shapes.nrows(), shapes.ncols(), |row, column| shapes[(row, column)])
+            }
+            Some(structure) => structure.closed_modes(self.mesh.mean_stiffness_n_per_mm() * 1e3).1,
+        }
+    }
+
     /// The tooth pairs, at any position of their path; not under `published`, whose flanks are not conjugate.
     pub fn pairs(&self) -> Pairs<'_> {
         pairs(&self.scenario, &self.teeth, &self.damaged)
@@ -196,6 +292,28 @@ impl Stages {
         let [pinion, gear] = [self.teeth.pinion.teeth, self.teeth.gear.teeth];
         let sequence = PairSequence::new(pinion, gear, &self.damaged)?;
         Ok(pair_mesh(&self.scenario, &self.teeth, &self.damaged, sequence, points_per_pitch))
+    }
+
+    /// The mesh under `contact`, with another number of points from one pair to the next than the time loop has; none under the
+    /// other models.
+    ///
+    /// # Arguments
+    /// * `points_per_pitch` - how many
+    ///
+    /// # Errors
+    /// Damaged teeth that were put beyond a wheel's last one.
+    pub fn contact_mesh(&self, points_per_pitch: NonZeroUsize) -> Result<Option<ContactMesh>, ScenarioError> {
+        let Some(structure) = &self.structure else { return Ok(None) };
+        let [pinion, gear] = [self.teeth.pinion.teeth, self.teeth.gear.teeth];
+        let sequence = PairSequence::new(pinion, gear, &self.damaged)?;
+        let mass = structure.mesh_mass_kg;
+        let (scenario, teeth, damaged) = (&self.scenario, &self.teeth, &self.damaged);
+        Ok(Some(contact_mesh(scenario, teeth, damaged, sequence, points_per_pitch, mass)))
+    }
+
+    /// (N) Force along the line of action that balances the brake's nominal torque.
+    pub fn static_force_n(&self) -> f64 {
+        self.scenario.operation.brake_torque_nm / (self.teeth.gear.base_radius_mm * 1e-3)
     }
 
     /// Whether motor speed and brake torque are constant.
@@ -215,7 +333,7 @@ impl Stages {
         if published || !starts_in_equilibrium || *settle_tolerance == 0.0 || !self.is_steady() {
             return 0;
         }
-        let decay_s = -settle_tolerance.ln() / self.reduced_model().slowest_decay_per_s();
+        let decay_s = -settle_tolerance.ln() / self.reduced_model().slowest_decay_per_s;
         let settling = (decay_s * self.time.sampling_rate_hz).ceil();
         // As a float: a decay that takes forever saturates.
         self.time.first_kept_sample.saturating_sub(settling as usize)
@@ -275,11 +393,22 @@ impl Stages {
             Mesh::Published(mesh) => {
                 Box::new(PublishedForcing::new(mesh, errors, motion, &self.time, nominal, directions))
             }
+            Mesh::Contact(mesh) => {
+                let deviations = PairDeviations {
+                    teeth: &self.teeth,
+                    errors,
+                    eccentricity_m: self.scenario.rig.eccentricity_mm * 1e-3,
+                    run_out: self.run_out,
+                };
+                let (time, count) = (&self.time, directions.len());
+                Box::new(ContactForcing::new(mesh, &deviations, motion, time, nominal, count, first_sample))
+            }
             Mesh::Pairs(mesh) => {
                 let deviations = PairDeviations {
                     teeth: &self.teeth,
                     errors,
                     eccentricity_m: self.scenario.rig.eccentricity_mm * 1e-3,
+                    run_out: self.run_out,
                 };
                 let time = &self.time;
                 Box::new(PairForcing::new(mesh, &deviations, motion, time, nominal, directions, first_sample))
@@ -295,7 +424,9 @@ impl Stages {
             mesh: &self.mesh,
             points_per_revolution: match &self.mesh {
                 Mesh::Published(_) => self.cycle.points_per_pinion_revolution as f64,
-                Mesh::Pairs(mesh) => (mesh.points_per_pitch * self.teeth.pinion.teeth as usize) as f64,
+                Mesh::Pairs(_) | Mesh::Contact(_) => {
+                    (self.mesh.points_per_pitch() * self.teeth.pinion.teeth as usize) as f64
+                }
             },
             source: self,
             brake_torque_nm: self.scenario.operation.brake_torque_nm,
@@ -309,17 +440,37 @@ impl Stages {
     #[doc(hidden)]
     pub fn reduced_model(&self) -> ReducedModel {
         let solver = &self.scenario.solver;
+        let nominal_speed = std::f64::consts::TAU * self.scenario.operation.pinion_speed_hz;
+        if let (Some(structure), Mesh::Contact(mesh)) = (&self.structure, &self.mesh) {
+            let closed = ClosedMesh {
+                stiffness_n_per_m: mesh.mean_stiffness_n_per_m,
+                damping_time_s: mesh.damping_time_s,
+            };
+            let speed = self.initial_motor_speed_rad_per_s();
+            let given = solver.initial_velocity.map(CoordinateVector::from);
+            let velocity = given.unwrap_or_else(|| self.system.rigid_rotation() * speed);
+            let displacement = solver.initial_displacement.map(CoordinateVector::from);
+            let torque = self.scenario.operation.brake_torque_nm;
+            let start = [displacement.as_ref(), Some(&velocity)];
+            return ReducedModel::of_structure(
+                structure,
+                &closed,
+                mesh.tilts(),
+                nominal_speed,
+                torque,
+                start,
+            );
+        }
         let displacement = match (solver.initial_displacement, self.scenario.model) {
             (Some(given), _) => Some(given.into()),
             (None, Model::Published) => Some(CoordinateVector::zeros()),
-            (None, Model::Linear) => None,
+            (None, Model::Linear | Model::Contact) => None,
         };
         let speed = self.initial_motor_speed_rad_per_s();
         let velocity = match solver.initial_velocity {
             Some(given) => given.into(),
             None => self.system.rigid_rotation() * speed,
         };
-        let nominal_speed = std::f64::consts::TAU * self.scenario.operation.pinion_speed_hz;
         ReducedModel::new(&self.system, nominal_speed, displacement.as_ref(), &velocity)
     }
 
@@ -356,7 +507,12 @@ impl Stages {
     /// The error that a solution without bound is.
     pub(crate) fn divergence(&self, diverged: Diverged) -> Error {
         let time_s = diverged.sample as f64 * self.time.step_s();
-        Error::Diverged { time_s, damping_ratios: self.scenario.rig.damping_ratio.per_mode().to_vec() }
+        let (key, damping_ratios) = match &self.structure {
+            None => ("rig.damping_ratio", self.scenario.rig.damping_ratio.per_mode().to_vec()),
+            // The shafts' as well.
+            Some(structure) => ("rig.support.damping_ratio", structure.damping_ratio.clone()),
+        };
+        Error::Diverged { time_s, key, damping_ratios }
     }
 }
 

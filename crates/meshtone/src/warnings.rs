@@ -2,6 +2,7 @@
 
 use crate::error::{ScenarioError, ScenarioWarning};
 use crate::machine::coordinates::{X_GEAR, X_PINION};
+use crate::machine::{Shaft, Structure, WheelBody};
 use crate::scenario::{MemoryLimit, Scenario};
 use crate::sensor::Channels;
 use crate::simulate::{Simulation, Stages, stages};
@@ -45,8 +46,12 @@ pub fn stages_and_warnings(
 }
 
 impl Simulation {
-    /// What the signals show to be doubtful: a mesh that pulls.
+    /// What the signals show to be doubtful: a mesh that pulls. Not under `contact`, whose teeth part:
+    /// [`Simulation::contact_figures`] says for how long.
     pub fn warnings_of_signals(&self) -> Vec<ScenarioWarning> {
+        if self.stages.mesh.contact().is_some() {
+            return Vec::new();
+        }
         tension(&self.channels, !self.stages.damaged.is_empty()).into_iter().collect()
     }
 }
@@ -74,8 +79,8 @@ fn tension(channels: &Channels, is_damaged: bool) -> Option<ScenarioWarning> {
 }
 
 impl Stages {
-    /// What deserves attention though it can be simulated: wheels whose accelerations cancel in the sum that the channels
-    /// are, and a settling too short for the slowest mode.
+    /// What deserves attention though it can be simulated: wheels whose accelerations, or whose supports', cancel in the channels, and
+    /// a settling too short for the slowest mode.
     pub fn warnings(&self) -> Vec<ScenarioWarning> {
         self.equal_wheels().into_iter().chain(self.unsettled()).collect()
     }
@@ -83,23 +88,44 @@ impl Stages {
     /// (-) Part of the starting transient that is left where the kept signal starts, by the slowest active mode's decay.
     pub fn transient_remainder(&self) -> f64 {
         let settling_s = self.time.first_kept_sample as f64 * self.time.step_s();
-        (-self.reduced_model().slowest_decay_per_s() * settling_s).exp()
+        (-self.reduced_model().slowest_decay_per_s * settling_s).exp()
     }
 
     fn equal_wheels(&self) -> Option<ScenarioWarning> {
-        let mass = &self.system.mass_diagonal;
-        (mass[X_GEAR] == mass[X_PINION]).then(|| {
-            let message = "both wheels have the same mass and the same bearings: they move in opposition, and the \
-                           horizontal and vertical channels, which are the sum of both wheels' accelerations, are 0; give one \
-                           wheel its own mass (rig.gear_inertia.mass_kg)";
-            ScenarioWarning::new("gears.gear_teeth", message)
-        })
+        let message = match &self.structure {
+            None => {
+                let mass = &self.system.mass_diagonal;
+                (mass[X_GEAR] == mass[X_PINION]).then_some(
+                    "both wheels have the same mass and the same bearings: they move in opposition, and the \
+                     horizontal and vertical channels, which are the sum of both wheels' accelerations, are 0; give one \
+                     wheel its own mass (rig.gear_inertia.mass_kg)",
+                )
+            }
+            Some(structure) => self.sides_are_alike(structure).then_some(
+                "both wheels have the same mass, shafts and bearings: they and their supports move in opposition, and the \
+                 horizontal and vertical channels, which are the mean of both supports' accelerations, are 0; give one wheel \
+                 its own mass (rig.gear_inertia.mass_kg) or shaft (rig.gear_shaft.bearing_span_mm)",
+            ),
+        };
+        message.map(|message| ScenarioWarning::new("gears.gear_teeth", message))
+    }
+
+    /// Whether wheels and shafts are such that both supports move alike, in opposition.
+    fn sides_are_alike(&self, structure: &Structure) -> bool {
+        let rig = &self.scenario.rig;
+        let side = |body: &WheelBody, shaft: &Shaft| {
+            let bearing = shaft.bearing_stiffness_n_per_m.unwrap_or(rig.bearing_stiffness_n_per_m);
+            let bends =
+                [shaft.radius_mm, shaft.bearing_span_mm, shaft.wheel_at, shaft.damping_ratio, bearing];
+            (body.mass_kg, body.transverse_kgm2, bends)
+        };
+        side(&structure.pinion, &rig.pinion_shaft) == side(&structure.gear, &rig.gear_shaft)
     }
 
     fn unsettled(&self) -> Option<ScenarioWarning> {
         let remainder = self.transient_remainder();
         (remainder > TOLERATED_TRANSIENT).then(|| {
-            let decay = self.reduced_model().slowest_decay_per_s();
+            let decay = self.reduced_model().slowest_decay_per_s;
             let settling_s = self.time.first_kept_sample as f64 * self.time.step_s();
             let advice = if decay > 0.0 {
                 format!("it takes {:.3} s to fall to 1 %", -TOLERATED_TRANSIENT.ln() / decay)

@@ -6,7 +6,7 @@ use std::time::Duration;
 use meshtone::signal::{IndicatorValue, Indicators, Shaft};
 use serde_json::{Map, Value, json};
 
-use super::{ChannelSummary, Summary};
+use super::{ChannelSummary, MeshForce, Summary};
 
 impl Summary {
     /// Writes the summary as indented JSON.
@@ -46,12 +46,7 @@ impl Summary {
                 "mean_n_per_mm": stiffness.mean_n_per_mm,
                 "max_n_per_mm": stiffness.max_n_per_mm,
             },
-            "mesh_force": {
-                "min_n": force.min_n,
-                "mean_n": force.mean_n,
-                "max_n": force.max_n,
-                "tension_fraction": force.tension_fraction,
-            },
+            "mesh_force": mesh_force(force),
             "channels": channels.collect::<Map<_, _>>(),
             "indicators": self.indicators_json(),
             "computing_time_ms": self.times(),
@@ -84,6 +79,25 @@ fn averaged(indicators: &Indicators) -> Value {
         unit => (format!("{}_{unit}", entry.name), json!(entry.value)),
     };
     Value::Object(entries.map(named).collect())
+}
+
+/// With what the model says of it: for how long the mesh pulls, or how its teeth touch.
+fn mesh_force(force: &MeshForce) -> Value {
+    let mut entries = Map::new();
+    let mut insert = |name: &str, value: Value| entries.insert(name.to_string(), value);
+    insert("min_n", json!(force.min_n));
+    insert("mean_n", json!(force.mean_n));
+    insert("max_n", json!(force.max_n));
+    if let Some(fraction) = force.tension_fraction {
+        insert("tension_fraction", json!(fraction));
+    }
+    if let Some(contact) = &force.contact {
+        insert("apart_fraction", json!(contact.apart_fraction));
+        insert("back_flank_fraction", json!(contact.back_flank_fraction));
+        insert("back_flank_hits", json!(contact.back_flank_hits));
+        insert("largest_n", json!(contact.largest_force_n));
+    }
+    Value::Object(entries)
 }
 
 fn indicators(channel: &ChannelSummary) -> Value {

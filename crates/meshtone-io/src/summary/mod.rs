@@ -13,7 +13,7 @@ use meshtone::scenario::{Fault, ScenarioWarning};
 use meshtone::signal::{ChainSettings, Indicators, Shaft, SimulatedShafts, kurtosis, peak, rms};
 
 use crate::run_identity::RunIdentity;
-use meshtone::sensor::ChannelKind;
+use meshtone::sensor::{ChannelKind, ContactFigures};
 
 pub use read::read_run;
 
@@ -46,7 +46,7 @@ pub struct Summary {
     pub samples_per_pinion_revolution: usize,
     /// (-) Contact ratio.
     pub contact_ratio: f64,
-    /// (Hz) The 13 natural frequencies at the mean mesh stiffness, rising.
+    /// (Hz) The natural frequencies at the mean mesh stiffness, rising: 13, under `contact` 17.
     pub natural_frequencies_hz: Vec<f64>,
     /// Over a revolution of the gear.
     pub mesh_stiffness: MeshStiffness,
@@ -100,8 +100,10 @@ pub struct MeshForce {
     pub mean_n: f64,
     /// (N) Largest.
     pub max_n: f64,
-    /// (-) Part of the time in which the mesh pulls.
-    pub tension_fraction: f64,
+    /// (-) Part of the time in which the mesh pulls; none under `contact`, whose teeth never do.
+    pub tension_fraction: Option<f64>,
+    /// How the teeth touched; only under `contact`.
+    pub contact: Option<ContactFigures>,
 }
 
 /// Indicators of one signal.
@@ -131,6 +133,7 @@ impl Summary {
         let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
         let stiffness = Extremes::of(&stages.mesh.stiffness_n_per_mm());
         let force = Extremes::of(&channels.mesh_force_n);
+        let contact = simulation.contact_figures();
         let stage_times = simulation.timings.iter().map(|time| (time.stage.to_string(), time.elapsed));
         Self {
             format_version: FORMAT_VERSION,
@@ -144,7 +147,7 @@ impl Summary {
             start_s: channels.start_s,
             samples_per_pinion_revolution: stages.time.samples_per_pinion_revolution,
             contact_ratio: stages.teeth.contact.contact_ratio,
-            natural_frequencies_hz: stages.system.natural_frequencies_hz().to_vec(),
+            natural_frequencies_hz: stages.natural_frequencies_hz(),
             mesh_stiffness: MeshStiffness {
                 min_n_per_mm: stiffness.min,
                 mean_n_per_mm: stiffness.mean,
@@ -154,7 +157,8 @@ impl Summary {
                 min_n: force.min,
                 mean_n: force.mean,
                 max_n: force.max,
-                tension_fraction: channels.tension_fraction(),
+                tension_fraction: contact.is_none().then(|| channels.tension_fraction()),
+                contact,
             },
             channels: ChannelKind::ALL
                 .map(|kind| {

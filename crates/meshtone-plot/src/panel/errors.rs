@@ -34,8 +34,8 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, along: [f64; 2], side: &Side
         None => axes.note(canvas, "ideal teeth"),
     }
     axes.horizontal(canvas, side.contact_x_mm(), CONTACT);
-    if let Some(relief) = side.relief_x_mm.filter(|relief| *relief > side.contact_x_mm()) {
-        axes.horizontal(canvas, relief, RELIEF);
+    for (shape, _) in side.tip_shapes.iter().filter(|(x_mm, _)| *x_mm > side.contact_x_mm()) {
+        axes.horizontal(canvas, *shape, RELIEF);
     }
     axes.frame(canvas);
 }

@@ -16,7 +16,7 @@ use crate::ticks::Ticks;
 
 /// Where contact starts, here and at the profile errors.
 pub(super) const CONTACT: Stroke = Stroke::dashed(colour::GREEN, 1.6, &[7.0, 3.0]);
-/// Where the tip relief starts.
+/// Where the tip relief and the chamfer start.
 pub(super) const RELIEF: Stroke = Stroke::dashed(colour::PURPLE, 1.6, &[2.0, 2.5]);
 const CONTACT_NAME: &str = "contact start";
 /// (px) From a line to the baseline of its name.
@@ -52,8 +52,9 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, along: [f64; 2], side: &Side
     let is_below = contact_name_is_below(&axes, side);
     let contact_name = if is_below { BELOW } else { ABOVE };
     landmark(canvas, &axes, (side.contact_x_mm(), CONTACT_NAME), CONTACT, contact_name);
-    if let Some(relief) = side.relief_x_mm.filter(|relief| *relief > side.contact_x_mm()) {
-        landmark(canvas, &axes, (relief, "tip relief"), RELIEF, ABOVE);
+    for (n, &shape) in side.tip_shapes.iter().filter(|(x_mm, _)| *x_mm > side.contact_x_mm()).enumerate() {
+        // A chamfer and a relief start near each other.
+        landmark(canvas, &axes, shape, RELIEF, if n == 0 { ABOVE } else { BELOW });
     }
     if let Some(tooth) = side.tooth {
         caption(canvas, &axes, side, tooth, if is_below { CAPTION_LINE } else { 0.0 });

@@ -93,9 +93,13 @@ fn extremes(values: &[f64]) -> Option<(f64, f64)> {
 }
 
 fn quality(scenario: &Scenario) -> String {
-    match (&scenario.quality.profile_errors, scenario.quality.din_grade) {
-        (Some(_), _) => "given profile errors".to_owned(),
-        (None, 0) => "ideal teeth".to_owned(),
-        (None, grade) => format!("DIN 3962 grade {grade}"),
+    let quality = &scenario.quality;
+    let contact = scenario.model == Model::Contact;
+    match (&quality.profile_errors, quality.iso_class, quality.din_grade) {
+        (Some(_), ..) => "given profile errors".to_owned(),
+        (None, class @ 1.., _) if contact => format!("ISO 1328-1 class {class}"),
+        (None, _, 0) => "ideal teeth".to_owned(),
+        (None, _, grade) if contact => format!("DIN 3961 grade {grade}"),
+        (None, _, grade) => format!("DIN 3962 grade {grade}"),
     }
 }

@@ -2,6 +2,7 @@
 
 use meshtone::Stages;
 use meshtone::damage::DamagedTooth;
+use meshtone::scenario::Model;
 use meshtone::wheel::ErrorTable;
 use meshtone::wheel::{ToothProfile, Wheel, WheelName};
 
@@ -17,8 +18,8 @@ pub(super) struct Side<'a> {
     pub(super) profile: &'a ToothProfile,
     /// Profile index where contact starts.
     pub(super) contact_index: usize,
-    /// (mm) x where the tip relief starts.
-    pub(super) relief_x_mm: Option<f64>,
+    /// (mm) x where what shapes the tip starts, and its name.
+    pub(super) tip_shapes: Vec<(f64, &'static str)>,
     /// What is left of the tooth; none of a sound one.
     pub(super) tooth: Option<&'a DamagedTooth>,
     /// All damaged teeth of the wheel.
@@ -43,7 +44,7 @@ impl<'a> Side<'a> {
             wheel: stages.teeth.wheel(name),
             profile: stages.teeth.profile(name),
             contact_index: stages.teeth.initial_contact_index(name),
-            relief_x_mm: relief_x_mm(stages, stages.teeth.profile(name)),
+            tip_shapes: tip_shapes(stages, stages.teeth.profile(name)),
             tooth: damaged.min_by_key(|tooth| tooth.tooth),
             damaged: damage::damaged_teeth(stages, name),
             errors_mm: errors.map(|errors| match name {
@@ -121,7 +122,18 @@ impl<'a> Side<'a> {
 
 /// From the tip inwards, as the scenario says: the resampled pinion profile's own index is that of the profile before
 /// resampling.
-fn relief_x_mm(stages: &Stages, profile: &ToothProfile) -> Option<f64> {
-    let relief = stages.scenario.gears.tip_relief?;
-    (profile.len() > 1).then(|| profile.tip_x_mm() - relief.length_mm)
+fn tip_shapes(stages: &Stages, profile: &ToothProfile) -> Vec<(f64, &'static str)> {
+    let gears = &stages.scenario.gears;
+    let of_model = match stages.scenario.model {
+        Model::Contact => vec![
+            (gears.chamfer_mm(), "chamfer"),
+            (
+                if gears.flank_relief.amount_um > 0.0 { gears.flank_relief.length_mm } else { 0.0 },
+                "tip relief",
+            ),
+        ],
+        _ => gears.tip_relief.iter().map(|relief| (relief.length_mm, "tip relief")).collect(),
+    };
+    let shown = of_model.into_iter().filter(|(length_mm, _)| *length_mm > 0.0 && profile.len() > 1);
+    shown.map(|(length_mm, name)| (profile.tip_x_mm() - length_mm, name)).collect()
 }

@@ -138,13 +138,15 @@ struct Mesh {
 impl Mesh {
     fn new(stages: &Stages, pitches: Range<i64>) -> Self {
         let count = (pitches.end + 1 - pitches.start).max(0) as usize;
-        let mesh_n_per_mm = match stages.mesh.pairs() {
-            Some(mesh) => {
-                // The cycle repeats: what comes before the first pair is its end.
-                let start = pitches.start.rem_euclid(mesh.sequence.cycle() as i64) as usize;
-                mesh.stiffness_n_per_mm(start..start + count)
-            }
-            None => {
+        // The cycle repeats: what comes before the first pair is its end.
+        let window = |cycle: usize| {
+            let start = pitches.start.rem_euclid(cycle as i64) as usize;
+            start..start + count
+        };
+        let mesh_n_per_mm = match (stages.mesh.pairs(), stages.mesh.contact()) {
+            (Some(mesh), _) => mesh.stiffness_n_per_mm(window(mesh.sequence.cycle())),
+            (None, Some(mesh)) => mesh.stiffness_n_per_mm(window(mesh.sequence.cycle())),
+            (None, None) => {
                 let cycle = stages.mesh.stiffness_n_per_mm();
                 let points = stages.mesh.points_per_pitch();
                 let start = pitches.start * points as i64;

@@ -9,8 +9,16 @@ use crate::solver::LANES;
 /// What decides how much a step costs; a group costs what its most expensive simulation does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Kind {
-    published: bool,
+    law: Law,
     motion: Motion,
+}
+
+/// Which mesh law a scenario has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Law {
+    Linear,
+    Published,
+    Contact,
 }
 
 /// What the time loop of a scenario is compiled for; see [`crate::solver`]'s sizes.
@@ -31,7 +39,12 @@ impl Kind {
         let effects = scenario.faults.iter().map(|fault| fault.damage.effect());
         let effect = effects.max().unwrap_or(MeshEffect::Flat);
         let motion = if steady && at_rest { Motion::Steady(effect) } else { Motion::General };
-        Self { published: scenario.model == Model::Published, motion }
+        let law = match scenario.model {
+            Model::Linear => Law::Linear,
+            Model::Published => Law::Published,
+            Model::Contact => Law::Contact,
+        };
+        Self { law, motion }
     }
 }
 
@@ -39,8 +52,7 @@ impl Kind {
     /// Whether simulations of both kinds may be in one group. What varies its speed or load is compiled apart, and costs too
     /// much to mix with the rest.
     fn goes_with(self, other: Self) -> bool {
-        self.published == other.published
-            && (self.motion == Motion::General) == (other.motion == Motion::General)
+        self.law == other.law && (self.motion == Motion::General) == (other.motion == Motion::General)
     }
 }
 

@@ -309,7 +309,7 @@ fn edges(
         return None;
     }
     let (a, b) = match model {
-        Model::Linear => {
+        Model::Linear | Model::Contact => {
             let distance = |range: &[f64]| first_minimum(range.iter().map(|d| d.abs()));
             (distance(&above[..deepest]), deepest + distance(&above[deepest..]))
         }

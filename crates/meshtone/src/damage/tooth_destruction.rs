@@ -246,7 +246,7 @@ impl ToothDestruction {
             flank_y_mm[i] = match model {
                 // Model: where line or roughness lie outside the flank, the published code adds metal.
                 Model::Published => ground,
-                Model::Linear => ground.min(profile.y_mm[i]),
+                Model::Linear | Model::Contact => ground.min(profile.y_mm[i]),
             };
             if flank_y_mm[i] <= -profile.y_mm[i] {
                 return Err(ScenarioError::new(

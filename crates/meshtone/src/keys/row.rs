@@ -19,7 +19,7 @@ pub(crate) struct Row<S> {
     range: Range,
     rule: &'static str,
     shown: Shown,
-    ignored_by_published: bool,
+    ignored_by: &'static [&'static str],
     cell: Box<dyn Cell<S>>,
 }
 
@@ -91,7 +91,7 @@ impl<S> Row<S> {
             range: Range::finite(),
             rule: "",
             shown: Shown::Default,
-            ignored_by_published: false,
+            ignored_by: &[],
             cell,
         }
     }
@@ -135,24 +135,24 @@ impl<S> Row<S> {
         Self { shown: Shown::Alternative(value), ..self }
     }
 
-    /// The published model simulates the default whatever the key says.
-    pub(crate) fn ignored_by_published(self) -> Self {
-        Self { ignored_by_published: true, ..self }
+    /// Models that simulate the default whatever the key says, by their names.
+    pub(crate) fn ignored_by(self, models: &'static [&'static str]) -> Self {
+        Self { ignored_by: models, ..self }
     }
 
     /// The same row of another section, with the value elsewhere.
     pub(super) fn moved<T>(self, move_cell: impl FnOnce(Box<dyn Cell<S>>) -> Box<dyn Cell<T>>) -> Row<T> {
-        let Self { name, unit, meaning, absent, range, rule, shown, ignored_by_published, cell } = self;
+        let Self { name, unit, meaning, absent, range, rule, shown, ignored_by, cell } = self;
         let cell = move_cell(cell);
-        Row { name, unit, meaning, absent, range, rule, shown, ignored_by_published, cell }
+        Row { name, unit, meaning, absent, range, rule, shown, ignored_by, cell }
     }
 
     pub(crate) fn name(&self) -> &'static str {
         self.name
     }
 
-    pub(crate) fn is_ignored_by_published(&self) -> bool {
-        self.ignored_by_published
+    pub(crate) fn is_ignored_by(&self, model: &str) -> bool {
+        self.ignored_by.contains(&model)
     }
 
     /// Sets the key in one section to its value in another.

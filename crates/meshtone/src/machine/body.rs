@@ -34,7 +34,7 @@ impl WheelBody {
         let mass_kg = given.mass_kg.unwrap_or(solid_mass);
         let twelfths = match model {
             Model::Published => 1.0,
-            Model::Linear => 12.0,
+            Model::Linear | Model::Contact => 12.0,
         };
         Self {
             mass_kg,

@@ -1,4 +1,4 @@
-//! The 13 coordinates, in their order.
+//! The coordinates, in their order: 13 of the wheels and the brake, and 4 of supports that move.
 //!
 //! x and y lie in the plane of the wheels, z along the shafts; θ turns about z, φ and ψ tilt the wheel
 //! about x and y. Displacements in m, rotations in rad.
@@ -45,3 +45,18 @@ pub const NAMES: [&str; COORDINATES] = [
     "x_g", "y_g", "x_p", "y_p", "theta_g", "theta_p", "theta_b", "z_g", "z_p", "phi_g", "phi_p", "psi_g",
     "psi_p",
 ];
+
+/// Number of coordinates with those of the supports.
+pub const COORDINATES_WITH_SUPPORTS: usize = 17;
+
+/// Support of the gear's shaft, x.
+pub const X_GEAR_SUPPORT: usize = 13;
+/// Support of the gear's shaft, y.
+pub const Y_GEAR_SUPPORT: usize = 14;
+/// Support of the pinion's shaft, x.
+pub const X_PINION_SUPPORT: usize = 15;
+/// Support of the pinion's shaft, y.
+pub const Y_PINION_SUPPORT: usize = 16;
+
+/// Names of the supports' coordinates, which follow [`NAMES`].
+pub const SUPPORT_NAMES: [&str; COORDINATES_WITH_SUPPORTS - COORDINATES] = ["x_gs", "y_gs", "x_ps", "y_ps"];

@@ -8,10 +8,13 @@ pub mod coordinates;
 mod mesh_directions;
 mod modes;
 mod rig;
+mod shaft_bending;
+mod structure;
 mod system;
 
 pub use body::WheelBody;
 pub use mesh_directions::MeshDirections;
 pub use modes::Modes;
-pub use rig::{DampingRatio, Rig, Shaft, WheelInertia};
+pub use rig::{DampingRatio, Rig, Shaft, Support, WheelInertia};
+pub use structure::{ClosedMesh, Structure};
 pub use system::{Excitation, System};

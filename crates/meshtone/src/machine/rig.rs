@@ -1,5 +1,7 @@
 //! The rig around the wheels: bearings, shafts, brake.
 
+use std::ops::Bound::Excluded;
+
 use meshtone_toml::{ReadResult, TomlValue};
 
 use crate::keys::{
@@ -28,6 +30,10 @@ pub struct Rig {
     pub pinion_inertia: WheelInertia,
     /// Mass and inertias of the gear, instead of those of a solid disc.
     pub gear_inertia: WheelInertia,
+    /// What each shaft's bearings sit in.
+    pub support: Support,
+    /// (-) Damping of the contact of two teeth over the critical damping of the wheels' rotation on the mean mesh. Default 0.15.
+    pub mesh_damping_ratio: f64,
 }
 
 impl Default for Rig {
@@ -38,10 +44,12 @@ impl Default for Rig {
             brake_inertia_kgm2: 4.5e-3,
             damping_ratio: DampingRatio::Uniform(0.05),
             eccentricity_mm: 0.0,
-            pinion_shaft: Shaft { length_mm: 200.0, radius_mm: 10.0 },
-            gear_shaft: Shaft { length_mm: 600.0, radius_mm: 10.0 },
+            pinion_shaft: Shaft::new(200.0, 10.0),
+            gear_shaft: Shaft::new(600.0, 10.0),
             pinion_inertia: WheelInertia::default(),
             gear_inertia: WheelInertia::default(),
+            support: Support::default(),
+            mesh_damping_ratio: 0.15,
         }
     }
 }
@@ -65,14 +73,15 @@ impl Keys for Rig {
                 field!(bearing_stiffness_n_per_m),
             )
             .range(STIFFNESS)
-            .ignored_by_published(),
+            .ignored_by(&["published"]),
             row(
                 "wheel_rotational_stiffness_nm_per_rad",
                 "N m/rad",
                 "the stiffness of each wheel against tilting, about x and about y",
                 field!(wheel_rotational_stiffness_nm_per_rad),
             )
-            .range(STIFFNESS),
+            .range(STIFFNESS)
+            .ignored_by(&["contact"]),
             row("brake_inertia_kgm2", "kg m²", "the inertia of the brake", field!(brake_inertia_kgm2)).range(MASS),
             row(
                 "damping_ratio",
@@ -84,11 +93,12 @@ impl Keys for Rig {
                 Range::below_one()
                     .message("must be from 0 to less than 1 (1 is critical damping)")
                     .help("a usual ratio is 0.05, which is 5 %"),
-            ),
+            )
+            .ignored_by(&["contact"]),
             row("eccentricity_mm", "mm", "the eccentricity of both wheels", field!(eccentricity_mm))
                 .range(Range::not_negative())
                 .rule("less than the module")
-                .ignored_by_published(),
+                .ignored_by(&["published"]),
             row("pinion_shaft", "", "the motor's shaft", field!(pinion_shaft)),
             row("gear_shaft", "", "the brake's shaft", field!(gear_shaft)),
             row(
@@ -102,6 +112,21 @@ impl Keys for Rig {
             row("gear_inertia", "", "the same of the gear", field!(gear_inertia))
                 .otherwise(DISC)
                 .alternative("{ mass_kg = 1.20, polar_inertia_kgm2 = 1.95e-3, transverse_inertia_kgm2 = 1.0e-3 }"),
+            row(
+                "support",
+                "",
+                "what the bearings of each shaft sit in, two alike: mass, stiffness to the base and to one another, damping",
+                field!(support),
+            )
+            .ignored_by(&["linear", "published"]),
+            row(
+                "mesh_damping_ratio",
+                "-",
+                "the damping of teeth in contact over the critical damping of the wheels' rotation on the mean mesh stiffness",
+                field!(mesh_damping_ratio),
+            )
+            .range(Range::below_one().help("measured ratios are 0.03 to 0.17"))
+            .ignored_by(&["linear", "published"]),
         ]
     }
 }
@@ -122,6 +147,72 @@ impl Rig {
             )?;
         }
         Ok(())
+    }
+
+    /// The shaft of a wheel.
+    ///
+    /// # Arguments
+    /// * `wheel` - which
+    pub fn shaft(&self, wheel: WheelName) -> &Shaft {
+        match wheel {
+            WheelName::Pinion => &self.pinion_shaft,
+            WheelName::Gear => &self.gear_shaft,
+        }
+    }
+}
+
+/// What the bearings of each of the two shafts sit in: a bracket or the wall of a housing, that moves across the shafts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Support {
+    /// (kg) Mass of each support. Default 1.6.
+    pub mass_kg: f64,
+    /// (N/m) Stiffness between each support and the base, in x and y. Default 1.6e8.
+    pub stiffness_n_per_m: f64,
+    /// (N/m) Stiffness between the two supports, in x and y. Default 5e8.
+    pub coupling_n_per_m: f64,
+    /// (-) Damping ratio of what lies between supports and base. Default 0.025.
+    pub damping_ratio: f64,
+}
+
+impl Default for Support {
+    fn default() -> Self {
+        Self { mass_kg: 1.6, stiffness_n_per_m: 1.6e8, coupling_n_per_m: 5e8, damping_ratio: 0.025 }
+    }
+}
+
+/// Structural damping, as a part of critical damping.
+const STRUCTURAL_DAMPING: Range = Range::below_one().help("a bolted structure has 0.01 to 0.05");
+
+impl Keys for Support {
+    fn start() -> Self {
+        Self::default()
+    }
+
+    fn rows() -> Vec<Row<Self>> {
+        vec![
+            row("mass_kg", "kg", "the mass of each support", field!(mass_kg)).range(MASS),
+            row(
+                "stiffness_n_per_m",
+                "N/m",
+                "the stiffness between each support and the base, in x and in y",
+                field!(stiffness_n_per_m),
+            )
+            .range(STIFFNESS),
+            row(
+                "coupling_n_per_m",
+                "N/m",
+                "the stiffness between the two supports, in x and in y",
+                field!(coupling_n_per_m),
+            )
+            .range(Range::not_negative().slip_above(1e15)),
+            row(
+                "damping_ratio",
+                "-",
+                "the damping ratio of the supports and of what holds them",
+                field!(damping_ratio),
+            )
+            .range(STRUCTURAL_DAMPING),
+        ]
     }
 }
 
@@ -181,11 +272,36 @@ pub struct Shaft {
     pub length_mm: f64,
     /// (mm) Radius.
     pub radius_mm: f64,
+    /// (mm) Distance between the two bearings that the shaft bends on. Default 130.
+    pub bearing_span_mm: f64,
+    /// (-) Where between them the wheel sits, as a part of the span from the bearing at negative z. Default 0.5.
+    pub wheel_at: f64,
+    /// (N/m) Stiffness of both bearings together; none for [`Rig::bearing_stiffness_n_per_m`].
+    pub bearing_stiffness_n_per_m: Option<f64>,
+    /// (-) Damping ratio of the shaft and its bearings. Default 0.025.
+    pub damping_ratio: f64,
+}
+
+impl Shaft {
+    /// A shaft with the wheel midway between its bearings, and the rest at its default.
+    ///
+    /// # Arguments
+    /// As the fields of the same names.
+    pub fn new(length_mm: f64, radius_mm: f64) -> Self {
+        Self {
+            length_mm,
+            radius_mm,
+            bearing_span_mm: 130.0,
+            wheel_at: 0.5,
+            bearing_stiffness_n_per_m: None,
+            damping_ratio: 0.025,
+        }
+    }
 }
 
 impl Keys for Shaft {
     fn start() -> Self {
-        Self { length_mm: f64::NAN, radius_mm: f64::NAN }
+        Self::new(f64::NAN, f64::NAN)
     }
 
     fn rows() -> Vec<Row<Self>> {
@@ -195,6 +311,38 @@ impl Keys for Shaft {
             row("radius_mm", "mm", "the radius, which is also that of the wheel's bore", field!(radius_mm))
                 .range(Range::positive())
                 .rule("less than the wheel's root radius"),
+            row(
+                "bearing_span_mm",
+                "mm",
+                "the distance between the two bearings on which the shaft bends",
+                field!(bearing_span_mm),
+            )
+            .range(Range::positive().slip_above(1e5)),
+            row(
+                "wheel_at",
+                "-",
+                "where between the bearings the wheel sits, as a part of their distance",
+                field!(wheel_at),
+            )
+            .range(
+                Range::between(Excluded(0.0), Excluded(1.0))
+                    .message("must be more than 0 and less than 1 (0.5: midway between the bearings)"),
+            ),
+            row(
+                "bearing_stiffness_n_per_m",
+                "N/m",
+                "the stiffness of both bearings together, across the shaft",
+                field!(bearing_stiffness_n_per_m),
+            )
+            .otherwise("`rig.bearing_stiffness_n_per_m`")
+            .range(STIFFNESS),
+            row(
+                "damping_ratio",
+                "-",
+                "the damping ratio of the shaft and its bearings",
+                field!(damping_ratio),
+            )
+            .range(STRUCTURAL_DAMPING),
         ]
     }
 }

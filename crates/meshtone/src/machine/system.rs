@@ -207,7 +207,7 @@ fn in_turned(directions: &MeshDirections, stiffness: &DirectionMatrix) -> Coordi
 }
 
 /// (N m/rad) `π r⁴ G/(2 l)`.
-fn torsional_stiffness(shaft: &Shaft, gears: &Gears) -> f64 {
+pub(super) fn torsional_stiffness(shaft: &Shaft, gears: &Gears) -> f64 {
     let (radius, length) = (shaft.radius_mm * 1e-3, shaft.length_mm * 1e-3);
     PI * radius.powi(4) * gears.material.shear_modulus_mpa() * 1e6 / (2.0 * length)
 }

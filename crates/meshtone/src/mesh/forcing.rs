@@ -1,5 +1,7 @@
 //! The right-hand side in blocks of samples, as fast as the solution.
 
+use super::contact_forcing::PairsBlock;
+
 /// Forcing of successive samples.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ForcingBlock {
@@ -7,6 +9,8 @@ pub(crate) struct ForcingBlock {
     pub(crate) errors: Vec<Vec<f64>>,
     /// Entries of the mesh's table, where they are known beforehand.
     pub(crate) entries: Vec<u32>,
+    /// The pairs, under `contact`.
+    pub(crate) pairs: PairsBlock,
     /// (rad) Angle of the motor less that of the rigid rotation at the nominal speed.
     pub(crate) motor_lead_rad: Vec<f64>,
     /// (N m) Torque of the brake less its nominal value.

@@ -1,5 +1,10 @@
 //! The mesh: which teeth meet, how stiff they are together, how far their flanks deviate, and what force that makes.
 
+mod bridging;
+pub(crate) mod contact_forcing;
+mod contact_mesh;
+mod contact_pairs;
+mod corner;
 pub(crate) mod forcing;
 pub(crate) mod law;
 mod load_state;
@@ -9,7 +14,13 @@ mod pair_mesh;
 #[doc(hidden)]
 pub mod published;
 mod sequence;
+mod static_mesh;
 
+pub(crate) use contact_forcing::ContactForcing;
+pub(crate) use contact_mesh::ContactParameters;
+pub use contact_mesh::{ContactMesh, ContactTable};
+pub use contact_pairs::ContactState;
+pub(crate) use contact_pairs::TipShape;
 pub use load_state::LoadState;
 pub(crate) use load_state::{DIRECTIONS, DirectionMatrix, DirectionVector, ROTATION};
 pub use pair::{PairState, Pairs};
@@ -18,6 +29,7 @@ pub use pair_mesh::{PairMesh, PairTable};
 #[doc(hidden)]
 pub use published::PublishedMesh;
 pub use sequence::{PairKind, PairSequence};
+pub use static_mesh::StaticMesh;
 
 use law::{MeshTable, PublishedCycle, Reduction};
 use nalgebra::SMatrix;
@@ -31,6 +43,8 @@ pub enum Mesh {
     Published(Box<PublishedMesh>),
     /// A sequence of tooth pairs.
     Pairs(Box<PairMesh>),
+    /// A sequence of tooth pairs that push and never pull.
+    Contact(Box<ContactMesh>),
 }
 
 /// What the mesh can do to the wheels: which of its directions it uses and couples, and its mean stiffness.
@@ -49,7 +63,15 @@ impl Mesh {
     pub fn pairs(&self) -> Option<&PairMesh> {
         match self {
             Self::Pairs(mesh) => Some(mesh),
-            Self::Published(_) => None,
+            Self::Published(_) | Self::Contact(_) => None,
+        }
+    }
+
+    /// The pairs in contact; only under `contact`.
+    pub fn contact(&self) -> Option<&ContactMesh> {
+        match self {
+            Self::Contact(mesh) => Some(mesh),
+            Self::Published(_) | Self::Pairs(_) => None,
         }
     }
 
@@ -58,7 +80,7 @@ impl Mesh {
     pub fn published(&self) -> Option<&PublishedMesh> {
         match self {
             Self::Published(mesh) => Some(mesh),
-            Self::Pairs(_) => None,
+            Self::Pairs(_) | Self::Contact(_) => None,
         }
     }
 
@@ -67,6 +89,7 @@ impl Mesh {
         match self {
             Self::Published(mesh) => mesh.grid.points_per_pitch,
             Self::Pairs(mesh) => mesh.points_per_pitch,
+            Self::Contact(mesh) => mesh.points_per_pitch,
         }
     }
 
@@ -76,6 +99,7 @@ impl Mesh {
         match self {
             Self::Published(mesh) => mesh.stiffness.mesh_n_per_mm.clone(),
             Self::Pairs(mesh) => mesh.stiffness_n_per_mm(0..mesh.sequence.gear_teeth()),
+            Self::Contact(mesh) => mesh.stiffness_n_per_mm(0..mesh.sequence.gear_teeth()),
         }
     }
 
@@ -84,6 +108,7 @@ impl Mesh {
         match self {
             Self::Published(mesh) => mesh.stiffness.healthy_mesh_n_per_mm.clone(),
             Self::Pairs(mesh) => mesh.healthy_stiffness_n_per_mm(),
+            Self::Contact(mesh) => mesh.healthy_stiffness_n_per_mm(),
         }
     }
 
@@ -92,6 +117,7 @@ impl Mesh {
         match self {
             Self::Published(mesh) => mesh.stiffness.mean_n_per_mm(),
             Self::Pairs(mesh) => mesh.mean_whole_stiffness_n_per_m() * 1e-3,
+            Self::Contact(mesh) => mesh.mean_stiffness_n_per_m * 1e-3,
         }
     }
 
@@ -100,6 +126,7 @@ impl Mesh {
         match self {
             Self::Published(mesh) => &mesh.load.nominal,
             Self::Pairs(mesh) => &mesh.nominal,
+            Self::Contact(mesh) => &mesh.nominal,
         }
     }
 
@@ -107,6 +134,7 @@ impl Mesh {
         let (mean_stiffness, others): (_, Box<dyn Iterator<Item = &LoadState>>) = match self {
             Self::Published(mesh) => (mesh.load.mean_stiffness(), Box::new(mesh.load.faulty.iter())),
             Self::Pairs(mesh) => (mesh.mean_stiffness(), Box::new(mesh.other_loads())),
+            Self::Contact(mesh) => (mesh.closed(mesh.mean_stiffness_n_per_m), Box::new(std::iter::empty())),
         };
         let nominal = self.nominal_load();
         let mut span = MeshSpan {
@@ -134,15 +162,20 @@ impl Mesh {
         match self {
             Self::Published(mesh) => mesh.load.stiffness(point),
             Self::Pairs(mesh) => mesh.stiffness_at(point),
+            Self::Contact(mesh) => mesh.closed(mesh.whole_stiffness_at(point)),
         }
     }
 
-    /// The mesh over its cycle, as a step needs it.
+    /// The mesh over its cycle, as a step under a law of tables needs it; under `contact` as if it were closed.
     pub(crate) fn table<const R: usize>(&self, reduction: &Reduction) -> MeshTable<R> {
         match self {
             Self::Published(mesh) => MeshTable::new(reduction, mesh.tabulated_stiffness()),
             Self::Pairs(mesh) => {
                 MeshTable::new(reduction, (0..mesh.entries()).map(|entry| mesh.stiffness_at(entry)))
+            }
+            Self::Contact(mesh) => {
+                let closed = |since| mesh.closed(mesh.whole_stiffness_at(since));
+                MeshTable::new(reduction, (0..mesh.points_per_pitch).map(closed))
             }
         }
     }

@@ -67,6 +67,69 @@ impl<'a> Pairs<'a> {
         self.nominal
     }
 
+    /// How a pair of a class carries a load where its flanks have given radii of curvature, whether or not they touch there: its
+    /// stiffness and where along the face the load acts. The deviation is 0.
+    ///
+    /// # Arguments
+    /// * `kind` - the class
+    /// * `curvature_mm` - (mm) of the pinion's and of the gear's flank; on what is left of a broken tooth
+    pub(crate) fn loaded_at(&self, kind: &PairKind, curvature_mm: [f64; 2]) -> PairState {
+        let touched = |name: WheelName, damage: Option<usize>| {
+            let flank = self.teeth.flank(name);
+            Touched {
+                name,
+                flank,
+                damage: damage.map(|index| &self.damaged[index]),
+                loaded: damage.map_or(&self.sound[name as usize], |index| &self.broken[index]),
+                point: flank.at_curvature(curvature_mm[name as usize]),
+            }
+        };
+        let pair = [touched(WheelName::Pinion, kind.pinion), touched(WheelName::Gear, kind.gear)];
+        let apart = PairState { stiffness_n_per_mm: 0.0, deviation_mm: 0.0, load: self.nominal };
+        let face_width = self.teeth.gear.face_width_mm;
+        let unloaded = pair.iter().map(Touched::unloaded_width_mm).fold(0.0, f64::max);
+        let width = face_width - unloaded;
+        if width <= 0.0 || pair.iter().any(|tooth| tooth.damage.is_some_and(DamagedTooth::is_missing)) {
+            return apart;
+        }
+        let of_tooth = |tooth: &Touched| {
+            tooth.loaded.compliance_mm_per_n(&FlankLoad {
+                point: tooth.point,
+                sin: tooth.point.load_sin,
+                cos: tooth.point.load_cos,
+                z_mm: unloaded / 2.0,
+                width_mm: width,
+            })
+        };
+        let compliance =
+            pair.iter().map(of_tooth).sum::<f64>() + hertz_compliance_mm_per_n(self.material, width);
+        let half_width_m = face_width * 1e-3 / 2.0;
+        PairState {
+            // What has no width left has no compliance that is a number.
+            stiffness_n_per_mm: if compliance > 0.0 { 1.0 / compliance } else { 0.0 },
+            deviation_mm: 0.0,
+            load: LoadState::spread(
+                -half_width_m,
+                half_width_m - unloaded * 1e-3,
+                self.nominal.pressure_angle_rad,
+            ),
+        }
+    }
+
+    /// The wheels' sound teeth.
+    pub(crate) fn teeth(&self) -> &'a Teeth {
+        self.teeth
+    }
+
+    /// The damage of a tooth of a class.
+    pub(crate) fn damage_of(&self, kind: &PairKind, wheel: WheelName) -> Option<&'a DamagedTooth> {
+        let index = match wheel {
+            WheelName::Pinion => kind.pinion,
+            WheelName::Gear => kind.gear,
+        };
+        index.map(|index| &self.damaged[index])
+    }
+
     /// A pair of a class at a position of its path.
     ///
     /// # Arguments

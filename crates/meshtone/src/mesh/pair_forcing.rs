@@ -8,10 +8,10 @@ use super::load_state::{DIRECTIONS, DirectionVector};
 use super::pair_mesh::{PairMesh, PairTable};
 use crate::interpolation::NotAKnotSpline;
 use crate::operation::{Motion, TimeGrid};
-use crate::wheel::{ProfileErrors, Teeth, WheelName};
+use crate::wheel::{ProfileErrors, RunOut, Teeth, WheelName};
 
 /// Deviations of all flanks of one wheel from their ideal profile.
-struct FlankErrors<'a> {
+pub(super) struct FlankErrors<'a> {
     /// (mm) Over the rows of the profile errors; one a tooth, none for ideal teeth.
     by_row: Vec<NotAKnotSpline<'a>>,
     rows: usize,
@@ -19,7 +19,40 @@ struct FlankErrors<'a> {
     teeth: &'a Teeth,
 }
 
-impl FlankErrors<'_> {
+impl<'a> FlankErrors<'a> {
+    /// Of both wheels.
+    pub(super) fn of_both(deviations: &PairDeviations<'a>) -> [Self; 2] {
+        WheelName::BOTH.map(|wheel| {
+            let table = deviations.errors.map(|errors| match wheel {
+                WheelName::Pinion => &errors.pinion_profile_errors_mm,
+                WheelName::Gear => &errors.gear_profile_errors_mm,
+            });
+            let teeth = table.into_iter().flat_map(ErrorTable::each_tooth);
+            Self {
+                by_row: teeth.map(|tooth| NotAKnotSpline::uniform(0.0, 1.0, tooth)).collect(),
+                rows: table.map_or(2, ErrorTable::points),
+                wheel,
+                teeth: deviations.teeth,
+            }
+        })
+    }
+
+    /// (-) Tooth count of the pinion.
+    pub(super) fn pinion_teeth(&self) -> f64 {
+        f64::from(self.teeth.pinion.teeth)
+    }
+
+    /// (m) Deviation of a tooth where it is touched at a position of the path.
+    pub(super) fn at_position_m(&self, tooth: usize, position: f64) -> f64 {
+        if self.by_row.is_empty() { 0.0 } else { self.at_row_m(tooth, self.row(position)) }
+    }
+
+    /// (m) Deviations of every tooth at some positions of the path.
+    pub(super) fn tabulate_at(&self, positions: impl Iterator<Item = f64>) -> Vec<Vec<f64>> {
+        let rows: Vec<f64> = positions.map(|position| self.row(position)).collect();
+        self.by_row.iter().map(|errors| rows.iter().map(|&row| errors.at(row) * 1e-3).collect()).collect()
+    }
+
     /// Row of the profile errors, counted through, that is touched at `position` of the path of contact: rows are uniform
     /// in radius, from where contact starts to where it ends.
     fn row(&self, position: f64) -> f64 {
@@ -38,13 +71,6 @@ impl FlankErrors<'_> {
     fn at_row_m(&self, tooth: usize, row: f64) -> f64 {
         self.by_row.get(tooth).map_or(0.0, |errors| errors.at(row) * 1e-3)
     }
-
-    /// (m) Deviations of every tooth at the points of the path.
-    fn tabulate(&self, points: usize, points_per_pitch: usize) -> Vec<Vec<f64>> {
-        let rows: Vec<f64> =
-            (0..points).map(|point| self.row(point as f64 / points_per_pitch as f64)).collect();
-        self.by_row.iter().map(|errors| rows.iter().map(|&row| errors.at(row) * 1e-3).collect()).collect()
-    }
 }
 
 /// What the pairs of one simulation are forced by.
@@ -55,6 +81,8 @@ pub(crate) struct PairDeviations<'a> {
     pub(crate) errors: Option<&'a ProfileErrors>,
     /// (m) Eccentricity of both wheels.
     pub(crate) eccentricity_m: f64,
+    /// Run-out of the pinion and of the gear; only under `contact`.
+    pub(crate) run_out: [RunOut; 2],
 }
 
 /// Forcing of a mesh of tooth pairs: `Σ k_n e_n` along each pair's line of action, with the stiffness that the mesh itself has
@@ -102,23 +130,11 @@ impl<'a> PairForcing<'a> {
         directions: &[usize],
         first_sample: usize,
     ) -> Self {
-        let flanks = |wheel: WheelName| {
-            let table = deviations.errors.map(|errors| match wheel {
-                WheelName::Pinion => &errors.pinion_profile_errors_mm,
-                WheelName::Gear => &errors.gear_profile_errors_mm,
-            });
-            let teeth = table.into_iter().flat_map(ErrorTable::each_tooth);
-            FlankErrors {
-                by_row: teeth.map(|tooth| NotAKnotSpline::uniform(0.0, 1.0, tooth)).collect(),
-                rows: table.map_or(2, ErrorTable::points),
-                wheel,
-                teeth: deviations.teeth,
-            }
-        };
-        let (pinion, gear) = (flanks(WheelName::Pinion), flanks(WheelName::Gear));
+        let [pinion, gear] = FlankErrors::of_both(deviations);
         let steady = (motion.is_steady() && motion.has_constant_torque()).then(|| {
-            let tabulate =
-                |flanks: &FlankErrors| flanks.tabulate(mesh.contact_points(), mesh.points_per_pitch);
+            let positions =
+                || (0..mesh.contact_points()).map(|point| point as f64 / mesh.points_per_pitch as f64);
+            let tabulate = |flanks: &FlankErrors| flanks.tabulate_at(positions());
             SteadyTables {
                 pinion_m: tabulate(&pinion),
                 gear_m: tabulate(&gear),

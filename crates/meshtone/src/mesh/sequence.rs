@@ -128,6 +128,17 @@ impl PairSequence {
         least_common_multiple(self.pinion_teeth as u32, self.gear_teeth as u32) as usize
     }
 
+    /// Tooth count of a wheel.
+    ///
+    /// # Arguments
+    /// * `wheel` - which
+    pub fn teeth_of(&self, wheel: WheelName) -> usize {
+        match wheel {
+            WheelName::Pinion => self.pinion_teeth,
+            WheelName::Gear => self.gear_teeth,
+        }
+    }
+
     /// Number of gear teeth: of pairs in a gear revolution.
     pub fn gear_teeth(&self) -> usize {
         self.gear_teeth

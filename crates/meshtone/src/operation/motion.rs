@@ -96,8 +96,12 @@ impl Iterator for Motion<'_> {
             // Model: the published code adds up sample by sample, and its rounding errors decide which
             // of two equally near grid points a sample is given.
             Model::Published => self.revolutions + here.speed_hz * self.step_s,
-            Model::Linear if self.is_steady() => self.sample as f64 / self.samples_per_revolution,
-            Model::Linear => self.revolutions + 0.5 * (here.speed_hz + self.speed_hz) * self.step_s,
+            Model::Linear | Model::Contact if self.is_steady() => {
+                self.sample as f64 / self.samples_per_revolution
+            }
+            Model::Linear | Model::Contact => {
+                self.revolutions + 0.5 * (here.speed_hz + self.speed_hz) * self.step_s
+            }
         };
         Some(here)
     }

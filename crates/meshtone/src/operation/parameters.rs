@@ -86,7 +86,7 @@ impl Keys for Operation {
             .otherwise("none")
             .rule("at least 2 points, times increasing, values > 0")
             .example("{ time_s = [0.0, 1.0], value = [40.0, 40.0] }")
-            .ignored_by_published(),
+            .ignored_by(&["published"]),
             row("torque_profile_nm", "s, N m", "the torque against time, likewise", field!(torque_profile_nm))
                 .otherwise("none")
                 .rule("likewise, values ≥ 0")

@@ -1,4 +1,4 @@
-//! What the published model ignores.
+//! What a model ignores.
 
 use super::{Model, Scenario, ScenarioWarning};
 use crate::keys::Keys;
@@ -7,14 +7,11 @@ impl Scenario {
     /// The scenario with what its model does not honour at its default.
     pub(crate) fn as_honoured(&self) -> Self {
         let mut honoured = self.clone();
-        if self.model == Model::Published {
-            reset_ignored(&mut honoured);
-        }
+        reset_ignored(&mut honoured);
         honoured
     }
 
-    /// Keys that are not at their default although the scenario's model ignores them: some, under the
-    /// published one.
+    /// Keys that are not at their default although the scenario's model ignores them.
     ///
     /// ```
     /// use meshtone::scenario::{GearPair, Model, Scenario};
@@ -27,36 +24,36 @@ impl Scenario {
     /// assert_eq!(scenario.ignored_by_model()[0].key, "rig.eccentricity_mm");
     /// ```
     pub fn ignored_by_model(&self) -> Vec<ScenarioWarning> {
-        if self.model != Model::Published {
-            return Vec::new();
-        }
         let warning = |key: String| {
-            let message = "is ignored: the published model does not honour it, and its default is simulated; \
-                           remove it, or set model = \"linear\"";
+            let message = format!(
+                "is ignored: the {} model does not honour it, and its default is simulated; remove it, or set another model",
+                self.model.name()
+            );
             ScenarioWarning::new(key, message)
         };
         reset_ignored(&mut self.clone()).into_iter().map(warning).collect()
     }
 }
 
-/// Gives every key that the published model ignores its default.
+/// Gives every key that the scenario's model ignores its default.
 ///
 /// # Returns
 /// The keys that were not at it.
 fn reset_ignored(scenario: &mut Scenario) -> Vec<String> {
+    let model = scenario.model;
     let sections = [
-        reset(&mut scenario.gears, "gears"),
-        reset(&mut scenario.operation, "operation"),
-        reset(&mut scenario.quality, "quality"),
-        reset(&mut scenario.rig, "rig"),
-        reset(&mut scenario.solver, "solver"),
+        reset(&mut scenario.gears, "gears", model),
+        reset(&mut scenario.operation, "operation", model),
+        reset(&mut scenario.quality, "quality", model),
+        reset(&mut scenario.rig, "rig", model),
+        reset(&mut scenario.solver, "solver", model),
     ];
     sections.concat()
 }
 
-fn reset<S: Keys>(section: &mut S, name: &str) -> Vec<String> {
+fn reset<S: Keys>(section: &mut S, name: &str, model: Model) -> Vec<String> {
     let start = S::start();
-    let ignored = S::rows().into_iter().filter(|row| row.is_ignored_by_published());
+    let ignored = S::rows().into_iter().filter(|row| row.is_ignored_by(model.name()));
     let changed = ignored.filter(|row| {
         let before = section.clone();
         row.copy(&start, section);

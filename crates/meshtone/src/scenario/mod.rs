@@ -18,12 +18,12 @@ pub use crate::damage::kinds::*;
 pub use crate::damage::{Damage, DamageKind, DestructionLine, Fault, PitCircle, damage_kinds};
 pub use crate::error::{ScenarioError, ScenarioWarning};
 pub use crate::keys::{FileProblem, KeyDescription, KeyKind};
-pub use crate::machine::{DampingRatio, Rig, Shaft, WheelInertia};
+pub use crate::machine::{DampingRatio, Rig, Shaft, Support, WheelInertia};
 pub use crate::model::Model;
 pub use crate::operation::{Operation, Profile, Solver};
 pub use crate::wheel::{
-    ERROR_POINTS, FoundationCoefficients, Gears, Material, ProfileErrors, Quality, ReliefShape, TipRelief,
-    WheelName,
+    ERROR_POINTS, FlankRelief, FoundationCoefficients, Gears, Material, ProfileErrors, Quality, ReliefShape,
+    TipRelief, WheelName,
 };
 pub use edit::ScenarioNumber;
 pub use from_toml::{ScenarioFiles, line_of_key};

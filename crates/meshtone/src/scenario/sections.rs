@@ -24,7 +24,7 @@ impl Keys for Scenario {
             row(
                 "model",
                 "",
-                "the model of the mesh: what the theory says, or what the published code does, its slips included",
+                "the model: teeth that touch and part, the theory of a linear mesh, or what the published code does, its slips included",
                 field!(model),
             ),
             row(

@@ -3,11 +3,15 @@
 //! A channel is a row of one table; its name is the same in the file of signals, in the list of a data set's plan, in an
 //! experiment and in Python.
 
+mod contact_figures;
+
+pub use contact_figures::ContactFigures;
+
 use std::f64::consts::TAU;
 
 use crate::machine::coordinates::*;
 use crate::operation::TimeGrid;
-use crate::solver::{Block, Output, Recorder};
+use crate::solver::{Axis, Block, Output, Recorder};
 
 /// (m/s²) One g, as the published model has it.
 pub const GRAVITY_M_PER_S2: f64 = 9.81;
@@ -73,29 +77,26 @@ macro_rules! channels {
 }
 
 channels! {
-    Horizontal horizontal_g "g" "sum of both wheels' horizontal accelerations, over 9.81 m/s²"
-        acceleration(X_GEAR, X_PINION);
-    Vertical vertical_g "g" "sum of both wheels' vertical accelerations, over 9.81 m/s²"
-        acceleration(Y_GEAR, Y_PINION);
+    Horizontal horizontal_g "g" "horizontal acceleration of the supports, their mean, over 9.81 m/s²; under linear and published the sum of both wheels'"
+        Output::Sensor(Axis::X, PER_G);
+    Vertical vertical_g "g" "vertical acceleration of the supports, their mean, over 9.81 m/s²; under linear and published the sum of both wheels'"
+        Output::Sensor(Axis::Y, PER_G);
     Axial axial_g "g" "sum of both wheels' axial accelerations, over 9.81 m/s²"
-        acceleration(Z_GEAR, Z_PINION);
+        Output::Sensor(Axis::Z, PER_G);
     PinionShaftSpeed pinion_shaft_speed_hz "Hz" "revolutions of the pinion per second"
         Output::Velocity(weighted(&[(THETA_PINION, 1.0 / TAU)]));
     GearShaftSpeed gear_shaft_speed_hz "Hz" "revolutions of the gear per second"
         Output::Velocity(weighted(&[(THETA_GEAR, -1.0 / TAU)]));
     MeshForce mesh_force_n "N"
-        "force along the line of action; negative: the linear mesh pulls where real teeth would part"
+        "force along the line of action; negative: back flanks touch, or the linear mesh pulls where real teeth would part"
         Output::MeshForce;
 }
 
-/// Of both wheels in one direction.
-fn acceleration(gear: usize, pinion: usize) -> Output {
-    const PER_G: f64 = 1.0 / GRAVITY_M_PER_S2;
-    Output::Acceleration(weighted(&[(gear, PER_G), (pinion, PER_G)]))
-}
+/// (s²/m) One over g.
+const PER_G: f64 = 1.0 / GRAVITY_M_PER_S2;
 
-fn weighted(terms: &[(usize, f64)]) -> [f64; COORDINATES] {
-    let mut weights = [0.0; COORDINATES];
+fn weighted(terms: &[(usize, f64)]) -> Vec<f64> {
+    let mut weights = vec![0.0; COORDINATES];
     for &(coordinate, weight) in terms {
         weights[coordinate] = weight;
     }

@@ -107,6 +107,8 @@ pub(crate) trait Instructions: Copy {
     fn mul_add<const L: usize>(self, a: [f64; L], b: [f64; L], c: [f64; L]) -> [f64; L];
     /// `c − a b`.
     fn negative_mul_add<const L: usize>(self, a: [f64; L], b: [f64; L], c: [f64; L]) -> [f64; L];
+    /// `a / b`.
+    fn div<const L: usize>(self, a: [f64; L], b: [f64; L]) -> [f64; L];
     /// Rounded down; for numbers below 2⁵¹ in size.
     fn floor<const L: usize>(self, a: [f64; L]) -> [f64; L];
     /// `yes` where `a < b`, else `no`.
@@ -141,6 +143,11 @@ impl Instructions for Plain {
     #[inline(always)]
     fn negative_mul_add<const L: usize>(self, a: [f64; L], b: [f64; L], c: [f64; L]) -> [f64; L] {
         std::array::from_fn(|l| c[l] - a[l] * b[l])
+    }
+
+    #[inline(always)]
+    fn div<const L: usize>(self, a: [f64; L], b: [f64; L]) -> [f64; L] {
+        std::array::from_fn(|l| a[l] / b[l])
     }
 
     #[inline(always)]
@@ -215,6 +222,11 @@ impl<S: pulp::Simd> Instructions for Fused<S> {
             b,
             c
         )
+    }
+
+    #[inline(always)]
+    fn div<const L: usize>(self, a: [f64; L], b: [f64; L]) -> [f64; L] {
+        by_register!(self, |a, b| self.0.div_f64s(a, b), |a: f64, b: f64| a / b, a, b)
     }
 
     #[inline(always)]

@@ -51,6 +51,11 @@ impl<const L: usize> Lanes<L> {
         Self(simd.sub([0.0; L], self.0))
     }
 
+    #[inline(always)]
+    pub(crate) fn div<I: Instructions>(self, simd: I, other: Self) -> Self {
+        Self(simd.div(self.0, other.0))
+    }
+
     /// Rounded down; for numbers below 2⁵¹ in size.
     #[inline(always)]
     pub(crate) fn floor<I: Instructions>(self, simd: I) -> Self {

@@ -1,9 +1,9 @@
 //! The coefficients of several simulations, side by side.
 
 use super::integrate::Problem;
-use super::prepare::{Prepared, externals, sum};
-use super::shared_forcing::SharedForcing;
-use super::step::{Coefficients, Norm, State};
+use super::outputs::EXTERNALS;
+use super::prepare::{FirstState, Prepared, externals, sum};
+use super::step::{Ahead, Coefficients, Norm, State};
 use crate::simd::Lanes;
 
 /// A value of each lane.
@@ -70,29 +70,86 @@ pub(super) fn coefficients<const L: usize, const N: usize, const R: usize>(
             }),
             two_per_h2: lanes(|l| 2.0 / (half_step(l) * half_step(l))),
         },
+        ahead: ahead(problems, prepared),
     }
 }
 
-/// The first states of `L` simulations, side by side.
-///
-/// # Arguments
-/// * `problems`, `prepared` - the simulations
-/// * `forcing` - forcing whose first sample is theirs
-pub(super) fn first_states<const L: usize, const N: usize, const R: usize>(
+/// What looks ahead to the deflection at the end of a step, side by side.
+fn ahead<const L: usize, const N: usize, const R: usize>(
     problems: &[&Problem; L],
     prepared: &[Prepared<R>; L],
-    forcing: &SharedForcing<L, R>,
-) -> State<L, N, R> {
-    let first: [_; L] = std::array::from_fn(|l| {
-        let errors = forcing.errors[0].map(|error| error.0[l]);
-        let external = forcing.external[0].map(|external| external.0[l]);
-        prepared[l].first_state(problems[l], &errors, &external, forcing.entries[0][l] as usize)
+) -> Ahead<L, N, R> {
+    let of_lane: [Vec<LookAhead>; L] = std::array::from_fn(|l| {
+        (0..problems[l].model.mesh.len()).map(|r| LookAhead::new(problems[l], &prepared[l], r)).collect()
     });
+    let numbers = |values: &[f64], n: usize| values.get(n).copied().unwrap_or(0.0);
+    let of = |l: usize, r: usize, part: fn(&LookAhead) -> &[f64], n: usize| {
+        of_lane[l].get(r).map_or(0.0, |ahead| numbers(part(ahead), n))
+    };
+    Ahead {
+        displacement: std::array::from_fn(|r| {
+            std::array::from_fn(|n| lanes(|l| of(l, r, |ahead| &ahead.displacement, n)))
+        }),
+        scaled_velocity: std::array::from_fn(|r| {
+            std::array::from_fn(|n| lanes(|l| of(l, r, |ahead| &ahead.scaled_velocity, n)))
+        }),
+        force: std::array::from_fn(|r| std::array::from_fn(|s| lanes(|l| of(l, r, |ahead| &ahead.force, s)))),
+        external: std::array::from_fn(|r| {
+            std::array::from_fn(|x| lanes(|l| of(l, r, |ahead| &ahead.external, x)))
+        }),
+    }
+}
+
+/// One direction's part of [`Ahead`], of one simulation.
+struct LookAhead {
+    displacement: Vec<f64>,
+    scaled_velocity: Vec<f64>,
+    force: Vec<f64>,
+    external: Vec<f64>,
+}
+
+impl LookAhead {
+    fn new<const R: usize>(problem: &Problem, prepared: &Prepared<R>, r: usize) -> Self {
+        let lead = 1.0 + problem.contact_constants().damping_time_s / prepared.scales.half_step_s;
+        let (line, factors) = (problem.model.mesh[r].as_slice(), &prepared.factors);
+        let of_modes = |f: &dyn Fn(usize) -> f64| (0..line.len()).map(f).collect::<Vec<f64>>();
+        let displacement = of_modes(&|n| line[n] * (1.0 - lead * factors.restore[n]));
+        let scaled_velocity = of_modes(&|n| line[n] * (lead * factors.keep[n] - (lead - 1.0)));
+        let force = |s: usize| {
+            let push = prepared.push(problem, s);
+            sum(&displacement, &push) + sum(&scaled_velocity, &push) + lead * factors.compliance[(r, s)]
+        };
+        let external = externals(prepared).map(|external| lead * sum(line, &prepared.share(external)));
+        Self {
+            force: (0..problem.model.mesh.len()).map(force).collect(),
+            external: external.to_vec(),
+            displacement,
+            scaled_velocity,
+        }
+    }
+}
+
+/// Lines the first states of `L` simulations up.
+///
+/// # Arguments
+/// * `coefficients` - of the steps
+/// * `first` - of each
+/// * `external` - externals at the first sample
+pub(super) fn state<const L: usize, const N: usize, const R: usize>(
+    coefficients: &Coefficients<L, N, R>,
+    first: &[FirstState<R>; L],
+    external: [Lanes<L>; EXTERNALS],
+) -> State<L, N, R> {
+    let displacement = modal(|l| &first[l].displacement);
+    let scaled_velocity = modal(|l| &first[l].scaled_velocity);
+    let force = std::array::from_fn(|r| lanes(|l| first[l].force[r]));
+    let motion = [&displacement, &scaled_velocity];
     State {
-        displacement: modal(|l| &first[l].displacement),
-        scaled_velocity: modal(|l| &first[l].scaled_velocity),
-        force: std::array::from_fn(|r| lanes(|l| first[l].force[r])),
-        external: forcing.external[0],
+        ahead: std::array::from_fn(|r| lanes(|l| coefficients.ahead_at_start(r, l, motion, &force))),
+        displacement,
+        scaled_velocity,
+        force,
+        external,
         entry: std::array::from_fn(|l| first[l].entry),
     }
 }

@@ -1,6 +1,6 @@
 //! Integration of one simulation, or of several side by side.
 
-use super::coefficients::{coefficients, first_states};
+use super::coefficients::{coefficients, state};
 use super::handout::Handout;
 use super::history::{History, Row};
 use super::outputs::Output;
@@ -12,7 +12,9 @@ use super::step::{Coefficients, State};
 use super::stretch::Stretch;
 use crate::mesh::Mesh;
 use crate::mesh::forcing::{Forcing, ForcingSource};
-use crate::mesh::law::{LinearLaw, MeshLaw, MeshTable, PublishedLaw};
+use crate::mesh::law::{
+    ContactConstants, ContactLaw, ContactSample, LinearLaw, MeshLaw, MeshTable, PublishedLaw, TabulatedSample,
+};
 use crate::operation::TimeGrid;
 use crate::simd::InstructionSet;
 
@@ -129,61 +131,59 @@ fn by_size<const L: usize, const BLOCK: usize>(
     recorders: [&mut dyn Recorder; L],
 ) -> [Result<(), Diverged>; L] {
     macro_rules! solve {
-        ($modes:literal, $directions:literal, $steady:literal) => {
-            solve::<L, $modes, $directions, BLOCK, $steady>(problems, instructions, recorders)
+        ($law:ident, $modes:literal, $directions:literal, $steady:literal) => {
+            $law::<L, $modes, $directions, BLOCK, $steady>(problems, instructions, recorders)
         };
     }
     // Each line is compiled for every instruction set, so what is rare shares the largest size.
     match size {
-        Size::Flat => solve!(5, 1, true),
-        Size::Tilting => solve!(8, 2, true),
-        Size::Rolling => solve!(8, 3, true),
-        Size::General => solve!(13, 5, false),
+        Size::Flat => solve!(solve_tables, 5, 1, true),
+        Size::Tilting => solve!(solve_tables, 8, 2, true),
+        Size::Rolling => solve!(solve_tables, 8, 3, true),
+        Size::General => solve!(solve_tables, 13, 5, false),
+        Size::ContactFlat => solve!(solve_contact, 8, 1, true),
+        Size::ContactTilting => solve!(solve_contact, 12, 2, true),
+        Size::ContactGeneral => solve!(solve_contact, 17, 2, false),
     }
 }
 
-/// Simulations that are ready for the time loop.
-struct Run<'a, 'r, const L: usize, const N: usize, const R: usize> {
+/// Simulations that are ready for the time loop, under laws that take samples `S`.
+struct Run<'a, 'r, S, const L: usize, const N: usize, const R: usize> {
     coefficients: Coefficients<L, N, R>,
     rows: Vec<Row<L>>,
     forcings: [Box<dyn Forcing + 'a>; L],
-    forcing: SharedForcing<L, R>,
-    state: State<L, N, R>,
+    forcing: SharedForcing<S, L>,
     out: Handout<'r, L>,
 }
 
-fn solve<const L: usize, const N: usize, const R: usize, const BLOCK: usize, const STEADY: bool>(
-    problems: [&Problem; L],
-    instructions: InstructionSet,
-    recorders: [&mut dyn Recorder; L],
-) -> [Result<(), Diverged>; L] {
-    let prepared: [Prepared<R>; L] = std::array::from_fn(|l| Prepared::new(problems[l]));
-    let coefficients = coefficients::<L, N, R>(&problems, &prepared);
-    let rows: Vec<Row<L>> = (0..prepared[0].rows.len())
-        .map(|row| Row::new::<N, R>(std::array::from_fn(|l| &prepared[l].rows[row]), coefficients.start))
-        .collect();
-    let mut forcings: [Box<dyn Forcing + '_>; L] =
-        std::array::from_fn(|l| problems[l].source.forcing(&problems[l].model.directions));
-    let mut forcing = SharedForcing::new(BLOCK);
-    forcing.fill(&mut forcings, 1, STEADY);
-    let state: State<L, N, R> = first_states(&problems, &prepared, &forcing);
-    let out = Handout::new(&problems, rows.len(), BLOCK, recorders);
-    let run = Run { coefficients, rows, forcings, forcing, state, out };
-    let tables: [&MeshTable<R>; L] = std::array::from_fn(|l| &prepared[l].table);
-    let cycles = prepared.each_ref().map(|prepared| prepared.cycle);
-    match cycles.iter().copied().collect::<Option<Vec<_>>>() {
-        Some(cycles) => {
-            let law = PublishedLaw::new(tables, std::array::from_fn(|l| cycles[l]));
-            run.finish::<_, BLOCK, STEADY>(&law, instructions)
-        }
-        None => run.finish::<_, BLOCK, STEADY>(&LinearLaw { tables }, instructions),
+impl<'a, 'r, S: Copy, const L: usize, const N: usize, const R: usize> Run<'a, 'r, S, L, N, R> {
+    /// Lines `L` simulations up, with the forcing of their first sample.
+    ///
+    /// # Arguments
+    /// * `problems`, `prepared` - the simulations
+    /// * `forcing` - room for the samples of a block
+    /// * `recorders` - take the outputs of each
+    fn new<const BLOCK: usize, const STEADY: bool>(
+        problems: &[&'a Problem<'a>; L],
+        prepared: &[Prepared<R>; L],
+        mut forcing: SharedForcing<S, L>,
+        recorders: [&'r mut dyn Recorder; L],
+    ) -> Self {
+        let coefficients = coefficients::<L, N, R>(problems, prepared);
+        let rows: Vec<Row<L>> = (0..prepared[0].rows.len())
+            .map(|row| Row::new::<N, R>(std::array::from_fn(|l| &prepared[l].rows[row]), coefficients.start))
+            .collect();
+        let mut forcings: [Box<dyn Forcing + 'a>; L] =
+            std::array::from_fn(|l| problems[l].source.forcing(&problems[l].model.directions));
+        forcing.fill(&mut forcings, 1, STEADY);
+        let out = Handout::new(problems, rows.len(), BLOCK, recorders);
+        Self { coefficients, rows, forcings, forcing, out }
     }
-}
 
-impl<const L: usize, const N: usize, const R: usize> Run<'_, '_, L, N, R> {
-    fn finish<M: MeshLaw<L, R>, const BLOCK: usize, const STEADY: bool>(
+    fn finish<M: MeshLaw<L, R, Sample = S>, const BLOCK: usize, const STEADY: bool>(
         mut self,
         law: &M,
+        mut state: State<L, N, R>,
         instructions: InstructionSet,
     ) -> [Result<(), Diverged>; L] {
         let mut history = History::<L, N, R, BLOCK>::new();
@@ -195,7 +195,7 @@ impl<const L: usize, const N: usize, const R: usize> Run<'_, '_, L, N, R> {
             instructions.run(Stretch::<M, L, N, R, BLOCK, STEADY> {
                 coefficients: &self.coefficients,
                 law,
-                state: &mut self.state,
+                state: &mut state,
                 steps_before: done,
                 forcing: &self.forcing,
                 steps,
@@ -206,10 +206,65 @@ impl<const L: usize, const N: usize, const R: usize> Run<'_, '_, L, N, R> {
                     row.evaluate(instructions, &history, done, &mut values[..steps]);
                 }
             }
-            let (coefficients, state) = (&self.coefficients, &self.state);
-            self.out.hand_out(done, steps, |l| coefficients.is_sound(state, l));
+            let coefficients = &self.coefficients;
+            self.out.hand_out(done, steps, |l| coefficients.is_sound(&state, l));
             done += steps;
         }
         self.out.results
+    }
+}
+
+/// Under laws of tables: linear and published.
+fn solve_tables<const L: usize, const N: usize, const R: usize, const BLOCK: usize, const STEADY: bool>(
+    problems: [&Problem; L],
+    instructions: InstructionSet,
+    recorders: [&mut dyn Recorder; L],
+) -> [Result<(), Diverged>; L] {
+    let prepared: [Prepared<R>; L] = std::array::from_fn(|l| Prepared::new(problems[l]));
+    let forcing = SharedForcing::new(BLOCK, TabulatedSample::NOTHING, |samples, blocks| {
+        for (lane, block) in blocks.iter().enumerate() {
+            TabulatedSample::fill(samples, lane, block);
+        }
+    });
+    let run = Run::<_, L, N, R>::new::<BLOCK, STEADY>(&problems, &prepared, forcing, recorders);
+    let meshes: [MeshTable<R>; L] = std::array::from_fn(|l| prepared[l].table(problems[l]));
+    let (sample, external) = (&run.forcing.samples[0], run.forcing.external[0]);
+    let first = std::array::from_fn(|l| {
+        prepared[l].first_state(problems[l], &meshes[l], (sample, l), &external.map(|external| external.0[l]))
+    });
+    let state = state(&run.coefficients, &first, external);
+    let tables = meshes.each_ref();
+    match problems.iter().map(|problem| problem.mesh.cycle()).collect::<Option<Vec<_>>>() {
+        Some(cycles) => {
+            let law = PublishedLaw::new(tables, std::array::from_fn(|l| cycles[l]));
+            run.finish::<_, BLOCK, STEADY>(&law, state, instructions)
+        }
+        None => run.finish::<_, BLOCK, STEADY>(&LinearLaw { tables }, state, instructions),
+    }
+}
+
+/// Under the law of contact.
+fn solve_contact<const L: usize, const N: usize, const R: usize, const BLOCK: usize, const STEADY: bool>(
+    problems: [&Problem; L],
+    instructions: InstructionSet,
+    recorders: [&mut dyn Recorder; L],
+) -> [Result<(), Diverged>; L] {
+    let prepared: [Prepared<R>; L] = std::array::from_fn(|l| Prepared::new(problems[l]));
+    let forcing = SharedForcing::new(BLOCK, ContactSample::NOTHING, ContactSample::fill);
+    let run = Run::<_, L, N, R>::new::<BLOCK, STEADY>(&problems, &prepared, forcing, recorders);
+    let constants: [ContactConstants; L] = std::array::from_fn(|l| problems[l].contact_constants());
+    let law = ContactLaw::new(constants, std::array::from_fn(|l| prepared[l].scales.half_step_s));
+    let sample = &run.forcing.samples[0];
+    let first =
+        std::array::from_fn(|l| prepared[l].first_state_in_contact(problems[l], &constants[l], sample, l));
+    let state = state(&run.coefficients, &first, run.forcing.external[0]);
+    run.finish::<_, BLOCK, STEADY>(&law, state, instructions)
+}
+
+impl Problem<'_> {
+    /// What the law of contact needs; without damping under another law.
+    pub(super) fn contact_constants(&self) -> ContactConstants {
+        let static_force_n = self.model.static_mesh_force_n;
+        self.mesh.contact().map_or_else(ContactConstants::default, |mesh| mesh.constants(static_force_n))
     }
 }

@@ -20,6 +20,6 @@ mod stretch;
 
 pub use integrate::{Block, Recorder};
 pub(crate) use integrate::{Diverged, LANES, Problem, integrate, integrate_side_by_side};
-pub use outputs::Output;
+pub use outputs::{Axis, Output};
 pub use reduce::ReducedModel;
 pub(crate) use size::Size;

@@ -1,20 +1,34 @@
 //! What is read off the solution.
 
+use nalgebra::DVector;
+
 use super::reduce::ReducedModel;
-use crate::machine::coordinates::{COORDINATES, CoordinateVector};
 
 /// A signal that is read off the solution.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Output {
-    /// (m or rad) Linear combination of the displacements, by the weight of each of the 13 coordinates.
-    Displacement([f64; COORDINATES]),
+    /// (m or rad) Linear combination of the displacements, by the weight of each coordinate; of those left out it is 0.
+    Displacement(Vec<f64>),
     /// (m/s or rad/s) Likewise of the velocities.
-    Velocity([f64; COORDINATES]),
+    Velocity(Vec<f64>),
     /// (m/s² or rad/s²) Likewise of the accelerations.
-    Acceleration([f64; COORDINATES]),
+    Acceleration(Vec<f64>),
+    /// (m/s²) Acceleration of the sensor, wherever the model has it, in a direction; times a factor.
+    Sensor(Axis, f64),
     /// (N) Force with which the mesh presses the flanks together; negative: the linear mesh pulls.
     MeshForce,
+}
+
+/// Direction of a sensor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Axis {
+    /// Horizontal, from shaft to shaft.
+    X,
+    /// Vertical.
+    Y,
+    /// Along the shafts.
+    Z,
 }
 
 /// A linear combination of the step's own variables: `constant + sample·per_sample + u·displacement + s·velocity +
@@ -45,8 +59,9 @@ impl Output {
     pub(super) fn row(&self, model: &ReducedModel, scales: &Scales) -> OutputRow {
         let (h, modes) = (scales.half_step_s, model.modes());
         let zeros = || vec![0.0; modes];
-        let weights = |weights: &[f64; COORDINATES]| -> (Vec<f64>, f64) {
-            let row = CoordinateVector::from(*weights);
+        let weights = |weights: &[f64]| -> (Vec<f64>, f64) {
+            let row =
+                DVector::from_fn(model.rigid_rotation.len(), |n, _| weights.get(n).copied().unwrap_or(0.0));
             (
                 model.shapes.iter().map(|shape| sum_or_zero(shape, &row)).collect(),
                 model.rigid_rotation.dot(&row),
@@ -54,6 +69,16 @@ impl Output {
         };
         let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let no_force = vec![0.0; model.directions.len()];
+        let acceleration = |by_coordinate: &[f64]| {
+            let (row, _) = weights(by_coordinate);
+            OutputRow {
+                displacement: (0..modes).map(|n| -row[n] * model.stiffness[n]).collect(),
+                scaled_velocity: (0..modes).map(|n| -row[n] * model.damping[n] / h).collect(),
+                force: model.mesh.iter().map(|column| sum(&row, column.as_slice())).collect(),
+                external: std::array::from_fn(|x| sum(&row, &scales.external[x])),
+                ..OutputRow::default()
+            }
+        };
         match self {
             Self::Displacement(by_coordinate) => {
                 let (row, rigid) = weights(by_coordinate);
@@ -76,15 +101,11 @@ impl Output {
                     ..OutputRow::default()
                 }
             }
-            Self::Acceleration(by_coordinate) => {
-                let (row, _) = weights(by_coordinate);
-                OutputRow {
-                    displacement: (0..modes).map(|n| -row[n] * model.stiffness[n]).collect(),
-                    scaled_velocity: (0..modes).map(|n| -row[n] * model.damping[n] / h).collect(),
-                    force: model.mesh.iter().map(|column| sum(&row, column.as_slice())).collect(),
-                    external: std::array::from_fn(|x| sum(&row, &scales.external[x])),
-                    ..OutputRow::default()
-                }
+            Self::Acceleration(by_coordinate) => acceleration(by_coordinate),
+            Self::Sensor(axis, factor) => {
+                let weights: Vec<f64> =
+                    model.sensor[*axis as usize].iter().map(|weight| weight * factor).collect();
+                acceleration(&weights)
             }
             Self::MeshForce => {
                 // The direction that has weight 1 in every line of action carries the whole force.
@@ -100,7 +121,7 @@ impl Output {
                     }
                 }
                 OutputRow {
-                    constant: sum(&displacement, &scales.static_displacement),
+                    constant: model.static_mesh_force_n + sum(&displacement, &scales.static_displacement),
                     displacement,
                     scaled_velocity: zeros(),
                     force,
@@ -112,7 +133,7 @@ impl Output {
 }
 
 /// `a·b`, or 0 where the terms cancel to rounding: wheels of equal mass move in opposition, and their sum is no signal.
-fn sum_or_zero(a: &CoordinateVector, b: &CoordinateVector) -> f64 {
+fn sum_or_zero(a: &DVector<f64>, b: &DVector<f64>) -> f64 {
     let terms = a.component_mul(b);
     let sum = terms.sum();
     if sum.abs() < ROUNDING * terms.abs().sum() { 0.0 } else { sum }

@@ -2,8 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::machine::System;
 use crate::machine::coordinates::*;
+use crate::machine::{ClosedMesh, Structure, System};
 use crate::mesh::ROTATION;
 
 /// Which of the five constant mesh directions one column of `B` stands for, and its vector.
@@ -15,8 +15,8 @@ struct Column {
 /// The system in the modes that take part in the motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReducedModel {
-    /// Mass-normalised shapes of the active modes in the 13 coordinates.
-    pub shapes: Vec<CoordinateVector>,
+    /// Mass-normalised shapes of the active modes, in the machine's coordinates.
+    pub shapes: Vec<DVector<f64>>,
     /// (1/s²) ω² of the active modes.
     pub stiffness: Vec<f64>,
     /// (1/s) 2ζω of the active modes.
@@ -33,8 +33,14 @@ pub struct ReducedModel {
     pub brake: Vec<f64>,
     /// Modal velocity of the rigid rotation at 1 rad/s.
     pub rigid_velocity: Vec<f64>,
-    /// The rigid rotation in the 13 coordinates.
-    pub rigid_rotation: CoordinateVector,
+    /// The rigid rotation in the machine's coordinates.
+    pub rigid_rotation: DVector<f64>,
+    /// Weights of the coordinates in the sensor's acceleration along x, y and z.
+    pub sensor: [Vec<f64>; 3],
+    /// (N) Mesh force under the constant loads that the displacements do not bring about: they are relative to it.
+    pub static_mesh_force_n: f64,
+    /// (1/s) Rate at which the slowest mode in motion decays, `ζω`.
+    pub slowest_decay_per_s: f64,
     /// Whether damping acts on the rigid rotation too.
     pub damps_rotation: bool,
     /// (rad/s) Speed of the rigid rotation on top of which the modes move: the nominal one.
@@ -47,6 +53,9 @@ pub struct ReducedModel {
 
 /// Number of the constant mesh direction along the nominal line of action.
 const ALONG: usize = 0;
+
+/// Number of the one that is added to it per m along the face.
+const TILT: usize = 3;
 
 /// Below this part of the largest entry a modal entry is rounding.
 const ROUNDING: f64 = 1e-13;
@@ -110,10 +119,13 @@ impl ReducedModel {
         let pick = |vector: &CoordinateVector| modes.iter().map(|&n| vector[n]).collect::<Vec<f64>>();
         let directions: Vec<usize> = kept.iter().map(|&c| columns[c].direction).collect();
         let mean = &system.mesh.mean_stiffness;
+        let dynamic = |vector: CoordinateVector| DVector::from_column_slice(vector.as_slice());
+        let damping: Vec<f64> = modes.iter().map(|&n| system.modal_damping(n)).collect();
         Self {
-            shapes: modes.iter().map(|&n| turn * system.modes.shapes.column(n)).collect(),
+            shapes: modes.iter().map(|&n| dynamic(turn * system.modes.shapes.column(n))).collect(),
             stiffness: modes.iter().map(|&n| system.modes.angular_frequencies[n].powi(2)).collect(),
-            damping: modes.iter().map(|&n| system.modal_damping(n)).collect(),
+            slowest_decay_per_s: damping.iter().copied().fold(f64::INFINITY, f64::min) / 2.0,
+            damping,
             mesh: kept.iter().map(|&c| DVector::from_vec(pick(&mesh[c]))).collect(),
             mean_mesh_stiffness: DMatrix::from_fn(kept.len(), kept.len(), |r, c| {
                 mean[(directions[r], directions[c])]
@@ -122,8 +134,88 @@ impl ReducedModel {
             motor: pick(&motor),
             brake: pick(&brake),
             rigid_velocity: pick(&rigid),
-            rigid_rotation,
+            rigid_rotation: dynamic(rigid_rotation),
+            sensor: [[X_GEAR, X_PINION], [Y_GEAR, Y_PINION], [Z_GEAR, Z_PINION]]
+                .map(|wheels| ones(&wheels, 1.0)),
+            static_mesh_force_n: 0.0,
             damps_rotation: system.damps_rotation,
+            rotation_rad_per_s,
+            initial_displacement: displacement.as_ref().map(pick),
+            initial_velocity: pick(&velocity),
+        }
+    }
+
+    /// The machine under `contact`, without the mesh: its modes are decoupled.
+    ///
+    /// # Arguments
+    /// * `structure` - the machine
+    /// * `closed` - the mean mesh, closed: what decides how long a transient lasts
+    /// * `tilts` - whether the load moves along the face
+    /// * `rotation_rad_per_s` - nominal speed of the motor
+    /// * `brake_torque_nm` - nominal torque of the brake
+    /// * `initial_displacement` - in the wheels' 13 coordinates; none for the static equilibrium of the loaded mesh
+    /// * `initial_velocity` - in the wheels' 13 coordinates; none for the rigid rotation
+    pub(crate) fn of_structure(
+        structure: &Structure,
+        closed: &ClosedMesh,
+        tilts: bool,
+        rotation_rad_per_s: f64,
+        brake_torque_nm: f64,
+        [initial_displacement, initial_velocity]: [Option<&CoordinateVector>; 2],
+    ) -> Self {
+        let shapes = structure.shapes.transpose();
+        let mass = DVector::from_column_slice(&structure.mass_diagonal);
+        let modal = |turned: &DVector<f64>| cleaned(&shapes * turned);
+        let rigid_rotation = structure.rigid_rotation();
+        let modal_motion =
+            |motion: &DVector<f64>| modal(&(structure.turn.transpose() * motion).component_mul(&mass));
+        let with_supports = |wheels: &CoordinateVector| {
+            DVector::from_fn(COORDINATES_WITH_SUPPORTS, |n, _| wheels.get(n).copied().unwrap_or(0.0))
+        };
+        let unit = |coordinate: usize, size: f64| {
+            let mut unit = DVector::zeros(COORDINATES_WITH_SUPPORTS);
+            unit[coordinate] = size;
+            modal(&unit)
+        };
+        let motor = unit(THETA_PINION, structure.shaft_stiffness_nm_per_rad[0]);
+        let brake = unit(THETA_BRAKE, 1.0);
+        let rigid = modal_motion(&rigid_rotation);
+        let displacement = initial_displacement.map(|given| modal_motion(&with_supports(given)));
+        let velocity = initial_velocity.map_or_else(
+            || DVector::zeros(COORDINATES_WITH_SUPPORTS),
+            |given| modal_motion(&(with_supports(given) - &rigid_rotation * rotation_rad_per_s)),
+        );
+        let columns: Vec<DVector<f64>> =
+            structure.line_of_action.iter().take(if tilts { 2 } else { 1 }).map(modal).collect();
+        let driven = [Some(&motor), Some(&brake), Some(&rigid), Some(&velocity), displacement.as_ref()];
+        let moved = |n: usize| {
+            driven.iter().flatten().any(|vector| vector[n] != 0.0)
+                || columns.iter().any(|line| line[n] != 0.0)
+        };
+        let modes: Vec<usize> = (0..COORDINATES_WITH_SUPPORTS).filter(|&n| moved(n)).collect();
+        let pick = |vector: &DVector<f64>| modes.iter().map(|&n| vector[n]).collect::<Vec<f64>>();
+        // The freely turning train is in balance.
+        let static_mesh_force_n = brake_torque_nm * brake[0] / columns[0][0];
+        let count = columns.len();
+        Self {
+            shapes: modes.iter().map(|&n| &structure.turn * structure.shapes.column(n)).collect(),
+            stiffness: modes.iter().map(|&n| structure.angular_frequencies[n].powi(2)).collect(),
+            damping: modes.iter().map(|&n| structure.modal_damping(n)).collect(),
+            mesh: columns.iter().map(|column| DVector::from_vec(pick(column))).collect(),
+            directions: [ALONG, TILT][..count].to_vec(),
+            mean_mesh_stiffness: DMatrix::zeros(count, count),
+            motor: pick(&motor),
+            brake: pick(&brake),
+            rigid_velocity: pick(&rigid),
+            rigid_rotation,
+            sensor: [
+                ones(&[X_GEAR_SUPPORT, X_PINION_SUPPORT], 0.5),
+                ones(&[Y_GEAR_SUPPORT, Y_PINION_SUPPORT], 0.5),
+                ones(&[Z_GEAR, Z_PINION], 1.0),
+            ],
+            static_mesh_force_n,
+            slowest_decay_per_s: structure.slowest_decay_per_s(closed),
+            damps_rotation: false,
             rotation_rad_per_s,
             initial_displacement: displacement.as_ref().map(pick),
             initial_velocity: pick(&velocity),
@@ -137,15 +229,19 @@ impl ReducedModel {
         rotation.or_else(|| self.directions.iter().position(|&direction| direction == ALONG))
     }
 
-    /// (1/s) Rate at which the slowest active mode decays, `min ζω`.
-    pub fn slowest_decay_per_s(&self) -> f64 {
-        self.damping.iter().copied().fold(f64::INFINITY, f64::min) / 2.0
-    }
-
     /// Number of active modes.
     pub fn modes(&self) -> usize {
         self.shapes.len()
     }
+}
+
+/// A weight for each of some coordinates.
+fn ones(coordinates: &[usize], weight: f64) -> Vec<f64> {
+    let mut weights = vec![0.0; COORDINATES_WITH_SUPPORTS];
+    for &coordinate in coordinates {
+        weights[coordinate] = weight;
+    }
+    weights
 }
 
 /// The directions that the line of action takes. At a constant pressure angle two are enough: the line
@@ -160,6 +256,11 @@ fn columns(system: &System) -> Vec<Column> {
     } else {
         (0..turned.len()).map(|direction| Column { direction, vector: turned[direction] }).collect()
     }
+}
+
+fn cleaned(vector: DVector<f64>) -> DVector<f64> {
+    let largest = vector.amax();
+    vector.map(|entry| if entry.abs() < ROUNDING * largest { 0.0 } else { entry })
 }
 
 fn clean(vector: CoordinateVector) -> CoordinateVector {

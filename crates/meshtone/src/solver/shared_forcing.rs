@@ -4,25 +4,30 @@ use super::outputs::EXTERNALS;
 use crate::mesh::forcing::{Forcing, ForcingBlock};
 use crate::simd::Lanes;
 
-/// Forcing of one block of samples.
-pub(super) struct SharedForcing<const L: usize, const R: usize> {
-    /// (N) Force of the profile errors in the mesh's directions.
-    pub(super) errors: Vec<[Lanes<L>; R]>,
+/// Forcing of one block of samples, as a mesh law takes it.
+pub(super) struct SharedForcing<S, const L: usize> {
+    /// What the law takes.
+    pub(super) samples: Vec<S>,
     /// Motor lead, torque deviation and speed deviation; not set while motor and brake are steady.
     pub(super) external: Vec<[Lanes<L>; EXTERNALS]>,
-    /// Entries of the mesh's tables, where they are known beforehand.
-    pub(super) entries: Vec<[u32; L]>,
-    scratch: ForcingBlock,
+    /// Lines the blocks of all lanes up.
+    line_up: fn(&mut [S], &[ForcingBlock; L]),
+    blocks: [ForcingBlock; L],
 }
 
-impl<const L: usize, const R: usize> SharedForcing<L, R> {
-    /// Room for `samples` samples.
-    pub(super) fn new(samples: usize) -> Self {
+impl<S: Copy, const L: usize> SharedForcing<S, L> {
+    /// Room for some samples.
+    ///
+    /// # Arguments
+    /// * `samples` - how many
+    /// * `nothing` - a sample without force
+    /// * `line_up` - sets the samples from a block of each lane
+    pub(super) fn new(samples: usize, nothing: S, line_up: fn(&mut [S], &[ForcingBlock; L])) -> Self {
         Self {
-            errors: vec![[Lanes::splat(0.0); R]; samples],
+            samples: vec![nothing; samples],
             external: vec![[Lanes::splat(0.0); EXTERNALS]; samples],
-            entries: vec![[0; L]; samples],
-            scratch: ForcingBlock::default(),
+            line_up,
+            blocks: std::array::from_fn(|_| ForcingBlock::default()),
         }
     }
 
@@ -33,22 +38,11 @@ impl<const L: usize, const R: usize> SharedForcing<L, R> {
     /// * `samples` - at most as many as there is room for
     /// * `steady` - whether motor and brake of all lanes are steady
     pub(super) fn fill(&mut self, forcings: &mut [Box<dyn Forcing + '_>; L], samples: usize, steady: bool) {
-        for (l, forcing) in forcings.iter_mut().enumerate() {
-            forcing.next_block(samples, &mut self.scratch);
-            for (r, errors) in self.scratch.errors.iter().enumerate() {
-                for (shared, error) in self.errors.iter_mut().zip(errors) {
-                    shared[r].0[l] = *error;
-                }
-            }
-            for (shared, entry) in self.entries.iter_mut().zip(&self.scratch.entries) {
-                shared[l] = *entry;
-            }
+        for (l, (forcing, block)) in forcings.iter_mut().zip(&mut self.blocks).enumerate() {
+            forcing.next_block(samples, block);
             if !steady {
-                let parts = [
-                    &self.scratch.motor_lead_rad,
-                    &self.scratch.torque_deviation_nm,
-                    &self.scratch.speed_deviation_rad_per_s,
-                ];
+                let parts =
+                    [&block.motor_lead_rad, &block.torque_deviation_nm, &block.speed_deviation_rad_per_s];
                 for (x, part) in parts.into_iter().enumerate() {
                     for (shared, value) in self.external.iter_mut().zip(part) {
                         shared[x].0[l] = *value;
@@ -56,5 +50,6 @@ impl<const L: usize, const R: usize> SharedForcing<L, R> {
                 }
             }
         }
+        (self.line_up)(&mut self.samples, &self.blocks);
     }
 }

@@ -14,11 +14,24 @@ pub(crate) enum Size {
     Rolling,
     /// Everything, as after an arbitrary initial displacement; also at varying speed or load.
     General,
+    /// Teeth in contact, the load midway along the face.
+    ContactFlat,
+    /// Teeth in contact, the load moving along the face.
+    ContactTilting,
+    /// Teeth in contact, and all else.
+    ContactGeneral,
 }
 
 impl Size {
     /// The smallest size that holds a simulation.
     pub(crate) fn of(problem: &Problem) -> Self {
+        if problem.mesh.contact().is_some() {
+            return match (problem.steady, problem.model.modes(), problem.model.directions.len()) {
+                (true, 0..=8, 0..=1) => Self::ContactFlat,
+                (true, 0..=12, 0..=2) => Self::ContactTilting,
+                _ => Self::ContactGeneral,
+            };
+        }
         if !problem.steady {
             return Self::General;
         }

@@ -46,6 +46,24 @@ pub(super) struct Coefficients<const L: usize, const N: usize, const R: usize> {
     pub(super) points_per_sample: Lanes<L>,
     /// Published energy norm: parts of the rigid rotation and of the modes.
     pub(super) norm: Norm<L, N>,
+    /// The deflection at a step's end from the state at its start, under a law whose force depends on the deflection's speed.
+    pub(super) ahead: Ahead<L, N, R>,
+}
+
+/// What the deflection at the end of a step, with its damping's lead ℓ = 1 + τ/h, is without the step's own force.
+///
+/// With the step's change S it is `D = B·(q₀ + ℓ S − (ℓ − 1) s₀)`, hence a sum over the modes of the state before. That state but
+/// for its own force's share is known a step earlier. So the sum over the modes is made while that force is sought, and when it is
+/// found only its product with one number is left: without that a step of a single simulation waits most of its time.
+pub(super) struct Ahead<const L: usize, const N: usize, const R: usize> {
+    /// `B (1 − 2ℓh²ω²E)`.
+    pub(super) displacement: [[Lanes<L>; N]; R],
+    /// `B (2ℓE − ℓ + 1)`.
+    pub(super) scaled_velocity: [[Lanes<L>; N]; R],
+    /// (m/N) Per force at the step's start: its share in the state there, and `ℓ Γ`.
+    pub(super) force: [[Lanes<L>; R]; R],
+    /// Per sum of an external at both ends of the step.
+    pub(super) external: [[Lanes<L>; EXTERNALS]; R],
 }
 
 /// What the published energy norm needs.
@@ -72,6 +90,8 @@ pub(super) struct State<const L: usize, const N: usize, const R: usize> {
     /// (N) Mesh force on the modes, `w`.
     pub(super) force: [Lanes<L>; R],
     pub(super) external: [Lanes<L>; EXTERNALS],
+    /// (m) What [`Ahead`] makes of the state without its own force's share, where the law needs it.
+    pub(super) ahead: [Lanes<L>; R],
     /// Entry of the mesh's table that the state belongs to.
     pub(super) entry: [usize; L],
 }
@@ -80,13 +100,11 @@ pub(super) struct State<const L: usize, const N: usize, const R: usize> {
 const MOST_POINTS: f64 = (1u64 << 40) as f64;
 
 /// What forces a step at its end.
-pub(super) struct StepForcing<'a, const L: usize, const R: usize> {
-    /// (N) Force of the flanks' deviations, in the mesh's directions.
-    pub(super) errors: &'a [Lanes<L>; R],
+pub(super) struct StepForcing<'a, S, const L: usize> {
+    /// What the law takes.
+    pub(super) sample: &'a S,
     /// Motor lead, torque deviation and speed deviation; not read while motor and brake are steady.
     pub(super) external: &'a [Lanes<L>; EXTERNALS],
-    /// Entries of the mesh's tables, where they are known beforehand.
-    pub(super) entries: &'a [u32; L],
 }
 
 impl<const L: usize, const N: usize, const R: usize> Coefficients<L, N, R> {
@@ -106,6 +124,63 @@ impl<const L: usize, const N: usize, const R: usize> Coefficients<L, N, R> {
         deflection
     }
 
+    /// What [`Ahead`] makes of a state without its own force's share.
+    #[inline(always)]
+    fn look_ahead<I: Instructions>(
+        &self,
+        simd: I,
+        displacement: &[Lanes<L>; N],
+        scaled_velocity: &[Lanes<L>; N],
+    ) -> [Lanes<L>; R] {
+        let mut ahead = self.static_deflection;
+        for r in 0..R {
+            ahead[r] = dot(simd, ahead[r], &self.ahead.displacement[r], displacement);
+            ahead[r] = dot(simd, ahead[r], &self.ahead.scaled_velocity[r], scaled_velocity);
+        }
+        ahead
+    }
+
+    /// The deflection at a step's end, with its damping's lead, without the step's own force.
+    #[inline(always)]
+    fn led_deflection<I: Instructions, const STEADY: bool>(
+        &self,
+        simd: I,
+        state: &State<L, N, R>,
+        external: &[Lanes<L>; EXTERNALS],
+    ) -> [Lanes<L>; R] {
+        let mut deflection = state.ahead;
+        for r in 0..R {
+            if !STEADY {
+                for x in 0..EXTERNALS {
+                    let both = state.external[x].add(simd, external[x]);
+                    deflection[r] = self.ahead.external[r][x].mul_add(simd, both, deflection[r]);
+                }
+            }
+            for s in 0..R {
+                deflection[r] = self.ahead.force[r][s].mul_add(simd, state.force[s], deflection[r]);
+            }
+        }
+        deflection
+    }
+
+    /// (m) What [`Ahead`] makes of lane `l` of a state at the start.
+    pub(super) fn ahead_at_start(
+        &self,
+        r: usize,
+        l: usize,
+        [displacement, scaled_velocity]: [&[Lanes<L>; N]; 2],
+        force: &[Lanes<L>; R],
+    ) -> f64 {
+        let Ahead { displacement: of_displacement, scaled_velocity: of_velocity, .. } = &self.ahead;
+        let mut ahead = self.static_deflection[r].0[l];
+        for n in 0..N {
+            let share: f64 = (0..R).map(|s| self.push[s][n].0[l] * force[s].0[l]).sum();
+            ahead += of_displacement[r][n].0[l] * (displacement[n].0[l] - share);
+            ahead += of_velocity[r][n].0[l] * (scaled_velocity[n].0[l] - share);
+        }
+        ahead
+    }
+
     /// Makes a step.
     ///
     /// # Arguments
@@ -120,7 +195,7 @@ impl<const L: usize, const N: usize, const R: usize> Coefficients<L, N, R> {
         law: &M,
         state: &mut State<L, N, R>,
         step: usize,
-        forcing: &StepForcing<L, R>,
+        forcing: &StepForcing<M::Sample, L>,
     ) {
         let mut change = [Lanes::splat(0.0); N];
         let mut displacement = [Lanes::splat(0.0); N];
@@ -138,17 +213,28 @@ impl<const L: usize, const N: usize, const R: usize> Coefficients<L, N, R> {
             }
             displacement[n] = state.displacement[n].add(simd, change[n]);
         }
+        let mut ahead = state.ahead;
+        let deflection = if M::LEADS {
+            let mut scaled_velocity = [Lanes::splat(0.0); N];
+            for n in 0..N {
+                scaled_velocity[n] = change[n].sub(simd, state.scaled_velocity[n]);
+            }
+            ahead = self.look_ahead(simd, &displacement, &scaled_velocity);
+            self.led_deflection::<I, STEADY>(simd, state, forcing.external)
+        } else {
+            self.deflection(simd, &displacement)
+        };
         let rotation = self.start.add(simd, Lanes::splat(step as f64)).mul(simd, self.points_per_sample);
         let mut entry = state.entry;
         let trial = ModalTrial::<L, N, R, STEADY> {
             coefficients: self,
             state,
             external: forcing.external,
-            deflection: self.deflection(simd, &displacement),
+            deflection,
             angle: rotation.add(simd, dot(simd, self.static_angle, &self.angle, &displacement)),
             change: &change,
         };
-        let force = law.force(simd, &trial, forcing.errors, forcing.entries, &mut entry);
+        let force = law.force(simd, &trial, forcing.sample, &mut entry);
 
         for n in 0..N {
             for r in 0..R {
@@ -158,6 +244,7 @@ impl<const L: usize, const N: usize, const R: usize> Coefficients<L, N, R> {
             state.scaled_velocity[n] = change[n].sub(simd, state.scaled_velocity[n]);
         }
         state.force = force;
+        state.ahead = ahead;
         state.entry = entry;
         if !STEADY {
             state.external = *forcing.external;

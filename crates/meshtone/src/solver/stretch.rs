@@ -9,7 +9,7 @@ use crate::simd::{Instructions, Task};
 /// Some steps of `L` simulations under the mesh law `M`.
 pub(super) struct Stretch<
     'a,
-    M,
+    M: MeshLaw<L, R>,
     const L: usize,
     const N: usize,
     const R: usize,
@@ -22,7 +22,7 @@ pub(super) struct Stretch<
     /// Number of steps since the start of the integration.
     pub(super) steps_before: usize,
     /// Forcing of the samples after the state's.
-    pub(super) forcing: &'a SharedForcing<L, R>,
+    pub(super) forcing: &'a SharedForcing<M::Sample, L>,
     /// Number of steps.
     pub(super) steps: usize,
     /// Takes the states before each step.
@@ -37,13 +37,14 @@ impl<M: MeshLaw<L, R>, const L: usize, const N: usize, const R: usize, const BLO
     #[inline(always)]
     fn run<I: Instructions>(mut self, simd: I) {
         let mut state = *self.state;
-        let samples = self.forcing.errors.iter().zip(&self.forcing.external).zip(&self.forcing.entries);
-        for (k, ((errors, external), entries)) in samples.take(self.steps).enumerate() {
+        let samples = &self.forcing.samples[..self.steps];
+        let external = &self.forcing.external[..self.steps];
+        for (k, (sample, external)) in samples.iter().zip(external).enumerate() {
             if let Some(history) = &mut self.history {
                 history.store::<STEADY>(k, &state);
             }
             let step = self.steps_before + k + 1;
-            let forcing = StepForcing { errors, external, entries };
+            let forcing = StepForcing { sample, external };
             self.coefficients.step::<I, M, STEADY>(simd, self.law, &mut state, step, &forcing);
         }
         *self.state = state;

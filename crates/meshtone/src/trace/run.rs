@@ -63,6 +63,10 @@ pub fn trace_at(scenario: &Scenario, average_rate_hz: f64) -> Result<(Simulation
 }
 
 fn forces(trace: &mut Trace, stages: &Stages) {
+    // Under `contact` the force of the deviations depends on which teeth touch.
+    if stages.structure.is_some() {
+        return;
+    }
     let system = &stages.system;
     let kept = stages.time.first_kept_sample;
     let mut first = Vec::with_capacity(FIRST_FORCES);
@@ -93,9 +97,9 @@ fn forces(trace: &mut Trace, stages: &Stages) {
 
 /// What is recorded beside the channels: the 13 coordinates' accelerations, velocities and displacements.
 fn state_outputs() -> Vec<Output> {
-    let each = |output: fn([f64; COORDINATES]) -> Output| {
+    let each = |output: fn(Vec<f64>) -> Output| {
         (0..COORDINATES).map(move |coordinate| {
-            let mut weights = [0.0; COORDINATES];
+            let mut weights = vec![0.0; COORDINATES];
             weights[coordinate] = 1.0;
             output(weights)
         })

@@ -5,7 +5,8 @@ use std::num::NonZeroUsize;
 use super::Trace;
 use crate::damage::DamageDescription;
 use crate::damage::published::{Displacement, FaultGeometry};
-use crate::mesh::{Mesh, PairKind, PairMesh};
+use crate::machine::Structure;
+use crate::mesh::{ContactMesh, Mesh, PairKind, PairMesh};
 use crate::operation::CycleGrid;
 use crate::simulate::Stages;
 use crate::wheel::{ToothProfile, Wheel};
@@ -115,10 +116,11 @@ fn stiffness(trace: &mut Trace, stages: &Stages) {
             }
             mesh.stiffness.mesh_n_per_mm.clone()
         }
-        Mesh::Pairs(_) => {
+        Mesh::Pairs(_) | Mesh::Contact(_) => {
             let pairs = stages.pairs();
             let pitches = f64::from(stages.teeth.pinion.teeth);
             let Some(mesh) = mesh_on(stages, grid) else { return };
+            let contact = contact_on(stages, grid);
             let is_first =
                 |kind: &&PairKind| matches!((kind.pinion, kind.gear), (Some(0), None) | (None, Some(0)));
             let classes = mesh.sequence.classes();
@@ -126,7 +128,11 @@ fn stiffness(trace: &mut Trace, stages: &Stages) {
                 let Some(kind) = kind else { continue };
                 pair(trace, name, &|position| pairs.at(kind, position * pitches).stiffness_n_per_mm);
             }
-            mesh.stiffness_n_per_mm(0..mesh.sequence.gear_teeth())
+            let revolution = 0..mesh.sequence.gear_teeth();
+            match contact {
+                Some(contact) => contact.stiffness_n_per_mm(revolution),
+                None => mesh.stiffness_n_per_mm(revolution),
+            }
         }
     };
     trace.scalar("pair_stiffness_len", points as f64);
@@ -139,18 +145,41 @@ fn mesh_on(stages: &Stages, grid: &CycleGrid) -> Option<PairMesh> {
     stages.pair_mesh(NonZeroUsize::new(grid.points_per_pitch)?).ok()
 }
 
+/// The same under `contact`.
+fn contact_on(stages: &Stages, grid: &CycleGrid) -> Option<ContactMesh> {
+    stages.contact_mesh(NonZeroUsize::new(grid.points_per_pitch)?).ok().flatten()
+}
+
+/// Of the wheels, brake and supports under `contact`: without the mesh, and with the mean one closed.
+fn structure_matrices(trace: &mut Trace, stages: &Stages, structure: &Structure) {
+    let size = structure.mass_diagonal.len();
+    let mean_n_per_m = stages.mesh.mean_stiffness_n_per_mm() * 1e3;
+    trace.vector("mass_diagonal", structure.mass_diagonal.iter().copied());
+    for (name, matrix) in [
+        ("damping_matrix", structure.damping_matrix()),
+        ("stiffness_matrix_open", structure.stiffness_matrix()),
+        ("stiffness_matrix_mean", structure.closed_stiffness_matrix(mean_n_per_m)),
+    ] {
+        trace.matrix(name, size, size, |r, c| matrix[(r, c)]);
+    }
+}
+
 fn matrices(trace: &mut Trace, stages: &Stages) {
+    trace.vector("natural_frequencies_hz", stages.natural_frequencies_hz());
+    if let Some(structure) = &stages.structure {
+        structure_matrices(trace, stages, structure);
+        return;
+    }
     let system = &stages.system;
     let square = |trace: &mut Trace, name: &str, matrix: &nalgebra::SMatrix<f64, 13, 13>| {
         trace.matrix(name, 13, 13, |r, c| matrix[(r, c)]);
     };
-    trace.vector("natural_frequencies_hz", system.natural_frequencies_hz());
     trace.vector("mass_diagonal", system.mass_diagonal);
     square(trace, "damping_matrix", &system.damping_matrix());
     // On the coarse grid of the published code, under every model.
     let coarse = match &stages.mesh {
         Mesh::Published(_) => None,
-        Mesh::Pairs(_) => mesh_on(stages, &stages.cycle),
+        Mesh::Pairs(_) | Mesh::Contact(_) => mesh_on(stages, &stages.cycle),
     };
     for point in [0, 499] {
         let matrix = match &coarse {

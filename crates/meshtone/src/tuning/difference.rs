@@ -41,7 +41,7 @@ impl DifferenceChain {
     pub fn angular_settings(model: Model) -> AngularSettings {
         let interpolation = match model {
             Model::Published => Interpolation::Pchip,
-            Model::Linear => Interpolation::BandLimited,
+            Model::Linear | Model::Contact => Interpolation::BandLimited,
         };
         AngularSettings { interpolation, ..AngularSettings::default() }
     }

@@ -3,7 +3,7 @@
 use meshtone_toml::{ReadResult, TomlValue};
 
 use super::rules::NO_RELIEF;
-use super::{Material, WheelName};
+use super::{FlankRelief, Material, WheelName};
 use crate::keys::{
     Check, KeyDescription, KeyKind, KeyValue, Keys, NumberFiles, Range, Row, Written, by_name, check_keys,
     describe, field, row,
@@ -27,6 +27,12 @@ pub struct Gears {
     pub material: Material,
     /// Relief of the flank near the tip; `None` for none. Default parabolic, 1 mm × 1 mm.
     pub tip_relief: Option<TipRelief>,
+    /// Relief of the flank near the tip, as a gap. Default none.
+    pub flank_relief: FlankRelief,
+    /// (mm) Height of the chamfer or rounding of all tips, which the flank ends below; none for 0.2 modules.
+    pub tip_chamfer_mm: Option<f64>,
+    /// (mm) Normal backlash; none for two thirds of `0.06 + 0.0005 a + 0.03 m`, a the centre distance.
+    pub backlash_mm: Option<f64>,
     /// (mm) Constant reduction of the working flank. Default 0.
     pub crowning_mm: f64,
     /// Number of points along a tooth's profile. Default 10 000.
@@ -49,6 +55,9 @@ impl Gears {
             pressure_angle_deg: 20.0,
             material: Material::default(),
             tip_relief: Some(TipRelief::default()),
+            flank_relief: FlankRelief::default(),
+            tip_chamfer_mm: None,
+            backlash_mm: None,
             crowning_mm: 0.0,
             points_per_tooth: 10_000,
             foundation: FoundationCoefficients::default(),
@@ -86,7 +95,24 @@ impl Keys for Gears {
                 .rule("teeth must not become pointed below full height"),
             row("material", "", "the material of wheels and shafts", field!(material)),
             row("tip_relief", "", "the material removed near the tips, or `false` for none", field!(tip_relief))
-                .ignored_by_published(),
+                .ignored_by(&["published", "contact"]),
+            row("flank_relief", "", "the relief of the flanks near the tips, as a gap in µm", field!(flank_relief))
+                .ignored_by(&["linear", "published"]),
+            row(
+                "tip_chamfer_mm",
+                "mm",
+                "the height of the chamfer or rounding of all tips, which the flank ends below",
+                field!(tip_chamfer_mm),
+            )
+            .otherwise("0.2 modules")
+            .range(Range::not_negative())
+            .rule("less than 1 module")
+            .ignored_by(&["linear", "published"]),
+            row("backlash_mm", "mm", "the backlash along the line of action", field!(backlash_mm))
+                .otherwise("two thirds of 0.06 + 0.0005 a + 0.03 m, a the centre distance")
+                .range(Range::not_negative())
+                .rule("less than 1 module")
+                .ignored_by(&["linear", "published"]),
             row("crowning_mm", "mm", "a constant reduction of the working flank", field!(crowning_mm))
                 .range(Range::not_negative())
                 .rule("less than half the tooth's thickness at the pitch circle, π/4 modules"),
@@ -101,8 +127,24 @@ impl Keys for Gears {
                  Sainsot, Velex and Duverger (2004)",
                 field!(foundation),
             )
-            .ignored_by_published(),
+            .ignored_by(&["published"]),
         ]
+    }
+}
+
+impl Gears {
+    /// (mm) Height of the tips' chamfer, given or by default.
+    pub fn chamfer_mm(&self) -> f64 {
+        self.tip_chamfer_mm.unwrap_or(0.2 * self.module_mm)
+    }
+
+    /// (mm) Normal backlash, given or by default.
+    ///
+    /// Source of the default: the least backlash of ISO/TR 10064-2:1996, table A.1, `⅔ (0.06 + 0.0005 a + 0.03 m)`.
+    pub fn normal_backlash_mm(&self) -> f64 {
+        let centre_distance_mm = self.module_mm * f64::from(self.pinion_teeth + self.gear_teeth) / 2.0;
+        let least = 2.0 / 3.0 * (0.06 + 0.0005 * centre_distance_mm + 0.03 * self.module_mm);
+        self.backlash_mm.unwrap_or(least)
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod contact;
 mod flank;
+mod flank_relief;
 mod gears;
 mod material;
 mod name;
@@ -13,13 +14,14 @@ mod rules;
 
 pub use contact::{ContactLine, contact_line, contact_ratio, published_contact_line};
 pub use flank::{Flank, FlankPoint};
+pub use flank_relief::FlankRelief;
 pub use gears::{FoundationCoefficients, Gears, ReliefShape, TipRelief};
 pub use material::Material;
 pub use name::WheelName;
 pub use path::PathOfContact;
 pub(crate) use profile::first_minimum;
 pub use profile::{ToothProfile, tooth_profile};
-pub use quality::{ERROR_POINTS, ErrorTable, ProfileErrors, Quality};
+pub use quality::{Deviations, ERROR_POINTS, ErrorTable, ProfileErrors, Quality, RunOut, Tolerances};
 pub use radii::Wheel;
 pub(crate) use rules::HALF_THICKNESS;
 
@@ -97,14 +99,17 @@ impl Teeth {
 pub fn teeth(gears: &Gears, bore_radii_mm: [f64; 2], model: Model) -> Teeth {
     let pinion = Wheel::new(gears, gears.pinion_teeth, bore_radii_mm[0]);
     let gear = Wheel::new(gears, gears.gear_teeth, bore_radii_mm[1]);
-    let profile =
-        |wheel| tooth_profile(wheel, gears.points_per_tooth, gears.crowning_mm, gears.tip_relief, model);
+    // Model: a relief that thins the tip by half its thickness leaves nothing to touch.
+    let relief = gears.tip_relief.filter(|_| model != Model::Contact);
+    let profile = |wheel| tooth_profile(wheel, gears.points_per_tooth, gears.crowning_mm, relief, model);
     let gear_profile = profile(&gear);
     let own_profile = profile(&pinion);
     let (contact, pinion_profile) = match model {
         // Model: the published code pairs points uniform in x; conjugate ones pair by their radii of curvature.
         Model::Published => published_contact_line(&pinion, &own_profile, &gear, &gear_profile),
-        Model::Linear => (contact_line(&pinion, &own_profile, &gear, &gear_profile), own_profile),
+        Model::Linear | Model::Contact => {
+            (contact_line(&pinion, &own_profile, &gear, &gear_profile), own_profile)
+        }
     };
     let path = PathOfContact::new(&pinion, &gear);
     Teeth { pinion, gear, pinion_profile, gear_profile, contact, path }

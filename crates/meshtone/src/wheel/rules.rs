@@ -21,6 +21,15 @@ impl Gears {
         contact_ratio(self)?;
         self.tip_relief.map_or(Ok(()), |relief| tip_relief(&relief, self.module_mm))?;
         below("gears.crowning_mm", self.crowning_mm, self.half_thickness_mm(), HALF_THICKNESS)?;
+        let relief = &self.flank_relief;
+        if relief.amount_um > 0.0 {
+            below("gears.flank_relief.length_mm", relief.length_mm, 2.0 * self.module_mm, "2 modules")?;
+        }
+        below("gears.tip_chamfer_mm", self.chamfer_mm(), self.module_mm, "the module")?;
+        // The default grows with the centre distance: it is no slip of the user's.
+        if let Some(backlash_mm) = self.backlash_mm {
+            below("gears.backlash_mm", backlash_mm, self.module_mm, "the module")?;
+        }
         tip_thickness(self)
     }
 

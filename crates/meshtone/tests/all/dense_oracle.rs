@@ -19,7 +19,7 @@ impl Recorder for Accelerations {
 fn modal(stages: &Stages) -> Vec<CoordinateVector> {
     let outputs: Vec<Output> = (0..COORDINATES)
         .map(|coordinate| {
-            let mut weights = [0.0; COORDINATES];
+            let mut weights = vec![0.0; COORDINATES];
             weights[coordinate] = 1.0;
             Output::Acceleration(weights)
         })

@@ -60,9 +60,9 @@ impl Recorder for States {
 }
 
 fn solve(stages: &Stages) -> States {
-    let each = |output: fn([f64; COORDINATES]) -> Output| {
+    let each = |output: fn(Vec<f64>) -> Output| {
         (0..COORDINATES).map(move |coordinate| {
-            let mut weights = [0.0; COORDINATES];
+            let mut weights = vec![0.0; COORDINATES];
             weights[coordinate] = 1.0;
             output(weights)
         })

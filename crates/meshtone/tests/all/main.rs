@@ -2,6 +2,9 @@
 
 mod batch;
 mod compliances;
+mod contact;
+mod contact_rigs;
+mod contact_slices;
 mod dense;
 mod dense_oracle;
 mod drive;
@@ -15,6 +18,7 @@ mod integrator;
 mod linear_mesh;
 mod other_programs;
 mod paper_original;
+mod paper_rigs;
 mod physics;
 mod power_balance;
 mod properties;

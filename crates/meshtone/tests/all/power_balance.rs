@@ -24,7 +24,7 @@ impl Recorder for Kept {
 fn means(scenario: &Scenario) -> [f64; 3] {
     let stages = meshtone::stages(scenario).unwrap();
     let displacement = |terms: &[(usize, f64)]| {
-        let mut weights = [0.0; COORDINATES];
+        let mut weights = vec![0.0; COORDINATES];
         terms.iter().for_each(|&(coordinate, weight)| weights[coordinate] = weight);
         Output::Displacement(weights)
     };

@@ -185,7 +185,7 @@ impl Recorder for Outputs {
 /// (g) Rms of the pinion's own vertical acceleration, and of the larger one of the two summed signals.
 fn own_and_summed_accelerations(stages: &Stages) -> (f64, f64) {
     let vertical = |coordinate: usize| {
-        let mut weights = [0.0; COORDINATES];
+        let mut weights = vec![0.0; COORDINATES];
         weights[coordinate] = 1.0 / GRAVITY_M_PER_S2;
         Output::Acceleration(weights)
     };

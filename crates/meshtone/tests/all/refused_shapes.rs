@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::physics::pairs;
-use meshtone::scenario::{GearPair, Model, Profile, Scenario};
+use meshtone::scenario::{Fault, GearPair, MissingTooth, Model, Profile, Scenario, WheelName};
 
 // 1 mm × 1 mm of relief takes the whole tip of a small tooth and more: half thicknesses below 0 and stiffness of 0.
 #[test]
@@ -84,4 +84,28 @@ fn a_speed_profile_outlasts_the_settling() {
     scenario.model = Model::Published;
     scenario.operation.speed_profile_hz = profile(0.9);
     assert!(scenario.validate().is_ok());
+}
+
+#[test]
+fn wheels_without_a_tooth_are_refused() {
+    let pair = GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 17,
+        gear_teeth: 38,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    };
+    let all = |wheel, teeth| (1..=teeth).map(|tooth| Fault::new(wheel, tooth, MissingTooth)).collect();
+    for model in [Model::Linear, Model::Contact] {
+        for faults in [all(WheelName::Gear, 38), all(WheelName::Pinion, 17)] {
+            let mut scenario = Scenario::new(pair).with_faults(faults);
+            scenario.model = model;
+            let error = meshtone::stages(&scenario).err().map(|error| error.to_string());
+            assert!(error.is_some_and(|error| error.contains("no pair of teeth")));
+        }
+        let mut scenario = Scenario::new(pair).with_faults(all(WheelName::Gear, 37));
+        scenario.model = model;
+        assert!(meshtone::stages(&scenario).is_ok());
+    }
 }

@@ -141,7 +141,8 @@ fn the_old_name_of_the_model_is_told_its_new_one() {
     let published = named("convention = \"published\"");
     assert_refused(&published, "convention", 1, &["write model = \"published\""]);
     assert_refused(&named("model = \"corrected\""), "model", 1, &["is called \"linear\" now"]);
-    assert_refused(&named("model = \"contact\""), "model", 1, &["\"linear\", \"published\""]);
+    assert_refused(&named("model = \"contacts\""), "model", 1, &["\"linear\", \"published\""]);
+    assert_eq!(Scenario::from_toml(&named("model = \"contact\"")).unwrap().model, Model::Contact);
     assert_eq!(Scenario::from_toml(&named("model = \"published\"")).unwrap().model, Model::Published);
 }
 

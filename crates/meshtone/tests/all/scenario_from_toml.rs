@@ -96,8 +96,8 @@ fn every_key_is_read() {
     expected.rig.damping_ratio =
         DampingRatio::PerMode([0.0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08, 0.09, 0.10, 0.11, 0.12]);
     expected.rig.eccentricity_mm = 0.02;
-    expected.rig.pinion_shaft = Shaft { length_mm: 100.0, radius_mm: 8.0 };
-    expected.rig.gear_shaft = Shaft { length_mm: 600.0, radius_mm: 9.0 };
+    expected.rig.pinion_shaft = Shaft::new(100.0, 8.0);
+    expected.rig.gear_shaft = Shaft::new(600.0, 9.0);
     expected.rig.pinion_inertia.mass_kg = Some(0.5);
     expected.rig.gear_inertia.polar_inertia_kgm2 = Some(1e-3);
     expected.rig.gear_inertia.transverse_inertia_kgm2 = Some(2e-3);

@@ -1,10 +1,10 @@
 //! Whatever scenario is valid is written as a scenario file that is read back exactly.
 
 use meshtone::scenario::{
-    Damage, DampingRatio, DestructionLine, Fault, FoundationCoefficients, GearPair, Gears, Material,
-    MissingTooth, Model, Operation, PartialFace, PitCircle, Profile, ProfileErrors, Quality, ReliefShape,
-    Rig, Scenario, Shaft, Solver, ThroughFace, TipRelief, ToothBreakage, ToothDestruction, WheelInertia,
-    WheelName,
+    Damage, DampingRatio, DestructionLine, Fault, FlankRelief, FoundationCoefficients, GearPair, Gears,
+    Material, MissingTooth, Model, Operation, PartialFace, PitCircle, Profile, ProfileErrors, Quality,
+    ReliefShape, Rig, Scenario, Shaft, Solver, Support, ThroughFace, TipRelief, ToothBreakage,
+    ToothDestruction, WheelInertia, WheelName,
 };
 use meshtone::wheel::ErrorTable;
 use proptest::array::{uniform4, uniform6, uniform13};
@@ -20,22 +20,33 @@ fn gears() -> impl Strategy<Value = Gears> {
         uniform4(uniform6(-1e3..1e3)).prop_map(|[l, m, p, q]| FoundationCoefficients { l, m, p, q });
     let wheels = (1.0..10.0, 17u32..80, 17u32..80, 1.0..100.0, 15.0..30.0);
     let rest = (0usize..6, relief, 0.0..0.05, 500usize..100_000, foundation);
-    (wheels, rest).prop_map(|(wheels, (material, relief, crowning_mm, points_per_tooth, foundation))| {
-        let (module_mm, pinion_teeth, gear_teeth, face_width_mm, pressure_angle_deg) = wheels;
-        let scaled = |relief: TipRelief| TipRelief {
-            length_mm: relief.length_mm * module_mm,
-            depth_mm: relief.depth_mm * module_mm,
-            ..relief
-        };
-        let mut gears = Gears::new(module_mm, pinion_teeth, gear_teeth, face_width_mm);
-        gears.pressure_angle_deg = pressure_angle_deg;
-        gears.material = Material::ALL[material];
-        gears.tip_relief = relief.map(scaled);
-        gears.crowning_mm = crowning_mm;
-        gears.points_per_tooth = points_per_tooth;
-        gears.foundation = foundation;
-        gears
-    })
+    let contact = (any::<bool>(), 0.01..1.9, 0.0..50.0, option::of(0.0..0.3), option::of(0.0..0.5));
+    (wheels, rest, contact).prop_map(
+        |(wheels, (material, relief, crowning_mm, points_per_tooth, foundation), contact)| {
+            let (parabolic, length, amount_um, chamfer, backlash) = contact;
+            let (module_mm, pinion_teeth, gear_teeth, face_width_mm, pressure_angle_deg) = wheels;
+            let scaled = |relief: TipRelief| TipRelief {
+                length_mm: relief.length_mm * module_mm,
+                depth_mm: relief.depth_mm * module_mm,
+                ..relief
+            };
+            let mut gears = Gears::new(module_mm, pinion_teeth, gear_teeth, face_width_mm);
+            gears.pressure_angle_deg = pressure_angle_deg;
+            gears.material = Material::ALL[material];
+            gears.tip_relief = relief.map(scaled);
+            gears.crowning_mm = crowning_mm;
+            gears.points_per_tooth = points_per_tooth;
+            gears.foundation = foundation;
+            gears.flank_relief = FlankRelief {
+                shape: if parabolic { ReliefShape::Parabolic } else { ReliefShape::Linear },
+                length_mm: length * module_mm,
+                amount_um,
+            };
+            gears.tip_chamfer_mm = chamfer.map(|chamfer| chamfer * module_mm);
+            gears.backlash_mm = backlash.map(|backlash| backlash * module_mm);
+            gears
+        },
+    )
 }
 
 fn profile() -> impl Strategy<Value = Option<Profile>> {
@@ -91,6 +102,14 @@ fn quality(pinion_teeth: u32, gear_teeth: u32) -> impl Strategy<Value = Quality>
         (0u8..=12, prop::option::of(any::<u64>())).prop_map(|(din_grade, seed)| {
             let mut quality = Quality::of_grade(din_grade);
             quality.seed = seed;
+            quality
+        }),
+        (0u8..=11, 0.0..=1.0, 0.0..=1.0, 0.0..=1.0).prop_map(|(iso_class, tooth, pitch, run_out)| {
+            let mut quality = Quality::default();
+            quality.iso_class = iso_class;
+            quality.tooth_share = tooth;
+            quality.pitch_share = pitch;
+            quality.run_out_share = run_out;
             quality
         }),
         (-0.01..0.01, -1e-3..1e-3).prop_map(move |(first, step)| Quality::of_errors(drawn(first, step))),
@@ -155,16 +174,42 @@ fn rig() -> impl Strategy<Value = Rig> {
             transverse_inertia_kgm2: transverse,
         })
     };
-    let shaft = || (1.0..1e4, 0.1..7.0).prop_map(|(length_mm, radius_mm)| Shaft { length_mm, radius_mm });
-    let numbers = (1e3..1e12, 1e3..1e12, 1e-6..1e3, 0.0..0.9);
-    (numbers, damping, shaft(), shaft(), inertia(), inertia()).prop_map(
+    let shaft = || {
+        let bearings = (1.0..1e3, 0.01..0.99, option::of(1e3..1e12), 0.0..0.9);
+        (1.0..1e4, 0.1..7.0, bearings).prop_map(
+            |(
+                length_mm,
+                radius_mm,
+                (bearing_span_mm, wheel_at, bearing_stiffness_n_per_m, damping_ratio),
+            )| {
+                Shaft {
+                    bearing_span_mm,
+                    wheel_at,
+                    bearing_stiffness_n_per_m,
+                    damping_ratio,
+                    ..Shaft::new(length_mm, radius_mm)
+                }
+            },
+        )
+    };
+    let support = (1e-6..1e3, 1e3..1e12, 0.0..1e12, 0.0..0.9).prop_map(
+        |(mass_kg, stiffness_n_per_m, coupling_n_per_m, damping_ratio)| Support {
+            mass_kg,
+            stiffness_n_per_m,
+            coupling_n_per_m,
+            damping_ratio,
+        },
+    );
+    let numbers = (1e3..1e12, 1e3..1e12, 1e-6..1e3, 0.0..0.9, 0.0..0.9);
+    (numbers, damping, shaft(), shaft(), inertia(), inertia(), support).prop_map(
         |(
-            (bearing, rotational, brake, eccentricity_mm),
+            (bearing, rotational, brake, eccentricity_mm, mesh_damping_ratio),
             damping_ratio,
             pinion_shaft,
             gear_shaft,
             pinion,
             gear,
+            support,
         )| Rig {
             bearing_stiffness_n_per_m: bearing,
             wheel_rotational_stiffness_nm_per_rad: rotational,
@@ -175,6 +220,8 @@ fn rig() -> impl Strategy<Value = Rig> {
             gear_shaft,
             pinion_inertia: pinion,
             gear_inertia: gear,
+            support,
+            mesh_damping_ratio,
         },
     )
 }
@@ -207,7 +254,7 @@ fn base() -> Scenario {
 }
 
 fn scenario() -> impl Strategy<Value = Scenario> {
-    let model = prop_oneof![Just(Model::Linear), Just(Model::Published)];
+    let model = prop_oneof![Just(Model::Contact), Just(Model::Linear), Just(Model::Published)];
     gears().prop_flat_map(move |gears| {
         let quality = quality(gears.pinion_teeth, gears.gear_teeth);
         let faults = faults(&gears);

@@ -3,13 +3,15 @@
 //! A step of the integration is implicit through the mesh's force alone. The solver offers a [`Trial`], the step as it would be
 //! without that force; a law finds the force at its end.
 
+mod contact;
 mod linear;
 mod published;
 mod table;
 
+pub(crate) use contact::{ContactConstants, ContactLaw, ContactSample, deflection_at_rest, force_on};
 pub(crate) use linear::LinearLaw;
 pub(crate) use published::{PublishedCycle, PublishedLaw};
-pub(crate) use table::{MeshTable, Reduction};
+pub(crate) use table::{MeshTable, Reduction, TabulatedSample};
 
 use crate::simd::{Instructions, Lanes};
 
@@ -20,7 +22,8 @@ pub(crate) trait Trial<I: Instructions, const L: usize, const R: usize> {
     /// The right-hand side in the modes.
     type RightHandSide;
 
-    /// (m) Deflection in the mesh's directions at the step's end, without the new force.
+    /// (m) Deflection in the mesh's directions at the step's end, without the new force; with its damping's lead
+    /// where [`MeshLaw::LEADS`].
     fn deflection(&self) -> &[Lanes<L>; R];
 
     /// (m) Deflection in the mesh's directions at the step's start.
@@ -41,19 +44,23 @@ pub(crate) trait Trial<I: Instructions, const L: usize, const R: usize> {
 
 /// The mesh of `L` simulations side by side.
 pub(crate) trait MeshLaw<const L: usize, const R: usize> {
-    /// (N) The mesh's force at the end of a step, with respect to the mean stiffness, in its directions.
+    /// What the law takes of the forcing at one sample.
+    type Sample;
+
+    /// Whether its force depends on the deflection's speed.
+    const LEADS: bool = false;
+
+    /// (N) The mesh's force at the end of a step, with respect to what the modes have already, in its directions.
     ///
     /// # Arguments
     /// * `trial` - the step without it
-    /// * `errors` - (N) force of the flanks' deviations at the step's end
-    /// * `known` - entries of the tables at the step's end, where the law knows them beforehand
-    /// * `entries` - entries at the step's start; set to those at its end
+    /// * `sample` - pairs and deviations at the step's end
+    /// * `entries` - entries of the tables at the step's start; set to those at its end
     fn force<I: Instructions, T: Trial<I, L, R>>(
         &self,
         simd: I,
         trial: &T,
-        errors: &[Lanes<L>; R],
-        known: &[u32; L],
+        sample: &Self::Sample,
         entries: &mut [usize; L],
     ) -> [Lanes<L>; R];
 }

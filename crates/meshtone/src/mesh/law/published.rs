@@ -3,7 +3,7 @@
 //! Source: the paper's section 4, item 3 (Newton and Raphson's iteration on the angle-dependent stiffness).
 
 use super::table::solve;
-use super::{MeshLaw, MeshTable, Trial};
+use super::{MeshLaw, MeshTable, TabulatedSample, Trial};
 use crate::simd::{Instructions, Lanes};
 
 /// Most iterations of a step.
@@ -123,16 +123,18 @@ impl<'a, const L: usize, const R: usize> PublishedLaw<'a, L, R> {
 }
 
 impl<const L: usize, const R: usize> MeshLaw<L, R> for PublishedLaw<'_, L, R> {
+    type Sample = TabulatedSample<L, R>;
+
     /// From the point of the state before, until the change's energy norm `|r·ΔP/(ΔF̂·P)|` is small.
     #[inline(always)]
     fn force<I: Instructions, T: Trial<I, L, R>>(
         &self,
         simd: I,
         trial: &T,
-        errors: &[Lanes<L>; R],
-        _: &[u32; L],
+        sample: &TabulatedSample<L, R>,
         entries: &mut [usize; L],
     ) -> [Lanes<L>; R] {
+        let errors = &sample.errors;
         let held = self.force_of_deflection(simd, &trial.deflection_before(simd), entries, errors);
         let right_hand_side = trial.right_hand_side(simd, &held);
         let deflection = trial.deflection();

@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::mesh::forcing::ForcingBlock;
 use crate::mesh::load_state::DirectionMatrix;
 use crate::simd::{Instructions, Lanes};
 
@@ -14,6 +15,31 @@ pub(crate) struct MeshPoint<const R: usize> {
     /// (-) `(1 + S' Γ)⁻¹`, Γ the step's own compliance: `w = −(1 + S' Γ)⁻¹ (f + S' ŷ)` with ŷ the deflection at
     /// `w = 0`. This is Woodbury's identity for `K̂⁻¹`.
     pub(crate) relief: [[f64; R]; R],
+}
+
+/// What a law of tables takes of the forcing at one sample.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct TabulatedSample<const L: usize, const R: usize> {
+    /// (N) Force of the flanks' deviations in the mesh's directions.
+    pub(crate) errors: [Lanes<L>; R],
+    /// Entries of the mesh's tables, where they are known beforehand.
+    pub(crate) entries: [u32; L],
+}
+
+impl<const L: usize, const R: usize> TabulatedSample<L, R> {
+    pub(crate) const NOTHING: Self = Self { errors: [Lanes([0.0; L]); R], entries: [0; L] };
+
+    /// Spreads a block over one lane of successive samples.
+    pub(crate) fn fill(samples: &mut [Self], lane: usize, block: &ForcingBlock) {
+        for (r, errors) in block.errors.iter().enumerate() {
+            for (sample, error) in samples.iter_mut().zip(errors) {
+                sample.errors[r].0[lane] = *error;
+            }
+        }
+        for (sample, entry) in samples.iter_mut().zip(&block.entries) {
+            sample.entries[lane] = *entry;
+        }
+    }
 }
 
 /// Which of the mesh's constant directions are used, and what a step makes of a force in them.

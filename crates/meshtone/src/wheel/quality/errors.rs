@@ -11,16 +11,39 @@ use crate::keys::{
 pub const ERROR_POINTS: usize = 100;
 
 /// How well the teeth are made.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Quality {
     /// Grade of DIN 3962, 1 (best) to 12; 0 for ideal teeth. Default 0.
     pub din_grade: u8,
     /// Seed of the draw by `din_grade`: which wheels they are. Default: the scenario's seed.
     pub seed: Option<u64>,
+    /// Class of ISO 1328-1:2013, 1 (best) to 11, instead of a DIN grade; 0 for none. Default 0.
+    pub iso_class: u8,
+    /// (-) Part of the tolerances of slope and form that a tooth has of its own; the rest all teeth of a wheel have in common.
+    /// Default 0.4.
+    pub tooth_share: f64,
+    /// (-) Largest single pitch deviation as a part of its tolerance. Default 0.15.
+    pub pitch_share: f64,
+    /// (-) Run-out as a part of its tolerance. Default 0.3.
+    pub run_out_share: f64,
     /// The errors themselves, instead of a draw by `din_grade`: several simulations that are
     /// given the same errors share one pair of wheels.
     pub profile_errors: Option<ProfileErrors>,
+}
+
+impl Default for Quality {
+    fn default() -> Self {
+        Self {
+            din_grade: 0,
+            seed: None,
+            iso_class: 0,
+            tooth_share: 0.4,
+            pitch_share: 0.15,
+            run_out_share: 0.3,
+            profile_errors: None,
+        }
+    }
 }
 
 impl Quality {
@@ -67,6 +90,36 @@ impl Keys for Quality {
             )
             .otherwise("the scenario's `seed`")
             .alternative("2"),
+            row(
+                "iso_class",
+                "",
+                "the class of ISO 1328-1:2013 that deviations are drawn for, 1 (best) to 11, instead of din_grade; 0 for none",
+                field!(iso_class),
+            )
+            .range(Range::from_to(0.0, 11.0).message(
+                "must be a whole number from 0 to 11: a class of ISO 1328-1:2013, from 1 (best) to 11, or 0 for none",
+            ))
+            .ignored_by(&["linear", "published"]),
+            row(
+                "tooth_share",
+                "-",
+                "the part of the tolerances of profile slope and form that each tooth has of its own; the rest all teeth of a \
+                 wheel have in common, as one tool makes them",
+                field!(tooth_share),
+            )
+            .range(Range::from_to(0.0, 1.0))
+            .ignored_by(&["linear", "published"]),
+            row(
+                "pitch_share",
+                "-",
+                "the largest single pitch deviation of a wheel as a part of its tolerance f_p",
+                field!(pitch_share),
+            )
+            .range(Range::from_to(0.0, 1.0))
+            .ignored_by(&["linear", "published"]),
+            row("run_out_share", "-", "the run-out of each wheel as a part of its tolerance F_r", field!(run_out_share))
+                .range(Range::from_to(0.0, 1.0))
+                .ignored_by(&["linear", "published"]),
             documented(
                 "errors_file",
                 "a file with the teeth's profile errors themselves, instead of a draw by din_grade: an .npz with the entries \

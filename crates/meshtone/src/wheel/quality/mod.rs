@@ -1,11 +1,15 @@
 //! Stage 3: manufacturing errors of the tooth profiles.
 
+mod deviations;
 mod din3962;
 mod errors;
 mod rules;
+mod tolerances;
 
 pub use crate::error_table::ErrorTable;
+pub use deviations::{Deviations, RunOut, deviations};
 pub use errors::{ERROR_POINTS, ProfileErrors, Quality};
+pub use tolerances::Tolerances;
 
 use super::Teeth;
 use crate::random::Purpose;

@@ -10,6 +10,12 @@ impl Quality {
     /// Every key alone, and the profile errors with the wheels that have them.
     pub(crate) fn check(&self, gears: &Gears) -> Check {
         check_keys(self, "quality")?;
+        let class = self.iso_class;
+        if class != 0 && self.din_grade != 0 {
+            let problem = "given beside quality.din_grade; deviations are drawn for one of the two";
+            return Err(ScenarioError::new("quality.iso_class", class, problem)
+                .with_help("remove iso_class, or remove din_grade"));
+        }
         let Some(errors) = &self.profile_errors else {
             return Ok(());
         };
@@ -18,6 +24,11 @@ impl Quality {
             let problem = "given beside profile errors, which replace the errors drawn for a grade";
             return Err(ScenarioError::new("quality.din_grade", grade, problem)
                 .with_help("remove din_grade or set it to 0, or remove the profile errors"));
+        }
+        if class != 0 {
+            let problem = "given beside profile errors, which replace the deviations drawn for a class";
+            return Err(ScenarioError::new("quality.iso_class", class, problem)
+                .with_help("remove iso_class, or the profile errors"));
         }
         if let Some(seed) = self.seed {
             let problem = "given beside profile errors, which are not drawn";

@@ -1,0 +1,179 @@
+//! The mesh at rest under a force: how the pairs share it, and how far it lets the driven wheel lag behind.
+
+use std::ops::Range;
+
+use super::contact_forcing::PAIRS;
+use super::contact_mesh::ContactMesh;
+use super::contact_pairs::ContactState;
+use super::law::{ContactSample, deflection_at_rest};
+use crate::simd::Lanes;
+
+/// A mesh at rest, point by point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StaticMesh {
+    /// (m) Deflection along the line of action at each point: the static transmission error. NaN where no pair can touch.
+    pub deflection_m: Vec<f64>,
+    /// Number of the first pair of [`Self::pair_force_n`]; pair n enters contact n pitches after the start of the simulation.
+    pub first_pair: i64,
+    /// (N) Force of each pair at each point: a row a pair.
+    pub pair_force_n: Vec<Vec<f64>>,
+}
+
+impl StaticMesh {
+    /// (m) Largest less smallest deflection.
+    pub fn peak_to_peak_m(&self) -> f64 {
+        let of = |pick: fn(f64, f64) -> f64, start: f64| self.deflection_m.iter().copied().fold(start, pick);
+        of(f64::max, f64::NEG_INFINITY) - of(f64::min, f64::INFINITY)
+    }
+}
+
+impl ContactMesh {
+    /// The mesh at rest under a force over some pitches, `Σ k_n max(0, δ − S_n) = F`: of teeth without deviations, with their
+    /// relief, chamfer and damage.
+    ///
+    /// # Arguments
+    /// * `force_n` - (N) F, along the line of action, 0 or more
+    /// * `pitches` - counted from the start of the simulation
+    ///
+    /// ```
+    /// use std::num::NonZeroUsize;
+    ///
+    /// use meshtone::scenario::{GearPair, Model, Scenario};
+    ///
+    /// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+    /// scenario.model = Model::Contact;
+    /// let stages = meshtone::stages(&scenario)?;
+    /// let mesh = stages.contact_mesh(NonZeroUsize::new(100).unwrap())?.unwrap();
+    /// let at_rest = mesh.at_rest(stages.static_force_n(), 0..2);
+    /// assert!(at_rest.deflection_m.iter().all(|deflection| (0.5e-6..2e-6).contains(deflection)));
+    /// # Ok::<(), meshtone::scenario::ScenarioError>(())
+    /// ```
+    ///
+    /// Source: S. L. Harris, Proceedings of the Institution of Mechanical Engineers 172 (1958).
+    pub fn at_rest(&self, force_n: f64, pitches: Range<usize>) -> StaticMesh {
+        let per_pitch = self.points_per_pitch;
+        let points = pitches.start * per_pitch..pitches.end * per_pitch;
+        let first_pair = self.pairs_at(points.start).map(|(pair, _)| pair).min().unwrap_or(0);
+        let last_pair =
+            points.clone().last().and_then(|point| self.pairs_at(point).map(|(pair, _)| pair).max());
+        let rows = last_pair.map_or(0, |last| (last + 1 - first_pair).max(0) as usize);
+        let mut pair_force_n = vec![vec![0.0; points.len()]; rows];
+        let mut deflection_m = Vec::with_capacity(points.len());
+        for (column, point) in points.enumerate() {
+            let mut sample = ContactSample::<1>::NOTHING;
+            for (slot, (_, state)) in self.pairs_at(point).take(PAIRS).enumerate() {
+                sample.stiffness[slot] = Lanes([state.stiffness_n_per_m]);
+                sample.offset[slot] = Lanes([-state.separation_m]);
+            }
+            if sample.stiffness.iter().all(|stiffness| stiffness.0[0] == 0.0) {
+                deflection_m.push(f64::NAN);
+                continue;
+            }
+            let deflection = deflection_at_rest(&sample, 0, force_n);
+            deflection_m.push(deflection);
+            for (pair, state) in self.pairs_at(point) {
+                pair_force_n[(pair - first_pair) as usize][column] =
+                    state.stiffness_n_per_m * (deflection - state.separation_m).max(0.0);
+            }
+        }
+        StaticMesh { deflection_m, first_pair, pair_force_n }
+    }
+
+    /// The pairs whose tables reach a point, counted from the start of the simulation: the newest first.
+    fn pairs_at(&self, point: usize) -> impl Iterator<Item = (i64, &ContactState)> {
+        let (newest, since) = (
+            (point + self.points_before) / self.points_per_pitch,
+            (point + self.points_before) % self.points_per_pitch,
+        );
+        let points = (since..self.points()).step_by(self.points_per_pitch).enumerate();
+        points.map(move |(age, at)| {
+            let pair = newest as i64 - age as i64;
+            (pair, &self.classes[self.sequence.class(pair)].states[at])
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::num::NonZeroUsize;
+
+    use super::*;
+    use crate::scenario::{Fault, GearPair, MissingTooth, Model, Scenario};
+    use crate::simulate::stages;
+    use crate::wheel::{FlankRelief, ReliefShape};
+
+    fn mesh(change: impl FnOnce(&mut Scenario)) -> ContactMesh {
+        let mut scenario = Scenario::new(GearPair {
+            module_mm: 3.0,
+            pinion_teeth: 17,
+            gear_teeth: 38,
+            face_width_mm: 15.0,
+            pinion_speed_hz: 40.0,
+            brake_torque_nm: 10.0,
+        });
+        scenario.model = Model::Contact;
+        scenario.gears.tip_chamfer_mm = Some(0.0);
+        change(&mut scenario);
+        let points = NonZeroUsize::new(200).unwrap();
+        stages(&scenario).unwrap().contact_mesh(points).unwrap().unwrap()
+    }
+
+    /// The force of the pairs at a point, the newest first.
+    fn forces(at_rest: &StaticMesh, point: usize) -> Vec<f64> {
+        at_rest.pair_force_n.iter().map(|pair| pair[point]).filter(|force| *force > 0.0).collect()
+    }
+
+    #[test]
+    fn pairs_on_their_path_share_by_stiffness() {
+        let mesh = mesh(|_| {});
+        let force = 200.0;
+        let at_rest = mesh.at_rest(force, 0..3);
+        for (point, deflection) in at_rest.deflection_m.iter().enumerate() {
+            let shared = forces(&at_rest, point);
+            assert!((shared.iter().sum::<f64>() / force - 1.0).abs() < 1e-12);
+            // Away from tip corners δ = F/Σ k.
+            let on_path: Vec<f64> = (mesh.pairs_at(point))
+                .filter(|(_, state)| state.separation_m == 0.0)
+                .map(|(_, state)| state.stiffness_n_per_m)
+                .collect();
+            let alone = force / on_path.iter().sum::<f64>();
+            if shared.len() == on_path.len() {
+                assert!((deflection / alone - 1.0).abs() < 1e-12);
+            } else {
+                // A corner takes some of it.
+                assert!(*deflection < alone);
+            }
+        }
+        assert!(at_rest.peak_to_peak_m() > 0.0);
+    }
+
+    #[test]
+    fn relief_delays_a_pair_until_the_other_gives_way() {
+        let relief = FlankRelief { shape: ReliefShape::Linear, length_mm: 2.0, amount_um: 20.0 };
+        let mesh = mesh(|scenario| scenario.gears.flank_relief = relief);
+        let point = 20;
+        let two: Vec<[f64; 2]> = (mesh.pairs_at(point))
+            .filter(|(_, state)| state.separation_m < 25e-6)
+            .map(|(_, state)| [state.stiffness_n_per_m, state.separation_m])
+            .collect();
+        let [first, second] = two.try_into().unwrap();
+        // Both carry beyond the force at which the stiffer placed one sinks in as far as the other is away.
+        let (near, far) = if first[1] < second[1] { (first, second) } else { (second, first) };
+        let until = near[0] * (far[1] - near[1]);
+        let at = |force: f64| mesh.at_rest(force, 0..1).deflection_m[point];
+        assert!((at(0.5 * until) - (0.5 * until / near[0] + near[1])).abs() < 1e-15);
+        let sum = near[0] + far[0];
+        let expected = (2.0 * until + near[0] * near[1] + far[0] * far[1]) / sum;
+        assert!((at(2.0 * until) - expected).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_missing_tooth_carries_nothing() {
+        let mesh = mesh(|scenario| scenario.faults = vec![Fault::on_first_gear_tooth(MissingTooth)]);
+        let at_rest = mesh.at_rest(500.0, 36..40);
+        let missing = (38 - at_rest.first_pair) as usize;
+        assert!(at_rest.pair_force_n[missing].iter().all(|force| *force == 0.0));
+        assert!(at_rest.pair_force_n[missing - 1].iter().any(|force| (force / 500.0 - 1.0).abs() < 1e-9));
+        assert!(at_rest.deflection_m.iter().all(|deflection| deflection.is_finite()));
+    }
+}

@@ -1,0 +1,46 @@
+//! How the teeth touched, by the force between them.
+
+use super::Channels;
+
+/// How the teeth of a mesh touched over the kept time.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ContactFigures {
+    /// (-) Part of the time in which no teeth touched.
+    pub apart_fraction: f64,
+    /// (-) Part of the time in which back flanks touched.
+    pub back_flank_fraction: f64,
+    /// How often back flanks hit.
+    pub back_flank_hits: usize,
+    /// (N) Largest force, of either sign.
+    pub largest_force_n: f64,
+}
+
+impl ContactFigures {
+    /// The figures of a simulation under the model of contact.
+    ///
+    /// # Arguments
+    /// * `channels` - its signals: the force along the line of action is 0 where no teeth touch, and negative where back flanks do
+    ///
+    /// ```
+    /// use meshtone::sensor::{Channels, ContactFigures};
+    ///
+    /// let mut channels = Channels::default();
+    /// channels.mesh_force_n = vec![180.0, 0.0, -20.0, -35.0, 0.0, 0.0, -5.0, 210.0];
+    /// let figures = ContactFigures::of(&channels);
+    /// assert_eq!((figures.apart_fraction, figures.back_flank_fraction), (0.375, 0.375));
+    /// assert_eq!((figures.back_flank_hits, figures.largest_force_n), (2, 210.0));
+    /// ```
+    pub fn of(channels: &Channels) -> Self {
+        let force = &channels.mesh_force_n;
+        let part = |is: fn(f64) -> bool| {
+            force.iter().filter(|&&force| is(force)).count() as f64 / force.len().max(1) as f64
+        };
+        let before = std::iter::once(&0.0).chain(force);
+        Self {
+            apart_fraction: part(|force| force == 0.0),
+            back_flank_fraction: part(|force| force < 0.0),
+            back_flank_hits: before.zip(force).filter(|(before, now)| **before >= 0.0 && **now < 0.0).count(),
+            largest_force_n: force.iter().fold(0.0, |largest, force| force.abs().max(largest)),
+        }
+    }
+}

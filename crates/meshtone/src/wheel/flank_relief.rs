@@ -1,0 +1,70 @@
+//! Relief of the flank near the tip, as a gap of some micrometres.
+
+use super::{ReliefShape, Wheel};
+use crate::keys::{Keys, Range, Row, field, row};
+
+/// Material removed from the flank near the tip, so that loaded teeth enter and leave contact softly.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FlankRelief {
+    /// Line or parabola. Default parabolic.
+    pub shape: ReliefShape,
+    /// (mm) Length along the tooth's centre line, from the tip inwards. Default 1.
+    pub length_mm: f64,
+    /// (µm) How far the flank lies back at the tip, along its normal. Default 0: no relief.
+    pub amount_um: f64,
+}
+
+impl Default for FlankRelief {
+    fn default() -> Self {
+        Self { shape: ReliefShape::Parabolic, length_mm: 1.0, amount_um: 0.0 }
+    }
+}
+
+impl FlankRelief {
+    /// (mm) How far the flank lies back where its radius of curvature is `curvature_mm`.
+    ///
+    /// # Arguments
+    /// * `wheel` - whose flank it is
+    /// * `curvature_mm` - (mm) radius of curvature of the involute there
+    pub fn gap_mm(&self, wheel: &Wheel, curvature_mm: f64) -> f64 {
+        let radius_mm = curvature_mm.hypot(wheel.base_radius_mm);
+        let part = (1.0 - (wheel.tip_radius_mm - radius_mm) / self.length_mm).clamp(0.0, 1.0);
+        let shape = match self.shape {
+            ReliefShape::Parabolic => part * part,
+            ReliefShape::Linear => part,
+        };
+        self.amount_um * 1e-3 * shape
+    }
+}
+
+impl Keys for FlankRelief {
+    fn start() -> Self {
+        Self::default()
+    }
+
+    fn rows() -> Vec<Row<Self>> {
+        vec![
+            row(
+                "shape",
+                "",
+                "a parabola that leaves the flank with its slope, or a straight line",
+                field!(shape),
+            ),
+            row(
+                "length_mm",
+                "mm",
+                "the length along the tooth's centre line, from the tip inwards",
+                field!(length_mm),
+            )
+            .range(Range::positive())
+            .rule("less than 2 modules"),
+            row(
+                "amount_um",
+                "µm",
+                "how far the flank lies back at the tip, along its normal; 10 to 40 in practice",
+                field!(amount_um),
+            )
+            .range(Range::not_negative().slip_above(1000.0)),
+        ]
+    }
+}

@@ -1,0 +1,159 @@
+//! Deviations of a wheel's teeth as one tool and one machine make them: mostly alike.
+
+use std::f64::consts::{PI, TAU};
+
+use super::tolerances::Tolerances;
+use super::{ERROR_POINTS, ProfileErrors, Quality};
+use crate::error_table::ErrorTable;
+use crate::random::{Draws, Purpose};
+use crate::wheel::{Teeth, Wheel, WheelName};
+
+/// How the teeth of both wheels deviate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Deviations {
+    /// Of each tooth's flank, its pitch deviation included.
+    pub flanks: ProfileErrors,
+    /// Of each wheel as a whole: the pinion's and the gear's.
+    pub run_out: [RunOut; 2],
+}
+
+/// Run-out of a wheel: its teeth sit on a circle beside its axis.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RunOut {
+    /// (mm) Amplitude along the line of action, half of the run-out.
+    pub amplitude_mm: f64,
+    /// (rad) Phase at the start of the simulation.
+    pub phase_rad: f64,
+}
+
+/// Waves of the profile form deviation along the flank.
+const WAVES: f64 = 3.0;
+
+/// The deviations of both wheels, drawn within their tolerances.
+///
+/// The slope and form deviation of a tooth are a part common to the wheel and a part of its own, `quality.tooth_share` of the
+/// tolerance; pitches are off at random by `quality.pitch_share` of f_p, and each wheel runs out by `quality.run_out_share` of F_r.
+///
+/// # Arguments
+/// * `quality` - grade and shares
+/// * `teeth` - both wheels
+/// * `seed` - of the draw, unless `quality` has its own
+///
+/// # Returns
+/// None for ideal teeth.
+pub fn deviations(quality: &Quality, teeth: &Teeth, seed: u64) -> Option<Deviations> {
+    if let Some(flanks) = &quality.profile_errors {
+        return Some(Deviations { flanks: flanks.clone(), run_out: [RunOut::default(); 2] });
+    }
+    let tolerances = |wheel: &Wheel| match (quality.iso_class, quality.din_grade) {
+        (0, 0) => None,
+        (0, grade) => Some(Tolerances::din_3961(wheel, grade)),
+        (class, _) => Some(Tolerances::iso_1328(wheel, class)),
+    };
+    let seed = quality.seed.unwrap_or(seed);
+    let draw = |name: WheelName| {
+        Some(Draw { quality, teeth, name, tolerances: tolerances(teeth.wheel(name))?, seed })
+    };
+    let (pinion, gear) = (draw(WheelName::Pinion)?, draw(WheelName::Gear)?);
+    Some(Deviations {
+        flanks: ProfileErrors {
+            pinion_profile_errors_mm: pinion.flanks(),
+            gear_profile_errors_mm: gear.flanks(),
+        },
+        run_out: [pinion.run_out(), gear.run_out()],
+    })
+}
+
+struct Draw<'a> {
+    quality: &'a Quality,
+    teeth: &'a Teeth,
+    name: WheelName,
+    tolerances: Tolerances,
+    seed: u64,
+}
+
+/// Which sequence of a wheel's draws: the teeth's own come after.
+const COMMON: u64 = 0;
+const RUN_OUT: u64 = 1;
+const PITCH: u64 = 2;
+const FIRST_TOOTH: u64 = 3;
+
+impl Draw<'_> {
+    fn draws(&self, index: u64) -> Draws {
+        let purpose = match self.name {
+            WheelName::Pinion => Purpose::PinionDeviations,
+            WheelName::Gear => Purpose::GearDeviations,
+        };
+        Draws::new(self.seed, purpose, index)
+    }
+
+    fn run_out(&self) -> RunOut {
+        let mut draws = self.draws(RUN_OUT);
+        let phase_rad = draws.uniform(PI, PI);
+        let amplitude_mm = self.quality.run_out_share * self.tolerances.run_out_um * 1e-3 / 2.0;
+        RunOut { amplitude_mm, phase_rad }
+    }
+
+    /// (mm) Along the line of action, one a tooth: a walk of normal steps that closes, scaled so that the largest single pitch
+    /// deviation is the share of f_p, and within F_p.
+    fn pitches_mm(&self, wheel: &Wheel) -> Vec<f64> {
+        let teeth = wheel.teeth as usize;
+        let mut draws = self.draws(PITCH);
+        let steps: Vec<f64> = (0..teeth).map(|_| draws.normal()).collect();
+        let mean = steps.iter().sum::<f64>() / teeth as f64;
+        let largest = steps.iter().map(|step| (step - mean).abs()).fold(f64::MIN_POSITIVE, f64::max);
+        let single_mm = self.quality.pitch_share * self.tolerances.single_pitch_um * 1e-3 / largest;
+        let mut place = 0.0;
+        let mut places: Vec<f64> = steps
+            .iter()
+            .map(|step| {
+                place += (step - mean) * single_mm;
+                place
+            })
+            .collect();
+        let (least, most) =
+            places.iter().fold((f64::MAX, f64::MIN), |(least, most), p| (least.min(*p), most.max(*p)));
+        let within =
+            (self.tolerances.cumulative_pitch_um * 1e-3 / (most - least).max(f64::MIN_POSITIVE)).min(1.0);
+        let cos = wheel.pressure_angle_rad.cos();
+        places.iter_mut().for_each(|place| *place = (*place - (least + most) / 2.0) * within * cos);
+        places
+    }
+
+    fn flanks(&self) -> ErrorTable {
+        let wheel = self.teeth.wheel(self.name);
+        let first = match self.name {
+            WheelName::Pinion => self.teeth.contact.pinion_initial_radius_mm,
+            WheelName::Gear => self.teeth.contact.gear_initial_radius_mm,
+        };
+        let share = self.quality.tooth_share;
+        let (slope_mm, form_mm) =
+            (self.tolerances.profile_slope_um * 1e-3, self.tolerances.profile_form_um * 1e-3);
+        let mut common = self.draws(COMMON);
+        let common_slope = common.uniform(0.0, 1.0 - share);
+        let common_form = common.uniform(0.5, 0.5) * (1.0 - share);
+        let phase = common.uniform(PI, PI);
+        let pitches = self.pitches_mm(wheel);
+        let last = (ERROR_POINTS - 1) as f64;
+        let rolled: Vec<f64> = (0..ERROR_POINTS)
+            .map(|k| wheel.curvature_mm(first + (wheel.tip_radius_mm - first) * k as f64 / last))
+            .collect();
+        let along = |k: usize| (rolled[k] - rolled[0]) / (rolled[ERROR_POINTS - 1] - rolled[0]);
+        let mut errors = ErrorTable::filled(ERROR_POINTS, wheel.teeth as usize, 0.0);
+        for (tooth, pitch) in pitches.iter().enumerate() {
+            let mut own = self.draws(FIRST_TOOTH + tooth as u64);
+            let own_slope = own.uniform(0.0, share);
+            let own_form = own.uniform(0.0, share);
+            let own_phase = own.uniform(PI, PI);
+            for k in 0..ERROR_POINTS {
+                let s = along(k);
+                let wave = |phase: f64| (TAU * WAVES * s + phase).sin() / 2.0;
+                let row = if self.name == WheelName::Pinion { k } else { ERROR_POINTS - 1 - k };
+                errors[(row, tooth)] = pitch
+                    + slope_mm * (common_slope + own_slope) * (s - 0.5)
+                    + form_mm * (common_form * wave(phase) + own_form * wave(own_phase));
+            }
+        }
+        errors
+    }
+}

@@ -1,0 +1,278 @@
+//! The model of contact as a whole: teeth that push and never pull, on shafts that bend, in supports.
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
+
+use crate::physics::*;
+use meshtone::machine::coordinates::{COORDINATES_WITH_SUPPORTS, THETA_BRAKE};
+use meshtone::mesh::{ContactState, Mesh};
+use meshtone::scenario::*;
+use meshtone::solver::{Block, Output, Recorder};
+use meshtone::{simulate, stages};
+use nalgebra::DVector;
+
+fn pair(module_mm: f64, pinion_teeth: u32, gear_teeth: u32, brake_torque_nm: f64) -> Scenario {
+    let mut scenario = Scenario::new(GearPair {
+        module_mm,
+        pinion_teeth,
+        gear_teeth,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm,
+    });
+    scenario.model = Model::Contact;
+    scenario
+}
+
+fn of_rig(din_grade: u8) -> Scenario {
+    let mut scenario = pair(3.0, 17, 38, 10.0);
+    scenario.quality.din_grade = din_grade;
+    scenario
+}
+
+/// Of a signal about its mean.
+fn fluctuation(signal: &[f64]) -> f64 {
+    let mean = mean(signal);
+    rms(&signal.iter().map(|value| value - mean).collect::<Vec<_>>())
+}
+
+/// log10 of rms and kurtosis about the mean.
+fn indicators(signal: &[f64]) -> [f64; 2] {
+    let centre = mean(signal);
+    let moment = |order: i32| mean(&signal.iter().map(|v| (v - centre).powi(order)).collect::<Vec<_>>());
+    [moment(2).sqrt().log10(), (moment(4) / moment(2).powi(2)).log10()]
+}
+
+/// A rig whose supports stand still, whose shafts do not bend and where nothing is damped: the linear model's, without its damping.
+fn rigid(scenario: &mut Scenario) {
+    scenario.rig.support.stiffness_n_per_m = 1e15;
+    scenario.rig.support.coupling_n_per_m = 1e15;
+    scenario.rig.support.damping_ratio = 0.0;
+    scenario.rig.mesh_damping_ratio = 0.0;
+    scenario.rig.damping_ratio = DampingRatio::Uniform(0.0);
+    for shaft in [&mut scenario.rig.pinion_shaft, &mut scenario.rig.gear_shaft] {
+        shaft.damping_ratio = 0.0;
+        // So short that only the bearings give way.
+        shaft.bearing_span_mm = 0.1;
+    }
+}
+
+struct Kept(Vec<Vec<f64>>);
+
+impl Recorder for Kept {
+    fn record(&mut self, block: &Block) {
+        for (n, kept) in self.0.iter_mut().enumerate() {
+            kept.extend_from_slice(block.output(n));
+        }
+    }
+}
+
+// With all pairs closed, tip corners and back flanks out of reach, what remains is the linear model: same stiffness, same start.
+// The two are solved in different modes, with and without the mesh.
+#[test]
+fn closed_pairs_are_the_linear_model() {
+    // The supports of the one are not quite rigid, and without damping that small difference grows; with deviations a pair of the
+    // two in contact is lifted in time.
+    compare_closed_pairs("ideal teeth", false, &[(1_000, 1e-6), (10_000, 5e-5)]);
+    compare_closed_pairs("deviations and eccentricity", true, &[(1_000, 1e-6)]);
+}
+
+fn compare_closed_pairs(name: &str, deviates: bool, expected: &[(usize, f64)]) {
+    let mut linear = pair(3.0, 17, 38, 200.0);
+    linear.model = Model::Linear;
+    // Undamped, the mesh's own variation makes it ring ever more; so slow that it takes a while.
+    linear.operation.pinion_speed_hz = 5.0;
+    linear.gears.tip_relief = None;
+    linear.solver.sampling_rate_hz = 2e5;
+    rigid(&mut linear);
+    if deviates {
+        linear.quality = Quality::of_errors(stages(&of_rig(6)).unwrap().profile_errors.unwrap());
+        linear.rig.eccentricity_mm = 0.004;
+    }
+    let mut contact = linear.clone();
+    contact.model = Model::Contact;
+    let of_linear = stages(&linear).unwrap();
+    let mut of_contact = stages(&contact).unwrap();
+    let Mesh::Contact(mesh) = &mut of_contact.mesh else { panic!("not in contact") };
+    mesh.points_before = 0;
+    mesh.backlash_m = 1.0;
+    mesh.classes[0].states = of_linear.mesh.pairs().unwrap().classes[0]
+        .stiffness_n_per_m
+        .iter()
+        .map(|&stiffness_n_per_m| ContactState { stiffness_n_per_m, separation_m: 0.0, face_centre_m: 0.0 })
+        .collect();
+    // The motion until then; what comes after may be without bound.
+    let force = |stages: &meshtone::Stages| {
+        let mut kept = Kept(vec![Vec::new()]);
+        let first = stages.time.first_simulated_sample;
+        let _ = stages.integrate(&stages.reduced_model(), &[Output::MeshForce], first, &mut kept);
+        kept.0.swap_remove(0)
+    };
+    let (a, b) = (force(&of_linear), force(&of_contact));
+    // Until the undamped motion parts the linear flanks too.
+    let together = a.iter().take_while(|force| **force > 0.0).count();
+    let difference: Vec<f64> = a[..together].iter().zip(&b).map(|(a, b)| (a - b).abs()).collect();
+    let fluctuating = fluctuation(&a[..together]);
+    assert!(together > 10_000, "the linear mesh pulls after {together} steps");
+    for &(steps, tolerance) in expected {
+        let largest = largest(difference[..steps].iter().copied()) / mean(&a[..together]);
+        println!(
+            "closed pairs, {name}, {steps} steps: {largest:.2e} of a force of {:.0} ± {fluctuating:.0} N",
+            mean(&a[..together]),
+        );
+        assert!(largest < tolerance, "{largest} after {steps} steps");
+    }
+}
+
+// A mesh of constant stiffness does no work of its own: what the brake puts in, less what is stored, is what the structure's
+// and the contact's damping take. The method's own sums, force times way over each step, make this an identity.
+#[test]
+fn motor_and_brake_put_in_what_damping_takes() {
+    let mut scenario = of_rig(0);
+    scenario.operation.torque_profile_nm =
+        Some(Profile { time_s: vec![0.0, 0.2, 0.3, 1.0, 3.0], value: vec![10.0, 10.0, 25.0, 8.0, 12.0] });
+    let mut stages = stages(&scenario).unwrap();
+    let torque: Vec<f64> =
+        stages.excitation().take(stages.time.samples).map(|now| now.brake_torque_nm).collect();
+    let Mesh::Contact(mesh) = &mut stages.mesh else { panic!("not in contact") };
+    let stiffness = mesh.mean_stiffness_n_per_m;
+    mesh.points_before = 0;
+    // One more than a pitch has, for the interpolation.
+    let closed = ContactState { stiffness_n_per_m: stiffness, separation_m: 0.0, face_centre_m: 0.0 };
+    mesh.classes[0].states = vec![closed; mesh.points_per_pitch + 1];
+    let structure = stages.structure.clone().unwrap();
+    let n = COORDINATES_WITH_SUPPORTS;
+    let unit = |coordinate: usize| -> Vec<f64> { (0..n).map(|row| f64::from(row == coordinate)).collect() };
+    let outputs: Vec<Output> = ((0..n).map(|coordinate| Output::Displacement(unit(coordinate))))
+        .chain((0..n).map(|coordinate| Output::Velocity(unit(coordinate))))
+        .chain([Output::MeshForce])
+        .collect();
+    let mut kept = Kept(vec![Vec::new(); outputs.len()]);
+    stages.integrate(&stages.reduced_model(), &outputs, 0, &mut kept).unwrap();
+    let step_s = stages.time.step_s();
+    let rigid = structure.rigid_rotation() * (std::f64::consts::TAU * 40.0);
+    // Relative to the rigid rotation, at which the motor turns.
+    let state = |first: usize, k: usize| DVector::from_fn(n, |row, _| kept.0[first + row][k]);
+    let way = |k: usize| state(0, k) - &rigid * (k as f64 * step_s);
+    let line = &structure.turn * &structure.line_of_action[0];
+    let mass = DVector::from_column_slice(&structure.mass_diagonal);
+    let (damping, springs) = (structure.damping_matrix(), structure.stiffness_matrix());
+    let energy = |k: usize| {
+        let (u, v) = (way(k), state(n, k) - &rigid);
+        let deflection = line.dot(&u).max(0.0);
+        (v.component_mul(&mass).dot(&v) + (&springs * &u).dot(&u) + stiffness * deflection * deflection) / 2.0
+    };
+    let from = kept.0[0].len() / 20;
+    let until = from + 100_000;
+    let (mut put_in, mut structural, mut of_contact) = (0.0, 0.0, 0.0);
+    for k in from..until {
+        let (before, after) = (way(k), way(k + 1));
+        let moved = &after - &before;
+        put_in += (torque[k] + torque[k + 1]) / 2.0 * moved[THETA_BRAKE];
+        structural += (&damping * &moved).dot(&moved) / step_s;
+        let lost = |k: usize, u: &DVector<f64>| kept.0[2 * n][k] - stiffness * line.dot(u).max(0.0);
+        of_contact += (lost(k, &before) + lost(k + 1, &after)) / 2.0 * line.dot(&moved);
+    }
+    let stored = energy(until) - energy(from);
+    println!(
+        "put in {put_in:.9} J, stored {stored:.9} J, structure {structural:.3e} J, contact {of_contact:.3e} J"
+    );
+    assert!(structural > 0.0 && of_contact > 0.0);
+    assert!((put_in - stored - structural - of_contact).abs() < 1e-6 * put_in.abs());
+}
+
+// 10 µm more on all of a wheel's teeth turn the driven side a little further, and no signal knows.
+#[test]
+fn a_deviation_of_all_teeth_is_a_rotation() {
+    let mut scenario = of_rig(7);
+    scenario.operation.brake_torque_nm = 200.0;
+    scenario.quality.run_out_share = 0.0;
+    let drawn = simulate(&scenario).unwrap();
+    let mut errors = drawn.stages.profile_errors.clone().unwrap();
+    errors.pinion_profile_errors_mm = errors.pinion_profile_errors_mm.map(|error| error + 0.01);
+    scenario.quality.profile_errors = Some(errors);
+    scenario.quality.din_grade = 0;
+    let thicker = simulate(&scenario).unwrap();
+    let (a, b) = (&drawn.channels.vertical_g, &thicker.channels.vertical_g);
+    let difference: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+    println!("10 µm on all pinion teeth: {:.2e} of {:.3} g", rms(&difference) / rms(a), rms(a));
+    assert!(rms(&difference) < 1e-6 * rms(a));
+}
+
+// A healthy pair, at twice the sampling rate.
+#[test]
+fn halving_the_step_changes_no_indicator_of_a_healthy_pair() {
+    let mut scenario = of_rig(7);
+    let at = |scenario: &Scenario| {
+        let channels = simulate(scenario).unwrap().channels;
+        [indicators(&channels.vertical_g), indicators(&channels.mesh_force_n)]
+    };
+    let coarse = at(&scenario);
+    scenario.solver.sampling_rate_hz *= 2.0;
+    let fine = at(&scenario);
+    for (channel, (coarse, fine)) in ["acceleration", "force"].iter().zip(coarse.iter().zip(&fine)) {
+        for (indicator, (coarse, fine)) in ["rms", "kurtosis"].iter().zip(coarse.iter().zip(fine)) {
+            let change = 10f64.powf(fine - coarse) - 1.0;
+            println!("{channel}, {indicator}: {:+.3} %", 100.0 * change);
+            assert!(change.abs() < 0.01, "{channel} {indicator}: {change}");
+        }
+    }
+}
+
+// Teeth never pull: the force is never negative unless back flanks touch, which a light load and coarse teeth make them do.
+#[test]
+fn teeth_let_go_and_never_pull() {
+    let mut scenario = of_rig(9);
+    scenario.gears.backlash_mm = Some(1.0);
+    let force = simulate(&scenario).unwrap().channels.mesh_force_n;
+    assert!(force.iter().all(|force| *force >= 0.0));
+    let apart = force.iter().filter(|force| **force == 0.0).count() as f64 / force.len() as f64;
+    println!("apart for {:.1} % of the time", 100.0 * apart);
+    assert!(apart > 0.001 && apart < 0.5, "{apart}");
+    scenario.gears.backlash_mm = Some(0.001);
+    let tight = simulate(&scenario).unwrap().channels.mesh_force_n;
+    assert!(tight.iter().any(|force| *force < 0.0));
+}
+
+// Damage of size zero is no damage; more of it is felt more.
+#[test]
+fn small_damages_are_small() {
+    let healthy = of_rig(7);
+    let mut none = healthy.clone();
+    let chip = |tip_loss_mm| ToothBreakage { chip_height_mm: 1e-6, chip_width_mm: 1e-6, tip_loss_mm };
+    none.faults = vec![Fault::on_first_gear_tooth(chip(0.0))];
+    let [a, b] = [&healthy, &none].map(|scenario| simulate(scenario).unwrap().channels.vertical_g);
+    let [a, b] = [fluctuation(&a), fluctuation(&b)];
+    assert!((a / b - 1.0).abs() < 1e-2, "{a} {b}");
+    let peaks: Vec<f64> = [2.0, 3.0, 4.0]
+        .map(|tip_loss_mm| {
+            let faults = vec![Fault::on_first_gear_tooth(chip(tip_loss_mm))];
+            let broken = healthy.clone().with_faults(faults);
+            largest(simulate(&broken).unwrap().channels.vertical_g.iter().map(|v| v.abs()))
+        })
+        .to_vec();
+    println!("peaks of tips lost by 2, 3 and 4 mm: {peaks:.1?} g");
+    assert!(peaks[1] > 2.0 * peaks[0] && peaks[2] > 2.0 * peaks[0], "{peaks:?}");
+}
+
+// The mesh's stiffness without chamfer, while only pairs on their path count, is that of the linear model.
+#[test]
+fn mesh_stiffness_is_the_linear_one() {
+    let mut scenario = pair(3.0, 17, 38, 10.0);
+    scenario.gears.tip_relief = None;
+    scenario.gears.tip_chamfer_mm = Some(0.0);
+    let contact = stages(&scenario).unwrap().mesh.mean_stiffness_n_per_mm();
+    scenario.model = Model::Linear;
+    let linear = stages(&scenario).unwrap().mesh.mean_stiffness_n_per_mm();
+    println!("mean stiffness {contact:.0} and {linear:.0} N/mm");
+    assert!((contact / linear - 1.0).abs() < 2e-3);
+}
+
+#[test]
+fn varying_speed_is_the_steady_one_where_it_does_not_vary() {
+    let mut scenario = of_rig(6);
+    let steady = simulate(&scenario).unwrap().channels.vertical_g;
+    scenario.operation.speed_profile_hz = Some(Profile { time_s: vec![0.0, 10.0], value: vec![40.0, 40.0] });
+    let varying = simulate(&scenario).unwrap().channels.vertical_g;
+    let (a, b) = (fluctuation(&steady), fluctuation(&varying));
+    println!("steady {a:.4} g, by a profile {b:.4} g");
+    assert!((a / b - 1.0).abs() < 0.02);
+}
