@@ -11,6 +11,7 @@ use crate::wheel::{Gears, WheelName};
 
 /// Bearings, shafts, brake and wheel bodies.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Rig {
     /// (N/m) Stiffness of each wheel's bearing in x, y and z. Default 1.9e8.
     pub bearing_stiffness_n_per_m: f64,

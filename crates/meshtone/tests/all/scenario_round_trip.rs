@@ -210,18 +210,20 @@ fn rig() -> impl Strategy<Value = Rig> {
             pinion,
             gear,
             support,
-        )| Rig {
-            bearing_stiffness_n_per_m: bearing,
-            wheel_rotational_stiffness_nm_per_rad: rotational,
-            brake_inertia_kgm2: brake,
-            damping_ratio,
-            eccentricity_mm,
-            pinion_shaft,
-            gear_shaft,
-            pinion_inertia: pinion,
-            gear_inertia: gear,
-            support,
-            mesh_damping_ratio,
+        )| {
+            let mut rig = Rig::default();
+            rig.bearing_stiffness_n_per_m = bearing;
+            rig.wheel_rotational_stiffness_nm_per_rad = rotational;
+            rig.brake_inertia_kgm2 = brake;
+            rig.damping_ratio = damping_ratio;
+            rig.eccentricity_mm = eccentricity_mm;
+            rig.pinion_shaft = pinion_shaft;
+            rig.gear_shaft = gear_shaft;
+            rig.pinion_inertia = pinion;
+            rig.gear_inertia = gear;
+            rig.support = support;
+            rig.mesh_damping_ratio = mesh_damping_ratio;
+            rig
         },
     )
 }
