@@ -322,6 +322,17 @@ impl Stages {
         motion.is_steady() && motion.has_constant_torque()
     }
 
+    /// (1/s) Rate at which the slowest mode in motion decays; under `contact` with the mean mesh, closed.
+    pub(crate) fn slowest_decay_per_s(&self) -> f64 {
+        match (&self.structure, &self.mesh) {
+            (Some(structure), Mesh::Contact(mesh)) => structure.slowest_decay_per_s(&ClosedMesh {
+                stiffness_n_per_m: mesh.mean_stiffness_n_per_m,
+                damping_time_s: mesh.damping_time_s,
+            }),
+            _ => self.reduced_model().slowest_decay_per_s(),
+        }
+    }
+
     /// First sample that must be simulated, so that the slowest mode's transient has decayed to the settling tolerance where
     /// the kept signal starts.
     ///
@@ -333,7 +344,7 @@ impl Stages {
         if published || !starts_in_equilibrium || *settle_tolerance == 0.0 || !self.is_steady() {
             return 0;
         }
-        let decay_s = -settle_tolerance.ln() / self.reduced_model().slowest_decay_per_s;
+        let decay_s = -settle_tolerance.ln() / self.slowest_decay_per_s();
         let settling = (decay_s * self.time.sampling_rate_hz).ceil();
         // As a float: a decay that takes forever saturates.
         self.time.first_kept_sample.saturating_sub(settling as usize)
@@ -389,28 +400,22 @@ impl Stages {
         let motion = self.scenario.motion(&self.time);
         let nominal = [operation.pinion_speed_hz, operation.brake_torque_nm];
         let errors = self.profile_errors.as_ref();
+        let deviations = PairDeviations {
+            teeth: &self.teeth,
+            errors,
+            eccentricity_m: self.scenario.rig.eccentricity_mm * 1e-3,
+            run_out: self.run_out,
+        };
+        let time = &self.time;
         match &self.mesh {
             Mesh::Published(mesh) => {
-                Box::new(PublishedForcing::new(mesh, errors, motion, &self.time, nominal, directions))
+                Box::new(PublishedForcing::new(mesh, errors, motion, time, nominal, directions))
             }
             Mesh::Contact(mesh) => {
-                let deviations = PairDeviations {
-                    teeth: &self.teeth,
-                    errors,
-                    eccentricity_m: self.scenario.rig.eccentricity_mm * 1e-3,
-                    run_out: self.run_out,
-                };
-                let (time, count) = (&self.time, directions.len());
+                let count = directions.len();
                 Box::new(ContactForcing::new(mesh, &deviations, motion, time, nominal, count, first_sample))
             }
             Mesh::Pairs(mesh) => {
-                let deviations = PairDeviations {
-                    teeth: &self.teeth,
-                    errors,
-                    eccentricity_m: self.scenario.rig.eccentricity_mm * 1e-3,
-                    run_out: self.run_out,
-                };
-                let time = &self.time;
                 Box::new(PairForcing::new(mesh, &deviations, motion, time, nominal, directions, first_sample))
             }
         }
@@ -440,27 +445,8 @@ impl Stages {
     #[doc(hidden)]
     pub fn reduced_model(&self) -> ReducedModel {
         let solver = &self.scenario.solver;
-        let nominal_speed = std::f64::consts::TAU * self.scenario.operation.pinion_speed_hz;
-        if let (Some(structure), Mesh::Contact(mesh)) = (&self.structure, &self.mesh) {
-            let closed = ClosedMesh {
-                stiffness_n_per_m: mesh.mean_stiffness_n_per_m,
-                damping_time_s: mesh.damping_time_s,
-            };
-            let speed = self.initial_motor_speed_rad_per_s();
-            let given = solver.initial_velocity.map(CoordinateVector::from);
-            let velocity = given.unwrap_or_else(|| self.system.rigid_rotation() * speed);
-            let displacement = solver.initial_displacement.map(CoordinateVector::from);
-            let torque = self.scenario.operation.brake_torque_nm;
-            let start = [displacement.as_ref(), Some(&velocity)];
-            return ReducedModel::of_structure(
-                structure,
-                &closed,
-                mesh.tilts(),
-                nominal_speed,
-                torque,
-                start,
-            );
-        }
+        let operation = &self.scenario.operation;
+        let nominal_speed = std::f64::consts::TAU * operation.pinion_speed_hz;
         let displacement = match (solver.initial_displacement, self.scenario.model) {
             (Some(given), _) => Some(given.into()),
             (None, Model::Published) => Some(CoordinateVector::zeros()),
@@ -471,7 +457,15 @@ impl Stages {
             Some(given) => given.into(),
             None => self.system.rigid_rotation() * speed,
         };
-        ReducedModel::new(&self.system, nominal_speed, displacement.as_ref(), &velocity)
+        let displacement = displacement.as_ref();
+        match (&self.structure, &self.mesh) {
+            (Some(structure), Mesh::Contact(mesh)) => {
+                let torque = operation.brake_torque_nm;
+                let tilts = mesh.tilts();
+                ReducedModel::of_structure(structure, tilts, nominal_speed, torque, displacement, &velocity)
+            }
+            _ => ReducedModel::new(&self.system, nominal_speed, displacement, &velocity),
+        }
     }
 
     fn initial_motor_speed_rad_per_s(&self) -> f64 {

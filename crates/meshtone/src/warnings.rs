@@ -88,7 +88,7 @@ impl Stages {
     /// (-) Part of the starting transient that is left where the kept signal starts, by the slowest active mode's decay.
     pub fn transient_remainder(&self) -> f64 {
         let settling_s = self.time.first_kept_sample as f64 * self.time.step_s();
-        (-self.reduced_model().slowest_decay_per_s * settling_s).exp()
+        (-self.slowest_decay_per_s() * settling_s).exp()
     }
 
     fn equal_wheels(&self) -> Option<ScenarioWarning> {
@@ -125,7 +125,7 @@ impl Stages {
     fn unsettled(&self) -> Option<ScenarioWarning> {
         let remainder = self.transient_remainder();
         (remainder > TOLERATED_TRANSIENT).then(|| {
-            let decay = self.reduced_model().slowest_decay_per_s;
+            let decay = self.slowest_decay_per_s();
             let settling_s = self.time.first_kept_sample as f64 * self.time.step_s();
             let advice = if decay > 0.0 {
                 format!("it takes {:.3} s to fall to 1 %", -TOLERATED_TRANSIENT.ln() / decay)

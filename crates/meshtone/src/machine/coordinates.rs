@@ -3,7 +3,7 @@
 //! x and y lie in the plane of the wheels, z along the shafts; θ turns about z, φ and ψ tilt the wheel
 //! about x and y. Displacements in m, rotations in rad.
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{DVector, SMatrix, SVector};
 
 /// Number of coordinates.
 pub const COORDINATES: usize = 13;
@@ -60,3 +60,8 @@ pub const Y_PINION_SUPPORT: usize = 16;
 
 /// Names of the supports' coordinates, which follow [`NAMES`].
 pub const SUPPORT_NAMES: [&str; COORDINATES_WITH_SUPPORTS - COORDINATES] = ["x_gs", "y_gs", "x_ps", "y_ps"];
+
+/// A vector of the wheels and the brake, with supports that have no part in it.
+pub fn with_supports(wheels: &CoordinateVector) -> DVector<f64> {
+    DVector::from_fn(COORDINATES_WITH_SUPPORTS, |n, _| wheels.get(n).copied().unwrap_or(0.0))
+}

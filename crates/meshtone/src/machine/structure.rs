@@ -9,7 +9,7 @@ use super::coordinates::*;
 use super::mesh_directions::MeshDirections;
 use super::modes::mass_normalised_modes;
 use super::shaft_bending::wheel_flexibility;
-use super::system::torsional_stiffness;
+use super::system::{masses, rigid_rotation, torsional_stiffness};
 use super::{Rig, Support};
 use crate::model::Model;
 use crate::wheel::{Gears, Teeth, Wheel, WheelName};
@@ -79,11 +79,12 @@ impl Structure {
         let body = |wheel, given| WheelBody::new(wheel, gears.material, given, Model::Contact);
         let pinion = body(&teeth.pinion, &rig.pinion_inertia);
         let gear = body(&teeth.gear, &rig.gear_inertia);
-        let mass_diagonal = masses(&pinion, &gear, rig);
+        let mut mass_diagonal = masses(&pinion, &gear, rig).to_vec();
+        mass_diagonal.resize(COORDINATES_WITH_SUPPORTS, rig.support.mass_kg);
         let torsion =
             [torsional_stiffness(&rig.pinion_shaft, gears), torsional_stiffness(&rig.gear_shaft, gears)];
         let directions = MeshDirections::new(&teeth.pinion, &teeth.gear);
-        let turn = with_supports(&directions);
+        let turn = turn_with_supports(&directions);
         let mut parts = [
             bent_shaft(WheelName::Gear, rig, gears),
             bent_shaft(WheelName::Pinion, rig, gears),
@@ -113,9 +114,6 @@ impl Structure {
                 if angular_frequencies[n] > 0.0 { damped / whole } else { 0.0 }
             })
             .collect();
-        let along = |vector: &CoordinateVector| {
-            DVector::from_fn(COORDINATES_WITH_SUPPORTS, |n, _| vector.get(n).copied().unwrap_or(0.0))
-        };
         let [flat, _, rotation, tilt, _] = &directions.turned;
         let of_rotation =
             |wheel: &Wheel, body: &WheelBody| (wheel.base_radius_mm * 1e-3).powi(2) / body.polar_kgm2;
@@ -129,7 +127,7 @@ impl Structure {
             angular_frequencies,
             shapes,
             damping_ratio,
-            line_of_action: [along(&(flat + rotation)), along(tilt)],
+            line_of_action: [with_supports(&(flat + rotation)), with_supports(tilt)],
             turn,
             ratio: f64::from(gears.gear_teeth) / f64::from(gears.pinion_teeth),
         }
@@ -145,12 +143,17 @@ impl Structure {
     /// # Arguments
     /// * `mesh_stiffness_n_per_m` - (N/m) of the closed mesh along the line of action
     pub fn closed_modes(&self, mesh_stiffness_n_per_m: f64) -> (Vec<f64>, DMatrix<f64>) {
-        let line = &self.line_of_action[0];
-        let closed = &self.stiffness + line * line.transpose() * mesh_stiffness_n_per_m;
-        let modes = mass_normalised_modes(&self.mass_diagonal, &closed);
+        let modes = self.turned_closed_modes(mesh_stiffness_n_per_m);
         let frequencies = modes.iter().map(|(omega, _)| omega / (2.0 * PI)).collect();
         let shapes = DMatrix::from_columns(&modes.into_iter().map(|(_, shape)| shape).collect::<Vec<_>>());
         (frequencies, &self.turn * shapes)
+    }
+
+    /// (rad/s) Natural angular frequencies and shapes with the mesh closed, in turned coordinates.
+    fn turned_closed_modes(&self, mesh_stiffness_n_per_m: f64) -> Vec<(f64, DVector<f64>)> {
+        let line = &self.line_of_action[0];
+        let closed = &self.stiffness + line * line.transpose() * mesh_stiffness_n_per_m;
+        mass_normalised_modes(&self.mass_diagonal, &closed)
     }
 
     /// (1/s) Rate at which the slowest of the modes that the mesh moves decays, with the mesh closed: `φᵀ C φ/2`, as if damping
@@ -160,9 +163,8 @@ impl Structure {
     /// * `mesh` - the closed mesh
     pub(crate) fn slowest_decay_per_s(&self, mesh: &ClosedMesh) -> f64 {
         let line = &self.line_of_action[0];
-        let closed = &self.stiffness + line * line.transpose() * mesh.stiffness_n_per_m;
         let mass = DVector::from_column_slice(&self.mass_diagonal);
-        let modes = mass_normalised_modes(&self.mass_diagonal, &closed);
+        let modes = self.turned_closed_modes(mesh.stiffness_n_per_m);
         let decay = |shape: &DVector<f64>| {
             let own = self.shapes.transpose() * shape.component_mul(&mass);
             let structural: f64 = (0..own.len()).map(|n| self.modal_damping(n) * own[n] * own[n]).sum();
@@ -198,11 +200,7 @@ impl Structure {
 
     /// Rigid rotation of the train per unit rotation of the motor, in the 17 coordinates.
     pub fn rigid_rotation(&self) -> DVector<f64> {
-        let mut rotation = DVector::zeros(COORDINATES_WITH_SUPPORTS);
-        rotation[THETA_GEAR] = -1.0 / self.ratio;
-        rotation[THETA_PINION] = 1.0;
-        rotation[THETA_BRAKE] = -1.0 / self.ratio;
-        rotation
+        with_supports(&rigid_rotation(self.ratio))
     }
 }
 
@@ -210,25 +208,8 @@ fn zeros() -> DMatrix<f64> {
     DMatrix::zeros(COORDINATES_WITH_SUPPORTS, COORDINATES_WITH_SUPPORTS)
 }
 
-fn masses(pinion: &WheelBody, gear: &WheelBody, rig: &Rig) -> Vec<f64> {
-    let mut masses = vec![rig.support.mass_kg; COORDINATES_WITH_SUPPORTS];
-    for (wheel, [x, y, z, theta, phi, psi]) in [
-        (gear, [X_GEAR, Y_GEAR, Z_GEAR, THETA_GEAR, PHI_GEAR, PSI_GEAR]),
-        (pinion, [X_PINION, Y_PINION, Z_PINION, THETA_PINION, PHI_PINION, PSI_PINION]),
-    ] {
-        masses[x] = wheel.mass_kg;
-        masses[y] = wheel.mass_kg;
-        masses[z] = wheel.mass_kg;
-        masses[theta] = wheel.polar_kgm2;
-        masses[phi] = wheel.transverse_kgm2;
-        masses[psi] = wheel.transverse_kgm2;
-    }
-    masses[THETA_BRAKE] = rig.brake_inertia_kgm2;
-    masses
-}
-
 /// The wheels' turn, and the same of the supports.
-fn with_supports(directions: &MeshDirections) -> DMatrix<f64> {
+fn turn_with_supports(directions: &MeshDirections) -> DMatrix<f64> {
     let mut turn = zeros();
     for row in 0..COORDINATES {
         for column in 0..COORDINATES {

@@ -80,20 +80,7 @@ impl System {
         let mesh = mesh.span();
         let pinion = body(&teeth.pinion, &rig.pinion_inertia);
         let gear = body(&teeth.gear, &rig.gear_inertia);
-        let mut mass_diagonal = [0.0; COORDINATES];
-        for (wheel, coordinates) in [
-            (&gear, [X_GEAR, Y_GEAR, Z_GEAR, THETA_GEAR, PHI_GEAR, PSI_GEAR]),
-            (&pinion, [X_PINION, Y_PINION, Z_PINION, THETA_PINION, PHI_PINION, PSI_PINION]),
-        ] {
-            for (n, coordinate) in coordinates.into_iter().enumerate() {
-                mass_diagonal[coordinate] = match n {
-                    0..3 => wheel.mass_kg,
-                    3 => wheel.polar_kgm2,
-                    _ => wheel.transverse_kgm2,
-                };
-            }
-        }
-        mass_diagonal[THETA_BRAKE] = rig.brake_inertia_kgm2;
+        let mass_diagonal = masses(&pinion, &gear, rig);
         let shaft_stiffness_nm_per_rad =
             [torsional_stiffness(&rig.pinion_shaft, gears), torsional_stiffness(&rig.gear_shaft, gears)];
         let constant_stiffness = constant_stiffness(rig, shaft_stiffness_nm_per_rad);
@@ -162,11 +149,7 @@ impl System {
     /// Rigid rotation of the train per unit rotation of the motor: gear and brake turn backwards by
     /// `z_p/z_g`.
     pub fn rigid_rotation(&self) -> CoordinateVector {
-        let mut rotation = CoordinateVector::zeros();
-        rotation[THETA_GEAR] = -1.0 / self.ratio;
-        rotation[THETA_PINION] = 1.0;
-        rotation[THETA_BRAKE] = -1.0 / self.ratio;
-        rotation
+        rigid_rotation(self.ratio)
     }
 
     /// (N, N m) External force in the 13 coordinates: motor, brake, the flanks' deviations and, unless damping acts on the
@@ -191,6 +174,37 @@ impl System {
     fn turn_back(&self, turned: &CoordinateMatrix) -> CoordinateMatrix {
         self.directions.turn * turned * self.directions.turn.transpose()
     }
+}
+
+/// (kg, kg m²) Diagonal of the mass matrix of the wheels and the brake.
+pub(super) fn masses(pinion: &WheelBody, gear: &WheelBody, rig: &Rig) -> [f64; COORDINATES] {
+    let mut mass_diagonal = [0.0; COORDINATES];
+    for (wheel, coordinates) in [
+        (gear, [X_GEAR, Y_GEAR, Z_GEAR, THETA_GEAR, PHI_GEAR, PSI_GEAR]),
+        (pinion, [X_PINION, Y_PINION, Z_PINION, THETA_PINION, PHI_PINION, PSI_PINION]),
+    ] {
+        for (n, coordinate) in coordinates.into_iter().enumerate() {
+            mass_diagonal[coordinate] = match n {
+                0..3 => wheel.mass_kg,
+                3 => wheel.polar_kgm2,
+                _ => wheel.transverse_kgm2,
+            };
+        }
+    }
+    mass_diagonal[THETA_BRAKE] = rig.brake_inertia_kgm2;
+    mass_diagonal
+}
+
+/// Rigid rotation of the train per unit rotation of the motor.
+///
+/// # Arguments
+/// * `ratio` - (-) revolutions of the pinion per revolution of the gear
+pub(super) fn rigid_rotation(ratio: f64) -> CoordinateVector {
+    let mut rotation = CoordinateVector::zeros();
+    rotation[THETA_GEAR] = -1.0 / ratio;
+    rotation[THETA_PINION] = 1.0;
+    rotation[THETA_BRAKE] = -1.0 / ratio;
+    rotation
 }
 
 /// `B S Bᵀ` in turned coordinates.

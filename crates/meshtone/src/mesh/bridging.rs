@@ -16,17 +16,24 @@ pub(crate) fn bridged(depth_mm: &[f64], along_mm: &[f64], relative_radius_mm: &[
     (0..points)
         .map(|here| {
             let mut least = (depth_mm[here], here);
-            let mut look = |there: usize| {
+            let bulge = |there: usize| {
                 let away = along_mm[there] - along_mm[here];
-                let bulge = away * away / (2.0 * relative_radius_mm[here].max(f64::MIN_POSITIVE));
-                if bulge + depth_mm[there] < least.0 {
-                    least = (bulge + depth_mm[there], there);
-                }
-                // Farther away the mate lies farther back than what is found already.
-                bulge < least.0
+                away * away / (2.0 * relative_radius_mm[here].max(f64::MIN_POSITIVE))
             };
-            let _ = (here + 1..points).take_while(|&there| look(there)).last();
-            let _ = (0..here).rev().take_while(|&there| look(there)).last();
+            for side in [1, -1] {
+                let mut there = here;
+                while let Some(next) = there.checked_add_signed(side).filter(|&next| next < points) {
+                    there = next;
+                    let bulge = bulge(there);
+                    if bulge + depth_mm[there] < least.0 {
+                        least = (bulge + depth_mm[there], there);
+                    }
+                    // Farther away the mate lies farther back than what is found already.
+                    if bulge >= least.0 {
+                        break;
+                    }
+                }
+            }
             least
         })
         .collect()

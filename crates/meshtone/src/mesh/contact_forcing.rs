@@ -89,13 +89,10 @@ struct Bearing {
 
 impl Bearing {
     fn of(table: &ContactTable) -> Self {
-        let bears = |state: &ContactState| {
-            if state.separation_m < BEARS_M { state.stiffness_n_per_m } else { 0.0 }
-        };
         Self {
-            stiffness: table.states.iter().map(bears).collect(),
-            moment: table.states.iter().map(|state| bears(state) * state.face_centre_m).collect(),
-            leans: table.states.iter().any(|state| bears(state) * state.face_centre_m != 0.0),
+            stiffness: table.states.iter().map(bearing_n_per_m).collect(),
+            moment: table.states.iter().map(|state| bearing_n_per_m(state) * state.face_centre_m).collect(),
+            leans: table.states.iter().any(|state| bearing_n_per_m(state) * state.face_centre_m != 0.0),
         }
     }
 }
@@ -258,16 +255,10 @@ impl<'a> ContactForcing<'a> {
 
     /// (m) Where along the face the load of all pairs on their path acts, weighted by their stiffness.
     fn face_centre_m(&self, point: usize) -> f64 {
-        let (per_pitch, before) = (self.mesh.points_per_pitch, self.mesh.points_before);
-        let (latest, since) = ((point + before) / per_pitch, (point + before) % per_pitch);
         let (mut moment, mut stiffness) = (0.0, 0.0);
-        for (age, at) in (since..self.mesh.points()).step_by(per_pitch).enumerate() {
-            let class = self.mesh.sequence.class(latest as i64 - age as i64);
-            let state = &self.mesh.classes[class].states[at];
-            if state.separation_m < BEARS_M {
-                moment += state.stiffness_n_per_m * state.face_centre_m;
-                stiffness += state.stiffness_n_per_m;
-            }
+        for (_, state) in self.mesh.pairs_at(point) {
+            moment += bearing_n_per_m(state) * state.face_centre_m;
+            stiffness += bearing_n_per_m(state);
         }
         if stiffness > 0.0 { moment / stiffness } else { 0.0 }
     }
@@ -384,6 +375,11 @@ impl Eccentricity {
 
 /// (m) Separation up to which a pair is taken to bear when the place of the load along the face is found.
 const BEARS_M: f64 = 1e-6;
+
+/// (N/m) Stiffness of a pair that bears, else 0.
+fn bearing_n_per_m(state: &ContactState) -> f64 {
+    if state.separation_m < BEARS_M { state.stiffness_n_per_m } else { 0.0 }
+}
 
 impl Forcing for ContactForcing<'_> {
     fn next_block(&mut self, samples: usize, block: &mut ForcingBlock) {

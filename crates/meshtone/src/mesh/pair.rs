@@ -74,7 +74,18 @@ impl<'a> Pairs<'a> {
     /// * `kind` - the class
     /// * `curvature_mm` - (mm) of the pinion's and of the gear's flank; on what is left of a broken tooth
     pub(crate) fn loaded_at(&self, kind: &PairKind, curvature_mm: [f64; 2]) -> PairState {
-        let touched = |name: WheelName, damage: Option<usize>| {
+        let pair = self.touched(kind, curvature_mm);
+        let is_missing = |tooth: &Touched| tooth.damage.is_some_and(DamagedTooth::is_missing);
+        if pair.iter().any(is_missing) {
+            return self.apart();
+        }
+        let points = pair.each_ref().map(|tooth| tooth.point);
+        self.carried(&pair, points, 0.0).unwrap_or_else(|| self.apart())
+    }
+
+    /// Both teeth of a pair of a class, touched where their flanks have given radii of curvature.
+    fn touched(&self, kind: &PairKind, curvature_mm: [f64; 2]) -> [Touched<'_>; 2] {
+        [(WheelName::Pinion, kind.pinion), (WheelName::Gear, kind.gear)].map(|(name, damage)| {
             let flank = self.teeth.flank(name);
             Touched {
                 name,
@@ -83,37 +94,52 @@ impl<'a> Pairs<'a> {
                 loaded: damage.map_or(&self.sound[name as usize], |index| &self.broken[index]),
                 point: flank.at_curvature(curvature_mm[name as usize]),
             }
-        };
-        let pair = [touched(WheelName::Pinion, kind.pinion), touched(WheelName::Gear, kind.gear)];
-        let apart = PairState { stiffness_n_per_mm: 0.0, deviation_mm: 0.0, load: self.nominal };
+        })
+    }
+
+    /// A pair of which nothing touches.
+    fn apart(&self) -> PairState {
+        PairState { stiffness_n_per_mm: 0.0, deviation_mm: 0.0, load: self.nominal }
+    }
+
+    /// How a pair carries a load on what is left of its width, without deviation; none where nothing is left.
+    ///
+    /// # Arguments
+    /// * `pair` - both teeth where they would touch
+    /// * `points` - where the load acts on each
+    /// * `turn_rad` - (rad) how far the line of action has turned
+    fn carried(&self, pair: &[Touched; 2], points: [FlankPoint; 2], turn_rad: f64) -> Option<PairState> {
         let face_width = self.teeth.gear.face_width_mm;
         let unloaded = pair.iter().map(Touched::unloaded_width_mm).fold(0.0, f64::max);
         let width = face_width - unloaded;
-        if width <= 0.0 || pair.iter().any(|tooth| tooth.damage.is_some_and(DamagedTooth::is_missing)) {
-            return apart;
+        if width <= 0.0 {
+            return None;
         }
-        let of_tooth = |tooth: &Touched| {
+        // The load acts at a point; the wheels have turned on, so that its angle is the one of where they would touch, and the
+        // turn of the line of action: on the mate of a pit, the mate's own normal at the edge.
+        let (sin, cos) = turn_rad.sin_cos();
+        let compliance = pair.iter().zip(points).map(|(tooth, point)| {
+            let nominal = tooth.point;
             tooth.loaded.compliance_mm_per_n(&FlankLoad {
-                point: tooth.point,
-                sin: tooth.point.load_sin,
-                cos: tooth.point.load_cos,
+                point,
+                sin: nominal.load_sin * cos + nominal.load_cos * sin,
+                cos: nominal.load_cos * cos - nominal.load_sin * sin,
                 z_mm: unloaded / 2.0,
                 width_mm: width,
             })
-        };
-        let compliance =
-            pair.iter().map(of_tooth).sum::<f64>() + hertz_compliance_mm_per_n(self.material, width);
+        });
+        let compliance = compliance.sum::<f64>() + hertz_compliance_mm_per_n(self.material, width);
         let half_width_m = face_width * 1e-3 / 2.0;
-        PairState {
+        Some(PairState {
             // What has no width left has no compliance that is a number.
             stiffness_n_per_mm: if compliance > 0.0 { 1.0 / compliance } else { 0.0 },
             deviation_mm: 0.0,
             load: LoadState::spread(
                 -half_width_m,
                 half_width_m - unloaded * 1e-3,
-                self.nominal.pressure_angle_rad,
+                self.nominal.pressure_angle_rad + turn_rad,
             ),
-        }
+        })
     }
 
     /// The wheels' sound teeth.
@@ -136,60 +162,25 @@ impl<'a> Pairs<'a> {
     /// * `kind` - the class
     /// * `position` - (base pitches) since it entered contact
     pub fn at(&self, kind: &PairKind, position: f64) -> PairState {
-        let touched = |name: WheelName, damage: Option<usize>| {
-            let flank = self.teeth.flank(name);
-            let curvature = self.teeth.path.curvature_mm(name, position);
-            Touched {
-                name,
-                flank,
-                damage: damage.map(|index| &self.damaged[index]),
-                loaded: damage.map_or(&self.sound[name as usize], |index| &self.broken[index]),
-                point: flank.at_curvature(curvature),
-            }
-        };
-        let pair = [touched(WheelName::Pinion, kind.pinion), touched(WheelName::Gear, kind.gear)];
-        let apart = PairState { stiffness_n_per_mm: 0.0, deviation_mm: 0.0, load: self.nominal };
+        let path = &self.teeth.path;
+        let pair = self.touched(kind, WheelName::BOTH.map(|wheel| path.curvature_mm(wheel, position)));
         if pair.iter().any(Touched::is_gone) {
-            return apart;
-        }
-        let face_width = self.teeth.gear.face_width_mm;
-        let unloaded = pair.iter().map(Touched::unloaded_width_mm).fold(0.0, f64::max);
-        let width = face_width - unloaded;
-        if width <= 0.0 {
-            return apart;
+            return self.apart();
         }
         let rolling = pair.iter().filter_map(|tooth| tooth.rolling(position, self.teeth));
         let turned = rolling.clone().max_by(|a, b| a.pit.deviation_mm.total_cmp(&b.pit.deviation_mm));
-        let turn_rad = turned.as_ref().map_or(0.0, |rolling| rolling.turn_rad);
-        let compliance = pair.iter().map(|tooth| {
-            let point = match &turned {
-                None => tooth.point,
-                Some(rolling) => tooth.flank.at_curvature(rolling.edge_curvature_mm(tooth.name)),
-            };
-            // The load acts at the edge; the wheels have turned on, so that its angle is the one of where they would touch, and
-            // the turn of the line of action: on the mate, the mate's own normal at the edge.
-            let (sin, cos) = turn_rad.sin_cos();
-            let nominal = tooth.point;
-            tooth.loaded.compliance_mm_per_n(&FlankLoad {
-                point,
-                sin: nominal.load_sin * cos + nominal.load_cos * sin,
-                cos: nominal.load_cos * cos - nominal.load_sin * sin,
-                z_mm: unloaded / 2.0,
-                width_mm: width,
-            })
+        let points = pair.each_ref().map(|tooth| match &turned {
+            None => tooth.point,
+            Some(rolling) => tooth.flank.at_curvature(rolling.edge_curvature_mm(tooth.name)),
         });
-        let compliance = compliance.sum::<f64>() + hertz_compliance_mm_per_n(self.material, width);
-        let half_width_m = face_width * 1e-3 / 2.0;
+        let Some(carried) = self.carried(&pair, points, turned.map_or(0.0, |rolling| rolling.turn_rad))
+        else {
+            return self.apart();
+        };
         PairState {
-            // What has no width left has no compliance that is a number.
-            stiffness_n_per_mm: if compliance > 0.0 { 1.0 / compliance } else { 0.0 },
             deviation_mm: pair.iter().map(Touched::deviation_mm).sum::<f64>()
                 + rolling.map(|rolling| rolling.displacement_mm).sum::<f64>(),
-            load: LoadState::spread(
-                -half_width_m,
-                half_width_m - unloaded * 1e-3,
-                self.nominal.pressure_angle_rad + turn_rad,
-            ),
+            ..carried
         }
     }
 }

@@ -80,7 +80,7 @@ impl ContactMesh {
     }
 
     /// The pairs whose tables reach a point, counted from the start of the simulation: the newest first.
-    fn pairs_at(&self, point: usize) -> impl Iterator<Item = (i64, &ContactState)> {
+    pub(super) fn pairs_at(&self, point: usize) -> impl Iterator<Item = (i64, &ContactState)> {
         let (newest, since) = (
             (point + self.points_before) / self.points_per_pitch,
             (point + self.points_before) % self.points_per_pitch,

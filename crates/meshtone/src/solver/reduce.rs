@@ -1,9 +1,10 @@
 //! The equations of motion in modal coordinates, without what stays at rest.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::allocator::Allocator;
+use nalgebra::{DMatrix, DVector, DefaultAllocator, Dim, OVector};
 
 use crate::machine::coordinates::*;
-use crate::machine::{ClosedMesh, Structure, System};
+use crate::machine::{Structure, System};
 use crate::mesh::ROTATION;
 
 /// Which of the five constant mesh directions one column of `B` stands for, and its vector.
@@ -39,8 +40,6 @@ pub struct ReducedModel {
     pub sensor: [Vec<f64>; 3],
     /// (N) Mesh force under the constant loads that the displacements do not bring about: they are relative to it.
     pub static_mesh_force_n: f64,
-    /// (1/s) Rate at which the slowest mode in motion decays, `ζω`.
-    pub slowest_decay_per_s: f64,
     /// Whether damping acts on the rigid rotation too.
     pub damps_rotation: bool,
     /// (rad/s) Speed of the rigid rotation on top of which the modes move: the nominal one.
@@ -120,12 +119,10 @@ impl ReducedModel {
         let directions: Vec<usize> = kept.iter().map(|&c| columns[c].direction).collect();
         let mean = &system.mesh.mean_stiffness;
         let dynamic = |vector: CoordinateVector| DVector::from_column_slice(vector.as_slice());
-        let damping: Vec<f64> = modes.iter().map(|&n| system.modal_damping(n)).collect();
         Self {
             shapes: modes.iter().map(|&n| dynamic(turn * system.modes.shapes.column(n))).collect(),
             stiffness: modes.iter().map(|&n| system.modes.angular_frequencies[n].powi(2)).collect(),
-            slowest_decay_per_s: damping.iter().copied().fold(f64::INFINITY, f64::min) / 2.0,
-            damping,
+            damping: modes.iter().map(|&n| system.modal_damping(n)).collect(),
             mesh: kept.iter().map(|&c| DVector::from_vec(pick(&mesh[c]))).collect(),
             mean_mesh_stiffness: DMatrix::from_fn(kept.len(), kept.len(), |r, c| {
                 mean[(directions[r], directions[c])]
@@ -149,29 +146,25 @@ impl ReducedModel {
     ///
     /// # Arguments
     /// * `structure` - the machine
-    /// * `closed` - the mean mesh, closed: what decides how long a transient lasts
     /// * `tilts` - whether the load moves along the face
     /// * `rotation_rad_per_s` - nominal speed of the motor
     /// * `brake_torque_nm` - nominal torque of the brake
     /// * `initial_displacement` - in the wheels' 13 coordinates; none for the static equilibrium of the loaded mesh
-    /// * `initial_velocity` - in the wheels' 13 coordinates; none for the rigid rotation
+    /// * `initial_velocity` - in the wheels' 13 coordinates
     pub(crate) fn of_structure(
         structure: &Structure,
-        closed: &ClosedMesh,
         tilts: bool,
         rotation_rad_per_s: f64,
         brake_torque_nm: f64,
-        [initial_displacement, initial_velocity]: [Option<&CoordinateVector>; 2],
+        initial_displacement: Option<&CoordinateVector>,
+        initial_velocity: &CoordinateVector,
     ) -> Self {
         let shapes = structure.shapes.transpose();
         let mass = DVector::from_column_slice(&structure.mass_diagonal);
-        let modal = |turned: &DVector<f64>| cleaned(&shapes * turned);
+        let modal = |turned: &DVector<f64>| clean(&shapes * turned);
         let rigid_rotation = structure.rigid_rotation();
         let modal_motion =
             |motion: &DVector<f64>| modal(&(structure.turn.transpose() * motion).component_mul(&mass));
-        let with_supports = |wheels: &CoordinateVector| {
-            DVector::from_fn(COORDINATES_WITH_SUPPORTS, |n, _| wheels.get(n).copied().unwrap_or(0.0))
-        };
         let unit = |coordinate: usize, size: f64| {
             let mut unit = DVector::zeros(COORDINATES_WITH_SUPPORTS);
             unit[coordinate] = size;
@@ -181,10 +174,8 @@ impl ReducedModel {
         let brake = unit(THETA_BRAKE, 1.0);
         let rigid = modal_motion(&rigid_rotation);
         let displacement = initial_displacement.map(|given| modal_motion(&with_supports(given)));
-        let velocity = initial_velocity.map_or_else(
-            || DVector::zeros(COORDINATES_WITH_SUPPORTS),
-            |given| modal_motion(&(with_supports(given) - &rigid_rotation * rotation_rad_per_s)),
-        );
+        let velocity =
+            modal_motion(&(with_supports(initial_velocity) - &rigid_rotation * rotation_rad_per_s));
         let columns: Vec<DVector<f64>> =
             structure.line_of_action.iter().take(if tilts { 2 } else { 1 }).map(modal).collect();
         let driven = [Some(&motor), Some(&brake), Some(&rigid), Some(&velocity), displacement.as_ref()];
@@ -214,7 +205,6 @@ impl ReducedModel {
                 ones(&[Z_GEAR, Z_PINION], 1.0),
             ],
             static_mesh_force_n,
-            slowest_decay_per_s: structure.slowest_decay_per_s(closed),
             damps_rotation: false,
             rotation_rad_per_s,
             initial_displacement: displacement.as_ref().map(pick),
@@ -227,6 +217,11 @@ impl ReducedModel {
     pub(crate) fn whole_force_column(&self) -> Option<usize> {
         let rotation = self.directions.iter().position(|&direction| direction == ROTATION);
         rotation.or_else(|| self.directions.iter().position(|&direction| direction == ALONG))
+    }
+
+    /// (1/s) Rate at which the slowest active mode decays, `min ζω`; of a machine without its mesh 0, that of the free rotation.
+    pub fn slowest_decay_per_s(&self) -> f64 {
+        self.damping.iter().copied().fold(f64::INFINITY, f64::min) / 2.0
     }
 
     /// Number of active modes.
@@ -258,12 +253,11 @@ fn columns(system: &System) -> Vec<Column> {
     }
 }
 
-fn cleaned(vector: DVector<f64>) -> DVector<f64> {
-    let largest = vector.amax();
-    vector.map(|entry| if entry.abs() < ROUNDING * largest { 0.0 } else { entry })
-}
-
-fn clean(vector: CoordinateVector) -> CoordinateVector {
+/// A modal vector without the entries that only rounding makes.
+fn clean<D: Dim>(vector: OVector<f64, D>) -> OVector<f64, D>
+where
+    DefaultAllocator: Allocator<D>,
+{
     let largest = vector.amax();
     vector.map(|entry| if entry.abs() < ROUNDING * largest { 0.0 } else { entry })
 }
