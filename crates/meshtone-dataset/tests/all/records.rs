@@ -173,27 +173,7 @@ fn the_simulation_is_in_the_record() {
 #[test]
 fn the_fault_is_at_its_tooth() {
     let text = FAST.replace("[[vary]]\nkey = \"noise.snr_db\"\nuniform = [10.0, 30.0]\n", "");
-    let random = made(&plan(&text));
-    let aligned = made(&plan(&text.replace("[keep]", "[keep]\naligned = true")));
-    let mut seen = Vec::new();
-    for (made, is_aligned) in [(&random, false), (&aligned, true)] {
-        for row in (0..60).filter(|&row| made.text("label", row) == "missing") {
-            let difference = made.signal("difference_g", row);
-            let largest = (0..difference.len())
-                .max_by(|&a, &b| difference[a].abs().total_cmp(&difference[b].abs()))
-                .unwrap();
-            let pitch = largest as f64 / difference.len() as f64 * 40.0;
-            let tooth = made.tooth(row).unwrap();
-            // It rings after its tooth came into contact, or should have.
-            let after = (pitch - f64::from(tooth - 1)).rem_euclid(40.0);
-            assert!(after < 4.0, "row {row}: {after} pitches after tooth {tooth}");
-            assert!(!is_aligned || tooth == 1);
-            seen.push(tooth);
-        }
-    }
-    seen.sort_unstable();
-    seen.dedup();
-    assert!(seen.len() > 5, "{seen:?}");
+    bursts_are_at_their_teeth(&text, 40.0, |_, _| {});
 }
 
 /// A damaged tooth of the pinion shows at its number in the average over the pinion's revolutions.
@@ -206,22 +186,36 @@ fn a_fault_of_the_pinion_is_at_its_tooth() {
             "{ kind = \"missing-tooth\", wheel = \"pinion\", tooth = 5 }",
         )
         .replace("[keep]", "[keep]\nwheel = \"pinion\"");
-    let random = made(&plan(&text));
+    bursts_are_at_their_teeth(&text, 20.0, |made, row| {
+        assert_eq!(
+            ["fault_kind", "fault_wheel"].map(|name| made.text(name, row)),
+            ["missing-tooth", "pinion"]
+        );
+    });
+}
+
+/// Whether the burst of every record of the missing tooth follows its tooth's contact, in records that begin anywhere and in those
+/// that begin at it.
+///
+/// # Arguments
+/// * `text` - the plan
+/// * `teeth` - of the wheel over whose revolutions is averaged
+/// * `check` - what else holds in a record
+fn bursts_are_at_their_teeth(text: &str, teeth: f64, check: impl Fn(&Made, usize)) {
+    let random = made(&plan(text));
     let aligned = made(&plan(&text.replace("[keep]", "[keep]\naligned = true")));
     let mut seen = Vec::new();
     for (made, is_aligned) in [(&random, false), (&aligned, true)] {
         for row in (0..60).filter(|&row| made.text("label", row) == "missing") {
-            assert_eq!(
-                ["fault_kind", "fault_wheel"].map(|name| made.text(name, row)),
-                ["missing-tooth", "pinion"]
-            );
+            check(made, row);
             let difference = made.signal("difference_g", row);
             let largest = (0..difference.len())
                 .max_by(|&a, &b| difference[a].abs().total_cmp(&difference[b].abs()))
                 .unwrap();
-            let pitch = largest as f64 / difference.len() as f64 * 20.0;
+            let pitch = largest as f64 / difference.len() as f64 * teeth;
             let tooth = made.tooth(row).unwrap();
-            let after = (pitch - f64::from(tooth - 1)).rem_euclid(20.0);
+            // It rings after its tooth came into contact, or should have.
+            let after = (pitch - f64::from(tooth - 1)).rem_euclid(teeth);
             assert!(after < 4.0, "row {row}: {after} pitches after tooth {tooth}");
             assert!(!is_aligned || tooth == 1);
             seen.push(tooth);
