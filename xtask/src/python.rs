@@ -49,6 +49,7 @@ pub fn test(row: &Row, python: &Path, wheel: &Path) -> Result<(), u8> {
             "python/meshtone",
             "python/tests",
             "python/gallery",
+            "python/validation",
             "python/benchmarks",
         ],
     )?;
