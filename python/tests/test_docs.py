@@ -14,8 +14,9 @@ BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
 def repository(folder: Path) -> None:
-    """What a reader's working folder has: the examples, of which the tuned ones are made short."""
+    """What a reader's working folder has: the examples, of which the tuned ones are made short, and what others computed."""
     shutil.copytree(ROOT / "examples", folder / "examples")
+    shutil.copytree(ROOT / "python/tests/references", folder / "python/tests/references")
     for experiment in folder.glob("examples/experiments/*.toml"):
         text = experiment.read_text(encoding="utf-8")
         experiment.write_text(text.replace("candidates = 160", "candidates = 4"), encoding="utf-8")

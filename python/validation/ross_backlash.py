@@ -50,6 +50,8 @@ REACH = 0.6
 """Base pitches before and after its path in which a pair may touch with a tip corner."""
 STORED = 500
 """Instants of each signal that are kept for the tests."""
+WINDOW_S = (15e-3, 16.6e-3)
+"""A part in which the mesh force is kept every 4 µs, to be looked at."""
 
 SCENARIO = """\
 model = "contact"
@@ -404,12 +406,15 @@ def main() -> None:
             figures = Motion(motion.time_s[within], motion.mesh_force_n[within], motion.vertical_g[within]).figures()
             print(f"  {actual:.0f} S/s: force {force:.2e}, acceleration {acceleration:.2e}\n    {figures}")
         kept = slice(None, None, reference.time_s.size // STORED)
+        window = [int(np.searchsorted(reference.time_s, end - 1e-9)) for end in WINDOW_S]
         stored[name] = {
             "scenario": case.scenario(1.6e6),
             "figures": reference.figures(),
             "time_s": [float(f"{value:.9g}") for value in reference.time_s[kept]],
             "mesh_force_n": [float(f"{value:.6g}") for value in reference.mesh_force_n[kept]],
             "vertical_g": [float(f"{value:.6g}") for value in reference.vertical_g[kept]],
+            "window_s": WINDOW_S,
+            "window_mesh_force_n": [float(f"{value:.6g}") for value in reference.mesh_force_n[window[0] : window[1] + 1 : 4]],
         }
     provenance = (
         f"python/validation/ross_backlash.py: matrices of ROSS {rs.__version__}, SciPy {scipy.__version__} DOP853 at a relative "
