@@ -11,8 +11,8 @@ from meshtone import Fault, MissingTooth, Scenario, ToothBreakage, examples, sim
 REFERENCES: dict[str, Any] = json.loads((ROOT / "python/tests/references/ross_backlash.json").read_text(encoding="utf-8"))
 
 # Rms of the difference over the fluctuation, force and acceleration, at 1.76 MS/s: twice what is measured. The errors fall with the
-# step: at 6.6 MS/s they are a quarter.
-TOLERANCES = {"closed": (5e-3, 5e-3), "apart": (9e-2, 7e-2), "both flanks": (1e-2, 1e-3), "swinging load": (3e-3, 7e-3)}
+# step: at 6.6 MS/s they are a tenth.
+TOLERANCES = {"closed": (2e-3, 6e-4), "apart": (2e-3, 5e-3), "both flanks": (3e-3, 3e-4), "swinging load": (4e-4, 4e-4)}
 
 
 @pytest.mark.parametrize("case", TOLERANCES)
@@ -33,10 +33,9 @@ def test_moves_as_a_machine_of_ross_under_runge_kutta(case: str) -> None:
         "acceleration_rms_g": np.sqrt(np.mean(vertical_g**2)),
     }
     for name, value in figures.items():
-        assert value == pytest.approx(reference["figures"][name], rel=0.01), name
-    # Each time that teeth meet or part is a step early or late.
-    assert np.mean(force_n == 0) == pytest.approx(reference["figures"]["apart_fraction"], abs=2e-3)
-    assert np.mean(force_n < 0) == pytest.approx(reference["figures"]["back_flank_fraction"], abs=2e-3)
+        assert value == pytest.approx(reference["figures"][name], rel=2e-3), name
+    assert np.mean(force_n == 0) == pytest.approx(reference["figures"]["apart_fraction"], abs=5e-4)
+    assert np.mean(force_n < 0) == pytest.approx(reference["figures"]["back_flank_fraction"], abs=5e-4)
 
 
 def test_machine_has_the_natural_frequencies_of_ross() -> None:

@@ -57,7 +57,7 @@ pub(crate) struct ContactForcing<'a> {
     /// While motor and brake are steady every sample is a point of the tables.
     steady: Option<SteadyTables>,
     /// (m) Offset of each place's pair at the sample before, with the pair's number; while they are not.
-    before: [(i64, f64); PAIRS],
+    before: [(i64, [f64; 2]); PAIRS],
 }
 
 /// By class and by tooth, with the damping's lead, at every point of a pair.
@@ -97,12 +97,15 @@ impl Bearing {
     }
 }
 
-/// Makes an offset at uniform points `o + τ ȯ`, the derivative backward as the solver sees it.
+/// Makes an offset at uniform points `o + τ ȯ`, the derivative by central differences: one to the point before would be late by half
+/// a step, and the motion's error of the first order.
 fn add_lead(offset_m: &mut [f64], lead: f64) {
     let mut before = offset_m.first().copied().unwrap_or(0.0);
-    for offset in offset_m {
-        let now = *offset;
-        *offset += lead * (now - std::mem::replace(&mut before, now));
+    for n in 0..offset_m.len() {
+        let now = offset_m[n];
+        let after = offset_m.get(n + 1).copied().unwrap_or(now);
+        offset_m[n] += lead / 2.0 * (after - before);
+        before = now;
     }
 }
 
@@ -177,7 +180,7 @@ impl<'a> ContactForcing<'a> {
             nominal_speed_hz,
             nominal_torque_nm,
             steady,
-            before: [(i64::MIN, 0.0); PAIRS],
+            before: [(i64::MIN, [0.0; 2]); PAIRS],
         }
     }
 
@@ -291,7 +294,7 @@ impl<'a> ContactForcing<'a> {
                 let states = &self.mesh.classes[self.mesh.sequence.class(pair)].states;
                 let (index, part) = (point.floor().max(0.0) as usize, point - point.floor());
                 let Some([here, next]) = states.get(index..index + 2) else {
-                    self.before[place] = (i64::MIN, 0.0);
+                    self.before[place] = (i64::MIN, [0.0; 2]);
                     continue;
                 };
                 let between = |a: f64, b: f64| a + part * (b - a);
@@ -300,10 +303,13 @@ impl<'a> ContactForcing<'a> {
                     + self.gear.at_position_m(gear_tooth, position)
                     + eccentric
                     - between(here.separation_m, next.separation_m);
-                let last = if self.before[place].0 == pair { self.before[place].1 } else { offset };
-                self.before[place] = (pair, offset);
+                let [last, last_but_one] =
+                    if self.before[place].0 == pair { self.before[place].1 } else { [offset; 2] };
+                self.before[place] = (pair, [offset, last]);
                 block.pairs.stiffness[place][k] = between(here.stiffness_n_per_m, next.stiffness_n_per_m);
-                block.pairs.offset[place][k] = offset + lead * (offset - last);
+                // The next one is not known: the slope here of the parabola through the last three.
+                block.pairs.offset[place][k] =
+                    offset + lead * (1.5 * offset - 2.0 * last + 0.5 * last_but_one);
             }
             if self.tilts {
                 block.pairs.face_centre[k] =

@@ -114,13 +114,13 @@ fn by_slices(stages: &Stages, samples: usize) -> Vec<f64> {
         let acceleration = DVector::from_fn(n, |m, _| modal[m] - omega2[m] * q[m] - damping[m] * s[m] / h);
         output.push(row.dot(&acceleration));
         let all = slices(mesh, width_m, sample + 1);
-        let now: Vec<f64> = all.iter().map(|slice| slice.separation).collect();
-        let same = now.len() == before.len();
-        let rates: Vec<f64> = now
-            .iter()
-            .enumerate()
-            .map(|(i, now)| if same { (before[i] - now) / (2.0 * h) } else { 0.0 })
-            .collect();
+        let separations =
+            |slices: &[Slice]| -> Vec<f64> { slices.iter().map(|slice| slice.separation).collect() };
+        let (now, after) = (separations(&all), separations(&slices(mesh, width_m, sample + 2)));
+        let same = now.len() == before.len() && now.len() == after.len();
+        // Central differences, over two steps of 2 h.
+        let rates: Vec<f64> =
+            (0..now.len()).map(|i| if same { (before[i] - after[i]) / (4.0 * h) } else { 0.0 }).collect();
         before = now;
         let change = DVector::from_fn(n, |m, _| {
             e[m] * (2.0 * s[m] - 2.0 * h * h * omega2[m] * q[m] + h * h * modal[m])
