@@ -10,7 +10,7 @@ use web_time::Instant;
 use crate::damage::{DamagedTooth, damaged_teeth};
 use crate::error::{Error, ScenarioError};
 use crate::machine::coordinates::CoordinateVector;
-use crate::machine::{ClosedMesh, Excitation, Structure, System};
+use crate::machine::{ClosedMesh, DecayingMode, Excitation, Structure, System};
 use crate::mesh::forcing::{Forcing, ForcingBlock, ForcingSource};
 use crate::mesh::published::PublishedForcing;
 use crate::mesh::{
@@ -324,13 +324,17 @@ impl Stages {
 
     /// (1/s) Rate at which the slowest mode in motion decays; under `contact` with the mean mesh, closed.
     pub(crate) fn slowest_decay_per_s(&self) -> f64 {
-        match (&self.structure, &self.mesh) {
-            (Some(structure), Mesh::Contact(mesh)) => structure.slowest_decay_per_s(&ClosedMesh {
-                stiffness_n_per_m: mesh.mean_stiffness_n_per_m,
-                damping_time_s: mesh.damping_time_s,
-            }),
-            _ => self.reduced_model().slowest_decay_per_s(),
-        }
+        let of_system = || self.reduced_model().slowest_decay_per_s();
+        self.slowest_closed_mode().map_or_else(of_system, |mode| mode.decay_per_s)
+    }
+
+    /// The slowest mode in motion under `contact`, with the mean mesh closed.
+    pub(crate) fn slowest_closed_mode(&self) -> Option<DecayingMode> {
+        let (structure, mesh) = (self.structure.as_ref()?, self.mesh.contact()?);
+        Some(structure.slowest_mode(&ClosedMesh {
+            stiffness_n_per_m: mesh.mean_stiffness_n_per_m,
+            damping_time_s: mesh.damping_time_s,
+        }))
     }
 
     /// First sample that must be simulated, so that the slowest mode's transient has decayed to the settling tolerance where

@@ -1,8 +1,10 @@
 //! What is doubtful about a simulation: before the time loop, and by its signals.
 
+use std::f64::consts::TAU;
+
 use crate::error::{ScenarioError, ScenarioWarning};
 use crate::machine::coordinates::{X_GEAR, X_PINION};
-use crate::machine::{Shaft, Structure, WheelBody};
+use crate::machine::{DecayingMode, Shaft, Structure, WheelBody};
 use crate::scenario::{MemoryLimit, Scenario};
 use crate::sensor::Channels;
 use crate::simulate::{Simulation, Stages, stages};
@@ -133,6 +135,10 @@ impl Stages {
                 "it never decays: a mode has no damping".to_string()
             };
             let percent = 100.0 * remainder;
+            let advice = match self.slowest_closed_mode() {
+                Some(mode) if decay > 0.0 => format!("{advice}; {}", slowest_mode(&mode)),
+                _ => advice,
+            };
             let message = format!(
                 "up to {percent:.0} % of the start-up transient is left when the kept signal starts, after {settling_s:.3} s; \
                  {advice}"
@@ -140,6 +146,16 @@ impl Stages {
             ScenarioWarning::new("solver.settle_fraction", message)
         })
     }
+}
+
+/// Which mode is slow, and what damps it.
+fn slowest_mode(mode: &DecayingMode) -> String {
+    let ratio = mode.decay_per_s / (TAU * mode.frequency_hz);
+    format!(
+        "slowest is the mode at {:.0} Hz, at {:.2} % of critical damping, which the damping_ratio of the shafts raises",
+        mode.frequency_hz,
+        100.0 * ratio
+    )
 }
 
 #[cfg(test)]

@@ -16,5 +16,6 @@ pub use body::WheelBody;
 pub use mesh_directions::MeshDirections;
 pub use modes::Modes;
 pub use rig::{DampingRatio, Rig, Shaft, Support, WheelInertia};
+pub(crate) use structure::DecayingMode;
 pub use structure::{ClosedMesh, Structure};
 pub use system::{Excitation, System};

@@ -56,6 +56,15 @@ pub struct ClosedMesh {
     pub damping_time_s: f64,
 }
 
+/// A mode that decays.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct DecayingMode {
+    /// (Hz) Natural frequency.
+    pub(crate) frequency_hz: f64,
+    /// (1/s) Rate.
+    pub(crate) decay_per_s: f64,
+}
+
 /// One elastic part of the machine, with its damping.
 struct Part {
     stiffness: DMatrix<f64>,
@@ -156,16 +165,16 @@ impl Structure {
         mass_normalised_modes(&self.mass_diagonal, &closed)
     }
 
-    /// (1/s) Rate at which the slowest of the modes that the mesh moves decays, with the mesh closed: `φᵀ C φ/2`, as if damping
-    /// did not couple modes.
+    /// The slowest to decay of the modes that the mesh moves, with the mesh closed: at the rate `φᵀ C φ/2`, as if damping did not
+    /// couple modes.
     ///
     /// # Arguments
     /// * `mesh` - the closed mesh
-    pub(crate) fn slowest_decay_per_s(&self, mesh: &ClosedMesh) -> f64 {
+    pub(crate) fn slowest_mode(&self, mesh: &ClosedMesh) -> DecayingMode {
         let line = &self.line_of_action[0];
         let mass = DVector::from_column_slice(&self.mass_diagonal);
         let modes = self.turned_closed_modes(mesh.stiffness_n_per_m);
-        let decay = |shape: &DVector<f64>| {
+        let decay_per_s = |shape: &DVector<f64>| {
             let own = self.shapes.transpose() * shape.component_mul(&mass);
             let structural: f64 = (0..own.len()).map(|n| self.modal_damping(n) * own[n] * own[n]).sum();
             let deflection = line.dot(shape);
@@ -173,7 +182,13 @@ impl Structure {
         };
         let largest = modes.iter().map(|(_, shape)| line.dot(shape).abs()).fold(0.0, f64::max);
         let moved = modes.iter().filter(|(_, shape)| line.dot(shape).abs() > ROUNDING * largest);
-        moved.map(|(_, shape)| decay(shape)).fold(f64::INFINITY, f64::min)
+        let decaying = moved.map(|(omega, shape)| DecayingMode {
+            frequency_hz: omega / (2.0 * PI),
+            decay_per_s: decay_per_s(shape),
+        });
+        let none = DecayingMode { frequency_hz: 0.0, decay_per_s: f64::INFINITY };
+        decaying
+            .fold(none, |slowest, mode| if mode.decay_per_s < slowest.decay_per_s { mode } else { slowest })
     }
 
     /// Damping matrix without the mesh, in the 17 coordinates, `C = M Σ_n 2 ζ_n ω_n φ_n φ_nᵀ M`.
