@@ -170,11 +170,21 @@ SECTION_OF_KEY: dict[str, str] = {
     "tooth_share": "quality",
     "pitch_share": "quality",
     "run_out_share": "quality",
+    "helix_share": "quality",
+    "pinion_cumulative_pitch_um": "quality",
+    "pinion_run_out_um": "quality",
+    "pinion_run_out_phase_rad": "quality",
+    "pinion_helix_slope_um": "quality",
+    "gear_cumulative_pitch_um": "quality",
+    "gear_run_out_um": "quality",
+    "gear_run_out_phase_rad": "quality",
+    "gear_helix_slope_um": "quality",
     "bearing_stiffness_n_per_m": "rig",
     "wheel_rotational_stiffness_nm_per_rad": "rig",
     "brake_inertia_kgm2": "rig",
     "damping_ratio": "rig",
     "eccentricity_mm": "rig",
+    "misalignment_um": "rig",
     "pinion_shaft": "rig",
     "gear_shaft": "rig",
     "pinion_inertia": "rig",
@@ -235,11 +245,21 @@ class ScenarioKeys:
     tooth_share: float
     pitch_share: float
     run_out_share: float
+    helix_share: float
+    pinion_cumulative_pitch_um: list[float] | None
+    pinion_run_out_um: float | None
+    pinion_run_out_phase_rad: float | None
+    pinion_helix_slope_um: float | None
+    gear_cumulative_pitch_um: list[float] | None
+    gear_run_out_um: float | None
+    gear_run_out_phase_rad: float | None
+    gear_helix_slope_um: float | None
     bearing_stiffness_n_per_m: float
     wheel_rotational_stiffness_nm_per_rad: float
     brake_inertia_kgm2: float
     damping_ratio: float | list[float]
     eccentricity_mm: float
+    misalignment_um: float
     pinion_shaft: Shaft
     gear_shaft: Shaft
     pinion_inertia: WheelInertia | None
@@ -284,13 +304,23 @@ class ScenarioKeys:
         tooth_share: float | None = None,
         pitch_share: float | None = None,
         run_out_share: float | None = None,
+        helix_share: float | None = None,
         pinion_profile_errors_mm: npt.ArrayLike | None = None,
         gear_profile_errors_mm: npt.ArrayLike | None = None,
+        pinion_cumulative_pitch_um: Sequence[float] | None = None,
+        pinion_run_out_um: float | None = None,
+        pinion_run_out_phase_rad: float | None = None,
+        pinion_helix_slope_um: float | None = None,
+        gear_cumulative_pitch_um: Sequence[float] | None = None,
+        gear_run_out_um: float | None = None,
+        gear_run_out_phase_rad: float | None = None,
+        gear_helix_slope_um: float | None = None,
         bearing_stiffness_n_per_m: float | None = None,
         wheel_rotational_stiffness_nm_per_rad: float | None = None,
         brake_inertia_kgm2: float | None = None,
         damping_ratio: float | Sequence[float] | None = None,
         eccentricity_mm: float | None = None,
+        misalignment_um: float | None = None,
         pinion_shaft: Shaft | None = None,
         gear_shaft: Shaft | None = None,
         pinion_inertia: WheelInertia | None = None,
@@ -386,11 +416,40 @@ class ScenarioKeys:
             0.15.
         run_out_share : float, optional
             (-) The run-out of each wheel as a part of its tolerance F_r. Allowed: 0…1. Default: 0.3.
+        helix_share : float, optional
+            (-) The part of its tolerance f_Hβ within which each wheel's helix slope deviation is drawn, of either sign.
+            Allowed: 0…1. Default: 0.0.
         pinion_profile_errors_mm : array of float64, shape (100, teeth), optional
             (mm) The pinion's profile errors, instead of a draw: 100 rows of one number per tooth. Allowed: 100 × pinion
             teeth, each smaller than the module. Default: none.
         gear_profile_errors_mm : array of float64, shape (100, teeth), optional
             (mm) The gear's profile errors, likewise. Allowed: 100 × gear teeth, likewise. Default: none.
+        pinion_cumulative_pitch_um : sequence of floats, optional
+            (µm) The cumulative pitch deviations of the pinion's working flanks along the pitch circle, one a tooth;
+            metal added is positive, and they are added to given profile errors. Allowed: one a tooth of the pinion,
+            each smaller than the module. Default: drawn, or none beside given profile errors.
+        pinion_run_out_um : float, optional
+            (µm) The run-out F_r of the pinion, of which the deviation is F_r/2 sin(θ + φ). Allowed: ≥ 0, ≤ 10000.
+            Default: drawn, or none beside given profile errors.
+        pinion_run_out_phase_rad : float, optional
+            (rad) Its phase φ, with θ counted from where the first tooth of the pinion enters contact. Default: drawn,
+            or 0 beside given profile errors.
+        pinion_helix_slope_um : float, optional
+            (µm) The helix slope deviation of the pinion over the face width; positive where metal is added towards
+            positive z. Allowed: −1000…1000. Default: drawn, or none beside given profile errors.
+        gear_cumulative_pitch_um : sequence of floats, optional
+            (µm) The cumulative pitch deviations of the gear's working flanks along the pitch circle, one a tooth; metal
+            added is positive, and they are added to given profile errors. Allowed: one a tooth of the gear, each
+            smaller than the module. Default: drawn, or none beside given profile errors.
+        gear_run_out_um : float, optional
+            (µm) The run-out F_r of the gear, of which the deviation is F_r/2 sin(θ + φ). Allowed: ≥ 0, ≤ 10000.
+            Default: drawn, or none beside given profile errors.
+        gear_run_out_phase_rad : float, optional
+            (rad) Its phase φ, with θ counted from where the first tooth of the gear enters contact. Default: drawn, or
+            0 beside given profile errors.
+        gear_helix_slope_um : float, optional
+            (µm) The helix slope deviation of the gear over the face width; positive where metal is added towards
+            positive z. Allowed: −1000…1000. Default: drawn, or none beside given profile errors.
         bearing_stiffness_n_per_m : float, optional
             (N/m) The stiffness of each wheel's bearings in x, y and z. Allowed: > 0, ≤ 1e15. Default: 1.9e8.
         wheel_rotational_stiffness_nm_per_rad : float, optional
@@ -403,6 +462,9 @@ class ScenarioKeys:
             frequency. Allowed: ≥ 0, < 1. Default: 0.05.
         eccentricity_mm : float, optional
             (mm) The eccentricity of both wheels. Allowed: ≥ 0; less than the module. Default: 0.0.
+        misalignment_um : float, optional
+            (µm) How far the shafts deviate from parallel in the plane of action, over the face width; positive where it
+            brings the flanks closer together towards positive z. Allowed: −1000…1000. Default: 0.0.
         pinion_shaft : Shaft, optional
             The motor's shaft. Default: { length_mm = 200.0, radius_mm = 10.0, bearing_span_mm = 130.0, wheel_at = 0.5,
             damping_ratio = 0.025 }.

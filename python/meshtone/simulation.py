@@ -293,6 +293,25 @@ class Simulation:
         """
         return self._native.profile_errors_mm()
 
+    def wheel_deviations(self) -> dict[str, float]:
+        """What both wheels have beside their profile errors, of which pitch deviations are a part.
+
+        Returns
+        -------
+        dict
+            (µm, rad) Run-out with its phase and helix slope of pinion and gear, by the arguments of
+            :class:`~meshtone.Scenario`: with :meth:`profile_errors_mm` they are the same wheels. Empty but under ``contact``.
+
+        Examples
+        --------
+        >>> import meshtone
+        >>> from meshtone import examples
+        >>> simulation = meshtone.simulate(examples.healthy().copy(model="contact", sampling_rate_hz=2e4))
+        >>> sorted(simulation.wheel_deviations())[:3]
+        ['gear_helix_slope_um', 'gear_run_out_phase_rad', 'gear_run_out_um']
+        """
+        return {key: number for key, (number,) in self._native.wheel_deviations()}
+
     def process(self, channel: str = "vertical_g", wheel: Wheel = "gear", *, sidebands: int | None = None) -> Record:
         """Take one of the signals to its average over a revolution, its parts and its indicators.
 

@@ -35,7 +35,7 @@ fn rows(summary: &Summary) -> [(&'static str, String); 8] {
                 short(summary.sampling_rate_hz)
             ),
         ),
-        ("contact ratio", format!("{:.4}", summary.contact_ratio)),
+        ("contact ratio", format!("{:.4}{}", summary.contact_ratio, along_the_face(summary))),
         (
             "mesh stiffness, kN/mm",
             format!(
@@ -58,6 +58,12 @@ fn rows(summary: &Summary) -> [(&'static str, String); 8] {
         ("natural frequencies, Hz", frequencies.join(" ")),
         ("computing time", format!("{} ms", short(summary.total_time().as_secs_f64() * 1e3))),
     ]
+}
+
+/// By how much the load is uneven along the face, where it is.
+fn along_the_face(summary: &Summary) -> String {
+    let uneven = summary.face_load_factor.filter(|factor| *factor > 1.0);
+    uneven.map_or_else(String::new, |factor| format!("; face load factor {factor:.2}"))
 }
 
 /// For how long the mesh pulls, or its teeth do not touch or touch with their backs.

@@ -5,7 +5,7 @@ use std::num::NonZeroUsize;
 use meshtone::scenario::{MemoryLimit, ScenarioWarning};
 use meshtone::sensor::ContactFigures;
 use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
-use meshtone::wheel::WheelName;
+use meshtone::wheel::{WheelDeviations, WheelName};
 use meshtone::{Stages, Trace};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -217,6 +217,11 @@ impl Simulation {
     /// (mm) Profile errors of both wheels, a column a tooth; none for ideal teeth.
     fn profile_errors_mm<'py>(&self, py: Python<'py>) -> PyResult<Option<BothWheels<'py>>> {
         self.stages.profile_errors.as_ref().map(|errors| both_wheels(py, errors)).transpose()
+    }
+
+    /// (µm, rad) What both wheels have beside their profile errors, by the keys of a scenario.
+    fn wheel_deviations(&self) -> Vec<(&'static str, Vec<f64>)> {
+        WheelDeviations::entries(&self.stages.wheel_deviations())
     }
 }
 

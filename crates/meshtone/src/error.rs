@@ -96,6 +96,14 @@ impl ScenarioError {
             .with_help("raise gears.pressure_angle_deg, or set model = \"linear\", which has no such limit")
     }
 
+    /// Flanks that close along the face, and no load that could decide how much of it bears.
+    pub(crate) fn no_load_along_the_face() -> Self {
+        let problem = "must be more than 0 where the flanks do not close alike along the face: the load decides how much of it bears";
+        Self::new("operation.brake_torque_nm", 0.0, problem).with_help(
+            "raise the torque, or set rig.misalignment_um, quality.helix_share and given helix slopes to 0",
+        )
+    }
+
     /// Damage that leaves no tooth that could carry a load.
     pub(crate) fn nothing_left() -> Self {
         let problem = "leave no pair of teeth that could touch; one at least must";

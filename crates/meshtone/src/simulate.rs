@@ -14,8 +14,8 @@ use crate::machine::{ClosedMesh, DecayingMode, Excitation, Structure, System};
 use crate::mesh::forcing::{Forcing, ForcingBlock, ForcingSource};
 use crate::mesh::published::PublishedForcing;
 use crate::mesh::{
-    ALL_DIRECTIONS, ContactForcing, ContactMesh, ContactParameters, ContactTable, DirectionVector, Mesh,
-    PairDeviations, PairForcing, PairMesh, PairSequence, Pairs, PublishedMesh, TipShape,
+    ALL_DIRECTIONS, ContactForcing, ContactMesh, ContactParameters, ContactTable, DirectionVector, FaceSlope,
+    Mesh, PairDeviations, PairForcing, PairMesh, PairSequence, Pairs, PublishedMesh, TipShape,
 };
 use crate::model::Model;
 use crate::operation::{CycleGrid, Solver, TimeGrid};
@@ -24,7 +24,7 @@ use crate::sensor::{Channels, ContactFigures, channel_outputs};
 use crate::simd::InstructionSet;
 use crate::solver::{Diverged, Output, Problem, Recorder, ReducedModel, integrate};
 use crate::wheel::quality::{deviations, profile_errors};
-use crate::wheel::{ProfileErrors, RunOut, Teeth, teeth};
+use crate::wheel::{Deviations, ProfileErrors, RunOut, Teeth, WheelDeviations, teeth};
 
 /// Results of every stage before the time loop.
 #[derive(Clone, PartialEq)]
@@ -43,6 +43,8 @@ pub struct Stages {
     pub profile_errors: Option<ProfileErrors>,
     /// Stage 3 under `contact`: run-out of the pinion and of the gear.
     pub run_out: [RunOut; 2],
+    /// (µm) Stage 3 under `contact`: helix slope deviation of the pinion and of the gear over the face width.
+    pub helix_slope_um: [f64; 2],
     /// Stage 4: the damaged teeth; none of a healthy pair.
     pub damaged: Vec<DamagedTooth>,
     /// Stage 5: the mesh, pair by pair.
@@ -119,12 +121,12 @@ pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
     let teeth = teeth(gears, [rig.pinion_shaft.radius_mm, rig.gear_shaft.radius_mm], model);
     clock.lap("tooth profiles");
 
-    let (profile_errors, run_out) = match model {
-        Model::Published | Model::Linear => {
-            (profile_errors(&scenario.quality, &teeth, scenario.seed), [RunOut::default(); 2])
-        }
-        Model::Contact => deviations(&scenario.quality, &teeth, scenario.seed)
-            .map_or((None, [RunOut::default(); 2]), |drawn| (Some(drawn.flanks), drawn.run_out)),
+    let Deviations { flanks: profile_errors, run_out, helix_slope_um } = match model {
+        Model::Published | Model::Linear => Deviations {
+            flanks: profile_errors(&scenario.quality, &teeth, scenario.seed),
+            ..Deviations::default()
+        },
+        Model::Contact => deviations(&scenario.quality, &teeth, scenario.seed),
     };
     clock.lap("profile errors");
 
@@ -160,8 +162,12 @@ pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
             let built = Structure::new(gears, rig, &teeth);
             let points_per_pitch = points_per_pitch(&scenario, &time, &cycle);
             let sequence = PairSequence::new(gears.pinion_teeth, gears.gear_teeth, &damaged)?;
-            let mass = built.mesh_mass_kg;
-            let mesh = contact_mesh(&scenario, &teeth, &damaged, sequence, points_per_pitch, mass);
+            let pairs = pairs(&scenario, &teeth, &damaged);
+            let parameters = contact_parameters(&scenario, &teeth, &built, helix_slope_um);
+            if parameters.face.is_some() && parameters.static_force_n <= 0.0 {
+                return Err(ScenarioError::no_load_along_the_face());
+            }
+            let mesh = ContactMesh::new(&pairs, tip_shape(&scenario), sequence, points_per_pitch, parameters);
             if mesh.mean_stiffness_n_per_m.is_nan() || mesh.mean_stiffness_n_per_m <= 0.0 {
                 return Err(ScenarioError::not_stiff());
             }
@@ -188,6 +194,7 @@ pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
         teeth,
         profile_errors,
         run_out,
+        helix_slope_um,
         damaged,
         mesh,
         system,
@@ -229,23 +236,37 @@ fn pair_mesh(
     PairMesh::new(&pairs, sequence, teeth.path.contact_ratio, points_per_pitch)
 }
 
-/// The mesh under `contact`.
-fn contact_mesh(
+/// What shapes the tips and flanks of all teeth under `contact`.
+fn tip_shape(scenario: &Scenario) -> TipShape {
+    TipShape { chamfer_mm: scenario.gears.chamfer_mm(), relief: scenario.gears.flank_relief }
+}
+
+/// What the mesh under `contact` needs beside the pairs.
+fn contact_parameters(
     scenario: &Scenario,
     teeth: &Teeth,
-    damaged: &[DamagedTooth],
-    sequence: PairSequence,
-    points_per_pitch: NonZeroUsize,
-    mesh_mass_kg: f64,
-) -> ContactMesh {
-    let gears = &scenario.gears;
-    let shape = TipShape { chamfer_mm: gears.chamfer_mm(), relief: gears.flank_relief };
-    let parameters = ContactParameters {
-        damping_ratio: scenario.rig.mesh_damping_ratio,
-        mesh_mass_kg,
-        backlash_m: gears.normal_backlash_mm() * 1e-3,
+    structure: &Structure,
+    helix_slope_um: [f64; 2],
+) -> ContactParameters {
+    let closer_um = scenario.rig.misalignment_um + helix_slope_um[0] + helix_slope_um[1];
+    let (width_m, static_force_n) = (teeth.gear.face_width_mm * 1e-3, static_force_n(scenario, teeth));
+    let face = FaceSlope {
+        slope: closer_um * 1e-6 / width_m,
+        width_m,
+        tilt_rad_per_m: structure.tilt_rad_per_nm() * static_force_n,
     };
-    ContactMesh::new(&pairs(scenario, teeth, damaged), shape, sequence, points_per_pitch, parameters)
+    ContactParameters {
+        damping_ratio: scenario.rig.mesh_damping_ratio,
+        mesh_mass_kg: structure.mesh_mass_kg,
+        backlash_m: scenario.gears.normal_backlash_mm() * 1e-3,
+        static_force_n,
+        face: (closer_um != 0.0).then_some(face),
+    }
+}
+
+/// (N) Force along the line of action that balances the brake's nominal torque.
+fn static_force_n(scenario: &Scenario, teeth: &Teeth) -> f64 {
+    scenario.operation.brake_torque_nm / (teeth.gear.base_radius_mm * 1e-3)
 }
 
 impl Simulation {
@@ -306,14 +327,30 @@ impl Stages {
         let Some(structure) = &self.structure else { return Ok(None) };
         let [pinion, gear] = [self.teeth.pinion.teeth, self.teeth.gear.teeth];
         let sequence = PairSequence::new(pinion, gear, &self.damaged)?;
-        let mass = structure.mesh_mass_kg;
-        let (scenario, teeth, damaged) = (&self.scenario, &self.teeth, &self.damaged);
-        Ok(Some(contact_mesh(scenario, teeth, damaged, sequence, points_per_pitch, mass)))
+        let parameters = contact_parameters(&self.scenario, &self.teeth, structure, self.helix_slope_um);
+        let shape = tip_shape(&self.scenario);
+        Ok(Some(ContactMesh::new(&self.pairs(), shape, sequence, points_per_pitch, parameters)))
+    }
+
+    /// What the pinion and the gear have beside their profile errors: under `contact` run-out and helix slope, none under the other
+    /// models. With the profile errors, of which the pitches are a part, these are all their deviations: given to a scenario, they
+    /// make the same signals.
+    pub fn wheel_deviations(&self) -> [WheelDeviations; 2] {
+        let of_wheel = |wheel: usize| match self.scenario.model {
+            Model::Contact => WheelDeviations {
+                cumulative_pitch_um: None,
+                run_out_um: Some(self.run_out[wheel].run_out_um),
+                run_out_phase_rad: Some(self.run_out[wheel].phase_rad),
+                helix_slope_um: Some(self.helix_slope_um[wheel]),
+            },
+            Model::Linear | Model::Published => WheelDeviations::default(),
+        };
+        [of_wheel(0), of_wheel(1)]
     }
 
     /// (N) Force along the line of action that balances the brake's nominal torque.
     pub fn static_force_n(&self) -> f64 {
-        self.scenario.operation.brake_torque_nm / (self.teeth.gear.base_radius_mm * 1e-3)
+        static_force_n(&self.scenario, &self.teeth)
     }
 
     /// Whether motor speed and brake torque are constant.

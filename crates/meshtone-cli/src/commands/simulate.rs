@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use clap::builder::{EnumValueParser, PossibleValue, TypedValueParser};
 use clap::{Args, ValueEnum};
-use meshtone::scenario::{Model, ProfileErrors, Scenario, ScenarioError, ScenarioFiles, ScenarioWarning};
+use meshtone::scenario::{Model, Quality, Scenario, ScenarioError, ScenarioFiles, ScenarioWarning};
 use meshtone::{Simulation, StageTime, Stages, Trace};
 use meshtone_io::experiment::{Tuned, read_tuned};
 use meshtone_io::run_identity::RunIdentity;
@@ -194,7 +194,7 @@ impl Simulate {
         &self,
         path: &Path,
         directory: PathBuf,
-        errors: Option<&ProfileErrors>,
+        errors: Option<&Quality>,
         tuned: Option<&Tuned>,
     ) -> Result<Run, Failure> {
         let file = ScenarioFile::read_within(path, memory::limit())?;
@@ -212,8 +212,7 @@ impl Simulate {
             scenario.model = model.into();
         }
         if let Some(errors) = errors {
-            scenario.quality.din_grade = 0;
-            scenario.quality.profile_errors = Some(errors.clone());
+            scenario.quality = errors.clone();
         }
         let (warnings, stages) = check(&scenario).map_err(|error| self.refuse(&file, error))?;
         let stages = (self.scenarios.len() == 1 && self.trace.is_none()).then_some(stages);
@@ -266,9 +265,12 @@ impl Simulate {
     }
 }
 
-fn read_errors(path: &Path) -> Result<ProfileErrors, Failure> {
-    let errors = FilesBeside::new("").profile_errors(&path.to_string_lossy());
-    errors.map_err(|problem| {
+/// Wheels with the deviations of a file.
+fn read_errors(path: &Path) -> Result<Quality, Failure> {
+    let (files, name) = (FilesBeside::new(""), path.to_string_lossy());
+    let errors = files.profile_errors(&name);
+    let wheels = errors.and_then(|errors| Ok(Quality::of_wheels(errors, files.wheel_deviations(&name)?)));
+    wheels.map_err(|problem| {
         Failure::bad_input(format!("--errors-file: {}", problem.problem)).with_help(problem.help)
     })
 }

@@ -4,15 +4,15 @@ use std::path::PathBuf;
 
 use clap::Args;
 use meshtone::scenario::ScenarioError;
-use meshtone_io::scenario_file::{ScenarioFile, write_profile_errors_npz};
+use meshtone_io::scenario_file::{ScenarioFile, write_wheels_npz};
 
 use crate::failure::Failure;
 use crate::same_file::is_same_file;
 
-/// Draw the profile errors of both wheels once, so that several simulations share the wheels
+/// Draw the deviations of both wheels once, so that several simulations share the wheels
 ///
-/// Writes the errors that the scenario would draw for its grade and seed, 100 per tooth, in mm. A scenario takes
-/// them by `errors_file = "FILE.npz"` in its section [quality], or `meshtone simulate` by --errors-file.
+/// Writes the profile errors that the scenario would draw for its grade and seed, 100 per tooth, in mm; under the
+/// model of contact the wheels' run-out and helix slope too, in µm. A scenario takes them by `errors_file = "FILE.npz"` in its section [quality], or `meshtone simulate` by --errors-file.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Wheels {
@@ -40,8 +40,9 @@ impl Wheels {
         // The errors are those of the wheels before the damage.
         scenario.faults.clear();
         let stages = meshtone::stages(&scenario).map_err(|error| file.refuse(error))?;
+        let deviations = stages.wheel_deviations();
         let errors = stages.profile_errors.ok_or_else(|| file.refuse(ideal_teeth()))?;
-        Ok(write_profile_errors_npz(&self.output, &errors)?)
+        Ok(write_wheels_npz(&self.output, &errors, &deviations)?)
     }
 }
 

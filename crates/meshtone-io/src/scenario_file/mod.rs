@@ -8,10 +8,10 @@ mod source;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use meshtone::scenario::{FileProblem, Profile, ProfileErrors, Scenario, ScenarioFiles};
+use meshtone::scenario::{FileProblem, Profile, ProfileErrors, Scenario, ScenarioFiles, WheelDeviations};
 use meshtone_toml::TomlError;
 
-pub use profile_errors_npz::write_profile_errors_npz;
+pub use profile_errors_npz::{write_profile_errors_npz, write_wheels_npz};
 pub use source::ScenarioFile;
 pub use source::read_text;
 
@@ -94,6 +94,10 @@ impl FilesBeside {
 impl ScenarioFiles for FilesBeside {
     fn profile_errors(&self, name: &str) -> Result<ProfileErrors, FileProblem> {
         profile_errors_npz::read(&self.path_of(name))
+    }
+
+    fn wheel_deviations(&self, name: &str) -> Result<[WheelDeviations; 2], FileProblem> {
+        profile_errors_npz::read_deviations(&self.path_of(name))
     }
 
     fn profile(&self, name: &str) -> Result<Profile, FileProblem> {

@@ -1,15 +1,15 @@
-//! Profile errors of both wheels, in a NumPy archive.
+//! Profile errors of both wheels and their other deviations, in a NumPy archive.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-use meshtone::scenario::{FileProblem, ProfileErrors};
+use meshtone::scenario::{FileProblem, ProfileErrors, WheelDeviations};
 use meshtone::wheel::ErrorTable;
 
 use super::unreadable;
 use crate::atomic_file::{WriteFileError, write_atomically};
-use crate::npz::{NpzReader, NpzWriter};
+use crate::npz::{NpzReader, NpzWriter, ReadArray};
 
 const PINION: &str = "pinion_profile_errors_mm";
 const GEAR: &str = "gear_profile_errors_mm";
@@ -17,13 +17,40 @@ const HELP: &str = "save both wheels' errors with numpy.savez(name, pinion_profi
                     gear_profile_errors_mm=…), each 100 × teeth, in mm";
 
 pub(super) fn read(path: &Path) -> Result<ProfileErrors, FileProblem> {
-    let file = File::open(path).map_err(|error| unreadable(path, &error))?;
-    let mut archive =
-        NpzReader::new(file).map_err(|error| problem(path, &format!("is not an .npz archive: {error}")))?;
+    let mut archive = open(path)?;
     Ok(ProfileErrors {
         pinion_profile_errors_mm: read_entry(path, &mut archive, PINION)?,
         gear_profile_errors_mm: read_entry(path, &mut archive, GEAR)?,
     })
+}
+
+/// Pitches, run-out and helix slopes, as far as the archive has them.
+pub(super) fn read_deviations(path: &Path) -> Result<[WheelDeviations; 2], FileProblem> {
+    let mut archive = open(path)?;
+    let present = names(path, &archive)?;
+    let mut both = [WheelDeviations::default(), WheelDeviations::default()];
+    for key in WheelDeviations::keys().filter(|key| present.iter().any(|entry| entry == key)) {
+        let numbers = floats(path, &mut archive, key)?.numbers;
+        WheelDeviations::set(&mut both, key, &numbers).ok_or_else(|| {
+            problem(path, &format!("has {} numbers as its entry {key}; must have one", numbers.len()))
+        })?;
+    }
+    Ok(both)
+}
+
+fn open(path: &Path) -> Result<NpzReader, FileProblem> {
+    let file = File::open(path).map_err(|error| unreadable(path, &error))?;
+    NpzReader::new(file).map_err(|error| problem(path, &format!("is not an .npz archive: {error}")))
+}
+
+fn names(path: &Path, archive: &NpzReader) -> Result<Vec<String>, FileProblem> {
+    archive.names().map_err(|error| problem(path, &format!("cannot be read: {error}")))
+}
+
+fn floats(path: &Path, archive: &mut NpzReader, name: &str) -> Result<ReadArray, FileProblem> {
+    archive
+        .floats(name)
+        .map_err(|error| problem(path, &format!("has an entry {name} that cannot be read: {error}")))
 }
 
 fn problem(path: &Path, what: &str) -> FileProblem {
@@ -31,14 +58,12 @@ fn problem(path: &Path, what: &str) -> FileProblem {
 }
 
 fn read_entry(path: &Path, archive: &mut NpzReader, name: &str) -> Result<ErrorTable, FileProblem> {
-    let present = archive.names().map_err(|error| problem(path, &format!("cannot be read: {error}")))?;
+    let present = names(path, archive)?;
     if !present.iter().any(|entry| entry == name) {
         let present = if present.is_empty() { "nothing".to_string() } else { present.join(", ") };
         return Err(problem(path, &format!("has no entry {name}; it has {present}")));
     }
-    let array = archive
-        .floats(name)
-        .map_err(|error| problem(path, &format!("has an entry {name} that cannot be read: {error}")))?;
+    let array = floats(path, archive, name)?;
     let [rows, columns] = array.shape[..] else {
         let shape = &array.shape;
         let what = format!("has an entry {name} of shape {shape:?}; must be of two dimensions, 100 × teeth");
@@ -76,6 +101,40 @@ fn read_entry(path: &Path, archive: &mut NpzReader, name: &str) -> Result<ErrorT
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn write_profile_errors_npz(path: &Path, errors: &ProfileErrors) -> Result<(), WriteFileError> {
+    write_wheels_npz(path, errors, &[WheelDeviations::default(), WheelDeviations::default()])
+}
+
+/// Writes all deviations of both wheels to a NumPy archive, as `quality.errors_file` reads them.
+///
+/// # Arguments
+/// * `path` - the archive; it is replaced if it exists
+/// * `errors` - (mm) both wheels' profile errors, 100 × teeth
+/// * `deviations` - what else is known of the pinion and of the gear
+///
+/// # Errors
+/// The file cannot be written; what was there before is then still there.
+///
+/// ```
+/// use meshtone::scenario::{ProfileErrors, ScenarioFiles, WheelDeviations};
+/// use meshtone_io::scenario_file::{FilesBeside, write_wheels_npz};
+/// use meshtone::wheel::ErrorTable;
+///
+/// let directory = tempfile::tempdir()?;
+/// let errors = ProfileErrors {
+///     pinion_profile_errors_mm: ErrorTable::filled(100, 17, 0.002),
+///     gear_profile_errors_mm: ErrorTable::filled(100, 38, 0.003),
+/// };
+/// let mut deviations = [WheelDeviations::default(), WheelDeviations::default()];
+/// deviations[0].run_out_um = Some(12.0);
+/// write_wheels_npz(&directory.path().join("wheels.npz"), &errors, &deviations)?;
+/// assert_eq!(FilesBeside::new(directory.path()).wheel_deviations("wheels.npz")?, deviations);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn write_wheels_npz(
+    path: &Path,
+    errors: &ProfileErrors,
+    deviations: &[WheelDeviations; 2],
+) -> Result<(), WriteFileError> {
     write_atomically(path, |file| {
         let mut archive = NpzWriter::compressed(BufWriter::new(file));
         for (name, errors) in
@@ -84,6 +143,9 @@ pub fn write_profile_errors_npz(path: &Path, errors: &ProfileErrors) -> Result<(
             let (points, teeth) = (errors.points(), errors.teeth());
             let rows: Vec<f64> = (0..points * teeth).map(|n| errors[(n / teeth, n % teeth)]).collect();
             archive.add(name, &[points, teeth], &rows)?;
+        }
+        for (name, numbers) in WheelDeviations::entries(deviations) {
+            archive.add(name, &[numbers.len()], &numbers)?;
         }
         archive.finish()?.flush()
     })

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::path::PathBuf;
 
-use meshtone::scenario::{FileProblem, Profile, ProfileErrors, ScenarioFiles};
+use meshtone::scenario::{FileProblem, Profile, ProfileErrors, ScenarioFiles, WheelDeviations};
 
 use super::FilesBeside;
 
@@ -32,6 +32,11 @@ impl ScenarioFiles for Remembering<'_> {
     fn profile_errors(&self, name: &str) -> Result<ProfileErrors, FileProblem> {
         self.remember(name);
         self.files.profile_errors(name)
+    }
+
+    /// From the file that the profile errors are from.
+    fn wheel_deviations(&self, name: &str) -> Result<[WheelDeviations; 2], FileProblem> {
+        self.files.wheel_deviations(name)
     }
 
     fn profile(&self, name: &str) -> Result<Profile, FileProblem> {

@@ -40,6 +40,7 @@ impl Summary {
             "start_s": self.start_s,
             "samples_per_pinion_revolution": self.samples_per_pinion_revolution,
             "contact_ratio": self.contact_ratio,
+            "face_load_factor": self.face_load_factor,
             "natural_frequencies_hz": self.natural_frequencies_hz,
             "mesh_stiffness": {
                 "min_n_per_mm": stiffness.min_n_per_mm,

@@ -46,6 +46,8 @@ pub struct Summary {
     pub samples_per_pinion_revolution: usize,
     /// (-) Contact ratio.
     pub contact_ratio: f64,
+    /// (-) Face load factor K_Hβ of sound teeth under the nominal load; only under `contact`.
+    pub face_load_factor: Option<f64>,
     /// (Hz) The natural frequencies at the mean mesh stiffness, rising: 13, under `contact` 17.
     pub natural_frequencies_hz: Vec<f64>,
     /// Over a revolution of the gear.
@@ -147,6 +149,7 @@ impl Summary {
             start_s: channels.start_s,
             samples_per_pinion_revolution: stages.time.samples_per_pinion_revolution,
             contact_ratio: stages.teeth.contact.contact_ratio,
+            face_load_factor: stages.mesh.contact().map(|mesh| mesh.face_load_factor),
             natural_frequencies_hz: stages.natural_frequencies_hz(),
             mesh_stiffness: MeshStiffness {
                 min_n_per_mm: stiffness.min,

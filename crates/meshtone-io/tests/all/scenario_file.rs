@@ -4,9 +4,11 @@
 use std::fs::{self, File};
 use std::path::Path;
 
-use meshtone::scenario::{ProfileErrors, Scenario, ScenarioError, template};
+use meshtone::scenario::{Model, ProfileErrors, Scenario, ScenarioError, template};
 use meshtone::wheel::ErrorTable;
-use meshtone_io::scenario_file::{ReadScenarioError, read_scenario, write_profile_errors_npz};
+use meshtone_io::scenario_file::{
+    ReadScenarioError, read_scenario, write_profile_errors_npz, write_wheels_npz,
+};
 use ndarray::{Array1, Array2, ArrayView2, ShapeBuilder};
 use ndarray_npy::NpzWriter;
 use tempfile::{TempDir, tempdir};
@@ -136,6 +138,67 @@ fn profile_errors_written_are_read_back() {
     assert_eq!(scenario.quality.profile_errors.as_ref(), Some(&written));
     let alone = Scenario::from_toml(&scenario.to_toml()).unwrap();
     assert_eq!(alone, scenario);
+}
+
+#[test]
+fn deviations_that_were_drawn_make_the_same_signal_from_a_file() {
+    let directory = tempdir().unwrap();
+    const CONTACT: &str = "[solver]\nsampling_rate_hz = 2e4\n[quality]\n";
+    let contact = |lines: &str| {
+        let mut scenario = read_with(&directory, &format!("{CONTACT}{lines}")).unwrap();
+        scenario.model = Model::Contact;
+        scenario
+    };
+    let drawn = contact("din_grade = 7\nhelix_share = 0.5");
+    let simulation = meshtone::simulate(&drawn).unwrap();
+    let errors = simulation.stages.profile_errors.as_ref().unwrap();
+    let deviations = simulation.stages.wheel_deviations();
+    assert!(deviations.iter().all(|given| given.run_out_um > Some(1.0) && given.helix_slope_um != Some(0.0)));
+    write_wheels_npz(&directory.path().join("wheels.npz"), errors, &deviations).unwrap();
+    let given = contact("errors_file = \"wheels.npz\"");
+    let again = meshtone::simulate(&given).unwrap();
+    assert_eq!(again.channels, simulation.channels);
+    let mut alone = Scenario::from_toml(&given.to_toml()).unwrap();
+    assert_eq!(alone, given);
+    // What the file has is not drawn.
+    alone.quality.run_out_share = 0.1;
+    let warnings = alone.validate().unwrap();
+    assert!(warnings.iter().any(|warning| warning.key == "quality.run_out_share"), "{warnings:?}");
+}
+
+#[test]
+fn measured_deviations_in_a_file() {
+    let directory = tempdir().unwrap();
+    let write = |pitches: usize| {
+        let mut archive = archive(&directory);
+        archive.add_array("pinion_profile_errors_mm", &errors(17)).unwrap();
+        archive.add_array("gear_profile_errors_mm", &errors(38)).unwrap();
+        let pitches = Array1::from_shape_fn(pitches, |tooth| tooth as f64);
+        archive.add_array("gear_cumulative_pitch_um", &pitches).unwrap();
+        archive.add_array("gear_run_out_um", &ndarray::arr0(12.5)).unwrap();
+        archive.finish().unwrap();
+    };
+    write(38);
+    let quality = with_errors(&directory).unwrap().quality;
+    assert_eq!(quality.gear_deviations.run_out_um, Some(12.5));
+    assert_eq!(quality.gear_deviations.cumulative_pitch_um.as_ref().unwrap()[37], 37.0);
+    assert_eq!(quality.pinion_deviations, Default::default());
+    let beside = "[quality]\nerrors_file = \"wheels.npz\"\n";
+    let helix = read_with(&directory, &format!("{beside}pinion_helix_slope_um = -3.0")).unwrap();
+    assert_eq!(helix.quality.pinion_deviations.helix_slope_um, Some(-3.0));
+    assert_refused(
+        read_with(&directory, &format!("{beside}gear_run_out_um = 3.0")),
+        "quality.gear_run_out_um",
+        11,
+        &["given beside errors_file", "only one source"],
+    );
+    write(37);
+    assert_refused(
+        with_errors(&directory),
+        "quality.errors_file",
+        10,
+        &["gear_cumulative_pitch_um: has 37 numbers; must have 38"],
+    );
 }
 
 #[test]

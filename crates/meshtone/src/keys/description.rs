@@ -33,6 +33,8 @@ pub enum KeyKind {
     Name(Vec<&'static str>),
     /// An array of that many numbers.
     Numbers(usize),
+    /// An array of numbers, as many as other keys say.
+    List,
     /// A number, or an array of that many.
     NumberOrNumbers(usize),
     /// A table, whose keys are described too.

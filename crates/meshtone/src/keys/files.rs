@@ -41,6 +41,9 @@ pub(crate) trait NumberFiles {
 
     /// A matrix of the pinion and one of the gear.
     fn matrices(&self, name: &str) -> Result<[ErrorTable; 2], FileProblem>;
+
+    /// Further numbers of a file of matrices, by their keys.
+    fn named_numbers(&self, name: &str) -> Result<Vec<(&'static str, Vec<f64>)>, FileProblem>;
 }
 
 /// For a text that was not read from a file, so that no directory is known to look in.
@@ -53,6 +56,10 @@ impl NumberFiles for NoFiles {
 
     fn matrices(&self, _name: &str) -> Result<[ErrorTable; 2], FileProblem> {
         Err(no_files("pinion_profile_errors_mm and gear_profile_errors_mm"))
+    }
+
+    fn named_numbers(&self, _name: &str) -> Result<Vec<(&'static str, Vec<f64>)>, FileProblem> {
+        Ok(Vec::new())
     }
 }
 

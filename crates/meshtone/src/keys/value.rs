@@ -106,6 +106,27 @@ impl<const N: usize> KeyValue for [f64; N] {
     }
 }
 
+/// As many as other keys say.
+impl KeyValue for Vec<f64> {
+    fn read(&mut self, value: &TomlValue<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
+        *self = value.numbers()?;
+        Ok(())
+    }
+
+    fn write(&self) -> Written {
+        Written::Value(array(self.iter().copied()))
+    }
+
+    fn check(&self, key: &str, range: &Range, unit: &str) -> Check {
+        let mut entries = self.iter().enumerate();
+        entries.try_for_each(|(index, entry)| entry.check(&format!("{key}[{index}]"), range, unit))
+    }
+
+    fn kind() -> KeyKind {
+        KeyKind::List
+    }
+}
+
 /// What may be left out.
 macro_rules! optional {
     ($($type:ty, $blank:expr);+) => {$(
@@ -128,7 +149,7 @@ macro_rules! optional {
         }
     )+};
 }
-optional!(f64, 0.0; u64, 0; [f64; 13], [0.0; 13]);
+optional!(f64, 0.0; u64, 0; [f64; 13], [0.0; 13]; Vec<f64>, Vec::new());
 
 /// A table of keys of its own.
 impl<S: Keys> KeyValue for S {

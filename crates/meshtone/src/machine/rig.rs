@@ -23,6 +23,9 @@ pub struct Rig {
     pub damping_ratio: DampingRatio,
     /// (mm) Eccentricity of both wheels. Default 0.
     pub eccentricity_mm: f64,
+    /// (µm) How far the shafts deviate from parallel in the plane of action, over the face width, the wheels under their nominal
+    /// load: positive where it brings the flanks closer together towards positive z. Default 0.
+    pub misalignment_um: f64,
     /// The motor's shaft. Default 200 mm long, radius 10 mm.
     pub pinion_shaft: Shaft,
     /// The brake's shaft. Default 600 mm long, radius 10 mm.
@@ -45,6 +48,7 @@ impl Default for Rig {
             brake_inertia_kgm2: 4.5e-3,
             damping_ratio: DampingRatio::Uniform(0.05),
             eccentricity_mm: 0.0,
+            misalignment_um: 0.0,
             pinion_shaft: Shaft::new(200.0, 10.0),
             gear_shaft: Shaft::new(600.0, 10.0),
             pinion_inertia: WheelInertia::default(),
@@ -100,6 +104,15 @@ impl Keys for Rig {
                 .range(Range::not_negative())
                 .rule("less than the module")
                 .ignored_by(&["published"]),
+            row(
+                "misalignment_um",
+                "µm",
+                "how far the shafts deviate from parallel in the plane of action, over the face width; positive where it brings the \
+                 flanks closer together towards positive z",
+                field!(misalignment_um),
+            )
+            .range(Range::from_to(-1e3, 1e3))
+            .ignored_by(&["linear", "published"]),
             row("pinion_shaft", "", "the motor's shaft", field!(pinion_shaft)),
             row("gear_shaft", "", "the brake's shaft", field!(gear_shaft)),
             row(

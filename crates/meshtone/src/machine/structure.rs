@@ -191,6 +191,13 @@ impl Structure {
             .fold(none, |slowest, mode| if mode.decay_per_s < slowest.decay_per_s { mode } else { slowest })
     }
 
+    /// (rad/(N m)) How far a moment of the mesh's force about the middle of the face tilts the wheels against one another, at rest.
+    pub(crate) fn tilt_rad_per_nm(&self) -> f64 {
+        let tilt = self.shapes.transpose() * &self.line_of_action[1];
+        let yields = tilt.iter().zip(&self.angular_frequencies).filter(|(_, omega)| **omega > 0.0);
+        yields.map(|(tilt, omega)| (tilt / omega).powi(2)).sum()
+    }
+
     /// Damping matrix without the mesh, in the 17 coordinates, `C = M Σ_n 2 ζ_n ω_n φ_n φ_nᵀ M`.
     pub fn damping_matrix(&self) -> DMatrix<f64> {
         let mass = DMatrix::from_diagonal(&DVector::from_column_slice(&self.mass_diagonal));

@@ -8,7 +8,7 @@ use super::contact_pairs::ContactState;
 use super::forcing::{Forcing, ForcingBlock};
 use super::pair_forcing::{FlankErrors, PairDeviations};
 use crate::operation::{Motion, TimeGrid};
-use crate::wheel::{RunOut, WheelName};
+use crate::wheel::WheelName;
 
 /// Most pairs that a step looks at: as many as reach from `ε + 0.6` back to `−0.6` base pitches.
 pub(crate) const PAIRS: usize = 3;
@@ -77,23 +77,23 @@ struct SteadyTables {
 /// The class of sound pairs.
 const SOUND: usize = 0;
 
-/// What a class of pairs bears, at every point of a pair.
+/// What a class of pairs bears of the nominal load, at every point of a pair.
 struct Bearing {
-    /// (N/m) Stiffness while the pair bears, else 0.
-    stiffness: Vec<f64>,
-    /// (N) Its moment about the middle of the face.
+    /// (N) Load.
+    load: Vec<f64>,
+    /// (N m) Its moment about the middle of the face.
     moment: Vec<f64>,
     /// Whether there is any moment.
     leans: bool,
 }
 
 impl Bearing {
-    fn of(table: &ContactTable) -> Self {
-        Self {
-            stiffness: table.states.iter().map(bearing_n_per_m).collect(),
-            moment: table.states.iter().map(|state| bearing_n_per_m(state) * state.face_centre_m).collect(),
-            leans: table.states.iter().any(|state| bearing_n_per_m(state) * state.face_centre_m != 0.0),
-        }
+    fn of(mesh: &ContactMesh, table: &ContactTable) -> Self {
+        let load: Vec<f64> = table.states.iter().map(|state| borne_n(mesh, state)).collect();
+        let moment: Vec<f64> =
+            load.iter().zip(&table.states).map(|(load, state)| load * state.face_centre_m).collect();
+        let leans = moment.iter().any(|moment| *moment != 0.0);
+        Self { load, moment, leans }
     }
 }
 
@@ -162,7 +162,9 @@ impl<'a> ContactForcing<'a> {
                     .map(|class| class.states.iter().map(|state| state.stiffness_n_per_m).collect())
                     .collect(),
                 further_apart_m: mesh.classes.iter().map(further_apart).collect(),
-                bearing: mesh.classes.iter().filter(|_| tilts).map(Bearing::of).collect(),
+                bearing: (mesh.classes.iter().filter(|_| tilts))
+                    .map(|class| Bearing::of(mesh, class))
+                    .collect(),
                 pinion_m: tabulate(&pinion, WheelName::Pinion),
                 gear_m: tabulate(&gear, WheelName::Gear),
             }
@@ -236,34 +238,35 @@ impl<'a> ContactForcing<'a> {
         (from < until).then(part)
     }
 
-    /// (m) Where along the face the load of all pairs acts at the next samples, weighted by their stiffness.
+    /// (m) Where along the face the load of all pairs acts at the next samples.
     fn find_face_centre(&self, tables: &SteadyTables, pairs: RangeInclusive<i64>, face_centre: &mut [f64]) {
-        let mut whole_stiffness = vec![0.0; face_centre.len()];
+        let mut whole_load = vec![0.0; face_centre.len()];
         for pair in pairs {
             let Some(Part { from, until, point }) = self.part(pair, face_centre.len()) else { continue };
             let bearing = &tables.bearing[self.mesh.sequence.class(pair)];
-            let sums = face_centre[from..until].iter_mut().zip(&mut whole_stiffness[from..until]);
-            let of_pair = bearing.moment[point..].iter().zip(&bearing.stiffness[point..]);
-            for ((moments, whole), (moment, stiffness)) in sums.zip(of_pair) {
+            let sums = face_centre[from..until].iter_mut().zip(&mut whole_load[from..until]);
+            let of_pair = bearing.moment[point..].iter().zip(&bearing.load[point..]);
+            for ((moments, whole), (moment, load)) in sums.zip(of_pair) {
                 *moments += moment;
-                *whole += stiffness;
+                *whole += load;
             }
         }
-        for (moment, whole) in face_centre.iter_mut().zip(whole_stiffness) {
+        for (moment, whole) in face_centre.iter_mut().zip(whole_load) {
             if whole > 0.0 {
                 *moment /= whole;
             }
         }
     }
 
-    /// (m) Where along the face the load of all pairs on their path acts, weighted by their stiffness.
+    /// (m) Where along the face the load of all pairs acts.
     fn face_centre_m(&self, point: usize) -> f64 {
-        let (mut moment, mut stiffness) = (0.0, 0.0);
+        let (mut moment, mut whole) = (0.0, 0.0);
         for (_, state) in self.mesh.pairs_at(point) {
-            moment += bearing_n_per_m(state) * state.face_centre_m;
-            stiffness += bearing_n_per_m(state);
+            let load = borne_n(self.mesh, state);
+            moment += load * state.face_centre_m;
+            whole += load;
         }
-        if stiffness > 0.0 { moment / stiffness } else { 0.0 }
+        if whole > 0.0 { moment / whole } else { 0.0 }
     }
 
     fn unsteady_block(&mut self, samples: usize, block: &mut ForcingBlock) {
@@ -336,12 +339,12 @@ impl Eccentricity {
     /// `±E sin(α + θ)` of a wheel that sits off its axis, and `F_r/2 sin(θ + φ)` of its run-out. None where all turn true.
     fn of(deviations: &PairDeviations) -> Option<Self> {
         let PairDeviations { eccentricity_m, run_out, teeth, .. } = *deviations;
-        let runs_out = run_out.iter().any(|run_out| run_out.amplitude_mm != 0.0);
+        let runs_out = run_out.iter().any(|run_out| run_out.run_out_um != 0.0);
         let (axis_sine, axis_cosine) = teeth.gear.pressure_angle_rad.sin_cos();
         let sine_and_cosine_m = WheelName::BOTH.map(|wheel| {
             let axis_m = if wheel == WheelName::Gear { eccentricity_m } else { -eccentricity_m };
-            let RunOut { amplitude_mm, phase_rad } = run_out[wheel as usize];
-            let (sine, cosine) = phase_rad.sin_cos();
+            let amplitude_mm = run_out[wheel as usize].amplitude_mm();
+            let (sine, cosine) = run_out[wheel as usize].phase_rad.sin_cos();
             [
                 axis_m * axis_cosine + amplitude_mm * 1e-3 * cosine,
                 axis_m * axis_sine + amplitude_mm * 1e-3 * sine,
@@ -379,12 +382,10 @@ impl Eccentricity {
     }
 }
 
-/// (m) Separation up to which a pair is taken to bear when the place of the load along the face is found.
-const BEARS_M: f64 = 1e-6;
-
-/// (N/m) Stiffness of a pair that bears, else 0.
-fn bearing_n_per_m(state: &ContactState) -> f64 {
-    if state.separation_m < BEARS_M { state.stiffness_n_per_m } else { 0.0 }
+/// (N) What a pair bears of the nominal load, which presses the mean mesh together: its weight where the place of the load along
+/// the face is found.
+fn borne_n(mesh: &ContactMesh, state: &ContactState) -> f64 {
+    state.stiffness_n_per_m * (mesh.nominal_deflection_m - state.separation_m).max(0.0)
 }
 
 impl Forcing for ContactForcing<'_> {

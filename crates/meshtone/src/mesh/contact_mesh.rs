@@ -5,10 +5,12 @@ use std::ops::Range;
 
 use super::contact_forcing::PAIRS;
 use super::contact_pairs::{ContactPairs, ContactState, TipShape};
-use super::law::ContactConstants;
+use super::face_load::{FaceLoad, FaceSlope};
+use super::law::{ContactConstants, ContactSample, deflection_at_rest};
 use super::load_state::{DirectionMatrix, LoadState};
 use super::pair::Pairs;
 use super::sequence::{PairKind, PairSequence};
+use crate::simd::Lanes;
 
 /// (base pitches) How far outside its path a pair is looked at: a corner there is some mm away from the flank.
 const REACH: f64 = 0.6;
@@ -32,6 +34,11 @@ pub struct ContactMesh {
     pub backlash_m: f64,
     /// (-) Contact ratio of sound teeth: the length of their path between the chamfers, in base pitches.
     pub contact_ratio: f64,
+    /// (m) How far the nominal load presses the mean mesh together.
+    pub nominal_deflection_m: f64,
+    /// (-) Largest load per length of face over its mean, of sound teeth under the nominal load: the face load factor K_Hβ of
+    /// ISO 6336-1. 1 where the flanks lie alike along the face.
+    pub face_load_factor: f64,
     /// How a sound pair carries its load.
     pub nominal: LoadState,
 }
@@ -52,7 +59,7 @@ impl ContactTable {
     }
 }
 
-/// What the damping and the back flanks need.
+/// What the damping, the back flanks and the place of the load along the face need.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ContactParameters {
     /// (-) ζ.
@@ -61,6 +68,10 @@ pub(crate) struct ContactParameters {
     pub(crate) mesh_mass_kg: f64,
     /// (m) Normal backlash.
     pub(crate) backlash_m: f64,
+    /// (N) Nominal load along the line of action.
+    pub(crate) static_force_n: f64,
+    /// How the flanks close along the face; none where they close alike.
+    pub(crate) face: Option<FaceSlope>,
 }
 
 impl ContactMesh {
@@ -93,14 +104,30 @@ impl ContactMesh {
             (((ends + reach) * per_pitch).floor() as usize + points_before).min(PAIRS * points_per_pitch);
         let positions: Vec<f64> =
             (0..points).map(|point| (point as f64 - points_before as f64) / per_pitch).collect();
-        let classes: Vec<ContactTable> = (sequence.classes().iter())
+        let mut classes: Vec<ContactTable> = (sequence.classes().iter())
             .map(|&kind| ContactTable { kind, states: contact.tabulate(&kind, &positions) })
             .collect();
-        let on_path =
-            classes[0].states.iter().zip(&positions).filter(|(_, at)| (begins..=ends).contains(*at));
-        let mean_stiffness_n_per_m =
-            on_path.map(|(state, _)| state.stiffness_n_per_m).sum::<f64>() / per_pitch;
-        let ContactParameters { damping_ratio, mesh_mass_kg, backlash_m } = parameters;
+        let mean_stiffness = |classes: &[ContactTable]| {
+            let on_path =
+                classes[0].states.iter().zip(&positions).filter(|(_, at)| (begins..=ends).contains(*at));
+            on_path.map(|(state, _)| state.stiffness_n_per_m).sum::<f64>() / per_pitch
+        };
+        let ContactParameters { damping_ratio, mesh_mass_kg, backlash_m, static_force_n, face } = parameters;
+        let mut mean_stiffness_n_per_m = mean_stiffness(&classes);
+        let mut face_load_factor = 1.0;
+        if let Some(face) = face {
+            let of_mean = FaceLoad::new(face, static_force_n / mean_stiffness_n_per_m);
+            let middle_m = of_mean.middle_m();
+            let sound: Vec<FaceLoad> = (0..points_per_pitch)
+                .map(|from| pressed_m(&classes[0].states, from, points_per_pitch, static_force_n))
+                .map(|deflection_m| FaceLoad::new(face, deflection_m))
+                .collect();
+            for (at, state) in classes.iter_mut().flat_map(|class| class.states.iter_mut().enumerate()) {
+                sound[at % points_per_pitch].lean(state, middle_m);
+            }
+            mean_stiffness_n_per_m = mean_stiffness(&classes);
+            face_load_factor = of_mean.factor();
+        }
         Self {
             points_per_pitch,
             sequence,
@@ -110,6 +137,8 @@ impl ContactMesh {
             damping_time_s: 2.0 * damping_ratio * (mesh_mass_kg / mean_stiffness_n_per_m).sqrt(),
             backlash_m,
             contact_ratio: ends - begins,
+            nominal_deflection_m: static_force_n / mean_stiffness_n_per_m,
+            face_load_factor,
             nominal: pairs.nominal_load(),
         }
     }
@@ -178,6 +207,25 @@ impl ContactMesh {
             })
             .collect()
     }
+}
+
+/// (m) How far a load presses the nearest of sound pairs together at rest.
+///
+/// # Arguments
+/// * `states` - of sound pairs
+/// * `from` - first point of those that pairs are at together
+/// * `per_pitch` - number of points from one pair to the next
+/// * `force_n` - (N) the load
+fn pressed_m(states: &[ContactState], from: usize, per_pitch: usize, force_n: f64) -> f64 {
+    let together =
+        || states.iter().skip(from).step_by(per_pitch).filter(|state| state.stiffness_n_per_m > 0.0);
+    let mut sample = ContactSample::<1>::NOTHING;
+    for (place, state) in together().take(PAIRS).enumerate() {
+        sample.stiffness[place] = Lanes([state.stiffness_n_per_m]);
+        sample.offset[place] = Lanes([-state.separation_m]);
+    }
+    let nearest_m = together().map(|state| state.separation_m).fold(f64::INFINITY, f64::min);
+    deflection_at_rest(&sample, 0, force_n) - nearest_m
 }
 
 /// (N/m) Stiffness of the pairs that a light load presses together: those that are hardly farther apart than the nearest.

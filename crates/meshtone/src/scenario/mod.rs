@@ -23,7 +23,7 @@ pub use crate::model::Model;
 pub use crate::operation::{Operation, Profile, Solver};
 pub use crate::wheel::{
     ERROR_POINTS, FlankRelief, FoundationCoefficients, Gears, Material, ProfileErrors, Quality, ReliefShape,
-    TipRelief, WheelName,
+    TipRelief, WheelDeviations, WheelName,
 };
 pub use edit::ScenarioNumber;
 pub use from_toml::{ScenarioFiles, line_of_key};

@@ -21,7 +21,9 @@ pub use name::WheelName;
 pub use path::PathOfContact;
 pub(crate) use profile::first_minimum;
 pub use profile::{ToothProfile, tooth_profile};
-pub use quality::{Deviations, ERROR_POINTS, ErrorTable, ProfileErrors, Quality, RunOut, Tolerances};
+pub use quality::{
+    Deviations, ERROR_POINTS, ErrorTable, ProfileErrors, Quality, RunOut, Tolerances, WheelDeviations,
+};
 pub use radii::Wheel;
 pub(crate) use rules::HALF_THICKNESS;
 

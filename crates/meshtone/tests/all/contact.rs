@@ -276,3 +276,47 @@ fn varying_speed_is_the_steady_one_where_it_does_not_vary() {
     println!("steady {a:.4} g, by a profile {b:.4} g");
     assert!((a / b - 1.0).abs() < 0.02);
 }
+
+// A list of pitches is what the flanks of those teeth have more.
+#[test]
+fn given_pitches_are_deviations_of_whole_flanks() {
+    let mut scenario = of_rig(6);
+    scenario.quality = Quality::of_errors(stages(&scenario).unwrap().profile_errors.unwrap());
+    let mut by_flanks = scenario.clone();
+    let pitches_um: Vec<f64> = (0..38).map(|tooth| f64::from(tooth % 5) - 2.0).collect();
+    let cos = 20f64.to_radians().cos();
+    let errors = by_flanks.quality.profile_errors.as_mut().unwrap();
+    for (tooth, pitch_um) in pitches_um.iter().enumerate() {
+        (0..100).for_each(|point| errors.gear_profile_errors_mm[(point, tooth)] += pitch_um * 1e-3 * cos);
+    }
+    scenario.quality.gear_deviations.cumulative_pitch_um = Some(pitches_um);
+    for model in [Model::Linear, Model::Contact] {
+        let signal = |scenario: &Scenario| {
+            let mut scenario = scenario.clone();
+            scenario.model = model;
+            simulate(&scenario).unwrap().channels
+        };
+        assert_eq!(signal(&scenario), signal(&by_flanks));
+    }
+}
+
+// Misalignment and helix slopes are one: what the shafts take the flanks' metal can make up for.
+#[test]
+fn helix_slopes_and_misalignment_add_up() {
+    let mut scenario = of_rig(6);
+    let aligned = simulate(&scenario).unwrap();
+    assert_eq!(aligned.stages.mesh.contact().unwrap().face_load_factor, 1.0);
+    scenario.rig.misalignment_um = 8.0;
+    let misaligned = simulate(&scenario).unwrap();
+    let mesh = |simulation: &meshtone::Simulation| simulation.stages.mesh.contact().unwrap().clone();
+    assert!(mesh(&misaligned).face_load_factor > 2.0);
+    assert!(mesh(&misaligned).mean_stiffness_n_per_m < 0.9 * mesh(&aligned).mean_stiffness_n_per_m);
+    scenario.quality.pinion_deviations.helix_slope_um = Some(-3.0);
+    scenario.quality.gear_deviations.helix_slope_um = Some(-5.0);
+    assert_eq!(simulate(&scenario).unwrap().channels, aligned.channels);
+    // Without a load nothing says how much of the face bears.
+    scenario.quality.gear_deviations.helix_slope_um = None;
+    scenario.operation.brake_torque_nm = 0.0;
+    let refused = stages(&scenario).unwrap_err();
+    assert_eq!(refused.key, "operation.brake_torque_nm");
+}

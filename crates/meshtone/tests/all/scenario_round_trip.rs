@@ -6,7 +6,7 @@ use meshtone::scenario::{
     ReliefShape, Rig, Scenario, Shaft, Solver, Support, ThroughFace, TipRelief, ToothBreakage,
     ToothDestruction, WheelInertia, WheelName,
 };
-use meshtone::wheel::ErrorTable;
+use meshtone::wheel::{ErrorTable, WheelDeviations};
 use proptest::array::{uniform4, uniform6, uniform13};
 use proptest::option;
 use proptest::prelude::*;
@@ -85,6 +85,20 @@ fn operation() -> impl Strategy<Value = Operation> {
     )
 }
 
+fn deviations(teeth: u32) -> impl Strategy<Value = WheelDeviations> {
+    let pitches = option::of(prop::collection::vec(-30.0..30.0, teeth as usize));
+    (pitches, option::of(0.0..50.0), option::of(-4.0..4.0), option::of(-20.0..20.0)).prop_map(
+        |(cumulative_pitch_um, run_out_um, run_out_phase_rad, helix_slope_um)| {
+            let mut deviations = WheelDeviations::default();
+            deviations.cumulative_pitch_um = cumulative_pitch_um;
+            deviations.run_out_um = run_out_um;
+            deviations.run_out_phase_rad = run_out_phase_rad;
+            deviations.helix_slope_um = helix_slope_um;
+            deviations
+        },
+    )
+}
+
 fn quality(pinion_teeth: u32, gear_teeth: u32) -> impl Strategy<Value = Quality> {
     // Every draw of the 100 × teeth errors would be slow; their digits matter, not their spread.
     let drawn = move |first: f64, step: f64| {
@@ -113,6 +127,15 @@ fn quality(pinion_teeth: u32, gear_teeth: u32) -> impl Strategy<Value = Quality>
             quality
         }),
         (-0.01..0.01, -1e-3..1e-3).prop_map(move |(first, step)| Quality::of_errors(drawn(first, step))),
+        (deviations(pinion_teeth), deviations(gear_teeth), 0u8..=12, 0.0..=1.0).prop_map(
+            |(pinion, gear, grade, helix)| {
+                let mut quality = Quality::of_grade(grade);
+                quality.helix_share = helix;
+                quality.pinion_deviations = pinion;
+                quality.gear_deviations = gear;
+                quality
+            }
+        ),
     ]
 }
 

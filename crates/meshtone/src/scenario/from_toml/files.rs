@@ -1,6 +1,6 @@
 //! The files that a scenario file may name.
 
-use super::super::{FileProblem, Profile, ProfileErrors};
+use super::super::{FileProblem, Profile, ProfileErrors, WheelDeviations};
 use crate::error_table::ErrorTable;
 use crate::keys::NumberFiles;
 
@@ -15,6 +15,19 @@ pub trait ScenarioFiles {
     /// What is wrong with the file. Shape and values are checked by
     /// [`Scenario::validate`](crate::scenario::Scenario::validate).
     fn profile_errors(&self, name: &str) -> Result<ProfileErrors, FileProblem>;
+
+    /// What else the file named by `quality.errors_file` has of the pinion and of the gear: pitches, run-out, helix slope. Nothing
+    /// else unless this is implemented.
+    ///
+    /// # Arguments
+    /// * `name` - as written in the scenario file
+    ///
+    /// # Errors
+    /// What is wrong with the file.
+    fn wheel_deviations(&self, name: &str) -> Result<[WheelDeviations; 2], FileProblem> {
+        let _ = name;
+        Ok([WheelDeviations::default(), WheelDeviations::default()])
+    }
 
     /// The profile in a file named by `operation.speed_profile_hz` or `operation.torque_profile_nm`.
     ///
@@ -38,5 +51,9 @@ impl NumberFiles for Numbers<'_> {
     fn matrices(&self, name: &str) -> Result<[ErrorTable; 2], FileProblem> {
         let errors = self.0.profile_errors(name)?;
         Ok([errors.pinion_profile_errors_mm, errors.gear_profile_errors_mm])
+    }
+
+    fn named_numbers(&self, name: &str) -> Result<Vec<(&'static str, Vec<f64>)>, FileProblem> {
+        Ok(WheelDeviations::entries(&self.0.wheel_deviations(name)?))
     }
 }

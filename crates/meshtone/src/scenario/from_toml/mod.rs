@@ -9,6 +9,7 @@ pub use self::files::ScenarioFiles;
 use self::files::Numbers;
 use super::{Fault, MemoryLimit, Scenario, ScenarioError};
 use crate::keys::{Keys, NoFiles, NumberFiles, read_keys};
+use crate::wheel::WheelDeviations;
 
 impl Scenario {
     /// Reads and validates a scenario that names no other file.
@@ -146,11 +147,16 @@ fn section<S: Keys>(
     root.table_or_empty(name)?.read(|table| read_keys(parameters, table, files))
 }
 
-/// An error about profile errors that came from a file is about the key that names the file.
+/// An error about deviations that came from a file is about the key that names the file.
 fn in_its_file(document: &TomlDocument<'_>, mut error: ScenarioError) -> ScenarioError {
     const FILE: &str = "quality.errors_file";
-    let Some(entry) = error.key.strip_prefix("quality.").filter(|entry| entry.contains("profile_errors_mm"))
-    else {
+    let from_file = |entry: &&str| {
+        let key = entry.split('[').next().unwrap_or_default();
+        key.ends_with("profile_errors_mm")
+            || (WheelDeviations::keys().any(|of_wheel| of_wheel == key)
+                && document.value_as_written(&format!("quality.{key}")).is_none())
+    };
+    let Some(entry) = error.key.strip_prefix("quality.").filter(from_file) else {
         return error;
     };
     if document.value_as_written(FILE).is_some() {

@@ -66,7 +66,9 @@ impl Scenario {
         }
         duration::check(&honoured)?;
         size::check(&honoured, limit)?;
-        Ok(gears_of_model(&honoured).warnings())
+        let mut warnings = gears_of_model(&honoured).warnings();
+        warnings.extend(honoured.quality.warnings());
+        Ok(warnings)
     }
 }
 

@@ -3,27 +3,37 @@
 use std::f64::consts::{PI, TAU};
 
 use super::tolerances::Tolerances;
-use super::{ERROR_POINTS, ProfileErrors, Quality};
+use super::{ERROR_POINTS, ProfileErrors, Quality, given_pitches_mm, with_given_pitches};
 use crate::error_table::ErrorTable;
 use crate::random::{Draws, Purpose};
 use crate::wheel::{Teeth, Wheel, WheelName};
 
 /// How the teeth of both wheels deviate.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Deviations {
-    /// Of each tooth's flank, its pitch deviation included.
-    pub flanks: ProfileErrors,
+    /// Of each tooth's flank, its pitch deviation included; none for ideal ones.
+    pub flanks: Option<ProfileErrors>,
     /// Of each wheel as a whole: the pinion's and the gear's.
     pub run_out: [RunOut; 2],
+    /// (µm) Helix slope deviation over the face width, of the pinion and of the gear; positive where metal is added towards
+    /// positive z.
+    pub helix_slope_um: [f64; 2],
 }
 
 /// Run-out of a wheel: its teeth sit on a circle beside its axis.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RunOut {
-    /// (mm) Amplitude along the line of action, half of the run-out.
-    pub amplitude_mm: f64,
+    /// (µm) The run-out F_r, from the least to the largest deviation along the line of action.
+    pub run_out_um: f64,
     /// (rad) Phase at the start of the simulation.
     pub phase_rad: f64,
+}
+
+impl RunOut {
+    /// (mm) Amplitude along the line of action, half of the run-out.
+    pub fn amplitude_mm(&self) -> f64 {
+        self.run_out_um * 1e-3 / 2.0
+    }
 }
 
 /// Waves of the profile form deviation along the flank.
@@ -32,18 +42,33 @@ const WAVES: f64 = 3.0;
 /// The deviations of both wheels, drawn within their tolerances.
 ///
 /// The slope and form deviation of a tooth are a part common to the wheel and a part of its own, `quality.tooth_share` of the
-/// tolerance; pitches are off at random by `quality.pitch_share` of f_p, and each wheel runs out by `quality.run_out_share` of F_r.
+/// tolerance; pitches are off at random by `quality.pitch_share` of f_p, each wheel runs out by `quality.run_out_share` of F_r and
+/// has a helix slope within `quality.helix_share` of f_Hβ. What is given stands in place of what would be drawn.
 ///
 /// # Arguments
 /// * `quality` - grade and shares
 /// * `teeth` - both wheels
 /// * `seed` - of the draw, unless `quality` has its own
-///
-/// # Returns
-/// None for ideal teeth.
-pub fn deviations(quality: &Quality, teeth: &Teeth, seed: u64) -> Option<Deviations> {
-    if let Some(flanks) = &quality.profile_errors {
-        return Some(Deviations { flanks: flanks.clone(), run_out: [RunOut::default(); 2] });
+pub fn deviations(quality: &Quality, teeth: &Teeth, seed: u64) -> Deviations {
+    let mut deviations = drawn(quality, teeth, seed).unwrap_or_else(|| Deviations {
+        flanks: with_given_pitches(quality.profile_errors.clone(), quality, teeth),
+        ..Deviations::default()
+    });
+    for wheel in WheelName::BOTH {
+        let (given, place) = (quality.given(wheel), wheel as usize);
+        let RunOut { run_out_um, phase_rad } = &mut deviations.run_out[place];
+        *run_out_um = given.run_out_um.unwrap_or(*run_out_um);
+        *phase_rad = given.run_out_phase_rad.unwrap_or(*phase_rad);
+        let helix_slope_um = &mut deviations.helix_slope_um[place];
+        *helix_slope_um = given.helix_slope_um.unwrap_or(*helix_slope_um);
+    }
+    deviations
+}
+
+/// A draw by grade or class; none where profile errors are given or teeth are ideal.
+fn drawn(quality: &Quality, teeth: &Teeth, seed: u64) -> Option<Deviations> {
+    if quality.profile_errors.is_some() {
+        return None;
     }
     let tolerances = |wheel: &Wheel| match (quality.iso_class, quality.din_grade) {
         (0, 0) => None,
@@ -56,11 +81,12 @@ pub fn deviations(quality: &Quality, teeth: &Teeth, seed: u64) -> Option<Deviati
     };
     let (pinion, gear) = (draw(WheelName::Pinion)?, draw(WheelName::Gear)?);
     Some(Deviations {
-        flanks: ProfileErrors {
+        flanks: Some(ProfileErrors {
             pinion_profile_errors_mm: pinion.flanks(),
             gear_profile_errors_mm: gear.flanks(),
-        },
+        }),
         run_out: [pinion.run_out(), gear.run_out()],
+        helix_slope_um: [pinion.helix_slope_um(), gear.helix_slope_um()],
     })
 }
 
@@ -77,6 +103,8 @@ const COMMON: u64 = 0;
 const RUN_OUT: u64 = 1;
 const PITCH: u64 = 2;
 const FIRST_TOOTH: u64 = 3;
+/// Beyond any tooth's.
+const HELIX: u64 = u64::MAX;
 
 impl Draw<'_> {
     fn draws(&self, index: u64) -> Draws {
@@ -90,8 +118,11 @@ impl Draw<'_> {
     fn run_out(&self) -> RunOut {
         let mut draws = self.draws(RUN_OUT);
         let phase_rad = draws.uniform(PI, PI);
-        let amplitude_mm = self.quality.run_out_share * self.tolerances.run_out_um * 1e-3 / 2.0;
-        RunOut { amplitude_mm, phase_rad }
+        RunOut { run_out_um: self.quality.run_out_share * self.tolerances.run_out_um, phase_rad }
+    }
+
+    fn helix_slope_um(&self) -> f64 {
+        self.draws(HELIX).uniform(0.0, self.quality.helix_share * self.tolerances.helix_slope_um)
     }
 
     /// (mm) Along the line of action, one a tooth: a walk of normal steps that closes, scaled so that the largest single pitch
@@ -133,7 +164,8 @@ impl Draw<'_> {
         let common_slope = common.uniform(0.0, 1.0 - share);
         let common_form = common.uniform(0.5, 0.5) * (1.0 - share);
         let phase = common.uniform(PI, PI);
-        let pitches = self.pitches_mm(wheel);
+        let pitches =
+            given_pitches_mm(self.quality, wheel, self.name).unwrap_or_else(|| self.pitches_mm(wheel));
         let last = (ERROR_POINTS - 1) as f64;
         let rolled: Vec<f64> = (0..ERROR_POINTS)
             .map(|k| wheel.curvature_mm(first + (wheel.tip_radius_mm - first) * k as f64 / last))

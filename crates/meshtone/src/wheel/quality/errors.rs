@@ -2,10 +2,12 @@
 
 use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
+use super::measured::{DEVIATION_KEYS, WheelDeviations};
 use crate::error_table::ErrorTable;
 use crate::keys::{
     Field, KeyKind, KeyValue, Keys, NumberFiles, Range, Row, Written, array, documented, field, load, row,
 };
+use crate::wheel::WheelName;
 
 /// Number of radii at which a tooth's profile error is given.
 pub const ERROR_POINTS: usize = 100;
@@ -27,9 +29,15 @@ pub struct Quality {
     pub pitch_share: f64,
     /// (-) Run-out as a part of its tolerance. Default 0.3.
     pub run_out_share: f64,
+    /// (-) Largest helix slope deviation as a part of its tolerance. Default 0.
+    pub helix_share: f64,
     /// The errors themselves, instead of a draw by `din_grade`: several simulations that are
     /// given the same errors share one pair of wheels.
     pub profile_errors: Option<ProfileErrors>,
+    /// Other deviations of the pinion that are given instead of drawn.
+    pub pinion_deviations: WheelDeviations,
+    /// Other deviations of the gear that are given instead of drawn.
+    pub gear_deviations: WheelDeviations,
 }
 
 impl Default for Quality {
@@ -41,7 +49,10 @@ impl Default for Quality {
             tooth_share: 0.4,
             pitch_share: 0.15,
             run_out_share: 0.3,
+            helix_share: 0.0,
             profile_errors: None,
+            pinion_deviations: WheelDeviations::default(),
+            gear_deviations: WheelDeviations::default(),
         }
     }
 }
@@ -62,6 +73,75 @@ impl Quality {
     pub fn of_errors(errors: ProfileErrors) -> Self {
         Self { profile_errors: Some(errors), ..Self::default() }
     }
+
+    /// Two wheels of which all deviations are given.
+    ///
+    /// # Arguments
+    /// * `errors` - the profile errors of every tooth
+    /// * `deviations` - what else is known of the pinion and of the gear; what is not is none
+    pub fn of_wheels(errors: ProfileErrors, [pinion, gear]: [WheelDeviations; 2]) -> Self {
+        Self { pinion_deviations: pinion, gear_deviations: gear, ..Self::of_errors(errors) }
+    }
+
+    /// Other deviations of a wheel that are given instead of drawn.
+    pub(crate) fn given(&self, wheel: WheelName) -> &WheelDeviations {
+        match wheel {
+            WheelName::Pinion => &self.pinion_deviations,
+            WheelName::Gear => &self.gear_deviations,
+        }
+    }
+}
+
+/// The rows of a wheel's deviations that are given beside the profiles.
+macro_rules! deviation_rows {
+    ($wheel:literal, $field:ident, $keys:expr) => {{
+        let [pitch, run_out, phase, helix] = $keys;
+        [
+            row(
+                pitch,
+                "µm",
+                concat!(
+                    "the cumulative pitch deviations of the ",
+                    $wheel,
+                    "'s working flanks along the pitch circle, one a tooth; metal added is positive, and they are added to given \
+                     profile errors"
+                ),
+                field!($field.cumulative_pitch_um),
+            )
+            .otherwise("drawn, or none beside given profile errors")
+            .rule(concat!("one a tooth of the ", $wheel, ", each smaller than the module")),
+            row(
+                run_out,
+                "µm",
+                concat!("the run-out F_r of the ", $wheel, ", of which the deviation is F_r/2 sin(θ + φ)"),
+                field!($field.run_out_um),
+            )
+            .otherwise("drawn, or none beside given profile errors")
+            .range(Range::not_negative().slip_above(1e4))
+            .ignored_by(&["linear", "published"]),
+            row(
+                phase,
+                "rad",
+                concat!("its phase φ, with θ counted from where the first tooth of the ", $wheel, " enters contact"),
+                field!($field.run_out_phase_rad),
+            )
+            .otherwise("drawn, or 0 beside given profile errors")
+            .ignored_by(&["linear", "published"]),
+            row(
+                helix,
+                "µm",
+                concat!(
+                    "the helix slope deviation of the ",
+                    $wheel,
+                    " over the face width; positive where metal is added towards positive z"
+                ),
+                field!($field.helix_slope_um),
+            )
+            .otherwise("drawn, or none beside given profile errors")
+            .range(Range::from_to(-1e3, 1e3))
+            .ignored_by(&["linear", "published"]),
+        ]
+    }};
 }
 
 const ERROR_KEYS: [&str; 2] = ["pinion_profile_errors_mm", "gear_profile_errors_mm"];
@@ -120,10 +200,19 @@ impl Keys for Quality {
             row("run_out_share", "-", "the run-out of each wheel as a part of its tolerance F_r", field!(run_out_share))
                 .range(Range::from_to(0.0, 1.0))
                 .ignored_by(&["linear", "published"]),
+            row(
+                "helix_share",
+                "-",
+                "the part of its tolerance f_Hβ within which each wheel's helix slope deviation is drawn, of either sign",
+                field!(helix_share),
+            )
+            .range(Range::from_to(0.0, 1.0))
+            .ignored_by(&["linear", "published"]),
             documented(
                 "errors_file",
                 "a file with the teeth's profile errors themselves, instead of a draw by din_grade: an .npz with the entries \
-                 pinion_profile_errors_mm and gear_profile_errors_mm, as `meshtone wheels` writes it",
+                 pinion_profile_errors_mm and gear_profile_errors_mm, as `meshtone wheels` writes it; it may have the further keys \
+                 below as entries too",
                 KeyKind::File,
             )
             .otherwise("none")
@@ -151,6 +240,10 @@ impl Keys for Quality {
             .otherwise("none")
             .rule("100 × gear teeth, likewise"),
         ]
+        .into_iter()
+        .chain(deviation_rows!("pinion", pinion_deviations, DEVIATION_KEYS[0]))
+        .chain(deviation_rows!("gear", gear_deviations, DEVIATION_KEYS[1]))
+        .collect()
     }
 
     /// Profile errors from a file, from the two inline keys, or none.
@@ -162,6 +255,7 @@ impl Keys for Quality {
             (Some(file), None, None) => {
                 let [pinion_profile_errors_mm, gear_profile_errors_mm] =
                     load(&file, |name| files.matrices(name))?;
+                self.take_deviations(table, load(&file, |name| files.named_numbers(name))?)?;
                 Some(ProfileErrors { pinion_profile_errors_mm, gear_profile_errors_mm })
             }
             (None, Some(_), Some(_)) => Some(ProfileErrors {
@@ -181,6 +275,30 @@ impl Keys for Quality {
                 return Err(table.error(missing, problem));
             }
         };
+        Ok(())
+    }
+}
+
+impl Quality {
+    /// Deviations from the file of profile errors, which the table does not give again.
+    fn take_deviations(
+        &mut self,
+        table: &TomlTable<'_>,
+        entries: Vec<(&'static str, Vec<f64>)>,
+    ) -> ReadResult<()> {
+        let mut both = [WheelDeviations::default(), WheelDeviations::default()];
+        for (key, numbers) in entries {
+            if table.optional(key).is_some() {
+                return Err(table
+                    .error(key, "given beside errors_file, which has it too; it has only one source")
+                    .with_help(format!("remove {key} here or in the file")));
+            }
+            if WheelDeviations::set(&mut both, key, &numbers).is_none() {
+                let problem = format!("has {} numbers as its entry {key}; must have one", numbers.len());
+                return Err(table.error("errors_file", problem));
+            }
+        }
+        [self.pinion_deviations, self.gear_deviations] = both;
         Ok(())
     }
 }

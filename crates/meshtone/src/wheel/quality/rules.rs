@@ -1,10 +1,10 @@
 //! Rules that concern several keys of `[quality]`.
 
-use super::{ERROR_POINTS, Quality};
-use crate::error::ScenarioError;
+use super::{ERROR_POINTS, Quality, WheelDeviations};
+use crate::error::{ScenarioError, ScenarioWarning};
 use crate::error_table::ErrorTable;
-use crate::keys::{Check, check_keys, refuse};
-use crate::wheel::Gears;
+use crate::keys::{Check, check_keys, refuse, require};
+use crate::wheel::{Gears, WheelName};
 
 impl Quality {
     /// Every key alone, and the profile errors with the wheels that have them.
@@ -15,6 +15,9 @@ impl Quality {
             let problem = "given beside quality.din_grade; deviations are drawn for one of the two";
             return Err(ScenarioError::new("quality.iso_class", class, problem)
                 .with_help("remove iso_class, or remove din_grade"));
+        }
+        for wheel in WheelName::BOTH {
+            self.check_pitches(wheel, gears)?;
         }
         let Some(errors) = &self.profile_errors else {
             return Ok(());
@@ -38,6 +41,60 @@ impl Quality {
         let module_mm = gears.module_mm;
         matrix("pinion", &errors.pinion_profile_errors_mm, gears.pinion_teeth, module_mm)?;
         matrix("gear", &errors.gear_profile_errors_mm, gears.gear_teeth, module_mm)
+    }
+
+    /// One pitch deviation a tooth, each so small that it can be one.
+    fn check_pitches(&self, wheel: WheelName, gears: &Gears) -> Check {
+        let Some(pitches_um) = &self.given(wheel).cumulative_pitch_um else {
+            return Ok(());
+        };
+        let key = format!("quality.{}_cumulative_pitch_um", wheel.name());
+        let (teeth, module_mm) = (gears.teeth(wheel), gears.module_mm);
+        if pitches_um.len() != teeth as usize {
+            let problem = format!(
+                "has {} numbers; must have {teeth}, one for each of the {}'s teeth",
+                pitches_um.len(),
+                wheel.name()
+            );
+            return Err(ScenarioError::new(key, format!("{} numbers", pitches_um.len()), problem));
+        }
+        let mut entries = pitches_um.iter().enumerate();
+        entries.try_for_each(|(index, &pitch_um)| {
+            let is_less = pitch_um.abs() < module_mm * 1e3;
+            let problem = format!("must be smaller than the module, {module_mm} mm");
+            require(&format!("{key}[{index}]"), pitch_um, is_less, problem)
+        })
+    }
+
+    /// Shares of what is given and so not drawn, which have no effect.
+    pub(crate) fn warnings(&self) -> Vec<ScenarioWarning> {
+        let default = Self::default();
+        let both = |is_given: fn(&WheelDeviations) -> bool| {
+            WheelName::BOTH.into_iter().all(|wheel| is_given(self.given(wheel)))
+        };
+        let pitches = both(|given| given.cumulative_pitch_um.is_some());
+        let run_out = both(|given| given.run_out_um.is_some());
+        let helix = both(|given| given.helix_slope_um.is_some());
+        [
+            ("tooth_share", self.tooth_share != default.tooth_share, false, ""),
+            ("pitch_share", self.pitch_share != default.pitch_share, pitches, "cumulative pitch deviations"),
+            ("run_out_share", self.run_out_share != default.run_out_share, run_out, "run-outs"),
+            ("helix_share", self.helix_share != default.helix_share, helix, "helix slope deviations"),
+        ]
+        .into_iter()
+        .filter(|(_, is_set, ..)| *is_set)
+        .filter_map(|(key, _, is_given, what)| {
+            let given = match (&self.profile_errors, is_given) {
+                (Some(_), _) => "profile errors",
+                (None, true) => what,
+                (None, false) => return None,
+            };
+            let message = format!(
+                "is ignored: beside given {given} nothing is drawn that it is a share of; remove {key}, or the {given}"
+            );
+            Some(ScenarioWarning::new(format!("quality.{key}"), message))
+        })
+        .collect()
     }
 }
 

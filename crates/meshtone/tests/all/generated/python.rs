@@ -42,7 +42,7 @@ pub fn argument_type(key: &KeyDescription) -> String {
         KeyKind::Number => "float".into(),
         KeyKind::Whole => "int".into(),
         KeyKind::Name(names) => literal(names),
-        KeyKind::Numbers(_) => "Sequence[float]".into(),
+        KeyKind::Numbers(_) | KeyKind::List => "Sequence[float]".into(),
         KeyKind::NumberOrNumbers(_) => "float | Sequence[float]".into(),
         KeyKind::Table => class_name(&key.key),
         KeyKind::TableOrFalse => format!("{} | Literal[False]", class_name(&key.key)),
@@ -55,7 +55,7 @@ pub fn argument_type(key: &KeyDescription) -> String {
 /// Type of an attribute, without `None`.
 pub fn attribute_type(key: &KeyDescription) -> String {
     match &key.kind {
-        KeyKind::Numbers(_) => "list[float]".into(),
+        KeyKind::Numbers(_) | KeyKind::List => "list[float]".into(),
         KeyKind::NumberOrNumbers(_) => "float | list[float]".into(),
         KeyKind::Profile => "dict[str, list[float]]".into(),
         _ => argument_type(key),
@@ -78,6 +78,7 @@ pub fn parameter(indent: &str, key: &KeyDescription, name: &str, optional: bool)
             format!("{{{}}}", names.iter().map(|name| format!("'{name}'")).collect::<Vec<_>>().join(", "))
         }
         KeyKind::Numbers(count) => format!("sequence of {count} floats"),
+        KeyKind::List => "sequence of floats".into(),
         KeyKind::NumberOrNumbers(count) => format!("float or sequence of {count} floats"),
         KeyKind::TableOrFalse => format!("{} or False", class_name(&key.key)),
         KeyKind::Profile => "dict of time_s and value".into(),
