@@ -57,3 +57,16 @@ def test_what_cannot_be_asked_is_refused() -> None:
         simulate(CONTACT).static_mesh(-1)
     with pytest.raises(ValueError, match="set model = 'contact'"):
         simulate(CONTACT.copy(model="linear")).static_mesh()
+
+
+def test_wheels_that_were_drawn_can_be_given() -> None:
+    drawn = simulate(CONTACT.copy(din_grade=7, helix_share=0.5))
+    errors = drawn.profile_errors_mm()
+    assert errors is not None
+    wheels = {"pinion_profile_errors_mm": errors[0], "gear_profile_errors_mm": errors[1], **drawn.wheel_deviations()}
+    given = CONTACT.copy(din_grade=0, **wheels)
+    assert np.array_equal(simulate(given).vertical_g, drawn.vertical_g)
+    assert not np.array_equal(simulate(given.copy(gear_run_out_um=0.0)).vertical_g, drawn.vertical_g)
+    pitches = np.zeros(given.pinion_teeth)
+    assert np.array_equal(simulate(given.copy(pinion_cumulative_pitch_um=pitches)).vertical_g, drawn.vertical_g)
+    assert any("quality.run_out_share: is ignored" in warning for warning in given.copy(run_out_share=0.1).warnings)
