@@ -20,6 +20,7 @@ from .datasets import Dataset, generate_dataset, load_dataset
 from .hybrid import enhance, tune
 from .recording import Recording, read_recording
 from .scenario import Scenario, template
+from .sensors import Sensor
 from .signal import Record, ShaftPhase, process_channel, process_series
 from .simulation import CHANNELS, ContactFigures, Signals, Simulation, StaticMesh, simulate, simulate_many, trace
 
@@ -30,6 +31,7 @@ __all__ = [
     "Record",
     "Recording",
     "Scenario",
+    "Sensor",
     "ShaftPhase",
     "Signals",
     "Simulation",

@@ -11,6 +11,7 @@ from typing import Any, Literal, TypedDict, Union
 import numpy as np
 import numpy.typing as npt
 
+from ._sensor import Sensor
 from .faults import Fault
 
 Profile = Mapping[str, Union[Sequence[float], npt.NDArray[np.float64]]]
@@ -283,6 +284,7 @@ class ScenarioKeys:
         brake_torque_nm: float,
         fault: Fault | None = None,
         faults: Sequence[Fault] | None = None,
+        sensors: Sequence[Sensor] | None = None,
         model: Literal["contact", "linear", "published"] | None = None,
         seed: int | None = None,
         pressure_angle_deg: float | None = None,
@@ -356,12 +358,14 @@ class ScenarioKeys:
             The damage, if there is but one; a healthy pair by default.
         faults : sequence of faults, optional
             All damage, instead of ``fault``: any number of faults, on any teeth of either wheel.
+        sensors : sequence of Sensor, optional
+            Sensors on the rig, whose signals come first; none by default.
         model : {'contact', 'linear', 'published'}, optional
             The model: teeth that touch and part, the theory of a linear mesh, or what the published code does, its
             slips included. Default: "linear".
         seed : int, optional
-            The seed of every random draw: profile errors, fluctuations, roughness of a destroyed flank. Allowed: whole
-            number. Default: 1.
+            The seed of every random draw: profile errors, fluctuations, roughness of a destroyed flank, sensors' noise.
+            Allowed: whole number. Default: 1.
         pressure_angle_deg : float, optional
             (°) The pressure angle at the pitch circle. Allowed: 10…35; teeth must not become pointed below full height.
             Default: 20.0.

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from ._keys import SECTION_OF_KEY
 
-OTHER_ARGUMENTS = ("fault", "faults", "pinion_profile_errors_mm", "gear_profile_errors_mm")
+OTHER_ARGUMENTS = ("fault", "faults", "sensors", "pinion_profile_errors_mm", "gear_profile_errors_mm")
 
 FORMER_KEYS: dict[str, str] = {
     "convention": "is called 'model' now, and its value 'corrected' is called 'linear'",

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .faults import Fault, MissingTooth, PartialFace, ToothBreakage, in_words
+from .simulation import chosen_channel
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -58,6 +59,11 @@ LABELS = {
 }
 
 
+def _channel_label(channel: str) -> str:
+    """What an axis says of a channel: a sensor's is its name."""
+    return LABELS.get(channel) or f"{channel.removesuffix('_g').replace('_', ' ').capitalize()} (g)"
+
+
 def _new_figure(size: tuple[float, float]) -> Figure:
     import matplotlib.pyplot as plt
 
@@ -85,7 +91,7 @@ def _axes(ax: Axes | None, size: tuple[float, float] = (8.0, 3.2)) -> Axes:
 
 
 def plot_signal(
-    simulation: Simulation, channel: str = "vertical_g", *, revolutions: float = 2.0, ax: Axes | None = None
+    simulation: Simulation, channel: str | None = None, *, revolutions: float = 2.0, ax: Axes | None = None
 ) -> Axes:
     """A signal over some revolutions of the gear.
 
@@ -93,8 +99,8 @@ def plot_signal(
     ----------
     simulation : Simulation
         What is shown.
-    channel : str
-        One of :data:`meshtone.CHANNELS`.
+    channel : str, optional
+        One of ``scenario.channels``; the first sensor's by default, or ``vertical_g`` where none is listed.
     revolutions : float
         (rev) Of the gear, from the first kept sample on.
     ax : matplotlib.axes.Axes, optional
@@ -109,14 +115,13 @@ def plot_signal(
     ValueError
         A channel that there is not; no revolutions.
     """
-    if channel not in LABELS:
-        raise ValueError(f"channel = '{channel}': must be one of {', '.join(LABELS)}")
+    channel = chosen_channel(simulation.scenario, channel)
     if not revolutions > 0:
         raise ValueError(f"revolutions = {revolutions}: must be more than 0")
     ax = _axes(ax)
     values = getattr(simulation, channel)[: _samples_of(simulation, revolutions)]
     ax.plot(simulation.time_s[: values.size], values, color=BLUE, linewidth=0.8)
-    ax.set(xlabel="Time (s)", ylabel=LABELS[channel])
+    ax.set(xlabel="Time (s)", ylabel=_channel_label(channel))
     ax.margins(x=0)
     ax.grid(alpha=0.3)
     return ax
@@ -223,15 +228,15 @@ def _numbered(teeth: Sequence[int]) -> str:
     return f"teeth {', '.join(map(str, teeth[:-1]))} and {teeth[-1]}"
 
 
-def plot_spectrum(simulation: Simulation, channel: str = "vertical_g", *, ax: Axes | None = None) -> Axes:
+def plot_spectrum(simulation: Simulation, channel: str | None = None, *, ax: Axes | None = None) -> Axes:
     """Amplitude of a signal against frequency, with the harmonics of the mesh where the speed is constant.
 
     Parameters
     ----------
     simulation : Simulation
         What is shown.
-    channel : str
-        One of :data:`meshtone.CHANNELS`.
+    channel : str, optional
+        One of ``scenario.channels``; the first sensor's by default, or ``vertical_g`` where none is listed.
     ax : matplotlib.axes.Axes, optional
         Where it is drawn; a new figure by default.
 
@@ -239,8 +244,7 @@ def plot_spectrum(simulation: Simulation, channel: str = "vertical_g", *, ax: Ax
     -------
     matplotlib.axes.Axes
     """
-    if channel not in LABELS:
-        raise ValueError(f"channel = '{channel}': must be one of {', '.join(LABELS)}")
+    channel = chosen_channel(simulation.scenario, channel)
     ax = _axes(ax)
     values = getattr(simulation, channel)
     amplitude = 2 * np.abs(np.fft.rfft(values - values.mean())) / values.size
@@ -256,7 +260,7 @@ def plot_spectrum(simulation: Simulation, channel: str = "vertical_g", *, ax: Ax
     top = amplitude[shown].max()
     ax.set_ylim(top * 1e-6, top * 3)
     ax.set_xlim(0, limit_hz / 1e3)
-    quantity, unit = LABELS[channel].rsplit(" ", 1)
+    quantity, unit = _channel_label(channel).rsplit(" ", 1)
     ax.set(xlabel="Frequency (kHz)", ylabel=f"{quantity},\namplitude {unit}")
     ax.legend(loc="lower right", fontsize="small", ncols=2, framealpha=1.0)
     ax.grid(alpha=0.3)
@@ -436,13 +440,14 @@ def _all_damage(simulation: Simulation) -> tuple[int, int]:
 
 def _plot_revolution(simulation: Simulation, wheel: Literal["gear", "pinion"], average_ax: Axes, difference_ax: Axes) -> None:
     """Average and difference over a wheel's revolution, on one scale, with the contact of its damaged teeth tinted."""
-    record = simulation.process("vertical_g", wheel)
+    record = simulation.process(None, wheel)
     limit = max(np.abs(record.average).max(), np.abs(record.difference).max()) * 1.25
+    ylabel = _channel_label(record.name).replace(" acceleration", "")
     parts = [(average_ax, "average", record.average), (difference_ax, "difference", record.difference)]
     for ax, name, values in parts:
         _plot_over_teeth(ax, values, record.teeth, BLUE, name)
         _tint(ax, simulation, (wheel,), (0, record.teeth))
-        ax.set(title=f"{name.capitalize()}, {wheel} shaft", ylabel="Vertical (g)", ylim=(-limit, limit))
+        ax.set(title=f"{name.capitalize()}, {wheel} shaft", ylabel=ylabel, ylim=(-limit, limit))
 
 
 def _speed(simulation: Simulation) -> str:

@@ -13,6 +13,7 @@ from . import _core
 from ._keys import KEY_IN_FILE, REQUIRED_KEYS, SECTION_OF_KEY, ScenarioKeys, Shaft, TipRelief, WheelInertia
 from ._sections import FORMER_KEYS, OTHER_ARGUMENTS, check_key, hint
 from .faults import Fault, from_section, to_section
+from .sensors import Sensor, sections_of
 
 __all__ = ["Scenario", "Shaft", "TipRelief", "WheelInertia", "template"]
 
@@ -57,6 +58,8 @@ brake_torque_nm=10.0, din_grade=7)
             flat[key] = keys.get(KEY_IN_FILE.get(key, key))
         faults = sections.get("fault", [])
         flat["faults"] = tuple(map(from_section, faults if isinstance(faults, list) else [faults]))
+        sensors = sections.get("sensor", [])
+        flat["sensors"] = tuple(Sensor(**keys) for keys in (sensors if isinstance(sensors, list) else [sensors]))
         object.__setattr__(self, "_flat", flat)
 
     @classmethod
@@ -123,7 +126,7 @@ brake_torque_nm=10.0, din_grade=7)
         ----------
         **changes
             As the arguments of :class:`Scenario`; ``fault=None`` for a healthy pair, any other key None for its default. ``fault``
-            and ``faults`` take the place of all faults that there are.
+            and ``faults`` take the place of all faults that there are, ``sensors`` that of all sensors.
 
         Raises
         ------
@@ -164,6 +167,17 @@ brake_torque_nm=10.0, din_grade=7)
         """All damage; empty for a healthy pair."""
         faults: tuple[Fault, ...] = self._flat["faults"]
         return faults
+
+    @property
+    def sensors(self) -> tuple[Sensor, ...]:
+        """The listed sensors; empty where there are none."""
+        sensors: tuple[Sensor, ...] = self._flat["sensors"]
+        return sensors
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names of its simulation's channels: ``NAME_g`` of each sensor, then those of :data:`meshtone.CHANNELS`."""
+        return tuple(self._native.channels())
 
     @property
     def pinion_profile_errors_mm(self) -> npt.NDArray[np.float64] | None:
@@ -228,6 +242,8 @@ brake_torque_nm=10.0, din_grade=7)
             shown["fault"] = self.faults[0]
         elif self.faults:
             shown["faults"] = list(self.faults)
+        if self.sensors:
+            shown["sensors"] = list(self.sensors)
         text = ", ".join(f"{key}={value!r}" for key, value in shown.items())
         if self._native.profile_errors_mm() is not None:
             text += ", pinion_profile_errors_mm=..., gear_profile_errors_mm=..."
@@ -271,6 +287,9 @@ def _sections_of(arguments: Mapping[str, Any]) -> dict[str, Any]:
     faults = [_plain(to_section(fault, name)) for name, fault in _faults_of(arguments)]
     if faults:
         sections["fault"] = faults[0] if len(faults) == 1 else faults
+    sensors = [_plain(section) for section in sections_of(arguments.get("sensors"))]
+    if sensors:
+        sections["sensor"] = sensors[0] if len(sensors) == 1 else sensors
     return sections
 
 

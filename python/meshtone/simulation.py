@@ -28,7 +28,7 @@ Array = npt.NDArray[np.float64]
 Wheel = Literal["pinion", "gear"]
 
 CHANNELS = ("horizontal_g", "vertical_g", "axial_g", "pinion_shaft_speed_hz", "gear_shaft_speed_hz", "mesh_force_n")
-"""The signals of a simulation, with their units."""
+"""The signals of every simulation, with their units; those of listed sensors come before them in ``scenario.channels``."""
 
 
 @dataclass(frozen=True)
@@ -166,6 +166,11 @@ class Simulation:
         return self._native.mesh_force_n
 
     @property
+    def sensors(self) -> dict[str, Array]:
+        """(g) What the scenario's sensors show, by their names, in their order; each is an attribute too, ``NAME_g``; shape (samples,)."""
+        return dict(self._native.sensors)
+
+    @property
     def tension_fraction(self) -> float:
         """Part of the kept time in which the mesh force is negative: a linear mesh pulls where real teeth would part."""
         return self._native.tension_fraction
@@ -202,14 +207,16 @@ class Simulation:
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
             raise AttributeError(name)
+        if name.endswith("_g") and name[:-2] in (sensors := self.sensors):
+            return sensors[name[:-2]]
         try:
             return self.fields[name]
         except KeyError:
-            near = hint(name, [*self.fields, *CHANNELS]) or "; simulation.fields has all"
+            near = hint(name, [*self.fields, *self.scenario.channels]) or "; simulation.fields has all"
             raise AttributeError(f"a simulation has no field '{name}'{near}") from None
 
     def __dir__(self) -> list[str]:
-        return sorted({*super().__dir__(), *self.fields})
+        return sorted({*super().__dir__(), *self.fields, *self.scenario.channels})
 
     def mesh_stiffness_curve(self) -> tuple[Array, Array]:
         """Mesh stiffness over a revolution of the gear: the first one, where damage to the pinion makes the next different.
@@ -312,13 +319,13 @@ class Simulation:
         """
         return {key: number for key, (number,) in self._native.wheel_deviations()}
 
-    def process(self, channel: str = "vertical_g", wheel: Wheel = "gear", *, sidebands: int | None = None) -> Record:
+    def process(self, channel: str | None = None, wheel: Wheel = "gear", *, sidebands: int | None = None) -> Record:
         """Take one of the signals to its average over a revolution, its parts and its indicators.
 
         Parameters
         ----------
-        channel : str
-            One of :data:`CHANNELS`.
+        channel : str, optional
+            One of ``scenario.channels``; the first sensor's by default, or ``vertical_g`` where none is listed.
         wheel : {'gear', 'pinion'}
             On whose shaft.
         sidebands : int, optional
@@ -340,8 +347,7 @@ class Simulation:
         >>> record.revolutions, record.indicators["difference_kurtosis"] > 10
         (17, True)
         """
-        if channel not in CHANNELS:
-            raise ValueError(f"channel = '{channel}': must be one of {', '.join(CHANNELS)}")
+        channel = chosen_channel(self.scenario, channel)
         return _process(self.scenario, getattr(self, channel), self.start_s, channel, wheel, sidebands)
 
     def plot(self) -> Figure:
@@ -350,7 +356,7 @@ class Simulation:
 
         return plotting.plot_simulation(self)
 
-    def plot_signal(self, channel: str = "vertical_g", *, revolutions: float = 2.0, ax: Axes | None = None) -> Axes:
+    def plot_signal(self, channel: str | None = None, *, revolutions: float = 2.0, ax: Axes | None = None) -> Axes:
         """A signal over some revolutions of the gear. See :func:`meshtone.plotting.plot_signal`."""
         from . import plotting
 
@@ -362,7 +368,7 @@ class Simulation:
 
         return plotting.plot_mesh_stiffness(self, pitches=pitches, ax=ax)
 
-    def plot_spectrum(self, channel: str = "vertical_g", *, ax: Axes | None = None) -> Axes:
+    def plot_spectrum(self, channel: str | None = None, *, ax: Axes | None = None) -> Axes:
         """Amplitude against frequency. See :func:`meshtone.plotting.plot_spectrum`."""
         from . import plotting
 
@@ -390,6 +396,28 @@ class Simulation:
         )
 
 
+def chosen_channel(scenario: Scenario, channel: str | None) -> str:
+    """The channel that is asked for; by default the one that is looked at first.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        What is simulated.
+    channel : str or None
+        A name.
+
+    Raises
+    ------
+    ValueError
+        A channel that there is not.
+    """
+    if channel is None:
+        return scenario.channels[0] if scenario.sensors else "vertical_g"
+    if channel not in scenario.channels:
+        raise ValueError(f"channel = '{channel}': must be one of {', '.join(scenario.channels)}")
+    return channel
+
+
 def _check_wheel(wheel: str) -> None:
     if wheel not in ("gear", "pinion"):
         raise ValueError(f"wheel = {wheel!r}: must be 'gear' or 'pinion'")
@@ -408,7 +436,7 @@ class Signals:
     start_s : float
         (s) Time of the first sample since the start of the simulation.
     channels : dict of str to array of float32, shape (samples,)
-        By the names of :data:`CHANNELS`; they are attributes too: ``signals.vertical_g``.
+        By the names of ``scenario.channels``; they are attributes too: ``signals.vertical_g``.
     """
 
     scenario: Scenario
@@ -424,7 +452,7 @@ class Signals:
         except KeyError:
             raise AttributeError(f"no channel '{name}' was kept, but {', '.join(self.channels)}") from None
 
-    def process(self, channel: str = "vertical_g", wheel: Wheel = "gear", *, sidebands: int | None = None) -> Record:
+    def process(self, channel: str | None = None, wheel: Wheel = "gear", *, sidebands: int | None = None) -> Record:
         """Take one of the channels to its average over a revolution, its parts and its indicators.
 
         Parameters
@@ -448,6 +476,7 @@ class Signals:
         >>> signals.process().revolutions
         17
         """
+        channel = chosen_channel(self.scenario, None) if channel is None else channel
         if channel not in self.channels:
             raise ValueError(f"no channel '{channel}' was kept, but {', '.join(self.channels)}")
         return _process(self.scenario, self.channels[channel], self.start_s, channel, wheel, sidebands)
@@ -536,7 +565,8 @@ def simulate_many(
     scenarios : iterable of Scenario
         What is simulated.
     channels : sequence of str
-        What is kept of each, in single precision: some of :data:`CHANNELS`.
+        What is kept of each, in single precision: some of ``scenario.channels``. A scenario without a sensor that is named has its
+        error in its place.
     threads : int, optional
         How many; all cores by default. Results do not depend on it.
     progress : bool or callable, optional

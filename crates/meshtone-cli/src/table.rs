@@ -97,7 +97,7 @@ fn faults(faults: &[FaultSummary]) -> String {
 
 /// `pinion shaft speed, Hz` for `pinion_shaft_speed_hz`.
 fn label(channel: &ChannelSummary) -> String {
-    let quantity = channel.name.rsplit_once('_').map_or(channel.name, |(quantity, _)| quantity);
+    let quantity = channel.name.rsplit_once('_').map_or(channel.name.as_str(), |(quantity, _)| quantity);
     format!("{}, {}", quantity.replace('_', " "), channel.unit)
 }
 

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use meshtone::batch::{Control, KeepChannels, Signals, simulate_many as simulate};
-use meshtone::sensor::ChannelKind;
+use meshtone::sensor::{Channel, Sensor};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -22,7 +22,8 @@ pub fn simulate_many<'py>(
     threads: Option<usize>,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Vec<Bound<'py, PyAny>>> {
-    let kinds = channels.iter().map(|name| kind(name)).collect::<PyResult<Vec<_>>>()?;
+    let sensors = listed(scenarios.iter().map(|scenario| &scenario.0));
+    let kept = channels.iter().map(|name| channel(name, &sensors)).collect::<PyResult<Vec<_>>>()?;
     let scenarios: Vec<_> = scenarios.iter().map(|scenario| scenario.0.clone()).collect();
     let mut pool = rayon::ThreadPoolBuilder::new();
     match threads {
@@ -40,7 +41,7 @@ pub fn simulate_many<'py>(
             let control = Control { progress: &told, cancelled, ..Control::default() };
             let mut results = Vec::with_capacity(scenarios.len());
             pool.install(|| {
-                simulate(scenarios, &KeepChannels::new(kinds), &control, |_, result| results.push(result));
+                simulate(scenarios, &KeepChannels::new(kept), &control, |_, result| results.push(result));
             });
             results
         },
@@ -52,10 +53,20 @@ pub fn simulate_many<'py>(
     results.into_iter().map(|result| signals(py, &channels, result)).collect()
 }
 
-fn kind(name: &str) -> PyResult<ChannelKind> {
-    ChannelKind::ALL.into_iter().find(|kind| kind.name() == name).ok_or_else(|| {
-        let names: Vec<_> = ChannelKind::ALL.iter().map(|kind| kind.name()).collect();
-        value_error(format!("channels: '{name}': must be one of {}", names.join(", ")))
+/// The sensors of some scenarios, each name once.
+fn listed<'s>(scenarios: impl Iterator<Item = &'s meshtone::scenario::Scenario>) -> Vec<Sensor> {
+    let mut sensors: Vec<Sensor> = Vec::new();
+    for sensor in scenarios.flat_map(|scenario| &scenario.sensors) {
+        if sensors.iter().all(|known| known.name() != sensor.name()) {
+            sensors.push(sensor.clone());
+        }
+    }
+    sensors
+}
+
+fn channel(name: &str, sensors: &[Sensor]) -> PyResult<Channel> {
+    Channel::of(name, sensors).map_err(|unknown| {
+        value_error(format!("channels: '{name}': must be one of {}", unknown.known.join(", ")))
     })
 }
 

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use meshtone::scenario::{self, MemoryLimit, ProfileErrors, ScenarioError};
+use meshtone::sensor::Channel;
 use meshtone::wheel::ErrorTable;
 use meshtone_io::scenario_file::{ReadScenarioError, read_scenario};
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
@@ -80,6 +81,11 @@ impl Scenario {
         small.quality.profile_errors = None;
         let table: Table = small.to_toml().parse().map_err(value_error)?;
         dictionary(py, &table)
+    }
+
+    /// The names of its simulation's channels, sensors first.
+    fn channels(&self) -> Vec<String> {
+        Channel::all(&self.0.sensors).iter().map(|channel| channel.name().into_owned()).collect()
     }
 
     /// Pinion's and gear's profile errors, where they were given.

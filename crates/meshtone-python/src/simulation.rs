@@ -41,6 +41,8 @@ pub struct Simulation {
     gear_shaft_speed_hz: Py<PyArray1<f64>>,
     #[pyo3(get)]
     mesh_force_n: Py<PyArray1<f64>>,
+    /// (g) What the scenario's sensors show, by their names.
+    sensors: Vec<(String, Py<PyArray1<f64>>)>,
     /// (-) Part of the kept time in which the mesh force is negative.
     #[pyo3(get)]
     tension_fraction: f64,
@@ -114,6 +116,11 @@ impl Simulation {
             pinion_shaft_speed_hz: array(py, channels.pinion_shaft_speed_hz).unbind(),
             gear_shaft_speed_hz: array(py, channels.gear_shaft_speed_hz).unbind(),
             mesh_force_n: array(py, channels.mesh_force_n).unbind(),
+            sensors: channels
+                .sensors
+                .into_iter()
+                .map(|sensor| (sensor.name, array(py, sensor.values_g).unbind()))
+                .collect(),
             computing_time_s: simulation
                 .timings
                 .iter()
@@ -130,6 +137,12 @@ impl Simulation {
     #[getter]
     fn scenario(&self) -> Scenario {
         Scenario(self.stages.scenario.clone())
+    }
+
+    /// (g) What the scenario's sensors show, by their names, in their order.
+    #[getter]
+    fn sensors<'py>(&self, py: Python<'py>) -> Vec<(String, Bound<'py, PyArray1<f64>>)> {
+        self.sensors.iter().map(|(name, signal)| (name.clone(), signal.bind(py).clone())).collect()
     }
 
     /// The fields of a trace that belong to the stages before the time loop.

@@ -114,7 +114,7 @@ impl<'a> TomlValue<'a> {
     ///
     /// # Errors
     /// The value is of another type or none of the names; the nearest one is suggested.
-    pub fn choice<T: Clone>(&self, choices: &[(&'static str, T)]) -> ReadResult<T> {
+    pub fn choice<T: Clone>(&self, choices: &[(&str, T)]) -> ReadResult<T> {
         let names = || choices.iter().map(|(name, _)| *name);
         let listed = names().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
         let Some(written) = self.value.get_ref().as_str() else {

@@ -119,16 +119,17 @@ impl ScenarioError {
         self
     }
 
-    /// An error about `fault.…` as one about that entry of the list of faults.
+    /// An error about `NAME.…` as one about that entry of the list of that name.
     ///
     /// # Arguments
-    /// * `index` - which of them, from 0
-    /// * `faults` - how many there are; a single one needs no number
-    pub(crate) fn in_fault(mut self, index: usize, faults: usize) -> Self {
-        if let Some(rest) = self.key.strip_prefix("fault").filter(|_| faults > 1) {
-            self.key = format!("fault[{index}]{rest}");
-            self.problem = with_number(&self.problem, index);
-            self.help = self.help.map(|help| with_number(&help, index));
+    /// * `name` - the list's: `fault` or `sensor`
+    /// * `index` - which of its entries, from 0
+    /// * `entries` - how many there are; a single one needs no number
+    pub(crate) fn in_entry(mut self, name: &str, index: usize, entries: usize) -> Self {
+        if let Some(rest) = self.key.strip_prefix(name).filter(|_| entries > 1) {
+            self.key = format!("{name}[{index}]{rest}");
+            self.problem = with_number(&self.problem, name, index);
+            self.help = self.help.map(|help| with_number(&help, name, index));
         }
         self
     }
@@ -143,14 +144,15 @@ impl ScenarioError {
     }
 }
 
-/// A text about one of several faults, whose keys `fault.…` get its number.
-fn with_number(text: &str, index: usize) -> String {
-    let mut parts = text.split("fault.");
+/// A text about one of several entries of a list, whose keys `NAME.…` get its number.
+fn with_number(text: &str, name: &str, index: usize) -> String {
+    let end = format!("{name}.");
+    let mut parts = text.split(&end);
     let mut numbered = parts.next().unwrap_or_default().to_owned();
     for rest in parts {
         // A sentence may end with the word.
         let is_key = rest.starts_with(|letter: char| letter.is_ascii_lowercase());
-        numbered += &if is_key { format!("fault[{index}].") } else { "fault.".to_owned() };
+        numbered += &if is_key { format!("{name}[{index}].") } else { end.clone() };
         numbered += rest;
     }
     numbered
@@ -252,12 +254,12 @@ mod tests {
             ScenarioError::new("fault.end", 0.1, "must be more than fault.start, 0.2")
                 .with_help("mend the fault. Or raise fault.end")
         };
-        let second = error().in_fault(1, 2);
+        let second = error().in_entry("fault", 1, 2);
         assert_eq!(
             (second.key.as_str(), second.problem.as_str()),
             ("fault[1].end", "must be more than fault[1].start, 0.2")
         );
         assert_eq!(second.help.as_deref(), Some("mend the fault. Or raise fault[1].end"));
-        assert_eq!(error().in_fault(0, 1), error());
+        assert_eq!(error().in_entry("fault", 0, 1), error());
     }
 }

@@ -29,6 +29,7 @@ pub mod batch;
 pub mod damage;
 mod error;
 mod error_table;
+mod fourier;
 #[doc(hidden)]
 pub mod interpolation;
 mod keys;

@@ -46,6 +46,8 @@ pub enum Purpose {
     PinionDeviations = 16,
     /// Likewise of the gear.
     GearDeviations = 17,
+    /// Noise of a sensor, sample by sample; index: the sensor's place in the scenario's list.
+    SensorNoise = 18,
 }
 
 /// A sequence of random numbers.

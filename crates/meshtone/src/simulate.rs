@@ -1,5 +1,7 @@
 //! The eight stages, in order.
 
+mod measured;
+
 use std::fmt::{self, Debug, Formatter};
 use std::num::NonZeroUsize;
 use std::time::Duration;
@@ -20,7 +22,7 @@ use crate::mesh::{
 use crate::model::Model;
 use crate::operation::{CycleGrid, Solver, TimeGrid};
 use crate::scenario::Scenario;
-use crate::sensor::{Channels, ContactFigures, channel_outputs};
+use crate::sensor::{Channels, ContactFigures};
 use crate::simd::InstructionSet;
 use crate::solver::{Diverged, Output, Problem, Recorder, ReducedModel, integrate};
 use crate::wheel::quality::{deviations, profile_errors};
@@ -409,9 +411,13 @@ impl Stages {
     pub fn simulate(self) -> Result<Simulation, Error> {
         let mut clock = Clock::default();
         let model = self.reduced_model();
-        let mut channels = Channels::new(&self.time);
-        self.integrate(&model, &channel_outputs(), self.time.first_kept_sample, &mut channels)?;
+        let mut channels = self.channels();
+        self.integrate(&model, &self.channel_outputs(), self.time.first_kept_sample, &mut channels)?;
         clock.lap("time integration");
+        if !channels.sensors.is_empty() {
+            channels = self.measured(channels);
+            clock.lap("sensors");
+        }
         let timings = self.timings.iter().copied().chain(clock.laps).collect();
         Ok(Simulation { stages: self, channels, timings })
     }

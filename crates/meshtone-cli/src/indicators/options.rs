@@ -11,7 +11,7 @@ use meshtone_io::recording::{DecimalSign, Separator};
 #[command(next_help_heading = "Recording")]
 pub struct ReadingOptions {
     /// Column to process, by its name or its number from 1.
-    /// [default: the only one; of a simulation the vertical acceleration]
+    /// [default: the only one; of a simulation its first listed sensor, or the vertical acceleration]
     #[arg(short, long, value_name = "CHANNEL")]
     pub channel: Option<String>,
     /// (S/s) Sampling rate, where the file does not say it, or instead of what it says

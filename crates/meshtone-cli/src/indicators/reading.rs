@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use meshtone::scenario::Scenario;
+use meshtone::sensor::Channel as SimulatedChannel;
 use meshtone_io::indicators::WarningEntry;
 use meshtone_io::recording::{
     Calibration, Channel, ColumnChoice, Recording, RecordingOptions, RecordingWarning, TextOptions,
@@ -12,8 +14,12 @@ use super::options::ReadingOptions;
 use super::refuse::unreadable;
 use crate::failure::Failure;
 
-/// The channel of a simulation that is processed unless another is chosen.
-const OF_SIMULATION: &str = "vertical_g";
+/// The channel of a simulation that is processed unless another is chosen: the first sensor's, or the vertical acceleration.
+fn leading_of(scenario_toml: &str) -> String {
+    // What another version wrote has no sensors, or is looked at without them.
+    let sensors = Scenario::from_toml(scenario_toml).map_or_else(|_| Vec::new(), |scenario| scenario.sensors);
+    SimulatedChannel::leading(&sensors).name().into_owned()
+}
 
 /// A recording with the channel that is processed and the one that tells the phase.
 #[derive(Debug)]
@@ -60,11 +66,11 @@ impl Input {
         let mut recording = read_recording(path, &chosen)?;
         warnings.extend(warnings_of(&recording));
         warnings.dedup();
-        let simulated = recording.scenario_toml.is_some();
+        let simulated = recording.scenario_toml.as_deref().map(leading_of);
         if options.channel.is_none() {
             let keep = |channel: &Channel| {
                 let is_turning = turning.as_ref().is_some_and(|turning| turning.name == channel.name);
-                !is_turning && (!simulated || channel.name == OF_SIMULATION)
+                !is_turning && simulated.as_ref().is_none_or(|name| channel.name == *name)
             };
             recording.channels.retain(keep);
         }

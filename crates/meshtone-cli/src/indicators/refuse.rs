@@ -92,8 +92,8 @@ fn help(subject: Subject, error: &SignalError) -> Option<String> {
             "was the tachometer connected? Name its channel with --tach; without one, take --from-mesh-tone or --shaft-hz"
         }
         (Constant { .. }, Simulated) => {
-            "this signal of the simulation does not change; leave out --channel for the vertical acceleration, or name \
-             another"
+            "this signal of the simulation does not change; leave out --channel for the first listed sensor or the \
+             vertical acceleration, or name another"
         }
         (Constant { .. }, _) => "choose another channel with --channel; was the sensor connected?",
         (TooFewRevolutions { .. }, Simulated) => {

@@ -8,6 +8,7 @@ mod indicators;
 mod indicators_refused;
 mod init;
 mod killed;
+mod sensors;
 mod simulate;
 mod support;
 mod tune;

@@ -1,7 +1,7 @@
 //! What is kept of each record.
 
 use meshtone::scenario::WheelName;
-use meshtone::sensor::ChannelKind;
+use meshtone::sensor::Channel;
 
 /// Most records in a shard.
 pub const MOST_SHARD_RECORDS: u64 = 65_536;
@@ -14,9 +14,9 @@ pub struct Keep {
     /// (s) Length of the raw channels; none for a hunting period, after which the same teeth meet again.
     pub duration_s: Option<f64>,
     /// Raw channels that are kept.
-    pub channels: Vec<ChannelKind>,
+    pub channels: Vec<Channel>,
     /// The channel that is averaged.
-    pub analysed: ChannelKind,
+    pub analysed: Channel,
     /// The wheel over whose revolutions it is averaged.
     pub wheel: WheelName,
     /// Sidebands that are taken away for the difference signal.
@@ -38,10 +38,10 @@ pub struct Keep {
 
 impl Keep {
     /// The channels that must be simulated: the raw ones, then the analysed one where it is not among them.
-    pub fn simulated(&self) -> Vec<ChannelKind> {
+    pub fn simulated(&self) -> Vec<Channel> {
         let mut channels = self.channels.clone();
         if self.is_analysed() && !channels.contains(&self.analysed) {
-            channels.push(self.analysed);
+            channels.push(self.analysed.clone());
         }
         channels
     }

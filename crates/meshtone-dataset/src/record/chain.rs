@@ -5,7 +5,7 @@
 
 use meshtone::Stages;
 use meshtone::scenario::{Fault, Scenario, WheelName};
-use meshtone::sensor::ChannelKind;
+use meshtone::sensor::Channel;
 use meshtone::signal::{
     AngularSettings, AntiAliasing, ChainSettings, Edge, MeanPart, Record as Analysis, SeparationSettings,
     ShaftPhase, SignalError, process_channel,
@@ -39,7 +39,7 @@ pub(super) fn record(
         record.clean_difference = view.clean_difference(&channels[analysed], content).map_err(signals)?;
     }
     for (number, (kind, channel)) in simulated.iter().zip(&mut channels).enumerate() {
-        if ChannelKind::ACCELERATIONS.contains(kind) {
+        if kind.is_acceleration() {
             noise::add(&record.drawn, number as u64, channel);
         }
     }
@@ -91,12 +91,10 @@ const END: usize = 10;
 const MOST_GROWTH: f64 = 10.0;
 
 /// Refuses a steady motion that grows all the time, though it has not yet grown without bound.
-fn refuse_growth(channels: &[ChannelKind], samples: &[Vec<f32>]) -> Result<(), String> {
+fn refuse_growth(channels: &[Channel], samples: &[Vec<f32>]) -> Result<(), String> {
     let square = |part: &[f32]| part.iter().map(|&x| f64::from(x) * f64::from(x)).sum::<f64>();
     let (mut first, mut last) = (0.0, 0.0);
-    for (_, samples) in
-        channels.iter().zip(samples).filter(|(channel, _)| ChannelKind::ACCELERATIONS.contains(channel))
-    {
+    for (_, samples) in channels.iter().zip(samples).filter(|(channel, _)| channel.is_acceleration()) {
         let part = samples.len() / END;
         first += square(&samples[..part]);
         last += square(&samples[samples.len() - part..]);

@@ -7,11 +7,10 @@ mod start;
 pub use start::Start;
 
 use meshtone::Stages;
-use meshtone::batch::Keep as BatchKeep;
+use meshtone::batch::{Keep as BatchKeep, KeepChannels, Output, SignalRecorder};
 use meshtone::operation::TimeGrid;
-use meshtone::scenario::{Fault, WheelName};
+use meshtone::scenario::{Fault, Scenario, ScenarioError, WheelName};
 use meshtone::signal::IndicatorValue;
-use meshtone::solver::{Block, Output, Recorder};
 
 use crate::draw::DrawnRecord;
 use crate::plan::Content;
@@ -71,38 +70,31 @@ pub(crate) struct KeepRecords<'a, F> {
     pub role: F,
 }
 
-/// All samples of the simulated channels, in single precision.
-#[derive(Default)]
-pub(crate) struct Samples {
-    channels: Vec<Vec<f32>>,
-}
-
-impl Recorder for Samples {
-    fn record(&mut self, block: &Block) {
-        for (index, channel) in self.channels.iter_mut().enumerate() {
-            channel.extend(block.output(index).iter().map(|&value| value as f32));
-        }
+impl<F> KeepRecords<'_, F> {
+    /// The simulated channels, in single precision.
+    fn channels(&self) -> KeepChannels {
+        KeepChannels::new(self.content.keep.simulated())
     }
 }
 
 impl<F: Fn(usize) -> Option<Role> + Sync> BatchKeep for KeepRecords<'_, F> {
-    type Recorder = Samples;
+    type Recorder = SignalRecorder;
     type Kept = Result<Box<Record>, String>;
 
-    fn outputs(&self) -> Vec<Output> {
-        self.content.keep.simulated().into_iter().map(|channel| channel.output()).collect()
+    fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
+        self.channels().outputs(scenario)
     }
 
-    fn kept_bytes(&self, time: &TimeGrid) -> usize {
-        kept_bytes(self.content, time)
+    fn kept_bytes(&self, scenario: &Scenario) -> usize {
+        kept_bytes(self.content, &scenario.time_grid())
     }
 
-    fn recorder(&self, stages: &Stages) -> Samples {
-        let samples = || Vec::with_capacity(stages.time.kept_samples());
-        Samples { channels: self.content.keep.simulated().iter().map(|_| samples()).collect() }
+    fn recorder(&self, stages: &Stages) -> SignalRecorder {
+        self.channels().recorder(stages)
     }
 
-    fn keep(&self, index: usize, stages: Stages, samples: Samples) -> Self::Kept {
+    fn keep(&self, index: usize, stages: Stages, recorder: SignalRecorder) -> Self::Kept {
+        let samples = recorder.finish(&stages);
         match (self.role)(index) {
             Some(Role::Record(drawn)) => chain::record(self.content, drawn, &stages, &samples.channels),
             Some(Role::HealthyTwin(drawn, faults)) => {

@@ -1,6 +1,6 @@
 //! Columns of a data set.
 
-use meshtone::sensor::ChannelKind;
+use meshtone::sensor::Channel;
 use meshtone_io::table::{CellType, TableColumn};
 
 use crate::draw::NOISE_KEYS;
@@ -121,8 +121,8 @@ pub fn columns(plan: &Plan) -> Vec<Column> {
             kind: ColumnKind::Indicator(name),
         }));
     }
-    let channel = |(number, kind): (usize, &ChannelKind)| Column {
-        name: kind.name().to_owned(),
+    let channel = |(number, kind): (usize, &Channel)| Column {
+        name: kind.name().into_owned(),
         unit: kind.unit().to_owned(),
         description: format!("raw channel, its samples one after the other: {}", kind.meaning()),
         kind: ColumnKind::Channel(number),

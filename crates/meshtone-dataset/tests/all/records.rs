@@ -417,3 +417,38 @@ fn what_is_enhanced_is_averaged_over_the_wheel_that_was_tuned_to() {
     let error = plan("[keep]\nwheel = \"gear\"").unwrap_err().to_string();
     assert!(error.contains("keep.wheel") && error.contains("tuned to"), "{error}");
 }
+
+/// Listed sensors are kept and analysed unless others are named, and their numbers can be varied.
+#[test]
+fn sensors_are_what_is_kept() {
+    let sensors = "[[scenario.sensor]]\nname = \"casing\"\nresonance_hz = 2e3\n[[scenario.sensor]]\nrange_g = 1.0\n\n[[class]]";
+    let vary =
+        "[[vary]]\nkey = \"sensor[0].resonance_hz\"\nuniform = [1.5e3, 3e3]\n\n[keep]\nduration_s = 0.1";
+    let text = FAST
+        .replacen("[[class]]", sensors, 1)
+        .replacen("[keep]", vary, 1)
+        .replace("[[vary]]\nkey = \"noise.snr_db\"\nuniform = [10.0, 30.0]\n", "")
+        .replace("records = 60", "records = 16");
+    let plan = plan(&text);
+    let keep = &plan.content.keep;
+    let names: Vec<_> = keep.channels.iter().map(|channel| channel.name()).collect();
+    assert_eq!(names, ["casing_g", "support_vertical_g"]);
+    assert_eq!(keep.analysed.name(), "casing_g");
+    let made = made(&plan);
+    for row in 0..16 {
+        let [casing, ranged] = ["casing_g", "support_vertical_g"].map(|name| made.signal(name, row));
+        assert_eq!((casing.len(), ranged.len()), (800, 800));
+        // The filter of the data set's rate rings beyond the range by a tenth at most.
+        assert!(ranged.iter().all(|value| value.abs() < 1.2) && casing != ranged);
+    }
+    let named = text.replacen(
+        "duration_s = 0.1",
+        "channels = [\"vertical_g\", \"casing_g\"]\nanalysed = \"vertical_g\"",
+        1,
+    );
+    let keep = crate::support::plan(&named).content.keep;
+    assert_eq!(
+        keep.channels.iter().map(|channel| channel.name()).collect::<Vec<_>>(),
+        ["vertical_g", "casing_g"]
+    );
+}

@@ -228,3 +228,19 @@ fn base_scenarios() {
     refused_with("din_grade = 7", "din_grade = 7\nseed = 3", &["scenario.quality.seed", "wheels of its own"]);
     refused("scenario = \"absent.toml\"\nunits = 1", &["line 1", "absent.toml"]);
 }
+
+#[test]
+fn channels_that_there_are_not() {
+    let keep = "[keep]\nchannels = [\"casing_g\"]";
+    refused_with(
+        "[keep]",
+        keep,
+        &["keep.channels[0]", "must be one of \"horizontal_g\"", "\"mesh_force_n\""],
+    );
+    let sensor = "[[scenario.sensor]]\nname = \"casting\"\n[keep]\nchannels = [\"casing_g\"]";
+    refused_with(
+        "[keep]",
+        sensor,
+        &["must be one of \"casting_g\", \"horizontal_g\"", "did you mean \"casting_g\"?"],
+    );
+}

@@ -1,11 +1,11 @@
 //! The experiment file.
 
-use crate::channel_name::read_channel;
+use crate::channel_name::{accelerations, read_channel};
 use crate::wheel_name::read_wheel;
 use std::path::{Path, PathBuf};
 
 use meshtone::scenario::{Fault, Scenario};
-use meshtone::sensor::ChannelKind;
+use meshtone::sensor::Channel;
 use meshtone::signal::{MeanPart, SeparationSettings};
 use meshtone::stages;
 use meshtone::tuning::{
@@ -187,7 +187,7 @@ fn case(table: &TomlTable<'_>) -> ReadResult<(Case, CaseFiles)> {
 fn signal(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<DifferenceChain> {
     let channel = table
         .optional("channel")
-        .map(|value| read_channel(&value, &ChannelKind::ACCELERATIONS))
+        .map(|value| read_channel(&value, &accelerations(&base.sensors)))
         .transpose()?;
     let rate = table.required("sampling_rate_hz", "(S/s) the sampling rate of the rig's recordings")?;
     let sampling_rate_hz = rate.number()?;
@@ -218,7 +218,7 @@ fn signal(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<DifferenceChain>
         teeth,
     };
     Ok(DifferenceChain {
-        channel: channel.unwrap_or(ChannelKind::Vertical),
+        channel: channel.unwrap_or_else(|| Channel::leading(&base.sensors)),
         sampling_rate_hz,
         wheel,
         separation: Some(separation),

@@ -1,12 +1,12 @@
 //! What tuning found, in a form that other commands use.
 
-use crate::channel_name::read_channel;
+use crate::channel_name::read_any_acceleration;
 use crate::wheel_name::read_wheel;
 use std::fmt::Write as _;
 use std::path::Path;
 
 use meshtone::scenario::{Gears, Model, Scenario, ScenarioError, WheelName};
-use meshtone::sensor::ChannelKind;
+use meshtone::sensor::{Channel, ChannelKind};
 use meshtone::signal::{MeanPart, SeparationSettings};
 use meshtone::tuning::{DifferenceChain, Enhancement, Experiment, ExperimentResult};
 use meshtone_toml::{ReadResult, TomlDocument, TomlTable, TomlValue};
@@ -23,7 +23,7 @@ pub struct Tuned {
     /// (rev) Where the faults' responses are in the wheel's cycle, for signals that show none.
     pub centre_rev: f64,
     /// (-) Channel, rate and separation of the difference signals.
-    pub channel: ChannelKind,
+    pub channel: Channel,
     /// (S/s) The rig's sampling rate.
     pub sampling_rate_hz: f64,
     /// Over whose revolutions they are averaged.
@@ -51,7 +51,7 @@ impl Tuned {
             model: experiment.base.model,
             enhancement: result.tuning().enhancement,
             centre_rev: result.simulated().centre_rev(),
-            channel: experiment.chain.channel,
+            channel: experiment.chain.channel.clone(),
             sampling_rate_hz: experiment.chain.sampling_rate_hz,
             wheel,
             sidebands: separation.sidebands,
@@ -99,7 +99,7 @@ impl Tuned {
             ..SeparationSettings::new(gears.teeth(self.wheel) as usize)
         };
         DifferenceChain {
-            channel: self.channel,
+            channel: self.channel.clone(),
             sampling_rate_hz: self.sampling_rate_hz,
             wheel: self.wheel,
             separation: Some(separation),
@@ -123,7 +123,7 @@ impl Tuned {
 ///     model: Model::Published,
 ///     enhancement: Enhancement { width_ratio: 0.18, fault_to_harmonics_ratio: 2.25, noise_level: 1.585 },
 ///     centre_rev: 0.03,
-///     channel: ChannelKind::Vertical,
+///     channel: ChannelKind::Vertical.into(),
 ///     sampling_rate_hz: 25e3,
 ///     wheel: WheelName::Pinion,
 ///     sidebands: 2,
@@ -217,10 +217,7 @@ fn tuned(root: &TomlTable<'_>) -> ReadResult<Tuned> {
         Ok((enhancement, table.number_or("centre_rev", 0.0)?))
     })?;
     let (channel, rate, wheel, sidebands, orders) = root.table_or_empty("signal")?.read(|table| {
-        let channel = table
-            .optional("channel")
-            .map(|value| read_channel(&value, &ChannelKind::ACCELERATIONS))
-            .transpose()?;
+        let channel = table.optional("channel").map(|value| read_any_acceleration(&value)).transpose()?;
         let rate = table.required("sampling_rate_hz", "(S/s) the rig's sampling rate")?;
         let sampling_rate_hz = rate.number()?;
         if sampling_rate_hz <= 0.0 {
@@ -231,7 +228,7 @@ fn tuned(root: &TomlTable<'_>) -> ReadResult<Tuned> {
             Ok(table.optional(key).map(|value| value.integer(0..=10_000)).transpose()?.unwrap_or(default))
         };
         Ok((
-            channel.unwrap_or(ChannelKind::Vertical),
+            channel.unwrap_or(ChannelKind::Vertical.into()),
             sampling_rate_hz,
             wheel.unwrap_or_default(),
             count("sidebands", 2)?,

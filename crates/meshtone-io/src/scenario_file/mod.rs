@@ -1,5 +1,7 @@
 //! Scenario files, with the files that they name.
 
+mod frequency_response_csv;
+mod number_csv;
 mod profile_csv;
 mod profile_errors_npz;
 mod remembering;
@@ -8,7 +10,9 @@ mod source;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use meshtone::scenario::{FileProblem, Profile, ProfileErrors, Scenario, ScenarioFiles, WheelDeviations};
+use meshtone::scenario::{
+    FileProblem, FrequencyResponse, Profile, ProfileErrors, Scenario, ScenarioFiles, WheelDeviations,
+};
 use meshtone_toml::TomlError;
 
 pub use profile_errors_npz::{write_profile_errors_npz, write_wheels_npz};
@@ -102,6 +106,10 @@ impl ScenarioFiles for FilesBeside {
 
     fn profile(&self, name: &str) -> Result<Profile, FileProblem> {
         profile_csv::read(&self.path_of(name))
+    }
+
+    fn frequency_response(&self, name: &str) -> Result<FrequencyResponse, FileProblem> {
+        frequency_response_csv::read(&self.path_of(name))
     }
 }
 

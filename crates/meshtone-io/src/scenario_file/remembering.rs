@@ -3,7 +3,9 @@
 use std::cell::RefCell;
 use std::path::PathBuf;
 
-use meshtone::scenario::{FileProblem, Profile, ProfileErrors, ScenarioFiles, WheelDeviations};
+use meshtone::scenario::{
+    FileProblem, FrequencyResponse, Profile, ProfileErrors, ScenarioFiles, WheelDeviations,
+};
 
 use super::FilesBeside;
 
@@ -42,5 +44,10 @@ impl ScenarioFiles for Remembering<'_> {
     fn profile(&self, name: &str) -> Result<Profile, FileProblem> {
         self.remember(name);
         self.files.profile(name)
+    }
+
+    fn frequency_response(&self, name: &str) -> Result<FrequencyResponse, FileProblem> {
+        self.remember(name);
+        self.files.frequency_response(name)
     }
 }

@@ -14,7 +14,8 @@ pub(crate) use earlier::with_model;
 pub use read::{Recorded, read_signals};
 pub use write::write_signals;
 
-/// The first column: (s) time since the start of the simulation. The others are the [channels](meshtone::sensor::ChannelKind).
+/// The first column: (s) time since the start of the simulation. The others are the [channels](meshtone::sensor::Channel), listed sensors
+/// first.
 pub const TIME: &str = "time_s";
 /// Metadata key of the scenario, as TOML.
 pub const SCENARIO_KEY: &str = "meshtone.scenario";

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::path::Path;
 
 use meshtone::scenario::Scenario;
-use meshtone::sensor::{ChannelKind, Channels};
+use meshtone::sensor::{ChannelKind, Channels, SensorSignal};
 use parquet::file::metadata::FileMetaData;
 
 use crate::ReadResultsError;
@@ -55,6 +55,9 @@ pub fn read_signals(path: &Path) -> Result<Recorded, ReadResultsError> {
         let former = former_column(kind);
         let name = if table.column(former).is_some() { former } else { kind.name() };
         *channels.get_mut(kind) = numbers(name)?;
+    }
+    for sensor in &scenario.sensors {
+        channels.sensors.push(SensorSignal { name: sensor.name(), values_g: numbers(&sensor.channel())? });
     }
     Ok(Recorded { scenario, channels, version, run })
 }

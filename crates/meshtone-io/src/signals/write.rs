@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use meshtone::scenario::Scenario;
-use meshtone::sensor::{ChannelKind, Channels};
+use meshtone::sensor::{Channel, Channels};
 use parquet::basic::{Compression, Encoding};
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
@@ -17,7 +17,7 @@ use super::{RATE_KEY, RUN_KEY, SCENARIO_KEY, TIME, VERSION_KEY};
 /// Rows of a group; a reader takes a group's column at once.
 const GROUP_ROWS: usize = 1 << 20;
 
-/// Writes signals as Parquet.
+/// Writes signals as Parquet: the time, the sensors in their order, and the channels that every simulation has.
 ///
 /// # Arguments
 /// * `to` - where the file is written to; it needs no buffer
@@ -29,13 +29,16 @@ const GROUP_ROWS: usize = 1 << 20;
 pub fn write_signals(to: impl Write + Send, scenario: &Scenario, channels: &Channels) -> io::Result<()> {
     let properties = properties(scenario, channels);
     let time = table_column(TIME, "s", "time since the start of the simulation");
-    let signals = ChannelKind::ALL.map(|kind| table_column(kind.name(), kind.unit(), kind.meaning()));
+    let listed = channels.list();
+    let column = |channel: &Channel| table_column(&channel.name(), channel.unit(), channel.meaning());
+    let signals = listed.iter().map(column);
     let mut table = TableWriter::new(to, std::iter::once(time).chain(signals).collect(), properties)?;
     for start in (0..channels.len()).step_by(GROUP_ROWS) {
         let rows = start..channels.len().min(start + GROUP_ROWS);
         let time = |row: usize| channels.time_s(start + row);
         let time = Cells::Sequence { rows: rows.len(), at: &time };
-        let signals = ChannelKind::ALL.map(|kind| Cells::Signal(&channels.get(kind)[rows.clone()]));
+        let signals = listed.iter().filter_map(|channel| channels.signal(channel));
+        let signals = signals.map(|signal| Cells::Signal(&signal[rows.clone()]));
         table.write_rows(std::iter::once(time).chain(signals).collect())?;
     }
     table.close()

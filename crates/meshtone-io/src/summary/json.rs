@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 use std::time::Duration;
 
+use meshtone::sensor::ChannelKind;
 use meshtone::signal::{IndicatorValue, Indicators, Shaft};
 use serde_json::{Map, Value, json};
 
@@ -21,14 +22,14 @@ impl Summary {
     }
 
     fn to_json(&self) -> Value {
-        let channels = self.channels.iter().map(|channel| (channel.name.to_string(), indicators(channel)));
+        let channels = self.channels.iter().map(|channel| (channel.name.clone(), indicators(channel)));
         let (stiffness, force) = (&self.mesh_stiffness, &self.mesh_force);
         let warnings = self.warnings.iter();
         let warnings = warnings.map(|warning| json!({ "key": warning.key, "message": warning.message }));
         let faults = self.faults.iter();
         let faults =
             faults.map(|fault| json!({ "kind": fault.kind, "wheel": fault.wheel, "tooth": fault.tooth }));
-        json!({
+        let mut summary = json!({
             "format_version": self.format_version,
             "meshtone_version": self.meshtone_version,
             "run": self.run.to_string(),
@@ -52,7 +53,12 @@ impl Summary {
             "indicators": self.indicators_json(),
             "computing_time_ms": self.times(),
             "warnings": warnings.collect::<Vec<_>>(),
-        })
+        });
+        // Of a simulation without listed sensors they are the vertical acceleration's, as ever.
+        if self.averaged != ChannelKind::Vertical.name() {
+            summary["indicators_of"] = json!(self.averaged);
+        }
+        summary
     }
 
     /// Of average and difference, and of the gear, by the shaft's wheel.

@@ -13,7 +13,7 @@ use meshtone::scenario::{Fault, ScenarioWarning};
 use meshtone::signal::{ChainSettings, Indicators, Shaft, SimulatedShafts, kurtosis, peak, rms};
 
 use crate::run_identity::RunIdentity;
-use meshtone::sensor::{ChannelKind, ContactFigures};
+use meshtone::sensor::{Channel, ContactFigures};
 
 pub use read::read_run;
 
@@ -54,10 +54,12 @@ pub struct Summary {
     pub mesh_stiffness: MeshStiffness,
     /// Over the samples kept.
     pub mesh_force: MeshForce,
-    /// Indicators of each signal, by the name of its column.
+    /// Indicators of each signal, by the name of its column; listed sensors first.
     pub channels: Vec<ChannelSummary>,
-    /// Indicators of the vertical acceleration, synchronously averaged on the shafts of pinion and gear; none where the kept
-    /// signal holds no average.
+    /// The signal that [`Self::indicators`] are of: the first sensor's, or the vertical acceleration where none is listed.
+    pub averaged: String,
+    /// Indicators of that signal, synchronously averaged on the shafts of pinion and gear; none where the kept signal holds no
+    /// average.
     pub indicators: [Option<Indicators>; 2],
     /// Time that each stage took.
     pub computing_time: Vec<(String, Duration)>,
@@ -109,10 +111,10 @@ pub struct MeshForce {
 }
 
 /// Indicators of one signal.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ChannelSummary {
     /// The signal's column.
-    pub name: &'static str,
+    pub name: String,
     /// Unit of rms and peak.
     pub unit: &'static str,
     /// Root mean square, mean included.
@@ -121,6 +123,18 @@ pub struct ChannelSummary {
     pub peak: f64,
     /// (-) Kurtosis, 3 for Gaussian noise; none for a constant.
     pub kurtosis: Option<f64>,
+}
+
+impl ChannelSummary {
+    fn of(channel: &Channel, signal: &[f64]) -> Self {
+        Self {
+            name: channel.name().into_owned(),
+            unit: channel.unit(),
+            rms: rms(signal),
+            peak: peak(signal),
+            kurtosis: kurtosis(signal),
+        }
+    }
 }
 
 impl Summary {
@@ -136,6 +150,7 @@ impl Summary {
         let stiffness = Extremes::of(&stages.mesh.stiffness_n_per_mm());
         let force = Extremes::of(&channels.mesh_force_n);
         let contact = simulation.contact_figures();
+        let (leading, signal) = channels.leading();
         let stage_times = simulation.timings.iter().map(|time| (time.stage.to_string(), time.elapsed));
         Self {
             format_version: FORMAT_VERSION,
@@ -163,20 +178,16 @@ impl Summary {
                 tension_fraction: contact.is_none().then(|| channels.tension_fraction()),
                 contact,
             },
-            channels: ChannelKind::ALL
-                .map(|kind| {
-                    let signal = channels.get(kind);
-                    ChannelSummary {
-                        name: kind.name(),
-                        unit: kind.unit(),
-                        rms: rms(signal),
-                        peak: peak(signal),
-                        kurtosis: kurtosis(signal),
-                    }
+            channels: channels
+                .list()
+                .iter()
+                .filter_map(|channel| {
+                    channels.signal(channel).map(|signal| ChannelSummary::of(channel, signal))
                 })
-                .to_vec(),
+                .collect(),
+            averaged: leading.name().into_owned(),
             indicators: Shaft::BOTH.map(|shaft| {
-                let record = shafts.process(&channels.vertical_g, shaft, &ChainSettings::default());
+                let record = shafts.process(signal, shaft, &ChainSettings::default());
                 Some(record.ok()?.indicators)
             }),
             computing_time: stage_times.collect(),

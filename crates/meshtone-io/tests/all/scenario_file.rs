@@ -292,3 +292,45 @@ fn names_are_relative_to_the_scenario_file() {
     let scenario = read_with(&directory, "[quality]\nerrors_file = \"wheels/a.npz\"").unwrap();
     assert_eq!(scenario.quality.profile_errors, Some(written));
 }
+
+fn with_response(directory: &TempDir, csv: &str) -> Result<Scenario, ReadScenarioError> {
+    fs::write(directory.path().join("path.csv"), csv).unwrap();
+    read_with(directory, "[[sensor]]\nfrequency_response = { file = \"path.csv\" }")
+}
+
+/// What a file says becomes part of the scenario, whose text then needs no file.
+#[test]
+fn frequency_responses_are_read() {
+    let directory = tempdir().unwrap();
+    let csv = "# measured\nfrequency_hz, magnitude, phase_deg\n0, 1, 0\n10.5, 2e-3, -170\n";
+    let scenario = with_response(&directory, csv).unwrap();
+    let response = scenario.sensors[0].frequency_response.clone().unwrap();
+    let columns = [response.frequency_hz, response.magnitude, response.phase_deg];
+    assert_eq!(columns, [vec![0.0, 10.5], vec![1.0, 2e-3], vec![0.0, -170.0]]);
+    assert_eq!(Scenario::from_toml(&scenario.to_toml()), Ok(scenario));
+}
+
+#[test]
+fn frequency_responses_that_are_none() {
+    let directory = tempdir().unwrap();
+    let file = "sensor.frequency_response.file";
+    let head = "frequency_hz,magnitude,phase_deg\n";
+    let cases: [(&str, &[&str]); 6] = [
+        ("0,1,0\n1,1,0\n", &["first column `0`", "frequency_hz,magnitude,phase_deg"]),
+        ("frequency_hz,real,imaginary\n0,1,0\n", &["second column `real`", "must be magnitude"]),
+        ("frequency_hz,magnitude,phase_rad\n0,1,0\n", &["third column `phase_rad`"]),
+        (&format!("{head}0,1\n"), &["2 columns in line 2", "must have 3"]),
+        (&format!("{head}0,1,east\n"), &["says `east` in line 2", "finite number"]),
+        (&format!("{head}0,1,inf\n"), &["says `inf` in line 2"]),
+    ];
+    for (csv, words) in cases {
+        assert_refused(with_response(&directory, csv), file, 10, words);
+    }
+    let short = with_response(&directory, &format!("{head}0,1,0\n"));
+    assert_refused(short, "sensor.frequency_response", 10, &["1 rows", "at least 2"]);
+    let falling = with_response(&directory, &format!("{head}2,1,0\n1,1,0\n"));
+    let entry = "sensor.frequency_response.frequency_hz[1]";
+    assert_refused(falling, entry, 10, &["more than the frequency before it, 2.0 Hz"]);
+    let absent = read_with(&directory, "[sensor]\nfrequency_response = { file = \"absent.csv\" }");
+    assert_refused(absent, file, 10, &["there is no file", "absent.csv"]);
+}

@@ -5,12 +5,12 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 
 use crate::parquet_help::{Plain, parquet};
-use meshtone::scenario::{GearPair, Scenario};
-use meshtone::sensor::{ChannelKind, Channels};
+use meshtone::scenario::{GearPair, Scenario, Sensor};
+use meshtone::sensor::{ChannelKind, Channels, SensorSignal};
 use meshtone_io::ReadResultsError;
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::signals::{RATE_KEY, RUN_KEY, SCENARIO_KEY, VERSION_KEY, read_signals, write_signals};
-use meshtone_io::table::{CellType, Cells, TableColumn, TableWriter};
+use meshtone_io::table::{CellType, Cells, TableColumn, TableReader, TableWriter};
 use parquet::basic::{Compression, Encoding};
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
@@ -212,4 +212,24 @@ fn signals_of_an_earlier_version_are_read() {
     let read = ChannelKind::ALL.map(|kind| recorded.channels.get(kind).to_vec());
     assert_eq!(read, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(|value| vec![value; 3]));
     assert_eq!(recorded.scenario, scenario());
+}
+
+/// Sensors come first, in their order, and are read back by the scenario's names.
+#[test]
+fn sensors_are_the_first_columns() {
+    let directory = tempdir().unwrap();
+    let path = directory.path().join("signals.parquet");
+    let mut second = Sensor::default();
+    second.name = Some("casing".into());
+    let scenario = scenario().with_sensors(vec![Sensor::default(), second]);
+    let mut channels = channels();
+    let signal = |name: &str, value: f64| SensorSignal { name: name.into(), values_g: vec![value; 70_000] };
+    channels.sensors = vec![signal("support_vertical", 1.5), signal("casing", -2.5)];
+    write_signals(File::create(&path).unwrap(), &scenario, &channels).unwrap();
+    let table = TableReader::new(File::open(&path).unwrap()).unwrap();
+    let names: Vec<&str> = table.columns().iter().map(|column| column.name.as_str()).collect();
+    assert_eq!(names[..4], ["time_s", "support_vertical_g", "casing_g", "horizontal_g"]);
+    assert_eq!(names.len(), 9);
+    let recorded = read_signals(&path).unwrap();
+    assert_eq!((recorded.scenario, recorded.channels), (scenario, channels));
 }

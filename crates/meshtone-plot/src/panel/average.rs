@@ -1,7 +1,7 @@
-//! The vertical acceleration, averaged over the revolutions of either shaft.
+//! The first sensor's signal, or the vertical acceleration, averaged over the revolutions of either shaft.
 
 use meshtone::Stages;
-use meshtone::sensor::Channels;
+use meshtone::sensor::{Channel, Channels};
 use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
 use meshtone::wheel::WheelName;
 
@@ -15,7 +15,6 @@ use crate::ticks::Ticks;
 
 pub(super) const CURVE: Stroke = Stroke::solid(colour::BLUE, 1.2);
 const SECOND_CURVE: Stroke = Stroke::solid(colour::GREEN, 1.4);
-const ACCELERATION: &str = "Vertical acceleration (g)";
 const MARGIN: f64 = 0.06;
 
 /// Draws both averages on the same scale; or, where the speed changes and nothing can be averaged revolution by
@@ -26,6 +25,7 @@ pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], stages: &Stages, chann
         return;
     }
     let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
+    let quantity = quantity(&channels.leading().0);
     let averages = Shaft::BOTH.map(|shaft| Average::new(channels, &shafts, shaft));
     let values = averages.iter().flat_map(|average| average.values.iter().copied());
     let y = axes::range(values, MARGIN);
@@ -43,9 +43,22 @@ pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], stages: &Stages, chann
         let name = if wheel == WheelName::Pinion { "Pinion" } else { "Gear" };
         let since = format!("{name} angle since its {} (°)", damage::start_of_revolution(&damaged));
         axes.x_axis(canvas, &Ticks::every(45.0, 0.0, 360.0), &since);
-        axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), ACCELERATION, super::NAME_LEFT);
+        axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), &format!("{quantity} (g)"), super::NAME_LEFT);
         average.draw(canvas, &axes);
         axes.frame(canvas);
+    }
+}
+
+/// What a channel shows, as a title has it: a sensor's is its name.
+fn quantity(channel: &Channel) -> String {
+    match channel {
+        Channel::Sensor(name) => {
+            let words = name.replace('_', " ");
+            let mut letters = words.chars();
+            let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
+            first + letters.as_str()
+        }
+        _ => "Vertical acceleration".to_owned(),
     }
 }
 
@@ -59,7 +72,7 @@ struct Average {
 impl Average {
     fn new(channels: &Channels, shafts: &SimulatedShafts, shaft: Shaft) -> Self {
         // Where there is no whole revolution there is no average.
-        let average = shafts.average(&channels.vertical_g, shaft, &ChainSettings::default());
+        let average = shafts.average(channels.leading().1, shaft, &ChainSettings::default());
         let (values, revolutions) =
             average.map_or_else(|_| (Vec::new(), 0), |average| (average.values, average.revolutions));
         Self { values, revolutions, is_empty: channels.is_empty() }
@@ -100,12 +113,15 @@ fn over_time(canvas: &mut Canvas, areas: [Area; 2], channels: &Channels) {
         [channels.start_s, channels.start_s + 1.0]
     };
     let time = if time[1] > time[0] && time.iter().all(|&t| axes::drawable(t)) { time } else { [0.0, 1.0] };
-    let acceleration = [(channels.vertical_g.as_slice(), CURVE)];
+    let (channel, signal) = channels.leading();
+    let quantity = quantity(&channel);
+    let acceleration = [(signal, CURVE)];
     let speeds = [
         (channels.pinion_shaft_speed_hz.as_slice(), CURVE),
         (channels.gear_shaft_speed_hz.as_slice(), SECOND_CURVE),
     ];
-    signals(canvas, areas[0], time, "Vertical acceleration, at changing speed", ACCELERATION, &acceleration);
+    let title = format!("{quantity}, at changing speed");
+    signals(canvas, areas[0], time, &title, &format!("{quantity} (g)"), &acceleration);
     let axes = signals(canvas, areas[1], time, "Speed of both shafts", "Speed (Hz)", &speeds);
     let entries = [("pinion", CURVE), ("gear", SECOND_CURVE)]
         .map(|(text, stroke)| Entry { sample: Sample::Line(stroke), text });

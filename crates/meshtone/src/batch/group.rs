@@ -20,6 +20,7 @@ struct Ready<R> {
     index: usize,
     stages: Stages,
     model: ReducedModel,
+    outputs: Vec<Output>,
     recorder: R,
 }
 
@@ -39,17 +40,19 @@ pub(super) fn simulate_group<K: Keep>(
     let mut results = Vec::with_capacity(scenarios.len());
     let mut ready = Vec::with_capacity(scenarios.len());
     for (index, scenario) in scenarios {
-        match stages(&scenario) {
-            Ok(stages) => {
+        match stages(&scenario)
+            .and_then(|stages| keep.outputs(&stages.scenario).map(|outputs| (stages, outputs)))
+        {
+            Ok((stages, outputs)) => {
                 let model = stages.reduced_model();
                 let recorder = keep.recorder(&stages);
-                ready.push(Ready { index, stages, model, recorder });
+                ready.push(Ready { index, stages, model, outputs, recorder });
             }
             Err(error) => results.push((index, Err(error.into()))),
         }
     }
-    let outputs = keep.outputs();
-    let divergences = integrate_ready(&mut ready, &outputs, instructions);
+    give_as_many_outputs(&mut ready);
+    let divergences = integrate_ready(&mut ready, instructions);
     for (ready, divergence) in ready.into_iter().zip(divergences) {
         let kept = divergence.map(|()| keep.keep(ready.index, ready.stages, ready.recorder));
         results.push((ready.index, kept));
@@ -60,14 +63,20 @@ pub(super) fn simulate_group<K: Keep>(
 /// Fewest simulations that are faster side by side than one after the other.
 const FEWEST_LANES: usize = 2;
 
+/// Gives every simulation as many outputs as that with most has, for scenarios may list more sensors or fewer: what is added is 0,
+/// and nobody reads it.
+fn give_as_many_outputs<R>(ready: &mut [Ready<R>]) {
+    let most = ready.iter().map(|ready| ready.outputs.len()).max().unwrap_or(0);
+    ready.iter_mut().for_each(|ready| ready.outputs.resize(most, Output::Acceleration(Vec::new())));
+}
+
 fn integrate_ready<R: Recorder>(
     ready: &mut [Ready<R>],
-    outputs: &[Output],
     instructions: InstructionSet,
 ) -> Vec<Result<(), Error>> {
     if ready.len() < FEWEST_LANES {
         let single = |ready: &mut Ready<R>| {
-            let problem = ready.stages.problem(&ready.model, outputs);
+            let problem = ready.stages.problem(&ready.model, &ready.outputs);
             integrate(&problem, instructions, &mut ready.recorder)
                 .map_err(|diverged| ready.stages.divergence(diverged))
         };
@@ -78,7 +87,7 @@ fn integrate_ready<R: Recorder>(
     let mut nobody: [Nobody; LANES] = std::array::from_fn(|_| Nobody);
     let mut stages = Vec::with_capacity(ready.len());
     for ready in ready.iter_mut() {
-        problems.push(ready.stages.problem(&ready.model, outputs));
+        problems.push(ready.stages.problem(&ready.model, &ready.outputs));
         recorders.push(&mut ready.recorder);
         stages.push(&ready.stages);
     }

@@ -1,7 +1,8 @@
 //! What is kept of each simulation.
 
-use crate::operation::TimeGrid;
-use crate::sensor::{ChannelKind, Channels, channel_outputs};
+use crate::error::ScenarioError;
+use crate::scenario::Scenario;
+use crate::sensor::{Channel, ChannelKind, Channels, outputs_of_all};
 use crate::simulate::{Simulation, Stages};
 use crate::solver::{Block, Output, Recorder};
 
@@ -13,17 +14,25 @@ pub trait Keep: Sync {
     type Kept: Send;
 
     /// What is read off the solution.
-    fn outputs(&self) -> Vec<Output>;
+    ///
+    /// # Arguments
+    /// * `scenario` - what is simulated, with what its model ignores at its default
+    ///
+    /// # Errors
+    /// What is to be kept is not there, such as a sensor that is not listed.
+    fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError>;
 
     /// (bytes) About how large what is kept of one simulation is: how many results may wait for an earlier one depends on it.
     ///
     /// # Arguments
-    /// * `time` - the simulation's division of time
-    fn kept_bytes(&self, time: &TimeGrid) -> usize {
-        time.kept_samples().saturating_mul(self.outputs().len() * size_of::<f64>())
+    /// * `scenario` - what is simulated, which need not be valid
+    fn kept_bytes(&self, scenario: &Scenario) -> usize {
+        let outputs = self.outputs(scenario).map_or(0, |outputs| outputs.len());
+        scenario.time_grid().kept_samples().saturating_mul(outputs * size_of::<f64>())
     }
 
-    /// A recorder for a simulation; it is given the samples from the first kept one on.
+    /// A recorder for a simulation; it is given the samples from the first kept one on. A block may have further outputs behind
+    /// those that were asked for.
     ///
     /// # Arguments
     /// * `stages` - the simulation's stages before the time loop
@@ -46,15 +55,16 @@ impl Keep for KeepSimulation {
     type Recorder = Channels;
     type Kept = Simulation;
 
-    fn outputs(&self) -> Vec<Output> {
-        channel_outputs().to_vec()
+    fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
+        Ok(outputs_of_all(&scenario.sensors, scenario.model))
     }
 
     fn recorder(&self, stages: &Stages) -> Channels {
-        Channels::new(&stages.time)
+        stages.channels()
     }
 
     fn keep(&self, _: usize, stages: Stages, channels: Channels) -> Simulation {
+        let channels = stages.measured(channels);
         let timings = stages.timings.clone();
         Simulation { stages, channels, timings }
     }
@@ -63,13 +73,13 @@ impl Keep for KeepSimulation {
 /// Keeps some of the channels, in single precision.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KeepChannels {
-    channels: Vec<ChannelKind>,
+    channels: Vec<Channel>,
 }
 
 impl KeepChannels {
-    /// Keeps `channels`, in that order.
-    pub fn new(channels: impl Into<Vec<ChannelKind>>) -> Self {
-        Self { channels: channels.into() }
+    /// Keeps `channels`, in that order; a sensor's of every scenario, or the scenario gives an error that lists its channels.
+    pub fn new(channels: impl IntoIterator<Item = impl Into<Channel>>) -> Self {
+        Self { channels: channels.into_iter().map(Into::into).collect() }
     }
 }
 
@@ -87,40 +97,85 @@ pub struct Signals {
     pub sampling_rate_hz: f64,
     /// (s) Time of the first kept sample since the start of the simulation.
     pub start_s: f64,
-    /// The signals, in the order of [`KeepChannels`]; units as [`ChannelKind`] has them.
+    /// The signals, in the order of [`KeepChannels`]; units as [`Channel`] has them.
     pub channels: Vec<Vec<f32>>,
 }
 
-impl Recorder for Signals {
+/// The signals of one simulation on their way to [`Signals`].
+pub struct SignalRecorder {
+    channels: Vec<(Channel, Recorded)>,
+}
+
+/// One of them.
+enum Recorded {
+    /// As it is kept.
+    Final(Vec<f32>),
+    /// The motion of a sensor's place, of which the sensor makes its signal in double precision.
+    Raw(Vec<f64>),
+}
+
+impl SignalRecorder {
+    /// Room for some channels of a simulation.
+    ///
+    /// # Arguments
+    /// * `channels` - which, in the order of their outputs
+    /// * `stages` - the simulation's stages before the time loop
+    fn new(channels: &[Channel], stages: &Stages) -> Self {
+        let samples = stages.time.kept_samples();
+        let room = |channel: &Channel| match channel {
+            Channel::Fixed(_) => Recorded::Final(Vec::with_capacity(samples)),
+            Channel::Sensor(_) => Recorded::Raw(Vec::with_capacity(samples)),
+        };
+        Self { channels: channels.iter().map(|channel| (channel.clone(), room(channel))).collect() }
+    }
+
+    /// The signals, once all samples are recorded.
+    ///
+    /// # Arguments
+    /// * `stages` - as of [`Keep::recorder`]
+    pub fn finish(self, stages: &Stages) -> Signals {
+        let single = |(channel, recorded): (Channel, Recorded)| match recorded {
+            Recorded::Final(values) => values,
+            Recorded::Raw(raw) => stages.shown(&channel, raw).into_iter().map(|value| value as f32).collect(),
+        };
+        let time = &stages.time;
+        Signals {
+            sampling_rate_hz: time.sampling_rate_hz,
+            start_s: time.first_kept_sample as f64 * time.step_s(),
+            channels: self.channels.into_iter().map(single).collect(),
+        }
+    }
+}
+
+impl Recorder for SignalRecorder {
     fn record(&mut self, block: &Block) {
-        for (index, channel) in self.channels.iter_mut().enumerate() {
-            channel.extend(block.output(index).iter().map(|&value| value as f32));
+        for (index, (_, channel)) in self.channels.iter_mut().enumerate() {
+            let values = block.output(index);
+            match channel {
+                Recorded::Final(channel) => channel.extend(values.iter().map(|&value| value as f32)),
+                Recorded::Raw(channel) => channel.extend_from_slice(values),
+            }
         }
     }
 }
 
 impl Keep for KeepChannels {
-    type Recorder = Signals;
+    type Recorder = SignalRecorder;
     type Kept = Signals;
 
-    fn outputs(&self) -> Vec<Output> {
-        self.channels.iter().map(|channel| channel.output()).collect()
+    fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
+        self.channels.iter().map(|channel| channel.output(&scenario.sensors, scenario.model)).collect()
     }
 
-    fn kept_bytes(&self, time: &TimeGrid) -> usize {
-        time.kept_samples().saturating_mul(self.channels.len() * size_of::<f32>())
+    fn kept_bytes(&self, scenario: &Scenario) -> usize {
+        scenario.time_grid().kept_samples().saturating_mul(self.channels.len() * size_of::<f32>())
     }
 
-    fn recorder(&self, stages: &Stages) -> Signals {
-        let time = &stages.time;
-        Signals {
-            sampling_rate_hz: time.sampling_rate_hz,
-            start_s: time.first_kept_sample as f64 * time.step_s(),
-            channels: self.channels.iter().map(|_| Vec::with_capacity(time.kept_samples())).collect(),
-        }
+    fn recorder(&self, stages: &Stages) -> SignalRecorder {
+        SignalRecorder::new(&self.channels, stages)
     }
 
-    fn keep(&self, _: usize, _: Stages, signals: Signals) -> Signals {
-        signals
+    fn keep(&self, _: usize, stages: Stages, recorder: SignalRecorder) -> Signals {
+        recorder.finish(&stages)
     }
 }

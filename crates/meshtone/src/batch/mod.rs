@@ -11,5 +11,5 @@ mod plan;
 mod run;
 
 pub use crate::solver::{Block, Output, Recorder};
-pub use keep::{Keep, KeepChannels, KeepSimulation, Signals};
+pub use keep::{Keep, KeepChannels, KeepSimulation, SignalRecorder, Signals};
 pub use run::{Control, simulate_many};

@@ -187,7 +187,7 @@ where
         let mut bytes = 0;
         while !window_is_full(window.len(), bytes, self.threads) {
             let Some(scenario) = state.source.next() else { break };
-            bytes += self.keep.kept_bytes(&scenario.time_grid());
+            bytes += self.keep.kept_bytes(&scenario);
             window.push((state.numbered, scenario));
             state.numbered += 1;
         }

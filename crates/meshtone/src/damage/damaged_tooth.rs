@@ -217,7 +217,7 @@ pub fn damaged_teeth(faults: &[Fault], teeth: &Teeth, seed: u64) -> Result<Vec<D
                 let on_tooth: Vec<_> = on_tooth.map(|(other, fault)| (other, fault.damage.kind())).collect();
                 of_tooth.refuse_overlap(&on_tooth)
             })
-            .map_err(|error| error.in_fault(number, faults.len()))?;
+            .map_err(|error| error.in_entry("fault", number, faults.len()))?;
     }
     Ok(damaged)
 }

@@ -140,7 +140,7 @@ pub(crate) fn check_faults(faults: &[Fault], gears: &Gears) -> Check {
             Some((number, other)) => Err(second_damage(fault, number, other)),
             None => fault.check(gears),
         };
-        checked.map_err(|error| error.in_fault(index, faults.len()))?;
+        checked.map_err(|error| error.in_entry("fault", index, faults.len()))?;
     }
     Ok(())
 }

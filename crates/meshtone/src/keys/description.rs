@@ -43,8 +43,12 @@ pub enum KeyKind {
     TableOrFalse,
     /// A table of the arrays `time_s` and `value`, or of a `file`.
     Profile,
+    /// A table of the arrays `frequency_hz`, `magnitude` and `phase_deg`, or of a `file`.
+    FrequencyResponse,
     /// An array of rows of numbers.
     Matrix,
+    /// A text.
+    Text,
     /// The name of a file.
     File,
 }

@@ -39,6 +39,9 @@ pub(crate) trait NumberFiles {
     /// Times and the values at them.
     fn times_and_values(&self, name: &str) -> Result<[Vec<f64>; 2], FileProblem>;
 
+    /// Frequencies, and magnitude and phase in degrees at them.
+    fn frequencies_magnitudes_phases(&self, name: &str) -> Result<[Vec<f64>; 3], FileProblem>;
+
     /// A matrix of the pinion and one of the gear.
     fn matrices(&self, name: &str) -> Result<[ErrorTable; 2], FileProblem>;
 
@@ -52,6 +55,10 @@ pub(crate) struct NoFiles;
 impl NumberFiles for NoFiles {
     fn times_and_values(&self, _name: &str) -> Result<[Vec<f64>; 2], FileProblem> {
         Err(no_files("{ time_s = […], value = […] }"))
+    }
+
+    fn frequencies_magnitudes_phases(&self, _name: &str) -> Result<[Vec<f64>; 3], FileProblem> {
+        Err(no_files("{ frequency_hz = […], magnitude = […], phase_deg = […] }"))
     }
 
     fn matrices(&self, _name: &str) -> Result<[ErrorTable; 2], FileProblem> {

@@ -149,7 +149,23 @@ macro_rules! optional {
         }
     )+};
 }
-optional!(f64, 0.0; u64, 0; [f64; 13], [0.0; 13]; Vec<f64>, Vec::new());
+optional!(f64, 0.0; u32, 0; u64, 0; [f64; 13], [0.0; 13]; Vec<f64>, Vec::new());
+
+/// A text that may be left out.
+impl KeyValue for Option<String> {
+    fn read(&mut self, value: &TomlValue<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
+        *self = Some(value.string()?.to_string());
+        Ok(())
+    }
+
+    fn write(&self) -> Written {
+        self.as_deref().map_or(Written::Nothing, |text| Written::Value(toml::Value::from(text).to_string()))
+    }
+
+    fn kind() -> KeyKind {
+        KeyKind::Text
+    }
+}
 
 /// A table of keys of its own.
 impl<S: Keys> KeyValue for S {

@@ -2,7 +2,7 @@
 
 use toml::{Table, Value};
 
-use super::{Scenario, ScenarioError};
+use super::{Scenario, ScenarioError, Sensor};
 
 /// A number of a scenario.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,7 +35,7 @@ impl Scenario {
     /// The number at a key of the scenario file, defaults included.
     ///
     /// # Arguments
-    /// * `key` - dotted, as in the file; of several faults, `fault[1].…` is the second
+    /// * `key` - dotted, as in the file; of several faults, `fault[1].…` is the second, and so of sensors
     ///
     /// None where there is no such key in this scenario, or no single number at it; where a seed is more than 2⁶³ − 1, which no
     /// number of a TOML table can be, none at any key.
@@ -167,10 +167,16 @@ impl Scenario {
     /// A seed that is too large for a number of the table.
     fn table(&self) -> Result<Table, ScenarioError> {
         const MOST: u64 = i64::MAX as u64;
-        let seeds = [("seed", Some(self.seed)), ("quality.seed", self.quality.seed)];
-        if let Some((key, Some(seed))) =
-            seeds.into_iter().find(|(_, seed)| seed.is_some_and(|seed| seed > MOST))
-        {
+        let of_sensor = |(index, sensor): (usize, &Sensor)| {
+            let key = match self.sensors.len() {
+                1 => "sensor.noise_seed".to_owned(),
+                _ => format!("sensor[{index}].noise_seed"),
+            };
+            (key, sensor.noise_seed)
+        };
+        let seeds = [("seed".to_owned(), Some(self.seed)), ("quality.seed".to_owned(), self.quality.seed)];
+        let mut seeds = seeds.into_iter().chain(self.sensors.iter().enumerate().map(of_sensor));
+        if let Some((key, Some(seed))) = seeds.find(|(_, seed)| seed.is_some_and(|seed| seed > MOST)) {
             let problem =
                 format!("must be at most {MOST}, where a scenario's numbers are read or set by their keys");
             return Err(ScenarioError::new(key, seed, problem).with_help("take a smaller seed"));

@@ -1,6 +1,6 @@
 //! What a model ignores.
 
-use super::{Model, Scenario, ScenarioWarning};
+use super::{Model, Scenario, ScenarioWarning, Sensor};
 use crate::keys::Keys;
 
 impl Scenario {
@@ -48,7 +48,23 @@ fn reset_ignored(scenario: &mut Scenario) -> Vec<String> {
         reset(&mut scenario.rig, "rig", model),
         reset(&mut scenario.solver, "solver", model),
     ];
-    sections.concat()
+    let sensors = scenario.sensors.len();
+    let of_sensor = |(index, sensor): (usize, &mut Sensor)| {
+        let name = if sensors > 1 { format!("sensor[{index}]") } else { "sensor".to_owned() };
+        reset_sensor(sensor, &name, model)
+    };
+    let sensors = scenario.sensors.iter_mut().enumerate().flat_map(of_sensor);
+    sections.concat().into_iter().chain(sensors.collect::<Vec<_>>()).collect()
+}
+
+/// The same of a sensor, which keeps its name though that may come of its place.
+fn reset_sensor(sensor: &mut Sensor, key: &str, model: Model) -> Vec<String> {
+    let name = sensor.name();
+    let changed = reset(sensor, key, model);
+    if sensor.name() != name {
+        sensor.name = Some(name);
+    }
+    changed
 }
 
 fn reset<S: Keys>(section: &mut S, name: &str, model: Model) -> Vec<String> {

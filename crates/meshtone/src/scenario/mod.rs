@@ -21,6 +21,7 @@ pub use crate::keys::{FileProblem, KeyDescription, KeyKind};
 pub use crate::machine::{DampingRatio, Rig, Shaft, Support, WheelInertia};
 pub use crate::model::Model;
 pub use crate::operation::{Operation, Profile, Solver};
+pub use crate::sensor::{FrequencyResponse, ResponseInput, Sensor, SensorDirection, SensorPlace};
 pub use crate::wheel::{
     ERROR_POINTS, FlankRelief, FoundationCoefficients, Gears, Material, ProfileErrors, Quality, ReliefShape,
     TipRelief, WheelDeviations, WheelName,
@@ -51,7 +52,7 @@ use crate::operation::{Motion, TimeGrid};
 pub struct Scenario {
     /// Which model of the mesh.
     pub model: Model,
-    /// Seed of every random draw (profile errors, fluctuations, destruction noise).
+    /// Seed of every random draw (profile errors, fluctuations, destruction noise, sensors' noise).
     pub seed: u64,
     /// The two wheels.
     pub gears: Gears,
@@ -63,6 +64,8 @@ pub struct Scenario {
     pub faults: Vec<Fault>,
     /// The rig around the wheels.
     pub rig: Rig,
+    /// What is listed of sensors; the channels that every simulation has are there without them.
+    pub sensors: Vec<Sensor>,
     /// Sampling, settling and initial state.
     pub solver: Solver,
 }
@@ -100,6 +103,7 @@ impl Scenario {
             quality: Quality::default(),
             faults: Vec::new(),
             rig: Rig::default(),
+            sensors: Vec::new(),
             solver: Solver::default(),
         }
     }
@@ -126,6 +130,14 @@ impl Scenario {
     /// * `seed` - of every random draw
     pub fn with_seed(self, seed: u64) -> Self {
         Self { seed, ..self }
+    }
+
+    /// The same scenario with other sensors.
+    ///
+    /// # Arguments
+    /// * `sensors` - in the order of their channels
+    pub fn with_sensors(self, sensors: Vec<Sensor>) -> Self {
+        Self { sensors, ..self }
     }
 
     /// Division of time: sampling, length, what is discarded.

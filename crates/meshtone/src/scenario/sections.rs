@@ -1,6 +1,6 @@
 //! The sections of the scenario file and their keys.
 
-use super::{Gears, Model, Operation, Quality, Rig, Scenario, Solver};
+use super::{Gears, Model, Operation, Quality, Rig, Scenario, Sensor, Solver};
 use crate::damage::keys_of_every_fault;
 use crate::keys::{KeyDescription, Keys, Row, describe, field, row};
 
@@ -15,6 +15,7 @@ impl Keys for Scenario {
             quality: Quality::start(),
             faults: Vec::new(),
             rig: Rig::start(),
+            sensors: Vec::new(),
             solver: Solver::start(),
         }
     }
@@ -30,7 +31,7 @@ impl Keys for Scenario {
             row(
                 "seed",
                 "",
-                "the seed of every random draw: profile errors, fluctuations, roughness of a destroyed flank",
+                "the seed of every random draw: profile errors, fluctuations, roughness of a destroyed flank, sensors' noise",
                 field!(seed),
             ),
         ]
@@ -65,6 +66,7 @@ pub fn sections() -> Vec<SectionDescription> {
         section("quality", describe::<Quality>()),
         section("fault", keys_of_every_fault()),
         section("rig", describe::<Rig>()),
+        section("sensor", describe::<Sensor>()),
         section("solver", describe::<Solver>()),
     ]
 }

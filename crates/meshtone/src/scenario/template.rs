@@ -1,7 +1,7 @@
 //! Commented scenario files to start from.
 
 use super::to_toml::Style;
-use super::{Fault, GearPair, Scenario};
+use super::{Fault, GearPair, Scenario, Sensor};
 use crate::damage::{PaperRig, damage_kinds};
 use crate::keys::{Keys, commented};
 
@@ -12,6 +12,13 @@ const HEAD: &str = "\
 # What stands behind \"# \" is a comment. What stands directly behind \"#\" is a key that may be left
 # out: take the \"#\" away to set it.
 
+";
+
+const WITHOUT_SENSORS: &str = "\
+# Sensors of a rig may be listed, each as a section [[sensor]]: their signals then come first. All
+# its keys may be left out.
+#
+# [[sensor]]
 ";
 
 /// The names that [`template`] knows: a healthy pair, and each kind of damage.
@@ -88,5 +95,17 @@ impl Style for Commented {
 
     fn fault(&self, fault: &Fault) -> String {
         fault.commented()
+    }
+
+    /// As a comment throughout: keys alone, without their section, would be another section's.
+    fn without_sensors(&self) -> Option<String> {
+        let keys: String = commented(&Sensor::start())
+            .lines()
+            .map(|line| match line.strip_prefix('#') {
+                Some(key) if !key.starts_with(' ') => format!("# {key}\n"),
+                _ => format!("{line}\n"),
+            })
+            .collect();
+        Some(format!("{WITHOUT_SENSORS}{keys}"))
     }
 }

@@ -31,18 +31,30 @@ impl Scenario {
             format!("[operation]\n{}", style.keys(&self.operation)),
             format!("[quality]\n{}", style.keys(&self.quality)),
         ];
-        let header = if self.faults.len() > 1 { "[[fault]]" } else { "[fault]" };
-        sections.extend(self.faults.iter().map(|fault| format!("{header}\n{}", style.fault(fault))));
+        let faults = entry_header("fault", self.faults.len());
+        sections.extend(self.faults.iter().map(|fault| format!("{faults}\n{}", style.fault(fault))));
         sections.push(format!("[rig]\n{}", style.keys(&self.rig)));
+        let sensors = entry_header("sensor", self.sensors.len());
+        sections.extend(self.sensors.iter().map(|sensor| format!("{sensors}\n{}", style.keys(sensor))));
+        if self.sensors.is_empty() {
+            sections.extend(style.without_sensors());
+        }
         sections.push(format!("[solver]\n{}", style.keys(&self.solver)));
         sections.join("\n")
     }
+}
+
+/// What stands above an entry of a list: a single one is a section like others, with keys without a number.
+fn entry_header(name: &str, entries: usize) -> String {
+    if entries > 1 { format!("[[{name}]]") } else { format!("[{name}]") }
 }
 
 /// How the keys of a section are written.
 pub(super) trait Style {
     fn keys<S: Keys>(&self, section: &S) -> String;
     fn fault(&self, fault: &Fault) -> String;
+    /// What stands where no sensor is listed.
+    fn without_sensors(&self) -> Option<String>;
 }
 
 /// Every key with its value.
@@ -55,5 +67,9 @@ impl Style for Plain {
 
     fn fault(&self, fault: &Fault) -> String {
         fault.write()
+    }
+
+    fn without_sensors(&self) -> Option<String> {
+        None
     }
 }

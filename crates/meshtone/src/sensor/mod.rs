@@ -1,15 +1,26 @@
 //! What is read off the solution: the channels, as sensors on the rig would show them.
 //!
-//! A channel is a row of one table; its name is the same in the file of signals, in the list of a data set's plan, in an
-//! experiment and in Python.
+//! A channel that every simulation has is a row of one table; its name is the same in the file of signals, in the list of a data
+//! set's plan, in an experiment and in Python. Sensors that the scenario lists have channels of their own, `NAME_g`: the motion of
+//! their place, and what the sensor makes of it ([`measure()`]).
 
+mod channel;
 mod contact_figures;
+mod frequency_response;
+mod measure;
+mod parameters;
 
+pub use channel::{Channel, UnknownChannel};
 pub use contact_figures::ContactFigures;
+pub use frequency_response::FrequencyResponse;
+pub use measure::{Measurement, measure};
+pub(crate) use parameters::check_sensors;
+pub use parameters::{ResponseInput, Sensor, SensorDirection, SensorPlace};
 
 use std::f64::consts::TAU;
 
 use crate::machine::coordinates::*;
+use crate::model::Model;
 use crate::operation::TimeGrid;
 use crate::solver::{Axis, Block, Output, Recorder};
 
@@ -60,6 +71,8 @@ macro_rules! channels {
             /// (s) Time of the first kept sample since the start of the simulation.
             pub start_s: f64,
             $(#[doc = concat!("(", $unit, ") ", $meaning, ".")] pub $name: Vec<f64>,)+
+            /// What the scenario's sensors show, in their order.
+            pub sensors: Vec<SensorSignal>,
         }
 
         impl Channels {
@@ -113,6 +126,62 @@ pub fn channel_outputs() -> [Output; ChannelKind::ALL.len()] {
     ChannelKind::ALL.map(ChannelKind::output)
 }
 
+/// What [`Channels`] of a scenario with sensors reads off the solution: that of [`channel_outputs`], then the sensors'.
+///
+/// # Arguments
+/// * `sensors` - the scenario's
+/// * `model` - of the mesh
+pub(crate) fn outputs_of_all(sensors: &[Sensor], model: Model) -> Vec<Output> {
+    channel_outputs().into_iter().chain(sensors.iter().map(|sensor| sensor.output(model))).collect()
+}
+
+/// The signal of a sensor.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SensorSignal {
+    /// The sensor's name.
+    pub name: String,
+    /// (g) What it shows.
+    pub values_g: Vec<f64>,
+}
+
+impl SensorSignal {
+    /// The name of its channel, with the unit at the end.
+    pub fn channel(&self) -> String {
+        parameters::channel_of(&self.name)
+    }
+}
+
+impl Sensor {
+    /// What is read off the solution for it: its place's acceleration over g, or the force that goes through its frequency response.
+    ///
+    /// # Arguments
+    /// * `model` - of the mesh: under `linear` and `published` there are no supports that move, and the wheels are read
+    pub fn output(&self, model: Model) -> Output {
+        if self.response_input == ResponseInput::Force {
+            return Output::MeshForce;
+        }
+        let (axis, [pinion, gear], [pinion_support, gear_support]) = match self.direction {
+            SensorDirection::Horizontal => (Axis::X, [X_PINION, X_GEAR], [X_PINION_SUPPORT, X_GEAR_SUPPORT]),
+            SensorDirection::Vertical => (Axis::Y, [Y_PINION, Y_GEAR], [Y_PINION_SUPPORT, Y_GEAR_SUPPORT]),
+            // No support moves along the shafts.
+            SensorDirection::Axial => (Axis::Z, [Z_PINION, Z_GEAR], [Z_PINION, Z_GEAR]),
+        };
+        let of = |coordinates: &[usize]| {
+            let mut weights = vec![0.0; COORDINATES_WITH_SUPPORTS];
+            coordinates.iter().for_each(|&coordinate| weights[coordinate] = PER_G);
+            Output::Acceleration(weights)
+        };
+        match (model, self.at) {
+            (Model::Linear | Model::Published, _) | (Model::Contact, SensorPlace::Support) => {
+                Output::Sensor(axis, PER_G)
+            }
+            (Model::Contact, SensorPlace::PinionSupport) => of(&[pinion_support]),
+            (Model::Contact, SensorPlace::GearSupport) => of(&[gear_support]),
+            (Model::Contact, SensorPlace::Wheels) => of(&[pinion, gear]),
+        }
+    }
+}
+
 impl Channels {
     /// Empty channels, with room for the kept samples.
     ///
@@ -128,6 +197,18 @@ impl Channels {
             channels.get_mut(kind).reserve_exact(time.kept_samples());
         }
         channels
+    }
+
+    /// The same with room for some sensors too, which take the outputs behind those of [`ChannelKind::ALL`].
+    ///
+    /// # Arguments
+    /// * `sensors` - the scenario's
+    pub fn with_sensors(mut self, sensors: &[Sensor]) -> Self {
+        let room = self.vertical_g.capacity();
+        let signal =
+            |sensor: &Sensor| SensorSignal { name: sensor.name(), values_g: Vec::with_capacity(room) };
+        self.sensors = sensors.iter().map(signal).collect();
+        self
     }
 
     /// Number of samples.
@@ -156,6 +237,9 @@ impl Recorder for Channels {
     fn record(&mut self, block: &Block) {
         for (index, kind) in ChannelKind::ALL.into_iter().enumerate() {
             self.get_mut(kind).extend_from_slice(block.output(index));
+        }
+        for (index, sensor) in self.sensors.iter_mut().enumerate() {
+            sensor.values_g.extend_from_slice(block.output(ChannelKind::ALL.len() + index));
         }
     }
 }

@@ -4,8 +4,8 @@ use rustfft::num_complex::Complex64;
 
 use super::SignalError;
 use super::check::check_finite;
-use super::fourier::{inverse_complex, real_spectrum};
 use super::order_spectrum;
+use crate::fourier::{inverse_complex, real_spectrum};
 
 /// Analytic signal: the signal and, as its imaginary part, its Hilbert transform.
 ///

@@ -21,7 +21,6 @@ mod edge;
 mod envelope;
 mod error;
 mod filter_bank;
-mod fourier;
 mod indicators;
 mod interpolate;
 mod kaiser;

@@ -3,7 +3,7 @@
 use rustfft::num_complex::Complex64;
 
 use super::SignalError;
-use super::fourier::{from_real_spectrum, real_spectrum};
+use crate::fourier::{from_real_spectrum, real_spectrum};
 
 /// What belongs to the regular part.
 #[derive(Debug, Clone, PartialEq, Eq)]

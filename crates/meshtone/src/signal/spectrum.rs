@@ -2,7 +2,7 @@
 
 use super::SignalError;
 use super::check::check_finite;
-use super::fourier::real_spectrum;
+use crate::fourier::real_spectrum;
 
 /// Single-sided amplitude spectrum of one revolution: the amplitude of every order.
 ///

@@ -7,7 +7,7 @@ use super::{Trace, static_stages};
 use crate::error::Error;
 use crate::machine::coordinates::{COORDINATES, CoordinateVector};
 use crate::scenario::Scenario;
-use crate::sensor::{Channels, channel_outputs};
+use crate::sensor::Channels;
 use crate::simulate::{Simulation, Stages, stages};
 use crate::solver::{Block, Output, Recorder};
 
@@ -53,9 +53,9 @@ pub fn trace_at(scenario: &Scenario, average_rate_hz: f64) -> Result<(Simulation
     forces(&mut trace, &stages);
     let model = stages.reduced_model();
     let mut recorder = StateRecorder::new(&stages);
-    let outputs: Vec<Output> = channel_outputs().into_iter().chain(state_outputs()).collect();
+    let outputs: Vec<Output> = stages.channel_outputs().into_iter().chain(state_outputs()).collect();
     stages.integrate(&model, &outputs, stages.time.first_kept_sample, &mut recorder)?;
-    let channels = recorder.finish(&mut trace);
+    let channels = stages.measured(recorder.finish(&mut trace));
     average(&mut trace, &stages, &channels, average_rate_hz);
     trace.scalar("elapsed_s", start.elapsed().as_secs_f64());
     let timings = stages.timings.clone();
@@ -110,6 +110,8 @@ fn state_outputs() -> Vec<Output> {
 /// Records channels and, in windows, the state in all 13 coordinates.
 struct StateRecorder {
     channels: Channels,
+    /// Number of the first output that is one of the state.
+    first_state: usize,
     kept: usize,
     samples: usize,
     acceleration: Vec<[f64; COORDINATES]>,
@@ -124,7 +126,8 @@ struct StateRecorder {
 impl StateRecorder {
     fn new(stages: &Stages) -> Self {
         Self {
-            channels: Channels::new(&stages.time),
+            channels: stages.channels(),
+            first_state: stages.channel_outputs().len(),
             kept: stages.time.first_kept_sample,
             samples: stages.time.samples,
             acceleration: Vec::new(),
@@ -162,7 +165,7 @@ impl StateRecorder {
 impl Recorder for StateRecorder {
     fn record(&mut self, block: &Block) {
         self.channels.record(block);
-        let states = channel_outputs().len();
+        let states = self.first_state;
         for k in 0..block.len() {
             let sample = block.first_sample + k;
             let (since, until) = (sample - self.kept, self.samples - sample);

@@ -2,9 +2,10 @@
 
 use super::HybridError;
 use crate::batch::{Control, Keep, simulate_many};
+use crate::error::ScenarioError;
 use crate::model::Model;
 use crate::scenario::Scenario;
-use crate::sensor::ChannelKind;
+use crate::sensor::{Channel, ChannelKind};
 use crate::signal::{AngularSettings, ChainSettings, Interpolation, Record, SeparationSettings};
 use crate::simulate::Stages;
 use crate::solver::{Block, Output, Recorder};
@@ -13,8 +14,8 @@ use crate::wheel::WheelName;
 /// How a difference signal is taken from a simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DifferenceChain {
-    /// The channel.
-    pub channel: ChannelKind,
+    /// The channel: of a sensor, one that every scenario lists.
+    pub channel: Channel,
     /// (S/s) The rig's sampling rate, to which the simulated signal is brought first; at most the simulation's.
     pub sampling_rate_hz: f64,
     /// Over whose revolutions the signal is averaged: those of the wheel that carries the fault.
@@ -30,7 +31,8 @@ impl DifferenceChain {
     /// # Arguments
     /// * `sampling_rate_hz` - (S/s)
     pub fn new(sampling_rate_hz: f64) -> Self {
-        Self { channel: ChannelKind::Vertical, sampling_rate_hz, wheel: WheelName::Gear, separation: None }
+        let channel = ChannelKind::Vertical.into();
+        Self { channel, sampling_rate_hz, wheel: WheelName::Gear, separation: None }
     }
 
     /// How signals, simulated or measured, are read at equal angles: under `published` by PCHIP as in the paper, which flattens a
@@ -120,8 +122,9 @@ impl Keep for KeepDifference<'_> {
     type Recorder = ChannelAndSpeed;
     type Kept = Result<Vec<f64>, HybridError>;
 
-    fn outputs(&self) -> Vec<Output> {
-        vec![self.0.channel.output(), ChannelKind::PinionShaftSpeed.output()]
+    fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
+        let channel = self.0.channel.output(&scenario.sensors, scenario.model)?;
+        Ok(vec![channel, ChannelKind::PinionShaftSpeed.output()])
     }
 
     fn recorder(&self, _: &Stages) -> ChannelAndSpeed {
@@ -129,6 +132,7 @@ impl Keep for KeepDifference<'_> {
     }
 
     fn keep(&self, _: usize, stages: Stages, kept: ChannelAndSpeed) -> Self::Kept {
-        Ok(self.0.record(&stages, &kept.channel, &kept.pinion_speed_hz)?.parts.difference)
+        let channel = stages.shown(&self.0.channel, kept.channel);
+        Ok(self.0.record(&stages, &channel, &kept.pinion_speed_hz)?.parts.difference)
     }
 }

@@ -31,6 +31,7 @@ mod scenario_from_toml;
 mod scenario_round_trip;
 mod scenario_template;
 mod scenario_validate;
+mod sensors;
 mod settling;
 mod signal;
 mod signal_chain;

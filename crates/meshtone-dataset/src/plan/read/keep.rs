@@ -1,8 +1,8 @@
 //! The table `[keep]`.
 
 use meshtone::scenario::Scenario;
-use meshtone::sensor::ChannelKind;
-use meshtone_io::channel_name::read_channel;
+use meshtone::sensor::{Channel, ChannelKind};
+use meshtone_io::channel_name::{accelerations, read_channel};
 use meshtone_io::experiment::Tuned;
 use meshtone_io::wheel_name::read_wheel;
 use meshtone_toml::{ReadResult, TomlTable};
@@ -27,12 +27,12 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
         return Err(table.error("sampling_rate_hz", problem).with_help("raise solver.sampling_rate_hz"));
     }
     let channels = match table.optional("channels") {
-        None => vec![ChannelKind::Horizontal, ChannelKind::Vertical],
+        None => default_channels(base),
         Some(value) => {
             let chosen = value
                 .array()?
                 .iter()
-                .map(|value| read_channel(value, &ChannelKind::ALL))
+                .map(|value| read_channel(value, &Channel::all(&base.sensors)))
                 .collect::<ReadResult<Vec<_>>>()?;
             if let Some(twice) = (1..chosen.len()).find(|&n| chosen[..n].contains(&chosen[n])) {
                 return Err(value.array()?[twice].error("is named twice"));
@@ -53,7 +53,7 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
     let teeth = u64::from(base.gears.teeth(wheel));
     let analysed = table
         .optional("analysed")
-        .map(|value| read_channel(&value, &ChannelKind::ACCELERATIONS))
+        .map(|value| read_channel(&value, &accelerations(&base.sensors)))
         .transpose()?;
     let sidebands = table
         .optional("sidebands")
@@ -67,7 +67,8 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
         duration_s: duration_s.map(|value| value.number()).transpose()?,
         channels,
         wheel,
-        analysed: analysed.unwrap_or(tuned.map_or(ChannelKind::Vertical, |tuned| tuned.channel)),
+        analysed: analysed
+            .unwrap_or_else(|| tuned.map_or(Channel::leading(&base.sensors), |tuned| tuned.channel.clone())),
         sidebands: sidebands.map_or(tuned.map_or(2, |tuned| tuned.sidebands), |count| count as usize),
         shaft_orders: orders.map_or(tuned.map_or(7, |tuned| tuned.shaft_orders), |last| last as usize),
         average: flag("average")?.unwrap_or(true),
@@ -84,6 +85,14 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
     }
     agree(table, &keep, tuned)?;
     Ok(keep)
+}
+
+/// The listed sensors, or the horizontal and the vertical acceleration.
+fn default_channels(base: &Scenario) -> Vec<Channel> {
+    if base.sensors.is_empty() {
+        return [ChannelKind::Horizontal, ChannelKind::Vertical].map(Channel::from).into();
+    }
+    base.sensors.iter().map(|sensor| Channel::Sensor(sensor.name())).collect()
 }
 
 /// An enhancement is only what it is for the signals that it was tuned to.

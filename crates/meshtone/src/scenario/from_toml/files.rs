@@ -1,6 +1,6 @@
 //! The files that a scenario file may name.
 
-use super::super::{FileProblem, Profile, ProfileErrors, WheelDeviations};
+use super::super::{FileProblem, FrequencyResponse, Profile, ProfileErrors, WheelDeviations};
 use crate::error_table::ErrorTable;
 use crate::keys::NumberFiles;
 
@@ -38,6 +38,21 @@ pub trait ScenarioFiles {
     /// What is wrong with the file. Order of times and values are checked by
     /// [`Scenario::validate`](crate::scenario::Scenario::validate).
     fn profile(&self, name: &str) -> Result<Profile, FileProblem>;
+
+    /// The frequency response in a file named by `sensor.frequency_response`. Whoever has no such files leaves it out.
+    ///
+    /// # Arguments
+    /// * `name` - as written in the scenario file
+    ///
+    /// # Errors
+    /// What is wrong with the file. Order of frequencies and values are checked by
+    /// [`Scenario::validate`](crate::scenario::Scenario::validate).
+    fn frequency_response(&self, name: &str) -> Result<FrequencyResponse, FileProblem> {
+        Err(FileProblem::new(
+            format!("names the file {name}, but no frequency responses are read here"),
+            "write the values here as { frequency_hz = […], magnitude = […], phase_deg = […] }",
+        ))
+    }
 }
 
 /// The numbers in the files that a scenario names.
@@ -46,6 +61,11 @@ pub(super) struct Numbers<'f>(pub(super) &'f dyn ScenarioFiles);
 impl NumberFiles for Numbers<'_> {
     fn times_and_values(&self, name: &str) -> Result<[Vec<f64>; 2], FileProblem> {
         self.0.profile(name).map(|profile| [profile.time_s, profile.value])
+    }
+
+    fn frequencies_magnitudes_phases(&self, name: &str) -> Result<[Vec<f64>; 3], FileProblem> {
+        let response = self.0.frequency_response(name)?;
+        Ok([response.frequency_hz, response.magnitude, response.phase_deg])
     }
 
     fn matrices(&self, name: &str) -> Result<[ErrorTable; 2], FileProblem> {

@@ -7,7 +7,7 @@ use meshtone_toml::{ReadResult, TomlDocument, TomlTable};
 pub use self::files::ScenarioFiles;
 
 use self::files::Numbers;
-use super::{Fault, MemoryLimit, Scenario, ScenarioError};
+use super::{Fault, MemoryLimit, Scenario, ScenarioError, Sensor};
 use crate::keys::{Keys, NoFiles, NumberFiles, read_keys};
 use crate::wheel::WheelDeviations;
 
@@ -134,6 +134,7 @@ fn read_scenario(root: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<Sc
     section(&mut scenario.quality, root, "quality", files)?;
     scenario.faults = Fault::list_from_table(root)?;
     section(&mut scenario.rig, root, "rig", files)?;
+    scenario.sensors = Sensor::list_from_table(root, files)?;
     section(&mut scenario.solver, root, "solver", files)?;
     Ok(scenario)
 }

@@ -10,6 +10,7 @@ pub use memory_limit::{MEMORY_LIMIT_BYTES, MemoryLimit};
 use super::{Gears, Model, Scenario, ScenarioError, ScenarioWarning, WheelName};
 use crate::damage::check_faults;
 use crate::keys::{Keys, check_keys};
+use crate::sensor::check_sensors;
 
 impl Scenario {
     /// Checks every value, alone and against the others, as far as no tooth geometry is needed.
@@ -83,6 +84,7 @@ fn check_values(scenario: &Scenario) -> Result<(), ScenarioError> {
     check_faults(&scenario.faults, &scenario.gears)?;
     known_to_the_model(scenario)?;
     scenario.rig.check(&scenario.gears)?;
+    check_sensors(&scenario.sensors, scenario.model)?;
     check_keys(&scenario.solver, "solver")
 }
 

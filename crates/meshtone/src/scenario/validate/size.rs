@@ -1,6 +1,6 @@
 //! How large a simulation is.
 
-use super::super::Scenario;
+use super::super::{Scenario, Sensor};
 use super::largest_cause;
 use super::memory_limit::{MemoryLimit, in_words};
 use crate::keys::Check;
@@ -8,6 +8,9 @@ use crate::operation::CycleGrid;
 
 /// Signals that are kept of every sample after settling.
 const KEPT_CHANNELS: f64 = 8.0;
+/// Numbers that are held for every kept sample of a sensor, beside its signal while it is filtered: what it is padded to, its
+/// spectrum and the transform's workspace.
+const FILTERED_CHANNELS: f64 = 8.0;
 /// Numbers that are held for every simulated sample: motor angle and brake torque.
 const EXCITATION_CHANNELS: f64 = 2.0;
 /// Numbers that are tabulated for every point of the coarse grid over a gear revolution.
@@ -32,7 +35,7 @@ impl Scenario {
     }
 
     /// (bytes) Estimate of the memory that the simulation needs: 8 signals of every kept sample,
-    /// the excitation of every sample, the tables over a gear revolution and the tooth profiles,
+    /// those of listed sensors and what filtering them takes, the excitation of every sample, the tables over a gear revolution and the tooth profiles,
     /// in double precision.
     ///
     /// `u64::MAX` stands for anything above it.
@@ -46,7 +49,9 @@ impl Scenario {
     pub fn memory_estimate_bytes(&self) -> u64 {
         let time = self.time_grid();
         let cycle = CycleGrid::new(self.gears.pinion_teeth, self.gears.gear_teeth, time.sampling_rate_hz);
-        let numbers = time.kept_samples() as f64 * KEPT_CHANNELS
+        let filters = |sensor: &Sensor| sensor.resonance_hz.is_some() || sensor.frequency_response.is_some();
+        let filtered = if self.sensors.iter().any(filters) { FILTERED_CHANNELS } else { 0.0 };
+        let numbers = time.kept_samples() as f64 * (KEPT_CHANNELS + self.sensors.len() as f64 + filtered)
             + time.samples as f64 * EXCITATION_CHANNELS
             + cycle.points_per_gear_revolution as f64 * GRID_CHANNELS
             + 2.0 * self.gears.points_per_tooth as f64 * PROFILE_CHANNELS;

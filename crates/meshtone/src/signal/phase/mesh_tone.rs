@@ -6,9 +6,9 @@ use rustfft::num_complex::Complex64;
 
 use super::ShaftPhase;
 use super::mesh_tone_checks::{check, check_fading, check_tone};
+use crate::fourier::{convenient_length, inverse_complex, real_spectrum};
 use crate::interpolation::NotAKnotSpline;
 use crate::signal::SignalError;
-use crate::signal::fourier::{convenient_length, inverse_complex, real_spectrum};
 
 /// Part of the band on each side of its middle that is passed unchanged; from there it falls as a cosine to its ends.
 const FLAT: f64 = 0.5;

@@ -9,6 +9,9 @@ use super::python::{HEAD, argument_type, attribute_type, class_name, has_default
 /// Keys that are called otherwise in Python: two sections have a `seed`.
 const RENAMED: [(&str, &str, &str); 1] = [("quality", "seed", "wheels_seed")];
 
+/// Sections that are lists, whose entries are objects of classes of their own.
+const LISTS: [&str; 2] = ["fault", "sensor"];
+
 /// An argument: a key of the file, its section, and its name in Python.
 struct Argument {
     section: &'static str,
@@ -18,7 +21,7 @@ struct Argument {
 
 fn arguments() -> Vec<Argument> {
     let mut arguments = Vec::new();
-    for section in sections().into_iter().filter(|section| section.name != "fault") {
+    for section in sections().into_iter().filter(|section| !LISTS.contains(&section.name)) {
         for key in section.keys {
             if key.key.contains('.') || key.kind == KeyKind::File {
                 continue;
@@ -37,7 +40,7 @@ fn arguments() -> Vec<Argument> {
 fn tables() -> String {
     let mut text = String::new();
     let mut known: Vec<String> = Vec::new();
-    for section in sections().iter().filter(|section| section.name != "fault") {
+    for section in sections().iter().filter(|section| !LISTS.contains(&section.name)) {
         for table in &section.keys {
             let name = class_name(&table.key);
             let is_table = matches!(table.kind, KeyKind::Table | KeyKind::TableOrFalse);
@@ -70,7 +73,7 @@ pub fn text() -> String {
     let mut text = format!(
         "\"\"\"The keys of a scenario.\n\n{HEAD}\n\"\"\"\n\nfrom __future__ import annotations\n\n\
          from collections.abc import Mapping, Sequence\nfrom typing import Any, Literal, TypedDict, Union\n\n\
-         import numpy as np\nimport numpy.typing as npt\n\nfrom .faults import Fault\n\n\
+         import numpy as np\nimport numpy.typing as npt\n\nfrom ._sensor import Sensor\nfrom .faults import Fault\n\n\
          Profile = Mapping[str, Union[Sequence[float], npt.NDArray[np.float64]]]\n\
          \"\"\"``time_s`` and ``value``: speed or torque against time.\"\"\"\n"
     );
@@ -96,10 +99,11 @@ pub fn text() -> String {
         writeln!(text, "    {}: {}{none}", argument.name, attribute_type(&argument.key)).unwrap();
     }
     text.push_str("\n    def __init__(\n        self,\n        *,\n");
-    let mut faults = "        fault: Fault | None = None,\n        faults: Sequence[Fault] | None = None,\n";
+    let mut lists = "        fault: Fault | None = None,\n        faults: Sequence[Fault] | None = None,\n        \
+                     sensors: Sequence[Sensor] | None = None,\n";
     for Argument { name, key, .. } in &arguments {
         if !key.required {
-            text.push_str(std::mem::take(&mut faults));
+            text.push_str(std::mem::take(&mut lists));
         }
         let kind = argument_type(key);
         let default = if key.required { "" } else { " | None = None" };
@@ -109,12 +113,13 @@ pub fn text() -> String {
         "        **unknown: Any,\n    ) -> None:\n        \"\"\"A scenario; ``None`` is the default of a key.\n\n        \
          Parameters\n        ----------\n",
     );
-    let mut faults = "        fault : a fault, optional\n            The damage, if there is but one; a healthy pair by default.\n        \
+    let mut lists = "        fault : a fault, optional\n            The damage, if there is but one; a healthy pair by default.\n        \
          faults : sequence of faults, optional\n            All damage, instead of ``fault``: any number of faults, on any teeth of \
-         either wheel.\n";
+         either wheel.\n        sensors : sequence of Sensor, optional\n            Sensors on the rig, whose signals come first; none by \
+         default.\n";
     for Argument { name, key, .. } in &arguments {
         if !key.required {
-            text.push_str(std::mem::take(&mut faults));
+            text.push_str(std::mem::take(&mut lists));
         }
         text.push_str(&parameter("        ", key, name, !key.required));
     }

@@ -7,6 +7,7 @@ mod damage_py;
 mod guide;
 mod keys_py;
 mod python;
+mod sensor_py;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -37,6 +38,11 @@ fn python_arguments_of_a_scenario() {
 #[test]
 fn python_classes_of_damage() {
     check("python/meshtone/_damage.py", &damage_py::text());
+}
+
+#[test]
+fn python_class_of_a_sensor() {
+    check("python/meshtone/_sensor.py", &sensor_py::text());
 }
 
 #[test]

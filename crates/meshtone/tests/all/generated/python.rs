@@ -47,6 +47,8 @@ pub fn argument_type(key: &KeyDescription) -> String {
         KeyKind::Table => class_name(&key.key),
         KeyKind::TableOrFalse => format!("{} | Literal[False]", class_name(&key.key)),
         KeyKind::Profile => "Profile".into(),
+        KeyKind::FrequencyResponse => "Mapping[str, Any]".into(),
+        KeyKind::Text => "str".into(),
         KeyKind::Matrix => "npt.ArrayLike".into(),
         other => panic!("a type for {other:?}"),
     }
@@ -82,6 +84,7 @@ pub fn parameter(indent: &str, key: &KeyDescription, name: &str, optional: bool)
         KeyKind::NumberOrNumbers(count) => format!("float or sequence of {count} floats"),
         KeyKind::TableOrFalse => format!("{} or False", class_name(&key.key)),
         KeyKind::Profile => "dict of time_s and value".into(),
+        KeyKind::FrequencyResponse => "dict of frequency_hz, magnitude and phase_deg".into(),
         KeyKind::Matrix => "array of float64, shape (100, teeth)".into(),
         _ => argument_type(key),
     };

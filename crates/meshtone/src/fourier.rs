@@ -40,7 +40,7 @@ fn plan<P>(len: usize, make: impl FnOnce(&mut Planners) -> P) -> P {
 }
 
 /// `X_k = Σ_n x_n e^(−2πikn/N)` for k = 0 … ⌊N/2⌋.
-pub(super) fn real_spectrum(values: &[f64]) -> Vec<Complex64> {
+pub(crate) fn real_spectrum(values: &[f64]) -> Vec<Complex64> {
     let plan = plan(values.len(), |planners| planners.real.plan_fft_forward(values.len()));
     let mut input = values.to_vec();
     let mut output = plan.make_output_vec();
@@ -51,7 +51,7 @@ pub(super) fn real_spectrum(values: &[f64]) -> Vec<Complex64> {
 }
 
 /// The `len` real values with the spectrum of [`real_spectrum`], divided by `len`.
-pub(super) fn from_real_spectrum(mut spectrum: Vec<Complex64>, len: usize) -> Vec<f64> {
+pub(crate) fn from_real_spectrum(mut spectrum: Vec<Complex64>, len: usize) -> Vec<f64> {
     let plan = plan(len, |planners| planners.real.plan_fft_inverse(len));
     // Real values have real ends of the spectrum; rounding may have left something there.
     spectrum[0].im = 0.0;
@@ -66,14 +66,14 @@ pub(super) fn from_real_spectrum(mut spectrum: Vec<Complex64>, len: usize) -> Ve
 }
 
 /// `x_n = Σ_k X_k e^(2πikn/N)`, not divided by N.
-pub(super) fn inverse_complex(mut spectrum: Vec<Complex64>) -> Vec<Complex64> {
+pub(crate) fn inverse_complex(mut spectrum: Vec<Complex64>) -> Vec<Complex64> {
     let len = spectrum.len();
     plan(len, |planners| planners.complex.plan_fft_inverse(len)).process(&mut spectrum);
     spectrum
 }
 
 /// The least length of at least `len` whose only prime factors are 2, 3 and 5, and even.
-pub(super) fn convenient_length(len: usize) -> usize {
+pub(crate) fn convenient_length(len: usize) -> usize {
     let mut best = len.max(2).next_power_of_two();
     let mut fives = 1;
     while fives < best {

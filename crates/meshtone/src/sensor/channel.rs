@@ -1,0 +1,184 @@
+//! Which signal: one that every simulation has, or a sensor's.
+
+use std::borrow::Cow;
+
+use super::parameters::{channel_of, is_name};
+use super::{ChannelKind, Channels, Sensor};
+use crate::error::ScenarioError;
+use crate::model::Model;
+use crate::solver::Output;
+
+/// A signal of a simulation, by its name.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Channel {
+    /// One that every simulation has.
+    Fixed(ChannelKind),
+    /// That of the sensor of this name.
+    Sensor(String),
+}
+
+impl From<ChannelKind> for Channel {
+    fn from(kind: ChannelKind) -> Self {
+        Self::Fixed(kind)
+    }
+}
+
+/// A text that names no channel.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("there is no channel `{name}`; there are {}", known.join(", "))]
+pub struct UnknownChannel {
+    /// The text.
+    pub name: String,
+    /// The channels that there are.
+    pub known: Vec<String>,
+}
+
+impl Channel {
+    /// The channels of a simulation, sensors first.
+    ///
+    /// # Arguments
+    /// * `sensors` - the scenario's
+    ///
+    /// ```
+    /// use meshtone::scenario::Sensor;
+    /// use meshtone::sensor::Channel;
+    ///
+    /// let names: Vec<_> = Channel::all(&[Sensor::default()]).iter().map(|channel| channel.name().into_owned()).collect();
+    /// assert_eq!(names[..2], ["support_vertical_g", "horizontal_g"]);
+    /// ```
+    pub fn all(sensors: &[Sensor]) -> Vec<Self> {
+        let sensors = sensors.iter().map(|sensor| Self::Sensor(sensor.name()));
+        sensors.chain(ChannelKind::ALL.map(Self::Fixed)).collect()
+    }
+
+    /// The channel that is looked at first: the first sensor's, or the vertical acceleration where none is listed.
+    ///
+    /// # Arguments
+    /// * `sensors` - the scenario's
+    pub fn leading(sensors: &[Sensor]) -> Self {
+        sensors.first().map_or(Self::Fixed(ChannelKind::Vertical), |sensor| Self::Sensor(sensor.name()))
+    }
+
+    /// The channel of a name, `NAME_g` for a sensor's, whatever sensors a scenario has.
+    ///
+    /// # Arguments
+    /// * `name` - with the unit at its end
+    ///
+    /// ```
+    /// use meshtone::sensor::{Channel, ChannelKind};
+    ///
+    /// assert_eq!(Channel::named("vertical_g"), Some(Channel::Fixed(ChannelKind::Vertical)));
+    /// assert_eq!(Channel::named("bearing_1_g"), Some(Channel::Sensor("bearing_1".into())));
+    /// assert_eq!(Channel::named("bearing 1"), None);
+    /// ```
+    pub fn named(name: &str) -> Option<Self> {
+        let fixed = ChannelKind::ALL.into_iter().find(|kind| kind.name() == name).map(Self::Fixed);
+        let sensor =
+            || name.strip_suffix("_g").filter(|name| is_name(name)).map(str::to_owned).map(Self::Sensor);
+        fixed.or_else(sensor)
+    }
+
+    /// The channel of a name, of a simulation with some sensors.
+    ///
+    /// # Arguments
+    /// * `name` - with the unit at its end
+    /// * `sensors` - the scenario's
+    ///
+    /// # Errors
+    /// There is none of that name; the error lists those that there are.
+    pub fn of(name: &str, sensors: &[Sensor]) -> Result<Self, UnknownChannel> {
+        let all = Self::all(sensors);
+        all.iter().find(|channel| channel.name() == name).cloned().ok_or_else(|| UnknownChannel {
+            name: name.to_owned(),
+            known: all.iter().map(|channel| channel.name().into_owned()).collect(),
+        })
+    }
+
+    /// Name with the unit at its end, the same wherever a channel is named.
+    pub fn name(&self) -> Cow<'static, str> {
+        match self {
+            Self::Fixed(kind) => kind.name().into(),
+            Self::Sensor(name) => channel_of(name).into(),
+        }
+    }
+
+    /// Unit.
+    pub fn unit(&self) -> &'static str {
+        match self {
+            Self::Fixed(kind) => kind.unit(),
+            Self::Sensor(_) => "g",
+        }
+    }
+
+    /// Meaning, in a few words.
+    pub fn meaning(&self) -> &'static str {
+        match self {
+            Self::Fixed(kind) => kind.meaning(),
+            Self::Sensor(_) => "what the sensor shows, over 9.81 m/s²",
+        }
+    }
+
+    /// Whether it is an acceleration: a sensor's, or one that a sensor on all supports or wheels would show.
+    pub fn is_acceleration(&self) -> bool {
+        match self {
+            Self::Fixed(kind) => ChannelKind::ACCELERATIONS.contains(kind),
+            Self::Sensor(_) => true,
+        }
+    }
+
+    /// What is read off the solution for it; of a sensor, before [`measure`](super::measure()).
+    ///
+    /// # Arguments
+    /// * `sensors` - the scenario's
+    /// * `model` - of the mesh
+    ///
+    /// # Errors
+    /// A sensor that the scenario does not have.
+    pub fn output(&self, sensors: &[Sensor], model: Model) -> Result<Output, ScenarioError> {
+        match self {
+            Self::Fixed(kind) => Ok(kind.output()),
+            Self::Sensor(name) => match sensors.iter().find(|sensor| sensor.name() == *name) {
+                Some(sensor) => Ok(sensor.output(model)),
+                None => Err(self.unknown_among(sensors)),
+            },
+        }
+    }
+
+    fn unknown_among(&self, sensors: &[Sensor]) -> ScenarioError {
+        let known = Self::all(sensors).iter().map(|channel| channel.name().into_owned()).collect();
+        let unknown = UnknownChannel { name: self.name().into_owned(), known };
+        ScenarioError::new("sensor", "", unknown.to_string())
+            .with_help("list the sensor, or name a channel that is there")
+    }
+}
+
+impl Channels {
+    /// The signal of a channel; none of a sensor that there is not.
+    ///
+    /// # Arguments
+    /// * `channel` - which of them
+    pub fn signal(&self, channel: &Channel) -> Option<&[f64]> {
+        match channel {
+            Channel::Fixed(kind) => Some(self.get(*kind)),
+            Channel::Sensor(name) => {
+                let sensor = self.sensors.iter().find(|sensor| sensor.name == *name);
+                sensor.map(|sensor| sensor.values_g.as_slice())
+            }
+        }
+    }
+
+    /// The channels that there are, sensors first.
+    pub fn list(&self) -> Vec<Channel> {
+        let sensors = self.sensors.iter().map(|sensor| Channel::Sensor(sensor.name.clone()));
+        sensors.chain(ChannelKind::ALL.map(Channel::Fixed)).collect()
+    }
+
+    /// What is looked at first, and its channel: the first sensor's signal, or the vertical acceleration where none is listed.
+    pub fn leading(&self) -> (Channel, &[f64]) {
+        match self.sensors.first() {
+            Some(sensor) => (Channel::Sensor(sensor.name.clone()), &sensor.values_g),
+            None => (Channel::Fixed(ChannelKind::Vertical), &self.vertical_g),
+        }
+    }
+}

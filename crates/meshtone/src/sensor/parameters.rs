@@ -1,0 +1,339 @@
+//! A sensor: where it sits, and what it makes of the motion there.
+
+use meshtone_toml::{ReadResult, TomlTable};
+
+use super::ChannelKind;
+use super::frequency_response::FrequencyResponse;
+use crate::error::ScenarioError;
+use crate::keys::{
+    Check, Keys, NumberFiles, Range, Row, by_name, check_keys, field, read_keys, require, row,
+};
+use crate::model::Model;
+
+/// An accelerometer on the rig.
+///
+/// ```
+/// use meshtone::scenario::{GearPair, Scenario, Sensor};
+///
+/// let mut sensor = Sensor::default();
+/// sensor.resonance_hz = Some(12e3);
+/// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 })
+///     .with_sensors(vec![sensor]);
+/// scenario.solver.sampling_rate_hz = 2e4;
+/// let channels = meshtone::simulate(&scenario)?.channels;
+/// assert_eq!(channels.sensors[0].channel(), "support_vertical_g");
+/// assert_eq!(channels.sensors[0].values_g.len(), channels.vertical_g.len());
+/// # Ok::<(), meshtone::Error>(())
+/// ```
+///
+/// Later versions may know more of it: start from [`Sensor::default`] and set fields.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Sensor {
+    /// Its name, of which its channel's is made: `NAME_g`. Default: place and direction.
+    pub name: Option<String>,
+    /// Where it sits. Default the supports' mean.
+    pub at: SensorPlace,
+    /// In which direction it measures. Default vertical.
+    pub direction: SensorDirection,
+    /// (Hz) Mounted resonance. Default: none.
+    pub resonance_hz: Option<f64>,
+    /// (-) Damping of the mounted resonance over the critical one. Default 0.02.
+    pub resonance_damping_ratio: f64,
+    /// (g/√Hz) Density of its noise, white and normal. Default 0.
+    pub noise_density_g_per_rthz: f64,
+    /// Seed of the noise. Default: the scenario's seed.
+    pub noise_seed: Option<u64>,
+    /// (g) Largest acceleration, of either sign, that it shows. Default: none.
+    pub range_g: Option<f64>,
+    /// (bits) Resolution over the whole range, from minus to plus. Default: none.
+    pub bits: Option<u32>,
+    /// What was measured of the path to it. Default: none.
+    pub frequency_response: Option<FrequencyResponse>,
+    /// What goes through [`Self::frequency_response`]. Default the acceleration of its place.
+    pub response_input: ResponseInput,
+}
+
+/// Where a sensor sits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum SensorPlace {
+    /// On both supports: their mean.
+    #[default]
+    Support,
+    /// On the support of the pinion's shaft.
+    PinionSupport,
+    /// On the support of the gear's shaft.
+    GearSupport,
+    /// On the wheels themselves: the sum of both, as published.
+    Wheels,
+}
+
+by_name!(SensorPlace, [
+    "support" => SensorPlace::Support,
+    "pinion-support" => SensorPlace::PinionSupport,
+    "gear-support" => SensorPlace::GearSupport,
+    "wheels" => SensorPlace::Wheels,
+]);
+
+/// In which direction a sensor measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum SensorDirection {
+    /// Across the shafts, square to the line between them.
+    #[default]
+    Vertical,
+    /// From shaft to shaft.
+    Horizontal,
+    /// Along the shafts.
+    Axial,
+}
+
+by_name!(SensorDirection, [
+    "vertical" => SensorDirection::Vertical,
+    "horizontal" => SensorDirection::Horizontal,
+    "axial" => SensorDirection::Axial,
+]);
+
+/// What goes through a measured frequency response.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ResponseInput {
+    /// The acceleration of the sensor's place; magnitudes have no unit.
+    #[default]
+    Acceleration,
+    /// The force along the line of action; magnitudes are in (m/s²)/N.
+    Force,
+}
+
+by_name!(ResponseInput, ["acceleration" => ResponseInput::Acceleration, "force" => ResponseInput::Force]);
+
+impl Default for Sensor {
+    fn default() -> Self {
+        Self {
+            name: None,
+            at: SensorPlace::default(),
+            direction: SensorDirection::default(),
+            resonance_hz: None,
+            resonance_damping_ratio: 0.02,
+            noise_density_g_per_rthz: 0.0,
+            noise_seed: None,
+            range_g: None,
+            bits: None,
+            frequency_response: None,
+            response_input: ResponseInput::default(),
+        }
+    }
+}
+
+impl Keys for Sensor {
+    fn start() -> Self {
+        Self::default()
+    }
+
+    fn rows() -> Vec<Row<Self>> {
+        vec![
+            row("name", "", "the sensor's name; its signal is the channel `NAME_g`", field!(name))
+                .otherwise("place and direction, such as `gear_support_vertical`")
+                .rule("a letter, then letters, digits and `_`; no other channel's")
+                .example("\"accelerometer_1\""),
+            row(
+                "at",
+                "",
+                "where it sits: on both supports (their mean), on one, or on the wheels (their sum); under linear and published, \
+                 which have no supports that move, the wheels are read whatever it says",
+                field!(at),
+            )
+            .ignored_by(&["linear", "published"]),
+            row(
+                "direction",
+                "",
+                "in which direction it measures; under contact axial only at the wheels, for supports move across the shafts",
+                field!(direction),
+            ),
+            row("resonance_hz", "Hz", "the natural frequency of the sensor on its mount", field!(resonance_hz))
+                .otherwise("none")
+                .range(Range::positive().slip_above(1e7))
+                .example("12000.0"),
+            row(
+                "resonance_damping_ratio",
+                "-",
+                "the damping of that resonance over the critical one",
+                field!(resonance_damping_ratio),
+            )
+            .range(Range::positive().slip_above(10.0)),
+            row(
+                "noise_density_g_per_rthz",
+                "g/√Hz",
+                "the density of its noise, white and normal: the standard deviation is the density times the root of half the \
+                 sampling rate",
+                field!(noise_density_g_per_rthz),
+            )
+            .range(Range::not_negative().slip_above(1e3)),
+            row("noise_seed", "", "the seed of the noise alone", field!(noise_seed))
+                .otherwise("the scenario's `seed`")
+                .example("1"),
+            row("range_g", "g", "the largest acceleration of either sign that it shows", field!(range_g))
+                .otherwise("none")
+                .range(Range::positive().slip_above(1e9))
+                .example("50.0"),
+            row("bits", "", "the resolution: the range from minus to plus has 2 to that power steps", field!(bits))
+                .otherwise("none")
+                .range(Range::from_to(8.0, 32.0))
+                .rule("with range_g")
+                .example("16"),
+            row(
+                "frequency_response",
+                "Hz, -, °",
+                "what was measured of the path to the sensor: magnitude and phase over frequency, straight lines between the \
+                 points, the phase unwrapped; outside them nothing passes. A CSV file of three columns, frequency_hz, \
+                 magnitude and phase_deg, is { file = \"….csv\" }",
+                field!(frequency_response),
+            )
+            .otherwise("none")
+            .rule("at least 2 points, frequencies increasing from 0 on, magnitudes ≥ 0")
+            .example("{ frequency_hz = [0.0, 20000.0], magnitude = [1.0, 1.0], phase_deg = [0.0, 0.0] }"),
+            row(
+                "response_input",
+                "",
+                "what goes through the frequency response: the acceleration of the sensor's place, magnitudes without unit; or the \
+                 force along the line of action, magnitudes in (m/s²)/N, whatever `at` and `direction` say",
+                field!(response_input),
+            )
+            .rule("\"force\" with frequency_response"),
+        ]
+    }
+}
+
+impl Sensor {
+    /// Reads the sensors of a file, as the scenario file has them: any number of `[[sensor]]`.
+    ///
+    /// # Arguments
+    /// * `table` - what the sections are in
+    /// * `files` - loads the files that they name
+    ///
+    /// # Errors
+    /// An unknown key, a value of the wrong type; ranges are checked with the whole scenario.
+    pub(crate) fn list_from_table(table: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<Vec<Self>> {
+        let read = |table: &TomlTable<'_>| {
+            let mut sensor = Self::start();
+            read_keys(&mut sensor, table, files).map(|()| sensor)
+        };
+        table.tables("sensor")?.into_iter().map(|table| table.read(read)).collect()
+    }
+
+    /// Its name, given or by place and direction.
+    pub fn name(&self) -> String {
+        self.name
+            .clone()
+            .unwrap_or_else(|| format!("{}_{}", self.at.name().replace('-', "_"), self.direction.name()))
+    }
+
+    /// The name of its signal's channel, with the unit at the end.
+    ///
+    /// ```
+    /// use meshtone::scenario::{Sensor, SensorPlace};
+    ///
+    /// let mut sensor = Sensor::default();
+    /// sensor.at = SensorPlace::GearSupport;
+    /// assert_eq!(sensor.channel(), "gear_support_vertical_g");
+    /// ```
+    pub fn channel(&self) -> String {
+        channel_of(&self.name())
+    }
+
+    /// Whether what it shows depends on the motion of its place.
+    fn reads_its_place(&self) -> bool {
+        self.response_input == ResponseInput::Acceleration
+    }
+
+    fn check(&self, model: Model) -> Check {
+        check_keys(self, "sensor")?;
+        if let Some(name) = &self.name {
+            check_name(name)?;
+        }
+        let on_support = self.at != SensorPlace::Wheels;
+        if model == Model::Contact
+            && on_support
+            && self.reads_its_place()
+            && self.direction == SensorDirection::Axial
+        {
+            let problem = "cannot be felt at a support, which moves across the shafts alone";
+            return Err(ScenarioError::new("sensor.direction", "\"axial\"", problem)
+                .with_help("write sensor.at = \"wheels\", or take another direction"));
+        }
+        if let (Some(bits), None) = (self.bits, self.range_g) {
+            let problem = "needs sensor.range_g: the steps divide the range";
+            return Err(
+                ScenarioError::new("sensor.bits", bits, problem).with_help("write sensor.range_g too")
+            );
+        }
+        if self.response_input == ResponseInput::Force && self.frequency_response.is_none() {
+            let problem = "needs sensor.frequency_response: a force is no acceleration";
+            return Err(ScenarioError::new("sensor.response_input", "\"force\"", problem)
+                .with_help("write sensor.frequency_response too, with magnitudes in (m/s²)/N"));
+        }
+        Ok(())
+    }
+}
+
+/// The name of a sensor's channel.
+pub(super) fn channel_of(name: &str) -> String {
+    format!("{name}_g")
+}
+
+/// Most letters of a name.
+const LONGEST_NAME: usize = 64;
+
+/// Whether a text can be a sensor's name, whatever others there are.
+pub(super) fn is_name(name: &str) -> bool {
+    name.len() <= LONGEST_NAME
+        && name.starts_with(|first: char| first.is_ascii_alphabetic())
+        && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_')
+}
+
+/// Names whose channels would be taken for others: those of columns beside the channels, and of earlier versions' channels.
+const TAKEN: [&str; 6] = [
+    "average",
+    "difference",
+    "enhanced_difference",
+    "horizontal_acceleration",
+    "vertical_acceleration",
+    "axial_acceleration",
+];
+
+fn check_name(name: &str) -> Check {
+    let refused = |problem: String| Err(ScenarioError::new("sensor.name", format!("{name:?}"), problem));
+    if !is_name(name) {
+        return refused(format!(
+            "must be a letter, then letters without accents, digits and `_`, at most {LONGEST_NAME} in all"
+        ));
+    }
+    let channel = channel_of(name);
+    if TAKEN.contains(&name) || ChannelKind::ALL.iter().any(|kind| kind.name() == channel) {
+        return refused(format!(
+            "its channel {channel} would be taken for another of that name; take another name"
+        ));
+    }
+    Ok(())
+}
+
+/// Whether every sensor can be, alone and beside the others.
+///
+/// # Arguments
+/// * `sensors` - all of a scenario
+/// * `model` - of the mesh, which says where sensors can be
+pub(crate) fn check_sensors(sensors: &[Sensor], model: Model) -> Check {
+    for (index, sensor) in sensors.iter().enumerate() {
+        sensor.check(model).map_err(|error| error.in_entry("sensor", index, sensors.len()))?;
+        let name = sensor.name();
+        if let Some(other) = sensors[..index].iter().position(|other| other.name() == name) {
+            let problem = format!("is the name of sensor[{other}] already; no two have the same channel");
+            return Err(ScenarioError::new(format!("sensor[{index}].name"), format!("{name:?}"), problem)
+                .with_help("give it a name of its own"));
+        }
+    }
+    Ok(())
+}
+
+/// (-) A number of a frequency response must be finite, and must not be less than 0.
+pub(super) fn finite_and_not_negative(key: &str, value: f64) -> Check {
+    require(key, value, value.is_finite() && value >= 0.0, "must be a finite number, 0 or more")
+}

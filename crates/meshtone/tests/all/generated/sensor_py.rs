@@ -1,0 +1,32 @@
+//! `python/meshtone/_sensor.py`: the class of a sensor.
+
+use std::fmt::Write;
+
+use meshtone::scenario::{KeyDescription, sections};
+
+use super::python::{HEAD, argument_type, lines, parameter};
+
+/// The file.
+pub fn text() -> String {
+    let keys: Vec<KeyDescription> = sections()
+        .into_iter()
+        .filter(|section| section.name == "sensor")
+        .flat_map(|section| section.keys)
+        .filter(|key| !key.key.contains('.'))
+        .collect();
+    let mut text = format!(
+        "\"\"\"The class of a sensor.\n\n{HEAD}\n\"\"\"\n\nfrom __future__ import annotations\n\n\
+         from collections.abc import Mapping\nfrom dataclasses import dataclass\nfrom typing import Any, Literal\n\n\n\
+         @dataclass(frozen=True)\nclass Sensor:\n"
+    );
+    text.push_str(&lines("    ", "\"\"\"An accelerometer on the rig; ``None`` is the default of a key."));
+    text.push_str("\n    Parameters\n    ----------\n");
+    for key in &keys {
+        text.push_str(&parameter("    ", key, &key.key, true));
+    }
+    text.push_str("    \"\"\"\n\n");
+    for key in &keys {
+        writeln!(text, "    {}: {} | None = None", key.key, argument_type(key)).unwrap();
+    }
+    text
+}
