@@ -6,8 +6,10 @@ use realfft::RealFftPlanner;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
 
-/// The longest signal whose plans are kept: averages are shorter, and a whole recording is transformed once.
-const LONGEST_KEPT: usize = 1 << 17;
+/// The longest of the short signals: averages.
+const LONGEST_SHORT: usize = 1 << 17;
+/// The longest signal whose plans are kept; of a longer one they would hold more than some 20 MB in every thread.
+const LONGEST_KEPT: usize = 1 << 19;
 
 /// Makes plans of transforms, and keeps those that it has made.
 struct Planners {
@@ -22,16 +24,18 @@ impl Planners {
     }
 }
 
-/// A plan for `len` values, that of the thread's last transform where it had as many: the chain transforms signals of one
-/// length over and over, and planning takes longer than transforming.
+/// A plan for `len` values, that of the thread's last transform, short or long, where it had as many: signals of one length are
+/// transformed over and over, whole ones by sensors and averages by the chain, and planning takes longer than transforming.
 fn plan<P>(len: usize, make: impl FnOnce(&mut Planners) -> P) -> P {
     thread_local! {
-        static LAST: RefCell<Planners> = RefCell::new(Planners::new(0));
+        static LAST_SHORT: RefCell<Planners> = RefCell::new(Planners::new(0));
+        static LAST_LONG: RefCell<Planners> = RefCell::new(Planners::new(0));
     }
     if len > LONGEST_KEPT {
         return make(&mut Planners::new(len));
     }
-    LAST.with_borrow_mut(|last| {
+    let last = if len > LONGEST_SHORT { &LAST_LONG } else { &LAST_SHORT };
+    last.with_borrow_mut(|last| {
         if last.len != len {
             *last = Planners::new(len);
         }

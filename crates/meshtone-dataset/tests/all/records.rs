@@ -438,8 +438,9 @@ fn sensors_are_what_is_kept() {
     for row in 0..16 {
         let [casing, ranged] = ["casing_g", "support_vertical_g"].map(|name| made.signal(name, row));
         assert_eq!((casing.len(), ranged.len()), (800, 800));
-        // The filter of the data set's rate rings beyond the range by a tenth at most.
-        assert!(ranged.iter().all(|value| value.abs() < 1.2) && casing != ranged);
+        // A signal that is cut to the range jumps between its ends, and the filter of the data set's rate rings beyond them.
+        let largest = |signal: &[f64]| signal.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+        assert!(largest(&ranged) < 3.0 && largest(&casing) > 10.0);
     }
     let named = text.replacen(
         "duration_s = 0.1",
