@@ -49,9 +49,13 @@ pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], stages: &Stages, chann
     }
 }
 
-/// What a channel shows, as a title has it: a sensor's is its name.
+/// Most letters of a name for which a vertical axis has room.
+const LONGEST_NAME: usize = 28;
+
+/// What a channel shows, as a title has it: a sensor's is its name, where there is room for it.
 fn quantity(channel: &Channel) -> String {
     match channel {
+        Channel::Sensor(name) if name.len() > LONGEST_NAME => "First sensor".to_owned(),
         Channel::Sensor(name) => {
             let words = name.replace('_', " ");
             let mut letters = words.chars();
