@@ -458,7 +458,8 @@ class Signals:
         Parameters
         ----------
         channel, wheel, sidebands
-            As of :meth:`Simulation.process`; the channel must have been kept.
+            As of :meth:`Simulation.process`; the channel must have been kept. By default ``vertical_g`` also where the first sensor's
+            was not.
 
         Returns
         -------
@@ -476,7 +477,9 @@ class Signals:
         >>> signals.process().revolutions
         17
         """
-        channel = chosen_channel(self.scenario, None) if channel is None else channel
+        if channel is None:
+            leading = chosen_channel(self.scenario, None)
+            channel = leading if leading in self.channels else "vertical_g"
         if channel not in self.channels:
             raise ValueError(f"no channel '{channel}' was kept, but {', '.join(self.channels)}")
         return _process(self.scenario, self.channels[channel], self.start_s, channel, wheel, sidebands)

@@ -84,5 +84,8 @@ def test_many_with_sensors() -> None:
     assert with_it.process().name == "casing_g"
     assert isinstance(without, ValueError)
     assert "no channel `casing_g`; there are horizontal_g" in str(without)
+    [by_default] = simulate_many([scenario])
+    assert isinstance(by_default, meshtone.Signals)
+    assert by_default.process().name == "vertical_g"
     with pytest.raises(ValueError, match="'case_g': must be one of casing_g"):
         simulate_many([scenario], channels=["case_g"])
