@@ -9,3 +9,4 @@ mod recording_parquet;
 mod recording_text;
 mod scenario_file;
 mod signals;
+mod tuned;

@@ -4,6 +4,7 @@
 use meshtone::batch::{Control, KeepChannels, KeepSimulation, simulate_many};
 use meshtone::scenario::*;
 use meshtone::sensor::{Channel, ChannelKind, Channels};
+use meshtone::tuning::{DifferenceChain, difference_signals};
 use meshtone::{simulate, trace};
 
 use crate::support::{appended, assert_refused};
@@ -293,4 +294,21 @@ fn unknown_channel_is_told_with_those_that_there_are() {
         told.starts_with("there is no channel `gear_g`; there are support_vertical_g, horizontal_g"),
         "{told}"
     );
+}
+
+/// A difference signal may be a sensor's: that of one without anything is its place's.
+#[test]
+fn difference_signals_of_a_sensor() {
+    let mut scenario = pair(Model::Linear, "").with_sensors(vec![Sensor::default(), full("a")]);
+    scenario.faults = vec![Fault::on_first_gear_tooth(MissingTooth)];
+    let of = |channel: Channel| {
+        let chain = DifferenceChain { channel, ..DifferenceChain::new(8e3) };
+        difference_signals(vec![scenario.clone()], &chain)
+    };
+    let [plain, vertical] =
+        [Channel::Sensor("support_vertical".into()), ChannelKind::Vertical.into()].map(of);
+    assert_eq!(plain.unwrap(), vertical.unwrap());
+    assert!(of(Channel::Sensor("a".into())).is_ok());
+    let told = of(Channel::Sensor("b".into())).unwrap_err().to_string();
+    assert!(told.contains("`b_g`") && told.contains("support_vertical_g"), "{told}");
 }
