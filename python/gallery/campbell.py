@@ -2,7 +2,7 @@
 
 Simulations at constant speeds from 10 to 60 rev/s: each column is the spectrum of the vertical acceleration at one speed. Ideal
 teeth excite the harmonics of the mesh and nothing else (1× is the mesh frequency); they are strong where they cross a natural
-frequency. The profile errors of DIN grade 7 excite every order of both shafts, and the natural frequencies stand out as bands.
+frequency. The deviations of DIN grade 7 excite every order of both shafts, and the natural frequencies stand out as bands.
 """
 
 import sys
@@ -32,7 +32,7 @@ for ax, din_grade, title in zip(axes, (0, 7), ("Ideal teeth", "Teeth of DIN grad
         shown = (frequency_hz > 0) & (frequency_hz < LIMIT_HZ)
         # The spectra have lines of their own: the strongest in each band is shown.
         np.maximum.at(column, (frequency_hz[shown] / BAND_HZ).astype(int), amplitude_g[shown])
-    image = ax.pcolormesh(speeds_hz, centres_hz, levels_g, norm=LogNorm(1e-3, 100), cmap="cividis", shading="nearest")
+    image = ax.pcolormesh(speeds_hz, centres_hz, levels_g, norm=LogNorm(1e-4, 1), cmap="cividis", shading="nearest")
     for harmonic in range(1, 9):
         mesh_hz = harmonic * healthy.pinion_teeth * speeds_hz
         ax.plot(speeds_hz, mesh_hz, color="white", linewidth=0.7, linestyle=(0, (1, 4)))
@@ -44,7 +44,7 @@ for ax, din_grade, title in zip(axes, (0, 7), ("Ideal teeth", "Teeth of DIN grad
 axes[0].set_ylabel("Frequency (Hz)")
 marks = axes[1].secondary_yaxis("right")
 # Some lie so near each other that one mark does for both.
-apart_hz = natural_hz[(natural_hz < LIMIT_HZ) & (np.diff(natural_hz, prepend=-1000) > 100)]
+apart_hz = natural_hz[(natural_hz < LIMIT_HZ) & (np.diff(natural_hz, prepend=-1000) > 150)]
 marks.set_yticks(apart_hz, [f"{mark_hz:.0f}" for mark_hz in apart_hz])
 marks.set_ylabel("Natural frequencies (Hz)")
 figure.colorbar(image, label="Vertical acceleration, amplitude (g)", extend="both")

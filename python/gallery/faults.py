@@ -1,7 +1,7 @@
 """What each fault does to the gear's difference signal.
 
 One pair of wheels six times: healthy, and with each kind of damage on the first tooth, over a revolution of the gear. The damaged
-tooth enters contact at 0; the pair rings on after it. In grey the healthy pair's signal: what the profile errors excite. Mind the
+tooth enters contact at 0; the pair rings on after it. In grey the healthy pair's signal: what the deviations excite. Mind the
 scales: each row has its own.
 """
 
@@ -18,7 +18,7 @@ healthy = mt.examples.healthy().copy(din_grade=5)
 faults: dict[str, mt.Fault | None] = {
     "Healthy": None,
     "Pit over part of the face": mt.PartialFace(width_mm=13, start=0.1, end=0.9, depth=0.5),
-    "Tooth destruction": mt.ToothDestruction(start=0.8, end=0.95),
+    "Tooth destruction": mt.ToothDestruction(start=0.5, end=0.95),
     "Tooth breakage": mt.ToothBreakage(chip_height_mm=5, chip_width_mm=12, tip_loss_mm=3),
     "Pit over the whole face": mt.ThroughFace(start=0.2, end=0.8, depth=0.5),
     "Missing tooth": mt.MissingTooth(),

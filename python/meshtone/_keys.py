@@ -362,7 +362,7 @@ class ScenarioKeys:
             Sensors on the rig, whose signals come first; none by default.
         model : {'contact', 'linear', 'published'}, optional
             The model: teeth that touch and part, the theory of a linear mesh, or what the published code does, its
-            slips included. Default: "linear".
+            slips included. Default: "contact".
         seed : int, optional
             The seed of every random draw: profile errors, fluctuations, roughness of a destroyed flank, sensors' noise.
             Allowed: whole number. Default: 1.
@@ -373,16 +373,16 @@ class ScenarioKeys:
             The material of wheels and shafts. Default: "steel".
         tip_relief : TipRelief or False, optional
             The material removed near the tips, or ``false`` for none. Default: { shape = "parabolic", length_mm = 1.0,
-            depth_mm = 1.0 }.
+            depth_mm = 1.0 }. Ignored by published and contact.
         flank_relief : FlankRelief, optional
             The relief of the flanks near the tips, as a gap in µm. Default: { shape = "parabolic", length_mm = 1.0,
-            amount_um = 0.0 }.
+            amount_um = 0.0 }. Ignored by linear and published.
         tip_chamfer_mm : float, optional
             (mm) The height of the chamfer or rounding of all tips, which the flank ends below. Allowed: ≥ 0; less than
-            1 module. Default: 0.2 modules.
+            1 module. Default: 0.2 modules. Ignored by linear and published.
         backlash_mm : float, optional
             (mm) The backlash along the line of action. Allowed: ≥ 0; less than 1 module. Default: two thirds of 0.06 +
-            0.0005 a + 0.03 m, a the centre distance.
+            0.0005 a + 0.03 m, a the centre distance. Ignored by linear and published.
         crowning_mm : float, optional
             (mm) A constant reduction of the working flank. Allowed: ≥ 0; less than half the tooth's thickness at the
             pitch circle, π/4 modules. Default: 0.0.
@@ -390,7 +390,7 @@ class ScenarioKeys:
             The number of points along a tooth's profile. Allowed: whole number 500…1000000. Default: 10000.
         foundation : Foundation, optional
             The coefficients A to F of the four polynomials of the fillet foundation's compliance; the default is of
-            Sainsot, Velex and Duverger (2004).
+            Sainsot, Velex and Duverger (2004). Ignored by published.
         speed_fluctuation_hz : float, optional
             (Hz) The half width of a uniform error of the speed, drawn anew for every sample. Allowed: ≥ 0; less than
             the lowest speed. Default: 0.0.
@@ -400,7 +400,7 @@ class ScenarioKeys:
         speed_profile_hz : dict of time_s and value, optional
             (s, Hz) The speed against time, instead of the constant: straight lines between the points, constant outside
             them. Times count from the start of the simulation. A CSV file of two columns, time_s and value, is { file =
-            "….csv" }. Allowed: at least 2 points, times increasing, values > 0. Default: none.
+            "….csv" }. Allowed: at least 2 points, times increasing, values > 0. Default: none. Ignored by published.
         torque_profile_nm : dict of time_s and value, optional
             (s, N m) The torque against time, likewise. Allowed: likewise, values ≥ 0. Default: none.
         din_grade : int, optional
@@ -411,18 +411,20 @@ class ScenarioKeys:
             Default: the scenario's ``seed``.
         iso_class : int, optional
             The class of ISO 1328-1:2013 that deviations are drawn for, 1 (best) to 11, instead of din_grade; 0 for
-            none. Allowed: whole number 0…11. Default: 0.
+            none. Allowed: whole number 0…11. Default: 0. Ignored by linear and published.
         tooth_share : float, optional
             (-) The part of the tolerances of profile slope and form that each tooth has of its own; the rest all teeth
-            of a wheel have in common, as one tool makes them. Allowed: 0…1. Default: 0.4.
+            of a wheel have in common, as one tool makes them. Allowed: 0…1. Default: 0.4. Ignored by linear and
+            published.
         pitch_share : float, optional
             (-) The largest single pitch deviation of a wheel as a part of its tolerance f_p. Allowed: 0…1. Default:
-            0.15.
+            0.15. Ignored by linear and published.
         run_out_share : float, optional
-            (-) The run-out of each wheel as a part of its tolerance F_r. Allowed: 0…1. Default: 0.3.
+            (-) The run-out of each wheel as a part of its tolerance F_r. Allowed: 0…1. Default: 0.3. Ignored by linear
+            and published.
         helix_share : float, optional
             (-) The part of its tolerance f_Hβ within which each wheel's helix slope deviation is drawn, of either sign.
-            Allowed: 0…1. Default: 0.0.
+            Allowed: 0…1. Default: 0.0. Ignored by linear and published.
         pinion_profile_errors_mm : array of float64, shape (100, teeth), optional
             (mm) The pinion's profile errors, instead of a draw: 100 rows of one number per tooth. Allowed: 100 × pinion
             teeth, each smaller than the module. Default: none.
@@ -434,46 +436,51 @@ class ScenarioKeys:
             each smaller than the module. Default: drawn, or none beside given profile errors.
         pinion_run_out_um : float, optional
             (µm) The run-out F_r of the pinion, of which the deviation is F_r/2 sin(θ + φ). Allowed: ≥ 0, ≤ 10000.
-            Default: drawn, or none beside given profile errors.
+            Default: drawn, or none beside given profile errors. Ignored by linear and published.
         pinion_run_out_phase_rad : float, optional
             (rad) Its phase φ, with θ counted from where the first tooth of the pinion enters contact. Default: drawn,
-            or 0 beside given profile errors.
+            or 0 beside given profile errors. Ignored by linear and published.
         pinion_helix_slope_um : float, optional
             (µm) The helix slope deviation of the pinion over the face width; positive where metal is added towards
-            positive z. Allowed: −1000…1000. Default: drawn, or none beside given profile errors.
+            positive z. Allowed: −1000…1000. Default: drawn, or none beside given profile errors. Ignored by linear and
+            published.
         gear_cumulative_pitch_um : sequence of floats, optional
             (µm) The cumulative pitch deviations of the gear's working flanks along the pitch circle, one a tooth; metal
             added is positive, and they are added to given profile errors. Allowed: one a tooth of the gear, each
             smaller than the module. Default: drawn, or none beside given profile errors.
         gear_run_out_um : float, optional
             (µm) The run-out F_r of the gear, of which the deviation is F_r/2 sin(θ + φ). Allowed: ≥ 0, ≤ 10000.
-            Default: drawn, or none beside given profile errors.
+            Default: drawn, or none beside given profile errors. Ignored by linear and published.
         gear_run_out_phase_rad : float, optional
             (rad) Its phase φ, with θ counted from where the first tooth of the gear enters contact. Default: drawn, or
-            0 beside given profile errors.
+            0 beside given profile errors. Ignored by linear and published.
         gear_helix_slope_um : float, optional
             (µm) The helix slope deviation of the gear over the face width; positive where metal is added towards
-            positive z. Allowed: −1000…1000. Default: drawn, or none beside given profile errors.
+            positive z. Allowed: −1000…1000. Default: drawn, or none beside given profile errors. Ignored by linear and
+            published.
         bearing_stiffness_n_per_m : float, optional
-            (N/m) The stiffness of each wheel's bearings in x, y and z. Allowed: > 0, ≤ 1e15. Default: 1.9e8.
+            (N/m) The stiffness of each wheel's bearings in x, y and z. Allowed: > 0, ≤ 1e15. Default: 1.9e8. Ignored by
+            published.
         wheel_rotational_stiffness_nm_per_rad : float, optional
             (N m/rad) The stiffness of each wheel against tilting, about x and about y. Allowed: > 0, ≤ 1e15. Default:
-            1e8.
+            1e8. Ignored by contact.
         brake_inertia_kgm2 : float, optional
             (kg m²) The inertia of the brake. Allowed: > 0, ≤ 1e9. Default: 0.0045.
         damping_ratio : float or sequence of 13 floats, optional
             (-) The modal damping over critical damping: one number for all modes, or 13 in the order of rising
-            frequency. Allowed: ≥ 0, < 1. Default: 0.05.
+            frequency. Allowed: ≥ 0, < 1. Default: 0.05. Ignored by contact.
         eccentricity_mm : float, optional
-            (mm) The eccentricity of both wheels. Allowed: ≥ 0; less than the module. Default: 0.0.
+            (mm) The eccentricity of both wheels. Allowed: ≥ 0; less than the module. Default: 0.0. Ignored by
+            published.
         misalignment_um : float, optional
             (µm) How far the shafts deviate from parallel in the plane of action, over the face width; positive where it
-            brings the flanks closer together towards positive z. Allowed: −1000…1000. Default: 0.0.
+            brings the flanks closer together towards positive z. Allowed: −1000…1000. Default: 0.0. Ignored by linear
+            and published.
         pinion_shaft : Shaft, optional
-            The motor's shaft. Default: { length_mm = 200.0, radius_mm = 10.0, bearing_span_mm = 130.0, wheel_at = 0.5,
+            The motor's shaft. Default: { length_mm = 2e2, radius_mm = 10.0, bearing_span_mm = 130.0, wheel_at = 0.5,
             damping_ratio = 0.025 }.
         gear_shaft : Shaft, optional
-            The brake's shaft. Default: { length_mm = 600.0, radius_mm = 10.0, bearing_span_mm = 130.0, wheel_at = 0.5,
+            The brake's shaft. Default: { length_mm = 6e2, radius_mm = 10.0, bearing_span_mm = 130.0, wheel_at = 0.5,
             damping_ratio = 0.025 }.
         pinion_inertia : WheelInertia, optional
             The mass and inertias of the pinion, instead of a solid disc's; any of the three may be left out. Default: a
@@ -482,11 +489,11 @@ class ScenarioKeys:
             The same of the gear. Default: a solid disc's, of pitch radius.
         support : Support, optional
             What the bearings of each shaft sit in, two alike: mass, stiffness to the base and to one another, damping.
-            Default: { mass_kg = 1.6, stiffness_n_per_m = 160000000.0, coupling_n_per_m = 500000000.0, damping_ratio =
-            0.025 }.
+            Default: { mass_kg = 1.6, stiffness_n_per_m = 1.6e8, coupling_n_per_m = 5e8, damping_ratio = 0.025 }.
+            Ignored by linear and published.
         mesh_damping_ratio : float, optional
             (-) The damping of teeth in contact over the critical damping of the wheels' rotation on the mean mesh
-            stiffness. Allowed: ≥ 0, < 1. Default: 0.15.
+            stiffness. Allowed: ≥ 0, < 1. Default: 0.15. Ignored by linear and published.
         sampling_rate_hz : float, optional
             (S/s) The nominal sampling rate; the actual one is higher, so that both wheels turn a whole number of
             samples. Allowed: > 0. Default: 1e5.
@@ -494,9 +501,9 @@ class ScenarioKeys:
             (-) The part of the simulated time that is discarded from its start, while the vibration settles. Allowed: ≥
             0, < 1. Default: 0.5.
         settle_tolerance : float, optional
-            (-) How far the slowest mode's transient must have decayed where the kept signal starts. Under the linear
-            model a steady simulation starts in the static equilibrium of the loaded mesh, and what is discarded is
-            simulated only as far back as this needs; 0 for all of it. Allowed: ≥ 0, < 1. Default: 1e-6.
+            (-) How far the slowest mode's transient must have decayed where the kept signal starts. A steady simulation
+            starts in the static equilibrium of the loaded mesh, and what is discarded is simulated only as far back as
+            this needs; 0 for all of it, as always under published. Allowed: ≥ 0, < 1. Default: 1e-6.
         initial_displacement : sequence of 13 floats, optional
             (m, rad) The displacement of the 13 coordinates at the start: x, y of the gear, x, y of the pinion, rotation
             of gear, pinion and brake, z of gear and pinion, tilt φ of both, tilt ψ of both. Default: the static

@@ -21,7 +21,8 @@ class Sensor:
         other channel's. Default: place and direction, such as ``gear_support_vertical``.
     at : {'support', 'pinion-support', 'gear-support', 'wheels'}, optional
         Where it sits: on both supports (their mean), on one, or on the wheels (their sum); under linear and published,
-        which have no supports that move, the wheels are read whatever it says. Default: "support".
+        which have no supports that move, the wheels are read whatever it says. Default: "support". Ignored by linear
+        and published.
     direction : {'vertical', 'horizontal', 'axial'}, optional
         In which direction it measures; under contact axial only at the wheels, for supports move across the shafts.
         Default: "vertical".

@@ -11,30 +11,33 @@ use crate::keys::{KeyKind, KeyValue, NumberFiles, Written};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 #[non_exhaustive]
 pub enum Model {
-    /// The theory of a linear mesh: flanks that are conjugate, loads that act at the flank's own angle, one angle for
-    /// stiffness and deviations. The default.
+    /// Teeth that push and never pull, on shafts that bend, in supports that a sensor sits on. The default.
     #[default]
+    Contact,
+    /// The theory of a linear mesh: flanks that are conjugate, loads that act at the flank's own angle, one angle for
+    /// stiffness and deviations.
     Linear,
     /// The published code, its slips included, so that results can be compared number by number.
     Published,
-    /// Teeth that push and never pull, on shafts that bend, in supports that a sensor sits on.
-    Contact,
 }
 
 impl Model {
+    /// All of them, the default first.
+    pub const ALL: [Self; 3] = [Self::Contact, Self::Linear, Self::Published];
+
     /// The name in the scenario file.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Contact => "contact",
             Self::Linear => "linear",
             Self::Published => "published",
-            Self::Contact => "contact",
         }
     }
 }
 
 impl KeyValue for Model {
     fn read(&mut self, value: &TomlValue<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
-        *self = value.choice(&NAMES).map_err(|error| match value.string() {
+        *self = value.choice(&names()).map_err(|error| match value.string() {
             Ok("corrected") => error.with_help("the corrected model is called \"linear\" now"),
             _ => error,
         })?;
@@ -46,9 +49,10 @@ impl KeyValue for Model {
     }
 
     fn kind() -> KeyKind {
-        KeyKind::Name(NAMES.map(|(name, _)| name).to_vec())
+        KeyKind::Name(names().map(|(name, _)| name).to_vec())
     }
 }
 
-const NAMES: [(&str, Model); 3] =
-    [("contact", Model::Contact), ("linear", Model::Linear), ("published", Model::Published)];
+fn names() -> [(&'static str, Model); 3] {
+    Model::ALL.map(|model| (model.name(), model))
+}

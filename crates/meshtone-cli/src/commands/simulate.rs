@@ -70,6 +70,8 @@ Examples:
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum ModelArgument {
+    /// Teeth that touch and part, on shafts that bend, in supports that a sensor sits on
+    Contact,
     /// What the theory of a linear mesh says
     Linear,
     /// The published code, its slips included
@@ -79,6 +81,7 @@ enum ModelArgument {
 impl From<ModelArgument> for Model {
     fn from(argument: ModelArgument) -> Self {
         match argument {
+            ModelArgument::Contact => Self::Contact,
             ModelArgument::Linear => Self::Linear,
             ModelArgument::Published => Self::Published,
         }

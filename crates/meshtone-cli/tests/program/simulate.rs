@@ -98,12 +98,12 @@ fn summary_of_a_healthy_pair() {
     workplace.succeeds(&["simulate", "fast.toml", "-o", "out", "--no-panel"]);
     let summary = summary(&workplace, "out");
     assert_eq!(summary["format_version"], 2);
-    assert_eq!(summary["model"], "linear");
+    assert_eq!(summary["model"], "contact");
     assert_eq!(summary["seed"], 1);
     assert_eq!(summary["faults"], json!([]));
     assert_eq!(summary["sampling_rate_hz"], 11_200.0);
     assert_eq!(summary["samples"], 11_200);
-    assert_eq!(summary["natural_frequencies_hz"].as_array().unwrap().len(), 13);
+    assert_eq!(summary["natural_frequencies_hz"].as_array().unwrap().len(), 17);
     // The mean force balances the brake: T/(r_g cos α), r_g = 60 mm.
     let mean = summary["mesh_force"]["mean_n"].as_f64().unwrap();
     assert!((mean / (200.0 / (0.06 * 20f64.to_radians().cos())) - 1.0).abs() < 0.01, "{mean}");
@@ -223,12 +223,18 @@ fn a_pulling_mesh_is_warned_of() {
         "light.toml",
         crate::support::fast_with("brake_torque_nm", "brake_torque_nm = 1.0") + "[quality]\ndin_grade = 9\n",
     );
-    let assert = workplace.succeeds(&["simulate", "light.toml", "--quiet", "--no-panel"]).stdout("");
+    let assert = workplace
+        .succeeds(&["simulate", "light.toml", "--model", "linear", "--quiet", "--no-panel"])
+        .stdout("");
     let warning = stderr(&assert);
     assert!(
         warning.contains("line 8: operation.brake_torque_nm: the mesh force is negative for"),
         "{warning}"
     );
+    // Teeth that part do not pull.
+    workplace.succeeds(&["simulate", "light.toml", "--quiet", "--no-panel"]).stdout("").stderr("");
+    let figures = &summary(&workplace, "light_results")["mesh_force"];
+    assert!(figures["apart_fraction"].as_f64().unwrap() > 0.0 && figures.get("tension_fraction").is_none());
 }
 
 #[test]

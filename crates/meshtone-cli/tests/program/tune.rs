@@ -40,7 +40,7 @@ fn experiment(tune: &str) -> String {
 
 fn workplace() -> Workplace {
     let workplace = Workplace::new();
-    workplace.write("fast.toml", format!("{FAST}[quality]\ndin_grade = 8\n"));
+    workplace.write("fast.toml", format!("model = \"linear\"\n{FAST}[quality]\ndin_grade = 8\n"));
     workplace.write("table.csv", table(|_, _, _| None));
     workplace.write("rig.toml", experiment(""));
     workplace
@@ -90,8 +90,8 @@ fn a_rig_is_tuned_and_signals_are_enhanced() {
         assert!(workplace.read(&format!("out/{name}")) == workplace.read(&format!("again/{name}")), "{name}");
     }
 
-    workplace
-        .write("broken.toml", format!("{FAST}[quality]\ndin_grade = 8\n[fault]\nkind = \"missing-tooth\"\n"));
+    let grade_and_fault = "[quality]\ndin_grade = 8\n[fault]\nkind = \"missing-tooth\"\n";
+    workplace.write("broken.toml", format!("model = \"linear\"\n{FAST}{grade_and_fault}"));
     let enhance = ["enhance", "broken.toml", "--tuned", "out/tuned.toml", "--draws", "7", "-o", "enhanced"];
     assert!(stdout(&workplace.succeeds(&enhance)).contains("7 draws"));
     let first = workplace.read("enhanced/enhanced.parquet");
@@ -280,7 +280,7 @@ fn recordings_are_taken_to_difference_signals() {
             let name = format!("{case}{seed}");
             workplace.write(
                 &format!("{name}.toml"),
-                format!("seed = {seed}\n{FAST}[quality]\ndin_grade = 8\n{fault}"),
+                format!("model = \"linear\"\nseed = {seed}\n{FAST}[quality]\ndin_grade = 8\n{fault}"),
             );
             workplace.succeeds(&["simulate", &format!("{name}.toml"), "--no-panel", "-q", "-o", &name]);
         }
@@ -314,7 +314,10 @@ const FAULTS: [&str; 3] = [
 fn rig(fault: &str, seed: u64) -> Scenario {
     // Finer than the base scenario of the experiment.
     let fine = FAST.replace("sampling_rate_hz = 1000.0", "sampling_rate_hz = 40e3");
-    Scenario::from_toml(&format!("seed = {seed}\n{fine}[quality]\ndin_grade = 8\n{fault}")).unwrap()
+    Scenario::from_toml(&format!(
+        "model = \"linear\"\nseed = {seed}\n{fine}[quality]\ndin_grade = 8\n{fault}"
+    ))
+    .unwrap()
 }
 
 /// Nine revolutions of the gear at the rig's sampling rate, begun anywhere, with a pulse of the pinion's tachometer.

@@ -28,7 +28,7 @@ fn larger(records: u64, units: u64, more: &str) -> Plan {
 #[test]
 fn a_unit_is_in_one_split_with_the_same_wheels() {
     let more = "[[vary]]\nkey = \"quality.din_grade\"\nchoice = [5, 6, 7]\n\
-                [[vary]]\nkey = \"rig.damping_ratio\"\nuniform = [0.02, 0.1]";
+                [[vary]]\nkey = \"rig.support.damping_ratio\"\nuniform = [0.02, 0.1]";
     let plan = larger(3000, 40, more);
     let mut units: BTreeMap<u64, Vec<DrawnRecord>> = BTreeMap::new();
     for record in all(&plan) {
@@ -40,7 +40,7 @@ fn a_unit_is_in_one_split_with_the_same_wheels() {
     for records in units.values() {
         let first = &records[0];
         assert!((70..=80).contains(&records.len()), "{}", records.len());
-        for key in ["quality.din_grade", "rig.damping_ratio"] {
+        for key in ["quality.din_grade", "rig.support.damping_ratio"] {
             assert!(records.iter().all(|record| value(record, key) == value(first, key)));
         }
         assert!(

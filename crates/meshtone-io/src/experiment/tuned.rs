@@ -195,7 +195,7 @@ fn tuned(root: &TomlTable<'_>) -> ReadResult<Tuned> {
         _ => "tune again, or write model = \"linear\": the model was mended, so that the numbers are near those that fit it"
             .to_owned(),
     })?;
-    let models = [Model::Linear, Model::Published].map(|model| (model.name(), model));
+    let models = Model::ALL.map(|model| (model.name(), model));
     let model = root.optional("model").map(|value| value.choice(&models)).transpose()?;
     let (enhancement, centre_rev) = root.table_or_empty("enhancement")?.read(|table| {
         let above_0 = |key, meaning: &str| {

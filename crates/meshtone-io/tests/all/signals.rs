@@ -5,7 +5,7 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 
 use crate::parquet_help::{Plain, parquet};
-use meshtone::scenario::{GearPair, Scenario, Sensor};
+use meshtone::scenario::{GearPair, Model, Scenario, Sensor};
 use meshtone::sensor::{ChannelKind, Channels, SensorSignal};
 use meshtone_io::ReadResultsError;
 use meshtone_io::run_identity::RunIdentity;
@@ -78,7 +78,7 @@ fn files_of_others_are_refused() {
     let single = [good(), vec![text(RATE_KEY, "1000.0")]].concat();
     refused(&path, single.clone(), "column time_s of Float32; must be of Float64");
     // Neither is a file foreign whose scenario names its convention, as the model was called.
-    let earlier = scenario().to_toml().replacen("model = \"linear\"", "convention = \"corrected\"", 1);
+    let earlier = scenario().to_toml().replacen("model = \"contact\"", "convention = \"corrected\"", 1);
     assert!(earlier.contains("convention"));
     let named_earlier = [vec![text(SCENARIO_KEY, &earlier)], single[1..].to_vec()].concat();
     refused(&path, named_earlier, "column time_s of Float32; must be of Float64");
@@ -189,7 +189,9 @@ fn signals_of_an_earlier_version_are_read() {
     let directory = tempdir().unwrap();
     let path = directory.path().join("signals.parquet");
     let metadata = |key: &str, value: String| KeyValue::new(key.to_owned(), value);
-    let toml = scenario().to_toml().replacen("model = \"linear\"", "convention = \"corrected\"", 1);
+    let mut scenario = scenario();
+    scenario.model = Model::Linear;
+    let toml = scenario.to_toml().replacen("model = \"linear\"", "convention = \"corrected\"", 1);
     assert!(toml.starts_with("convention"));
     let named = |name: &'static str, value: f64| (name, Plain::doubles([value; 3]));
     let columns = vec![
@@ -204,14 +206,14 @@ fn signals_of_an_earlier_version_are_read() {
     let metadata = vec![
         metadata(SCENARIO_KEY, toml),
         metadata(VERSION_KEY, "0.0.9".into()),
-        metadata(RUN_KEY, RunIdentity::of(&scenario()).to_string()),
+        metadata(RUN_KEY, RunIdentity::of(&scenario).to_string()),
         metadata(RATE_KEY, "1000.0".into()),
     ];
     fs::write(&path, parquet(columns, metadata)).unwrap();
     let recorded = read_signals(&path).unwrap();
     let read = ChannelKind::ALL.map(|kind| recorded.channels.get(kind).to_vec());
     assert_eq!(read, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(|value| vec![value; 3]));
-    assert_eq!(recorded.scenario, scenario());
+    assert_eq!(recorded.scenario, scenario);
 }
 
 /// Sensors come first, in their order, and are read back by the scenario's names.

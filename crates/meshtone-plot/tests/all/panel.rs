@@ -52,9 +52,9 @@ const EVERY_PANEL: [&str; 22] = [
     "pitch",
     "tip",
     "contact start",
-    "tip relief",
+    "chamfer",
     "module 3 mm",
-    "linear model",
+    "contact model",
     "(°)",
 ];
 
@@ -63,7 +63,7 @@ fn panels_of_the_gallery_show_what_they_should() {
     let expected: [(&str, &[&str]); 6] = [
         (
             "healthy",
-            &["Healthy gear pair", "DIN 3962 grade 7", "17 and 38 teeth", "Average of 17 gear revolutions"],
+            &["Healthy gear pair", "DIN 3961 grade 7", "17 and 38 teeth", "Average of 17 gear revolutions"],
         ),
         ("missing_tooth", &["Missing tooth", "tooth missing", "turn of the missing tooth", "healthy gear"]),
         (
@@ -216,7 +216,13 @@ fn partial_face() -> Damage {
 fn damage_is_at_the_end_from_which_the_load_moves_away() {
     let chip = ToothBreakage { chip_height_mm: 4.0, chip_width_mm: 6.0, tip_loss_mm: 0.0 };
     for damage in [partial_face(), chip.into()] {
-        let simulation = simulated(&with_teeth(17, 38, Some(damage)));
+        let mut scenario = with_teeth(17, 38, Some(damage));
+        scenario.model = Model::Linear;
+        let simulation = simulated(&scenario);
+        assert_shows(
+            &panel::draw(&simulation.stages, &simulation.channels).unwrap(),
+            &["tip relief", "linear model"],
+        );
         let states = &simulation.stages.mesh.pairs().unwrap().classes[1].load;
         assert!(
             states.iter().any(|state| state.mean_z_m < 0.0)

@@ -20,6 +20,7 @@ fn experiment(labels: &[&str], indicators: &[TuningIndicator]) -> Experiment {
         pinion_speed_hz: 40.0,
         brake_torque_nm: 10.0,
     });
+    base.model = Model::Linear;
     base.solver.sampling_rate_hz = 25e3;
     let cases = labels.iter().enumerate().map(|(case, label)| {
         let tip_loss_mm = 0.5 * case as f64;

@@ -45,7 +45,7 @@ pub(crate) trait Kind: Keys {
     fn published_geometry(&self, _teeth: &Teeth, _seed: u64) -> Result<FaultGeometry, ScenarioError> {
         let problem = "is not known to the published model";
         Err(ScenarioError::new("fault.kind", format!("\"{}\"", Self::NAME), problem)
-            .with_help("write model = \"linear\", or nothing: it is the default"))
+            .with_help("write model = \"linear\" or model = \"contact\""))
     }
 }
 

@@ -19,6 +19,20 @@ pub struct KeyDescription {
     pub allowed: String,
     /// What kind of value it has.
     pub kind: KeyKind,
+    /// Names of the models that simulate its default whatever it says.
+    pub ignored_by: &'static [&'static str],
+}
+
+impl KeyDescription {
+    /// Which models ignore it, as a sentence; empty where all heed it.
+    pub fn ignored_in_words(&self) -> String {
+        ignored_in_words(self.ignored_by)
+    }
+}
+
+/// Which models ignore a key, as a sentence.
+pub(super) fn ignored_in_words(models: &[&str]) -> String {
+    if models.is_empty() { String::new() } else { format!("Ignored by {}.", models.join(" and ")) }
 }
 
 /// What kind of value a key has.

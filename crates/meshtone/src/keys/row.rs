@@ -4,7 +4,7 @@ use meshtone_toml::{ErrorKind, ReadResult, TomlError, TomlTable};
 
 use super::cell::{Cell, Field, ReadElsewhere, SubTable};
 use super::check::Check;
-use super::description::{KeyDescription, KeyKind};
+use super::description::{KeyDescription, KeyKind, ignored_in_words};
 use super::files::NumberFiles;
 use super::range::Range;
 use super::text::short_number;
@@ -237,6 +237,7 @@ impl<S> Row<S> {
             },
             allowed: allowed.join("; "),
             kind,
+            ignored_by: self.ignored_by,
         };
         let inside = self
             .cell
@@ -254,7 +255,7 @@ impl<S> Row<S> {
             Written::Value(text) if self.cell.kind() == KeyKind::Number => {
                 Some(text.parse().map_or(text, short_number))
             }
-            Written::Value(text) => Some(text),
+            Written::Value(text) => Some(with_short_numbers(&text)),
         }
     }
 
@@ -306,8 +307,19 @@ impl<S> Row<S> {
                 _ => "Default as here.".to_string(),
             },
         };
-        format!("{unit}{first}{}{names}. {absent}", letters.as_str())
+        let ignored = ignored_in_words(self.ignored_by);
+        format!("{unit}{first}{}{names}. {absent} {ignored}", letters.as_str())
     }
+}
+
+/// An inline table with its numbers as a reader finds them easiest to read.
+fn with_short_numbers(text: &str) -> String {
+    let short = |word: &str| {
+        let (number, comma) = word.strip_suffix(',').map_or((word, ""), |number| (number, ","));
+        let is_number = number.contains('.');
+        number.parse().ok().filter(|_| is_number).map_or(word.to_owned(), |value| short_number(value) + comma)
+    };
+    text.split(' ').map(short).collect::<Vec<_>>().join(" ")
 }
 
 pub(super) fn dotted(path: &str, name: &str) -> String {

@@ -15,8 +15,8 @@ pub struct Solver {
     /// in the static equilibrium of the loaded mesh, and leaves out what is not needed for that. 0 for
     /// the whole settling. Default 1e-6.
     pub settle_tolerance: f64,
-    /// (m, rad) Initial displacement of the 13 coordinates. Default 0 under `published`, the static
-    /// equilibrium of the loaded mesh under `linear`.
+    /// (m, rad) Initial displacement of the 13 coordinates. Default 0 under `published`, else the static
+    /// equilibrium of the loaded mesh.
     pub initial_displacement: Option<[f64; 13]>,
     /// (m/s, rad/s) Initial velocity of the 13 coordinates. Default the rigid rotation.
     pub initial_velocity: Option<[f64; 13]>,
@@ -60,9 +60,9 @@ impl Keys for Solver {
             row(
                 "settle_tolerance",
                 "-",
-                "how far the slowest mode's transient must have decayed where the kept signal starts. Under the linear model a \
+                "how far the slowest mode's transient must have decayed where the kept signal starts. A \
                  steady simulation starts in the static equilibrium of the loaded mesh, and what is discarded is simulated only \
-                 as far back as this needs; 0 for all of it",
+                 as far back as this needs; 0 for all of it, as always under published",
                 field!(settle_tolerance),
             )
             .range(Range::below_one().message("must be from 0 (the whole settling is simulated) to less than 1")),

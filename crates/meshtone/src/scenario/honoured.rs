@@ -104,6 +104,7 @@ mod tests {
     #[test]
     fn every_ignored_key_is_reset_and_warned_of() {
         let mut scenario = with_everything_ignored();
+        scenario.model = Model::Linear;
         assert_eq!(scenario.as_honoured(), scenario);
         assert_eq!(scenario.ignored_by_model(), []);
         scenario.model = Model::Published;

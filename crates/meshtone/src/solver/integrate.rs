@@ -137,10 +137,12 @@ fn by_size<const L: usize, const BLOCK: usize>(
     }
     // Each line is compiled for every instruction set, so what is rare shares the largest size.
     match size {
-        Size::Flat => solve!(solve_tables, 5, 1, true),
-        Size::Tilting => solve!(solve_tables, 8, 2, true),
-        Size::Rolling => solve!(solve_tables, 8, 3, true),
-        Size::General => solve!(solve_tables, 13, 5, false),
+        Size::Flat => solve!(solve_linear, 5, 1, true),
+        Size::Tilting => solve!(solve_linear, 8, 2, true),
+        Size::Rolling => solve!(solve_linear, 8, 3, true),
+        Size::General => solve!(solve_linear, 13, 5, false),
+        Size::Published => solve!(solve_published, 8, 3, true),
+        Size::PublishedGeneral => solve!(solve_published, 13, 5, false),
         Size::ContactFlat => solve!(solve_contact, 8, 1, true),
         Size::ContactTilting => solve!(solve_contact, 12, 2, true),
         Size::ContactGeneral => solve!(solve_contact, 17, 2, false),
@@ -214,33 +216,58 @@ impl<'a, 'r, S: Copy, const L: usize, const N: usize, const R: usize> Run<'a, 'r
     }
 }
 
-/// Under laws of tables: linear and published.
-fn solve_tables<const L: usize, const N: usize, const R: usize, const BLOCK: usize, const STEADY: bool>(
-    problems: [&Problem; L],
-    instructions: InstructionSet,
-    recorders: [&mut dyn Recorder; L],
-) -> [Result<(), Diverged>; L] {
+/// Simulations under a law of tables, linear or published, lined up: the meshes' tables, the run and its first state.
+#[allow(clippy::type_complexity, reason = "taken apart where it is made")]
+fn with_tables<
+    'a,
+    'r,
+    const L: usize,
+    const N: usize,
+    const R: usize,
+    const BLOCK: usize,
+    const STEADY: bool,
+>(
+    problems: &[&'a Problem<'a>; L],
+    recorders: [&'r mut dyn Recorder; L],
+) -> ([MeshTable<R>; L], Run<'a, 'r, TabulatedSample<L, R>, L, N, R>, State<L, N, R>) {
     let prepared: [Prepared<R>; L] = std::array::from_fn(|l| Prepared::new(problems[l]));
     let forcing = SharedForcing::new(BLOCK, TabulatedSample::NOTHING, |samples, blocks| {
         for (lane, block) in blocks.iter().enumerate() {
             TabulatedSample::fill(samples, lane, block);
         }
     });
-    let run = Run::<_, L, N, R>::new::<BLOCK, STEADY>(&problems, &prepared, forcing, recorders);
+    let run = Run::<_, L, N, R>::new::<BLOCK, STEADY>(problems, &prepared, forcing, recorders);
     let meshes: [MeshTable<R>; L] = std::array::from_fn(|l| prepared[l].table(problems[l]));
     let (sample, external) = (&run.forcing.samples[0], run.forcing.external[0]);
     let first = std::array::from_fn(|l| {
         prepared[l].first_state(problems[l], &meshes[l], (sample, l), &external.map(|external| external.0[l]))
     });
     let state = state(&run.coefficients, &first, external);
-    let tables = meshes.each_ref();
-    match problems.iter().map(|problem| problem.mesh.cycle()).collect::<Option<Vec<_>>>() {
-        Some(cycles) => {
-            let law = PublishedLaw::new(tables, std::array::from_fn(|l| cycles[l]));
-            run.finish::<_, BLOCK, STEADY>(&law, state, instructions)
-        }
-        None => run.finish::<_, BLOCK, STEADY>(&LinearLaw { tables }, state, instructions),
-    }
+    (meshes, run, state)
+}
+
+/// Under the linear law.
+fn solve_linear<const L: usize, const N: usize, const R: usize, const BLOCK: usize, const STEADY: bool>(
+    problems: [&Problem; L],
+    instructions: InstructionSet,
+    recorders: [&mut dyn Recorder; L],
+) -> [Result<(), Diverged>; L] {
+    let (meshes, run, state) = with_tables::<L, N, R, BLOCK, STEADY>(&problems, recorders);
+    run.finish::<_, BLOCK, STEADY>(&LinearLaw { tables: meshes.each_ref() }, state, instructions)
+}
+
+/// Under the published law.
+fn solve_published<const L: usize, const N: usize, const R: usize, const BLOCK: usize, const STEADY: bool>(
+    problems: [&Problem; L],
+    instructions: InstructionSet,
+    recorders: [&mut dyn Recorder; L],
+) -> [Result<(), Diverged>; L] {
+    let Some(cycles) = problems.iter().map(|problem| problem.mesh.cycle()).collect::<Option<Vec<_>>>() else {
+        return solve_linear::<L, N, R, BLOCK, STEADY>(problems, instructions, recorders);
+    };
+    let (meshes, run, state) = with_tables::<L, N, R, BLOCK, STEADY>(&problems, recorders);
+    let law = PublishedLaw::new(meshes.each_ref(), std::array::from_fn(|l| cycles[l]));
+    run.finish::<_, BLOCK, STEADY>(&law, state, instructions)
 }
 
 /// Under the law of contact.

@@ -19,6 +19,7 @@ fn small(pinion: u32, gear: u32, damage: Option<Damage>) -> Scenario {
         pinion_speed_hz: 30.0,
         brake_torque_nm: 60.0,
     });
+    scenario.model = Model::Linear;
     scenario.gears.points_per_tooth = 1000;
     scenario.solver.sampling_rate_hz = 1e4;
     scenario.quality.din_grade = 6;

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
 use crate::physics::*;
-use meshtone::scenario::{GearPair, Profile, Scenario};
+use meshtone::scenario::{GearPair, Model, Profile, Scenario};
 use meshtone::sensor::Channels;
 use meshtone::simulate;
 
@@ -15,6 +15,7 @@ fn pair() -> Scenario {
         pinion_speed_hz: 30.0,
         brake_torque_nm: 20.0,
     });
+    scenario.model = Model::Linear;
     scenario.gears.points_per_tooth = 2_000;
     scenario.solver.sampling_rate_hz = 2e4;
     scenario

@@ -23,6 +23,7 @@ fn sampled_scenario(damage: Option<Damage>, sampling_rate_hz: f64) -> Scenario {
         pinion_speed_hz: 30.0,
         brake_torque_nm: 100.0,
     });
+    scenario.model = Model::Linear;
     scenario.solver.sampling_rate_hz = sampling_rate_hz;
     scenario.faults = damage.map(Fault::on_first_gear_tooth).into_iter().collect();
     scenario

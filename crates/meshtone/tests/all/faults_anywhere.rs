@@ -19,6 +19,7 @@ fn pair(faults: Vec<Fault>) -> Scenario {
         pinion_speed_hz: 40.0,
         brake_torque_nm: 60.0,
     });
+    scenario.model = Model::Linear;
     scenario.gears.points_per_tooth = 2_000;
     scenario.solver.sampling_rate_hz = 2e4;
     // Nothing of the start is left.

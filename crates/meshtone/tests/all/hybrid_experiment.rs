@@ -3,7 +3,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use meshtone::scenario::{DestructionLine, Fault, GearPair, MissingTooth, Scenario, ToothDestruction};
+use meshtone::scenario::{DestructionLine, Fault, GearPair, MissingTooth, Model, Scenario, ToothDestruction};
 use meshtone::signal::SeparationSettings;
 use meshtone::tuning::*;
 
@@ -17,6 +17,7 @@ fn base() -> Scenario {
         pinion_speed_hz: 40.0,
         brake_torque_nm: 200.0,
     });
+    scenario.model = Model::Linear;
     scenario.quality.din_grade = 8;
     scenario.solver.sampling_rate_hz = 1e4;
     scenario

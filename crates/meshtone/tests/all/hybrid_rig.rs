@@ -3,7 +3,9 @@
 
 use std::sync::atomic::AtomicBool;
 
-use meshtone::scenario::{DampingRatio, Fault, GearPair, MissingTooth, Scenario, ToothBreakage, WheelName};
+use meshtone::scenario::{
+    DampingRatio, Fault, GearPair, MissingTooth, Model, Scenario, ToothBreakage, WheelName,
+};
 use meshtone::tuning::*;
 
 const HIDDEN: Enhancement =
@@ -20,6 +22,7 @@ fn base() -> Scenario {
         pinion_speed_hz: 40.0,
         brake_torque_nm: 10.0,
     });
+    scenario.model = Model::Linear;
     scenario.quality.din_grade = 7;
     scenario.solver.sampling_rate_hz = 6e4;
     scenario.gears.points_per_tooth = 2000;

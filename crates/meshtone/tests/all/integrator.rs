@@ -3,7 +3,7 @@
 
 use meshtone::machine::coordinates::*;
 use meshtone::mesh::Mesh;
-use meshtone::scenario::{DampingRatio, GearPair, Profile, Scenario};
+use meshtone::scenario::{DampingRatio, GearPair, Model, Profile, Scenario};
 use meshtone::solver::{Block, Output, Recorder};
 use meshtone::{Stages, stages};
 
@@ -29,6 +29,7 @@ fn constant_stiffness(sampling_rate_hz: f64, damping_ratio: f64, torque_nm: f64,
         pinion_speed_hz: PINION_SPEED_HZ,
         brake_torque_nm: torque_nm,
     });
+    scenario.model = Model::Linear;
     scenario.gears.points_per_tooth = 1000;
     scenario.rig.damping_ratio = DampingRatio::Uniform(damping_ratio);
     scenario.solver.sampling_rate_hz = sampling_rate_hz;
@@ -148,6 +149,7 @@ fn smoothly_forced(sampling_rate_hz: f64, seconds: f64) -> Stages {
         pinion_speed_hz: PINION_SPEED_HZ,
         brake_torque_nm: 10.0,
     });
+    scenario.model = Model::Linear;
     scenario.gears.points_per_tooth = 1000;
     // Tilting at some 5 kHz instead of 100 kHz and more, and every mode damped otherwise.
     scenario.rig.wheel_rotational_stiffness_nm_per_rad = 1e5;

@@ -16,6 +16,7 @@ fn pair(module_mm: f64, pinion_teeth: u32, gear_teeth: u32, face_width_mm: f64) 
         pinion_speed_hz: 40.0,
         brake_torque_nm: 10.0,
     });
+    scenario.model = Model::Linear;
     scenario.gears.tip_relief = None;
     scenario.rig.pinion_shaft.radius_mm = 10.0;
     scenario.rig.gear_shaft.radius_mm = 10.0;

@@ -450,6 +450,7 @@ fn natural_frequencies_without_the_mesh() {
         pinion_speed_hz: 40.0,
         brake_torque_nm: 10.0,
     });
+    scenario.model = meshtone::scenario::Model::Linear;
     scenario.gears.points_per_tooth = 1_000;
     let system = meshtone::stages(&scenario).unwrap().system;
     let mass = CoordinateVector::from(system.mass_diagonal);

@@ -84,6 +84,7 @@ fn scenarios_with(faults: impl Strategy<Value = Vec<Fault>>) -> impl Strategy<Va
                     pinion_speed_hz: speed,
                     brake_torque_nm: torque,
                 });
+                scenario.model = Model::Linear;
                 scenario.seed = seed;
                 scenario.gears.points_per_tooth = 1_500;
                 scenario.gears.pressure_angle_deg = angle;
@@ -229,6 +230,7 @@ fn a_through_pit_can_make_the_pair_stiffer() {
         pinion_speed_hz: 40.0,
         brake_torque_nm: 10.0,
     });
+    scenario.model = Model::Linear;
     scenario.gears.pressure_angle_deg = 17.5;
     scenario.gears.tip_relief = None;
     let pit = PitCircle::Fractions { start: 0.6, end: 0.93, depth: 0.1 };

@@ -17,6 +17,7 @@ fn relief_leaves_some_of_the_tip() {
                 pinion_speed_hz: 40.0,
                 brake_torque_nm: 10.0,
             });
+            scenario.model = Model::Linear;
             scenario.rig.pinion_shaft.radius_mm = 4.0;
             let refused = scenario.validate().err().map(|error| error.key);
             let expected = (module <= 1.5).then(|| "gears.tip_relief.depth_mm".to_owned());
@@ -34,6 +35,7 @@ fn relief_leaves_some_of_the_tip() {
         pinion_speed_hz: 40.0,
         brake_torque_nm: 10.0,
     });
+    crowned.model = Model::Linear;
     crowned.gears.tip_relief = None;
     crowned.gears.crowning_mm = 1.3;
     assert_eq!(crowned.validate().unwrap_err().key, "gears.crowning_mm");
@@ -50,6 +52,7 @@ fn the_limit_is_the_profiles_own() {
         pinion_speed_hz: 40.0,
         brake_torque_nm: 10.0,
     });
+    scenario.model = Model::Linear;
     scenario.gears.tip_relief.as_mut().unwrap().depth_mm = 0.0;
     let stages = meshtone::stages(&scenario).unwrap();
     let limit = [&stages.teeth.pinion_profile, &stages.teeth.gear_profile]
@@ -74,6 +77,7 @@ fn a_speed_profile_outlasts_the_settling() {
         pinion_speed_hz: 40.0,
         brake_torque_nm: 10.0,
     });
+    scenario.model = Model::Linear;
     let profile = |end: f64| Some(Profile { time_s: vec![0.0, end], value: vec![40.0, 41.0] });
     // Half of 76 revolutions at 40 Hz are discarded: 0.95 s.
     scenario.operation.speed_profile_hz = profile(0.9);

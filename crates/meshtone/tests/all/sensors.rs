@@ -138,10 +138,9 @@ fn two_sensors_cannot_share_a_channel() {
 #[test]
 fn axial_is_felt_at_the_wheels() {
     let text = sensor("direction = \"axial\"");
-    assert!(Scenario::from_toml(&text).is_ok());
-    let under_contact = format!("model = \"contact\"\n{text}");
-    assert_refused(&under_contact, "sensor.direction", 11, &["across the shafts", "\"wheels\""]);
-    assert!(Scenario::from_toml(&format!("{under_contact}at = \"wheels\"\n")).is_ok());
+    assert!(Scenario::from_toml(&format!("model = \"linear\"\n{text}")).is_ok());
+    assert_refused(&text, "sensor.direction", 10, &["across the shafts", "\"wheels\""]);
+    assert!(Scenario::from_toml(&format!("{text}at = \"wheels\"\n")).is_ok());
 }
 
 #[test]

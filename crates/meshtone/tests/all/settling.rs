@@ -55,6 +55,7 @@ fn the_kept_signal_is_that_of_the_long_settling() {
             pinion_speed_hz: 40.0,
             brake_torque_nm: 60.0,
         });
+        scenario.model = Model::Linear;
         scenario.quality.din_grade = 7;
         scenario.faults = damage.map(Fault::on_first_gear_tooth).into_iter().collect();
         for tolerance in [1e-3, 1e-6] {
@@ -75,7 +76,7 @@ fn the_kept_signal_is_that_of_the_long_settling() {
 
 #[test]
 fn what_does_not_repeat_settles_for_long() {
-    let steady = Scenario::new(GearPair {
+    let mut steady = Scenario::new(GearPair {
         module_mm: 3.0,
         pinion_teeth: 17,
         gear_teeth: 38,
@@ -83,6 +84,7 @@ fn what_does_not_repeat_settles_for_long() {
         pinion_speed_hz: 40.0,
         brake_torque_nm: 60.0,
     });
+    steady.model = Model::Linear;
     let start = |change: &dyn Fn(&mut Scenario)| {
         let mut scenario = steady.clone();
         change(&mut scenario);

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use crate::signal::{largest_difference, noise, relative_rms, wave};
-use meshtone::scenario::{GearPair, Profile, Scenario};
+use meshtone::scenario::{GearPair, Model, Profile, Scenario};
 use meshtone::signal::*;
 use meshtone::simulate;
 
@@ -192,6 +192,7 @@ fn a_run_up_has_mesh_lines_one_bin_wide() {
         pinion_speed_hz: 40.0,
         brake_torque_nm: 10.0,
     });
+    scenario.model = Model::Linear;
     scenario.solver.sampling_rate_hz = 5e4;
     let profile = Profile { time_s: vec![0.0, 1.0, 3.0], value: vec![20.0, 20.0, 60.0] };
     scenario.operation.speed_profile_hz = Some(profile);

@@ -1,7 +1,7 @@
 //! Motions that grow without bound are errors, not signals.
 #![allow(clippy::unwrap_used)]
 
-use meshtone::scenario::{DampingRatio, Fault, GearPair, MissingTooth, Scenario};
+use meshtone::scenario::{DampingRatio, Fault, GearPair, MissingTooth, Model, Scenario};
 use meshtone::{Error, simulate};
 
 /// Few teeth, one of them missing: for a part of each revolution no tooth is in contact. Next to no damping.
@@ -15,6 +15,7 @@ fn contact_that_is_lost() {
         pinion_speed_hz: 150.0,
         brake_torque_nm: 10.0,
     });
+    scenario.model = Model::Linear;
     scenario.rig.pinion_shaft.radius_mm = 4.2;
     scenario.rig.gear_shaft.radius_mm = 4.2;
     scenario.faults = vec![Fault::on_first_gear_tooth(MissingTooth)];

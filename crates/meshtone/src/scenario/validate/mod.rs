@@ -73,8 +73,7 @@ impl Scenario {
     }
 }
 
-const PUBLISHED_HELP: &str =
-    "set model = \"linear\" (or leave --model out), which has any number of faults on any teeth";
+const PUBLISHED_HELP: &str = "set model = \"linear\" or \"contact\" (or leave --model out), which have any number of faults on any teeth";
 
 /// Every value, whether or not the model honours it.
 fn check_values(scenario: &Scenario) -> Result<(), ScenarioError> {

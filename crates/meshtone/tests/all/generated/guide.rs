@@ -48,8 +48,10 @@ fn rows(keys: &[KeyDescription], first: &str) -> String {
             value if format!("x = {value}").parse::<toml::Table>().is_ok() => format!("`{value}`"),
             words => words.to_owned(),
         };
+        let ignored = key.ignored_in_words();
+        let ignored = if ignored.is_empty() { ignored } else { format!(". *{ignored}*") };
         let KeyDescription { key, meaning, unit, allowed, .. } = key;
-        writeln!(text, "| `{key}` | {meaning} | {unit} | {default} | {allowed} |").unwrap();
+        writeln!(text, "| `{key}` | {meaning}{ignored} | {unit} | {default} | {allowed} |").unwrap();
     }
     text
 }

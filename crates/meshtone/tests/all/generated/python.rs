@@ -108,7 +108,8 @@ pub fn sentences(key: &KeyDescription) -> String {
     } else {
         format!(" Default: {}.", key.default.replace('`', "``"))
     };
-    format!("{meaning}{allowed}{default}")
+    let ignored = key.ignored_in_words();
+    format!("{meaning}{allowed}{default}{}{ignored}", if ignored.is_empty() { "" } else { " " })
 }
 
 /// A text in lines.
