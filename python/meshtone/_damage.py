@@ -13,6 +13,7 @@ __all__ = [
     "MissingTooth",
     "PartialFace",
     "PitCircle",
+    "RootCrack",
     "ThroughFace",
     "ToothBreakage",
     "ToothDestruction",
@@ -81,6 +82,35 @@ class ToothBreakage:
     chip_height_mm: float
     chip_width_mm: float
     tip_loss_mm: float | None = None
+    wheel: Literal["pinion", "gear"] = "gear"
+    tooth: int = 1
+
+
+@dataclass(frozen=True)
+class RootCrack:
+    """The root is cracked on the side of the working flank.
+
+    Parameters
+    ----------
+    depth_mm : float
+        (mm) The depth of the crack from the fillet, where it is deepest. Allowed: ≥ 0; must not pass the tooth's centre
+        line.
+    angle_deg : float, optional
+        (°) The crack's angle to the tooth's centre line. Allowed: > 0, ≤ 90. Default: 45.0.
+    length_mm : float, optional
+        (mm) The length of the crack along the face, deepest at one side and ending in a parabola. Allowed: > 0; at most
+        the face width. Default: over the whole face, equally deep.
+    wheel : {'pinion', 'gear'}, optional
+        The damaged wheel. Default: "gear".
+    tooth : int, optional
+        The number of the damaged tooth, in the order in which the teeth enter contact. Allowed: whole number > 0; at
+        most the wheel's teeth. Default: 1.
+    """
+
+    kind: ClassVar[str] = "root-crack"
+    depth_mm: float
+    angle_deg: float | None = None
+    length_mm: float | None = None
     wheel: Literal["pinion", "gear"] = "gear"
     tooth: int = 1
 
@@ -193,10 +223,10 @@ class ToothDestruction:
     tooth: int = 1
 
 
-Fault = Union[MissingTooth, ToothBreakage, PartialFace, ThroughFace, ToothDestruction]
+Fault = Union[MissingTooth, ToothBreakage, RootCrack, PartialFace, ThroughFace, ToothDestruction]
 """Any kind of damage."""
 
-KINDS: tuple[type[Any], ...] = (MissingTooth, ToothBreakage, PartialFace, ThroughFace, ToothDestruction)
+KINDS: tuple[type[Any], ...] = (MissingTooth, ToothBreakage, RootCrack, PartialFace, ThroughFace, ToothDestruction)
 """The classes."""
 
 TABLES: dict[str, type[Any]] = {"circle": PitCircle}

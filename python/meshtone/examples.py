@@ -6,7 +6,7 @@ Examples
 >>> examples.tooth_breakage().fault.chip_width_mm
 12.0
 >>> sorted(examples.all())
-['healthy', 'missing-tooth', 'partial-face', 'through-face', 'tooth-breakage', 'tooth-destruction']
+['healthy', 'missing-tooth', 'partial-face', 'root-crack', 'through-face', 'tooth-breakage', 'tooth-destruction']
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ __all__ = [
     "healthy",
     "missing_tooth",
     "partial_face",
+    "root_crack",
     "through_face",
     "tooth_breakage",
     "tooth_destruction",
@@ -37,6 +38,11 @@ def missing_tooth() -> Scenario:
 def tooth_breakage() -> Scenario:
     """The same pair with a chipped tooth."""
     return Scenario.from_toml(template("tooth-breakage"))
+
+
+def root_crack() -> Scenario:
+    """The same pair with a crack in a tooth's root."""
+    return Scenario.from_toml(template("root-crack"))
 
 
 def partial_face() -> Scenario:
@@ -60,6 +66,7 @@ def all() -> dict[str, Scenario]:
         "healthy": healthy(),
         "missing-tooth": missing_tooth(),
         "tooth-breakage": tooth_breakage(),
+        "root-crack": root_crack(),
         "partial-face": partial_face(),
         "through-face": through_face(),
         "tooth-destruction": tooth_destruction(),

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from .faults import Fault, MissingTooth, PartialFace, ToothBreakage, in_words
+from .faults import Fault, MissingTooth, PartialFace, RootCrack, ToothBreakage, in_words
 from .simulation import chosen_channel
 
 if TYPE_CHECKING:
@@ -300,6 +300,7 @@ def plot_tooth(
     ax.fill(outline_y, outline_x, facecolor="#e8e8e8", edgecolor="black", linewidth=1.0)
     flanks = {(name, number): flank for name, number, flank in simulation._native.damaged_teeth_mm()}
     flank_y_mm = flanks.get((wheel, tooth), y_mm)
+    cracks = {(name, number): (x, y) for name, number, x, y in simulation._native.cracks_mm()}
     faults = [fault for fault in simulation.scenario.faults if (fault.wheel, fault.tooth) == (wheel, tooth)]
     for fault in faults:
         if isinstance(fault, MissingTooth):
@@ -313,7 +314,11 @@ def plot_tooth(
                 lost = x_mm >= x_mm[-1] - height_mm
                 y = np.concatenate([y_mm[lost], -y_mm[lost][::-1]])
                 ax.fill(y, np.concatenate([x_mm[lost], x_mm[lost][::-1]]), label=label, **style)
-    cuts = [fault for fault in faults if not isinstance(fault, (MissingTooth, ToothBreakage))]
+        elif isinstance(fault, RootCrack):
+            crack_x_mm, crack_y_mm = cracks[(wheel, tooth)]
+            extent = "" if fault.length_mm is None else f", {fault.length_mm:g} mm along the face"
+            ax.plot(crack_y_mm, crack_x_mm, color=ORANGE, linewidth=2.5, label=f"crack, {fault.depth_mm:g} mm deep{extent}")
+    cuts = [fault for fault in faults if not isinstance(fault, (MissingTooth, ToothBreakage, RootCrack))]
     if cuts:
         partial = all(isinstance(fault, PartialFace) for fault in cuts)
         lost = y_mm > flank_y_mm + 1e-9

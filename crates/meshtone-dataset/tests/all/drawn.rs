@@ -174,3 +174,21 @@ fn joint_rules() {
         }
     }
 }
+
+#[test]
+fn cracks_are_drawn_and_graded_by_their_depth() {
+    let crack = "fault = { kind = \"root-crack\", depth_mm = 1.0 }\n\
+                 severity = { measure = \"fault.depth_mm / tooth.thickness_mm\", breaks = [0.25, 0.5] }\n\
+                 [[class.vary]]\nkey = \"fault.depth_mm\"\nuniform = [0.2, 4.0]\n";
+    let missing = "fault = { kind = \"missing-tooth\" }\nseverity = 4\n";
+    let plan = plan(&FAST.replace(missing, crack));
+    let mut grades = [0; 4];
+    for record in all(&plan).iter().filter(|record| record.class == 2) {
+        let depth_mm = value(record, "fault.depth_mm").unwrap();
+        let thickness_mm = std::f64::consts::FRAC_PI_2 * 3.0;
+        let share = depth_mm / thickness_mm;
+        assert_eq!(record.severity, 1 + u8::from(share >= 0.25) + u8::from(share >= 0.5), "{share}");
+        grades[usize::from(record.severity)] += 1;
+    }
+    assert!(grades[1..].iter().all(|&records| records > 0), "{grades:?}");
+}

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use super::{DamageDescription, Fault};
+use super::{Crack, DamageDescription, Fault};
 use crate::error::ScenarioError;
 use crate::random::{Draws, Purpose};
 use crate::wheel::{Flank, Teeth, ToothProfile, Wheel, WheelName};
@@ -31,6 +31,8 @@ pub struct DamagedTooth {
     pub deviation_mm: Vec<f64>,
     /// Where the mate does not touch the flank but turns about two edges.
     pub rolling: Vec<RollingPit>,
+    /// A crack in its root.
+    pub crack: Option<Crack>,
     /// What the damages are.
     pub descriptions: Vec<DamageDescription>,
 }
@@ -112,6 +114,7 @@ impl DamagedTooth {
             gone_from_index: points,
             deviation_mm: vec![0.0; points],
             rolling: Vec::new(),
+            crack: None,
             descriptions: Vec::new(),
         }
     }
@@ -138,7 +141,9 @@ impl DamagedTooth {
             DamageDescription::ToothDestruction { start_index, end_index, .. } => {
                 Some(*start_index..=*end_index)
             }
-            DamageDescription::MissingTooth | DamageDescription::ToothBreakage { .. } => None,
+            DamageDescription::MissingTooth
+            | DamageDescription::ToothBreakage { .. }
+            | DamageDescription::RootCrack { .. } => None,
         }
     }
 

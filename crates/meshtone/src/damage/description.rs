@@ -1,5 +1,7 @@
 //! What a damage is, in numbers for pictures and traces.
 
+use super::Crack;
+
 /// Numbers that describe a damage, one set per kind. Positions are counted in pinion revolutions since the damaged tooth
 /// entered contact.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,6 +35,11 @@ pub enum DamageDescription {
         end_index: usize,
         /// (rad) Angle of the line to the tooth's centre line.
         slope_rad: f64,
+    },
+    /// A cracked root.
+    RootCrack {
+        /// Where the crack lies.
+        crack: Crack,
     },
 }
 

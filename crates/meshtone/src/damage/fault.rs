@@ -145,18 +145,22 @@ pub(crate) fn check_faults(faults: &[Fault], gears: &Gears) -> Check {
     Ok(())
 }
 
-/// Whether a tooth with one damage has no room for the other, whatever their sizes: nothing is left of a missing tooth, and
-/// a tip breaks off once.
+/// Whether a tooth with one damage has no room for the other, whatever their sizes: nothing is left of a missing tooth, a tip
+/// breaks off once, and a second crack beside the first is not known to any formula.
 fn excludes(damage: &Damage, other: &Damage) -> bool {
     let missing = |damage: &Damage| matches!(damage, Damage::MissingTooth(_));
     let broken = |damage: &Damage| matches!(damage, Damage::ToothBreakage(_));
-    missing(damage) || missing(other) || (broken(damage) && broken(other))
+    let cracked = |damage: &Damage| matches!(damage, Damage::RootCrack(_));
+    missing(damage)
+        || missing(other)
+        || (broken(damage) && broken(other))
+        || (cracked(damage) && cracked(other))
 }
 
 fn second_damage(fault: &Fault, number: usize, other: &Fault) -> ScenarioError {
     let (wheel, tooth, kind) = (fault.wheel.name(), fault.tooth, fault.damage.kind());
     let problem = format!(
-        "tooth {tooth} of the {wheel} has fault[{number}] already ({}); a missing tooth has no other damage, and a tooth breaks once",
+        "tooth {tooth} of the {wheel} has fault[{number}] already ({}); a missing tooth has no other damage, and a tooth breaks and cracks once",
         other.damage.kind()
     );
     ScenarioError::new("fault.kind", format!("\"{kind}\""), problem)

@@ -12,6 +12,7 @@ mod partial_face;
 mod pit_circle;
 #[doc(hidden)]
 pub mod published;
+mod root_crack;
 mod section;
 mod through_face;
 mod tooth_breakage;
@@ -26,6 +27,7 @@ pub(crate) use kind::{Kind, MeshEffect, PaperRig};
 pub use missing_tooth::MissingTooth;
 pub use partial_face::PartialFace;
 pub use pit_circle::PitCircle;
+pub use root_crack::{Crack, RootCrack};
 pub use section::Section;
 pub use through_face::ThroughFace;
 pub use tooth_breakage::ToothBreakage;
@@ -151,6 +153,8 @@ kinds! {
     MissingTooth,
     /// A corner of the tooth has chipped off.
     ToothBreakage,
+    /// The root is cracked on the side of the working flank.
+    RootCrack,
     /// A pit in the flank, over a part of the face width, from one side.
     PartialFace,
     /// A pit in the flank, over the whole face width.

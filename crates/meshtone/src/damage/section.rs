@@ -1,6 +1,7 @@
 //! Cross-sections of a tooth, along its centre line.
 
 use super::DamagedTooth;
+use super::root_crack::Ledge;
 use crate::wheel::ToothProfile;
 
 /// One cross-section. y is measured across the tooth from its centre line, z along the face from its middle; what is missing
@@ -57,7 +58,7 @@ impl Section {
         Self::of(&[Strip::new(face_width_mm, 0.0, -half_thickness_mm, half_thickness_mm)])
     }
 
-    /// A section of a damaged tooth: one rectangle, or a lower one and a narrower upper one.
+    /// A section of a damaged tooth: rectangles one on the other, none wider than the one below.
     ///
     /// # Arguments
     /// * `tooth` - the damage
@@ -65,16 +66,21 @@ impl Section {
     /// * `face_width_mm` - (mm) face width
     /// * `index` - profile index
     pub fn damaged(tooth: &DamagedTooth, profile: &ToothProfile, face_width_mm: f64, index: usize) -> Self {
-        let (back, top) = (-profile.y_mm[index], tooth.flank_y_mm[index]);
+        let (x, y) = (profile.x_mm[index], profile.y_mm[index]);
         let missing = tooth.missing_width_mm[index];
-        let corner_width = tooth.corner_width_mm[index];
-        let step = tooth.corner_y_mm[index].min(top);
-        if corner_width <= missing || step >= top {
-            return Self::of(&[Strip::new(face_width_mm, missing, back, top)]);
+        let top = tooth.flank_y_mm[index].min(tooth.crack.map_or(y, |crack| crack.left_y_mm(x, y)));
+        let corner = Ledge { above_y_mm: tooth.corner_y_mm[index], missing_mm: tooth.corner_width_mm[index] };
+        let ledges = tooth.crack.map_or_else(Vec::new, |crack| crack.ledges(x, y));
+        if !ledges.is_empty() {
+            return Self::of(&stacked(face_width_mm, [-y, top], missing, ledges, corner));
+        }
+        let step = corner.above_y_mm.min(top);
+        if corner.missing_mm <= missing || step >= top {
+            return Self::of(&[Strip::new(face_width_mm, missing, -y, top)]);
         }
         Self::of(&[
-            Strip::new(face_width_mm, missing, back, step),
-            Strip::new(face_width_mm, corner_width, step, top),
+            Strip::new(face_width_mm, missing, -y, step),
+            Strip::new(face_width_mm, corner.missing_mm, step, top),
         ])
     }
 
@@ -95,29 +101,63 @@ impl Section {
             iyz += area * dy * dz;
         }
         let shear_per_mm2 = match strips {
-            [lower, upper] => {
-                let heights = [lower.from_y_mm - yc, lower.to_y_mm - yc, upper.to_y_mm - yc];
-                shear_flexibility(lower.width_mm, upper.width_mm, heights) / (2.0 * iz * iz)
+            [_] => 0.6 / area,
+            _ => {
+                let about_centre =
+                    |strip: &Strip| (strip.width_mm, [strip.from_y_mm - yc, strip.to_y_mm - yc]);
+                shear_flexibility(strips.iter().map(about_centre)) / (2.0 * iz * iz)
             }
-            _ => 0.6 / area,
         };
         Self { area_mm2: area, shear_per_mm2, yc_mm: yc, zc_mm: zc, iy_mm4: iy, iz_mm4: iz, iyz_mm4: iyz }
     }
 }
 
-/// (mm⁵) `∫ Q²/b dy` over a section that is `lower_width` wide between the first two of the heights
-/// `[bottom, step, top]`, measured from its centre, and `upper_width` between the last two.
+/// The rectangles of a section from which two damages have taken the upper part of one end.
 ///
-/// On each piece `Q(y) = Q_end + b (y_end² − y²)/2`, with `Q_end` the first moment beyond the piece.
-pub(super) fn shear_flexibility(lower_width: f64, upper_width: f64, [bottom, step, top]: [f64; 3]) -> f64 {
-    let piece = |width: f64, from: f64, to: f64, beyond: f64| {
+/// # Arguments
+/// * `face_width_mm` - (mm) its width
+/// * `heights_mm` - (mm) its lower and upper end
+/// * `missing_mm` - (mm) width that is missing over the whole height
+/// * `ledges` - of the one damage, from below, each wider than the one before
+/// * `corner` - of the other damage
+fn stacked(
+    face_width_mm: f64,
+    [bottom, top]: [f64; 2],
+    missing_mm: f64,
+    mut ledges: Vec<Ledge>,
+    corner: Ledge,
+) -> Vec<Strip> {
+    let above_corner = ledges.partition_point(|ledge| ledge.above_y_mm < corner.above_y_mm);
+    ledges.insert(above_corner, corner);
+    let (mut from, mut missing) = (bottom, missing_mm);
+    let mut strips = Vec::with_capacity(ledges.len() + 1);
+    for ledge in ledges.into_iter().filter(|ledge| ledge.above_y_mm < top) {
+        if ledge.missing_mm > missing {
+            strips.push(Strip::new(face_width_mm, missing, from, ledge.above_y_mm));
+            (from, missing) = (ledge.above_y_mm, ledge.missing_mm);
+        }
+    }
+    // At its start a crack through the whole face is as wide as the face.
+    if missing < face_width_mm || strips.is_empty() {
+        strips.push(Strip::new(face_width_mm, missing, from, top));
+    }
+    strips
+}
+
+/// (mm⁵) `∫ Q²/b dy` over a section made of rectangles, each with its width and the heights of its ends from the section's
+/// centre, from below.
+///
+/// On each `Q(y) = Q_end + b (y_end² − y²)/2`, with `Q_end` the first moment beyond it.
+pub(super) fn shear_flexibility(rectangles: impl DoubleEndedIterator<Item = (f64, [f64; 2])>) -> f64 {
+    let (mut beyond, mut sum) = (0.0, 0.0);
+    for (width, [from, to]) in rectangles.rev() {
         // Q²/b with Q = a − b y²/2.
         let a = beyond + width * to * to / 2.0;
         let integral = |y: f64| a * a * y / width - a * y.powi(3) / 3.0 + width * y.powi(5) / 20.0;
-        integral(to) - integral(from)
-    };
-    let upper_moment = upper_width * (top * top - step * step) / 2.0;
-    piece(upper_width, step, top, 0.0) + piece(lower_width, bottom, step, upper_moment)
+        sum += integral(to) - integral(from);
+        beyond += width * (to * to - from * from) / 2.0;
+    }
+    sum
 }
 
 #[cfg(test)]
@@ -129,7 +169,7 @@ mod tests {
         // ∫ Q²/b dy = 4 b h⁵/15 for a rectangle of width b and height 2h, however it is split.
         let (b, h) = (3.0, 2.0f64);
         for step in [-1.0, 0.0, 1.5] {
-            let value = shear_flexibility(b, b, [-h, step, h]);
+            let value = shear_flexibility([(b, [-h, step]), (b, [step, h])].into_iter());
             assert!((value / (4.0 * b * h.powi(5) / 15.0) - 1.0).abs() < 1e-14, "{step}");
         }
     }
@@ -146,6 +186,8 @@ mod tests {
             sum += (moment + b * h * y / 2.0f64).powi(2) / b * h;
             moment += b * h * y;
         }
-        assert!((shear_flexibility(w, u, heights) / sum - 1.0).abs() < 1e-4);
+        let [bottom, step, top] = heights;
+        let value = shear_flexibility([(w, [bottom, step]), (u, [step, top])].into_iter());
+        assert!((value / sum - 1.0).abs() < 1e-4);
     }
 }

@@ -217,6 +217,12 @@ fn damages(trace: &mut Trace, stages: &Stages) {
                 trace.vector(&name("indices"), [*start_index, *end_index].map(index));
                 trace.scalar(&name("slope_rad"), *slope_rad);
             }
+            DamageDescription::RootCrack { crack } => {
+                let (tip_x_mm, tip_y_mm) = crack.tip_mm();
+                trace.vector(&name("crack_x_mm"), [crack.start_x_mm, tip_x_mm]);
+                trace.vector(&name("crack_y_mm"), [crack.start_y_mm, tip_y_mm]);
+                continue;
+            }
         }
         trace.vector(&name("flank_y_mm"), flank_y_mm.iter().copied().step_by(FAULT_STRIDE));
     }

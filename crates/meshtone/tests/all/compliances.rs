@@ -81,6 +81,7 @@ fn untouched(wheel: WheelName, profile: &ToothProfile) -> DamagedTooth {
         gone_from_index: points,
         deviation_mm: vec![0.0; points],
         rolling: Vec::new(),
+        crack: None,
         descriptions: Vec::new(),
     }
 }

@@ -90,6 +90,17 @@ fn partial(width_mm: f64, pit: PitCircle) -> Damage {
     Damage::PartialFace(PartialFace { width_mm, pit })
 }
 
+// A crack's sections lose in proportion to its depth, along a piece of the tooth that grows with the depth's root: the involute's
+// foot is parallel to the tooth's centre line.
+#[test]
+fn a_vanishing_crack_is_no_crack() {
+    let crack = |depth_mm: f64, length_mm| Damage::from(RootCrack { depth_mm, angle_deg: 45.0, length_mm });
+    let depth = Vanishing::of("crack, depth", |s| crack(s, None));
+    assert!((order(&depth.stiffness) - 1.5).abs() < 0.1 && (order(&depth.acceleration) - 1.5).abs() < 0.1);
+    let length = Vanishing::of("crack, length", |s| crack(2.0, Some(15.0 * s)));
+    assert!((order(&length.stiffness) - 1.0).abs() < 0.1 && (order(&length.acceleration) - 1.0).abs() < 0.1);
+}
+
 // The mean change is the missing part of the face: of first order in a chip's width, and in its height too where that
 // shrinks with it, hence 2. Its acceleration follows.
 #[test]

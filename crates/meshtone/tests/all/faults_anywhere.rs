@@ -41,13 +41,14 @@ fn ground() -> ToothDestruction {
 }
 
 /// Every kind of damage.
-fn damages() -> [Damage; 5] {
+fn damages() -> [Damage; 6] {
     [
         MissingTooth.into(),
         chip().into(),
         PartialFace { width_mm: 5.0, pit: pit(0.2, 0.8) }.into(),
         ThroughFace { pit: pit(0.2, 0.8) }.into(),
         ground().into(),
+        RootCrack { depth_mm: 3.0, angle_deg: 45.0, length_mm: None }.into(),
     ]
 }
 

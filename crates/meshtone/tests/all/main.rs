@@ -26,6 +26,7 @@ mod published;
 mod published_model;
 mod published_pitch;
 mod refused_shapes;
+mod root_crack;
 mod scenario_faults;
 mod scenario_from_toml;
 mod scenario_round_trip;

@@ -4,7 +4,7 @@
 use crate::support::{REQUIRED, appended, assert_refused, gears, replaced};
 use meshtone::scenario::{
     Damage, DampingRatio, DestructionLine, Fault, FileProblem, FoundationCoefficients, GearPair, Material,
-    MissingTooth, Model, PartialFace, PitCircle, Profile, ProfileErrors, ReliefShape, Scenario,
+    MissingTooth, Model, PartialFace, PitCircle, Profile, ProfileErrors, ReliefShape, RootCrack, Scenario,
     ScenarioFiles, Shaft, ThroughFace, TipRelief, ToothBreakage, ToothDestruction,
 };
 use meshtone::wheel::ErrorTable;
@@ -130,6 +130,14 @@ fn every_fault_is_read() {
     for (keys, damage) in [
         ("kind = \"missing-tooth\"", Damage::from(MissingTooth)),
         ("kind = \"tooth-breakage\"\nchip_height_mm = 5\nchip_width_mm = 15", Damage::from(breakage)),
+        (
+            "kind = \"root-crack\"\ndepth_mm = 2",
+            Damage::from(RootCrack { depth_mm: 2.0, angle_deg: 45.0, length_mm: None }),
+        ),
+        (
+            "kind = \"root-crack\"\ndepth_mm = 2\nangle_deg = 60\nlength_mm = 7.5",
+            Damage::from(RootCrack { depth_mm: 2.0, angle_deg: 60.0, length_mm: Some(7.5) }),
+        ),
         (
             "kind = \"partial-face\"\nwidth_mm = 2\nstart = 0.2\nend = 0.8\ndepth = 0.5",
             Damage::from(PartialFace { width_mm: 2.0, pit: fractions }),

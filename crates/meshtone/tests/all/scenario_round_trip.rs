@@ -3,7 +3,7 @@
 use meshtone::scenario::{
     Damage, DampingRatio, DestructionLine, Fault, FlankRelief, FoundationCoefficients, GearPair, Gears,
     Material, MissingTooth, Model, Operation, PartialFace, PitCircle, Profile, ProfileErrors, Quality,
-    ReliefShape, Rig, Scenario, Shaft, Solver, Support, ThroughFace, TipRelief, ToothBreakage,
+    ReliefShape, Rig, RootCrack, Scenario, Shaft, Solver, Support, ThroughFace, TipRelief, ToothBreakage,
     ToothDestruction, WheelInertia, WheelName,
 };
 use meshtone::wheel::{ErrorTable, WheelDeviations};
@@ -163,9 +163,15 @@ fn damage(module_mm: f64, face_width_mm: f64) -> impl Strategy<Value = Damage> {
     let destruction = (-0.99..0.5, line, 0.0..0.7, 0.0..0.7).prop_map(move |(start, line, offset, noise)| {
         ToothDestruction { start, line, offset_mm: offset * module_mm, noise_mm: noise * module_mm }
     });
+    let crack =
+        (0.0..2.24, 0.1..=90.0, prop::option::of(0.01..=1.0)).prop_map(move |(depth, angle_deg, length)| {
+            let length_mm = length.map(|length: f64| length * face_width_mm);
+            RootCrack { depth_mm: depth * module_mm, angle_deg, length_mm }
+        });
     prop_oneof![
         Just(Damage::from(MissingTooth)),
         breakage.prop_map(Damage::from),
+        crack.prop_map(Damage::from),
         partial.prop_map(Damage::from),
         pit().prop_map(|pit| Damage::from(ThroughFace { pit })),
         destruction.prop_map(Damage::from),

@@ -90,11 +90,10 @@ fn cut_corner(
         yc_mm[i] = yc;
         lateral.zc_mm[i] = zc;
         lateral.load_z_mm[i] = pit_width / 2.0;
-        section.shear_per_mm2[i] = crate::damage::section::shear_flexibility(
-            face_width,
-            face_width - pit_width,
-            [-y - yc, cut_y - yc, y - yc],
-        ) / (2.0 * section.iz_mm4[i].powi(2));
+        let (bottom, step, top) = (-y - yc, cut_y - yc, y - yc);
+        let rectangles = [(face_width, [bottom, step]), (face_width - pit_width, [step, top])];
+        section.shear_per_mm2[i] = crate::damage::section::shear_flexibility(rectangles.into_iter())
+            / (2.0 * section.iz_mm4[i].powi(2));
     }
     section.yc_mm = Some(yc_mm);
     section.lateral = Some(lateral);

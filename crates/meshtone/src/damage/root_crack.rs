@@ -1,0 +1,219 @@
+//! A crack in the root of a tooth.
+
+use std::f64::consts::PI;
+use std::ops::Bound::{Excluded, Included};
+
+use super::damaged_tooth::{DamagedTooth, HealthyTooth};
+use super::kind::MeshEffect;
+use super::{DamageDescription, Kind};
+use crate::error::ScenarioError;
+use crate::keys::{Check, Keys, Range, Row, below, check_keys, field, require, row};
+use crate::wheel::{Gears, ToothProfile};
+
+/// A crack from the fillet of the working flank into the tooth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RootCrack {
+    /// (mm) Depth, from the fillet along the crack; where it is deepest.
+    pub depth_mm: f64,
+    /// (°) Angle to the tooth's centre line, in (0, 90]. Default 45.
+    pub angle_deg: f64,
+    /// (mm) Length along the face, from one side, over which the depth falls to 0; without it the crack is equally deep over
+    /// the whole face.
+    pub length_mm: Option<f64>,
+}
+
+impl Keys for RootCrack {
+    fn start() -> Self {
+        Self { depth_mm: f64::NAN, angle_deg: 45.0, length_mm: None }
+    }
+
+    fn rows() -> Vec<Row<Self>> {
+        vec![
+            row(
+                "depth_mm",
+                "mm",
+                "the depth of the crack from the fillet, where it is deepest",
+                field!(depth_mm),
+            )
+            .required()
+            .range(Range::not_negative())
+            .rule("must not pass the tooth's centre line"),
+            row("angle_deg", "°", "the crack's angle to the tooth's centre line", field!(angle_deg))
+                .range(Range::between(Excluded(0.0), Included(90.0))),
+            row(
+                "length_mm",
+                "mm",
+                "the length of the crack along the face, deepest at one side and ending in a parabola",
+                field!(length_mm),
+            )
+            .otherwise("over the whole face, equally deep")
+            .range(Range::positive())
+            .rule("at most the face width")
+            .alternative("10.0"),
+        ]
+    }
+}
+
+impl Kind for RootCrack {
+    const NAME: &str = "root-crack";
+    const EFFECT: MeshEffect = MeshEffect::Flat;
+
+    fn example() -> Self {
+        Self { depth_mm: 3.0, ..Self::start() }
+    }
+
+    fn check(&self, gears: &Gears) -> Check {
+        check_keys(self, "fault")?;
+        below("fault.depth_mm", self.depth_mm, gears.tooth_height_mm(), "the tooth's height (2.25 modules)")?;
+        self.length_mm.map_or(Ok(()), |length| {
+            let problem = format!("must be at most {} mm, gears.face_width_mm", gears.face_width_mm);
+            require("fault.length_mm", length, length <= gears.face_width_mm, problem).map_err(|error| {
+                error.with_help("for a crack that is equally deep over the whole face, leave out length_mm")
+            })
+        })
+    }
+
+    fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> Result<(), ScenarioError> {
+        let crack = self.open(healthy.profile())?;
+        tooth.crack = Some(crack);
+        tooth.descriptions.push(DamageDescription::RootCrack { crack });
+        Ok(())
+    }
+}
+
+impl RootCrack {
+    /// Where the crack lies.
+    ///
+    /// # Errors
+    /// A crack beyond the tooth's centre line.
+    fn open(&self, profile: &ToothProfile) -> Result<Crack, ScenarioError> {
+        let (start_x_mm, start_y_mm) = critical_point_mm(profile);
+        let angle_rad = self.angle_deg.to_radians();
+        let deepest = start_y_mm / angle_rad.sin();
+        if self.depth_mm > deepest {
+            let problem = format!(
+                "must be at most {deepest:.3} mm, where a crack at {}° from the fillet reaches the tooth's centre line",
+                self.angle_deg
+            );
+            return Err(ScenarioError::new("fault.depth_mm", format!("{:?}", self.depth_mm), problem)
+                .with_help("for a tooth that is about to break off, use kind = \"tooth-breakage\" or \"missing-tooth\""));
+        }
+        Ok(Crack { start_x_mm, start_y_mm, depth_mm: self.depth_mm, angle_rad, length_mm: self.length_mm })
+    }
+}
+
+/// (mm) Where a root breaks: the point of the fillet whose tangent is at 30° to the tooth's centre line (ISO 6336-3), as x and
+/// y. A fillet that is steeper everywhere has its end there, a flank without one its root.
+fn critical_point_mm(profile: &ToothProfile) -> (f64, f64) {
+    let (x, y) = (&profile.x_mm, &profile.y_mm);
+    let critical = -(PI / 6.0).tan();
+    let slope = |i: usize| (y[i + 1] - y[i]) / (x[i + 1] - x[i]);
+    let steep = (0..profile.len() - 1).take_while(|&i| slope(i) < critical).count();
+    if steep == 0 || steep + 1 == profile.len() {
+        return (x[0], y[0]);
+    }
+    // Slopes are those of the middles between points.
+    let (before, after) = (slope(steep - 1), slope(steep));
+    let middle = |i: usize| (x[i] + x[i + 1]) / 2.0;
+    let part = (critical - before) / (after - before);
+    let at = middle(steep - 1) + part * (middle(steep) - middle(steep - 1));
+    let beyond = at - x[steep];
+    (at, y[steep] + beyond * if beyond < 0.0 { before } else { after })
+}
+
+/// Where a root crack lies, in the tooth's own plane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crack {
+    /// (mm) Where it starts at the fillet, along the tooth's centre line from the wheel's centre.
+    pub start_x_mm: f64,
+    /// (mm) Where it starts, across the tooth from its centre line.
+    pub start_y_mm: f64,
+    /// (mm) Its largest depth.
+    pub depth_mm: f64,
+    /// (rad) Its angle to the centre line.
+    pub angle_rad: f64,
+    /// (mm) Length along the face from one side, over which the depth falls to 0 as a parabola, `q √(1 − s/length)` at the
+    /// distance s; none for a depth that is the same over the whole face.
+    pub length_mm: Option<f64>,
+}
+
+/// What is missing of a section above a height.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Ledge {
+    /// (mm) The height, from the centre line.
+    pub(super) above_y_mm: f64,
+    /// (mm) Width that is missing from one end of the face.
+    pub(super) missing_mm: f64,
+}
+
+/// Number of ledges that a section's parabolic edge is made of: its area is exact, its moments to about a hundredth of what
+/// is missing.
+const LEDGES: usize = 8;
+
+impl Crack {
+    /// (mm) x and y of its tip where it is deepest.
+    pub fn tip_mm(&self) -> (f64, f64) {
+        let (sin, cos) = self.angle_rad.sin_cos();
+        (self.start_x_mm - self.depth_mm * cos, self.start_y_mm - self.depth_mm * sin)
+    }
+
+    /// (mm) Height up to which a section is left over the whole face.
+    ///
+    /// # Arguments
+    /// * `x_mm` - (mm) where the section is
+    /// * `y_mm` - (mm) half the thickness of the sound one
+    pub(super) fn left_y_mm(&self, x_mm: f64, y_mm: f64) -> f64 {
+        match self.length_mm {
+            None => y_mm - self.lost_mm(x_mm, y_mm),
+            Some(_) => y_mm,
+        }
+    }
+
+    /// (mm) How much of a section's height is lost where the crack is deepest.
+    ///
+    /// Between its tip and its start the crack is the section's edge. Further out nothing above its tip carries a load: a
+    /// height of as much as the crack reaches across the tooth, where the tooth is as thick as at the crack's start.
+    fn lost_mm(&self, x_mm: f64, y_mm: f64) -> f64 {
+        let (tip_x, tip_y) = self.tip_mm();
+        let lost = if x_mm >= self.start_x_mm {
+            // The involute's foot can be a little thicker than the crack's start.
+            y_mm.min(self.start_y_mm) - tip_y
+        } else if x_mm >= tip_x {
+            y_mm - self.edge_y_mm(x_mm)
+        } else {
+            0.0
+        };
+        lost.max(0.0)
+    }
+
+    /// (mm) The crack's own height, below its start.
+    fn edge_y_mm(&self, x_mm: f64) -> f64 {
+        self.start_y_mm - (self.start_x_mm - x_mm) * self.angle_rad.tan()
+    }
+
+    /// What a crack over a part of the face takes from a section, from its lowest height upwards.
+    ///
+    /// # Arguments
+    /// * `x_mm` - (mm) where the section is
+    /// * `y_mm` - (mm) half the thickness of the sound one
+    pub(super) fn ledges(&self, x_mm: f64, y_mm: f64) -> Vec<Ledge> {
+        let lost = self.lost_mm(x_mm, y_mm);
+        let Some(length) = self.length_mm.filter(|_| lost > 0.0) else { return Vec::new() };
+        if x_mm < self.start_x_mm {
+            // As far along the face as the crack reaches down to here.
+            let part = (self.start_x_mm - x_mm) / (self.depth_mm * self.angle_rad.cos());
+            return vec![Ledge { above_y_mm: y_mm - lost, missing_mm: length * (1.0 - part * part) }];
+        }
+        let reach = self.depth_mm * self.angle_rad.sin();
+        // A crack of the part t of the largest depth takes the height t · reach − spare.
+        let part = |height: f64| (height + reach - lost) / reach;
+        let step = lost / LEDGES as f64;
+        (0..LEDGES)
+            .map(|n| {
+                let (below, above) = (part(lost - n as f64 * step), part(lost - (n + 1) as f64 * step));
+                let mean_square = (below * below + below * above + above * above) / 3.0;
+                Ledge { above_y_mm: y_mm - lost + n as f64 * step, missing_mm: length * (1.0 - mean_square) }
+            })
+            .collect()
+    }
+}
