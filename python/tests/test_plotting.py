@@ -76,6 +76,10 @@ def test_a_run_up_is_not_drawn_as_a_constant_speed() -> None:
 
 
 def test_what_is_lost_is_told_in_the_tooth() -> None:
+    crack = meshtone.simulate(meshtone.examples.root_crack()).plot_tooth()
+    (line,) = crack.get_lines()
+    assert line.get_label() == "crack, 3 mm deep"
+    assert np.allclose(line.get_xydata(), [[3.0109, 53.478], [3.0109 - 3 / 2**0.5, 53.478 - 3 / 2**0.5]], atol=1e-3)
     part = meshtone.simulate(meshtone.examples.partial_face()).plot_tooth()
     assert legend(part) == ["pit, 2 mm wide"]
     broken = meshtone.simulate(meshtone.examples.tooth_breakage()).plot_tooth()

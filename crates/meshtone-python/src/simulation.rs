@@ -19,6 +19,9 @@ use crate::scenario::{BothWheels, Scenario, both_wheels};
 /// Deflection, number of the first pair and the forces of the pairs.
 type StaticMesh<'py> = (Bound<'py, PyArray1<f64>>, i64, Bound<'py, PyArray2<f64>>);
 
+/// Wheel and number of a tooth, x and y of two points.
+type CrackOfTooth<'py> = (&'static str, usize, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
+
 /// A simulation: every stage's results and the signals.
 #[pyclass(frozen, module = "meshtone._core")]
 pub struct Simulation {
@@ -225,6 +228,18 @@ impl Simulation {
     ) -> Vec<(&'static str, usize, Bound<'py, PyArray1<f64>>)> {
         let teeth = self.stages.damaged.iter();
         teeth.map(|tooth| (tooth.wheel.name(), tooth.tooth + 1, array(py, tooth.outline_y_mm()))).collect()
+    }
+
+    /// (mm) The cracked teeth: wheel, number from 1, x and y of the crack's start and tip.
+    fn cracks_mm<'py>(&self, py: Python<'py>) -> Vec<CrackOfTooth<'py>> {
+        let cracks = self.stages.damaged.iter().filter_map(|tooth| Some((tooth, tooth.crack?)));
+        cracks
+            .map(|(tooth, crack)| {
+                let (tip_x_mm, tip_y_mm) = crack.tip_mm();
+                let [x_mm, y_mm] = [vec![crack.start_x_mm, tip_x_mm], vec![crack.start_y_mm, tip_y_mm]];
+                (tooth.wheel.name(), tooth.tooth + 1, array(py, x_mm), array(py, y_mm))
+            })
+            .collect()
     }
 
     /// (mm) Profile errors of both wheels, a column a tooth; none for ideal teeth.

@@ -10,8 +10,15 @@ fn examples() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples")
 }
 
-const NAMES: [&str; 6] =
-    ["healthy", "missing_tooth", "partial_face", "through_face", "tooth_breakage", "tooth_destruction"];
+const NAMES: [&str; 7] = [
+    "healthy",
+    "missing_tooth",
+    "partial_face",
+    "root_crack",
+    "through_face",
+    "tooth_breakage",
+    "tooth_destruction",
+];
 
 // The templates describe the same cases, but for a pit that is given by its circle here.
 #[test]

@@ -1,7 +1,7 @@
 //! The damage in words and as ranges of a profile.
 
 use meshtone::Stages;
-use meshtone::damage::{Damage, DamageDescription, DamagedTooth, Fault};
+use meshtone::damage::{Crack, Damage, DamageDescription, DamagedTooth, Fault};
 use meshtone::wheel::{ToothProfile, WheelName};
 
 use super::side::Side;
@@ -18,6 +18,10 @@ pub(super) fn damaged_range(damage: &DamageDescription, tooth: &DamagedTooth, si
         DamageDescription::FaceFault { pit, .. } => (pit.start_index, pit.end_index),
         DamageDescription::ToothDestruction { start_index, end_index, .. } => {
             ((*start_index).max(side.contact_index), *end_index)
+        }
+        DamageDescription::RootCrack { crack } => {
+            let start = side.profile.nearest_to_x(crack.start_x_mm);
+            (start, start)
         }
         _ => cut_range(side.profile, &tooth.outline_y_mm()).unwrap_or((last, last)),
     };
@@ -121,6 +125,10 @@ fn sizes(
                 format!("line at {}° to the centre line", tenths(slope_rad.to_degrees().abs())),
             ]
         }
+        (_, DamageDescription::RootCrack { crack }) => {
+            let angle = format!("at {}° to the centre line", tenths(crack.angle_rad.to_degrees()));
+            vec![depth_of_crack(crack), angle, extent_of_crack(crack)]
+        }
         _ => Vec::new(),
     }
 }
@@ -141,7 +149,22 @@ pub(super) fn caption(damage: &DamageDescription) -> Vec<String> {
             ]
         }
         DamageDescription::ToothDestruction { .. } => vec!["flank ground down".to_owned()],
+        DamageDescription::RootCrack { crack } => {
+            vec![format!("crack {},", depth_of_crack(crack)), extent_of_crack(crack)]
+        }
         _ => Vec::new(),
+    }
+}
+
+fn depth_of_crack(crack: &Crack) -> String {
+    let up_to = if crack.length_mm.is_some() { "up to " } else { "" };
+    format!("{up_to}{} mm deep", hundredths(crack.depth_mm))
+}
+
+fn extent_of_crack(crack: &Crack) -> String {
+    match crack.length_mm {
+        Some(length_mm) => format!("{} mm along the face", hundredths(length_mm)),
+        None => "over the whole face".to_owned(),
     }
 }
 

@@ -7,7 +7,7 @@ use meshtone::damage::{DamageDescription, DamagedTooth};
 
 use super::damage;
 use super::side::Side;
-use super::tooth::{DAMAGE_EDGE, LOST};
+use super::tooth::{CRACK, DAMAGE_EDGE, LOST};
 use crate::axes::{Area, Axes};
 use crate::canvas::Canvas;
 use crate::font;
@@ -83,6 +83,7 @@ fn contact_name_is_below(axes: &Axes, side: &Side) -> bool {
         let z_mm = match description {
             DamageDescription::ToothBreakage { .. } => return false,
             DamageDescription::FaceFault { width_mm, .. } => half - width_mm,
+            DamageDescription::RootCrack { crack } => half - crack.length_mm.unwrap_or(2.0 * half),
             _ => -half,
         };
         let edge_x_mm = side.profile.x_mm[damage::damaged_range(description, tooth, side).0];
@@ -128,6 +129,11 @@ fn damaged(
         DamageDescription::FaceFault { width_mm, .. } => {
             rectangle(canvas, axes, [half - width_mm, half], [x(first), x(end)]);
         }
+        DamageDescription::RootCrack { crack } => {
+            let end = half - crack.length_mm.unwrap_or(2.0 * half);
+            let (from, to) = (axes.at(end, crack.start_x_mm), axes.at(half, crack.start_x_mm));
+            canvas.line(from, to, CRACK);
+        }
         _ => {
             rectangle(canvas, axes, [-half, half], [x(first), x(end)]);
         }
@@ -148,7 +154,11 @@ fn caption(canvas: &mut Canvas, axes: &Axes, side: &Side, tooth: &DamagedTooth, 
     let below = if side.is_missing() {
         side.last()
     } else {
-        let starts = tooth.descriptions.iter().map(|damage| damage::damaged_range(damage, tooth, side).0);
+        let starts = tooth.descriptions.iter().map(|damage| match damage {
+            // It lies just above the line of the root.
+            DamageDescription::RootCrack { .. } => 0,
+            _ => damage::damaged_range(damage, tooth, side).0,
+        });
         starts.min().unwrap_or(side.last())
     };
     let lowest = side.contact_x_mm().min(side.profile.x_mm[below]);

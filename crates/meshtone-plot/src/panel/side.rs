@@ -98,7 +98,10 @@ impl<'a> Side<'a> {
     /// (mm) Ranges across and along the tooth that fill `area` at equal scales.
     pub(super) fn view(&self, area: Area) -> ([f64; 2], [f64; 2]) {
         let module = self.wheel.module_mm;
-        let low = self.profile.x_mm[0] - 0.34 * module;
+        let root = self.profile.x_mm[0];
+        // A crack may reach into the wheel's body.
+        let crack = self.tooth.and_then(|tooth| tooth.crack).map_or(root, |crack| crack.tip_mm().0);
+        let low = root.min(crack) - 0.34 * module;
         let high = self.wheel.tip_radius_mm.max(self.profile.tip_x_mm()) + 0.22 * module;
         let widest = self.profile.y_mm.iter().fold(0.5 * module, |widest, y| widest.max(*y));
         let px_per_mm = (area.height / (high - low)).min(area.width / (2.12 * widest));

@@ -1,6 +1,6 @@
 //! The tooth in its own plane.
 
-use meshtone::damage::{DamageDescription, DamagedTooth};
+use meshtone::damage::{Crack, DamageDescription, DamagedTooth};
 
 use super::damage;
 use super::side::Side;
@@ -15,6 +15,8 @@ const WORKING: Stroke = Stroke::solid(colour::BLUE, 2.4);
 const BACK: Stroke = Stroke::solid(colour::MUTED, 1.6);
 const DAMAGED: Stroke = Stroke::solid(colour::VERMILLION, 2.6);
 pub(super) const DAMAGE_EDGE: Stroke = Stroke::dashed(colour::VERMILLION, 1.6, &[6.0, 3.0]);
+/// A crack that is open.
+pub(super) const CRACK: Stroke = Stroke::solid(colour::VERMILLION, 3.2);
 const GHOST: Stroke = Stroke::dashed(colour::INK, 1.2, &[5.0, 3.0]);
 pub(super) const LOST: Fill = Fill::tint(colour::VERMILLION, 0.3);
 pub(super) const PARTLY_LOST: Fill = Fill::hatch(colour::VERMILLION);
@@ -237,9 +239,14 @@ impl Drawing<'_> {
         if top < last {
             self.across_at(canvas, top, DAMAGED);
         }
+        if let Some(crack) = &tooth.crack {
+            self.crack(canvas, crack);
+        }
         let face_width_mm = self.side.wheel.face_width_mm;
         if tooth.descriptions.iter().any(|damage| damage::is_partial(damage, face_width_mm)) {
             self.remark(canvas, 0, "hatched: lost over part of the face width", colour::VERMILLION);
+        } else if tooth.crack.is_some() {
+            self.remark(canvas, 0, "dashed: nothing beyond carries load", colour::VERMILLION);
         }
     }
 
@@ -257,10 +264,20 @@ impl Drawing<'_> {
                 is_partial: damage::is_partial(damage, self.side.wheel.face_width_mm),
             }
         };
-        let is_cut = |damage: &&DamageDescription| !matches!(damage, DamageDescription::ToothBreakage { .. });
+        let is_cut = |damage: &&DamageDescription| {
+            !matches!(damage, DamageDescription::ToothBreakage { .. } | DamageDescription::RootCrack { .. })
+        };
         let mut cuts: Vec<Cut> = tooth.descriptions.iter().filter(is_cut).map(cut).collect();
         cuts.sort_by_key(|cut| cut.first);
         cuts
+    }
+
+    /// The crack, and the height above which the tooth's sections carry nothing there.
+    fn crack(&self, canvas: &mut Canvas, crack: &Crack) {
+        let (tip_x, tip_y) = crack.tip_mm();
+        let tip = self.axes.at(tip_y, tip_x);
+        canvas.line(tip, self.axes.at(tip_y, self.side.profile.tip_x_mm()), DAMAGE_EDGE);
+        canvas.line(self.axes.at(crack.start_y_mm, crack.start_x_mm), tip, CRACK);
     }
 
     /// Words in the wheel's body, in a row counted from the bottom.

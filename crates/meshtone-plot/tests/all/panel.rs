@@ -60,7 +60,7 @@ const EVERY_PANEL: [&str; 22] = [
 
 #[test]
 fn panels_of_the_gallery_show_what_they_should() {
-    let expected: [(&str, &[&str]); 6] = [
+    let expected: [(&str, &[&str]); 7] = [
         (
             "healthy",
             &["Healthy gear pair", "DIN 3961 grade 7", "17 and 38 teeth", "Average of 17 gear revolutions"],
@@ -81,6 +81,14 @@ fn panels_of_the_gallery_show_what_they_should() {
         (
             "tooth_destruction",
             &["Tooth destruction: flank ground up to", "18 and 35 teeth", "flank ground down"],
+        ),
+        (
+            "root_crack",
+            &[
+                "Root crack: 3 mm deep, at 45° to the centre line, over the whole face",
+                "crack 3 mm deep,",
+                "over the whole face",
+            ],
         ),
     ];
     for ((name, scenario), (expected_name, words)) in crate::support::gallery().iter().zip(expected) {
@@ -456,4 +464,19 @@ fn a_pinion_tooth_that_the_gears_first_revolution_does_not_meet() {
         &drawn(&scenario),
         &["Around pinion tooth 27, enlarged", "20 teeth", "40 teeth, tooth 27 damaged"],
     );
+}
+
+#[test]
+fn cracks_of_either_wheel_and_beside_other_damage() {
+    let (_, mut scenario) = crate::support::gallery().remove(6);
+    let crack = RootCrack { depth_mm: 2.5, angle_deg: 30.0, length_mm: Some(6.5) };
+    scenario.faults =
+        vec![Fault::new(WheelName::Pinion, 3, crack), Fault::on_first_gear_tooth(partial_face())];
+    let words = ["crack up to 2.5 mm deep,", "6.5 mm along the face", "dashed: nothing beyond carries load"];
+    assert_shows(&drawn(&scenario), &words);
+    scenario.faults = vec![
+        Fault::on_first_gear_tooth(partial_face()),
+        Fault::on_first_gear_tooth(RootCrack { depth_mm: 4.0, angle_deg: 45.0, length_mm: None }),
+    ];
+    assert_shows(&drawn(&scenario), &["crack 4 mm deep,", "hatched: lost over part of the face width"]);
 }

@@ -24,6 +24,7 @@ fn small_pair(damage: Option<Damage>) -> Scenario {
 pub fn gallery() -> Vec<(&'static str, Scenario)> {
     let pit = PitCircle::Fractions { start: 0.2, end: 0.8, depth: 0.5 };
     let breakage = ToothBreakage { chip_height_mm: 5.0, chip_width_mm: 12.0, tip_loss_mm: 3.0 };
+    let crack = RootCrack { depth_mm: 3.0, angle_deg: 45.0, length_mm: None };
     let mut destruction = Scenario::new(GearPair {
         module_mm: 3.0,
         pinion_teeth: 18,
@@ -46,6 +47,7 @@ pub fn gallery() -> Vec<(&'static str, Scenario)> {
         ("partial_face", small_pair(Some(PartialFace { width_mm: 2.0, pit }.into()))),
         ("through_face", small_pair(Some(ThroughFace { pit }.into()))),
         ("tooth_destruction", destruction),
+        ("root_crack", small_pair(Some(crack.into()))),
     ]
 }
 
