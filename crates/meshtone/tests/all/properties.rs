@@ -31,6 +31,11 @@ fn damage() -> impl Strategy<Value = Damage> {
         (0.5..6.0, 0.5..14.0, 0.0..3.0).prop_map(|(chip_height_mm, chip_width_mm, tip_loss_mm)| {
             Damage::ToothBreakage(ToothBreakage { chip_height_mm, chip_width_mm, tip_loss_mm })
         }),
+        (0.1..2.5, 20.0..80.0, proptest::option::of(0.5..15.0)).prop_map(
+            |(depth_mm, angle_deg, length_mm)| {
+                Damage::RootCrack(RootCrack { depth_mm, angle_deg, length_mm })
+            }
+        ),
         (0.5..14.0, pit()).prop_map(|(width_mm, pit)| Damage::PartialFace(PartialFace { width_mm, pit })),
         pit().prop_map(|pit| Damage::ThroughFace(ThroughFace { pit })),
         (0.0..0.45, line, 0.0..0.2).prop_map(|(start, line, offset_mm)| {
@@ -213,7 +218,7 @@ fn most_faults_of_every_kind_fit() {
         *fit += u32::from(stages(&scenario).is_ok());
     }
     println!("fitting, of drawn: {fitted:?}");
-    assert_eq!(fitted.len(), 5);
+    assert_eq!(fitted.len(), 6);
     for (kind, (fit, drawn)) in fitted {
         assert!(2 * fit > drawn && fit > 10, "{kind}: {fit} of {drawn}");
     }

@@ -5,8 +5,8 @@ use crate::physics::*;
 use meshtone::damage::{DamagedTooth, Section, damaged_teeth};
 use meshtone::mesh::{PairKind, Pairs};
 use meshtone::scenario::*;
-use meshtone::stages;
 use meshtone::wheel::Teeth;
+use meshtone::{simulate, stages};
 
 const WIDTH_MM: f64 = 15.0;
 const DAMAGED_GEAR: PairKind = PairKind { pinion: None, gear: Some(0), pairs_per_cycle: 1 };
@@ -220,6 +220,31 @@ fn back_flanks_are_as_stiff_as_those_of_sound_teeth() {
         stages.mesh.contact().unwrap().mean_stiffness_n_per_m
     };
     assert_eq!(stiffness(vec![Fault::on_first_gear_tooth(crack(3.0, None))]), stiffness(Vec::new()));
+}
+
+// Under a load that keeps the teeth together the same motion follows a while after the start, whichever tooth is cracked; what
+// differs is left of the start.
+#[test]
+fn the_signal_of_teeth_that_part_turns_with_the_cracked_tooth() {
+    let signal = |tooth: u32| {
+        let fault = Fault::new(WheelName::Gear, tooth, crack(3.0, None));
+        let simulation = simulate(&scenario(Model::Contact, vec![fault])).unwrap();
+        let samples_per_pitch = simulation.stages.time.samples_per_pinion_revolution / 17;
+        (simulation.channels.vertical_g, samples_per_pitch)
+    };
+    let (first, samples_per_pitch) = signal(1);
+    assert_eq!(first.len(), 17 * 38 * samples_per_pitch);
+    for tooth in [2, 20] {
+        let (turned, _) = signal(tooth);
+        let peak = largest(first.iter().copied());
+        let off = |turn: usize| {
+            let turned = turned.iter().cycle().skip(turn);
+            largest(turned.zip(&first).map(|(turned, first)| turned - first)) / peak
+        };
+        let left = off((tooth as usize - 1) * samples_per_pitch);
+        println!("tooth {tooth} under contact: turned, but for {left:.1e}");
+        assert!(left < 1e-5 && off(0) > 1e-2, "{left:e}, {:e}", off(0));
+    }
 }
 
 #[test]
