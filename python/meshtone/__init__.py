@@ -2,7 +2,7 @@
 
 >>> from meshtone import Scenario, ToothBreakage, simulate
 >>> scenario = Scenario(module_mm=3, pinion_teeth=17, gear_teeth=38, face_width_mm=15, pinion_speed_hz=40, brake_torque_nm=10,
-...                     din_grade=7, fault=ToothBreakage(chip_height_mm=5, chip_width_mm=12))
+...                     din_grade=7, fault=ToothBreakage(chip_height_mm=5, chip_width_mm=12, tip_loss_mm=3))
 >>> simulation = simulate(scenario)
 >>> figure = simulation.plot()                      # doctest: +SKIP
 >>> round(simulation.process().indicators["difference_kurtosis"]) > 3

@@ -436,7 +436,8 @@ class ScenarioKeys:
             each smaller than the module. Default: drawn, or none beside given profile errors.
         pinion_run_out_um : float, optional
             (µm) The run-out F_r of the pinion, of which the deviation is F_r/2 sin(θ + φ). Allowed: ≥ 0, ≤ 10000.
-            Default: drawn, or none beside given profile errors. Ignored by linear and published.
+            Default: drawn, or none beside given profile errors or pitches, which have it in them. Ignored by linear and
+            published.
         pinion_run_out_phase_rad : float, optional
             (rad) Its phase φ, with θ counted from where the first tooth of the pinion enters contact. Default: drawn,
             or 0 beside given profile errors. Ignored by linear and published.
@@ -450,7 +451,8 @@ class ScenarioKeys:
             smaller than the module. Default: drawn, or none beside given profile errors.
         gear_run_out_um : float, optional
             (µm) The run-out F_r of the gear, of which the deviation is F_r/2 sin(θ + φ). Allowed: ≥ 0, ≤ 10000.
-            Default: drawn, or none beside given profile errors. Ignored by linear and published.
+            Default: drawn, or none beside given profile errors or pitches, which have it in them. Ignored by linear and
+            published.
         gear_run_out_phase_rad : float, optional
             (rad) Its phase φ, with θ counted from where the first tooth of the gear enters contact. Default: drawn, or
             0 beside given profile errors. Ignored by linear and published.
@@ -474,13 +476,14 @@ class ScenarioKeys:
             published.
         misalignment_um : float, optional
             (µm) How far the shafts deviate from parallel in the plane of action, over the face width; positive where it
-            brings the flanks closer together towards positive z. Allowed: −1000…1000. Default: 0.0. Ignored by linear
-            and published.
+            brings the flanks closer together towards positive z: of the unloaded shafts, with the slope that the
+            nominal load gives them where a wheel is not midway; the tilt that an uneven load adds is computed. Allowed:
+            −1000…1000. Default: 0.0. Ignored by linear and published.
         pinion_shaft : Shaft, optional
-            The motor's shaft. Default: { length_mm = 2e2, radius_mm = 10.0, bearing_span_mm = 130.0, wheel_at = 0.5,
+            The motor's shaft. Default: { length_mm = 200.0, radius_mm = 10.0, bearing_span_mm = 130.0, wheel_at = 0.5,
             damping_ratio = 0.025 }.
         gear_shaft : Shaft, optional
-            The brake's shaft. Default: { length_mm = 6e2, radius_mm = 10.0, bearing_span_mm = 130.0, wheel_at = 0.5,
+            The brake's shaft. Default: { length_mm = 600.0, radius_mm = 10.0, bearing_span_mm = 130.0, wheel_at = 0.5,
             damping_ratio = 0.025 }.
         pinion_inertia : WheelInertia, optional
             The mass and inertias of the pinion, instead of a solid disc's; any of the three may be left out. Default: a

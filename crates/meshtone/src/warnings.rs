@@ -152,7 +152,7 @@ impl Stages {
 fn slowest_mode(mode: &DecayingMode) -> String {
     let ratio = mode.decay_per_s / (TAU * mode.frequency_hz);
     format!(
-        "slowest is the mode at {:.0} Hz, at {:.2} % of critical damping, which the damping_ratio of the shafts raises",
+        "slowest is the mode at {:.0} Hz, at {:.2} % of critical damping, which the damping_ratio of shafts and supports raises",
         mode.frequency_hz,
         100.0 * ratio
     )

@@ -203,7 +203,7 @@ fn of_record(most_faults: usize) -> Vec<Column> {
 
 /// Kind and place of a fault.
 fn of_fault(number: usize) -> [Column; 3] {
-    let fault = fault_name(number);
+    let fault = name_in_list("fault", number);
     let named = |last: &str, description: &str, kind: ColumnKind| {
         column(&format!("{fault}_{last}"), "", description, kind)
     };
@@ -216,9 +216,9 @@ fn of_fault(number: usize) -> [Column; 3] {
     ]
 }
 
-/// What the columns of a fault begin with: `fault`, and of further ones `fault_2` and so on.
-fn fault_name(number: usize) -> String {
-    if number == 0 { "fault".to_owned() } else { format!("fault_{}", number + 1) }
+/// What the columns of an entry of a list begin with: `fault`, and of further ones `fault_2` and so on.
+fn name_in_list(list: &str, number: usize) -> String {
+    if number == 0 { list.to_owned() } else { format!("{list}_{}", number + 1) }
 }
 
 /// The varied keys, in the plan's order; one of those that are in the same column.
@@ -248,14 +248,15 @@ fn key_column(key: &str) -> Column {
     Column { name, unit, description, kind: ColumnKind::Key(key.to_owned()) }
 }
 
-/// Name of a varied key's column: without its section, unless that is a fault or the noise.
+/// Name of a varied key's column: without its section, unless that is a fault, a sensor or the noise.
 pub(crate) fn column_name(key: &str) -> String {
     let name = match key.split_once('.') {
-        Some(("fault" | "noise", _)) | None => key.to_owned(),
-        Some((section, rest)) => match number_of_fault(section) {
-            Some(number) => [&fault_name(number), rest].join("_"),
-            None => rest.to_owned(),
-        },
+        Some(("fault" | "noise" | "sensor", _)) | None => key.to_owned(),
+        Some((section, rest)) => {
+            let numbered = |list| Some(name_in_list(list, number_in(section, list)?));
+            let entry = ["fault", "sensor"].into_iter().find_map(numbered);
+            entry.map_or_else(|| rest.to_owned(), |entry| [&entry, rest].join("_"))
+        }
     };
     let name = name.replace('.', "_");
     // `fault_tooth` counts from the record's start.
@@ -265,22 +266,24 @@ pub(crate) fn column_name(key: &str) -> String {
 /// Whether a key is the number of a damaged tooth.
 fn is_tooth(key: &str) -> bool {
     key.split_once('.').is_some_and(|(section, last)| {
-        last == "tooth" && (section == "fault" || number_of_fault(section).is_some())
+        last == "tooth" && (section == "fault" || number_in(section, "fault").is_some())
     })
 }
 
-/// The number of `fault[1]`, from 0.
-fn number_of_fault(section: &str) -> Option<usize> {
-    section.strip_prefix("fault[")?.strip_suffix(']')?.parse().ok()
+/// The number of an entry of a list such as `fault[1]`, from 0.
+fn number_in(section: &str, list: &str) -> Option<usize> {
+    section.strip_prefix(list)?.strip_prefix('[')?.strip_suffix(']')?.parse().ok()
 }
 
 /// The unit that a name ends in.
 pub(crate) fn unit_of(name: &str) -> &'static str {
-    const UNITS: [(&str, &str); 11] = [
+    const UNITS: [(&str, &str); 13] = [
         ("_n_per_m", "N/m"),
         ("_nm_per_rad", "N m/rad"),
         ("_kgm2", "kg m²"),
         ("_mm", "mm"),
+        ("_um", "µm"),
+        ("_g_per_rthz", "g/√Hz"),
         ("_hz", "Hz"),
         ("_nm", "N m"),
         ("_deg", "°"),
@@ -318,6 +321,9 @@ mod tests {
             ("fault[1].circle.x_mm", "fault_2_circle_x_mm", "mm"),
             ("fault.tooth", "fault_tooth_of_scenario", "-"),
             ("fault[1].tooth", "fault_2_tooth_of_scenario", "-"),
+            ("sensor.resonance_hz", "sensor_resonance_hz", "Hz"),
+            ("sensor[1].noise_density_g_per_rthz", "sensor_2_noise_density_g_per_rthz", "g/√Hz"),
+            ("rig.misalignment_um", "misalignment_um", "µm"),
             ("noise.snr_db", "noise_snr_db", "dB"),
             ("rig.bearing_stiffness_n_per_m", "bearing_stiffness_n_per_m", "N/m"),
             ("rig.wheel_rotational_stiffness_nm_per_rad", "wheel_rotational_stiffness_nm_per_rad", "N m/rad"),

@@ -341,8 +341,8 @@ fn only_what_is_wanted_is_kept() {
 #[test]
 fn enhanced_signals_are_those_of_the_hybrid_stage() {
     let directory = tempfile::tempdir().unwrap();
-    let tuned = "[enhancement]\nwidth_ratio = 0.5\nfault_to_harmonics_ratio = 1.0\nnoise_level = 0.0\n\
-                 [signal]\nsampling_rate_hz = 8e3\n[[key]]\nkey = \"rig.damping_ratio\"\nvalue = 0.08\n";
+    let tuned = "model = \"contact\"\n[enhancement]\nwidth_ratio = 0.5\nfault_to_harmonics_ratio = 1.0\nnoise_level = 0.0\n\
+                 [signal]\nsampling_rate_hz = 8e3\n[[key]]\nkey = \"rig.support.damping_ratio\"\nvalue = 0.08\n";
     std::fs::write(directory.path().join("tuned.toml"), tuned).unwrap();
     let text =
         FAST.replace("seed = 3", "seed = 3\ntuned = \"tuned.toml\"").replace("records = 60", "records = 24");
@@ -353,7 +353,7 @@ fn enhanced_signals_are_those_of_the_hybrid_stage() {
     let made = made(&plan);
     for row in 0..24 {
         let scenario = sampler.scenario(&sampler.record(row as u64).unwrap()).unwrap();
-        assert_eq!(scenario.number("rig.damping_ratio"), Some(0.08));
+        assert_eq!(scenario.number("rig.support.damping_ratio"), Some(0.08));
         let relative = rms(&made.signal("enhanced_relative_difference", row));
         match made.text("label", row).as_str() {
             "healthy" => assert!((relative - 1.0).abs() < 1e-6, "{relative}"),
@@ -375,7 +375,7 @@ fn enhanced_signals_are_those_of_the_hybrid_stage() {
 #[test]
 fn what_is_enhanced_is_read_as_the_model_has_it() {
     let directory = tempfile::tempdir().unwrap();
-    let tuned = "[enhancement]\nwidth_ratio = 1.0\nfault_to_harmonics_ratio = 1.0\nnoise_level = 0.0\n\
+    let tuned = "model = \"contact\"\n[enhancement]\nwidth_ratio = 1.0\nfault_to_harmonics_ratio = 1.0\nnoise_level = 0.0\n\
                  [signal]\nsampling_rate_hz = 8e3\n";
     std::fs::write(directory.path().join("tuned.toml"), tuned).unwrap();
     let text = FAST
@@ -400,7 +400,7 @@ fn what_is_enhanced_is_read_as_the_model_has_it() {
 #[test]
 fn what_is_enhanced_is_averaged_over_the_wheel_that_was_tuned_to() {
     let directory = tempfile::tempdir().unwrap();
-    let tuned = "[enhancement]\nwidth_ratio = 0.5\nfault_to_harmonics_ratio = 1.0\nnoise_level = 0.0\n\
+    let tuned = "model = \"contact\"\n[enhancement]\nwidth_ratio = 0.5\nfault_to_harmonics_ratio = 1.0\nnoise_level = 0.0\n\
                  [signal]\nsampling_rate_hz = 8e3\nwheel = \"pinion\"\n";
     std::fs::write(directory.path().join("tuned.toml"), tuned).unwrap();
     let path = directory.path().join("plan.toml");

@@ -240,7 +240,8 @@ fn tuned(root: &TomlTable<'_>) -> ReadResult<Tuned> {
         Some(value) => value.array()?.iter().map(key).collect::<ReadResult<_>>()?,
     };
     Ok(Tuned {
-        model: model.unwrap_or_default(),
+        // Files of earlier versions that name none were tuned under what was the default then.
+        model: model.unwrap_or(Model::Linear),
         enhancement,
         centre_rev,
         channel,

@@ -312,12 +312,13 @@ impl<S> Row<S> {
     }
 }
 
-/// An inline table with its numbers as a reader finds them easiest to read.
+/// An inline table with its large numbers as a reader finds them easiest to read.
 fn with_short_numbers(text: &str) -> String {
+    const LARGE: f64 = 1e5;
     let short = |word: &str| {
         let (number, comma) = word.strip_suffix(',').map_or((word, ""), |number| (number, ","));
-        let is_number = number.contains('.');
-        number.parse().ok().filter(|_| is_number).map_or(word.to_owned(), |value| short_number(value) + comma)
+        let large = number.parse().ok().filter(|value: &f64| value.is_finite() && value.abs() >= LARGE);
+        large.map_or(word.to_owned(), |value| short_number(value) + comma)
     };
     text.split(' ').map(short).collect::<Vec<_>>().join(" ")
 }

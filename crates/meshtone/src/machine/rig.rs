@@ -108,7 +108,8 @@ impl Keys for Rig {
                 "misalignment_um",
                 "µm",
                 "how far the shafts deviate from parallel in the plane of action, over the face width; positive where it brings the \
-                 flanks closer together towards positive z",
+                 flanks closer together towards positive z: of the unloaded shafts, with the slope that the nominal load gives them where a \
+                 wheel is not midway; the tilt that an uneven load adds is computed",
                 field!(misalignment_um),
             )
             .range(Range::from_to(-1e3, 1e3))

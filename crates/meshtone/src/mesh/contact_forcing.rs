@@ -83,7 +83,7 @@ struct Bearing {
     load: Vec<f64>,
     /// (N m) Its moment about the middle of the face.
     moment: Vec<f64>,
-    /// Whether there is any moment.
+    /// Whether it would bear beside the middle anywhere.
     leans: bool,
 }
 
@@ -92,7 +92,7 @@ impl Bearing {
         let load: Vec<f64> = table.states.iter().map(|state| borne_n(mesh, state)).collect();
         let moment: Vec<f64> =
             load.iter().zip(&table.states).map(|(load, state)| load * state.face_centre_m).collect();
-        let leans = moment.iter().any(|moment| *moment != 0.0);
+        let leans = table.states.iter().any(|state| state.face_centre_m != 0.0);
         Self { load, moment, leans }
     }
 }
@@ -251,22 +251,25 @@ impl<'a> ContactForcing<'a> {
                 *whole += load;
             }
         }
-        for (moment, whole) in face_centre.iter_mut().zip(whole_load) {
-            if whole > 0.0 {
-                *moment /= whole;
-            }
+        for (k, (moment, whole)) in face_centre.iter_mut().zip(whole_load).enumerate() {
+            *moment = if whole > 0.0 { *moment / whole } else { self.face_centre_m(self.sample + k) };
         }
     }
 
-    /// (m) Where along the face the load of all pairs acts.
+    /// (m) Where along the face the load of all pairs acts: where all are further apart than the nominal load presses the mean mesh
+    /// together, or without a load, that of the nearest pair.
     fn face_centre_m(&self, point: usize) -> f64 {
         let (mut moment, mut whole) = (0.0, 0.0);
+        let (mut least_m, mut of_nearest) = (f64::INFINITY, 0.0);
         for (_, state) in self.mesh.pairs_at(point) {
             let load = borne_n(self.mesh, state);
             moment += load * state.face_centre_m;
             whole += load;
+            if state.stiffness_n_per_m > 0.0 && state.separation_m < least_m {
+                (least_m, of_nearest) = (state.separation_m, state.face_centre_m);
+            }
         }
-        if whole > 0.0 { moment / whole } else { 0.0 }
+        if whole > 0.0 { moment / whole } else { of_nearest }
     }
 
     fn unsteady_block(&mut self, samples: usize, block: &mut ForcingBlock) {
@@ -307,12 +310,16 @@ impl<'a> ContactForcing<'a> {
                     + eccentric
                     - between(here.separation_m, next.separation_m);
                 let [last, last_but_one] =
-                    if self.before[place].0 == pair { self.before[place].1 } else { [offset; 2] };
+                    if self.before[place].0 == pair { self.before[place].1 } else { [offset, f64::NAN] };
                 self.before[place] = (pair, [offset, last]);
                 block.pairs.stiffness[place][k] = between(here.stiffness_n_per_m, next.stiffness_n_per_m);
-                // The next one is not known: the slope here of the parabola through the last three.
-                block.pairs.offset[place][k] =
-                    offset + lead * (1.5 * offset - 2.0 * last + 0.5 * last_but_one);
+                // The next one is not known: the slope here of the parabola through the last three, or of the line through two.
+                let change = if last_but_one.is_nan() {
+                    offset - last
+                } else {
+                    1.5 * offset - 2.0 * last + 0.5 * last_but_one
+                };
+                block.pairs.offset[place][k] = offset + lead * change;
             }
             if self.tilts {
                 block.pairs.face_centre[k] =
@@ -402,5 +409,34 @@ impl Forcing for ContactForcing<'_> {
             }
         }
         self.sample += samples;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::mesh::forcing::{ForcingBlock, ForcingSource};
+    use crate::scenario::{Fault, GearPair, Scenario, ToothBreakage};
+    use crate::simulate::stages;
+
+    // Also where all pairs are further apart than the load presses the mesh together, as without a load.
+    #[test]
+    fn damage_on_a_side_moves_the_load_at_any_torque() {
+        for brake_torque_nm in [0.0, 10.0] {
+            let mut scenario = Scenario::new(GearPair {
+                module_mm: 3.0,
+                pinion_teeth: 17,
+                gear_teeth: 38,
+                face_width_mm: 15.0,
+                pinion_speed_hz: 40.0,
+                brake_torque_nm,
+            });
+            let chip = ToothBreakage { chip_height_mm: 6.0, chip_width_mm: 14.0, tip_loss_mm: 0.0 };
+            scenario.faults = vec![Fault::on_first_gear_tooth(chip)];
+            let stages = stages(&scenario).unwrap();
+            let mut block = ForcingBlock::default();
+            let revolution = 3 * stages.time.samples_per_pinion_revolution;
+            stages.forcing(&stages.reduced_model().directions).next_block(revolution, &mut block);
+            assert!(block.pairs.face_centre.iter().any(|z_m| *z_m < -1e-3), "{brake_torque_nm} N m");
+        }
     }
 }

@@ -300,6 +300,19 @@ fn given_pitches_are_deviations_of_whole_flanks() {
     }
 }
 
+// Measured pitches have the run-out in them: none is drawn beside them, and the other wheel keeps its own.
+#[test]
+fn given_pitches_have_the_run_out_in_them() {
+    let mut scenario = of_rig(6);
+    let drawn = stages(&scenario).unwrap().run_out;
+    scenario.quality.gear_deviations.cumulative_pitch_um = Some(vec![0.0; 38]);
+    let given = stages(&scenario).unwrap().run_out;
+    assert_eq!((given[0], given[1].run_out_um), (drawn[0], 0.0));
+    assert!(drawn[1].run_out_um > 0.0);
+    scenario.quality.gear_deviations.run_out_um = Some(7.0);
+    assert_eq!(stages(&scenario).unwrap().run_out[1].run_out_um, 7.0);
+}
+
 // Misalignment and helix slopes are one: what the shafts take the flanks' metal can make up for.
 #[test]
 fn helix_slopes_and_misalignment_add_up() {

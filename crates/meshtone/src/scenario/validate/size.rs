@@ -8,9 +8,9 @@ use crate::operation::CycleGrid;
 
 /// Signals that are kept of every sample after settling.
 const KEPT_CHANNELS: f64 = 8.0;
-/// Numbers that are held for every kept sample of a sensor, beside its signal while it is filtered: what it is padded to, its
-/// spectrum and the transform's workspace.
-const FILTERED_CHANNELS: f64 = 8.0;
+/// Numbers that are held for every kept sample of a sensor, beside its signal while it is filtered: what it is padded to, twice
+/// as long, its spectrum, the response, the transform's plan and workspace.
+const FILTERED_CHANNELS: f64 = 14.0;
 /// Numbers that are held for every simulated sample: motor angle and brake torque.
 const EXCITATION_CHANNELS: f64 = 2.0;
 /// Numbers that are tabulated for every point of the coarse grid over a gear revolution.

@@ -57,7 +57,9 @@ pub fn deviations(quality: &Quality, teeth: &Teeth, seed: u64) -> Deviations {
     for wheel in WheelName::BOTH {
         let (given, place) = (quality.given(wheel), wheel as usize);
         let RunOut { run_out_um, phase_rad } = &mut deviations.run_out[place];
-        *run_out_um = given.run_out_um.unwrap_or(*run_out_um);
+        // Measured pitches have the run-out in them.
+        let otherwise_um = if given.cumulative_pitch_um.is_some() { 0.0 } else { *run_out_um };
+        *run_out_um = given.run_out_um.unwrap_or(otherwise_um);
         *phase_rad = given.run_out_phase_rad.unwrap_or(*phase_rad);
         let helix_slope_um = &mut deviations.helix_slope_um[place];
         *helix_slope_um = given.helix_slope_um.unwrap_or(*helix_slope_um);

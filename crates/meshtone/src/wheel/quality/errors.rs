@@ -116,7 +116,7 @@ macro_rules! deviation_rows {
                 concat!("the run-out F_r of the ", $wheel, ", of which the deviation is F_r/2 sin(θ + φ)"),
                 field!($field.run_out_um),
             )
-            .otherwise("drawn, or none beside given profile errors")
+            .otherwise("drawn, or none beside given profile errors or pitches, which have it in them")
             .range(Range::not_negative().slip_above(1e4))
             .ignored_by(&["linear", "published"]),
             row(
