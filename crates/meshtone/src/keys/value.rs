@@ -97,13 +97,18 @@ impl<const N: usize> KeyValue for [f64; N] {
     }
 
     fn check(&self, key: &str, range: &Range, unit: &str) -> Check {
-        let mut entries = self.iter().enumerate();
-        entries.try_for_each(|(index, entry)| entry.check(&format!("{key}[{index}]"), range, unit))
+        check_entries(self, key, range, unit)
     }
 
     fn kind() -> KeyKind {
         KeyKind::Numbers(N)
     }
+}
+
+/// Each number of an array, under its place in it.
+fn check_entries(entries: &[f64], key: &str, range: &Range, unit: &str) -> Check {
+    let mut entries = entries.iter().enumerate();
+    entries.try_for_each(|(index, entry)| entry.check(&format!("{key}[{index}]"), range, unit))
 }
 
 /// As many as other keys say.
@@ -118,8 +123,7 @@ impl KeyValue for Vec<f64> {
     }
 
     fn check(&self, key: &str, range: &Range, unit: &str) -> Check {
-        let mut entries = self.iter().enumerate();
-        entries.try_for_each(|(index, entry)| entry.check(&format!("{key}[{index}]"), range, unit))
+        check_entries(self, key, range, unit)
     }
 
     fn kind() -> KeyKind {
