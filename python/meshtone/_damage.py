@@ -5,6 +5,7 @@ Written by `cargo xtask generate` from the rows of the Rust library: a change be
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal, Union
 
@@ -47,14 +48,14 @@ class MissingTooth:
     ----------
     wheel : {'pinion', 'gear'}, optional
         The damaged wheel. Default: "gear".
-    tooth : int, optional
-        The number of the damaged tooth, in the order in which the teeth enter contact. Allowed: whole number > 0; at
-        most the wheel's teeth. Default: 1.
+    tooth : int, sequence of ints or 'all', optional
+        The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
+        Allowed: whole number > 0; at most the wheel's teeth, each once. Default: 1.
     """
 
     kind: ClassVar[str] = "missing-tooth"
     wheel: Literal["pinion", "gear"] = "gear"
-    tooth: int = 1
+    tooth: int | Sequence[int] | Literal["all"] = 1
 
 
 @dataclass(frozen=True)
@@ -73,9 +74,9 @@ class ToothBreakage:
         0.0.
     wheel : {'pinion', 'gear'}, optional
         The damaged wheel. Default: "gear".
-    tooth : int, optional
-        The number of the damaged tooth, in the order in which the teeth enter contact. Allowed: whole number > 0; at
-        most the wheel's teeth. Default: 1.
+    tooth : int, sequence of ints or 'all', optional
+        The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
+        Allowed: whole number > 0; at most the wheel's teeth, each once. Default: 1.
     """
 
     kind: ClassVar[str] = "tooth-breakage"
@@ -83,7 +84,7 @@ class ToothBreakage:
     chip_width_mm: float
     tip_loss_mm: float | None = None
     wheel: Literal["pinion", "gear"] = "gear"
-    tooth: int = 1
+    tooth: int | Sequence[int] | Literal["all"] = 1
 
 
 @dataclass(frozen=True)
@@ -102,9 +103,9 @@ class RootCrack:
         the face width. Default: over the whole face, equally deep.
     wheel : {'pinion', 'gear'}, optional
         The damaged wheel. Default: "gear".
-    tooth : int, optional
-        The number of the damaged tooth, in the order in which the teeth enter contact. Allowed: whole number > 0; at
-        most the wheel's teeth. Default: 1.
+    tooth : int, sequence of ints or 'all', optional
+        The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
+        Allowed: whole number > 0; at most the wheel's teeth, each once. Default: 1.
     """
 
     kind: ClassVar[str] = "root-crack"
@@ -112,7 +113,7 @@ class RootCrack:
     angle_deg: float | None = None
     length_mm: float | None = None
     wheel: Literal["pinion", "gear"] = "gear"
-    tooth: int = 1
+    tooth: int | Sequence[int] | Literal["all"] = 1
 
 
 @dataclass(frozen=True)
@@ -137,9 +138,9 @@ class PartialFace:
         Default: none.
     wheel : {'pinion', 'gear'}, optional
         The damaged wheel. Default: "gear".
-    tooth : int, optional
-        The number of the damaged tooth, in the order in which the teeth enter contact. Allowed: whole number > 0; at
-        most the wheel's teeth. Default: 1.
+    tooth : int, sequence of ints or 'all', optional
+        The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
+        Allowed: whole number > 0; at most the wheel's teeth, each once. Default: 1.
     """
 
     kind: ClassVar[str] = "partial-face"
@@ -149,7 +150,7 @@ class PartialFace:
     depth: float | None = None
     circle: PitCircle | None = None
     wheel: Literal["pinion", "gear"] = "gear"
-    tooth: int = 1
+    tooth: int | Sequence[int] | Literal["all"] = 1
 
 
 @dataclass(frozen=True)
@@ -172,9 +173,9 @@ class ThroughFace:
         Default: none.
     wheel : {'pinion', 'gear'}, optional
         The damaged wheel. Default: "gear".
-    tooth : int, optional
-        The number of the damaged tooth, in the order in which the teeth enter contact. Allowed: whole number > 0; at
-        most the wheel's teeth. Default: 1.
+    tooth : int, sequence of ints or 'all', optional
+        The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
+        Allowed: whole number > 0; at most the wheel's teeth, each once. Default: 1.
     """
 
     kind: ClassVar[str] = "through-face"
@@ -183,7 +184,7 @@ class ThroughFace:
     depth: float | None = None
     circle: PitCircle | None = None
     wheel: Literal["pinion", "gear"] = "gear"
-    tooth: int = 1
+    tooth: int | Sequence[int] | Literal["all"] = 1
 
 
 @dataclass(frozen=True)
@@ -208,9 +209,9 @@ class ToothDestruction:
         (mm) The half width of a uniform roughness of the ground flank. Allowed: ≥ 0; likewise. Default: 0.0.
     wheel : {'pinion', 'gear'}, optional
         The damaged wheel. Default: "gear".
-    tooth : int, optional
-        The number of the damaged tooth, in the order in which the teeth enter contact. Allowed: whole number > 0; at
-        most the wheel's teeth. Default: 1.
+    tooth : int, sequence of ints or 'all', optional
+        The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
+        Allowed: whole number > 0; at most the wheel's teeth, each once. Default: 1.
     """
 
     kind: ClassVar[str] = "tooth-destruction"
@@ -220,7 +221,7 @@ class ToothDestruction:
     offset_mm: float | None = None
     noise_mm: float | None = None
     wheel: Literal["pinion", "gear"] = "gear"
-    tooth: int = 1
+    tooth: int | Sequence[int] | Literal["all"] = 1
 
 
 Fault = Union[MissingTooth, ToothBreakage, RootCrack, PartialFace, ThroughFace, ToothDestruction]

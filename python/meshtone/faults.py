@@ -1,10 +1,12 @@
 """Damage to a tooth: one class for each kind.
 
 Their fields have the names, units and defaults of the scenario file's sections ``[[fault]]``. Every fault has ``wheel``, 'gear' or
-'pinion', and ``tooth``, its number from 1; the gear's first tooth by default.
+'pinion', and ``tooth``: its number from 1, several numbers, or 'all'; the gear's first tooth by default.
 
 >>> MissingTooth(wheel="pinion", tooth=3)
 MissingTooth(wheel='pinion', tooth=3)
+>>> RootCrack(depth_mm=1.0, tooth=[1, 2])
+RootCrack(depth_mm=1.0, angle_deg=None, length_mm=None, wheel='gear', tooth=[1, 2])
 >>> ToothBreakage(chip_height_mm=5.0, chip_width_mm=12.0)
 ToothBreakage(chip_height_mm=5.0, chip_width_mm=12.0, tip_loss_mm=None, wheel='gear', tooth=1)
 """
@@ -25,6 +27,8 @@ __all__ = [*_damage.__all__]
 def _keys(value: Any) -> dict[str, Any]:
     """The fields that are set, as the scenario file has them."""
     entries = {field.name: getattr(value, field.name) for field in fields(value)}
+    if isinstance(entries.get("tooth"), (tuple, range)):
+        entries["tooth"] = list(entries["tooth"])
     return {
         name: _keys(entry) if is_dataclass(entry) else entry for name, entry in entries.items() if entry is not None
     }
@@ -70,6 +74,21 @@ def in_words(faults: Sequence[Fault]) -> str:
     if not faults:
         return "healthy"
     first = faults[0]
-    if len(faults) == 1 and (first.wheel, first.tooth) == ("gear", 1):
+    if len(faults) == 1 and (first.wheel, first.tooth) == ("gear", type(first).tooth):
         return first.kind
-    return ", ".join(f"{fault.kind} of {fault.wheel} tooth {fault.tooth}" for fault in faults)
+    return ", ".join(f"{fault.kind} of {_teeth_in_words(fault)}" for fault in faults)
+
+
+def _teeth_in_words(fault: Fault) -> str:
+    if fault.tooth == "all":
+        return f"all {fault.wheel} teeth"
+    if isinstance(fault.tooth, int):
+        return f"{fault.wheel} tooth {fault.tooth}"
+    return f"{fault.wheel} teeth {', '.join(map(str, fault.tooth))}"
+
+
+def numbers_of_teeth(fault: Fault, teeth: int) -> list[int]:
+    """The numbers of the teeth that a fault is on, from 1, of a wheel with that many."""
+    if fault.tooth == "all":
+        return list(range(1, teeth + 1))
+    return [fault.tooth] if isinstance(fault.tooth, int) else [int(tooth) for tooth in fault.tooth]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from .faults import Fault, MissingTooth, PartialFace, RootCrack, ToothBreakage, in_words
+from .faults import Fault, MissingTooth, PartialFace, RootCrack, ToothBreakage, in_words, numbers_of_teeth
 from .simulation import chosen_channel
 
 if TYPE_CHECKING:
@@ -45,6 +45,9 @@ PART: dict[str, Any] = {"facecolor": "none", "edgecolor": ORANGE, "hatch": "////
 WHOLE: dict[str, Any] = {"facecolor": ORANGE, "edgecolor": "none", "alpha": 0.7}
 TURN: dict[str, Any] = {"facecolor": ORANGE, "edgecolor": "none", "alpha": 0.2}
 """The parts of a revolution in which a damaged tooth is in contact."""
+
+MOST_NAMED = 3
+"""Teeth that are named one by one; of more it is said how many they are."""
 
 AROUND_DAMAGE = 8
 """(pitches) What the mesh stiffness is shown over."""
@@ -178,13 +181,19 @@ def plot_mesh_stiffness(
 
 def _around_damage(simulation: Simulation) -> tuple[int, int]:
     # Tooth j of either wheel enters contact first after j - 1 pitches; one more shows what was before.
-    first = max(0, min((fault.tooth - 2 for fault in simulation.scenario.faults), default=0))
+    numbers = [*_damaged_teeth(simulation, "pinion"), *_damaged_teeth(simulation, "gear")]
+    first = max(0, min((tooth - 2 for tooth in numbers), default=0))
     return first, first + AROUND_DAMAGE
 
 
 def _damaged_teeth(simulation: Simulation, wheel: str) -> list[int]:
     """The numbers of a wheel's damaged teeth, in their order."""
-    return sorted({fault.tooth for fault in simulation.scenario.faults if fault.wheel == wheel})
+    of_wheel = [fault for fault in simulation.scenario.faults if fault.wheel == wheel]
+    return sorted({tooth for fault in of_wheel for tooth in numbers_of_teeth(fault, _teeth(simulation, wheel))})
+
+
+def _teeth(simulation: Simulation, wheel: str) -> int:
+    return simulation.scenario.pinion_teeth if wheel == "pinion" else simulation.scenario.gear_teeth
 
 
 def _tint(ax: Axes, simulation: Simulation, wheels: Sequence[str], pitches: tuple[float, float]) -> None:
@@ -222,9 +231,11 @@ def _patch(label: str) -> Patch:
 
 
 def _numbered(teeth: Sequence[int]) -> str:
-    """``tooth 6``, ``teeth 2 and 6``."""
+    """``tooth 6``, ``teeth 2 and 6``; of many, how many they are."""
     if len(teeth) == 1:
         return f"tooth {teeth[0]}"
+    if len(teeth) > MOST_NAMED:
+        return f"{len(teeth)} teeth"
     return f"teeth {', '.join(map(str, teeth[:-1]))} and {teeth[-1]}"
 
 
@@ -291,7 +302,7 @@ def plot_tooth(
     damaged = _damaged_teeth(simulation, wheel)
     if tooth is None:
         tooth = damaged[0] if damaged else 1
-    teeth = simulation.scenario.pinion_teeth if wheel == "pinion" else simulation.scenario.gear_teeth
+    teeth = _teeth(simulation, wheel)
     if not 1 <= tooth <= teeth:
         raise ValueError(f"tooth = {tooth}: must be from 1 to {teeth}, as many as the {wheel} has")
     ax = _axes(ax, (4.0, 4.0))
@@ -301,7 +312,8 @@ def plot_tooth(
     flanks = {(name, number): flank for name, number, flank in simulation._native.damaged_teeth_mm()}
     flank_y_mm = flanks.get((wheel, tooth), y_mm)
     cracks = {(name, number): (x, y) for name, number, x, y in simulation._native.cracks_mm()}
-    faults = [fault for fault in simulation.scenario.faults if (fault.wheel, fault.tooth) == (wheel, tooth)]
+    of_wheel = [fault for fault in simulation.scenario.faults if fault.wheel == wheel]
+    faults = [fault for fault in of_wheel if tooth in numbers_of_teeth(fault, teeth)]
     for fault in faults:
         if isinstance(fault, MissingTooth):
             ax.fill(outline_y, outline_x, facecolor="white", edgecolor=ORANGE, hatch="//", linewidth=1.0, label="missing")
@@ -438,7 +450,8 @@ def plot_simulation(simulation: Simulation) -> Figure:
 def _all_damage(simulation: Simulation) -> tuple[int, int]:
     """(pitches) Around the first damaged tooth; a revolution of the gear where other damaged teeth are not in contact there."""
     around = _around_damage(simulation)
-    if all(fault.tooth < around[1] for fault in simulation.scenario.faults):
+    damaged = [*_damaged_teeth(simulation, "pinion"), *_damaged_teeth(simulation, "gear")]
+    if all(tooth < around[1] for tooth in damaged):
         return around
     return 0, simulation.scenario.gear_teeth
 

@@ -124,6 +124,8 @@ def test_examples_are_the_files(tmp_path: Path) -> None:
         ({"model": "corrected"}, 'the corrected model is called "linear" now'),
         ({"fault": meshtone.MissingTooth(tooth=39)}, "fault.tooth = 39: must be at most 38"),
         ({"faults": [meshtone.MissingTooth(), meshtone.MissingTooth(wheel="pinion", tooth=0)]}, "fault[1].tooth = 0"),
+        ({"fault": meshtone.MissingTooth(tooth=[2, 39])}, "fault.tooth[1] = 39: must be at most 38"),
+        ({"fault": meshtone.MissingTooth(tooth=[2, 3, 2])}, "fault.tooth[2] = 2: is named twice"),
         ({"fault": meshtone.ToothBreakage(chip_height_mm=-5, chip_width_mm=12)}, "fault.chip_height_mm = -5"),
         ({"damping_ratio": [0.05] * 12}, "rig.damping_ratio"),
         ({"seed": 2**63}, "seed = 9223372036854775808: must be below 2**63"),
@@ -135,6 +137,14 @@ def test_values_that_are_not_allowed(changes: dict[str, Any], message: str) -> N
         Scenario(**{**REQUIRED, **changes})
     assert message in str(error.value)
     assert "line " not in str(error.value)
+
+
+@pytest.mark.parametrize("tooth", [[1, 2, 9], (1, 2, 9), "all"])
+def test_a_fault_on_several_teeth(tooth: Any) -> None:
+    scenario = Scenario(**REQUIRED, fault=meshtone.RootCrack(depth_mm=2, tooth=tooth))
+    (fault,) = scenario.faults
+    assert fault.tooth == (tooth if tooth == "all" else [1, 2, 9])
+    assert Scenario.from_toml(scenario.to_toml()) == scenario
 
 
 def test_keys_that_there_are_not() -> None:

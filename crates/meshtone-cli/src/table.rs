@@ -88,7 +88,7 @@ fn touching(force: &MeshForce) -> String {
 /// `missing-tooth on tooth 1 of the gear`, one after the other.
 fn faults(faults: &[FaultSummary]) -> String {
     let place =
-        |fault: &FaultSummary| format!("{} on tooth {} of the {}", fault.kind, fault.tooth, fault.wheel);
+        |fault: &FaultSummary| format!("{} on {} of the {}", fault.kind, fault.tooth.in_words(), fault.wheel);
     match faults {
         [] => "none".to_string(),
         faults => faults.iter().map(place).collect::<Vec<_>>().join(", "),

@@ -29,6 +29,7 @@ impl DamagedTooth {
     /// # Arguments
     /// * `faults` - what is broken, of both wheels
     /// * `wheel` - whose teeth
+    /// * `teeth` - how many it has
     /// * `contact_pitches` - (pitches) the contact ratio
     ///
     /// ```
@@ -37,18 +38,20 @@ impl DamagedTooth {
     /// use meshtone_plot::DamagedTooth;
     ///
     /// let faults = [Fault::new(WheelName::Pinion, 3, MissingTooth), Fault::on_first_gear_tooth(MissingTooth)];
-    /// let [tooth] = DamagedTooth::of_wheel(&faults, WheelName::Pinion, 1.6)[..] else { panic!() };
+    /// let [tooth] = DamagedTooth::of_wheel(&faults, WheelName::Pinion, 17, 1.6)[..] else { panic!() };
     /// assert_eq!((tooth.tooth, tooth.is_missing), (3, true));
     /// ```
-    pub fn of_wheel(faults: &[Fault], wheel: WheelName, contact_pitches: f64) -> Vec<Self> {
+    pub fn of_wheel(faults: &[Fault], wheel: WheelName, teeth: u32, contact_pitches: f64) -> Vec<Self> {
         let of_fault = |fault: &Fault| {
             let is_missing = matches!(fault.damage, Damage::MissingTooth(_));
-            Self { tooth: fault.tooth, contact_pitches, is_missing }
+            let numbers = fault.tooth.numbers(teeth).into_iter();
+            numbers.map(move |tooth| Self { tooth, contact_pitches, is_missing })
         };
-        let mut teeth: Vec<Self> = faults.iter().filter(|fault| fault.wheel == wheel).map(of_fault).collect();
-        teeth.sort_by_key(|tooth| tooth.tooth);
-        teeth.dedup_by_key(|tooth| tooth.tooth);
-        teeth
+        let of_wheel = faults.iter().filter(|fault| fault.wheel == wheel);
+        let mut damaged: Vec<Self> = of_wheel.flat_map(of_fault).collect();
+        damaged.sort_by_key(|tooth| tooth.tooth);
+        damaged.dedup_by_key(|tooth| tooth.tooth);
+        damaged
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::num::NonZeroUsize;
 
+use meshtone::damage::DamagedTooth;
 use meshtone::scenario::{MemoryLimit, ScenarioWarning};
 use meshtone::sensor::ContactFigures;
 use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
@@ -226,18 +227,24 @@ impl Simulation {
         &self,
         py: Python<'py>,
     ) -> Vec<(&'static str, usize, Bound<'py, PyArray1<f64>>)> {
-        let teeth = self.stages.damaged.iter();
-        teeth.map(|tooth| (tooth.wheel.name(), tooth.tooth + 1, array(py, tooth.outline_y_mm()))).collect()
+        let of_alike = |alike: &DamagedTooth| {
+            let (wheel, flank) = (alike.wheel.name(), array(py, alike.outline_y_mm()));
+            let of_tooth = |tooth: &usize| (wheel, tooth + 1, flank.clone());
+            alike.teeth.iter().map(of_tooth).collect::<Vec<_>>()
+        };
+        self.stages.damaged.iter().flat_map(of_alike).collect()
     }
 
     /// (mm) The cracked teeth: wheel, number from 1, x and y of the crack's start and tip.
     fn cracks_mm<'py>(&self, py: Python<'py>) -> Vec<CrackOfTooth<'py>> {
         let cracks = self.stages.damaged.iter().filter_map(|tooth| Some((tooth, tooth.crack?)));
         cracks
-            .map(|(tooth, crack)| {
+            .flat_map(|(alike, crack)| {
                 let (tip_x_mm, tip_y_mm) = crack.tip_mm();
-                let [x_mm, y_mm] = [vec![crack.start_x_mm, tip_x_mm], vec![crack.start_y_mm, tip_y_mm]];
-                (tooth.wheel.name(), tooth.tooth + 1, array(py, x_mm), array(py, y_mm))
+                let x_mm = array(py, vec![crack.start_x_mm, tip_x_mm]);
+                let y_mm = array(py, vec![crack.start_y_mm, tip_y_mm]);
+                let of_tooth = |tooth: &usize| (alike.wheel.name(), tooth + 1, x_mm.clone(), y_mm.clone());
+                alike.teeth.iter().map(of_tooth).collect::<Vec<_>>()
             })
             .collect()
     }

@@ -51,6 +51,16 @@ impl<'a> TomlValue<'a> {
         self.value.get_ref().is_table()
     }
 
+    /// Whether the value is a whole number.
+    pub fn is_whole(&self) -> bool {
+        self.value.get_ref().is_integer()
+    }
+
+    /// Whether the value is a text.
+    pub fn is_text(&self) -> bool {
+        self.value.get_ref().is_str()
+    }
+
     /// Whether the value is an array.
     pub fn is_array(&self) -> bool {
         self.value.get_ref().is_array()

@@ -157,7 +157,7 @@ fn damaged_teeth(scenario: &Scenario, shaft: Shaft) -> Vec<DamagedTooth> {
         Shaft::Pinion => WheelName::Pinion,
         Shaft::Gear => WheelName::Gear,
     };
-    DamagedTooth::of_wheel(&scenario.faults, wheel, contact_pitches)
+    DamagedTooth::of_wheel(&scenario.faults, wheel, scenario.gears.teeth(wheel), contact_pitches)
 }
 
 fn measured(

@@ -50,8 +50,8 @@ pub struct RecordFault {
     /// The damaged wheel.
     pub wheel: WheelName,
     /// Number of the damaged tooth, counted from 1 in the order in which its wheel's teeth come into contact from the start of
-    /// the record on.
-    pub tooth: u32,
+    /// the record on; none where it is several.
+    pub tooth: Option<u32>,
 }
 
 /// What a simulation is for.

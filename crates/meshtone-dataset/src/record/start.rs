@@ -46,16 +46,17 @@ impl Start {
     }
 
     /// Number of a fault's tooth, from 1, in the order in which its wheel's teeth come into contact from the start of the
-    /// record on.
+    /// record on; none of a fault on several teeth.
     ///
     /// # Arguments
     /// * `fault` - which
     /// * `gears` - the wheels
-    pub fn tooth(&self, fault: &Fault, gears: &Gears) -> u32 {
+    pub fn tooth(&self, fault: &Fault, gears: &Gears) -> Option<u32> {
+        let index = u64::from(fault.tooth.only()?.saturating_sub(1));
         let passed = u64::from(self.mark_teeth) + u64::from(self.revolution) * u64::from(gears.gear_teeth);
         let teeth = u64::from(gears.teeth(fault.wheel)).max(1);
-        let since = (fault.tooth_index() as u64 + teeth - passed % teeth) % teeth;
-        since as u32 + 1
+        let since = (index + teeth - passed % teeth) % teeth;
+        Some(since as u32 + 1)
     }
 }
 

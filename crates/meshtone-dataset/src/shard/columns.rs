@@ -208,7 +208,8 @@ fn of_fault(number: usize) -> [Column; 3] {
         column(&format!("{fault}_{last}"), "", description, kind)
     };
     let tooth = "number of the damaged tooth, from 1, in the order in which its wheel's teeth come into contact from the \
-                 start of the record on; in the plan and the scenario teeth are counted from where the first two meet";
+                 start of the record on, null where it is several; in the plan and the scenario teeth are counted from where the \
+                 first two meet";
     [
         named("kind", "kind of damage", ColumnKind::FaultKind(number)),
         named("wheel", "the damaged wheel: pinion or gear", ColumnKind::FaultWheel(number)),

@@ -54,7 +54,7 @@ pub(super) fn cells<'r>(column: &Column, rows: &'r [Row], content: &Content) -> 
         ColumnKind::FaultWheel(number) => {
             text_or_null(&|r| r.faults.get(*number).map(|fault| fault.wheel.name()))
         }
-        ColumnKind::FaultTooth(number) => small(&|r| r.faults.get(*number).map(|fault| fault.tooth)),
+        ColumnKind::FaultTooth(number) => small(&|r| r.faults.get(*number).and_then(|fault| fault.tooth)),
         ColumnKind::SamplingRate => number(&|_| Some(content.keep.sampling_rate_hz)),
         ColumnKind::GearAngle => number(&|r| Some(r.gear_angle_rev)),
         ColumnKind::PinionTeeth => small(&|r| Some(r.teeth[0])),

@@ -276,12 +276,23 @@ fn a_drawn_tooth_is_told_twice() {
     for row in (0..60).filter(|&row| made.text("label", row) == "missing") {
         let scenario = sampler.scenario(&sampler.record(row as u64).unwrap()).unwrap();
         let of_scenario = made.number("fault_tooth_of_scenario", row);
-        assert_eq!(of_scenario, f64::from(scenario.faults[0].tooth));
+        assert_eq!(of_scenario, f64::from(scenario.faults[0].tooth.only().unwrap()));
         // An aligned record begins with it.
         assert_eq!(made.tooth(row), Some(1));
         seen.push(of_scenario as u32);
     }
     assert!(seen.contains(&3) && seen.contains(&17), "{seen:?}");
+}
+
+/// A fault on several teeth is on none that could be counted; its wheel and kind are told.
+#[test]
+fn a_fault_on_several_teeth_has_no_number() {
+    let missing = "fault = { kind = \"missing-tooth\" }";
+    let made = made(&plan(&FAST.replace(missing, "fault = { kind = \"missing-tooth\", tooth = [1, 2] }")));
+    for row in (0..60).filter(|&row| made.text("label", row) == "missing") {
+        assert_eq!(made.tooth(row), None);
+        assert_eq!(["fault_kind", "fault_wheel"].map(|name| made.text(name, row)), ["missing-tooth", "gear"]);
+    }
 }
 
 #[test]

@@ -3,11 +3,21 @@
 use std::io::{self, Write};
 use std::time::Duration;
 
+use meshtone::damage::FaultyTeeth;
 use meshtone::sensor::ChannelKind;
 use meshtone::signal::{IndicatorValue, Indicators, Shaft};
 use serde_json::{Map, Value, json};
 
 use super::{ChannelSummary, MeshForce, Summary};
+
+/// A number, an array of them, or `"all"`, as in the scenario file.
+fn tooth(teeth: &FaultyTeeth) -> Value {
+    match teeth {
+        FaultyTeeth::One(tooth) => json!(tooth),
+        FaultyTeeth::These(teeth) => json!(teeth),
+        FaultyTeeth::All => json!("all"),
+    }
+}
 
 impl Summary {
     /// Writes the summary as indented JSON.
@@ -27,8 +37,8 @@ impl Summary {
         let warnings = self.warnings.iter();
         let warnings = warnings.map(|warning| json!({ "key": warning.key, "message": warning.message }));
         let faults = self.faults.iter();
-        let faults =
-            faults.map(|fault| json!({ "kind": fault.kind, "wheel": fault.wheel, "tooth": fault.tooth }));
+        let faults = faults
+            .map(|fault| json!({ "kind": fault.kind, "wheel": fault.wheel, "tooth": tooth(&fault.tooth) }));
         let mut summary = json!({
             "format_version": self.format_version,
             "meshtone_version": self.meshtone_version,

@@ -9,7 +9,7 @@ mod read;
 use std::time::Duration;
 
 use meshtone::Simulation;
-use meshtone::scenario::{Fault, ScenarioWarning};
+use meshtone::scenario::{Fault, FaultyTeeth, ScenarioWarning};
 use meshtone::signal::{ChainSettings, Indicators, Shaft, SimulatedShafts, kurtosis, peak, rms};
 
 use crate::run_identity::RunIdentity;
@@ -68,19 +68,19 @@ pub struct Summary {
 }
 
 /// A fault: its kind and place, each as in the scenario file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FaultSummary {
     /// Kind of damage.
     pub kind: &'static str,
     /// The damaged wheel.
     pub wheel: &'static str,
-    /// Number of the damaged tooth, from 1.
-    pub tooth: u32,
+    /// Which of its teeth, by their numbers from 1.
+    pub tooth: FaultyTeeth,
 }
 
 impl From<&Fault> for FaultSummary {
     fn from(fault: &Fault) -> Self {
-        Self { kind: fault.damage.kind(), wheel: fault.wheel.name(), tooth: fault.tooth }
+        Self { kind: fault.damage.kind(), wheel: fault.wheel.name(), tooth: fault.tooth.clone() }
     }
 }
 

@@ -46,11 +46,11 @@ pub(super) fn title(stages: &Stages, fits: impl Fn(&str) -> bool) -> String {
     if faults.is_empty() {
         return "Healthy gear pair".to_owned();
     }
-    let usual = Fault::on_first_gear_tooth(faults[0].damage.clone());
+    let usual = Fault::at_usual_place(faults[0].damage.clone());
     let is_usual = faults.len() == 1 && faults[0] == usual;
     let title = |with_sizes: bool| {
         let all = faults.iter().enumerate().map(|(number, fault)| {
-            let place = format!(", {} tooth {}", fault.wheel.name(), fault.tooth);
+            let place = format!(", {} {}", fault.wheel.name(), fault.tooth.in_words());
             let sizes = if with_sizes { sizes_of_fault(stages, number) } else { Vec::new() };
             let sizes = if sizes.is_empty() { String::new() } else { format!(": {}", sizes.join(", ")) };
             let name = name(&fault.damage);
@@ -81,10 +81,11 @@ fn capitalised(text: &str) -> String {
 fn sizes_of_fault(stages: &Stages, number: usize) -> Vec<String> {
     let faults = &stages.scenario.faults;
     let fault = &faults[number];
-    let on_same_tooth = |other: &&Fault| (other.wheel, other.tooth) == (fault.wheel, fault.tooth);
+    let on_same_tooth =
+        |other: &&Fault| other.wheel == fault.wheel && other.tooth.contains(fault.tooth.first());
     let before = faults[..number].iter().filter(on_same_tooth).count();
     let tooth = (stages.damaged.iter())
-        .find(|tooth| tooth.wheel == fault.wheel && tooth.tooth == fault.tooth_index());
+        .find(|tooth| tooth.wheel == fault.wheel && tooth.teeth.contains(&fault.tooth_index()));
     match tooth.and_then(|tooth| Some((tooth, tooth.descriptions.get(before)?))) {
         Some((tooth, description)) => {
             sizes(&fault.damage, description, tooth, stages.teeth.profile(fault.wheel))
@@ -183,7 +184,8 @@ pub(super) fn start_of_revolution(damaged: &[crate::DamagedTooth]) -> &'static s
 /// The damaged teeth of a wheel, to be marked.
 pub(super) fn damaged_teeth(stages: &Stages, wheel: WheelName) -> Vec<crate::DamagedTooth> {
     let contact_pitches = stages.teeth.contact.contact_ratio;
-    crate::DamagedTooth::of_wheel(&stages.scenario.faults, wheel, contact_pitches)
+    let teeth = stages.teeth.wheel(wheel).teeth;
+    crate::DamagedTooth::of_wheel(&stages.scenario.faults, wheel, teeth, contact_pitches)
 }
 
 /// Whether a part of the face width is sound where a damage has taken the flank.

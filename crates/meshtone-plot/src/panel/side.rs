@@ -45,7 +45,7 @@ impl<'a> Side<'a> {
             profile: stages.teeth.profile(name),
             contact_index: stages.teeth.initial_contact_index(name),
             tip_shapes: tip_shapes(stages, stages.teeth.profile(name)),
-            tooth: damaged.min_by_key(|tooth| tooth.tooth),
+            tooth: damaged.min_by_key(|tooth| tooth.first_tooth()),
             damaged: damage::damaged_teeth(stages, name),
             errors_mm: errors.map(|errors| match name {
                 WheelName::Pinion => &errors.pinion_profile_errors_mm,
@@ -58,7 +58,7 @@ impl<'a> Side<'a> {
 
     /// Index of the tooth, from 0.
     pub(super) fn tooth_index(&self) -> usize {
-        self.tooth.map_or(0, |tooth| tooth.tooth)
+        self.tooth.map_or(0, DamagedTooth::first_tooth)
     }
 
     /// What the tooth is called.

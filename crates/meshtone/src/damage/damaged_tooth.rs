@@ -7,7 +7,7 @@ use crate::error::ScenarioError;
 use crate::random::{Draws, Purpose};
 use crate::wheel::{Flank, Teeth, ToothProfile, Wheel, WheelName};
 
-/// What is left of one tooth.
+/// What is left of one tooth, or of each of several that are alike.
 ///
 /// Vectors run over the points of the tooth's profile. Widths are missing from one end of the face, the same for all
 /// damages and for both wheels.
@@ -15,8 +15,8 @@ use crate::wheel::{Flank, Teeth, ToothProfile, Wheel, WheelName};
 pub struct DamagedTooth {
     /// Whose tooth it is.
     pub wheel: WheelName,
-    /// Its index, from 0.
-    pub tooth: usize,
+    /// Indices of the teeth, from 0, rising: at least one.
+    pub teeth: Vec<usize>,
     /// (mm) The working flank, where it is cut over the whole width.
     pub flank_y_mm: Vec<f64>,
     /// (mm) Width that is gone, through the whole thickness.
@@ -101,12 +101,12 @@ impl<'a> HealthyTooth<'a> {
 }
 
 impl DamagedTooth {
-    /// A tooth of which nothing is missing.
-    pub(super) fn sound(name: WheelName, tooth: usize, profile: &ToothProfile) -> Self {
+    /// Teeth of which nothing is missing.
+    pub(super) fn sound(name: WheelName, teeth: Vec<usize>, profile: &ToothProfile) -> Self {
         let points = profile.len();
         Self {
             wheel: name,
-            tooth,
+            teeth,
             flank_y_mm: profile.y_mm.clone(),
             missing_width_mm: vec![0.0; points],
             corner_width_mm: vec![0.0; points],
@@ -117,6 +117,11 @@ impl DamagedTooth {
             crack: None,
             descriptions: Vec::new(),
         }
+    }
+
+    /// Index of the tooth, of several of the first.
+    pub fn first_tooth(&self) -> usize {
+        self.teeth.first().copied().unwrap_or(0)
     }
 
     /// (mm) The working flank where it is cut furthest back.
@@ -153,7 +158,7 @@ impl DamagedTooth {
     /// # Arguments
     /// * `faults` - numbers and kinds of the damages, in the order of the descriptions; the last is the one that is refused
     fn refuse_overlap(&self, faults: &[(usize, &'static str)]) -> Result<(), ScenarioError> {
-        let place = format!("the {}'s tooth {}", self.wheel.name(), self.tooth + 1);
+        let place = format!("the {}'s tooth {}", self.wheel.name(), self.first_tooth() + 1);
         if self.rolling.iter().any(|pit| pit.end_index >= self.gone_from_index) {
             let problem = format!(
                 "leaves a pit without its edge at the tip on {place}{}; a pit over the whole face must end below what has broken off",
@@ -191,38 +196,80 @@ fn beside(others: &[(usize, &'static str)]) -> String {
     if names.is_empty() { String::new() } else { format!(" beside {}", names.join(" and ")) }
 }
 
-/// The teeth that are damaged, each with all its damages; in the order in which they are first named.
+/// Teeth of a wheel with the same faults.
+struct Alike {
+    wheel: WheelName,
+    /// Indices of the teeth, from 0.
+    teeth: Vec<usize>,
+    /// Numbers of the faults.
+    faults: Vec<usize>,
+    /// The teeth have draws of their own, and are one.
+    is_drawn: bool,
+}
+
+/// The damaged teeth, those with the same faults together unless each has draws of its own; in the order in which they are
+/// first named.
+fn alike(faults: &[Fault], teeth: &Teeth) -> Vec<Alike> {
+    let mut all: Vec<Alike> = Vec::new();
+    let mut seen: [Vec<bool>; 2] =
+        WheelName::BOTH.map(|wheel| vec![false; teeth.wheel(wheel).teeth as usize]);
+    for fault in faults {
+        for tooth in fault.tooth.numbers(teeth.wheel(fault.wheel).teeth) {
+            let index = tooth.saturating_sub(1) as usize;
+            // What the wheel has not is refused where the pairs are counted.
+            let seen = seen[fault.wheel as usize].get_mut(index);
+            if seen.is_some_and(|seen| std::mem::replace(seen, true)) {
+                continue;
+            }
+            let on_tooth =
+                |(_, other): &(usize, &Fault)| other.wheel == fault.wheel && other.tooth.contains(tooth);
+            let on_tooth: Vec<usize> =
+                faults.iter().enumerate().filter(on_tooth).map(|(number, _)| number).collect();
+            let is_drawn = on_tooth.iter().any(|&number| faults[number].damage.is_drawn());
+            let like = |other: &&mut Alike| {
+                !is_drawn && !other.is_drawn && other.wheel == fault.wheel && other.faults == on_tooth
+            };
+            match all.iter_mut().find(like) {
+                Some(group) => group.teeth.push(index),
+                None => {
+                    all.push(Alike { wheel: fault.wheel, teeth: vec![index], faults: on_tooth, is_drawn })
+                }
+            }
+        }
+    }
+    all.iter_mut().for_each(|group| group.teeth.sort_unstable());
+    all
+}
+
+/// The teeth that are damaged, each with all its damages, those that are alike together; in the order in which they are first
+/// named.
 ///
 /// # Arguments
 /// * `faults` - what is broken, checked by [`crate::scenario::Scenario::validate`]
 /// * `teeth` - the healthy teeth
-/// * `seed` - seed of a destruction's roughness
+/// * `seed` - seed of what is drawn for each tooth
 ///
 /// # Errors
 /// A fault that does not fit its tooth: a pit that misses the flank or is deeper than the tooth, a chip larger than the
 /// tooth, a line that leaves no tooth; faults that cut the same piece of a flank.
 pub fn damaged_teeth(faults: &[Fault], teeth: &Teeth, seed: u64) -> Result<Vec<DamagedTooth>, ScenarioError> {
-    let mut damaged: Vec<DamagedTooth> = Vec::new();
+    let groups = alike(faults, teeth);
+    let sound =
+        |group: &Alike| DamagedTooth::sound(group.wheel, group.teeth.clone(), teeth.profile(group.wheel));
+    let mut damaged: Vec<DamagedTooth> = groups.iter().map(sound).collect();
     for (number, fault) in faults.iter().enumerate() {
-        let (name, tooth) = (fault.wheel, fault.tooth_index());
-        let place = damaged.iter().position(|other| other.wheel == name && other.tooth == tooth);
-        let place = place.unwrap_or_else(|| {
-            damaged.push(DamagedTooth::sound(name, tooth, teeth.profile(name)));
-            damaged.len() - 1
-        });
-        let healthy = HealthyTooth { teeth, name, tooth, seed };
-        let of_tooth = &mut damaged[place];
-        fault
-            .damage
-            .damage(of_tooth, &healthy)
-            .and_then(|()| {
-                let on_tooth = faults[..=number].iter().enumerate();
-                let on_tooth =
-                    on_tooth.filter(|(_, other)| (other.wheel, other.tooth_index()) == (name, tooth));
-                let on_tooth: Vec<_> = on_tooth.map(|(other, fault)| (other, fault.damage.kind())).collect();
-                of_tooth.refuse_overlap(&on_tooth)
-            })
-            .map_err(|error| error.in_entry("fault", number, faults.len()))?;
+        for (group, tooth) in
+            groups.iter().zip(&mut damaged).filter(|(group, _)| group.faults.contains(&number))
+        {
+            let healthy = HealthyTooth { teeth, name: group.wheel, tooth: tooth.first_tooth(), seed };
+            let so_far = group.faults.iter().filter(|&&other| other <= number);
+            let so_far: Vec<_> = so_far.map(|&other| (other, faults[other].damage.kind())).collect();
+            fault
+                .damage
+                .damage(tooth, &healthy)
+                .and_then(|()| tooth.refuse_overlap(&so_far))
+                .map_err(|error| error.in_entry("fault", number, faults.len()))?;
+        }
     }
     Ok(damaged)
 }

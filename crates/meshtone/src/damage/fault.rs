@@ -2,35 +2,43 @@
 
 use meshtone_toml::{ReadResult, TomlTable};
 
-use super::Damage;
+use super::{Damage, FaultyTeeth};
 use crate::error::ScenarioError;
 use crate::keys::{
-    Check, KeyDescription, Keys, NoFiles, Range, Row, check_keys, commented, describe, field, read_keys,
-    require, row, write_keys,
+    Check, KeyDescription, Keys, NoFiles, Range, Row, check_keys, commented_from, describe, describe_from,
+    field, read_keys, require, row, write_keys,
 };
 use crate::wheel::{Gears, WheelName};
 
-/// Damage to one tooth.
+/// Damage to one tooth, or to several alike.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fault {
     /// The damaged wheel. Default the gear.
     pub wheel: WheelName,
-    /// Number of the damaged tooth, 1 to the wheel's tooth count, in the order in which the teeth enter contact; the two
-    /// first teeth meet at the start of the simulation. Default 1.
-    pub tooth: u32,
-    /// What is wrong with it.
+    /// Which of its teeth, by their numbers from 1 to the wheel's tooth count, in the order in which the teeth enter contact;
+    /// the two first teeth meet at the start of the simulation. Default 1.
+    pub tooth: FaultyTeeth,
+    /// What is wrong with each of them.
     pub damage: Damage,
 }
 
 impl Fault {
-    /// Damage to a tooth.
+    /// Damage to a tooth, or to several alike.
     ///
     /// # Arguments
     /// * `wheel` - the damaged wheel
-    /// * `tooth` - number of the damaged tooth, from 1
-    /// * `damage` - what is wrong with it
-    pub fn new(wheel: WheelName, tooth: u32, damage: impl Into<Damage>) -> Self {
-        Self { wheel, tooth, damage: damage.into() }
+    /// * `tooth` - number of the damaged tooth, from 1, or numbers of several, or all
+    /// * `damage` - what is wrong with each of them
+    ///
+    /// ```
+    /// use meshtone::damage::{Fault, FaultyTeeth, MissingTooth};
+    /// use meshtone::wheel::WheelName;
+    ///
+    /// assert_eq!(Fault::new(WheelName::Gear, 5, MissingTooth).tooth, FaultyTeeth::One(5));
+    /// assert_eq!(Fault::new(WheelName::Gear, vec![5, 6], MissingTooth).tooth.numbers(38), [5, 6]);
+    /// ```
+    pub fn new(wheel: WheelName, tooth: impl Into<FaultyTeeth>, damage: impl Into<Damage>) -> Self {
+        Self { wheel, tooth: tooth.into(), damage: damage.into() }
     }
 
     /// Damage to the gear's first tooth.
@@ -41,9 +49,20 @@ impl Fault {
         Self::new(WheelName::Gear, 1, damage)
     }
 
-    /// Index of the damaged tooth, from 0.
+    /// Damage where a scenario file has it that names neither wheel nor tooth: on the gear's first tooth, or on those that the
+    /// kind is usually found on.
+    ///
+    /// # Arguments
+    /// * `damage` - what is wrong
+    pub fn at_usual_place(damage: impl Into<Damage>) -> Self {
+        let damage = damage.into();
+        let Place { wheel, tooth } = Place::of(&damage);
+        Self { wheel, tooth, damage }
+    }
+
+    /// Index from 0 of the damaged tooth, of several of the first.
     pub fn tooth_index(&self) -> usize {
-        self.tooth.saturating_sub(1) as usize
+        self.tooth.first().saturating_sub(1) as usize
     }
 }
 
@@ -51,12 +70,19 @@ impl Fault {
 #[derive(Debug, Clone, PartialEq)]
 struct Place {
     wheel: WheelName,
-    tooth: u32,
+    tooth: FaultyTeeth,
+}
+
+impl Place {
+    /// Where a damage is without its keys.
+    fn of(damage: &Damage) -> Self {
+        Self { tooth: damage.usual_teeth(), ..Self::start() }
+    }
 }
 
 impl Keys for Place {
     fn start() -> Self {
-        Self { wheel: WheelName::default(), tooth: 1 }
+        Self { wheel: WheelName::default(), tooth: FaultyTeeth::One(1) }
     }
 
     fn rows() -> Vec<Row<Self>> {
@@ -65,11 +91,12 @@ impl Keys for Place {
             row(
                 "tooth",
                 "",
-                "the number of the damaged tooth, in the order in which the teeth enter contact",
+                "the number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or \
+                 \"all\"",
                 field!(tooth),
             )
             .range(Range::positive().message("must be at least 1, the first tooth"))
-            .rule("at most the wheel's teeth"),
+            .rule("at most the wheel's teeth, each once"),
         ]
     }
 }
@@ -88,14 +115,14 @@ impl Fault {
 
     fn from_table(table: &TomlTable<'_>) -> ReadResult<Self> {
         let mut damage = Damage::start_of(table)?;
-        let mut place = Place::start();
+        let mut place = Place::of(&damage);
         read_keys(&mut place, table, &NoFiles)?;
         damage.read(table)?;
         Ok(Self { wheel: place.wheel, tooth: place.tooth, damage })
     }
 
     fn place(&self) -> Place {
-        Place { wheel: self.wheel, tooth: self.tooth }
+        Place { wheel: self.wheel, tooth: self.tooth.clone() }
     }
 
     /// The lines of its section, without the header.
@@ -106,17 +133,13 @@ impl Fault {
     /// The lines of its section with a comment for every key, without the header.
     pub(crate) fn commented(&self) -> String {
         let kind = format!("# {}\nkind = \"{}\"\n", self.damage.summary(), self.damage.kind());
-        [kind, self.damage.commented(), commented(&self.place())].concat()
+        [kind, self.damage.commented(), commented_from(&self.place(), &Place::of(&self.damage))].concat()
     }
 
     /// Whether it can be, as far as no profile is needed; its keys are named `fault.…`.
     fn check(&self, gears: &Gears) -> Check {
         check_keys(&self.place(), "fault")?;
-        let teeth = gears.teeth(self.wheel);
-        if self.tooth > teeth {
-            let problem = format!("must be at most {teeth}, the {}'s teeth", self.wheel.name());
-            return Err(ScenarioError::new("fault.tooth", self.tooth, problem));
-        }
+        self.tooth.check(gears.teeth(self.wheel), self.wheel.name())?;
         self.damage.check(gears)
     }
 }
@@ -126,6 +149,11 @@ pub(super) fn keys_of_every_fault() -> Vec<KeyDescription> {
     describe::<Place>()
 }
 
+/// The same with the defaults of a damage.
+pub(super) fn keys_of_place(damage: &Damage) -> Vec<KeyDescription> {
+    describe_from(&Place::of(damage))
+}
+
 /// Whether every fault can be, alone and beside those on the same tooth.
 ///
 /// # Arguments
@@ -133,13 +161,12 @@ pub(super) fn keys_of_every_fault() -> Vec<KeyDescription> {
 /// * `gears` - the wheels
 pub(crate) fn check_faults(faults: &[Fault], gears: &Gears) -> Check {
     for (index, fault) in faults.iter().enumerate() {
-        let beside = faults[..index].iter().enumerate().find(|(_, other)| {
-            (other.wheel, other.tooth) == (fault.wheel, fault.tooth) && excludes(&other.damage, &fault.damage)
+        let beside = faults[..index].iter().enumerate().find_map(|(number, other)| {
+            let on_same_wheel = other.wheel == fault.wheel && excludes(&other.damage, &fault.damage);
+            let tooth = on_same_wheel.then(|| other.tooth.shared(&fault.tooth)).flatten();
+            tooth.map(|tooth| second_damage(fault, tooth, number, other))
         });
-        let checked = match beside {
-            Some((number, other)) => Err(second_damage(fault, number, other)),
-            None => fault.check(gears),
-        };
+        let checked = beside.map_or_else(|| fault.check(gears), Err);
         checked.map_err(|error| error.in_entry("fault", index, faults.len()))?;
     }
     Ok(())
@@ -157,8 +184,8 @@ fn excludes(damage: &Damage, other: &Damage) -> bool {
         || (cracked(damage) && cracked(other))
 }
 
-fn second_damage(fault: &Fault, number: usize, other: &Fault) -> ScenarioError {
-    let (wheel, tooth, kind) = (fault.wheel.name(), fault.tooth, fault.damage.kind());
+fn second_damage(fault: &Fault, tooth: u32, number: usize, other: &Fault) -> ScenarioError {
+    let (wheel, kind) = (fault.wheel.name(), fault.damage.kind());
     let problem = format!(
         "tooth {tooth} of the {wheel} has fault[{number}] already ({}); a missing tooth has no other damage, and a tooth breaks and cracks once",
         other.damage.kind()

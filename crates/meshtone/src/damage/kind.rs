@@ -1,5 +1,6 @@
 //! What a kind of damage has to say about itself.
 
+use super::FaultyTeeth;
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
 use super::published::FaultGeometry;
 use crate::error::ScenarioError;
@@ -17,12 +18,20 @@ pub(crate) trait Kind: Keys {
     /// What it makes of the mesh.
     const EFFECT: MeshEffect;
 
+    /// The teeth that it is on where none are named.
+    const TEETH: FaultyTeeth = FaultyTeeth::One(1);
+
     /// The damage in a file to start from.
     fn example() -> Self;
 
     /// Whether the damage can be, alone and on a tooth of these wheels, as far as no profile is needed. Its keys are named
     /// `fault.…`.
     fn check(&self, gears: &Gears) -> Check;
+
+    /// Whether each tooth has random draws of its own, so that no two are alike.
+    fn is_drawn(&self) -> bool {
+        false
+    }
 
     /// Does the damage to a tooth.
     ///

@@ -6,6 +6,7 @@
 mod damaged_tooth;
 mod description;
 mod fault;
+mod faulty_teeth;
 mod kind;
 mod missing_tooth;
 mod partial_face;
@@ -23,6 +24,7 @@ pub use damaged_tooth::{DamagedTooth, RollingPit, damaged_teeth};
 pub use description::{DamageDescription, Pit};
 pub use fault::Fault;
 pub(crate) use fault::check_faults;
+pub use faulty_teeth::FaultyTeeth;
 pub(crate) use kind::{Kind, MeshEffect, PaperRig};
 pub use missing_tooth::MissingTooth;
 pub use partial_face::PartialFace;
@@ -99,6 +101,20 @@ macro_rules! kinds {
                 }
             }
 
+            /// The teeth that it is on where none are named.
+            pub(crate) fn usual_teeth(&self) -> FaultyTeeth {
+                match self {
+                    $(Self::$kind(_) => $kind::TEETH,)+
+                }
+            }
+
+            /// Whether each tooth has random draws of its own, so that no two are alike.
+            fn is_drawn(&self) -> bool {
+                match self {
+                    $(Self::$kind(damage) => damage.is_drawn(),)+
+                }
+            }
+
             /// What it makes of the mesh.
             pub(crate) fn effect(&self) -> MeshEffect {
                 match self {
@@ -140,6 +156,7 @@ macro_rules! kinds {
                 type_name: stringify!($kind),
                 summary: $summary.trim_ascii(),
                 keys: describe::<$kind>(),
+                place: fault::keys_of_place(&Damage::$kind($kind::start())),
                 start: Damage::$kind($kind::start()),
                 example: Damage::$kind($kind::example()),
                 rig: $kind::RIG,
@@ -175,6 +192,8 @@ pub struct DamageKind {
     pub summary: &'static str,
     /// Its keys, beside those of every fault.
     pub keys: Vec<KeyDescription>,
+    /// The keys of every fault beside `kind`, with the defaults of this kind.
+    pub place: Vec<KeyDescription>,
     /// What a file to start from has.
     pub example: Damage,
     pub(crate) start: Damage,

@@ -144,6 +144,10 @@ impl Kind for ToothDestruction {
         below("fault.noise_mm", self.noise_mm, thickness, HALF_THICKNESS)
     }
 
+    fn is_drawn(&self) -> bool {
+        self.noise_mm > 0.0
+    }
+
     fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> Result<(), ScenarioError> {
         let is_rough =
             |damage: &&DamageDescription| matches!(damage, DamageDescription::ToothDestruction { .. });

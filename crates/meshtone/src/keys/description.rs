@@ -43,6 +43,8 @@ pub enum KeyKind {
     Number,
     /// A whole number.
     Whole,
+    /// The number of a tooth, an array of several, or `"all"`.
+    Teeth,
     /// One of some names, in double quotes.
     Name(Vec<&'static str>),
     /// An array of that many numbers.

@@ -42,7 +42,9 @@ pub(crate) use files::{NoFiles, NumberFiles, load};
 pub(crate) use names::by_name;
 pub(crate) use range::Range;
 pub(crate) use row::{Row, documented, row, sub_table};
-pub(crate) use table::{Keys, check_keys, commented, describe, read_keys, write_keys};
+pub(crate) use table::{
+    Keys, check_keys, commented, commented_from, describe, describe_from, read_keys, write_keys,
+};
 pub(crate) use text::array;
 pub(crate) use value::{KeyValue, Written};
 

@@ -184,7 +184,7 @@ impl<S> Row<S> {
     fn as_below_range(&self, mut error: TomlError) -> TomlError {
         let is_negative = error.kind == ErrorKind::NotAllowed && error.value.starts_with('-');
         if is_negative
-            && self.cell.kind() == KeyKind::Whole
+            && matches!(self.cell.kind(), KeyKind::Whole | KeyKind::Teeth)
             && let Some(words) = self.range.words(self.unit)
         {
             error.problem = words;
@@ -218,7 +218,9 @@ impl<S> Row<S> {
             KeyKind::Name(names) => {
                 allowed.push(names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", "));
             }
-            KeyKind::Whole => allowed.push(format!("whole number {}", self.range.in_short())),
+            KeyKind::Whole | KeyKind::Teeth => {
+                allowed.push(format!("whole number {}", self.range.in_short()))
+            }
             _ => allowed.push(self.range.in_short()),
         }
         allowed.push(self.rule.to_string());

@@ -82,6 +82,10 @@ pub(crate) fn describe_from<S: Keys>(start: &S) -> Vec<KeyDescription> {
 
 /// The lines of a section with a comment for every key, without its header.
 pub(crate) fn commented<S: Keys>(section: &S) -> String {
-    let start = S::start();
-    S::rows().iter().map(|row| row.commented(section, &start)).collect()
+    commented_from(section, &S::start())
+}
+
+/// The same, with what `start` has as defaults.
+pub(crate) fn commented_from<S: Keys>(section: &S, start: &S) -> String {
+    S::rows().iter().map(|row| row.commented(section, start)).collect()
 }

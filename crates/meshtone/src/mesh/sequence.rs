@@ -38,7 +38,7 @@ impl PairSequence {
     ///
     /// # Arguments
     /// * `pinion_teeth`, `gear_teeth` - tooth counts
-    /// * `damaged` - the damaged teeth, each named once
+    /// * `damaged` - the damaged teeth, each named once; those that are alike may be named together and make one class
     ///
     /// # Errors
     /// A wheel without teeth, a damaged tooth beyond its wheel's last one.
@@ -56,7 +56,7 @@ impl PairSequence {
         let of_wheel = |wheel: WheelName, teeth: u32| {
             let mut damages = vec![0; teeth as usize];
             for (index, tooth) in damaged.iter().enumerate().filter(|(_, tooth)| tooth.wheel == wheel) {
-                damages[tooth.tooth] = index + 1;
+                tooth.teeth.iter().for_each(|&tooth| damages[tooth] = index + 1);
             }
             damages
         };
@@ -152,15 +152,18 @@ fn check_teeth([pinion_teeth, gear_teeth]: [u32; 2], damaged: &[DamagedTooth]) -
             return Err(ScenarioError::new(key, teeth, "must be at least 1"));
         }
     }
-    let beyond = |tooth: &&DamagedTooth| match tooth.wheel {
-        WheelName::Pinion => tooth.tooth >= pinion_teeth as usize,
-        WheelName::Gear => tooth.tooth >= gear_teeth as usize,
+    let beyond = |of: &DamagedTooth| {
+        let teeth = match of.wheel {
+            WheelName::Pinion => pinion_teeth,
+            WheelName::Gear => gear_teeth,
+        };
+        of.teeth.iter().copied().find(|&tooth| tooth >= teeth as usize).map(|tooth| (of.wheel, tooth))
     };
-    match damaged.iter().find(beyond) {
+    match damaged.iter().find_map(beyond) {
         None => Ok(()),
-        Some(tooth) => {
-            let problem = format!("is beyond the last tooth of the {}", tooth.wheel.name());
-            Err(ScenarioError::new("fault.tooth", tooth.tooth + 1, problem))
+        Some((wheel, tooth)) => {
+            let problem = format!("is beyond the last tooth of the {}", wheel.name());
+            Err(ScenarioError::new("fault.tooth", tooth + 1, problem))
         }
     }
 }
@@ -178,7 +181,7 @@ mod tests {
 
         for (z_p, z_g) in [(17, 38), (20, 45), (25, 30), (12, 36)] {
             let healthy = teeth(&Gears::new(3.0, z_p, z_g, 15.0), [10.0; 2], Model::Linear);
-            let missing = |wheel, tooth| Fault { wheel, tooth, damage: MissingTooth.into() };
+            let missing = |wheel, tooth: u32| Fault::new(wheel, tooth, MissingTooth);
             let faults =
                 [missing(WheelName::Pinion, 1), missing(WheelName::Gear, 1), missing(WheelName::Gear, 6)];
             let damaged = damaged_teeth(&faults, &healthy, 1).unwrap();

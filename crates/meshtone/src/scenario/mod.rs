@@ -15,7 +15,7 @@ mod to_toml;
 mod validate;
 
 pub use crate::damage::kinds::*;
-pub use crate::damage::{Damage, DamageKind, DestructionLine, Fault, PitCircle, damage_kinds};
+pub use crate::damage::{Damage, DamageKind, DestructionLine, Fault, FaultyTeeth, PitCircle, damage_kinds};
 pub use crate::error::{ScenarioError, ScenarioWarning};
 pub use crate::keys::{FileProblem, KeyDescription, KeyKind};
 pub use crate::machine::{DampingRatio, Rig, Shaft, Support, WheelInertia};

@@ -50,7 +50,7 @@ pub fn template(kind: &str) -> Option<String> {
         of_the_paper(PaperRig::Breakage)
     } else {
         let kind = damage_kinds().into_iter().find(|known| known.name == kind)?;
-        Scenario { faults: vec![Fault::on_first_gear_tooth(kind.example)], ..of_the_paper(kind.rig) }
+        Scenario { faults: vec![Fault::at_usual_place(kind.example)], ..of_the_paper(kind.rig) }
     };
     Some(format!("{HEAD}{}", scenario.in_sections(&Commented)))
 }

@@ -73,7 +73,7 @@ fn untouched(wheel: WheelName, profile: &ToothProfile) -> DamagedTooth {
     let points = profile.len();
     DamagedTooth {
         wheel,
-        tooth: 0,
+        teeth: vec![0],
         flank_y_mm: profile.y_mm.clone(),
         missing_width_mm: vec![0.0; points],
         corner_width_mm: vec![0.0; points],

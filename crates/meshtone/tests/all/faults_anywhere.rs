@@ -144,6 +144,40 @@ fn faults_on_different_teeth_are_each_its_own() {
 }
 
 #[test]
+fn teeth_that_are_alike_make_one_class() {
+    let of = |faults: Vec<Fault>| {
+        let stages = stages(&pair(faults)).unwrap();
+        let teeth: Vec<Vec<usize>> = stages.damaged.iter().map(|tooth| tooth.teeth.clone()).collect();
+        let mesh = pairs(&stages);
+        (teeth, mesh.classes.len(), mesh.stiffness_n_per_mm(0..17 * 38))
+    };
+    // Two pairs of neighbouring teeth are in contact at once.
+    let together = of(vec![Fault::new(WheelName::Gear, vec![7, 6, 20], chip())]);
+    assert_eq!((&together.0[..], together.1), (&[vec![5, 6, 19]][..], 2));
+    let one_by_one = of([7, 6, 20].map(|tooth| Fault::new(WheelName::Gear, tooth, chip())).to_vec());
+    assert_eq!((one_by_one.0.len(), one_by_one.1), (3, 4));
+    assert!(together.2 == one_by_one.2);
+    // All of both wheels: sound pairs have a class, though there are none.
+    let all = |damage: &dyn Fn() -> Damage| {
+        WheelName::BOTH.map(|wheel| Fault::new(wheel, FaultyTeeth::All, damage()))
+    };
+    let whole = of(all(&|| chip().into()).to_vec());
+    assert_eq!(whole.0.iter().map(Vec::len).collect::<Vec<_>>(), [17, 38]);
+    assert_eq!(whole.1, 2);
+    let per_pitch = whole.2.len() / (17 * 38);
+    assert!(largest(whole.2.iter().zip(&whole.2[per_pitch..]).map(|(a, b)| a - b)) < 1e-9);
+    // A tooth with another fault beside the common one, and teeth that are each drawn for themselves.
+    let both = of(vec![
+        Fault::new(WheelName::Pinion, FaultyTeeth::All, chip()),
+        Fault::new(WheelName::Pinion, 3, RootCrack { depth_mm: 3.0, angle_deg: 45.0, length_mm: None }),
+    ]);
+    assert_eq!(both.0.iter().map(Vec::len).collect::<Vec<_>>(), [16, 1]);
+    let rough = ToothDestruction { noise_mm: 0.01, ..ground() };
+    let drawn = of(vec![Fault::new(WheelName::Pinion, vec![2, 3], rough)]);
+    assert_eq!(drawn.0, [[1], [2]]);
+}
+
+#[test]
 fn a_tooth_may_be_broken_and_ground() {
     let on_tooth = |damages: &[Damage]| {
         let faults = damages.iter().map(|damage| Fault::new(WheelName::Gear, 5, damage.clone())).collect();
@@ -155,7 +189,7 @@ fn a_tooth_may_be_broken_and_ground() {
         on_tooth(&[chip().into(), ground().into()]),
     ];
     let [tooth] = &both.damaged[..] else { panic!("one tooth") };
-    assert_eq!((tooth.wheel, tooth.tooth), (WheelName::Gear, 4));
+    assert_eq!((tooth.wheel, &tooth.teeth[..]), (WheelName::Gear, &[4][..]));
     assert!(matches!(
         tooth.descriptions[..],
         [DamageDescription::ToothBreakage { .. }, DamageDescription::ToothDestruction { .. }]

@@ -1,7 +1,7 @@
 //! Lists of faults: where they are, several beside each other, their keys and lines.
 use crate::support::{self, appended, assert_refused};
 use meshtone::scenario::{
-    Damage, Fault, MissingTooth, Model, Scenario, ToothBreakage, WheelName, damage_kinds,
+    Damage, Fault, FaultyTeeth, MissingTooth, Model, Scenario, ToothBreakage, WheelName, damage_kinds,
 };
 
 const PIT: &str = "kind = \"through-face\"\nstart = 0.2\nend = 0.4\ndepth = 0.3";
@@ -31,7 +31,8 @@ fn faults_are_on_any_tooth_of_either_wheel() {
         &format!("tooth = 38\nwheel = \"pinion\"\n{CHIP}").replace("38", "3"),
     ]);
     let scenario = Scenario::from_toml(&text).unwrap();
-    let places: Vec<_> = scenario.faults.iter().map(|fault| (fault.wheel, fault.tooth)).collect();
+    let places: Vec<_> =
+        scenario.faults.iter().map(|fault| (fault.wheel, fault.tooth.only().unwrap())).collect();
     assert_eq!(places, [(WheelName::Pinion, 17), (WheelName::Gear, 38), (WheelName::Pinion, 3)]);
     assert_eq!(scenario.faults[1].damage, Damage::from(MissingTooth));
     assert_eq!(Scenario::from_toml(&scenario.to_toml()), Ok(scenario));
@@ -82,6 +83,42 @@ fn a_tooth_must_exist() {
 }
 
 #[test]
+fn a_fault_may_be_on_several_teeth() {
+    let at = |tooth: &str| faults(&[&format!("wheel = \"pinion\"\ntooth = {tooth}\n{CHIP}")]);
+    for (written, teeth) in [
+        ("[1, 2, 9]", FaultyTeeth::These(vec![1, 2, 9])),
+        ("[4]", FaultyTeeth::One(4)),
+        ("\"all\"", FaultyTeeth::All),
+    ] {
+        let scenario = Scenario::from_toml(&at(written)).unwrap();
+        assert_eq!(scenario.faults[0].tooth, teeth);
+        assert_eq!(Scenario::from_toml(&scenario.to_toml()).unwrap(), scenario);
+        // Of several there is no single number.
+        assert_eq!(scenario.number("fault.tooth"), teeth.only().map(f64::from));
+    }
+    let pinion = ["fault.tooth[1] = 18: must be at most 17, the pinion's teeth"];
+    assert_refused(&at("[2, 18]"), "fault.tooth[1]", 11, &pinion);
+    assert_refused(&at("[3, 2, 3]"), "fault.tooth[2]", 11, &["= 3: is named twice; must be named once"]);
+    assert_refused(&at("[0, 2]"), "fault.tooth[0]", 11, &["at least 1, the first tooth"]);
+    assert_refused(&at("[2, -3]"), "fault.tooth[1]", 11, &["at least 1, the first tooth"]);
+    assert_refused(&at("[]"), "fault.tooth", 11, &["at least one tooth", "\"all\""]);
+    assert_refused(&at("[1.0]"), "fault.tooth[0]", 11, &["whole number"]);
+    assert_refused(&at("\"al\""), "fault.tooth", 11, &["must be one of \"all\"", "did you mean \"all\""]);
+    assert_refused(&at("true"), "fault.tooth", 11, &["a whole number, an array of them or \"all\""]);
+    // A tooth of both has no room for the second.
+    let missing = "kind = \"missing-tooth\"";
+    let second = format!("tooth = [8, 7]\n{missing}");
+    let words = ["tooth 7 of the gear has fault[0] already (missing-tooth)"];
+    assert_refused(&faults(&[&format!("tooth = [6, 7]\n{missing}"), &second]), "fault[1].kind", 14, &words);
+    assert_refused(
+        &faults(&[&format!("tooth = \"all\"\n{CHIP}"), missing]),
+        "fault[1].kind",
+        15,
+        &["tooth 1"],
+    );
+}
+
+#[test]
 fn a_missing_tooth_has_no_other_damage_and_a_tooth_breaks_once() {
     let missing = "kind = \"missing-tooth\"";
     let twice = ["tooth 1 of the gear has fault[0] already", "another tooth"];
@@ -104,6 +141,9 @@ fn the_published_model_knows_one_fault_in_one_place() {
     let words = ["only one fault, on the gear's first tooth", "model = \"linear\""];
     assert!(Scenario::from_toml(&published(&[CHIP])).is_ok());
     assert_refused(&published(&[&format!("tooth = 2\n{CHIP}")]), "fault.tooth", 11, &words);
+    assert_refused(&published(&[&format!("tooth = [1, 2]\n{CHIP}")]), "fault.tooth", 11, &words);
+    assert_refused(&published(&[&format!("tooth = \"all\"\n{CHIP}")]), "fault.tooth", 11, &words);
+    assert!(Scenario::from_toml(&published(&[&format!("tooth = [1]\n{CHIP}")])).is_ok());
     assert_refused(&published(&[&format!("wheel = \"pinion\"\n{CHIP}")]), "fault.wheel", 11, &words);
     assert_refused(&published(&[CHIP, &format!("tooth = 2\n{CHIP}")]), "fault[1]", 14, &words);
 }
@@ -119,7 +159,7 @@ fn numbers_of_faults_are_edited_by_their_keys() {
     assert_eq!(several.number("fault[0].depth"), Some(0.3));
     assert_eq!(several.number("fault[2].depth"), None);
     let wider = several.with_numbers(&[("fault[1].chip_width_mm", 14.0), ("fault[1].tooth", 5.0)]).unwrap();
-    assert_eq!((wider.number("fault[1].chip_width_mm"), wider.faults[1].tooth), (Some(14.0), 5));
+    assert_eq!((wider.number("fault[1].chip_width_mm"), wider.faults[1].tooth.only()), (Some(14.0), Some(5)));
     assert!(
         wider.numbers().iter().any(|number| number.key == "fault[1].chip_width_mm" && number.value == 14.0)
     );

@@ -1,8 +1,8 @@
 //! Whatever scenario is valid is written as a scenario file that is read back exactly.
 
 use meshtone::scenario::{
-    Damage, DampingRatio, DestructionLine, Fault, FlankRelief, FoundationCoefficients, GearPair, Gears,
-    Material, MissingTooth, Model, Operation, PartialFace, PitCircle, Profile, ProfileErrors, Quality,
+    Damage, DampingRatio, DestructionLine, Fault, FaultyTeeth, FlankRelief, FoundationCoefficients, GearPair,
+    Gears, Material, MissingTooth, Model, Operation, PartialFace, PitCircle, Profile, ProfileErrors, Quality,
     ReliefShape, Rig, RootCrack, Scenario, Shaft, Solver, Support, ThroughFace, TipRelief, ToothBreakage,
     ToothDestruction, WheelInertia, WheelName,
 };
@@ -178,13 +178,15 @@ fn damage(module_mm: f64, face_width_mm: f64) -> impl Strategy<Value = Damage> {
     ]
 }
 
-/// Any number, each on a tooth of its own.
+/// Any number, each on teeth of its own.
 fn faults(gears: &Gears) -> impl Strategy<Value = Vec<Fault>> + use<> {
     let damages = prop::collection::vec(damage(gears.module_mm, gears.face_width_mm), 0..4);
     damages.prop_map(|damages| {
         let place = |(index, damage): (usize, Damage)| {
             let wheel = WheelName::BOTH[(index + 1) % 2];
-            Fault::new(wheel, 1 + 3 * index as u32, damage)
+            let tooth = 1 + 3 * index as u32;
+            let teeth: FaultyTeeth = if index == 2 { vec![tooth + 1, tooth].into() } else { tooth.into() };
+            Fault::new(wheel, teeth, damage)
         };
         damages.into_iter().enumerate().map(place).collect()
     })

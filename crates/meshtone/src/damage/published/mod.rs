@@ -45,7 +45,7 @@ impl FaultGeometry {
     /// # Arguments
     /// * `teeth` - both healthy teeth
     pub(crate) fn damaged_tooth(&self, teeth: &Teeth) -> DamagedTooth {
-        let mut tooth = DamagedTooth::sound(WheelName::Gear, 0, &teeth.gear_profile);
+        let mut tooth = DamagedTooth::sound(WheelName::Gear, vec![0], &teeth.gear_profile);
         tooth.corner_y_mm.clone_from(&self.flank_y_mm);
         match &self.description {
             DamageDescription::FaceFault { width_mm, pit } => {

@@ -108,7 +108,9 @@ fn known_to_the_model(scenario: &Scenario) -> Result<(), ScenarioError> {
         [fault] if fault.wheel != WheelName::Gear => {
             ScenarioError::new("fault.wheel", format!("\"{}\"", fault.wheel.name()), ONE_PLACE)
         }
-        [fault] if fault.tooth != 1 => ScenarioError::new("fault.tooth", fault.tooth, ONE_PLACE),
+        [fault] if fault.tooth.only() != Some(1) => {
+            ScenarioError::new("fault.tooth", &fault.tooth, ONE_PLACE)
+        }
         [_] => return Ok(()),
         several => {
             ScenarioError::new("fault[1]", "", format!("is one of {} faults; {ONE_PLACE}", several.len()))

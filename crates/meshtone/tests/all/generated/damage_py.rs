@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use meshtone::damage::{DamageKind, damage_kinds, keys_of_every_fault};
+use meshtone::damage::{DamageKind, damage_kinds};
 use meshtone::scenario::{KeyDescription, KeyKind};
 
 use super::python::{HEAD, argument_type, class_name, inside, lines, parameter};
@@ -12,7 +12,7 @@ pub fn text() -> String {
     let kinds = damage_kinds();
     let mut text = format!(
         "\"\"\"A class for each kind of damage.\n\n{HEAD}\n\"\"\"\n\nfrom __future__ import annotations\n\n\
-         from dataclasses import dataclass\nfrom typing import Any, ClassVar, Literal, Union\n\n__all__ = [\n"
+         from collections.abc import Sequence\nfrom dataclasses import dataclass\nfrom typing import Any, ClassVar, Literal, Union\n\n__all__ = [\n"
     );
     let mut names: Vec<String> = kinds.iter().map(|kind| kind.type_name.to_owned()).collect();
     let tables = kinds.iter().flat_map(|kind| kind.keys.iter().filter(|key| key.kind == KeyKind::Table));
@@ -61,18 +61,18 @@ fn table_class(table: &KeyDescription, keys: &[KeyDescription]) -> String {
 }
 
 fn damage_class(kind: &DamageKind) -> String {
-    let place = keys_of_every_fault();
+    let place = &kind.place;
     let mut own: Vec<&KeyDescription> = kind.keys.iter().filter(|key| !key.key.contains('.')).collect();
     // A field without a default cannot follow one that has one.
     own.sort_by_key(|key| !key.required);
     let mut text = format!("\n\n@dataclass(frozen=True)\nclass {}:\n", kind.type_name);
-    text.push_str(&docstring(kind.summary, own.iter().copied().chain(&place)));
+    text.push_str(&docstring(kind.summary, own.iter().copied().chain(place)));
     writeln!(text, "    kind: ClassVar[str] = \"{}\"", kind.name).unwrap();
     for key in own {
         let none = if key.required { "" } else { " | None = None" };
         writeln!(text, "    {}: {}{none}", key.key, argument_type(key)).unwrap();
     }
-    for key in &place {
+    for key in place {
         writeln!(text, "    {}: {} = {}", key.key, argument_type(key), key.default).unwrap();
     }
     text

@@ -41,6 +41,7 @@ pub fn argument_type(key: &KeyDescription) -> String {
     match &key.kind {
         KeyKind::Number => "float".into(),
         KeyKind::Whole => "int".into(),
+        KeyKind::Teeth => "int | Sequence[int] | Literal[\"all\"]".into(),
         KeyKind::Name(names) => literal(names),
         KeyKind::Numbers(_) | KeyKind::List => "Sequence[float]".into(),
         KeyKind::NumberOrNumbers(_) => "float | Sequence[float]".into(),
@@ -81,6 +82,7 @@ pub fn parameter(indent: &str, key: &KeyDescription, name: &str, optional: bool)
         }
         KeyKind::Numbers(count) => format!("sequence of {count} floats"),
         KeyKind::List => "sequence of floats".into(),
+        KeyKind::Teeth => "int, sequence of ints or 'all'".into(),
         KeyKind::NumberOrNumbers(count) => format!("float or sequence of {count} floats"),
         KeyKind::TableOrFalse => format!("{} or False", class_name(&key.key)),
         KeyKind::Profile => "dict of time_s and value".into(),
