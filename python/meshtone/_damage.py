@@ -18,6 +18,7 @@ __all__ = [
     "ThroughFace",
     "ToothBreakage",
     "ToothDestruction",
+    "Wear",
 ]
 
 
@@ -224,10 +225,31 @@ class ToothDestruction:
     tooth: int | Sequence[int] | Literal["all"] = 1
 
 
-Fault = Union[MissingTooth, ToothBreakage, RootCrack, PartialFace, ThroughFace, ToothDestruction]
+@dataclass(frozen=True)
+class Wear:
+    """The working flanks are worn by sliding.
+
+    Parameters
+    ----------
+    depth_um : float
+        (µm) The largest depth of wear, along the flank's normal. Allowed: 0…100.
+    wheel : {'pinion', 'gear'}, optional
+        The damaged wheel. Default: "gear".
+    tooth : int, sequence of ints or 'all', optional
+        The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
+        Allowed: whole number > 0; at most the wheel's teeth, each once. Default: "all".
+    """
+
+    kind: ClassVar[str] = "wear"
+    depth_um: float
+    wheel: Literal["pinion", "gear"] = "gear"
+    tooth: int | Sequence[int] | Literal["all"] = "all"
+
+
+Fault = Union[MissingTooth, ToothBreakage, RootCrack, PartialFace, ThroughFace, ToothDestruction, Wear]
 """Any kind of damage."""
 
-KINDS: tuple[type[Any], ...] = (MissingTooth, ToothBreakage, RootCrack, PartialFace, ThroughFace, ToothDestruction)
+KINDS: tuple[type[Any], ...] = (MissingTooth, ToothBreakage, RootCrack, PartialFace, ThroughFace, ToothDestruction, Wear)
 """The classes."""
 
 TABLES: dict[str, type[Any]] = {"circle": PitCircle}

@@ -6,7 +6,7 @@ Examples
 >>> examples.tooth_breakage().fault.chip_width_mm
 12.0
 >>> sorted(examples.all())
-['healthy', 'missing-tooth', 'partial-face', 'root-crack', 'through-face', 'tooth-breakage', 'tooth-destruction']
+['healthy', 'missing-tooth', 'partial-face', 'root-crack', 'through-face', 'tooth-breakage', 'tooth-destruction', 'wear']
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ __all__ = [
     "through_face",
     "tooth_breakage",
     "tooth_destruction",
+    "wear",
 ]
 
 
@@ -60,6 +61,11 @@ def tooth_destruction() -> Scenario:
     return Scenario.from_toml(template("tooth-destruction"))
 
 
+def wear() -> Scenario:
+    """The same pair with all teeth of the gear worn."""
+    return Scenario.from_toml(template("wear"))
+
+
 def all() -> dict[str, Scenario]:
     """All of them, by the kind of fault."""
     return {
@@ -70,4 +76,5 @@ def all() -> dict[str, Scenario]:
         "partial-face": partial_face(),
         "through-face": through_face(),
         "tooth-destruction": tooth_destruction(),
+        "wear": wear(),
     }

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from .faults import Fault, MissingTooth, PartialFace, RootCrack, ToothBreakage, in_words, numbers_of_teeth
+from .faults import Fault, MissingTooth, PartialFace, RootCrack, ToothBreakage, Wear, in_words, numbers_of_teeth
 from .simulation import chosen_channel
 
 if TYPE_CHECKING:
@@ -351,6 +351,8 @@ def _title_of_tooth(wheel: str, tooth: int, damaged: Sequence[int]) -> str:
 
 
 def _cut_in_words(fault: Fault) -> str:
+    if isinstance(fault, Wear):
+        return f"worn up to {fault.depth_um:g} µm deep"
     return f"pit, {fault.width_mm:g} mm wide" if isinstance(fault, PartialFace) else fault.kind
 
 

@@ -80,7 +80,7 @@ fn faults() {
     refused(line("-1.5", "0.9"), &["line 13", "fault.start = -1.5", "more than -1 and less than 1"]);
     refused(line("1.0", "0.9"), &["line 13", "fault.start = 1.0", "more than -1 and less than 1"]);
     refused(line("0.8", "0.2"), &["line 14", "fault.end = 0.2", "more than fault.start, 0.8"]);
-    refused(fault("kind = \"wear\""), &["line 12", "fault.kind = \"wear\"", "\"tooth-breakage\""]);
+    refused(fault("kind = \"scuffing\""), &["line 12", "fault.kind = \"scuffing\"", "\"tooth-breakage\""]);
 }
 
 #[test]

@@ -10,7 +10,7 @@ fn examples() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples")
 }
 
-const NAMES: [&str; 7] = [
+const NAMES: [&str; 8] = [
     "healthy",
     "missing_tooth",
     "partial_face",
@@ -18,6 +18,7 @@ const NAMES: [&str; 7] = [
     "through_face",
     "tooth_breakage",
     "tooth_destruction",
+    "wear",
 ];
 
 // The templates describe the same cases, but for a pit that is given by its circle here.

@@ -29,7 +29,7 @@ fn an_existing_file_is_not_replaced_by_accident() {
 #[test]
 fn an_unknown_kind_lists_the_kinds() {
     let workplace = Workplace::new();
-    workplace.fails(2, &["init", "wear"], &template_kinds());
+    workplace.fails(2, &["init", "scuffing"], &template_kinds());
     workplace.fails(2, &["init"], &["KIND"]);
 }
 

@@ -19,6 +19,9 @@ pub(super) fn damaged_range(damage: &DamageDescription, tooth: &DamagedTooth, si
         DamageDescription::ToothDestruction { start_index, end_index, .. } => {
             ((*start_index).max(side.contact_index), *end_index)
         }
+        DamageDescription::Wear { start_index, end_index, .. } => {
+            ((*start_index).max(side.contact_index), *end_index)
+        }
         DamageDescription::RootCrack { crack } => {
             let start = side.profile.nearest_to_x(crack.start_x_mm);
             (start, start)
@@ -126,6 +129,7 @@ fn sizes(
                 format!("line at {}° to the centre line", tenths(slope_rad.to_degrees().abs())),
             ]
         }
+        (Damage::Wear(wear), _) => vec![depth_of_wear(wear.depth_um)],
         (_, DamageDescription::RootCrack { crack }) => {
             let angle = format!("at {}° to the centre line", tenths(crack.angle_rad.to_degrees()));
             vec![depth_of_crack(crack), angle, extent_of_crack(crack)]
@@ -150,11 +154,18 @@ pub(super) fn caption(damage: &DamageDescription) -> Vec<String> {
             ]
         }
         DamageDescription::ToothDestruction { .. } => vec!["flank ground down".to_owned()],
+        DamageDescription::Wear { depth_mm, .. } => {
+            vec!["flank worn".to_owned(), depth_of_wear(depth_mm.iter().copied().fold(0.0, f64::max) * 1e3)]
+        }
         DamageDescription::RootCrack { crack } => {
             vec![format!("crack {},", depth_of_crack(crack)), extent_of_crack(crack)]
         }
         _ => Vec::new(),
     }
+}
+
+fn depth_of_wear(largest_um: f64) -> String {
+    format!("up to {} µm deep", hundredths(largest_um))
 }
 
 fn depth_of_crack(crack: &Crack) -> String {

@@ -60,7 +60,7 @@ const EVERY_PANEL: [&str; 22] = [
 
 #[test]
 fn panels_of_the_gallery_show_what_they_should() {
-    let expected: [(&str, &[&str]); 7] = [
+    let expected: [(&str, &[&str]); 8] = [
         (
             "healthy",
             &["Healthy gear pair", "DIN 3961 grade 7", "17 and 38 teeth", "Average of 17 gear revolutions"],
@@ -90,6 +90,7 @@ fn panels_of_the_gallery_show_what_they_should() {
                 "over the whole face",
             ],
         ),
+        ("wear", &["Wear: up to 30 µm deep", "flank worn", "38 damaged gear teeth in contact"]),
     ];
     for ((name, scenario), (expected_name, words)) in crate::support::gallery().iter().zip(expected) {
         assert_eq!(*name, expected_name);

@@ -16,7 +16,7 @@ fn small_pair(damage: Option<Damage>) -> Scenario {
         brake_torque_nm: 10.0,
     });
     scenario.quality.din_grade = 7;
-    scenario.faults = damage.into_iter().map(Fault::on_first_gear_tooth).collect();
+    scenario.faults = damage.into_iter().map(Fault::at_usual_place).collect();
     scenario
 }
 
@@ -48,6 +48,7 @@ pub fn gallery() -> Vec<(&'static str, Scenario)> {
         ("through_face", small_pair(Some(ThroughFace { pit }.into()))),
         ("tooth_destruction", destruction),
         ("root_crack", small_pair(Some(crack.into()))),
+        ("wear", small_pair(Some(Wear { depth_um: 30.0 }.into()))),
     ]
 }
 

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use super::{Crack, DamageDescription, Fault};
 use crate::error::ScenarioError;
 use crate::random::{Draws, Purpose};
-use crate::wheel::{Flank, Teeth, ToothProfile, Wheel, WheelName};
+use crate::wheel::{Flank, PathOfContact, Teeth, ToothProfile, Wheel, WheelName};
 
 /// What is left of one tooth, or of each of several that are alike.
 ///
@@ -59,6 +59,21 @@ pub(crate) struct HealthyTooth<'a> {
 }
 
 impl<'a> HealthyTooth<'a> {
+    /// Whose tooth it is.
+    pub(super) fn name(&self) -> WheelName {
+        self.name
+    }
+
+    /// Both healthy teeth.
+    pub(super) fn teeth(&self) -> &'a Teeth {
+        self.teeth
+    }
+
+    /// The path along which it touches its mate.
+    pub(super) fn path(&self) -> &'a PathOfContact {
+        &self.teeth.path
+    }
+
     pub(super) fn wheel(&self) -> &'a Wheel {
         self.teeth.wheel(self.name)
     }
@@ -119,6 +134,17 @@ impl DamagedTooth {
         }
     }
 
+    /// (mm) Height of the flank where another cut would leave less: what has worn deeper stays.
+    ///
+    /// # Arguments
+    /// * `index` - profile index
+    /// * `cut_y_mm` - (mm) what the cut leaves of a sound flank
+    /// * `profile` - the sound flank
+    pub(super) fn cut_y_mm(&self, index: usize, cut_y_mm: f64, profile: &ToothProfile) -> f64 {
+        let worn_y_mm = self.flank_y_mm[index];
+        if worn_y_mm < profile.y_mm[index] { worn_y_mm.min(cut_y_mm) } else { cut_y_mm }
+    }
+
     /// Index of the tooth, of several of the first.
     pub fn first_tooth(&self) -> usize {
         self.teeth.first().copied().unwrap_or(0)
@@ -148,7 +174,8 @@ impl DamagedTooth {
             }
             DamageDescription::MissingTooth
             | DamageDescription::ToothBreakage { .. }
-            | DamageDescription::RootCrack { .. } => None,
+            | DamageDescription::RootCrack { .. }
+            | DamageDescription::Wear { .. } => None,
         }
     }
 

@@ -36,6 +36,15 @@ pub enum DamageDescription {
         /// (rad) Angle of the line to the tooth's centre line.
         slope_rad: f64,
     },
+    /// A worn flank.
+    Wear {
+        /// First worn profile index.
+        start_index: usize,
+        /// Last worn profile index.
+        end_index: usize,
+        /// (mm) Depth along the flank's normal, over the profile points.
+        depth_mm: Vec<f64>,
+    },
     /// A cracked root.
     RootCrack {
         /// Where the crack lies.

@@ -173,21 +173,24 @@ pub(crate) fn check_faults(faults: &[Fault], gears: &Gears) -> Check {
 }
 
 /// Whether a tooth with one damage has no room for the other, whatever their sizes: nothing is left of a missing tooth, a tip
-/// breaks off once, and a second crack beside the first is not known to any formula.
+/// breaks off once, a flank has worn so deep or so deep, and a second crack beside the first is not known to any formula. A wheel
+/// that has worn may have lost a tooth.
 fn excludes(damage: &Damage, other: &Damage) -> bool {
     let missing = |damage: &Damage| matches!(damage, Damage::MissingTooth(_));
     let broken = |damage: &Damage| matches!(damage, Damage::ToothBreakage(_));
     let cracked = |damage: &Damage| matches!(damage, Damage::RootCrack(_));
-    missing(damage)
-        || missing(other)
+    let worn = |damage: &Damage| matches!(damage, Damage::Wear(_));
+    (missing(damage) && !worn(other))
+        || (missing(other) && !worn(damage))
         || (broken(damage) && broken(other))
         || (cracked(damage) && cracked(other))
+        || (worn(damage) && worn(other))
 }
 
 fn second_damage(fault: &Fault, tooth: u32, number: usize, other: &Fault) -> ScenarioError {
     let (wheel, kind) = (fault.wheel.name(), fault.damage.kind());
     let problem = format!(
-        "tooth {tooth} of the {wheel} has fault[{number}] already ({}); a missing tooth has no other damage, and a tooth breaks and cracks once",
+        "tooth {tooth} of the {wheel} has fault[{number}] already ({}); a missing tooth has no other damage but wear, and a tooth breaks and cracks once, and has worn once",
         other.damage.kind()
     );
     ScenarioError::new("fault.kind", format!("\"{kind}\""), problem)

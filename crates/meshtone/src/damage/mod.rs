@@ -18,6 +18,7 @@ mod section;
 mod through_face;
 mod tooth_breakage;
 mod tooth_destruction;
+mod wear;
 
 use damaged_tooth::HealthyTooth;
 pub use damaged_tooth::{DamagedTooth, RollingPit, damaged_teeth};
@@ -34,6 +35,7 @@ pub use section::Section;
 pub use through_face::ThroughFace;
 pub use tooth_breakage::ToothBreakage;
 pub use tooth_destruction::{DestructionLine, ToothDestruction};
+pub use wear::{Wear, load_share, slide_factor};
 
 use meshtone_toml::{ReadResult, TomlTable};
 
@@ -178,6 +180,8 @@ kinds! {
     ThroughFace,
     /// The working flank is ground down along a straight line.
     ToothDestruction,
+    /// The working flanks are worn by sliding.
+    Wear,
 }
 
 /// A kind of damage, for documentation.

@@ -61,7 +61,7 @@ impl Kind for PartialFace {
         let (pit, flank_y_mm) = healthy.cut(&self.pit)?;
         for i in pit.start_index..=pit.end_index {
             tooth.corner_width_mm[i] = self.width_mm;
-            tooth.corner_y_mm[i] = flank_y_mm[i];
+            tooth.corner_y_mm[i] = tooth.cut_y_mm(i, flank_y_mm[i], healthy.profile());
         }
         tooth.descriptions.push(DamageDescription::FaceFault { pit, width_mm: self.width_mm });
         Ok(())

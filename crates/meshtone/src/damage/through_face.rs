@@ -49,9 +49,10 @@ impl Kind for ThroughFace {
 
     fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> Result<(), ScenarioError> {
         let (pit, flank_y_mm) = healthy.cut(&self.pit)?;
-        let inside = pit.start_index..=pit.end_index;
-        tooth.flank_y_mm[inside.clone()].copy_from_slice(&flank_y_mm[inside.clone()]);
-        tooth.corner_y_mm[inside.clone()].copy_from_slice(&flank_y_mm[inside]);
+        for i in pit.start_index..=pit.end_index {
+            tooth.flank_y_mm[i] = tooth.cut_y_mm(i, flank_y_mm[i], healthy.profile());
+            tooth.corner_y_mm[i] = tooth.flank_y_mm[i];
+        }
         let (mate, met_by_start) = healthy.met_by(pit.start_index);
         let (_, met_by_end) = healthy.met_by(pit.end_index);
         tooth.rolling.push(RollingPit {

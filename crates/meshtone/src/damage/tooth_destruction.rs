@@ -155,9 +155,9 @@ impl Kind for ToothDestruction {
         let ground = self.grind(healthy.profile(), healthy.first_contact(), roughness, Model::Linear)?;
         for i in 0..ground.flank_y_mm.len() {
             if ground.deviation_mm[i] < 0.0 {
-                tooth.flank_y_mm[i] = ground.flank_y_mm[i];
-                tooth.corner_y_mm[i] = ground.flank_y_mm[i];
-                tooth.deviation_mm[i] = ground.deviation_mm[i];
+                tooth.flank_y_mm[i] = tooth.cut_y_mm(i, ground.flank_y_mm[i], healthy.profile());
+                tooth.corner_y_mm[i] = tooth.flank_y_mm[i];
+                tooth.deviation_mm[i] = tooth.deviation_mm[i].min(ground.deviation_mm[i]);
             }
         }
         tooth.descriptions.push(DamageDescription::ToothDestruction {

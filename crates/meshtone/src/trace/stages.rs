@@ -217,6 +217,10 @@ fn damages(trace: &mut Trace, stages: &Stages) {
                 trace.vector(&name("indices"), [*start_index, *end_index].map(index));
                 trace.scalar(&name("slope_rad"), *slope_rad);
             }
+            DamageDescription::Wear { start_index, end_index, depth_mm } => {
+                trace.vector(&name("indices"), [*start_index, *end_index].map(index));
+                trace.vector(&name("depth_mm"), depth_mm.iter().copied().step_by(FAULT_STRIDE));
+            }
             DamageDescription::RootCrack { crack } => {
                 let (tip_x_mm, tip_y_mm) = crack.tip_mm();
                 trace.vector(&name("crack_x_mm"), [crack.start_x_mm, tip_x_mm]);

@@ -41,7 +41,7 @@ fn ground() -> ToothDestruction {
 }
 
 /// Every kind of damage.
-fn damages() -> [Damage; 6] {
+fn damages() -> [Damage; 7] {
     [
         MissingTooth.into(),
         chip().into(),
@@ -49,6 +49,7 @@ fn damages() -> [Damage; 6] {
         ThroughFace { pit: pit(0.2, 0.8) }.into(),
         ground().into(),
         RootCrack { depth_mm: 3.0, angle_deg: 45.0, length_mm: None }.into(),
+        Wear { depth_um: 60.0 }.into(),
     ]
 }
 

@@ -45,3 +45,4 @@ mod signal_simulated;
 mod support;
 mod tooth_shape;
 mod unbounded;
+mod wear;

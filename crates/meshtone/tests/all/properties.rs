@@ -41,6 +41,7 @@ fn damage() -> impl Strategy<Value = Damage> {
         (0.0..0.45, line, 0.0..0.2).prop_map(|(start, line, offset_mm)| {
             Damage::ToothDestruction(ToothDestruction { start, line, offset_mm, noise_mm: 0.0 })
         }),
+        (1.0..100.0).prop_map(|depth_um| Damage::Wear(Wear { depth_um })),
     ]
 }
 
@@ -210,7 +211,7 @@ fn most_faults_of_every_kind_fit() {
     let mut runner = proptest::test_runner::TestRunner::deterministic();
     let strategy = scenarios(damage().prop_map(Some));
     let mut fitted = std::collections::BTreeMap::new();
-    for _ in 0..150 {
+    for _ in 0..180 {
         let scenario = strategy.new_tree(&mut runner).unwrap().current();
         let kind = scenario.faults[0].damage.kind();
         let (fit, drawn): &mut (u32, u32) = fitted.entry(kind).or_default();
@@ -218,7 +219,7 @@ fn most_faults_of_every_kind_fit() {
         *fit += u32::from(stages(&scenario).is_ok());
     }
     println!("fitting, of drawn: {fitted:?}");
-    assert_eq!(fitted.len(), 6);
+    assert_eq!(fitted.len(), 7);
     for (kind, (fit, drawn)) in fitted {
         assert!(2 * fit > drawn && fit > 10, "{kind}: {fit} of {drawn}");
     }

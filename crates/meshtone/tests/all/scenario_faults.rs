@@ -47,7 +47,7 @@ fn errors_name_the_fault_and_its_line() {
         17,
         &["fault[1].chip_height_mm = 50.0", "less than 6.75"],
     );
-    let text = faults(&[PIT, "tooth = 2\nkind = \"wear\""]);
+    let text = faults(&[PIT, "tooth = 2\nkind = \"scuffing\""]);
     assert_refused(&text, "fault[1].kind", 16, &["must be one of", "\"missing-tooth\""]);
     let text = faults(&[PIT, "tooth = 2\nkind = \"missing-tooth\"\nwidth_mm = 2.0"]);
     assert_refused(

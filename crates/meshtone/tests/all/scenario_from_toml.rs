@@ -5,7 +5,7 @@ use crate::support::{REQUIRED, appended, assert_refused, gears, replaced};
 use meshtone::scenario::{
     Damage, DampingRatio, DestructionLine, Fault, FileProblem, FoundationCoefficients, GearPair, Material,
     MissingTooth, Model, PartialFace, PitCircle, Profile, ProfileErrors, ReliefShape, RootCrack, Scenario,
-    ScenarioFiles, Shaft, ThroughFace, TipRelief, ToothBreakage, ToothDestruction,
+    ScenarioFiles, Shaft, ThroughFace, TipRelief, ToothBreakage, ToothDestruction, Wear,
 };
 use meshtone::wheel::ErrorTable;
 
@@ -138,6 +138,7 @@ fn every_fault_is_read() {
             "kind = \"root-crack\"\ndepth_mm = 2\nangle_deg = 60\nlength_mm = 7.5",
             Damage::from(RootCrack { depth_mm: 2.0, angle_deg: 60.0, length_mm: Some(7.5) }),
         ),
+        ("kind = \"wear\"\ndepth_um = 12.5", Damage::from(Wear { depth_um: 12.5 })),
         (
             "kind = \"partial-face\"\nwidth_mm = 2\nstart = 0.2\nend = 0.8\ndepth = 0.5",
             Damage::from(PartialFace { width_mm: 2.0, pit: fractions }),
@@ -157,7 +158,7 @@ fn every_fault_is_read() {
         ("kind = \"tooth-destruction\"\nstart = 0.2\nend = 0.9", Damage::from(to_end)),
     ] {
         let scenario = Scenario::from_toml(&appended(&format!("[fault]\n{keys}"))).unwrap();
-        assert_eq!(scenario.faults, [Fault::on_first_gear_tooth(damage)]);
+        assert_eq!(scenario.faults, [Fault::at_usual_place(damage)]);
     }
 }
 

@@ -4,7 +4,7 @@ use meshtone::scenario::{
     Damage, DampingRatio, DestructionLine, Fault, FaultyTeeth, FlankRelief, FoundationCoefficients, GearPair,
     Gears, Material, MissingTooth, Model, Operation, PartialFace, PitCircle, Profile, ProfileErrors, Quality,
     ReliefShape, Rig, RootCrack, Scenario, Shaft, Solver, Support, ThroughFace, TipRelief, ToothBreakage,
-    ToothDestruction, WheelInertia, WheelName,
+    ToothDestruction, Wear, WheelInertia, WheelName,
 };
 use meshtone::wheel::{ErrorTable, WheelDeviations};
 use proptest::array::{uniform4, uniform6, uniform13};
@@ -175,6 +175,7 @@ fn damage(module_mm: f64, face_width_mm: f64) -> impl Strategy<Value = Damage> {
         partial.prop_map(Damage::from),
         pit().prop_map(|pit| Damage::from(ThroughFace { pit })),
         destruction.prop_map(Damage::from),
+        (0.0..100.0).prop_map(|depth_um| Damage::from(Wear { depth_um })),
     ]
 }
 

@@ -115,5 +115,5 @@ fn every_key_is_in_the_templates() {
 
 #[test]
 fn other_kinds_have_no_template() {
-    assert_eq!(template("wear"), None);
+    assert_eq!(template("scuffing"), None);
 }

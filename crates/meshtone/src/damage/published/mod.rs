@@ -55,8 +55,10 @@ impl FaultGeometry {
                 tooth.missing_width_mm.clone_from(missing_width_mm);
             }
             DamageDescription::ToothDestruction { .. } => tooth.flank_y_mm.clone_from(&self.flank_y_mm),
-            // A crack is not known to the published model.
-            DamageDescription::MissingTooth | DamageDescription::RootCrack { .. } => {}
+            // Neither a crack nor wear is known to the published model.
+            DamageDescription::MissingTooth
+            | DamageDescription::RootCrack { .. }
+            | DamageDescription::Wear { .. } => {}
         }
         if !self.no_contact.is_empty() {
             tooth.gone_from_index = self.no_contact.start;

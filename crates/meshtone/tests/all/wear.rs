@@ -1,0 +1,267 @@
+//! Wear: its shape against known numbers, what it does to pairs and signals, and what is refused.
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
+
+use crate::physics::*;
+use meshtone::damage::{damaged_teeth, load_share, slide_factor};
+use meshtone::mesh::{PairKind, Pairs};
+use meshtone::scenario::*;
+use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts, kurtosis, rms as rms_of};
+use meshtone::wheel::Teeth;
+use meshtone::{simulate, stages};
+
+/// Wheels of 17 and 38 teeth, with bores of 10 mm radius.
+fn wheels(pinion_teeth: u32, gear_teeth: u32) -> (Gears, Teeth) {
+    let gears = plain_gears(3.0, pinion_teeth, gear_teeth, 15.0);
+    let teeth = linear_teeth(&gears, 20.0);
+    (gears, teeth)
+}
+
+fn worn(wheel: WheelName, teeth: impl Into<FaultyTeeth>, depth_um: f64) -> Fault {
+    Fault::new(wheel, teeth, Wear { depth_um })
+}
+
+/// All teeth of both wheels.
+fn all_worn(pinion_um: f64, gear_um: f64) -> Vec<Fault> {
+    vec![
+        worn(WheelName::Pinion, FaultyTeeth::All, pinion_um),
+        worn(WheelName::Gear, FaultyTeeth::All, gear_um),
+    ]
+}
+
+fn pitch_point(teeth: &Teeth) -> f64 {
+    let gear = teeth.wheel(WheelName::Gear);
+    teeth.path.position(WheelName::Gear, gear.curvature_mm(gear.pitch_radius_mm))
+}
+
+// The numbers of another program.
+#[test]
+fn slide_factors_are_those_that_are_known() {
+    let (_, teeth) = wheels(17, 38);
+    let at = |position| WheelName::BOTH.map(|wheel| slide_factor(&teeth, wheel, position));
+    let (start, end) = (at(0.0), at(teeth.path.contact_ratio));
+    println!("start {start:.4?}, end {end:.4?}");
+    for (value, known) in start.into_iter().chain(end).zip([9.264, 0.903, 0.629, 1.697]) {
+        assert!((value - known).abs() < 5e-4, "{value} and {known}");
+    }
+    assert!(largest(at(pitch_point(&teeth))) < 1e-12);
+}
+
+// The share by a formula is near that by the stiffness of the pairs.
+#[test]
+fn the_load_share_is_near_that_of_the_stiffness() {
+    for (z_pinion, z_gear) in [(17, 38), (25, 30), (45, 80), (100, 100)] {
+        let (gears, teeth) = wheels(z_pinion, z_gear);
+        let (pairs, ratio) = (sound_pairs(&gears, &teeth), teeth.path.contact_ratio);
+        let stiffness = |at: f64| match (0.0..=ratio).contains(&at) {
+            true => pairs.at(&SOUND_PAIR, at).stiffness_n_per_mm,
+            false => 0.0,
+        };
+        let off = (0..=100).map(|k| ratio * f64::from(k) / 100.0).map(|at| {
+            let of_stiffness = stiffness(at) / (-2..=2).map(|n| stiffness(at + f64::from(n))).sum::<f64>();
+            load_share(at, ratio) - of_stiffness
+        });
+        let off = largest(off);
+        println!("{z_pinion}/{z_gear}: {off:.4}");
+        assert!(off < 0.15, "{z_pinion}/{z_gear}: {off}");
+    }
+    // Of three pairs, too.
+    let sum: f64 = (0..3).map(|n| load_share(0.1 + f64::from(n), 2.4)).sum();
+    assert!((sum - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn the_depth_is_archards_scaled_to_its_largest() {
+    let (gears, teeth) = wheels(17, 38);
+    let ratio = teeth.path.contact_ratio;
+    for wheel in WheelName::BOTH {
+        let damaged = damaged_teeth(&[worn(wheel, FaultyTeeth::All, 80.0)], &teeth, 1).unwrap();
+        let kind = match wheel {
+            WheelName::Pinion => PairKind { pinion: Some(0), gear: None, pairs_per_cycle: 1 },
+            WheelName::Gear => PairKind { pinion: None, gear: Some(0), pairs_per_cycle: 1 },
+        };
+        let pairs = Pairs::new(&teeth, &damaged, gears.material, &gears.foundation);
+        let depth = |at: f64| -pairs.at(&kind, at).deviation_mm * 1e3;
+        let rate = |at: f64| load_share(at, ratio) * slide_factor(&teeth, wheel, at);
+        // The pinion's where the path starts, the gear's where it ends.
+        let deepest = if wheel == WheelName::Pinion { 0.0 } else { ratio };
+        assert!((depth(deepest) / 80.0 - 1.0).abs() < 0.01, "{}", depth(deepest));
+        assert!(depth(pitch_point(&teeth)) < 0.1);
+        for k in 1..40 {
+            let at = ratio * (f64::from(k) + 0.3) / 40.0;
+            let off = depth(at) - 80.0 * rate(at) / rate(deepest);
+            assert!(off.abs() < 0.8, "{} at {at}: {off}", wheel.name());
+        }
+    }
+}
+
+/// Scenario of ideal wheels, or of wheels of a grade.
+fn scenario(model: Model, pinion_speed_hz: f64, din_grade: u8, faults: Vec<Fault>) -> Scenario {
+    let mut scenario = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 17,
+        gear_teeth: 38,
+        face_width_mm: 15.0,
+        pinion_speed_hz,
+        brake_torque_nm: 60.0,
+    });
+    scenario.model = model;
+    scenario.quality.din_grade = din_grade;
+    scenario.faults = faults;
+    scenario
+}
+
+#[test]
+fn wear_without_depth_is_none() {
+    for model in [Model::Linear, Model::Contact] {
+        let of = |faults| stages(&scenario(model, 40.0, 0, faults)).unwrap();
+        let (healthy, none) = (of(Vec::new()), of(all_worn(0.0, 0.0)));
+        let stiffness = none.mesh.stiffness_n_per_mm().into_iter().zip(healthy.mesh.stiffness_n_per_mm());
+        let off = largest(stiffness.map(|(none, healthy)| deviation(none, healthy)));
+        println!("{}: {off:.1e}", model.name());
+        assert!(off < 1e-12, "{}: {off:e}", model.name());
+        if let Some(mesh) = none.mesh.contact() {
+            let gaps = |class: usize| mesh.classes[class].states.iter().map(|state| state.separation_m);
+            assert!(gaps(0).eq(gaps(1)));
+        } else {
+            assert!(pairs(&none).classes.iter().all(|class| class.deviation_m.is_empty()));
+        }
+    }
+}
+
+// What has worn is missing in the tooth's sections.
+#[test]
+fn stiffness_falls_a_little_with_the_depth() {
+    let (gears, teeth) = wheels(17, 38);
+    let ratio = teeth.path.contact_ratio;
+    let stiffness = |depth_um: f64| -> Vec<f64> {
+        let damaged = damaged_teeth(&all_worn(depth_um, depth_um), &teeth, 1).unwrap();
+        let pairs = Pairs::new(&teeth, &damaged, gears.material, &gears.foundation);
+        let kind = PairKind { pinion: Some(0), gear: Some(1), pairs_per_cycle: 1 };
+        (0..=20).map(|k| pairs.at(&kind, ratio * f64::from(k) / 20.0).stiffness_n_per_mm).collect()
+    };
+    let all = [0.0, 10.0, 30.0, 60.0, 100.0].map(stiffness);
+    for pair in all.windows(2) {
+        assert!(pair[1].iter().zip(&pair[0]).all(|(deeper, less)| deeper < less));
+    }
+    let loss = largest(all[4].iter().zip(&all[0]).map(|(worn, sound)| deviation(*worn, *sound)));
+    println!("100 µm on both wheels: {:.2} % of a pair's stiffness at most", 100.0 * loss);
+    assert!(loss < 0.06, "{loss}");
+}
+
+/// Rms of the mesh harmonics in the gear's average, kurtosis of its difference signal, and FM4.
+fn indicators(scenario: &Scenario) -> [f64; 3] {
+    let simulation = simulate(scenario).unwrap();
+    let shafts = SimulatedShafts::of_channels(scenario, &simulation.channels);
+    let signal = &simulation.channels.vertical_g;
+    let record = shafts.process(signal, Shaft::Gear, &ChainSettings::default()).unwrap();
+    let mesh: f64 =
+        record.order_spectrum.iter().skip(38).step_by(38).take(10).map(|order| order * order / 2.0).sum();
+    let difference = &record.parts.difference;
+    assert!(rms_of(difference) > 0.0);
+    [mesh.sqrt(), kurtosis(difference).unwrap(), record.indicators.fm4.unwrap()]
+}
+
+// Wear of all teeth alike is the same in every pitch: it raises the mesh's harmonics, and gives no tooth away. Wheels of grade 7
+// have a difference signal of their own, whose shape stays.
+#[test]
+fn mesh_harmonics_rise_and_local_indicators_do_not() {
+    for (model, speeds) in [(Model::Linear, [15.0, 25.0, 40.0]), (Model::Contact, [15.0, 40.0, 47.0])] {
+        for speed_hz in speeds {
+            let of = |pinion_um, gear_um| {
+                let faults = if pinion_um > 0.0 { all_worn(pinion_um, gear_um) } else { Vec::new() };
+                indicators(&scenario(model, speed_hz, 7, faults))
+            };
+            let all = [of(0.0, 0.0), of(30.0, 15.0), of(60.0, 25.0), of(100.0, 100.0)];
+            let what = format!("{} at {speed_hz} Hz", model.name());
+            println!("{what}: mesh, kurtosis, FM4 {all:.3?}");
+            for pair in all.windows(2) {
+                assert!(
+                    pair[1][0] > pair[0][0],
+                    "{what}: mesh harmonics {} after {}",
+                    pair[1][0],
+                    pair[0][0]
+                );
+            }
+            assert!(all[3][0] > 2.0 * all[0][0]);
+            for worn in &all[1..] {
+                assert!((1..3).all(|n| worn[n] < 1.4 * all[0][n]), "{what}: {worn:?} after {:?}", all[0]);
+            }
+        }
+    }
+}
+
+// A single worn tooth does.
+#[test]
+fn one_worn_tooth_is_a_local_fault() {
+    let of = |faults| indicators(&scenario(Model::Contact, 40.0, 7, faults));
+    let (sound, one) = (of(Vec::new()), of(vec![worn(WheelName::Gear, 5, 60.0)]));
+    println!("mesh, kurtosis, FM4: {sound:.2?}, with one worn tooth {one:.2?}");
+    assert!(one[1] > 1.5 * sound[1] && one[2] > 1.5 * sound[2], "{one:?} after {sound:?}");
+}
+
+#[test]
+fn worn_teeth_may_have_other_damage() {
+    let pit = PitCircle::Fractions { start: 0.2, end: 0.6, depth: 0.3 };
+    let line = DestructionLine::End(0.9);
+    let ground = ToothDestruction { start: 0.3, line, offset_mm: 0.0, noise_mm: 0.0 };
+    let others: [Damage; 6] = [
+        MissingTooth.into(),
+        ToothBreakage { chip_height_mm: 3.0, chip_width_mm: 6.0, tip_loss_mm: 0.5 }.into(),
+        RootCrack { depth_mm: 2.0, angle_deg: 45.0, length_mm: None }.into(),
+        PartialFace { width_mm: 4.0, pit }.into(),
+        ThroughFace { pit }.into(),
+        ground.into(),
+    ];
+    let worn = worn(WheelName::Gear, FaultyTeeth::All, 100.0);
+    for other in others {
+        let other = Fault::new(WheelName::Gear, 3, other);
+        let of = |faults: Vec<Fault>| {
+            let stages = stages(&scenario(Model::Linear, 40.0, 0, faults)).unwrap();
+            let of_third = stages.damaged.iter().find(|tooth| tooth.teeth.contains(&2)).unwrap().clone();
+            (of_third, stages.damaged.len(), pairs(&stages).stiffness_n_per_mm(0..38))
+        };
+        // In whichever order they are named, and as much is left as either leaves.
+        let (both, reversed) = (of(vec![worn.clone(), other.clone()]), of(vec![other.clone(), worn.clone()]));
+        assert_eq!((both.1, reversed.1), (2, 2));
+        assert!(both.0.flank_y_mm == reversed.0.flank_y_mm && both.0.deviation_mm == reversed.0.deviation_mm);
+        assert!(both.2 == reversed.2, "{}", other.damage.kind());
+        let (of_wear, of_other) = (of(vec![worn.clone()]).0, of(vec![other]).0);
+        let outlines = [&of_wear, &of_other, &both.0].map(|tooth| tooth.outline_y_mm());
+        for (i, left) in outlines[2].iter().enumerate() {
+            assert!((left - outlines[0][i].min(outlines[1][i])).abs() < 1e-12, "point {i}");
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_is_refused() {
+    let refused = |model, faults: Vec<Fault>| {
+        let scenario = scenario(model, 40.0, 0, faults);
+        let error = scenario.validate().err().or_else(|| stages(&scenario).err()).unwrap();
+        (error.key.clone(), format!("{error}; {}", error.help.as_deref().unwrap_or_default()))
+    };
+    for depth_um in [-1.0, 100.1] {
+        let (key, text) = refused(Model::Linear, vec![worn(WheelName::Gear, 1, depth_um)]);
+        assert!(key == "fault.depth_um" && text.contains("must be from 0 µm to 100 µm"), "{text}");
+        assert!(text.contains("tooth-destruction"), "{text}");
+    }
+    let (key, text) = refused(
+        Model::Linear,
+        vec![worn(WheelName::Gear, FaultyTeeth::All, 5.0), worn(WheelName::Gear, 3, 5.0)],
+    );
+    assert!(
+        key == "fault[1].kind" && text.contains("tooth 3 of the gear has fault[0] already (wear)"),
+        "{text}"
+    );
+    let (key, text) = refused(Model::Published, vec![worn(WheelName::Gear, 1, 5.0)]);
+    assert!(key == "fault.kind" && text.contains("is not known to the published model"), "{text}");
+    let mut small = scenario(Model::Linear, 40.0, 0, vec![worn(WheelName::Gear, 1, 99.0)]);
+    small.gears = plain_gears(0.05, 17, 38, 0.25);
+    small.rig.pinion_shaft.radius_mm = 0.1;
+    small.rig.gear_shaft.radius_mm = 0.1;
+    let error = stages(&small).unwrap_err();
+    assert!(
+        error.key == "fault.depth_um" && error.problem.contains("less than the tooth's thickness"),
+        "{error}"
+    );
+}
