@@ -24,9 +24,21 @@ pub fn nearest_name<'n>(written: &str, candidates: impl IntoIterator<Item = &'n 
         .map(|(_, candidate)| candidate)
 }
 
-/// Whether one of the two names is surely the other misspelt: a slip of one or two letters.
+/// Whether one of the two names is surely the other misspelt: a slip of one or two letters, or another unit at its end.
 pub(crate) fn is_slip(written: &str, name: &str) -> bool {
-    name.len() >= 4 && strsim::damerau_levenshtein(written, name) <= 2
+    name.len() >= 4 && (strsim::damerau_levenshtein(written, name) <= 2 || has_another_unit(written, name))
+}
+
+/// Whether the two names are of the same quantity in two units, which stand behind the last underscore: `speed_rpm` and
+/// `speed_hz`, not `gear_teeth` and `gear_width`.
+pub(crate) fn has_another_unit(written: &str, name: &str) -> bool {
+    const LONGEST_UNIT: usize = 3;
+    match (written.rsplit_once('_'), name.rsplit_once('_')) {
+        (Some((written, unit)), Some((quantity, own))) => {
+            written == quantity && unit != own && unit.len().max(own.len()) <= LONGEST_UNIT
+        }
+        _ => false,
+    }
 }
 
 fn similarity(written: &str, candidate: &str) -> f64 {

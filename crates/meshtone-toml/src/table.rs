@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use toml::de::DeTable;
 
 use crate::document::{line_at, written};
-use crate::nearest::{is_slip, nearest_name};
+use crate::nearest::{has_another_unit, is_slip, nearest_name};
 use crate::{ErrorKind, ReadResult, TomlError, TomlValue};
 
 /// One table of a TOML text, read key by key.
@@ -67,7 +67,7 @@ impl<'a> TomlTable<'a> {
         if let Some(value) = self.optional(key) {
             return Ok(value);
         }
-        self.refuse_slip_of(key)?;
+        self.refuse_slip(key, Some(meaning))?;
         let problem = format!("missing, and it has no default; it is {meaning}");
         Err(self.error(key, problem).of_kind(ErrorKind::MissingKey))
     }
@@ -230,14 +230,21 @@ impl<'a> TomlTable<'a> {
     /// # Errors
     /// A key that nobody has asked for looks like this one misspelt.
     pub fn refuse_slip_of(&self, key: &'static str) -> ReadResult<()> {
-        match self.unasked().find(|(_, name)| is_slip(name, key)) {
-            None => Ok(()),
-            // Which other keys are allowed is not known yet: they have not been asked for.
-            Some((_, name)) => Err(self
-                .error(name, format!("unknown key, while `{key}` is missing"))
-                .of_kind(ErrorKind::UnknownKey)
-                .with_help(format!("did you mean `{key}`?"))),
-        }
+        self.refuse_slip(key, None)
+    }
+
+    /// As [`Self::refuse_slip_of`]; who writes another unit is told the right one.
+    fn refuse_slip(&self, key: &'static str, meaning: Option<&str>) -> ReadResult<()> {
+        let Some((_, name)) = self.unasked().find(|(_, name)| is_slip(name, key)) else {
+            return Ok(());
+        };
+        let is =
+            meaning.filter(|_| has_another_unit(name, key)).map(|meaning| format!(", which is {meaning}"));
+        // Which other keys are allowed is not known yet: they have not been asked for.
+        Err(self
+            .error(name, format!("unknown key, while `{key}` is missing{}", is.unwrap_or_default()))
+            .of_kind(ErrorKind::UnknownKey)
+            .with_help(format!("did you mean `{key}`?")))
     }
 
     fn unknown(&self, name: &str, nearest: Option<&str>) -> TomlError {

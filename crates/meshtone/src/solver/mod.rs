@@ -14,6 +14,7 @@ mod prepare;
 mod reduce;
 mod shared_forcing;
 mod size;
+mod steady_sine;
 mod step;
 mod step_factors;
 mod stretch;
@@ -23,3 +24,4 @@ pub(crate) use integrate::{Diverged, LANES, Problem, integrate, integrate_side_b
 pub use outputs::{Axis, Output};
 pub use reduce::ReducedModel;
 pub(crate) use size::Size;
+pub(crate) use steady_sine::{Answer, MeanMachine};

@@ -20,6 +20,7 @@ mod other_programs;
 mod paper_original;
 mod paper_rigs;
 mod physics;
+mod plausibility;
 mod power_balance;
 mod properties;
 mod published;

@@ -4,6 +4,7 @@ mod duration;
 mod largest_cause;
 mod memory_limit;
 mod size;
+mod speed;
 
 pub use memory_limit::{MEMORY_LIMIT_BYTES, MemoryLimit};
 
@@ -16,7 +17,8 @@ impl Scenario {
     /// Checks every value, alone and against the others, as far as no tooth geometry is needed.
     ///
     /// # Returns
-    /// What can be simulated but deserves attention: teeth that are undercut, a tip relief that adds metal.
+    /// What can be simulated but deserves attention: teeth that are undercut, a tip relief that adds metal, a speed that few
+    /// spur gears reach.
     ///
     /// # Errors
     /// The first value that is impossible, or certainly a mistake. A simulation that needs more
@@ -67,7 +69,9 @@ impl Scenario {
         }
         duration::check(&honoured)?;
         size::check(&honoured, limit)?;
+        speed::check(&honoured)?;
         let mut warnings = gears_of_model(&honoured).warnings();
+        warnings.extend(speed::warnings(&honoured));
         warnings.extend(honoured.quality.warnings());
         Ok(warnings)
     }

@@ -1,5 +1,7 @@
 //! What is doubtful about a simulation: before the time loop, and by its signals.
 
+mod step_error;
+
 use std::f64::consts::TAU;
 
 use crate::error::{ScenarioError, ScenarioWarning};
@@ -15,6 +17,15 @@ const TOLERATED_TRANSIENT: f64 = 0.01;
 const TOLERATED_TENSION: f64 = 0.01;
 /// (-) Where damage makes the mesh pull, a load that so many times its own would hold the teeth together is worth a word.
 const SENSIBLE_LOAD_FACTOR: f64 = 30.0;
+
+/// (-) Part of the module by which the nominal load may press the teeth together without a warning.
+const TOLERATED_DEFLECTION: f64 = 0.1;
+/// (-) How many times the static force the mesh force may be without a warning.
+const TOLERATED_RESONANCE: f64 = 1000.0;
+/// (-) How far a shaft's mean speed may be from what the motor drives it at without a warning.
+const TOLERATED_SPEED: f64 = 0.2;
+/// (-) How far the step may falsify the rms of a signal without a warning.
+const TOLERATED_STEP: f64 = 0.02;
 
 /// Runs stages 1 to 6, as [`stages`] does, and tells all that deserves attention before the time loop.
 ///
@@ -48,14 +59,74 @@ pub fn stages_and_warnings(
 }
 
 impl Simulation {
-    /// What the signals show to be doubtful: a mesh that pulls. Not under `contact`, whose teeth part:
-    /// [`Simulation::contact_figures`] says for how long.
+    /// What the signals show to be doubtful: a mesh that pulls (not under `contact`, whose teeth part:
+    /// [`Simulation::contact_figures`] says for how long), a resonance beyond all measure, a shaft that does not turn at the speed
+    /// that it is driven at, a step too long for a resonance. Where the latter is suspected the simulation is repeated with half the
+    /// step.
     pub fn warnings_of_signals(&self) -> Vec<ScenarioWarning> {
-        if self.stages.mesh.contact().is_some() {
-            return Vec::new();
-        }
-        tension(&self.channels, !self.stages.damaged.is_empty()).into_iter().collect()
+        let is_damaged = !self.stages.damaged.is_empty();
+        let is_linear = self.stages.mesh.contact().is_none();
+        let pulling = is_linear.then(|| tension(&self.channels, is_damaged)).flatten();
+        let step = step_error::rms_gain_of_half_step(self).and_then(|gain| long_step(gain, &self.stages));
+        let doubtful = [pulling, self.resonance(), self.other_speed(), step];
+        doubtful.into_iter().flatten().collect()
     }
+
+    /// A mesh force so far beyond the static one that the machine could not be.
+    fn resonance(&self) -> Option<ScenarioWarning> {
+        let static_n = self.stages.static_force_n();
+        let largest_n =
+            self.channels.mesh_force_n.iter().fold(0.0, |largest: f64, force| force.abs().max(largest));
+        (static_n > 0.0 && largest_n > TOLERATED_RESONANCE * static_n).then(|| {
+            let message = format!(
+                "the mesh force reaches {largest_n:.3e} N, {:.0} times the static {static_n:.4} N: a resonance that no machine \
+                 survives; raise the damping, change the speed, or load the pair",
+                largest_n / static_n
+            );
+            ScenarioWarning::new("operation.pinion_speed_hz", message)
+        })
+    }
+
+    /// A shaft whose mean speed is not what it is driven at.
+    fn other_speed(&self) -> Option<ScenarioWarning> {
+        let (stages, channels) = (&self.stages, &self.channels);
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+        let kept = stages.scenario.motion(&stages.time).skip(stages.time.first_kept_sample);
+        let driven_hz = match stages.scenario.operation.speed_profile_hz {
+            None => stages.scenario.operation.pinion_speed_hz,
+            Some(_) => mean(&kept.take(channels.len()).map(|motion| motion.speed_hz).collect::<Vec<_>>()),
+        };
+        let ratio = f64::from(stages.teeth.pinion.teeth) / f64::from(stages.teeth.gear.teeth);
+        let shafts = [
+            ("pinion", driven_hz, &channels.pinion_shaft_speed_hz),
+            ("gear", driven_hz * ratio, &channels.gear_shaft_speed_hz),
+        ];
+        let turning = shafts.map(|(wheel, driven_hz, speed_hz)| (wheel, driven_hz, mean(speed_hz)));
+        let off = |(_, driven_hz, hz): &(&str, f64, f64)| (hz / driven_hz - 1.0).abs() > TOLERATED_SPEED;
+        turning.into_iter().find(off).map(|(wheel, driven_hz, hz)| {
+            let message = format!(
+                "the {wheel} turns at {hz:.4} Hz on average, while the motor drives it at {driven_hz:.4} Hz: the motion has not \
+                 settled; lengthen solver.settle_fraction, raise the damping, or leave out solver.initial_velocity"
+            );
+            ScenarioWarning::new("solver.settle_fraction", message)
+        })
+    }
+}
+
+/// A step that falsifies a resonance, by how much the rms grows with half of it.
+fn long_step(gain: f64, stages: &Stages) -> Option<ScenarioWarning> {
+    // Of second order: a third of what half the step mends is left then.
+    let error = 4.0 / 3.0 * gain.abs();
+    (error > TOLERATED_STEP).then(|| {
+        let rate_hz = stages.time.sampling_rate_hz;
+        let finer_hz = rate_hz * (error / TOLERATED_STEP).sqrt().clamp(1.2, 10.0);
+        let (percent, larger) = (100.0 * gain.abs(), if gain > 0.0 { "larger" } else { "smaller" });
+        let message = format!(
+            "at {rate_hz:.0} S/s the step shifts a resonance that the teeth excite: with half the step the rms is {percent:.1} % \
+             {larger}; set sampling_rate_hz = {finer_hz:.2e}, and more until this goes"
+        );
+        ScenarioWarning::new("solver.sampling_rate_hz", message)
+    })
 }
 
 /// A mesh that pulls, and what brings that down.
@@ -81,10 +152,27 @@ fn tension(channels: &Channels, is_damaged: bool) -> Option<ScenarioWarning> {
 }
 
 impl Stages {
-    /// What deserves attention though it can be simulated: wheels whose accelerations, or whose supports', cancel in the channels, and
-    /// a settling too short for the slowest mode.
+    /// What deserves attention though it can be simulated: wheels whose accelerations, or whose supports', cancel in the channels,
+    /// a settling too short for the slowest mode, a load that would break the teeth.
     pub fn warnings(&self) -> Vec<ScenarioWarning> {
-        self.equal_wheels().into_iter().chain(self.unsettled()).collect()
+        let doubtful = [self.equal_wheels(), self.unsettled(), self.crushed()];
+        doubtful.into_iter().flatten().collect()
+    }
+
+    /// Teeth that the nominal load would bend off.
+    fn crushed(&self) -> Option<ScenarioWarning> {
+        let deflection_mm = self.static_force_n() / self.mesh.mean_stiffness_n_per_mm();
+        let module_mm = self.scenario.gears.module_mm;
+        (deflection_mm > TOLERATED_DEFLECTION * module_mm).then(|| {
+            let message = format!(
+                "presses the teeth {deflection_mm:.3} mm together, {:.2} modules, with {:.0} N on {} mm of face: they would break; \
+                 the torque is in N m",
+                deflection_mm / module_mm,
+                self.static_force_n(),
+                self.scenario.gears.face_width_mm
+            );
+            ScenarioWarning::new("operation.brake_torque_nm", message)
+        })
     }
 
     /// (-) Part of the starting transient that is left where the kept signal starts, by the slowest active mode's decay.

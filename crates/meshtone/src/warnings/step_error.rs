@@ -1,0 +1,140 @@
+//! How far the solver's step falsifies a steady vibration.
+
+use std::f64::consts::TAU;
+
+use crate::fourier::real_spectrum;
+use crate::machine::ClosedMesh;
+use crate::model::Model;
+use crate::operation::greatest_common_divisor;
+use crate::sensor::Channels;
+use crate::simulate::{Simulation, Stages, simulate};
+use crate::solver::{Answer, MeanMachine};
+
+/// (-) Part of a signal's power below which a line of its spectrum does not count.
+const LEAST_PART: f64 = 1e-6;
+/// (g, N) Rms below which a signal is rounding, as where equal wheels move in opposition.
+const ROUNDING: f64 = 1e-9;
+
+/// (-) How far a mode's frequency may be from that of the mean mesh, whose stiffness varies: shifts at which a line is looked at.
+const SHIFTS: [f64; 5] = [-0.01, -0.005, 0.0, 0.005, 0.01];
+
+/// (-) Estimate above which a simulation is repeated.
+const SUSPICIOUS: f64 = 0.02;
+
+/// (-) By how much the rms of a signal is larger with half the step: of the vertical acceleration or of the mesh force, whichever
+/// is further. None where no resonance is suspected of it, and the simulation is not repeated.
+pub(super) fn rms_gain_of_half_step(simulation: &Simulation) -> Option<f64> {
+    estimate(simulation).filter(|estimate| *estimate > SUSPICIOUS)?;
+    let mut scenario = simulation.stages.scenario.clone();
+    // The actual rate is not less than the nominal one, which it is rounded up from.
+    scenario.solver.sampling_rate_hz = 2.0 * simulation.channels.sampling_rate_hz;
+    let finer = simulate(&scenario).ok()?.channels;
+    let gain = |of: fn(&Channels) -> &[f64]| {
+        let [coarse, fine] = [&simulation.channels, &finer].map(|channels| rms(of(channels)));
+        if coarse < ROUNDING { 0.0 } else { fine / coarse - 1.0 }
+    };
+    let (acceleration, force) = (gain(|of| &of.vertical_g), gain(|of| &of.mesh_force_n));
+    Some(if acceleration.abs() > force.abs() { acceleration } else { force })
+}
+
+fn rms(signal: &[f64]) -> f64 {
+    (signal.iter().map(|value| value * value).sum::<f64>() / signal.len().max(1) as f64).sqrt()
+}
+
+/// (-) How far the step may falsify the rms, without a second simulation. None where the speed is no constant, so that no resonance
+/// lasts.
+///
+/// Every sine of the signal that repeats with a wheel's turn is as large as the machine's answer at the frequency that the step
+/// makes of its own, [`MeanMachine::growth`]; what does not repeat, as the ringing after a hit, only changes its pitch. Of teeth
+/// that part it says nothing: their motion has no resonance that lasts.
+fn estimate(simulation: &Simulation) -> Option<f64> {
+    let stages = &simulation.stages;
+    if stages.scenario.model == Model::Published || stages.scenario.operation.speed_profile_hz.is_some() {
+        return None;
+    }
+    let model = stages.reduced_model();
+    let machine = MeanMachine::new(&model, closed_mesh(stages));
+    let step_s = stages.time.step_s();
+    let gain = |answer: Answer, line: &Line| {
+        let at = |shift: f64| machine.growth(answer, TAU * line.frequency_hz * (1.0 + shift), step_s);
+        let gains = SHIFTS.map(|shift| (at(shift).powi(2) - 1.0).abs());
+        line.power * gains.into_iter().fold(0.0, f64::max)
+    };
+    let error = |answer: Answer, signal: &[f64]| {
+        let power = rms(signal).powi(2);
+        if power < ROUNDING * ROUNDING {
+            return 0.0;
+        }
+        let lines = lines(stages, signal).filter(|line| line.power > LEAST_PART * power);
+        let gained: f64 = lines.map(|line| gain(answer, &line)).sum();
+        (1.0 + gained / power).sqrt() - 1.0
+    };
+    let channels = &simulation.channels;
+    let acceleration = error(Answer::VerticalAcceleration, &channels.vertical_g);
+    Some(acceleration.max(error(Answer::MeshForce, &channels.mesh_force_n)))
+}
+
+/// The mesh under `contact`, as if it were closed always.
+fn closed_mesh(stages: &Stages) -> Option<ClosedMesh> {
+    let mesh = stages.mesh.contact()?;
+    Some(ClosedMesh { stiffness_n_per_m: mesh.mean_stiffness_n_per_m, damping_time_s: mesh.damping_time_s })
+}
+
+/// A sine of a signal.
+struct Line {
+    frequency_hz: f64,
+    /// Its mean square.
+    power: f64,
+}
+
+/// The sines of a signal that repeat with every turn of the gear, and those that do with the pinion's.
+fn lines<'a>(stages: &Stages, signal: &'a [f64]) -> impl Iterator<Item = Line> + 'a {
+    let [pinion, gear] = [stages.teeth.pinion.teeth, stages.teeth.gear.teeth];
+    let speed_hz = stages.scenario.operation.pinion_speed_hz;
+    let of_pinion = stages.time.samples_per_pinion_revolution;
+    let of_gear = of_pinion / pinion as usize * gear as usize;
+    // Orders of the pinion that are orders of the gear too.
+    let shared = (pinion / greatest_common_divisor(pinion, gear)) as usize;
+    let gear_speed_hz = speed_hz * f64::from(pinion) / f64::from(gear);
+    let of_gear = orders(signal, of_gear).map(move |(order, power)| (order as f64 * gear_speed_hz, power));
+    let of_pinion = orders(signal, of_pinion).filter(move |(order, _)| order % shared != 0);
+    let of_pinion = of_pinion.map(move |(order, power)| (order as f64 * speed_hz, power));
+    of_gear.chain(of_pinion).map(|(frequency_hz, power)| Line { frequency_hz, power })
+}
+
+/// Mean squares of the sines that repeat with a shaft's turn, by their order from 1; none of a signal shorter than a turn.
+fn orders(signal: &[f64], samples_per_turn: usize) -> impl Iterator<Item = (usize, f64)> {
+    let turns = signal.len() / samples_per_turn.max(1);
+    let mut sum = vec![0.0; if turns == 0 { 0 } else { samples_per_turn }];
+    for turn in signal.chunks_exact(samples_per_turn.max(1)) {
+        sum.iter_mut().zip(turn).for_each(|(sum, value)| *sum += value);
+    }
+    let spectrum = if sum.is_empty() { Vec::new() } else { real_spectrum(&sum) };
+    let scale = 2.0 / ((turns * samples_per_turn).max(1) as f64).powi(2);
+    let below_nyquist = samples_per_turn.div_ceil(2);
+    spectrum
+        .into_iter()
+        .take(below_nyquist)
+        .enumerate()
+        .skip(1)
+        .map(move |(order, line)| (order, scale * line.norm_sqr()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Parseval: a signal that repeats with the turn has all its power in its orders.
+    #[test]
+    fn orders_hold_the_power_of_what_repeats() {
+        let samples = 150;
+        let turn = |n: usize| {
+            (TAU * n as f64 / samples as f64).sin() * 3.0 + (TAU * 70.0 * n as f64 / samples as f64).cos()
+        };
+        let signal: Vec<f64> = (0..4 * samples).map(turn).collect();
+        let found: Vec<(usize, f64)> = orders(&signal, samples).filter(|(_, power)| *power > 1e-12).collect();
+        assert_eq!(found.iter().map(|(order, _)| *order).collect::<Vec<_>>(), [1, 70]);
+        assert!((found[0].1 - 4.5).abs() < 1e-12 && (found[1].1 - 0.5).abs() < 1e-12, "{found:?}");
+        assert_eq!(orders(&signal, 700).count(), 0);
+    }
+}

@@ -1,0 +1,196 @@
+//! Scenarios that cannot be meant, and results that cannot be.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use meshtone::scenario::{DampingRatio, GearPair, Model, Profile, Scenario, ScenarioWarning};
+use meshtone::{Simulation, simulate};
+
+fn pair() -> Scenario {
+    Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 17,
+        gear_teeth: 38,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    })
+}
+
+fn about<'a>(warnings: &'a [ScenarioWarning], key: &str) -> Option<&'a str> {
+    warnings.iter().find(|warning| warning.key == key).map(|warning| warning.message.as_str())
+}
+
+/// The figures of the messages are those of the textbook: v = π m z n, F = T/r_b.
+#[test]
+fn a_speed_in_revolutions_per_minute_is_refused_with_what_it_would_be() {
+    let mut scenario = pair();
+    scenario.operation.pinion_speed_hz = 1476.0;
+    let error = scenario.validate().unwrap_err();
+    assert_eq!((error.key.as_str(), error.value.as_str()), ("operation.pinion_speed_hz", "1476.0"));
+    assert!(error.problem.contains("would run at 236 m/s"), "{}", error.problem);
+    assert!(error.help.unwrap().ends_with("if 1476.0 is per minute, write 24.6000"));
+
+    // As fast as the larger wheel of another pair.
+    (scenario.gears.module_mm, scenario.gears.pinion_teeth) = (2.5, 27);
+    assert!(scenario.validate().unwrap_err().problem.contains("313 m/s"));
+
+    scenario.operation.pinion_speed_hz = 300.0;
+    let warnings = scenario.validate().unwrap();
+    let told = about(&warnings, "operation.pinion_speed_hz").unwrap();
+    assert!(told.contains("run at 64 m/s"), "{told}");
+    assert!(pair().validate().unwrap().is_empty());
+}
+
+#[test]
+fn a_profile_counts_as_the_nominal_speed_does() {
+    let mut scenario = pair();
+    let profile = |value: [f64; 2]| Some(Profile { time_s: vec![0.0, 2.0], value: value.to_vec() });
+    scenario.operation.speed_profile_hz = profile([1000.0, 1800.0]);
+    let error = scenario.validate().unwrap_err();
+    assert_eq!(error.key, "operation.speed_profile_hz.value[1]");
+    assert!(error.help.unwrap().ends_with("write 30.0000"));
+
+    // Never near the nominal speed, and a run-up through it.
+    scenario.operation.speed_profile_hz = profile([50.0, 60.0]);
+    let warnings = scenario.validate().unwrap();
+    let told = about(&warnings, "operation.speed_profile_hz").unwrap();
+    assert!(told.starts_with("is 55.0000 Hz on average"), "{told}");
+    scenario.operation.speed_profile_hz = profile([5.0, 45.0]);
+    assert!(scenario.validate().unwrap().is_empty());
+}
+
+#[test]
+fn a_load_that_breaks_teeth_is_warned_of_with_their_deflection() {
+    let mut scenario = pair();
+    let of = |scenario: &Scenario| meshtone::stages(scenario).unwrap().warnings();
+    assert_eq!(about(&of(&scenario), "operation.brake_torque_nm"), None);
+    // In N mm.
+    scenario.operation.brake_torque_nm = 10_000.0;
+    let told = of(&scenario);
+    let told = about(&told, "operation.brake_torque_nm").unwrap();
+    // 187 kN over 200 kN/mm.
+    assert!(told.starts_with("presses the teeth 0.93"), "{told}");
+    assert!(told.contains("with 186698 N on 15 mm of face"), "{told}");
+}
+
+#[test]
+fn a_shaft_that_turns_at_another_speed_is_told() {
+    let mut scenario = pair();
+    scenario.solver.sampling_rate_hz = 3e4;
+    let mut simulation = simulate(&scenario).unwrap();
+    assert_eq!(about(&simulation.warnings_of_signals(), "solver.settle_fraction"), None);
+    simulation.channels.gear_shaft_speed_hz.iter_mut().for_each(|speed_hz| *speed_hz *= 0.75);
+    let warnings = simulation.warnings_of_signals();
+    let told = about(&warnings, "solver.settle_fraction").unwrap();
+    let words = "the gear turns at 13.4211 Hz on average, while the motor drives it at 17.8947 Hz";
+    assert!(told.starts_with(words), "{told}");
+}
+
+/// A mode of the linear model with hardly any damping, and a mesh harmonic on it.
+fn resonant(damping_ratio: f64, harmonic: f64) -> Scenario {
+    let mut scenario = pair();
+    scenario.model = Model::Linear;
+    scenario.quality.din_grade = 0;
+    scenario.rig.damping_ratio = DampingRatio::Uniform(damping_ratio);
+    let frequencies = meshtone::stages(&scenario).unwrap().natural_frequencies_hz();
+    let mode_hz = frequencies.into_iter().find(|hz| *hz > 3e3).unwrap();
+    scenario.operation.pinion_speed_hz = mode_hz / (17.0 * harmonic);
+    scenario
+}
+
+fn rms(signal: &[f64]) -> f64 {
+    (signal.iter().map(|value| value * value).sum::<f64>() / signal.len() as f64).sqrt()
+}
+
+fn at_rate(scenario: &Scenario, sampling_rate_hz: f64) -> Simulation {
+    let mut scenario = scenario.clone();
+    scenario.solver.sampling_rate_hz = sampling_rate_hz;
+    simulate(&scenario).unwrap()
+}
+
+/// What the warning of a long step tells: how far the rms changes with half of it, and a rate that mends it.
+fn long_step(simulation: &Simulation) -> Option<(f64, f64)> {
+    let warnings = simulation.warnings_of_signals();
+    let told = about(&warnings, "solver.sampling_rate_hz")?;
+    let number = |after: &str| {
+        let rest = told.split(after).nth(1).unwrap();
+        rest.split([' ', ',']).next().unwrap().parse::<f64>().unwrap()
+    };
+    let sign = if told.contains("% larger") { 1.0 } else { -1.0 };
+    Some((sign * number("the rms is ") / 100.0, number("sampling_rate_hz = ")))
+}
+
+/// What is told is most of what a much finer step shows, and the rate that is named mends it.
+#[test]
+fn a_step_that_shifts_a_resonance_is_told_with_its_error() {
+    for (damping_ratio, harmonic) in [(0.005, 4.0), (0.01, 4.0), (0.02, 4.0), (0.01, 2.0)] {
+        let scenario = resonant(damping_ratio, harmonic);
+        let coarse = at_rate(&scenario, 6e4);
+        let fine = at_rate(&scenario, 1e6);
+        let acceleration = |of: &Simulation| rms(&of.channels.vertical_g);
+        let force = |of: &Simulation| rms(&of.channels.mesh_force_n);
+        let error = |of: &Simulation| {
+            let gains = [acceleration(&fine) / acceleration(of) - 1.0, force(&fine) / force(of) - 1.0];
+            gains.into_iter().max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap()
+        };
+        let shown = error(&coarse);
+        let (told, mut rate_hz) = long_step(&coarse).unwrap();
+        assert!((0.7..1.0).contains(&(told / shown)), "{damping_ratio} {harmonic}: {told}, shown {shown}");
+        let mut better = at_rate(&scenario, rate_hz);
+        while let Some((_, next_hz)) = long_step(&better) {
+            assert!(next_hz > rate_hz);
+            rate_hz = next_hz;
+            better = at_rate(&scenario, rate_hz);
+        }
+        assert!(error(&better).abs() < 0.02, "{damping_ratio} {harmonic}: {} at {rate_hz}", error(&better));
+    }
+}
+
+/// Silence means that the step is short enough, wherever the mesh stays closed and has settled.
+#[test]
+fn what_is_not_warned_of_is_right() {
+    let mut silent = 0;
+    for seed in 1..=12_u32 {
+        let model = if seed % 2 == 0 { Model::Contact } else { Model::Linear };
+        let mut scenario = pair();
+        (scenario.model, scenario.seed) = (model, u64::from(seed));
+        scenario.gears.gear_teeth = 38 + 3 * seed;
+        scenario.operation.pinion_speed_hz = 11.0 + 4.3 * f64::from(seed);
+        scenario.operation.brake_torque_nm = 60.0;
+        scenario.rig.damping_ratio = DampingRatio::Uniform(0.01 + 0.01 * f64::from(seed % 4));
+        let coarse = at_rate(&scenario, 6e4);
+        let parts = coarse.contact_figures().is_some_and(|figures| figures.apart_fraction > 0.0);
+        if long_step(&coarse).is_some()
+            || parts
+            || coarse.stages.warnings().iter().any(|warning| warning.key.contains("settle"))
+        {
+            continue;
+        }
+        let fine = at_rate(&scenario, 4e5);
+        let error = rms(&fine.channels.vertical_g) / rms(&coarse.channels.vertical_g) - 1.0;
+        assert!(error.abs() < 0.02, "seed {seed}: {error}");
+        silent += 1;
+    }
+    assert!(silent >= 6, "{silent}");
+}
+
+#[test]
+fn examples_at_their_own_rate_are_not_warned_of() {
+    for model in [Model::Linear, Model::Contact] {
+        let mut scenario = pair();
+        scenario.model = model;
+        let warnings = simulate(&scenario).unwrap().warnings_of_signals();
+        assert_eq!(about(&warnings, "solver.sampling_rate_hz"), None, "{}", model.name());
+        assert_eq!(about(&warnings, "operation.pinion_speed_hz"), None, "{}", model.name());
+    }
+}
+
+#[test]
+fn a_resonance_beyond_all_measure_is_told() {
+    let mut scenario = resonant(0.0, 1.0);
+    scenario.operation.brake_torque_nm = 0.05;
+    scenario.quality.din_grade = 7;
+    let simulation = simulate(&scenario).unwrap();
+    let warnings = simulation.warnings_of_signals();
+    let told = about(&warnings, "operation.pinion_speed_hz").unwrap();
+    assert!(told.contains("times the static 0.9335 N: a resonance that no machine survives"), "{told}");
+}
