@@ -28,7 +28,7 @@ for case, result in zip(cases, results):
     phase = mt.ShaftPhase.constant(gear_hz, result.sampling_rate_hz, result.vertical_g.size)
     indicators = mt.process_channel(result.vertical_g, phase, healthy.gear_teeth).indicators
     table["tip loss (mm)"].append(case.tip_loss_mm or 0.0)
-    table["chip width (mm)"].append(case.chip_width_mm)
+    table["chip width (mm)"].append(case.chip_width_mm or 0.0)
     table["rms (g)"].append(indicators["difference_rms"])
     table["kurtosis (-)"].append(indicators["difference_kurtosis"])
 

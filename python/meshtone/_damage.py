@@ -52,11 +52,15 @@ class MissingTooth:
     tooth : int, sequence of ints or 'all', optional
         The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
         Allowed: whole number > 0; at most the wheel's teeth, each once. Default: 1.
+    severity : float, optional
+        (-) How severe the damage is, in place of its sizes: from 0, none, to 1, the largest that the tooth allows.
+        Allowed: 0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 
     kind: ClassVar[str] = "missing-tooth"
     wheel: Literal["pinion", "gear"] = "gear"
     tooth: int | Sequence[int] | Literal["all"] = 1
+    severity: float | None = None
 
 
 @dataclass(frozen=True)
@@ -65,11 +69,12 @@ class ToothBreakage:
 
     Parameters
     ----------
-    chip_height_mm : float
+    chip_height_mm : float, optional
         (mm) The extent of the chipped corner from the tip along the tooth. Allowed: > 0; less than the tooth's height,
-        2.25 modules.
-    chip_width_mm : float
-        (mm) Its extent along the face width, at the tip. Allowed: > 0; at most the face width.
+        2.25 modules. Required, unless ``severity`` is given.
+    chip_width_mm : float, optional
+        (mm) Its extent along the face width, at the tip. Allowed: > 0; at most the face width. Required, unless
+        ``severity`` is given.
     tip_loss_mm : float, optional
         (mm) The length of tip that is lost over the whole width. Allowed: ≥ 0; less than the tooth's height. Default:
         0.0.
@@ -78,14 +83,18 @@ class ToothBreakage:
     tooth : int, sequence of ints or 'all', optional
         The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
         Allowed: whole number > 0; at most the wheel's teeth, each once. Default: 1.
+    severity : float, optional
+        (-) How severe the damage is, in place of its sizes: from 0, none, to 1, the largest that the tooth allows.
+        Allowed: 0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 
     kind: ClassVar[str] = "tooth-breakage"
-    chip_height_mm: float
-    chip_width_mm: float
+    chip_height_mm: float | None = None
+    chip_width_mm: float | None = None
     tip_loss_mm: float | None = None
     wheel: Literal["pinion", "gear"] = "gear"
     tooth: int | Sequence[int] | Literal["all"] = 1
+    severity: float | None = None
 
 
 @dataclass(frozen=True)
@@ -94,9 +103,9 @@ class RootCrack:
 
     Parameters
     ----------
-    depth_mm : float
+    depth_mm : float, optional
         (mm) The depth of the crack from the fillet, where it is deepest. Allowed: ≥ 0; must not pass the tooth's centre
-        line.
+        line. Required, unless ``severity`` is given.
     angle_deg : float, optional
         (°) The crack's angle to the tooth's centre line. Allowed: > 0, ≤ 90. Default: 45.0.
     length_mm : float, optional
@@ -107,14 +116,18 @@ class RootCrack:
     tooth : int, sequence of ints or 'all', optional
         The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
         Allowed: whole number > 0; at most the wheel's teeth, each once. Default: 1.
+    severity : float, optional
+        (-) How severe the damage is, in place of its sizes: from 0, none, to 1, the largest that the tooth allows.
+        Allowed: 0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 
     kind: ClassVar[str] = "root-crack"
-    depth_mm: float
+    depth_mm: float | None = None
     angle_deg: float | None = None
     length_mm: float | None = None
     wheel: Literal["pinion", "gear"] = "gear"
     tooth: int | Sequence[int] | Literal["all"] = 1
+    severity: float | None = None
 
 
 @dataclass(frozen=True)
@@ -123,17 +136,19 @@ class PartialFace:
 
     Parameters
     ----------
-    width_mm : float
-        (mm) The width of the pit along the face, from one side. Allowed: > 0; less than the face width.
+    width_mm : float, optional
+        (mm) The width of the pit along the face, from one side. Allowed: > 0; less than the face width. Required,
+        unless ``severity`` is given.
     start : float, optional
         (-) The pit's first edge as a fraction of the flank's contact part, from its root side. Allowed: ≥ 0, < 1.
-        Required, unless ``circle`` is given.
+        Required, unless ``circle`` or ``severity`` is given.
     end : float, optional
-        (-) The pit's second edge, likewise. Allowed: more than ``start``, ≤ 1. Required, unless ``circle`` is given.
+        (-) The pit's second edge, likewise. Allowed: more than ``start``, ≤ 1. Required, unless ``circle`` or
+        ``severity`` is given.
     depth : float, optional
         (-) The pit's depth over half its chord. Allowed: > 0, ≤ 1; so small that the circle does not undercut the
         flank, which depends on the flank's slope: about 0.7 in its middle, 0.4 at the tip. Required, unless ``circle``
-        is given.
+        or ``severity`` is given.
     circle : PitCircle, optional
         The circle that is cut into the flank, instead of start, end and depth. Allowed: must cut the flank twice.
         Default: none.
@@ -142,16 +157,20 @@ class PartialFace:
     tooth : int, sequence of ints or 'all', optional
         The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
         Allowed: whole number > 0; at most the wheel's teeth, each once. Default: 1.
+    severity : float, optional
+        (-) How severe the damage is, in place of its sizes: from 0, none, to 1, the largest that the tooth allows.
+        Allowed: 0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 
     kind: ClassVar[str] = "partial-face"
-    width_mm: float
+    width_mm: float | None = None
     start: float | None = None
     end: float | None = None
     depth: float | None = None
     circle: PitCircle | None = None
     wheel: Literal["pinion", "gear"] = "gear"
     tooth: int | Sequence[int] | Literal["all"] = 1
+    severity: float | None = None
 
 
 @dataclass(frozen=True)
@@ -162,13 +181,14 @@ class ThroughFace:
     ----------
     start : float, optional
         (-) The pit's first edge as a fraction of the flank's contact part, from its root side. Allowed: ≥ 0, < 1.
-        Required, unless ``circle`` is given.
+        Required, unless ``circle`` or ``severity`` is given.
     end : float, optional
-        (-) The pit's second edge, likewise. Allowed: more than ``start``, ≤ 1. Required, unless ``circle`` is given.
+        (-) The pit's second edge, likewise. Allowed: more than ``start``, ≤ 1. Required, unless ``circle`` or
+        ``severity`` is given.
     depth : float, optional
         (-) The pit's depth over half its chord. Allowed: > 0, ≤ 1; so small that the circle does not undercut the
         flank, which depends on the flank's slope: about 0.7 in its middle, 0.4 at the tip. Required, unless ``circle``
-        is given.
+        or ``severity`` is given.
     circle : PitCircle, optional
         The circle that is cut into the flank, instead of start, end and depth. Allowed: must cut the flank twice.
         Default: none.
@@ -177,6 +197,9 @@ class ThroughFace:
     tooth : int, sequence of ints or 'all', optional
         The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
         Allowed: whole number > 0; at most the wheel's teeth, each once. Default: 1.
+    severity : float, optional
+        (-) How severe the damage is, in place of its sizes: from 0, none, to 1, the largest that the tooth allows.
+        Allowed: 0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 
     kind: ClassVar[str] = "through-face"
@@ -186,6 +209,7 @@ class ThroughFace:
     circle: PitCircle | None = None
     wheel: Literal["pinion", "gear"] = "gear"
     tooth: int | Sequence[int] | Literal["all"] = 1
+    severity: float | None = None
 
 
 @dataclass(frozen=True)
@@ -194,12 +218,12 @@ class ToothDestruction:
 
     Parameters
     ----------
-    start : float
+    start : float, optional
         (-) Where the ground line begins, as a fraction of the flank's contact part from its root side; negative: below
-        the part in contact. Allowed: > −1, < 1.
+        the part in contact. Allowed: > −1, < 1. Required, unless ``severity`` is given.
     end : float, optional
         (-) The flank point that the line is aimed at, as a fraction. Allowed: more than ``start``, ≤ 1. Required,
-        unless ``slope_deg`` is given.
+        unless ``slope_deg`` or ``severity`` is given.
     slope_deg : float, optional
         (°) The angle to the tooth's centre line by which the line falls towards the tip, instead of end. Allowed: > 0,
         < 90. Default: none.
@@ -213,16 +237,20 @@ class ToothDestruction:
     tooth : int, sequence of ints or 'all', optional
         The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
         Allowed: whole number > 0; at most the wheel's teeth, each once. Default: 1.
+    severity : float, optional
+        (-) How severe the damage is, in place of its sizes: from 0, none, to 1, the largest that the tooth allows.
+        Allowed: 0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 
     kind: ClassVar[str] = "tooth-destruction"
-    start: float
+    start: float | None = None
     end: float | None = None
     slope_deg: float | None = None
     offset_mm: float | None = None
     noise_mm: float | None = None
     wheel: Literal["pinion", "gear"] = "gear"
     tooth: int | Sequence[int] | Literal["all"] = 1
+    severity: float | None = None
 
 
 @dataclass(frozen=True)
@@ -231,19 +259,24 @@ class Wear:
 
     Parameters
     ----------
-    depth_um : float
-        (µm) The largest depth of wear, along the flank's normal. Allowed: 0…100.
+    depth_um : float, optional
+        (µm) The largest depth of wear, along the flank's normal. Allowed: 0…100. Required, unless ``severity`` is
+        given.
     wheel : {'pinion', 'gear'}, optional
         The damaged wheel. Default: "gear".
     tooth : int, sequence of ints or 'all', optional
         The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
         Allowed: whole number > 0; at most the wheel's teeth, each once. Default: "all".
+    severity : float, optional
+        (-) How severe the damage is, in place of its sizes: from 0, none, to 1, the largest that the tooth allows.
+        Allowed: 0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 
     kind: ClassVar[str] = "wear"
-    depth_um: float
+    depth_um: float | None = None
     wheel: Literal["pinion", "gear"] = "gear"
     tooth: int | Sequence[int] | Literal["all"] = "all"
+    severity: float | None = None
 
 
 Fault = Union[MissingTooth, ToothBreakage, RootCrack, PartialFace, ThroughFace, ToothDestruction, Wear]

@@ -1,14 +1,15 @@
 """Damage to a tooth: one class for each kind.
 
 Their fields have the names, units and defaults of the scenario file's sections ``[[fault]]``. Every fault has ``wheel``, 'gear' or
-'pinion', and ``tooth``: its number from 1, several numbers, or 'all'; the gear's first tooth by default.
+'pinion', and ``tooth``: its number from 1, several numbers, or 'all'; the gear's first tooth by default. In place of its sizes it
+may have ``severity``, from 0, none, to 1, the largest that the tooth allows: :meth:`Scenario.with_own_sizes` has the sizes.
 
 >>> MissingTooth(wheel="pinion", tooth=3)
-MissingTooth(wheel='pinion', tooth=3)
+MissingTooth(wheel='pinion', tooth=3, severity=None)
 >>> RootCrack(depth_mm=1.0, tooth=[1, 2])
-RootCrack(depth_mm=1.0, angle_deg=None, length_mm=None, wheel='gear', tooth=[1, 2])
+RootCrack(depth_mm=1.0, angle_deg=None, length_mm=None, wheel='gear', tooth=[1, 2], severity=None)
 >>> ToothBreakage(chip_height_mm=5.0, chip_width_mm=12.0)
-ToothBreakage(chip_height_mm=5.0, chip_width_mm=12.0, tip_loss_mm=None, wheel='gear', tooth=1)
+ToothBreakage(chip_height_mm=5.0, chip_width_mm=12.0, tip_loss_mm=None, wheel='gear', tooth=1, severity=None)
 """
 
 from __future__ import annotations

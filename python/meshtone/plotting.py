@@ -312,14 +312,14 @@ def plot_tooth(
     flanks = {(name, number): flank for name, number, flank in simulation._native.damaged_teeth_mm()}
     flank_y_mm = flanks.get((wheel, tooth), y_mm)
     cracks = {(name, number): (x, y) for name, number, x, y in simulation._native.cracks_mm()}
-    of_wheel = [fault for fault in simulation.scenario.faults if fault.wheel == wheel]
+    of_wheel = [fault for fault in simulation.scenario.with_own_sizes().faults if fault.wheel == wheel]
     faults = [fault for fault in of_wheel if tooth in numbers_of_teeth(fault, teeth)]
     for fault in faults:
         if isinstance(fault, MissingTooth):
             ax.fill(outline_y, outline_x, facecolor="white", edgecolor=ORANGE, hatch="//", linewidth=1.0, label="missing")
         elif isinstance(fault, ToothBreakage):
             # What is lost over a part of the width is hatched, what is lost over all of it is filled.
-            parts = [(fault.chip_height_mm, f"chip, {fault.chip_width_mm:g} mm wide at the tip", PART)]
+            parts = [(fault.chip_height_mm or 0.0, f"chip, {fault.chip_width_mm:g} mm wide at the tip", PART)]
             if fault.tip_loss_mm:
                 parts.append((fault.tip_loss_mm, f"tip lost, {fault.tip_loss_mm:g} mm", WHOLE))
             for height_mm, label, style in parts:

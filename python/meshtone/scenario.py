@@ -85,7 +85,7 @@ brake_torque_nm=10.0, din_grade=7)
         Examples
         --------
         >>> Scenario.from_toml(template("missing-tooth")).fault
-        MissingTooth(wheel='gear', tooth=1)
+        MissingTooth(wheel='gear', tooth=1, severity=None)
         """
         if "\n" not in text and text.endswith(".toml"):
             raise ValueError(f"'{text}' is the name of a file, not its text: Scenario.from_file reads it")
@@ -167,6 +167,33 @@ brake_torque_nm=10.0, din_grade=7)
         """All damage; empty for a healthy pair."""
         faults: tuple[Fault, ...] = self._flat["faults"]
         return faults
+
+    @property
+    def fault_severities(self) -> list[float]:
+        """(-) How severe each of :attr:`faults` is, from 0, none, to 1, the largest that the tooth allows.
+
+        It is what was given, or follows from the sizes; the guide's chapter on faults has each kind's scale.
+
+        >>> from meshtone.faults import ToothBreakage
+        >>> chipped = Scenario(module_mm=3, pinion_teeth=17, gear_teeth=38, face_width_mm=15, pinion_speed_hz=40,
+        ...                    brake_torque_nm=10, fault=ToothBreakage(chip_height_mm=5, chip_width_mm=12))
+        >>> [round(severity, 2) for severity in chipped.fault_severities]
+        [0.4]
+        """
+        return self._native.fault_severities()
+
+    def with_own_sizes(self) -> Scenario:
+        """The same scenario with the sizes of every fault that was given by its severity.
+
+        A fault of severity 0, or one that is smaller than the tooth profile's points can show, is left out.
+
+        >>> from meshtone.faults import RootCrack
+        >>> cracked = Scenario(module_mm=3, pinion_teeth=17, gear_teeth=38, face_width_mm=15, pinion_speed_hz=40,
+        ...                    brake_torque_nm=10, fault=RootCrack(severity=0.5))
+        >>> round(cracked.with_own_sizes().fault.depth_mm, 3)
+        2.129
+        """
+        return Scenario._wrap(self._native.with_own_sizes())
 
     @property
     def sensors(self) -> tuple[Sensor, ...]:

@@ -63,7 +63,7 @@ def test_every_key_of_a_fault_is_a_field() -> None:
     for kind, scenario in examples.all().items():
         if scenario.fault is None:
             continue
-        [section] = [part for part in meshtone.template(kind).split("\n[") if part.startswith("fault]")]
+        [section] = [part for part in meshtone.template(kind).split("\n[") if part.startswith("[fault]")]
         lines = [line.removeprefix("#") for line in section.splitlines() if " = " in line and not line.startswith("# ")]
         keys = {line.split(" = ")[0] for line in lines}
         assert keys - {"kind"} <= {field.name for field in dataclasses.fields(scenario.fault)}, kind

@@ -85,10 +85,12 @@ fn touching(force: &MeshForce) -> String {
     }
 }
 
-/// `missing-tooth on tooth 1 of the gear`, one after the other.
+/// `root-crack (severity 0.400) on tooth 1 of the gear`, one after the other.
 fn faults(faults: &[FaultSummary]) -> String {
-    let place =
-        |fault: &FaultSummary| format!("{} on {} of the {}", fault.kind, fault.tooth.in_words(), fault.wheel);
+    let place = |fault: &FaultSummary| {
+        let FaultSummary { kind, wheel, tooth, severity } = fault;
+        format!("{kind} (severity {severity:.3}) on {} of the {wheel}", tooth.in_words())
+    };
     match faults {
         [] => "none".to_string(),
         faults => faults.iter().map(place).collect::<Vec<_>>().join(", "),

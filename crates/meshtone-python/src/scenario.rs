@@ -93,6 +93,16 @@ impl Scenario {
         self.0.quality.profile_errors.as_ref().map(|errors| both_wheels(py, errors)).transpose()
     }
 
+    /// How severe each fault is, from 0 to 1.
+    fn fault_severities(&self) -> PyResult<Vec<f64>> {
+        self.0.fault_severities().map_err(|error| scenario_error(&error))
+    }
+
+    /// The same with the sizes of every fault that was given by its severity.
+    fn with_own_sizes(&self) -> PyResult<Self> {
+        self.0.with_own_sizes().map(Self).map_err(|error| scenario_error(&error))
+    }
+
     /// What is doubtful about it, as far as that can be told before the time loop.
     fn warnings(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         let checked = py.detach(|| meshtone::stages_and_warnings(&self.0, MemoryLimit::default()));

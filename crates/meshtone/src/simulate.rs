@@ -33,7 +33,7 @@ use crate::wheel::{Deviations, ProfileErrors, RunOut, Teeth, WheelDeviations, te
 #[non_exhaustive]
 pub struct Stages {
     /// Stage 1: what is simulated. Under the published model the keys that the published code ignores are
-    /// at their defaults.
+    /// at their defaults; faults that were given by their severity have its sizes beside it.
     pub scenario: Scenario,
     /// Division of time.
     pub time: TimeGrid,
@@ -49,6 +49,8 @@ pub struct Stages {
     pub helix_slope_um: [f64; 2],
     /// Stage 4: the damaged teeth; none of a healthy pair.
     pub damaged: Vec<DamagedTooth>,
+    /// (-) Stage 4: how severe each of the scenario's faults is, from 0 to 1.
+    pub fault_severities: Vec<f64>,
     /// Stage 5: the mesh, pair by pair.
     pub mesh: Mesh,
     /// Stage 6: the equations of motion of the wheels on rigid supports.
@@ -114,7 +116,7 @@ pub fn simulate(scenario: &Scenario) -> Result<Simulation, Error> {
 pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
     let mut clock = Clock::default();
     scenario.validate()?;
-    let scenario = scenario.as_honoured();
+    let mut scenario = scenario.as_honoured();
     let (gears, rig, model) = (&scenario.gears, &scenario.rig, scenario.model);
     let time = scenario.time_grid();
     let mut cycle = CycleGrid::new(gears.pinion_teeth, gears.gear_teeth, time.sampling_rate_hz);
@@ -136,9 +138,8 @@ pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
     let (damaged, mesh) = match model {
         Model::Published => {
             cycle = cycle.as_published(gears.pinion_teeth, gears.gear_teeth);
-            let fault = scenario.faults.first();
-            let fault =
-                fault.map(|fault| fault.damage.published_geometry(&teeth, scenario.seed)).transpose()?;
+            let damage = scenario.faults.first().and_then(|fault| fault.sized(&teeth));
+            let fault = damage.map(|damage| damage.published_geometry(&teeth, scenario.seed)).transpose()?;
             let damaged = fault.iter().map(|fault| fault.damaged_tooth(&teeth)).collect();
             clock.lap("fault");
             let mesh = PublishedMesh::new(gears, &teeth, fault, cycle)?;
@@ -190,6 +191,8 @@ pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
     clock.lap("mesh stiffness");
 
     let system = System::new(gears, rig, &teeth, &mesh, model);
+    let fault_severities = scenario.faults.iter().map(|fault| fault.severity_on(&teeth)).collect();
+    scenario.faults = scenario.faults.iter().map(|fault| fault.with_sizes(&teeth)).collect();
     let mut stages = Stages {
         time,
         cycle,
@@ -198,6 +201,7 @@ pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
         run_out,
         helix_slope_um,
         damaged,
+        fault_severities,
         mesh,
         system,
         structure,

@@ -208,13 +208,20 @@ fn faults_on_several_teeth_of_both_wheels() {
     let chip = "[[fault]]\nkind = \"tooth-breakage\"\nwheel = \"pinion\"\ntooth = 3\nchip_height_mm = 3.0\nchip_width_mm = 8.0\n";
     workplace.write("two.toml", fast_and(&format!("{chip}[[fault]]\nkind = \"missing-tooth\"\ntooth = 7\n")));
     let text = stdout(&workplace.succeeds(&["simulate", "two.toml", "-o", "out"]));
-    let words = "tooth-breakage on tooth 3 of the pinion, missing-tooth on tooth 7 of the gear";
-    assert!(text.contains(words), "{text}");
+    for words in [
+        "tooth-breakage (severity 0.1",
+        ") on tooth 3 of the pinion, missing-tooth (severity 1.000) on tooth 7 of the gear",
+    ] {
+        assert!(text.contains(words), "{text}");
+    }
+    let mut faults = summary(&workplace, "out")["faults"].clone();
+    let severities = [0, 1].map(|fault| faults[fault]["severity"].take().as_f64().unwrap());
+    assert!((0.1..0.2).contains(&severities[0]) && severities[1] == 1.0, "{severities:?}");
     let expected = json!([
-        { "kind": "tooth-breakage", "wheel": "pinion", "tooth": 3 },
-        { "kind": "missing-tooth", "wheel": "gear", "tooth": 7 },
+        { "kind": "tooth-breakage", "wheel": "pinion", "tooth": 3, "severity": null },
+        { "kind": "missing-tooth", "wheel": "gear", "tooth": 7, "severity": null },
     ]);
-    assert_eq!(summary(&workplace, "out")["faults"], expected);
+    assert_eq!(faults, expected);
     workplace.succeeds(&["panel", "out"]);
     workplace.succeeds(&["indicators", "out", "-o", "indicators"]);
     let figure = String::from_utf8(workplace.read("indicators/indicators.svg")).unwrap();

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use meshtone::scenario::Scenario;
 use meshtone_toml::{ReadResult, TomlError, nearest_name};
 
-use super::values::SEVERITY;
+use super::values::{SEVERITY, fault_of_severity};
 use super::{NOISE_KEYS, Sampler};
 use crate::expression::{Condition, derived_names, underlying};
 use crate::plan::{Content, Distribution, Level, Rule, kinds};
@@ -25,6 +25,13 @@ pub(super) struct ClassRules<'a> {
     pub rules: Vec<&'a Rule>,
     /// Constraints that records must meet.
     pub constraints: Vec<&'a Condition>,
+}
+
+impl ClassRules<'_> {
+    /// Whether there is a number at a key of its records' scenarios, given or found from others.
+    fn knows(&self, key: &str) -> bool {
+        self.numbers.contains_key(key) || fault_of_severity(key, &self.base.faults).is_some()
+    }
 }
 
 /// A rule and its key in the plan.
@@ -283,13 +290,16 @@ fn check_conditions(content: &Content, classes: &[ClassRules]) -> ReadResult<()>
         for key in underlying(condition.keys()) {
             let known = || classes.iter().flat_map(|class| class.numbers.keys().map(String::as_str));
             if key != SEVERITY
-                && !known().any(|known| known == key)
+                && !classes.iter().any(|class| class.knows(key))
                 && !(NOISE_KEYS.contains(&key) && varied(key))
             {
                 return Err(no_such_number(&place, key, known()));
             }
         }
-        let unvaried = !underlying(condition.keys()).iter().any(|key| *key == SEVERITY || varied(key));
+        let found =
+            |key: &str| classes.iter().any(|class| fault_of_severity(key, &class.base.faults).is_some());
+        let unvaried =
+            !underlying(condition.keys()).iter().any(|key| *key == SEVERITY || varied(key) || found(key));
         if unvaried {
             let problem = format!("`{condition}` is about nothing that varies");
             return Err(TomlError::new(place, "", problem).with_help("vary one of its keys, or remove it"));
@@ -310,7 +320,7 @@ fn check_severities(content: &Content, classes: &[ClassRules]) -> ReadResult<()>
     for (c, (class, rules)) in content.classes.iter().zip(classes).enumerate() {
         let crate::plan::Severity::Measured { measure, .. } = &class.severity else { continue };
         for key in underlying(measure.keys()) {
-            if !rules.numbers.contains_key(key) {
+            if !rules.knows(key) {
                 let place = format!("class[{c}].severity.measure");
                 return Err(no_such_number(&place, key, rules.numbers.keys().map(String::as_str)));
             }

@@ -13,7 +13,7 @@ use crate::expression::Condition;
 use crate::plan::{Content, Distribution, Rule};
 use crate::sampling::{Points, permuted};
 use compile::ClassRules;
-use values::Values;
+use values::{Values, of_scenario};
 
 /// How often values are drawn anew until all constraints are met.
 const MOST_ATTEMPTS: u32 = 10_000;
@@ -153,9 +153,7 @@ impl<'a> Sampler<'a> {
     /// # Errors
     /// Values that the scenario does not allow.
     pub fn scenario(&self, record: &DrawnRecord) -> Result<Scenario, ScenarioError> {
-        let of_scenario = record.values.iter().filter(|(key, _)| !NOISE_KEYS.contains(&key.as_str()));
-        let numbers: Vec<(&str, f64)> = of_scenario.map(|(key, value)| (key.as_str(), *value)).collect();
-        let mut scenario = self.classes[record.class].base.with_numbers(&numbers)?;
+        let mut scenario = self.classes[record.class].base.with_numbers(&of_scenario(&record.values))?;
         scenario.seed = record.seed;
         scenario.quality.seed = Some(record.wheels_seed);
         Ok(scenario)
@@ -183,10 +181,10 @@ impl<'a> Sampler<'a> {
             purpose: Purpose::DatasetUnit,
             count: self.content.units,
         };
-        let base = &self.classes[0].numbers;
+        let any = &self.classes[0];
         let mut obstacles = Obstacles::default();
         for attempt in 0..MOST_ATTEMPTS {
-            let mut values = Values::new(base);
+            let mut values = Values::new(&any.base, &any.numbers);
             draw(&self.unit_rules, points, unit, attempt, &mut values);
             let met = self.meets(&self.unit_constraints, &values, &mut obstacles)
                 && self.unit_suits(shift, &values, &mut obstacles);
@@ -231,7 +229,7 @@ impl<'a> Sampler<'a> {
             Points { design: self.content.design, seed, purpose: Purpose::DatasetRecord, count: plan.count };
         let mut obstacles = Obstacles::default();
         for attempt in 0..MOST_ATTEMPTS {
-            let mut values = Values::new(&rules.numbers);
+            let mut values = Values::new(&rules.base, &rules.numbers);
             unit.values.iter().for_each(|(key, value)| values.set(key, *value));
             draw(&rules.rules, points, number, attempt, &mut values);
             let severity = plan.severity.of(&|key| values.number(key));

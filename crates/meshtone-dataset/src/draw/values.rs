@@ -2,20 +2,30 @@
 
 use std::collections::HashMap;
 
+use meshtone::scenario::Scenario;
+
+use super::NOISE_KEYS;
 use crate::expression::derived;
 
 /// Name of the severity in conditions.
 pub(super) const SEVERITY: &str = "severity";
 
 pub(super) struct Values<'a> {
-    base: &'a HashMap<String, f64>,
+    base: &'a Scenario,
+    /// Those of `base`.
+    numbers: &'a HashMap<String, f64>,
     drawn: Vec<(String, f64)>,
     severity: Option<f64>,
 }
 
 impl<'a> Values<'a> {
-    pub fn new(base: &'a HashMap<String, f64>) -> Self {
-        Self { base, drawn: Vec::new(), severity: None }
+    /// Nothing drawn yet.
+    ///
+    /// # Arguments
+    /// * `base` - the scenario
+    /// * `numbers` - all its numbers, by their keys
+    pub fn new(base: &'a Scenario, numbers: &'a HashMap<String, f64>) -> Self {
+        Self { base, numbers, drawn: Vec::new(), severity: None }
     }
 
     pub fn number(&self, key: &str) -> Option<f64> {
@@ -23,7 +33,17 @@ impl<'a> Values<'a> {
             return self.severity;
         }
         let drawn = self.drawn.iter().find(|(drawn, _)| drawn == key).map(|(_, value)| *value);
-        drawn.or_else(|| self.base.get(key).copied()).or_else(|| derived(key)?.value(&|key| self.number(key)))
+        drawn
+            .or_else(|| self.numbers.get(key).copied())
+            .or_else(|| derived(key)?.value(&|key| self.number(key)))
+            .or_else(|| self.severity_by_sizes(key))
+    }
+
+    /// The severity of a fault that is given by its sizes.
+    fn severity_by_sizes(&self, key: &str) -> Option<f64> {
+        let fault = fault_of_severity(key, &self.base.faults)?;
+        let scenario = self.base.with_numbers(&of_scenario(&self.drawn)).ok()?;
+        scenario.fault_severities().ok()?.get(fault).copied()
     }
 
     pub fn set(&mut self, key: &str, value: f64) {
@@ -37,4 +57,21 @@ impl<'a> Values<'a> {
     pub fn drawn(self) -> Vec<(String, f64)> {
         self.drawn
     }
+}
+
+/// The values at keys of the scenario.
+pub(super) fn of_scenario(values: &[(String, f64)]) -> Vec<(&str, f64)> {
+    let of_scenario = values.iter().filter(|(key, _)| !NOISE_KEYS.contains(&key.as_str()));
+    of_scenario.map(|(key, value)| (key.as_str(), *value)).collect()
+}
+
+/// The number of the fault, from 0, whose severity a key is: `fault.severity`, or of several `fault[1].severity`.
+pub(super) fn fault_of_severity(key: &str, faults: &[meshtone::scenario::Fault]) -> Option<usize> {
+    let section = key.strip_suffix(".severity")?;
+    let number = match (section, faults.len()) {
+        ("fault", 1) => 0,
+        (_, 2..) => section.strip_prefix("fault[")?.strip_suffix(']')?.parse().ok()?,
+        _ => return None,
+    };
+    (number < faults.len()).then_some(number)
 }

@@ -150,14 +150,15 @@ impl<'a> View<'a> {
 
     fn empty(&self, drawn: DrawnRecord) -> Record {
         let scenario = self.scenario();
-        let fault = |fault: &Fault| RecordFault {
+        let fault = |(fault, severity): (&Fault, &f64)| RecordFault {
             kind: fault.damage.kind(),
             wheel: fault.wheel,
             tooth: self.start.tooth(fault, &scenario.gears),
+            severity: *severity,
         };
         Record {
             drawn,
-            faults: scenario.faults.iter().map(fault).collect(),
+            faults: scenario.faults.iter().zip(&self.stages.fault_severities).map(fault).collect(),
             gear_angle_rev: if self.offset.is_some() { 0.0 } else { self.gear_angles()[0] },
             teeth: [scenario.gears.pinion_teeth, scenario.gears.gear_teeth],
             pinion_speed_hz: scenario.operation.pinion_speed_hz,

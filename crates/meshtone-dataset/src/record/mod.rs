@@ -43,7 +43,7 @@ pub struct Record {
 }
 
 /// A fault of a record.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RecordFault {
     /// Kind of damage, by its name in the scenario file.
     pub kind: &'static str,
@@ -52,6 +52,8 @@ pub struct RecordFault {
     /// Number of the damaged tooth, counted from 1 in the order in which its wheel's teeth come into contact from the start of
     /// the record on; none where it is several.
     pub tooth: Option<u32>,
+    /// (-) How severe it is, from 0, none, to 1, the largest that the tooth allows.
+    pub severity: f64,
 }
 
 /// What a simulation is for.

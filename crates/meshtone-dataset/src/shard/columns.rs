@@ -40,6 +40,8 @@ pub enum ColumnKind {
     FaultWheel(usize),
     /// Number of the damaged tooth, by the fault's number.
     FaultTooth(usize),
+    /// How severe a fault is, by the fault's number.
+    FaultSeverity(usize),
     /// Seed of the record.
     Seed,
     /// Seed of the unit's profile errors.
@@ -95,6 +97,7 @@ impl ColumnKind {
                 | Self::FaultKind(_)
                 | Self::FaultWheel(_)
                 | Self::FaultTooth(_)
+                | Self::FaultSeverity(_)
                 | Self::Key(_)
                 | Self::Indicator(_)
         )
@@ -201,11 +204,12 @@ fn of_record(most_faults: usize) -> Vec<Column> {
     columns
 }
 
-/// Kind and place of a fault.
-fn of_fault(number: usize) -> [Column; 3] {
+/// Kind, place and severity of a fault.
+fn of_fault(number: usize) -> [Column; 4] {
     let fault = name_in_list("fault", number);
     let named = |last: &str, description: &str, kind: ColumnKind| {
-        column(&format!("{fault}_{last}"), "", description, kind)
+        let unit = if last == "severity" { "-" } else { "" };
+        column(&format!("{fault}_{last}"), unit, description, kind)
     };
     let tooth = "number of the damaged tooth, from 1, in the order in which its wheel's teeth come into contact from the \
                  start of the record on, null where it is several; in the plan and the scenario teeth are counted from where the \
@@ -214,6 +218,11 @@ fn of_fault(number: usize) -> [Column; 3] {
         named("kind", "kind of damage", ColumnKind::FaultKind(number)),
         named("wheel", "the damaged wheel: pinion or gear", ColumnKind::FaultWheel(number)),
         named("tooth", tooth, ColumnKind::FaultTooth(number)),
+        named(
+            "severity",
+            "how severe the damage is, from 0, none, to 1, the largest that the tooth allows; each kind's scale is in the guide",
+            ColumnKind::FaultSeverity(number),
+        ),
     ]
 }
 
@@ -320,6 +329,7 @@ mod tests {
             ("fault.circle.x_mm", "fault_circle_x_mm", "mm"),
             ("fault[0].start", "fault_start", "-"),
             ("fault[1].circle.x_mm", "fault_2_circle_x_mm", "mm"),
+            ("fault[1].severity", "fault_2_severity", "-"),
             ("fault.tooth", "fault_tooth_of_scenario", "-"),
             ("fault[1].tooth", "fault_2_tooth_of_scenario", "-"),
             ("sensor.resonance_hz", "sensor_resonance_hz", "Hz"),

@@ -55,6 +55,9 @@ pub(super) fn cells<'r>(column: &Column, rows: &'r [Row], content: &Content) -> 
             text_or_null(&|r| r.faults.get(*number).map(|fault| fault.wheel.name()))
         }
         ColumnKind::FaultTooth(number) => small(&|r| r.faults.get(*number).and_then(|fault| fault.tooth)),
+        ColumnKind::FaultSeverity(of_fault) => {
+            number(&|r| r.faults.get(*of_fault).map(|fault| fault.severity))
+        }
         ColumnKind::SamplingRate => number(&|_| Some(content.keep.sampling_rate_hz)),
         ColumnKind::GearAngle => number(&|r| Some(r.gear_angle_rev)),
         ColumnKind::PinionTeeth => small(&|r| Some(r.teeth[0])),

@@ -192,3 +192,29 @@ fn cracks_are_drawn_and_graded_by_their_depth() {
     }
     assert!(grades[1..].iter().all(|&records| records > 0), "{grades:?}");
 }
+
+/// A severity is drawn where the fault is given by it, and found where it is given by its sizes; both grade a class.
+#[test]
+fn severities_of_a_kinds_own_scale() {
+    let measure = "severity = { measure = \"fault.severity\", breaks = [0.3, 0.6] }";
+    let drawn = "fault = { kind = \"root-crack\", severity = 0.5 }";
+    let vary = "[[class.vary]]\nkey = \"fault.severity\"\nuniform = [0.1, 0.9]\n\
+                [[class.vary]]\nkey = \"fault.angle_deg\"\nuniform = [40.0, 60.0]";
+    let text = FAST
+        .replace("fault = { kind = \"missing-tooth\" }\nseverity = 4", &format!("{drawn}\n{measure}\n{vary}"))
+        .replace("severity = { measure = \"fault.chip_height_mm\", breaks = [2.0, 4.0] }", measure)
+        .replace("[keep]", "[[vary]]\nkey = \"gears.module_mm\"\nuniform = [2.5, 4.0]\n[keep]")
+        .replace("seed = 3", "seed = 3\nconstraints = [\"fault.severity < 0.8\"]");
+    let plan = plan(&text);
+    let sampler = Sampler::new(&plan.content).unwrap();
+    let mut grades = [[0; 4]; 3];
+    for record in all(&plan).iter().filter(|record| record.class > 0) {
+        let severity = sampler.scenario(record).unwrap().fault_severities().unwrap()[0];
+        assert!(severity > 0.0 && severity < 0.8);
+        assert_eq!(record.severity_measure, Some(severity));
+        assert_eq!(value(record, "fault.severity"), (record.class == 2).then_some(severity));
+        assert_eq!(record.severity, 1 + u8::from(severity >= 0.3) + u8::from(severity >= 0.6));
+        grades[record.class][usize::from(record.severity)] += 1;
+    }
+    assert!(grades[2][1..].iter().all(|&count| count > 3), "{grades:?}");
+}

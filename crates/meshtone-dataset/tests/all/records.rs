@@ -284,6 +284,30 @@ fn a_drawn_tooth_is_told_twice() {
     assert!(seen.contains(&3) && seen.contains(&17), "{seen:?}");
 }
 
+/// Every fault has a severity, however it was given.
+#[test]
+fn a_severity_is_told_of_every_fault() {
+    let missing = "fault = { kind = \"missing-tooth\" }\nseverity = 4";
+    let crack = "fault = [{ kind = \"root-crack\", severity = 0.0 }, { kind = \"missing-tooth\", tooth = 9 }]\n\
+                 [[class.vary]]\nkey = \"fault[0].severity\"\nchoice = [0.0, 0.4]";
+    let plan = plan(&FAST.replace(missing, crack));
+    let made = made(&plan);
+    let sampler = Sampler::new(&plan.content).unwrap();
+    let mut seen = Vec::new();
+    for row in 0..60 {
+        let severities = ["fault_severity", "fault_2_severity"].map(|name| match made.field(name, row) {
+            Field::Double(severity) => Some(*severity),
+            Field::Null => None,
+            other => panic!("{name}: {other}"),
+        });
+        let scenario = sampler.scenario(&sampler.record(row as u64).unwrap()).unwrap();
+        let expected = scenario.fault_severities().unwrap();
+        assert_eq!(severities.into_iter().flatten().collect::<Vec<_>>(), expected);
+        seen.extend(expected);
+    }
+    assert!([0.0, 0.4, 1.0].iter().all(|severity| seen.contains(severity)), "{seen:?}");
+}
+
 /// A fault on several teeth is on none that could be counted; its wheel and kind are told.
 #[test]
 fn a_fault_on_several_teeth_has_no_number() {

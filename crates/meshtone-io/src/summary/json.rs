@@ -8,7 +8,7 @@ use meshtone::sensor::ChannelKind;
 use meshtone::signal::{IndicatorValue, Indicators, Shaft};
 use serde_json::{Map, Value, json};
 
-use super::{ChannelSummary, MeshForce, Summary};
+use super::{ChannelSummary, FaultSummary, MeshForce, Summary};
 
 /// A number, an array of them, or `"all"`, as in the scenario file.
 fn tooth(teeth: &FaultyTeeth) -> Value {
@@ -36,9 +36,10 @@ impl Summary {
         let (stiffness, force) = (&self.mesh_stiffness, &self.mesh_force);
         let warnings = self.warnings.iter();
         let warnings = warnings.map(|warning| json!({ "key": warning.key, "message": warning.message }));
-        let faults = self.faults.iter();
-        let faults = faults
-            .map(|fault| json!({ "kind": fault.kind, "wheel": fault.wheel, "tooth": tooth(&fault.tooth) }));
+        let faults = self.faults.iter().map(|fault| {
+            let FaultSummary { kind, wheel, severity, .. } = fault;
+            json!({ "kind": kind, "wheel": wheel, "tooth": tooth(&fault.tooth), "severity": severity })
+        });
         let mut summary = json!({
             "format_version": self.format_version,
             "meshtone_version": self.meshtone_version,

@@ -8,9 +8,9 @@ mod read;
 
 use std::time::Duration;
 
-use meshtone::Simulation;
 use meshtone::scenario::{Fault, FaultyTeeth, ScenarioWarning};
 use meshtone::signal::{ChainSettings, Indicators, Shaft, SimulatedShafts, kurtosis, peak, rms};
+use meshtone::{Simulation, Stages};
 
 use crate::run_identity::RunIdentity;
 use meshtone::sensor::{Channel, ContactFigures};
@@ -67,8 +67,8 @@ pub struct Summary {
     pub warnings: Vec<ScenarioWarning>,
 }
 
-/// A fault: its kind and place, each as in the scenario file.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// A fault: its kind and place, each as in the scenario file, and how severe it is.
+#[derive(Debug, Clone, PartialEq)]
 pub struct FaultSummary {
     /// Kind of damage.
     pub kind: &'static str,
@@ -76,11 +76,21 @@ pub struct FaultSummary {
     pub wheel: &'static str,
     /// Which of its teeth, by their numbers from 1.
     pub tooth: FaultyTeeth,
+    /// (-) How severe it is, from 0, none, to 1, the largest that the tooth allows.
+    pub severity: f64,
 }
 
-impl From<&Fault> for FaultSummary {
-    fn from(fault: &Fault) -> Self {
-        Self { kind: fault.damage.kind(), wheel: fault.wheel.name(), tooth: fault.tooth.clone() }
+impl FaultSummary {
+    /// Those of a simulation.
+    fn all(stages: &Stages) -> Vec<Self> {
+        let faults = stages.scenario.faults.iter().zip(&stages.fault_severities);
+        let summary = |(fault, &severity): (&Fault, &f64)| Self {
+            kind: fault.damage.kind(),
+            wheel: fault.wheel.name(),
+            tooth: fault.tooth.clone(),
+            severity,
+        };
+        faults.map(summary).collect()
     }
 }
 
@@ -158,7 +168,7 @@ impl Summary {
             run,
             model: stages.scenario.model.name(),
             seed: stages.scenario.seed,
-            faults: stages.scenario.faults.iter().map(FaultSummary::from).collect(),
+            faults: FaultSummary::all(stages),
             sampling_rate_hz: channels.sampling_rate_hz,
             samples: channels.len(),
             start_s: channels.start_s,

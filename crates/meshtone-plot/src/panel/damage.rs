@@ -50,7 +50,7 @@ pub(super) fn title(stages: &Stages, fits: impl Fn(&str) -> bool) -> String {
         return "Healthy gear pair".to_owned();
     }
     let usual = Fault::at_usual_place(faults[0].damage.clone());
-    let is_usual = faults.len() == 1 && faults[0] == usual;
+    let is_usual = faults.len() == 1 && (faults[0].wheel, &faults[0].tooth) == (usual.wheel, &usual.tooth);
     let title = |with_sizes: bool| {
         let all = faults.iter().enumerate().map(|(number, fault)| {
             let place = format!(", {} {}", fault.wheel.name(), fault.tooth.in_words());
@@ -80,12 +80,14 @@ fn capitalised(text: &str) -> String {
     letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).collect()
 }
 
-/// The sizes of one of the faults. A tooth describes its damages in the order of the faults.
+/// The sizes of one of the faults. A tooth describes its damages in the order of the faults that do anything.
 fn sizes_of_fault(stages: &Stages, number: usize) -> Vec<String> {
     let faults = &stages.scenario.faults;
     let fault = &faults[number];
-    let on_same_tooth =
-        |other: &&Fault| other.wheel == fault.wheel && other.tooth.contains(fault.tooth.first());
+    let on_same_tooth = |other: &&Fault| {
+        let same = other.wheel == fault.wheel && other.tooth.contains(fault.tooth.first());
+        same && other.sized(&stages.teeth).is_some()
+    };
     let before = faults[..number].iter().filter(on_same_tooth).count();
     let tooth = (stages.damaged.iter())
         .find(|tooth| tooth.wheel == fault.wheel && tooth.teeth.contains(&fault.tooth_index()));

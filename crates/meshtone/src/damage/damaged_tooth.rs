@@ -280,22 +280,26 @@ fn alike(faults: &[Fault], teeth: &Teeth) -> Vec<Alike> {
 /// A fault that does not fit its tooth: a pit that misses the flank or is deeper than the tooth, a chip larger than the
 /// tooth, a line that leaves no tooth; faults that cut the same piece of a flank.
 pub fn damaged_teeth(faults: &[Fault], teeth: &Teeth, seed: u64) -> Result<Vec<DamagedTooth>, ScenarioError> {
-    let groups = alike(faults, teeth);
+    let sized = |(number, fault): (usize, &Fault)| {
+        Some((number, Fault { damage: fault.sized(teeth)?, ..fault.clone() }))
+    };
+    let (numbers, shown): (Vec<usize>, Vec<Fault>) = faults.iter().enumerate().filter_map(sized).unzip();
+    let groups = alike(&shown, teeth);
     let sound =
         |group: &Alike| DamagedTooth::sound(group.wheel, group.teeth.clone(), teeth.profile(group.wheel));
     let mut damaged: Vec<DamagedTooth> = groups.iter().map(sound).collect();
-    for (number, fault) in faults.iter().enumerate() {
+    for (place, fault) in shown.iter().enumerate() {
         for (group, tooth) in
-            groups.iter().zip(&mut damaged).filter(|(group, _)| group.faults.contains(&number))
+            groups.iter().zip(&mut damaged).filter(|(group, _)| group.faults.contains(&place))
         {
             let healthy = HealthyTooth { teeth, name: group.wheel, tooth: tooth.first_tooth(), seed };
-            let so_far = group.faults.iter().filter(|&&other| other <= number);
-            let so_far: Vec<_> = so_far.map(|&other| (other, faults[other].damage.kind())).collect();
+            let so_far = group.faults.iter().filter(|&&other| other <= place);
+            let so_far: Vec<_> = so_far.map(|&other| (numbers[other], shown[other].damage.kind())).collect();
             fault
                 .damage
                 .damage(tooth, &healthy)
                 .and_then(|()| tooth.refuse_overlap(&so_far))
-                .map_err(|error| error.in_entry("fault", number, faults.len()))?;
+                .map_err(|error| error.in_entry("fault", numbers[place], faults.len()))?;
         }
     }
     Ok(damaged)

@@ -2,13 +2,14 @@
 
 use meshtone_toml::{ReadResult, TomlTable};
 
+use super::severity::SoundTooth;
 use super::{Damage, FaultyTeeth};
 use crate::error::ScenarioError;
 use crate::keys::{
     Check, KeyDescription, Keys, NoFiles, Range, Row, check_keys, commented_from, describe, describe_from,
     field, read_keys, require, row, write_keys,
 };
-use crate::wheel::{Gears, WheelName};
+use crate::wheel::{Gears, Teeth, WheelName};
 
 /// Damage to one tooth, or to several alike.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,6 +21,9 @@ pub struct Fault {
     pub tooth: FaultyTeeth,
     /// What is wrong with each of them.
     pub damage: Damage,
+    /// (-) How severe that is, from 0, none, to 1, the largest that the tooth allows: where it is given, the sizes follow from
+    /// it, and those in [`Self::damage`] do not count. None where they do.
+    pub severity: Option<f64>,
 }
 
 impl Fault {
@@ -38,7 +42,56 @@ impl Fault {
     /// assert_eq!(Fault::new(WheelName::Gear, vec![5, 6], MissingTooth).tooth.numbers(38), [5, 6]);
     /// ```
     pub fn new(wheel: WheelName, tooth: impl Into<FaultyTeeth>, damage: impl Into<Damage>) -> Self {
-        Self { wheel, tooth: tooth.into(), damage: damage.into() }
+        Self { wheel, tooth: tooth.into(), damage: damage.into(), severity: None }
+    }
+
+    /// The same fault with a severity in place of its sizes.
+    ///
+    /// # Arguments
+    /// * `severity` - (-) from 0, none, to 1, the largest that the tooth allows
+    ///
+    /// ```
+    /// use meshtone::damage::{Fault, RootCrack};
+    /// use meshtone::scenario::{GearPair, Scenario};
+    ///
+    /// let crack = RootCrack { depth_mm: 0.0, angle_deg: 60.0, length_mm: None };
+    /// let scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 })
+    ///     .with_faults(vec![Fault::on_first_gear_tooth(crack).with_severity(0.5)]);
+    /// let sized = scenario.with_own_sizes()?;
+    /// assert!((sized.number("fault.depth_mm").unwrap() - 1.738).abs() < 1e-3);
+    /// assert!((sized.fault_severities()?[0] - 0.5).abs() < 1e-12);
+    /// # Ok::<(), meshtone::scenario::ScenarioError>(())
+    /// ```
+    pub fn with_severity(self, severity: f64) -> Self {
+        Self { damage: self.damage.without_sizes(), severity: Some(severity), ..self }
+    }
+
+    /// The damage that it does to a pair's teeth, with its own sizes; none of severity 0, or where it is smaller than the
+    /// profile's points can show.
+    ///
+    /// # Arguments
+    /// * `teeth` - both healthy teeth
+    pub fn sized(&self, teeth: &Teeth) -> Option<Damage> {
+        match self.severity {
+            None => Some(self.damage.clone()),
+            Some(severity) if severity > 0.0 => {
+                self.damage.of_severity(severity, &SoundTooth::new(teeth, self.wheel))
+            }
+            Some(_) => None,
+        }
+    }
+
+    /// The same fault with the sizes of its severity, if it has any, beside it.
+    pub(crate) fn with_sizes(&self, teeth: &Teeth) -> Self {
+        Self { damage: self.sized(teeth).unwrap_or_else(|| self.damage.clone()), ..self.clone() }
+    }
+
+    /// (-) How severe it is: what is given, or what follows from its sizes.
+    ///
+    /// # Arguments
+    /// * `teeth` - both healthy teeth
+    pub fn severity_on(&self, teeth: &Teeth) -> f64 {
+        self.severity.unwrap_or_else(|| self.damage.severity(&SoundTooth::new(teeth, self.wheel)))
     }
 
     /// Damage to the gear's first tooth.
@@ -56,8 +109,8 @@ impl Fault {
     /// * `damage` - what is wrong
     pub fn at_usual_place(damage: impl Into<Damage>) -> Self {
         let damage = damage.into();
-        let Place { wheel, tooth } = Place::of(&damage);
-        Self { wheel, tooth, damage }
+        let Place { wheel, tooth, severity } = Place::of(&damage);
+        Self { wheel, tooth, damage, severity }
     }
 
     /// Index from 0 of the damaged tooth, of several of the first.
@@ -71,6 +124,7 @@ impl Fault {
 struct Place {
     wheel: WheelName,
     tooth: FaultyTeeth,
+    severity: Option<f64>,
 }
 
 impl Place {
@@ -82,7 +136,7 @@ impl Place {
 
 impl Keys for Place {
     fn start() -> Self {
-        Self { wheel: WheelName::default(), tooth: FaultyTeeth::One(1) }
+        Self { wheel: WheelName::default(), tooth: FaultyTeeth::One(1), severity: None }
     }
 
     fn rows() -> Vec<Row<Self>> {
@@ -97,6 +151,16 @@ impl Keys for Place {
             )
             .range(Range::positive().message("must be at least 1, the first tooth"))
             .rule("at most the wheel's teeth, each once"),
+            row(
+                "severity",
+                "-",
+                "how severe the damage is, in place of its sizes: from 0, none, to 1, the largest that the tooth allows",
+                field!(severity),
+            )
+            .otherwise("that of the sizes")
+            .range(Range::from_to(0.0, 1.0))
+            .rule("1 for a missing tooth")
+            .alternative("0.4"),
         ]
     }
 }
@@ -117,30 +181,59 @@ impl Fault {
         let mut damage = Damage::start_of(table)?;
         let mut place = Place::of(&damage);
         read_keys(&mut place, table, &NoFiles)?;
-        damage.read(table)?;
-        Ok(Self { wheel: place.wheel, tooth: place.tooth, damage })
+        let Place { wheel, tooth, severity } = place;
+        if severity.is_none() {
+            damage.read(table)?;
+            return Ok(Self { wheel, tooth, damage, severity });
+        }
+        let sizes = damage.sizes();
+        if let Some(size) = sizes.iter().find(|size| table.optional(size).is_some()) {
+            let problem = "given beside severity, which the sizes follow from";
+            let keys = sizes.join(", ");
+            return Err(table.error(size, problem).with_help(format!("remove severity, or all of {keys}")));
+        }
+        damage.read_but_sizes(table)?;
+        Ok(Self { wheel, tooth, damage: damage.without_sizes(), severity })
     }
 
     fn place(&self) -> Place {
-        Place { wheel: self.wheel, tooth: self.tooth.clone() }
+        Place { wheel: self.wheel, tooth: self.tooth.clone(), severity: self.severity }
     }
 
     /// The lines of its section, without the header.
     pub(crate) fn write(&self) -> String {
-        format!("{}kind = \"{}\"\n{}", write_keys(&self.place()), self.damage.kind(), self.damage.write())
+        let keys = match self.severity {
+            None => self.damage.write(),
+            Some(_) => self.damage.write_but_sizes(),
+        };
+        format!("{}kind = \"{}\"\n{keys}", write_keys(&self.place()), self.damage.kind())
     }
 
     /// The lines of its section with a comment for every key, without the header.
     pub(crate) fn commented(&self) -> String {
         let kind = format!("# {}\nkind = \"{}\"\n", self.damage.summary(), self.damage.kind());
-        [kind, self.damage.commented(), commented_from(&self.place(), &Place::of(&self.damage))].concat()
+        let keys = match self.severity {
+            None => self.damage.commented(),
+            Some(_) => self.damage.commented_but_sizes(),
+        };
+        [kind, keys, commented_from(&self.place(), &Place::of(&self.damage))].concat()
     }
 
     /// Whether it can be, as far as no profile is needed; its keys are named `fault.…`.
     fn check(&self, gears: &Gears) -> Check {
         check_keys(&self.place(), "fault")?;
         self.tooth.check(gears.teeth(self.wheel), self.wheel.name())?;
-        self.damage.check(gears)
+        match self.severity {
+            None => self.damage.check(gears),
+            Some(severity) => {
+                let graded = !self.damage.sizes().is_empty() || severity == 1.0;
+                let problem = "must be 1: a missing tooth is lost as a whole";
+                require("fault.severity", severity, graded, problem).map_err(|error| {
+                    error.with_help("for a part of a tooth, use kind = \"tooth-breakage\"")
+                })?;
+                self.damage.check_but_sizes()
+            }
+        }
     }
 }
 

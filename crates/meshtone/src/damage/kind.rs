@@ -3,6 +3,7 @@
 use super::FaultyTeeth;
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
 use super::published::FaultGeometry;
+use super::severity::SoundTooth;
 use crate::error::ScenarioError;
 use crate::keys::{Check, Keys};
 use crate::wheel::{Gears, Teeth};
@@ -21,8 +22,27 @@ pub(crate) trait Kind: Keys {
     /// The teeth that it is on where none are named.
     const TEETH: FaultyTeeth = FaultyTeeth::One(1);
 
+    /// Its keys that a severity stands in place of, by their names; none of a damage without a size, which is of severity 1.
+    const SIZES: &[&str];
+
     /// The damage in a file to start from.
     fn example() -> Self;
+
+    /// The damage with the sizes of a severity, of which [`Self::severity`] is the inverse; its other keys stay as they are.
+    ///
+    /// # Arguments
+    /// * `severity` - (-) more than 0, at most 1
+    /// * `tooth` - the sound tooth
+    ///
+    /// # Returns
+    /// None where it is smaller than the profile's points can show.
+    fn of_severity(&self, severity: f64, tooth: &SoundTooth) -> Option<Self>;
+
+    /// (-) How severe it is: from 0, none, to 1, the largest that the tooth allows.
+    ///
+    /// # Arguments
+    /// * `tooth` - the sound tooth
+    fn severity(&self, tooth: &SoundTooth) -> f64;
 
     /// Whether the damage can be, alone and on a tooth of these wheels, as far as no profile is needed. Its keys are named
     /// `fault.…`.

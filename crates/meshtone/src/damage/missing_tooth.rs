@@ -3,6 +3,7 @@
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
 use super::kind::MeshEffect;
 use super::published::{self, FaultGeometry};
+use super::severity::SoundTooth;
 use super::{DamageDescription, Kind};
 use crate::error::ScenarioError;
 use crate::keys::{Check, Keys, Row};
@@ -26,9 +27,18 @@ impl Keys for MissingTooth {
 impl Kind for MissingTooth {
     const NAME: &str = "missing-tooth";
     const EFFECT: MeshEffect = MeshEffect::Flat;
+    const SIZES: &[&str] = &[];
 
     fn example() -> Self {
         Self
+    }
+
+    fn of_severity(&self, _severity: f64, _tooth: &SoundTooth) -> Option<Self> {
+        Some(*self)
+    }
+
+    fn severity(&self, _tooth: &SoundTooth) -> f64 {
+        1.0
     }
 
     fn check(&self, _gears: &Gears) -> Check {

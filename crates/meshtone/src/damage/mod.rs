@@ -15,6 +15,7 @@ mod pit_circle;
 pub mod published;
 mod root_crack;
 mod section;
+mod severity;
 mod through_face;
 mod tooth_breakage;
 mod tooth_destruction;
@@ -40,8 +41,12 @@ pub use wear::{Wear, load_share, slide_factor};
 use meshtone_toml::{ReadResult, TomlTable};
 
 use crate::error::ScenarioError;
-use crate::keys::{Check, KeyDescription, Keys, NoFiles, commented, describe, read_keys, write_keys};
+use crate::keys::{
+    Check, KeyDescription, Keys, NoFiles, check_rows, commented, commented_rows, describe, read_keys,
+    read_rows, rows_but, write_keys, write_rows,
+};
 use crate::wheel::{Gears, Teeth};
+use severity::SoundTooth;
 
 /// The kinds of damage, each with what it is in a sentence: a struct of its name, in a file of its own, implements [`Kind`].
 macro_rules! kinds {
@@ -114,6 +119,58 @@ macro_rules! kinds {
             fn is_drawn(&self) -> bool {
                 match self {
                     $(Self::$kind(damage) => damage.is_drawn(),)+
+                }
+            }
+
+            /// Names of the keys that a severity stands in place of.
+            fn sizes(&self) -> &'static [&'static str] {
+                match self {
+                    $(Self::$kind(_) => $kind::SIZES,)+
+                }
+            }
+
+            /// Reads the keys that may stand beside a severity.
+            fn read_but_sizes(&mut self, table: &TomlTable<'_>) -> ReadResult<()> {
+                match self {
+                    $(Self::$kind(damage) => read_rows(&rows_but($kind::SIZES), damage, table, &NoFiles),)+
+                }
+            }
+
+            fn write_but_sizes(&self) -> String {
+                match self {
+                    $(Self::$kind(damage) => write_rows(&rows_but($kind::SIZES), damage),)+
+                }
+            }
+
+            fn commented_but_sizes(&self) -> String {
+                match self {
+                    $(Self::$kind(damage) => commented_rows(&rows_but($kind::SIZES), damage),)+
+                }
+            }
+
+            fn check_but_sizes(&self) -> Check {
+                match self {
+                    $(Self::$kind(damage) => check_rows(&rows_but($kind::SIZES), damage, "fault"),)+
+                }
+            }
+
+            fn without_sizes(&self) -> Self {
+                match self {
+                    $(Self::$kind(damage) => Self::$kind(severity::without_sizes(damage)),)+
+                }
+            }
+
+            /// The damage with the sizes of a severity above 0; none where it is smaller than the profile's points can show.
+            fn of_severity(&self, severity: f64, tooth: &SoundTooth) -> Option<Self> {
+                match self {
+                    $(Self::$kind(damage) => damage.of_severity(severity, tooth).map(Self::$kind),)+
+                }
+            }
+
+            /// (-) How severe it is, from 0 to 1.
+            fn severity(&self, tooth: &SoundTooth) -> f64 {
+                match self {
+                    $(Self::$kind(damage) => damage.severity(tooth),)+
                 }
             }
 

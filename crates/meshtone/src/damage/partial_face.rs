@@ -2,6 +2,7 @@
 
 use super::kind::MeshEffect;
 use super::published::{self, FaultGeometry};
+use super::severity::{LARGEST, SoundTooth};
 use crate::wheel::Teeth;
 use meshtone_toml::{ReadResult, TomlTable};
 
@@ -29,7 +30,7 @@ impl Keys for PartialFace {
     fn rows() -> Vec<Row<Self>> {
         let width =
             row("width_mm", "mm", "the width of the pit along the face, from one side", field!(width_mm))
-                .required()
+                .required_unless(&["severity"])
                 .range(Range::positive())
                 .rule("less than the face width");
         std::iter::once(width).chain(flatten(field!(pit))).collect()
@@ -43,9 +44,23 @@ impl Keys for PartialFace {
 impl Kind for PartialFace {
     const NAME: &str = "partial-face";
     const EFFECT: MeshEffect = MeshEffect::Tilting;
+    const SIZES: &[&str] = &["width_mm", "start", "end", "depth", "circle"];
 
     fn example() -> Self {
         Self { width_mm: 2.0, pit: PitCircle::example() }
+    }
+
+    /// As wide, of the face, as it is long, of the flank.
+    fn of_severity(&self, severity: f64, tooth: &SoundTooth) -> Option<Self> {
+        let part = LARGEST * severity.sqrt();
+        let pit = PitCircle::of_length(part);
+        tooth.shows(part).then_some(Self { width_mm: part * tooth.face_width_mm, pit })
+    }
+
+    /// Its area over the largest one's.
+    fn severity(&self, tooth: &SoundTooth) -> f64 {
+        let area = self.width_mm / tooth.face_width_mm * self.pit.length(tooth);
+        (area / (LARGEST * LARGEST)).min(1.0)
     }
 
     fn check(&self, gears: &Gears) -> Check {

@@ -7,6 +7,7 @@ use meshtone_toml::{ReadResult, TomlTable};
 use super::Pit;
 use super::damaged_tooth::HealthyTooth;
 use super::fault::end_after;
+use super::severity::SoundTooth;
 use crate::error::ScenarioError;
 use crate::interpolation::UniformLinear;
 use crate::keys::{Check, Keys, NumberFiles, Range, Row, field, row, sub_table};
@@ -51,16 +52,16 @@ impl Keys for PitCircle {
                 "the pit's first edge as a fraction of the flank's contact part, from its root side",
                 field!(Self::Fractions, start),
             )
-            .required_unless("circle")
+            .required_unless(&["circle", "severity"])
             .range(
                 Range::below_one()
                     .message("must be from 0 to less than 1; 0 is where contact starts at the root side, 1 the tip"),
             ),
             row("end", "-", "the pit's second edge, likewise", field!(Self::Fractions, end))
-                .required_unless("circle")
+                .required_unless(&["circle", "severity"])
                 .rule("more than `start`, ≤ 1"),
             row("depth", "-", "the pit's depth over half its chord", field!(Self::Fractions, depth))
-                .required_unless("circle")
+                .required_unless(&["circle", "severity"])
                 .range(
                     Range::between(Excluded(0.0), Included(1.0))
                         .help("depth is relative: the depth of the pit over half its chord"),
@@ -113,7 +114,7 @@ impl Keys for PitCircle {
             (false, true) => Ok(()),
             (false, false) => Err(table
                 .error("start", "missing, and circle too; a pit needs one of the two descriptions")
-                .with_help("give start, end and depth, or circle = { x_mm = …, y_mm = …, radius_mm = … }")),
+                .with_help("give start, end and depth, or circle = { x_mm = …, y_mm = …, radius_mm = … }, or severity alone")),
         }
     }
 }
@@ -124,6 +125,26 @@ impl PitCircle {
         Self::Fractions { start: 0.2, end: 0.8, depth: 0.5 }
     }
 
+    /// A pit in the middle of the flank's part in contact.
+    ///
+    /// # Arguments
+    /// * `length` - (-) as [`Self::length`]
+    pub(super) fn of_length(length: f64) -> Self {
+        Self::Fractions { start: 0.5 - length / 2.0, end: 0.5 + length / 2.0, depth: SHALLOW }
+    }
+
+    /// (-) How long it is, as a fraction of the flank's part in contact.
+    pub(super) fn length(&self, tooth: &SoundTooth) -> f64 {
+        match *self {
+            Self::Fractions { start, end, .. } => end - start,
+            Self::Circle { x_mm, y_mm, radius_mm } => {
+                let points = tooth.profile.x_mm.iter().zip(&tooth.profile.y_mm).skip(tooth.first_contact);
+                let inside = points.filter(|(x, y)| (*x - x_mm).hypot(*y - y_mm) < radius_mm).count();
+                inside as f64 / tooth.contact_steps()
+            }
+        }
+    }
+
     /// The second edge lies behind the first.
     pub(super) fn check_edges(&self) -> Check {
         match *self {
@@ -132,6 +153,9 @@ impl PitCircle {
         }
     }
 }
+
+/// (-) Depth over half the chord that a pit of a given severity has: no flank is so slanted that its circle would undercut it.
+const SHALLOW: f64 = 0.2;
 
 /// Where a pit lies on the flank, and the flank with the pit cut into it.
 pub(super) struct CutFlank {

@@ -5,6 +5,7 @@ use std::ops::Bound::{Excluded, Included};
 
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
 use super::kind::MeshEffect;
+use super::severity::{LARGEST, SoundTooth};
 use super::{DamageDescription, Kind};
 use crate::error::ScenarioError;
 use crate::keys::{Check, Keys, Range, Row, below, check_keys, field, require, row};
@@ -35,7 +36,7 @@ impl Keys for RootCrack {
                 "the depth of the crack from the fillet, where it is deepest",
                 field!(depth_mm),
             )
-            .required()
+            .required_unless(&["severity"])
             .range(Range::not_negative())
             .rule("must not pass the tooth's centre line"),
             row("angle_deg", "°", "the crack's angle to the tooth's centre line", field!(angle_deg))
@@ -57,9 +58,21 @@ impl Keys for RootCrack {
 impl Kind for RootCrack {
     const NAME: &str = "root-crack";
     const EFFECT: MeshEffect = MeshEffect::Flat;
+    const SIZES: &[&str] = &["depth_mm", "length_mm"];
 
     fn example() -> Self {
         Self { depth_mm: 3.0, ..Self::start() }
+    }
+
+    /// Over the whole face.
+    fn of_severity(&self, severity: f64, tooth: &SoundTooth) -> Option<Self> {
+        Some(Self { depth_mm: severity * self.largest_depth_mm(tooth), length_mm: None, ..*self })
+    }
+
+    /// The crack's area over the largest one's at its angle; two thirds of a parabola's depth and length.
+    fn severity(&self, tooth: &SoundTooth) -> f64 {
+        let along = self.length_mm.map_or(1.0, |length| 2.0 / 3.0 * length / tooth.face_width_mm);
+        (self.depth_mm / self.largest_depth_mm(tooth) * along).min(1.0)
     }
 
     fn check(&self, gears: &Gears) -> Check {
@@ -82,6 +95,13 @@ impl Kind for RootCrack {
 }
 
 impl RootCrack {
+    /// (mm) Depth at which the crack reaches the tooth's centre line, or nine tenths of the tooth's height where it is so steep
+    /// that it would leave the tooth before.
+    fn largest_depth_mm(&self, tooth: &SoundTooth) -> f64 {
+        let (_, start_y_mm) = critical_point_mm(tooth.profile);
+        (start_y_mm / self.angle_deg.to_radians().sin()).min(LARGEST * tooth.height_mm)
+    }
+
     /// Where the crack lies.
     ///
     /// # Errors

@@ -2,6 +2,7 @@
 
 use super::kind::MeshEffect;
 use super::published::{self, FaultGeometry};
+use super::severity::{LARGEST, SoundTooth};
 use crate::wheel::Teeth;
 use meshtone_toml::{ReadResult, TomlTable};
 
@@ -37,9 +38,20 @@ impl Keys for ThroughFace {
 impl Kind for ThroughFace {
     const NAME: &str = "through-face";
     const EFFECT: MeshEffect = MeshEffect::Rolling;
+    const SIZES: &[&str] = &["start", "end", "depth", "circle"];
 
     fn example() -> Self {
         Self { pit: PitCircle::example() }
+    }
+
+    fn of_severity(&self, severity: f64, tooth: &SoundTooth) -> Option<Self> {
+        let length = LARGEST * severity;
+        tooth.shows(length).then_some(Self { pit: PitCircle::of_length(length) })
+    }
+
+    /// Its length over the largest one's.
+    fn severity(&self, tooth: &SoundTooth) -> f64 {
+        (self.pit.length(tooth) / LARGEST).min(1.0)
     }
 
     fn check(&self, _gears: &Gears) -> Check {

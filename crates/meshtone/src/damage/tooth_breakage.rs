@@ -5,6 +5,7 @@ use super::Kind;
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
 use super::kind::MeshEffect;
 use super::published::{self, FaultGeometry};
+use super::severity::SoundTooth;
 use crate::error::ScenarioError;
 use crate::keys::{Check, Keys, Range, Row, below, check_keys, field, require, row};
 use crate::wheel::Gears;
@@ -35,11 +36,11 @@ impl Keys for ToothBreakage {
                 "the extent of the chipped corner from the tip along the tooth",
                 field!(chip_height_mm),
             )
-            .required()
+            .required_unless(&["severity"])
             .range(Range::positive())
             .rule("less than the tooth's height, 2.25 modules"),
             row("chip_width_mm", "mm", "its extent along the face width, at the tip", field!(chip_width_mm))
-                .required()
+                .required_unless(&["severity"])
                 .range(Range::positive())
                 .rule("at most the face width"),
             row(
@@ -57,9 +58,33 @@ impl Keys for ToothBreakage {
 impl Kind for ToothBreakage {
     const NAME: &str = "tooth-breakage";
     const EFFECT: MeshEffect = MeshEffect::Tilting;
+    const SIZES: &[&str] = &["chip_height_mm", "chip_width_mm", "tip_loss_mm"];
 
     fn example() -> Self {
         Self { chip_height_mm: 5.0, chip_width_mm: 12.0, tip_loss_mm: 3.0 }
+    }
+
+    /// A corner that grows until its edge runs from the tip's one end to the other end of where contact starts; then the tip.
+    fn of_severity(&self, severity: f64, tooth: &SoundTooth) -> Option<Self> {
+        let (height, width) = (tooth.contact_height_mm(), tooth.face_width_mm);
+        let corner = (2.0 * severity).sqrt().min(1.0);
+        let tip = (2.0 * severity - 1.0).max(0.0).sqrt();
+        tooth.shows(corner).then_some(Self {
+            chip_height_mm: corner * height,
+            chip_width_mm: corner * width,
+            tip_loss_mm: tip * height,
+        })
+    }
+
+    /// The lost part of the flank's area in contact.
+    fn severity(&self, tooth: &SoundTooth) -> f64 {
+        let (height, width) = (tooth.contact_height_mm(), tooth.face_width_mm);
+        let tip = self.tip_loss_mm.min(height);
+        // What the chip takes below the lost tip, where it does not reach below the part in contact.
+        let (from, to) = (tip, self.chip_height_mm.min(height).max(tip));
+        let mean_left = 1.0 - (from + to) / (2.0 * self.chip_height_mm);
+        let chip = if to > from { self.chip_width_mm * mean_left * (to - from) } else { 0.0 };
+        (tip / height + chip / (height * width)).min(1.0)
     }
 
     fn check(&self, gears: &Gears) -> Check {

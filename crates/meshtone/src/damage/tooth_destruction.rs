@@ -2,6 +2,7 @@
 
 use super::kind::MeshEffect;
 use super::published::{self, FaultGeometry};
+use super::severity::{LARGEST, SoundTooth};
 use crate::wheel::Teeth;
 use std::ops::Bound::Excluded;
 
@@ -55,7 +56,7 @@ impl Keys for ToothDestruction {
              part in contact",
             field!(start),
         )
-        .required()
+        .required_unless(&["severity"])
         .range(
             Range::between(Excluded(-1.0), Excluded(1.0))
                 .message("must be more than -1 and less than 1 (negative: below contact)"),
@@ -94,7 +95,7 @@ impl Keys for DestructionLine {
                 "the flank point that the line is aimed at, as a fraction",
                 field!(Self::End, 0),
             )
-            .required_unless("slope_deg")
+            .required_unless(&["slope_deg", "severity"])
             .rule("more than `start`, ≤ 1"),
             row(
                 "slope_deg",
@@ -120,7 +121,7 @@ impl Keys for DestructionLine {
                 .with_help("remove slope_deg, or remove end")),
             (false, false) => Err(table
                 .error("end", "missing, and slope_deg too; exactly one of the two says where the line goes")
-                .with_help("give end, a fraction of the flank after start, or slope_deg, an angle")),
+                .with_help("give end, a fraction of the flank after start, or slope_deg, an angle, or severity alone")),
         }
     }
 }
@@ -129,9 +130,38 @@ impl Kind for ToothDestruction {
     const NAME: &str = "tooth-destruction";
     const RIG: PaperRig = PaperRig::Destruction;
     const EFFECT: MeshEffect = MeshEffect::Flat;
+    const SIZES: &[&str] = &["start", "end", "slope_deg", "offset_mm"];
 
     fn example() -> Self {
         Self { start: 0.2143, line: DestructionLine::End(0.9286), offset_mm: 0.0, noise_mm: 0.0 }
+    }
+
+    /// A line from a fixed point of the flank, the steeper the more severe.
+    fn of_severity(&self, severity: f64, tooth: &SoundTooth) -> Option<Self> {
+        let ToothProfile { x_mm, y_mm, .. } = tooth.profile;
+        let start = first_ground(tooth);
+        // The first of the points at which the line takes the part of the tooth's thickness.
+        let left = 1.0 - 2.0 * LARGEST * severity;
+        let tangent = (start + 1..x_mm.len())
+            .filter(|&i| y_mm[i] > 0.0)
+            .map(|i| (y_mm[start] - left * y_mm[i]) / (x_mm[i] - x_mm[start]))
+            .fold(f64::INFINITY, f64::min);
+        let is_ground = severity > LEAST_GROUND && tangent > 0.0 && tangent.is_finite();
+        is_ground.then(|| Self {
+            start: (start - tooth.first_contact) as f64 / tooth.contact_steps(),
+            line: DestructionLine::SlopeDeg(tangent.atan().to_degrees()),
+            offset_mm: 0.0,
+            ..*self
+        })
+    }
+
+    /// The largest part of the tooth's thickness that is ground off, over that of the most severe one.
+    fn severity(&self, tooth: &SoundTooth) -> f64 {
+        let ToothProfile { x_mm, y_mm, .. } = tooth.profile;
+        let Some(line) = self.line(tooth.profile, tooth.first_contact) else { return 0.0 };
+        let ground = |i: usize| (y_mm[i] - line.y_mm(x_mm[i])) / (2.0 * y_mm[i]);
+        let points = line.start_index.max(tooth.first_contact)..x_mm.len();
+        (points.filter(|&i| y_mm[i] > 0.0).map(ground).fold(0.0, f64::max) / LARGEST).min(1.0)
     }
 
     fn check(&self, gears: &Gears) -> Check {
@@ -188,10 +218,57 @@ pub(super) struct GroundFlank {
     pub(super) deviation_mm: Vec<f64>,
 }
 
+/// (-) Where the line of a given severity starts, as a fraction of the flank's part in contact: that of the source's rig.
+const START: f64 = 0.2;
+/// Severity below which a line takes no more than rounding does.
+const LEAST_GROUND: f64 = 1e-9;
+
+/// Profile index where the line of a given severity starts: not before the flank falls towards the tip, as that of few teeth does
+/// not at the base circle.
+fn first_ground(tooth: &SoundTooth) -> usize {
+    let y = &tooth.profile.y_mm;
+    let thickest = (tooth.first_contact..y.len()).rev().max_by(|&i, &j| y[i].total_cmp(&y[j]));
+    flank_index(START, tooth.profile, tooth.first_contact).max(thickest.unwrap_or_default())
+}
+
+/// The straight line that a flank is ground along.
+struct GroundLine {
+    /// Profile index where it starts.
+    start_index: usize,
+    x_mm: f64,
+    y_mm: f64,
+    /// (-) Tangent of its angle to the tooth's centre line; below 0 where it falls towards the tip.
+    tangent: f64,
+}
+
+impl GroundLine {
+    /// (mm) Its distance from the tooth's centre line.
+    fn y_mm(&self, x_mm: f64) -> f64 {
+        self.y_mm + self.tangent * (x_mm - self.x_mm)
+    }
+}
+
 /// Part of the flank's height below which a line that meets the flank does so by rounding.
 const ROUNDING: f64 = 1e-12;
 
 impl ToothDestruction {
+    /// The line, or none where it would end where it starts.
+    fn line(&self, profile: &ToothProfile, first_contact: usize) -> Option<GroundLine> {
+        let start = flank_index(self.start, profile, first_contact);
+        let (x_start, y_start) = (profile.x_mm[start], profile.y_mm[start] - self.offset_mm);
+        let tangent = match self.line {
+            DestructionLine::SlopeDeg(slope) => -slope.abs().to_radians().tan(),
+            DestructionLine::End(end) => {
+                let end = flank_index(end, profile, first_contact);
+                if end == start {
+                    return None;
+                }
+                (profile.y_mm[end] - self.offset_mm - y_start) / (profile.x_mm[end] - x_start)
+            }
+        };
+        Some(GroundLine { start_index: start, x_mm: x_start, y_mm: y_start, tangent })
+    }
+
     /// Grinds a flank down.
     ///
     /// # Arguments
@@ -215,19 +292,11 @@ impl ToothDestruction {
             let problem = format!("must be at least {least_start:.4}, where this tooth has its root");
             return Err(ScenarioError::new("fault.start", format!("{:?}", self.start), problem));
         }
-        let start = flank_index(self.start, profile, first_contact);
-        let (x_start, y_start) = (profile.x_mm[start], profile.y_mm[start] - self.offset_mm);
-        let tangent = match self.line {
-            DestructionLine::SlopeDeg(slope) => -slope.abs().to_radians().tan(),
-            DestructionLine::End(end) => {
-                let end = flank_index(end, profile, first_contact);
-                if end == start {
-                    return Err(ScenarioError::new("fault.end", "", "must lie beyond the start of the line"));
-                }
-                (profile.y_mm[end] - self.offset_mm - y_start) / (profile.x_mm[end] - x_start)
-            }
+        let Some(ground_line) = self.line(profile, first_contact) else {
+            return Err(ScenarioError::new("fault.end", "", "must lie beyond the start of the line"));
         };
-        let line = |x: f64| y_start + tangent * (x - x_start);
+        let GroundLine { start_index: start, tangent, .. } = ground_line;
+        let line = |x: f64| ground_line.y_mm(x);
         let first = start.max(first_contact);
         // Without an offset the line meets the flank at the end's own point: there it does not lie below the flank, whichever
         // way the last bit is rounded.

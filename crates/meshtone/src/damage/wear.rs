@@ -2,6 +2,7 @@
 
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
 use super::kind::MeshEffect;
+use super::severity::SoundTooth;
 use super::{DamageDescription, FaultyTeeth, Kind};
 use crate::error::ScenarioError;
 use crate::keys::{Check, Keys, Range, Row, check_keys, field, row};
@@ -17,6 +18,11 @@ pub struct Wear {
 /// (µm) Depth above which the flanks would bear otherwise than they wear by.
 const MOST_UM: f64 = 100.0;
 
+/// (µm) The largest depth, or half the thickness of a tooth where that is less.
+fn most_um(tooth: &SoundTooth) -> f64 {
+    MOST_UM.min(1e3 * tooth.least_half_thickness_mm())
+}
+
 impl Keys for Wear {
     fn start() -> Self {
         Self { depth_um: f64::NAN }
@@ -25,7 +31,7 @@ impl Keys for Wear {
     fn rows() -> Vec<Row<Self>> {
         vec![
             row("depth_um", "µm", "the largest depth of wear, along the flank's normal", field!(depth_um))
-                .required()
+                .required_unless(&["severity"])
                 .range(Range::from_to(0.0, MOST_UM).help(
                     "what has worn deeper bears where it was not worn before; for a flank that is gone, use kind = \
                      \"tooth-destruction\"",
@@ -38,9 +44,20 @@ impl Kind for Wear {
     const NAME: &str = "wear";
     const EFFECT: MeshEffect = MeshEffect::Flat;
     const TEETH: FaultyTeeth = FaultyTeeth::All;
+    const SIZES: &[&str] = &["depth_um"];
 
     fn example() -> Self {
         Self { depth_um: 30.0 }
+    }
+
+    fn of_severity(&self, severity: f64, tooth: &SoundTooth) -> Option<Self> {
+        let most_um = most_um(tooth);
+        (most_um > 0.0).then_some(Self { depth_um: severity * most_um })
+    }
+
+    /// Its depth over the largest.
+    fn severity(&self, tooth: &SoundTooth) -> f64 {
+        (self.depth_um / most_um(tooth)).clamp(0.0, 1.0)
     }
 
     fn check(&self, _gears: &Gears) -> Check {

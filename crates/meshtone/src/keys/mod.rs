@@ -41,9 +41,10 @@ pub use files::FileProblem;
 pub(crate) use files::{NoFiles, NumberFiles, load};
 pub(crate) use names::by_name;
 pub(crate) use range::Range;
-pub(crate) use row::{Row, documented, row, sub_table};
+pub(crate) use row::{Row, comment, documented, row, sub_table};
 pub(crate) use table::{
-    Keys, check_keys, commented, commented_from, describe, describe_from, read_keys, write_keys,
+    Keys, check_keys, check_rows, commented, commented_from, commented_rows, describe, describe_from,
+    read_keys, read_rows, rows_but, write_keys, write_rows,
 };
 pub(crate) use text::array;
 pub(crate) use value::{KeyValue, Written};

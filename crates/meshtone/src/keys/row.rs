@@ -28,7 +28,7 @@ enum Absent {
     /// It must be given.
     Refused,
     /// It must be given, unless another key is.
-    RefusedUnless(&'static str),
+    RefusedUnless(&'static [&'static str]),
     /// What [`Keys::start`](super::Keys::start) has.
     Default,
     /// Something that is found elsewhere, in words.
@@ -101,9 +101,9 @@ impl<S> Row<S> {
         Self { absent: Absent::Refused, ..self }
     }
 
-    /// The key must be given, unless `other` is, which the section reads in its place.
-    pub(crate) fn required_unless(self, other: &'static str) -> Self {
-        Self { absent: Absent::RefusedUnless(other), ..self }
+    /// The key must be given, unless one of `others` is, which is read in its place.
+    pub(crate) fn required_unless(self, others: &'static [&'static str]) -> Self {
+        Self { absent: Absent::RefusedUnless(others), ..self }
     }
 
     fn is_required(&self) -> bool {
@@ -204,7 +204,7 @@ impl<S> Row<S> {
     fn with_unit(&self) -> String {
         let unit = if self.unit.is_empty() { String::new() } else { format!("({}) ", self.unit) };
         let unless = match self.absent {
-            Absent::RefusedUnless(other) => format!("; required, unless {other} is given"),
+            Absent::RefusedUnless(others) => format!("; required, unless {} is given", others.join(" or ")),
             _ => String::new(),
         };
         format!("{unit}{}{unless}", self.meaning)
@@ -233,7 +233,10 @@ impl<S> Row<S> {
             required: matches!(self.absent, Absent::Refused),
             default: match self.absent {
                 Absent::Refused => String::new(),
-                Absent::RefusedUnless(other) => format!("required, unless `{other}` is given"),
+                Absent::RefusedUnless(others) => {
+                    let others: Vec<_> = others.iter().map(|other| format!("`{other}`")).collect();
+                    format!("required, unless {} is given", others.join(" or "))
+                }
                 Absent::Words(words) => words.to_string(),
                 Absent::Default => self.shown_value(start).unwrap_or_default(),
             },
@@ -302,7 +305,7 @@ impl<S> Row<S> {
         };
         let absent = match self.absent {
             Absent::Refused => "Required.".to_string(),
-            Absent::RefusedUnless(other) => format!("Required, unless {other} is given."),
+            Absent::RefusedUnless(others) => format!("Required, unless {} is given.", others.join(" or ")),
             Absent::Words(words) => format!("Default: {words}."),
             Absent::Default => match self.shown_value(start) {
                 Some(default) if default.len() <= 20 => format!("Default {default}."),
@@ -330,7 +333,7 @@ pub(super) fn dotted(path: &str, name: &str) -> String {
 }
 
 /// A text as lines of a comment.
-pub(super) fn comment(text: &str) -> String {
+pub(crate) fn comment(text: &str) -> String {
     const WIDTH: usize = 100;
     let mut lines = vec![String::from("#")];
     for word in text.split_whitespace() {

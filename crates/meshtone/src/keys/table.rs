@@ -36,7 +36,22 @@ pub(crate) fn read_keys<S: Keys>(
     files: &dyn NumberFiles,
 ) -> ReadResult<()> {
     section.choose(table, files)?;
-    S::rows().iter().try_for_each(|row| row.read(section, table, files))
+    read_rows(&S::rows(), section, table, files)
+}
+
+/// Reads some keys of a table over what the section has.
+pub(crate) fn read_rows<S: Keys>(
+    rows: &[Row<S>],
+    section: &mut S,
+    table: &TomlTable<'_>,
+    files: &dyn NumberFiles,
+) -> ReadResult<()> {
+    rows.iter().try_for_each(|row| row.read(section, table, files))
+}
+
+/// The rows of a section but for some, by their names.
+pub(crate) fn rows_but<S: Keys>(names: &[&str]) -> Vec<Row<S>> {
+    S::rows().into_iter().filter(|row| !names.contains(&row.name())).collect()
 }
 
 /// The keys and values of a section.
@@ -58,7 +73,12 @@ pub(super) fn written_pairs<S>(rows: &[Row<S>], section: &S) -> Vec<(String, Str
 
 /// The lines of a section, without its header.
 pub(crate) fn write_keys<S: Keys>(section: &S) -> String {
-    write_pairs(section).iter().map(|(key, value)| format!("{key} = {value}\n")).collect()
+    write_rows(&S::rows(), section)
+}
+
+/// The lines of some keys of a section.
+pub(crate) fn write_rows<S: Keys>(rows: &[Row<S>], section: &S) -> String {
+    written_pairs(rows, section).iter().map(|(key, value)| format!("{key} = {value}\n")).collect()
 }
 
 /// Every key alone.
@@ -67,7 +87,12 @@ pub(crate) fn write_keys<S: Keys>(section: &S) -> String {
 /// * `section` - the parameters
 /// * `path` - dotted key of the table
 pub(crate) fn check_keys<S: Keys>(section: &S, path: &str) -> Check {
-    S::rows().iter().try_for_each(|row| row.check(section, path))
+    check_rows(&S::rows(), section, path)
+}
+
+/// Some keys alone.
+pub(crate) fn check_rows<S: Keys>(rows: &[Row<S>], section: &S, path: &str) -> Check {
+    rows.iter().try_for_each(|row| row.check(section, path))
 }
 
 /// What the keys of a section are.
@@ -88,4 +113,10 @@ pub(crate) fn commented<S: Keys>(section: &S) -> String {
 /// The same, with what `start` has as defaults.
 pub(crate) fn commented_from<S: Keys>(section: &S, start: &S) -> String {
     S::rows().iter().map(|row| row.commented(section, start)).collect()
+}
+
+/// The lines of some keys of a section, likewise.
+pub(crate) fn commented_rows<S: Keys>(rows: &[Row<S>], section: &S) -> String {
+    let start = S::start();
+    rows.iter().map(|row| row.commented(section, &start)).collect()
 }

@@ -10,6 +10,7 @@ mod from_toml;
 mod honoured;
 mod sections;
 mod serialise;
+mod severity;
 mod template;
 mod to_toml;
 mod validate;

@@ -3,7 +3,7 @@
 use super::to_toml::Style;
 use super::{Fault, GearPair, Scenario, Sensor};
 use crate::damage::{PaperRig, damage_kinds};
-use crate::keys::{Keys, commented};
+use crate::keys::{Keys, comment, commented};
 
 const HEALTHY: &str = "healthy";
 
@@ -19,6 +19,14 @@ const WITHOUT_SENSORS: &str = "\
 # its keys may be left out.
 #
 # [[sensor]]
+";
+
+const WITHOUT_FAULTS: &str = "\
+# Damage may be listed, each as a section [[fault]], on any tooth of either wheel: `meshtone init KIND`
+# prints every key of a kind. Of all kinds but a missing tooth a severity may stand in place of the
+# sizes, from 0 to 1.
+#
+# [[fault]]
 ";
 
 /// The names that [`template`] knows: a healthy pair, and each kind of damage.
@@ -95,6 +103,17 @@ impl Style for Commented {
 
     fn fault(&self, fault: &Fault) -> String {
         fault.commented()
+    }
+
+    /// So that others can be added.
+    fn entry_header(&self, name: &str, _entries: usize) -> String {
+        format!("[[{name}]]")
+    }
+
+    fn without_faults(&self) -> Option<String> {
+        let kinds: Vec<_> = damage_kinds().iter().map(|kind| format!("\"{}\"", kind.name)).collect();
+        let kinds = comment(&format!("What is wrong: one of {}.", kinds.join(", ")));
+        Some(format!("{WITHOUT_FAULTS}{kinds}# kind = \"root-crack\"\n# severity = 0.4\n"))
     }
 
     /// As a comment throughout: keys alone, without their section, would be another section's.

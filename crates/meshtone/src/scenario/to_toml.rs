@@ -31,10 +31,13 @@ impl Scenario {
             format!("[operation]\n{}", style.keys(&self.operation)),
             format!("[quality]\n{}", style.keys(&self.quality)),
         ];
-        let faults = entry_header("fault", self.faults.len());
+        let faults = style.entry_header("fault", self.faults.len());
         sections.extend(self.faults.iter().map(|fault| format!("{faults}\n{}", style.fault(fault))));
+        if self.faults.is_empty() {
+            sections.extend(style.without_faults());
+        }
         sections.push(format!("[rig]\n{}", style.keys(&self.rig)));
-        let sensors = entry_header("sensor", self.sensors.len());
+        let sensors = style.entry_header("sensor", self.sensors.len());
         sections.extend(self.sensors.iter().map(|sensor| format!("{sensors}\n{}", style.keys(sensor))));
         if self.sensors.is_empty() {
             sections.extend(style.without_sensors());
@@ -44,15 +47,14 @@ impl Scenario {
     }
 }
 
-/// What stands above an entry of a list: a single one is a section like others, with keys without a number.
-fn entry_header(name: &str, entries: usize) -> String {
-    if entries > 1 { format!("[[{name}]]") } else { format!("[{name}]") }
-}
-
 /// How the keys of a section are written.
 pub(super) trait Style {
     fn keys<S: Keys>(&self, section: &S) -> String;
     fn fault(&self, fault: &Fault) -> String;
+    /// What stands above an entry of a list.
+    fn entry_header(&self, name: &str, entries: usize) -> String;
+    /// What stands where nothing is broken.
+    fn without_faults(&self) -> Option<String>;
     /// What stands where no sensor is listed.
     fn without_sensors(&self) -> Option<String>;
 }
@@ -67,6 +69,15 @@ impl Style for Plain {
 
     fn fault(&self, fault: &Fault) -> String {
         fault.write()
+    }
+
+    /// A single one is a section like others, with keys without a number.
+    fn entry_header(&self, name: &str, entries: usize) -> String {
+        if entries > 1 { format!("[[{name}]]") } else { format!("[{name}]") }
+    }
+
+    fn without_faults(&self) -> Option<String> {
+        None
     }
 
     fn without_sensors(&self) -> Option<String> {

@@ -35,6 +35,7 @@ mod scenario_template;
 mod scenario_validate;
 mod sensors;
 mod settling;
+mod severity;
 mod signal;
 mod signal_chain;
 mod signal_indicators;

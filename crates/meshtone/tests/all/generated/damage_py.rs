@@ -5,7 +5,7 @@ use std::fmt::Write;
 use meshtone::damage::{DamageKind, damage_kinds};
 use meshtone::scenario::{KeyDescription, KeyKind};
 
-use super::python::{HEAD, argument_type, class_name, inside, lines, parameter};
+use super::python::{HEAD, argument_type, class_name, has_default_value, inside, lines, parameter};
 
 /// The file.
 pub fn text() -> String {
@@ -73,7 +73,9 @@ fn damage_class(kind: &DamageKind) -> String {
         writeln!(text, "    {}: {}{none}", key.key, argument_type(key)).unwrap();
     }
     for key in place {
-        writeln!(text, "    {}: {} = {}", key.key, argument_type(key), key.default).unwrap();
+        let default =
+            if has_default_value(key) { format!(" = {}", key.default) } else { " | None = None".to_owned() };
+        writeln!(text, "    {}: {}{default}", key.key, argument_type(key)).unwrap();
     }
     text
 }
