@@ -16,7 +16,7 @@ takes signals, simulated or measured, to condition indicators; :mod:`meshtone.hy
 from . import _damage, datasets, examples, hybrid, signal
 from ._core import __version__
 from ._damage import *
-from .datasets import Dataset, generate_dataset, load_dataset
+from .datasets import Dataset, generate_dataset, load_dataset, verify_dataset
 from .hybrid import enhance, tune
 from .recording import Recording, read_recording
 from .scenario import Scenario, template
@@ -52,5 +52,6 @@ __all__ = [
     "template",
     "trace",
     "tune",
+    "verify_dataset",
 ]
 __all__ += _damage.__all__

@@ -51,6 +51,7 @@ __all__ = [
     "template",
     "trace",
     "tune",
+    "verify_dataset",
 ]
 
 __version__: str
@@ -254,5 +255,6 @@ def generate_dataset(
     part: int,
     of: int,
     progress: Callable[[int, int], None] | None,
-) -> None: ...
-def merge_datasets(parts: Sequence[str], to: str) -> None: ...
+) -> list[tuple[str, str]]: ...
+def merge_datasets(parts: Sequence[str], to: str, verify: bool) -> None: ...
+def verify_dataset(path: str, bytes: bool) -> tuple[int, list[str], list[str], dict[str, str]]: ...

@@ -71,5 +71,5 @@ def generate(
         client.cancel(futures)
         raise
     # The last part alone cannot know that it is the last: manifest and data card are written here.
-    _core.merge_datasets([path], path)
+    _core.merge_datasets([path], path, False)
     return load_dataset(path)

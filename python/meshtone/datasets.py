@@ -57,7 +57,7 @@ if TYPE_CHECKING:
     import pyarrow
     import pyarrow.dataset
 
-__all__ = ["Dataset", "dataset_template", "generate_dataset", "load_dataset", "merge_datasets"]
+__all__ = ["Dataset", "dataset_template", "generate_dataset", "load_dataset", "merge_datasets", "verify_dataset"]
 
 FloatSignal = npt.NDArray[np.float32]
 
@@ -88,7 +88,8 @@ def generate_dataset(
 ) -> Dataset:
     """Make a data set after a plan, or go on with one that was interrupted.
 
-    The result has the same bytes with any number of jobs and parts, and however often it was interrupted.
+    The result has the same bytes with any number of jobs and parts, and however often it was interrupted. What is there already is
+    compared with the SHA-256 that was taken while it was written; a file that differs is made again, with a warning.
 
     Parameters
     ----------
@@ -113,7 +114,10 @@ def generate_dataset(
     FileNotFoundError
         There is no such plan.
     ValueError
-        What is wrong with the plan, with key and line; a directory with other files, or with the data set of another plan.
+        What is wrong with the plan, with key and line; a directory with other files, or with the data set of another plan; a plan
+        of which no record can be simulated.
+    BlockingIOError
+        Another program makes the same in the same directory.
     OSError
         A full disk, or what else kept it from being written; what is finished stays.
     KeyboardInterrupt
@@ -123,7 +127,10 @@ def generate_dataset(
 
     told = on_terminal("records") if progress is True else (progress or None)
     number, of = (1, 1) if part is None else part
-    _core.generate_dataset(plan, fspath(path), jobs, number, of, told)
+    remade = _core.generate_dataset(plan, fspath(path), jobs, number, of, told)
+    if remade:
+        file, reason = remade[0]
+        warnings.warn(f"{len(remade)} files were made again; {file}: {reason}", stacklevel=2)
     made = _open(path)
     if made.failures:
         first = made.failures[0]
@@ -135,8 +142,12 @@ def generate_dataset(
     return made
 
 
-def merge_datasets(parts: Sequence[str | PathLike[str]], path: str | PathLike[str]) -> Dataset:
+def merge_datasets(
+    parts: Sequence[str | PathLike[str]], path: str | PathLike[str], *, verify: bool = False
+) -> Dataset:
     """Put the parts of a data set together that were made apart.
+
+    What is copied is compared with the SHA-256 that was taken while it was made.
 
     Parameters
     ----------
@@ -144,6 +155,8 @@ def merge_datasets(parts: Sequence[str | PathLike[str]], path: str | PathLike[st
         Their directories.
     path : str or path
         Directory of the whole; may be one of the parts.
+    verify : bool
+        Whether files that were made in the directory of the whole are read too, instead of only looking at their sizes.
 
     Returns
     -------
@@ -152,21 +165,45 @@ def merge_datasets(parts: Sequence[str | PathLike[str]], path: str | PathLike[st
     Raises
     ------
     ValueError
-        Parts of different plans.
+        Parts of different plans; files that no part has, or that are damaged in all of them.
     OSError
         What kept it from being written.
     """
-    _core.merge_datasets([fspath(part) for part in parts], fspath(path))
+    _core.merge_datasets([fspath(part) for part in parts], fspath(path), verify)
     return load_dataset(path)
 
 
-def load_dataset(path: str | PathLike[str]) -> Dataset:
-    """Open a data set. Nothing is read before it is asked for.
+def verify_dataset(path: str | PathLike[str]) -> dict[str, str]:
+    """Compare every byte of a data set with what was written: names, sizes, counts, SHA-256, rows and columns.
+
+    Parameters
+    ----------
+    path : str or path
+        Its directory, or that of a part.
+
+    Returns
+    -------
+    dict
+        What is wrong, by the names of the files that it is wrong with; empty where all is as it was written.
+
+    Raises
+    ------
+    ValueError
+        There is no data set; a manifest that cannot be read, or of a later version.
+    """
+    _, _, missing, problems = _core.verify_dataset(fspath(path), True)
+    return {**problems, **dict.fromkeys(missing, "it is missing")}
+
+
+def load_dataset(path: str | PathLike[str], *, verify: bool = False) -> Dataset:
+    """Open a data set. Nothing but the names and sizes of its files is read before it is asked for.
 
     Parameters
     ----------
     path : str or path
         Its directory.
+    verify : bool
+        Whether every byte is compared with what was written, as :func:`verify_dataset` does.
 
     Returns
     -------
@@ -176,25 +213,43 @@ def load_dataset(path: str | PathLike[str]) -> Dataset:
     ------
     FileNotFoundError
         There is no data set in this directory.
+    ValueError
+        A file that the manifest does not name, or that has another size than it says; counts that disagree; a manifest of a later
+        version; with `verify` whatever is not as it was written.
     ModuleNotFoundError
         pyarrow is not installed.
     """
-    opened = _open(path)
+    opened = _open(path, verify)
     if not opened.is_complete:
         warnings.warn(f"{opened.path} is not complete: it has {len(opened)} records; generate_dataset goes on with it", stacklevel=2)
+    elif opened.manifest.get("format_version") == 1:
+        warnings.warn(
+            f"{opened.path} was made by an earlier version: its hashes are of what was on the disk when it was completed, not of what "
+            "was written",
+            stacklevel=2,
+        )
     return opened
 
 
-def _open(path: str | PathLike[str]) -> Dataset:
+def _open(path: str | PathLike[str], verify: bool = False) -> Dataset:
     import pyarrow
     import pyarrow.dataset
 
     folder = Path(path)
     if not (folder / "manifest.json").exists():
         raise FileNotFoundError(f"{folder} holds no data set: there is no manifest.json in it")
-    files = sorted((folder / "data").glob("*.parquet"))
-    if files:
-        return Dataset(folder, pyarrow.dataset.dataset([fspath(file) for file in files], format="parquet"), None)
+    _, names, _, problems = _core.verify_dataset(fspath(path), verify)
+    # A data card that is missing is no reason not to read the data.
+    wrong = {name: what for name, what in problems.items() if verify or name.startswith(("data/", "manifest.json"))}
+    if wrong:
+        name, what = next(iter(wrong.items()))
+        more = f", and {len(wrong) - 1} more files" if len(wrong) > 1 else ""
+        raise ValueError(
+            f"{folder} is not as it was written: {name}: {what}{more}; verify_dataset tells all of them, generate_dataset makes them again"
+        )
+    if names:
+        files = [fspath(folder / name) for name in names]
+        return Dataset(folder, pyarrow.dataset.dataset(files, format="parquet"), None)
     # A part that has no shard of its own, the first there.
     schema = pyarrow.schema([("label", pyarrow.string()), ("split", pyarrow.string())])
     return Dataset(folder, pyarrow.dataset.dataset(schema.empty_table()), None)
@@ -233,8 +288,8 @@ class Dataset:
     def is_complete(self) -> bool:
         """Whether all parts are there, with all the files that the manifest lists."""
         manifest = self.manifest
-        there = {file.name for file in (self.path / "data").glob("*.parquet")}
-        return manifest.get("complete") is True and len(there) == len(manifest.get("files", there))
+        there = {file.relative_to(self.path).as_posix() for file in (self.path / "data").rglob("*.parquet")}
+        return manifest.get("complete") is True and all(file["name"] in there for file in manifest.get("files", ()))
 
     @property
     def failures(self) -> list[dict[str, Any]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import importlib.util
+import json
 import shutil
 import sys
 import types
@@ -141,6 +142,87 @@ def test_a_lost_file_is_told_and_made_again(gears: datasets.Dataset, tmp_path: P
     assert "16 records, not complete" in repr(damaged)
     assert datasets.generate_dataset(write_plan(tmp_path), path).is_complete
     assert digests(path) == digests(gears.path)
+
+
+def flip(file: Path, number: int) -> None:
+    """Turn over one bit: multiples of the golden ratio leave no pattern."""
+    content = bytearray(file.read_bytes())
+    bit = int(number * 0.618033988749895 % 1 * 8 * len(content))
+    content[bit // 8] ^= 1 << bit % 8
+    file.write_bytes(content)
+
+
+def test_every_flipped_bit_is_found(gears: datasets.Dataset, tmp_path: Path) -> None:
+    path = tmp_path / "set"
+    shutil.copytree(gears.path, path)
+    assert datasets.verify_dataset(path) == {}
+    assert len(datasets.load_dataset(path, verify=True)) == 24
+    file = path / "data" / "records-000001.parquet"
+    whole = file.read_bytes()
+    for number in range(1, 31):
+        flip(file, number)
+        assert list(datasets.verify_dataset(path)) == ["data/records-000001.parquet"]
+        with pytest.raises(ValueError, match=r"records-000001.parquet: its bytes are not those that were written"):
+            datasets.load_dataset(path, verify=True)
+        file.write_bytes(whole)
+    flip(file, 31)
+    with pytest.warns(UserWarning, match=r"1 files were made again; data/records-000001.parquet: its bytes"):
+        datasets.generate_dataset(write_plan(tmp_path), path)
+    assert digests(path) == digests(gears.path)
+
+
+def test_names_and_sizes_are_always_looked_at(gears: datasets.Dataset, tmp_path: Path) -> None:
+    path = tmp_path / "set"
+    shutil.copytree(gears.path, path)
+    first, extra = (path / "data" / f"records-{number:06}.parquet" for number in (0, 3))
+    shutil.copy(first, extra)
+    with pytest.raises(ValueError, match="records-000003.parquet: no manifest or list of a part names it"):
+        datasets.load_dataset(path)
+    extra.unlink()
+    first.write_bytes(first.read_bytes()[:-1])
+    with pytest.raises(ValueError, match=r"records-000000.parquet: it has \d+ bytes instead of \d+"):
+        datasets.load_dataset(path)
+    shutil.copy(gears.path / "data" / first.name, first)
+    # Without its card it can be read, but is not all that was written.
+    (path / "README.md").unlink()
+    assert len(datasets.load_dataset(path)) == 24
+    assert datasets.verify_dataset(path) == {"README.md": "it is missing"}
+    manifest = path / "manifest.json"
+    manifest.write_text(manifest.read_text(encoding="utf-8").replace('"format_version": 2', '"format_version": 9'), encoding="utf-8")
+    with pytest.raises(ValueError, match="has the format 9; this version of Meshtone knows those up to 2"):
+        datasets.load_dataset(path)
+
+
+def test_a_data_set_of_an_earlier_version(gears: datasets.Dataset, tmp_path: Path) -> None:
+    path = tmp_path / "set"
+    shutil.copytree(gears.path, path)
+    manifest = gears.manifest
+    del manifest["sha256"], manifest["documents"]
+    manifest["format_version"] = 1
+    (path / "manifest.json").write_text(json.dumps(manifest, indent=2), encoding="utf-8")
+    with pytest.warns(UserWarning, match="was made by an earlier version: its hashes are of what was on the disk"):
+        assert len(datasets.load_dataset(path, verify=True)) == 24
+
+
+def test_no_record_at_all(tmp_path: Path) -> None:
+    plan = write_plan(tmp_path)
+    plan.write_text(PLAN.replace("[keep]", "[keep]\nsampling_rate_hz = 100.0"), encoding="utf-8")
+    with pytest.raises(ValueError, match="none of the plan's 24 records could be simulated; record 0: "):
+        datasets.generate_dataset(plan, tmp_path / "set")
+
+
+def test_another_program_in_the_same_directory(tmp_path: Path) -> None:
+    fcntl = pytest.importorskip("fcntl")
+    (tmp_path / "set").mkdir()
+    plan = write_plan(tmp_path)
+    # What a program holds as long as it makes a data set.
+    with (tmp_path / "set" / ".meshtone-part-1-1").open("w") as held:
+        fcntl.flock(held, fcntl.LOCK_EX)
+        with pytest.raises(BlockingIOError, match="another program is making a data set in"):
+            datasets.generate_dataset(plan, tmp_path / "set")
+    # Killed, it holds nothing any more.
+    assert datasets.generate_dataset(plan, tmp_path / "set").is_complete
+    assert not list((tmp_path / "set").glob(".meshtone-*"))
 
 
 def test_a_part_without_shards(tmp_path: Path) -> None:

@@ -48,17 +48,24 @@ impl Failure {
         Self { kind: Kind::Failed, message: message.into(), help: None, snippet: None }
     }
 
-    /// Something cannot be read or written: the user's input is wrong where a name or a permission stands in the way,
-    /// but not where the disk is full or broken.
-    pub fn of_file(error: ErrorKind, message: impl Into<String>) -> Self {
-        use ErrorKind::{
-            InvalidFilename, InvalidInput, IsADirectory, NotADirectory, NotFound, PermissionDenied,
-            ReadOnlyFilesystem,
-        };
+    /// Something cannot be read: the user's input is wrong where a name or a permission stands in the way, but not where the disk is
+    /// broken.
+    pub fn of_reading(error: ErrorKind, message: impl Into<String>) -> Self {
+        match error {
+            ErrorKind::PermissionDenied => Self::bad_input(message),
+            error => Self::of_writing(error, message),
+        }
+    }
+
+    /// Something cannot be written: the user's input is wrong where a name is, but not where the place is closed to the user, or
+    /// the disk full or broken.
+    pub fn of_writing(error: ErrorKind, message: impl Into<String>) -> Self {
+        use ErrorKind::{InvalidFilename, InvalidInput, IsADirectory, NotADirectory, NotFound};
 
         match error {
-            InvalidFilename | InvalidInput | IsADirectory | NotADirectory | NotFound | PermissionDenied
-            | ReadOnlyFilesystem => Self::bad_input(message),
+            InvalidFilename | InvalidInput | IsADirectory | NotADirectory | NotFound => {
+                Self::bad_input(message)
+            }
             _ => Self::failed(message),
         }
     }
@@ -91,7 +98,7 @@ impl From<ReadScenarioError> for Failure {
                     ErrorKind::IsADirectory => {
                         Self::bad_input(format!("{path} is a directory; must be a scenario file"))
                     }
-                    kind => Self::of_file(kind, format!("cannot read {path}: {source}")),
+                    kind => Self::of_reading(kind, format!("cannot read {path}: {source}")),
                 }
             }
             ReadScenarioError::NotText { .. } => Self::bad_input(error.to_string())
@@ -109,7 +116,7 @@ impl From<ReadScenarioError> for Failure {
 
 impl From<WriteFileError> for Failure {
     fn from(error: WriteFileError) -> Self {
-        Self::of_file(error.source.kind(), error.to_string())
+        Self::of_writing(error.source.kind(), error.to_string())
     }
 }
 
@@ -120,7 +127,7 @@ impl From<ReadResultsError> for Failure {
                 Self::bad_input(format!("there is no file {}", path.display()))
                     .with_help("name the directory that `meshtone simulate` wrote its results to")
             }
-            ReadResultsError::Unreadable { source, .. } => Self::of_file(source.kind(), error.to_string()),
+            ReadResultsError::Unreadable { source, .. } => Self::of_reading(source.kind(), error.to_string()),
             ReadResultsError::Foreign { .. } | ReadResultsError::Scenario { .. } => {
                 Self::bad_input(error.to_string())
                     .with_help("simulate again with this version: `meshtone simulate SCENARIO.toml -o DIR`")
@@ -141,9 +148,16 @@ impl From<DatasetError> for Failure {
             }
             DatasetError::Plan(error) => error.into(),
             DatasetError::Refused { problem, help } => Self::bad_input(problem).with_help(help),
-            DatasetError::File { source, .. } => Self::of_file(source.kind(), message).with_help(
+            DatasetError::File { doing: "read", source, .. } => Self::of_reading(source.kind(), message),
+            DatasetError::File { source, .. } => Self::of_writing(source.kind(), message).with_help(
                 "what is complete is kept: mend it and run the same command again to go on from there",
             ),
+            DatasetError::NoRecord { .. } => Self::bad_input(message).with_help(
+                "narrow what the plan varies, or add a constraint, so that records can be simulated",
+            ),
+            DatasetError::Busy { .. } => {
+                Self::failed(message).with_help("wait until it has ended, or name another directory with -o")
+            }
             DatasetError::Preview(_) | DatasetError::Stopped => Self::failed(message),
         }
     }

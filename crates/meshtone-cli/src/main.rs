@@ -1,11 +1,12 @@
 //! The program `meshtone`.
 //!
-//! Exit codes: 0, 1 (something failed, such as a full disk) or 2 (bad input: a scenario, an argument, a place that cannot
-//! be read or written).
+//! Exit codes: 0, 1 (something failed, such as a full disk, or may not be written) or 2 (bad input: a scenario, an argument, a name
+//! that leads nowhere, a file that cannot be read).
 
 mod check;
 mod commands;
 mod earlier_results;
+mod ending;
 mod failure;
 mod indicators;
 mod memory;
@@ -45,6 +46,7 @@ Exit codes: 0 all went well, 1 it could not be carried out, 2 the input is wrong
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    ending::leave_nothing_unfinished();
     match arguments.command.run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {

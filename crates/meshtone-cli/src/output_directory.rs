@@ -1,22 +1,23 @@
 //! The directory that a run writes to.
 
-use std::fs;
 use std::io::{Error, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use meshtone_io::atomic_file::{check_target, check_writable};
+use meshtone_io::own_file::{Claim, NewDirectory};
 
 use crate::earlier_results;
 use crate::failure::Failure;
 use crate::results::RESULTS;
 
-/// A directory that exists and can be written to. What had to be created for it is removed again unless it is
-/// kept.
+/// A directory that exists, can be written to, and is this program's alone. What had to be created for it is removed again, unless
+/// something is in it.
 #[derive(Debug)]
 pub struct OutputDirectory {
     path: PathBuf,
-    /// Innermost first.
-    created: Vec<PathBuf>,
+    // Given back before an empty directory can be removed.
+    _claim: Claim,
+    _created: Vec<NewDirectory>,
 }
 
 /// Where results of a file go unless the user says otherwise: its name without the ending and with `suffix`, in the
@@ -25,6 +26,18 @@ pub fn named_after(input: &Path, suffix: &str) -> Option<PathBuf> {
     let mut name = input.file_stem()?.to_os_string();
     name.push(suffix);
     Some(PathBuf::from(name))
+}
+
+/// Has a directory's results for this program alone.
+pub fn claim(directory: &Path) -> Result<Claim, Failure> {
+    let name = directory.display();
+    let claim = Claim::take(directory, "results").map_err(|error| {
+        Failure::of_writing(error.kind(), format!("cannot write results to the directory {name}: {error}"))
+    })?;
+    claim.ok_or_else(|| {
+        Failure::failed(format!("another program is writing results to the directory {name}"))
+            .with_help("wait until it has ended, or name another directory")
+    })
 }
 
 impl OutputDirectory {
@@ -38,39 +51,23 @@ impl OutputDirectory {
 
     /// The same for files of other names, for which nothing is put back.
     pub fn for_files(path: &Path, names: &[&str]) -> Result<Self, Failure> {
-        let missing = path.ancestors().filter(|part| !part.as_os_str().is_empty());
-        let created = missing.take_while(|part| !part.exists()).map(Path::to_path_buf).collect();
-        let directory = Self { path: path.to_path_buf(), created };
         let refuse = |error: Error| {
             let message = format!("cannot write results to the directory {}: {error}", path.display());
-            Failure::of_file(error.kind(), message)
+            Failure::of_writing(error.kind(), message)
                 .with_help("name another directory with -o, or change its permissions")
         };
         if path.exists() && !path.is_dir() {
             return Err(refuse(Error::new(ErrorKind::NotADirectory, "it is a file")));
         }
-        fs::create_dir_all(path).map_err(refuse)?;
+        let created = NewDirectory::create_all(path).map_err(refuse)?;
         check_writable(path).map_err(|error| refuse(error.source))?;
+        let claim = claim(path)?;
         names.iter().try_for_each(|name| check_target(&path.join(name)))?;
-        Ok(directory)
+        Ok(Self { path: path.to_path_buf(), _claim: claim, _created: created })
     }
 
     /// The directory.
     pub fn path(&self) -> &Path {
         &self.path
-    }
-
-    /// Keeps the directory.
-    pub fn keep(mut self) {
-        self.created.clear();
-    }
-}
-
-impl Drop for OutputDirectory {
-    fn drop(&mut self) {
-        for directory in &self.created {
-            // What is not empty stays.
-            let _ = fs::remove_dir(directory);
-        }
     }
 }

@@ -9,6 +9,7 @@ use meshtone::scenario::Scenario;
 use meshtone::sensor::Channels;
 use meshtone::{Simulation, Stages, Trace};
 use meshtone_io::atomic_file::{StagedFile, WriteFileError};
+use meshtone_io::own_file::undisturbed;
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::signals::write_signals;
 use meshtone_io::summary::Summary;
@@ -72,7 +73,7 @@ impl Results<'_> {
         };
         // The trace may lie elsewhere; it carries the run's identity, as every file does.
         trace.map(StagedFile::commit).transpose()?;
-        replace(directory, signals, panel, summary)?;
+        undisturbed(|| replace(directory, signals, panel, summary))?;
         failure.map_or(Ok(()), Err)
     }
 

@@ -50,6 +50,6 @@ fn check_trace(trace: &Path, results: &[PathBuf], read: &[&Path]) -> Result<(), 
     }
     check_target(trace).map_err(|error| {
         let message = format!("{named}: cannot be written: {}", error.source);
-        Failure::of_file(error.source.kind(), message).with_help(HELP)
+        Failure::of_writing(error.source.kind(), message).with_help(HELP)
     })
 }

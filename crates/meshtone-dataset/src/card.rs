@@ -1,23 +1,30 @@
 //! The data card: README.md.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use crate::finish::Contents;
+use crate::contents::Contents;
 use crate::manifest::PREVIEW;
 use crate::plan::{Class, Plan, PlanFile, Severity, kinds};
 use crate::shard::{Column, ColumnKind, Shards};
 use crate::words::counted;
 
 /// The data card's text.
-pub(crate) fn card(plan: &Plan, shards: Shards, contents: &Contents, columns: &[Column]) -> String {
+pub(crate) fn card(
+    plan: &Plan,
+    shards: Shards,
+    contents: &Contents,
+    units_of_split: &BTreeMap<String, u64>,
+    columns: &[Column],
+) -> String {
     let mut text = String::new();
     // Writing to a text cannot fail.
     let _ = head(&mut text, plan, contents);
-    let _ = counts(&mut text, plan, contents);
+    let _ = counts(&mut text, plan, contents, units_of_split);
     let _ = classes(&mut text, plan, contents);
     let _ = columns_table(&mut text, plan.content.keep.wheel.name(), columns, contents);
     let _ = files(&mut text, shards, contents);
-    let _ = loading(&mut text, columns);
+    let _ = loading(&mut text, shards, columns);
     text
 }
 
@@ -53,11 +60,15 @@ fn head(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Result
     )
 }
 
-fn counts(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Result {
+fn counts(
+    text: &mut String,
+    plan: &Plan,
+    contents: &Contents,
+    units_of_split: &BTreeMap<String, u64>,
+) -> std::fmt::Result {
     writeln!(text, "## What is in it\n")?;
     let splits: Vec<&str> = plan.content.splits.names();
-    let splits: Vec<&str> =
-        splits.into_iter().filter(|name| contents.units_of_split.contains_key(*name)).collect();
+    let splits: Vec<&str> = splits.into_iter().filter(|name| units_of_split.contains_key(*name)).collect();
     writeln!(text, "| class | {} | all |", splits.join(" | "))?;
     writeln!(text, "|---|{}---:|", "---:|".repeat(splits.len()))?;
     let count = |split: &str, label: &str| {
@@ -72,8 +83,7 @@ fn counts(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Resu
         let numbers = splits.iter().map(|split| count(split, &class.label)).collect();
         writeln!(text, "{}", row(&class.label, numbers))?;
     }
-    let units =
-        splits.iter().map(|split| contents.units_of_split.get(*split).copied().unwrap_or(0)).collect();
+    let units = splits.iter().map(|split| units_of_split.get(*split).copied().unwrap_or(0)).collect();
     writeln!(text, "{}\n", row("*units*", units))?;
     writeln!(
         text,
@@ -122,7 +132,7 @@ fn classes(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Res
                 crate::plan::Level::Unit => "unit",
                 crate::plan::Level::Record => "record",
             };
-            let [least, largest] = contents.ranges.get(&name).copied().unwrap_or([f64::NAN; 2]);
+            let [least, largest] = contents.seen.ranges.get(&name).copied().unwrap_or([f64::NAN; 2]);
             writeln!(text, "| `{name}` | `{key}` | {level} | {} | {} |", short(least), short(largest))?;
             seen.push(name);
         }
@@ -159,7 +169,7 @@ fn columns_table(
     writeln!(text, "## Columns\n\nOne row a record. Units and meanings stand in the files' metadata too.\n")?;
     writeln!(text, "| column | unit | meaning |\n|---|---|---|")?;
     for column in columns.iter().filter(|column| !matches!(column.kind, ColumnKind::Indicator(_))) {
-        let constant = contents.ranges.get(&column.name).filter(|[least, largest]| least == largest);
+        let constant = contents.seen.ranges.get(&column.name).filter(|[least, largest]| least == largest);
         let value = constant.map_or(String::new(), |[value, _]| format!(" (always {})", short(*value)));
         let kind = if column.kind.is_signal() { "; list of 32-bit numbers" } else { "" };
         writeln!(text, "| `{}` | {} | {}{kind}{value} |", column.name, column.unit, column.description)?;
@@ -180,7 +190,7 @@ fn columns_table(
 }
 
 fn files(text: &mut String, shards: Shards, contents: &Contents) -> std::fmt::Result {
-    let bytes: u64 = contents.files.iter().map(|file| file.bytes).sum();
+    let bytes: u64 = contents.files.values().map(|file| file.digest.bytes).sum();
     writeln!(
         text,
         "## Files\n\n{} in `data/`, {} each, {:.1} MB together. Records are in random order, so that every file \
@@ -191,8 +201,10 @@ fn files(text: &mut String, shards: Shards, contents: &Contents) -> std::fmt::Re
     )
 }
 
-fn loading(text: &mut String, columns: &[Column]) -> std::fmt::Result {
+fn loading(text: &mut String, shards: Shards, columns: &[Column]) -> std::fmt::Result {
     let signal = columns.iter().find(|column| column.kind.is_signal()).map_or("label", |column| &column.name);
+    let all = if shards.is_flat() { "data/*.parquet" } else { "data/*/*.parquet" };
+    let first = shards.name(0);
     writeln!(
         text,
         "## Loading
@@ -221,14 +233,14 @@ With polars:
 ```python
 import polars as pl
 
-lazy = pl.scan_parquet(\"data/*.parquet\")
+lazy = pl.scan_parquet(\"{all}\")
 train = lazy.filter(pl.col(\"split\") == \"train\").select(\"label\", \"severity\", \"{signal}\").collect()
 ```
 
 MATLAB:
 
 ```matlab
-records = parquetread(\"data/records-000000.parquet\");
+records = parquetread(\"{first}\");
 train = records(records.split == \"train\", :);
 first = train.{signal}{{1}};
 ```
@@ -241,7 +253,7 @@ use arrow::array::AsArray;
 use arrow::datatypes::Float32Type;
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 
-let file = File::open(\"data/records-000000.parquet\")?;
+let file = File::open(\"{first}\")?;
 for batch in ParquetRecordBatchReaderBuilder::try_new(file)?.build()? {{
     let batch = batch?;
     let signals = batch.column_by_name(\"{signal}\").unwrap().as_list::<i32>();

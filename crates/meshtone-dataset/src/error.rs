@@ -4,6 +4,8 @@ use std::io;
 
 use meshtone_io::scenario_file::ReadScenarioError;
 
+use crate::shard::FailedRecord;
+
 /// A data set that could not be made, or not to its end.
 #[derive(Debug, thiserror::Error)]
 pub enum DatasetError {
@@ -27,6 +29,22 @@ pub enum DatasetError {
         name: String,
         /// Why.
         source: io::Error,
+    },
+    /// Another program does the same in the same place.
+    #[error("another program {doing} {place}")]
+    Busy {
+        /// What it does.
+        doing: String,
+        /// Where.
+        place: String,
+    },
+    /// No record of the plan could be simulated.
+    #[error("none of the plan's {records} records could be simulated; record {}: {}", first.record, first.reason)]
+    NoRecord {
+        /// Number of the records.
+        records: u64,
+        /// One of those that failed.
+        first: FailedRecord,
     },
     /// The preview cannot be drawn.
     #[error("cannot draw the preview: {0}")]

@@ -1,21 +1,27 @@
 //! Generating a data set, from the start or from where it was stopped.
 
 use std::collections::{HashMap, VecDeque};
-use std::io;
+use std::fs::File;
+use std::io::{self, Seek, SeekFrom};
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use meshtone::batch::{Control, simulate_many};
 use meshtone::scenario::Scenario;
+use rayon::prelude::*;
 
+use crate::contents::{Contents, Looked};
+use crate::digest::Hashing;
 use crate::draw::{DrawnRecord, Sampler};
 use crate::error::DatasetError;
 use crate::finish;
-use crate::manifest::{self, Begun};
-use crate::plan::Plan;
+use crate::manifest::{self, Begun, CARD, PREVIEW};
+use crate::part_list::Listing;
+use crate::plan::{Plan, PlanFile};
 use crate::record::{KeepRecords, Role};
-use crate::shard::{self, Column, FailedRecord, Item, ShardMetadata, Shards, Wanted};
+use crate::shard::{self, Column, FailedRecord, Item, ShardMetadata, Shards};
 use crate::store::Destination;
 
 /// Records that may wait to be written.
@@ -64,8 +70,19 @@ pub struct Generated {
     pub failures: Vec<FailedRecord>,
     /// Records that failed before, of the shards that were there already.
     pub earlier_failures: Vec<FailedRecord>,
+    /// Shards that were there, but not as they were written, and have been made again.
+    pub remade: Vec<Remade>,
     /// Whether the data set is complete, with manifest, data card and preview.
     pub complete: bool,
+}
+
+/// A shard that was not as it was written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Remade {
+    /// Its file, from the data set's directory.
+    pub file: String,
+    /// What was wrong with it.
+    pub reason: String,
 }
 
 impl Generated {
@@ -85,11 +102,13 @@ impl Generated {
 /// * `part` - which shards
 /// * `control` - progress and cancellation
 ///
-/// Every shard that is there is kept. Where all are, the manifest is completed, and data card and preview are written.
+/// Every shard that is there and has the SHA-256 that was taken while it was written is kept; others are made again. Where all are
+/// there, the manifest is completed, and data card and preview are written.
 ///
 /// # Errors
-/// A place with other files, or with a data set of another plan; what cannot be written, as to a full disk: what is complete
-/// stays, and the next run goes on from there.
+/// A place with other files, or with a data set of another plan; another program that makes the same part there; what cannot be
+/// written, as to a full disk: what is complete stays, and the next run goes on from there; a plan of which no record can be
+/// simulated.
 ///
 /// ```
 /// use std::path::Path;
@@ -138,49 +157,96 @@ pub fn generate(
     }
     let sampler = Sampler::new(&plan.content).map_err(|error| manifest::plan_error(plan, error))?;
     let shards = Shards::new(plan, &sampler);
-    let begun = manifest::begin(plan, to)?;
-    let mut generated = Generated {
-        kept_shards: 0,
-        written_shards: 0,
-        written_records: 0,
-        failures: Vec::new(),
-        earlier_failures: Vec::new(),
-        complete: true,
-    };
-    let there = manifest::names(to)?;
-    let hash = plan.hash();
-    // The failures of a shard that is there; none where it is not.
-    let failures_there = |shard: u64| {
-        let name = Shards::name(shard);
-        let read = there.contains(&name).then(|| to.shard(&name, Wanted::Nothing)).flatten()?;
-        read.metadata.is_of(&hash, &shards.range(shard)).then_some(read.metadata.failures)
-    };
+    let complete = manifest::look(plan, shards, to)? == Begun::Complete;
     // What is called complete is looked at all the same: somebody may have lost or damaged a file since.
-    if begun == Begun::Complete
-        && let Some(failures) = (0..shards.count()).map(failures_there).collect::<Option<Vec<_>>>()
+    let there = if complete { Some(There::look(plan, shards, to, part)?) } else { None };
+    if let Some(there) = &there
+        && there.missing.is_empty()
+        && has_documents(plan, to)?
     {
-        generated.kept_shards = shards.count();
-        generated.earlier_failures = failures.concat();
-        return Ok(generated);
+        return Ok(there.generated());
     }
-    // A part leaves them alone: another part may be writing.
-    if part == Part::WHOLE {
-        to.remove_leftovers();
+    if !complete {
+        manifest::begin(plan, to)?;
     }
-    let mut missing = Vec::new();
-    for shard in (0..shards.count()).filter(|&shard| part.has(shard)) {
-        match failures_there(shard) {
-            Some(failures) => {
-                generated.kept_shards += 1;
-                generated.earlier_failures.extend(failures);
-            }
-            None => missing.push(shard),
-        }
-    }
-    let run = Run { plan, sampler: &sampler, shards, to, control };
-    run.generate(&missing, &mut generated)?;
+    let (number, of) = (part.number, part.of);
+    let _claimed = to.claim(
+        &format!("part-{number}-{of}"),
+        &if part == Part::WHOLE {
+            "is making a data set in".to_owned()
+        } else {
+            format!("is making part {number}/{of} in")
+        },
+    )?;
+    to.remove_leftovers();
+    let there = there.map_or_else(|| There::look(plan, shards, to, part), Ok)?;
+    let mut generated = there.generated();
+    let run = Run { plan, sampler: &sampler, shards, to, part, control };
+    run.generate(&there.missing, &mut generated)?;
     generated.complete = finish::finish_if_complete(plan, shards, to)?;
     Ok(generated)
+}
+
+/// Whether all files beside the shards and the manifest are there.
+fn has_documents(plan: &Plan, to: &Destination) -> Result<bool, DatasetError> {
+    let files = to.files()?;
+    let copies: Vec<&str> = plan.files.iter().map(|file: &PlanFile| file.name).collect();
+    Ok([CARD].into_iter().chain(PREVIEW).chain(copies).all(|name| files.contains_key(name)))
+}
+
+/// What is there of a part.
+struct There {
+    kept: u64,
+    missing: Vec<u64>,
+    remade: Vec<Remade>,
+    failures: Vec<FailedRecord>,
+}
+
+impl There {
+    /// Reads all shards of a part that are there and compares them with what is known of them.
+    fn look(plan: &Plan, shards: Shards, to: &Destination, part: Part) -> Result<Self, DatasetError> {
+        let files = to.files()?;
+        let mut contents = Contents::default();
+        contents.add_place(plan, to, &files, manifest::read(to)?)?;
+        let own = (0..shards.count()).into_par_iter().filter(|&shard| part.has(shard));
+        let looked = own.map(|shard| {
+            let name = shards.name(shard);
+            let objection = files.get(&name).map(|&size| {
+                contents.objection(shard, size, || {
+                    to.digest(&name).map_err(|error| io::Error::other(error.to_string()))
+                })
+            });
+            (shard, objection)
+        });
+        let mut there = Self { kept: 0, missing: Vec::new(), remade: Vec::new(), failures: Vec::new() };
+        for (shard, objection) in looked.collect::<Vec<_>>() {
+            if let Some(None) = objection {
+                there.kept += 1;
+                let failures = contents.failures.range(shards.range(shard));
+                there.failures.extend(
+                    failures.map(|(&record, reason)| FailedRecord { record, reason: reason.clone() }),
+                );
+                continue;
+            }
+            there.missing.push(shard);
+            let remade = objection.flatten().map(|reason| Remade { file: shards.name(shard), reason });
+            there.remade.extend(remade);
+        }
+        Ok(there)
+    }
+
+    /// What a run has done that has nothing to do.
+    fn generated(&self) -> Generated {
+        Generated {
+            kept_shards: self.kept,
+            written_shards: 0,
+            written_records: 0,
+            failures: Vec::new(),
+            earlier_failures: self.failures.clone(),
+            remade: self.remade.clone(),
+            complete: true,
+        }
+    }
 }
 
 /// One run.
@@ -189,6 +255,7 @@ struct Run<'a> {
     sampler: &'a Sampler<'a>,
     shards: Shards,
     to: &'a Destination,
+    part: Part,
     control: &'a GenerateControl<'a>,
 }
 
@@ -216,18 +283,23 @@ impl Run<'_> {
             self.simulate(missing, sender, &stop);
             writer.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
         });
-        let metadata = written?;
-        generated.written_shards = metadata.len() as u64;
+        generated.failures = written?;
+        generated.written_shards = missing.len() as u64;
         generated.written_records = records;
-        generated.failures = metadata.into_iter().flat_map(|shard| shard.failures).collect();
         Ok(())
     }
 
     /// Simulates all records of some shards and sends them on, in their order.
     fn simulate(&self, missing: &[u64], sender: SyncSender<Item>, stop: &AtomicBool) {
         let asked = Arc::new(Mutex::new(Asked::default()));
-        let indices: VecDeque<u64> = missing.iter().flat_map(|&shard| self.shards.range(shard)).collect();
-        let source = Source { run: self, indices, ready: VecDeque::new(), asked: asked.clone(), stop };
+        let source = Source {
+            run: self,
+            shards: missing.iter(),
+            records: 0..0,
+            ready: VecDeque::new(),
+            asked: asked.clone(),
+            stop,
+        };
         let role = |number: usize| lock(&asked).roles.get(&number).map(|(role, _)| role.clone());
         let keep = KeepRecords { content: &self.plan.content, role };
         // Nobody listens any more where writing has failed.
@@ -257,60 +329,85 @@ impl Run<'_> {
         rest.into_iter().for_each(|failed| send(Item::Failed(failed)));
     }
 
-    /// Writes shards as their records arrive.
+    /// Writes shards as their records arrive. Returns the records that failed.
     fn write(
         &self,
         missing: &[u64],
         records: u64,
         items: Receiver<Item>,
         stop: &AtomicBool,
-    ) -> Result<Vec<ShardMetadata>, DatasetError> {
+    ) -> Result<Vec<FailedRecord>, DatasetError> {
         // The receiver ends with this function, so that nobody waits to send.
         let items = items;
         let columns = shard::columns(self.plan);
+        let looked = Looked::new(&columns, self.shards);
+        let mut listing = Listing::new(self.to, self.plan.hash().to_string(), self.part);
         let done = AtomicU64::new(0);
-        let result =
-            missing.iter().map(|&shard| self.write_shard(shard, &columns, &items, (&done, records), stop));
-        let result: Result<Vec<_>, _> = result.collect();
-        if result.is_err() {
-            stop.store(true, Ordering::Relaxed);
+        let mut failures = Vec::new();
+        for &shard in missing {
+            let next = || self.next(&items, (&done, records), stop);
+            match self.write_shard(shard, &columns, &looked, &mut listing, next) {
+                Ok(of_shard) => failures.extend(of_shard),
+                Err(error) => {
+                    stop.store(true, Ordering::Relaxed);
+                    return Err(error);
+                }
+            }
         }
-        result
+        Ok(failures)
     }
 
+    /// The next item; none where generating has stopped.
+    fn next(
+        &self,
+        items: &Receiver<Item>,
+        (done, records): (&AtomicU64, u64),
+        stop: &AtomicBool,
+    ) -> Option<Item> {
+        if self.control.cancelled.load(Ordering::Relaxed) {
+            stop.store(true, Ordering::Relaxed);
+            return None;
+        }
+        let item = items.recv().ok()?;
+        if !matches!(item, Item::HealthyTwin(_)) {
+            (self.control.progress)(done.fetch_add(1, Ordering::Relaxed) + 1, records);
+        }
+        Some(item)
+    }
+
+    /// Writes and lists a shard. Returns its records that failed.
     fn write_shard(
         &self,
         shard: u64,
         columns: &[Column],
-        items: &Receiver<Item>,
-        (done, records): (&AtomicU64, u64),
-        stop: &AtomicBool,
-    ) -> Result<ShardMetadata, DatasetError> {
+        looked: &Looked<'_>,
+        listing: &mut Listing<'_>,
+        next: impl FnMut() -> Option<Item>,
+    ) -> Result<Vec<FailedRecord>, DatasetError> {
         let metadata = ShardMetadata {
             plan: self.plan.hash().to_string(),
             records: self.shards.range(shard),
             failures: Vec::new(),
         };
-        let next = || {
-            if self.control.cancelled.load(Ordering::Relaxed) {
-                stop.store(true, Ordering::Relaxed);
-                return None;
-            }
-            let item = items.recv().ok()?;
-            if !matches!(item, Item::HealthyTwin(_)) {
-                (self.control.progress)(done.fetch_add(1, Ordering::Relaxed) + 1, records);
-            }
-            Some(item)
-        };
         let content = &self.plan.content;
-        let written =
-            self.to.write(&Shards::name(shard), |file| shard::write(file, content, columns, metadata, next));
+        let written = self.to.write(&self.shards.name(shard), |file: &mut File| {
+            let mut hashing = Hashing::new(&mut *file);
+            shard::write(&mut hashing, content, columns, metadata, next)?;
+            let digest = hashing.digest();
+            let (of_shard, seen) =
+                looked.shard(shard, shard::read(file.try_clone()?, looked.wanted())?, digest);
+            // Reading has moved the place where the file would be written on.
+            file.seek(SeekFrom::End(0))?;
+            let failures = of_shard.failures.clone();
+            // Before the shard has its name, so that none is there that is not listed.
+            Ok(listing.add(shard, of_shard, seen).map(|()| failures))
+        });
         written.map_err(|error| match error {
             DatasetError::File { source, .. } if source.kind() == io::ErrorKind::Interrupted => {
                 DatasetError::Stopped
             }
             error => error,
-        })
+        })?
     }
 }
 
@@ -322,7 +419,10 @@ fn lock(asked: &Mutex<Asked>) -> std::sync::MutexGuard<'_, Asked> {
 /// Scenarios of records, one after the other; a faulty record that is enhanced has its healthy twin before it.
 struct Source<'a> {
     run: &'a Run<'a>,
-    indices: VecDeque<u64>,
+    /// Those still to be begun.
+    shards: std::slice::Iter<'a, u64>,
+    /// Of the shard that was begun last, those still to be drawn.
+    records: Range<u64>,
     ready: VecDeque<Scenario>,
     asked: Arc<Mutex<Asked>>,
     stop: &'a AtomicBool,
@@ -333,7 +433,10 @@ impl Iterator for Source<'_> {
 
     fn next(&mut self) -> Option<Scenario> {
         while self.ready.is_empty() && !self.stop.load(Ordering::Relaxed) {
-            let index = self.indices.pop_front()?;
+            let Some(index) = self.records.next() else {
+                self.records = self.run.shards.range(*self.shards.next()?);
+                continue;
+            };
             match self.draw(index) {
                 Ok((record, scenario)) => self.ask(record, scenario),
                 Err(reason) => lock(&self.asked).failed.push(FailedRecord { record: index, reason }),

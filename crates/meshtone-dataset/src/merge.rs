@@ -1,23 +1,32 @@
 //! Putting parts together that were made apart.
 
+use std::collections::BTreeMap;
+
+use crate::contents::{Contents, ShardFile};
 use crate::draw::Sampler;
 use crate::error::DatasetError;
 use crate::finish;
 use crate::generate::Generated;
 use crate::manifest::{self, Begun, MANIFEST};
 use crate::plan::{Plan, PlanFile};
-use crate::shard::{Shards, Wanted};
+use crate::shard::{FailedRecord, Shards};
 use crate::store::Destination;
+use crate::verify::Check;
 
 /// Merges the parts of a data set.
 ///
 /// # Arguments
 /// * `parts` - where they are; all of the same plan
 /// * `to` - where the whole is written to; it may be one of them
+/// * `check` - how what was made there is looked at
+///
+/// What is copied is compared with the SHA-256 that was taken while it was made. All else is known from the manifests and lists of
+/// the parts: of shards that were made in the whole's own place, only the sizes are looked at unless their bytes are asked for.
 ///
 /// # Errors
-/// A place without a data set; parts of different plans or versions; shards that no part has; what cannot be read or written.
-pub fn merge(parts: &[Destination], to: &Destination) -> Result<Generated, DatasetError> {
+/// A place without a data set; parts of different plans or versions; shards that no part has, or none as it was written; another
+/// program that merges there; what cannot be read or written.
+pub fn merge(parts: &[Destination], to: &Destination, check: Check) -> Result<Generated, DatasetError> {
     let Some(first) = parts.first() else {
         return Err(DatasetError::refused(
             "there are no parts to merge",
@@ -25,69 +34,152 @@ pub fn merge(parts: &[Destination], to: &Destination) -> Result<Generated, Datas
         ));
     };
     let plan = plan_of(first)?;
-    for part in parts {
-        if part.text(MANIFEST)?.is_none() {
-            let help = "name the directories that `meshtone dataset` has written to";
-            return Err(DatasetError::refused(format!("{part} is no data set: it has no {MANIFEST}"), help));
-        }
-        manifest::look(&plan, part)?;
-    }
     let sampler = Sampler::new(&plan.content).map_err(|error| manifest::plan_error(&plan, error))?;
     let shards = Shards::new(&plan, &sampler);
-    let hash = plan.hash();
-    // The failures of a shard that a place has; none where it has it not.
-    let failures = |place: &Destination, shard: u64| {
-        let read = place.shard(&Shards::name(shard), Wanted::Nothing)?;
-        read.metadata.is_of(&hash, &shards.range(shard)).then_some(read.metadata.failures)
-    };
-    let mut sources = Vec::new();
-    let mut missing = Vec::new();
-    let mut failed = Vec::new();
-    for shard in 0..shards.count() {
-        match parts.iter().find_map(|part| Some((part, failures(part, shard)?))) {
-            Some((part, of_shard)) => {
-                sources.push((shard, part));
-                failed.extend(of_shard);
-            }
-            None => missing.push(shard),
-        }
+    let mut contents = Contents::default();
+    let mut places = Vec::with_capacity(parts.len());
+    for part in parts {
+        places.push(Place::read(part, &plan, shards, &mut contents)?);
     }
-    if let Some(shard) = missing.first() {
-        let (count, all) = (missing.len(), shards.count());
-        let problem = format!(
-            "{count} of {all} shards are in none of the parts; the first is {}",
-            Shards::name(*shard)
-        );
-        return Err(DatasetError::refused(
-            problem,
-            "make them: run `meshtone dataset PLAN.toml -o DIR --part I/N` again",
-        ));
+    let nowhere = |shard: &u64| !places.iter().any(|place| place.shards.contains_key(shard));
+    let missing: Vec<u64> = (0..shards.count()).filter(nowhere).collect();
+    if let Some(&shard) = missing.first() {
+        return Err(no_part_has(shard, missing.len(), shards, &places));
     }
+    let failures = contents.failures.iter();
+    let failures = failures.map(|(&record, reason)| FailedRecord { record, reason: reason.clone() });
     let mut merged = Generated {
         kept_shards: 0,
         written_shards: 0,
         written_records: 0,
         failures: Vec::new(),
-        earlier_failures: failed,
+        earlier_failures: failures.collect(),
+        remade: Vec::new(),
         complete: true,
     };
-    if manifest::begin(&plan, to)? == Begun::Complete {
-        merged.kept_shards = shards.count();
-        to.remove_leftovers();
-        return Ok(merged);
+    let begun = manifest::look(&plan, shards, to)?;
+    if begun == Begun::Incomplete {
+        manifest::begin(&plan, to)?;
     }
-    for (shard, part) in sources {
-        if failures(to, shard).is_some() {
-            merged.kept_shards += 1;
-        } else {
-            to.take_over(part, &Shards::name(shard))?;
-            merged.written_shards += 1;
-            merged.written_records += shards.range(shard).count() as u64;
+    let _claimed = to.claim("merge", "is merging parts in")?;
+    to.remove_leftovers();
+    let target = Target::read(to, &plan, check)?;
+    for shard in 0..shards.count() {
+        let name = shards.name(shard);
+        let of_parts: Vec<(&Destination, ShardFile)> =
+            places.iter().filter_map(|place| Some((place.at, *place.shards.get(&shard)?))).collect();
+        let file = match target.has(shard, &name, &of_parts)? {
+            Some(file) => {
+                merged.kept_shards += 1;
+                file
+            }
+            None => {
+                merged.written_shards += 1;
+                merged.written_records += shards.range(shard).count() as u64;
+                take_over(&name, &of_parts, to)?
+            }
+        };
+        contents.choose(shard, file);
+    }
+    if begun == Begun::Incomplete || merged.written_shards > 0 {
+        finish::finish(&plan, shards, to, contents)?;
+    }
+    Ok(merged)
+}
+
+/// Copies a shard from the first part in which it is as it was written.
+fn take_over(
+    name: &str,
+    of_parts: &[(&Destination, ShardFile)],
+    to: &Destination,
+) -> Result<ShardFile, DatasetError> {
+    for (at, file) in of_parts {
+        // In the same place it has been looked at.
+        if at.to_string() != to.to_string() && to.take_over(at, name, &file.digest)? {
+            return Ok(*file);
         }
     }
-    merged.complete = finish::finish_if_complete(&plan, shards, to)?;
-    to.remove_leftovers();
-    Ok(merged)
+    let places: Vec<String> = of_parts.iter().map(|(at, _)| at.to_string()).collect();
+    Err(DatasetError::refused(
+        format!(
+            "{name} is damaged in {}: its SHA-256 is not that of what was written",
+            places.join(" and in ")
+        ),
+        "make it again: run `meshtone dataset PLAN.toml -o DIR --part I/N` there",
+    ))
+}
+
+/// Where a part is, and what is there.
+struct Place<'p> {
+    at: &'p Destination,
+    /// Those that are there with the sizes that are listed.
+    shards: BTreeMap<u64, ShardFile>,
+    /// Others that are there.
+    doubtful: Vec<u64>,
+}
+
+impl<'p> Place<'p> {
+    fn read(
+        at: &'p Destination,
+        plan: &Plan,
+        shards: Shards,
+        contents: &mut Contents,
+    ) -> Result<Self, DatasetError> {
+        let Some(manifest) = manifest::read(at)? else {
+            let help = "name the directories that `meshtone dataset` has written to";
+            return Err(DatasetError::refused(format!("{at} is no data set: it has no {MANIFEST}"), help));
+        };
+        manifest::look(plan, shards, at)?;
+        let files = at.files()?;
+        let mut listed = contents.add_place(plan, at, &files, Some(manifest))?;
+        listed.retain(|&shard, file| files.get(&shards.name(shard)) == Some(&file.digest.bytes));
+        let there = files.keys().filter_map(|name| shards.number(name));
+        let doubtful = there.filter(|shard| !listed.contains_key(shard)).collect();
+        Ok(Self { at, shards: listed, doubtful })
+    }
+}
+
+/// The place of the whole, and what is there.
+struct Target<'t> {
+    at: &'t Destination,
+    files: BTreeMap<String, u64>,
+    /// Those that were made there.
+    listed: BTreeMap<u64, ShardFile>,
+    check: Check,
+}
+
+impl<'t> Target<'t> {
+    fn read(at: &'t Destination, plan: &Plan, check: Check) -> Result<Self, DatasetError> {
+        let files = at.files()?;
+        let listed = Contents::default().add_place(plan, at, &files, manifest::read(at)?)?;
+        Ok(Self { at, files, listed, check })
+    }
+
+    /// The shard that is there already, as it was written; what is not listed there may be of a merge that was stopped.
+    fn has(
+        &self,
+        shard: u64,
+        name: &str,
+        of_parts: &[(&Destination, ShardFile)],
+    ) -> Result<Option<ShardFile>, DatasetError> {
+        let Some(&size) = self.files.get(name) else { return Ok(None) };
+        let own = self.listed.get(&shard).filter(|own| own.digest.bytes == size).copied();
+        if own.is_some() && self.check == Check::Sizes {
+            return Ok(own);
+        }
+        let digest = self.at.digest(name)?;
+        let mut known = own.into_iter().chain(of_parts.iter().map(|(_, file)| *file));
+        Ok(known.find(|file| file.digest == digest))
+    }
+}
+
+fn no_part_has(shard: u64, count: usize, shards: Shards, places: &[Place<'_>]) -> DatasetError {
+    let (all, name) = (shards.count(), shards.name(shard));
+    let mut problem = format!("{count} of {all} shards are in none of the parts; the first is {name}");
+    if let Some(place) = places.iter().find(|place| place.doubtful.contains(&shard)) {
+        problem += &format!(" (that of {} is of another size than listed, or not listed)", place.at);
+    }
+    DatasetError::refused(problem, "make them: run `meshtone dataset PLAN.toml -o DIR --part I/N` again")
 }
 
 /// The plan that a data set was made by, read from the copies beside its data.
@@ -108,4 +200,96 @@ fn plan_of(place: &Destination) -> Result<Plan, DatasetError> {
         ));
     }
     Ok(Plan::read_copy(&path)?)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use std::fs::{self, File};
+    use std::time::Instant;
+
+    use super::*;
+    use crate::contents::{Counts, ShardContents};
+    use crate::digest::Digest;
+    use crate::generate::Part;
+    use crate::part_list::Listing;
+    use crate::verify::verify;
+
+    const PLAN: &str = r#"
+        records = 100
+        units = 4
+        [scenario.gears]
+        module_mm = 3.0
+        pinion_teeth = 20
+        gear_teeth = 40
+        face_width_mm = 15.0
+        [scenario.operation]
+        pinion_speed_hz = 40.0
+        brake_torque_nm = 10.0
+        [scenario.quality]
+        din_grade = 7
+        [[class]]
+        label = "healthy"
+        [keep]
+        records_per_shard = 100
+    "#;
+
+    /// (MB) The most memory that this program has had.
+    fn peak_mb() -> f64 {
+        let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+        let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:")?.trim().strip_suffix(" kB"));
+        peak.map_or(f64::NAN, |kilobytes| kilobytes.trim().parse::<f64>().unwrap() / 1e3)
+    }
+
+    /// Parts of very many shards that were made in one place. Only their names, sizes and lists are there: merging reads no data.
+    ///
+    /// `MESHTONE_SHARDS=1000000 cargo test --release -p meshtone-dataset very_many -- --nocapture` prints time and memory.
+    #[test]
+    fn very_many_shards_are_merged_without_being_read() {
+        let shards = std::env::var("MESHTONE_SHARDS").map_or(3_000, |shards| shards.parse().unwrap());
+        let text = PLAN.replacen("records = 100", &format!("records = {}", 100 * shards), 1);
+        let plan = Plan::read_text(text, std::path::Path::new("plan.toml")).unwrap();
+        let all = Shards { records: plan.records(), records_per_shard: 100 };
+        let directory = tempfile::tempdir().unwrap();
+        let to = Destination::directory(directory.path());
+        manifest::begin(&plan, &to).unwrap();
+        let start = Instant::now();
+        for number in 1..=64 {
+            let part = Part { number, of: 64 };
+            let mut listing = Listing::new(&to, plan.hash().to_string(), part);
+            let made = (0..shards).filter(|&shard| part.has(shard)).map(|shard| {
+                let name = all.name(shard);
+                let digest = Digest { bytes: 1000 + shard % 7, ..Digest::of(name.as_bytes()) };
+                let path = directory.path().join(&name);
+                fs::create_dir_all(path.parent().unwrap()).unwrap();
+                File::create(path).unwrap().set_len(digest.bytes).unwrap();
+                let counts = Counts::from([(("train".to_owned(), "healthy".to_owned()), 100)]);
+                (shard, ShardContents { file: ShardFile { digest, rows: 100 }, counts, failures: Vec::new() })
+            });
+            listing.add_all(made).unwrap();
+        }
+        println!("{shards} shards listed in {:.1} s", start.elapsed().as_secs_f64());
+        let start = Instant::now();
+        let merged = merge(&[to.clone()], &to, Check::Sizes).unwrap();
+        assert_eq!((merged.kept_shards, merged.written_shards, merged.complete), (shards, 0, true));
+        println!("merged in {:.1} s, {:.0} MB at most", start.elapsed().as_secs_f64(), peak_mb());
+        let start = Instant::now();
+        let found = verify(&to, Check::Sizes).unwrap();
+        assert!(found.is_good() && found.complete && found.rows == 100 * shards, "{:?}", found.problems);
+        println!(
+            "names, sizes and counts in {:.1} s, {:.0} MB at most",
+            start.elapsed().as_secs_f64(),
+            peak_mb()
+        );
+        // Names sort as the shards' numbers do, and no folder has more than a thousand.
+        assert!(
+            found.shards.is_sorted()
+                && found.shards.iter().map(|name| all.number(name)).eq((0..shards).map(Some))
+        );
+        let folders =
+            fs::read_dir(directory.path().join("data")).unwrap().map(|folder| folder.unwrap().path());
+        assert!(folders.into_iter().all(|folder| fs::read_dir(folder).unwrap().count() <= 1000));
+        assert!(!directory.path().join("parts").exists());
+    }
 }

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use tempfile::NamedTempFile;
+use crate::own_file::{self, Unnamed};
 
 /// A file that could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -49,11 +49,12 @@ pub fn write_atomically(
 ///
 /// Several files that belong together are all staged first and then committed, one right after the other, so
 /// that hardly any moment is left in which only some of them are new. Dropped without being committed, it
-/// disappears; where the program is killed, it stays behind under a name that starts with `.meshtone-`.
+/// disappears; where the program is killed, it stays behind until another program
+/// [clears up](crate::own_file::remove_leftovers).
 #[derive(Debug)]
 #[must_use = "a staged file disappears unless it is committed"]
 pub struct StagedFile {
-    temporary: NamedTempFile,
+    temporary: Unnamed,
     path: PathBuf,
 }
 
@@ -83,8 +84,7 @@ impl StagedFile {
     /// The file cannot be renamed; the one that had the name is then still there.
     pub fn commit(self) -> Result<(), WriteFileError> {
         let Self { temporary, path } = self;
-        temporary.persist(&path).map_err(|error| WriteFileError { path, source: error.error })?;
-        Ok(())
+        temporary.name(&path).map_err(|source| WriteFileError { path, source })
     }
 
     /// Gives the file its name, unless another file has it.
@@ -93,8 +93,7 @@ impl StagedFile {
     /// There is a file of that name (`AlreadyExists`), or the file cannot be renamed.
     pub fn commit_new(self) -> Result<(), WriteFileError> {
         let Self { temporary, path } = self;
-        temporary.persist_noclobber(&path).map_err(|error| WriteFileError { path, source: error.error })?;
-        Ok(())
+        temporary.name_new(&path).map_err(|source| WriteFileError { path, source })
     }
 }
 
@@ -137,16 +136,16 @@ pub fn check_writable(directory: &Path) -> Result<(), WriteFileError> {
     }
 }
 
-fn write_beside(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<NamedTempFile> {
+fn write_beside(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<Unnamed> {
     let mut temporary = temporary_beside(path)?;
-    write(temporary.as_file_mut())?;
+    write(temporary.file())?;
     // Without this a power failure after the rename could leave an empty file under the name.
-    temporary.as_file().sync_all()?;
+    temporary.file().sync_all()?;
     Ok(temporary)
 }
 
 /// A temporary file that can take the name `path`.
-fn temporary_beside(path: &Path) -> io::Result<NamedTempFile> {
+fn temporary_beside(path: &Path) -> io::Result<Unnamed> {
     use io::ErrorKind::{InvalidInput, IsADirectory};
 
     match path.metadata() {
@@ -162,11 +161,11 @@ fn temporary_beside(path: &Path) -> io::Result<NamedTempFile> {
     temporary_in(path.parent().unwrap_or(Path::new("")))
 }
 
-fn temporary_in(directory: &Path) -> io::Result<NamedTempFile> {
+fn temporary_in(directory: &Path) -> io::Result<Unnamed> {
     // The current directory is an empty path as a file's parent.
     let directory = if directory.as_os_str().is_empty() { Path::new(".") } else { directory };
-    builder().tempfile_in(directory).map_err(|error| match directory.is_dir() {
-        true => io::Error::new(error.kind(), without_temporary_name(&error)),
+    Unnamed::begin(directory).map_err(|error| match directory.is_dir() {
+        true => io::Error::new(own_file::refusal(&error), without_temporary_name(&error)),
         false => {
             let problem = format!("there is no directory {}", directory.display());
             io::Error::new(io::ErrorKind::NotFound, problem)
@@ -178,22 +177,4 @@ fn temporary_in(directory: &Path) -> io::Result<NamedTempFile> {
 fn without_temporary_name(error: &io::Error) -> String {
     let cause = error.get_ref().and_then(|wrapped| wrapped.source());
     cause.map_or_else(|| error.to_string(), ToString::to_string)
-}
-
-/// Temporary files are private by default; a result is to have the permissions of any new file.
-#[cfg(unix)]
-fn builder() -> tempfile::Builder<'static, 'static> {
-    use std::fs::Permissions;
-    use std::os::unix::fs::PermissionsExt;
-
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".meshtone-").permissions(Permissions::from_mode(0o666));
-    builder
-}
-
-#[cfg(not(unix))]
-fn builder() -> tempfile::Builder<'static, 'static> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".meshtone-");
-    builder
 }

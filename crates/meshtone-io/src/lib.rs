@@ -7,6 +7,7 @@ pub mod channel_name;
 pub mod experiment;
 pub mod indicators;
 mod npz;
+pub mod own_file;
 mod read_results;
 pub mod recording;
 pub mod run_identity;

@@ -1,5 +1,6 @@
 //! Data sets.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -8,8 +9,9 @@ use meshtone_dataset::generate::{self, GenerateControl, Part};
 use meshtone_dataset::merge::merge;
 use meshtone_dataset::plan::{Plan, template};
 use meshtone_dataset::store::Destination;
+use meshtone_dataset::verify::{Check, verify};
 use pyo3::PyErr;
-use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyBlockingIOError, PyKeyboardInterrupt, PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::error::{read_error, value_error};
@@ -27,7 +29,7 @@ pub fn check_plan(py: Python<'_>, plan: PathBuf) -> PyResult<()> {
     py.detach(|| Plan::read(&plan)).map(drop).map_err(|error| read_error(&plan, &error))
 }
 
-/// Makes a data set, or a part of it, or goes on with one.
+/// Makes a data set, or a part of it, or goes on with one. Returns files that were made again, and why.
 #[pyfunction]
 pub fn generate_dataset(
     py: Python<'_>,
@@ -37,7 +39,7 @@ pub fn generate_dataset(
     part: u64,
     of: u64,
     progress: Option<Bound<'_, PyAny>>,
-) -> PyResult<()> {
+) -> PyResult<Vec<(String, String)>> {
     if part < 1 || part > of {
         return Err(value_error(format!("part = ({part}, {of}): must be (i, n) with i from 1 to n")));
     }
@@ -68,15 +70,31 @@ pub fn generate_dataset(
             None => Ok(()),
         },
     )?;
-    generated.map(drop).map_err(dataset_error)
+    let remade = generated.map_err(dataset_error)?.remade.into_iter();
+    Ok(remade.map(|remade| (remade.file, remade.reason)).collect())
 }
 
 /// Puts parts together.
 #[pyfunction]
-pub fn merge_datasets(py: Python<'_>, parts: Vec<String>, to: &str) -> PyResult<()> {
+pub fn merge_datasets(py: Python<'_>, parts: Vec<String>, to: &str, verify: bool) -> PyResult<()> {
     let parts = parts.iter().map(|part| destination(part)).collect::<PyResult<Vec<_>>>()?;
     let to = destination(to)?;
-    py.detach(|| merge(&parts, &to)).map(drop).map_err(dataset_error)
+    py.detach(|| merge(&parts, &to, check(verify))).map(drop).map_err(dataset_error)
+}
+
+/// Format, shards that are there, shards that are missing, what is wrong by files.
+type Found = (u64, Vec<String>, Vec<String>, BTreeMap<String, String>);
+
+/// Looks at names, sizes and counts of a data set, or at every byte.
+#[pyfunction]
+pub fn verify_dataset(py: Python<'_>, path: &str, bytes: bool) -> PyResult<Found> {
+    let place = destination(path)?;
+    let found = py.detach(|| verify(&place, check(bytes))).map_err(dataset_error)?;
+    Ok((found.format, found.shards, found.missing, found.problems))
+}
+
+fn check(bytes: bool) -> Check {
+    if bytes { Check::Bytes } else { Check::Sizes }
 }
 
 fn destination(to: &str) -> PyResult<Destination> {
@@ -88,6 +106,8 @@ fn dataset_error(error: DatasetError) -> PyErr {
         DatasetError::Plan(error) => read_error(Path::new("."), &error),
         DatasetError::Refused { problem, help } => PyValueError::new_err(format!("{problem}\n{help}")),
         DatasetError::Stopped => PyKeyboardInterrupt::new_err("stopped"),
+        DatasetError::NoRecord { .. } => PyValueError::new_err(error.to_string()),
+        DatasetError::Busy { .. } => PyBlockingIOError::new_err(error.to_string()),
         DatasetError::File { .. } => PyOSError::new_err(error.to_string()),
         DatasetError::Preview(_) => PyRuntimeError::new_err(error.to_string()),
     }

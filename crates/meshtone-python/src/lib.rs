@@ -27,7 +27,7 @@ mod _core {
     #[pymodule_export]
     use crate::batch::simulate_many;
     #[pymodule_export]
-    use crate::dataset::{check_plan, dataset_template, generate_dataset, merge_datasets};
+    use crate::dataset::{check_plan, dataset_template, generate_dataset, merge_datasets, verify_dataset};
     #[pymodule_export]
     use crate::hybrid::{add_noise, change_duration, change_fault_to_harmonics_ratio, enhance, tune};
     #[pymodule_export]

@@ -13,6 +13,7 @@ use meshtone_dataset::generate::{GenerateControl, Generated, Part, generate};
 use meshtone_dataset::merge::merge;
 use meshtone_dataset::plan::Plan;
 use meshtone_dataset::store::Destination;
+use meshtone_dataset::verify::{Check, Verified, verify};
 
 use crate::failure::Failure;
 use crate::output_directory::named_after;
@@ -39,6 +40,7 @@ pub struct Dataset {
 #[derive(Debug, Subcommand)]
 enum Action {
     Merge(Merge),
+    Verify(Verify),
     Scenario(Scenario),
 }
 
@@ -70,7 +72,27 @@ struct Merge {
     /// Directory or URL of the whole; may be one of the parts
     #[arg(short, long, value_name = "DIR")]
     output: String,
+    /// Read also the shards that were made in the whole's own place, instead of only looking at their sizes
+    #[arg(long)]
+    verify: bool,
     /// Print no summary
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Compare every byte of a data set with what was written
+///
+/// Names, sizes, counts, SHA-256, rows and columns of all files. Nothing is written. The exit code is 1 where something is
+/// missing or differs; the command that made the data set makes such shards again.
+#[derive(Debug, Args)]
+struct Verify {
+    /// Directory or URL of the data set, or of a part of one
+    #[arg(value_name = "DIR")]
+    place: String,
+    /// Look only at names, sizes and counts
+    #[arg(long)]
+    sizes_only: bool,
+    /// Print no summary; what is wrong is still printed
     #[arg(short, long)]
     quiet: bool,
 }
@@ -92,6 +114,7 @@ Examples:
   meshtone dataset plan.toml -o gears                    the data set, into the folder gears; run it again to go on
   meshtone dataset plan.toml -o gears_2 --part 2/8       one eighth of it
   meshtone dataset merge gears_1 gears_2 … -o gears      all eighths together
+  meshtone dataset verify gears                          whether every byte is as it was written
   meshtone dataset scenario plan.toml 17 > record.toml   what record 17 is";
 
 /// `I/N`
@@ -114,6 +137,7 @@ impl Dataset {
     pub fn run(&self) -> Result<(), Failure> {
         match (&self.action, &self.make) {
             (Some(Action::Merge(arguments)), _) => arguments.run(),
+            (Some(Action::Verify(arguments)), _) => arguments.run(),
             (Some(Action::Scenario(arguments)), _) => arguments.run(),
             (None, Some(arguments)) => arguments.run(),
             (None, None) => Err(Failure::bad_input("name a plan").with_help("see meshtone dataset --help")),
@@ -124,6 +148,7 @@ impl Dataset {
 impl Make {
     fn run(&self) -> Result<(), Failure> {
         let plan = read_plan(&self.plan)?;
+        foretell(&self.plan.display().to_string(), &plan);
         let to = self.destination()?;
         let part = self.part.map_or(Part::WHOLE, |part| part.0);
         let threads = usize::from(self.jobs.unwrap_or(0));
@@ -173,13 +198,53 @@ impl Merge {
         let parts: Vec<Destination> =
             self.parts.iter().map(|part| Destination::parse(part)).collect::<Result<_, _>>()?;
         let to = Destination::parse(&self.output)?;
-        let merged = merge(&parts, &to)?;
+        let merged = merge(&parts, &to, if self.verify { Check::Bytes } else { Check::Sizes })?;
         let shards = counted(merged.kept_shards + merged.written_shards, "shard");
         if !self.quiet {
             print(&format!("  {shards}\n\n{to}\n"))?;
         }
         refuse_missing(&to.to_string(), &merged)
     }
+}
+
+impl Verify {
+    fn run(&self) -> Result<(), Failure> {
+        let place = Destination::parse(&self.place)?;
+        let found = verify(&place, if self.sizes_only { Check::Sizes } else { Check::Bytes })?;
+        for name in found.missing.iter().take(NAMED) {
+            print_error_line(format!("{name}: it is missing"));
+        }
+        for (name, problem) in found.problems.iter().take(NAMED) {
+            print_error_line(format!("{name}: {problem}"));
+        }
+        let wrong = (found.missing.len() + found.problems.len()) as u64;
+        if wrong > 0 {
+            let files = counted(wrong, "file");
+            let are = if wrong == 1 { "is" } else { "are" };
+            return Err(Failure::failed(format!("{place}: {files} {are} not as written")).with_help(
+                "put the files back from a copy, or remove them and run the command that made the data set: it makes again what \
+                 is missing or differs",
+            ));
+        }
+        if self.quiet { Ok(()) } else { print(&told(&found, &place, self.sizes_only)) }
+    }
+}
+
+fn told(found: &Verified, place: &Destination, sizes_only: bool) -> String {
+    let what = if sizes_only { "names, sizes and counts are" } else { "every byte is" };
+    let mut text = format!(
+        "  {} in {}, {:.1} MB: {what} as written\n",
+        counted(found.rows, "record"),
+        counted(found.shards.len() as u64, "shard"),
+        found.bytes as f64 / 1e6
+    );
+    if !found.complete {
+        text += "  not complete: the command that made it goes on with it\n";
+    }
+    if found.format == 1 {
+        text += "  of an earlier version (format 1): its hashes are of what was on the disk when it was completed\n";
+    }
+    text + &format!("\n{place}\n")
 }
 
 impl Scenario {
@@ -211,7 +276,26 @@ fn read_plan(path: &std::path::Path) -> Result<Plan, Failure> {
     Plan::read(path).map_err(|error| meshtone_dataset::DatasetError::from(error).into())
 }
 
+/// What the plan shows to be missing in the end, before anything is computed.
+fn foretell(name: &str, plan: &Plan) {
+    let foreseen = plan.foreseen_failures();
+    if let Some(first) = foreseen.first() {
+        let count = counted(foreseen.len() as u64, "record");
+        print_error_line(format!(
+            "warning: {name}: {count} that cannot be simulated will be missing; record {}: {}",
+            first.record, first.reason
+        ));
+    }
+}
+
 fn warn(generated: &Generated) {
+    for remade in generated.remade.iter().take(TOLD) {
+        print_error_line(format!("warning: {} was made again: {}", remade.file, remade.reason));
+    }
+    if generated.remade.len() > TOLD {
+        let rest = counted((generated.remade.len() - TOLD) as u64, "more shard");
+        print_error_line(format!("warning: {rest} made again for such reasons"));
+    }
     for failed in generated.failures.iter().take(TOLD) {
         print_error_line(format!("warning: record {} failed: {}", failed.record, failed.reason));
     }

@@ -67,7 +67,6 @@ impl Enhance {
         }
         let directory = OutputDirectory::for_files(&self.directory()?, &[ENHANCED])?;
         self.write(&scenario, &tuned, &directory.path().join(ENHANCED))?;
-        directory.keep();
         Ok(())
     }
 

@@ -76,7 +76,6 @@ impl Indicators {
         self.check_targets(&directory)?;
         let output = OutputDirectory::for_files(&directory, &files::FILES)?;
         self.write(output.path(), &series)?;
-        output.keep();
         print_warnings(&series.results.warnings);
         if self.quiet {
             return Ok(());

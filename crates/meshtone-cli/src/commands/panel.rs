@@ -6,12 +6,14 @@ use std::path::PathBuf;
 use clap::Args;
 use meshtone_io::ReadResultsError;
 use meshtone_io::atomic_file::StagedFile;
+use meshtone_io::own_file::undisturbed;
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::signals::{Recorded, read_signals};
 use meshtone_io::summary::read_run;
 
 use crate::earlier_results;
 use crate::failure::Failure;
+use crate::output_directory::claim;
 use crate::results::{PANEL, SIGNALS, SUMMARY, stage_panel};
 use crate::terminal::{print, print_error_line};
 
@@ -29,6 +31,8 @@ pub struct Panel {
 
 impl Panel {
     pub fn run(&self) -> Result<(), Failure> {
+        // Nothing is put back while another program replaces it.
+        let _claim = self.directory.is_dir().then(|| claim(&self.directory)).transpose()?;
         if earlier_results::put_back(&self.directory)? {
             print_error_line(format!(
                 "warning: the last run into {} was interrupted while it replaced the results of the run before it, which \
@@ -50,7 +54,7 @@ impl Panel {
         }
         self.warn_of_version(&recorded);
         let files = stage_panel(&self.directory, recorded.run, &stages, &recorded.channels)?;
-        files.into_iter().try_for_each(StagedFile::commit)?;
+        undisturbed(|| files.into_iter().try_for_each(StagedFile::commit))?;
         let [svg, png] = PANEL.map(|name| self.directory.join(name));
         print(&format!("{}\n{}\n", svg.display(), png.display()))
     }

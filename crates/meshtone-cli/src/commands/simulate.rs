@@ -156,7 +156,6 @@ impl Simulate {
         targets.check(&read.chain(named).collect::<Vec<_>>())?;
         for (number, (run, directory)) in runs.into_iter().zip(directories).enumerate() {
             self.simulate(run, &directory, number)?;
-            directory.keep();
         }
         Ok(())
     }

@@ -11,6 +11,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use meshtone::tuning::{Experiment, ExperimentControl, ExperimentResult, Tuning, run_experiment};
 use meshtone_io::atomic_file::StagedFile;
 use meshtone_io::experiment::{Tuned, read_experiment, tuning_json, write_tuned};
+use meshtone_io::own_file::undisturbed;
 use meshtone_plot::tuning_figure;
 
 use crate::failure::Failure;
@@ -62,7 +63,6 @@ impl Tune {
         }
         let directory = OutputDirectory::for_files(&directory, &FILES)?;
         self.tune(&file.experiment, directory.path())?;
-        directory.keep();
         Ok(())
     }
 
@@ -124,9 +124,7 @@ impl Tune {
         for (name, text) in [(TUNING, json), (TUNED, toml)] {
             staged.push(StagedFile::write(&directory.join(name), |file| file.write_all(text.as_bytes()))?);
         }
-        for file in staged {
-            file.commit()?;
-        }
+        undisturbed(|| staged.into_iter().try_for_each(StagedFile::commit))?;
         if self.no_figure {
             // An earlier tuning's would show something else.
             for name in FIGURE {
@@ -159,7 +157,7 @@ fn figure(
 fn remove(path: &Path) -> Result<(), Failure> {
     match std::fs::remove_file(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => {
-            Err(Failure::of_file(error.kind(), format!("cannot remove {}: {error}", path.display())))
+            Err(Failure::of_writing(error.kind(), format!("cannot remove {}: {error}", path.display())))
         }
         _ => Ok(()),
     }

@@ -7,6 +7,7 @@ use std::thread;
 
 use meshtone_io::atomic_file::{StagedFile, WriteFileError};
 use meshtone_io::indicators::IndicatorResults;
+use meshtone_io::own_file::undisturbed;
 use meshtone_plot::Figure;
 
 use crate::failure::Failure;
@@ -42,15 +43,17 @@ pub fn write(
         results.write_json(&mut file)?;
         file.flush()
     })?;
-    remove(directory, &[JSON])?;
-    table.commit()?;
-    for (files, names) in figures.into_iter().zip([RECORD, TREND]) {
-        match files {
-            Some(files) => files.into_iter().try_for_each(StagedFile::commit)?,
-            None => remove(directory, &names)?,
+    undisturbed(|| {
+        remove(directory, &[JSON])?;
+        table.commit()?;
+        for (files, names) in figures.into_iter().zip([RECORD, TREND]) {
+            match files {
+                Some(files) => files.into_iter().try_for_each(StagedFile::commit)?,
+                None => remove(directory, &names)?,
+            }
         }
-    }
-    Ok(json.commit()?)
+        Ok(json.commit()?)
+    })
 }
 
 fn stage(

@@ -40,7 +40,7 @@ pub fn unreadable(error: ReadRecordingError, option: &str) -> Failure {
             ErrorKind::NotFound => Failure::bad_input(format!("there is no recording {}", path.display())),
             ErrorKind::IsADirectory => Failure::bad_input(format!("{} is a directory", path.display()))
                 .with_help("name a file, or a directory that `meshtone simulate` wrote"),
-            kind => Failure::of_file(kind, error.to_string()),
+            kind => Failure::of_reading(kind, error.to_string()),
         };
     }
     let message =

@@ -275,3 +275,144 @@ fn a_full_disk_leaves_what_can_be_gone_on_with() {
     workplace.succeeds(&["dataset", "plan.toml", "-o", "full"]);
     assert_same(&workplace, "whole", "full");
 }
+
+/// Turns over one bit in the middle of a file.
+fn flip(path: &Path) {
+    let mut content = std::fs::read(path).unwrap();
+    let middle = content.len() / 2;
+    content[middle] ^= 4;
+    std::fs::write(path, content).unwrap();
+}
+
+#[test]
+fn a_data_set_is_verified() {
+    let workplace = workplace();
+    workplace.succeeds(&["dataset", "plan.toml", "-o", "set"]);
+    let whole = bytes(&workplace.path("set"));
+    let good = stdout(&workplace.succeeds(&["dataset", "verify", "set"]));
+    assert!(good.contains("96 records in 12 shards") && good.contains("every byte is as written"), "{good}");
+    workplace.succeeds(&["dataset", "verify", "set", "--quiet"]).stdout("");
+    flip(&workplace.path("set/data/records-000004.parquet"));
+    std::fs::remove_file(workplace.path("set/data/records-000007.parquet")).unwrap();
+    std::fs::remove_file(workplace.path("set/README.md")).unwrap();
+    let output = workplace.command(&["dataset", "verify", "set"]).assert().code(1).stdout("");
+    let told = crate::support::stderr(&output);
+    for words in [
+        "data/records-000004.parquet: its bytes are not those that were written: the SHA-256 differs",
+        "data/records-000007.parquet: it is missing",
+        "README.md: it is missing",
+        "error: set: 3 files are not as written",
+        "help: put the files back",
+    ] {
+        assert!(told.contains(words), "`{words}` is not in: {told}");
+    }
+    // Without reading, what is missing is seen, and what is damaged is not.
+    let output = workplace.command(&["dataset", "verify", "set", "--sizes-only"]).assert().code(1);
+    assert!(crate::support::stderr(&output).contains("error: set: 2 files are not as written"));
+    let again = workplace.succeeds(&["dataset", "plan.toml", "-o", "set"]);
+    let told = crate::support::stderr(&again);
+    assert!(
+        told.contains("warning: data/records-000004.parquet was made again: its bytes are not those"),
+        "{told}"
+    );
+    assert!(stdout(&again).contains("16 records in 2 shards written, 10 shards were there already"));
+    assert!(bytes(&workplace.path("set")) == whole);
+    workplace.fails(2, &["dataset", "verify", "absent"], &["absent is no data set"]);
+}
+
+#[test]
+fn a_data_set_without_a_record_is_a_failure() {
+    let workplace = workplace();
+    // There is no mesh frequency at this rate.
+    workplace.write("plan.toml", PLAN.replace("[keep]", "[keep]\nsampling_rate_hz = 100.0"));
+    for _ in 0..2 {
+        let output = workplace.command(&["dataset", "plan.toml", "-o", "set"]).assert().code(2).stdout("");
+        let told = crate::support::stderr(&output);
+        assert!(
+            told.contains("error: none of the plan's 96 records could be simulated; record 0: "),
+            "{told}"
+        );
+    }
+}
+
+/// What a program is told to end with leaves nothing unfinished; killed, it leaves what the next one removes.
+#[cfg(unix)]
+#[test]
+fn nothing_unfinished_stays() {
+    let workplace = workplace();
+    let unfinished = || {
+        let hidden = |name: &String| name.starts_with(".meshtone-");
+        let folders =
+            ["set", "set/data", "set/parts"].into_iter().filter(|folder| workplace.path(folder).exists());
+        folders.flat_map(|folder| workplace.names(folder)).filter(hidden).count()
+    };
+    let end = |signal: &str, part: f64| {
+        let mut child = program()
+            .args(["dataset", "plan.toml", "-o", "set", "--jobs", "1"])
+            .current_dir(workplace.directory.path())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(Duration::from_secs_f64(0.15 * part));
+        let status = std::process::Command::new("kill").args([signal, &child.id().to_string()]).status();
+        let running = status.unwrap().success();
+        let ended = child.wait().unwrap();
+        running && !ended.success()
+    };
+    let mut ended = 0;
+    for number in 1..=12 {
+        ended += usize::from(end("-TERM", (f64::from(number) * 0.618_033_988_749_895).fract()));
+        assert_eq!(unfinished(), 0, "{number}");
+    }
+    assert!(ended > 0);
+    let mut left = 0;
+    for number in 1..=12 {
+        end("-KILL", (f64::from(number) * 0.618_033_988_749_895).fract());
+        left += unfinished();
+    }
+    assert!(left > 0);
+    workplace.succeeds(&["dataset", "plan.toml", "-o", "set"]);
+    assert_eq!(unfinished(), 0);
+    workplace.succeeds(&["dataset", "verify", "set"]);
+}
+
+/// Four programs that all want to make the same: one does, the others are told; nothing is lost. Four parts work side by side.
+#[test]
+fn several_at_once() {
+    let workplace = workplace();
+    workplace.succeeds(&["dataset", "plan.toml", "-o", "whole"]);
+    let start = |to: &str, part: Option<u32>| {
+        let mut command = program();
+        command
+            .args(["dataset", "plan.toml", "-o", to, "--jobs", "1"])
+            .current_dir(workplace.directory.path());
+        if let Some(part) = part {
+            command.args(["--part", &format!("{part}/4")]);
+        }
+        command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
+    };
+    for round in 0..3 {
+        let to = format!("same_{round}");
+        let all: Vec<_> = (0..4).map(|_| start(&to, None)).collect();
+        let mut made = 0;
+        for child in all {
+            let output = child.wait_with_output().unwrap();
+            let told = String::from_utf8(output.stderr).unwrap();
+            match output.status.code() {
+                Some(0) => made += 1,
+                Some(1) => assert!(told.contains("another program is making a data set in same_"), "{told}"),
+                _ => panic!("{:?}: {told}", output.status),
+            }
+        }
+        assert!(made > 0);
+        assert_same(&workplace, "whole", &to);
+        let to = format!("parts_{round}");
+        let all: Vec<_> = (1..=4).map(|part| start(&to, Some(part))).collect();
+        for child in all {
+            let output = child.wait_with_output().unwrap();
+            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        }
+        assert_same(&workplace, "whole", &to);
+    }
+}

@@ -134,3 +134,63 @@ fn killed_while_it_names_its_files() {
         }
     }
 }
+
+/// Told to end, a run leaves neither unfinished files nor an empty directory.
+#[cfg(unix)]
+#[test]
+fn told_to_end() {
+    let workplace = Workplace::new();
+    workplace.write("long.toml", fast_with("sampling_rate_hz", "sampling_rate_hz = 1e5"));
+    let mut ended = 0;
+    for number in 1..=12 {
+        let mut child = program()
+            .args(["simulate", "long.toml", "-o", "out/deep"])
+            .current_dir(workplace.directory.path())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let part = (f64::from(number) * 0.618_033_988_749_895).fract();
+        std::thread::sleep(Duration::from_secs_f64(0.2 * part));
+        std::process::Command::new("kill").arg(child.id().to_string()).status().unwrap();
+        if child.wait().unwrap().success() {
+            std::fs::remove_dir_all(workplace.path("out")).unwrap();
+            continue;
+        }
+        ended += 1;
+        if workplace.path("out/deep/summary.json").exists() {
+            std::fs::remove_dir_all(workplace.path("out")).unwrap();
+        }
+        assert_eq!(workplace.names("."), ["fast.toml", "long.toml"], "{number}");
+    }
+    assert!(ended > 0);
+}
+
+/// What a killed run has left is removed by the next one, and a run into the same directory is told of the first.
+#[test]
+fn two_at_once_and_what_the_killed_left() {
+    let workplace = Workplace::new();
+    workplace.write("long.toml", fast_with("sampling_rate_hz", "sampling_rate_hz = 2e6"));
+    let mut child = program()
+        .args(["simulate", "long.toml", "-o", "out"])
+        .current_dir(workplace.directory.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    while !workplace.path("out/.meshtone-results").exists() && child.try_wait().unwrap().is_none() {}
+    for arguments in [["simulate", "fast.toml", "-o", "out"].as_slice(), &["panel", "out"]] {
+        let told = stderr(&workplace.command(arguments).assert().code(1).stdout(""));
+        assert!(told.contains("another program is writing results to the directory out"), "{told}");
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    std::fs::write(workplace.path("out/.meshtone-unfinished"), "half a file").unwrap();
+    assert!(workplace.path("out/.meshtone-results").exists());
+    workplace.succeeds(&["simulate", "fast.toml", "-o", "out", "--no-panel"]);
+    assert_eq!(workplace.names("out"), ["signals.parquet", "summary.json"]);
+    // Files that are written one by one clear up where they are written.
+    workplace.write(".meshtone-unfinished", "half a file");
+    workplace.succeeds(&["init", "healthy", "-o", "healthy.toml"]);
+    assert!(!workplace.path(".meshtone-unfinished").exists());
+}

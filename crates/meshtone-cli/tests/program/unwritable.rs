@@ -40,7 +40,7 @@ fn a_directory_without_permission() {
         return;
     }
     let words = ["cannot write results to the directory locked", "ermission denied"];
-    workplace.fails(2, &["simulate", "fast.toml", "-o", "locked"], &words);
+    workplace.fails(1, &["simulate", "fast.toml", "-o", "locked"], &words);
     assert!(crate::support::names(&locked).is_empty());
 }
 
@@ -51,11 +51,13 @@ fn a_directory_in_which_nobody_may_write() {
     let workplace = Workplace::new();
     for directory in ["/proc", "/proc/results"] {
         let words = [&format!("cannot write results to the directory {directory}: "), "-o"];
-        workplace.fails(2, &["simulate", "fast.toml", "-o", directory], &words);
+        workplace.fails(1, &["simulate", "fast.toml", "-o", directory], &words);
     }
     let trace = ["simulate", "fast.toml", "-o", "new", "--trace", "/proc/t.npz"];
-    workplace.fails(2, &trace, &["--trace /proc/t.npz: cannot be written"]);
-    workplace.fails(2, &["init", "healthy", "-o", "/proc/h.toml"], &["cannot write /proc/h.toml"]);
+    workplace.fails(1, &trace, &["--trace /proc/t.npz: cannot be written"]);
+    workplace.fails(1, &["init", "healthy", "-o", "/proc/h.toml"], &["cannot write /proc/h.toml"]);
+    workplace.succeeds(&["init", "dataset", "-o", "plan.toml"]);
+    workplace.fails(1, &["dataset", "plan.toml", "-o", "/proc/set"], &["cannot write /proc/set"]);
 }
 
 /// A file there would take the device's place.

@@ -7,6 +7,7 @@ use meshtone_toml::{ReadResult, TomlError, TomlTable};
 
 use super::{Content, Distribution, Plan, Rule};
 use crate::draw::{DrawError, DrawnRecord, NOISE_KEYS, Sampler};
+use crate::shard::FailedRecord;
 
 /// Records whose values are drawn before anything is written.
 const DRAWN: u64 = 5_000;
@@ -88,6 +89,7 @@ pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
         if !tried_enough {
             let result = sampler.scenario(&record).and_then(|scenario| {
                 refuse_ignored(&scenario, &record.values)?;
+                refuse_short(&plan.content, &scenario)?;
                 meshtone::stages(&scenario).map(drop)
             });
             of_class.push(result.err());
@@ -113,6 +115,18 @@ pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
         }
     }
     every_choice(&plan.content, &sampler, &first)
+}
+
+/// Those of the first records whose scenarios show that they cannot be simulated, without a profile of them being computed.
+pub(super) fn foreseen(plan: &Plan) -> ReadResult<Vec<FailedRecord>> {
+    let sampler = Sampler::new(&plan.content)?;
+    let cannot = |index: u64| {
+        let record = sampler.record(index).ok()?;
+        let scenario = sampler.scenario(&record).map_err(TomlError::from);
+        let refused = scenario.and_then(|scenario| refuse_short(&plan.content, &scenario)).err()?;
+        Some(FailedRecord { record: index, reason: refused.to_string() })
+    };
+    Ok((0..plan.records().min(DRAWN)).filter_map(cannot).collect())
 }
 
 /// Every value of a choice or a grid is allowed beside the other values of some record, as far as no profile is needed.
@@ -185,6 +199,21 @@ fn refuse_value(
         }
     }
     refused
+}
+
+/// A record is a hunting period long, and cannot be cut to more.
+fn refuse_short(content: &Content, scenario: &meshtone::scenario::Scenario) -> ReadResult<()> {
+    let Some(duration_s) = content.keep.duration_s else { return Ok(()) };
+    let time = scenario.time_grid();
+    let period_s = time.kept_samples() as f64 / time.sampling_rate_hz;
+    let rate_hz = content.keep.sampling_rate_hz;
+    if (duration_s * rate_hz).round() <= (period_s * rate_hz).ceil() {
+        return Ok(());
+    }
+    let problem =
+        format!("is longer than the hunting period, {period_s:.4} s, which is all that is simulated");
+    Err(TomlError::new("keep.duration_s", duration_s.to_string(), problem)
+        .with_help("shorten it, or leave it out: a record is then a whole hunting period long"))
 }
 
 /// A varied key that the model ignores would be a label without effect.

@@ -28,6 +28,7 @@ pub use template::template;
 
 use crate::expression::Condition;
 use crate::sampling::Design;
+use crate::shard::FailedRecord;
 
 /// What a data set consists of.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,6 +93,13 @@ impl Plan {
     /// Number of records.
     pub fn records(&self) -> u64 {
         self.content.classes.iter().map(|class| class.count).sum()
+    }
+
+    /// Those of the first 5000 records that cannot be simulated, as far as their scenarios show it before anything is computed: draws
+    /// outside a fault's limits, hunting periods that are shorter than `keep.duration_s`. They will be missing.
+    pub fn foreseen_failures(&self) -> Vec<FailedRecord> {
+        // A plan that was read has been checked for what stands in the way of drawing.
+        check::foreseen(self).unwrap_or_default()
     }
 
     /// What stands for the plan: the same for plans that say the same, whatever their layout, comments and description.

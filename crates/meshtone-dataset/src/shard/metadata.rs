@@ -3,12 +3,10 @@
 use std::collections::BTreeMap;
 use std::io;
 
-use meshtone_io::table::{FoundType, TableReader, into_io};
+use meshtone_io::table::{FoundColumn, FoundType, TableReader, into_io};
 use parquet::file::metadata::KeyValue;
 use parquet::file::reader::ChunkReader;
 use serde_json::{Value, json};
-
-use crate::plan::PlanHash;
 
 const PLAN: &str = "meshtone.plan_sha256";
 const VERSION: &str = "meshtone.version";
@@ -23,6 +21,13 @@ pub struct FailedRecord {
     pub record: u64,
     /// Why.
     pub reason: String,
+}
+
+impl FailedRecord {
+    /// Reads one as manifests and shards have it.
+    pub(crate) fn from_json(value: &Value) -> Option<Self> {
+        Some(Self { record: value["record"].as_u64()?, reason: value["reason"].as_str()?.to_owned() })
+    }
 }
 
 /// What a shard says about itself.
@@ -59,26 +64,11 @@ impl ShardMetadata {
         let first: u64 = text(FIRST)?.parse().ok()?;
         let count: u64 = text(RECORDS)?.parse().ok()?;
         let failures: Value = serde_json::from_str(&text(FAILURES)?).ok()?;
-        let failed = |value: &Value| {
-            Some(FailedRecord {
-                record: value["record"].as_u64()?,
-                reason: value["reason"].as_str()?.to_owned(),
-            })
-        };
         Some(Self {
             plan: text(PLAN)?,
             records: first..first.checked_add(count)?,
-            failures: failures.as_array()?.iter().map(failed).collect::<Option<_>>()?,
+            failures: failures.as_array()?.iter().map(FailedRecord::from_json).collect::<Option<_>>()?,
         })
-    }
-
-    /// Whether it is the shard of a plan and a range.
-    ///
-    /// # Arguments
-    /// * `plan` - hash of the plan
-    /// * `records` - the range
-    pub fn is_of(&self, plan: &PlanHash, records: &std::ops::Range<u64>) -> bool {
-        self.plan == plan.to_string() && self.records == *records
     }
 }
 
@@ -86,6 +76,8 @@ impl ShardMetadata {
 pub(crate) struct ReadShard {
     pub metadata: ShardMetadata,
     pub rows: u64,
+    /// Its columns.
+    pub schema: Vec<FoundColumn>,
     numbers: BTreeMap<String, Vec<f64>>,
     texts: BTreeMap<String, Vec<String>>,
     /// The signal of one row.
@@ -137,7 +129,8 @@ pub(crate) fn read(file: impl ChunkReader + 'static, wanted: Wanted) -> io::Resu
         return Err(io::Error::other(format!("has {rows} rows, which is not what its metadata say")));
     }
     let (numbers, texts) = (BTreeMap::new(), BTreeMap::new());
-    let mut read = ReadShard { metadata, rows, numbers, texts, signal: Vec::new() };
+    let schema = table.columns().to_vec();
+    let mut read = ReadShard { metadata, rows, schema, numbers, texts, signal: Vec::new() };
     match wanted {
         Wanted::Nothing => {}
         Wanted::Columns(names) => {

@@ -74,14 +74,69 @@ impl Shards {
         start..start.saturating_add(self.records_per_shard).min(self.records)
     }
 
-    /// Name of a shard's file, from the data set's directory.
+    /// Name of a shard's file, from the data set's directory. More than a thousand of them stand in folders of a thousand each. The
+    /// names sort as their numbers do.
     ///
     /// # Arguments
     /// * `shard` - its number
-    pub fn name(shard: u64) -> String {
-        format!("{FOLDER}/records-{shard:06}.parquet")
+    ///
+    /// ```
+    /// use meshtone_dataset::shard::Shards;
+    ///
+    /// let name = |records| Shards { records, records_per_shard: 10 }.name(7);
+    /// assert_eq!(name(10_000), "data/records-000007.parquet");
+    /// assert_eq!(name(10_001), "data/000/records-000007.parquet");
+    /// assert_eq!(name(10_000_001), "data/0000/records-0000007.parquet");
+    /// ```
+    pub fn name(&self, shard: u64) -> String {
+        let last = self.count().saturating_sub(1);
+        let digits = last.checked_ilog10().map_or(1, |log| log as usize + 1).max(LEAST_DIGITS);
+        if self.is_flat() {
+            return format!("{FOLDER}/{FILE}{shard:0digits$}{ENDING}");
+        }
+        let (folder, of_folder) = (shard / FOLDER_SHARDS, digits - FOLDER_DIGITS);
+        format!("{FOLDER}/{folder:0of_folder$}/{FILE}{shard:0digits$}{ENDING}")
+    }
+
+    /// Whether all shards stand in one folder.
+    pub fn is_flat(&self) -> bool {
+        self.count() <= FOLDER_SHARDS
+    }
+
+    /// The number of the shard of a name; none where no shard has it.
+    ///
+    /// # Arguments
+    /// * `name` - from the data set's directory
+    pub fn number(&self, name: &str) -> Option<u64> {
+        let number = Self::number_of(name)?;
+        (number < self.count() && self.name(number) == name).then_some(number)
+    }
+
+    /// The number in the name of a shard of some data set.
+    pub(crate) fn number_of(name: &str) -> Option<u64> {
+        number_in(name)?.parse().ok()
+    }
+
+    /// Whether a shard of some data set may have a name.
+    pub(crate) fn is_name(name: &str) -> bool {
+        name.starts_with(FOLDER) && number_in(name).is_some()
     }
 }
 
+/// The digits in a shard's name.
+fn number_in(name: &str) -> Option<&str> {
+    let (_, file) = name.rsplit_once('/')?;
+    let number = file.strip_prefix(FILE)?.strip_suffix(ENDING)?;
+    (!number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit())).then_some(number)
+}
+
+/// Shards in a folder at most, unless they are all in one.
+const FOLDER_SHARDS: u64 = 1000;
+/// Their digits.
+const FOLDER_DIGITS: usize = 3;
+/// Digits of a shard's number in its name.
+const LEAST_DIGITS: usize = 6;
+const FILE: &str = "records-";
+const ENDING: &str = ".parquet";
 /// Folder of the shards.
 pub(crate) const FOLDER: &str = "data";

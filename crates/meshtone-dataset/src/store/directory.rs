@@ -1,17 +1,17 @@
 //! A data set in a directory.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use meshtone_io::atomic_file;
+use meshtone_io::own_file::{self, Claim, PREFIX};
 
-use super::Place;
+use super::{Claimed, Place};
+use crate::part_list;
 use crate::shard::{self, ReadShard, Wanted};
-
-/// What names of unfinished files begin with.
-const UNFINISHED: &str = ".meshtone-";
 
 /// A directory, which need not exist.
 #[derive(Debug)]
@@ -27,13 +27,12 @@ impl Directory {
 
 impl Place for Directory {
     /// Unfinished files are left out.
-    fn names(&self) -> io::Result<Vec<String>> {
-        let mut names = Vec::new();
+    fn files(&self) -> io::Result<BTreeMap<String, u64>> {
+        let mut files = BTreeMap::new();
         if self.path.exists() {
-            collect(&self.path, "", &mut names)?;
+            collect(&self.path, "", &mut files)?;
         }
-        names.sort();
-        Ok(names)
+        Ok(files)
     }
 
     fn open(&self, name: &str) -> io::Result<Box<dyn Read + '_>> {
@@ -52,26 +51,33 @@ impl Place for Directory {
         atomic_file::write_atomically(&path, content).map_err(|error| error.source)
     }
 
+    /// A folder of the data set that it leaves empty goes with it.
+    fn remove(&self, name: &str) -> io::Result<()> {
+        let path = self.path.join(name);
+        fs::remove_file(&path)?;
+        if let (Some(folder), true) = (path.parent(), name.contains('/')) {
+            let _ = fs::remove_dir(folder);
+        }
+        Ok(())
+    }
+
     fn name_of(&self, name: &str) -> String {
         self.path.join(name).display().to_string()
     }
 
-    /// What cannot be removed stays.
+    fn claim(&self, what: &str) -> io::Result<Option<Claimed>> {
+        Ok(Claim::take(&self.path, what)?.map(|claim| Claimed { _claim: Some(claim) }))
+    }
+
     fn remove_leftovers(&self) {
-        for folder in [self.path.clone(), self.path.join(shard::FOLDER)] {
-            for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-                if entry.file_name().to_string_lossy().starts_with(UNFINISHED) {
-                    let _ = fs::remove_file(entry.path());
-                }
-            }
-        }
+        remove_leftovers(&self.path, "");
     }
 
     fn check_writable(&self) -> io::Result<()> {
         if self.path.exists() && !self.path.is_dir() {
             return Err(io::Error::new(io::ErrorKind::NotADirectory, "it is a file"));
         }
-        fs::create_dir_all(&self.path)?;
+        own_file::create_directories(&self.path)?;
         atomic_file::check_writable(&self.path).map_err(|error| error.source)
     }
 
@@ -86,16 +92,44 @@ impl fmt::Display for Directory {
     }
 }
 
-fn collect(directory: &Path, before: &str, names: &mut Vec<String>) -> io::Result<()> {
+/// Whether a folder is one of a data set: those of its shards, and that of its parts' lists.
+///
+/// # Arguments
+/// * `before` - the folder that it is in, with a `/` at its end; empty for the data set's own directory
+fn is_own_folder(before: &str, name: &str) -> bool {
+    match before {
+        "" => name == shard::FOLDER || name == part_list::FOLDER,
+        before => {
+            before.strip_suffix('/') == Some(shard::FOLDER) && name.bytes().all(|byte| byte.is_ascii_digit())
+        }
+    }
+}
+
+fn collect(directory: &Path, before: &str, files: &mut BTreeMap<String, u64>) -> io::Result<()> {
     for entry in fs::read_dir(directory)? {
         let entry = entry?;
         let name = entry.file_name().to_string_lossy().into_owned();
-        let own_folder = before.is_empty() && name == shard::FOLDER;
-        if own_folder && entry.file_type()?.is_dir() {
-            collect(&entry.path(), &format!("{name}/"), names)?;
-        } else if !name.starts_with(UNFINISHED) {
-            names.push(format!("{before}{name}"));
+        if is_own_folder(before, &name) && entry.file_type()?.is_dir() {
+            collect(&entry.path(), &format!("{before}{name}/"), files)?;
+        } else if !name.starts_with(PREFIX) {
+            match fs::metadata(entry.path()) {
+                Ok(metadata) => drop(files.insert(format!("{before}{name}"), metadata.len())),
+                // Another part has just removed it.
+                Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+                Err(error) => return Err(error),
+            }
         }
     }
     Ok(())
+}
+
+/// In all folders of a data set.
+fn remove_leftovers(directory: &Path, before: &str) {
+    own_file::remove_leftovers(directory);
+    for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if is_own_folder(before, &name) {
+            remove_leftovers(&entry.path(), &format!("{before}{name}/"));
+        }
+    }
 }

@@ -10,16 +10,17 @@ mod object;
 #[cfg(feature = "objects")]
 mod remote_file;
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::fs::File;
-use std::io::{self, Read, Write};
+use std::io::{self, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use sha2::{Digest, Sha256};
+use meshtone_io::own_file::Claim;
 
+use crate::digest::{Digest, Hashing};
 use crate::error::DatasetError;
-use crate::plan::hex;
 use crate::shard::{ReadShard, Wanted};
 use directory::Directory;
 
@@ -31,8 +32,8 @@ pub struct Destination {
 
 /// Holds files by their names, with `/` between folders. It shows itself as users name it.
 trait Place: fmt::Debug + fmt::Display + Send + Sync {
-    /// The names of all files; none where the place does not exist.
-    fn names(&self) -> io::Result<Vec<String>>;
+    /// The names of all files with their sizes in bytes; none where the place does not exist.
+    fn files(&self) -> io::Result<BTreeMap<String, u64>>;
 
     /// Reads a file from its start.
     fn open(&self, name: &str) -> io::Result<Box<dyn Read + '_>>;
@@ -43,8 +44,16 @@ trait Place: fmt::Debug + fmt::Display + Send + Sync {
     /// Writes a file that appears whole or not at all; its content is written once.
     fn write(&self, name: &str, content: &mut dyn FnMut(&mut File) -> io::Result<()>) -> io::Result<()>;
 
+    /// Removes a file.
+    fn remove(&self, name: &str) -> io::Result<()>;
+
     /// A file's name for messages.
     fn name_of(&self, name: &str) -> String;
+
+    /// Has something of the place for this program alone; none where another program has it. An object store knows no such thing.
+    fn claim(&self, _what: &str) -> io::Result<Option<Claimed>> {
+        Ok(Some(Claimed { _claim: None }))
+    }
 
     /// Removes what killed runs have left behind.
     fn remove_leftovers(&self) {}
@@ -59,6 +68,16 @@ trait Place: fmt::Debug + fmt::Display + Send + Sync {
         None
     }
 }
+
+/// Something of a place that this program has for itself, as far as the place knows of such.
+#[derive(Debug)]
+#[must_use = "dropped, it is anybody's"]
+pub(crate) struct Claimed {
+    _claim: Option<Claim>,
+}
+
+/// (bytes) What is read at once of a file that is hashed.
+const READ_BYTES: usize = 1 << 20;
 
 const HELP: &str = "name a directory or a URL such as file:///data/gears or s3://bucket/gears";
 
@@ -132,10 +151,10 @@ impl Destination {
         Err(without_cloud(url))
     }
 
-    /// Names of all that is there, from the data set's own directory, with `/` between folders; none where it does not
-    /// exist.
-    pub(crate) fn names(&self) -> Result<Vec<String>, DatasetError> {
-        self.place.names().map_err(DatasetError::read(self.to_string()))
+    /// All that is there: names from the data set's own directory, with `/` between folders, and sizes in bytes; nothing where the
+    /// place does not exist.
+    pub(crate) fn files(&self) -> Result<BTreeMap<String, u64>, DatasetError> {
+        self.place.files().map_err(DatasetError::read(self.to_string()))
     }
 
     /// The content of a small file; none where there is none.
@@ -148,17 +167,18 @@ impl Destination {
         }
     }
 
-    /// What a shard says about itself and some of its values; none where there is none, or what is there is no whole shard.
-    pub(crate) fn shard(&self, name: &str, wanted: Wanted) -> Option<ReadShard> {
-        self.place.shard(name, wanted).ok()
+    /// What a shard says about itself and some of its values, or why it cannot be read.
+    pub(crate) fn read_shard(&self, name: &str, wanted: Wanted) -> io::Result<ReadShard> {
+        self.place.shard(name, wanted)
     }
 
-    /// SHA-256 and length of a file.
-    pub(crate) fn sha256(&self, name: &str) -> Result<(String, u64), DatasetError> {
-        self.place
-            .open(name)
-            .and_then(|mut reader| hash(&mut *reader))
-            .map_err(DatasetError::read(self.place.name_of(name)))
+    /// The digest of a file.
+    pub(crate) fn digest(&self, name: &str) -> Result<Digest, DatasetError> {
+        let mut hashing = Hashing::new(io::sink());
+        let mut reader = self.place.open(name).map_err(DatasetError::read(self.place.name_of(name)))?;
+        let read = io::copy(&mut BufReader::with_capacity(READ_BYTES, &mut reader), &mut hashing);
+        read.map_err(DatasetError::read(self.place.name_of(name)))?;
+        Ok(hashing.digest())
     }
 
     /// Writes a file that appears whole or not at all.
@@ -183,10 +203,43 @@ impl Destination {
         self.write(name, |file| file.write_all(bytes))
     }
 
-    /// Takes over a file of another place.
-    pub(crate) fn take_over(&self, other: &Self, name: &str) -> Result<(), DatasetError> {
+    /// Takes over a file of another place, if it has the digest that it should have. Returns whether it has.
+    pub(crate) fn take_over(&self, other: &Self, name: &str, digest: &Digest) -> Result<bool, DatasetError> {
         let mut reader = other.place.open(name).map_err(DatasetError::read(other.place.name_of(name)))?;
-        self.write(name, |file| io::copy(&mut reader, file).map(|_| ()))
+        let mut differs = false;
+        let written = self.write(name, |file| {
+            let mut hashing = Hashing::new(file);
+            io::copy(&mut BufReader::with_capacity(READ_BYTES, &mut reader), &mut hashing)?;
+            differs = hashing.digest() != *digest;
+            // An error keeps the file from being named.
+            if differs { Err(io::Error::other("it is damaged")) } else { Ok(()) }
+        });
+        if differs { Ok(false) } else { written.map(|()| true) }
+    }
+
+    /// A file's name for messages.
+    pub(crate) fn name_of(&self, name: &str) -> String {
+        self.place.name_of(name)
+    }
+
+    /// Removes a file; none is there afterwards.
+    pub(crate) fn remove(&self, name: &str) -> Result<(), DatasetError> {
+        match self.place.remove(name) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                Err(DatasetError::write(self.place.name_of(name))(error))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Has something of the place for this program alone.
+    ///
+    /// # Arguments
+    /// * `what` - a word for it
+    /// * `in_words` - what another program does that has it
+    pub(crate) fn claim(&self, what: &str, in_words: &str) -> Result<Claimed, DatasetError> {
+        let claimed = self.place.claim(what).map_err(DatasetError::write(self.to_string()))?;
+        claimed.ok_or_else(|| DatasetError::Busy { place: self.to_string(), doing: in_words.to_owned() })
     }
 
     /// Removes what killed runs have left behind.
@@ -216,19 +269,4 @@ fn without_cloud(url: &str) -> DatasetError {
         format!("this build of the program cannot write to {url}"),
         "build it with object stores: cargo build --release --features cloud",
     )
-}
-
-fn hash(reader: &mut dyn Read) -> io::Result<(String, u64)> {
-    let mut hash = Sha256::new();
-    let mut buffer = vec![0; 1 << 20];
-    let mut length = 0;
-    loop {
-        match reader.read(&mut buffer)? {
-            0 => return Ok((hex(&hash.finalize()), length)),
-            count => {
-                hash.update(&buffer[..count]);
-                length += count as u64;
-            }
-        }
-    }
 }

@@ -1,5 +1,6 @@
 //! A data set in an object store.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::fs::File;
 use std::future::Future;
@@ -60,22 +61,19 @@ impl Objects {
 }
 
 impl Place for Objects {
-    fn names(&self) -> io::Result<Vec<String>> {
-        let list = async {
+    fn files(&self) -> io::Result<BTreeMap<String, u64>> {
+        wait(async {
             let mut listed = self.store.list(Some(&self.prefix));
-            let mut names = Vec::new();
+            let mut files = BTreeMap::new();
             while let Some(object) = listed.next().await {
                 let object = object?;
                 let parts = object.location.prefix_match(&self.prefix);
                 let parts: Vec<String> =
                     parts.into_iter().flatten().map(|part| part.as_ref().to_owned()).collect();
-                names.push(parts.join("/"));
+                files.insert(parts.join("/"), object.size);
             }
-            Ok(names)
-        };
-        let mut names = wait(list)?;
-        names.sort();
-        Ok(names)
+            Ok(files)
+        })
     }
 
     fn open(&self, name: &str) -> io::Result<Box<dyn Read + '_>> {
@@ -100,6 +98,10 @@ impl Place for Objects {
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes)?;
         wait(async { self.store.put(&path, PutPayload::from(bytes)).await.map(|_| ()) })
+    }
+
+    fn remove(&self, name: &str) -> io::Result<()> {
+        wait(self.store.delete(&self.location(name)))
     }
 
     fn name_of(&self, name: &str) -> String {

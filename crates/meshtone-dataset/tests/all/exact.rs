@@ -9,6 +9,7 @@ use meshtone_dataset::DatasetError;
 use meshtone_dataset::generate::{GenerateControl, Part, generate};
 use meshtone_dataset::merge::merge;
 use meshtone_dataset::store::Destination;
+use meshtone_dataset::verify::Check;
 
 #[test]
 fn jobs_and_parts_do_not_show() {
@@ -29,10 +30,10 @@ fn jobs_and_parts_do_not_show() {
         let generated = run(&plan, part, Part { number, of: 3 }, 2).unwrap();
         assert!(!generated.complete && generated.written_shards >= 2);
     }
-    let refused = merge(&parts[..2], &to("merged")).unwrap_err();
+    let refused = merge(&parts[..2], &to("merged"), Check::Sizes).unwrap_err();
     assert!(refused.to_string().contains("2 of 8 shards are in none of the parts"), "{refused}");
     assert!(!place("merged").exists());
-    assert!(merge(&parts, &to("merged")).unwrap().complete);
+    assert!(merge(&parts, &to("merged"), Check::Sizes).unwrap().complete);
     assert_eq!(differing(&whole, &bytes(&place("merged"))), [""; 0]);
 
     // In one directory, the last of them completes it.

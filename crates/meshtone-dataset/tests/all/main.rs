@@ -9,3 +9,4 @@ mod python;
 mod records;
 mod refused;
 mod support;
+mod verified;

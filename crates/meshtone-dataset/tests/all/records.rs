@@ -402,7 +402,11 @@ fn enhanced_signals_are_those_of_the_hybrid_stage() {
     run(&plan, &Destination::directory(directory.path().join("other")), Part { number: 2, of: 2 }, 2)
         .unwrap();
     let parts = [Destination::directory(&set), Destination::directory(directory.path().join("other"))];
-    assert!(meshtone_dataset::merge::merge(&parts, &parts[0]).unwrap().complete);
+    assert!(
+        meshtone_dataset::merge::merge(&parts, &parts[0], meshtone_dataset::verify::Check::Sizes)
+            .unwrap()
+            .complete
+    );
 }
 
 /// Enhancement that changes nothing leaves the record's own difference signal, but for where it begins and its scale: it is read as

@@ -183,6 +183,22 @@ fn constraints_that_cannot_be_met() {
     );
 }
 
+/// A whole number of hunting periods is simulated: of 20 and 40 teeth, one revolution of the gear.
+#[test]
+fn more_than_is_simulated() {
+    let keep = |duration_s: f64| format!("[keep]\nduration_s = {duration_s}");
+    let words = ["keep.duration_s = 5", "is longer than the hunting period", "shorten it"];
+    refused_with("[keep]", &keep(5.0), &words);
+    assert_eq!(plan(&FAST.replacen("[keep]", &keep(0.5), 1)).foreseen_failures(), []);
+    let some = plan(&FAST.replacen("[keep]", &keep(1.05), 1)).foreseen_failures();
+    assert!(!some.is_empty() && some.len() < 60, "{}", some.len());
+    assert!(some[0].reason.starts_with("keep.duration_s = 1.0"), "{}", some[0].reason);
+    // Chips that are higher than the tooth.
+    let some = plan(&FAST.replace("uniform = [1.0, 5.0]", "uniform = [5.0, 7.5]")).foreseen_failures();
+    assert!(!some.is_empty() && some.len() < 20, "{}", some.len());
+    assert!(some.iter().all(|failed| failed.reason.contains("fault.chip_height_mm")), "{some:?}");
+}
+
 /// A value of a choice that no other value can save is told before anything is made.
 #[test]
 fn choices_that_are_impossible() {

@@ -1,0 +1,252 @@
+//! What is damaged, lost or foreign does not pass.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use std::fs;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use crate::support::{FAST, bytes, differing, plan, run};
+use meshtone_dataset::DatasetError;
+use meshtone_dataset::generate::{GenerateControl, Part, generate};
+use meshtone_dataset::merge::merge;
+use meshtone_dataset::store::Destination;
+use meshtone_dataset::verify::{Check, Verified, verify};
+
+/// A complete data set.
+fn made() -> (tempfile::TempDir, Destination) {
+    let directory = tempfile::tempdir().unwrap();
+    let to = Destination::directory(directory.path());
+    assert!(run(&plan(FAST), &to, Part::WHOLE, 2).unwrap().complete);
+    (directory, to)
+}
+
+/// Turns over one bit of a file: multiples of the golden ratio leave no pattern.
+fn flip(path: &Path, number: u32) {
+    let mut content = fs::read(path).unwrap();
+    let bit = ((f64::from(number) * 0.618_033_988_749_895).fract() * 8.0 * content.len() as f64) as usize;
+    content[bit / 8] ^= 1 << (bit % 8);
+    fs::write(path, content).unwrap();
+}
+
+fn bytes_of(place: &Destination) -> Verified {
+    verify(place, Check::Bytes).unwrap()
+}
+
+#[track_caller]
+fn assert_only(found: &Verified, name: &str, problem: &str) {
+    assert_eq!((found.problems.len(), found.missing.len()), (1, 0), "{found:?}");
+    assert!(found.problems.get(name).is_some_and(|told| told.contains(problem)), "{found:?}");
+}
+
+#[test]
+fn every_flipped_bit_of_a_shard_is_found_and_the_shard_made_again() {
+    let (directory, to) = made();
+    let before = bytes(directory.path());
+    assert!(bytes_of(&to).is_good());
+    for number in 1..=60 {
+        let name = format!("data/records-{:06}.parquet", number % 8);
+        flip(&directory.path().join(&name), number);
+        assert!(verify(&to, Check::Sizes).unwrap().is_good());
+        assert_only(&bytes_of(&to), &name, "SHA-256 differs");
+        if number % 6 == 0 {
+            let again = run(&plan(FAST), &to, Part::WHOLE, 2).unwrap();
+            assert_eq!((again.kept_shards, again.written_shards, again.complete), (7, 1, true), "{number}");
+            assert_eq!(again.remade[0].file, name);
+            assert!(again.remade[0].reason.contains("SHA-256 differs"));
+        } else {
+            fs::write(directory.path().join(&name), &before[&name]).unwrap();
+        }
+        assert_eq!(differing(&before, &bytes(directory.path())), [""; 0], "{number}");
+    }
+}
+
+#[test]
+fn every_flipped_bit_of_another_file_is_found() {
+    let (directory, to) = made();
+    for name in ["manifest.json", "README.md", "preview.svg", "preview.png", "plan.toml"] {
+        let path = directory.path().join(name);
+        let before = fs::read(&path).unwrap();
+        for number in 1..=60 {
+            flip(&path, number);
+            match verify(&to, Check::Bytes) {
+                Ok(found) => assert!(found.problems.contains_key(name), "{name} {number}: {found:?}"),
+                Err(error) => assert!(error.to_string().contains(name), "{name} {number}: {error}"),
+            }
+            fs::write(&path, &before).unwrap();
+        }
+    }
+    assert!(bytes_of(&to).is_good());
+}
+
+#[test]
+fn the_card_and_the_preview_are_made_again() {
+    let (directory, to) = made();
+    let before = bytes(directory.path());
+    for name in ["README.md", "preview.svg", "preview.png", "plan.toml"] {
+        fs::remove_file(directory.path().join(name)).unwrap();
+        assert_only(&verify(&to, Check::Sizes).unwrap(), name, "it is missing");
+        let again = run(&plan(FAST), &to, Part::WHOLE, 2).unwrap();
+        assert_eq!((again.kept_shards, again.written_shards, again.complete), (8, 0, true));
+        assert_eq!(differing(&before, &bytes(directory.path())), [""; 0], "{name}");
+    }
+}
+
+#[test]
+fn names_and_sizes_are_always_looked_at() {
+    let (directory, to) = made();
+    let path = |name: &str| directory.path().join(name);
+    let (first, extra) = ("data/records-000000.parquet", "data/records-000008.parquet");
+    fs::copy(path(first), path(extra)).unwrap();
+    assert_only(&verify(&to, Check::Sizes).unwrap(), extra, "no manifest or list of a part names it");
+    let refused = run(&plan(FAST), &to, Part::WHOLE, 1).unwrap_err();
+    assert!(
+        refused.to_string().contains("a shard that is none of this data set: data/records-000008"),
+        "{refused}"
+    );
+    fs::remove_file(path(extra)).unwrap();
+
+    let whole = fs::read(path(first)).unwrap();
+    fs::write(path(first), &whole[1..]).unwrap();
+    let told = format!("it has {} bytes instead of {}", whole.len() - 1, whole.len());
+    assert_only(&verify(&to, Check::Sizes).unwrap(), first, &told);
+    fs::remove_file(path(first)).unwrap();
+    let found = verify(&to, Check::Sizes).unwrap();
+    assert!(found.problems.is_empty() && found.missing == [first] && found.shards.len() == 7, "{found:?}");
+}
+
+#[test]
+fn manifests_that_cannot_be_are_refused() {
+    let (directory, to) = made();
+    let path = directory.path().join("manifest.json");
+    let text = fs::read_to_string(&path).unwrap();
+    let with = |from: &str, into: &str| {
+        assert!(text.contains(from), "{from}");
+        fs::write(&path, text.replacen(from, into, 1)).unwrap();
+    };
+    with("\"format_version\": 2", "\"format_version\": 3");
+    for refused in [
+        verify(&to, Check::Sizes).unwrap_err(),
+        run(&plan(FAST), &to, Part::WHOLE, 1).unwrap_err(),
+        merge(&[to.clone()], &to, Check::Sizes).unwrap_err(),
+    ] {
+        assert!(
+            refused.to_string().contains("has the format 3; this version of Meshtone knows those up to 2"),
+            "{refused}"
+        );
+        let DatasetError::Refused { help, .. } = refused else { unreachable!("{refused}") };
+        assert!(help.contains("use version"), "{help}");
+    }
+    with("\"records\": 60", "\"records\": 61");
+    assert!(!verify(&to, Check::Sizes).unwrap().is_good());
+    with("\"rows\": 8", "\"rows\": \"8\"");
+    assert!(
+        verify(&to, Check::Sizes)
+            .unwrap_err()
+            .to_string()
+            .contains("a file lacks its name, bytes, sha256 or rows")
+    );
+    fs::remove_file(&path).unwrap();
+    assert!(verify(&to, Check::Sizes).unwrap_err().to_string().contains("is no data set"));
+    let refused = run(&plan(FAST), &to, Part::WHOLE, 1).unwrap_err();
+    assert!(refused.to_string().contains("but no manifest.json"), "{refused}");
+}
+
+/// As earlier versions wrote them: hashes that were taken from the disk in the end, no documents, no seal.
+#[test]
+fn a_data_set_of_format_1_is_kept() {
+    let (directory, to) = made();
+    let path = directory.path().join("manifest.json");
+    let mut manifest: serde_json::Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+    let entries = manifest.as_object_mut().unwrap();
+    entries.insert("format_version".to_owned(), 1.into());
+    assert!(entries.remove("sha256").is_some() && entries.remove("documents").is_some());
+    fs::write(&path, serde_json::to_string_pretty(&manifest).unwrap()).unwrap();
+    let found = bytes_of(&to);
+    assert!(found.is_good() && found.complete && found.format == 1, "{found:?}");
+    let again = run(&plan(FAST), &to, Part::WHOLE, 2).unwrap();
+    assert_eq!((again.kept_shards, again.complete), (8, true));
+}
+
+/// A shard that nothing proves is not certified by a new hash.
+#[test]
+fn what_no_list_names_is_made_again() {
+    let plan = plan(FAST);
+    let directory = tempfile::tempdir().unwrap();
+    let to = Destination::directory(directory.path());
+    run(&plan, &to, Part { number: 1, of: 2 }, 2).unwrap();
+    let found = bytes_of(&to);
+    assert!(found.is_good() && !found.complete && found.shards.len() == 4, "{found:?}");
+    let list = directory.path().join("parts/part-1-2-000000.json");
+    flip(&list, 7);
+    let found = bytes_of(&to);
+    assert_eq!(found.problems.len(), 5, "{found:?}");
+    let again = run(&plan, &to, Part { number: 1, of: 2 }, 2).unwrap();
+    assert_eq!((again.kept_shards, again.remade.len()), (0, 4));
+    assert!(again.remade[0].reason.contains("no list"), "{:?}", again.remade);
+    assert!(run(&plan, &to, Part { number: 2, of: 2 }, 2).unwrap().complete);
+    assert!(!directory.path().join("parts").exists());
+    assert!(bytes_of(&to).is_good());
+}
+
+#[test]
+fn merging_takes_what_is_as_it_was_written() {
+    let plan = plan(FAST);
+    let directory = tempfile::tempdir().unwrap();
+    let to = |name: &str| Destination::directory(directory.path().join(name));
+    for (name, number) in [("a", 1), ("b", 2), ("c", 2)] {
+        run(&plan, &to(name), Part { number, of: 2 }, 2).unwrap();
+    }
+    // One of two copies is damaged.
+    flip(&directory.path().join("b/data/records-000003.parquet"), 11);
+    let refused = merge(&[to("a"), to("b")], &to("merged"), Check::Sizes).unwrap_err();
+    assert!(refused.to_string().contains("data/records-000003.parquet is damaged in"), "{refused}");
+    let merged = merge(&[to("a"), to("b"), to("c")], &to("merged"), Check::Sizes).unwrap();
+    // What the merge that failed has copied is kept, because its bytes are right.
+    assert_eq!((merged.kept_shards, merged.written_shards), (3, 5));
+    run(&plan, &to("whole"), Part::WHOLE, 2).unwrap();
+    let [merged, whole] = ["merged", "whole"].map(|name| bytes(&directory.path().join(name)));
+    assert_eq!(differing(&merged, &whole), [""; 0]);
+    // In the whole's own place bytes are read where that is asked for.
+    run(&plan, &to("b"), Part { number: 1, of: 2 }, 2).unwrap();
+    flip(&directory.path().join("b/data/records-000005.parquet"), 12);
+    let refused = merge(&[to("b")], &to("b"), Check::Bytes).unwrap_err();
+    assert!(refused.to_string().contains("is damaged in"), "{refused}");
+}
+
+#[test]
+fn another_generator_in_the_same_place_is_told() {
+    let plan = plan(FAST);
+    let directory = tempfile::tempdir().unwrap();
+    let to = Destination::directory(directory.path());
+    let told = std::sync::Mutex::new(Vec::new());
+    let progress = |done: u64, _: u64| {
+        if done == 9 {
+            // Another part may be made at the same time.
+            assert!(!run(&plan, &to, Part { number: 1, of: 8 }, 1).unwrap().complete);
+            told.lock().unwrap().push(run(&plan, &to, Part::WHOLE, 1).unwrap_err());
+        }
+    };
+    let control = GenerateControl { progress: &progress, cancelled: &AtomicBool::new(false) };
+    assert!(generate(&plan, &to, Part::WHOLE, &control).unwrap().complete);
+    let told = told.into_inner().unwrap();
+    assert!(matches!(told[..], [DatasetError::Busy { .. }]), "{told:?}");
+    assert!(told[0].to_string().starts_with("another program is making a data set in "), "{}", told[0]);
+    assert!(bytes_of(&to).is_good());
+}
+
+/// What only the signals show: at 100 S/s there is no mesh frequency.
+#[test]
+fn a_data_set_without_a_record_is_none() {
+    let plan = plan(&FAST.replace("sampling_rate_hz = 8e3", "sampling_rate_hz = 100.0"));
+    let directory = tempfile::tempdir().unwrap();
+    let to = Destination::directory(directory.path());
+    for _ in 0..2 {
+        match run(&plan, &to, Part::WHOLE, 2) {
+            Err(DatasetError::NoRecord { records: 60, first }) => {
+                assert!(first.reason.contains("the sampling rate is too low"))
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+    assert!(!bytes_of(&to).complete);
+}

@@ -1,0 +1,312 @@
+//! Files that belong to a running program, under names that begin with `.meshtone-`.
+//!
+//! Each is locked as long as its program runs; however a program ends, the system takes its locks away. So what another program
+//! is writing can be told from what a killed one has left behind. On file systems without locks nothing is taken for left behind.
+
+use std::collections::BTreeSet;
+use std::fs::{self, File, TryLockError};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError, RwLock};
+use std::thread::sleep;
+use std::time::Duration;
+
+use tempfile::NamedTempFile;
+
+/// What the names begin with.
+pub const PREFIX: &str = ".meshtone-";
+
+/// How often a file is begun anew that another program has taken for left behind before it was locked.
+const TRIES: usize = 16;
+/// How long a program that clears up has a file locked at most, and more.
+const CLEARING: Duration = Duration::from_millis(10);
+
+/// All of this program's, to be removed where it is told to end.
+static OWN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+fn own() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    // A set of paths is whole whatever happened to whoever changed it.
+    OWN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Among this program's own files until it is dropped.
+#[derive(Debug)]
+struct Listed(PathBuf);
+
+impl Drop for Listed {
+    fn drop(&mut self) {
+        own().remove(&self.0);
+    }
+}
+
+/// A file without a name of its own yet; dropped, it disappears.
+#[derive(Debug)]
+pub(crate) struct Unnamed {
+    // Gone before it is taken from the list.
+    file: NamedTempFile,
+    listed: Listed,
+}
+
+impl Unnamed {
+    /// Begins one.
+    ///
+    /// # Arguments
+    /// * `directory` - where
+    pub fn begin(directory: &Path) -> io::Result<Self> {
+        clear_up_once(directory);
+        for _ in 0..TRIES {
+            // Not between the two, when the program is told to end.
+            let mut own = own();
+            let file = builder().tempfile_in(directory)?;
+            own.insert(file.path().to_path_buf());
+            drop(own);
+            let listed = Listed(file.path().to_path_buf());
+            let begun = Self { file, listed };
+            if lock(begun.file.as_file()) != Lock::Taken && begun.file.path().exists() {
+                return Ok(begun);
+            }
+        }
+        Err(io::Error::other("another program removes what is begun there"))
+    }
+
+    /// The file, to be written to.
+    pub fn file(&mut self) -> &mut File {
+        self.file.as_file_mut()
+    }
+
+    /// Gives it a name, in place of the file that had it.
+    pub fn name(self, path: &Path) -> io::Result<()> {
+        let Self { file, listed } = self;
+        let held = own();
+        let named = file.persist(path).map(drop).map_err(|error| error.error);
+        drop(held);
+        drop(listed);
+        named
+    }
+
+    /// Gives it a name that no file has.
+    pub fn name_new(self, path: &Path) -> io::Result<()> {
+        let Self { file, listed } = self;
+        let held = own();
+        let named = file.persist_noclobber(path).map(drop).map_err(|error| error.error);
+        drop(held);
+        drop(listed);
+        named
+    }
+}
+
+/// A place that this program has for itself, until it is dropped or the program ends.
+#[derive(Debug)]
+#[must_use = "dropped, the place is anybody's"]
+pub struct Claim {
+    listed: Listed,
+    // Unlocked after it has been removed.
+    _file: File,
+}
+
+impl Claim {
+    /// Claims a place; none where another program has it.
+    ///
+    /// # Arguments
+    /// * `directory` - an existing directory
+    /// * `what` - of what is done there, a word for a file's name
+    ///
+    /// # Errors
+    /// The directory cannot be written to.
+    ///
+    /// ```
+    /// use meshtone_io::own_file::Claim;
+    ///
+    /// let directory = tempfile::tempdir()?;
+    /// let first = Claim::take(directory.path(), "results")?;
+    /// assert!(first.is_some() && Claim::take(directory.path(), "results")?.is_none());
+    /// drop(first);
+    /// assert!(Claim::take(directory.path(), "results")?.is_some());
+    /// # Ok::<(), std::io::Error>(())
+    /// ```
+    pub fn take(directory: &Path, what: &str) -> io::Result<Option<Self>> {
+        let path = directory.join(format!("{PREFIX}{what}"));
+        for _ in 0..TRIES {
+            let held = own();
+            if held.contains(&path) {
+                return Ok(None);
+            }
+            let file = File::options().create(true).truncate(false).write(true).open(&path)?;
+            let locked = lock(&file);
+            if locked != Lock::Taken && is_at(&file, &path) {
+                let mut held = held;
+                held.insert(path.clone());
+                return Ok(Some(Self { listed: Listed(path), _file: file }));
+            }
+            drop(held);
+            // Who clears up has it for a moment only.
+            sleep(CLEARING);
+        }
+        Ok(None)
+    }
+}
+
+impl Drop for Claim {
+    fn drop(&mut self) {
+        // What cannot be removed is left behind, unlocked, and cleared away by the next program.
+        let _ = fs::remove_file(&self.listed.0);
+    }
+}
+
+/// A directory that disappears again, dropped, if it is empty.
+#[derive(Debug)]
+#[must_use = "dropped, an empty directory disappears"]
+pub struct NewDirectory(Listed);
+
+impl NewDirectory {
+    /// Creates a directory and those that it is in, as far as there are none.
+    ///
+    /// # Arguments
+    /// * `path` - the directory
+    ///
+    /// # Errors
+    /// One of them cannot be created; those that were are removed again.
+    ///
+    /// Returns the new ones, innermost first.
+    pub fn create_all(path: &Path) -> io::Result<Vec<Self>> {
+        let missing = path.ancestors().filter(|part| !part.as_os_str().is_empty());
+        let missing: Vec<&Path> = missing.take_while(|part| !part.exists()).collect();
+        let new = missing.iter().map(|part| Self(Listed(part.to_path_buf()))).collect();
+        // Not between the two, when the program is told to end.
+        let mut held = own();
+        held.extend(missing.iter().map(|part| part.to_path_buf()));
+        let created = create_directories(path);
+        drop(held);
+        created.map(|()| new)
+    }
+}
+
+/// Creates a directory and those that it is in, as far as there are none.
+///
+/// # Arguments
+/// * `path` - the directory
+///
+/// # Errors
+/// One of them cannot be created.
+pub fn create_directories(path: &Path) -> io::Result<()> {
+    fs::create_dir_all(path).map_err(|error| io::Error::new(refusal(&error), error.to_string()))
+}
+
+/// Why something cannot be created in a directory that there is: where the system finds nothing, as in `/proc`, it lets nobody write.
+pub(crate) fn refusal(error: &io::Error) -> io::ErrorKind {
+    match error.kind() {
+        io::ErrorKind::NotFound => io::ErrorKind::PermissionDenied,
+        kind => kind,
+    }
+}
+
+impl Drop for NewDirectory {
+    fn drop(&mut self) {
+        // What is not empty stays.
+        let _ = fs::remove_dir(&self.0.0);
+    }
+}
+
+/// Removes what killed programs have left in a directory. What cannot be removed stays, and so does what runs.
+///
+/// # Arguments
+/// * `directory` - the directory; folders in it are left alone
+pub fn remove_leftovers(directory: &Path) {
+    for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
+        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
+        if is_file && entry.file_name().to_string_lossy().starts_with(PREFIX) {
+            let _ = remove_left(&entry.path());
+        }
+    }
+}
+
+/// Removes what killed programs have left, before this one writes there for the first time.
+fn clear_up_once(directory: &Path) {
+    static CLEARED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+    if CLEARED.lock().unwrap_or_else(PoisonError::into_inner).insert(directory.to_path_buf()) {
+        remove_leftovers(directory);
+    }
+}
+
+fn remove_left(path: &Path) -> io::Result<()> {
+    // Under its lock, so that nobody takes it meanwhile. Some network file systems lock only what may be written to.
+    let file = File::options().write(true).open(path)?;
+    if lock(&file) == Lock::Ours { fs::remove_file(path) } else { Ok(()) }
+}
+
+/// Removes all files of this program that have no name yet, and the new directories that are empty, and lets it neither begin nor
+/// name any more: for a program that is told to end.
+///
+/// The calling thread is to end the program; another one that begins or names a file waits for that for ever.
+pub fn remove_own() {
+    std::mem::forget(UNDISTURBED.write().unwrap_or_else(PoisonError::into_inner));
+    let own = own();
+    own.iter().for_each(|path| drop(fs::remove_file(path)));
+    // A directory that is in another comes after it in the set.
+    own.iter().rev().for_each(|path| drop(fs::remove_dir(path)));
+    std::mem::forget(own);
+}
+
+/// Held while something is done that is not to be left halfway.
+static UNDISTURBED: RwLock<()> = RwLock::new(());
+
+/// Does what takes a moment and is not to be left halfway where the program is told to end, such as to name files that belong
+/// together.
+///
+/// # Arguments
+/// * `work` - what; it does not call this function itself
+pub fn undisturbed<T>(work: impl FnOnce() -> T) -> T {
+    let _held = UNDISTURBED.read().unwrap_or_else(PoisonError::into_inner);
+    work()
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Lock {
+    Ours,
+    Taken,
+    /// The file system has none.
+    Unknown,
+}
+
+fn lock(file: &File) -> Lock {
+    match file.try_lock() {
+        Ok(()) => Lock::Ours,
+        Err(TryLockError::WouldBlock) => Lock::Taken,
+        Err(TryLockError::Error(_)) => Lock::Unknown,
+    }
+}
+
+/// Whether an open file is still the one of that name.
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+
+    let [here, there] =
+        [file.metadata(), fs::metadata(path)].map(|it| it.map(|it| (it.dev(), it.ino())).ok());
+    here.is_some() && here == there
+}
+
+/// Whether an open file is still the one of that name: without a number to tell by, whether there is one.
+#[cfg(not(unix))]
+fn is_at(_: &File, path: &Path) -> bool {
+    path.exists()
+}
+
+/// Temporary files are private by default; a result is to have the permissions of any new file.
+#[cfg(unix)]
+fn builder() -> tempfile::Builder<'static, 'static> {
+    use std::fs::Permissions;
+    use std::os::unix::fs::PermissionsExt;
+
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(PREFIX).permissions(Permissions::from_mode(0o666));
+    builder
+}
+
+#[cfg(not(unix))]
+fn builder() -> tempfile::Builder<'static, 'static> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(PREFIX);
+    builder
+}
