@@ -354,7 +354,8 @@ fn nothing_unfinished_stays() {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        std::thread::sleep(Duration::from_secs_f64(0.15 * part));
+        while unfinished() == 0 && child.try_wait().unwrap().is_none() {}
+        std::thread::sleep(Duration::from_secs_f64(0.02 * part));
         let status = std::process::Command::new("kill").args([signal, &child.id().to_string()]).status();
         let running = status.unwrap().success();
         let ended = child.wait().unwrap();
@@ -366,6 +367,7 @@ fn nothing_unfinished_stays() {
         assert_eq!(unfinished(), 0, "{number}");
     }
     assert!(ended > 0);
+    std::fs::remove_dir_all(workplace.path("set")).unwrap();
     let mut left = 0;
     for number in 1..=12 {
         end("-KILL", (f64::from(number) * 0.618_033_988_749_895).fract());
