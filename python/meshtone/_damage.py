@@ -70,8 +70,8 @@ class ToothBreakage:
     Parameters
     ----------
     chip_height_mm : float, optional
-        (mm) The extent of the chipped corner from the tip along the tooth. Allowed: > 0; less than the tooth's height,
-        2.25 modules. Required, unless ``severity`` is given.
+        (mm) The extent of the chipped corner from the tip along the tooth. Allowed: > 0; less than the tooth's height.
+        Required, unless ``severity`` is given.
     chip_width_mm : float, optional
         (mm) Its extent along the face width, at the tip. Allowed: > 0; at most the face width. Required, unless
         ``severity`` is given.

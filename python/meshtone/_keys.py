@@ -153,6 +153,13 @@ SECTION_OF_KEY: dict[str, str] = {
     "model": "",
     "seed": "",
     "pressure_angle_deg": "gears",
+    "pinion_profile_shift": "gears",
+    "gear_profile_shift": "gears",
+    "pinion_addendum": "gears",
+    "gear_addendum": "gears",
+    "pinion_dedendum": "gears",
+    "gear_dedendum": "gears",
+    "centre_distance_mm": "gears",
     "material": "gears",
     "tip_relief": "gears",
     "flank_relief": "gears",
@@ -228,6 +235,13 @@ class ScenarioKeys:
     model: Literal["contact", "linear", "published"]
     seed: int
     pressure_angle_deg: float
+    pinion_profile_shift: float
+    gear_profile_shift: float
+    pinion_addendum: float
+    gear_addendum: float
+    pinion_dedendum: float
+    gear_dedendum: float
+    centre_distance_mm: float | None
     material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"]
     tip_relief: TipRelief | Literal[False]
     flank_relief: FlankRelief
@@ -288,6 +302,13 @@ class ScenarioKeys:
         model: Literal["contact", "linear", "published"] | None = None,
         seed: int | None = None,
         pressure_angle_deg: float | None = None,
+        pinion_profile_shift: float | None = None,
+        gear_profile_shift: float | None = None,
+        pinion_addendum: float | None = None,
+        gear_addendum: float | None = None,
+        pinion_dedendum: float | None = None,
+        gear_dedendum: float | None = None,
+        centre_distance_mm: float | None = None,
         material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | None = None,
         tip_relief: TipRelief | Literal[False] | None = None,
         flank_relief: FlankRelief | None = None,
@@ -369,6 +390,25 @@ class ScenarioKeys:
         pressure_angle_deg : float, optional
             (°) The pressure angle at the pitch circle. Allowed: 10…35; teeth must not become pointed below full height.
             Default: 20.0.
+        pinion_profile_shift : float, optional
+            (-) The profile shift coefficient x of the pinion, in modules. Allowed: −2…2; a shift must leave no undercut
+            and no pointed tip. Default: 0.0.
+        gear_profile_shift : float, optional
+            (-) The profile shift coefficient x of the gear, in modules. Allowed: −2…2; likewise. Default: 0.0.
+        pinion_addendum : float, optional
+            (-) The addendum coefficient of the pinion's basic rack, in modules. Allowed: 0.3…2; tips must not be
+            pointed, nor reach into the mate's fillet. Default: 1.0.
+        gear_addendum : float, optional
+            (-) The addendum coefficient of the gear's basic rack, in modules. Allowed: 0.3…2; likewise. Default: 1.0.
+        pinion_dedendum : float, optional
+            (-) The dedendum coefficient of the pinion's basic rack, in modules. Allowed: 0.5…2.5; roots must clear the
+            mate's tips. Default: 1.25.
+        gear_dedendum : float, optional
+            (-) The dedendum coefficient of the gear's basic rack, in modules. Allowed: 0.5…2.5; likewise. Default:
+            1.25.
+        centre_distance_mm : float, optional
+            (mm) The distance between the axes. Allowed: > 0; at least the default; the contact ratio must be at least
+            1. Default: the one at which the teeth, of nominal thickness, have no backlash.
         material : {'steel', 'copper', 'aluminium', 'brass', 'cast-iron', 'bronze'}, optional
             The material of wheels and shafts. Default: "steel".
         tip_relief : TipRelief or False, optional
@@ -381,8 +421,9 @@ class ScenarioKeys:
             (mm) The height of the chamfer or rounding of all tips, which the flank ends below. Allowed: ≥ 0; less than
             1 module. Default: 0.2 modules. Ignored by linear and published.
         backlash_mm : float, optional
-            (mm) The backlash along the line of action. Allowed: ≥ 0; less than 1 module. Default: two thirds of 0.06 +
-            0.0005 a + 0.03 m, a the centre distance. Ignored by linear and published.
+            (mm) The backlash along the line of action. Allowed: ≥ 0; less than 1 module; at least what a given centre
+            distance opens. Default: two thirds of 0.06 + 0.0005 a + 0.03 m, a the centre distance, and what a given one
+            opens. Ignored by linear and published.
         crowning_mm : float, optional
             (mm) A constant reduction of the working flank. Allowed: ≥ 0; less than half the tooth's thickness at the
             pitch circle, π/4 modules. Default: 0.0.

@@ -108,6 +108,9 @@ class Simulation:
     mass_diagonal: Array
     damping_matrix: Array
     contact_ratio: float
+    working_pressure_angle_rad: float
+    centre_distance_mm: float
+    normal_backlash_mm: float
 
     def __init__(self, scenario: Scenario, native: _core.Simulation) -> None:
         self._scenario = scenario

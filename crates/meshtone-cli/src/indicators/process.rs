@@ -2,12 +2,11 @@
 
 use std::borrow::Cow;
 
-use meshtone::scenario::{Gears, Scenario, WheelName};
+use meshtone::scenario::{Scenario, WheelName};
 use meshtone::signal::{
     AngularSettings, ChainSettings, Record, SeparationSettings, Shaft, ShaftPhase, SignalError,
     SignalWarning, check_channel, process_channel, process_segments,
 };
-use meshtone::wheel::contact_ratio;
 use meshtone_io::indicators::WarningEntry;
 use meshtone_plot::DamagedTooth;
 
@@ -151,12 +150,11 @@ fn turning(input: &Input, phase: &PhaseOptions) -> Result<(Turning, Vec<Wheel>, 
 
 /// The teeth on a shaft that the scenario damages.
 fn damaged_teeth(scenario: &Scenario, shaft: Shaft) -> Vec<DamagedTooth> {
-    let Gears { pinion_teeth, gear_teeth, pressure_angle_deg, .. } = scenario.gears;
-    let contact_pitches = contact_ratio(pinion_teeth, gear_teeth, pressure_angle_deg.to_radians());
     let wheel = match shaft {
         Shaft::Pinion => WheelName::Pinion,
         Shaft::Gear => WheelName::Gear,
     };
+    let contact_pitches = scenario.gears.contact_ratio();
     DamagedTooth::of_wheel(&scenario.faults, wheel, scenario.gears.teeth(wheel), contact_pitches)
 }
 

@@ -1,7 +1,7 @@
 //! Title, key facts and the columns' headings.
 
 use meshtone::Stages;
-use meshtone::scenario::{Model, Operation, Scenario};
+use meshtone::scenario::{Gears, Model, Operation, Scenario};
 
 use super::damage;
 use super::side::Side;
@@ -46,11 +46,13 @@ pub(super) fn column(canvas: &mut Canvas, (left, baseline): Pixel, width: f64, s
 
 fn facts(scenario: &Scenario) -> Vec<String> {
     let gears = &scenario.gears;
-    vec![
+    let wheels = vec![
         format!("{} and {} teeth", gears.pinion_teeth, gears.gear_teeth),
         format!("module {} mm", number(gears.module_mm)),
         format!("face width {} mm", number(gears.face_width_mm)),
         format!("pressure angle {}°", number(gears.pressure_angle_deg)),
+    ];
+    let run = [
         speed(&scenario.operation),
         torque(&scenario.operation),
         quality(scenario),
@@ -58,7 +60,18 @@ fn facts(scenario: &Scenario) -> Vec<String> {
             Model::Published => "model as published".to_owned(),
             other => format!("{} model", other.name()),
         },
-    ]
+    ];
+    wheels.into_iter().chain(mounting(gears)).chain(run).collect()
+}
+
+/// Profile shifts and centre distance, where they are not the standard's.
+fn mounting(gears: &Gears) -> impl Iterator<Item = String> {
+    let shifts = [gears.pinion_profile_shift, gears.gear_profile_shift];
+    let shifted = (shifts != [0.0; 2])
+        .then(|| format!("profile shift {} and {}", number(shifts[0]), number(shifts[1])));
+    let distance =
+        gears.centre_distance_mm.map(|distance_mm| format!("axes {} mm apart", number(distance_mm)));
+    shifted.into_iter().chain(distance)
 }
 
 /// Which teeth are missing and which are damaged.

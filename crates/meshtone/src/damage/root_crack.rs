@@ -77,7 +77,7 @@ impl Kind for RootCrack {
 
     fn check(&self, gears: &Gears) -> Check {
         check_keys(self, "fault")?;
-        below("fault.depth_mm", self.depth_mm, gears.tooth_height_mm(), "the tooth's height (2.25 modules)")?;
+        below("fault.depth_mm", self.depth_mm, gears.tooth_height_mm(), "the tooth's height")?;
         self.length_mm.map_or(Ok(()), |length| {
             let problem = format!("must be at most {} mm, gears.face_width_mm", gears.face_width_mm);
             require("fault.length_mm", length, length <= gears.face_width_mm, problem).map_err(|error| {

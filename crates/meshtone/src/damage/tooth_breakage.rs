@@ -38,7 +38,7 @@ impl Keys for ToothBreakage {
             )
             .required_unless(&["severity"])
             .range(Range::positive())
-            .rule("less than the tooth's height, 2.25 modules"),
+            .rule("less than the tooth's height"),
             row("chip_width_mm", "mm", "its extent along the face width, at the tip", field!(chip_width_mm))
                 .required_unless(&["severity"])
                 .range(Range::positive())
@@ -90,7 +90,7 @@ impl Kind for ToothBreakage {
     fn check(&self, gears: &Gears) -> Check {
         check_keys(self, "fault")?;
         let height = gears.tooth_height_mm();
-        let height_is = "the tooth's height (2.25 modules)";
+        let height_is = "the tooth's height";
         below("fault.chip_height_mm", self.chip_height_mm, height, height_is)?;
         let width = self.chip_width_mm;
         let problem = format!("must be at most {} mm, gears.face_width_mm", gears.face_width_mm);

@@ -19,7 +19,7 @@ pub struct WheelBody {
 }
 
 impl WheelBody {
-    /// A solid disc of pitch radius `R` and face width `W`: `m = ρ π R² W`, `J = m R²/2`,
+    /// A solid disc of the V circle's radius `R`, without profile shift the pitch radius, and face width `W`: `m = ρ π R² W`, `J = m R²/2`,
     /// `I = m (3R² + W²)/12`; what the user gives replaces it.
     ///
     /// # Arguments
@@ -28,7 +28,7 @@ impl WheelBody {
     /// * `given` - values of the user
     /// * `model` - the published code leaves out the division by 12
     pub fn new(wheel: &Wheel, material: Material, given: &WheelInertia, model: Model) -> Self {
-        let radius = wheel.pitch_radius_mm * 1e-3;
+        let radius = wheel.v_circle_radius_mm() * 1e-3;
         let width = wheel.face_width_mm * 1e-3;
         let solid_mass = PI * radius * radius * width * material.density_kg_per_m3();
         let mass_kg = given.mass_kg.unwrap_or(solid_mass);

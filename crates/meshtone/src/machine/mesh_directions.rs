@@ -6,7 +6,7 @@ use crate::wheel::Wheel;
 
 /// Constant directions that span every line of action of the mesh.
 ///
-/// At axial position z and pressure angle α the line of action is `g = g0 + z g1`,
+/// At axial position z and working pressure angle α the line of action is `g = g0 + z g1`,
 /// `g0 = [sin α, cos α, −sin α, −cos α, Rb_g, Rb_p, 0, 0, 0, 0, 0, 0, 0]`,
 /// `g1 = [0×9, −cos α, cos α, sin α, −sin α]`. With `δ = α − α0`, `g` is
 /// `cos δ · along + sin δ · across + rotation + z (cos δ · tilt + sin δ · tilt_across)`.
@@ -26,9 +26,9 @@ impl MeshDirections {
     /// The directions of a pair.
     ///
     /// # Arguments
-    /// * `pinion`, `gear` - for the base radii and the nominal pressure angle
+    /// * `pinion`, `gear` - for the base radii and the working pressure angle
     pub fn new(pinion: &Wheel, gear: &Wheel) -> Self {
-        let (sin, cos) = gear.pressure_angle_rad.sin_cos();
+        let (sin, cos) = gear.working_pressure_angle_rad.sin_cos();
         let mut turn = CoordinateMatrix::identity();
         // Turned (x, y): along and across the line of action.
         for (x, y) in [(X_GEAR, Y_GEAR), (X_PINION, Y_PINION)] {

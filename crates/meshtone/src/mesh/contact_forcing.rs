@@ -347,7 +347,7 @@ impl Eccentricity {
     fn of(deviations: &PairDeviations) -> Option<Self> {
         let PairDeviations { eccentricity_m, run_out, teeth, .. } = *deviations;
         let runs_out = run_out.iter().any(|run_out| run_out.run_out_um != 0.0);
-        let (axis_sine, axis_cosine) = teeth.gear.pressure_angle_rad.sin_cos();
+        let (axis_sine, axis_cosine) = teeth.gear.working_pressure_angle_rad.sin_cos();
         let sine_and_cosine_m = WheelName::BOTH.map(|wheel| {
             let axis_m = if wheel == WheelName::Gear { eccentricity_m } else { -eccentricity_m };
             let amplitude_mm = run_out[wheel as usize].amplitude_mm();

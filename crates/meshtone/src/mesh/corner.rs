@@ -65,11 +65,11 @@ impl Corner {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::wheel::{Gears, PathOfContact};
+    use crate::wheel::{Gears, PathOfContact, WheelName};
 
     fn corner(module_mm: f64, pinion_teeth: u32, gear_teeth: u32) -> (Corner, f64) {
         let gears = Gears::new(module_mm, pinion_teeth, gear_teeth, 15.0);
-        let [pinion, gear] = [pinion_teeth, gear_teeth].map(|teeth| Wheel::new(&gears, teeth, 10.0));
+        let [pinion, gear] = WheelName::BOTH.map(|wheel| Wheel::new(&gears, wheel, 10.0));
         let path = PathOfContact::new(&pinion, &gear);
         (Corner::new(&gear, &pinion, path.line_mm, gear.tip_radius_mm), path.base_pitch_mm)
     }

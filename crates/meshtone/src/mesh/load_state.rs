@@ -22,7 +22,7 @@ pub struct LoadState {
     pub mean_z_m: f64,
     /// (m²) Mean of z² over the contact width.
     pub mean_z2_m2: f64,
-    /// (rad) Pressure angle.
+    /// (rad) Working pressure angle, at which the line of action lies.
     pub pressure_angle_rad: f64,
 }
 

@@ -58,7 +58,7 @@ impl<'a> Pairs<'a> {
             sound: WheelName::BOTH.map(|wheel| loaded(wheel, None)),
             broken: damaged.iter().map(|tooth| loaded(tooth.wheel, Some(tooth))).collect(),
             material,
-            nominal: LoadState::spread(-half_width_m, half_width_m, teeth.gear.pressure_angle_rad),
+            nominal: LoadState::spread(-half_width_m, half_width_m, teeth.gear.working_pressure_angle_rad),
         }
     }
 

@@ -9,7 +9,7 @@ use crate::machine::Structure;
 use crate::mesh::{ContactMesh, Mesh, PairKind, PairMesh};
 use crate::operation::CycleGrid;
 use crate::simulate::Stages;
-use crate::wheel::{ToothProfile, Wheel};
+use crate::wheel::{Mounting, ToothProfile, Wheel};
 
 /// Every how many points a profile, a flank and a section are given.
 const PROFILE_STRIDE: usize = 50;
@@ -33,6 +33,10 @@ pub(crate) fn static_stages(trace: &mut Trace, stages: &Stages) {
     trace.scalar("kept_samples", stages.time.kept_samples() as f64);
     trace.scalar("pinion_revolutions", stages.pinion_revolutions());
     trace.scalar("contact_ratio", stages.teeth.contact.contact_ratio);
+    let mounting = Mounting::new(&stages.scenario.gears);
+    trace.scalar("working_pressure_angle_rad", mounting.working_pressure_angle_rad);
+    trace.scalar("centre_distance_mm", mounting.centre_distance_mm);
+    trace.scalar("normal_backlash_mm", stages.scenario.gears.normal_backlash_mm());
     trace.vector("shaft_stiffness_nm_per_rad", stages.system.shaft_stiffness_nm_per_rad);
     stiffness(trace, stages);
     matrices(trace, stages);

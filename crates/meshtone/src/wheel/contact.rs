@@ -35,7 +35,7 @@ impl ContactLine {
     }
 }
 
-/// (-) Contact ratio of two standard wheels.
+/// (-) Contact ratio of two standard wheels, without profile shift.
 ///
 /// `ε = (√((z1+2)² − (z1 cos α)²) + √((z2+2)² − (z2 cos α)²) − (z1+z2) sin α)/(2π cos α)`.
 ///
@@ -48,16 +48,41 @@ impl ContactLine {
 /// assert!((ratio - 1.789_779_866_833_045_8).abs() < 1e-12);
 /// ```
 pub fn contact_ratio(teeth1: u32, teeth2: u32, pressure_angle_rad: f64) -> f64 {
-    let (sin, cos) = pressure_angle_rad.sin_cos();
-    let (z1, z2) = (f64::from(teeth1), f64::from(teeth2));
-    let reach = |z: f64| ((z + 2.0).powi(2) - (z * cos).powi(2)).sqrt();
-    (reach(z1) + reach(z2) - (z1 + z2) * sin) / (2.0 * std::f64::consts::PI * cos)
+    path_over_base_pitch([teeth1, teeth2], [1.0; 2], pressure_angle_rad, pressure_angle_rad)
+}
+
+/// (-) Contact ratio of any two wheels.
+pub(super) fn contact_ratio_of(pinion: &Wheel, gear: &Wheel) -> f64 {
+    let Wheel { pressure_angle_rad, working_pressure_angle_rad, .. } = *pinion;
+    let tip_heights = [pinion.tip_height, gear.tip_height];
+    path_over_base_pitch(
+        [pinion.teeth, gear.teeth],
+        tip_heights,
+        pressure_angle_rad,
+        working_pressure_angle_rad,
+    )
+}
+
+/// (-) Length of the path in base pitches, all in halves of a module.
+fn path_over_base_pitch(
+    teeth: [u32; 2],
+    tip_heights: [f64; 2],
+    pressure_angle_rad: f64,
+    working_pressure_angle_rad: f64,
+) -> f64 {
+    let cos = pressure_angle_rad.cos();
+    let (working_sin, working_cos) = working_pressure_angle_rad.sin_cos();
+    let [z1, z2] = teeth.map(f64::from);
+    let reach = |z: f64, tip: f64| ((z + 2.0 * tip).powi(2) - (z * cos).powi(2)).max(0.0).sqrt();
+    let line = (z1 + z2) * (cos / working_cos) * working_sin;
+    (reach(z1, tip_heights[0]) + reach(z2, tip_heights[1]) - line) / (2.0 * std::f64::consts::PI * cos)
 }
 
 /// (mm) Radius of `wheel` that the tip of `mate` touches first.
 pub(crate) fn initial_contact_radius_mm(wheel: &Wheel, mate: &Wheel) -> f64 {
     let mate_reach = (mate.tip_radius_mm.powi(2) - mate.base_radius_mm.powi(2)).sqrt();
-    let line = mate_reach - (wheel.pitch_radius_mm + mate.pitch_radius_mm) * wheel.pressure_angle_rad.sin();
+    let centre_distance = wheel.working_pitch_radius_mm + mate.working_pitch_radius_mm;
+    let line = mate_reach - centre_distance * wheel.working_pressure_angle_rad.sin();
     (line * line + wheel.base_radius_mm.powi(2)).sqrt()
 }
 
@@ -75,7 +100,7 @@ pub fn contact_line(
     let pinion_radius = initial_contact_radius_mm(pinion, gear);
     let gear_radius = initial_contact_radius_mm(gear, pinion);
     let gear_index = gear_profile.nearest_to_radius(gear_radius);
-    let ratio = contact_ratio(pinion.teeth, gear.teeth, pinion.pressure_angle_rad);
+    let ratio = contact_ratio_of(pinion, gear);
     ContactLine {
         contact_ratio: ratio,
         initial_contact_index: gear_index,

@@ -23,6 +23,20 @@ pub struct Gears {
     pub face_width_mm: f64,
     /// (°) Pressure angle at the pitch circle. Default 20.
     pub pressure_angle_deg: f64,
+    /// (-) Profile shift coefficient of the pinion, in modules. Default 0.
+    pub pinion_profile_shift: f64,
+    /// (-) Profile shift coefficient of the gear, in modules. Default 0.
+    pub gear_profile_shift: f64,
+    /// (-) Addendum coefficient of the pinion's basic rack. Default 1.
+    pub pinion_addendum: f64,
+    /// (-) Addendum coefficient of the gear's basic rack. Default 1.
+    pub gear_addendum: f64,
+    /// (-) Dedendum coefficient of the pinion's basic rack. Default 1.25.
+    pub pinion_dedendum: f64,
+    /// (-) Dedendum coefficient of the gear's basic rack. Default 1.25.
+    pub gear_dedendum: f64,
+    /// (mm) Distance between the axes; none for the one at which the teeth have no backlash.
+    pub centre_distance_mm: Option<f64>,
     /// Material of wheels and shafts. Default steel.
     pub material: Material,
     /// Relief of the flank near the tip; `None` for none. Default parabolic, 1 mm × 1 mm.
@@ -31,7 +45,8 @@ pub struct Gears {
     pub flank_relief: FlankRelief,
     /// (mm) Height of the chamfer or rounding of all tips, which the flank ends below; none for 0.2 modules.
     pub tip_chamfer_mm: Option<f64>,
-    /// (mm) Normal backlash; none for two thirds of `0.06 + 0.0005 a + 0.03 m`, a the centre distance.
+    /// (mm) Normal backlash; none for two thirds of `0.06 + 0.0005 a + 0.03 m`, a the centre distance, and what a given centre
+    /// distance opens.
     pub backlash_mm: Option<f64>,
     /// (mm) Constant reduction of the working flank. Default 0.
     pub crowning_mm: f64,
@@ -40,6 +55,12 @@ pub struct Gears {
     /// Coefficients of the fillet foundation's compliance. Default: Sainsot et al. 2004.
     pub foundation: FoundationCoefficients,
 }
+
+/// Coefficients of the standard basic rack.
+///
+/// Source: ISO 53:1998, profile A.
+pub(super) const STANDARD_ADDENDUM: f64 = 1.0;
+pub(super) const STANDARD_DEDENDUM: f64 = 1.25;
 
 impl Gears {
     /// Two wheels with everything but the arguments at its default.
@@ -53,6 +74,13 @@ impl Gears {
             gear_teeth,
             face_width_mm,
             pressure_angle_deg: 20.0,
+            pinion_profile_shift: 0.0,
+            gear_profile_shift: 0.0,
+            pinion_addendum: STANDARD_ADDENDUM,
+            gear_addendum: STANDARD_ADDENDUM,
+            pinion_dedendum: STANDARD_DEDENDUM,
+            gear_dedendum: STANDARD_DEDENDUM,
+            centre_distance_mm: None,
             material: Material::default(),
             tip_relief: Some(TipRelief::default()),
             flank_relief: FlankRelief::default(),
@@ -72,6 +100,10 @@ impl Keys for Gears {
 
     fn rows() -> Vec<Row<Self>> {
         const TEETH: Range = Range::from_to(6.0, 10_000.0).message("must be from 6 to 10000 teeth");
+        const SHIFT: Range =
+            Range::from_to(-2.0, 2.0).help("usual shifts are −0.5 to 1; in mm they are x times the module");
+        const ADDENDUM: Range = Range::from_to(0.3, 2.0).help("the standard basic rack has 1");
+        const DEDENDUM: Range = Range::from_to(0.5, 2.5).help("the standard basic rack has 1.25");
         vec![
             row("module_mm", "mm", "the module of both wheels", field!(module_mm))
                 .required()
@@ -93,6 +125,59 @@ impl Keys for Gears {
             row("pressure_angle_deg", "°", "the pressure angle at the pitch circle", field!(pressure_angle_deg))
                 .range(Range::from_to(10.0, 35.0).help("usual pressure angles are 14.5°, 20° and 25°"))
                 .rule("teeth must not become pointed below full height"),
+            row(
+                "pinion_profile_shift",
+                "-",
+                "the profile shift coefficient x of the pinion, in modules",
+                field!(pinion_profile_shift),
+            )
+            .range(SHIFT)
+            .rule("a shift must leave no undercut and no pointed tip"),
+            row(
+                "gear_profile_shift",
+                "-",
+                "the profile shift coefficient x of the gear, in modules",
+                field!(gear_profile_shift),
+            )
+            .range(SHIFT)
+            .rule("likewise"),
+            row(
+                "pinion_addendum",
+                "-",
+                "the addendum coefficient of the pinion's basic rack, in modules",
+                field!(pinion_addendum),
+            )
+            .range(ADDENDUM)
+            .rule("tips must not be pointed, nor reach into the mate's fillet"),
+            row(
+                "gear_addendum",
+                "-",
+                "the addendum coefficient of the gear's basic rack, in modules",
+                field!(gear_addendum),
+            )
+            .range(ADDENDUM)
+            .rule("likewise"),
+            row(
+                "pinion_dedendum",
+                "-",
+                "the dedendum coefficient of the pinion's basic rack, in modules",
+                field!(pinion_dedendum),
+            )
+            .range(DEDENDUM)
+            .rule("roots must clear the mate's tips"),
+            row(
+                "gear_dedendum",
+                "-",
+                "the dedendum coefficient of the gear's basic rack, in modules",
+                field!(gear_dedendum),
+            )
+            .range(DEDENDUM)
+            .rule("likewise"),
+            row("centre_distance_mm", "mm", "the distance between the axes", field!(centre_distance_mm))
+                .otherwise("the one at which the teeth, of nominal thickness, have no backlash")
+                .range(Range::positive())
+                .rule("at least the default; the contact ratio must be at least 1")
+                .alternative("83.0"),
             row("material", "", "the material of wheels and shafts", field!(material)),
             row("tip_relief", "", "the material removed near the tips, or `false` for none", field!(tip_relief))
                 .ignored_by(&["published", "contact"]),
@@ -109,9 +194,11 @@ impl Keys for Gears {
             .rule("less than 1 module")
             .ignored_by(&["linear", "published"]),
             row("backlash_mm", "mm", "the backlash along the line of action", field!(backlash_mm))
-                .otherwise("two thirds of 0.06 + 0.0005 a + 0.03 m, a the centre distance")
+                .otherwise(
+                    "two thirds of 0.06 + 0.0005 a + 0.03 m, a the centre distance, and what a given one opens",
+                )
                 .range(Range::not_negative())
-                .rule("less than 1 module")
+                .rule("less than 1 module; at least what a given centre distance opens")
                 .ignored_by(&["linear", "published"]),
             row("crowning_mm", "mm", "a constant reduction of the working flank", field!(crowning_mm))
                 .range(Range::not_negative())
@@ -138,17 +225,6 @@ impl Gears {
         self.tip_chamfer_mm.unwrap_or(0.2 * self.module_mm)
     }
 
-    /// (mm) Normal backlash, given or by default.
-    ///
-    /// Source of the default: the least backlash of ISO/TR 10064-2:1996, table A.1, `⅔ (0.06 + 0.0005 a + 0.03 m)`.
-    pub fn normal_backlash_mm(&self) -> f64 {
-        let centre_distance_mm = self.module_mm * f64::from(self.pinion_teeth + self.gear_teeth) / 2.0;
-        let least = 2.0 / 3.0 * (0.06 + 0.0005 * centre_distance_mm + 0.03 * self.module_mm);
-        self.backlash_mm.unwrap_or(least)
-    }
-}
-
-impl Gears {
     /// Tooth count of a wheel.
     ///
     /// # Arguments
@@ -158,6 +234,23 @@ impl Gears {
             WheelName::Pinion => self.pinion_teeth,
             WheelName::Gear => self.gear_teeth,
         }
+    }
+}
+
+impl Gears {
+    /// The keys of profile shift, basic racks and centre distance that are not at their default, in the file's order.
+    pub(crate) fn beyond_standard(&self) -> Vec<(&'static str, f64)> {
+        let coefficients = [
+            ("gears.pinion_profile_shift", self.pinion_profile_shift, 0.0),
+            ("gears.gear_profile_shift", self.gear_profile_shift, 0.0),
+            ("gears.pinion_addendum", self.pinion_addendum, STANDARD_ADDENDUM),
+            ("gears.gear_addendum", self.gear_addendum, STANDARD_ADDENDUM),
+            ("gears.pinion_dedendum", self.pinion_dedendum, STANDARD_DEDENDUM),
+            ("gears.gear_dedendum", self.gear_dedendum, STANDARD_DEDENDUM),
+        ];
+        let changed = coefficients.into_iter().filter(|(_, value, default)| value != default);
+        let distance = self.centre_distance_mm.map(|distance_mm| ("gears.centre_distance_mm", distance_mm));
+        changed.map(|(key, value, _)| (key, value)).chain(distance).collect()
     }
 }
 

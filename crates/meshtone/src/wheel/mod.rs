@@ -5,6 +5,8 @@ mod flank;
 mod flank_relief;
 mod gears;
 mod material;
+mod mounting;
+mod mounting_rules;
 mod name;
 mod path;
 mod profile;
@@ -17,6 +19,7 @@ pub use flank::{Flank, FlankPoint};
 pub use flank_relief::FlankRelief;
 pub use gears::{FoundationCoefficients, Gears, ReliefShape, TipRelief};
 pub use material::Material;
+pub use mounting::Mounting;
 pub use name::WheelName;
 pub use path::PathOfContact;
 pub(crate) use profile::first_minimum;
@@ -99,8 +102,8 @@ impl Teeth {
 ///
 /// Source: paper, stage 2.
 pub fn teeth(gears: &Gears, bore_radii_mm: [f64; 2], model: Model) -> Teeth {
-    let pinion = Wheel::new(gears, gears.pinion_teeth, bore_radii_mm[0]);
-    let gear = Wheel::new(gears, gears.gear_teeth, bore_radii_mm[1]);
+    let pinion = Wheel::new(gears, WheelName::Pinion, bore_radii_mm[0]);
+    let gear = Wheel::new(gears, WheelName::Gear, bore_radii_mm[1]);
     // Model: a relief that thins the tip by half its thickness leaves nothing to touch.
     let relief = gears.tip_relief.filter(|_| model != Model::Contact);
     let profile = |wheel| tooth_profile(wheel, gears.points_per_tooth, gears.crowning_mm, relief, model);

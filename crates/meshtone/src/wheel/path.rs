@@ -7,7 +7,7 @@ use super::{Wheel, WheelName};
 ///
 /// On the line of action a contact point's distances ρ from the two points where the line touches the base circles are the
 /// flanks' radii of curvature there, `ρ = √(R² − Rb²)`. They add up to the line's length,
-/// `ρ_p + ρ_g = L = (Rp_p + Rp_g) sin α`, and are linear in the wheels' angles. Positions are counted in base pitches
+/// `ρ_p + ρ_g = L = a sin α_w`, and are linear in the wheels' angles. Positions are counted in base pitches
 /// `p_b = π m cos α` from the start of the path; in a pitch either wheel turns by one tooth.
 ///
 /// Source: any textbook of involute gears, for example F. L. Litvin, A. Fuentes, *Gear Geometry and Applied Theory*,
@@ -27,7 +27,7 @@ pub struct PathOfContact {
 }
 
 impl PathOfContact {
-    /// The path of two wheels at their standard centre distance.
+    /// The path of two wheels at their centre distance.
     ///
     /// # Arguments
     /// * `pinion`, `gear` - the wheels
@@ -36,17 +36,17 @@ impl PathOfContact {
     /// use meshtone::wheel::{Gears, PathOfContact, Wheel, WheelName};
     ///
     /// let gears = Gears::new(3.0, 17, 38, 15.0);
-    /// let [pinion, gear] = [17, 38].map(|teeth| Wheel::new(&gears, teeth, 10.0));
+    /// let [pinion, gear] = WheelName::BOTH.map(|wheel| Wheel::new(&gears, wheel, 10.0));
     /// let path = PathOfContact::new(&pinion, &gear);
     /// assert!((path.contact_ratio - 1.609).abs() < 1e-3);
     /// // The pitch point, where both flanks touch on the pitch circles, is just beyond half of the path.
-    /// let pitch_point = path.position(WheelName::Gear, gear.curvature_mm(gear.pitch_radius_mm));
+    /// let pitch_point = path.position(WheelName::Gear, gear.curvature_mm(gear.working_pitch_radius_mm));
     /// assert!((pitch_point / path.contact_ratio - 0.529).abs() < 1e-3);
     /// ```
     pub fn new(pinion: &Wheel, gear: &Wheel) -> Self {
-        let (sin, cos) = gear.pressure_angle_rad.sin_cos();
-        let base_pitch_mm = std::f64::consts::PI * gear.module_mm * cos;
-        let line_mm = (pinion.pitch_radius_mm + gear.pitch_radius_mm) * sin;
+        let base_pitch_mm = std::f64::consts::PI * gear.module_mm * gear.pressure_angle_rad.cos();
+        let centre_distance_mm = pinion.working_pitch_radius_mm + gear.working_pitch_radius_mm;
+        let line_mm = centre_distance_mm * gear.working_pressure_angle_rad.sin();
         let [pinion_tip, gear_tip] = [pinion, gear].map(|wheel| wheel.curvature_mm(wheel.tip_radius_mm));
         Self {
             base_pitch_mm,

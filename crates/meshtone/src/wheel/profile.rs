@@ -1,6 +1,6 @@
 //! The profile of a healthy tooth: fillet, involute, crowning, tip relief.
 
-use super::radii::{Wheel, involute};
+use super::radii::Wheel;
 use crate::interpolation::NaturalSpline;
 use crate::model::Model;
 use crate::wheel::{ReliefShape, TipRelief};
@@ -119,7 +119,7 @@ struct Curve {
 ///
 /// Along the ray at angle γ from the arc's centre the near intersection is
 /// `r = c − √(c² − Rd (Rd + 2ρ))`, `c = (Rd + ρ) cos γ`: a circle of radius ρ round the point
-/// (Rd + ρ, 2 θ0) in polar coordinates.
+/// (Rd + ρ, π/z) in polar coordinates.
 struct Fillet {
     radius_mm: f64,
     centre_x_mm: f64,
@@ -143,10 +143,9 @@ const INVOLUTE_SAMPLES: usize = 15_001;
 impl Curve {
     fn new(wheel: &Wheel, model: Model) -> Self {
         let (base, root) = (wheel.base_radius_mm, wheel.root_radius_mm);
-        let half_thickness = wheel.half_thickness_angle_rad();
-        let foot_angle_rad = half_thickness + involute(wheel.pressure_angle_rad);
+        let foot_angle_rad = wheel.foot_angle_rad();
         let tip_angle = (base / wheel.tip_radius_mm).acos();
-        let fillet = Fillet::new(wheel, half_thickness, foot_angle_rad);
+        let fillet = Fillet::new(wheel, foot_angle_rad);
         let angle = |k: usize| tip_angle * k as f64 / (INVOLUTE_SAMPLES - 1) as f64;
         let first_roll = if fillet.is_some() {
             0.0
@@ -292,16 +291,16 @@ impl RollAngle {
 
 impl Fillet {
     /// None where the root circle lies outside the base circle or leaves no room for an arc.
-    fn new(wheel: &Wheel, half_thickness: f64, foot_angle: f64) -> Option<Self> {
+    fn new(wheel: &Wheel, foot_angle: f64) -> Option<Self> {
         let (base, root) = (wheel.base_radius_mm, wheel.root_radius_mm);
-        // ψ = θ0 − inv α: from the middle of the tooth space to the foot of the involute.
-        let psi = 2.0 * half_thickness - foot_angle;
+        // ψ = π/z − θ0 − inv α: from the middle of the tooth space to the foot of the involute.
+        let psi = wheel.half_pitch_angle_rad() - foot_angle;
         let room = 2.0 * base * psi.cos() - 2.0 * root;
         if root >= base || room <= 0.0 || psi <= 0.0 {
             return None;
         }
         let radius_mm = (root * root + base * base - 2.0 * root * base * psi.cos()) / room;
-        let (sin, cos) = (2.0 * half_thickness).sin_cos();
+        let (sin, cos) = wheel.half_pitch_angle_rad().sin_cos();
         Some(Self {
             radius_mm,
             centre_x_mm: (root + radius_mm) * cos,

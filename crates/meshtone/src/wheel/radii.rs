@@ -1,8 +1,10 @@
 //! Radii of one wheel.
 
-use crate::wheel::Gears;
+use std::f64::consts::PI;
 
-/// Standard spur wheel without profile shift.
+use crate::wheel::{Gears, Mounting, WheelName};
+
+/// A spur wheel, with what its mate and the distance between their axes make of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wheel {
     /// Tooth count.
@@ -13,11 +15,19 @@ pub struct Wheel {
     pub face_width_mm: f64,
     /// (rad) Pressure angle at the pitch circle.
     pub pressure_angle_rad: f64,
-    /// (mm) Pitch radius, `m z/2`.
+    /// (rad) Pressure angle of the pair at its centre distance: the direction of the line of action.
+    pub working_pressure_angle_rad: f64,
+    /// (-) Profile shift coefficient, `x`.
+    pub profile_shift: f64,
+    /// (modules) Height of the tip above the pitch circle, addendum coefficient + `x` + `k`; 1 of a standard wheel.
+    pub tip_height: f64,
+    /// (mm) Pitch radius, `m z/2`: of the circle that rolls on the rack.
     pub pitch_radius_mm: f64,
-    /// (mm) Tip radius, pitch radius + `m`.
+    /// (mm) Radius of the circle that rolls on the mate's, base radius/cos α_w; the pitch radius at the standard distance.
+    pub working_pitch_radius_mm: f64,
+    /// (mm) Tip radius, pitch radius + `m` times the tip's height.
     pub tip_radius_mm: f64,
-    /// (mm) Root radius, pitch radius − 1.25 `m`.
+    /// (mm) Root radius, pitch radius − `m` (dedendum coefficient − `x`).
     pub root_radius_mm: f64,
     /// (mm) Base radius, pitch radius × cos α.
     pub base_radius_mm: f64,
@@ -26,27 +36,41 @@ pub struct Wheel {
 }
 
 impl Wheel {
-    /// The wheel with `teeth` teeth.
+    /// One of the two wheels of a pair.
     ///
     /// # Arguments
-    /// * `gears` - module, face width and pressure angle
-    /// * `teeth` - tooth count
+    /// * `gears` - the pair
+    /// * `wheel` - which of the two
     /// * `bore_radius_mm` - (mm) radius of the shaft that the wheel sits on
-    pub fn new(gears: &Gears, teeth: u32, bore_radius_mm: f64) -> Self {
-        let module_mm = gears.module_mm;
+    pub fn new(gears: &Gears, wheel: WheelName, bore_radius_mm: f64) -> Self {
+        let (teeth, module_mm) = (gears.teeth(wheel), gears.module_mm);
         let pressure_angle_rad = gears.pressure_angle_deg.to_radians();
+        let working_pressure_angle_rad = Mounting::new(gears).working_pressure_angle_rad;
+        let profile_shift = gears.profile_shift(wheel);
+        let tip_height = gears.addendum(wheel) + profile_shift + gears.tip_alteration();
         let pitch_radius_mm = module_mm * f64::from(teeth) / 2.0;
         Self {
             teeth,
             module_mm,
             face_width_mm: gears.face_width_mm,
             pressure_angle_rad,
+            working_pressure_angle_rad,
+            profile_shift,
+            tip_height,
             pitch_radius_mm,
-            tip_radius_mm: pitch_radius_mm + module_mm,
-            root_radius_mm: pitch_radius_mm - 1.25 * module_mm,
+            working_pitch_radius_mm: pitch_radius_mm
+                * (pressure_angle_rad.cos() / working_pressure_angle_rad.cos()),
+            tip_radius_mm: pitch_radius_mm + module_mm * tip_height,
+            root_radius_mm: pitch_radius_mm - module_mm * (gears.dedendum(wheel) - profile_shift),
             base_radius_mm: pitch_radius_mm * pressure_angle_rad.cos(),
             bore_radius_mm,
         }
+    }
+
+    /// (mm) Radius of the V circle, `m (z/2 + x)`: the wheel's pitch line on a rack that is set off by the profile shift, which
+    /// parts the material of the teeth from the spaces between them.
+    pub fn v_circle_radius_mm(&self) -> f64 {
+        self.pitch_radius_mm + self.module_mm * self.profile_shift
     }
 
     /// (mm) Radius of curvature of the involute at `radius_mm` from the wheel's centre, `√(R² − Rb²)`; 0 inside the base
@@ -63,9 +87,24 @@ impl Wheel {
         self.half_thickness_angle_rad() + involute(self.pressure_angle_rad)
     }
 
-    /// (rad) Half the angle that a tooth fills on the pitch circle, `π/(2z)`.
+    /// (rad) Half the angle that a tooth fills on the pitch circle, `θ0 = (π/2 + 2x tan α)/z`.
     pub fn half_thickness_angle_rad(&self) -> f64 {
-        std::f64::consts::PI / (2.0 * f64::from(self.teeth))
+        let teeth = f64::from(self.teeth);
+        PI / (2.0 * teeth) + 2.0 * self.profile_shift * self.pressure_angle_rad.tan() / teeth
+    }
+
+    /// (rad) Half the angle from one tooth to the next, `π/z`.
+    pub fn half_pitch_angle_rad(&self) -> f64 {
+        PI / f64::from(self.teeth)
+    }
+
+    /// (rad) Half the angle that a tooth fills on the circle of a radius, `θ0 + inv α − inv a` with `cos a = Rb/R`; the flank's
+    /// foot inside the base circle.
+    ///
+    /// # Arguments
+    /// * `radius_mm` - (mm) of the circle
+    pub fn half_thickness_angle_at_rad(&self, radius_mm: f64) -> f64 {
+        self.foot_angle_rad() - involute((self.base_radius_mm / radius_mm).min(1.0).acos())
     }
 }
 

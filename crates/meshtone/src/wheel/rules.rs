@@ -2,25 +2,40 @@
 
 use std::f64::consts::PI;
 
-use super::{Gears, TipRelief};
+use super::contact::contact_ratio_of;
+use super::mounting_rules::{self, fewer_than_limit, least_shift, thin_tips, touched_curvature_mm};
+use super::{Gears, TipRelief, Wheel, WheelName};
 use crate::error::{ScenarioError, ScenarioWarning};
 use crate::keys::{Check, below, check_keys, refuse, require};
 
 impl Gears {
     /// (-) Contact ratio: how many tooth pairs are in contact, on average.
     ///
-    /// For teeth of standard addendum, without regard to undercut: [`crate::wheel::contact_ratio`].
+    /// From tip to tip, without regard to undercut and chamfers.
     pub fn contact_ratio(&self) -> f64 {
-        crate::wheel::contact_ratio(self.pinion_teeth, self.gear_teeth, self.pressure_angle_deg.to_radians())
+        let [pinion, gear] = self.wheels();
+        contact_ratio_of(&pinion, &gear)
+    }
+
+    /// Both wheels, the pinion first.
+    pub(super) fn wheels(&self) -> [Wheel; 2] {
+        WheelName::BOTH.map(|wheel| self.wheel(wheel))
+    }
+
+    /// One of the two wheels, as its teeth are: without a bore.
+    pub(super) fn wheel(&self, wheel: WheelName) -> Wheel {
+        Wheel::new(self, wheel, 0.0)
     }
 
     /// Every key alone, and the two wheels together.
     pub(crate) fn check(&self) -> Check {
         check_keys(self, "gears")?;
+        mounting_rules::check(self)?;
         pressure_angle(self)?;
         contact_ratio(self)?;
-        self.tip_relief.map_or(Ok(()), |relief| tip_relief(&relief, self.module_mm))?;
-        below("gears.crowning_mm", self.crowning_mm, self.half_thickness_mm(), HALF_THICKNESS)?;
+        let thinner_mm = self.half_thicknesses_mm().into_iter().fold(f64::INFINITY, f64::min);
+        self.tip_relief.map_or(Ok(()), |relief| tip_relief(&relief, self.module_mm, thinner_mm))?;
+        below("gears.crowning_mm", self.crowning_mm, thinner_mm, HALF_THICKNESS)?;
         let relief = &self.flank_relief;
         if relief.amount_um > 0.0 {
             below("gears.flank_relief.length_mm", relief.length_mm, 2.0 * self.module_mm, "2 modules")?;
@@ -35,60 +50,60 @@ impl Gears {
 
     /// What can be simulated but deserves attention.
     pub(crate) fn warnings(&self) -> Vec<ScenarioWarning> {
-        undercut(self).chain(flared_tip(self)).collect()
+        undercut(self).chain(thin_tips(self)).chain(flared_tip(self)).collect()
     }
 
-    /// (mm) Half a tooth's thickness at the pitch circle.
+    /// (mm) Half a tooth's thickness at the pitch circle, of the wheel whose teeth are thicker there.
     pub(crate) fn half_thickness_mm(&self) -> f64 {
-        half_thickness_mm(self.module_mm)
+        self.half_thicknesses_mm().into_iter().fold(0.0, f64::max)
     }
 
-    /// (mm) Height of a tooth of standard proportions, from root to tip.
+    /// (mm) Half a tooth's thickness at the pitch circle, of the pinion and of the gear: `m (π/4 + x tan α)`.
+    fn half_thicknesses_mm(&self) -> [f64; 2] {
+        let tan = self.pressure_angle_deg.to_radians().tan();
+        WheelName::BOTH
+            .map(|wheel| PI * self.module_mm / 4.0 + self.module_mm * self.profile_shift(wheel) * tan)
+    }
+
+    /// (mm) Height of a tooth from root to tip, of the wheel whose teeth are higher.
     pub(crate) fn tooth_height_mm(&self) -> f64 {
-        2.25 * self.module_mm
+        let heights =
+            WheelName::BOTH.map(|wheel| self.dedendum(wheel) + self.addendum(wheel) + self.tip_alteration());
+        heights.into_iter().fold(0.0, f64::max) * self.module_mm
     }
 }
 
 /// What [`Gears::half_thickness_mm`] is, in words for a message.
 pub(crate) const HALF_THICKNESS: &str = "half the tooth's thickness at the pitch circle";
 
-fn half_thickness_mm(module_mm: f64) -> f64 {
-    PI * module_mm / 4.0
-}
-
-/// Undercut, by the rule `z < 2/sin²α`. Its limit is rounded down, as in the textbooks: for 20° it
-/// is 17.1, and 17 teeth are made without undercut to speak of.
+/// Undercut of wheels without a shift.
 fn undercut(gears: &Gears) -> impl Iterator<Item = ScenarioWarning> {
-    let limit = (2.0 / gears.pressure_angle_deg.to_radians().sin().powi(2)).floor();
-    [
-        ("gears.pinion_teeth", gears.pinion_teeth, gears.gear_teeth),
-        ("gears.gear_teeth", gears.gear_teeth, gears.pinion_teeth),
-    ]
-    .into_iter()
-    .filter(move |&(_, teeth, _)| f64::from(teeth) < limit)
-    .map(move |(key, teeth, mate)| {
-        let angle = gears.pressure_angle_deg;
-        let reach = if interferes(teeth, mate, angle.to_radians()) {
+    WheelName::BOTH.into_iter().filter_map(move |name| {
+        let limit = fewer_than_limit(gears, name)?;
+        let (teeth, mate, angle) = (gears.teeth(name), gears.teeth(name.mate()), gears.pressure_angle_deg);
+        let reach = if interferes(&gears.wheel(name), &gears.wheel(name.mate())) {
             format!(", and the {mate} teeth of its mate reach below its involute (interference)")
         } else {
             String::new()
         };
+        let wheel = name.name();
         let message = format!(
             "{teeth} teeth are undercut at a pressure angle of {angle}° (fewer than {limit}){reach}, which \
-             the tooth profile of this model does not show; use at least {limit} teeth, or a larger \
-             pressure angle"
+             the tooth profile of this model does not show; use at least {limit} teeth, a larger \
+             pressure angle, or gears.{wheel}_profile_shift = {:.4} or more",
+            least_shift(gears, name)
         );
-        ScenarioWarning::new(key, message)
+        Some(ScenarioWarning::new(format!("gears.{wheel}_teeth"), message))
     })
 }
 
 /// The relief is measured from the tooth's thickness where it starts, so that little of it thickens the tip.
 fn flared_tip(gears: &Gears) -> Option<ScenarioWarning> {
     let relief = gears.tip_relief?;
-    let least = [gears.pinion_teeth, gears.gear_teeth]
-        .map(|teeth| {
-            let half_thickness =
-                |below_tip_mm| half_thickness_below_tip_mm(gears, f64::from(teeth), below_tip_mm);
+    let least = gears
+        .wheels()
+        .map(|wheel| {
+            let half_thickness = |below_tip_mm| half_thickness_below_tip_mm(&wheel, below_tip_mm);
             half_thickness(relief.length_mm) - half_thickness(0.0)
         })
         .into_iter()
@@ -103,34 +118,23 @@ fn flared_tip(gears: &Gears) -> Option<ScenarioWarning> {
     })
 }
 
-/// Whether the mate's tip reaches beyond the point where the line of action touches the wheel's base circle:
-/// `(z_m + 2)² > (z_m cos α)² + ((z + z_m) sin α)²`, with `z_m` the mate's tooth count.
-fn interferes(teeth: u32, mate: u32, pressure_angle_rad: f64) -> bool {
-    let (sin, cos) = pressure_angle_rad.sin_cos();
-    let (z, mate) = (f64::from(teeth), f64::from(mate));
-    (mate + 2.0).powi(2) > (mate * cos).powi(2) + ((z + mate) * sin).powi(2)
+/// Whether the mate's tip reaches beyond the point where the line of action touches the wheel's base circle.
+fn interferes(wheel: &Wheel, mate: &Wheel) -> bool {
+    touched_curvature_mm(wheel, mate) < 0.0
 }
 
 fn pressure_angle(gears: &Gears) -> Check {
     const KEY: &str = "gears.pressure_angle_deg";
-    let angle = gears.pressure_angle_deg;
-    let fewest = gears.pinion_teeth.min(gears.gear_teeth);
-    require(
-        KEY,
-        angle,
-        tip_half_angle(f64::from(fewest), angle.to_radians()) > 0.0,
-        format!(
-            "must be smaller for a wheel of {fewest} teeth, whose tips would be pointed below full height"
-        ),
-    )
-    .map_err(|error| error.with_help("lower gears.pressure_angle_deg, or use more teeth"))
-}
-
-/// (rad) Half the angle that a tooth's tip subtends at the wheel's centre.
-fn tip_half_angle(teeth: f64, pressure_angle: f64) -> f64 {
-    let involute = |angle: f64| angle.tan() - angle;
-    let at_tip = (teeth * pressure_angle.cos() / (teeth + 2.0)).acos();
-    PI / (2.0 * teeth) + involute(pressure_angle) - involute(at_tip)
+    let is_pointed = |wheel: &Wheel| wheel.half_thickness_angle_at_rad(wheel.tip_radius_mm) <= 0.0;
+    let Some(fewest) = gears.wheels().iter().filter(|wheel| is_pointed(wheel)).map(|wheel| wheel.teeth).min()
+    else {
+        return Ok(());
+    };
+    let problem = format!(
+        "must be smaller for a wheel of {fewest} teeth, whose tips would be pointed below full height"
+    );
+    Err(refuse(KEY, gears.pressure_angle_deg, problem)
+        .with_help("lower gears.pressure_angle_deg, or use more teeth"))
 }
 
 fn contact_ratio(gears: &Gears) -> Check {
@@ -144,7 +148,7 @@ fn contact_ratio(gears: &Gears) -> Check {
         .with_help("raise gears.pinion_teeth or gears.gear_teeth, or lower gears.pressure_angle_deg"))
 }
 
-fn tip_relief(relief: &TipRelief, module_mm: f64) -> Check {
+fn tip_relief(relief: &TipRelief, module_mm: f64, half_thickness_mm: f64) -> Check {
     let longest = 2.0 * module_mm;
     require(
         "gears.tip_relief.length_mm",
@@ -152,10 +156,7 @@ fn tip_relief(relief: &TipRelief, module_mm: f64) -> Check {
         relief.length_mm > 0.0 && relief.length_mm < longest,
         format!("must be more than 0 and less than {longest:.4} mm, the height of the working flank"),
     )
-    .and_then(|()| {
-        let deepest = half_thickness_mm(module_mm);
-        below("gears.tip_relief.depth_mm", relief.depth_mm, deepest, HALF_THICKNESS)
-    })
+    .and_then(|()| below("gears.tip_relief.depth_mm", relief.depth_mm, half_thickness_mm, HALF_THICKNESS))
     .map_err(|error| error.with_help(NO_RELIEF))
 }
 
@@ -166,8 +167,9 @@ pub(super) const NO_RELIEF: &str = "for no relief, write tip_relief = false; its
 /// negative thickness.
 fn tip_thickness(gears: &Gears) -> Check {
     let (length, depth) = gears.tip_relief.map_or((0.0, 0.0), |relief| (relief.length_mm, relief.depth_mm));
-    let left = [gears.pinion_teeth, gears.gear_teeth]
-        .map(|teeth| half_thickness_below_tip_mm(gears, f64::from(teeth), length))
+    let left = gears
+        .wheels()
+        .map(|wheel| half_thickness_below_tip_mm(&wheel, length))
         .into_iter()
         .fold(f64::INFINITY, f64::min);
     let removed = depth + gears.crowning_mm;
@@ -191,15 +193,13 @@ fn tip_thickness(gears: &Gears) -> Check {
 
 /// (mm) Half thickness of an unrelieved tooth, `below_tip_mm` from the tip along its centre line; of its foot on the
 /// base circle where that is nearer.
-fn half_thickness_below_tip_mm(gears: &Gears, teeth: f64, below_tip_mm: f64) -> f64 {
-    let angle = gears.pressure_angle_deg.to_radians();
-    let base = gears.module_mm * teeth / 2.0 * angle.cos();
-    let foot = PI / (2.0 * teeth) + angle.tan() - angle;
+fn half_thickness_below_tip_mm(wheel: &Wheel, below_tip_mm: f64) -> f64 {
+    let (base, foot) = (wheel.base_radius_mm, wheel.foot_angle_rad());
     let flank = |roll: f64| {
         let (sin, cos) = (foot - roll).sin_cos();
         (base * (cos - roll * sin), base * (sin + roll * cos))
     };
-    let tip_roll = (teeth * angle.cos() / (teeth + 2.0)).acos().tan();
+    let tip_roll = (base / wheel.tip_radius_mm).acos().tan();
     let x = flank(tip_roll).0 - below_tip_mm;
     let (mut low, mut high) = (0.0, tip_roll);
     for _ in 0..BISECTIONS {
@@ -229,9 +229,12 @@ mod tests {
     // Mechanical Engineering Design, section 13-7).
     #[test]
     fn interference_of_small_pinions() {
-        let angle = 20f64.to_radians();
-        assert!(!interferes(13, 16, angle) && interferes(13, 17, angle));
-        assert!(!interferes(15, 45, angle) && interferes(15, 46, angle));
+        let reaches = |pinion, gear| {
+            let [pinion, gear] = Gears::new(3.0, pinion, gear, 15.0).wheels();
+            interferes(&pinion, &gear)
+        };
+        assert!(!reaches(13, 16) && reaches(13, 17));
+        assert!(!reaches(15, 45) && reaches(15, 46));
     }
 
     // No pair that passes the other rules gets there: it takes a wheel of a single tooth.

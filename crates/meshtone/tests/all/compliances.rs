@@ -34,7 +34,7 @@ fn bar(points: usize, length: f64, alpha_deg: f64, half: impl Fn(f64) -> f64) ->
     };
     let mut gears = plain_gears(3.0, 30, 30, WIDTH);
     gears.pressure_angle_deg = alpha_deg;
-    (Wheel::new(&gears, 30, 10.0), profile)
+    (Wheel::new(&gears, WheelName::Gear, 10.0), profile)
 }
 
 fn compliance(wheel: &Wheel, profile: &ToothProfile, section: &ToothSection) -> ToothCompliance {

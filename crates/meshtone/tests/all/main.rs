@@ -22,6 +22,7 @@ mod paper_rigs;
 mod physics;
 mod plausibility;
 mod power_balance;
+mod profile_shift;
 mod properties;
 mod published;
 mod published_model;

@@ -8,7 +8,7 @@ use crate::physics::*;
 use meshtone::damage::published::ToothSection;
 use meshtone::machine::coordinates::*;
 use meshtone::machine::{MeshDirections, Modes};
-use meshtone::scenario::{FoundationCoefficients, Gears, Material};
+use meshtone::scenario::{FoundationCoefficients, Gears, Material, WheelName};
 use meshtone::stiffness::{ToothCompliance, hertz_compliance_mm_per_n};
 use meshtone::wheel::{Teeth, ToothProfile, Wheel, contact_ratio};
 
@@ -169,8 +169,7 @@ impl Tooth {
 
 /// Mesh of two teeth whose flanks touch where the involute's geometry has them touch.
 fn conjugate_mesh(gears: &Gears, e_gpa: f64, bore_mm: f64, tooth: impl Fn(Wheel) -> Tooth) -> Mesh {
-    let [pinion, gear] =
-        [gears.pinion_teeth, gears.gear_teeth].map(|teeth| tooth(Wheel::new(gears, teeth, bore_mm / 2.0)));
+    let [pinion, gear] = WheelName::BOTH.map(|wheel| tooth(Wheel::new(gears, wheel, bore_mm / 2.0)));
     let reach = |wheel: &Wheel| (wheel.tip_radius_mm.powi(2) - wheel.base_radius_mm.powi(2)).sqrt();
     let sin = pinion.wheel.pressure_angle_rad.sin();
     let distance = (pinion.wheel.pitch_radius_mm + gear.wheel.pitch_radius_mm) * sin;
@@ -221,7 +220,7 @@ fn mesh_with_fillet_and_foundation() {
 #[test]
 fn one_tooth_part_by_part() {
     let gears = plain_gears(2.0, 62, 62, 20.0);
-    let wheel = Wheel::new(&gears, 62, 17.5);
+    let wheel = Wheel::new(&gears, WheelName::Gear, 17.5);
     let scale = 1e3 * 206.0 / 210.0;
     let own = linear_teeth(&gears, 35.0).gear_profile;
     let trochoid = Flank::new(&wheel).with_trochoid(&wheel);
@@ -392,8 +391,8 @@ fn iso_single_stiffness() {
 fn natural_frequencies_of_a_pair_with_8_coordinates() {
     let mut gears = plain_gears(3.0, 20, 40, 20.0);
     gears.pressure_angle_deg = 20.0;
-    let mut pinion = Wheel::new(&gears, 20, 10.0);
-    let mut gear = Wheel::new(&gears, 40, 10.0);
+    let mut pinion = Wheel::new(&gears, WheelName::Pinion, 10.0);
+    let mut gear = Wheel::new(&gears, WheelName::Gear, 10.0);
     (pinion.base_radius_mm, gear.base_radius_mm) = (28.19, 56.38);
     let directions = MeshDirections::new(&pinion, &gear);
     let line_of_action = directions.turn * (directions.turned[0] + directions.turned[2]);

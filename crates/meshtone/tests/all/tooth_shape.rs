@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use crate::physics::*;
 use meshtone::interpolation::{NaturalSpline, NotAKnotSpline, Pchip, UniformLinear};
 use meshtone::scenario::Model;
-use meshtone::wheel::{ToothProfile, Wheel, contact_ratio, tooth_profile};
+use meshtone::wheel::{ToothProfile, Wheel, WheelName, contact_ratio, tooth_profile};
 
 fn involute(angle: f64) -> f64 {
     angle.tan() - angle
@@ -18,7 +18,7 @@ fn wheels() -> impl Iterator<Item = Wheel> {
         (6..=120).filter_map(move |teeth| {
             let mut gears = plain_gears(3.0, teeth, teeth, 15.0);
             gears.pressure_angle_deg = angle;
-            let wheel = Wheel::new(&gears, teeth, 2.0);
+            let wheel = Wheel::new(&gears, WheelName::Gear, 2.0);
             let at_tip = (wheel.base_radius_mm / wheel.tip_radius_mm).acos();
             let foot = wheel.half_thickness_angle_rad() + involute(wheel.pressure_angle_rad);
             (foot > involute(at_tip)).then_some(wheel)

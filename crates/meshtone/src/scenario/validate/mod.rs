@@ -101,10 +101,13 @@ fn gears_of_model(scenario: &Scenario) -> Gears {
     gears
 }
 
-/// The published code has one damaged tooth, and always the same.
+/// The published code has standard wheels and one damaged tooth, always the same.
 fn known_to_the_model(scenario: &Scenario) -> Result<(), ScenarioError> {
     if scenario.model != Model::Published {
         return Ok(());
+    }
+    if let Some((key, value)) = scenario.gears.beyond_standard().first() {
+        return Err(ScenarioError::new(*key, format!("{value:?}"), ONLY_STANDARD).with_help(STANDARD_HELP));
     }
     let faults = &scenario.faults;
     let error = match faults.as_slice() {
@@ -122,5 +125,10 @@ fn known_to_the_model(scenario: &Scenario) -> Result<(), ScenarioError> {
     };
     Err(error.with_help(PUBLISHED_HELP))
 }
+
+const ONLY_STANDARD: &str =
+    "the published model knows only standard wheels, without profile shift and at their standard distance";
+const STANDARD_HELP: &str =
+    "set model = \"linear\" or \"contact\" (or leave --model out), which have any; or remove the key";
 
 const ONE_PLACE: &str = "the published model knows only one fault, on the gear's first tooth";

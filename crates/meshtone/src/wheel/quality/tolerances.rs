@@ -31,9 +31,9 @@ impl Tolerances {
     /// Source: ISO 1328-1:2013, section 5.3.
     ///
     /// ```
-    /// use meshtone::wheel::{Gears, Tolerances, Wheel};
+    /// use meshtone::wheel::{Gears, Tolerances, Wheel, WheelName};
     ///
-    /// let wheel = Wheel::new(&Gears::new(3.0, 17, 38, 15.0), 17, 10.0);
+    /// let wheel = Wheel::new(&Gears::new(3.0, 17, 38, 15.0), WheelName::Pinion, 10.0);
     /// let class_6 = Tolerances::iso_1328(&wheel, 6);
     /// assert!((class_6.single_pitch_um - 8.840).abs() < 1e-3);
     /// assert!((class_6.cumulative_pitch_um - 25.639).abs() < 1e-3);
@@ -81,16 +81,16 @@ impl Tolerances {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::wheel::Gears;
+    use crate::wheel::{Gears, WheelName};
 
     #[test]
     fn iso_classes_as_computed_elsewhere() {
-        let wheel = |teeth| Wheel::new(&Gears::new(3.0, 17, 38, 15.0), teeth, 10.0);
-        for (teeth, class, expected) in [
-            (17, 6, [8.840, 25.639, 7.426, 9.405, 8.079, 8.829]),
-            (38, 7, [12.628, 40.401, 10.628, 13.300, 11.779, 12.980]),
+        let wheel = |name| Wheel::new(&Gears::new(3.0, 17, 38, 15.0), name, 10.0);
+        for (name, class, expected) in [
+            (WheelName::Pinion, 6, [8.840, 25.639, 7.426, 9.405, 8.079, 8.829]),
+            (WheelName::Gear, 7, [12.628, 40.401, 10.628, 13.300, 11.779, 12.980]),
         ] {
-            let found = Tolerances::iso_1328(&wheel(teeth), class);
+            let found = Tolerances::iso_1328(&wheel(name), class);
             let values = [
                 found.single_pitch_um,
                 found.cumulative_pitch_um,
@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn din_grades_step_by_1_4_and_1_6() {
-        let wheel = Wheel::new(&Gears::new(3.0, 17, 38, 15.0), 17, 10.0);
+        let wheel = Wheel::new(&Gears::new(3.0, 17, 38, 15.0), WheelName::Pinion, 10.0);
         let of = |grade| Tolerances::din_3961(&wheel, grade);
         for (finer, coarser, step) in [(4, 5, 1.4), (8, 9, 1.4), (9, 10, 1.6), (11, 12, 1.6)] {
             assert!((of(coarser).run_out_um / of(finer).run_out_um - step).abs() < 1e-12);
