@@ -4,8 +4,8 @@ use super::Kind;
 use crate::keys::rows_but;
 use crate::wheel::{Teeth, ToothProfile, WheelName};
 
-/// (-) Part of a flank's length, of a face's width or of a tooth's thickness that the largest damage takes: the rest is what a pit
-/// needs beside it for its edges, and a ground tooth to be one.
+/// (-) Part of a flank's length or of a face's width that the largest damage takes: the rest is what a pit needs beside it for its
+/// edges.
 pub(super) const LARGEST: f64 = 0.9;
 /// Points of the profile that a cut must have to be seen.
 const FEWEST_POINTS: f64 = 8.0;

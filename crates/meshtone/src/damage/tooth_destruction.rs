@@ -2,7 +2,7 @@
 
 use super::kind::MeshEffect;
 use super::published::{self, FaultGeometry};
-use super::severity::{LARGEST, SoundTooth};
+use super::severity::SoundTooth;
 use crate::wheel::Teeth;
 use std::ops::Bound::Excluded;
 
@@ -136,32 +136,20 @@ impl Kind for ToothDestruction {
         Self { start: 0.2143, line: DestructionLine::End(0.9286), offset_mm: 0.0, noise_mm: 0.0 }
     }
 
-    /// A line from a fixed point of the flank, the steeper the more severe.
+    /// The flank's chord up to the tip, the longer the more severe.
     fn of_severity(&self, severity: f64, tooth: &SoundTooth) -> Option<Self> {
-        let ToothProfile { x_mm, y_mm, .. } = tooth.profile;
-        let start = first_ground(tooth);
-        // The first of the points at which the line takes the part of the tooth's thickness.
-        let left = 1.0 - 2.0 * LARGEST * severity;
-        let tangent = (start + 1..x_mm.len())
-            .filter(|&i| y_mm[i] > 0.0)
-            .map(|i| (y_mm[start] - left * y_mm[i]) / (x_mm[i] - x_mm[start]))
-            .fold(f64::INFINITY, f64::min);
-        let is_ground = severity > LEAST_GROUND && tangent > 0.0 && tangent.is_finite();
-        is_ground.then(|| Self {
-            start: (start - tooth.first_contact) as f64 / tooth.contact_steps(),
-            line: DestructionLine::SlopeDeg(tangent.atan().to_degrees()),
-            offset_mm: 0.0,
-            ..*self
-        })
+        let ground = Self { start: 1.0 - severity, line: DestructionLine::End(1.0), offset_mm: 0.0, ..*self };
+        (tooth.shows(severity) && ground.last_below(tooth).is_some()).then_some(ground)
     }
 
-    /// The largest part of the tooth's thickness that is ground off, over that of the most severe one.
+    /// The part of the flank's length in contact that is ground.
     fn severity(&self, tooth: &SoundTooth) -> f64 {
-        let ToothProfile { x_mm, y_mm, .. } = tooth.profile;
-        let Some(line) = self.line(tooth.profile, tooth.first_contact) else { return 0.0 };
-        let ground = |i: usize| (y_mm[i] - line.y_mm(x_mm[i])) / (2.0 * y_mm[i]);
-        let points = line.start_index.max(tooth.first_contact)..x_mm.len();
-        (points.filter(|&i| y_mm[i] > 0.0).map(ground).fold(0.0, f64::max) / LARGEST).min(1.0)
+        if let (DestructionLine::End(end), 0.0) = (self.line, self.offset_mm) {
+            return end - self.start.max(0.0);
+        }
+        let start = flank_index(self.start, tooth.profile, tooth.first_contact).max(tooth.first_contact);
+        let last = self.last_below(tooth).unwrap_or(start);
+        last.saturating_sub(start) as f64 / tooth.contact_steps()
     }
 
     fn check(&self, gears: &Gears) -> Check {
@@ -218,19 +206,6 @@ pub(super) struct GroundFlank {
     pub(super) deviation_mm: Vec<f64>,
 }
 
-/// (-) Where the line of a given severity starts, as a fraction of the flank's part in contact: that of the source's rig.
-const START: f64 = 0.2;
-/// Severity below which a line takes no more than rounding does.
-const LEAST_GROUND: f64 = 1e-9;
-
-/// Profile index where the line of a given severity starts: not before the flank falls towards the tip, as that of few teeth does
-/// not at the base circle.
-fn first_ground(tooth: &SoundTooth) -> usize {
-    let y = &tooth.profile.y_mm;
-    let thickest = (tooth.first_contact..y.len()).rev().max_by(|&i, &j| y[i].total_cmp(&y[j]));
-    flank_index(START, tooth.profile, tooth.first_contact).max(thickest.unwrap_or_default())
-}
-
 /// The straight line that a flank is ground along.
 struct GroundLine {
     /// Profile index where it starts.
@@ -252,6 +227,14 @@ impl GroundLine {
 const ROUNDING: f64 = 1e-12;
 
 impl ToothDestruction {
+    /// Last profile index at which the line lies below the flank; none where there is no such point beyond its start.
+    fn last_below(&self, tooth: &SoundTooth) -> Option<usize> {
+        let ToothProfile { x_mm, y_mm, .. } = tooth.profile;
+        let line = self.line(tooth.profile, tooth.first_contact)?;
+        let first = line.start_index.max(tooth.first_contact);
+        (first + 1..x_mm.len()).rev().find(|&i| line.y_mm(x_mm[i]) < y_mm[i] * (1.0 - ROUNDING))
+    }
+
     /// The line, or none where it would end where it starts.
     fn line(&self, profile: &ToothProfile, first_contact: usize) -> Option<GroundLine> {
         let start = flank_index(self.start, profile, first_contact);

@@ -48,7 +48,7 @@ fn pairs() -> impl Strategy<Value = Scenario> {
             scenario.gears.tip_relief = relieved.then_some(TipRelief {
                 shape: ReliefShape::Parabolic,
                 length_mm: 0.3 * module_mm,
-                depth_mm: 0.2 * module_mm,
+                depth_mm: 0.3 * module_mm,
             });
             scenario
         })
@@ -299,17 +299,11 @@ fn severities_of_sizes_by_hand() {
     let crack = |depth_mm, length_mm| Damage::from(RootCrack { depth_mm, angle_deg: 45.0, length_mm });
     near(severity(crack(2.0, None)), 2.0 * 0.5f64.sqrt() / 3.0109);
     near(severity(crack(2.0, Some(9.0))), 2.0 * 0.5f64.sqrt() / 3.0109 * 0.4);
-    // A line that is as deep inside the flank as that is thick there leaves the centre line: half of the tooth.
-    let flank = stages(&healthy).unwrap().teeth;
-    let at = flank.gear_profile.nearest_to_x(59.0);
-    let (first, last) = (flank.contact.initial_contact_index, flank.gear_profile.len() - 1);
-    let start = (at - first) as f64 / (last - first) as f64;
-    let line = ToothDestruction {
-        start,
-        line: DestructionLine::SlopeDeg(1e-6),
-        offset_mm: flank.gear_profile.y_mm[at],
-        noise_mm: 0.0,
-    };
-    assert!((severity(line.into()) - 0.5 / 0.9).abs() < 1e-6);
+    // The paper's line, and one along the tooth's centre line up to the tip.
+    let ground =
+        |start, line, offset_mm| Damage::from(ToothDestruction { start, line, offset_mm, noise_mm: 0.0 });
+    near(severity(ground(0.2143, DestructionLine::End(0.9286), 0.0)), 0.7143);
+    near(severity(ground(-0.1, DestructionLine::End(0.5), 0.0)), 0.5);
+    near(severity(ground(0.6, DestructionLine::SlopeDeg(1e-6), 1.0)), 0.4);
     assert_eq!(severity(MissingTooth.into()), 1.0);
 }
