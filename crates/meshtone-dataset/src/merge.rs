@@ -271,7 +271,7 @@ mod tests {
         }
         println!("{shards} shards listed in {:.1} s", start.elapsed().as_secs_f64());
         let start = Instant::now();
-        let merged = merge(&[to.clone()], &to, Check::Sizes).unwrap();
+        let merged = merge(std::slice::from_ref(&to), &to, Check::Sizes).unwrap();
         assert_eq!((merged.kept_shards, merged.written_shards, merged.complete), (shards, 0, true));
         println!("merged in {:.1} s, {:.0} MB at most", start.elapsed().as_secs_f64(), peak_mb());
         let start = Instant::now();

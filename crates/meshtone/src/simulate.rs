@@ -272,7 +272,12 @@ fn contact_parameters(
 
 /// (N) Force along the line of action that balances the brake's nominal torque.
 fn static_force_n(scenario: &Scenario, teeth: &Teeth) -> f64 {
-    scenario.operation.brake_torque_nm / (teeth.gear.base_radius_mm * 1e-3)
+    force_of_torque_n(scenario.operation.brake_torque_nm, teeth)
+}
+
+/// (N) Force along the line of action that balances a torque on the gear.
+fn force_of_torque_n(torque_nm: f64, teeth: &Teeth) -> f64 {
+    torque_nm / (teeth.gear.base_radius_mm * 1e-3)
 }
 
 impl Simulation {
@@ -357,6 +362,11 @@ impl Stages {
     /// (N) Force along the line of action that balances the brake's nominal torque.
     pub fn static_force_n(&self) -> f64 {
         static_force_n(&self.scenario, &self.teeth)
+    }
+
+    /// (N) Force along the line of action that balances a torque on the gear.
+    pub(crate) fn force_of_torque_n(&self, torque_nm: f64) -> f64 {
+        force_of_torque_n(torque_nm, &self.teeth)
     }
 
     /// Whether motor speed and brake torque are constant.

@@ -10,6 +10,7 @@ use crate::machine::{DecayingMode, Shaft, Structure, WheelBody};
 use crate::scenario::{MemoryLimit, Scenario};
 use crate::sensor::Channels;
 use crate::simulate::{Simulation, Stages, stages};
+use step_error::{StepError, step_error};
 
 /// (-) Part of the starting transient that may be left where the kept signal starts.
 const TOLERATED_TRANSIENT: f64 = 0.01;
@@ -67,20 +68,21 @@ impl Simulation {
         let is_damaged = !self.stages.damaged.is_empty();
         let is_linear = self.stages.mesh.contact().is_none();
         let pulling = is_linear.then(|| tension(&self.channels, is_damaged)).flatten();
-        let step = step_error::rms_gain_of_half_step(self).and_then(|gain| long_step(gain, &self.stages));
+        let step = step_error(self).and_then(|error| long_step(error, &self.stages));
         let doubtful = [pulling, self.resonance(), self.other_speed(), step];
         doubtful.into_iter().flatten().collect()
     }
 
     /// A mesh force so far beyond the static one that the machine could not be.
     fn resonance(&self) -> Option<ScenarioWarning> {
-        let static_n = self.stages.static_force_n();
+        let (_, torque_nm) = largest_torque(&self.stages.scenario);
+        let static_n = self.stages.force_of_torque_n(torque_nm);
         let largest_n =
             self.channels.mesh_force_n.iter().fold(0.0, |largest: f64, force| force.abs().max(largest));
         (static_n > 0.0 && largest_n > TOLERATED_RESONANCE * static_n).then(|| {
             let message = format!(
                 "the mesh force reaches {largest_n:.3e} N, {:.0} times the static {static_n:.4} N: a resonance that no machine \
-                 survives; raise the damping, change the speed, or load the pair",
+                 survives, or a load too light to be meant; raise the damping, change the speed, or load the pair",
                 largest_n / static_n
             );
             ScenarioWarning::new("operation.pinion_speed_hz", message)
@@ -106,27 +108,45 @@ impl Simulation {
         turning.into_iter().find(off).map(|(wheel, driven_hz, hz)| {
             let message = format!(
                 "the {wheel} turns at {hz:.4} Hz on average, while the motor drives it at {driven_hz:.4} Hz: the motion has not \
-                 settled; lengthen solver.settle_fraction, raise the damping, or leave out solver.initial_velocity"
+                 settled, or too many teeth are gone; lengthen solver.settle_fraction, raise the damping, leave out \
+                 solver.initial_velocity, or lessen the damage"
             );
             ScenarioWarning::new("solver.settle_fraction", message)
         })
     }
 }
 
-/// A step that falsifies a resonance, by how much the rms grows with half of it.
-fn long_step(gain: f64, stages: &Stages) -> Option<ScenarioWarning> {
-    // Of second order: a third of what half the step mends is left then.
-    let error = 4.0 / 3.0 * gain.abs();
+/// A step that falsifies a resonance.
+fn long_step(error: StepError, stages: &Stages) -> Option<ScenarioWarning> {
+    let rate_hz = stages.time.sampling_rate_hz;
+    let (error, shown) = match error {
+        StepError::Suspected(error) => (error, format!("and the rms may be wrong by {:.1} %", 100.0 * error)),
+        StepError::Shown { gain, finer_rate_hz } => {
+            let (percent, larger) = (100.0 * gain.abs(), if gain > 0.0 { "larger" } else { "smaller" });
+            let shown = format!("and at {finer_rate_hz:.0} S/s the rms is {percent:.1} % {larger}");
+            // Of second order.
+            (gain.abs() / (1.0 - (rate_hz / finer_rate_hz).powi(2)), shown)
+        }
+    };
     (error > TOLERATED_STEP).then(|| {
-        let rate_hz = stages.time.sampling_rate_hz;
         let finer_hz = rate_hz * (error / TOLERATED_STEP).sqrt().clamp(1.2, 10.0);
-        let (percent, larger) = (100.0 * gain.abs(), if gain > 0.0 { "larger" } else { "smaller" });
         let message = format!(
-            "at {rate_hz:.0} S/s the step shifts a resonance that the teeth excite: with half the step the rms is {percent:.1} % \
-             {larger}; set sampling_rate_hz = {finer_hz:.2e}, and more until this goes"
+            "at {rate_hz:.0} S/s the step shifts a resonance that the teeth excite, {shown}; set sampling_rate_hz = {finer_hz:.2e}, \
+             and more until this goes"
         );
         ScenarioWarning::new("solver.sampling_rate_hz", message)
     })
+}
+
+/// The key of the largest torque, and the torque in N m.
+fn largest_torque(scenario: &Scenario) -> (String, f64) {
+    let operation = &scenario.operation;
+    let values = operation.torque_profile_nm.iter().flat_map(|profile| &profile.value).enumerate();
+    let values =
+        values.map(|(index, &torque)| (format!("operation.torque_profile_nm.value[{index}]"), torque));
+    let constant = ("operation.brake_torque_nm".to_owned(), operation.brake_torque_nm);
+    let of_profile = values.reduce(|largest, other| if other.1 > largest.1 { other } else { largest });
+    of_profile.unwrap_or(constant)
 }
 
 /// A mesh that pulls, and what brings that down.
@@ -159,19 +179,21 @@ impl Stages {
         doubtful.into_iter().flatten().collect()
     }
 
-    /// Teeth that the nominal load would bend off.
+    /// Teeth that the load would bend off.
     fn crushed(&self) -> Option<ScenarioWarning> {
-        let deflection_mm = self.static_force_n() / self.mesh.mean_stiffness_n_per_mm();
-        let module_mm = self.scenario.gears.module_mm;
-        (deflection_mm > TOLERATED_DEFLECTION * module_mm).then(|| {
+        let (key, torque_nm) = largest_torque(&self.scenario);
+        let force_n = self.force_of_torque_n(torque_nm);
+        let deflection_mm = force_n / self.mesh.mean_stiffness_n_per_mm();
+        let (module_mm, width_mm) = (self.scenario.gears.module_mm, self.scenario.gears.face_width_mm);
+        let most_mm = TOLERATED_DEFLECTION * module_mm;
+        (deflection_mm > most_mm).then(|| {
+            let most_nm = torque_nm * most_mm / deflection_mm;
             let message = format!(
-                "presses the teeth {deflection_mm:.3} mm together, {:.2} modules, with {:.0} N on {} mm of face: they would break; \
-                 the torque is in N m",
-                deflection_mm / module_mm,
-                self.static_force_n(),
-                self.scenario.gears.face_width_mm
+                "{torque_nm:?} N m presses the teeth {deflection_mm:.3} mm together, {:.2} modules, with {force_n:.0} N on {width_mm} mm \
+                 of face: they would break; at most {most_nm:.0} N m stays below a tenth of the module",
+                deflection_mm / module_mm
             );
-            ScenarioWarning::new("operation.brake_torque_nm", message)
+            ScenarioWarning::new(key, message)
         })
     }
 

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use crate::fourier::real_spectrum;
 use crate::machine::ClosedMesh;
 use crate::model::Model;
-use crate::operation::greatest_common_divisor;
+use crate::operation::{greatest_common_divisor, least_common_multiple};
 use crate::sensor::Channels;
 use crate::simulate::{Simulation, Stages, simulate};
 use crate::solver::{Answer, MeanMachine};
@@ -21,35 +21,63 @@ const SHIFTS: [f64; 5] = [-0.01, -0.005, 0.0, 0.005, 0.01];
 /// (-) Estimate above which a simulation is repeated.
 const SUSPICIOUS: f64 = 0.02;
 
-/// (-) By how much the rms of a signal is larger with half the step: of the vertical acceleration or of the mesh force, whichever
-/// is further. None where no resonance is suspected of it, and the simulation is not repeated.
-pub(super) fn rms_gain_of_half_step(simulation: &Simulation) -> Option<f64> {
-    estimate(simulation).filter(|estimate| *estimate > SUSPICIOUS)?;
+/// What is known of the step's error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum StepError {
+    /// (-) How far the rms may be wrong, where the simulation could not be repeated with a finer step.
+    Suspected(f64),
+    /// The simulation was repeated.
+    Shown {
+        /// (-) By how much the rms grew: of the vertical acceleration or of the mesh force, whichever changed more.
+        gain: f64,
+        /// (S/s) Actual sampling rate of the repetition.
+        finer_rate_hz: f64,
+    },
+}
+
+/// What is known of the step's error where a resonance is suspected of it; the simulation is then repeated with half the step.
+pub(super) fn step_error(simulation: &Simulation) -> Option<StepError> {
+    let estimate = estimate(simulation).filter(|estimate| *estimate > SUSPICIOUS)?;
     let mut scenario = simulation.stages.scenario.clone();
-    // The actual rate is not less than the nominal one, which it is rounded up from.
-    scenario.solver.sampling_rate_hz = 2.0 * simulation.channels.sampling_rate_hz;
-    let finer = simulate(&scenario).ok()?.channels;
+    scenario.solver.sampling_rate_hz = nominal_rate_of_half_step_hz(&simulation.stages);
+    let Ok(Simulation { channels: finer, .. }) = simulate(&scenario) else {
+        return Some(StepError::Suspected(estimate));
+    };
     let gain = |of: fn(&Channels) -> &[f64]| {
         let [coarse, fine] = [&simulation.channels, &finer].map(|channels| rms(of(channels)));
         if coarse < ROUNDING { 0.0 } else { fine / coarse - 1.0 }
     };
     let (acceleration, force) = (gain(|of| &of.vertical_g), gain(|of| &of.mesh_force_n));
-    Some(if acceleration.abs() > force.abs() { acceleration } else { force })
+    let gain = if acceleration.abs() > force.abs() { acceleration } else { force };
+    Some(StepError::Shown { gain, finer_rate_hz: finer.sampling_rate_hz })
+}
+
+/// (S/s) The nominal rate whose actual one is twice that of a simulation: [`TimeGrid::new`](crate::operation::TimeGrid::new)
+/// rounds it up to a multiple, and adds six of these.
+fn nominal_rate_of_half_step_hz(stages: &Stages) -> f64 {
+    let multiple = least_common_multiple(stages.teeth.pinion.teeth, stages.teeth.gear.teeth);
+    let unit_hz = f64::from(multiple) * stages.scenario.operation.pinion_speed_hz;
+    // Half a unit below, so that rounding up is safe.
+    (2.0 * stages.time.sampling_rate_hz - 6.5 * unit_hz).max(0.5 * unit_hz)
 }
 
 fn rms(signal: &[f64]) -> f64 {
     (signal.iter().map(|value| value * value).sum::<f64>() / signal.len().max(1) as f64).sqrt()
 }
 
-/// (-) How far the step may falsify the rms, without a second simulation. None where the speed is no constant, so that no resonance
-/// lasts.
+/// (-) How far the step may falsify the rms, without a second simulation. None where speed or load is no constant.
 ///
 /// Every sine of the signal that repeats with a wheel's turn is as large as the machine's answer at the frequency that the step
 /// makes of its own, [`MeanMachine::growth`]; what does not repeat, as the ringing after a hit, only changes its pitch. Of teeth
 /// that part it says nothing: their motion has no resonance that lasts.
 fn estimate(simulation: &Simulation) -> Option<f64> {
     let stages = &simulation.stages;
-    if stages.scenario.model == Model::Published || stages.scenario.operation.speed_profile_hz.is_some() {
+    let operation = &stages.scenario.operation;
+    // A fluctuation is drawn for every sample: with a finer step it is another one.
+    let lasts = operation.speed_profile_hz.is_none()
+        && operation.speed_fluctuation_hz == 0.0
+        && operation.torque_fluctuation_nm == 0.0;
+    if stages.scenario.model == Model::Published || !lasts {
         return None;
     }
     let model = stages.reduced_model();

@@ -23,10 +23,16 @@ pub(super) fn check(scenario: &Scenario) -> Check {
         "the teeth would run at {speed_m_per_s:.0} m/s on the pitch line; must be at most {FASTEST_M_PER_S:.0} m/s, which no gear \
          exceeds"
     );
-    Err(refuse(&key, speed_hz, problem).with_help(format!(
-        "speeds are in revolutions per second: if {speed_hz:?} is per minute, write {:.4}",
-        speed_hz / 60.0
-    )))
+    let fastest_hz = speed_hz * FASTEST_M_PER_S / speed_m_per_s;
+    let help = if speed_hz / 60.0 < fastest_hz {
+        format!(
+            "speeds are in revolutions per second: if {speed_hz:?} is per minute, write {:.4}",
+            speed_hz / 60.0
+        )
+    } else {
+        format!("speeds are in revolutions per second, and these wheels turn at most {fastest_hz:.1} times")
+    };
+    Err(refuse(&key, speed_hz, problem).with_help(help))
 }
 
 /// Speeds that may be a slip.
