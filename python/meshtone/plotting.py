@@ -188,8 +188,8 @@ def _around_damage(simulation: Simulation) -> tuple[int, int]:
 
 def _damaged_teeth(simulation: Simulation, wheel: str) -> list[int]:
     """The numbers of a wheel's damaged teeth, in their order."""
-    of_wheel = [fault for fault in simulation.scenario.faults if fault.wheel == wheel]
-    return sorted({tooth for fault in of_wheel for tooth in numbers_of_teeth(fault, _teeth(simulation, wheel))})
+    # Not by the scenario's faults: one of severity 0 damages nothing.
+    return sorted(tooth for of_wheel, tooth, _ in simulation._native.damaged_teeth_mm() if of_wheel == wheel)
 
 
 def _teeth(simulation: Simulation, wheel: str) -> int:

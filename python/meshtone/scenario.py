@@ -172,7 +172,8 @@ brake_torque_nm=10.0, din_grade=7)
     def fault_severities(self) -> list[float]:
         """(-) How severe each of :attr:`faults` is, from 0, none, to 1, the largest that the tooth allows.
 
-        It is what was given, or follows from the sizes; the guide's chapter on faults has each kind's scale.
+        It is what was given, or follows from the sizes; the guide's chapter on faults has each kind's scale. They are in the
+        order of :attr:`faults` of this scenario; :meth:`with_own_sizes` may have fewer.
 
         >>> from meshtone.faults import ToothBreakage
         >>> chipped = Scenario(module_mm=3, pinion_teeth=17, gear_teeth=38, face_width_mm=15, pinion_speed_hz=40,

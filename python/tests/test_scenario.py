@@ -51,7 +51,7 @@ def test_lists_of_faults() -> None:
         Scenario(**REQUIRED, fault=chip, faults=[missing])
     with pytest.raises(TypeError, match="fault is a sequence: faults takes several"):
         Scenario(**REQUIRED, fault=[chip, missing])  # type: ignore[arg-type]
-    with pytest.raises(TypeError, match=r"faults\[1\] = 'broken': must be an object of [^,]*, .*ToothDestruction$"):
+    with pytest.raises(TypeError, match=r"faults\[1\] = 'broken': must be an object of MissingTooth, .*ToothDestruction, Wear"):
         examples.healthy().copy(faults=[meshtone.MissingTooth(), "broken"])
     with pytest.raises(TypeError, match=r"faults\[0\] is the class MissingTooth"):
         examples.healthy().copy(faults=[meshtone.MissingTooth])

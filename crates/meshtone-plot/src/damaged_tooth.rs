@@ -27,7 +27,7 @@ impl DamagedTooth {
     /// The damaged teeth of a wheel, each once and in the order of their numbers.
     ///
     /// # Arguments
-    /// * `faults` - what is broken, of both wheels
+    /// * `faults` - what is broken, of both wheels; one of severity 0 is not
     /// * `wheel` - whose teeth
     /// * `teeth` - how many it has
     /// * `contact_pitches` - (pitches) the contact ratio
@@ -47,7 +47,7 @@ impl DamagedTooth {
             let numbers = fault.tooth.numbers(teeth).into_iter();
             numbers.map(move |tooth| Self { tooth, contact_pitches, is_missing })
         };
-        let of_wheel = faults.iter().filter(|fault| fault.wheel == wheel);
+        let of_wheel = faults.iter().filter(|fault| fault.wheel == wheel && fault.severity != Some(0.0));
         let mut damaged: Vec<Self> = of_wheel.flat_map(of_fault).collect();
         damaged.sort_by_key(|tooth| tooth.tooth);
         damaged.dedup_by_key(|tooth| tooth.tooth);

@@ -165,6 +165,9 @@ fn unknown(
     let fault = kinds(&base.faults).unwrap_or_else(|| "a healthy pair".to_owned());
     let problem = format!("`{key}` is no number of the scenario ({fault}), so it cannot be varied");
     let error = TomlError::new(format!("{place}.{named}"), format!("{key:?}"), problem);
+    if fault_of_severity(key, &base.faults).is_some() {
+        return error.with_help("write the fault with severity = … in place of its sizes");
+    }
     error.with_help(
         match nearest_name(key, known.iter().map(|number| number.key.as_str()).chain(NOISE_KEYS)) {
             Some(nearest) => format!("did you mean `{nearest}`?"),

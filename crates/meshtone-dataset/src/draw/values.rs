@@ -1,5 +1,6 @@
 //! Values at keys: those drawn, over those of the base scenario.
 
+use std::cell::OnceCell;
 use std::collections::HashMap;
 
 use meshtone::scenario::Scenario;
@@ -16,6 +17,8 @@ pub(super) struct Values<'a> {
     numbers: &'a HashMap<String, f64>,
     drawn: Vec<(String, f64)>,
     severity: Option<f64>,
+    /// Severities of the faults by their sizes, with what is drawn so far, once they were asked for.
+    severities_by_sizes: OnceCell<Option<Vec<f64>>>,
 }
 
 impl<'a> Values<'a> {
@@ -25,7 +28,7 @@ impl<'a> Values<'a> {
     /// * `base` - the scenario
     /// * `numbers` - all its numbers, by their keys
     pub fn new(base: &'a Scenario, numbers: &'a HashMap<String, f64>) -> Self {
-        Self { base, numbers, drawn: Vec::new(), severity: None }
+        Self { base, numbers, drawn: Vec::new(), severity: None, severities_by_sizes: OnceCell::new() }
     }
 
     pub fn number(&self, key: &str) -> Option<f64> {
@@ -42,11 +45,12 @@ impl<'a> Values<'a> {
     /// The severity of a fault that is given by its sizes.
     fn severity_by_sizes(&self, key: &str) -> Option<f64> {
         let fault = fault_of_severity(key, &self.base.faults)?;
-        let scenario = self.base.with_numbers(&of_scenario(&self.drawn)).ok()?;
-        scenario.fault_severities().ok()?.get(fault).copied()
+        let of_drawn = || self.base.with_numbers(&of_scenario(&self.drawn)).ok()?.fault_severities().ok();
+        self.severities_by_sizes.get_or_init(of_drawn).as_ref()?.get(fault).copied()
     }
 
     pub fn set(&mut self, key: &str, value: f64) {
+        self.severities_by_sizes.take();
         self.drawn.push((key.to_owned(), value));
     }
 

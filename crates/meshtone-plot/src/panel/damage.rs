@@ -45,25 +45,31 @@ fn cut_range(profile: &ToothProfile, outline_y_mm: &[f64]) -> Option<(usize, usi
 /// * `stages` - what was simulated
 /// * `fits` - whether there is room
 pub(super) fn title(stages: &Stages, fits: impl Fn(&str) -> bool) -> String {
-    let faults = &stages.scenario.faults;
-    if faults.is_empty() {
+    let faults: Vec<(usize, &Fault)> = faults_that_show(stages).collect();
+    let Some((first, only)) = faults.first().map(|(number, fault)| (*number, *fault)) else {
         return "Healthy gear pair".to_owned();
-    }
-    let usual = Fault::at_usual_place(faults[0].damage.clone());
-    let is_usual = faults.len() == 1 && (faults[0].wheel, &faults[0].tooth) == (usual.wheel, &usual.tooth);
+    };
+    let usual = Fault::at_usual_place(only.damage.clone());
+    let is_usual = faults.len() == 1 && (only.wheel, &only.tooth) == (usual.wheel, &usual.tooth);
     let title = |with_sizes: bool| {
-        let all = faults.iter().enumerate().map(|(number, fault)| {
+        let all = faults.iter().map(|&(number, fault)| {
             let place = format!(", {} {}", fault.wheel.name(), fault.tooth.in_words());
             let sizes = if with_sizes { sizes_of_fault(stages, number) } else { Vec::new() };
             let sizes = if sizes.is_empty() { String::new() } else { format!(": {}", sizes.join(", ")) };
             let name = name(&fault.damage);
-            let name = if number == 0 { capitalised(&name) } else { name };
+            let name = if number == first { capitalised(&name) } else { name };
             format!("{name}{}{sizes}", if is_usual { "" } else { &place })
         });
         all.collect::<Vec<_>>().join("; ")
     };
     let full = title(true);
     if is_usual || fits(&full) { full } else { title(false) }
+}
+
+/// The faults that do anything to a tooth, with their numbers: not those of severity 0.
+fn faults_that_show(stages: &Stages) -> impl Iterator<Item = (usize, &Fault)> {
+    let faults = stages.scenario.faults.iter().enumerate();
+    faults.filter(|(_, fault)| fault.sized(&stages.teeth).is_some())
 }
 
 /// What the damage is called.
@@ -198,7 +204,8 @@ pub(super) fn start_of_revolution(damaged: &[crate::DamagedTooth]) -> &'static s
 pub(super) fn damaged_teeth(stages: &Stages, wheel: WheelName) -> Vec<crate::DamagedTooth> {
     let contact_pitches = stages.teeth.contact.contact_ratio;
     let teeth = stages.teeth.wheel(wheel).teeth;
-    crate::DamagedTooth::of_wheel(&stages.scenario.faults, wheel, teeth, contact_pitches)
+    let faults: Vec<Fault> = faults_that_show(stages).map(|(_, fault)| fault.clone()).collect();
+    crate::DamagedTooth::of_wheel(&faults, wheel, teeth, contact_pitches)
 }
 
 /// Whether a part of the face width is sound where a damage has taken the flank.

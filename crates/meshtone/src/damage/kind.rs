@@ -2,7 +2,7 @@
 
 use super::FaultyTeeth;
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
-use super::published::FaultGeometry;
+use super::published::{FaultGeometry, unknown_kind};
 use super::severity::SoundTooth;
 use crate::error::ScenarioError;
 use crate::keys::{Check, Keys};
@@ -72,9 +72,7 @@ pub(crate) trait Kind: Keys {
     /// # Errors
     /// A damage that does not fit the tooth, and one that the published model does not know, as by default.
     fn published_geometry(&self, _teeth: &Teeth, _seed: u64) -> Result<FaultGeometry, ScenarioError> {
-        let problem = "is not known to the published model";
-        Err(ScenarioError::new("fault.kind", format!("\"{}\"", Self::NAME), problem)
-            .with_help("write model = \"linear\" or model = \"contact\""))
+        Err(unknown_kind(Self::NAME))
     }
 }
 

@@ -168,6 +168,9 @@ impl<S> Row<S> {
     ) -> ReadResult<()> {
         let required = self.is_required() && self.cell.write(section).is_some();
         let value = if required {
+            if let (Absent::RefusedUnless(others), None) = (&self.absent, table.optional(self.name)) {
+                others.iter().try_for_each(|other| table.refuse_slip_of(other))?;
+            }
             table.required(self.name, &self.with_unit()).map(Some)?
         } else {
             table.optional(self.name)

@@ -12,7 +12,8 @@ pub(super) mod through_face;
 pub(super) mod tooth_breakage;
 pub(super) mod tooth_destruction;
 
-use super::{DamageDescription, DamagedTooth};
+use super::{Damage, DamageDescription, DamagedTooth};
+use crate::error::ScenarioError;
 pub use section::{LateralBending, Pivot, ToothSection};
 pub use through_face::{Half, RollingAngle};
 
@@ -119,4 +120,22 @@ pub enum Displacement {
     },
     /// The mate turns about the pit's edges: `−h (1 − cos 2πξ)/2`, acting on the whole mesh.
     Rolling(RollingAngle),
+}
+
+/// Whether the published model knows a kind of damage.
+pub(crate) fn knows(damage: &Damage) -> bool {
+    matches!(
+        damage,
+        Damage::MissingTooth(_)
+            | Damage::ToothBreakage(_)
+            | Damage::PartialFace(_)
+            | Damage::ThroughFace(_)
+            | Damage::ToothDestruction(_)
+    )
+}
+
+/// A kind that the published model does not know, by its name in the scenario file.
+pub(crate) fn unknown_kind(name: &str) -> ScenarioError {
+    ScenarioError::new("fault.kind", format!("\"{name}\""), "is not known to the published model")
+        .with_help("write model = \"linear\" or model = \"contact\"")
 }

@@ -9,7 +9,7 @@ mod speed;
 pub use memory_limit::{MEMORY_LIMIT_BYTES, MemoryLimit};
 
 use super::{Gears, Model, Scenario, ScenarioError, ScenarioWarning, WheelName};
-use crate::damage::check_faults;
+use crate::damage::{check_faults, published};
 use crate::keys::{Keys, check_keys};
 use crate::sensor::check_sensors;
 
@@ -112,6 +112,10 @@ fn known_to_the_model(scenario: &Scenario) -> Result<(), ScenarioError> {
     let faults = &scenario.faults;
     let error = match faults.as_slice() {
         [] => return Ok(()),
+        // Before its place, which the file may not say.
+        [fault] if !published::knows(&fault.damage) => {
+            return Err(published::unknown_kind(fault.damage.kind()));
+        }
         [fault] if fault.wheel != WheelName::Gear => {
             ScenarioError::new("fault.wheel", format!("\"{}\"", fault.wheel.name()), ONE_PLACE)
         }
