@@ -127,7 +127,7 @@ fn manifests_that_cannot_be_are_refused() {
     for refused in [
         verify(&to, Check::Sizes).unwrap_err(),
         run(&plan(FAST), &to, Part::WHOLE, 1).unwrap_err(),
-        merge(&[to.clone()], &to, Check::Sizes).unwrap_err(),
+        merge(std::slice::from_ref(&to), &to, Check::Sizes).unwrap_err(),
     ] {
         assert!(
             refused.to_string().contains("has the format 3; this version of Meshtone knows those up to 2"),
