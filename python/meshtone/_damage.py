@@ -14,6 +14,8 @@ __all__ = [
     "MissingTooth",
     "PartialFace",
     "PitCircle",
+    "Pits",
+    "RandomPits",
     "RootCrack",
     "ThroughFace",
     "ToothBreakage",
@@ -39,6 +41,32 @@ class PitCircle:
     x_mm: float
     y_mm: float
     radius_mm: float
+
+
+@dataclass(frozen=True)
+class RandomPits:
+    """Pits that are drawn for each tooth from the seed, instead of a list.
+
+    Parameters
+    ----------
+    density_per_cm2 : float
+        (1/cm²) The mean number of pits in a square centimetre of flank; Poisson. Allowed: ≥ 0; at most 1000 a tooth.
+    spread : float
+        (-) The standard deviation of their centres about the working pitch circle, as a fraction of the flank's contact
+        part; normal. Allowed: 0…1.
+    radius_mm : float
+        (mm) The median of their radii; lognormal. Allowed: > 0.
+    radius_spread : float
+        (-) The standard deviation of the radii's natural logarithm. Allowed: 0…2.
+    depth_mm : float
+        (mm) The depth of all, along the flank's normal. Allowed: ≥ 0.
+    """
+
+    density_per_cm2: float
+    spread: float
+    radius_mm: float
+    radius_spread: float
+    depth_mm: float
 
 
 @dataclass(frozen=True)
@@ -213,6 +241,49 @@ class ThroughFace:
 
 
 @dataclass(frozen=True)
+class Pits:
+    """Pits in the working flank, any number of them.
+
+    Parameters
+    ----------
+    at : sequence of floats, optional
+        (-) The centre of each pit as a fraction of the flank's contact part, from its root side. Allowed: 0…1.
+        Required, unless ``random`` or ``severity`` is given.
+    z_mm : sequence of floats, optional
+        (mm) The centre of each along the face, from the face's middle; one number a pit, as of all keys here. Allowed:
+        within half the face width and the radius. Required, unless ``random`` or ``severity`` is given.
+    radius_mm : sequence of floats, optional
+        (mm) The radius of each along the flank. Allowed: > 0. Required, unless ``random`` or ``severity`` is given.
+    face_radius_mm : sequence of floats, optional
+        (mm) The radius of each along the face, for ellipses. Allowed: > 0. Default: ``radius_mm``: circles.
+    depth_mm : sequence of floats, optional
+        (mm) The depth of each, along the flank's normal. Allowed: ≥ 0; less than the tooth is thick. Required, unless
+        ``random`` or ``severity`` is given.
+    random : RandomPits, optional
+        Pits that are drawn for each tooth from the seed, instead of a list. Default: none.
+    wheel : {'pinion', 'gear'}, optional
+        The damaged wheel. Default: "gear".
+    tooth : int, sequence of ints or 'all', optional
+        The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
+        Allowed: whole number > 0; at most the wheel's teeth, each once. Default: 1.
+    severity : float, optional
+        (-) How severe the damage is, in place of its sizes: from 0, none, to 1, the largest that the tooth allows.
+        Allowed: 0…1; 1 for a missing tooth. Default: that of the sizes.
+    """
+
+    kind: ClassVar[str] = "pits"
+    at: Sequence[float] | None = None
+    z_mm: Sequence[float] | None = None
+    radius_mm: Sequence[float] | None = None
+    face_radius_mm: Sequence[float] | None = None
+    depth_mm: Sequence[float] | None = None
+    random: RandomPits | None = None
+    wheel: Literal["pinion", "gear"] = "gear"
+    tooth: int | Sequence[int] | Literal["all"] = 1
+    severity: float | None = None
+
+
+@dataclass(frozen=True)
 class ToothDestruction:
     """The working flank is ground down along a straight line.
 
@@ -279,11 +350,11 @@ class Wear:
     severity: float | None = None
 
 
-Fault = Union[MissingTooth, ToothBreakage, RootCrack, PartialFace, ThroughFace, ToothDestruction, Wear]
+Fault = Union[MissingTooth, ToothBreakage, RootCrack, PartialFace, ThroughFace, Pits, ToothDestruction, Wear]
 """Any kind of damage."""
 
-KINDS: tuple[type[Any], ...] = (MissingTooth, ToothBreakage, RootCrack, PartialFace, ThroughFace, ToothDestruction, Wear)
+KINDS: tuple[type[Any], ...] = (MissingTooth, ToothBreakage, RootCrack, PartialFace, ThroughFace, Pits, ToothDestruction, Wear)
 """The classes."""
 
-TABLES: dict[str, type[Any]] = {"circle": PitCircle}
+TABLES: dict[str, type[Any]] = {"circle": PitCircle, "random": RandomPits}
 """Classes of the tables inside a fault, by key."""

@@ -6,7 +6,7 @@ Examples
 >>> examples.tooth_breakage().fault.chip_width_mm
 12.0
 >>> sorted(examples.all())
-['healthy', 'missing-tooth', 'partial-face', 'root-crack', 'through-face', 'tooth-breakage', 'tooth-destruction', 'wear']
+['healthy', 'missing-tooth', 'partial-face', 'pits', 'root-crack', 'through-face', 'tooth-breakage', 'tooth-destruction', 'wear']
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ __all__ = [
     "healthy",
     "missing_tooth",
     "partial_face",
+    "pits",
     "root_crack",
     "through_face",
     "tooth_breakage",
@@ -51,6 +52,11 @@ def partial_face() -> Scenario:
     return Scenario.from_toml(template("partial-face"))
 
 
+def pits() -> Scenario:
+    """The same pair with three pits in a flank."""
+    return Scenario.from_toml(template("pits"))
+
+
 def through_face() -> Scenario:
     """The same pair with a pit over the whole face width."""
     return Scenario.from_toml(template("through-face"))
@@ -74,6 +80,7 @@ def all() -> dict[str, Scenario]:
         "tooth-breakage": tooth_breakage(),
         "root-crack": root_crack(),
         "partial-face": partial_face(),
+        "pits": pits(),
         "through-face": through_face(),
         "tooth-destruction": tooth_destruction(),
         "wear": wear(),

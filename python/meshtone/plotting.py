@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from .faults import Fault, MissingTooth, PartialFace, RootCrack, ToothBreakage, Wear, in_words, numbers_of_teeth
+from .faults import Fault, MissingTooth, PartialFace, Pits, RootCrack, ToothBreakage, Wear, in_words, numbers_of_teeth
 from .simulation import chosen_channel
 
 if TYPE_CHECKING:
@@ -332,7 +332,7 @@ def plot_tooth(
             ax.plot(crack_y_mm, crack_x_mm, color=ORANGE, linewidth=2.5, label=f"crack, {fault.depth_mm:g} mm deep{extent}")
     cuts = [fault for fault in faults if not isinstance(fault, (MissingTooth, ToothBreakage, RootCrack))]
     if cuts:
-        partial = all(isinstance(fault, PartialFace) for fault in cuts)
+        partial = all(isinstance(fault, (PartialFace, Pits)) for fault in cuts)
         lost = y_mm > flank_y_mm + 1e-9
         y = np.concatenate([y_mm[lost], flank_y_mm[lost][::-1]])
         label = "; ".join(map(_cut_in_words, cuts))
@@ -353,6 +353,8 @@ def _title_of_tooth(wheel: str, tooth: int, damaged: Sequence[int]) -> str:
 def _cut_in_words(fault: Fault) -> str:
     if isinstance(fault, Wear):
         return f"worn up to {fault.depth_um:g} µm deep"
+    if isinstance(fault, Pits):
+        return "pits" if fault.at is None else f"{len(fault.at)} pit{'' if len(fault.at) == 1 else 's'}"
     return f"pit, {fault.width_mm:g} mm wide" if isinstance(fault, PartialFace) else fault.kind
 
 

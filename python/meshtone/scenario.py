@@ -352,8 +352,8 @@ def template(kind: str) -> str:
     Parameters
     ----------
     kind : str
-        'healthy', or a kind of fault: 'missing-tooth', 'tooth-breakage', 'root-crack', 'partial-face', 'through-face', 'tooth-destruction',
-        'wear'.
+        'healthy', or a kind of fault: 'missing-tooth', 'tooth-breakage', 'root-crack', 'partial-face', 'through-face', 'pits',
+        'tooth-destruction', 'wear'.
 
     Returns
     -------

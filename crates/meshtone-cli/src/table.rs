@@ -88,7 +88,7 @@ fn touching(force: &MeshForce) -> String {
 /// `root-crack (severity 0.400) on tooth 1 of the gear`, one after the other.
 fn faults(faults: &[FaultSummary]) -> String {
     let place = |fault: &FaultSummary| {
-        let FaultSummary { kind, wheel, tooth, severity } = fault;
+        let FaultSummary { kind, wheel, tooth, severity, .. } = fault;
         format!("{kind} (severity {severity:.3}) on {} of the {wheel}", tooth.in_words())
     };
     match faults {

@@ -48,6 +48,8 @@ pub enum Purpose {
     GearDeviations = 17,
     /// Noise of a sensor, sample by sample; index: the sensor's place in the scenario's list.
     SensorNoise = 18,
+    /// Pits of a tooth: how many, where, how large; index: the tooth, and its wheel.
+    Pits = 19,
 }
 
 /// A sequence of random numbers.

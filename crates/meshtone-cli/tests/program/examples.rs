@@ -10,10 +10,11 @@ fn examples() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples")
 }
 
-const NAMES: [&str; 8] = [
+const NAMES: [&str; 9] = [
     "healthy",
     "missing_tooth",
     "partial_face",
+    "pits",
     "root_crack",
     "through_face",
     "tooth_breakage",

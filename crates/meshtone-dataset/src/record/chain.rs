@@ -4,6 +4,7 @@
 //! included: who reads the raw channel back finds the same average, unless `keep.duration_s` has cut it afterwards.
 
 use meshtone::Stages;
+use meshtone::damage::pitted_teeth;
 use meshtone::scenario::{Fault, Scenario, WheelName};
 use meshtone::sensor::Channel;
 use meshtone::signal::{
@@ -150,15 +151,20 @@ impl<'a> View<'a> {
 
     fn empty(&self, drawn: DrawnRecord) -> Record {
         let scenario = self.scenario();
-        let fault = |(fault, severity): (&Fault, &f64)| RecordFault {
+        let fault = |(number, (fault, severity)): (usize, (&Fault, &f64))| RecordFault {
             kind: fault.damage.kind(),
             wheel: fault.wheel,
             tooth: self.start.tooth(fault, &scenario.gears),
             severity: *severity,
+            area_percent: pitted_teeth(&scenario.faults, &self.stages.damaged, number)
+                .into_iter()
+                .map(|pitted| pitted.area_percent)
+                .reduce(f64::max),
         };
+        let faults = scenario.faults.iter().zip(&self.stages.fault_severities).enumerate();
         Record {
             drawn,
-            faults: scenario.faults.iter().zip(&self.stages.fault_severities).map(fault).collect(),
+            faults: faults.map(fault).collect(),
             gear_angle_rev: if self.offset.is_some() { 0.0 } else { self.gear_angles()[0] },
             teeth: [scenario.gears.pinion_teeth, scenario.gears.gear_teeth],
             pinion_speed_hz: scenario.operation.pinion_speed_hz,

@@ -54,6 +54,8 @@ pub struct RecordFault {
     pub tooth: Option<u32>,
     /// (-) How severe it is, from 0, none, to 1, the largest that the tooth allows.
     pub severity: f64,
+    /// (%) Part of the flank that its pits take, of the worst tooth; none of other kinds.
+    pub area_percent: Option<f64>,
 }
 
 /// What a simulation is for.

@@ -1,5 +1,6 @@
 //! Columns of a data set.
 
+use meshtone::damage::Damage;
 use meshtone::sensor::Channel;
 use meshtone_io::table::{CellType, TableColumn};
 
@@ -42,6 +43,8 @@ pub enum ColumnKind {
     FaultTooth(usize),
     /// How severe a fault is, by the fault's number.
     FaultSeverity(usize),
+    /// Part of the flank that pits take, by the fault's number.
+    FaultArea(usize),
     /// Seed of the record.
     Seed,
     /// Seed of the unit's profile errors.
@@ -98,6 +101,7 @@ impl ColumnKind {
                 | Self::FaultWheel(_)
                 | Self::FaultTooth(_)
                 | Self::FaultSeverity(_)
+                | Self::FaultArea(_)
                 | Self::Key(_)
                 | Self::Indicator(_)
         )
@@ -109,8 +113,14 @@ impl ColumnKind {
 /// # Arguments
 /// * `plan` - the plan
 pub fn columns(plan: &Plan) -> Vec<Column> {
-    let most_faults = plan.content.classes.iter().map(|class| class.faults.len()).max().unwrap_or(0);
-    let mut columns = of_record(most_faults);
+    let classes = &plan.content.classes;
+    let most_faults = classes.iter().map(|class| class.faults.len()).max().unwrap_or(0);
+    let is_pits = |number: usize| {
+        classes.iter().any(|class| {
+            class.faults.get(number).is_some_and(|fault| matches!(fault.damage, Damage::Pits(_)))
+        })
+    };
+    let mut columns = of_record(most_faults, is_pits);
     let taken: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
     columns
         .extend(varied_keys(plan).into_iter().map(key_column).filter(|column| !taken.contains(&column.name)));
@@ -173,7 +183,7 @@ fn column(name: &str, unit: &str, description: &str, kind: ColumnKind) -> Column
     Column { name: name.to_owned(), unit: unit.to_owned(), description: description.to_owned(), kind }
 }
 
-fn of_record(most_faults: usize) -> Vec<Column> {
+fn of_record(most_faults: usize, is_pits: impl Fn(usize) -> bool) -> Vec<Column> {
     use ColumnKind::*;
     let mut columns = vec![
         column("record", "", "number of the record; with the plan it determines everything else", Record),
@@ -184,7 +194,14 @@ fn of_record(most_faults: usize) -> Vec<Column> {
         column("severity_measure", "-", "the number that the grade was taken from", SeverityMeasure),
     ];
     // Also where every class is healthy: all data sets have the columns of one fault.
-    columns.extend((0..most_faults.max(1)).flat_map(of_fault));
+    for number in 0..most_faults.max(1) {
+        columns.extend(of_fault(number));
+        if is_pits(number) {
+            let name = format!("{}_area_percent", name_in_list("fault", number));
+            let meaning = "part of the flank's contact part that the pits take, of the worst tooth";
+            columns.push(column(&name, "%", meaning, FaultArea(number)));
+        }
+    }
     columns.extend([
         column("seed", "", "seed of the record's noise and fluctuations", Seed),
         column("wheels_seed", "", "seed of the unit's profile errors", WheelsSeed),
@@ -287,13 +304,14 @@ fn number_in(section: &str, list: &str) -> Option<usize> {
 
 /// The unit that a name ends in.
 pub(crate) fn unit_of(name: &str) -> &'static str {
-    const UNITS: [(&str, &str); 13] = [
+    const UNITS: [(&str, &str); 14] = [
         ("_n_per_m", "N/m"),
         ("_nm_per_rad", "N m/rad"),
         ("_kgm2", "kg m²"),
         ("_mm", "mm"),
         ("_um", "µm"),
         ("_g_per_rthz", "g/√Hz"),
+        ("_per_cm2", "1/cm²"),
         ("_hz", "Hz"),
         ("_nm", "N m"),
         ("_deg", "°"),
@@ -335,6 +353,7 @@ mod tests {
             ("sensor.resonance_hz", "sensor_resonance_hz", "Hz"),
             ("sensor[1].noise_density_g_per_rthz", "sensor_2_noise_density_g_per_rthz", "g/√Hz"),
             ("rig.misalignment_um", "misalignment_um", "µm"),
+            ("fault.random.density_per_cm2", "fault_random_density_per_cm2", "1/cm²"),
             ("noise.snr_db", "noise_snr_db", "dB"),
             ("rig.bearing_stiffness_n_per_m", "bearing_stiffness_n_per_m", "N/m"),
             ("rig.wheel_rotational_stiffness_nm_per_rad", "wheel_rotational_stiffness_nm_per_rad", "N m/rad"),

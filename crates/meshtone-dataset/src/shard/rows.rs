@@ -58,6 +58,9 @@ pub(super) fn cells<'r>(column: &Column, rows: &'r [Row], content: &Content) -> 
         ColumnKind::FaultSeverity(of_fault) => {
             number(&|r| r.faults.get(*of_fault).map(|fault| fault.severity))
         }
+        ColumnKind::FaultArea(of_fault) => {
+            number(&|r| r.faults.get(*of_fault).and_then(|fault| fault.area_percent))
+        }
         ColumnKind::SamplingRate => number(&|_| Some(content.keep.sampling_rate_hz)),
         ColumnKind::GearAngle => number(&|r| Some(r.gear_angle_rev)),
         ColumnKind::PinionTeeth => small(&|r| Some(r.teeth[0])),

@@ -3,12 +3,37 @@
 use std::io::{self, Write};
 use std::time::Duration;
 
-use meshtone::damage::FaultyTeeth;
+use meshtone::damage::{FaultyTeeth, FlankPit, PittedTooth, PittingGrade};
 use meshtone::sensor::ChannelKind;
 use meshtone::signal::{IndicatorValue, Indicators, Shaft};
 use serde_json::{Map, Value, json};
 
 use super::{ChannelSummary, FaultSummary, MeshForce, Summary};
+
+/// A fault's kind, place and severity, and the pits of each of its teeth, as a scenario file may list them.
+fn fault(summary: &FaultSummary) -> Value {
+    let FaultSummary { kind, wheel, severity, .. } = summary;
+    let mut entry =
+        json!({ "kind": kind, "wheel": wheel, "tooth": tooth(&summary.tooth), "severity": severity });
+    if !summary.pitted_teeth.is_empty() {
+        entry["pitted_teeth"] = summary.pitted_teeth.iter().map(pitted_tooth).collect();
+    }
+    entry
+}
+
+fn pitted_tooth(pitted: &PittedTooth) -> Value {
+    let every = |of: fn(&FlankPit) -> f64| pitted.pits.iter().map(of).collect::<Vec<_>>();
+    json!({
+        "tooth": pitted.tooth,
+        "area_percent": pitted.area_percent,
+        "grade": PittingGrade::of(pitted.area_percent).name(),
+        "at": every(|pit| pit.at),
+        "z_mm": every(|pit| pit.z_mm),
+        "radius_mm": every(|pit| pit.radius_mm),
+        "face_radius_mm": every(|pit| pit.face_radius_mm),
+        "depth_mm": every(|pit| pit.depth_mm),
+    })
+}
 
 /// A number, an array of them, or `"all"`, as in the scenario file.
 fn tooth(teeth: &FaultyTeeth) -> Value {
@@ -36,10 +61,7 @@ impl Summary {
         let (stiffness, force) = (&self.mesh_stiffness, &self.mesh_force);
         let warnings = self.warnings.iter();
         let warnings = warnings.map(|warning| json!({ "key": warning.key, "message": warning.message }));
-        let faults = self.faults.iter().map(|fault| {
-            let FaultSummary { kind, wheel, severity, .. } = fault;
-            json!({ "kind": kind, "wheel": wheel, "tooth": tooth(&fault.tooth), "severity": severity })
-        });
+        let faults = self.faults.iter().map(fault);
         let mut summary = json!({
             "format_version": self.format_version,
             "meshtone_version": self.meshtone_version,

@@ -8,6 +8,7 @@ mod read;
 
 use std::time::Duration;
 
+use meshtone::damage::{PittedTooth, pitted_teeth};
 use meshtone::scenario::{Fault, FaultyTeeth, ScenarioWarning};
 use meshtone::signal::{ChainSettings, Indicators, Shaft, SimulatedShafts, kurtosis, peak, rms};
 use meshtone::{Simulation, Stages};
@@ -78,17 +79,21 @@ pub struct FaultSummary {
     pub tooth: FaultyTeeth,
     /// (-) How severe it is, from 0, none, to 1, the largest that the tooth allows.
     pub severity: f64,
+    /// The pits of each tooth, of a fault that is pits.
+    pub pitted_teeth: Vec<PittedTooth>,
 }
 
 impl FaultSummary {
     /// Those of a simulation.
     fn all(stages: &Stages) -> Vec<Self> {
-        let faults = stages.scenario.faults.iter().zip(&stages.fault_severities);
-        let summary = |(fault, &severity): (&Fault, &f64)| Self {
+        let all = &stages.scenario.faults;
+        let faults = all.iter().zip(&stages.fault_severities).enumerate();
+        let summary = |(number, (fault, &severity)): (usize, (&Fault, &f64))| Self {
             kind: fault.damage.kind(),
             wheel: fault.wheel.name(),
             tooth: fault.tooth.clone(),
             severity,
+            pitted_teeth: pitted_teeth(all, &stages.damaged, number),
         };
         faults.map(summary).collect()
     }

@@ -1,7 +1,7 @@
 //! The damage in words and as ranges of a profile.
 
 use meshtone::Stages;
-use meshtone::damage::{Crack, Damage, DamageDescription, DamagedTooth, Fault};
+use meshtone::damage::{Crack, Damage, DamageDescription, DamagedTooth, Fault, FlankPit, PittingGrade};
 use meshtone::wheel::{ToothProfile, WheelName};
 
 use super::side::Side;
@@ -19,6 +19,7 @@ pub(super) fn damaged_range(damage: &DamageDescription, tooth: &DamagedTooth, si
         DamageDescription::ToothDestruction { start_index, end_index, .. } => {
             ((*start_index).max(side.contact_index), *end_index)
         }
+        DamageDescription::Pits { pits, .. } => pitted_range(pits, tooth).unwrap_or((last, last)),
         DamageDescription::Wear { start_index, end_index, .. } => {
             ((*start_index).max(side.contact_index), *end_index)
         }
@@ -29,6 +30,13 @@ pub(super) fn damaged_range(damage: &DamageDescription, tooth: &DamagedTooth, si
         _ => cut_range(side.profile, &tooth.outline_y_mm()).unwrap_or((last, last)),
     };
     (first.min(last), end.min(last))
+}
+
+/// Profile indices of the first and last point that pits reach.
+fn pitted_range(pits: &[FlankPit], tooth: &DamagedTooth) -> Option<(usize, usize)> {
+    let along_mm = &tooth.pits.as_ref()?.along_mm;
+    let is_in = |along: &f64| pits.iter().any(|pit| (along - pit.along_mm).abs() < pit.radius_mm);
+    Some((along_mm.iter().position(is_in)?, along_mm.iter().rposition(is_in)?))
 }
 
 /// Where the flank lies further back than the sound one.
@@ -137,6 +145,10 @@ fn sizes(
                 format!("line at {}° to the centre line", tenths(slope_rad.to_degrees().abs())),
             ]
         }
+        (_, DamageDescription::Pits { pits, area_percent }) => {
+            let grade = PittingGrade::of(*area_percent).name();
+            vec![format!("{}, {} ({grade})", number_of_pits(pits), area_of_pits(*area_percent))]
+        }
         (Damage::Wear(wear), _) => vec![depth_of_wear(wear.depth_um)],
         (_, DamageDescription::RootCrack { crack }) => {
             let angle = format!("at {}° to the centre line", tenths(crack.angle_rad.to_degrees()));
@@ -162,6 +174,9 @@ pub(super) fn caption(damage: &DamageDescription) -> Vec<String> {
             ]
         }
         DamageDescription::ToothDestruction { .. } => vec!["flank ground down".to_owned()],
+        DamageDescription::Pits { pits, area_percent } => {
+            vec![format!("{},", number_of_pits(pits)), area_of_pits(*area_percent)]
+        }
         DamageDescription::Wear { depth_mm, .. } => {
             vec!["flank worn".to_owned(), depth_of_wear(depth_mm.iter().copied().fold(0.0, f64::max) * 1e3)]
         }
@@ -170,6 +185,17 @@ pub(super) fn caption(damage: &DamageDescription) -> Vec<String> {
         }
         _ => Vec::new(),
     }
+}
+
+fn number_of_pits(pits: &[FlankPit]) -> String {
+    match pits.len() {
+        1 => "1 pit".to_owned(),
+        count => format!("{count} pits"),
+    }
+}
+
+fn area_of_pits(area_percent: f64) -> String {
+    format!("{} % of the flank", tenths(area_percent))
 }
 
 fn depth_of_wear(largest_um: f64) -> String {
@@ -211,7 +237,7 @@ pub(super) fn damaged_teeth(stages: &Stages, wheel: WheelName) -> Vec<crate::Dam
 /// Whether a part of the face width is sound where a damage has taken the flank.
 pub(super) fn is_partial(damage: &DamageDescription, face_width_mm: f64) -> bool {
     match damage {
-        DamageDescription::ToothBreakage { .. } => true,
+        DamageDescription::ToothBreakage { .. } | DamageDescription::Pits { .. } => true,
         DamageDescription::FaceFault { width_mm, .. } => *width_mm < face_width_mm,
         _ => false,
     }

@@ -3,13 +3,13 @@
 //! z is that of the equations of motion: a fault that reaches from one end of the face reaches from positive z
 //! ([`meshtone::mesh::LoadState`]).
 
-use meshtone::damage::{DamageDescription, DamagedTooth};
+use meshtone::damage::{DamageDescription, DamagedTooth, FlankPit};
 
 use super::damage;
 use super::side::Side;
 use super::tooth::{CRACK, DAMAGE_EDGE, LOST};
 use crate::axes::{Area, Axes};
-use crate::canvas::Canvas;
+use crate::canvas::{Canvas, Pixel};
 use crate::font;
 use crate::style::{Anchor, Fill, Stroke, TextStyle, colour};
 use crate::ticks::Ticks;
@@ -28,6 +28,8 @@ const NAME_HEIGHT: f64 = 19.0;
 const CAPTION_LINE: f64 = 16.0;
 /// Lines of the caption for which there is room.
 const MOST_LINES: usize = 4;
+/// Pieces of a pit's outline.
+const OUTLINE: usize = 48;
 const EDGE: Stroke = Stroke::solid(colour::VERMILLION, 1.8);
 
 /// Draws the face; `along` is the tooth's own range.
@@ -129,6 +131,15 @@ fn damaged(
         DamageDescription::FaceFault { width_mm, .. } => {
             rectangle(canvas, axes, [half - width_mm, half], [x(first), x(end)]);
         }
+        DamageDescription::Pits { pits, .. } => {
+            let Some(flank) = &tooth.pits else { return };
+            for pit in pits {
+                let outline = ellipse(pit, side, &flank.along_mm, half);
+                let outline: Vec<Pixel> = outline.into_iter().map(|(z, x)| axes.at(z, x)).collect();
+                canvas.polygon(&outline, LOST);
+                canvas.polyline(&outline, EDGE);
+            }
+        }
         DamageDescription::RootCrack { crack } => {
             let end = half - crack.length_mm.unwrap_or(2.0 * half);
             let (from, to) = (axes.at(end, crack.start_x_mm), axes.at(half, crack.start_x_mm));
@@ -138,6 +149,21 @@ fn damaged(
             rectangle(canvas, axes, [-half, half], [x(first), x(end)]);
         }
     }
+}
+
+/// (mm) z and x of a pit's outline, within the face and the flank.
+fn ellipse(pit: &FlankPit, side: &Side, along_mm: &[f64], half_mm: f64) -> Vec<(f64, f64)> {
+    let x_at = |along: f64| {
+        let index = along_mm.partition_point(|&other| other < along);
+        side.profile.x_mm[index.min(side.last())]
+    };
+    (0..=OUTLINE)
+        .map(|k| std::f64::consts::TAU * k as f64 / OUTLINE as f64)
+        .map(|angle| {
+            let z = pit.z_mm + pit.face_radius_mm * angle.cos();
+            (z.clamp(-half_mm, half_mm), x_at(pit.along_mm + pit.radius_mm * angle.sin()))
+        })
+        .collect()
 }
 
 fn rectangle(canvas: &mut Canvas, axes: &Axes, z: [f64; 2], x: [f64; 2]) {

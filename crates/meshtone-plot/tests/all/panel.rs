@@ -60,7 +60,7 @@ const EVERY_PANEL: [&str; 22] = [
 
 #[test]
 fn panels_of_the_gallery_show_what_they_should() {
-    let expected: [(&str, &[&str]); 8] = [
+    let expected: [(&str, &[&str]); 9] = [
         (
             "healthy",
             &["Healthy gear pair", "DIN 3961 grade 7", "17 and 38 teeth", "Average of 17 gear revolutions"],
@@ -89,6 +89,10 @@ fn panels_of_the_gallery_show_what_they_should() {
                 "crack 3 mm deep,",
                 "over the whole face",
             ],
+        ),
+        (
+            "pits",
+            &["Pits: 3 pits, ", "% of the flank (moderate)", "hatched: lost over part of the face width"],
         ),
         ("wear", &["Wear: up to 30 µm deep", "flank worn", "38 damaged gear teeth in contact"]),
     ];

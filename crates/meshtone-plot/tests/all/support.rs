@@ -24,6 +24,13 @@ fn small_pair(damage: Option<Damage>) -> Scenario {
 pub fn gallery() -> Vec<(&'static str, Scenario)> {
     let pit = PitCircle::Fractions { start: 0.2, end: 0.8, depth: 0.5 };
     let breakage = ToothBreakage { chip_height_mm: 5.0, chip_width_mm: 12.0, tip_loss_mm: 3.0 };
+    let pits = Pits::Listed {
+        at: vec![0.35, 0.42, 0.5],
+        z_mm: vec![-3.0, 1.0, 5.0],
+        radius_mm: vec![0.6, 0.9, 0.5],
+        face_radius_mm: None,
+        depth_mm: vec![0.1, 0.15, 0.1],
+    };
     let crack = RootCrack { depth_mm: 3.0, angle_deg: 45.0, length_mm: None };
     let mut destruction = Scenario::new(GearPair {
         module_mm: 3.0,
@@ -48,6 +55,7 @@ pub fn gallery() -> Vec<(&'static str, Scenario)> {
         ("through_face", small_pair(Some(ThroughFace { pit }.into()))),
         ("tooth_destruction", destruction),
         ("root_crack", small_pair(Some(crack.into()))),
+        ("pits", small_pair(Some(pits.into()))),
         ("wear", small_pair(Some(Wear { depth_um: 30.0 }.into()))),
     ]
 }

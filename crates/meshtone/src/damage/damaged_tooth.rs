@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use super::{Crack, DamageDescription, Fault};
+use super::{Crack, DamageDescription, Fault, FlankPits};
 use crate::error::ScenarioError;
 use crate::random::{Draws, Purpose};
 use crate::wheel::{Flank, PathOfContact, Teeth, ToothProfile, Wheel, WheelName};
@@ -33,6 +33,8 @@ pub struct DamagedTooth {
     pub rolling: Vec<RollingPit>,
     /// A crack in its root.
     pub crack: Option<Crack>,
+    /// Pits that take a part of the face.
+    pub pits: Option<FlankPits>,
     /// What the damages are.
     pub descriptions: Vec<DamageDescription>,
 }
@@ -109,9 +111,31 @@ impl<'a> HealthyTooth<'a> {
     /// # Arguments
     /// * `earlier` - number of rough damages that the tooth has already
     pub(super) fn roughness(&self, earlier: usize) -> Draws {
+        self.draws(Purpose::DestructionNoise, earlier)
+    }
+
+    /// Draws for pits of this tooth.
+    ///
+    /// # Arguments
+    /// * `earlier` - number of pitting damages that the tooth has already
+    pub(super) fn pit_draws(&self, earlier: usize) -> Draws {
+        self.draws(Purpose::Pits, earlier)
+    }
+
+    fn draws(&self, purpose: Purpose, earlier: usize) -> Draws {
         // The pinion's teeth count from 2³² on.
         let first = if self.name == WheelName::Pinion { 1 << 32 } else { 0 };
-        Draws::new(self.seed, Purpose::DestructionNoise, first + self.tooth as u64 + ((earlier as u64) << 33))
+        Draws::new(self.seed, purpose, first + self.tooth as u64 + ((earlier as u64) << 33))
+    }
+
+    /// (-) Fraction of the flank's contact part, from its root side, at a distance from the wheel's centre.
+    ///
+    /// # Arguments
+    /// * `radius_mm` - (mm) the distance
+    pub(super) fn fraction_at_radius(&self, radius_mm: f64) -> f64 {
+        let (first, last) = (self.first_contact(), self.profile().len() - 1);
+        let index = self.profile().nearest_to_radius(radius_mm).max(first);
+        (index - first) as f64 / (last - first).max(1) as f64
     }
 }
 
@@ -130,6 +154,7 @@ impl DamagedTooth {
             deviation_mm: vec![0.0; points],
             rolling: Vec::new(),
             crack: None,
+            pits: None,
             descriptions: Vec::new(),
         }
     }
@@ -152,7 +177,14 @@ impl DamagedTooth {
 
     /// (mm) The working flank where it is cut furthest back.
     pub fn outline_y_mm(&self) -> Vec<f64> {
-        self.flank_y_mm.iter().zip(&self.corner_y_mm).map(|(flank, corner)| flank.min(*corner)).collect()
+        let lost_mm = |index: usize| self.pits.as_ref().map_or(0.0, |pits| pits.lost_mm(index));
+        let cut = self.flank_y_mm.iter().zip(&self.corner_y_mm).map(|(flank, corner)| flank.min(*corner));
+        match &self.pits {
+            None => cut.collect(),
+            Some(pits) => {
+                cut.zip(&pits.y_mm).enumerate().map(|(i, (cut, y))| cut.min(y - lost_mm(i))).collect()
+            }
+        }
     }
 
     /// Whether nothing of the tooth is left.
@@ -175,6 +207,7 @@ impl DamagedTooth {
             DamageDescription::MissingTooth
             | DamageDescription::ToothBreakage { .. }
             | DamageDescription::RootCrack { .. }
+            | DamageDescription::Pits { .. }
             | DamageDescription::Wear { .. } => None,
         }
     }

@@ -1,6 +1,6 @@
 //! What a damage is, in numbers for pictures and traces.
 
-use super::Crack;
+use super::{Crack, FlankPit};
 
 /// Numbers that describe a damage, one set per kind. Positions are counted in pinion revolutions since the damaged tooth
 /// entered contact.
@@ -35,6 +35,13 @@ pub enum DamageDescription {
         end_index: usize,
         /// (rad) Angle of the line to the tooth's centre line.
         slope_rad: f64,
+    },
+    /// Pits that take a part of the face.
+    Pits {
+        /// The pits.
+        pits: Vec<FlankPit>,
+        /// (%) Part of the flank's contact part that they take together.
+        area_percent: f64,
     },
     /// A worn flank.
     Wear {

@@ -7,10 +7,12 @@ mod damaged_tooth;
 mod description;
 mod fault;
 mod faulty_teeth;
+mod flank_pits;
 mod kind;
 mod missing_tooth;
 mod partial_face;
 mod pit_circle;
+mod pits;
 #[doc(hidden)]
 pub mod published;
 mod root_crack;
@@ -27,10 +29,13 @@ pub use description::{DamageDescription, Pit};
 pub use fault::Fault;
 pub(crate) use fault::check_faults;
 pub use faulty_teeth::FaultyTeeth;
+pub use flank_pits::FlankPits;
+pub(crate) use flank_pits::united;
 pub(crate) use kind::{Kind, MeshEffect, PaperRig};
 pub use missing_tooth::MissingTooth;
 pub use partial_face::PartialFace;
 pub use pit_circle::PitCircle;
+pub use pits::{FlankPit, Pits, PittedTooth, PittingGrade, pitted_teeth};
 pub use root_crack::{Crack, RootCrack};
 pub use section::Section;
 pub use through_face::ThroughFace;
@@ -235,6 +240,8 @@ kinds! {
     PartialFace,
     /// A pit in the flank, over the whole face width.
     ThroughFace,
+    /// Pits in the working flank, any number of them.
+    Pits,
     /// The working flank is ground down along a straight line.
     ToothDestruction,
     /// The working flanks are worn by sliding.

@@ -67,21 +67,45 @@ impl Section {
     /// * `index` - profile index
     pub fn damaged(tooth: &DamagedTooth, profile: &ToothProfile, face_width_mm: f64, index: usize) -> Self {
         let (x, y) = (profile.x_mm[index], profile.y_mm[index]);
+        let hollows = tooth.pits.as_ref().map_or_else(Vec::new, |pits| pits.columns(index));
+        let left = |strips: &[Strip]| match &hollows[..] {
+            [] => Self::of(strips),
+            hollows => Self::of_blocks(&hollowed(strips, hollows, y)),
+        };
         let missing = tooth.missing_width_mm[index];
         let top = tooth.flank_y_mm[index].min(tooth.crack.map_or(y, |crack| crack.left_y_mm(x, y)));
         let corner = Ledge { above_y_mm: tooth.corner_y_mm[index], missing_mm: tooth.corner_width_mm[index] };
         let ledges = tooth.crack.map_or_else(Vec::new, |crack| crack.ledges(x, y));
         if !ledges.is_empty() {
-            return Self::of(&stacked(face_width_mm, [-y, top], missing, ledges, corner));
+            return left(&stacked(face_width_mm, [-y, top], missing, ledges, corner));
         }
         let step = corner.above_y_mm.min(top);
         if corner.missing_mm <= missing || step >= top {
-            return Self::of(&[Strip::new(face_width_mm, missing, -y, top)]);
+            return left(&[Strip::new(face_width_mm, missing, -y, top)]);
         }
-        Self::of(&[
+        left(&[
             Strip::new(face_width_mm, missing, -y, step),
             Strip::new(face_width_mm, corner.missing_mm, step, top),
         ])
+    }
+
+    /// A section of blocks that lie beside and on one another.
+    fn of_blocks(blocks: &[Strip]) -> Self {
+        let stack = Self::of(blocks);
+        // What is above a height is as wide as all blocks there are together.
+        let mut heights: Vec<f64> =
+            blocks.iter().flat_map(|block| [block.from_y_mm, block.to_y_mm]).collect();
+        heights.sort_by(f64::total_cmp);
+        heights.dedup();
+        let layer = |heights: &[f64]| {
+            let middle = (heights[0] + heights[1]) / 2.0;
+            let there = blocks.iter().filter(|block| (block.from_y_mm..block.to_y_mm).contains(&middle));
+            let width_mm: f64 = there.map(|block| block.width_mm).sum();
+            (width_mm, [heights[0] - stack.yc_mm, heights[1] - stack.yc_mm])
+        };
+        let layers: Vec<_> = heights.windows(2).map(layer).collect();
+        let shear_per_mm2 = shear_flexibility(layers.into_iter()) / (2.0 * stack.iz_mm4 * stack.iz_mm4);
+        Self { shear_per_mm2, ..stack }
     }
 
     fn of(strips: &[Strip]) -> Self {
@@ -110,6 +134,34 @@ impl Section {
         };
         Self { area_mm2: area, shear_per_mm2, yc_mm: yc, zc_mm: zc, iy_mm4: iy, iz_mm4: iz, iyz_mm4: iyz }
     }
+}
+
+/// What pits leave of the rectangles of a section.
+///
+/// # Arguments
+/// * `strips` - the rectangles
+/// * `hollows` - columns of the face from its middle, and the height that each loses below the sound flank
+/// * `flank_y_mm` - (mm) the sound flank
+fn hollowed(strips: &[Strip], hollows: &[([f64; 2], f64)], flank_y_mm: f64) -> Vec<Strip> {
+    let mut blocks = Vec::new();
+    for strip in strips {
+        let [mut from, end] = [-0.5, 0.5].map(|side| strip.centre_z_mm + side * strip.width_mm);
+        let mut add = |z: [f64; 2], to_y_mm: f64| {
+            if z[1] > z[0] && to_y_mm > strip.from_y_mm {
+                let (width_mm, centre_z_mm) = (z[1] - z[0], (z[0] + z[1]) / 2.0);
+                blocks.push(Strip { width_mm, to_y_mm, centre_z_mm, ..*strip });
+            }
+        };
+        // A section's z runs from where the face's begins.
+        for (column, lost_mm) in hollows.iter().rev() {
+            let column = [-column[1], -column[0]].map(|z| z.clamp(from, end));
+            add([from, column[0]], strip.to_y_mm);
+            add(column, strip.to_y_mm.min(flank_y_mm - lost_mm));
+            from = column[1];
+        }
+        add([from, end], strip.to_y_mm);
+    }
+    blocks
 }
 
 /// The rectangles of a section from which two damages have taken the upper part of one end.

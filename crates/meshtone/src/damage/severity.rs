@@ -37,6 +37,12 @@ impl<'a> SoundTooth<'a> {
         self.profile.tip_x_mm() - self.profile.x_mm[self.first_contact]
     }
 
+    /// (mm) Length of the flank's part in contact, along the flank.
+    pub(super) fn contact_length_mm(&self) -> f64 {
+        let (x, y) = (&self.profile.x_mm, &self.profile.y_mm);
+        (self.first_contact + 1..x.len()).map(|i| (x[i] - x[i - 1]).hypot(y[i] - y[i - 1])).sum()
+    }
+
     /// (mm) Half the thickness of the tooth where it is thinnest in contact.
     pub(super) fn least_half_thickness_mm(&self) -> f64 {
         self.profile.y_mm[self.first_contact..].iter().copied().fold(f64::INFINITY, f64::min)

@@ -36,6 +36,21 @@ impl LoadState {
         }
     }
 
+    /// Load spread evenly over some pieces of the face.
+    ///
+    /// # Arguments
+    /// * `pieces_m` - (m) where each begins and ends; at least one that has a width
+    /// * `pressure_angle_rad` - (rad) pressure angle
+    pub(crate) fn over(pieces_m: &[[f64; 2]], pressure_angle_rad: f64) -> Self {
+        let width: f64 = pieces_m.iter().map(|[from, to]| to - from).sum();
+        let mean_power = |power: i32| {
+            let of_piece =
+                |[from, to]: &[f64; 2]| (to.powi(power + 1) - from.powi(power + 1)) / f64::from(power + 1);
+            pieces_m.iter().map(of_piece).sum::<f64>() / width
+        };
+        Self { mean_z_m: mean_power(1), mean_z2_m2: mean_power(2), pressure_angle_rad }
+    }
+
     /// Mean of the line of action over the contact width, in the five constant directions.
     pub(crate) fn mean_direction(&self, nominal_rad: f64) -> DirectionVector {
         let (sin, cos) = (self.pressure_angle_rad - nominal_rad).sin_cos();

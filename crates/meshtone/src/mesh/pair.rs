@@ -2,7 +2,7 @@
 
 use super::load_state::LoadState;
 use super::sequence::PairKind;
-use crate::damage::{DamagedTooth, RollingPit};
+use crate::damage::{DamagedTooth, RollingPit, united};
 use crate::stiffness::{FlankLoad, LoadedFlank, hertz_compliance_mm_per_n};
 use crate::wheel::{Flank, FlankPoint, FoundationCoefficients, Material, Teeth, WheelName};
 
@@ -109,12 +109,7 @@ impl<'a> Pairs<'a> {
     /// * `points` - where the load acts on each
     /// * `turn_rad` - (rad) how far the line of action has turned
     fn carried(&self, pair: &[Touched; 2], points: [FlankPoint; 2], turn_rad: f64) -> Option<PairState> {
-        let face_width = self.teeth.gear.face_width_mm;
-        let unloaded = pair.iter().map(Touched::unloaded_width_mm).fold(0.0, f64::max);
-        let width = face_width - unloaded;
-        if width <= 0.0 {
-            return None;
-        }
+        let Bearing { width_mm: width, z_mm, load } = self.bearing(pair, turn_rad)?;
         // The load acts at a point; the wheels have turned on, so that its angle is the one of where they would touch, and the
         // turn of the line of action: on the mate of a pit, the mate's own normal at the edge.
         let (sin, cos) = turn_rad.sin_cos();
@@ -124,21 +119,50 @@ impl<'a> Pairs<'a> {
                 point,
                 sin: nominal.load_sin * cos + nominal.load_cos * sin,
                 cos: nominal.load_cos * cos - nominal.load_sin * sin,
-                z_mm: unloaded / 2.0,
+                z_mm,
                 width_mm: width,
             })
         });
         let compliance = compliance.sum::<f64>() + hertz_compliance_mm_per_n(self.material, width);
-        let half_width_m = face_width * 1e-3 / 2.0;
         Some(PairState {
             // What has no width left has no compliance that is a number.
             stiffness_n_per_mm: if compliance > 0.0 { 1.0 / compliance } else { 0.0 },
             deviation_mm: 0.0,
-            load: LoadState::spread(
-                -half_width_m,
-                half_width_m - unloaded * 1e-3,
-                self.nominal.pressure_angle_rad + turn_rad,
-            ),
+            load,
+        })
+    }
+
+    /// What bears of a pair's face; none where nothing does.
+    ///
+    /// # Arguments
+    /// * `pair` - both teeth where they would touch
+    /// * `turn_rad` - (rad) how far the line of action has turned
+    fn bearing(&self, pair: &[Touched; 2], turn_rad: f64) -> Option<Bearing> {
+        let face_width = self.teeth.gear.face_width_mm;
+        let angle = self.nominal.pressure_angle_rad + turn_rad;
+        let unloaded = pair.iter().map(Touched::unloaded_width_mm).fold(0.0, f64::max);
+        let mut gone: Vec<[f64; 2]> = pair.iter().flat_map(Touched::pitted_mm).collect();
+        if gone.is_empty() {
+            let width_mm = face_width - unloaded;
+            let half_width_m = face_width * 1e-3 / 2.0;
+            let load = LoadState::spread(-half_width_m, half_width_m - unloaded * 1e-3, angle);
+            return (width_mm > 0.0).then_some(Bearing { width_mm, z_mm: unloaded / 2.0, load });
+        }
+        let half = face_width / 2.0;
+        gone.push([half - unloaded, half]);
+        let mut from = -half;
+        let mut left: Vec<[f64; 2]> = Vec::with_capacity(gone.len() + 1);
+        for [start, end] in united(gone, half) {
+            left.push([from, start]);
+            from = end;
+        }
+        left.push([from, half]);
+        let width_mm: f64 = left.iter().map(|[from, to]| to - from).sum();
+        let pieces_m: Vec<[f64; 2]> = left.iter().map(|piece| piece.map(|z| z * 1e-3)).collect();
+        (width_mm > 0.0).then(|| {
+            let load = LoadState::over(&pieces_m, angle);
+            // The sections' z runs the other way.
+            Bearing { width_mm, z_mm: -load.mean_z_m * 1e3, load }
         })
     }
 
@@ -185,6 +209,15 @@ impl<'a> Pairs<'a> {
     }
 }
 
+/// What bears of a pair's face.
+struct Bearing {
+    /// (mm) How much of its width.
+    width_mm: f64,
+    /// (mm) The middle of it, in the sections' z.
+    z_mm: f64,
+    load: LoadState,
+}
+
 /// A pair whose mate turns about the edges of a pit.
 struct Rolling<'a> {
     pit: &'a RollingPit,
@@ -213,6 +246,12 @@ impl<'a> Touched<'a> {
             // A chip's edge is slanted, a pit's upright.
             self.point.of(&damage.missing_width_mm).max(damage.corner_width_mm[self.point.nearest()])
         })
+    }
+
+    /// (mm) Parts of the face that pits take, from the face's middle.
+    fn pitted_mm(&self) -> Vec<[f64; 2]> {
+        let pits = self.damage.and_then(|damage| damage.pits.as_ref());
+        pits.map_or_else(Vec::new, |pits| pits.gone_at(&self.point))
     }
 
     fn deviation_mm(&self) -> f64 {

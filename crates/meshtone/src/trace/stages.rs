@@ -3,8 +3,8 @@
 use std::num::NonZeroUsize;
 
 use super::Trace;
-use crate::damage::DamageDescription;
 use crate::damage::published::{Displacement, FaultGeometry};
+use crate::damage::{DamageDescription, FlankPit};
 use crate::machine::Structure;
 use crate::mesh::{ContactMesh, Mesh, PairKind, PairMesh};
 use crate::operation::CycleGrid;
@@ -220,6 +220,15 @@ fn damages(trace: &mut Trace, stages: &Stages) {
             DamageDescription::ToothDestruction { start_index, end_index, slope_rad } => {
                 trace.vector(&name("indices"), [*start_index, *end_index].map(index));
                 trace.scalar(&name("slope_rad"), *slope_rad);
+            }
+            DamageDescription::Pits { pits, area_percent } => {
+                let every = |of: fn(&FlankPit) -> f64| pits.iter().map(of).collect::<Vec<_>>();
+                trace.vector(&name("at"), every(|pit| pit.at));
+                trace.vector(&name("z_mm"), every(|pit| pit.z_mm));
+                trace.vector(&name("radius_mm"), every(|pit| pit.radius_mm));
+                trace.vector(&name("face_radius_mm"), every(|pit| pit.face_radius_mm));
+                trace.vector(&name("depth_mm"), every(|pit| pit.depth_mm));
+                trace.scalar(&name("area_percent"), *area_percent);
             }
             DamageDescription::Wear { start_index, end_index, depth_mm } => {
                 trace.vector(&name("indices"), [*start_index, *end_index].map(index));

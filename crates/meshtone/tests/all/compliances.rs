@@ -82,6 +82,7 @@ fn untouched(wheel: WheelName, profile: &ToothProfile) -> DamagedTooth {
         deviation_mm: vec![0.0; points],
         rolling: Vec::new(),
         crack: None,
+        pits: None,
         descriptions: Vec::new(),
     }
 }

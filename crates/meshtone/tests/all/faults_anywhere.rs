@@ -41,7 +41,7 @@ fn ground() -> ToothDestruction {
 }
 
 /// Every kind of damage.
-fn damages() -> [Damage; 7] {
+fn damages() -> [Damage; 8] {
     [
         MissingTooth.into(),
         chip().into(),
@@ -50,6 +50,14 @@ fn damages() -> [Damage; 7] {
         ground().into(),
         RootCrack { depth_mm: 3.0, angle_deg: 45.0, length_mm: None }.into(),
         Wear { depth_um: 60.0 }.into(),
+        Pits::Listed {
+            at: vec![0.3, 0.5],
+            z_mm: vec![-4.0, 3.0],
+            radius_mm: vec![1.0, 1.5],
+            face_radius_mm: None,
+            depth_mm: vec![0.2, 0.3],
+        }
+        .into(),
     ]
 }
 

@@ -2,9 +2,9 @@
 
 use meshtone::scenario::{
     Damage, DampingRatio, DestructionLine, Fault, FaultyTeeth, FlankRelief, FoundationCoefficients, GearPair,
-    Gears, Material, MissingTooth, Model, Operation, PartialFace, PitCircle, Profile, ProfileErrors, Quality,
-    ReliefShape, Rig, RootCrack, Scenario, Shaft, Solver, Support, ThroughFace, TipRelief, ToothBreakage,
-    ToothDestruction, Wear, WheelInertia, WheelName,
+    Gears, Material, MissingTooth, Model, Operation, PartialFace, PitCircle, Pits, Profile, ProfileErrors,
+    Quality, ReliefShape, Rig, RootCrack, Scenario, Shaft, Solver, Support, ThroughFace, TipRelief,
+    ToothBreakage, ToothDestruction, Wear, WheelInertia, WheelName,
 };
 use meshtone::wheel::{ErrorTable, WheelDeviations};
 use proptest::array::{uniform4, uniform6, uniform13};
@@ -176,7 +176,30 @@ fn damage(module_mm: f64, face_width_mm: f64) -> impl Strategy<Value = Damage> {
         pit().prop_map(|pit| Damage::from(ThroughFace { pit })),
         destruction.prop_map(Damage::from),
         (0.0..100.0).prop_map(|depth_um| Damage::from(Wear { depth_um })),
+        pits(),
     ]
+}
+
+/// Listed or drawn.
+fn pits() -> impl Strategy<Value = Damage> {
+    let drawn = (0.0..1.0, 0.0..1.0, 0.1..1.0, 0.0..2.0, 0.0..0.5).prop_map(
+        |(density_per_cm2, spread, radius_mm, radius_spread, depth_mm)| Pits::Drawn {
+            density_per_cm2,
+            spread,
+            radius_mm,
+            radius_spread,
+            depth_mm,
+        },
+    );
+    let list = prop::collection::vec((0.0..1.0, -1.0..1.0, 0.1..1.0, 0.1..1.0, 0.0..0.5), 1..4);
+    let listed = (list, any::<bool>()).prop_map(|(pits, circles)| Pits::Listed {
+        at: pits.iter().map(|pit| pit.0).collect(),
+        z_mm: pits.iter().map(|pit| pit.1).collect(),
+        radius_mm: pits.iter().map(|pit| pit.2).collect(),
+        face_radius_mm: (!circles).then(|| pits.iter().map(|pit| pit.3).collect()),
+        depth_mm: pits.iter().map(|pit| pit.4).collect(),
+    });
+    prop_oneof![drawn.prop_map(Damage::from), listed.prop_map(Damage::from)]
 }
 
 /// Any number, each on teeth of its own.

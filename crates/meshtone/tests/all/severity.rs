@@ -121,7 +121,9 @@ fn severity_0_is_the_healthy_signal() {
             for severity in [0.0, 1e-15] {
                 let fault = Fault::on_first_gear_tooth(damage.clone()).with_severity(severity);
                 let given = healthy.clone().with_faults(vec![fault]);
-                if model == Model::Published && matches!(damage, Damage::RootCrack(_) | Damage::Wear(_)) {
+                if model == Model::Published
+                    && matches!(damage, Damage::Pits(_) | Damage::RootCrack(_) | Damage::Wear(_))
+                {
                     let error = given.validate().unwrap_err();
                     assert_eq!(error.key, "fault.kind", "{error}");
                     continue;

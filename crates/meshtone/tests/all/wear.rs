@@ -2,11 +2,11 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
 use crate::physics::*;
-use meshtone::damage::{damaged_teeth, load_share, slide_factor};
+use meshtone::damage::{DamageDescription, damaged_teeth, load_share, slide_factor};
 use meshtone::mesh::{PairKind, Pairs};
 use meshtone::scenario::*;
 use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts, kurtosis, rms as rms_of};
-use meshtone::wheel::Teeth;
+use meshtone::wheel::{Mounting, Teeth};
 use meshtone::{simulate, stages};
 
 /// Wheels of 17 and 38 teeth, with bores of 10 mm radius.
@@ -30,7 +30,7 @@ fn all_worn(pinion_um: f64, gear_um: f64) -> Vec<Fault> {
 
 fn pitch_point(teeth: &Teeth) -> f64 {
     let gear = teeth.wheel(WheelName::Gear);
-    teeth.path.position(WheelName::Gear, gear.curvature_mm(gear.pitch_radius_mm))
+    teeth.path.position(WheelName::Gear, gear.curvature_mm(gear.working_pitch_radius_mm))
 }
 
 // The numbers of another program.
@@ -44,6 +44,25 @@ fn slide_factors_are_those_that_are_known() {
         assert!((value - known).abs() < 5e-4, "{value} and {known}");
     }
     assert!(largest(at(pitch_point(&teeth))) < 1e-12);
+}
+
+// Flanks roll on the working pitch circles, which profile shift and centre distance move.
+#[test]
+fn shifted_wheels_roll_on_their_working_pitch_circles() {
+    for (shifts, apart_mm) in [([0.3, 0.2], 0.0), ([0.4, -0.4], 0.0), ([0.3, 0.2], 0.5)] {
+        let mut gears = plain_gears(3.0, 17, 38, 15.0);
+        [gears.pinion_profile_shift, gears.gear_profile_shift] = shifts;
+        gears.centre_distance_mm = Some(Mounting::new(&gears).centre_distance_mm + apart_mm);
+        let teeth = linear_teeth(&gears, 20.0);
+        let pitch_point = pitch_point(&teeth);
+        assert!(largest(WheelName::BOTH.map(|wheel| slide_factor(&teeth, wheel, pitch_point))) < 1e-12);
+        for tooth in damaged_teeth(&all_worn(80.0, 80.0), &teeth, 1).unwrap() {
+            let DamageDescription::Wear { depth_mm, .. } = &tooth.descriptions[0] else { panic!("no wear") };
+            let wheel = teeth.wheel(tooth.wheel);
+            let rolls = teeth.profile(tooth.wheel).nearest_to_radius(wheel.working_pitch_radius_mm);
+            assert!(depth_mm[rolls] < 1e-4 && (largest(depth_mm.iter().copied()) - 0.08).abs() < 1e-12);
+        }
+    }
 }
 
 // The share by a formula is near that by the stiffness of the pairs.

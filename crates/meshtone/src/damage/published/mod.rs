@@ -56,9 +56,10 @@ impl FaultGeometry {
                 tooth.missing_width_mm.clone_from(missing_width_mm);
             }
             DamageDescription::ToothDestruction { .. } => tooth.flank_y_mm.clone_from(&self.flank_y_mm),
-            // Neither a crack nor wear is known to the published model.
+            // Neither a crack nor wear nor pits are known to the published model.
             DamageDescription::MissingTooth
             | DamageDescription::RootCrack { .. }
+            | DamageDescription::Pits { .. }
             | DamageDescription::Wear { .. } => {}
         }
         if !self.no_contact.is_empty() {

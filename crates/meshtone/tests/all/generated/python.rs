@@ -8,12 +8,13 @@ pub const HEAD: &str =
 const WIDTH: usize = 120;
 
 /// Classes of tables that are not called as their key.
-const TABLE_NAMES: [(&str, &str); 5] = [
+const TABLE_NAMES: [(&str, &str); 6] = [
     ("pinion_shaft", "Shaft"),
     ("gear_shaft", "Shaft"),
     ("pinion_inertia", "WheelInertia"),
     ("gear_inertia", "WheelInertia"),
     ("circle", "PitCircle"),
+    ("random", "RandomPits"),
 ];
 
 /// The class of a table.
