@@ -157,11 +157,11 @@ impl Destination {
         self.place.files().map_err(DatasetError::read(self.to_string()))
     }
 
-    /// The content of a small file; none where there is none.
+    /// The content of a small file; none where there is none. What is no text any more is replaced, and fails its seal.
     pub(crate) fn text(&self, name: &str) -> Result<Option<String>, DatasetError> {
-        let mut text = String::new();
-        match self.place.open(name).and_then(|mut file| file.read_to_string(&mut text)) {
-            Ok(_) => Ok(Some(text)),
+        let mut content = Vec::new();
+        match self.place.open(name).and_then(|mut file| file.read_to_end(&mut content)) {
+            Ok(_) => Ok(Some(String::from_utf8_lossy(&content).into_owned())),
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
             Err(error) => Err(DatasetError::read(self.place.name_of(name))(error)),
         }
