@@ -106,7 +106,7 @@ impl ScenarioError {
 
     /// Damage that leaves no tooth that could carry a load.
     pub(crate) fn nothing_left() -> Self {
-        let problem = "leave no pair of teeth that could touch; one at least must";
+        let problem = "the faults leave no pair of teeth that could touch; at least one must be left";
         Self::new("fault", "", problem).with_help("remove some of the faults")
     }
 

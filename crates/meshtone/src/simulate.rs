@@ -9,7 +9,7 @@ use std::time::Duration;
 use nalgebra::DMatrix;
 use web_time::Instant;
 
-use crate::damage::{DamagedTooth, damaged_teeth};
+use crate::damage::{Damage, DamagedTooth, Fault, damaged_teeth};
 use crate::error::{Error, ScenarioError};
 use crate::machine::coordinates::CoordinateVector;
 use crate::machine::{ClosedMesh, DecayingMode, Excitation, Structure, System};
@@ -26,7 +26,7 @@ use crate::sensor::{Channels, ContactFigures};
 use crate::simd::InstructionSet;
 use crate::solver::{Diverged, Output, Problem, Recorder, ReducedModel, integrate};
 use crate::wheel::quality::{deviations, profile_errors};
-use crate::wheel::{Deviations, ProfileErrors, RunOut, Teeth, WheelDeviations, teeth};
+use crate::wheel::{Deviations, ProfileErrors, RunOut, Teeth, WheelDeviations, WheelName, teeth};
 
 /// Results of every stage before the time loop.
 #[derive(Clone, PartialEq)]
@@ -562,6 +562,9 @@ impl Stages {
     /// The error that a solution without bound is.
     pub(crate) fn divergence(&self, diverged: Diverged) -> Error {
         let time_s = diverged.sample as f64 * self.time.step_s();
+        if let Some(error) = WheelName::BOTH.into_iter().find_map(|wheel| self.gap(wheel, time_s)) {
+            return error.into();
+        }
         let (key, damping_ratios) = match &self.structure {
             None => ("rig.damping_ratio", self.scenario.rig.damping_ratio.per_mode().to_vec()),
             // The shafts' as well.
@@ -569,6 +572,36 @@ impl Stages {
         };
         Error::Diverged { time_s, key, damping_ratios }
     }
+
+    /// The same where more neighbours are missing on a wheel than pairs are in contact at once: nothing bears while they pass.
+    fn gap(&self, wheel: WheelName, time_s: f64) -> Option<ScenarioError> {
+        let missing = most_neighbours(&self.damaged, wheel, self.teeth.wheel(wheel).teeth as usize);
+        let ratio = self.teeth.path.contact_ratio;
+        if missing as f64 <= ratio {
+            return None;
+        }
+        let faults = &self.scenario.faults;
+        let takes_teeth = |(_, fault): &(usize, &Fault)| {
+            fault.wheel == wheel && matches!(fault.damage, Damage::MissingTooth(_))
+        };
+        let named: Vec<String> =
+            faults.iter().enumerate().filter(takes_teeth).map(|(n, _)| format!("fault[{n}]")).collect();
+        let (named, wheel) = (named.join(", "), wheel.name());
+        let problem = format!(
+            "{missing} neighbouring teeth of the {wheel} are missing ({named}), more than the {ratio:.2} pairs in contact at once: \
+             nothing bears while they pass, and the motion grows without bound within {time_s:.4} s"
+        );
+        let help = "remove some of these faults, or some numbers from their fault.tooth";
+        Some(ScenarioError::new("fault", "", problem).with_help(help))
+    }
+}
+
+/// The largest number of teeth of a wheel that are missing side by side.
+fn most_neighbours(damaged: &[DamagedTooth], wheel: WheelName, teeth: usize) -> usize {
+    let of_wheel = damaged.iter().filter(|tooth| tooth.wheel == wheel && tooth.is_missing());
+    let missing: Vec<usize> = of_wheel.flat_map(|tooth| tooth.teeth.iter().copied()).collect();
+    let run = |&first: &usize| (0..teeth).take_while(|n| missing.contains(&((first + n) % teeth))).count();
+    missing.iter().map(run).max().unwrap_or(0)
 }
 
 impl ForcingSource for Stages {

@@ -121,7 +121,7 @@ macro_rules! kinds {
             }
 
             /// Whether each tooth has random draws of its own, so that no two are alike.
-            fn is_drawn(&self) -> bool {
+            pub(crate) fn is_drawn(&self) -> bool {
                 match self {
                     $(Self::$kind(damage) => damage.is_drawn(),)+
                 }

@@ -95,11 +95,12 @@ impl Wear {
         let (flank, path) = (healthy.flank(), healthy.path());
         // The point before the first one in contact, too: what lies between is interpolated.
         let first = healthy.first_contact().saturating_sub(1);
+        let begin_mm = involutes_begin_mm(healthy.teeth());
         let shape: Vec<f64> = (0..healthy.profile().len())
             .map(|i| {
                 let position =
                     path.position(healthy.name(), flank.curvature_mm(i)).clamp(0.0, path.contact_ratio);
-                if i < first { 0.0 } else { wear_rate(healthy.teeth(), healthy.name(), position) }
+                if i < first { 0.0 } else { wear_rate(healthy.teeth(), begin_mm, healthy.name(), position) }
             })
             .collect();
         let largest = shape.iter().copied().fold(0.0, f64::max);
@@ -113,16 +114,26 @@ impl Wear {
 ///
 /// Sources: J. F. Archard, "Contact and rubbing of flat surfaces", Journal of Applied Physics 24 (1953) 981–988; A. Flodin,
 /// S. Andersson, "Simulation of mild wear in spur gears", Wear 207 (1997) 16–23.
-fn wear_rate(teeth: &Teeth, wheel: WheelName, position: f64) -> f64 {
-    load_share(position, teeth.path.contact_ratio) * slide_factor(teeth, wheel, position)
+fn wear_rate(teeth: &Teeth, begin_mm: [f64; 2], wheel: WheelName, position: f64) -> f64 {
+    load_share(position, teeth.path.contact_ratio) * slide(teeth, begin_mm, wheel, position)
 }
 
-/// (modules) Least radius of curvature that a slide is computed with: a contact is as wide as that, and one at the base circle,
-/// where the mate would slide over one point without end, is not met by teeth that are cut.
-const LEAST_CURVATURE: f64 = 0.05;
+/// (modules) Least radius of curvature that a slide is computed with, of teeth without undercut: on the base circle itself a slide
+/// is no number.
+const LEAST_CURVATURE: f64 = 1e-3;
+
+/// (mm) Radii of curvature at which the involutes of pinion and gear begin. What the rack has undercut bears nothing, though the
+/// profile still has it there.
+fn involutes_begin_mm(teeth: &Teeth) -> [f64; 2] {
+    WheelName::BOTH.map(|wheel| {
+        let wheel = teeth.wheel(wheel);
+        wheel.undercut_curvature_mm().max(LEAST_CURVATURE * wheel.module_mm)
+    })
+}
 
 /// (-) `|1 − v'/v|`: how far the mate slides over a point of a flank while the contact passes it, over the contact's length. The
-/// speed at which the contact rolls along a flank is `v = ω ρ`.
+/// speed at which the contact rolls along a flank is `v = ω ρ`. Where a flank would be touched below the beginning of its involute,
+/// as of wheels that are undercut, the slide is that of the beginning.
 ///
 /// # Arguments
 /// * `teeth` - the wheels
@@ -139,9 +150,14 @@ const LEAST_CURVATURE: f64 = 0.05;
 /// assert!((slide_factor(&teeth, WheelName::Gear, 0.0) - 0.903).abs() < 5e-4);
 /// ```
 pub fn slide_factor(teeth: &Teeth, wheel: WheelName, position: f64) -> f64 {
-    let least_mm = LEAST_CURVATURE * teeth.gear.module_mm;
+    slide(teeth, involutes_begin_mm(teeth), wheel, position)
+}
+
+/// (-) The same where the involutes are known to begin.
+fn slide(teeth: &Teeth, begin_mm: [f64; 2], wheel: WheelName, position: f64) -> f64 {
     let speed = |wheel: WheelName| {
-        teeth.path.curvature_mm(wheel, position).max(least_mm) / f64::from(teeth.wheel(wheel).teeth)
+        let curvature_mm = teeth.path.curvature_mm(wheel, position).max(begin_mm[wheel as usize]);
+        curvature_mm / f64::from(teeth.wheel(wheel).teeth)
     };
     (1.0 - speed(wheel.mate()) / speed(wheel)).abs()
 }

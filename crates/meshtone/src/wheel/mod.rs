@@ -13,6 +13,7 @@ mod profile;
 pub mod quality;
 mod radii;
 mod rules;
+mod undercut;
 
 pub use contact::{ContactLine, contact_line, contact_ratio, published_contact_line};
 pub use flank::{Flank, FlankPoint};

@@ -7,7 +7,7 @@ use crate::keys::{Check, refuse, require};
 /// (modules) By how much the tip of a rack-shaped tool is rounded: below it no involute is made.
 ///
 /// Source: ISO 53:1998, profile A: clearance 0.25, fillet radius 0.38, `0.38 (1 − sin 20°) = 0.25`.
-const TOOL_ROUNDING: f64 = 0.25;
+pub(super) const TOOL_ROUNDING: f64 = 0.25;
 
 /// (modules) Tips thinner than this are warned of.
 ///

@@ -340,3 +340,26 @@ fn what_makes_a_simulation_too_large() {
     let many = replaced("17", "9999").replace("38", "9998");
     assert_refused(&many, "gears.gear_teeth", line_of("gear_teeth"), &["common factor", "99970002"]);
 }
+
+/// Each tooth that something is drawn for has a table with each that it meets.
+#[test]
+fn drawn_teeth_of_both_wheels_need_memory() {
+    let text = |noise_mm: f64| {
+        let of = |wheel: &str| {
+            format!(
+                "[[fault]]\nkind = \"tooth-destruction\"\nwheel = \"{wheel}\"\ntooth = \"all\"\nstart = 0.2\nend = 0.9\nnoise_mm = {noise_mm:?}\n"
+            )
+        };
+        format!("{REQUIRED}{}{}", of("pinion"), of("gear")).replace("17", "61").replace("38", "63")
+    };
+    let [alike, drawn] = [0.0, 0.001].map(|noise_mm| Scenario::from_toml(&text(noise_mm)).unwrap());
+    let [of_alike, of_drawn] = [&alike, &drawn].map(Scenario::memory_estimate_bytes);
+    println!("{of_alike} and {of_drawn} bytes");
+    assert!(of_drawn > of_alike + 150_000_000 && of_drawn < of_alike + 1_200_000_000);
+    let error = drawn.validate_within(MemoryLimit::Given { bytes: of_alike }).unwrap_err();
+    let help = error.help.as_deref().unwrap_or_default();
+    assert!(
+        error.key == "fault" && help.contains("fewer teeth") && help.contains("3844 in all"),
+        "{error}, {help}"
+    );
+}

@@ -1,7 +1,9 @@
 //! Motions that grow without bound are errors, not signals.
 #![allow(clippy::unwrap_used)]
 
-use meshtone::scenario::{DampingRatio, Fault, GearPair, MissingTooth, Model, Scenario};
+use meshtone::scenario::{
+    DampingRatio, Fault, FaultyTeeth, GearPair, MissingTooth, Model, Scenario, Wear, WheelName,
+};
 use meshtone::{Error, simulate};
 
 /// Few teeth, one of them missing: for a part of each revolution no tooth is in contact. Next to no damping.
@@ -31,6 +33,47 @@ fn contact_that_is_lost() {
     assert!(
         text.starts_with("the motion grows without bound within 0.")
             && text.contains("rig.damping_ratio = 0.0005"),
+        "{text}"
+    );
+}
+
+// Nothing bears while many neighbours pass: more damping is no help, and the message says which faults take the teeth.
+#[test]
+fn neighbours_that_are_missing_are_named() {
+    let pair = GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 17,
+        gear_teeth: 38,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    };
+    for (model, together) in [(Model::Contact, 20), (Model::Linear, 30)] {
+        let mut scenario = Scenario::new(pair.clone());
+        scenario.model = model;
+        // Over the last tooth, too.
+        scenario.faults = vec![
+            Fault::new(WheelName::Gear, (1..together).collect::<Vec<_>>(), MissingTooth),
+            Fault::new(WheelName::Pinion, 1, Wear { depth_um: 1.0 }),
+            Fault::new(WheelName::Gear, 38, MissingTooth),
+        ];
+        let error = simulate(&scenario).map(drop).unwrap_err();
+        let text = error.to_string();
+        assert!(
+            text.contains(&format!(
+                "{together} neighbouring teeth of the gear are missing (fault[0], fault[2])"
+            )) && text.contains("grows without bound within"),
+            "{}: {text}",
+            model.name()
+        );
+        assert!(error.help().unwrap().contains("remove some of these faults"));
+    }
+    let mut none = Scenario::new(pair);
+    none.model = Model::Contact;
+    none.faults = vec![Fault::new(WheelName::Gear, FaultyTeeth::All, MissingTooth)];
+    let text = simulate(&none).map(drop).unwrap_err().to_string();
+    assert!(
+        text.contains("the faults leave no pair of teeth that could touch; at least one must be left"),
         "{text}"
     );
 }

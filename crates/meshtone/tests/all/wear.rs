@@ -68,7 +68,7 @@ fn shifted_wheels_roll_on_their_working_pitch_circles() {
 // The share by a formula is near that by the stiffness of the pairs.
 #[test]
 fn the_load_share_is_near_that_of_the_stiffness() {
-    for (z_pinion, z_gear) in [(17, 38), (25, 30), (45, 80), (100, 100)] {
+    for (z_pinion, z_gear, most) in [(17, 38, 0.081), (25, 30, 0.079), (45, 80, 0.115), (100, 100, 0.132)] {
         let (gears, teeth) = wheels(z_pinion, z_gear);
         let (pairs, ratio) = (sound_pairs(&gears, &teeth), teeth.path.contact_ratio);
         let stiffness = |at: f64| match (0.0..=ratio).contains(&at) {
@@ -81,7 +81,7 @@ fn the_load_share_is_near_that_of_the_stiffness() {
         });
         let off = largest(off);
         println!("{z_pinion}/{z_gear}: {off:.4}");
-        assert!(off < 0.15, "{z_pinion}/{z_gear}: {off}");
+        assert!(off < most, "{z_pinion}/{z_gear}: {off}");
     }
     // Of three pairs, too.
     let sum: f64 = (0..3).map(|n| load_share(0.1 + f64::from(n), 2.4)).sum();
@@ -110,6 +110,49 @@ fn the_depth_is_archards_scaled_to_its_largest() {
             let off = depth(at) - 80.0 * rate(at) / rate(deepest);
             assert!(off.abs() < 0.8, "{} at {at}: {off}", wheel.name());
         }
+    }
+}
+
+// The deepest point of either wheel is where its flank is touched first from its root, not at its tip.
+#[test]
+fn both_wheels_wear_most_near_their_roots() {
+    let (_, teeth) = wheels(17, 38);
+    for (tooth, tip_over_root) in
+        damaged_teeth(&all_worn(50.0, 50.0), &teeth, 1).unwrap().iter().zip([0.629 / 9.264, 0.903 / 1.697])
+    {
+        let DamageDescription::Wear { depth_mm, .. } = &tooth.descriptions[0] else { panic!("no wear") };
+        let root = depth_mm[teeth.initial_contact_index(tooth.wheel)];
+        let tip = depth_mm[depth_mm.len() - 1];
+        assert!((root - 0.05).abs() < 5e-4 && (largest(depth_mm.iter().copied()) - 0.05).abs() < 1e-12);
+        assert!((tip / root / tip_over_root - 1.0).abs() < 0.01, "{}", tip / root);
+    }
+}
+
+// Of few teeth the wear is a narrow strip near the root. It narrows down to 15 teeth; those of fewer are undercut so far up that
+// what is left of the involute slides less.
+#[test]
+fn the_strip_narrows_with_the_number_of_teeth() {
+    for (z_pinion, slide, median) in [
+        (13, 8.73, 0.068),
+        (14, 12.5, 0.049),
+        (15, 19.8, 0.033),
+        (16, 16.1, 0.042),
+        (17, 9.26, 0.072),
+        (18, 6.57, 0.100),
+        (20, 4.24, 0.152),
+        (25, 2.37, 0.257),
+    ] {
+        let (_, teeth) = wheels(z_pinion, 38);
+        let ratio = teeth.path.contact_ratio;
+        let positions = || (0..=4000).map(|k| ratio * f64::from(k) / 4000.0);
+        let of_slide = largest(positions().map(|at| slide_factor(&teeth, WheelName::Pinion, at)));
+        let rate = |at| load_share(at, ratio) * slide_factor(&teeth, WheelName::Pinion, at);
+        let mut depths: Vec<f64> = positions().map(rate).collect();
+        depths.sort_by(f64::total_cmp);
+        let of_median = depths[2000] / depths[4000];
+        println!("{z_pinion}: slide {of_slide:.2}, median {of_median:.3}");
+        assert!((of_slide / slide - 1.0).abs() < 0.01, "{z_pinion}: {of_slide}");
+        assert!((of_median / median - 1.0).abs() < 0.02, "{z_pinion}: {of_median}");
     }
 }
 
@@ -164,7 +207,7 @@ fn stiffness_falls_a_little_with_the_depth() {
     }
     let loss = largest(all[4].iter().zip(&all[0]).map(|(worn, sound)| deviation(*worn, *sound)));
     println!("100 µm on both wheels: {:.2} % of a pair's stiffness at most", 100.0 * loss);
-    assert!(loss < 0.06, "{loss}");
+    assert!(loss < 0.005, "{loss}");
 }
 
 /// Rms of the mesh harmonics in the gear's average, kurtosis of its difference signal, and FM4.
@@ -184,28 +227,53 @@ fn indicators(scenario: &Scenario) -> [f64; 3] {
 // have a difference signal of their own, whose shape stays.
 #[test]
 fn mesh_harmonics_rise_and_local_indicators_do_not() {
-    for (model, speeds) in [(Model::Linear, [15.0, 25.0, 40.0]), (Model::Contact, [15.0, 40.0, 47.0])] {
-        for speed_hz in speeds {
-            let of = |pinion_um, gear_um| {
-                let faults = if pinion_um > 0.0 { all_worn(pinion_um, gear_um) } else { Vec::new() };
-                indicators(&scenario(model, speed_hz, 7, faults))
-            };
-            let all = [of(0.0, 0.0), of(30.0, 15.0), of(60.0, 25.0), of(100.0, 100.0)];
-            let what = format!("{} at {speed_hz} Hz", model.name());
-            println!("{what}: mesh, kurtosis, FM4 {all:.3?}");
-            for pair in all.windows(2) {
-                assert!(
-                    pair[1][0] > pair[0][0],
-                    "{what}: mesh harmonics {} after {}",
-                    pair[1][0],
-                    pair[0][0]
-                );
-            }
-            assert!(all[3][0] > 2.0 * all[0][0]);
-            for worn in &all[1..] {
-                assert!((1..3).all(|n| worn[n] < 1.4 * all[0][n]), "{what}: {worn:?} after {:?}", all[0]);
-            }
+    for (model, speed_hz, mesh_g, shape) in [
+        (Model::Linear, 15.0, [1.17, 3.69, 7.62, 13.5], [16.1, 16.1, 16.1, 16.1]),
+        (Model::Linear, 25.0, [22.8, 42.0, 94.4, 192.0], [8.36, 8.36, 8.35, 8.33]),
+        (Model::Linear, 40.0, [27.7, 63.3, 131.0, 218.0], [6.72, 6.72, 6.72, 6.71]),
+        (Model::Contact, 15.0, [0.33, 0.60, 0.85, 1.77], [4.56, 3.75, 3.93, 3.53]),
+        (Model::Contact, 40.0, [0.74, 1.83, 3.22, 8.23], [2.81, 3.28, 3.58, 3.24]),
+        (Model::Contact, 47.0, [1.61, 2.62, 4.77, 16.9], [2.77, 2.62, 2.66, 2.73]),
+    ] {
+        let all =
+            [[0.0, 0.0], [30.0, 15.0], [60.0, 25.0], [100.0, 100.0]].map(|um| graded(model, speed_hz, um));
+        let what = format!("{} at {speed_hz} Hz", model.name());
+        println!("{what}: mesh, kurtosis, FM4 {all:.3?}");
+        for pair in all.windows(2) {
+            assert!(pair[1][0] > pair[0][0], "{what}: mesh harmonics {} after {}", pair[1][0], pair[0][0]);
         }
+        assert!(all[3][0] > 2.0 * all[0][0]);
+        for worn in &all[1..] {
+            assert!((1..3).all(|n| worn[n] < 1.4 * all[0][n]), "{what}: {worn:?} after {:?}", all[0]);
+        }
+        for (here, (mesh_g, shape)) in all.iter().zip(mesh_g.into_iter().zip(shape)) {
+            assert!((here[0] / mesh_g - 1.0).abs() < 0.03, "{what}: {here:?} and {mesh_g} g");
+            assert!((1..3).all(|n| (here[n] / shape - 1.0).abs() < 0.03), "{what}: {here:?} and {shape}");
+        }
+    }
+}
+
+/// Indicators of a pair of grade 7 whose wheels have worn by some depths.
+fn graded(model: Model, speed_hz: f64, [pinion_um, gear_um]: [f64; 2]) -> [f64; 3] {
+    let faults = if pinion_um > 0.0 { all_worn(pinion_um, gear_um) } else { Vec::new() };
+    indicators(&scenario(model, speed_hz, 7, faults))
+}
+
+// Where little is worn near the path's ends, it is a relief; and near a resonance less can be more.
+#[test]
+fn a_little_wear_may_lower_the_mesh_harmonics() {
+    let (little, some) = ([10.0, 5.0], [60.0, 25.0]);
+    for (model, speed_hz, worn_um, sound_g, worn_g) in [
+        (Model::Linear, 25.0, little, 22.8, 15.4),
+        (Model::Linear, 55.0, little, 100.0, 72.0),
+        (Model::Contact, 15.0, little, 0.33, 0.30),
+        (Model::Contact, 25.0, little, 1.10, 1.07),
+        (Model::Contact, 55.0, some, 5.29, 5.07),
+    ] {
+        let [sound, worn] = [[0.0; 2], worn_um].map(|um| graded(model, speed_hz, um)[0]);
+        println!("{} at {speed_hz} Hz, {worn_um:?}: {sound:.3} g, {worn:.3} g", model.name());
+        assert!((sound / sound_g - 1.0).abs() < 0.03 && (worn / worn_g - 1.0).abs() < 0.03);
+        assert!(worn < sound);
     }
 }
 
@@ -215,7 +283,11 @@ fn one_worn_tooth_is_a_local_fault() {
     let of = |faults| indicators(&scenario(Model::Contact, 40.0, 7, faults));
     let (sound, one) = (of(Vec::new()), of(vec![worn(WheelName::Gear, 5, 60.0)]));
     println!("mesh, kurtosis, FM4: {sound:.2?}, with one worn tooth {one:.2?}");
-    assert!(one[1] > 1.5 * sound[1] && one[2] > 1.5 * sound[2], "{one:?} after {sound:?}");
+    for (value, stated) in
+        [(sound[0], 0.74), (one[0], 0.89), (sound[1], 2.81), (one[1], 16.0), (one[2], 16.0)]
+    {
+        assert!((value / stated - 1.0).abs() < 0.03, "{one:?} after {sound:?}");
+    }
 }
 
 #[test]

@@ -14,7 +14,8 @@ const ORDINARY_SPEED_HZ: f64 = 40.0;
 /// * `scenario` - a scenario that needs too much memory
 /// * `problem` - how much it needs, and how much is allowed
 pub(super) fn refuse(scenario: &Scenario, problem: &str) -> ScenarioError {
-    let candidates = [sampling_rate(scenario), speed_profile(scenario), speed(scenario), teeth(scenario)];
+    let candidates =
+        [sampling_rate(scenario), speed_profile(scenario), speed(scenario), teeth(scenario), drawn(scenario)];
     let candidates = candidates.into_iter().flatten();
     let smallest = candidates.min_by_key(|candidate| candidate.ordinary.memory_estimate_bytes());
     let Some(Candidate { key, value, help, .. }) = smallest else {
@@ -87,5 +88,20 @@ fn teeth(scenario: &Scenario) -> Option<Candidate> {
              samples for each unit of the counts' least common multiple, here {multiple}, and twice as many \
              revolutions as the gear has teeth are simulated"
         ),
+    })
+}
+
+fn drawn(scenario: &Scenario) -> Option<Candidate> {
+    let mut ordinary = scenario.clone();
+    ordinary.faults.retain(|fault| !fault.damage.is_drawn());
+    (ordinary.faults.len() < scenario.faults.len()).then(|| Candidate {
+        key: "fault",
+        value: String::new(),
+        help: format!(
+            "let roughness or pits be drawn for fewer teeth: each of them is a kind of its own, and has a table with each kind that \
+             it meets, {} in all",
+            scenario.pair_classes()
+        ),
+        ordinary,
     })
 }

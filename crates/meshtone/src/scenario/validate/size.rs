@@ -1,10 +1,12 @@
 //! How large a simulation is.
 
-use super::super::{Scenario, Sensor};
+use std::collections::BTreeSet;
+
+use super::super::{Fault, Scenario, Sensor, WheelName};
 use super::largest_cause;
 use super::memory_limit::{MemoryLimit, in_words};
 use crate::keys::Check;
-use crate::operation::CycleGrid;
+use crate::operation::{CycleGrid, TimeGrid, least_common_multiple};
 
 /// Signals that are kept of every sample after settling.
 const KEPT_CHANNELS: f64 = 8.0;
@@ -17,6 +19,12 @@ const EXCITATION_CHANNELS: f64 = 2.0;
 const GRID_CHANNELS: f64 = 16.0;
 /// Numbers that are held for every profile point of either wheel.
 const PROFILE_CHANNELS: f64 = 64.0;
+/// Numbers that are held for every profile point of a damaged tooth, or of several alike: what is left of it, and its integrals.
+const DAMAGED_CHANNELS: f64 = 16.0;
+/// Numbers that are tabulated for every point of a class of pairs under `contact`; `linear` has more for fewer points.
+const PAIR_CHANNELS: f64 = 3.0;
+/// (base pitches) How far a pair is tabulated.
+const PAIR_PITCHES: f64 = 3.0;
 const BYTES_PER_NUMBER: f64 = 8.0;
 
 impl Scenario {
@@ -35,8 +43,8 @@ impl Scenario {
     }
 
     /// (bytes) Estimate of the memory that the simulation needs: 8 signals of every kept sample,
-    /// those of listed sensors and what filtering them takes, the excitation of every sample, the tables over a gear revolution and the tooth profiles,
-    /// in double precision.
+    /// those of listed sensors and what filtering them takes, the excitation of every sample, the tables over a gear revolution, the tooth profiles,
+    /// damaged teeth and the tables of the pairs that they make, in double precision.
     ///
     /// `u64::MAX` stands for anything above it.
     ///
@@ -54,8 +62,46 @@ impl Scenario {
         let numbers = time.kept_samples() as f64 * (KEPT_CHANNELS + self.sensors.len() as f64 + filtered)
             + time.samples as f64 * EXCITATION_CHANNELS
             + cycle.points_per_gear_revolution as f64 * GRID_CHANNELS
-            + 2.0 * self.gears.points_per_tooth as f64 * PROFILE_CHANNELS;
+            + 2.0 * self.gears.points_per_tooth as f64 * PROFILE_CHANNELS
+            + self.damaged_kinds().iter().sum::<usize>() as f64
+                * self.gears.points_per_tooth as f64
+                * DAMAGED_CHANNELS
+            + (self.pair_classes() - 1) as f64 * self.points_per_class(&time) * PAIR_CHANNELS;
         (numbers * BYTES_PER_NUMBER) as u64
+    }
+}
+
+impl Scenario {
+    /// How many kinds of damaged teeth the pinion and the gear have: teeth with the same faults are of one, and each tooth that
+    /// something is drawn for is of its own.
+    fn damaged_kinds(&self) -> [usize; 2] {
+        WheelName::BOTH.map(|wheel| {
+            let mut kinds = BTreeSet::new();
+            for tooth in 1..=self.gears.teeth(wheel) {
+                let on_tooth =
+                    |(_, fault): &(usize, &Fault)| fault.wheel == wheel && fault.tooth.contains(tooth);
+                let on_tooth: Vec<(usize, &Fault)> =
+                    self.faults.iter().enumerate().filter(on_tooth).collect();
+                let is_drawn = on_tooth.iter().any(|(_, fault)| fault.damage.is_drawn());
+                if !on_tooth.is_empty() {
+                    let numbers: Vec<usize> = on_tooth.into_iter().map(|(number, _)| number).collect();
+                    kinds.insert((numbers, is_drawn.then_some(tooth)));
+                }
+            }
+            kinds.len()
+        })
+    }
+
+    /// How many classes of pairs they make at most, that of sound teeth included.
+    pub(super) fn pair_classes(&self) -> usize {
+        let [pinion, gear] = self.damaged_kinds();
+        let met = least_common_multiple(self.gears.pinion_teeth, self.gears.gear_teeth);
+        ((pinion + 1) * (gear + 1)).min(met as usize + 1)
+    }
+
+    /// Points of a class's table.
+    fn points_per_class(&self, time: &TimeGrid) -> f64 {
+        PAIR_PITCHES * time.samples_per_pinion_revolution as f64 / f64::from(self.gears.pinion_teeth)
     }
 }
 
