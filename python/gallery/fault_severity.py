@@ -20,6 +20,7 @@ SEVERITIES = (0.2, 0.5, 0.9)
 KINDS = {
     "Wear": mt.Wear,
     "Root crack": mt.RootCrack,
+    "Pits": mt.Pits,
     "Pit over part of the face": mt.PartialFace,
     "Tooth breakage": mt.ToothBreakage,
     "Tooth destruction": mt.ToothDestruction,

@@ -49,7 +49,7 @@ fn neighbours_that_are_missing_are_named() {
         brake_torque_nm: 10.0,
     };
     for (model, together) in [(Model::Contact, 20), (Model::Linear, 30)] {
-        let mut scenario = Scenario::new(pair.clone());
+        let mut scenario = Scenario::new(pair);
         scenario.model = model;
         // Over the last tooth, too.
         scenario.faults = vec![
