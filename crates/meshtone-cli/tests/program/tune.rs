@@ -334,6 +334,45 @@ fn recording(scenario: &Scenario, offset: usize) -> String {
     text
 }
 
+/// What a rig with a known severity shows is explained by about that severity; sizes are not touched by it.
+#[test]
+fn severity_is_tuned_as_other_keys_are() {
+    let workplace = workplace();
+    let broken = |severity: f64| format!("[fault]\nkind = \"wear\"\ntooth = 1\nseverity = {severity}\n");
+    let of = |faults: &str, value: fn(&[f64]) -> f64| {
+        let scenario =
+            Scenario::from_toml(&format!("model = \"linear\"\n{FAST}[quality]\ndin_grade = 8\n{faults}"));
+        let chain = DifferenceChain::new(10e3);
+        value(&difference_signals(vec![scenario.unwrap()], &chain).unwrap()[0]).log10()
+    };
+    let rms = |signal: &[f64]| (signal.iter().map(|x| x * x).sum::<f64>() / signal.len() as f64).sqrt();
+    let measured =
+        [String::new(), broken(0.6)].map(|faults| [of(&faults, rms), of(&faults, |x| kurtosis(x).unwrap())]);
+    let mut table = String::from("experiment,indicator,series,severity,log10_value\n");
+    for (case, [rms, kurtosis]) in measured.iter().enumerate() {
+        for spread in [-0.005, 0.0, 0.005] {
+            writeln!(table, "rig,rms,measured,{case},{}", rms + spread).unwrap();
+            writeln!(table, "rig,kurtosis,measured,{case},{}", kurtosis + spread).unwrap();
+        }
+    }
+    workplace.write("table.csv", table);
+    let experiment = |fault: &str| {
+        format!(
+            "{HEAD}{MEASURED}[tune]\ncandidates = 24\nwidth_ratio = 1.0\nfault_to_harmonics_ratio = 1.0\n\
+             [[tune.key]]\nkey = \"fault.severity\"\nleast = 0.2\nlargest = 0.9\n\
+             [[case]]\nlabel = \"healthy\"\nseverity = 0\n\
+             [[case]]\nlabel = \"worn\"\nseverity = 1\nfault = {{ kind = \"wear\", tooth = 1, {fault} }}\n"
+        )
+    };
+    workplace.write("rig.toml", experiment("severity = 0.3"));
+    workplace.succeeds(&["tune", "rig.toml", "-o", "out", "-q", "--no-figure"]);
+    let tuning = json(&workplace, "out/tuning.json");
+    let found = tuning.pointer("/scenario_keys/fault.severity").and_then(Value::as_f64).unwrap();
+    assert!((found - 0.6).abs() < 0.06, "{found}");
+    // A fault by its sizes has no severity that could be set.
+    refused(&workplace, &experiment("depth_um = 30.0"), &["tune.key", "fault.severity"]);
+}
+
 /// The rig's shaft phase and sampling rate are its own; its indicators are not changed by them.
 #[test]
 fn recordings_have_their_own_phase_and_sampling_rate() {

@@ -142,7 +142,7 @@ fn involutes_begin_mm(teeth: &Teeth) -> [f64; 2] {
 ///
 /// ```
 /// use meshtone::damage::slide_factor;
-/// use meshtone::model::Model;
+/// use meshtone::scenario::Model;
 /// use meshtone::wheel::{Gears, WheelName, teeth};
 ///
 /// let teeth = teeth(&Gears::new(3.0, 17, 38, 15.0), [10.0; 2], Model::Linear);
@@ -176,7 +176,7 @@ fn slide(teeth: &Teeth, begin_mm: [f64; 2], wheel: WheelName, position: f64) -> 
 /// use meshtone::damage::load_share;
 ///
 /// // About a third where a pair enters, two thirds where the one before leaves, all where it is alone.
-/// assert_eq!([0.0, 0.55, 0.8].map(|at| (load_share(at, 1.6) * 100.0).round()), [35.0, 63.0, 100.0]);
+/// assert_eq!([0.0, 0.55, 0.8].map(|at| (load_share(at, 1.6) * 100.0).round()), [35.0, 62.0, 100.0]);
 /// ```
 pub fn load_share(position: f64, contact_ratio: f64) -> f64 {
     let middle = contact_ratio / 2.0;

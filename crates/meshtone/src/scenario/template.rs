@@ -50,7 +50,7 @@ pub fn template_kinds() -> Vec<&'static str> {
 ///
 /// let scenario = Scenario::from_toml(&template("through-face").unwrap())?;
 /// assert_eq!(scenario.faults[0].damage.kind(), "through-face");
-/// assert_eq!(template("wear"), None);
+/// assert_eq!(template("rust"), None);
 /// # Ok::<(), meshtone::scenario::ScenarioError>(())
 /// ```
 pub fn template(kind: &str) -> Option<String> {
