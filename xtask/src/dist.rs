@@ -1,5 +1,6 @@
 //! What a release carries: the program, the wheel and the source distribution, each tried where there is nothing else.
 
+use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -154,9 +155,17 @@ pub fn try_wheel(row: &Row, python: &Path, wheel: &Path) -> Result<(), u8> {
 /// The exit code of what failed.
 pub fn try_source(row: &Row, python: &Path, source: &Path) -> Result<(), u8> {
     row.step("Source distribution, in an empty environment", || {
+        let content = std::fs::read(source).map_err(|error| row.fail_at(source, &error))?;
+        // All files of a source distribution have the same old date, by which cargo would take what was built of another
+        // one for fresh: a setting that nothing depends on, but which follows from the content, tells them apart.
+        let units = LEAST_UNITS + BuildHasherDefault::<DefaultHasher>::default().hash_one(&content) % UNITS;
+        let settings = [("opt-level", 0), ("codegen-units", units)];
         let unoptimised: Vec<String> = packages(row)?
             .iter()
-            .map(|package| format!("--config profile.release.package.{package}.opt-level=0"))
+            .flat_map(|package| {
+                settings
+                    .map(|(key, value)| format!("--config profile.release.package.{package}.{key}={value}"))
+            })
             .collect();
         let environment = [
             ("CARGO_TARGET_DIR", row.root().join("target").into_os_string()),
@@ -169,6 +178,10 @@ pub fn try_source(row: &Row, python: &Path, source: &Path) -> Result<(), u8> {
         try_package(row, python, "source", &wheel)
     })
 }
+
+/// Numbers of codegen units, of which unoptimised crates never have so many.
+const LEAST_UNITS: u64 = 256;
+const UNITS: u64 = 1 << 20;
 
 /// The project's packages; the source distribution has not all of them, which cargo only remarks.
 fn packages(row: &Row) -> Result<Vec<String>, u8> {
