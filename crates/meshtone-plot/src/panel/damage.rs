@@ -96,13 +96,11 @@ fn capitalised(text: &str) -> String {
 
 /// The sizes of one of the faults. A tooth describes its damages in the order of the faults that do anything.
 fn sizes_of_fault(stages: &Stages, number: usize) -> Vec<String> {
-    let faults = &stages.scenario.faults;
-    let fault = &faults[number];
-    let on_same_tooth = |other: &&Fault| {
-        let same = other.wheel == fault.wheel && other.tooth.contains(fault.tooth.first());
-        same && other.sized(&stages.teeth).is_some()
-    };
-    let before = faults[..number].iter().filter(on_same_tooth).count();
+    let fault = &stages.scenario.faults[number];
+    let on_same_tooth =
+        |other: &Fault| other.wheel == fault.wheel && other.tooth.contains(fault.tooth.first());
+    let before = faults_that_show(stages).take_while(|(other, _)| *other < number);
+    let before = before.filter(|(_, other)| on_same_tooth(other)).count();
     let tooth = (stages.damaged.iter())
         .find(|tooth| tooth.wheel == fault.wheel && tooth.teeth.contains(&fault.tooth_index()));
     match tooth.and_then(|tooth| Some((tooth, tooth.descriptions.get(before)?))) {
