@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 /// The rooms of `crates/meshtone/src`, floor by floor. A room imports rooms of earlier floors.
 const FLOORS: &[&[&str]] = &[
-    &["error", "error_table", "fourier", "random", "interpolation", "simd", "threads"],
+    &["error", "error_table", "random", "interpolation", "simd", "threads"],
     &["keys"],
     &["model"],
     &["wheel"],

@@ -29,7 +29,6 @@ pub mod batch;
 pub mod damage;
 mod error;
 mod error_table;
-mod fourier;
 #[doc(hidden)]
 pub mod interpolation;
 mod keys;

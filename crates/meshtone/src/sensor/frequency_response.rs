@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
+use meshtone_fourier::Complex64;
 use meshtone_toml::{ReadResult, TomlTable, TomlValue};
-use rustfft::num_complex::Complex64;
 
 use super::parameters::finite_and_not_negative;
 use crate::error::ScenarioError;

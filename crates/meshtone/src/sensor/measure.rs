@@ -2,11 +2,10 @@
 //!
 //! In this order: the path and the mounted resonance, noise, range, resolution.
 
-use rustfft::num_complex::Complex64;
+use meshtone_fourier::{Complex64, convenient_length, from_real_spectrum, real_spectrum};
 
 use super::GRAVITY_M_PER_S2;
 use super::parameters::{ResponseInput, Sensor};
-use crate::fourier::{convenient_length, from_real_spectrum, real_spectrum};
 use crate::random::{Draws, Purpose};
 
 /// What the signal of a sensor depends on, beside the sensor and the motion of its place.

@@ -1,11 +1,10 @@
 //! Envelope by the analytic signal.
 
-use rustfft::num_complex::Complex64;
+use meshtone_fourier::{Complex64, inverse_complex, real_spectrum};
 
 use super::SignalError;
 use super::check::check_finite;
 use super::order_spectrum;
-use crate::fourier::{inverse_complex, real_spectrum};
 
 /// Analytic signal: the signal and, as its imaginary part, its Hilbert transform.
 ///

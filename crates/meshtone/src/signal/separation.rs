@@ -1,9 +1,8 @@
 //! What an average consists of.
 
-use rustfft::num_complex::Complex64;
+use meshtone_fourier::{Complex64, from_real_spectrum, real_spectrum};
 
 use super::SignalError;
-use crate::fourier::{from_real_spectrum, real_spectrum};
 
 /// What belongs to the regular part.
 #[derive(Debug, Clone, PartialEq, Eq)]

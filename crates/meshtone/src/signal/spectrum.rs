@@ -2,7 +2,7 @@
 
 use super::SignalError;
 use super::check::check_finite;
-use crate::fourier::real_spectrum;
+use meshtone_fourier::real_spectrum;
 
 /// Single-sided amplitude spectrum of one revolution: the amplitude of every order.
 ///
@@ -29,7 +29,7 @@ pub fn order_spectrum(average: &[f64]) -> Result<Vec<f64>, SignalError> {
     }
     check_finite(average)?;
     let len = average.len();
-    let amplitude = |(order, line): (usize, &rustfft::num_complex::Complex64)| {
+    let amplitude = |(order, line): (usize, &meshtone_fourier::Complex64)| {
         let images = if order == 0 || 2 * order == len { 1.0 } else { 2.0 };
         images * line.norm() / len as f64
     };

@@ -15,8 +15,13 @@ impl<const L: usize> Lanes<L> {
     }
 
     #[inline(always)]
-    pub(crate) fn from_fn(f: impl FnMut(usize) -> f64) -> Self {
-        Self(std::array::from_fn(f))
+    pub(crate) fn from_fn(mut f: impl FnMut(usize) -> f64) -> Self {
+        // A loop instead of the array's `from_fn`, which is two functions more to compile for every closure.
+        let mut lanes = [0.0; L];
+        for (l, lane) in lanes.iter_mut().enumerate() {
+            *lane = f(l);
+        }
+        Self(lanes)
     }
 
     #[inline(always)]

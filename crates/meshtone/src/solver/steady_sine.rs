@@ -5,8 +5,8 @@
 //!
 //! Source: T. J. R. Hughes, *The Finite Element Method* (2000), section 9.1, on the method's period elongation.
 
+use meshtone_fourier::Complex64;
 use nalgebra::DVector;
-use rustfft::num_complex::Complex64;
 
 use super::ReducedModel;
 use crate::machine::ClosedMesh;

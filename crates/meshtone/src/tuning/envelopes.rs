@@ -1,6 +1,6 @@
 //! Moments of the envelope of a mixture in noise, without drawing the noise.
 
-use rustfft::num_complex::Complex64;
+use meshtone_fourier::Complex64;
 
 use super::modify::window_start;
 use super::moments::Window;

@@ -2,13 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use crate::fourier::real_spectrum;
 use crate::machine::ClosedMesh;
 use crate::model::Model;
 use crate::operation::{greatest_common_divisor, least_common_multiple};
 use crate::sensor::Channels;
 use crate::simulate::{Simulation, Stages, simulate};
 use crate::solver::{Answer, MeanMachine};
+use meshtone_fourier::real_spectrum;
 
 /// (-) Part of a signal's power below which a line of its spectrum does not count.
 const LEAST_PART: f64 = 1e-6;

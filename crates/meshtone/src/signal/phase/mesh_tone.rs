@@ -2,11 +2,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use rustfft::num_complex::Complex64;
+use meshtone_fourier::{Complex64, convenient_length, inverse_complex, real_spectrum};
 
 use super::ShaftPhase;
 use super::mesh_tone_checks::{check, check_fading, check_tone};
-use crate::fourier::{convenient_length, inverse_complex, real_spectrum};
 use crate::interpolation::NotAKnotSpline;
 use crate::signal::SignalError;
 

@@ -1,6 +1,6 @@
 //! Whether a mesh tone can be followed.
 
-use rustfft::num_complex::Complex64;
+use meshtone_fourier::Complex64;
 
 use super::mesh_tone::{Band, MeshTone};
 use crate::signal::check::{check_channel, check_positive};

@@ -1,10 +1,14 @@
-//! Fourier transforms, without normalisation in either direction.
+//! Fourier transforms of 64-bit floats.
+//!
+//! A crate of its own because the transforms are generic: every crate, and every test program, that calls them with a number type
+//! compiles all of them anew, and they are a fifth of what the simulator compiles. Here they are compiled once.
+#![deny(missing_docs)]
 
 use std::cell::RefCell;
 
 use realfft::RealFftPlanner;
 use rustfft::FftPlanner;
-use rustfft::num_complex::Complex64;
+pub use rustfft::num_complex::Complex64;
 
 /// The longest of the short signals: averages.
 const LONGEST_SHORT: usize = 1 << 17;
@@ -43,8 +47,17 @@ fn plan<P>(len: usize, make: impl FnOnce(&mut Planners) -> P) -> P {
     })
 }
 
-/// `X_k = Σ_n x_n e^(−2πikn/N)` for k = 0 … ⌊N/2⌋.
-pub(crate) fn real_spectrum(values: &[f64]) -> Vec<Complex64> {
+/// The one-sided spectrum of real values, without normalisation: `X_k = Σ_n x_n e^(−2πikn/N)` for k = 0 … ⌊N/2⌋.
+///
+/// # Arguments
+/// * `values` - N of them, at equal distances; in any unit, which is the spectrum's too
+///
+/// # Examples
+/// ```
+/// let spectrum = meshtone_fourier::real_spectrum(&[1.0, 0.0, -1.0, 0.0]);
+/// assert_eq!(spectrum.iter().map(|line| line.re).collect::<Vec<_>>(), [0.0, 2.0, 0.0]);
+/// ```
+pub fn real_spectrum(values: &[f64]) -> Vec<Complex64> {
     let plan = plan(values.len(), |planners| planners.real.plan_fft_forward(values.len()));
     let mut input = values.to_vec();
     let mut output = plan.make_output_vec();
@@ -54,8 +67,12 @@ pub(crate) fn real_spectrum(values: &[f64]) -> Vec<Complex64> {
     output
 }
 
-/// The `len` real values with the spectrum of [`real_spectrum`], divided by `len`.
-pub(crate) fn from_real_spectrum(mut spectrum: Vec<Complex64>, len: usize) -> Vec<f64> {
+/// The real values that have a spectrum: the inverse of [`real_spectrum`], division by `len` included.
+///
+/// # Arguments
+/// * `spectrum` - ⌊`len`/2⌋ + 1 lines; of the first, and of the last where `len` is even, the real part is taken
+/// * `len` - number of values, at least 1
+pub fn from_real_spectrum(mut spectrum: Vec<Complex64>, len: usize) -> Vec<f64> {
     let plan = plan(len, |planners| planners.real.plan_fft_inverse(len));
     // Real values have real ends of the spectrum; rounding may have left something there.
     spectrum[0].im = 0.0;
@@ -69,15 +86,18 @@ pub(crate) fn from_real_spectrum(mut spectrum: Vec<Complex64>, len: usize) -> Ve
     output
 }
 
-/// `x_n = Σ_k X_k e^(2πikn/N)`, not divided by N.
-pub(crate) fn inverse_complex(mut spectrum: Vec<Complex64>) -> Vec<Complex64> {
+/// The values of a two-sided spectrum, without normalisation: `x_n = Σ_k X_k e^(2πikn/N)`, not divided by N.
+///
+/// # Arguments
+/// * `spectrum` - N lines, those of negative frequency last
+pub fn inverse_complex(mut spectrum: Vec<Complex64>) -> Vec<Complex64> {
     let len = spectrum.len();
     plan(len, |planners| planners.complex.plan_fft_inverse(len)).process(&mut spectrum);
     spectrum
 }
 
-/// The least length of at least `len` whose only prime factors are 2, 3 and 5, and even.
-pub(crate) fn convenient_length(len: usize) -> usize {
+/// The least length of at least `len` that is even and has no prime factors but 2, 3 and 5: its transform is fast.
+pub fn convenient_length(len: usize) -> usize {
     let mut best = len.max(2).next_power_of_two();
     let mut fives = 1;
     while fives < best {
