@@ -1,6 +1,6 @@
 //! Generating a data set, from the start or from where it was stopped.
 
-use std::collections::{HashMap, VecDeque};
+use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom};
 use std::ops::Range;
@@ -12,8 +12,8 @@ use meshtone::batch::{Control, simulate_many};
 use meshtone::scenario::Scenario;
 use rayon::prelude::*;
 
-use crate::contents::{Contents, Looked};
-use crate::digest::Hashing;
+use crate::contents::{Contents, Looked, WRONG_BYTES};
+use crate::digest::{Digest, Hashing};
 use crate::draw::{DrawnRecord, Sampler};
 use crate::error::DatasetError;
 use crate::finish;
@@ -70,13 +70,13 @@ pub struct Generated {
     pub failures: Vec<FailedRecord>,
     /// Records that failed before, of the shards that were there already.
     pub earlier_failures: Vec<FailedRecord>,
-    /// Shards that were there, but not as they were written, and have been made again.
+    /// Files that were there, but not as they were written, and have been made again.
     pub remade: Vec<Remade>,
     /// Whether the data set is complete, with manifest, data card and preview.
     pub complete: bool,
 }
 
-/// A shard that was not as it was written.
+/// A file that was not as it was written.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Remade {
     /// Its file, from the data set's directory.
@@ -102,8 +102,8 @@ impl Generated {
 /// * `part` - which shards
 /// * `control` - progress and cancellation
 ///
-/// Every shard that is there and has the SHA-256 that was taken while it was written is kept; others are made again. Where all are
-/// there, the manifest is completed, and data card and preview are written.
+/// Every file that is there and has the SHA-256 that was taken while it was written is kept; others are made again. Where all shards
+/// are there, the manifest is completed, and data card and preview are written.
 ///
 /// # Errors
 /// A place with other files, or with a data set of another plan; another program that makes the same part there; what cannot be
@@ -162,7 +162,7 @@ pub fn generate(
     let there = if complete { Some(There::look(plan, shards, to, part)?) } else { None };
     if let Some(there) = &there
         && there.missing.is_empty()
-        && has_documents(plan, to)?
+        && there.has_documents
     {
         return Ok(there.generated());
     }
@@ -187,27 +187,24 @@ pub fn generate(
     Ok(generated)
 }
 
-/// Whether all files beside the shards and the manifest are there.
-fn has_documents(plan: &Plan, to: &Destination) -> Result<bool, DatasetError> {
-    let files = to.files()?;
-    let copies: Vec<&str> = plan.files.iter().map(|file: &PlanFile| file.name).collect();
-    Ok([CARD].into_iter().chain(PREVIEW).chain(copies).all(|name| files.contains_key(name)))
-}
-
 /// What is there of a part.
 struct There {
     kept: u64,
     missing: Vec<u64>,
     remade: Vec<Remade>,
     failures: Vec<FailedRecord>,
+    /// Whether all files beside the shards and the manifest are there, as they were written.
+    has_documents: bool,
 }
 
 impl There {
-    /// Reads all shards of a part that are there and compares them with what is known of them.
+    /// Reads all shards of a part that are there, and what is written beside them, and compares them with what is known of them.
     fn look(plan: &Plan, shards: Shards, to: &Destination, part: Part) -> Result<Self, DatasetError> {
         let files = to.files()?;
+        let manifest = manifest::read(to)?;
+        let documents = manifest.as_ref().map(|manifest| manifest.documents.clone()).unwrap_or_default();
         let mut contents = Contents::default();
-        contents.add_place(plan, to, &files, manifest::read(to)?)?;
+        contents.add_place(plan, to, &files, manifest)?;
         let own = (0..shards.count()).into_par_iter().filter(|&shard| part.has(shard));
         let looked = own.map(|shard| {
             let name = shards.name(shard);
@@ -218,7 +215,9 @@ impl There {
             });
             (shard, objection)
         });
-        let mut there = Self { kept: 0, missing: Vec::new(), remade: Vec::new(), failures: Vec::new() };
+        let (changed, has_documents) = look_at_documents(plan, to, &files, &documents)?;
+        let mut there =
+            Self { kept: 0, missing: Vec::new(), remade: changed, failures: Vec::new(), has_documents };
         for (shard, objection) in looked.collect::<Vec<_>>() {
             if let Some(None) = objection {
                 there.kept += 1;
@@ -247,6 +246,25 @@ impl There {
             complete: true,
         }
     }
+}
+
+/// The files beside the shards and the manifest that are there and not as they were written; and whether all are there as they were.
+fn look_at_documents(
+    plan: &Plan,
+    to: &Destination,
+    files: &BTreeMap<String, u64>,
+    documents: &BTreeMap<String, Digest>,
+) -> Result<(Vec<Remade>, bool), DatasetError> {
+    let mut changed = Vec::new();
+    for (name, digest) in documents.iter().filter(|(name, _)| files.contains_key(*name)) {
+        if to.digest(name)? != *digest {
+            changed.push(Remade { file: name.clone(), reason: WRONG_BYTES.to_owned() });
+        }
+    }
+    let copies = plan.files.iter().map(|file: &PlanFile| file.name);
+    let are_there = [CARD].into_iter().chain(PREVIEW).chain(copies).all(|name| files.contains_key(name));
+    let has_all = are_there && changed.is_empty();
+    Ok((changed, has_all))
 }
 
 /// One run.

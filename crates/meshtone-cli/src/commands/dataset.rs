@@ -293,7 +293,7 @@ fn warn(generated: &Generated) {
         print_error_line(format!("warning: {} was made again: {}", remade.file, remade.reason));
     }
     if generated.remade.len() > TOLD {
-        let rest = counted((generated.remade.len() - TOLD) as u64, "more shard");
+        let rest = counted((generated.remade.len() - TOLD) as u64, "more file");
         print_error_line(format!("warning: {rest} made again for such reasons"));
     }
     for failed in generated.failures.iter().take(TOLD) {

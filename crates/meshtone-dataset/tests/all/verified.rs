@@ -88,6 +88,10 @@ fn the_card_and_the_preview_are_made_again() {
         let again = run(&plan(FAST), &to, Part::WHOLE, 2).unwrap();
         assert_eq!((again.kept_shards, again.written_shards, again.complete), (8, 0, true));
         assert_eq!(differing(&before, &bytes(directory.path())), [""; 0], "{name}");
+        flip(&directory.path().join(name), 5);
+        let again = run(&plan(FAST), &to, Part::WHOLE, 2).unwrap();
+        assert_eq!(again.remade.iter().map(|remade| &remade.file[..]).collect::<Vec<_>>(), [name]);
+        assert_eq!(differing(&before, &bytes(directory.path())), [""; 0], "{name}");
     }
 }
 
