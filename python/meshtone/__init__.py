@@ -18,6 +18,7 @@ from ._core import __version__
 from ._damage import *
 from .datasets import Dataset, generate_dataset, load_dataset, verify_dataset
 from .hybrid import enhance, tune
+from .memory import set_memory_limit
 from .recording import Recording, read_recording
 from .scenario import Scenario, template
 from .sensors import Sensor
@@ -46,6 +47,7 @@ __all__ = [
     "process_channel",
     "process_series",
     "read_recording",
+    "set_memory_limit",
     "signal",
     "simulate",
     "simulate_many",

@@ -42,6 +42,7 @@ __all__ = [
     "repair_pulses",
     "resample",
     "separate",
+    "set_memory_limit",
     "sideband_level_factor",
     "simulate",
     "simulate_many",
@@ -239,6 +240,7 @@ def read_recording(
     time: _Column | None,
     calibrations: Sequence[tuple[_Column, float | None, str | None]],
 ) -> dict[str, Any]: ...
+def set_memory_limit(limit_bytes: int | None) -> None: ...
 def change_duration(signal: _Array, width_ratio: float, centre_rev: float) -> _Array: ...
 def change_fault_to_harmonics_ratio(
     signal: _Array, healthy: _Array, fault_to_harmonics_ratio: float

@@ -2,8 +2,7 @@
 
 use meshtone::Stages;
 use meshtone::scenario::{Scenario, ScenarioError, ScenarioWarning};
-
-use crate::memory;
+use meshtone_io::memory;
 
 /// Checks a scenario as far as that is possible without integrating in time: its values, the memory that it
 /// needs, and whether the faults fit their teeth.

@@ -52,7 +52,7 @@ impl Failure {
     /// broken.
     pub fn of_reading(error: ErrorKind, message: impl Into<String>) -> Self {
         match error {
-            ErrorKind::PermissionDenied => Self::bad_input(message),
+            ErrorKind::PermissionDenied | ErrorKind::FileTooLarge => Self::bad_input(message),
             error => Self::of_writing(error, message),
         }
     }

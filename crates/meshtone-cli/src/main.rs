@@ -9,7 +9,6 @@ mod earlier_results;
 mod ending;
 mod failure;
 mod indicators;
-mod memory;
 mod output_directory;
 mod progress;
 mod report;
@@ -23,6 +22,8 @@ mod warnings;
 use std::process::ExitCode;
 
 use clap::Parser;
+use meshtone::scenario::MemoryLimit;
+use meshtone_io::memory::parse_bytes;
 
 use crate::commands::Command;
 
@@ -30,6 +31,9 @@ use crate::commands::Command;
 #[derive(Debug, Parser)]
 #[command(name = "meshtone", version, after_help = EXAMPLES, arg_required_else_help = true)]
 struct Arguments {
+    /// Most memory for one simulation, and for what is read of one file, such as 2GB. [default: what is free, at most 8GiB]
+    #[arg(long, global = true, value_name = "SIZE", value_parser = parse_bytes)]
+    memory_limit: Option<u64>,
     #[command(subcommand)]
     command: Command,
 }
@@ -47,11 +51,13 @@ Exit codes: 0 all went well, 1 it could not be carried out, 2 the input is wrong
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     ending::leave_nothing_unfinished();
+    MemoryLimit::set(arguments.memory_limit);
     match arguments.command.run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            report::print(&failure);
-            failure.exit_code()
+            let code = failure.exit_code();
+            report::print(failure);
+            code
         }
     }
 }

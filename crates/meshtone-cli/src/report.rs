@@ -12,10 +12,16 @@ use crate::terminal::{is_fancy, print_error_line};
 /// (characters) Longest line that is shown. Whole matrices may stand on one.
 const LONGEST_LINE: usize = 160;
 
+/// What the library says of its limit, and what sets it here.
+const MEMORY_LIMIT: [&str; 2] = ["raise the memory limit", "raise --memory-limit"];
+
 /// Tells the user what went wrong.
-pub fn print(failure: &Failure) {
-    let fancy = if is_fancy() { with_lines_and_colours(failure) } else { None };
-    print_error_line(fancy.unwrap_or_else(|| plain(failure)).trim_end());
+pub fn print(mut failure: Failure) {
+    let [of_library, option] = MEMORY_LIMIT;
+    failure.message = failure.message.replace(of_library, option);
+    failure.help = failure.help.map(|help| help.replace(of_library, option));
+    let fancy = if is_fancy() { with_lines_and_colours(&failure) } else { None };
+    print_error_line(fancy.unwrap_or_else(|| plain(&failure)).trim_end());
 }
 
 fn plain(failure: &Failure) -> String {

@@ -6,6 +6,8 @@ pub mod atomic_file;
 pub mod channel_name;
 pub mod experiment;
 pub mod indicators;
+mod input_file;
+pub mod memory;
 mod npz;
 pub mod own_file;
 mod read_results;

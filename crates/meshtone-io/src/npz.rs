@@ -120,7 +120,11 @@ impl NpzReader {
     }
 
     /// Reads an array of single or double precision.
-    pub fn floats(&mut self, name: &str) -> io::Result<ReadArray> {
+    ///
+    /// # Arguments
+    /// * `name` - of the array
+    /// * `most` - numbers that it may have: a few bytes of a compressed file may stand for any number
+    pub fn floats(&mut self, name: &str, most: u64) -> io::Result<ReadArray> {
         let mut file = self.archive.by_name(&format!("{name}{NPY}"))?;
         let there = file.size();
         let header = NpyHeader::read(&mut file)?;
@@ -140,6 +144,9 @@ impl NpzReader {
                 .is_some_and(|bytes| bytes <= there.saturating_sub(header.length))
         });
         let elements = elements.ok_or_else(|| io::Error::other("it ends too early"))?;
+        if elements > most {
+            return Err(io::Error::other(format!("it holds {elements} numbers; must be at most {most}")));
+        }
         let mut numbers = Vec::new();
         read_records(&mut file, kind.size(), elements, |block| {
             append_strided(block, kind.size(), 0, kind, big_endian, &mut numbers);

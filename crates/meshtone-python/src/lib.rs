@@ -12,6 +12,7 @@ mod dataset;
 mod error;
 mod hybrid;
 mod interrupt;
+mod memory;
 mod phase;
 mod process;
 mod recording;
@@ -30,6 +31,8 @@ mod _core {
     use crate::dataset::{check_plan, dataset_template, generate_dataset, merge_datasets, verify_dataset};
     #[pymodule_export]
     use crate::hybrid::{add_noise, change_duration, change_fault_to_harmonics_ratio, enhance, tune};
+    #[pymodule_export]
+    use crate::memory::set_memory_limit;
     #[pymodule_export]
     use crate::phase::{ShaftPhase, repair_pulses, tachometer_pulses};
     #[pymodule_export]

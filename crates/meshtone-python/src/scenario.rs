@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use meshtone::scenario::{self, MemoryLimit, ProfileErrors, ScenarioError};
+use meshtone::scenario::{self, ProfileErrors, ScenarioError};
 use meshtone::sensor::Channel;
 use meshtone::wheel::ErrorTable;
+use meshtone_io::memory;
 use meshtone_io::scenario_file::{ReadScenarioError, read_scenario};
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -105,7 +106,7 @@ impl Scenario {
 
     /// What is doubtful about it, as far as that can be told before the time loop.
     fn warnings(&self, py: Python<'_>) -> PyResult<Vec<String>> {
-        let checked = py.detach(|| meshtone::stages_and_warnings(&self.0, MemoryLimit::default()));
+        let checked = py.detach(|| meshtone::stages_and_warnings(&self.0, memory::limit()));
         let (_, warnings) = checked.map_err(|error| scenario_error(&error))?;
         Ok(warnings.iter().map(ToString::to_string).collect())
     }

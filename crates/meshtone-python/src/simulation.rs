@@ -3,11 +3,12 @@
 use std::num::NonZeroUsize;
 
 use meshtone::damage::DamagedTooth;
-use meshtone::scenario::{MemoryLimit, ScenarioWarning};
+use meshtone::scenario::ScenarioWarning;
 use meshtone::sensor::ContactFigures;
 use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
 use meshtone::wheel::{WheelDeviations, WheelName};
 use meshtone::{Stages, Trace};
+use meshtone_io::memory;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -66,7 +67,7 @@ pub struct Simulation {
 #[pyfunction]
 pub fn simulate(py: Python<'_>, scenario: &Scenario) -> PyResult<Simulation> {
     let simulated = py.detach(|| {
-        let (stages, mut warnings) = meshtone::stages_and_warnings(&scenario.0, MemoryLimit::default())?;
+        let (stages, mut warnings) = meshtone::stages_and_warnings(&scenario.0, memory::limit())?;
         let simulation = stages.simulate()?;
         warnings.extend(simulation.warnings_of_signals());
         Ok((simulation, warnings))

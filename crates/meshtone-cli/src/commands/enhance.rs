@@ -8,11 +8,11 @@ use meshtone_io::atomic_file::write_atomically;
 use meshtone_io::experiment::{
     EnhancedDraws, EnhancedHead, EnhancedRecord, Tuned, enhance, read_tuned, write_enhanced,
 };
+use meshtone_io::memory;
 use meshtone_io::scenario_file::ScenarioFile;
 
 use crate::check::check;
 use crate::failure::Failure;
-use crate::memory;
 use crate::output_directory::{OutputDirectory, named_after};
 use crate::terminal::{print, print_error_line};
 

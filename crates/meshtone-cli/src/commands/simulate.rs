@@ -10,13 +10,13 @@ use clap::{Args, ValueEnum};
 use meshtone::scenario::{Model, Quality, Scenario, ScenarioError, ScenarioFiles, ScenarioWarning};
 use meshtone::{Simulation, StageTime, Stages, Trace};
 use meshtone_io::experiment::{Tuned, read_tuned};
+use meshtone_io::memory;
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::scenario_file::{FilesBeside, ScenarioFile};
 use meshtone_io::summary::Summary;
 
 use crate::check::check;
 use crate::failure::Failure;
-use crate::memory;
 use crate::output_directory::OutputDirectory;
 use crate::progress::Progress;
 use crate::results::Results;

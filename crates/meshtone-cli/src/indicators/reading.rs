@@ -14,6 +14,9 @@ use super::options::ReadingOptions;
 use super::refuse::unreadable;
 use crate::failure::Failure;
 
+/// Numbers that processing holds for each sample at most, beside the recording: its phase, what is resampled, averages, spectra.
+const NUMBERS_BESIDE_EACH_SAMPLE: u64 = 8;
+
 /// The channel of a simulation that is processed unless another is chosen: the first sensor's, or the vertical acceleration.
 fn leading_of(scenario_toml: &str) -> String {
     // What another version wrote has no sensors, or is looked at without them.
@@ -190,6 +193,7 @@ fn plain(options: &ReadingOptions) -> RecordingOptions {
             decimal_sign: options.decimal_sign.map(Into::into),
             skip_lines: options.skip_lines,
         },
+        numbers_beside_each_sample: NUMBERS_BESIDE_EACH_SAMPLE,
         ..RecordingOptions::default()
     }
 }

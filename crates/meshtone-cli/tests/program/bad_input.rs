@@ -125,6 +125,75 @@ fn more_memory_than_there_is() {
 }
 
 #[test]
+fn a_limit_of_memory_is_given() {
+    let workplace = Workplace::new();
+    let limited = |limit: &'static str| ["simulate", "fast.toml", "--no-panel", "--memory-limit", limit];
+    let words = ["fast.toml: ", "MiB of memory", "at most 1.0 MiB are allowed", "or raise --memory-limit"];
+    workplace.fails(2, &limited("1MiB"), &words);
+    workplace.fails(2, &limited("much"), &["--memory-limit", "such as 2GB, 1.5GiB or 300MB"]);
+    workplace.succeeds(&["--memory-limit", "1GB", "simulate", "fast.toml", "--no-panel"]);
+    // Typed by mistake: hunting periods of seconds at millions of samples.
+    workplace.write("teeth.toml", fast_with("gear_teeth", "gear_teeth = 1000").replace("= 20", "= 17"));
+    let words = ["line 4", "gears.gear_teeth = 1000", "would need 11.4 GiB", "common factor"];
+    workplace.fails(2, &["simulate", "teeth.toml", "--memory-limit", "8GiB"], &words);
+}
+
+/// Some kilobytes that stand for 16 MB.
+#[test]
+fn recordings_that_inflate() {
+    use ndarray::{Array1, Array2};
+    use ndarray_npy::NpzWriter;
+
+    let workplace = Workplace::new();
+    let file = std::fs::File::create(workplace.path("zeros.npz")).unwrap();
+    let mut npz = NpzWriter::new_compressed(file);
+    npz.add_array("sensors", &Array2::<f64>::zeros((2, 1_000_000))).unwrap();
+    npz.add_array("short", &Array1::<f64>::zeros(1000)).unwrap();
+    npz.finish().unwrap();
+    let process = |channel: &'static str, limit: &'static str| {
+        let of_wheel = ["--teeth", "38", "--shaft-hz", "17.9", "--sampling-rate-hz", "5e4"];
+        [&["indicators", "zeros.npz", "-c", channel, "--memory-limit", limit], &of_wheel[..]].concat()
+    };
+    let words = [
+        "zeros.npz: one column of 1000000 samples",
+        "would take 68.7 MiB of memory",
+        "at most 57.2 MiB",
+        "raise --memory-limit",
+    ];
+    workplace.fails(2, &process("sensors 2", "60MB"), &words);
+    workplace.fails(2, &process("sensors", "72MB"), &["2 columns of 1000000 samples", "76.3 MiB"]);
+    workplace.fails(2, &process("sensors 2", "80MB"), &["channel sensors 2", "all 1000000 samples are 0"]);
+    workplace.fails(2, &process("short", "1MB"), &["channel short"]);
+}
+
+/// What has no end, or never begins.
+#[cfg(unix)]
+#[test]
+fn what_is_no_file() {
+    let workplace = Workplace::new();
+    let made = std::process::Command::new("mkfifo").arg(workplace.path("pipe")).status().unwrap();
+    assert!(made.success());
+    for (file, what) in [("pipe", "it is a pipe"), ("/dev/zero", "it is a device")] {
+        workplace.fails(2, &["indicators", file], &[file, what, "write its content into one first"]);
+        let wheels = fast_and(&format!("[quality]\nerrors_file = \"{file}\""));
+        workplace.write("wheels.toml", wheels);
+        workplace.fails(2, &["simulate", "wheels.toml"], &["line 12", "quality.errors_file", file, what]);
+        workplace.write("speed.toml", fast_and(&format!("[operation.speed_profile_hz]\nfile = \"{file}\"")));
+        workplace.fails(
+            2,
+            &["simulate", "speed.toml"],
+            &["line 12", "operation.speed_profile_hz", file, what],
+        );
+        for command in ["simulate", "dataset", "tune"] {
+            workplace.fails(2, &[command, file], &[file, what]);
+        }
+    }
+    // What a shell hands over has an end.
+    let mut command = workplace.command(&["simulate", "/dev/stdin", "-o", "out", "--no-panel", "--quiet"]);
+    command.write_stdin(fast_and("")).assert().success();
+}
+
+#[test]
 fn nothing_left_after_settling() {
     let settling = fast_and("settle_fraction = 0.99999");
     refused(settling, &["line 11", "solver.settle_fraction = 0.99999", "must be smaller"]);

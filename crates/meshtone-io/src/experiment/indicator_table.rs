@@ -1,7 +1,7 @@
 //! Measured indicators from a table with the layout of the paper's: experiment, indicator, series, severity, log10_value.
 
 use std::collections::BTreeSet;
-use std::fs::File;
+use std::io::Read;
 use std::path::PathBuf;
 
 use csv::StringRecord;
@@ -9,6 +9,7 @@ use meshtone::tuning::{Case, Measurements};
 use meshtone_toml::{ReadResult, TomlError, TomlTable, TomlValue};
 
 use super::measured::Wanted;
+use crate::input_file::{MEMORY_PER_BYTE_OF_NUMBERS, open_stream};
 
 /// The series that is read unless another is named.
 const MEASURED: &str = "measured";
@@ -30,10 +31,9 @@ pub(super) fn read(
     let experiment = table.optional("experiment").map(|value| value.string()).transpose()?;
     let series = table.optional("series").map(|value| value.string()).transpose()?;
     let problem = |problem: String| file.error(format!("{}: {problem}", path.display()));
-    let mut reader = csv::ReaderBuilder::new()
-        .trim(csv::Trim::All)
-        .from_path(&path)
+    let text = open_stream(&path, MEMORY_PER_BYTE_OF_NUMBERS)
         .map_err(|error| problem(format!("cannot be read: {error}")))?;
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text);
     sources.push(path.clone());
     let columns = Columns::new(&mut reader, [experiment.is_some(), series.is_some()]).map_err(&problem)?;
     let mut rows = Rows {
@@ -65,7 +65,7 @@ struct Columns {
 impl Columns {
     /// # Arguments
     /// * `named` - whether an experiment and a series are named, whose columns are then needed
-    fn new(reader: &mut csv::Reader<File>, named: [bool; 2]) -> Result<Self, String> {
+    fn new(reader: &mut csv::Reader<impl Read>, named: [bool; 2]) -> Result<Self, String> {
         let header = reader.headers().map_err(|error| format!("cannot be read: {error}"))?.clone();
         let column = |name: &str| header.iter().position(|column| column == name);
         let needed = |name: &str| {

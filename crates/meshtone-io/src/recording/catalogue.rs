@@ -145,6 +145,22 @@ impl Catalogue {
         }
     }
 
+    /// Samples of columns.
+    ///
+    /// # Arguments
+    /// * `wanted` - the columns
+    /// * `entries` - those that the catalogue was made of
+    pub(super) fn samples<'c>(
+        &'c self,
+        wanted: &'c [usize],
+        entries: &'c [ArrayEntry],
+    ) -> impl Iterator<Item = u64> + 'c {
+        let layout = |entry: &ArrayEntry| ArrayLayout::of_shape(&entry.shape, entry.first_runs_fastest);
+        wanted.iter().map(move |column| {
+            layout(&entries[self.places[*column].entry]).map_or(0, |layout| layout.samples)
+        })
+    }
+
     /// Reads columns, array by array.
     ///
     /// # Arguments

@@ -194,6 +194,17 @@ pub enum ReadRecordingError {
         /// The columns of the file.
         present: Vec<String>,
     },
+    /// The samples would take more memory than is allowed.
+    #[error(
+        "{}: {problem}; choose fewer channels (option channels), cut the recording, or raise the memory limit",
+        path.display()
+    )]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// What would be needed, and what is allowed.
+        problem: String,
+    },
     /// The sampling rate that the file says cannot be used, or is said differently in two places.
     #[error("{}: {problem}; give the sampling rate (option sampling_rate_hz)", path.display())]
     Rate {

@@ -7,7 +7,8 @@
 //!
 //! Nothing is guessed about the numbers: a cell that is empty or no number, time that is not uniform, or a file
 //! that ends early is a [`ReadRecordingError`] that names the place. Memory stays bounded by what the file
-//! really holds, whatever its headers claim.
+//! really holds, whatever its headers claim, and by the [limit](crate::memory::limit): how much the samples will take is known
+//! before they are read, or counted meanwhile.
 
 pub(crate) mod array;
 mod assemble;
@@ -16,6 +17,7 @@ mod error;
 mod format;
 mod label;
 mod mat;
+mod memory_need;
 pub(crate) mod number;
 pub(crate) mod numpy;
 mod options;
@@ -30,7 +32,6 @@ mod unit;
 mod warning;
 mod wav;
 
-use std::fs::File;
 use std::path::{Path, PathBuf};
 
 pub use error::{Position, ReadRecordingError};
@@ -39,6 +40,8 @@ pub use options::{
     Calibration, ColumnChoice, DecimalSign, RecordingOptions, Separator, TextOptions, TimeColumn,
 };
 pub use warning::RecordingWarning;
+
+use crate::input_file::open_ordinary;
 
 /// The file in a folder of results that is read for the folder.
 const SIGNALS_FILE: &str = "signals.parquet";
@@ -116,7 +119,8 @@ impl Recording {
 /// column too, the two must agree.
 ///
 /// # Errors
-/// The file cannot be read, is of no known format, is broken or cut off; a column or variable does not exist;
+/// The file cannot be read, is of no known format, is broken or cut off; its samples would take more memory than is
+/// [allowed](crate::memory::limit); a column or variable does not exist;
 /// a sample is missing or not finite; time is not uniform; there is no sampling rate. Every message names the
 /// file, the place in it, and what to do.
 ///
@@ -163,7 +167,7 @@ pub fn read_recording(path: &Path, options: &RecordingOptions) -> Result<Recordi
     options.check()?;
     let inside = path.join(SIGNALS_FILE);
     let path = if path.is_dir() && inside.exists() { inside.as_path() } else { path };
-    let mut file = File::open(path).map_err(|source| error::unreadable(path, source))?;
+    let mut file = open_ordinary(path).map_err(|source| error::unreadable(path, source))?;
     let format = format::detect(path, &mut file, options.format)?;
     options.check_format(format)?;
     match format {

@@ -132,6 +132,9 @@ pub struct RecordingOptions {
     pub format: Option<RecordingFormat>,
     /// How a text file is written.
     pub text: TextOptions,
+    /// Numbers that are held for each sample of a column beside the sample itself, by what is done with the recording: they count
+    /// when it is compared with the memory that may be taken.
+    pub numbers_beside_each_sample: u64,
 }
 
 impl RecordingOptions {

@@ -4,7 +4,8 @@ use std::fs::File;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use parquet::file::metadata::FileMetaData;
+use parquet::basic::Compression;
+use parquet::file::metadata::{ColumnChunkMetaData, FileMetaData};
 
 use super::assemble::{Parts, assemble};
 use super::error::{broken, read_failed, unreadable};
@@ -13,7 +14,7 @@ use super::parquet_check::check;
 use super::parquet_depth::is_too_deep;
 use super::rate::StatedRate;
 use super::selection::select;
-use super::{Position, ReadRecordingError, Recording, RecordingOptions};
+use super::{Position, ReadRecordingError, Recording, RecordingOptions, memory_need};
 use crate::signals::{SCENARIO_KEY, with_model};
 use crate::table::{FoundColumn, FoundType, TableReader};
 
@@ -52,6 +53,14 @@ fn decode(path: &Path, mut file: File, options: &RecordingOptions) -> Result<Rec
     let scenario_toml = scenario(head);
     let selection = select(path, &labels, options)?;
     let wanted = selection.wanted();
+    let rows = u64::try_from(head.num_rows()).unwrap_or(0);
+    let chunks = || wanted.iter().flat_map(|index| table.chunks(&table.columns()[*index]));
+    if let Some(foreign) = chunks().find(|chunk| !is_read(chunk.compression())) {
+        return Err(foreign_codec(path, foreign));
+    }
+    // A page is there as a whole beside the numbers that it becomes, and is its whole chunk at most.
+    let page_bytes = chunks().filter_map(|chunk| u64::try_from(chunk.uncompressed_size()).ok()).max();
+    memory_need::check(path, options, &selection, wanted.iter().map(|_| rows), page_bytes.unwrap_or(0))?;
     let capacity = capacity(wanted.len(), head.num_rows(), file_bytes);
     let read = |index: &usize| {
         let column = &table.columns()[*index];
@@ -81,6 +90,27 @@ fn label(column: &FoundColumn) -> Label {
         other => label.not_numeric = Some(other.to_string()),
     }
     label
+}
+
+/// Whether pages of a codec can be decompressed here.
+fn is_read(codec: Compression) -> bool {
+    use Compression::{GZIP, LZ4, LZ4_RAW, SNAPPY, UNCOMPRESSED, ZSTD};
+
+    matches!(codec, UNCOMPRESSED | SNAPPY | GZIP(_) | LZ4 | LZ4_RAW | ZSTD(_))
+}
+
+fn foreign_codec(path: &Path, chunk: &ColumnChunkMetaData) -> ReadRecordingError {
+    let codec = chunk.compression().to_string();
+    let codec = codec.split('(').next().unwrap_or_default();
+    let column = chunk.column_path().string();
+    ReadRecordingError::Convert {
+        path: path.to_path_buf(),
+        what: format!("a Parquet file whose column {column} is compressed by {codec}"),
+        how:
+            "write it again uncompressed or with Snappy, gzip, LZ4 or Zstandard, for instance in Python with \
+              `pandas.read_parquet('FILE').to_parquet('NEW', compression='zstd')`"
+                .to_string(),
+    }
 }
 
 fn stated_rates(metadata: &FileMetaData) -> Vec<StatedRate> {

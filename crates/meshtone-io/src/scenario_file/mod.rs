@@ -121,6 +121,10 @@ fn unreadable(path: &Path, error: &io::Error) -> FileProblem {
             format!("there is no file {shown}"),
             "check the name; it is relative to the scenario file's directory",
         ),
+        io::ErrorKind::InvalidInput | io::ErrorKind::FileTooLarge => FileProblem::new(
+            format!("cannot read {shown}: {error}"),
+            "name an ordinary file of moderate size",
+        ),
         _ => FileProblem::new(format!("cannot read {shown}: {error}"), "check the file and its permissions"),
     }
 }

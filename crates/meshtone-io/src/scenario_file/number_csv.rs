@@ -1,12 +1,13 @@
 //! Columns of numbers in a CSV file.
 
-use std::fs::File;
+use std::io;
 use std::path::Path;
 
 use csv::{ReaderBuilder, StringRecord, Trim};
 use meshtone::scenario::FileProblem;
 
 use super::unreadable;
+use crate::input_file::{MEMORY_PER_BYTE_OF_NUMBERS, open_stream};
 
 /// A CSV file of some columns of numbers.
 pub(super) struct NumberCsv<const COLUMNS: usize> {
@@ -23,7 +24,7 @@ pub(super) struct NumberCsv<const COLUMNS: usize> {
 impl<const COLUMNS: usize> NumberCsv<COLUMNS> {
     /// The columns of a file.
     pub(super) fn read(&self, path: &Path) -> Result<[Vec<f64>; COLUMNS], FileProblem> {
-        let file = File::open(path).map_err(|error| unreadable(path, &error))?;
+        let file = open_stream(path, MEMORY_PER_BYTE_OF_NUMBERS).map_err(|error| unreadable(path, &error))?;
         let mut reader = ReaderBuilder::new()
             .has_headers(false)
             .flexible(true)
@@ -32,8 +33,10 @@ impl<const COLUMNS: usize> NumberCsv<COLUMNS> {
             .from_reader(file);
         let mut columns = std::array::from_fn(|_| Vec::new());
         for (index, record) in reader.records().enumerate() {
-            let record =
-                record.map_err(|error| self.problem(path, &format!("is not a CSV file: {error}")))?;
+            let record = record.map_err(|error| match error.is_io_error() {
+                true => unreadable(path, &io::Error::from(error)),
+                false => self.problem(path, &format!("is not a CSV file: {error}")),
+            })?;
             if index == 0 && (self.needs_names || is_header(&record)) {
                 self.check_names(path, &record)?;
                 continue;

@@ -1,6 +1,5 @@
 //! Profile errors of both wheels and their other deviations, in a NumPy archive.
 
-use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
@@ -9,8 +8,11 @@ use meshtone::wheel::ErrorTable;
 
 use super::unreadable;
 use crate::atomic_file::{WriteFileError, write_atomically};
+use crate::input_file::open_ordinary;
 use crate::npz::{NpzReader, NpzWriter, ReadArray};
 
+/// More numbers than the errors of any wheel have: 100 for each of 10 000 teeth.
+const MOST_NUMBERS: u64 = 1_000_000;
 const PINION: &str = "pinion_profile_errors_mm";
 const GEAR: &str = "gear_profile_errors_mm";
 const HELP: &str = "save both wheels' errors with numpy.savez(name, pinion_profile_errors_mm=…, \
@@ -39,7 +41,7 @@ pub(super) fn read_deviations(path: &Path) -> Result<[WheelDeviations; 2], FileP
 }
 
 fn open(path: &Path) -> Result<NpzReader, FileProblem> {
-    let file = File::open(path).map_err(|error| unreadable(path, &error))?;
+    let file = open_ordinary(path).map_err(|error| unreadable(path, &error))?;
     NpzReader::new(file).map_err(|error| problem(path, &format!("is not an .npz archive: {error}")))
 }
 
@@ -49,7 +51,7 @@ fn names(path: &Path, archive: &NpzReader) -> Result<Vec<String>, FileProblem> {
 
 fn floats(path: &Path, archive: &mut NpzReader, name: &str) -> Result<ReadArray, FileProblem> {
     archive
-        .floats(name)
+        .floats(name, MOST_NUMBERS)
         .map_err(|error| problem(path, &format!("has an entry {name} that cannot be read: {error}")))
 }
 

@@ -6,6 +6,8 @@ use meshtone::scenario::{MemoryLimit, Scenario, ScenarioError};
 use meshtone_toml::TomlDocument;
 
 use super::{FilesBeside, ReadScenarioError, remembering::Remembering};
+use crate::input_file::read_document;
+use crate::memory;
 
 /// A scenario file that has been read.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,7 +23,7 @@ pub struct ScenarioFile {
 }
 
 impl ScenarioFile {
-    /// Reads and validates a scenario file, and the files that it names.
+    /// Reads and validates a scenario file, and the files that it names, within the [limit](memory::limit) of memory.
     ///
     /// # Arguments
     /// * `path` - the scenario file; names of other files in it are relative to its directory
@@ -29,7 +31,7 @@ impl ScenarioFile {
     /// # Errors
     /// As [`super::read_scenario`].
     pub fn read(path: &Path) -> Result<Self, ReadScenarioError> {
-        Self::read_within(path, MemoryLimit::default())
+        Self::read_within(path, memory::limit())
     }
 
     /// As [`Self::read`], with another limit of memory.
@@ -83,7 +85,7 @@ const BYTE_ORDER_MARK: char = '\u{feff}';
 pub fn read_text(path: &Path) -> Result<String, ReadScenarioError> {
     let path_buf = || path.to_path_buf();
     let bytes =
-        std::fs::read(path).map_err(|source| ReadScenarioError::Unreadable { path: path_buf(), source })?;
+        read_document(path).map_err(|source| ReadScenarioError::Unreadable { path: path_buf(), source })?;
     let text = String::from_utf8(bytes).map_err(|error| {
         let (bytes, start) = (error.as_bytes(), error.utf8_error().valid_up_to());
         let line = 1 + bytes[..start].iter().filter(|&&byte| byte == b'\n').count();

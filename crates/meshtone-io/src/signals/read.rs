@@ -9,6 +9,8 @@ use parquet::file::metadata::FileMetaData;
 
 use crate::ReadResultsError;
 use crate::channel_name::former_column;
+use crate::input_file::open_ordinary;
+use crate::memory;
 use crate::run_identity::RunIdentity;
 use crate::table::{FoundType, NumberType, TableReader};
 
@@ -36,11 +38,16 @@ pub struct Recorded {
 /// # Errors
 /// The file cannot be read, or it is none that Meshtone wrote.
 pub fn read_signals(path: &Path) -> Result<Recorded, ReadResultsError> {
-    let file = File::open(path).map_err(|source| ReadResultsError::unreadable(path, source))?;
+    let file = open_ordinary(path).map_err(|source| ReadResultsError::unreadable(path, source))?;
     let foreign = |problem: String| ReadResultsError::foreign(path, problem);
     let broken = |error: &dyn std::fmt::Display| foreign(format!("is not a whole Parquet file: {error}"));
     let table = TableReader::new(file).map_err(|error| broken(&error))?;
     let metadata = table.metadata().file_metadata();
+    let rows = u64::try_from(metadata.num_rows()).unwrap_or(u64::MAX);
+    let needed = rows.saturating_mul((size_of::<f64>() * table.columns().len()) as u64);
+    if let Some(objection) = memory::limit().objection(needed) {
+        return Err(foreign(format!("its {rows} rows {objection}; raise the memory limit")));
+    }
     let text = text_of(metadata, SCENARIO_KEY).map_err(foreign)?;
     let scenario = Scenario::from_toml(&with_model(text))
         .map_err(|error| ReadResultsError::Scenario { path: path.to_path_buf(), error: Box::new(error) })?;

@@ -1,11 +1,11 @@
 //! Reading what tells a summary's run.
 
-use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
 
 use crate::ReadResultsError;
+use crate::input_file::read_document;
 use crate::run_identity::RunIdentity;
 
 /// The identity of the run that a summary is of.
@@ -26,7 +26,7 @@ use crate::run_identity::RunIdentity;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read_run(path: &Path) -> Result<RunIdentity, ReadResultsError> {
-    let text = fs::read(path).map_err(|source| ReadResultsError::unreadable(path, source))?;
+    let text = read_document(path).map_err(|source| ReadResultsError::unreadable(path, source))?;
     let foreign = |problem: String| ReadResultsError::foreign(path, problem);
     let summary: Value =
         serde_json::from_slice(&text).map_err(|error| foreign(format!("is not whole JSON: {error}")))?;

@@ -3,7 +3,7 @@
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{DataType, DoubleType, Int96Type};
 use parquet::errors::{ParquetError, Result};
-use parquet::file::metadata::ParquetMetaData;
+use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData};
 use parquet::file::reader::{ChunkReader, FileReader, SerializedFileReader};
 use parquet::schema::types::Type;
 
@@ -79,6 +79,15 @@ impl<R: ChunkReader + 'static> TableReader<R> {
     /// * `name` - the name
     pub fn column(&self, name: &str) -> Option<&FoundColumn> {
         self.columns.iter().find(|column| column.name == name)
+    }
+
+    /// What the file says of a column's chunks, one in each group of rows.
+    ///
+    /// # Arguments
+    /// * `column` - of this table
+    pub fn chunks(&self, column: &FoundColumn) -> impl Iterator<Item = &ColumnChunkMetaData> {
+        let leaf = column.leaf;
+        self.file.metadata().row_groups().iter().filter_map(move |group| group.columns().get(leaf))
     }
 
     /// Reads a column of numbers, or of moments as seconds since the first.

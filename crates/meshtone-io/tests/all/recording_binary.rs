@@ -9,7 +9,7 @@ use crate::recording_help::{rate, read, refused};
 use hound::{SampleFormat, WavSpec, WavWriter};
 use meshtone::scenario::{GearPair, Scenario};
 use meshtone::sensor::Channels;
-use meshtone_io::recording::{Recording, RecordingOptions, read_recording};
+use meshtone_io::recording::{ColumnChoice, Recording, RecordingOptions, read_recording};
 use meshtone_io::signals::write_signals;
 use ndarray::{Array1, Array2, Array3, ShapeBuilder, arr0};
 use ndarray_npy::{NpzWriter, WriteNpyExt};
@@ -259,6 +259,54 @@ fn wav_is_read() {
         [1.5_f32, -2.5].iter().for_each(|sample| writer.write_sample(*sample).unwrap());
     });
     assert_eq!(read("a.wav", &bytes, &defaults()).unwrap().channels[1].samples, [-2.5]);
+}
+
+/// Two channels of floating point of 64 bits, with a chunk of another kind before them.
+fn wav_of_doubles(samples: &[f64], is_extensible: bool) -> Vec<u8> {
+    let kind: u16 = if is_extensible { 0xfffe } else { 3 };
+    let mut format = kind.to_le_bytes().to_vec();
+    format.extend(2_u16.to_le_bytes());
+    format.extend(51_200_u32.to_le_bytes());
+    format.extend((51_200_u32 * 16).to_le_bytes());
+    format.extend(16_u16.to_le_bytes());
+    format.extend(64_u16.to_le_bytes());
+    if is_extensible {
+        format.extend([22, 0, 64, 0, 3, 0, 0, 0]);
+        format.extend(3_u16.to_le_bytes());
+        format.extend(b"\x00\x00\x00\x00\x10\x00\x80\x00\x00\xaa\x00\x38\x9b\x71");
+    }
+    let mut bytes = b"RIFF\xff\xff\xff\x00WAVE".to_vec();
+    let data = samples.iter().flat_map(|sample| sample.to_le_bytes()).collect();
+    for (mark, content) in [(b"note", vec![b'x'; 3]), (b"fmt ", format), (b"data", data)] {
+        bytes.extend(mark);
+        bytes.extend((content.len() as u32).to_le_bytes());
+        bytes.extend(&content);
+        bytes.resize(bytes.len().next_multiple_of(2), 0);
+    }
+    bytes
+}
+
+#[test]
+fn wav_of_double_precision_is_read() {
+    let samples = [1.5, -2.5, 1e-300, 0.1, std::f64::consts::PI, 0.0];
+    for is_extensible in [false, true] {
+        let bytes = wav_of_doubles(&samples, is_extensible);
+        let recording = read("a.wav", &bytes, &defaults()).unwrap();
+        assert_eq!((recording.sampling_rate_hz, recording.len()), (51_200.0, 3));
+        assert_eq!(recording.channels[0].samples, [1.5, 1e-300, std::f64::consts::PI]);
+        let second = RecordingOptions { channels: vec![ColumnChoice::Number(2)], ..defaults() };
+        let recording = read("a.wav", &bytes, &second).unwrap();
+        assert_eq!(recording.channels[0].samples, [-2.5, 0.1, 0.0]);
+        let message = refused("a.wav", &bytes[..bytes.len() - 8], &defaults());
+        assert!(message.contains("is not a whole WAV file: it ends too early"), "{message}");
+        let message = refused("a.wav", &bytes[..60], &defaults());
+        assert!(message.contains("is not a whole WAV file"), "{message}");
+    }
+    let huge = wav_of_doubles(&samples, false);
+    let data = huge.len() - 8 * samples.len() - 4;
+    let lying = [&huge[..data], &[0xf0, 0xff, 0xff, 0xff], &huge[data + 4..]].concat();
+    let message = refused("a.wav", &lying, &defaults());
+    assert!(message.contains("announces 4294967280 bytes of samples, but ends after"), "{message}");
 }
 
 #[test]

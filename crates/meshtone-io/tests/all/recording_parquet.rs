@@ -83,6 +83,14 @@ fn every_encoding_and_compression_is_read() {
 }
 
 #[test]
+fn another_codec_is_named_with_those_that_are_read() {
+    let refused = read_recording(&file("brotli.parquet"), &rate(1.0)).unwrap_err().to_string();
+    for words in ["column a is compressed by BROTLI, which is not read", "Snappy, gzip, LZ4 or Zstandard"] {
+        assert!(refused.contains(words), "{refused}");
+    }
+}
+
+#[test]
 fn moments_of_every_unit_are_times() {
     let rate_of = |name: &str, time: &str| {
         let options = RecordingOptions {

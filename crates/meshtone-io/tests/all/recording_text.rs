@@ -133,7 +133,7 @@ fn text_options_go_before_what_is_found() {
 
 #[test]
 fn bad_lines_are_named() {
-    let cases: [(&str, &str); 11] = [
+    let cases: [(&str, &str); 14] = [
         ("a,b\n1,2\n3,\n5,6\n", "line 3 of column b is empty; every sample must be a finite number: cut"),
         ("a,b\n1,2\n3,NaN\n5,6\n", "line 3 of column b is NaN"),
         ("a,b\n1,2\n-inf,4\n5,6\n", "line 3 of column a is infinite"),
@@ -149,6 +149,9 @@ fn bad_lines_are_named() {
             "a;b\n1;2.5\n3;4.5\n5;6.5\n7;8,5\n",
             "line 5, column b: `8,5` is no number; the first lines are read with",
         ),
+        ("0.1x2\n0.2\n0.3\n0.4\n", "line 1, column column 1: `0.1x2` is no number; if the line belongs"),
+        ("a\n0.1x2\n0.2\n0.3\n0.4\n", "line 2, column a: `0.1x2` is no number"),
+        ("1;0,1x2\n2;0,2\n3;0,3\n4;0,4\n", "line 1, column column 2: `0,1x2` is no number"),
         ("a\n1\n\n3\n", "line 3 of column a is empty"),
         ("a,b\n", "holds no line of numbers"),
     ];

@@ -222,6 +222,13 @@ fn profile_errors_that_cannot_be_used() {
     let words = ["no entry pinion_profile_errors_mm", "it has errors, gear_profile_errors_mm"];
     assert_refused(with_errors(&directory), key, 10, &words);
 
+    // A few bytes that stand for many numbers are not decompressed.
+    let mut many = NpzWriter::new_compressed(File::create(directory.path().join("wheels.npz")).unwrap());
+    many.add_array("pinion_profile_errors_mm", &Array2::<f64>::zeros((100, 10_001))).unwrap();
+    many.finish().unwrap();
+    let words = ["pinion_profile_errors_mm that cannot be read", "1000100 numbers; must be at most 1000000"];
+    assert_refused(with_errors(&directory), key, 10, &words);
+
     save(&directory, &errors(16), &errors(38));
     let shapes = ["pinion_profile_errors_mm: is 100 × 16; must be 100 × 17"];
     assert_refused(with_errors(&directory), key, 10, &shapes);

@@ -87,6 +87,9 @@ pq.write_table(table(moments[:4] + moments[-1:]), folder / "moments_int96.parque
 gaps = table([("a", pa.float64(), signal, None), ("b", pa.float64(), [None if row == 41 else 1.0 for row in rows], None)])
 pq.write_table(gaps, folder / "gaps.parquet", row_group_size=20)
 
+# A codec that is not read.
+pq.write_table(table([("a", pa.float64(), signal, None)]), folder / "brotli.parquet", compression="brotli")
+
 pl.DataFrame(
     {"time": [row / 100 for row in rows], "a": pl.Series(signal, dtype=pl.Float32), "note": ["x"] * 60, "b": list(rows)}
 ).write_parquet(folder / "polars.parquet")

@@ -312,7 +312,7 @@ fn sampling_rates_of_the_published_model() {
 
 #[test]
 fn simulations_too_large_for_memory() {
-    let words = ["GiB of memory", "at most 16.0 GiB", "lower it"];
+    let words = ["GiB of memory", "at most 8.0 GiB", "lower it"];
     let text = appended("[solver]\nsampling_rate_hz = 1e12");
     assert_refused(&text, "solver.sampling_rate_hz", 10, &words);
 

@@ -20,7 +20,7 @@ use super::assemble::{Parts, assemble};
 use super::catalogue::{ArrayEntry, Catalogue};
 use super::error::{broken, read_failed, unreadable};
 use super::selection::select;
-use super::{ReadRecordingError, Recording, RecordingOptions};
+use super::{ReadRecordingError, Recording, RecordingOptions, memory_need};
 
 const FORMAT: &str = "MAT";
 const HEADER_BYTES: u64 = 128;
@@ -44,8 +44,10 @@ pub(super) fn read(
     let (entries, places): (Vec<ArrayEntry>, Vec<Place>) = walk.arrays.into_iter().unzip();
     let catalogue = Catalogue::new(path, &entries, options, false)?;
     let selection = select(path, &catalogue.labels, options)?;
+    let wanted = selection.wanted();
+    memory_need::check(path, options, &selection, catalogue.samples(&wanted, &entries), 0)?;
     let mut open: Option<(Variable, Source)> = None;
-    let samples = catalogue.read(&selection.wanted(), &entries, |index, layout, numbers, channels| {
+    let samples = catalogue.read(&wanted, &entries, |index, layout, numbers, channels| {
         let Place { variable, offset, bytes } = places[index];
         let mut source = match open.take() {
             Some((same, source)) if same == variable && source.at <= offset => source,

@@ -21,7 +21,7 @@ use super::catalogue::{ArrayEntry, Catalogue, MAX_ARRAYS, Numbers};
 use super::error::{broken, read_failed, unreadable};
 use super::number::append_strided;
 use super::selection::select;
-use super::{ReadRecordingError, Recording, RecordingOptions};
+use super::{ReadRecordingError, Recording, RecordingOptions, memory_need};
 
 const NPY: &str = "NPY";
 const NPZ: &str = "NPZ";
@@ -51,7 +51,9 @@ pub(super) fn read_npy(
     let (entries, stored) = entries(vec![(String::new(), 0, header, None)]);
     let catalogue = Catalogue::new(path, &entries, options, true)?;
     let selection = select(path, &catalogue.labels, options)?;
-    let samples = catalogue.read(&selection.wanted(), &entries, |index, layout, numbers, wanted| {
+    let wanted = selection.wanted();
+    memory_need::check(path, options, &selection, catalogue.samples(&wanted, &entries), 0)?;
+    let samples = catalogue.read(&wanted, &entries, |index, layout, numbers, wanted| {
         let stored = &stored[index];
         let start = SeekFrom::Start(stored.header.length);
         let there =
@@ -73,7 +75,9 @@ pub(super) fn read_npz(
     let (entries, stored) = entries(survey(path, &mut archive)?);
     let catalogue = Catalogue::new(path, &entries, options, true)?;
     let selection = select(path, &catalogue.labels, options)?;
-    let samples = catalogue.read(&selection.wanted(), &entries, |index, layout, numbers, wanted| {
+    let wanted = selection.wanted();
+    memory_need::check(path, options, &selection, catalogue.samples(&wanted, &entries), 0)?;
+    let samples = catalogue.read(&wanted, &entries, |index, layout, numbers, wanted| {
         let stored = &stored[index];
         let mut from = archive.by_index(stored.file).map_err(|error| zip_failed(path, error))?;
         check_size(path, NPZ, &stored.header, from.size())?;

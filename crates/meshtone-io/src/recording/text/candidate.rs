@@ -123,8 +123,14 @@ impl Candidate {
             .iter()
             .zip(&kinds)
             .all(|(cell, kind)| !matches!(kind, Cell::Number(_)) || cell.iter().all(u8::is_ascii_digit));
+        // Names come in rows; a single cell that is nearly a number is a sample with a slip in it.
+        let slip = texts == 1 && judged.iter().any(|cell| self.dialect.is_spoiled_number(cell));
         let all_missing = judged.iter().all(|cell| is_missing(cell));
-        only_counts && texts > 0 && !all_missing && (texts > numbers || kinds.first() == Some(&Cell::Text))
+        only_counts
+            && texts > 0
+            && !slip
+            && !all_missing
+            && (texts > numbers || kinds.first() == Some(&Cell::Text))
     }
 
     /// Whether two columns may as well be one with a decimal comma.
@@ -142,6 +148,7 @@ impl Candidate {
         let says_something = |cell: &[u8]| !is_missing(cell) && self.dialect.cell(cell) == Cell::Text;
         cells.len() == self.columns
             && cells.iter().any(|cell| says_something(cell))
+            && !cells.iter().any(|cell| self.dialect.is_spoiled_number(cell))
             && !cells.iter().any(|cell| is_number(cell) && *cell != b"1")
     }
 

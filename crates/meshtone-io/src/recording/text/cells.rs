@@ -47,6 +47,23 @@ impl Dialect {
         };
         fast_float2::parse(with_point).map_or(Cell::Text, Cell::Number)
     }
+
+    /// Whether a cell is a number with a slip in it, such as `0.1x2`, `1..5` or `2.5e`, and no name such as `0.5Hz`, `1X` or a date.
+    pub(super) fn is_spoiled_number(&self, cell: &[u8]) -> bool {
+        let sign = if self.decimal_comma { b',' } else { b'.' };
+        let digits = |text: &[u8]| text.iter().take_while(|byte| byte.is_ascii_digit()).count();
+        let unsigned = cell.strip_prefix(b"-").or(cell.strip_prefix(b"+")).unwrap_or(cell);
+        let whole = digits(unsigned);
+        let Some(fraction) = unsigned[whole..].strip_prefix(&[sign]).filter(|_| whole > 0) else {
+            return false;
+        };
+        let rest = &fraction[digits(fraction)..];
+        let is_word =
+            rest.iter().all(|byte| byte.is_ascii_alphanumeric() || [b'.', b',', b'+', b'-'].contains(byte));
+        let mixed = rest.iter().any(u8::is_ascii_alphabetic) && rest.iter().any(u8::is_ascii_digit);
+        let cut_exponent = matches!(rest, [b'e' | b'E'] | [b'e' | b'E', b'+' | b'-']);
+        is_word && (mixed || cut_exponent || rest.first() == Some(&sign) && fraction.first() == Some(&sign))
+    }
 }
 
 pub(super) fn byte_of(separator: Separator) -> u8 {
@@ -115,6 +132,14 @@ mod tests {
         }
         for text in ["1.5", "1.234,5", "1,234,567"] {
             assert_eq!(comma.cell(text.as_bytes()), Cell::Text, "{text}");
+        }
+        for spoiled in ["0.1x2", "-1..5", "2.5e", "+2.5E-", "0.1O2"] {
+            assert!(point.is_spoiled_number(spoiled.as_bytes()), "{spoiled}");
+            assert!(comma.is_spoiled_number(spoiled.replace('.', ",").as_bytes()), "{spoiled}");
+        }
+        for name in ["0.5Hz", "1X", "3rd", "10.05.2024", "0.5 g2", "0.5[m/s2]", "x0.1", "1.5", ".1x2", "1x2"]
+        {
+            assert!(!point.is_spoiled_number(name.as_bytes()), "{name}");
         }
         assert_eq!(point.cell(b""), Cell::Empty);
         assert_eq!(decoded(b"\xb5m"), "µm");

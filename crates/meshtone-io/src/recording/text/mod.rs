@@ -22,7 +22,7 @@ use self::numbers::Numbers;
 use super::assemble::{Parts, assemble};
 use super::error::{broken, read_failed, unreadable};
 use super::selection::select;
-use super::{ReadRecordingError, Recording, RecordingOptions};
+use super::{ReadRecordingError, Recording, RecordingOptions, memory_need};
 
 const FORMAT: &str = "text";
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
@@ -43,6 +43,8 @@ pub(super) fn read(
     file.seek(SeekFrom::Start(head.data_offset)).map_err(failed)?;
     // A little more than expected, as a column that grows is copied.
     let rows = 1.01 * file_bytes as f64 / head.line_bytes.max((CELL_BYTES * wanted.len()) as f64);
+    let check = |rows: u64| memory_need::check(path, options, &selection, wanted.iter().map(|_| rows), 0);
+    check(rows as u64)?;
     let mut numbers = Numbers::new(path, &head, &wanted, rows as usize + 1);
     let mut blocks = Blocks::new(&file);
     loop {
@@ -51,6 +53,7 @@ pub(super) fn read(
             break;
         }
         numbers.read(block)?;
+        check(numbers.rows() as u64)?;
     }
     let last_line = numbers.last_line();
     let samples = numbers.finish()?;

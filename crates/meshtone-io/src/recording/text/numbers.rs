@@ -68,6 +68,11 @@ impl<'h> Numbers<'h> {
         Ok(())
     }
 
+    /// Lines of numbers that were read.
+    pub(super) fn rows(&self) -> usize {
+        self.rows
+    }
+
     /// The last line that was read, counted from 1.
     pub(super) fn last_line(&self) -> u64 {
         self.line - 1

@@ -1,10 +1,15 @@
-//! How much memory a simulation may need.
+//! How much memory may be taken.
 
-/// (bytes) Most memory that one simulation may need: 16 GiB. What needs more is a slip in a speed
-/// or a sampling rate rather than a wish.
-pub const MEMORY_LIMIT_BYTES: u64 = 16 << 30;
+use std::sync::atomic::{AtomicU64, Ordering};
 
-/// How much memory a simulation may need, and why no more.
+/// (bytes) Most memory that one simulation, or what is read of one file, may take unless another limit is
+/// [set](MemoryLimit::set): 8 GiB. What needs more is a slip in a tooth count, a speed or a sampling rate rather than a wish.
+pub const MEMORY_LIMIT_BYTES: u64 = 8 << 30;
+
+/// (bytes) What was set for the whole program; 0 for nothing.
+static OF_PROGRAM: AtomicU64 = AtomicU64::new(0);
+
+/// How much memory a simulation, or what is read of a file, may take, and why no more.
 ///
 /// ```
 /// use meshtone::scenario::{MEMORY_LIMIT_BYTES, MemoryLimit};
@@ -14,7 +19,7 @@ pub const MEMORY_LIMIT_BYTES: u64 = 16 << 30;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MemoryLimit {
-    /// A limit by itself. The default is [`MEMORY_LIMIT_BYTES`].
+    /// A limit by itself. The default is what was [set](MemoryLimit::set), or else [`MEMORY_LIMIT_BYTES`].
     Given {
         /// (bytes) The limit.
         bytes: u64,
@@ -28,11 +33,52 @@ pub enum MemoryLimit {
 
 impl Default for MemoryLimit {
     fn default() -> Self {
-        Self::Given { bytes: MEMORY_LIMIT_BYTES }
+        Self::of_program().unwrap_or(Self::Given { bytes: MEMORY_LIMIT_BYTES })
     }
 }
 
 impl MemoryLimit {
+    /// Sets the limit of the whole program, whose memory is one: for everything that is checked from then on without a limit of
+    /// its own.
+    ///
+    /// # Arguments
+    /// * `bytes` - (bytes) the limit, above 0; none for the default
+    ///
+    /// ```
+    /// use meshtone::scenario::{MEMORY_LIMIT_BYTES, MemoryLimit};
+    ///
+    /// MemoryLimit::set(Some(2 << 30));
+    /// assert_eq!(MemoryLimit::default().bytes(), 2 << 30);
+    /// MemoryLimit::set(None);
+    /// assert_eq!(MemoryLimit::default().bytes(), MEMORY_LIMIT_BYTES);
+    /// ```
+    pub fn set(bytes: Option<u64>) {
+        OF_PROGRAM.store(bytes.unwrap_or(0), Ordering::Relaxed);
+    }
+
+    /// The limit that was set for the whole program, if one was.
+    pub fn of_program() -> Option<Self> {
+        let bytes = OF_PROGRAM.load(Ordering::Relaxed);
+        (bytes > 0).then_some(Self::Given { bytes })
+    }
+
+    /// What is wrong with something that takes more; none where it does not.
+    ///
+    /// # Arguments
+    /// * `needed_bytes` - (bytes) what it takes
+    ///
+    /// ```
+    /// use meshtone::scenario::MemoryLimit;
+    ///
+    /// let limit = MemoryLimit::Given { bytes: 1 << 30 };
+    /// assert_eq!(limit.objection(1 << 30), None);
+    /// assert_eq!(limit.objection(3 << 30).unwrap(), "would take 3.0 GiB of memory; at most 1.0 GiB are allowed");
+    /// ```
+    pub fn objection(self, needed_bytes: u64) -> Option<String> {
+        (needed_bytes > self.bytes())
+            .then(|| format!("would take {} of memory; {}", in_words(needed_bytes), self.allows()))
+    }
+
     /// (bytes) The limit.
     pub fn bytes(self) -> u64 {
         match self {
@@ -77,13 +123,13 @@ mod tests {
 
     #[test]
     fn what_is_allowed_names_the_machine_only_where_it_is_known() {
-        assert_eq!(MemoryLimit::default().allows(), "at most 16.0 GiB are allowed");
+        assert_eq!(MemoryLimit::default().allows(), "at most 8.0 GiB are allowed");
         let machine = |free_bytes| MemoryLimit::Machine { free_bytes }.allows();
         assert_eq!(machine(3 << 29), "only 1.5 GiB are free on this machine");
         assert_eq!(machine(100 << 20), "only 100.0 MiB are free on this machine");
         assert_eq!(
             machine(20 << 30),
-            "at most 16.0 GiB are allowed, of the 20.0 GiB that are free on this machine"
+            "at most 8.0 GiB are allowed, of the 20.0 GiB that are free on this machine"
         );
     }
 

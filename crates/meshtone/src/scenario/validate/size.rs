@@ -115,5 +115,8 @@ pub(super) fn check(scenario: &Scenario, limit: MemoryLimit) -> Check {
     let problem = format!(
         "the simulation would need {needed} of memory at its actual sampling rate of {actual:.4e} S/s; {allowed}"
     );
-    Err(largest_cause::refuse(scenario, &problem))
+    let mut refused = largest_cause::refuse(scenario, &problem);
+    let raise = "raise the memory limit";
+    refused.help = Some(refused.help.map_or(raise.to_string(), |help| format!("{help}; or {raise}")));
+    Err(refused)
 }
