@@ -29,10 +29,7 @@ pub fn resample<'py>(
         _ => return Err(value_error(format!("edge = '{edge}': must be 'zero', 'reflect' or 'periodic'"))),
     };
     let signal = samples(&signal)?;
-    let resampled = py.detach(|| {
-        let (up, down) = steps::resampling_ratio(from_hz, to_hz)?;
-        steps::resample(signal, up, down, edge)
-    });
+    let resampled = py.detach(|| steps::resample_to(signal, from_hz, to_hz, edge));
     Ok(array(py, resampled.map_err(value_error)?))
 }
 

@@ -19,7 +19,10 @@ def resample(
     *,
     edge: Literal["zero", "reflect", "periodic"] = "reflect",
 ) -> Array:
-    """The same signal at another sampling rate, by a polyphase filter.
+    """The same signal at another sampling rate, whatever their ratio, behind an anti-aliasing filter.
+
+    Within 0.2 % up to 0.8 of half the lower rate, half at half that rate, below 0.2 % from 1.2 of it on: the filter of SciPy's
+    ``resample_poly``, and where the rates have no ratio of whole numbers up to 100 000 the same to 5e-6 of the largest value.
 
     Parameters
     ----------
@@ -37,7 +40,7 @@ def resample(
     Raises
     ------
     ValueError
-        NaN; rates without a usable ratio of whole numbers.
+        NaN; a rate that is not positive, or below 1e-5 of the other.
 
     Examples
     --------

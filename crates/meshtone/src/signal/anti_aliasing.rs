@@ -72,8 +72,21 @@ impl AntiAliasing {
     ///
     /// Returns the values of each signal.
     pub fn read(&self, signals: &[&[f32]], places: impl Iterator<Item = f64>, edge: Edge) -> Vec<Vec<f32>> {
-        let places = places.map(|place| Place::between_samples(place, self.reach, self.steps));
-        self.bank.read(signals, places, edge, |value| value as f32)
+        self.bank.read(signals, self.on_the_bank(places), edge, |value| value as f32)
+    }
+
+    /// As [`Self::read`], of one signal in double precision.
+    ///
+    /// # Arguments
+    /// * `signal` - the samples
+    /// * `places` - in samples from the first; fractions are places between samples
+    /// * `edge` - how the signal goes on beyond its ends
+    pub fn read_double(&self, signal: &[f64], places: impl Iterator<Item = f64>, edge: Edge) -> Vec<f64> {
+        self.bank.read(&[signal], self.on_the_bank(places), edge, |value| value).swap_remove(0)
+    }
+
+    fn on_the_bank(&self, places: impl Iterator<Item = f64>) -> impl Iterator<Item = Place> {
+        places.map(|place| Place::between_samples(place, self.reach, self.steps))
     }
 }
 

@@ -4,7 +4,7 @@
 //!
 //! | step | functions |
 //! |---|---|
-//! | another sampling rate | [`resample`], [`resample_with`], [`resampling_ratio`], [`resampling_taps`]; at any ratio [`AntiAliasing`] |
+//! | another sampling rate | [`resample_to`], [`resample`], [`resample_with`], [`resampling_ratio`], [`resampling_taps`]; at any places [`AntiAliasing`] |
 //! | phase of the shaft | [`ShaftPhase`], [`tachometer_pulses`], [`repair_pulses`] |
 //! | over the angle | [`angular_resample`], [`interpolate_pchip`], [`interpolate_band_limited`] |
 //! | synchronous average | [`synchronous_average`], [`segmented_averages`] |
@@ -50,7 +50,8 @@ use record::process_segments_of;
 pub use record::{
     ChainSettings, Record, Recording, process_average, process_channel, process_segments, process_series,
 };
-pub use resample::{resample, resample_with, resampling_ratio, resampling_taps};
+pub(crate) use resample::whole_ratio;
+pub use resample::{resample, resample_to, resample_with, resampling_ratio, resampling_taps};
 pub use separation::{MeanPart, Separation, SeparationSettings, separate};
 pub use simulated::{Shaft, SimulatedShafts};
 pub use spectrum::order_spectrum;

@@ -1,5 +1,6 @@
 //! Another sampling rate.
 
+use super::anti_aliasing::AntiAliasing;
 use super::check::check_positive;
 use super::filter_bank::{FilterBank, Place};
 use super::kaiser::windowed_sinc;
@@ -13,6 +14,45 @@ pub(super) const BETA: f64 = 5.0;
 const LARGEST_FACTOR: usize = 100_000;
 /// Relative deviation of a ratio of rates that is taken for rounding.
 const RATIO_TOLERANCE: f64 = 1e-12;
+
+/// Resamples a signal to any other rate behind an anti-aliasing filter.
+///
+/// Where the rates have a ratio of whole numbers up to 100 000, see [`resampling_ratio`], it is [`resample`]. Any other ratio is
+/// that of an [`AntiAliasing`] filter, the same low-pass: what lies between its tabulated rows of taps is off by 4.7e-6 of the
+/// signal's largest value at most.
+///
+/// # Arguments
+/// * `signal` - the samples
+/// * `from_hz` - (S/s) their rate
+/// * `to_hz` - (S/s) the rate that is wanted
+/// * `edge` - how the signal goes on beyond its ends
+///
+/// Returns `⌈n to/from⌉` samples; sample m lies at `m from/to` of the signal.
+///
+/// # Errors
+/// An empty signal; a rate that is not positive, or below 1e-5 of the other.
+///
+/// ```
+/// use meshtone::signal::{Edge, resample_to};
+///
+/// let tone = |t: f64| (std::f64::consts::TAU * 30.0 * t).cos();
+/// let signal: Vec<f64> = (0..1000).map(|i| tone(f64::from(i) / 1000.0)).collect();
+/// let resampled = resample_to(&signal, 1000.0, std::f64::consts::PI * 100.0, Edge::Periodic)?;
+/// assert!(resampled.iter().enumerate().all(|(i, x)| (x - tone(i as f64 / 314.159265)).abs() < 2e-3));
+/// # Ok::<(), meshtone::signal::SignalError>(())
+/// ```
+pub fn resample_to(signal: &[f64], from_hz: f64, to_hz: f64, edge: Edge) -> Result<Vec<f64>, SignalError> {
+    if let Some((up, down)) = whole_ratio(from_hz, to_hz)? {
+        return resample(signal, up, down, edge);
+    }
+    if signal.is_empty() {
+        return Err(SignalError::TooFew { what: "samples", given: 0, needed: 1 });
+    }
+    let step = from_hz / to_hz;
+    let samples = (signal.len() as f64 / step).ceil() as usize;
+    let places = (0..samples).map(|m| m as f64 * step);
+    Ok(AntiAliasing::new(from_hz, to_hz)?.read_double(signal, places, edge))
+}
 
 /// Resamples a signal by the ratio `up/down` behind an anti-aliasing filter.
 ///
@@ -150,6 +190,14 @@ pub fn resampling_taps(up: usize, down: usize) -> Result<Vec<f64>, SignalError> 
 /// assert_eq!(meshtone::signal::resampling_ratio(258_400.0, 25_000.0), Ok((125, 1292)));
 /// ```
 pub fn resampling_ratio(from_hz: f64, to_hz: f64) -> Result<(usize, usize), SignalError> {
+    whole_ratio(from_hz, to_hz)?.ok_or_else(|| {
+        let required = "a fraction of whole numbers up to 100 000";
+        SignalError::parameter("ratio of the sampling rates", to_hz / from_hz, required)
+    })
+}
+
+/// As [`resampling_ratio`]; none where there is no such fraction.
+pub(crate) fn whole_ratio(from_hz: f64, to_hz: f64) -> Result<Option<(usize, usize)>, SignalError> {
     check_positive("from_hz", from_hz)?;
     check_positive("to_hz", to_hz)?;
     let wanted = to_hz / from_hz;
@@ -163,15 +211,11 @@ pub fn resampling_ratio(from_hz: f64, to_hz: f64) -> Result<(usize, usize), Sign
         rest = inverse - whole;
         let largest: f64 = up.1.max(down.1);
         if largest.is_nan() || largest > LARGEST_FACTOR as f64 {
-            return Err(SignalError::parameter(
-                "ratio of the sampling rates",
-                wanted,
-                "a fraction of whole numbers up to 100 000",
-            ));
+            return Ok(None);
         }
     }
-    check_factors(up.1 as usize, down.1 as usize)?;
-    Ok((up.1 as usize, down.1 as usize))
+    let found = (up.1 as usize, down.1 as usize);
+    Ok((1..=LARGEST_FACTOR).contains(&found.0).then_some(found))
 }
 
 /// The filter's taps for a new sample at one of `up` positions between two old ones: every `up`-th of them, that of the oldest

@@ -4,8 +4,8 @@ use super::Trace;
 use crate::operation::TimeGrid;
 use crate::sensor::Channels;
 use crate::signal::{
-    AngularSettings, ChainSettings, Edge, Interpolation, Record, ShaftPhase, SignalError, process_channel,
-    resample, resampling_ratio,
+    AngularSettings, AntiAliasing, ChainSettings, Edge, Interpolation, Record, ShaftPhase, SignalError,
+    process_channel, resample, resample_to, whole_ratio,
 };
 use crate::simulate::Stages;
 use crate::wheel::WheelName;
@@ -60,9 +60,9 @@ pub(crate) fn wheel_record(
 ) -> Result<Record, SignalError> {
     let sampling_rate_hz = stages.time.sampling_rate_hz;
     let gears = &stages.scenario.gears;
-    let ratio = resampling_ratio(sampling_rate_hz, rate_hz)?;
+    let rates = Rates { from_hz: sampling_rate_hz, to_hz: rate_hz };
     let (signal, phase) = match whole_revolutions(stages, wheel) {
-        Some(revolutions) => periodic(signal, ratio, revolutions)?,
+        Some(revolutions) => rates.periodic(signal, revolutions)?,
         None => {
             let pinion = if stages.scenario.operation.speed_profile_hz.is_some() {
                 ShaftPhase::from_speed_samples(pinion_speed_hz, sampling_rate_hz)?
@@ -71,7 +71,7 @@ pub(crate) fn wheel_record(
                 ShaftPhase::constant(speed_hz, sampling_rate_hz, signal.len())?
             };
             let shaft = pinion.of_mate(gears.pinion_teeth, gears.teeth(wheel))?;
-            (resample(signal, ratio.0, ratio.1, Edge::Reflect)?, at_rate(&shaft, ratio)?)
+            (resample_to(signal, sampling_rate_hz, rate_hz, Edge::Reflect)?, rates.phase(&shaft)?)
         }
     };
     process_channel(&signal, &phase, gears.teeth(wheel), &settings)
@@ -88,31 +88,56 @@ fn whole_revolutions(stages: &Stages, wheel: WheelName) -> Option<usize> {
     (steady && kept > 0 && kept.is_multiple_of(per_revolution)).then(|| kept / per_revolution)
 }
 
-/// The signal at its new rate, with a continuation at both ends, and its phase over the samples between.
-fn periodic(
-    signal: &[f64],
-    (up, down): (usize, usize),
-    revolutions: usize,
-) -> Result<(Vec<f64>, ShaftPhase), SignalError> {
-    // Whole multiples of `down` samples become whole multiples of `up`.
-    let blocks = CONTINUATION.div_ceil(up);
-    let n = signal.len() as isize;
-    let reach = (blocks * down) as isize;
-    let continued: Vec<f64> = (-reach..n + reach).map(|i| signal[i.rem_euclid(n) as usize]).collect();
-    let samples_per_revolution = signal.len() as f64 * up as f64 / (down as f64 * revolutions as f64);
-    let samples = (signal.len() * up).div_ceil(down) + 1;
-    let angles = (0..samples).map(|i| i as f64 / samples_per_revolution).collect();
-    Ok((resample(&continued, up, down, Edge::Periodic)?, ShaftPhase::new(blocks * up, angles)?))
+/// A change of the sampling rate.
+struct Rates {
+    /// (S/s)
+    from_hz: f64,
+    /// (S/s)
+    to_hz: f64,
 }
 
-/// A phase at the samples of the new rate, by straight lines.
-fn at_rate(phase: &ShaftPhase, (up, down): (usize, usize)) -> Result<ShaftPhase, SignalError> {
-    let angles = &phase.revolutions;
-    let last = angles.len() - 1;
-    let samples = last * up / down + 1;
-    let at = |i: usize| {
-        let (whole, part) = (i * down / up, (i * down % up) as f64 / up as f64);
-        angles[whole] + part * (angles[(whole + 1).min(last)] - angles[whole])
-    };
-    ShaftPhase::new(0, (0..samples).map(at).collect())
+impl Rates {
+    /// The signal at its new rate, with a continuation at both ends, and its phase over the samples between.
+    fn periodic(&self, signal: &[f64], revolutions: usize) -> Result<(Vec<f64>, ShaftPhase), SignalError> {
+        let n = signal.len();
+        let Some((up, down)) = whole_ratio(self.from_hz, self.to_hz)? else {
+            let step = self.from_hz / self.to_hz;
+            let samples = (n as f64 / step).ceil() as usize + 1;
+            let places = -(CONTINUATION as isize)..(samples + CONTINUATION) as isize;
+            let filter = AntiAliasing::new(self.from_hz, self.to_hz)?;
+            let read = filter.read_double(signal, places.map(|m| m as f64 * step), Edge::Periodic);
+            let angle = |i: usize| i as f64 * step * revolutions as f64 / n as f64;
+            return Ok((read, ShaftPhase::new(CONTINUATION, (0..samples).map(angle).collect())?));
+        };
+        // Whole multiples of `down` samples become whole multiples of `up`.
+        let blocks = CONTINUATION.div_ceil(up);
+        let reach = (blocks * down) as isize;
+        let continued: Vec<f64> =
+            (-reach..n as isize + reach).map(|i| signal[i.rem_euclid(n as isize) as usize]).collect();
+        let samples_per_revolution = n as f64 * up as f64 / (down as f64 * revolutions as f64);
+        let samples = (n * up).div_ceil(down) + 1;
+        let angles = (0..samples).map(|i| i as f64 / samples_per_revolution).collect();
+        Ok((resample(&continued, up, down, Edge::Periodic)?, ShaftPhase::new(blocks * up, angles)?))
+    }
+
+    /// A phase at the samples of the new rate, by straight lines.
+    fn phase(&self, phase: &ShaftPhase) -> Result<ShaftPhase, SignalError> {
+        let angles = &phase.revolutions;
+        let last = angles.len() - 1;
+        let at = |(whole, part): (usize, f64)| {
+            let from = angles[whole.min(last)];
+            from + part * (angles[(whole + 1).min(last)] - from)
+        };
+        let angles = match whole_ratio(self.from_hz, self.to_hz)? {
+            Some((up, down)) => (0..last * up / down + 1)
+                .map(|i| at((i * down / up, (i * down % up) as f64 / up as f64)))
+                .collect(),
+            None => {
+                let step = self.from_hz / self.to_hz;
+                let places = (0..(last as f64 / step) as usize + 1).map(|i| i as f64 * step);
+                places.map(|place| at((place as usize, place.fract()))).collect()
+            }
+        };
+        ShaftPhase::new(0, angles)
+    }
 }

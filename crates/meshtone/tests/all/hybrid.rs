@@ -3,7 +3,9 @@
 
 use std::sync::atomic::AtomicBool;
 
-use meshtone::signal::{kurtosis, rms, skewness};
+use meshtone::scenario::{Fault, GearPair, MissingTooth, Model, Profile, Scenario};
+use meshtone::signal::{kurtosis, resampling_ratio, rms, skewness};
+use meshtone::simulate;
 use meshtone::tuning::*;
 
 static NEVER: AtomicBool = AtomicBool::new(false);
@@ -199,6 +201,45 @@ fn indicators_of_the_envelope_can_be_tuned_by() {
     println!("{found:?}");
     assert!((found.enhancement.width_ratio / hidden.width_ratio - 1.0).abs() < 0.15);
     assert!(found.error < 1.3 * measured.scatter());
+}
+
+// At a rate whose ratio to the simulation's is no fraction, the difference signal is that at a rate beside it whose ratio is one.
+#[test]
+fn difference_signals_of_any_speed_and_rate() {
+    for (speed_hz, has_profile) in [(24.6, false), (24.583, false), (29.17, false), (31.415_926_535, true)] {
+        let gears = GearPair {
+            module_mm: 3.0,
+            pinion_teeth: 17,
+            gear_teeth: 38,
+            face_width_mm: 15.0,
+            pinion_speed_hz: speed_hz,
+            brake_torque_nm: 10.0,
+        };
+        let mut scenario = Scenario::new(gears).with_faults(vec![Fault::on_first_gear_tooth(MissingTooth)]);
+        scenario.model = Model::Linear;
+        if has_profile {
+            // Not periodic: what is kept is read at its own angles.
+            let constant = Profile { time_s: vec![0.0, 2.0], value: vec![speed_hz; 2] };
+            scenario.operation.speed_profile_hz = Some(constant);
+        }
+        let own_hz = simulate(&scenario).unwrap().channels.sampling_rate_hz;
+        let rate_hz = 25_000.0;
+        let beside_hz = own_hz / 50_021.0 * (rate_hz * 50_021.0 / own_hz).round();
+        let at = |rate_hz: f64| {
+            difference_signals(vec![scenario.clone()], &DifferenceChain::new(rate_hz)).unwrap().remove(0)
+        };
+        assert!(resampling_ratio(own_hz, beside_hz).is_ok());
+        let fraction = resampling_ratio(own_hz, rate_hz).is_ok();
+        let (difference, beside) = (at(rate_hz), at(beside_hz));
+        let off: Vec<f64> = difference.iter().zip(&beside).map(|(a, b)| a - b).collect();
+        let relative = rms(&off) / rms(&beside);
+        println!(
+            "{speed_hz} Hz, fraction {fraction}: off by {relative:.1e} beside it by {:.1e}",
+            beside_hz / rate_hz - 1.0
+        );
+        // What lies between 0.8 of half the rate and half of it is read a little differently where samples fall elsewhere.
+        assert!(!fraction && relative < 5e-3);
+    }
 }
 
 #[test]
