@@ -38,6 +38,7 @@ dtype('float32')
 from __future__ import annotations
 
 import difflib
+import errno
 import json
 import warnings
 from collections import Counter
@@ -49,8 +50,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
-from ._progress import on_terminal
+from . import _core, _display, _progress
 
 if TYPE_CHECKING:
     import pandas
@@ -102,7 +102,7 @@ def generate_dataset(
     part : tuple of int, optional
         ``(i, n)`` makes only part i, from 1, of n. Parts may be made at the same time, in one directory or apart.
     progress : bool or callable, optional
-        True for a line on the terminal; or called with the numbers of records that are finished and of all.
+        True for a line on the terminal or a bar in a notebook; or called with the numbers of records that are finished and of all.
 
     Returns
     -------
@@ -125,7 +125,7 @@ def generate_dataset(
     """
     import pyarrow.dataset  # noqa: F401  # before hours of work, not after them
 
-    told = on_terminal("records") if progress is True else (progress or None)
+    told = _progress.shown("records") if progress is True else (progress or None)
     number, of = (1, 1) if part is None else part
     remade = _core.generate_dataset(plan, fspath(path), jobs, number, of, told)
     if remade:
@@ -237,7 +237,7 @@ def _open(path: str | PathLike[str], verify: bool = False) -> Dataset:
 
     folder = Path(path)
     if not (folder / "manifest.json").exists():
-        raise FileNotFoundError(f"{folder} holds no data set: there is no manifest.json in it")
+        raise FileNotFoundError(errno.ENOENT, "it holds no data set: there is no manifest.json in it", fspath(folder))
     _, names, _, problems = _core.verify_dataset(fspath(path), verify)
     # A data card that is missing is no reason not to read the data.
     wrong = {name: what for name, what in problems.items() if verify or name.startswith(("data/", "manifest.json"))}
@@ -324,6 +324,16 @@ class Dataset:
         parts = ", ".join(f"{name} ({count})" for name, count in sorted(splits.items()))
         state = "" if self.is_complete else ", not complete"
         return f"<Dataset of {len(self)} records{state}: {counts}; splits {parts}>"
+
+    def _repr_html_(self) -> str:
+        pairs = Counter(zip(self.column("label").tolist(), self.column("split").tolist(), strict=True))
+        labels, splits = (sorted({pair[place] for pair in pairs}) for place in (0, 1))
+        counts = [(label, *(pairs[label, split] for split in splits)) for label in labels]
+        state = "" if self.is_complete else ", not complete"
+        facts = {"Directory": self.path, "Columns": ", ".join(self.columns)}
+        return _display.page(
+            f"Dataset of {len(self)} records{state}", _display.table([("", *splits), *counts]), _display.table(facts)
+        )
 
     def filter(self, expression: pyarrow.dataset.Expression) -> Dataset:
         """The records for which an expression holds.

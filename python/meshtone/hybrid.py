@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
+from . import _core, _progress
 from .faults import in_words
 from .scenario import Scenario, native_scenario
 from .signal._arguments import signal_array, whole
@@ -152,15 +152,15 @@ class Tuning:
         os.replace(beside, target)
 
 
-def tune(experiment: str | PathLike[str], *, progress: Callable[[int, int], None] | None = None) -> Tuning:
+def tune(experiment: str | PathLike[str], *, progress: bool | Callable[[int, int], None] = False) -> Tuning:
     """Tune simulations to what was measured on a rig.
 
     Parameters
     ----------
     experiment : str or path
         The experiment file, as of ``meshtone tune``.
-    progress : callable, optional
-        Called with the numbers of simulations that are finished and of all.
+    progress : bool or callable, optional
+        True for a line on the terminal or a bar in a notebook; or called with the numbers of simulations that are finished and of all.
 
     Returns
     -------
@@ -175,7 +175,8 @@ def tune(experiment: str | PathLike[str], *, progress: Callable[[int, int], None
     KeyboardInterrupt
         Ctrl-C stops it.
     """
-    text, tuned_toml = _core.tune(experiment, progress)
+    told = _progress.shown("simulations") if progress is True else (progress or None)
+    text, tuned_toml = _core.tune(experiment, told)
     report = json.loads(text)
     return Tuning(report["parameters"], report["error"], report, tuned_toml)
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from ._display import LABELS, channel_label
 from .faults import Fault, MissingTooth, PartialFace, Pits, RootCrack, ToothBreakage, Wear, in_words, numbers_of_teeth
 from .simulation import chosen_channel
 
@@ -51,20 +52,6 @@ MOST_NAMED = 3
 
 AROUND_DAMAGE = 8
 """(pitches) What the mesh stiffness is shown over."""
-
-LABELS = {
-    "horizontal_g": "Horizontal acceleration (g)",
-    "vertical_g": "Vertical acceleration (g)",
-    "axial_g": "Axial acceleration (g)",
-    "pinion_shaft_speed_hz": "Pinion speed (rev/s)",
-    "gear_shaft_speed_hz": "Gear speed (rev/s)",
-    "mesh_force_n": "Mesh force (N)",
-}
-
-
-def _channel_label(channel: str) -> str:
-    """What an axis says of a channel: a sensor's is its name."""
-    return LABELS.get(channel) or f"{channel.removesuffix('_g').replace('_', ' ').capitalize()} (g)"
 
 
 def _new_figure(size: tuple[float, float]) -> Figure:
@@ -124,7 +111,7 @@ def plot_signal(
     ax = _axes(ax)
     values = getattr(simulation, channel)[: _samples_of(simulation, revolutions)]
     ax.plot(simulation.time_s[: values.size], values, color=BLUE, linewidth=0.8)
-    ax.set(xlabel="Time (s)", ylabel=_channel_label(channel))
+    ax.set(xlabel="Time (s)", ylabel=channel_label(channel))
     ax.margins(x=0)
     ax.grid(alpha=0.3)
     return ax
@@ -271,7 +258,7 @@ def plot_spectrum(simulation: Simulation, channel: str | None = None, *, ax: Axe
     top = amplitude[shown].max()
     ax.set_ylim(top * 1e-6, top * 3)
     ax.set_xlim(0, limit_hz / 1e3)
-    quantity, unit = _channel_label(channel).rsplit(" ", 1)
+    quantity, unit = channel_label(channel).rsplit(" ", 1)
     ax.set(xlabel="Frequency (kHz)", ylabel=f"{quantity},\namplitude {unit}")
     ax.legend(loc="lower right", fontsize="small", ncols=2, framealpha=1.0)
     ax.grid(alpha=0.3)
@@ -464,7 +451,7 @@ def _plot_revolution(simulation: Simulation, wheel: Literal["gear", "pinion"], a
     """Average and difference over a wheel's revolution, on one scale, with the contact of its damaged teeth tinted."""
     record = simulation.process(None, wheel)
     limit = max(np.abs(record.average).max(), np.abs(record.difference).max()) * 1.25
-    ylabel = _channel_label(record.name).replace(" acceleration", "")
+    ylabel = channel_label(record.name).replace(" acceleration", "")
     parts = [(average_ax, "average", record.average), (difference_ax, "difference", record.difference)]
     for ax, name, values in parts:
         _plot_over_teeth(ax, values, record.teeth, BLUE, name)

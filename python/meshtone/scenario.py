@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
+from . import _core, _display
 from ._keys import KEY_IN_FILE, REQUIRED_KEYS, SECTION_OF_KEY, ScenarioKeys, Shaft, TipRelief, WheelInertia
 from ._sections import FORMER_KEYS, OTHER_ARGUMENTS, check_key, hint
 from .faults import Fault, from_section, to_section
@@ -258,7 +258,8 @@ brake_torque_nm=10.0, din_grade=7)
     def __reduce__(self) -> tuple[Any, tuple[str]]:
         return (Scenario.from_toml, (self.to_toml(),))
 
-    def __repr__(self) -> str:
+    def _not_default(self) -> dict[str, Any]:
+        """The arguments that make this scenario, without those that are at their defaults."""
         required = {key: self._flat[key] for key in REQUIRED_KEYS}
         default = _core.Scenario(_sections_of(required)).sections()
         shown = dict(required)
@@ -272,7 +273,13 @@ brake_torque_nm=10.0, din_grade=7)
             shown["faults"] = list(self.faults)
         if self.sensors:
             shown["sensors"] = list(self.sensors)
-        text = ", ".join(f"{key}={value!r}" for key, value in shown.items())
+        return shown
+
+    def _repr_html_(self) -> str:
+        return _display.page("Scenario", _display.table(self._not_default()))
+
+    def __repr__(self) -> str:
+        text = ", ".join(f"{key}={value!r}" for key, value in self._not_default().items())
         if self._native.profile_errors_mm() is not None:
             text += ", pinion_profile_errors_mm=..., gear_profile_errors_mm=..."
         return f"Scenario({text})"

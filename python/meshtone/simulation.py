@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, Union
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
-from ._progress import on_terminal
+from . import _core, _display, _progress
 from ._sections import hint
 from .faults import in_words
 from .scenario import Scenario, native_scenario
@@ -383,10 +382,9 @@ class Simulation:
 
         return plotting.plot_tooth(self, wheel, tooth=tooth, ax=ax)
 
-    def _repr_png_(self) -> bytes:
-        from . import plotting
-
-        return plotting.png(self.plot())
+    def _repr_html_(self) -> str:
+        rows = {**_facts(self.scenario), "Signal": _length(self.vertical_g.size, self.sampling_rate_hz)}
+        return _page(self, chosen_channel(self.scenario, None), rows, self.warnings)
 
     def __reduce__(self) -> tuple[Callable[[Scenario], Simulation], tuple[Scenario]]:
         # The scenario gives the same bits again, and is 10 000 times smaller.
@@ -487,6 +485,49 @@ class Signals:
             raise ValueError(f"no channel '{channel}' was kept, but {', '.join(self.channels)}")
         return _process(self.scenario, self.channels[channel], self.start_s, channel, wheel, sidebands)
 
+    def _repr_html_(self) -> str:
+        channel = next(iter(self.channels))
+        rows = {**_facts(self.scenario), "Signal": _length(self.channels[channel].size, self.sampling_rate_hz)}
+        return _page(self, channel, {**rows, "Channels": ", ".join(self.channels)}, [])
+
+
+def _facts(scenario: Scenario) -> dict[str, str]:
+    """What a notebook says of a scenario."""
+    return {
+        "Teeth": f"{scenario.pinion_teeth}/{scenario.gear_teeth}, module {scenario.module_mm:g} mm, face {scenario.face_width_mm:g} mm",
+        "Operation": f"pinion {scenario.pinion_speed_hz:g} Hz, brake {scenario.brake_torque_nm:g} N m",
+        "Damage": in_words(scenario.faults),
+        "Model": scenario.model,
+    }
+
+
+def _length(samples: int, rate_hz: float) -> str:
+    return f"{samples} samples, {samples / rate_hz:.3g} s at {rate_hz:.6g} S/s"
+
+
+def _page(of: Simulation | Signals, channel: str, rows: dict[str, str], remarks: Sequence[str]) -> str:
+    """A simulation for a notebook: facts, a signal, and what it shows about the damaged wheel."""
+    faults = of.scenario.faults
+    wheel: Wheel = faults[0].wheel if faults else "gear"
+    signal = np.asarray(getattr(of, channel))
+    speed_hz = of.scenario.pinion_speed_hz
+    turn_s = 1 / speed_hz if wheel == "pinion" else of.scenario.gear_teeth / (of.scenario.pinion_teeth * speed_hz)
+    shown = signal[: round(2 * turn_s * of.sampling_rate_hz)]
+    label = _display.channel_label(channel)
+    span = (of.start_s, of.start_s + shown.size / of.sampling_rate_hz)
+    pictures = [_display.curve(shown, span=span, over="Time (s)", label=label)]
+    try:
+        record = of.process(channel, wheel)
+    except ValueError:
+        # Too short for an average, or no vibration: the signal is all there is to see.
+        pass
+    else:
+        names = ("difference_rms", "difference_kurtosis", "fm0")
+        rows = rows | {name: f"{record.indicators[name]:.4g}" for name in names if name in record.indicators}
+        over = f"Angle of the {wheel} (revolutions)"
+        pictures.append(_display.curve(record.difference, span=(0.0, 1.0), over=over, label="Difference (g)"))
+    return _display.page(type(of).__name__, _display.table(rows), *pictures, _display.remarks(remarks))
+
 
 def _process(
     scenario: Scenario, signal: npt.ArrayLike, start_s: float, channel: str, wheel: Wheel, sidebands: int | None
@@ -576,7 +617,7 @@ def simulate_many(
     threads : int, optional
         How many; all cores by default. Results do not depend on it.
     progress : bool or callable, optional
-        True for a line on the terminal; or called with the numbers of those that are finished and of all.
+        True for a line on the terminal or a bar in a notebook; or called with the numbers of those that are finished and of all.
 
     Returns
     -------
@@ -602,7 +643,7 @@ def simulate_many(
     if isinstance(channels, str):
         raise TypeError(f"channels = '{channels}': must be a sequence of names: ['{channels}']")
     scenarios = list(scenarios)
-    ask = on_terminal("simulations") if progress is True else (progress or None)
+    ask = _progress.shown("simulations") if progress is True else (progress or None)
     told = None if ask is None else functools.partial(_tell, ask, len(scenarios))
     native = [native_scenario(scenario) for scenario in scenarios]
     results = _core.simulate_many(native, list(channels), None if threads is None else whole("threads", threads, 1), told)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import importlib.util
 import json
@@ -107,6 +108,7 @@ def test_signals_are_those_of_the_records(gears: datasets.Dataset) -> None:
 
 
 def test_repr(gears: datasets.Dataset) -> None:
+    assert all(label in gears._repr_html_() for label in ("healthy", "train"))
     assert "24 records" in repr(gears) and "healthy" in repr(gears)
     assert gears.manifest["records"] == 24 and gears.manifest["complete"] is True
     assert "24" in (gears.path / "README.md").read_text(encoding="utf-8")
@@ -243,8 +245,14 @@ def test_refused(gears: datasets.Dataset, tmp_path: Path) -> None:
     plan = write_plan(tmp_path)
     with pytest.raises(FileNotFoundError):
         datasets.generate_dataset(tmp_path / "absent.toml", tmp_path / "set")
-    with pytest.raises(FileNotFoundError, match="holds no data set"):
+    with pytest.raises(FileNotFoundError, match="holds no data set") as absent:
         datasets.load_dataset(tmp_path)
+    assert (absent.value.errno, absent.value.filename) == (errno.ENOENT, str(tmp_path))
+    (tmp_path / "file").touch()
+    with pytest.raises(OSError) as refused:
+        datasets.generate_dataset(plan, tmp_path / "file")
+    assert refused.value.errno
+    assert refused.value.filename
     with pytest.raises(ValueError, match=r"part = \(3, 2\)"):
         datasets.generate_dataset(plan, tmp_path / "set", part=(3, 2))
     with pytest.raises(ValueError, match="jobs = 0"):

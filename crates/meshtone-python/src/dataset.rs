@@ -11,10 +11,10 @@ use meshtone_dataset::plan::{Plan, template};
 use meshtone_dataset::store::Destination;
 use meshtone_dataset::verify::{Check, verify};
 use pyo3::PyErr;
-use pyo3::exceptions::{PyBlockingIOError, PyKeyboardInterrupt, PyOSError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyBlockingIOError, PyKeyboardInterrupt, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::error::{read_error, value_error};
+use crate::error::{os_error, read_error, value_error};
 use crate::interrupt::interruptible;
 
 /// The commented plan.
@@ -108,7 +108,7 @@ fn dataset_error(error: DatasetError) -> PyErr {
         DatasetError::Stopped => PyKeyboardInterrupt::new_err("stopped"),
         DatasetError::NoRecord { .. } => PyValueError::new_err(error.to_string()),
         DatasetError::Busy { .. } => PyBlockingIOError::new_err(error.to_string()),
-        DatasetError::File { .. } => PyOSError::new_err(error.to_string()),
+        DatasetError::File { doing, name, source } => os_error(doing, name, &source),
         DatasetError::Preview(_) => PyRuntimeError::new_err(error.to_string()),
     }
 }

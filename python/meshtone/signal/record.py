@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy.typing as npt
 
-from .. import _core
+from .. import _core, _display
 from ._arguments import Array, separation_settings, signal_array, teeth_number
 from .phase import ShaftPhase, native_phase
 
@@ -90,10 +90,18 @@ class Record:
 
         return plotting.plot_record(self)
 
-    def _repr_png_(self) -> bytes:
-        from .. import plotting
-
-        return plotting.png(self.plot())
+    def _repr_html_(self) -> str:
+        label = _display.channel_label(self.name) if self.name != "signal" else "Signal"
+        span, over = (0.0, 1.0), "Angle of the shaft (revolutions)"
+        shown = ("average_rms", "difference_rms", "difference_kurtosis", "fm0", "fm4", "na4")
+        rows = [(name, f"{self.indicators[name]:.4g}") for name in shown if name in self.indicators]
+        return _display.page(
+            f"{label}: average of {self.revolutions} revolutions of a wheel with {self.teeth} teeth",
+            _display.table(rows),
+            _display.curve(self.average, span=span, over=over, label="Average"),
+            _display.curve(self.difference, span=span, over=over, label="Difference"),
+            _display.remarks(self.warnings),
+        )
 
     def __repr__(self) -> str:
         return f"<Record of {self.name}: average of {self.revolutions} revolutions, {self.average.size} points>"

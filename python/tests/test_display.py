@@ -1,0 +1,92 @@
+"""What notebooks show: light pages and pictures, one bar of progress."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import time
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import nbclient
+import nbformat
+import numpy as np
+import pytest
+
+import meshtone as mt
+from meshtone import _display, _progress
+
+NOTEBOOKS = sorted((Path(__file__).parents[1] / "gallery").glob("*.ipynb"))
+LARGEST_BYTES = 30_000
+
+
+def pictures(page: str) -> list[ElementTree.Element]:
+    return [ElementTree.fromstring(svg) for svg in re.findall("<svg.*?</svg>", page, re.DOTALL)]
+
+
+def test_pages_are_light() -> None:
+    scenario = mt.examples.tooth_breakage()
+    simulation = mt.simulate(scenario)
+    [signals] = mt.simulate_many([scenario])
+    assert isinstance(signals, mt.Signals)
+    for shown in (simulation, simulation.process(), signals, scenario):
+        page = shown._repr_html_()
+        assert len(page.encode()) < LARGEST_BYTES
+        ElementTree.fromstring(page)
+        assert len(pictures(page)) == (0 if shown is scenario else 2)
+    assert "tooth-breakage" in simulation._repr_html_()
+
+
+def test_pages_need_no_matplotlib() -> None:
+    program = "import sys, meshtone as mt; mt.simulate(mt.examples.healthy())._repr_html_(); sys.exit('matplotlib' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0
+
+
+def test_a_curve_keeps_its_extremes() -> None:
+    values = np.zeros(100_000)
+    values[31_234], values[70_001] = 3.0, -5.0
+    [svg] = pictures(_display.curve(values, span=(0, 2), over="Time (s)", label="Force (N)"))
+    assert svg.attrib["aria-label"] == "Force (N) over Time (s)"
+    path = [element.attrib["d"] for element in svg.iter("path") if element.attrib.get("stroke") == _display.BLUE][0]
+    heights = [float(y) for y in re.findall(r"[ML][\d.]+ ([\d.]+)", path)]
+    assert min(heights) == _display.TOP
+    assert max(heights) == _display.HEIGHT - _display.BOTTOM
+    words = [element.text for element in svg.iter("text")]
+    assert {"Time (s)", "Force (N)", "0", "2", "-4"} <= set(words)
+
+
+def test_gaps_and_constants() -> None:
+    with_gap = np.array([1.0, 1.0, np.nan, 1.0])
+    [svg] = pictures(_display.curve(with_gap, span=(0, 1), over="x", label="<&>"))
+    path = [element.attrib["d"] for element in svg.iter("path") if element.attrib.get("stroke") == _display.BLUE][0]
+    assert path.count("M") == 2
+    assert [element.text for element in svg.iter("text")][-1] == "<&>"
+
+
+def test_progress_on_the_terminal(capsys: pytest.CaptureFixture[str]) -> None:
+    told = _progress.shown("records")
+    told(1, 2)
+    told(2, 2)
+    told(2, 2)
+    written = capsys.readouterr().err
+    assert written.count("\r") == 2
+    assert written.endswith("\n")
+
+
+@pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
+def test_notebook(notebook: Path) -> None:
+    content = nbformat.read(notebook, as_version=4)
+    assert all(not cell.get("outputs") for cell in content.cells), "outputs are not kept: they are made where it is opened"
+    started = time.monotonic()
+    nbclient.NotebookClient(content, timeout=120, resources={"metadata": {"path": str(notebook.parent)}}).execute()
+    pages = [
+        output["data"]["text/html"]
+        for cell in content.cells
+        for output in cell.get("outputs", ())
+        if "text/html" in output.get("data", {})
+    ]
+    assert sum("<svg" in page for page in pages) >= 2
+    # One bar, which was moved: not one for each message.
+    assert sum("<progress" in page for page in pages) == 1
+    assert time.monotonic() - started < 120
