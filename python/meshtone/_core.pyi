@@ -33,6 +33,7 @@ __all__ = [
     "m6a",
     "m8a",
     "merge_datasets",
+    "misfit",
     "na4",
     "order_spectrum",
     "process_channel",
@@ -207,6 +208,14 @@ class Record:
 def process_channel(
     signal: _Array, phase: ShaftPhase, teeth: int, settings: Mapping[str, object] | None = None
 ) -> Record: ...
+def misfit(
+    signal: _Array,
+    phase: ShaftPhase,
+    teeth: int,
+    mate_teeth: int | None = None,
+    pulses_per_revolution: int | None = None,
+    speed_hz: float | None = None,
+) -> tuple[str, float, str, float | None] | None: ...
 def process_series(
     signals: Sequence[_Array],
     phases: Sequence[ShaftPhase],

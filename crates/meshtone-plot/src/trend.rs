@@ -32,12 +32,55 @@ pub struct TrendFigure<'a> {
     pub title: &'a str,
     /// Facts in the line below it.
     pub facts: &'a [String],
-    /// What is counted along the horizontal axis, such as `Recording`.
-    pub counted: &'a str,
+    /// What the horizontal axis is.
+    pub along: Along,
     /// Names of the wheels: one, or both of a pair.
     pub wheels: &'a [String],
+    /// For each wheel where its records lie along that axis, record by record.
+    pub places: &'a [Vec<f64>],
     /// Up to nine indicators.
     pub indicators: Vec<Trend>,
+}
+
+/// What records lie along.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Along {
+    /// Recordings by their numbers from 1; what is cut from one lies within half a number of it.
+    Recordings {
+        /// How many.
+        count: usize,
+    },
+    /// The time of one recording.
+    Time {
+        /// (s) Its start.
+        start_s: f64,
+        /// (s) Its end.
+        end_s: f64,
+    },
+}
+
+impl Along {
+    fn range(self) -> [f64; 2] {
+        match self {
+            Self::Recordings { count } => [0.5, count.max(1) as f64 + 0.5],
+            Self::Time { start_s, end_s } => [start_s, end_s],
+        }
+    }
+
+    fn ticks(self) -> Ticks {
+        let [from, to] = self.range();
+        match self {
+            Self::Recordings { .. } => Ticks::whole(from, to, 12),
+            Self::Time { .. } => Ticks::nice(from, to, 8),
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Recordings { .. } => "Recording",
+            Self::Time { .. } => "Time (s)",
+        }
+    }
 }
 
 /// One indicator over the records.
@@ -57,14 +100,15 @@ pub struct Trend {
 /// * `figure` - what it shows
 ///
 /// ```
-/// use meshtone_plot::trend::{self, Trend, TrendFigure};
+/// use meshtone_plot::trend::{self, Along, Trend, TrendFigure};
 ///
 /// let fm4 = Trend { name: "FM4".to_owned(), unit: String::new(), values: vec![vec![Some(3.0), None, Some(5.0)]] };
 /// let figure = TrendFigure {
 ///     title: "bearing",
 ///     facts: &["3 recordings".to_owned()],
-///     counted: "Recording",
+///     along: Along::Recordings { count: 3 },
 ///     wheels: &["wheel".to_owned()],
+///     places: &[vec![1.0, 2.0, 3.0]],
 ///     indicators: vec![fm4],
 /// };
 /// assert!(trend::draw(&figure).svg().contains("FM4"));
@@ -87,29 +131,29 @@ pub fn draw(figure: &TrendFigure) -> Figure {
     for (place, trend) in figure.indicators.iter().take(COLUMNS * COLUMNS).enumerate() {
         let (row, column) = ((place / COLUMNS) as f64, (place % COLUMNS) as f64);
         let area = Area::new(LEFT + column * STEP[0], TOP + row * STEP[1], PLOT[0], PLOT[1]);
-        indicator(&mut canvas, area, trend, figure.counted);
+        indicator(&mut canvas, area, trend, figure);
     }
     canvas.finish(figure.title, &format!("Indicators over a series of records. {}.", figure.facts.join(", ")))
 }
 
-fn indicator(canvas: &mut Canvas, area: Area, trend: &Trend, counted: &str) {
-    let records = trend.values.iter().map(Vec::len).max().unwrap_or(0).max(1);
+fn indicator(canvas: &mut Canvas, area: Area, trend: &Trend, figure: &TrendFigure) {
     let y = axes::range(trend.values.iter().flatten().filter_map(|value| *value), MARGIN);
-    let axes = Axes::new(area, [0.5, records as f64 + 0.5], y);
+    let axes = Axes::new(area, figure.along.range(), y);
     axes.title(canvas, &trend.name);
-    axes.x_axis(canvas, &Ticks::whole(0.5, records as f64 + 0.5, 12), counted);
+    axes.x_axis(canvas, &figure.along.ticks(), figure.along.name());
     let name = if trend.unit.is_empty() { "(–)".to_owned() } else { format!("({})", trend.unit) };
     axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), &name, NAME_LEFT);
     if trend.values.iter().flatten().all(Option::is_none) {
         axes.note(canvas, "not defined for these records");
     }
-    for (values, stroke) in trend.values.iter().zip(STROKES) {
-        for run in values.iter().enumerate().collect::<Vec<_>>().split(|(_, value)| value.is_none()) {
-            let points = run.iter().filter_map(|(k, value)| Some((*k as f64 + 1.0, (**value)?)));
-            axes.line(canvas, points, stroke);
+    let is_marked = trend.values.iter().all(|values| values.len() <= MARKED);
+    for ((values, places), stroke) in trend.values.iter().zip(figure.places).zip(STROKES) {
+        let records: Vec<(f64, Option<f64>)> = places.iter().copied().zip(values.iter().copied()).collect();
+        for run in records.split(|(_, value)| value.is_none()) {
+            axes.line(canvas, run.iter().filter_map(|(x, value)| Some((*x, (*value)?))), stroke);
         }
-        let defined = values.iter().enumerate().filter_map(|(k, value)| Some((k as f64 + 1.0, (*value)?)));
-        for (x, value) in defined.filter(|_| records <= MARKED) {
+        let defined = records.iter().filter_map(|(x, value)| Some((*x, (*value)?)));
+        for (x, value) in defined.filter(|_| is_marked) {
             marker(canvas, axes.at(x, value), stroke.colour);
         }
     }

@@ -36,7 +36,7 @@ mod _core {
     #[pymodule_export]
     use crate::phase::{ShaftPhase, repair_pulses, tachometer_pulses};
     #[pymodule_export]
-    use crate::process::{Record, process_channel, process_series};
+    use crate::process::{Record, misfit, process_channel, process_series};
     #[pymodule_export]
     use crate::recording::read_recording;
     #[pymodule_export]

@@ -1,6 +1,8 @@
 //! From a channel to its indicators.
 
-use meshtone::signal::{self, ChainSettings, SeparationSettings};
+use meshtone::signal::{
+    self, AngularSettings, ChainSettings, Likelier, SeparationSettings, Told, ToldTurning,
+};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -149,4 +151,40 @@ pub fn process_series(
         .collect::<PyResult<Vec<_>>>()?;
     let records = py.detach(|| signal::process_series(&recordings, teeth, &settings)).map_err(value_error)?;
     Ok(records.into_iter().map(Record).collect())
+}
+
+/// What a recording says against what is told: cause, likelier value, its words, and how much more energy the average would hold.
+#[pyfunction]
+#[pyo3(signature = (signal, phase, teeth, mate_teeth=None, pulses_per_revolution=None, speed_hz=None))]
+pub fn misfit(
+    py: Python<'_>,
+    signal: Signal<'_>,
+    phase: &ShaftPhase,
+    teeth: u32,
+    mate_teeth: Option<u32>,
+    pulses_per_revolution: Option<u32>,
+    speed_hz: Option<f64>,
+) -> PyResult<Option<(&'static str, f64, String, Option<f64>)>> {
+    let signal = samples(&signal)?;
+    let turning = match (pulses_per_revolution, speed_hz) {
+        (Some(per_revolution), _) => ToldTurning::Pulses { per_revolution },
+        (None, Some(speed_hz)) => ToldTurning::ConstantSpeed { speed_hz },
+        (None, None) => ToldTurning::Other,
+    };
+    let told = Told { teeth, mate_teeth, turning };
+    let found = py.detach(|| {
+        signal::angular_resample(signal, &phase.0, &AngularSettings::default())
+            .map(|angular| signal::misfit(&angular, &told))
+    });
+    Ok(found.map_err(value_error)?.map(|misfit| {
+        let (cause, value) = match misfit.likelier {
+            Likelier::Teeth { teeth } => ("teeth", f64::from(teeth)),
+            Likelier::MateTeeth { teeth } => ("mate_teeth", f64::from(teeth)),
+            Likelier::OtherShaft => ("other_shaft", f64::from(mate_teeth.unwrap_or(0))),
+            Likelier::PulsesPerRevolution { pulses } => ("pulses_per_revolution", f64::from(pulses)),
+            Likelier::ShaftSpeed { speed_hz } => ("speed_hz", speed_hz),
+            _ => ("other", f64::NAN),
+        };
+        (cause, value, misfit.to_string(), misfit.energy_ratio)
+    }))
 }

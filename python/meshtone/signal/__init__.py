@@ -26,9 +26,11 @@ from .phase import ShaftPhase, repair_pulses, tachometer_pulses
 from .record import Record, process_channel, process_series
 from .separation import Parts, separate
 from .spectra import envelope, envelope_spectrum, order_spectrum
+from .told import Misfit, misfit
 
 __all__ = [
     "AngularSignal",
+    "Misfit",
     "Parts",
     "Record",
     "ShaftPhase",
@@ -40,6 +42,7 @@ __all__ = [
     "fm4",
     "m6a",
     "m8a",
+    "misfit",
     "na4",
     "order_spectrum",
     "process_channel",

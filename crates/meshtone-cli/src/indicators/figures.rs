@@ -5,7 +5,7 @@ use std::path::Path;
 use meshtone_io::indicators::RecordEntry;
 use meshtone_plot::Figure;
 use meshtone_plot::record::{self, RecordFigure, SignalView, WheelView};
-use meshtone_plot::trend::{self, Trend, TrendFigure};
+use meshtone_plot::trend::{self, Along, Trend, TrendFigure};
 
 use super::options::{PhaseOptions, ProcessingOptions};
 use super::results::{Latest, Series};
@@ -77,15 +77,33 @@ pub fn of_trend(series: &Series, phase: &PhaseOptions, processing: &ProcessingOp
     facts.push(format!("Meshtone {}", env!("CARGO_PKG_VERSION")));
     let wheels: Vec<String> =
         series.wheels.iter().map(|wheel| format!("{}, {} teeth", wheel.name, wheel.teeth)).collect();
-    let counted = if processing.revolutions.is_some() { "Segment" } else { "Recording" };
+    let (along, places) = places(series, processing.revolutions.is_some());
     let figure = TrendFigure {
         title: &title(&names, series),
         facts: &facts,
-        counted,
+        along,
         wheels: &wheels,
+        places: &places,
         indicators: trends(series),
     };
     trend::draw(&figure)
+}
+
+/// Where the records of each wheel lie: at the number of their recording, or at their time in it.
+fn places(series: &Series, in_segments: bool) -> (Along, Vec<Vec<f64>>) {
+    let recordings = &series.results.recordings;
+    let at = |place: &dyn Fn(f64) -> f64| -> Vec<Vec<f64>> {
+        series.middles.iter().map(|middles| middles.iter().map(|middle| place(*middle)).collect()).collect()
+    };
+    match &recordings[..] {
+        [only] if in_segments => {
+            let length_s = only.samples as f64 / only.sampling_rate_hz;
+            let along = Along::Time { start_s: only.start_s, end_s: only.start_s + length_s };
+            (along, at(&|middle| only.start_s + length_s * middle))
+        }
+        _ if in_segments => (Along::Recordings { count: recordings.len() }, at(&|middle| middle + 0.5)),
+        _ => (Along::Recordings { count: recordings.len() }, at(&|middle| middle.floor() + 1.0)),
+    }
 }
 
 /// Records of each wheel.

@@ -1,7 +1,9 @@
 //! How far the shaft has turned at each sample.
 
 use meshtone::scenario::Scenario;
-use meshtone::signal::{MeshTone, ShaftPhase, SimulatedShafts, Tachometer, tachometer_pulses};
+use meshtone::signal::{
+    MeshTone, ShaftPhase, SimulatedShafts, Tachometer, Told, ToldTurning, tachometer_pulses,
+};
 use meshtone_io::indicators::WarningEntry;
 
 use super::options::PhaseOptions;
@@ -71,6 +73,16 @@ impl PhaseOptions {
             Self { shaft_hz: Some(_), .. } => "constant speed",
             _ => "scenario",
         }
+    }
+
+    /// What is said about a measured recording.
+    pub fn told(&self, teeth: u32) -> Told {
+        let turning = match (self.source(), self.shaft_hz) {
+            ("tachometer" | "pulse times", _) => ToldTurning::Pulses { per_revolution: self.pulses_per_rev },
+            ("constant speed", Some(speed_hz)) => ToldTurning::ConstantSpeed { speed_hz },
+            _ => ToldTurning::Other,
+        };
+        Told { teeth, mate_teeth: self.mate_teeth, turning }
     }
 
     /// What tooth 1 of a wheel is.

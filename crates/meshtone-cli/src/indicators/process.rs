@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use meshtone::scenario::{Scenario, WheelName};
 use meshtone::signal::{
-    AngularSettings, ChainSettings, Record, SeparationSettings, Shaft, ShaftPhase, SignalError,
-    SignalWarning, check_channel, process_channel, process_segments,
+    AngularSettings, AngularSignal, ChainSettings, Record, SeparationSettings, Shaft, SignalError,
+    SignalWarning, angular_resample, check_channel, misfit, process_angular, process_angular_segments,
 };
 use meshtone_io::indicators::WarningEntry;
 use meshtone_plot::DamagedTooth;
@@ -37,6 +37,8 @@ pub struct WheelRecords {
     pub mean_speed_hz: f64,
     /// One record, or one of each segment.
     pub records: Vec<Record>,
+    /// (s) Middle of each, since the first sample.
+    pub middles_s: Vec<f64>,
 }
 
 /// What one recording shows.
@@ -71,8 +73,9 @@ pub fn process(
     for (shaft, wheel) in Shaft::BOTH.into_iter().zip(&wheels) {
         let of_wheel = format!("{of_channel}, {} of {} teeth", wheel.name, wheel.teeth);
         let what = if wheels.len() > 1 { &of_wheel } else { &of_channel };
-        let of_wheel = wheel_records(input, &turning, shaft, &wheels, processing)
+        let (of_wheel, doubt) = wheel_records(input, &turning, shaft, &wheels, phase, processing)
             .map_err(|error| refuse(&input.source, what, subject, &error))?;
+        doubtful.extend(doubt);
         for warning in of_wheel.records.iter().flat_map(|record| &record.warnings) {
             if !doubtful.contains(warning) {
                 doubtful.push(warning.clone());
@@ -88,24 +91,33 @@ pub fn process(
     Ok(Processed { wheels: processed, warnings })
 }
 
-/// The records of the wheel on a shaft, the first of `wheels` on the pinion's.
+/// The records of the wheel on a shaft, the first of `wheels` on the pinion's, and what does not fit.
 fn wheel_records(
     input: &Input,
     turning: &Turning,
     shaft: Shaft,
     wheels: &[Wheel],
+    told: &PhaseOptions,
     processing: &ProcessingOptions,
-) -> Result<WheelRecords, SignalError> {
+) -> Result<(WheelRecords, Option<SignalWarning>), SignalError> {
     let wheel = &wheels[shaft as usize];
     let settings = settings(processing, wheel.teeth);
-    let (mean_speed_hz, records) = match turning {
+    let mut doubt = None;
+    let rate_hz = input.sampling_rate_hz;
+    let (mean_speed_hz, records, middles_s) = match turning {
         Turning::Measured(phase) => {
             let phase = match shaft {
                 Shaft::Pinion => Cow::Borrowed(phase),
                 Shaft::Gear => Cow::Owned(phase.of_mate(wheels[0].teeth, wheel.teeth)?),
             };
-            let records = measured(input, &phase, wheel.teeth, &settings, processing.revolutions)?;
-            (phase.mean_speed_hz(input.sampling_rate_hz), records)
+            let angular = angular_resample(&input.channel.samples, &phase, &settings.angular)?;
+            if wheel.is_on_shaft {
+                doubt = misfit(&angular, &told.told(wheel.teeth)).map(SignalWarning::DoesNotFit);
+            }
+            let records = of_angular(&angular, wheel.teeth, &settings, processing.revolutions)?;
+            let time_s = |angle_rev: f64| phase.sample_at(angle_rev) / rate_hz;
+            let middles_s = middles(&records, angular.start_rev).map(time_s).collect();
+            (phase.mean_speed_hz(rate_hz), records, middles_s)
         }
         Turning::Simulated(shafts) => {
             let signal = &input.channel.samples;
@@ -113,10 +125,13 @@ fn wheel_records(
                 None => vec![shafts.process(signal, shaft, &settings)?],
                 Some(count) => shafts.process_segments(signal, shaft, &settings, count as usize)?,
             };
-            (shafts.mean_speed_hz(shaft), records)
+            let mean_speed_hz = shafts.mean_speed_hz(shaft);
+            // Of both wheels alike, also where the speed varies.
+            let middles_s = middles(&records, 0.0).map(|angle_rev| angle_rev / mean_speed_hz).collect();
+            (mean_speed_hz, records, middles_s)
         }
     };
-    Ok(WheelRecords { wheel: wheel.clone(), mean_speed_hz, records })
+    Ok((WheelRecords { wheel: wheel.clone(), mean_speed_hz, records, middles_s }, doubt))
 }
 
 /// How far the shafts have turned, the wheels on them, and what is doubtful about the files that say so.
@@ -158,17 +173,25 @@ fn damaged_teeth(scenario: &Scenario, shaft: Shaft) -> Vec<DamagedTooth> {
     DamagedTooth::of_wheel(&scenario.faults, wheel, scenario.gears.teeth(wheel), contact_pitches)
 }
 
-fn measured(
-    input: &Input,
-    phase: &ShaftPhase,
+/// (rev) Angles of the middles of records that follow one another.
+fn middles(records: &[Record], start_rev: f64) -> impl Iterator<Item = f64> {
+    let counts = records.iter().map(|record| record.average.revolutions as f64);
+    counts.scan(start_rev, |from, count| {
+        let middle = *from + 0.5 * count;
+        *from += count;
+        Some(middle)
+    })
+}
+
+fn of_angular(
+    angular: &AngularSignal,
     teeth: u32,
     settings: &ChainSettings,
     revolutions: Option<u64>,
 ) -> Result<Vec<Record>, SignalError> {
-    let signal = &input.channel.samples;
     match revolutions {
-        None => Ok(vec![process_channel(signal, phase, teeth, settings)?]),
-        Some(count) => process_segments(signal, phase, teeth, settings, count as usize),
+        None => Ok(vec![process_angular(angular, teeth, settings)?]),
+        Some(count) => process_angular_segments(angular, teeth, settings, count as usize),
     }
 }
 

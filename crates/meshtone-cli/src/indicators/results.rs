@@ -27,6 +27,9 @@ pub struct Series {
     pub latest: Option<Latest>,
     /// The wheels, which are the same in all recordings.
     pub wheels: Vec<Wheel>,
+    /// For each wheel the middles of its records as parts of their recordings, counted on from recording to recording: 1.25 is
+    /// a quarter into the second.
+    pub middles: Vec<Vec<f64>>,
     /// Residuals of each wheel's records.
     residuals: Vec<Vec<Vec<f64>>>,
 }
@@ -45,6 +48,10 @@ impl Series {
         let mut last = Vec::new();
         for (place, of_wheel) in processed.wheels.into_iter().enumerate() {
             let count = of_wheel.records.len();
+            let length_s = input.channel.samples.len() as f64 / input.sampling_rate_hz;
+            let before = (self.results.recordings.len() - 1) as f64;
+            self.middles[place]
+                .extend(of_wheel.middles_s.iter().map(|middle_s| before + middle_s / length_s));
             for (number, mut record) in of_wheel.records.into_iter().enumerate() {
                 self.results.records.push(RecordEntry {
                     recording: self.results.recordings.len(),
@@ -72,6 +79,7 @@ impl Series {
         let wheels: Vec<Wheel> = processed.wheels.iter().map(|of_wheel| of_wheel.wheel.clone()).collect();
         let Some(first) = self.results.recordings.first() else {
             self.residuals = vec![Vec::new(); wheels.len()];
+            self.middles = vec![Vec::new(); wheels.len()];
             self.wheels = wheels;
             self.results.channel.clone_from(&input.channel.name);
             self.results.unit.clone_from(&input.channel.unit);

@@ -10,7 +10,7 @@ use meshtone::signal::{
     process_channel,
 };
 use meshtone_plot::record::{self, RecordFigure, SignalView, WheelView};
-use meshtone_plot::trend::{self, Trend, TrendFigure};
+use meshtone_plot::trend::{self, Along, Trend, TrendFigure};
 use meshtone_plot::{DamagedTooth, Figure};
 
 const RATE_HZ: f64 = 1e4;
@@ -211,12 +211,13 @@ fn trends_of_any_length_with_gaps() {
             indicators.push(Trend { name: "NA4".to_owned(), unit: String::new(), values: none });
             let wheels = ["pinion, 17 teeth".to_owned(), "gear, 38 teeth".to_owned()];
             let facts = ["12 recordings".to_owned()];
-            let counted = "Recording";
+            let places = vec![(1..=records).map(|k| k as f64).collect::<Vec<_>>(); 2];
             let figure = TrendFigure {
                 title: "day01.csv … day12.csv",
                 facts: &facts,
-                counted,
+                along: Along::Recordings { count: records },
                 wheels: &wheels,
+                places: &places,
                 indicators,
             };
             let figure = trend::draw(&figure);
@@ -224,4 +225,24 @@ fn trends_of_any_length_with_gaps() {
             shown(&figure, &["not defined", "gear, 38 teeth", "Recording", "(m/s²)"]);
         }
     }
+}
+
+// Wheels of 17 and 38 teeth, each cut into segments of as many of its own revolutions: the ends of both curves are at the same time.
+#[test]
+fn segments_of_both_wheels_lie_at_their_times() {
+    let middles =
+        |count: usize| -> Vec<f64> { (0..count).map(|k| 2.0 * (k as f64 + 0.5) / count as f64).collect() };
+    let places = [middles(38), middles(17)];
+    let values =
+        places.iter().map(|places| places.iter().map(|time_s| Some(3.0 * time_s)).collect()).collect();
+    let figure = trend::draw(&TrendFigure {
+        title: "run.csv",
+        facts: &[],
+        along: Along::Time { start_s: 0.0, end_s: 2.0 },
+        wheels: &["wheel".to_owned(), "mate".to_owned()],
+        places: &places,
+        indicators: vec![Trend { name: "FM4".to_owned(), unit: String::new(), values }],
+    });
+    check(&figure, LARGEST);
+    shown(&figure, &["Time (s)"]);
 }

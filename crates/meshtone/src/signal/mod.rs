@@ -10,6 +10,7 @@
 //! | synchronous average | [`synchronous_average`], [`segmented_averages`] |
 //! | separation | [`separate`] |
 //! | spectra and envelope | [`order_spectrum`], [`envelope`], [`envelope_spectrum`] |
+//! | whether it is of what is told | [`misfit`] |
 //! | what was simulated | [`SimulatedShafts`], whose phase the scenario says |
 //! | indicators | [`Indicators`], [`fm0`], [`fm4`], [`m6a`], [`m8a`], [`na4`], [`energy_ratio`], [`sideband_level_factor`] |
 
@@ -31,6 +32,7 @@ mod separation;
 mod simulated;
 mod spectrum;
 mod statistics;
+mod told;
 mod warning;
 
 pub use angular::{AngularSettings, AngularSignal, Interpolation, angular_resample, points_per_revolution};
@@ -46,9 +48,9 @@ pub use indicators::{
 pub use interpolate::{interpolate_band_limited, interpolate_pchip};
 pub use kaiser::kaiser;
 pub use phase::{MeshTone, PulseEdge, PulseTrain, ShaftPhase, Tachometer, repair_pulses, tachometer_pulses};
-use record::process_segments_of;
 pub use record::{
-    ChainSettings, Record, Recording, process_average, process_channel, process_segments, process_series,
+    ChainSettings, Record, Recording, process_angular, process_angular_segments, process_average,
+    process_channel, process_segments, process_series,
 };
 pub(crate) use resample::whole_ratio;
 pub use resample::{resample, resample_to, resample_with, resampling_ratio, resampling_taps};
@@ -59,4 +61,5 @@ pub use statistics::{
     central_moment, crest_factor, kurtosis, peak, peak_to_peak, rms, skewness, standard_deviation,
     standardised_moment,
 };
+pub use told::{Evidence, Likelier, Misfit, Told, ToldTurning, misfit};
 pub use warning::SignalWarning;

@@ -70,8 +70,23 @@ pub fn process_channel(
     teeth: u32,
     settings: &ChainSettings,
 ) -> Result<Record, SignalError> {
-    let angular = angular_resample(signal, phase, &settings.angular)?;
-    process_average(synchronous_average(&angular)?, teeth, settings)
+    process_angular(&angular_resample(signal, phase, &settings.angular)?, teeth, settings)
+}
+
+/// Processes a channel over the angle of the wheel's shaft: average, parts, envelope, spectra, indicators.
+///
+/// # Arguments
+/// * `angular` - the channel, from [`angular_resample`]
+/// * `teeth`, `settings` - as for [`process_channel`]
+///
+/// # Errors
+/// What [`synchronous_average`] and [`separate`] refuse.
+pub fn process_angular(
+    angular: &AngularSignal,
+    teeth: u32,
+    settings: &ChainSettings,
+) -> Result<Record, SignalError> {
+    process_average(synchronous_average(angular)?, teeth, settings)
 }
 
 /// Processes one channel in segments of equally many revolutions: a series of records.
@@ -102,11 +117,18 @@ pub fn process_segments(
     revolutions: usize,
 ) -> Result<Vec<Record>, SignalError> {
     let angular = angular_resample(signal, phase, &settings.angular)?;
-    process_segments_of(&angular, teeth, settings, revolutions)
+    process_angular_segments(&angular, teeth, settings, revolutions)
 }
 
-/// Processes a signal over the angle in segments.
-pub(super) fn process_segments_of(
+/// Processes a channel over the angle of the wheel's shaft in segments.
+///
+/// # Arguments
+/// * `angular` - the channel, from [`angular_resample`]
+/// * `teeth`, `settings`, `revolutions` - as for [`process_segments`]
+///
+/// # Errors
+/// As [`process_angular`]; not even one segment.
+pub fn process_angular_segments(
     angular: &AngularSignal,
     teeth: u32,
     settings: &ChainSettings,

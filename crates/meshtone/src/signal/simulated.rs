@@ -3,7 +3,7 @@
 use super::check::check_channel;
 use super::{
     AngularSignal, ChainSettings, Interpolation, Record, ShaftPhase, SignalError, SynchronousAverage,
-    angular_resample, process_average, process_segments_of, revolution_average,
+    angular_resample, process_angular_segments, process_average, revolution_average,
 };
 use crate::scenario::Scenario;
 use crate::sensor::Channels;
@@ -252,7 +252,7 @@ impl SimulatedShafts {
     ) -> Result<Vec<Record>, SignalError> {
         check_channel(signal)?;
         let angular = self.angular(signal, shaft, settings)?;
-        process_segments_of(&angular, self.teeth(shaft), &self.settings(settings), revolutions)
+        process_angular_segments(&angular, self.teeth(shaft), &self.settings(settings), revolutions)
     }
 
     /// Nothing is interpolated at constant speed, so nothing is weakened.

@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use super::Misfit;
+
 /// Something about a recording that leaves the result right but that its user should know.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
@@ -72,4 +74,7 @@ pub enum SignalWarning {
         /// (-) Part of the Nyquist order up to which the interpolation passes a tone with less than 5 % of loss.
         passed: f64,
     },
+    /// The recording is hardly of what is told: [`super::misfit`].
+    #[error("{0}")]
+    DoesNotFit(Misfit),
 }

@@ -47,6 +47,7 @@ mod signal_published;
 mod signal_refused;
 mod signal_scipy;
 mod signal_simulated;
+mod signal_told;
 mod support;
 mod tooth_shape;
 mod unbounded;

@@ -92,6 +92,29 @@ impl ShaftPhase {
         self.span_rev() * sampling_rate_hz / self.revolutions.len().saturating_sub(1).max(1) as f64
     }
 
+    /// Place of an angle between the samples of the recording; at the first or last one where the shaft did not turn so far.
+    ///
+    /// # Arguments
+    /// * `angle_rev` - (rev) the angle
+    ///
+    /// ```
+    /// let phase = meshtone::signal::ShaftPhase::new(10, vec![0.0, 0.25, 0.75])?;
+    /// assert_eq!(phase.sample_at(0.5), 11.5);
+    /// # Ok::<(), meshtone::signal::SignalError>(())
+    /// ```
+    pub fn sample_at(&self, angle_rev: f64) -> f64 {
+        let reached = self.revolutions.partition_point(|angle| *angle <= angle_rev);
+        let between = match (
+            reached.checked_sub(1).map(|before| self.revolutions[before]),
+            self.revolutions.get(reached),
+        ) {
+            (Some(from), Some(to)) => reached as f64 - 1.0 + (angle_rev - from) / (to - from),
+            (None, _) => 0.0,
+            (Some(_), None) => reached as f64 - 1.0,
+        };
+        self.first_sample as f64 + between
+    }
+
     pub(super) fn last(&self) -> f64 {
         self.revolutions.last().copied().unwrap_or(0.0)
     }

@@ -1,0 +1,207 @@
+//! What else a recording could be of.
+
+use super::fine_orders::FineOrders;
+use super::{Evidence, Likelier, Told, ToldTurning};
+
+/// Mesh harmonics that are looked at, of the teeth that are told: other counts have theirs in the same range, so that a multiple
+/// of the right one has fewer.
+const HARMONICS: u32 = 8;
+/// Most harmonics of any count.
+const MOST_HARMONICS: u32 = 12;
+/// (shaft orders) How far beside a mesh line its neighbours are looked for.
+const SIDEBANDS: f64 = 4.5;
+/// Fewest teeth of a wheel.
+const FEWEST_TEETH: u32 = 6;
+/// Pulses in a revolution that encoders and marks on shafts have.
+const USUAL_PULSES: [u32; 31] = [
+    1, 2, 3, 4, 5, 6, 8, 10, 12, 15, 16, 20, 24, 30, 32, 36, 48, 50, 60, 64, 72, 90, 100, 120, 128, 180, 250,
+    256, 360, 500, 512,
+];
+/// Part by which a stated speed may be off.
+const SPEED_RANGE: f64 = 0.06;
+/// Steps of a comb's speed in one of the mesh lines'.
+const FINER: i32 = 16;
+/// (bins) Distance of orders that are one line.
+const SAME_LINE: f64 = 1.5;
+
+/// A reading of the recording. Orders are those of the shaft as it is told.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Claim {
+    /// What it says.
+    pub(super) likelier: Likelier,
+    /// Order at which teeth mesh.
+    pub(super) mesh_order: f64,
+    /// Order at which the averaged wheel turns.
+    pub(super) wheel_spacing: f64,
+    /// The orders at which the shafts turn; lines of the first are left out of the second's.
+    combs: [Option<f64>; 2],
+    /// Highest order at which mesh lines are looked for.
+    highest_order: f64,
+}
+
+impl Claim {
+    /// That what is told is right.
+    pub(super) fn as_told(told: &Told) -> Self {
+        Self::with_teeth(told, told.teeth, told.mate_teeth)
+    }
+
+    fn with_teeth(told: &Told, teeth: u32, mate_teeth: Option<u32>) -> Self {
+        let ratio = mate_teeth.map(|mate_teeth| f64::from(teeth) / f64::from(mate_teeth));
+        Self {
+            likelier: Likelier::Teeth { teeth },
+            mesh_order: f64::from(teeth),
+            wheel_spacing: 1.0,
+            combs: [Some(1.0), ratio],
+            highest_order: f64::from(HARMONICS * told.teeth),
+        }
+    }
+
+    /// That the shaft turns `factor` times as quickly as it is told.
+    fn scaled(told: &Told, factor: f64, likelier: Likelier) -> Self {
+        let told = Self::as_told(told);
+        Self {
+            likelier,
+            mesh_order: factor * told.mesh_order,
+            wheel_spacing: factor,
+            combs: told.combs.map(|comb| comb.map(|order| factor * order)),
+            highest_order: told.highest_order * factor.max(1.0),
+        }
+    }
+
+    /// That speed or pulses are the mate's, and that this one has `mate_teeth`.
+    fn of_mates_shaft(teeth: u32, mate_teeth: u32) -> Self {
+        let ratio = f64::from(mate_teeth) / f64::from(teeth);
+        Self {
+            likelier: Likelier::OtherShaft,
+            mesh_order: f64::from(mate_teeth),
+            wheel_spacing: ratio,
+            combs: [Some(1.0), Some(ratio)],
+            highest_order: f64::from(HARMONICS * teeth),
+        }
+    }
+
+    /// What happens more easily, in units of the evidence.
+    pub(super) fn prior(&self) -> f64 {
+        match self.likelier {
+            Likelier::OtherShaft => 2.0,
+            Likelier::PulsesPerRevolution { .. } | Likelier::Teeth { .. } => 1.0,
+            Likelier::MateTeeth { .. } | Likelier::ShaftSpeed { .. } => 0.0,
+        }
+    }
+
+    /// Whether it says where else the orders of both shafts are.
+    pub(super) fn moves_wheel(&self) -> bool {
+        matches!(self.likelier, Likelier::PulsesPerRevolution { .. } | Likelier::ShaftSpeed { .. })
+    }
+
+    /// The mesh harmonics' orders, and how far each stands out.
+    fn mesh_lines<'a>(&self, orders: &'a FineOrders) -> impl Iterator<Item = (f64, f64)> + use<'a> {
+        let (mesh_order, reach) = (self.mesh_order, self.reach());
+        let highest_order = self.highest_order * (1.0 + 1e-9);
+        let all = (1..=MOST_HARMONICS).map(move |harmonic| f64::from(harmonic) * mesh_order);
+        all.take_while(move |order| *order <= highest_order)
+            .map_while(move |order| Some((order, orders.prominence(order, reach)?)))
+    }
+
+    /// (orders) How far beside a mesh line its neighbours are looked for: the sidebands of the shaft that is told, and of the
+    /// wheel's where that turns more quickly because pulses are miscounted.
+    pub(super) fn reach(&self) -> f64 {
+        let of_wheel = if self.moves_wheel() { SIDEBANDS * self.wheel_spacing } else { 0.0 };
+        of_wheel.max(SIDEBANDS.min(0.6 * self.mesh_order))
+    }
+
+    fn mesh(&self, orders: &FineOrders) -> f64 {
+        self.mesh_lines(orders).map(|(_, prominence)| prominence).sum()
+    }
+
+    /// What speaks for it.
+    pub(super) fn evidence(&self, orders: &FineOrders) -> Evidence {
+        let [first, second] = self.combs;
+        Evidence {
+            mesh: self.mesh(orders),
+            wheel_orders: first.and_then(|spacing| orders.comb(spacing, None)),
+            mate_orders: second.and_then(|spacing| orders.comb(spacing, first)),
+        }
+    }
+
+    /// How far those of its mesh lines stand out that the other claim does not have; none where it has all of them.
+    pub(super) fn own_mesh(&self, other: &Self, orders: &FineOrders) -> Option<f64> {
+        let is_own = |order: f64| {
+            let harmonic = (order / other.mesh_order).round().max(1.0);
+            (harmonic * other.mesh_order - order).abs() * orders.bins_per_order >= SAME_LINE
+        };
+        let own: Vec<f64> = self
+            .mesh_lines(orders)
+            .filter(|(order, _)| is_own(*order))
+            .map(|(_, prominence)| prominence)
+            .collect();
+        (!own.is_empty()).then(|| own.iter().sum())
+    }
+}
+
+/// All that could be instead of what is told.
+pub(super) fn others<'a>(told: &'a Told, orders: &'a FineOrders) -> impl Iterator<Item = Claim> + 'a {
+    let other_teeth = other_counts(told.teeth).map(|teeth| Claim::with_teeth(told, teeth, told.mate_teeth));
+    let other_mates = told.mate_teeth.into_iter().flat_map(|mate_teeth| {
+        other_counts(mate_teeth).map(|teeth| Claim {
+            likelier: Likelier::MateTeeth { teeth },
+            ..Claim::with_teeth(told, told.teeth, Some(teeth))
+        })
+    });
+    let other_shaft = told
+        .mate_teeth
+        .filter(|mate_teeth| *mate_teeth != told.teeth)
+        .map(|mate_teeth| Claim::of_mates_shaft(told.teeth, mate_teeth));
+    let turning: Vec<Claim> = match told.turning {
+        ToldTurning::Pulses { per_revolution } => other_pulses(told, per_revolution),
+        ToldTurning::ConstantSpeed { speed_hz } => other_speeds(told, speed_hz, orders),
+        ToldTurning::Other => Vec::new(),
+    };
+    other_shaft.into_iter().chain(turning).chain(other_teeth).chain(other_mates)
+}
+
+/// Tooth counts between half of one and twice it.
+fn other_counts(teeth: u32) -> impl Iterator<Item = u32> {
+    (FEWEST_TEETH.max(teeth / 2 + 1)..2 * teeth).filter(move |other| *other != teeth)
+}
+
+fn other_pulses(told: &Told, per_revolution: u32) -> Vec<Claim> {
+    let near = [-2, -1, 1, 2].into_iter().filter_map(|by| per_revolution.checked_add_signed(by));
+    let multiples = [2, 3, 4].into_iter().filter_map(|by| per_revolution.checked_mul(by));
+    let parts =
+        [2, 3, 4].into_iter().filter(|by| per_revolution.is_multiple_of(*by)).map(|by| per_revolution / by);
+    let of_wheels = [Some(told.teeth), told.mate_teeth].into_iter().flatten();
+    let mut counts: Vec<u32> =
+        USUAL_PULSES.into_iter().chain(near).chain(multiples).chain(parts).chain(of_wheels).collect();
+    counts.sort_unstable();
+    counts.dedup();
+    counts.retain(|&count| count > 0 && count != per_revolution);
+    let claim = |pulses: u32| {
+        let factor = f64::from(per_revolution) / f64::from(pulses);
+        Claim::scaled(told, factor, Likelier::PulsesPerRevolution { pulses })
+    };
+    counts.into_iter().map(claim).collect()
+}
+
+/// The speeds within some percent at which the mesh lines stand out most, and at which the wheel's orders do.
+fn other_speeds(told: &Told, speed_hz: f64, orders: &FineOrders) -> Vec<Claim> {
+    // Two bins of the highest harmonic, as wide as its line.
+    let step = 2.0 / (f64::from(HARMONICS * told.teeth) * orders.bins_per_order);
+    let steps = (SPEED_RANGE / step) as i32;
+    let claim =
+        |factor: f64| Claim::scaled(told, factor, Likelier::ShaftSpeed { speed_hz: factor * speed_hz });
+    let best = |claims: &[Claim], of: &dyn Fn(&Claim) -> f64| {
+        let all = claims.iter().map(|claim| (of(claim), claim));
+        all.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, claim)| *claim)
+    };
+    let wheel_orders = |claim: &Claim| orders.comb(claim.wheel_spacing, None).unwrap_or(0.0);
+    let coarse: Vec<Claim> =
+        (-steps..=steps).filter(|k| *k != 0).map(|k| claim(1.0 + f64::from(k) * step)).collect();
+    let by_mesh = best(&coarse, &|claim| claim.mesh(orders));
+    // Combs reach to higher orders than the mesh lines, and are as much finer.
+    let by_wheel = best(&coarse, &wheel_orders).and_then(|coarse| {
+        let finer = |k: i32| claim(coarse.wheel_spacing + f64::from(k) * step / f64::from(FINER));
+        best(&(-FINER..=FINER).map(finer).collect::<Vec<_>>(), &wheel_orders)
+    });
+    by_mesh.into_iter().chain(by_wheel).collect()
+}

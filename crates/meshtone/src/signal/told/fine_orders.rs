@@ -1,0 +1,165 @@
+//! The order spectrum of many revolutions at once, which shows what lies between the shaft's orders.
+
+use std::f64::consts::TAU;
+
+use meshtone_fourier::real_spectrum;
+
+use crate::signal::AngularSignal;
+
+/// Most values that are transformed: more would take longer than the rest of the chain.
+const MOST_VALUES: usize = 1 << 18;
+/// Fewest revolutions that are looked at, however many values they have.
+const FEWEST_REVOLUTIONS: usize = 8;
+/// Bins on each side of a line that hold it under Hann's window.
+const LOBE: usize = 2;
+/// Part of the Nyquist order up to which lines are right.
+const PASSED: f64 = 0.8;
+/// Highest order of a comb's lines.
+const HIGHEST_ORDER: f64 = 400.0;
+/// Bins that hold one maximum.
+const BLOCK: usize = 16;
+/// Least and largest logarithm of a mesh line over its strongest neighbour that counts: one line must not decide alone.
+const PROMINENCES: (f64, f64) = (-1.0, 3.0);
+/// Largest logarithm of a comb's line over what lies between, likewise.
+const LARGEST_CONTRAST: f64 = 3.0;
+/// Standard deviation of that logarithm in noise.
+const NOISE_CONTRAST: f64 = 1.3;
+/// Fewest bins between a comb's lines, and fewest lines.
+const LEAST_COMB: (f64, usize) = (6.0, 3);
+
+/// Energies of lines at fine steps of the order.
+pub(super) struct FineOrders {
+    /// Bins of an order: revolutions that were transformed.
+    pub(super) bins_per_order: f64,
+    /// Energy of a line in each bin.
+    lines: Vec<f64>,
+    /// The largest of each block of them.
+    largest: Vec<f64>,
+    /// Their logarithms.
+    logarithms: Vec<f64>,
+}
+
+impl FineOrders {
+    /// Of as many revolutions as can be transformed quickly. None where there is nothing to see.
+    pub(super) fn of(angular: &AngularSignal) -> Option<Self> {
+        let points = angular.points_per_revolution;
+        let affordable = (MOST_VALUES / points.max(1)).max(FEWEST_REVOLUTIONS);
+        let revolutions = quickly_transformed(angular.revolutions().min(affordable));
+        let values = angular.values.get(..revolutions * points)?;
+        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+        let step = TAU / values.len().max(1) as f64;
+        let windowed: Vec<f64> = values
+            .iter()
+            .enumerate()
+            .map(|(i, value)| (value - mean) * 0.5 * (1.0 - (step * i as f64).cos()))
+            .collect();
+        let highest = PASSED * angular.nyquist_order.min(0.5 * points as f64);
+        let bins = (highest * revolutions as f64) as usize;
+        let power: Vec<f64> =
+            real_spectrum(&windowed).iter().take(bins + LOBE + 1).map(|x| x.norm_sqr()).collect();
+        if power.len() <= 2 * BLOCK {
+            return None;
+        }
+        let line = |bin: usize| {
+            power[bin.saturating_sub(LOBE)..(bin + LOBE + 1).min(power.len())].iter().sum::<f64>()
+        };
+        let lines: Vec<f64> = (0..power.len() - LOBE).map(line).collect();
+        let strongest = lines.iter().copied().fold(0.0, f64::max);
+        if strongest <= 0.0 {
+            return None;
+        }
+        let of_comb = ((HIGHEST_ORDER + 1.0) * revolutions as f64) as usize;
+        Some(Self {
+            bins_per_order: revolutions as f64,
+            largest: lines.chunks(BLOCK).map(|block| block.iter().copied().fold(0.0, f64::max)).collect(),
+            // What is nothing but rounding has no shape.
+            logarithms: lines.iter().take(of_comb).map(|line| (line + 1e-24 * strongest).ln()).collect(),
+            lines,
+        })
+    }
+
+    fn bin(&self, order: f64) -> usize {
+        (order * self.bins_per_order).round() as usize
+    }
+
+    /// Logarithm of the energy of the line at an order over that of its strongest neighbour. None where the neighbours cannot
+    /// be told from it, or lie beyond what the recording shows.
+    ///
+    /// # Arguments
+    /// * `order` - of the line
+    /// * `reach` - (orders) how far the neighbours are
+    pub(super) fn prominence(&self, order: f64, reach: f64) -> Option<f64> {
+        const APART: usize = 2 * LOBE + 1;
+        let (bin, reach) = (self.bin(order), self.bin(reach));
+        if reach < APART + 3 || bin < APART + LOBE || bin + APART + 1 >= self.lines.len() {
+            return None;
+        }
+        let below = self.strongest(bin.saturating_sub(reach).max(LOBE + 1), bin - APART);
+        let above = self.strongest(bin + APART, (bin + reach).min(self.lines.len() - 1));
+        let neighbour = below.max(above);
+        let own = self.lines[bin - 1..=bin + 1].iter().copied().fold(0.0, f64::max);
+        let (least, largest) = PROMINENCES;
+        (neighbour > 0.0).then(|| (own / neighbour).ln().clamp(least, largest))
+    }
+
+    /// The strongest line of a range of bins, its ends included.
+    fn strongest(&self, from: usize, to: usize) -> f64 {
+        let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+        let (first, last) = (from.div_ceil(BLOCK), (to + 1) / BLOCK);
+        if from > to {
+            return 0.0;
+        }
+        if first >= last {
+            return largest(&self.lines[from..=to]);
+        }
+        largest(&self.lines[from..first * BLOCK])
+            .max(largest(&self.largest[first..last]))
+            .max(largest(&self.lines[last * BLOCK..=to]))
+    }
+
+    /// How far the multiples of an order stand out of what lies midway between them, in standard deviations of noise. None where
+    /// they cannot be told apart.
+    ///
+    /// # Arguments
+    /// * `spacing` - the order
+    /// * `known` - another order, whose multiples are left out
+    pub(super) fn comb(&self, spacing: f64, known: Option<f64>) -> Option<f64> {
+        let (least_spacing, fewest) = LEAST_COMB;
+        if spacing * self.bins_per_order < least_spacing {
+            return None;
+        }
+        let clear = |order: f64| {
+            let apart = |known: f64| ((order / known).round() * known - order).abs() * self.bins_per_order;
+            known.is_none_or(|known| apart(known) > (2 * LOBE + 1) as f64)
+        };
+        let level = |order: f64| self.logarithms.get(self.bin(order)).copied().filter(|_| clear(order));
+        let highest = (self.logarithms.len() as f64 / self.bins_per_order - 1.0).min(HIGHEST_ORDER);
+        let contrast = |multiple: usize| {
+            let order = multiple as f64 * spacing;
+            let (below, above) = (level(order - 0.5 * spacing), level(order + 0.5 * spacing));
+            let between = match (below, above) {
+                (Some(below), Some(above)) => 0.5 * (below + above),
+                (one, other) => one.or(other)?,
+            };
+            Some((level(order)? - between).clamp(-LARGEST_CONTRAST, LARGEST_CONTRAST))
+        };
+        let multiples = (highest / spacing) as usize;
+        let contrasts: Vec<f64> = (1..=multiples).filter_map(contrast).collect();
+        let noise = NOISE_CONTRAST * (contrasts.len() as f64).sqrt();
+        (contrasts.len() >= fewest).then(|| contrasts.iter().sum::<f64>() / noise)
+    }
+}
+
+/// The largest number up to `count` whose only prime factors are 2, 3 and 5.
+fn quickly_transformed(count: usize) -> usize {
+    let smooth = |&n: &usize| {
+        let rest = [2, 3, 5].iter().fold(n, |mut rest, prime| {
+            while rest > 0 && rest.is_multiple_of(*prime) {
+                rest /= prime;
+            }
+            rest
+        });
+        rest == 1
+    };
+    (1..=count).rev().find(smooth).unwrap_or(0)
+}

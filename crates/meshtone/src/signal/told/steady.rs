@@ -1,0 +1,117 @@
+//! The constant speed at which the mesh harmonics turn least over the recording.
+
+use std::f64::consts::TAU;
+
+use meshtone_fourier::Complex64;
+
+use super::claims::Claim;
+use super::fine_orders::FineOrders;
+use crate::signal::AngularSignal;
+
+/// Harmonics that are followed, at most.
+const FOLLOWED: usize = 3;
+/// Of the first so many.
+const HARMONICS: u32 = 8;
+/// (bins of the fine orders) Range to each side in which the speed is looked for.
+const RANGE: f64 = 2.0;
+/// Steps of the search in a width of the recording's own line.
+const STEPS: f64 = 4.0;
+/// Least part of the harmonics' energy that is steady at the best speed.
+const LEAST_STEADY: f64 = 0.3;
+
+/// Least sum of the followed harmonics' prominences.
+const LEAST_PROMINENCE: f64 = 2.0;
+
+/// A better speed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Steadied {
+    /// Over the one that is told.
+    pub(super) factor: f64,
+    /// Energy of the harmonics in the average over that at the told speed.
+    pub(super) energy_ratio: f64,
+}
+
+/// One harmonic, revolution by revolution.
+struct Harmonic {
+    order: f64,
+    turns: Vec<Complex64>,
+}
+
+impl Harmonic {
+    /// Of the shaft that turns `factor` times as quickly as the angle says.
+    fn of(angular: &AngularSignal, order: f64, factor: f64) -> Self {
+        let points = angular.points_per_revolution;
+        let step = -TAU * order * factor / points as f64;
+        let wave: Vec<(f64, f64)> = (0..points).map(|n| (step * n as f64).sin_cos()).collect();
+        let turn = |(revolution, values): (usize, &[f64])| {
+            let (im, re) = values
+                .iter()
+                .zip(&wave)
+                .fold((0.0, 0.0), |(im, re), (value, (sin, cos))| (im + value * sin, re + value * cos));
+            Complex64::new(re, im) * Complex64::cis(-TAU * (order * factor * revolution as f64).fract())
+        };
+        Self { order, turns: angular.values.chunks_exact(points).enumerate().map(turn).collect() }
+    }
+
+    /// Energy that is steady where the shaft turns by `by` of its speed quicker; `weight` of each revolution.
+    fn steady(&self, by: f64, weight: impl Fn(usize) -> f64) -> f64 {
+        let step = -TAU * self.order * by;
+        let turned = |(r, turn): (usize, &Complex64)| turn * Complex64::cis(step * r as f64) * weight(r);
+        self.turns.iter().enumerate().map(turned).sum::<Complex64>().norm_sqr()
+    }
+
+    fn energy(&self) -> f64 {
+        self.turns.iter().map(Complex64::norm_sqr).sum::<f64>() * self.turns.len() as f64
+    }
+}
+
+/// The speed near that of a claim at which the mesh harmonics are steadiest.
+///
+/// None where no harmonic stands out, or none is steady.
+pub(super) fn steadied(
+    angular: &AngularSignal,
+    orders: &FineOrders,
+    claim: &Claim,
+    teeth: u32,
+) -> Option<Steadied> {
+    let factor = claim.wheel_spacing;
+    let mut prominent: Vec<(f64, f64)> = (1..=HARMONICS)
+        .map(|harmonic| f64::from(harmonic * teeth))
+        .map_while(|order| Some((orders.prominence(order * factor, claim.reach())?, order)))
+        .filter(|(prominence, _)| *prominence > 0.0)
+        .collect();
+    prominent.sort_by(|a, b| b.0.total_cmp(&a.0));
+    prominent.truncate(FOLLOWED);
+    let lowest = prominent.iter().map(|(_, order)| *order).min_by(f64::total_cmp)?;
+    let highest = prominent.iter().map(|(_, order)| *order).max_by(f64::total_cmp)?;
+    let harmonics: Vec<Harmonic> =
+        prominent.iter().map(|(_, order)| Harmonic::of(angular, *order, factor)).collect();
+    let revolutions = angular.revolutions() as f64;
+    // Hann's window keeps what lies beside the mesh out of the search.
+    let window = |r: usize| 0.5 * (1.0 - (TAU * (r as f64 + 0.5) / revolutions).cos());
+    let steady = |by: f64| harmonics.iter().map(|harmonic| harmonic.steady(by, window)).sum::<f64>();
+    let step = 1.0 / (STEPS * revolutions * highest);
+    let steps = (RANGE / (orders.bins_per_order * lowest) / step).ceil() as i32;
+    let (_, best) =
+        (-steps..=steps).map(|k| (steady(f64::from(k) * step), k)).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let near = f64::from(best) * step;
+    let [below, at, above] = [near - step, near, near + step].map(steady);
+    let bend = below - 2.0 * at + above;
+    let by = if bend < 0.0 { near + 0.5 * step * (below - above) / bend } else { near };
+    let whole = |by: f64| harmonics.iter().map(|harmonic| harmonic.steady(by, |_| 1.0)).sum::<f64>();
+    let energy: f64 = harmonics.iter().map(Harmonic::energy).sum();
+    if whole(by) < LEAST_STEADY * energy {
+        return None;
+    }
+    let told = if factor == 1.0 {
+        whole(0.0)
+    } else {
+        let as_told = |harmonic: &Harmonic| Harmonic::of(angular, harmonic.order, 1.0).steady(0.0, |_| 1.0);
+        harmonics.iter().map(as_told).sum()
+    };
+    let stands_out = |(_, order): &(f64, f64)| orders.prominence(order * (factor + by), claim.reach());
+    if prominent.iter().filter_map(stands_out).sum::<f64>() < LEAST_PROMINENCE {
+        return None;
+    }
+    Some(Steadied { factor: factor + by, energy_ratio: whole(by) / told })
+}

@@ -1,0 +1,59 @@
+//! What does not fit, in words.
+
+use std::fmt::{Display, Formatter, Result};
+
+use super::{Likelier, Misfit, ToldTurning};
+
+impl Display for Misfit {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        let teeth = self.told.teeth;
+        match self.likelier {
+            Likelier::Teeth { teeth: likelier } => write!(
+                f,
+                "the mesh lines are those of {likelier} teeth on this shaft rather than {teeth}: check the tooth count"
+            ),
+            Likelier::MateTeeth { teeth: likelier } => {
+                let mate_teeth = self.told.mate_teeth.unwrap_or(0);
+                write!(
+                    f,
+                    "the other shaft's orders are those of a mate of {likelier} teeth rather than {mate_teeth}: check its \
+                     tooth count"
+                )
+            }
+            Likelier::OtherShaft => {
+                let mate_teeth = self.told.mate_teeth.unwrap_or(0);
+                let what = match self.told.turning {
+                    ToldTurning::Pulses { .. } => "the pulses are",
+                    ToldTurning::ConstantSpeed { .. } | ToldTurning::Other => "the speed is",
+                };
+                write!(
+                    f,
+                    "{what} rather of the other shaft, that of the wheel with {mate_teeth} teeth: exchange the tooth counts \
+                     {teeth} and {mate_teeth}"
+                )
+            }
+            Likelier::PulsesPerRevolution { pulses } => {
+                let told = match self.told.turning {
+                    ToldTurning::Pulses { per_revolution } => per_revolution,
+                    ToldTurning::ConstantSpeed { .. } | ToldTurning::Other => 0,
+                };
+                write!(f, "there are rather {pulses} pulses in a revolution than {told}: check their number")
+            }
+            Likelier::ShaftSpeed { speed_hz } => {
+                let told_hz = match self.told.turning {
+                    ToldTurning::ConstantSpeed { speed_hz } => speed_hz,
+                    ToldTurning::Pulses { .. } | ToldTurning::Other => speed_hz,
+                };
+                let percent = 100.0 * (speed_hz / told_hz - 1.0);
+                write!(
+                    f,
+                    "the shaft turns rather at {speed_hz:.6} Hz than at {told_hz} Hz ({percent:+.4} %)"
+                )?;
+                if let Some(ratio) = self.energy_ratio {
+                    write!(f, ": the average then holds {ratio:.1} times the energy at the mesh orders")?;
+                }
+                write!(f, "; state that speed, or follow the mesh tone")
+            }
+        }
+    }
+}

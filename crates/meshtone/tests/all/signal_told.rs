@@ -1,0 +1,515 @@
+//! Whether what is said about a recording fits: simulated recordings with every mistake, and with none.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use std::f64::consts::TAU;
+
+use meshtone::scenario::Scenario;
+use meshtone::signal::{
+    AngularSettings, Edge, Likelier, Misfit, ShaftPhase, Told, ToldTurning, angular_resample,
+    interpolate_band_limited, misfit, resample,
+};
+use meshtone::simulate;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+
+use crate::signal::noise;
+
+/// Draws of one recording.
+struct Draws(ChaCha8Rng);
+
+impl Draws {
+    fn new(seed: u64) -> Self {
+        Self(ChaCha8Rng::seed_from_u64(seed))
+    }
+
+    fn part(&mut self) -> f64 {
+        (self.0.next_u64() >> 11) as f64 * 2f64.powi(-53)
+    }
+
+    fn between(&mut self, least: f64, largest: f64) -> f64 {
+        least + (largest - least) * self.part()
+    }
+
+    /// As many in every octave.
+    fn in_octaves(&mut self, least: f64, largest: f64) -> f64 {
+        least * (largest.max(least) / least).powf(self.part())
+    }
+
+    fn count(&mut self, least: u32, largest: u32) -> u32 {
+        least + (self.part() * f64::from(largest + 1 - least)) as u32
+    }
+
+    fn one<T: Copy>(&mut self, of: &[T]) -> T {
+        of[(self.part() * of.len() as f64) as usize]
+    }
+
+    fn chance(&mut self, part: f64) -> bool {
+        self.part() < part
+    }
+}
+
+/// A pair that was simulated.
+struct Machine {
+    signal: Vec<f64>,
+    rate_hz: f64,
+    samples_per_pinion_revolution: f64,
+    teeth: [u32; 2],
+}
+
+/// Any pair, sound or damaged, at any speed and load, in both models.
+fn machine(seed: u64) -> Machine {
+    let mut draws = Draws::new(seed);
+    loop {
+        let mut teeth = [draws.count(12, 90), draws.count(12, 90)];
+        if draws.chance(0.2) {
+            let factor = draws.count(2, 8);
+            teeth = teeth.map(|teeth| (teeth / factor).max(3) * factor).map(|teeth| teeth.max(12));
+        }
+        let module_mm = draws.one(&[2.0, 3.0, 4.0]);
+        let kind = draws.one(&[
+            "",
+            "",
+            "tooth-breakage",
+            "root-crack",
+            "wear",
+            "missing-tooth",
+            "partial-face",
+            "pits",
+        ]);
+        let severity = match kind {
+            "missing-tooth" => String::new(),
+            _ => format!("severity = {}\n", draws.between(0.1, 0.9)),
+        };
+        let wheel = draws.one(&["pinion", "gear"]);
+        let fault = match kind {
+            "" => String::new(),
+            "wear" => format!("[fault]\nkind = \"wear\"\nwheel = \"{wheel}\"\ntooth = \"all\"\n{severity}"),
+            _ => format!("[fault]\nkind = \"{kind}\"\nwheel = \"{wheel}\"\n{severity}"),
+        };
+        let model = draws.one(&["contact", "contact", "linear"]);
+        let text = format!(
+            "model = \"{model}\"\nseed = {seed}\n[gears]\nmodule_mm = {module_mm}\npinion_teeth = {}\ngear_teeth = {}\n\
+             face_width_mm = {}\n[operation]\npinion_speed_hz = {}\nbrake_torque_nm = {}\n[quality]\ndin_grade = {}\n{fault}",
+            teeth[0],
+            teeth[1],
+            8.0 * module_mm,
+            draws.in_octaves(5.0, 50.0),
+            draws.in_octaves(3.0, 200.0),
+            draws.one(&[0, 5, 6, 7, 7, 8, 9]),
+        );
+        let Ok(scenario) = Scenario::from_toml(&text) else { continue };
+        let Ok(simulation) = simulate(&scenario) else { continue };
+        let channels = simulation.channels;
+        let rate_hz = channels.sampling_rate_hz;
+        return Machine {
+            signal: channels.vertical_g,
+            rate_hz,
+            samples_per_pinion_revolution: (rate_hz / scenario.operation.pinion_speed_hz).round(),
+            teeth,
+        };
+    }
+}
+
+/// What a rig's recorder has kept.
+struct Recording {
+    signal: Vec<f64>,
+    rate_hz: f64,
+    /// (rev) How far the shaft of the averaged wheel has turned at each sample.
+    revolutions: Vec<f64>,
+    teeth: u32,
+    mate_teeth: u32,
+}
+
+/// A stretch of at least five revolutions of the slower wheel, at any rate, with noise down to 0 dB, hum and bearing tones; with a
+/// speed that varies by up to ±1 % where that is asked for.
+fn recording(machine: &Machine, varies: bool, draws: &mut Draws) -> Recording {
+    let [pinion, gear] = machine.teeth.map(f64::from);
+    let per_revolution = machine.samples_per_pinion_revolution;
+    let slower = per_revolution * (gear / pinion).max(1.0);
+    let whole = machine.signal.len() as f64;
+    let samples = (slower * draws.in_octaves(5.0, whole / slower)).min(whole) as usize;
+    let first = (draws.part() * (machine.signal.len() - samples) as f64) as usize;
+    let mut signal = machine.signal[first..first + samples].to_vec();
+    let mut turned: Vec<f64> = (first..first + samples).map(|i| i as f64 / per_revolution).collect();
+    if varies {
+        let (depth, cycles, start) = (draws.between(0.002, 0.01), draws.between(0.3, 2.0), draws.part());
+        let end = (samples - 1) as f64;
+        let wander = |x: f64| depth / (TAU * cycles) * (TAU * (cycles * x + start)).sin();
+        let warped = |x: f64| (x + wander(x) - wander(0.0)) / (1.0 + wander(1.0) - wander(0.0));
+        let places: Vec<f64> = (0..samples).map(|i| end * warped(i as f64 / end)).collect();
+        signal = interpolate_band_limited(&signal, &places, Edge::Reflect).unwrap();
+        turned = places.iter().map(|place| (first as f64 + place) / per_revolution).collect();
+    }
+    let mesh_hz = pinion * machine.rate_hz / per_revolution;
+    let rate_hz = draws.in_octaves((2.6 * mesh_hz).max(4e3), 51_200.0);
+    let every = ((machine.rate_hz / rate_hz) as usize).max(1);
+    let mut signal = resample(&signal, 1, every, Edge::Reflect).unwrap();
+    let turned: Vec<f64> = turned.into_iter().step_by(every).collect();
+    let rate_hz = machine.rate_hz / every as f64;
+    let mean = signal.iter().sum::<f64>() / signal.len() as f64;
+    let rms = (signal.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / signal.len() as f64).sqrt();
+    let noise_db = draws.one(&[f64::NEG_INFINITY, -20.0, -10.0, -5.0, 0.0]);
+    let noise = noise(draws.0.next_u64(), signal.len());
+    let amplitude = rms * 10f64.powf(noise_db / 20.0);
+    signal.iter_mut().zip(noise).for_each(|(x, noise)| *x += amplitude * noise);
+    let hum = draws.chance(0.3).then_some(50.0);
+    let bearing = draws.chance(0.3).then(|| draws.between(2.3, 9.7) * mesh_hz / pinion);
+    for tone_hz in hum.into_iter().chain(bearing) {
+        for harmonic in 1..=4 {
+            let (amplitude, start) = (rms * draws.between(0.0, 0.3), draws.part());
+            let cycles = f64::from(harmonic) * tone_hz / rate_hz;
+            let add = |(i, x): (usize, &mut f64)| *x += amplitude * (TAU * (cycles * i as f64 + start)).cos();
+            signal.iter_mut().enumerate().for_each(add);
+        }
+    }
+    let (wheel, mate) = if draws.chance(0.5) { (0, 1) } else { (1, 0) };
+    let ratio = pinion / f64::from(machine.teeth[wheel]);
+    Recording {
+        signal,
+        rate_hz,
+        revolutions: turned.iter().map(|angle| ratio * angle).collect(),
+        teeth: machine.teeth[wheel],
+        mate_teeth: machine.teeth[mate],
+    }
+}
+
+/// What is said wrongly.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Mistake {
+    None,
+    NoneAtConstantSpeed,
+    Teeth,
+    MateTeeth,
+    OtherShaft,
+    Pulses,
+    Speed,
+}
+
+/// A recording of which something is said.
+struct Case {
+    recording: Recording,
+    phase: ShaftPhase,
+    told: Told,
+    right: Option<Likelier>,
+    /// Revolutions of the slower wheel.
+    revolutions: f64,
+}
+
+/// Times at which a shaft that has turned so far gives pulses.
+fn pulses(turned: &[f64], per_revolution: u32, rate_hz: f64) -> Vec<f64> {
+    let pulses = f64::from(per_revolution);
+    let mut next = (turned[0] * pulses).ceil();
+    let mut times = Vec::new();
+    for (i, pair) in turned.windows(2).enumerate() {
+        while next <= pair[1] * pulses {
+            times.push((i as f64 + (next / pulses - pair[0]) / (pair[1] - pair[0])) / rate_hz);
+            next += 1.0;
+        }
+    }
+    times
+}
+
+impl Case {
+    /// None where the chain itself refuses the recording.
+    fn new(machine: &Machine, mistake: Mistake, draws: &mut Draws) -> Option<Self> {
+        let constant = matches!(mistake, Mistake::NoneAtConstantSpeed | Mistake::Speed);
+        let varies = !constant && draws.chance(0.5);
+        let recording = recording(machine, varies, draws);
+        let Recording { teeth, mate_teeth, rate_hz, .. } = recording;
+        let (samples, turned) = (recording.signal.len(), &recording.revolutions);
+        let needs_mate = matches!(mistake, Mistake::MateTeeth | Mistake::OtherShaft);
+        let told_mate = (needs_mate || draws.chance(0.7)).then_some(mate_teeth);
+        let (right_pulses, told_pulses) = match mistake {
+            Mistake::Pulses => draws.one(&[
+                (2, 1),
+                (1, 2),
+                (3, 1),
+                (3, 4),
+                (4, 3),
+                (4, 2),
+                (2, 4),
+                (59, 60),
+                (61, 60),
+                (60, 1),
+                (24, 25),
+                (20, 19),
+            ]),
+            _ => draws.one(&[(1, 1), (1, 1), (2, 2), (60, 60)]),
+        };
+        let mut told = Told {
+            teeth,
+            mate_teeth: told_mate,
+            turning: ToldTurning::Pulses { per_revolution: told_pulses },
+        };
+        let on_shaft: Vec<f64> = match mistake {
+            Mistake::OtherShaft => {
+                let ratio = f64::from(teeth) / f64::from(mate_teeth);
+                turned.iter().map(|angle| ratio * angle).collect()
+            }
+            _ => turned.clone(),
+        };
+        let mut speed_hz = (turned[samples - 1] - turned[0]) * rate_hz / (samples - 1) as f64;
+        let by = draws.one(&[-3, -2, -1, 1, 2, 3]);
+        let right = match mistake {
+            Mistake::None | Mistake::NoneAtConstantSpeed => None,
+            Mistake::Teeth => {
+                told.teeth = teeth.checked_add_signed(by)?;
+                Some(Likelier::Teeth { teeth })
+            }
+            Mistake::MateTeeth => {
+                told.mate_teeth = mate_teeth.checked_add_signed(by);
+                Some(Likelier::MateTeeth { teeth: mate_teeth })
+            }
+            Mistake::OtherShaft if teeth == mate_teeth => return None,
+            Mistake::OtherShaft => Some(Likelier::OtherShaft),
+            Mistake::Pulses => Some(Likelier::PulsesPerRevolution { pulses: right_pulses }),
+            Mistake::Speed => {
+                let off = draws.in_octaves(1e-4, 0.03) * draws.one(&[-1.0, 1.0]);
+                let right = Likelier::ShaftSpeed { speed_hz };
+                speed_hz *= 1.0 + off;
+                Some(right)
+            }
+        };
+        let phase = if constant {
+            told.turning = ToldTurning::ConstantSpeed { speed_hz };
+            ShaftPhase::constant(speed_hz, rate_hz, samples).ok()?
+        } else {
+            let times = pulses(&on_shaft, right_pulses, rate_hz);
+            ShaftPhase::from_pulses(&times, told_pulses, None, rate_hz, samples).ok()?
+        };
+        let slower = f64::from(teeth) / f64::from(teeth.max(mate_teeth));
+        let revolutions = slower * (turned[samples - 1] - turned[0]);
+        Some(Self { phase, told, right, revolutions, recording })
+    }
+
+    fn misfit(&self) -> Option<Option<Misfit>> {
+        let angular =
+            angular_resample(&self.recording.signal, &self.phase, &AngularSettings::default()).ok()?;
+        let shown = f64::from(self.told.teeth) < 0.8 * angular.nyquist_order && angular.revolutions() > 1;
+        shown.then(|| misfit(&angular, &self.told))
+    }
+
+    /// Turns of the mesh tone, over the whole recording, between a speed and the right one.
+    fn mesh_turns(&self, speed_hz: f64) -> f64 {
+        let seconds = self.recording.signal.len() as f64 / self.recording.rate_hz;
+        match self.right {
+            Some(Likelier::ShaftSpeed { speed_hz: right }) => {
+                (speed_hz - right).abs() * f64::from(self.recording.teeth) * seconds
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// Whether cause and value are right.
+    fn is_right(&self, likelier: Likelier) -> (bool, bool) {
+        match (likelier, self.right) {
+            (Likelier::ShaftSpeed { speed_hz }, Some(Likelier::ShaftSpeed { .. })) => {
+                (true, self.mesh_turns(speed_hz) < 0.25)
+            }
+            (likelier, Some(right)) => {
+                (std::mem::discriminant(&likelier) == std::mem::discriminant(&right), likelier == right)
+            }
+            (_, None) => (false, false),
+        }
+    }
+}
+
+/// How often a warning came.
+#[derive(Debug, Default, Clone, Copy)]
+struct Tally {
+    recordings: usize,
+    warned: usize,
+    right_cause: usize,
+    right_value: usize,
+}
+
+impl std::iter::Sum for Tally {
+    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
+        all.fold(Self::default(), |a, b| Self {
+            recordings: a.recordings + b.recordings,
+            warned: a.warned + b.warned,
+            right_cause: a.right_cause + b.right_cause,
+            right_value: a.right_value + b.right_value,
+        })
+    }
+}
+
+fn tally(case: &Case) -> Option<Tally> {
+    let found = case.misfit()?;
+    let (right_cause, right_value) = found.map_or((false, false), |misfit| case.is_right(misfit.likelier));
+    if std::env::var_os("TOLD_SHOW").is_some() && found.is_some() && !right_value {
+        println!("{:?} right {:?} revs {:.1} {:?}", case.told, case.right, case.revolutions, found);
+    }
+    Some(Tally {
+        recordings: 1,
+        warned: found.is_some().into(),
+        right_cause: right_cause.into(),
+        right_value: right_value.into(),
+    })
+}
+
+fn row(name: &str, tally: Tally) {
+    let Tally { recordings, warned, right_cause, right_value } = tally;
+    println!("| {name} | {recordings} | {warned} | {right_cause} | {right_value} |");
+}
+
+/// Prints the table of the book: `cargo test --release -p meshtone -- --ignored recordings_with_every_mistake --nocapture`.
+#[test]
+#[ignore = "takes minutes; prints a table"]
+fn recordings_with_every_mistake() {
+    let machines: Vec<Machine> = (0..300u64).into_par_iter().map(machine).collect();
+    println!("| what is told | recordings | warned | right cause | right value |");
+    let draw = |mistake: Mistake, count: u64| -> Vec<(Case, Tally)> {
+        (0..count)
+            .into_par_iter()
+            .filter_map(|index| {
+                let mut draws = Draws::new(1_000_000 * (mistake as u64 + 1) + index);
+                let case = Case::new(&machines[(index % 300) as usize], mistake, &mut draws)?;
+                let tally = tally(&case)?;
+                Some((case, tally))
+            })
+            .collect()
+    };
+    for (mistake, name, count) in [
+        (Mistake::None, "right, pulses", 900),
+        (Mistake::NoneAtConstantSpeed, "right, constant speed", 300),
+        (Mistake::Teeth, "teeth of the wheel off by 1 to 3", 300),
+        (Mistake::MateTeeth, "teeth of the mate off by 1 to 3", 300),
+        (Mistake::OtherShaft, "pulses of the other shaft", 300),
+        (Mistake::Pulses, "another number of pulses", 300),
+        (Mistake::Speed, "speed off by 0.01 to 3 %", 400),
+    ] {
+        let cases = draw(mistake, count);
+        let of =
+            |keep: &dyn Fn(&Case) -> bool| cases.iter().filter(|(case, _)| keep(case)).map(|(_, t)| *t).sum();
+        row(name, of(&|_| true));
+        match mistake {
+            Mistake::None | Mistake::NoneAtConstantSpeed => {}
+            Mistake::Speed => {
+                let turns = |case: &Case| match case.told.turning {
+                    ToldTurning::ConstantSpeed { speed_hz } => case.mesh_turns(speed_hz),
+                    _ => 0.0,
+                };
+                row("… by less than 0.3 mesh cycles in all", of(&|case| turns(case) < 0.3));
+                row("… by more", of(&|case| turns(case) >= 0.3));
+            }
+            _ => {
+                row("… 5 to 10 revolutions", of(&|case| case.revolutions < 10.0));
+                row("… 10 to 30", of(&|case| (10.0..30.0).contains(&case.revolutions)));
+                row("… more", of(&|case| case.revolutions >= 30.0));
+            }
+        }
+    }
+}
+
+/// Mesh harmonics with the sidebands and orders of both shafts, at half as much noise as signal.
+fn meshing(teeth: [u32; 2], revolutions: &[f64]) -> Vec<f64> {
+    let [own, mate] = teeth.map(f64::from);
+    let tone = |order: f64, turned: f64| (TAU * (order * turned).fract()).cos();
+    let all = revolutions.iter().zip(noise(3, revolutions.len()));
+    all.map(|(&turned, noise)| {
+        let other = turned * own / mate;
+        let modulation = 1.0
+            + 0.2 * tone(1.0, turned)
+            + 0.1 * tone(2.0, turned)
+            + 0.2 * tone(1.0, other)
+            + 0.1 * tone(3.0, other);
+        let mesh: f64 = (1..=5).map(|h| tone(f64::from(h) * own, turned) / f64::from(h)).sum();
+        let orders: f64 =
+            (1..=60).map(|k| 0.1 * (tone(f64::from(k), turned) + tone(f64::from(k), other))).sum();
+        modulation * mesh + orders + 0.7 * noise
+    })
+    .collect()
+}
+
+const RATE_HZ: f64 = 10_240.0;
+const TEETH: [u32; 2] = [23, 38];
+
+/// What does not fit a shaft of 20 Hz whose speed varies by 1 %, where `told_per_right` is how quickly it is told to turn.
+fn misfit_of(told_per_right: f64, told: Told) -> Option<Misfit> {
+    let seconds = |i: usize| i as f64 / RATE_HZ;
+    let turned: Vec<f64> =
+        (0..81_920).map(|i| 20.0 * seconds(i) + 0.1 * (TAU * 0.3 * seconds(i)).sin()).collect();
+    let phase = ShaftPhase::new(0, turned.iter().map(|angle| told_per_right * angle).collect()).unwrap();
+    let angular = angular_resample(&meshing(TEETH, &turned), &phase, &AngularSettings::default()).unwrap();
+    misfit(&angular, &told)
+}
+
+#[test]
+fn each_mistake_is_named_with_the_better_value() {
+    let pulses = |per_revolution| ToldTurning::Pulses { per_revolution };
+    let told = |teeth, mate_teeth, turning| Told { teeth, mate_teeth: Some(mate_teeth), turning };
+    let [own, mate] = TEETH;
+    for (told_per_right, told, likelier) in [
+        (1.0, told(own, mate, pulses(1)), None),
+        (1.0, told(own, mate, ToldTurning::Other), None),
+        (1.0, told(own + 1, mate, pulses(1)), Some(Likelier::Teeth { teeth: own })),
+        (1.0, told(own, mate - 1, pulses(1)), Some(Likelier::MateTeeth { teeth: mate })),
+        (23.0 / 38.0, told(own, mate, pulses(1)), Some(Likelier::OtherShaft)),
+        (2.0, told(own, mate, pulses(1)), Some(Likelier::PulsesPerRevolution { pulses: 2 })),
+        (0.75, told(own, mate, pulses(4)), Some(Likelier::PulsesPerRevolution { pulses: 3 })),
+        (59.0 / 60.0, told(own, mate, pulses(60)), Some(Likelier::PulsesPerRevolution { pulses: 59 })),
+    ] {
+        let found = misfit_of(told_per_right, told);
+        assert_eq!(found.map(|misfit| misfit.likelier), likelier, "{told:?}: {found:?}");
+    }
+}
+
+#[test]
+fn a_speed_that_is_off_is_found_to_parts_per_million() {
+    let turned: Vec<f64> = (0..204_800).map(|i| 20.0 * i as f64 / RATE_HZ).collect();
+    let signal = meshing(TEETH, &turned);
+    for off in [0.0, 8e-5, -1.2e-4, 8e-4, -7e-3, 0.024] {
+        let speed_hz = 20.0 * (1.0 + off);
+        let phase = ShaftPhase::constant(speed_hz, RATE_HZ, signal.len()).unwrap();
+        let angular = angular_resample(&signal, &phase, &AngularSettings::default()).unwrap();
+        let turning = ToldTurning::ConstantSpeed { speed_hz };
+        let found = misfit(&angular, &Told { teeth: TEETH[0], mate_teeth: Some(TEETH[1]), turning });
+        match found.map(|misfit| misfit.likelier) {
+            None => assert_eq!(off, 0.0),
+            Some(Likelier::ShaftSpeed { speed_hz }) => {
+                println!("{off:+.1e}: {:+.1e}, {}", speed_hz / 20.0 - 1.0, found.unwrap());
+                assert!(off != 0.0 && (speed_hz / 20.0 - 1.0).abs() < 3e-6, "{off}: {speed_hz}");
+            }
+            other => assert_eq!(other, None, "{off}"),
+        }
+    }
+}
+
+// Nothing but noise; too short for the mate's orders.
+#[test]
+fn nothing_is_said_where_nothing_can_be_told() {
+    let turned: Vec<f64> = (0..40_960).map(|i| 20.0 * i as f64 / RATE_HZ).collect();
+    for (signal, teeth, mate_teeth) in
+        [(noise(5, turned.len()), 24, 38), (meshing(TEETH, &turned[..2500]), TEETH[0], 39)]
+    {
+        let phase = ShaftPhase::constant(20.0, RATE_HZ, signal.len()).unwrap();
+        let angular = angular_resample(&signal, &phase, &AngularSettings::default()).unwrap();
+        for turning in
+            [ToldTurning::ConstantSpeed { speed_hz: 20.0 }, ToldTurning::Pulses { per_revolution: 1 }]
+        {
+            assert_eq!(misfit(&angular, &Told { teeth, mate_teeth: Some(mate_teeth), turning }), None);
+        }
+    }
+}
+
+#[test]
+fn simulated_recordings_are_told_right() {
+    let machines: Vec<Machine> = (0..3).map(machine).collect();
+    let mistakes =
+        [Mistake::None, Mistake::NoneAtConstantSpeed, Mistake::Teeth, Mistake::Pulses, Mistake::Speed];
+    let of = |mistake: Mistake| -> Tally {
+        (0..6)
+            .filter_map(|index| {
+                let mut draws = Draws::new(77_000 + index + 100 * mistake as u64);
+                tally(&Case::new(&machines[(index % 3) as usize], mistake, &mut draws)?)
+            })
+            .sum()
+    };
+    let tallies = mistakes.map(of);
+    println!("{tallies:?}");
+    assert_eq!((tallies[0].warned, tallies[1].warned), (0, 0));
+    let Tally { warned, right_cause, .. } = tallies.into_iter().sum();
+    assert!(right_cause >= 6 && right_cause == warned, "{tallies:?}");
+}
