@@ -42,27 +42,43 @@ impl Harmonic {
     fn of(angular: &AngularSignal, order: f64, factor: f64) -> Self {
         let points = angular.points_per_revolution;
         let step = -TAU * order * factor / points as f64;
-        let wave: Vec<(f64, f64)> = (0..points).map(|n| (step * n as f64).sin_cos()).collect();
+        let wave: Vec<Complex64> = (0..points).map(|n| Complex64::cis(step * n as f64)).collect();
         let turn = |(revolution, values): (usize, &[f64])| {
-            let (im, re) = values
-                .iter()
-                .zip(&wave)
-                .fold((0.0, 0.0), |(im, re), (value, (sin, cos))| (im + value * sin, re + value * cos));
-            Complex64::new(re, im) * Complex64::cis(-TAU * (order * factor * revolution as f64).fract())
+            amplitude(values, &wave) * Complex64::cis(-TAU * (order * factor * revolution as f64).fract())
         };
         Self { order, turns: angular.values.chunks_exact(points).enumerate().map(turn).collect() }
     }
 
-    /// Energy that is steady where the shaft turns by `by` of its speed quicker; `weight` of each revolution.
-    fn steady(&self, by: f64, weight: impl Fn(usize) -> f64) -> f64 {
-        let step = -TAU * self.order * by;
-        let turned = |(r, turn): (usize, &Complex64)| turn * Complex64::cis(step * r as f64) * weight(r);
-        self.turns.iter().enumerate().map(turned).sum::<Complex64>().norm_sqr()
+    /// The same with each revolution weighted.
+    fn weighted(&self, weight: impl Fn(usize) -> f64) -> Self {
+        let turns = self.turns.iter().enumerate().map(|(r, turn)| turn * weight(r)).collect();
+        Self { order: self.order, turns }
+    }
+
+    /// Energy that is steady where the shaft turns by `by` of its speed quicker.
+    fn steady(&self, by: f64) -> f64 {
+        let step = Complex64::cis(-TAU * self.order * by);
+        let turned =
+            |(sum, turning): (Complex64, Complex64), turn: &Complex64| (sum + turn * turning, turning * step);
+        self.turns.iter().fold((Complex64::default(), Complex64::new(1.0, 0.0)), turned).0.norm_sqr()
     }
 
     fn energy(&self) -> f64 {
         self.turns.iter().map(Complex64::norm_sqr).sum::<f64>() * self.turns.len() as f64
     }
+}
+
+/// `Σ value wave`, in sums side by side.
+fn amplitude(values: &[f64], wave: &[Complex64]) -> Complex64 {
+    const LANES: usize = 8;
+    let mut sums = [Complex64::default(); LANES];
+    for (values, wave) in values.chunks(LANES).zip(wave.chunks(LANES)) {
+        for (sum, (value, wave)) in sums.iter_mut().zip(values.iter().zip(wave)) {
+            sum.re += value * wave.re;
+            sum.im += value * wave.im;
+        }
+    }
+    sums.into_iter().sum()
 }
 
 /// The speed near that of a claim at which the mesh harmonics are steadiest.
@@ -89,7 +105,8 @@ pub(super) fn steadied(
     let revolutions = angular.revolutions() as f64;
     // Hann's window keeps what lies beside the mesh out of the search.
     let window = |r: usize| 0.5 * (1.0 - (TAU * (r as f64 + 0.5) / revolutions).cos());
-    let steady = |by: f64| harmonics.iter().map(|harmonic| harmonic.steady(by, window)).sum::<f64>();
+    let windowed: Vec<Harmonic> = harmonics.iter().map(|harmonic| harmonic.weighted(window)).collect();
+    let steady = |by: f64| windowed.iter().map(|harmonic| harmonic.steady(by)).sum::<f64>();
     let step = 1.0 / (STEPS * revolutions * highest);
     let steps = (RANGE / (orders.bins_per_order * lowest) / step).ceil() as i32;
     let (_, best) =
@@ -98,7 +115,7 @@ pub(super) fn steadied(
     let [below, at, above] = [near - step, near, near + step].map(steady);
     let bend = below - 2.0 * at + above;
     let by = if bend < 0.0 { near + 0.5 * step * (below - above) / bend } else { near };
-    let whole = |by: f64| harmonics.iter().map(|harmonic| harmonic.steady(by, |_| 1.0)).sum::<f64>();
+    let whole = |by: f64| harmonics.iter().map(|harmonic| harmonic.steady(by)).sum::<f64>();
     let energy: f64 = harmonics.iter().map(Harmonic::energy).sum();
     if whole(by) < LEAST_STEADY * energy {
         return None;
@@ -106,7 +123,7 @@ pub(super) fn steadied(
     let told = if factor == 1.0 {
         whole(0.0)
     } else {
-        let as_told = |harmonic: &Harmonic| Harmonic::of(angular, harmonic.order, 1.0).steady(0.0, |_| 1.0);
+        let as_told = |harmonic: &Harmonic| Harmonic::of(angular, harmonic.order, 1.0).steady(0.0);
         harmonics.iter().map(as_told).sum()
     };
     let stands_out = |(_, order): &(f64, f64)| orders.prominence(order * (factor + by), claim.reach());
