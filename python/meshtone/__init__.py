@@ -16,6 +16,7 @@ takes signals, simulated or measured, to condition indicators; :mod:`meshtone.hy
 from . import _damage, datasets, examples, hybrid, signal
 from ._core import __version__
 from ._damage import *
+from ._warnings import MeshtoneWarning
 from .datasets import Dataset, generate_dataset, load_dataset, verify_dataset
 from .hybrid import enhance, tune
 from .memory import set_memory_limit
@@ -29,6 +30,7 @@ __all__ = [
     "CHANNELS",
     "ContactFigures",
     "Dataset",
+    "MeshtoneWarning",
     "Record",
     "Recording",
     "Scenario",

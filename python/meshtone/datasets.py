@@ -40,7 +40,6 @@ from __future__ import annotations
 import difflib
 import errno
 import json
-import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from os import PathLike, fspath
@@ -51,6 +50,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, _display, _progress
+from ._warnings import warn
 
 if TYPE_CHECKING:
     import pandas
@@ -130,14 +130,15 @@ def generate_dataset(
     remade = _core.generate_dataset(plan, fspath(path), jobs, number, of, told)
     if remade:
         file, reason = remade[0]
-        warnings.warn(f"{len(remade)} files were made again; {file}: {reason}", stacklevel=2)
+        warn([f"{len(remade)} files were made again; {file}: {reason}"])
     made = _open(path)
     if made.failures:
         first = made.failures[0]
-        warnings.warn(
-            f"{len(made.failures)} records of the plan could not be simulated and are missing; "
-            f"record {first['record']}: {first['reason']}",
-            stacklevel=2,
+        warn(
+            [
+                f"{len(made.failures)} records of the plan could not be simulated and are missing; "
+                f"record {first['record']}: {first['reason']}"
+            ]
         )
     return made
 
@@ -221,12 +222,13 @@ def load_dataset(path: str | PathLike[str], *, verify: bool = False) -> Dataset:
     """
     opened = _open(path, verify)
     if not opened.is_complete:
-        warnings.warn(f"{opened.path} is not complete: it has {len(opened)} records; generate_dataset goes on with it", stacklevel=2)
+        warn([f"{opened.path} is not complete: it has {len(opened)} records; generate_dataset goes on with it"])
     elif opened.manifest.get("format_version") == 1:
-        warnings.warn(
-            f"{opened.path} was made by an earlier version: its hashes are of what was on the disk when it was completed, not of what "
-            "was written",
-            stacklevel=2,
+        warn(
+            [
+                f"{opened.path} was made by an earlier version: its hashes are of what was on the disk when it was completed, not of "
+                "what was written"
+            ]
         )
     return opened
 

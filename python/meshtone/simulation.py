@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from . import _core, _display, _progress
 from ._sections import hint
+from ._warnings import warn
 from .faults import in_words
 from .scenario import Scenario, native_scenario
 from .signal import Record
@@ -187,6 +188,11 @@ class Simulation:
     def warnings(self) -> list[str]:
         """What is doubtful, as ``meshtone simulate`` prints it: the scenario's warnings, then those of the signals."""
         return self._native.warnings
+
+    @property
+    def warning_codes(self) -> list[str]:
+        """What each of :attr:`warnings` is about, for programs to tell apart: ``"step-error"``, ``"mesh-pulls"``, and so on."""
+        return self._native.warning_codes
 
     @property
     def mode_shapes(self) -> Array:
@@ -438,12 +444,16 @@ class Signals:
         (s) Time of the first sample since the start of the simulation.
     channels : dict of str to array of float32, shape (samples,)
         By the names of ``scenario.channels``; they are attributes too: ``signals.vertical_g``.
+    warnings, warning_codes : list of str
+        What is doubtful, and what each of these is about, as of a :class:`Simulation`.
     """
 
     scenario: Scenario
     sampling_rate_hz: float
     start_s: float
     channels: dict[str, npt.NDArray[np.float32]] = field(repr=False)
+    warnings: list[str] = field(default_factory=list, repr=False)
+    warning_codes: list[str] = field(default_factory=list, repr=False)
 
     def __getattr__(self, name: str) -> npt.NDArray[np.float32]:
         if name.startswith("_") or name == "channels":
@@ -536,11 +546,13 @@ def _process(
     teeth = scenario.gear_teeth if wheel == "gear" else scenario.pinion_teeth
     settings = separation_settings(teeth, sidebands, None)
     values = np.ascontiguousarray(signal, dtype=np.float64)
-    return Record(_core.process_simulated(scenario._native, values, wheel, start_s, settings), teeth=teeth, name=channel)
+    record = _core.process_simulated(scenario._native, values, wheel, start_s, settings)
+    warn(record.warnings)
+    return Record(record, teeth=teeth, name=channel)
 
 
 def simulate(scenario: Scenario) -> Simulation:
-    """Simulate a scenario.
+    """Simulate a scenario. What is doubtful about it is told as a :class:`~meshtone.MeshtoneWarning` each.
 
     Parameters
     ----------
@@ -564,7 +576,9 @@ def simulate(scenario: Scenario) -> Simulation:
     >>> simulate(broken)
     <Simulation of 17/38 teeth, tooth-breakage: 245480 samples at 258400 S/s>
     """
-    return Simulation(scenario, _core.simulate(native_scenario(scenario)))
+    native = _core.simulate(native_scenario(scenario))
+    warn(native.warnings, native.warning_codes)
+    return Simulation(scenario, native)
 
 
 def trace(scenario: Scenario, *, average_rate_hz: float | None = None) -> dict[str, Any]:
@@ -622,7 +636,8 @@ def simulate_many(
     Returns
     -------
     list of Signals or ValueError
-        In the order of the scenarios. One that could not be simulated has its error in its place, and stops no other.
+        In the order of the scenarios. One that could not be simulated has its error in its place, and stops no other. What is doubtful
+        is told once a code, with how many scenarios it concerns; each result's ``warnings`` have its own.
 
     Raises
     ------
@@ -647,14 +662,29 @@ def simulate_many(
     told = None if ask is None else functools.partial(_tell, ask, len(scenarios))
     native = [native_scenario(scenario) for scenario in scenarios]
     results = _core.simulate_many(native, list(channels), None if threads is None else whole("threads", threads, 1), told)
-    return [_signals(scenario, result) for scenario, result in zip(scenarios, results)]
+    made = [_signals(scenario, result) for scenario, result in zip(scenarios, results)]
+    _warn_of_many([result for result in made if isinstance(result, Signals)])
+    return made
 
 
 def _signals(scenario: Scenario, result: dict[str, Any] | ValueError) -> Signals | ValueError:
     if isinstance(result, ValueError):
         return result
     rate, start = result.pop("sampling_rate_hz"), result.pop("start_s")
-    return Signals(scenario, rate, start, result)
+    warnings, codes = result.pop("warnings"), result.pop("warning_codes")
+    return Signals(scenario, rate, start, result, warnings, codes)
+
+
+def _warn_of_many(made: list[Signals]) -> None:
+    """One warning a code, with the first scenario that it is told of."""
+    told: dict[str, list[tuple[int, str]]] = {}
+    for number, signals in enumerate(made):
+        for message, code in zip(signals.warnings, signals.warning_codes):
+            told.setdefault(code, []).append((number, message))
+    messages = [
+        f"{len({number for number, _ in of_code})} of {len(made)} simulations, the first: {of_code[0][1]}" for of_code in told.values()
+    ]
+    warn(messages, told)
 
 
 def _tell(ask: Callable[[int, int], None], total: int, finished: int) -> None:

@@ -190,8 +190,8 @@ def test_names_and_sizes_are_always_looked_at(gears: datasets.Dataset, tmp_path:
     assert len(datasets.load_dataset(path)) == 24
     assert datasets.verify_dataset(path) == {"README.md": "it is missing"}
     manifest = path / "manifest.json"
-    manifest.write_text(manifest.read_text(encoding="utf-8").replace('"format_version": 2', '"format_version": 9'), encoding="utf-8")
-    with pytest.raises(ValueError, match="has the format 9; this version of Meshtone knows those up to 2"):
+    manifest.write_text(manifest.read_text(encoding="utf-8").replace('"format_version": 3', '"format_version": 9'), encoding="utf-8")
+    with pytest.raises(ValueError, match="has the format 9; this version of Meshtone knows those up to 3"):
         datasets.load_dataset(path)
 
 

@@ -6,6 +6,7 @@ import pickle
 import signal
 import threading
 import time
+import warnings
 from typing import Any
 
 import numpy as np
@@ -232,3 +233,29 @@ def test_warnings_are_those_of_the_program() -> None:
     assert step.startswith("solver.sampling_rate_hz: ")
     assert tension.startswith(f"operation.brake_torque_nm: the mesh force is negative for {100 * simulation.tension_fraction:.1f} % of")
     assert simulation.tension_fraction == np.mean(simulation.mesh_force_n < 0)
+
+
+def test_warnings_are_told_once_where_the_user_called() -> None:
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        simulation = meshtone.simulate(examples.healthy().copy(pinion_teeth=14, sampling_rate_hz=2e4, settle_fraction=0.02))
+        simulation.plot()
+    of_meshtone = [warning for warning in told if isinstance(warning.message, meshtone.MeshtoneWarning)]
+    assert [str(warning.message) for warning in of_meshtone] == simulation.warnings
+    assert [warning.message.code for warning in of_meshtone] == simulation.warning_codes  # type: ignore[union-attr]
+    assert simulation.warning_codes[0] == "undercut"
+    assert {warning.filename for warning in of_meshtone} == {__file__}
+    assert pickle.loads(pickle.dumps(of_meshtone[0].message)).code == "undercut"
+
+
+def test_many_simulations_warn_once_a_code() -> None:
+    healthy = examples.healthy().copy(sampling_rate_hz=2e4)
+    with pytest.warns(meshtone.MeshtoneWarning) as told:
+        made = meshtone.simulate_many([healthy, *(healthy.copy(pinion_teeth=14, seed=seed) for seed in range(3))])
+    assert [str(warning.message).split(": ")[0] for warning in told if warning.message.code == "undercut"] == [  # type: ignore[union-attr]
+        "3 of 4 simulations, the first"
+    ]
+    codes = [result.warning_codes for result in made if isinstance(result, meshtone.Signals)]
+    assert ["undercut" in of_one for of_one in codes] == [False, True, True, True]
+    alone = meshtone.simulate(healthy.copy(pinion_teeth=14, seed=0))
+    assert isinstance(made[1], meshtone.Signals) and made[1].warnings == alone.warnings

@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use meshtone::scenario::WarningKind;
+
 use crate::contents::Contents;
 use crate::manifest::PREVIEW;
 use crate::plan::{Class, Plan, PlanFile, Severity, kinds};
-use crate::shard::{Column, ColumnKind, Shards};
+use crate::shard::{Column, ColumnKind, Shards, WARNINGS};
 use crate::words::counted;
 
 /// The data card's text.
@@ -21,6 +23,7 @@ pub(crate) fn card(
     // Writing to a text cannot fail.
     let _ = head(&mut text, plan, contents);
     let _ = counts(&mut text, plan, contents, units_of_split);
+    let _ = warnings(&mut text, plan, contents);
     let _ = classes(&mut text, plan, contents);
     let _ = columns_table(&mut text, plan.content.keep.wheel.name(), columns, contents);
     let _ = files(&mut text, shards, contents);
@@ -110,6 +113,25 @@ fn counts(
         )?;
     }
     Ok(())
+}
+
+/// What is doubtful, and of how many records.
+fn warnings(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Result {
+    if contents.warnings.is_empty() {
+        return Ok(());
+    }
+    let rows = plan.records() - contents.failures.len() as u64;
+    writeln!(
+        text,
+        "## Warnings\n\nWhat is doubtful about the simulations, by its code in the column `{WARNINGS}`, of {}.\n",
+        counted(rows, "record")
+    )?;
+    writeln!(text, "| code | records | meaning |\n|---|---:|---|")?;
+    for (code, count) in &contents.warnings {
+        let meaning = WarningKind::of_code(code).map_or("", WarningKind::meaning);
+        writeln!(text, "| `{code}` | {count} | {meaning} |")?;
+    }
+    writeln!(text)
 }
 
 fn classes(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Result {

@@ -11,7 +11,7 @@ use crate::error::DatasetError;
 use crate::manifest::ReadManifest;
 use crate::part_list::PartList;
 use crate::plan::Plan;
-use crate::shard::{Column, ColumnKind, FailedRecord, ReadShard, Shards, Wanted};
+use crate::shard::{BETWEEN_CODES, Column, ColumnKind, FailedRecord, ReadShard, Shards, WARNINGS, Wanted};
 use crate::store::Destination;
 
 /// Records that a preview shows at most.
@@ -21,6 +21,9 @@ pub(crate) const INDICATORS: [&str; 4] = ["average_rms", "difference_rms", "fm4"
 
 /// Records by split and label.
 pub(crate) type Counts = BTreeMap<(String, String), u64>;
+
+/// Records by the code of a warning that is told of them.
+pub(crate) type WarningCounts = BTreeMap<String, u64>;
 
 /// What proves a shard's file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,6 +39,8 @@ pub(crate) struct ShardFile {
 pub(crate) struct ShardContents {
     pub file: ShardFile,
     pub counts: Counts,
+    /// Records that each warning is told of, by its code.
+    pub warnings: WarningCounts,
     pub failures: Vec<FailedRecord>,
 }
 
@@ -116,8 +121,9 @@ impl<'c> Looked<'c> {
                 seen.sampled.insert(record, SampledRecord { label, split, values });
             }
         }
-        let (file, counts) = (ShardFile { digest, rows: read.rows }, count(&read));
-        (ShardContents { file, counts, failures: read.metadata.failures }, seen)
+        let file = ShardFile { digest, rows: read.rows };
+        let (counts, warnings) = (count(&read), count_warnings(&read));
+        (ShardContents { file, counts, warnings, failures: read.metadata.failures }, seen)
     }
 }
 
@@ -126,6 +132,17 @@ pub(crate) fn count(read: &ReadShard) -> Counts {
     let mut counts = Counts::new();
     for (label, split) in read.texts("label").iter().zip(read.texts("split")) {
         *counts.entry((split.clone(), label.clone())).or_default() += 1;
+    }
+    counts
+}
+
+/// The records of a shard by the warnings that are told of them; none of a data set of an earlier format.
+fn count_warnings(read: &ReadShard) -> WarningCounts {
+    let mut counts = WarningCounts::new();
+    for code in read.texts(WARNINGS).iter().flat_map(|codes| codes.split(BETWEEN_CODES)) {
+        if !code.is_empty() {
+            *counts.entry(code.to_owned()).or_default() += 1;
+        }
     }
     counts
 }
@@ -171,6 +188,8 @@ pub(crate) struct Contents {
     pub files: BTreeMap<u64, ShardFile>,
     /// Of those that are counted.
     pub counts: Counts,
+    /// Of those that are counted.
+    pub warnings: WarningCounts,
     /// Records that failed, with the reasons.
     pub failures: BTreeMap<u64, String>,
     /// Of those that are counted.
@@ -221,7 +240,7 @@ impl Contents {
     }
 
     fn add_shard(&mut self, shard: u64, of_shard: ShardContents) {
-        let ShardContents { file, counts, failures } = of_shard;
+        let ShardContents { file, counts, warnings, failures } = of_shard;
         let is_new = match self.files.get(&shard) {
             None => true,
             Some(known) => {
@@ -234,6 +253,7 @@ impl Contents {
         if is_new {
             self.files.entry(shard).or_insert(file);
             counts.into_iter().for_each(|(key, count)| *self.counts.entry(key).or_default() += count);
+            warnings.into_iter().for_each(|(code, count)| *self.warnings.entry(code).or_default() += count);
             self.failures.extend(failures.into_iter().map(|failed| (failed.record, failed.reason)));
         }
     }

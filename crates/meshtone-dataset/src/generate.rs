@@ -204,6 +204,7 @@ impl There {
         let manifest = manifest::read(to)?;
         let documents = manifest.as_ref().map(|manifest| manifest.documents.clone()).unwrap_or_default();
         let mut contents = Contents::default();
+        let columns = manifest.as_ref().map_or(Ok(()), |manifest| manifest.check_columns(to));
         contents.add_place(plan, to, &files, manifest)?;
         let own = (0..shards.count()).into_par_iter().filter(|&shard| part.has(shard));
         let looked = own.map(|shard| {
@@ -231,7 +232,8 @@ impl There {
             let remade = objection.flatten().map(|reason| Remade { file: shards.name(shard), reason });
             there.remade.extend(remade);
         }
-        Ok(there)
+        // To what is whole nothing is added.
+        if there.missing.is_empty() && has_documents { Ok(there) } else { columns.map(|()| there) }
     }
 
     /// What a run has done that has nothing to do.

@@ -21,7 +21,8 @@ pub(crate) const MANIFEST: &str = "manifest.json";
 pub(crate) const CARD: &str = "README.md";
 pub(crate) const PREVIEW: [&str; 2] = ["preview.svg", "preview.png"];
 /// Since 2 a shard's SHA-256 is that of the bytes that were to be written; of a data set of format 1 it was taken from the disk.
-pub(crate) const FORMAT_VERSION: u64 = 2;
+/// Since 3 records have the columns of [`crate::shard::WARNINGS`] and of the time in which the teeth do not push.
+pub(crate) const FORMAT_VERSION: u64 = 3;
 
 /// What was there when a run began.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -91,6 +92,9 @@ fn check_same(plan: &Plan, to: &Destination, manifest: &ReadManifest) -> Result<
             "go on with that version, or name another directory with -o",
         ));
     }
+    if !manifest.complete {
+        manifest.check_columns(to)?;
+    }
     if manifest.plan != plan.hash().to_string() {
         let problem = format!("the data set in {to} was begun with another plan");
         let help =
@@ -128,6 +132,20 @@ pub(crate) struct ReadManifest {
     pub documents: BTreeMap<String, Digest>,
     /// Whether the manifest itself is as it was written.
     pub is_whole: bool,
+}
+
+impl ReadManifest {
+    /// Refuses to add records to a data set whose records have other columns.
+    pub fn check_columns(&self, place: &Destination) -> Result<(), DatasetError> {
+        if self.format == FORMAT_VERSION {
+            return Ok(());
+        }
+        let problem = format!(
+            "the data set in {place} has the format {}, whose records have other columns than those of format {FORMAT_VERSION}",
+            self.format
+        );
+        Err(DatasetError::refused(problem, "name another directory with -o, and make all of it there"))
+    }
 }
 
 /// A shard of a manifest.
@@ -296,6 +314,7 @@ pub(crate) fn write_complete(
     manifest.insert("records_per_shard".into(), json!(shards.records_per_shard));
     manifest.insert("units_of_split".into(), json!(units_of_split));
     manifest.insert("counts".into(), counts_table(&contents.counts));
+    manifest.insert("warnings".into(), json!(contents.warnings));
     let failures =
         contents.failures.iter().map(|(record, reason)| json!({ "record": record, "reason": reason }));
     manifest.insert("failures".into(), failures.collect());

@@ -210,7 +210,7 @@ mod tests {
     use std::time::Instant;
 
     use super::*;
-    use crate::contents::{Counts, ShardContents};
+    use crate::contents::{Counts, ShardContents, WarningCounts};
     use crate::digest::Digest;
     use crate::generate::Part;
     use crate::part_list::Listing;
@@ -265,7 +265,9 @@ mod tests {
                 fs::create_dir_all(path.parent().unwrap()).unwrap();
                 File::create(path).unwrap().set_len(digest.bytes).unwrap();
                 let counts = Counts::from([(("train".to_owned(), "healthy".to_owned()), 100)]);
-                (shard, ShardContents { file: ShardFile { digest, rows: 100 }, counts, failures: Vec::new() })
+                let file = ShardFile { digest, rows: 100 };
+                let (warnings, failures) = (WarningCounts::new(), Vec::new());
+                (shard, ShardContents { file, counts, warnings, failures })
             });
             listing.add_all(made).unwrap();
         }

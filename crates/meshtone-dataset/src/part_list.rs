@@ -108,7 +108,7 @@ pub(crate) fn is_list(name: &str) -> bool {
 }
 
 fn shard_value((shard, of_shard): (&u64, &ShardContents)) -> Value {
-    let ShardContents { file, counts, failures } = of_shard;
+    let ShardContents { file, counts, warnings, failures } = of_shard;
     let failures = failures.iter().map(|f| json!({ "record": f.record, "reason": f.reason }));
     json!({
         "shard": shard,
@@ -116,6 +116,7 @@ fn shard_value((shard, of_shard): (&u64, &ShardContents)) -> Value {
         "sha256": file.digest.sha256.to_string(),
         "rows": file.rows,
         "counts": counts_table(counts),
+        "warnings": warnings,
         "failures": failures.collect::<Vec<_>>(),
     })
 }
@@ -131,7 +132,10 @@ fn read_shard(value: &Value) -> Option<(u64, ShardContents)> {
     let failures =
         value["failures"].as_array()?.iter().map(FailedRecord::from_json).collect::<Option<_>>()?;
     let file = ShardFile { digest, rows: value["rows"].as_u64()? };
-    Some((value["shard"].as_u64()?, ShardContents { file, counts, failures }))
+    let warnings = value["warnings"].as_object()?.iter();
+    let warnings =
+        warnings.map(|(code, count)| Some((code.clone(), count.as_u64()?))).collect::<Option<_>>()?;
+    Some((value["shard"].as_u64()?, ShardContents { file, counts, warnings, failures }))
 }
 
 fn read_sampled(value: &Value) -> Option<(u64, SampledRecord)> {
@@ -208,6 +212,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
+    use crate::contents::WarningCounts;
 
     impl Listing<'_> {
         /// Lists many shards, each list being written once.
@@ -233,7 +238,8 @@ mod tests {
         let file = ShardFile { digest: Digest::of(b"abc"), rows: 7 };
         let counts = Counts::from([(("train".to_owned(), "a \"label\"".to_owned()), 7)]);
         let failures = vec![FailedRecord { record: 18, reason: "why".to_owned() }];
-        list.shards.insert(2, ShardContents { file, counts, failures });
+        let warnings = WarningCounts::from([("step-error".to_owned(), 3)]);
+        list.shards.insert(2, ShardContents { file, counts, warnings, failures });
         list.seen.ranges.insert("speed_hz".to_owned(), [0.1 + 0.2, 1e300]);
         list.seen.first.insert("label".to_owned(), (2, 3));
         let values = vec![1.0 / 3.0, f64::NAN, -0.0];

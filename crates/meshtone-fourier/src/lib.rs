@@ -10,8 +10,10 @@ use realfft::RealFftPlanner;
 use rustfft::FftPlanner;
 pub use rustfft::num_complex::Complex64;
 
-/// The longest of the short signals: averages.
+/// The longest of the short signals: averages, turns of a wheel.
 const LONGEST_SHORT: usize = 1 << 17;
+/// Lengths of short signals whose plans are kept: of an average, and of a turn of either wheel.
+const SHORT_LENGTHS: usize = 3;
 /// The longest signal whose plans are kept; of a longer one they would hold more than some 20 MB in every thread.
 const LONGEST_KEPT: usize = 1 << 19;
 
@@ -28,22 +30,25 @@ impl Planners {
     }
 }
 
-/// A plan for `len` values, that of the thread's last transform, short or long, where it had as many: signals of one length are
-/// transformed over and over, whole ones by sensors and averages by the chain, and planning takes longer than transforming.
+/// A plan for `len` values, that of one of the thread's last transforms, short or long, where it had as many: signals of one length
+/// are transformed over and over, whole ones by sensors and averages by the chain, and planning takes longer than transforming.
 fn plan<P>(len: usize, make: impl FnOnce(&mut Planners) -> P) -> P {
     thread_local! {
-        static LAST_SHORT: RefCell<Planners> = RefCell::new(Planners::new(0));
-        static LAST_LONG: RefCell<Planners> = RefCell::new(Planners::new(0));
+        static LAST_SHORT: RefCell<Vec<Planners>> = const { RefCell::new(Vec::new()) };
+        static LAST_LONG: RefCell<Vec<Planners>> = const { RefCell::new(Vec::new()) };
     }
     if len > LONGEST_KEPT {
         return make(&mut Planners::new(len));
     }
-    let last = if len > LONGEST_SHORT { &LAST_LONG } else { &LAST_SHORT };
+    let (last, lengths) = if len > LONGEST_SHORT { (&LAST_LONG, 1) } else { (&LAST_SHORT, SHORT_LENGTHS) };
     last.with_borrow_mut(|last| {
-        if last.len != len {
-            *last = Planners::new(len);
-        }
-        make(last)
+        let known = last.iter().position(|planners| planners.len == len);
+        let mut planners = known.map_or_else(|| Planners::new(len), |place| last.remove(place));
+        let plan = make(&mut planners);
+        // The one that was used longest ago gives way.
+        last.truncate(lengths - 1);
+        last.insert(0, planners);
+        plan
     })
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use meshtone::batch::{Control, KeepChannels, Signals, simulate_many as simulate};
+use meshtone::batch::{Control, KeepObserved, ObservedSignals, simulate_many as simulate};
 use meshtone::sensor::{Channel, Sensor};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
@@ -41,7 +41,7 @@ pub fn simulate_many<'py>(
             let control = Control { progress: &told, cancelled, ..Control::default() };
             let mut results = Vec::with_capacity(scenarios.len());
             pool.install(|| {
-                simulate(scenarios, &KeepChannels::new(kept), &control, |_, result| results.push(result));
+                simulate(scenarios, &KeepObserved::new(kept), &control, |_, result| results.push(result));
             });
             results
         },
@@ -73,15 +73,19 @@ fn channel(name: &str, sensors: &[Sensor]) -> PyResult<Channel> {
 fn signals<'py>(
     py: Python<'py>,
     names: &[String],
-    result: Result<Signals, meshtone::Error>,
+    result: Result<ObservedSignals, meshtone::Error>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let signals = match result {
-        Ok(signals) => signals,
+    let (signals, warnings) = match result {
+        Ok(observed) => (observed.signals, observed.warnings),
         Err(error) => return Ok(simulation_error(&error).into_value(py).into_bound(py).into_any()),
     };
     let all = PyDict::new(py);
     all.set_item("sampling_rate_hz", signals.sampling_rate_hz)?;
     all.set_item("start_s", signals.start_s)?;
+    let (told, codes): (Vec<_>, Vec<_>) =
+        warnings.iter().map(|warning| (warning.to_string(), warning.kind.code())).unzip();
+    all.set_item("warnings", told)?;
+    all.set_item("warning_codes", codes)?;
     for (name, channel) in names.iter().zip(signals.channels) {
         all.set_item(name, array(py, channel))?;
     }

@@ -58,6 +58,9 @@ pub struct Simulation {
     /// What is doubtful about it.
     #[pyo3(get)]
     warnings: Vec<String>,
+    /// What each of these is about.
+    #[pyo3(get)]
+    warning_codes: Vec<&'static str>,
     /// (s) Of the stages, by name.
     #[pyo3(get)]
     computing_time_s: Vec<(&'static str, f64)>,
@@ -113,6 +116,7 @@ impl Simulation {
             contact_figures,
             tension_fraction: channels.tension_fraction(),
             warnings: warnings.iter().map(ToString::to_string).collect(),
+            warning_codes: warnings.iter().map(|warning| warning.kind.code()).collect(),
             sampling_rate_hz: channels.sampling_rate_hz,
             start_s: channels.start_s,
             horizontal_g: array(py, channels.horizontal_g).unbind(),

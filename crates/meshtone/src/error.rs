@@ -217,10 +217,63 @@ fn in_short(ratios: &[f64]) -> String {
     }
 }
 
+/// One row a kind of doubt: its name, the code that programs read, what it means.
+macro_rules! warning_kinds {
+    ($($kind:ident $code:literal $meaning:literal;)+) => {
+        /// What a [`ScenarioWarning`] is about, for programs to tell apart.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        #[non_exhaustive]
+        pub enum WarningKind {
+            $(#[doc = concat!($meaning, ".")] $kind,)+
+        }
+
+        impl WarningKind {
+            /// All of them.
+            pub const ALL: [Self; [$($code),+].len()] = [$(Self::$kind),+];
+
+            /// The code, which stays the same whatever the words are.
+            pub fn code(self) -> &'static str {
+                match self { $(Self::$kind => $code,)+ }
+            }
+
+            /// The kind of a code.
+            ///
+            /// # Arguments
+            /// * `code` - as [`Self::code`] gives it
+            pub fn of_code(code: &str) -> Option<Self> {
+                Self::ALL.into_iter().find(|kind| kind.code() == code)
+            }
+
+            /// What it means, in a few words.
+            pub fn meaning(self) -> &'static str {
+                match self { $(Self::$kind => $meaning,)+ }
+            }
+        }
+    };
+}
+
+warning_kinds! {
+    Undercut "undercut" "teeth are undercut, which their profile does not show";
+    ThinTips "thin-tips" "tips are so thin that they could break off";
+    ReliefAddsMetal "relief-adds-metal" "a tip relief makes the tips thicker";
+    IgnoredKey "ignored-key" "a key has no effect";
+    FastTeeth "fast-teeth" "the pitch line is faster than spur gears run";
+    SpeedProfileOff "speed-profile-off" "a speed profile never comes near the nominal speed";
+    EqualWheels "equal-wheels" "both wheels move in opposition, and the supports' accelerations cancel";
+    Unsettled "unsettled" "the start-up transient has not decayed where the kept signal starts";
+    Overload "overload" "the load would break the teeth";
+    MeshPulls "mesh-pulls" "the linear mesh pulls where real teeth would part";
+    Resonance "resonance" "the mesh force is far beyond what a machine survives";
+    OtherSpeed "other-speed" "a shaft does not turn at the speed that it is driven at";
+    StepError "step-error" "the step falsifies the rms by more than 2 %";
+}
+
 /// Something about a scenario that can be simulated but deserves the user's attention.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ScenarioWarning {
+    /// What it is about.
+    pub kind: WarningKind,
     /// Dotted key in the scenario file.
     pub key: String,
     /// What is doubtful, and what could be done.
@@ -231,10 +284,11 @@ impl ScenarioWarning {
     /// A warning about `key`.
     ///
     /// # Arguments
+    /// * `kind` - what it is about
     /// * `key` - dotted key in the scenario file
     /// * `message` - what is doubtful, and what could be done
-    pub fn new(key: impl Into<String>, message: impl Into<String>) -> Self {
-        Self { key: key.into(), message: message.into() }
+    pub fn new(kind: WarningKind, key: impl Into<String>, message: impl Into<String>) -> Self {
+        Self { kind, key: key.into(), message: message.into() }
     }
 }
 

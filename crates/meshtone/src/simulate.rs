@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 use web_time::Instant;
 
 use crate::damage::{Damage, DamagedTooth, Fault, damaged_teeth};
-use crate::error::{Error, ScenarioError};
+use crate::error::{Error, ScenarioError, ScenarioWarning};
 use crate::machine::coordinates::CoordinateVector;
 use crate::machine::{ClosedMesh, DecayingMode, Excitation, Structure, System};
 use crate::mesh::forcing::{Forcing, ForcingBlock, ForcingSource};
@@ -60,6 +60,8 @@ pub struct Stages {
     pub structure: Option<Structure>,
     /// Time that each stage took.
     pub timings: Vec<StageTime>,
+    /// Stage 1: what is doubtful by the scenario alone.
+    pub(crate) warnings_of_scenario: Vec<ScenarioWarning>,
 }
 
 /// Time that a stage took.
@@ -115,7 +117,8 @@ pub fn simulate(scenario: &Scenario) -> Result<Simulation, Error> {
 /// A scenario that is not valid, or a fault that does not fit the tooth.
 pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
     let mut clock = Clock::default();
-    scenario.validate()?;
+    let mut warnings_of_scenario = scenario.validate()?;
+    warnings_of_scenario.extend(scenario.ignored_by_model());
     let mut scenario = scenario.as_honoured();
     let (gears, rig, model) = (&scenario.gears, &scenario.rig, scenario.model);
     let time = scenario.time_grid();
@@ -206,6 +209,7 @@ pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
         system,
         structure,
         timings: Vec::new(),
+        warnings_of_scenario,
         scenario,
     };
     stages.time.first_simulated_sample = stages.start_of_settling();

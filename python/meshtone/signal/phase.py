@@ -7,6 +7,7 @@ from typing import Literal
 import numpy.typing as npt
 
 from .. import _core
+from .._warnings import warn
 from ._arguments import Array, signal_array, teeth_number, whole
 
 
@@ -35,6 +36,11 @@ class ShaftPhase:
         phase = cls.__new__(cls)
         phase._native = native
         return phase
+
+    @classmethod
+    def _told(cls, native: _core.ShaftPhase) -> ShaftPhase:
+        warn(native.warnings)
+        return cls._wrap(native)
 
     @classmethod
     def constant(cls, speed_hz: float, sampling_rate_hz: float, samples: int) -> ShaftPhase:
@@ -88,7 +94,7 @@ class ShaftPhase:
             whole("samples", samples),
             stated_speed_hz,
         )
-        return cls._wrap(native)
+        return cls._told(native)
 
     @classmethod
     def from_speed_profile(
@@ -108,7 +114,7 @@ class ShaftPhase:
             Length of the recording.
         """
         times, speeds = signal_array(time_s), signal_array(speed_hz)
-        return cls._wrap(
+        return cls._told(
             _core.ShaftPhase.from_speed_profile(times, speeds, sampling_rate_hz, whole("samples", samples))
         )
 
@@ -156,7 +162,7 @@ class ShaftPhase:
         native = _core.ShaftPhase.from_mesh_tone(
             signal_array(signal), sampling_rate_hz, teeth_number(teeth), shaft_hz, whole("harmonic", harmonic, 1), half_band_hz
         )
-        return cls._wrap(native)
+        return cls._told(native)
 
     def of_mate(self, teeth: int, mate_teeth: int) -> ShaftPhase:
         """Phase of the other shaft.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy.typing as npt
 
 from .. import _core, _display
+from .._warnings import warn
 from ._arguments import Array, separation_settings, signal_array, teeth_number
 from .phase import ShaftPhase, native_phase
 
@@ -144,6 +145,7 @@ def process_channel(
     """
     settings = separation_settings(teeth, sidebands, shaft_orders)
     record = _core.process_channel(signal_array(signal), native_phase(phase), teeth_number(teeth), settings)
+    warn(record.warnings)
     return Record(record, teeth=teeth, name=name)
 
 
@@ -181,4 +183,5 @@ def process_series(
         raise TypeError("phases: must be a list of one ShaftPhase for each signal, not one alone")
     native = [native_phase(phase) for phase in phases]
     records = _core.process_series([signal_array(signal) for signal in signals], native, teeth_number(teeth), settings)
+    warn(warning for record in records for warning in record.warnings)
     return [Record(record, teeth=teeth, name=name) for record in records]

@@ -4,8 +4,9 @@
 //! included: who reads the raw channel back finds the same average, unless `keep.duration_s` has cut it afterwards.
 
 use meshtone::Stages;
+use meshtone::batch::ObservedSignals;
 use meshtone::damage::pitted_teeth;
-use meshtone::scenario::{Fault, Scenario, WheelName};
+use meshtone::scenario::{Fault, Model, Scenario, ScenarioWarning, WarningKind, WheelName};
 use meshtone::sensor::Channel;
 use meshtone::signal::{
     AngularSettings, AntiAliasing, ChainSettings, Edge, MeanPart, Record as Analysis, SeparationSettings,
@@ -23,8 +24,9 @@ pub(super) fn record(
     content: &Content,
     drawn: DrawnRecord,
     stages: &Stages,
-    samples: &[Vec<f32>],
+    observed: ObservedSignals,
 ) -> Result<Record, String> {
+    let samples = &observed.signals.channels;
     let signals = |error: SignalError| error.to_string();
     let keep = &content.keep;
     let view = View::new(content, &drawn, &stages.scenario.faults, stages);
@@ -36,6 +38,9 @@ pub(super) fn record(
     let analysed = simulated.iter().position(|channel| *channel == keep.analysed);
     let enhanced = content.tuned.is_some();
     let mut record = view.empty(drawn);
+    let parts = stages.scenario.model == Model::Contact;
+    record.slack_fraction = if parts { observed.apart_fraction } else { observed.tension_fraction };
+    record.warnings = kinds(&observed.warnings);
     if let (Some(analysed), true) = (analysed, enhanced) {
         record.clean_difference = view.clean_difference(&channels[analysed], content).map_err(signals)?;
     }
@@ -65,6 +70,17 @@ pub(super) fn record(
     }
     record.channels = channels;
     Ok(record)
+}
+
+/// Each kind once, in the order in which they come.
+fn kinds(warnings: &[ScenarioWarning]) -> Vec<WarningKind> {
+    let mut kinds = Vec::new();
+    for kind in warnings.iter().map(|warning| warning.kind) {
+        if !kinds.contains(&kind) {
+            kinds.push(kind);
+        }
+    }
+    kinds
 }
 
 /// What is kept of its healthy twin: the difference signal.
@@ -169,6 +185,8 @@ impl<'a> View<'a> {
             teeth: [scenario.gears.pinion_teeth, scenario.gears.gear_teeth],
             pinion_speed_hz: scenario.operation.pinion_speed_hz,
             brake_torque_nm: scenario.operation.brake_torque_nm,
+            warnings: Vec::new(),
+            slack_fraction: 0.0,
             channels: Vec::new(),
             average: Vec::new(),
             difference: Vec::new(),

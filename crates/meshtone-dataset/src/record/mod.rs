@@ -7,9 +7,9 @@ mod start;
 pub use start::Start;
 
 use meshtone::Stages;
-use meshtone::batch::{Keep as BatchKeep, KeepChannels, Output, SignalRecorder};
+use meshtone::batch::{Keep as BatchKeep, KeepObserved, ObservedRecorder, Output};
 use meshtone::operation::TimeGrid;
-use meshtone::scenario::{Fault, Scenario, ScenarioError, WheelName};
+use meshtone::scenario::{Fault, Scenario, ScenarioError, WarningKind, WheelName};
 use meshtone::signal::IndicatorValue;
 
 use crate::draw::DrawnRecord;
@@ -30,6 +30,10 @@ pub struct Record {
     pub pinion_speed_hz: f64,
     /// (N m) Brake torque.
     pub brake_torque_nm: f64,
+    /// What is doubtful about its simulation, each once.
+    pub warnings: Vec<WarningKind>,
+    /// (-) Part of the simulated time in which the teeth do not push: under `contact` in which none touch, else in which the mesh pulls.
+    pub slack_fraction: f64,
     /// Raw channels, those of the plan.
     pub channels: Vec<Vec<f32>>,
     /// Synchronous average of the analysed channel over the revolutions of the plan's wheel.
@@ -76,13 +80,13 @@ pub(crate) struct KeepRecords<'a, F> {
 
 impl<F> KeepRecords<'_, F> {
     /// The simulated channels, in single precision.
-    fn channels(&self) -> KeepChannels {
-        KeepChannels::new(self.content.keep.simulated())
+    fn channels(&self) -> KeepObserved {
+        KeepObserved::new(self.content.keep.simulated())
     }
 }
 
 impl<F: Fn(usize) -> Option<Role> + Sync> BatchKeep for KeepRecords<'_, F> {
-    type Recorder = SignalRecorder;
+    type Recorder = ObservedRecorder;
     type Kept = Result<Box<Record>, String>;
 
     fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
@@ -93,16 +97,18 @@ impl<F: Fn(usize) -> Option<Role> + Sync> BatchKeep for KeepRecords<'_, F> {
         kept_bytes(self.content, &scenario.time_grid())
     }
 
-    fn recorder(&self, stages: &Stages) -> SignalRecorder {
+    fn recorder(&self, stages: &Stages) -> ObservedRecorder {
         self.channels().recorder(stages)
     }
 
-    fn keep(&self, index: usize, stages: Stages, recorder: SignalRecorder) -> Self::Kept {
-        let samples = recorder.finish(&stages);
+    fn keep(&self, index: usize, stages: Stages, recorder: ObservedRecorder) -> Self::Kept {
         match (self.role)(index) {
-            Some(Role::Record(drawn)) => chain::record(self.content, drawn, &stages, &samples.channels),
+            Some(Role::Record(drawn)) => {
+                chain::record(self.content, drawn, &stages, recorder.finish(&stages))
+            }
             Some(Role::HealthyTwin(drawn, faults)) => {
-                chain::twin(self.content, drawn, &faults, &stages, &samples.channels)
+                let samples = recorder.signals(&stages).channels;
+                chain::twin(self.content, drawn, &faults, &stages, &samples)
             }
             None => Err("it was not asked for".to_owned()),
         }

@@ -1,11 +1,17 @@
 //! Columns of a data set.
 
 use meshtone::damage::Damage;
+use meshtone::scenario::Model;
 use meshtone::sensor::Channel;
 use meshtone_io::table::{CellType, TableColumn};
 
 use crate::draw::NOISE_KEYS;
 use crate::plan::Plan;
+
+/// Name of the column of codes.
+pub(crate) const WARNINGS: &str = "warnings";
+/// What stands between two codes in it.
+pub(crate) const BETWEEN_CODES: &str = ";";
 
 /// A column.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,6 +69,10 @@ pub enum ColumnKind {
     GearSpeed,
     /// Brake torque.
     BrakeTorque,
+    /// Codes of what is doubtful.
+    Warnings,
+    /// Part of the time in which the teeth do not push.
+    SlackFraction,
     /// A varied key of the scenario file.
     Key(String),
     /// An indicator, by its name.
@@ -86,7 +96,9 @@ impl ColumnKind {
     fn cells(&self) -> CellType {
         match self {
             Self::Record | Self::Unit | Self::Seed | Self::WheelsSeed => CellType::Int64,
-            Self::Split | Self::Label | Self::FaultKind(_) | Self::FaultWheel(_) => CellType::Text,
+            Self::Split | Self::Label | Self::FaultKind(_) | Self::FaultWheel(_) | Self::Warnings => {
+                CellType::Text
+            }
             Self::Severity | Self::FaultTooth(_) | Self::PinionTeeth | Self::GearTeeth => CellType::Int32,
             kind if kind.is_signal() => CellType::Float32List { nullable_items: false },
             _ => CellType::Float64,
@@ -121,6 +133,7 @@ pub fn columns(plan: &Plan) -> Vec<Column> {
         })
     };
     let mut columns = of_record(most_faults, is_pits);
+    columns.extend(of_simulation(plan.content.base.model));
     let taken: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
     columns
         .extend(varied_keys(plan).into_iter().map(key_column).filter(|column| !taken.contains(&column.name)));
@@ -219,6 +232,20 @@ fn of_record(most_faults: usize, is_pits: impl Fn(usize) -> bool) -> Vec<Column>
         column("brake_torque_nm", "N m", "brake torque on the gear's shaft", BrakeTorque),
     ]);
     columns
+}
+
+/// What its simulation says of itself.
+fn of_simulation(model: Model) -> [Column; 2] {
+    let codes = "codes of what is doubtful about the simulation, with `;` between; empty where nothing is";
+    let (name, slack) = if model == Model::Contact {
+        ("apart_fraction", "part of the simulated time in which no teeth touch")
+    } else {
+        (
+            "tension_fraction",
+            "part of the simulated time in which the linear mesh pulls where real teeth would part",
+        )
+    };
+    [column(WARNINGS, "", codes, ColumnKind::Warnings), column(name, "-", slack, ColumnKind::SlackFraction)]
 }
 
 /// Kind, place and severity of a fault.

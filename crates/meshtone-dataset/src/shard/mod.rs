@@ -8,7 +8,7 @@ mod metadata;
 mod rows;
 mod write;
 
-pub(crate) use columns::column_name;
+pub(crate) use columns::{BETWEEN_CODES, WARNINGS, column_name};
 pub use columns::{Column, ColumnKind, columns};
 pub use metadata::{FailedRecord, ShardMetadata};
 pub(crate) use metadata::{ReadShard, Wanted, read};

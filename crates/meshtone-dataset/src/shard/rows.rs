@@ -2,7 +2,7 @@
 
 use meshtone_io::table::Cells;
 
-use super::{Column, ColumnKind, column_name};
+use super::{BETWEEN_CODES, Column, ColumnKind, column_name};
 use crate::plan::Content;
 use crate::record::Record;
 
@@ -70,6 +70,10 @@ pub(super) fn cells<'r>(column: &Column, rows: &'r [Row], content: &Content) -> 
             number(&|r| Some(r.pinion_speed_hz * f64::from(r.teeth[0]) / f64::from(r.teeth[1])))
         }
         ColumnKind::BrakeTorque => number(&|r| Some(r.brake_torque_nm)),
+        ColumnKind::Warnings => {
+            text(&|r| r.warnings.iter().map(|kind| kind.code()).collect::<Vec<_>>().join(BETWEEN_CODES))
+        }
+        ColumnKind::SlackFraction => number(&|r| Some(r.slack_fraction)),
         ColumnKind::Key(key) => {
             let name = column_name(key);
             let is_in_column = |other: &str| other == key || column_name(other) == name;

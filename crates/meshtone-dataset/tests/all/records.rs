@@ -5,7 +5,7 @@ use std::fs::File;
 use std::path::Path;
 
 use crate::support::{FAST, plan, run};
-use meshtone::scenario::WheelName;
+use meshtone::scenario::{MemoryLimit, WheelName};
 use meshtone::signal::{ChainSettings, Edge, ShaftPhase, process_channel, resample, resampling_ratio, rms};
 use meshtone_dataset::draw::Sampler;
 use meshtone_dataset::generate::Part;
@@ -15,7 +15,7 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::{Field, Row};
 
 struct Made {
-    _directory: tempfile::TempDir,
+    directory: tempfile::TempDir,
     rows: Vec<Row>,
 }
 
@@ -24,7 +24,7 @@ fn made(plan: &Plan) -> Made {
     let to = directory.path().join("set");
     let generated = run(plan, &Destination::directory(&to), Part::WHOLE, 2).unwrap();
     assert_eq!(generated.failures, []);
-    Made { rows: read(&to), _directory: directory }
+    Made { rows: read(&to), directory }
 }
 
 fn read(directory: &Path) -> Vec<Row> {
@@ -110,6 +110,46 @@ fn rows_are_the_plans_records() {
         // A hunting period: so many revolutions of the gear as the pinion has teeth over their common divisor.
         let seconds = made.signal("vertical_g", row).len() as f64 / 8e3;
         assert!((seconds * speed - 40.0).abs() < 2.0 * speed / 8e3, "{seconds}");
+    }
+}
+
+/// Warnings and the time without pushing teeth are those of the record's scenario, simulated alone; card and manifest count them.
+#[test]
+fn warnings_are_columns_and_are_counted() {
+    let light = FAST
+        .replace("records = 60", "records = 12")
+        .replace("brake_torque_nm = 200.0", "brake_torque_nm = 3.0");
+    let short = light.replace("[scenario.solver]", "[scenario.solver]\nsettle_fraction = 0.02");
+    for (model, text) in [("linear", light), ("contact", short)] {
+        let sections = format!("[scenario]\nmodel = \"{model}\"\n[scenario.gears]");
+        let plan = plan(&text.replace("[scenario.gears]", &sections));
+        let made = made(&plan);
+        let sampler = Sampler::new(&plan.content).unwrap();
+        let mut counts = std::collections::BTreeMap::new();
+        for row in 0..12 {
+            let scenario = sampler.scenario(&sampler.record(row as u64).unwrap()).unwrap();
+            let (stages, mut warnings) =
+                meshtone::stages_and_warnings(&scenario, MemoryLimit::default()).unwrap();
+            let simulation = stages.simulate().unwrap();
+            warnings.extend(simulation.warnings_of_signals());
+            let codes: Vec<&str> = warnings.iter().map(|warning| warning.kind.code()).collect();
+            assert_eq!(made.text("warnings", row), codes.join(";"));
+            codes.iter().for_each(|code| *counts.entry((*code).to_owned()).or_insert(0) += 1);
+            let (name, part) = match simulation.contact_figures() {
+                Some(figures) => ("apart_fraction", figures.apart_fraction),
+                None => ("tension_fraction", simulation.channels.tension_fraction()),
+            };
+            assert_eq!(made.number(name, row), part);
+        }
+        println!("{model}: {counts:?}");
+        let common = if model == "linear" { "mesh-pulls" } else { "unsettled" };
+        assert!(counts.get(common).is_some_and(|count| *count > 2), "{counts:?}");
+        let file =
+            |name: &str| std::fs::read_to_string(made.directory.path().join("set").join(name)).unwrap();
+        let manifest: serde_json::Value = serde_json::from_str(&file("manifest.json")).unwrap();
+        assert_eq!(manifest["warnings"], serde_json::json!(counts));
+        let row = format!("| `{common}` | {} | ", counts[common]);
+        assert!(file("README.md").contains(&row), "{row}");
     }
 }
 

@@ -127,14 +127,14 @@ fn manifests_that_cannot_be_are_refused() {
         assert!(text.contains(from), "{from}");
         fs::write(&path, text.replacen(from, into, 1)).unwrap();
     };
-    with("\"format_version\": 2", "\"format_version\": 3");
+    with("\"format_version\": 3", "\"format_version\": 4");
     for refused in [
         verify(&to, Check::Sizes).unwrap_err(),
         run(&plan(FAST), &to, Part::WHOLE, 1).unwrap_err(),
         merge(std::slice::from_ref(&to), &to, Check::Sizes).unwrap_err(),
     ] {
         assert!(
-            refused.to_string().contains("has the format 3; this version of Meshtone knows those up to 2"),
+            refused.to_string().contains("has the format 4; this version of Meshtone knows those up to 3"),
             "{refused}"
         );
         let DatasetError::Refused { help, .. } = refused else { unreachable!("{refused}") };
@@ -169,6 +169,20 @@ fn a_data_set_of_format_1_is_kept() {
     assert!(found.is_good() && found.complete && found.format == 1, "{found:?}");
     let again = run(&plan(FAST), &to, Part::WHOLE, 2).unwrap();
     assert_eq!((again.kept_shards, again.complete), (8, true));
+}
+
+/// Records of a later format have other columns: none are added to what was begun with fewer.
+#[test]
+fn a_data_set_of_format_2_gets_no_more_records() {
+    let plan = plan(FAST);
+    let directory = tempfile::tempdir().unwrap();
+    let to = Destination::directory(directory.path());
+    run(&plan, &to, Part { number: 1, of: 2 }, 2).unwrap();
+    let path = directory.path().join("manifest.json");
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, text.replace("\"format_version\": 3", "\"format_version\": 2")).unwrap();
+    let refused = run(&plan, &to, Part { number: 2, of: 2 }, 2).unwrap_err().to_string();
+    assert!(refused.contains("has the format 2, whose records have other columns"), "{refused}");
 }
 
 /// A shard that nothing proves is not certified by a new hash.

@@ -60,7 +60,9 @@ impl Summary {
         let channels = self.channels.iter().map(|channel| (channel.name.clone(), indicators(channel)));
         let (stiffness, force) = (&self.mesh_stiffness, &self.mesh_force);
         let warnings = self.warnings.iter();
-        let warnings = warnings.map(|warning| json!({ "key": warning.key, "message": warning.message }));
+        let warnings = warnings.map(
+            |warning| json!({ "code": warning.kind.code(), "key": warning.key, "message": warning.message }),
+        );
         let faults = self.faults.iter().map(fault);
         let mut summary = json!({
             "format_version": self.format_version,

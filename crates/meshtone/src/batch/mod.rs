@@ -7,9 +7,11 @@
 
 mod group;
 mod keep;
+mod observed;
 mod plan;
 mod run;
 
 pub use crate::solver::{Block, Output, Recorder};
 pub use keep::{Keep, KeepChannels, KeepSimulation, SignalRecorder, Signals};
+pub use observed::{KeepObserved, ObservedRecorder, ObservedSignals};
 pub use run::{Control, simulate_many};

@@ -1,6 +1,6 @@
 //! What a model ignores.
 
-use super::{Model, Scenario, ScenarioWarning, Sensor};
+use super::{Model, Scenario, ScenarioWarning, Sensor, WarningKind};
 use crate::keys::Keys;
 
 impl Scenario {
@@ -29,7 +29,7 @@ impl Scenario {
                 "is ignored: the {} model does not honour it, and its default is simulated; remove it, or set another model",
                 self.model.name()
             );
-            ScenarioWarning::new(key, message)
+            ScenarioWarning::new(WarningKind::IgnoredKey, key, message)
         };
         reset_ignored(&mut self.clone()).into_iter().map(warning).collect()
     }

@@ -17,7 +17,7 @@ mod validate;
 
 pub use crate::damage::kinds::*;
 pub use crate::damage::{Damage, DamageKind, DestructionLine, Fault, FaultyTeeth, PitCircle, damage_kinds};
-pub use crate::error::{ScenarioError, ScenarioWarning};
+pub use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 pub use crate::keys::{FileProblem, KeyDescription, KeyKind};
 pub use crate::machine::{DampingRatio, Rig, Shaft, Support, WheelInertia};
 pub use crate::model::Model;

@@ -24,4 +24,4 @@ pub(crate) use integrate::{Diverged, LANES, Problem, integrate, integrate_side_b
 pub use outputs::{Axis, Output};
 pub use reduce::ReducedModel;
 pub(crate) use size::Size;
-pub(crate) use steady_sine::{Answer, MeanMachine};
+pub(crate) use steady_sine::MeanMachine;

@@ -24,15 +24,6 @@ pub(crate) struct MeanMachine<'a> {
     stiffness_n_per_m: f64,
 }
 
-/// What is asked of the machine.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Answer {
-    /// The sensor's vertical acceleration.
-    VerticalAcceleration,
-    /// The force along the line of action.
-    MeshForce,
-}
-
 /// Numbers of the mesh's directions that lie in the nominal line of action: along it, and its rotation.
 const IN_LINE: [usize; 2] = [0, 2];
 
@@ -59,20 +50,21 @@ impl<'a> MeanMachine<'a> {
         Self { model, mesh, line, sensor, stiffness_n_per_m }
     }
 
-    /// By how much a steady sine of a simulation would have to grow to be the machine's own.
+    /// The square of how much a steady sine of a simulation would have to grow to be the machine's own: of the sensor's vertical
+    /// acceleration, and of the force along the line of action.
     ///
     /// # Arguments
-    /// * `answer` - of which signal
     /// * `angular_frequency` - (rad/s) of the sine, more than 0
     /// * `step_s` - (s) time between two samples
-    pub(crate) fn growth(&self, answer: Answer, angular_frequency: f64, step_s: f64) -> f64 {
+    pub(crate) fn squared_growth(&self, angular_frequency: f64, step_s: f64) -> [f64; 2] {
         let warped = (angular_frequency * step_s / 2.0).tan() * 2.0 / step_s;
-        self.gain(answer, angular_frequency) / self.gain(answer, warped)
+        let (own, of_step) = (self.squared_gains(angular_frequency), self.squared_gains(warped));
+        [own[0] / of_step[0], own[1] / of_step[1]]
     }
 
-    /// The answer's amplitude to a deviation of unit amplitude.
-    fn gain(&self, answer: Answer, angular_frequency: f64) -> f64 {
-        let receptance = self.receptance(&self.line, angular_frequency);
+    /// Squares of both amplitudes, to a deviation of unit amplitude.
+    fn squared_gains(&self, angular_frequency: f64) -> [f64; 2] {
+        let (receptance, sensor) = self.receptances(angular_frequency);
         let force = match self.mesh {
             Some(mesh) => {
                 let loss = Complex64::new(1.0, angular_frequency * mesh.damping_time_s);
@@ -82,25 +74,22 @@ impl<'a> MeanMachine<'a> {
             // The modes give way to the mesh already.
             None => self.stiffness_n_per_m * (1.0 - self.stiffness_n_per_m * receptance),
         };
-        match answer {
-            Answer::MeshForce => force.norm(),
-            Answer::VerticalAcceleration => {
-                let driving = if self.mesh.is_some() { force.norm() } else { self.stiffness_n_per_m };
-                let sensor = self.receptance(&self.sensor, angular_frequency).norm();
-                angular_frequency * angular_frequency * sensor * driving
-            }
-        }
+        let force = force.norm_sqr();
+        let driving = if self.mesh.is_some() { force } else { self.stiffness_n_per_m.powi(2) };
+        [angular_frequency.powi(4) * sensor.norm_sqr() * driving, force]
     }
 
-    /// (m/N) Displacement that `weights` read off, to a force of unit amplitude along the line of action.
-    fn receptance(&self, weights: &[f64], angular_frequency: f64) -> Complex64 {
+    /// (m/N) Displacement along the line of action, and that of the sensor, to a force of unit amplitude along the line.
+    fn receptances(&self, angular_frequency: f64) -> (Complex64, Complex64) {
         let modes = self.model.stiffness.iter().zip(&self.model.damping);
         let square = angular_frequency * angular_frequency;
-        modes.zip(weights.iter().zip(&self.line)).fold(
-            Complex64::ZERO,
-            |sum, ((stiffness, damping), (weight, line))| {
-                sum + weight * line / Complex64::new(stiffness - square, damping * angular_frequency)
-            },
-        )
+        let (mut of_line, mut of_sensor) = (Complex64::ZERO, Complex64::ZERO);
+        for ((stiffness, damping), (line, sensor)) in modes.zip(self.line.iter().zip(&self.sensor)) {
+            let impedance = Complex64::new(stiffness - square, damping * angular_frequency);
+            let answer = impedance.conj() * (line / impedance.norm_sqr());
+            of_line += answer * line;
+            of_sensor += answer * sensor;
+        }
+        (of_line, of_sensor)
     }
 }

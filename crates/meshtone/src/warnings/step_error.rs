@@ -3,12 +3,12 @@
 use std::f64::consts::TAU;
 
 use crate::machine::ClosedMesh;
-use crate::model::Model;
 use crate::operation::{greatest_common_divisor, least_common_multiple};
-use crate::sensor::Channels;
 use crate::simulate::{Simulation, Stages, simulate};
-use crate::solver::{Answer, MeanMachine};
+use crate::solver::MeanMachine;
 use meshtone_fourier::real_spectrum;
+
+use super::observer::{Observer, OverTurns, Turns};
 
 /// (-) Part of a signal's power below which a line of its spectrum does not count.
 const LEAST_PART: f64 = 1e-6;
@@ -36,18 +36,22 @@ pub(super) enum StepError {
 }
 
 /// What is known of the step's error where a resonance is suspected of it; the simulation is then repeated with half the step.
-pub(super) fn step_error(simulation: &Simulation) -> Option<StepError> {
-    let estimate = estimate(simulation).filter(|estimate| *estimate > SUSPICIOUS)?;
-    let mut scenario = simulation.stages.scenario.clone();
-    scenario.solver.sampling_rate_hz = nominal_rate_of_half_step_hz(&simulation.stages);
+pub(super) fn step_error(stages: &Stages, observer: &Observer) -> Option<StepError> {
+    let [acceleration, force] = observer.turns.as_ref()?;
+    let estimate = estimate(stages, acceleration, force);
+    if estimate <= SUSPICIOUS {
+        return None;
+    }
+    let mut scenario = stages.scenario.clone();
+    scenario.solver.sampling_rate_hz = nominal_rate_of_half_step_hz(stages);
     let Ok(Simulation { channels: finer, .. }) = simulate(&scenario) else {
         return Some(StepError::Suspected(estimate));
     };
-    let gain = |of: fn(&Channels) -> &[f64]| {
-        let [coarse, fine] = [&simulation.channels, &finer].map(|channels| rms(of(channels)));
-        if coarse < ROUNDING { 0.0 } else { fine / coarse - 1.0 }
+    let gain = |coarse: &OverTurns, finer: &[f64]| {
+        let coarse = coarse.rms();
+        if coarse < ROUNDING { 0.0 } else { rms(finer) / coarse - 1.0 }
     };
-    let (acceleration, force) = (gain(|of| &of.vertical_g), gain(|of| &of.mesh_force_n));
+    let (acceleration, force) = (gain(acceleration, &finer.vertical_g), gain(force, &finer.mesh_force_n));
     let gain = if acceleration.abs() > force.abs() { acceleration } else { force };
     Some(StepError::Shown { gain, finer_rate_hz: finer.sampling_rate_hz })
 }
@@ -65,41 +69,31 @@ fn rms(signal: &[f64]) -> f64 {
     (signal.iter().map(|value| value * value).sum::<f64>() / signal.len().max(1) as f64).sqrt()
 }
 
-/// (-) How far the step may falsify the rms, without a second simulation. None where speed or load is no constant.
+/// (-) How far the step may falsify the rms, without a second simulation.
 ///
 /// Every sine of the signal that repeats with a wheel's turn is as large as the machine's answer at the frequency that the step
-/// makes of its own, [`MeanMachine::growth`]; what does not repeat, as the ringing after a hit, only changes its pitch. Of teeth
+/// makes of its own, [`MeanMachine::squared_growth`]; what does not repeat, as the ringing after a hit, only changes its pitch. Of teeth
 /// that part it says nothing: their motion has no resonance that lasts.
-fn estimate(simulation: &Simulation) -> Option<f64> {
-    let stages = &simulation.stages;
-    let operation = &stages.scenario.operation;
-    // A fluctuation is drawn for every sample: with a finer step it is another one.
-    let lasts = operation.speed_profile_hz.is_none()
-        && operation.speed_fluctuation_hz == 0.0
-        && operation.torque_fluctuation_nm == 0.0;
-    if stages.scenario.model == Model::Published || !lasts {
-        return None;
-    }
+fn estimate(stages: &Stages, acceleration: &OverTurns, force: &OverTurns) -> f64 {
     let model = stages.reduced_model();
     let machine = MeanMachine::new(&model, closed_mesh(stages));
     let step_s = stages.time.step_s();
-    let gain = |answer: Answer, line: &Line| {
-        let at = |shift: f64| machine.growth(answer, TAU * line.frequency_hz * (1.0 + shift), step_s);
-        let gains = SHIFTS.map(|shift| (at(shift).powi(2) - 1.0).abs());
-        line.power * gains.into_iter().fold(0.0, f64::max)
-    };
-    let error = |answer: Answer, signal: &[f64]| {
-        let power = rms(signal).powi(2);
+    let error = |(answer, signal): (usize, &OverTurns)| {
+        let power = signal.rms().powi(2);
         if power < ROUNDING * ROUNDING {
             return 0.0;
         }
+        let gain = |line: Line| {
+            let at = |shift: f64| TAU * line.frequency_hz * (1.0 + shift);
+            let gains = SHIFTS.map(|shift| (machine.squared_growth(at(shift), step_s)[answer] - 1.0).abs());
+            line.power * gains.into_iter().fold(0.0, f64::max)
+        };
         let lines = lines(stages, signal).filter(|line| line.power > LEAST_PART * power);
-        let gained: f64 = lines.map(|line| gain(answer, &line)).sum();
+        let gained: f64 = lines.map(gain).sum();
         (1.0 + gained / power).sqrt() - 1.0
     };
-    let channels = &simulation.channels;
-    let acceleration = error(Answer::VerticalAcceleration, &channels.vertical_g);
-    Some(acceleration.max(error(Answer::MeshForce, &channels.mesh_force_n)))
+    // In the order of the machine's answers.
+    [acceleration, force].into_iter().enumerate().map(error).fold(0.0, f64::max)
 }
 
 /// The mesh under `contact`, as if it were closed always.
@@ -116,29 +110,23 @@ struct Line {
 }
 
 /// The sines of a signal that repeat with every turn of the gear, and those that do with the pinion's.
-fn lines<'a>(stages: &Stages, signal: &'a [f64]) -> impl Iterator<Item = Line> + 'a {
+fn lines<'a>(stages: &Stages, signal: &'a OverTurns) -> impl Iterator<Item = Line> + 'a {
     let [pinion, gear] = [stages.teeth.pinion.teeth, stages.teeth.gear.teeth];
     let speed_hz = stages.scenario.operation.pinion_speed_hz;
-    let of_pinion = stages.time.samples_per_pinion_revolution;
-    let of_gear = of_pinion / pinion as usize * gear as usize;
     // Orders of the pinion that are orders of the gear too.
     let shared = (pinion / greatest_common_divisor(pinion, gear)) as usize;
     let gear_speed_hz = speed_hz * f64::from(pinion) / f64::from(gear);
-    let of_gear = orders(signal, of_gear).map(move |(order, power)| (order as f64 * gear_speed_hz, power));
-    let of_pinion = orders(signal, of_pinion).filter(move |(order, _)| order % shared != 0);
+    let of_gear = orders(&signal.of_gear).map(move |(order, power)| (order as f64 * gear_speed_hz, power));
+    let of_pinion = orders(&signal.of_pinion).filter(move |(order, _)| order % shared != 0);
     let of_pinion = of_pinion.map(move |(order, power)| (order as f64 * speed_hz, power));
     of_gear.chain(of_pinion).map(|(frequency_hz, power)| Line { frequency_hz, power })
 }
 
 /// Mean squares of the sines that repeat with a shaft's turn, by their order from 1; none of a signal shorter than a turn.
-fn orders(signal: &[f64], samples_per_turn: usize) -> impl Iterator<Item = (usize, f64)> {
-    let turns = signal.len() / samples_per_turn.max(1);
-    let mut sum = vec![0.0; if turns == 0 { 0 } else { samples_per_turn }];
-    for turn in signal.chunks_exact(samples_per_turn.max(1)) {
-        sum.iter_mut().zip(turn).for_each(|(sum, value)| *sum += value);
-    }
-    let spectrum = if sum.is_empty() { Vec::new() } else { real_spectrum(&sum) };
-    let scale = 2.0 / ((turns * samples_per_turn).max(1) as f64).powi(2);
+fn orders(turns: &Turns) -> impl Iterator<Item = (usize, f64)> {
+    let samples_per_turn = turns.sum.len();
+    let spectrum = if turns.sum.is_empty() { Vec::new() } else { real_spectrum(&turns.sum) };
+    let scale = 2.0 / ((turns.count * samples_per_turn).max(1) as f64).powi(2);
     let below_nyquist = samples_per_turn.div_ceil(2);
     spectrum
         .into_iter()
@@ -160,9 +148,13 @@ mod tests {
             (TAU * n as f64 / samples as f64).sin() * 3.0 + (TAU * 70.0 * n as f64 / samples as f64).cos()
         };
         let signal: Vec<f64> = (0..4 * samples).map(turn).collect();
-        let found: Vec<(usize, f64)> = orders(&signal, samples).filter(|(_, power)| *power > 1e-12).collect();
+        let mut turns = Turns::new(samples, signal.len());
+        // In blocks of any length, with a part of a turn left over.
+        signal.chunks(97).for_each(|block| turns.add(block));
+        turns.add(&signal[..samples / 2]);
+        let found: Vec<(usize, f64)> = orders(&turns).filter(|(_, power)| *power > 1e-12).collect();
         assert_eq!(found.iter().map(|(order, _)| *order).collect::<Vec<_>>(), [1, 70]);
         assert!((found[0].1 - 4.5).abs() < 1e-12 && (found[1].1 - 0.5).abs() < 1e-12, "{found:?}");
-        assert_eq!(orders(&signal, 700).count(), 0);
+        assert_eq!(orders(&Turns::new(700, signal.len())).count(), 0);
     }
 }

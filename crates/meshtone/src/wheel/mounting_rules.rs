@@ -1,7 +1,7 @@
 //! Rules about profile shift, basic racks and centre distance. Each names the number that would do.
 
 use super::{Gears, Mounting, Wheel, WheelName};
-use crate::error::ScenarioWarning;
+use crate::error::{ScenarioWarning, WarningKind};
 use crate::keys::{Check, refuse, require};
 
 /// (modules) By how much the tip of a rack-shaped tool is rounded: below it no involute is made.
@@ -59,8 +59,8 @@ pub(super) fn thin_tips(gears: &Gears) -> impl Iterator<Item = ScenarioWarning> 
             "the tips of {teeth} teeth are {thickness_mm:.4} mm thick, less than {THIN_TIP} modules ({least_mm:.4} mm), and \
              could break off; lower the profile shift or the addendum"
         );
-        (thickness_mm < least_mm)
-            .then(|| ScenarioWarning::new(format!("gears.{}_{key}", name.name()), message))
+        let key = format!("gears.{}_{key}", name.name());
+        (thickness_mm < least_mm).then(|| ScenarioWarning::new(WarningKind::ThinTips, key, message))
     })
 }
 

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::contact::contact_ratio_of;
 use super::mounting_rules::{self, fewer_than_limit, least_shift, thin_tips, touched_curvature_mm};
 use super::{Gears, TipRelief, Wheel, WheelName};
-use crate::error::{ScenarioError, ScenarioWarning};
+use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 use crate::keys::{Check, below, check_keys, refuse, require};
 
 impl Gears {
@@ -93,7 +93,7 @@ fn undercut(gears: &Gears) -> impl Iterator<Item = ScenarioWarning> {
              pressure angle, or gears.{wheel}_profile_shift = {:.4} or more",
             least_shift(gears, name)
         );
-        Some(ScenarioWarning::new(format!("gears.{wheel}_teeth"), message))
+        Some(ScenarioWarning::new(WarningKind::Undercut, format!("gears.{wheel}_teeth"), message))
     })
 }
 
@@ -114,7 +114,7 @@ fn flared_tip(gears: &Gears) -> Option<ScenarioWarning> {
              thins by up to {least:.4} mm from there on; use at least that, plus the relief itself",
             relief.length_mm
         );
-        ScenarioWarning::new("gears.tip_relief.depth_mm", message)
+        ScenarioWarning::new(WarningKind::ReliefAddsMetal, "gears.tip_relief.depth_mm", message)
     })
 }
 

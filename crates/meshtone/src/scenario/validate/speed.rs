@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::super::{Scenario, ScenarioWarning};
+use super::super::{Scenario, ScenarioWarning, WarningKind};
 use crate::keys::{Check, refuse};
 
 /// (m/s) Fastest pitch line that is simulated: turbo gears, which are helical, run at up to some 200 m/s.
@@ -48,7 +48,7 @@ fn unusual(scenario: &Scenario) -> Option<ScenarioWarning> {
             "the teeth run at {speed_m_per_s:.0} m/s on the pitch line, and few spur gears run faster than {USUAL_M_PER_S:.0} m/s; \
              speeds are in revolutions per second"
         );
-        ScenarioWarning::new(key, message)
+        ScenarioWarning::new(WarningKind::FastTeeth, key, message)
     })
 }
 
@@ -68,7 +68,7 @@ fn off_nominal(scenario: &Scenario) -> Option<ScenarioWarning> {
             "is {mean_hz:.4} Hz on average, while operation.pinion_speed_hz, which sampling rate and settling are chosen for, is \
              {nominal_hz:?} Hz; set that to about the mean"
         );
-        ScenarioWarning::new("operation.speed_profile_hz", message)
+        ScenarioWarning::new(WarningKind::SpeedProfileOff, "operation.speed_profile_hz", message)
     })
 }
 

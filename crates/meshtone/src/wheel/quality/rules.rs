@@ -1,7 +1,7 @@
 //! Rules that concern several keys of `[quality]`.
 
 use super::{ERROR_POINTS, Quality, WheelDeviations};
-use crate::error::{ScenarioError, ScenarioWarning};
+use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 use crate::error_table::ErrorTable;
 use crate::keys::{Check, check_keys, refuse, require};
 use crate::wheel::{Gears, WheelName};
@@ -92,7 +92,7 @@ impl Quality {
             let message = format!(
                 "is ignored: beside given {given} nothing is drawn that it is a share of; remove {key}, or the {given}"
             );
-            Some(ScenarioWarning::new(format!("quality.{key}"), message))
+            Some(ScenarioWarning::new(WarningKind::IgnoredKey, format!("quality.{key}"), message))
         })
         .collect()
     }

@@ -1,0 +1,116 @@
+//! Channels that are kept, with what is doubtful about them.
+
+use super::keep::{Keep, KeepChannels, SignalRecorder, Signals};
+use crate::error::{ScenarioError, ScenarioWarning};
+use crate::scenario::Scenario;
+use crate::sensor::Channel;
+use crate::simulate::Stages;
+use crate::solver::{Block, Output, Recorder};
+use crate::warnings::Observer;
+
+/// Keeps some of the channels, as [`KeepChannels`] does, and what deserves attention, as [`crate::simulate`]'s user is told.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct KeepObserved {
+    kept: KeepChannels,
+    /// Those that are read beside the kept ones.
+    seen: Vec<Channel>,
+    /// Where the outputs of [`Observer::CHANNELS`] are.
+    places: [usize; Observer::CHANNELS.len()],
+}
+
+impl KeepObserved {
+    /// Keeps `channels`, in that order.
+    pub fn new(channels: impl IntoIterator<Item = impl Into<Channel>>) -> Self {
+        let mut read: Vec<Channel> = channels.into_iter().map(Into::into).collect();
+        let kept = KeepChannels::new(read.iter().cloned());
+        let first_seen = read.len();
+        let places = Observer::CHANNELS.map(|kind| {
+            let channel = Channel::Fixed(kind);
+            read.iter().position(|other| *other == channel).unwrap_or_else(|| {
+                read.push(channel);
+                read.len() - 1
+            })
+        });
+        Self { kept, seen: read.split_off(first_seen), places }
+    }
+}
+
+/// Signals of one simulation, and what is doubtful about it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ObservedSignals {
+    /// The kept signals.
+    pub signals: Signals,
+    /// What deserves attention: of the scenario and its stages, then of the signals.
+    pub warnings: Vec<ScenarioWarning>,
+    /// (-) Part of the kept time in which no teeth touch.
+    pub apart_fraction: f64,
+    /// (-) Part of the kept time in which the mesh force is negative.
+    pub tension_fraction: f64,
+}
+
+/// The signals of one simulation on their way to [`ObservedSignals`].
+pub struct ObservedRecorder {
+    signals: SignalRecorder,
+    observer: Observer,
+    places: [usize; Observer::CHANNELS.len()],
+}
+
+impl ObservedRecorder {
+    /// The signals alone, once all samples are recorded.
+    ///
+    /// # Arguments
+    /// * `stages` - as of [`Keep::recorder`]
+    pub fn signals(self, stages: &Stages) -> Signals {
+        self.signals.finish(stages)
+    }
+
+    /// Everything, once all samples are recorded. Where a step is suspected to be too long the simulation is repeated.
+    ///
+    /// # Arguments
+    /// * `stages` - as of [`Keep::recorder`]
+    pub fn finish(self, stages: &Stages) -> ObservedSignals {
+        let observer = &self.observer;
+        ObservedSignals {
+            warnings: [stages.warnings(), stages.warnings_of_signals(observer)].concat(),
+            apart_fraction: observer.apart_fraction(),
+            tension_fraction: observer.tension_fraction(),
+            signals: self.signals.finish(stages),
+        }
+    }
+}
+
+impl Recorder for ObservedRecorder {
+    fn record(&mut self, block: &Block) {
+        self.observer.observe(self.places.map(|place| block.output(place)));
+        self.signals.record(block);
+    }
+}
+
+impl Keep for KeepObserved {
+    type Recorder = ObservedRecorder;
+    type Kept = ObservedSignals;
+
+    fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
+        let mut outputs = self.kept.outputs(scenario)?;
+        for channel in &self.seen {
+            outputs.push(channel.output(&scenario.sensors, scenario.model)?);
+        }
+        Ok(outputs)
+    }
+
+    fn kept_bytes(&self, scenario: &Scenario) -> usize {
+        self.kept.kept_bytes(scenario)
+    }
+
+    fn recorder(&self, stages: &Stages) -> ObservedRecorder {
+        ObservedRecorder {
+            signals: self.kept.recorder(stages),
+            observer: Observer::new(stages),
+            places: self.places,
+        }
+    }
+
+    fn keep(&self, _: usize, stages: Stages, recorder: ObservedRecorder) -> ObservedSignals {
+        recorder.finish(&stages)
+    }
+}

@@ -1,0 +1,231 @@
+//! What of a simulation's signals tells whether they can be right, gathered while they come.
+
+use crate::model::Model;
+use crate::sensor::ChannelKind;
+use crate::simulate::Stages;
+
+/// Sees the signals of one simulation, block by block, and keeps what [`Stages::warnings_of_signals`] needs of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Observer {
+    pub(super) force: ForceFigures,
+    /// (Hz) Of the pinion's and of the gear's speed.
+    speeds_hz: [Sum; 2],
+    /// The vertical acceleration and the mesh force over turns of the wheels, where a motion lasts that repeats with them.
+    pub(super) turns: Option<[OverTurns; 2]>,
+}
+
+impl Observer {
+    /// The signals that it sees, in their order.
+    pub const CHANNELS: [ChannelKind; 4] = [
+        ChannelKind::Vertical,
+        ChannelKind::MeshForce,
+        ChannelKind::PinionShaftSpeed,
+        ChannelKind::GearShaftSpeed,
+    ];
+
+    /// Has seen nothing yet.
+    ///
+    /// # Arguments
+    /// * `stages` - of the simulation
+    pub fn new(stages: &Stages) -> Self {
+        let turns = lasts(stages).then(|| [OverTurns::new(stages), OverTurns::new(stages)]);
+        Self { force: ForceFigures::default(), speeds_hz: [Sum::default(); 2], turns }
+    }
+
+    /// Sees some samples, the next ones of the kept time.
+    ///
+    /// # Arguments
+    /// * `signals` - those of [`Self::CHANNELS`], equally long
+    pub fn observe(&mut self, signals: [&[f64]; 4]) {
+        let [vertical_g, force_n, pinion_hz, gear_hz] = signals;
+        self.force.add(force_n);
+        for (sum, speeds) in self.speeds_hz.iter_mut().zip([pinion_hz, gear_hz]) {
+            sum.add(speeds, |speed| speed);
+        }
+        for (turns, signal) in self.turns.iter_mut().flatten().zip([vertical_g, force_n]) {
+            turns.add(signal);
+        }
+    }
+
+    /// (-) Part of the time in which the mesh force is 0: under `contact`, in which no teeth touch.
+    pub fn apart_fraction(&self) -> f64 {
+        self.force.part_of_time(self.force.idle)
+    }
+
+    /// (-) Part of the time in which the mesh force is negative.
+    pub fn tension_fraction(&self) -> f64 {
+        self.force.part_of_time(self.force.pulling)
+    }
+
+    /// (Hz) Of the pinion and of the gear.
+    pub(super) fn mean_speeds_hz(&self) -> [f64; 2] {
+        self.speeds_hz.map(|sum| sum.total() / self.force.samples as f64)
+    }
+}
+
+/// Whether a steady vibration is reached whose lines can be looked at. A fluctuation is drawn for every sample: with a finer step it
+/// is another one.
+fn lasts(stages: &Stages) -> bool {
+    let operation = &stages.scenario.operation;
+    stages.scenario.model != Model::Published
+        && operation.speed_profile_hz.is_none()
+        && operation.speed_fluctuation_hz == 0.0
+        && operation.torque_fluctuation_nm == 0.0
+}
+
+/// Figures of the force along the line of action.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct ForceFigures {
+    pub samples: usize,
+    /// Samples in which it is negative.
+    pub pulling: usize,
+    /// Samples in which it is 0.
+    pub idle: usize,
+    pub least_n: f64,
+    /// Of either sign.
+    pub largest_n: f64,
+    sum_n: Sum,
+}
+
+impl Default for ForceFigures {
+    fn default() -> Self {
+        let sum_n = Sum::default();
+        Self { samples: 0, pulling: 0, idle: 0, least_n: f64::INFINITY, largest_n: 0.0, sum_n }
+    }
+}
+
+impl ForceFigures {
+    pub fn add(&mut self, force_n: &[f64]) {
+        self.samples += force_n.len();
+        self.pulling += force_n.iter().filter(|&&force| force < 0.0).count();
+        self.idle += force_n.iter().filter(|&&force| force == 0.0).count();
+        let (least_n, most_n) = extremes(force_n);
+        self.least_n = self.least_n.min(least_n);
+        self.largest_n = self.largest_n.max(most_n.max(-least_n));
+        self.sum_n.add(force_n, |force| force);
+    }
+
+    /// (N) Over all samples.
+    pub fn mean_n(&self) -> f64 {
+        self.sum_n.total() / self.samples as f64
+    }
+
+    fn part_of_time(&self, samples: usize) -> f64 {
+        samples as f64 / self.samples.max(1) as f64
+    }
+}
+
+/// Least and largest value; infinite of no values.
+fn extremes(values: &[f64]) -> (f64, f64) {
+    let (mut least, mut most) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+    let chunks = values.chunks_exact(LANES);
+    let rest = chunks.remainder();
+    let mut take = |lane: usize, value: f64| {
+        least[lane] = if value < least[lane] { value } else { least[lane] };
+        most[lane] = if value > most[lane] { value } else { most[lane] };
+    };
+    chunks.for_each(|chunk| (0..LANES).for_each(|lane| take(lane, chunk[lane])));
+    rest.iter().enumerate().for_each(|(lane, &value)| take(lane, value));
+    (least.into_iter().fold(f64::INFINITY, f64::min), most.into_iter().fold(f64::NEG_INFINITY, f64::max))
+}
+
+/// Values that are added up side by side.
+const LANES: usize = 8;
+
+/// A sum over samples, the same whatever blocks they come in: every eighth sample is added to the same part of it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Sum {
+    parts: [f64; LANES],
+    /// The part that the next sample belongs to.
+    next: usize,
+}
+
+impl Sum {
+    fn add(&mut self, values: &[f64], of: impl Fn(f64) -> f64) {
+        let (head, rest) = values.split_at(((LANES - self.next) % LANES).min(values.len()));
+        let mut one = |values: &[f64], parts: &mut [f64; LANES]| {
+            for &value in values {
+                parts[self.next] += of(value);
+                self.next = (self.next + 1) % LANES;
+            }
+        };
+        one(head, &mut self.parts);
+        let chunks = rest.chunks_exact(LANES);
+        let tail = chunks.remainder();
+        for chunk in chunks {
+            (0..LANES).for_each(|lane| self.parts[lane] += of(chunk[lane]));
+        }
+        one(tail, &mut self.parts);
+    }
+
+    fn total(&self) -> f64 {
+        self.parts.iter().sum()
+    }
+}
+
+/// A signal summed over the turns of either wheel.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct OverTurns {
+    samples: usize,
+    squares: Sum,
+    pub of_gear: Turns,
+    pub of_pinion: Turns,
+}
+
+impl OverTurns {
+    fn new(stages: &Stages) -> Self {
+        let (time, teeth) = (&stages.time, &stages.teeth);
+        let of_pinion = time.samples_per_pinion_revolution;
+        let of_gear = of_pinion / teeth.pinion.teeth as usize * teeth.gear.teeth as usize;
+        let turns = |samples_per_turn| Turns::new(samples_per_turn, time.kept_samples());
+        Self { samples: 0, squares: Sum::default(), of_gear: turns(of_gear), of_pinion: turns(of_pinion) }
+    }
+
+    fn add(&mut self, signal: &[f64]) {
+        self.samples += signal.len();
+        self.squares.add(signal, |value| value * value);
+        self.of_gear.add(signal);
+        self.of_pinion.add(signal);
+    }
+
+    /// Of all samples.
+    pub fn rms(&self) -> f64 {
+        (self.squares.total() / self.samples.max(1) as f64).sqrt()
+    }
+}
+
+/// A signal summed over all whole turns of a wheel.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Turns {
+    /// How many whole turns there are.
+    pub count: usize,
+    /// The sum, a value for each sample of a turn; none of a signal shorter than a turn.
+    pub sum: Vec<f64>,
+    /// Samples added.
+    samples: usize,
+}
+
+impl Turns {
+    /// No samples of any turn yet.
+    ///
+    /// # Arguments
+    /// * `samples_per_turn` - of the wheel
+    /// * `samples` - that there will be
+    pub fn new(samples_per_turn: usize, samples: usize) -> Self {
+        let count = samples.checked_div(samples_per_turn).unwrap_or(0);
+        Self { count, sum: vec![0.0; if count == 0 { 0 } else { samples_per_turn }], samples: 0 }
+    }
+
+    /// Adds the next samples.
+    pub fn add(&mut self, signal: &[f64]) {
+        let wanted = (self.count * self.sum.len()).saturating_sub(self.samples);
+        let mut rest = &signal[..signal.len().min(wanted)];
+        while !rest.is_empty() {
+            let place = self.samples % self.sum.len();
+            let (of_turn, next) = rest.split_at(rest.len().min(self.sum.len() - place));
+            self.sum[place..].iter_mut().zip(of_turn).for_each(|(sum, value)| *sum += value);
+            self.samples += of_turn.len();
+            rest = next;
+        }
+    }
+}

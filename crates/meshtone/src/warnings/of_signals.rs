@@ -1,0 +1,152 @@
+//! What the signals show to be doubtful.
+
+use super::largest_torque;
+use super::observer::{ForceFigures, Observer};
+use super::step_error::{StepError, step_error};
+use crate::error::{ScenarioWarning, WarningKind};
+use crate::simulate::{Simulation, Stages};
+
+/// (-) Part of the time that the mesh may pull without a warning.
+const TOLERATED_TENSION: f64 = 0.01;
+/// (-) Where damage makes the mesh pull, a load that so many times its own would hold the teeth together is worth a word.
+const SENSIBLE_LOAD_FACTOR: f64 = 30.0;
+/// (-) How many times the static force the mesh force may be without a warning.
+const TOLERATED_RESONANCE: f64 = 1000.0;
+/// (-) How far a shaft's mean speed may be from what the motor drives it at without a warning.
+const TOLERATED_SPEED: f64 = 0.2;
+/// (-) How far the step may falsify the rms of a signal without a warning.
+const TOLERATED_STEP: f64 = 0.02;
+
+impl Simulation {
+    /// What the signals show to be doubtful: a mesh that pulls (not under `contact`, whose teeth part:
+    /// [`Simulation::contact_figures`] says for how long), a resonance beyond all measure, a shaft that does not turn at the speed
+    /// that it is driven at, a step too long for a resonance. Where the latter is suspected the simulation is repeated with half the
+    /// step.
+    pub fn warnings_of_signals(&self) -> Vec<ScenarioWarning> {
+        let mut observer = Observer::new(&self.stages);
+        observer.observe(Observer::CHANNELS.map(|kind| self.channels.get(kind)));
+        self.stages.warnings_of_signals(&observer)
+    }
+}
+
+impl Stages {
+    /// As [`Simulation::warnings_of_signals`], of signals that need not be kept.
+    ///
+    /// # Arguments
+    /// * `observer` - it has seen all kept samples
+    pub fn warnings_of_signals(&self, observer: &Observer) -> Vec<ScenarioWarning> {
+        let is_damaged = !self.damaged.is_empty();
+        let is_linear = self.mesh.contact().is_none();
+        let pulling = is_linear.then(|| tension(&observer.force, is_damaged)).flatten();
+        let step = step_error(self, observer).and_then(|error| long_step(error, self));
+        let doubtful = [pulling, self.resonance(observer.force.largest_n), self.other_speed(observer), step];
+        doubtful.into_iter().flatten().collect()
+    }
+
+    /// A mesh force so far beyond the static one that the machine could not be.
+    fn resonance(&self, largest_n: f64) -> Option<ScenarioWarning> {
+        let (_, torque_nm) = largest_torque(&self.scenario);
+        let static_n = self.force_of_torque_n(torque_nm);
+        (static_n > 0.0 && largest_n > TOLERATED_RESONANCE * static_n).then(|| {
+            let message = format!(
+                "the mesh force reaches {largest_n:.3e} N, {:.0} times the static {static_n:.4} N: a resonance that no machine \
+                 survives, or a load too light to be meant; raise the damping, change the speed, or load the pair",
+                largest_n / static_n
+            );
+            ScenarioWarning::new(WarningKind::Resonance, "operation.pinion_speed_hz", message)
+        })
+    }
+
+    /// A shaft whose mean speed is not what it is driven at.
+    fn other_speed(&self, observer: &Observer) -> Option<ScenarioWarning> {
+        let [pinion_hz, gear_hz] = observer.mean_speeds_hz();
+        let driven_hz = match self.scenario.operation.speed_profile_hz {
+            None => self.scenario.operation.pinion_speed_hz,
+            Some(_) => {
+                let kept = self.scenario.motion(&self.time).skip(self.time.first_kept_sample);
+                let driven = kept.take(observer.force.samples).map(|motion| motion.speed_hz);
+                driven.sum::<f64>() / observer.force.samples as f64
+            }
+        };
+        let ratio = f64::from(self.teeth.pinion.teeth) / f64::from(self.teeth.gear.teeth);
+        let turning = [("pinion", driven_hz, pinion_hz), ("gear", driven_hz * ratio, gear_hz)];
+        let off = |(_, driven_hz, hz): &(&str, f64, f64)| (hz / driven_hz - 1.0).abs() > TOLERATED_SPEED;
+        turning.into_iter().find(off).map(|(wheel, driven_hz, hz)| {
+            let message = format!(
+                "the {wheel} turns at {hz:.4} Hz on average, while the motor drives it at {driven_hz:.4} Hz: the motion has not \
+                 settled, or too many teeth are gone; lengthen solver.settle_fraction, raise the damping, leave out \
+                 solver.initial_velocity, or lessen the damage"
+            );
+            ScenarioWarning::new(WarningKind::OtherSpeed, "solver.settle_fraction", message)
+        })
+    }
+}
+
+/// A step that falsifies a resonance.
+fn long_step(error: StepError, stages: &Stages) -> Option<ScenarioWarning> {
+    let rate_hz = stages.time.sampling_rate_hz;
+    let (error, shown) = match error {
+        StepError::Suspected(error) => (error, format!("and the rms may be wrong by {:.1} %", 100.0 * error)),
+        StepError::Shown { gain, finer_rate_hz } => {
+            let (percent, larger) = (100.0 * gain.abs(), if gain > 0.0 { "larger" } else { "smaller" });
+            let shown = format!("and at {finer_rate_hz:.0} S/s the rms is {percent:.1} % {larger}");
+            // Of second order.
+            (gain.abs() / (1.0 - (rate_hz / finer_rate_hz).powi(2)), shown)
+        }
+    };
+    (error > TOLERATED_STEP).then(|| {
+        let finer_hz = rate_hz * (error / TOLERATED_STEP).sqrt().clamp(1.2, 10.0);
+        let message = format!(
+            "at {rate_hz:.0} S/s the step shifts a resonance that the teeth excite, {shown}; set sampling_rate_hz = {finer_hz:.2e}, \
+             and more until this goes"
+        );
+        ScenarioWarning::new(WarningKind::StepError, "solver.sampling_rate_hz", message)
+    })
+}
+
+/// A mesh that pulls, and what brings that down.
+fn tension(force: &ForceFigures, is_damaged: bool) -> Option<ScenarioWarning> {
+    let fraction = force.pulling as f64 / force.samples.max(1) as f64;
+    (fraction > TOLERATED_TENSION).then(|| {
+        let least_n = force.least_n;
+        let mean_n = force.mean_n();
+        // The force that deviations and lost material add hardly depends on the load.
+        let advice = if is_damaged && mean_n - least_n > SENSIBLE_LOAD_FACTOR * mean_n {
+            "no sensible load would hold these teeth together; less damage brings it down"
+        } else {
+            "a heavier load or better teeth bring it down"
+        };
+        let message = format!(
+            "the mesh force is negative for {:.1} % of the time, down to {least_n:.0} N at a mean of {mean_n:.0} N: this linear \
+             mesh pulls where real teeth would part; {advice}",
+            100.0 * fraction
+        );
+        ScenarioWarning::new(WarningKind::MeshPulls, "operation.brake_torque_nm", message)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mesh_that_pulls_is_told_with_what_mends_it() {
+        let of = |least_n: f64, pulling: usize, is_damaged: bool| {
+            let mut mesh_force_n = vec![200.0; 100];
+            mesh_force_n[..pulling].fill(least_n);
+            let mut force = ForceFigures::default();
+            // In blocks, as from the time loop.
+            mesh_force_n.chunks(7).for_each(|block| force.add(block));
+            tension(&force, is_damaged).map(|warning| warning.message).unwrap_or_default()
+        };
+        assert_eq!(of(-50.0, 1, true), "");
+        let told = of(-50.0, 2, true);
+        assert!(told.starts_with(
+            "the mesh force is negative for 2.0 % of the time, down to -50 N at a mean of 195 N"
+        ));
+        assert!(told.ends_with("a heavier load or better teeth bring it down"), "{told}");
+        assert_eq!(of(-4000.0, 2, false).rsplit("; ").next(), told.rsplit("; ").next());
+        let damage = of(-4000.0, 2, true);
+        assert!(damage.ends_with("hold these teeth together; less damage brings it down"), "{damage}");
+    }
+}
