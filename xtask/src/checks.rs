@@ -5,7 +5,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use crate::step::{Row, beside};
 use crate::surroundings::unusual;
-use crate::{dist, docs, environment, features, kernels, python, rooms, scipy, toolchain};
+use crate::{dependencies, dist, docs, environment, features, kernels, python, rooms, scipy, toolchain};
 
 /// What the tests of the Rust packages need of Python.
 struct Prepared {
@@ -51,6 +51,8 @@ pub fn all(root: &Path) -> Result<(), u8> {
 
 fn rust_row(row: &Row, prepared: &Receiver<Prepared>) -> Result<(), u8> {
     lints(row)?;
+    // All that the platform needs has been fetched for the lints.
+    row.step("dependencies check", || dependencies::check(row.root()))?;
     // Nothing comes where that has failed, which has been said.
     let prepared = prepared.recv().map_err(|_| 1)?;
     let mut surroundings = unusual(row)?;

@@ -3,6 +3,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod checks;
+mod dependencies;
 mod dist;
 mod docs;
 mod environment;
@@ -35,6 +36,8 @@ Tasks:
   wheel        Of these, only the wheel
   generate     Write what follows from the rows of the library's keys: Python's arguments and classes, the guide's tables
   check-rooms  Only the check that no folder of the library imports against the direction of the data
+  check-dependencies
+               Only the check that dependencies are such as deny.toml allows
   check-docs   Only the check of the book: its table of contents, its links, pictures and formulas
   docs         Build the book into docs/book (needs mdbook)
   help         Print this text (also -h, --help)
@@ -52,6 +55,9 @@ fn main() -> ExitCode {
         ["wheel"] => dist::make_wheel(&Row::at_terminal(root)),
         ["generate"] => checks::generate(&Row::at_terminal(root)),
         ["check-rooms"] => Row::at_terminal(root).step("rooms check", || rooms::check(root)),
+        ["check-dependencies"] => {
+            Row::at_terminal(root).step("dependencies check", || dependencies::check(root))
+        }
         ["check-docs"] => Row::at_terminal(root).step("docs check", || docs::check_and_report(root)),
         ["help" | "-h" | "--help"] => {
             print!("{HELP}");
