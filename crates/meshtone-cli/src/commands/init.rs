@@ -8,19 +8,22 @@ use clap::builder::PossibleValuesParser;
 use meshtone::scenario::{template, template_kinds};
 use meshtone_dataset::plan;
 use meshtone_io::atomic_file::StagedFile;
+use meshtone_io::experiment;
 
 use crate::failure::Failure;
 use crate::terminal;
 
 /// The kind that is a data set's plan and no scenario.
 const DATASET: &str = "dataset";
+/// The kind that is an experiment.
+const EXPERIMENT: &str = "experiment";
 
-/// Print a commented scenario file to start from, or a data set's plan
+/// Print a commented scenario file to start from, a data set's plan, or an experiment to tune by
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Init {
-    /// A healthy pair, or what is broken, to begin with on the gear's first tooth; or the plan of a data set
-    #[arg(value_parser = PossibleValuesParser::new(template_kinds().into_iter().chain([DATASET])))]
+    /// A healthy pair, or what is broken, to begin with on the gear's first tooth; or the plan of a data set, or an experiment
+    #[arg(value_parser = PossibleValuesParser::new(template_kinds().into_iter().chain([DATASET, EXPERIMENT])))]
     kind: String,
     /// File to write, instead of standard output
     #[arg(short, long, value_name = "FILE")]
@@ -34,13 +37,15 @@ const EXAMPLES: &str = "\
 Examples:
   meshtone init healthy
   meshtone init tooth-breakage -o broken.toml
-  meshtone init dataset -o plan.toml";
+  meshtone init dataset -o plan.toml
+  meshtone init experiment -o experiment.toml";
 
 impl Init {
     pub fn run(&self) -> Result<(), Failure> {
         let unknown = || Failure::bad_input(format!("there is no template {}", self.kind));
         let text = match self.kind.as_str() {
             DATASET => plan::template().to_owned(),
+            EXPERIMENT => experiment::template().to_owned(),
             kind => template(kind).ok_or_else(unknown)?,
         };
         match &self.output {

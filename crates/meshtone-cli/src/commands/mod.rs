@@ -1,5 +1,6 @@
 //! The commands, one file each.
 
+mod completions;
 mod dataset;
 mod enhance;
 mod indicators;
@@ -25,6 +26,7 @@ pub enum Command {
     Tune(tune::Tune),
     Enhance(enhance::Enhance),
     Dataset(dataset::Dataset),
+    Completions(completions::Completions),
 }
 
 impl Command {
@@ -39,6 +41,7 @@ impl Command {
             Self::Tune(arguments) => arguments.run(),
             Self::Enhance(arguments) => arguments.run(),
             Self::Dataset(arguments) => arguments.run(),
+            Self::Completions(arguments) => arguments.run(),
         }
     }
 }

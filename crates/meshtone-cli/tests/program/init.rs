@@ -15,6 +15,51 @@ fn every_kind_is_printed_and_can_be_read() {
     }
 }
 
+/// A file handed to the command of another kind is told what it is and what reads it.
+#[test]
+fn files_of_other_kinds_are_named() {
+    let workplace = Workplace::new();
+    for kind in ["healthy", "dataset", "experiment"] {
+        workplace.succeeds(&["init", kind, "-o", &format!("{kind}.toml")]);
+    }
+    let read = [("simulate", "healthy"), ("dataset", "dataset"), ("tune", "experiment")];
+    for (command, _) in read {
+        for (reader, kind) in read.into_iter().filter(|(reader, _)| *reader != command) {
+            let file = format!("{kind}.toml");
+            let words = ["is expected here", &format!("`meshtone {reader} {file}` reads it")];
+            workplace.fails(2, &[command, &file], &words);
+        }
+    }
+}
+
+#[test]
+fn an_experiment_to_start_from_can_be_read_where_its_files_are() {
+    let workplace = Workplace::new();
+    workplace.succeeds(&["init", "experiment", "-o", "experiment.toml"]);
+    workplace.fails(2, &["tune", "experiment.toml"], &["rig.toml"]);
+    workplace.succeeds(&["init", "healthy", "-o", "rig.toml"]);
+    for (number, name) in (1..).zip(["healthy_1", "healthy_2", "chipped_1", "chipped_2"]) {
+        let noise = |i: u32| (f64::from(i * 7919 % 1001) / 1000.0).powi(number);
+        let lines = (0..7500).map(|i| format!("{},{}\n", f64::from(i) / 25e3, noise(i)));
+        let recording: String = std::iter::once("time_s,bearing\n".to_owned()).chain(lines).collect();
+        workplace.write(&format!("{name}.csv"), recording);
+    }
+    let read = meshtone_io::experiment::read_experiment(&workplace.path("experiment.toml")).unwrap();
+    assert_eq!(read.experiment.cases.len(), 2);
+}
+
+#[test]
+fn completions_and_the_manual_know_all_commands() {
+    let workplace = Workplace::new();
+    for kind in ["bash", "elvish", "fish", "powershell", "zsh", "man"] {
+        let text = stdout(&workplace.succeeds(&["completions", kind]));
+        for word in ["simulate", "indicators", "verify", "merge", "sampling"] {
+            assert!(text.contains(word), "{kind}: {word}");
+        }
+    }
+    workplace.fails(2, &["completions", "tcsh"], &["bash", "zsh", "man"]);
+}
+
 #[test]
 fn an_existing_file_is_not_replaced_by_accident() {
     let workplace = Workplace::new();

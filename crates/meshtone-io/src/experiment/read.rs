@@ -16,7 +16,7 @@ use meshtone_toml::{ReadResult, TomlDocument, TomlError, TomlTable, TomlValue};
 
 use super::measured::{self, CaseFiles};
 use super::recordings::RATE_TOLERANCE;
-use crate::scenario_file::{ReadScenarioError, ScenarioFile, read_text};
+use crate::scenario_file::{FileKind, ReadScenarioError, ScenarioFile, read_text};
 
 /// Combinations of the tuned keys' values that are simulated unless the file says otherwise.
 const CANDIDATES: u64 = 160;
@@ -58,7 +58,7 @@ pub fn read_experiment(path: &Path) -> Result<ExperimentFile, ReadScenarioError>
         // What is wrong in the scenario file is told with that file's lines.
         (Err(_), Some(error)) => Err(error),
         (Err(error), None) => {
-            Err(ReadScenarioError::Invalid { path: path.to_path_buf(), text, error: Box::new(error) })
+            Err(ReadScenarioError::invalid(FileKind::Experiment, path.to_path_buf(), text, error))
         }
     }
 }

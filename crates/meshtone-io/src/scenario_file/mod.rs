@@ -1,6 +1,7 @@
 //! Scenario files, with the files that they name.
 
 mod frequency_response_csv;
+mod kind;
 mod number_csv;
 mod profile_csv;
 mod profile_errors_npz;
@@ -15,6 +16,7 @@ use meshtone::scenario::{
 };
 use meshtone_toml::TomlError;
 
+pub use kind::FileKind;
 pub use profile_errors_npz::{write_profile_errors_npz, write_wheels_npz};
 pub use source::ScenarioFile;
 pub use source::read_text;

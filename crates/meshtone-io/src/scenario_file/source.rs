@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use meshtone::scenario::{MemoryLimit, Scenario, ScenarioError};
 use meshtone_toml::TomlDocument;
 
-use super::{FilesBeside, ReadScenarioError, remembering::Remembering};
+use super::{FileKind, FilesBeside, ReadScenarioError, remembering::Remembering};
 use crate::input_file::read_document;
 use crate::memory;
 
@@ -49,7 +49,7 @@ impl ScenarioFile {
         let path = path.to_path_buf();
         match Scenario::from_toml_within(&text, &files, limit) {
             Ok(scenario) => Ok(Self { path, text, scenario, named_files: files.read() }),
-            Err(error) => Err(ReadScenarioError::Invalid { path, text, error: Box::new(error.into()) }),
+            Err(error) => Err(ReadScenarioError::invalid(FileKind::Scenario, path, text, error.into())),
         }
     }
 

@@ -9,7 +9,7 @@ mod split;
 use std::path::{Path, PathBuf};
 
 use meshtone_io::experiment::{Tuned, read_tuned};
-use meshtone_io::scenario_file::{ReadScenarioError, read_text};
+use meshtone_io::scenario_file::{FileKind, ReadScenarioError, read_text};
 use meshtone_toml::{ReadResult, TomlDocument, TomlError, TomlTable, TomlValue};
 
 use super::{About, Content, Plan, PlanFile, Splits, check};
@@ -86,7 +86,7 @@ fn read(text: String, path: &Path, is_copy: bool) -> Result<Plan, ReadScenarioEr
         }
         (Err(_), Some(error)) => Err(error),
         (Err(error), None) => {
-            Err(ReadScenarioError::Invalid { path: path.to_path_buf(), text, error: Box::new(error) })
+            Err(ReadScenarioError::invalid(FileKind::Plan, path.to_path_buf(), text, error))
         }
     }
 }
