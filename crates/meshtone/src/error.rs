@@ -262,6 +262,7 @@ warning_kinds! {
     EqualWheels "equal-wheels" "both wheels move in opposition, and the supports' accelerations cancel";
     Unsettled "unsettled" "the start-up transient has not decayed where the kept signal starts";
     Overload "overload" "the load would break the teeth";
+    NoContact "no-contact" "no pair of teeth meets for a part of a revolution, and the linear mesh holds nothing there";
     MeshPulls "mesh-pulls" "the linear mesh pulls where real teeth would part";
     Resonance "resonance" "the mesh force is far beyond what a machine survives";
     OtherSpeed "other-speed" "a shaft does not turn at the speed that it is driven at";

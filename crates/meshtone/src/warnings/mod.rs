@@ -11,8 +11,10 @@ use std::f64::consts::TAU;
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 use crate::machine::coordinates::{X_GEAR, X_PINION};
 use crate::machine::{DecayingMode, Shaft, Structure, WheelBody};
+use crate::mesh::Mesh;
 use crate::scenario::{MemoryLimit, Scenario};
 use crate::simulate::{Stages, stages};
+use crate::wheel::WheelName;
 
 /// (-) Part of the starting transient that may be left where the kept signal starts.
 const TOLERATED_TRANSIENT: f64 = 0.01;
@@ -52,9 +54,9 @@ pub fn stages_and_warnings(
 impl Stages {
     /// What deserves attention though it can be simulated: what [`Scenario::validate`] tells, keys that the model ignores, wheels
     /// whose accelerations, or whose supports', cancel in the channels, a settling too short for the slowest mode, a load that would
-    /// break the teeth.
+    /// break the teeth, and under a linear mesh places at which none meet.
     pub fn warnings(&self) -> Vec<ScenarioWarning> {
-        let doubtful = [self.equal_wheels(), self.unsettled(), self.crushed()];
+        let doubtful = [self.equal_wheels(), self.unsettled(), self.crushed(), self.without_contact()];
         self.warnings_of_scenario.iter().cloned().chain(doubtful.into_iter().flatten()).collect()
     }
 
@@ -73,6 +75,31 @@ impl Stages {
                 deflection_mm / module_mm
             );
             ScenarioWarning::new(WarningKind::Overload, key, message)
+        })
+    }
+
+    /// Places at which no pair of teeth meets: nothing holds the wheels there, where real teeth would touch with their tips'
+    /// corners. Under `contact` they do.
+    fn without_contact(&self) -> Option<ScenarioWarning> {
+        let stiffness = match &self.mesh {
+            _ if self.damaged.is_empty() => return None,
+            Mesh::Contact(_) => return None,
+            Mesh::Published(_) => self.mesh.stiffness_n_per_mm(),
+            // Of the wheel that has more teeth: every tooth of both has met another by then.
+            Mesh::Pairs(mesh) => {
+                let [pinion, gear] =
+                    [WheelName::Pinion, WheelName::Gear].map(|wheel| mesh.sequence.teeth_of(wheel));
+                mesh.stiffness_n_per_mm(0..pinion.max(gear))
+            }
+        };
+        let bare = stiffness.iter().filter(|&&stiffness| stiffness <= 0.0).count();
+        (bare > 0).then(|| {
+            let message = format!(
+                "no pair of teeth meets for {:.2} % of a revolution: a linear mesh holds nothing there, and the teeth strike where the \
+                 next pair begins; model = \"contact\" has tips that touch beside their path, less damage leaves a pair",
+                100.0 * bare as f64 / stiffness.len() as f64
+            );
+            ScenarioWarning::new(WarningKind::NoContact, "fault", message)
         })
     }
 

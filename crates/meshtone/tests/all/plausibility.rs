@@ -1,7 +1,10 @@
 //! Scenarios that cannot be meant, and results that cannot be.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use meshtone::scenario::{DampingRatio, GearPair, Model, Profile, Scenario, ScenarioWarning};
+use meshtone::scenario::{
+    DampingRatio, Fault, GearPair, MissingTooth, Model, Profile, Scenario, ScenarioWarning, WarningKind,
+    WheelName,
+};
 use meshtone::{Simulation, simulate};
 
 fn pair() -> Scenario {
@@ -78,6 +81,33 @@ fn a_load_that_breaks_teeth_is_warned_of_with_their_deflection() {
     scenario.operation.torque_profile_nm =
         Some(Profile { time_s: vec![0.0, 1.0], value: vec![10.0, 10_000.0] });
     assert!(about(&of(&scenario), "operation.torque_profile_nm.value[1]").is_some());
+}
+
+/// A pair of contact ratio 1.6 that lacks a tooth has none in contact for 0.4 of a pitch.
+#[test]
+fn places_at_which_no_teeth_meet_are_told() {
+    for (wheel, teeth) in [(WheelName::Gear, 38), (WheelName::Pinion, 17)] {
+        let fault = Fault { wheel, tooth: 9.into(), ..Fault::on_first_gear_tooth(MissingTooth) };
+        let mut broken = pair().with_faults(vec![fault]);
+        broken.model = Model::Linear;
+        let stages = meshtone::stages(&broken).unwrap();
+        let warnings = stages.warnings();
+        let told = warnings.iter().find(|warning| warning.kind == WarningKind::NoContact).unwrap();
+        let percent: f64 = told.message.split([' ', '%']).find_map(|word| word.parse().ok()).unwrap();
+        // In 38 pitches, of the gear's 38 teeth, the pinion's tooth comes two or three times.
+        let times = if teeth == 38 { 1.0..=1.0 } else { 2.0..=3.0 };
+        let pitches = percent / 100.0 * 38.0 / (2.0 - stages.teeth.path.contact_ratio);
+        println!("{percent} % of 38 pitches, {pitches:.3} times what a tooth leaves");
+        assert!((times.start() - 0.03..times.end() + 0.03).contains(&pitches), "{pitches}");
+
+        broken.model = Model::Contact;
+        let mut healthy = pair();
+        healthy.model = Model::Linear;
+        for scenario in [broken, healthy] {
+            let warnings = meshtone::stages(&scenario).unwrap().warnings();
+            assert!(warnings.iter().all(|warning| warning.kind != WarningKind::NoContact));
+        }
+    }
 }
 
 #[test]
