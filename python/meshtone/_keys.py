@@ -6,7 +6,7 @@ Written by `cargo xtask generate` from the rows of the Rust library: a change be
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Literal, TypedDict, Union
+from typing import Any, Literal, NoReturn, TypedDict, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -221,6 +221,76 @@ REQUIRED_KEYS = (
 """Keys without a default."""
 
 
+class ScenarioChanges(TypedDict, total=False):
+    """What ``Scenario.copy`` changes."""
+
+    fault: Any
+    faults: Any
+    sensors: Any
+    module_mm: Any
+    pinion_teeth: Any
+    gear_teeth: Any
+    face_width_mm: Any
+    pinion_speed_hz: Any
+    brake_torque_nm: Any
+    model: Any
+    seed: Any
+    pressure_angle_deg: Any
+    pinion_profile_shift: Any
+    gear_profile_shift: Any
+    pinion_addendum: Any
+    gear_addendum: Any
+    pinion_dedendum: Any
+    gear_dedendum: Any
+    centre_distance_mm: Any
+    material: Any
+    tip_relief: Any
+    flank_relief: Any
+    tip_chamfer_mm: Any
+    backlash_mm: Any
+    crowning_mm: Any
+    points_per_tooth: Any
+    foundation: Any
+    speed_fluctuation_hz: Any
+    torque_fluctuation_nm: Any
+    speed_profile_hz: Any
+    torque_profile_nm: Any
+    din_grade: Any
+    wheels_seed: Any
+    iso_class: Any
+    tooth_share: Any
+    pitch_share: Any
+    run_out_share: Any
+    helix_share: Any
+    pinion_profile_errors_mm: Any
+    gear_profile_errors_mm: Any
+    pinion_cumulative_pitch_um: Any
+    pinion_run_out_um: Any
+    pinion_run_out_phase_rad: Any
+    pinion_helix_slope_um: Any
+    gear_cumulative_pitch_um: Any
+    gear_run_out_um: Any
+    gear_run_out_phase_rad: Any
+    gear_helix_slope_um: Any
+    bearing_stiffness_n_per_m: Any
+    wheel_rotational_stiffness_nm_per_rad: Any
+    brake_inertia_kgm2: Any
+    damping_ratio: Any
+    eccentricity_mm: Any
+    misalignment_um: Any
+    pinion_shaft: Any
+    gear_shaft: Any
+    pinion_inertia: Any
+    gear_inertia: Any
+    support: Any
+    mesh_damping_ratio: Any
+    sampling_rate_hz: Any
+    settle_fraction: Any
+    settle_tolerance: Any
+    initial_displacement: Any
+    initial_velocity: Any
+
+
 class ScenarioKeys:
     """The arguments and attributes of a scenario."""
 
@@ -355,7 +425,7 @@ class ScenarioKeys:
         settle_tolerance: float | None = None,
         initial_displacement: Sequence[float] | None = None,
         initial_velocity: Sequence[float] | None = None,
-        **unknown: Any,
+        **unknown: NoReturn,
     ) -> None:
         """A scenario; ``None`` is the default of a key.
 

@@ -14,7 +14,9 @@ ToothBreakage(chip_height_mm=5.0, chip_width_mm=12.0, tip_loss_mm=None, wheel='g
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import difflib
+import functools
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any
 
@@ -23,6 +25,28 @@ from ._damage import *
 from ._damage import KINDS, TABLES, Fault, MissingTooth, ToothBreakage
 
 __all__ = [*_damage.__all__]
+
+
+def _with_plain_words(kind: type[Any]) -> None:
+    """Lets a class take a dictionary for a table, and say which argument is meant by one that it does not have."""
+    own: Callable[..., None] = kind.__init__
+    known = [field.name for field in fields(kind)]
+
+    @functools.wraps(own)
+    def init(self: Any, *values: Any, **arguments: Any) -> None:
+        for name in arguments:
+            if name not in known:
+                near = difflib.get_close_matches(name, known, n=1)
+                words = f"did you mean '{near[0]}'?" if near else f"it has {', '.join(known)}"
+                raise TypeError(f"{kind.__name__} has no argument '{name}'; {words}")
+        tables = {name: table for name, table in TABLES.items() if isinstance(arguments.get(name), Mapping)}
+        own(self, *values, **{**arguments, **{name: table(**arguments[name]) for name, table in tables.items()}})
+
+    kind.__init__ = init
+
+
+for _kind in (*KINDS, *TABLES.values()):
+    _with_plain_words(_kind)
 
 
 def _keys(value: Any) -> dict[str, Any]:

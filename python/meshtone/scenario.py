@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core, _display
-from ._keys import KEY_IN_FILE, REQUIRED_KEYS, SECTION_OF_KEY, ScenarioKeys, Shaft, TipRelief, WheelInertia
+from ._keys import KEY_IN_FILE, REQUIRED_KEYS, SECTION_OF_KEY, ScenarioChanges, ScenarioKeys, Shaft, TipRelief, WheelInertia
 from ._sections import FORMER_KEYS, OTHER_ARGUMENTS, check_key, hint
 from .faults import Fault, from_section, to_section
 from .sensors import Sensor, sections_of
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 __all__ = ["Scenario", "Shaft", "TipRelief", "WheelInertia", "template"]
 
@@ -119,7 +122,7 @@ brake_torque_nm=10.0, din_grade=7)
         """
         return self._native.to_toml()
 
-    def copy(self, **changes: Any) -> Scenario:
+    def copy(self, **changes: Unpack[ScenarioChanges]) -> Scenario:
         """The same scenario with some keys changed.
 
         Parameters
@@ -232,16 +235,18 @@ brake_torque_nm=10.0, din_grade=7)
         """
         return self._native.warnings()
 
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_"):
-            raise AttributeError(name)
-        try:
-            return self._flat[name]
-        except KeyError:
-            if name in FORMER_KEYS:
-                raise AttributeError(f"'{name}' {FORMER_KEYS[name]}") from None
-            known = [*SECTION_OF_KEY, *OTHER_ARGUMENTS]
-            raise AttributeError(f"a scenario has no key '{name}'{hint(name, known)}") from None
+    if not TYPE_CHECKING:  # a key that there is not is an error of types, too
+
+        def __getattr__(self, name: str) -> Any:
+            if name.startswith("_"):
+                raise AttributeError(name)
+            try:
+                return self._flat[name]
+            except KeyError:
+                if name in FORMER_KEYS:
+                    raise AttributeError(f"'{name}' {FORMER_KEYS[name]}") from None
+                known = [*SECTION_OF_KEY, *OTHER_ARGUMENTS]
+                raise AttributeError(f"a scenario has no key '{name}'{hint(name, known)}") from None
 
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError(f"a scenario does not change: scenario.copy({name}={value!r}) gives another one")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal, Union
 
 import numpy as np
@@ -15,8 +15,8 @@ from ._sections import hint
 from ._warnings import warn
 from .faults import in_words
 from .scenario import Scenario, native_scenario
-from .signal import Record
-from .signal._arguments import separation_settings, whole
+from .signal import Record, resample
+from .signal._arguments import read_only, separation_settings, whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -116,6 +116,8 @@ class Simulation:
         self._scenario = scenario
         self._native = native
         self._fields: dict[str, Any] | None = None
+        for signal in (*(getattr(native, name) for name in CHANNELS), *dict(native.sensors).values()):
+            read_only(signal)
 
     @property
     def scenario(self) -> Scenario:
@@ -124,7 +126,8 @@ class Simulation:
 
     @property
     def sampling_rate_hz(self) -> float:
-        """(S/s) Sampling rate: a whole number of samples in each revolution of either shaft."""
+        """(S/s) Sampling rate: the nominal one, raised to a whole number of samples in each revolution of either shaft, which may be
+        many times as many; :meth:`signals` gives another rate exactly."""
         return self._native.sampling_rate_hz
 
     @property
@@ -200,6 +203,33 @@ class Simulation:
         (17, 17): x and y of the gear's and of the pinion's support come last."""
         return self._native.mode_shapes
 
+    def signals(self, target_rate_hz: float | None = None) -> Signals:
+        """All channels in single precision, at another rate.
+
+        Parameters
+        ----------
+        target_rate_hz : float, optional
+            (S/s) The rate, met exactly by resampling, as of :meth:`Signals.at_rate`; by default the simulation's own.
+
+        Returns
+        -------
+        Signals
+
+        Raises
+        ------
+        ValueError
+            As :meth:`Signals.at_rate`.
+
+        Examples
+        --------
+        >>> from meshtone import examples, simulate
+        >>> simulate(examples.healthy()).signals(10_000).vertical_g.shape
+        (9500,)
+        """
+        channels = {name: getattr(self, name).astype(np.float32) for name in self.scenario.channels}
+        own = Signals(self.scenario, self.sampling_rate_hz, self.start_s, channels, self.warnings, self.warning_codes)
+        return own if target_rate_hz is None else own.at_rate(target_rate_hz)
+
     @property
     def computing_time_s(self) -> dict[str, float]:
         """(s) Wall time of each stage."""
@@ -210,6 +240,9 @@ class Simulation:
         """Fields of a trace of the stages before the time loop: a number or an array each."""
         if self._fields is None:
             self._fields = self._native.fields()
+            for values in self._fields.values():
+                if isinstance(values, np.ndarray):
+                    read_only(values)
         return self._fields
 
     def __getattr__(self, name: str) -> Any:
@@ -394,7 +427,7 @@ class Simulation:
 
     def __reduce__(self) -> tuple[Callable[[Scenario], Simulation], tuple[Scenario]]:
         # The scenario gives the same bits again, and is 10 000 times smaller.
-        return (simulate, (self.scenario,))
+        return (_again, (self.scenario,))
 
     def __repr__(self) -> str:
         return (
@@ -446,6 +479,8 @@ class Signals:
         By the names of ``scenario.channels``; they are attributes too: ``signals.vertical_g``.
     warnings, warning_codes : list of str
         What is doubtful, and what each of these is about, as of a :class:`Simulation`.
+    is_resampled : bool
+        Whether the rate is another than the simulation's own.
     """
 
     scenario: Scenario
@@ -454,6 +489,43 @@ class Signals:
     channels: dict[str, npt.NDArray[np.float32]] = field(repr=False)
     warnings: list[str] = field(default_factory=list, repr=False)
     warning_codes: list[str] = field(default_factory=list, repr=False)
+    is_resampled: bool = field(default=False, repr=False)
+
+    def __post_init__(self) -> None:
+        for signal in self.channels.values():
+            signal.flags.writeable = False
+
+    def at_rate(self, target_rate_hz: float) -> Signals:
+        """The same signals at exactly this sampling rate, by a polyphase filter that keeps what lies below half of it.
+
+        A simulation's own rate is the nominal one, raised so that both wheels turn a whole number of samples:
+        10 000 S/s become 180 880 where 17 teeth at 40 Hz mesh with 38.
+
+        Parameters
+        ----------
+        target_rate_hz : float
+            (S/s) The rate, more than 0.
+
+        Returns
+        -------
+        Signals
+
+        Raises
+        ------
+        ValueError
+            A rate that is not more than 0.
+
+        Examples
+        --------
+        >>> from meshtone import examples, simulate_many
+        >>> [signals] = simulate_many([examples.healthy()])
+        >>> signals.sampling_rate_hz, signals.at_rate(25_000).sampling_rate_hz
+        (258400.0, 25000.0)
+        """
+        channels = {
+            name: resample(signal, self.sampling_rate_hz, target_rate_hz).astype(np.float32) for name, signal in self.channels.items()
+        }
+        return replace(self, sampling_rate_hz=float(target_rate_hz), channels=channels, is_resampled=True)
 
     def __getattr__(self, name: str) -> npt.NDArray[np.float32]:
         if name.startswith("_") or name == "channels":
@@ -479,7 +551,7 @@ class Signals:
         Raises
         ------
         ValueError
-            As :meth:`Simulation.process`; a channel that was not kept.
+            As :meth:`Simulation.process`; a channel that was not kept; signals at another rate than the simulation's own.
 
         Examples
         --------
@@ -488,6 +560,8 @@ class Signals:
         >>> signals.process().revolutions
         17
         """
+        if self.is_resampled:
+            raise ValueError("process takes signals at the simulation's own rate; meshtone.process_channel takes any rate, with a ShaftPhase")
         if channel is None:
             leading = chosen_channel(self.scenario, None)
             channel = leading if leading in self.channels else "vertical_g"
@@ -581,6 +655,11 @@ def simulate(scenario: Scenario) -> Simulation:
     return Simulation(scenario, native)
 
 
+def _again(scenario: Scenario) -> Simulation:
+    """What has been told of a simulation is not told once more."""
+    return Simulation(scenario, _core.simulate(native_scenario(scenario)))
+
+
 def trace(scenario: Scenario, *, average_rate_hz: float | None = None) -> dict[str, Any]:
     """Simulate a scenario and give every stage's output by name, for checking number by number.
 
@@ -616,6 +695,7 @@ def simulate_many(
     scenarios: Iterable[Scenario],
     *,
     channels: Sequence[str] = ("horizontal_g", "vertical_g"),
+    target_rate_hz: float | None = None,
     threads: int | None = None,
     progress: bool | Callable[[int, int], None] = False,
 ) -> list[Union[Signals, ValueError]]:
@@ -628,6 +708,8 @@ def simulate_many(
     channels : sequence of str
         What is kept of each, in single precision: some of ``scenario.channels``. A scenario without a sensor that is named has its
         error in its place.
+    target_rate_hz : float, optional
+        (S/s) The rate of the results, met exactly by resampling, as of :meth:`Signals.at_rate`; by default the simulations' own.
     threads : int, optional
         How many; all cores by default. Results do not depend on it.
     progress : bool or callable, optional
@@ -664,7 +746,9 @@ def simulate_many(
     results = _core.simulate_many(native, list(channels), None if threads is None else whole("threads", threads, 1), told)
     made = [_signals(scenario, result) for scenario, result in zip(scenarios, results)]
     _warn_of_many([result for result in made if isinstance(result, Signals)])
-    return made
+    if target_rate_hz is None:
+        return made
+    return [result.at_rate(target_rate_hz) if isinstance(result, Signals) else result for result in made]
 
 
 def _signals(scenario: Scenario, result: dict[str, Any] | ValueError) -> Signals | ValueError:

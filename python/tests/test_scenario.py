@@ -149,9 +149,9 @@ def test_a_fault_on_several_teeth(tooth: Any) -> None:
 
 def test_keys_that_there_are_not() -> None:
     with pytest.raises(TypeError, match="no key 'modul_mm'; did you mean 'module_mm'"):
-        Scenario(**REQUIRED, modul_mm=3)
+        Scenario(**REQUIRED, modul_mm=3)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="no key 'speed'"):
-        examples.healthy().copy(speed=3)
+        examples.healthy().copy(speed=3)  # type: ignore[call-arg]
     with pytest.raises(TypeError, match="fault = 'broken'"):
         Scenario(**REQUIRED, fault="broken")  # type: ignore[arg-type]
     with pytest.raises(TypeError, match=r"fault is the class MissingTooth: .*MissingTooth\("):
@@ -159,15 +159,15 @@ def test_keys_that_there_are_not() -> None:
     with pytest.raises(TypeError, match=r"circle = \(57, 3, 2\): must be a PitCircle"):
         Scenario(**REQUIRED, fault=meshtone.ThroughFace(circle=(57, 3, 2)))  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="'convention' is called 'model' now, and its value 'corrected' is called 'linear'"):
-        Scenario(**REQUIRED, convention="corrected")
+        Scenario(**REQUIRED, convention="corrected")  # type: ignore[arg-type]
     with pytest.raises(AttributeError, match="'convention' is called 'model' now"):
-        _ = examples.healthy().convention
+        _ = examples.healthy().convention  # type: ignore[attr-defined]
     with pytest.raises(AttributeError, match="no key 'modul_mm'; did you mean 'module_mm'"):
-        _ = examples.healthy().modul_mm
+        _ = examples.healthy().modul_mm  # type: ignore[attr-defined]
     with pytest.raises(AttributeError, match=r"scenario.copy\(seed=2\)"):
         examples.healthy().seed = 2
     with pytest.raises(AttributeError, match="no key 'speed'"):
-        _ = examples.healthy().speed
+        _ = examples.healthy().speed  # type: ignore[attr-defined]
 
 
 def test_seed_of_the_wheels() -> None:
@@ -198,3 +198,15 @@ def test_warnings() -> None:
     # Before simulating, all that the program tells then: also what the stages show.
     unsettled = examples.healthy().copy(settle_fraction=0.001)
     assert ["solver.settle_fraction" in warning for warning in unsettled.warnings] == [True]
+
+
+def test_faults_say_which_argument_is_meant() -> None:
+    with pytest.raises(TypeError, match=r"RootCrack has no argument 'depht_mm'; did you mean 'depth_mm'\?"):
+        meshtone.RootCrack(depht_mm=1.0)  # type: ignore[call-arg]
+    with pytest.raises(TypeError, match="MissingTooth has no argument 'x'; it has wheel, tooth, severity"):
+        meshtone.MissingTooth(x=1)  # type: ignore[call-arg]
+    drawn = {"density_per_cm2": 20.0, "spread": 0.2, "radius_mm": 0.3, "radius_spread": 0.3, "depth_mm": 0.05}
+    pits = meshtone.Pits(random=drawn)  # type: ignore[arg-type]
+    assert pits == meshtone.Pits(random=meshtone.RandomPits(**drawn))
+    with pytest.raises(TypeError, match=r"RandomPits has no argument 'radius'; did you mean 'radius_mm'\?"):
+        meshtone.Pits(random={"radius": 1})  # type: ignore[arg-type]

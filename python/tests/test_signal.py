@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+
 import numpy as np
 import numpy.typing as npt
 import pytest
@@ -154,3 +157,58 @@ def test_recording_is_processed_like_the_simulation(tmp_path: object, broken: me
     record = signal.process_channel(broken.vertical_g, phase, 38)
     ours = broken.process()
     assert record.indicators["average_rms"] == pytest.approx(ours.indicators["average_rms"], rel=0.05)
+
+
+def test_average_and_difference_at_once_are_those_of_the_chain() -> None:
+    time_s = np.arange(20_000) / 1e4
+    vibration = np.cos(2 * np.pi * 20 * TEETH * time_s) + 0.1 * np.cos(2 * np.pi * 20 * 7.5 * time_s)
+    pulses_s = np.arange(0, 2, 1 / 40)
+    phase = signal.ShaftPhase.from_pulses(pulses_s, 2, 1e4, vibration.size)
+    record = signal.process_channel(vibration, phase, TEETH)
+    assert np.array_equal(signal.tsa(vibration, 1e4, pulses_s, 2), record.average)
+    assert np.array_equal(signal.difference(vibration, 1e4, pulses_s, TEETH, 2), record.difference)
+    with pytest.raises(ValueError, match="a signal has no masked values"):
+        signal.tsa(np.ma.masked_greater(vibration, 0.9), 1e4, pulses_s, 2)
+
+
+def test_records_and_phases_pickle_and_cannot_be_written_to() -> None:
+    time_s = np.arange(20_000) / 1e4
+    pulses_s = np.delete(np.arange(0, 2, 1 / 20), 7)
+    with pytest.warns(meshtone.MeshtoneWarning, match="missing"):
+        phase = signal.ShaftPhase.from_pulses(pulses_s, 1, 1e4, time_s.size)
+    record = signal.process_channel(np.cos(2 * np.pi * 20 * TEETH * time_s) + 0.1 * np.cos(900 * time_s), phase, TEETH, name="a")
+    for again in (pickle.loads(pickle.dumps(record)), copy.deepcopy(record)):
+        assert (again.teeth, again.name, again.revolutions, again.warnings) == (TEETH, "a", record.revolutions, record.warnings)
+        assert np.array_equal(again.difference, record.difference) and again.indicators == record.indicators
+        assert repr(again) == repr(record)
+    for again in (pickle.loads(pickle.dumps(phase)), copy.deepcopy(phase)):
+        assert np.array_equal(again.revolutions, phase.revolutions)
+        assert (again.first_sample, again.warnings) == (phase.first_sample, phase.warnings)
+        assert len(again.warnings) == 1
+    for values in (record.average, record.envelope_spectrum, phase.revolutions):
+        with pytest.raises(ValueError, match="read-only"):
+            values *= 2
+
+
+def test_a_transformer_of_scikit_learn() -> None:
+    pytest.importorskip("sklearn")
+    from sklearn.base import clone
+    from sklearn.pipeline import make_pipeline
+    from sklearn.preprocessing import StandardScaler
+
+    from meshtone.sklearn import IndicatorTransformer
+
+    time_s = np.arange(10_000) / 1e4
+    records = np.cos(2 * np.pi * 20 * TEETH * time_s) + 0.1 * np.random.default_rng(1).standard_normal((4, time_s.size))
+    chain = clone(IndicatorTransformer(1e4, 20, TEETH))
+    table = chain.fit(records).transform(records)
+    phase = signal.ShaftPhase.constant(20, 1e4, time_s.size)
+    first = signal.process_channel(records[0], phase, TEETH).indicators
+    assert np.array_equal(table[0], list(first.values()), equal_nan=True)
+    assert list(chain.get_feature_names_out()) == list(first)
+    pipeline = make_pipeline(IndicatorTransformer(1e4, 20, TEETH, indicators=["fm4"]), StandardScaler())
+    assert pipeline.fit_transform(records).shape == (4, 1)
+    with pytest.raises(ValueError, match="there is no 'fm5'"):
+        chain.set_params(indicators=["fm5"]).fit(records)
+    with pytest.raises(ValueError, match=r"given is one of shape \(10000,\)"):
+        chain.fit(records[0])

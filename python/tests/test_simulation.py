@@ -145,7 +145,7 @@ def test_many_refuse() -> None:
     with pytest.raises(ValueError, match="threads = -1: must be at least 1"):
         simulate_many([examples.healthy()], threads=-1)
     with pytest.raises(TypeError, match="simulate takes one"):
-        simulate_many(examples.healthy())
+        simulate_many(examples.healthy())  # type: ignore[arg-type]
     with pytest.raises(TypeError, match=r"channels = 'axial_g': .*\['axial_g'\]"):
         simulate_many([examples.healthy()], channels="axial_g")
     assert simulate_many([]) == []
@@ -259,3 +259,25 @@ def test_many_simulations_warn_once_a_code() -> None:
     assert ["undercut" in of_one for of_one in codes] == [False, True, True, True]
     alone = meshtone.simulate(healthy.copy(pinion_teeth=14, seed=0))
     assert isinstance(made[1], meshtone.Signals) and made[1].warnings == alone.warnings
+
+
+def test_signals_cannot_be_written_to(broken: meshtone.Simulation) -> None:
+    kurtosis = broken.process().indicators["average_kurtosis"]
+    for values in (broken.vertical_g, broken.mesh_force_n, broken.stiffness_matrix_mean):
+        with pytest.raises(ValueError, match="read-only"):
+            values *= 3
+    assert broken.process().indicators["average_kurtosis"] == kurtosis
+
+
+def test_a_target_rate_is_met() -> None:
+    scenario = examples.healthy().copy(sampling_rate_hz=2e4)
+    [own], [at_rate] = simulate_many([scenario]), simulate_many([scenario], target_rate_hz=1e4)
+    assert isinstance(own, meshtone.Signals) and isinstance(at_rate, meshtone.Signals)
+    assert at_rate.sampling_rate_hz == 1e4 and own.sampling_rate_hz > 1e4
+    seconds = own.vertical_g.size / own.sampling_rate_hz
+    assert at_rate.vertical_g.size == pytest.approx(seconds * 1e4, abs=1)
+    assert at_rate.vertical_g.dtype == np.float32
+    # Both begin with the samples in single precision.
+    assert np.array_equal(meshtone.simulate(scenario).signals(1e4).vertical_g, at_rate.vertical_g)
+    with pytest.raises(ValueError, match="own rate"):
+        at_rate.process()

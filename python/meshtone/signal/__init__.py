@@ -21,6 +21,7 @@ A rig's recording with a tachometer:
 """
 
 from .angular import AngularSignal, angular_resample, resample, synchronous_average
+from .at_once import difference, tsa
 from .indicators import energy_ratio, fm0, fm4, m6a, m8a, na4, sideband_level_factor, statistics
 from .phase import ShaftPhase, repair_pulses, tachometer_pulses
 from .record import Record, process_channel, process_series
@@ -35,6 +36,7 @@ __all__ = [
     "Record",
     "ShaftPhase",
     "angular_resample",
+    "difference",
     "energy_ratio",
     "envelope",
     "envelope_spectrum",
@@ -54,4 +56,5 @@ __all__ = [
     "statistics",
     "synchronous_average",
     "tachometer_pulses",
+    "tsa",
 ]

@@ -13,12 +13,20 @@ Array = npt.NDArray[np.float64]
 
 def signal_array(values: npt.ArrayLike) -> Array:
     """A real signal of one dimension."""
+    if np.ma.is_masked(values):
+        raise ValueError("a signal has no masked values: fill them or cut them off, signal.compressed() leaves them out")
     array = np.asarray(values)
     if array.ndim != 1:
         raise ValueError(f"a signal has one dimension; given is an array of shape {array.shape}")
     if np.iscomplexobj(array):
         raise TypeError("a signal is real; given is an array of complex numbers")
     return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def read_only(values: Array) -> Array:
+    """What is handed out of an object: changing it would change what the object says of itself."""
+    values.flags.writeable = False
+    return values
 
 
 def whole(name: str, value: int, least: int = 0) -> int:

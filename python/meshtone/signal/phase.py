@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Literal
 
 import numpy.typing as npt
 
 from .. import _core
 from .._warnings import warn
-from ._arguments import Array, signal_array, teeth_number, whole
+from ._arguments import Array, read_only, signal_array, teeth_number, whole
 
 
 class ShaftPhase:
@@ -30,11 +31,13 @@ class ShaftPhase:
 
     def __init__(self, revolutions: npt.ArrayLike, first_sample: int = 0) -> None:
         self._native = _core.ShaftPhase(signal_array(revolutions), whole("first_sample", first_sample))
+        self._warnings = self._native.warnings
 
     @classmethod
     def _wrap(cls, native: _core.ShaftPhase) -> ShaftPhase:
         phase = cls.__new__(cls)
         phase._native = native
+        phase._warnings = native.warnings
         return phase
 
     @classmethod
@@ -184,12 +187,15 @@ class ShaftPhase:
     @property
     def revolutions(self) -> Array:
         """(rev) Angle at each sample; shape (samples,)."""
-        return self._native.revolutions
+        return read_only(self._native.revolutions)
 
     @property
     def warnings(self) -> list[str]:
         """What is doubtful about it."""
-        return self._native.warnings
+        return list(self._warnings)
+
+    def __reduce__(self) -> tuple[Callable[[Array, int, list[str]], ShaftPhase], tuple[Array, int, list[str]]]:
+        return (_remembered, (self._native.revolutions, self.first_sample, self._warnings))
 
     def mean_speed_hz(self, sampling_rate_hz: float) -> float:
         """(rev/s) Mean speed.
@@ -205,6 +211,12 @@ class ShaftPhase:
         revolutions = self.revolutions
         span = revolutions[-1] - revolutions[0]
         return f"<ShaftPhase: {span:.2f} revolutions in {revolutions.size} samples from sample {self.first_sample}>"
+
+
+def _remembered(revolutions: Array, first_sample: int, warnings: list[str]) -> ShaftPhase:
+    phase = ShaftPhase(revolutions, first_sample)
+    phase._warnings = warnings
+    return phase
 
 
 def native_phase(phase: ShaftPhase) -> _core.ShaftPhase:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 import numpy.typing as npt
 
 from .. import _core, _display
 from .._warnings import warn
-from ._arguments import Array, separation_settings, signal_array, teeth_number
+from ._arguments import Array, read_only, separation_settings, signal_array, teeth_number
 from .phase import ShaftPhase, native_phase
 
 if TYPE_CHECKING:
@@ -20,10 +21,10 @@ class Record:
     """What one channel shows about one wheel.
 
     Made by :func:`process_channel`, :func:`process_series` and :meth:`meshtone.Simulation.process`. Signals are in the channel's
-    unit, over one revolution at equal angles; shape (points,).
+    unit, over one revolution at equal angles; shape (points,); they cannot be written to.
     """
 
-    def __init__(self, native: _core.Record, *, teeth: int, name: str = "signal") -> None:
+    def __init__(self, native: _core.Record | _Remembered, *, teeth: int, name: str = "signal") -> None:
         self._native = native
         self.teeth = teeth
         """Teeth of the wheel."""
@@ -33,7 +34,7 @@ class Record:
     @property
     def average(self) -> Array:
         """Synchronous average."""
-        return self._native.average
+        return read_only(self._native.average)
 
     @property
     def revolutions(self) -> int:
@@ -48,32 +49,32 @@ class Record:
     @property
     def regular(self) -> Array:
         """Mesh harmonics and their sidebands."""
-        return self._native.regular
+        return read_only(self._native.regular)
 
     @property
     def residual(self) -> Array:
         """What is left without the mesh harmonics."""
-        return self._native.residual
+        return read_only(self._native.residual)
 
     @property
     def difference(self) -> Array:
         """What is left without the mesh harmonics and their sidebands."""
-        return self._native.difference
+        return read_only(self._native.difference)
 
     @property
     def envelope(self) -> Array:
         """Envelope of the difference."""
-        return self._native.envelope
+        return read_only(self._native.envelope)
 
     @property
     def order_spectrum(self) -> Array:
         """Amplitude at each order of the shaft; the index is the order."""
-        return self._native.order_spectrum
+        return read_only(self._native.order_spectrum)
 
     @property
     def envelope_spectrum(self) -> Array:
         """The envelope's amplitude at each order; the index is the order."""
-        return self._native.envelope_spectrum
+        return read_only(self._native.envelope_spectrum)
 
     @property
     def indicators(self) -> dict[str, float]:
@@ -84,6 +85,9 @@ class Record:
     def warnings(self) -> list[str]:
         """What is doubtful."""
         return self._native.warnings
+
+    def __reduce__(self) -> tuple[Callable[[dict[str, Any], int, str], Record], tuple[dict[str, Any], int, str]]:
+        return (_remembered, ({name: getattr(self._native, name) for name in _OF_RECORD}, self.teeth, self.name))
 
     def plot(self) -> Figure:
         """Average, order spectrum, difference with its envelope. See :func:`meshtone.plotting.plot_record`."""
@@ -106,6 +110,42 @@ class Record:
 
     def __repr__(self) -> str:
         return f"<Record of {self.name}: average of {self.revolutions} revolutions, {self.average.size} points>"
+
+
+_OF_RECORD = (
+    "average",
+    "revolutions",
+    "nyquist_order",
+    "regular",
+    "residual",
+    "difference",
+    "envelope",
+    "order_spectrum",
+    "envelope_spectrum",
+    "indicators",
+    "warnings",
+)
+"""What a record is made of."""
+
+
+class _Remembered(SimpleNamespace):
+    """What a pickled record was made of."""
+
+    average: Array
+    revolutions: int
+    nyquist_order: float
+    regular: Array
+    residual: Array
+    difference: Array
+    envelope: Array
+    order_spectrum: Array
+    envelope_spectrum: Array
+    indicators: dict[str, float]
+    warnings: list[str]
+
+
+def _remembered(parts: dict[str, Any], teeth: int, name: str) -> Record:
+    return Record(_Remembered(**parts), teeth=teeth, name=name)
 
 
 def process_channel(

@@ -67,12 +67,23 @@ fn tables() -> String {
     text
 }
 
+/// The keys that another scenario is made with: which there are, so that a misspelt one is found where types are checked.
+fn changes(arguments: &[Argument]) -> String {
+    let mut text = "class ScenarioChanges(TypedDict, total=False):\n    \"\"\"What ``Scenario.copy`` changes.\"\"\"\n\n    \
+                    fault: Any\n    faults: Any\n    sensors: Any\n"
+        .to_owned();
+    for argument in arguments {
+        writeln!(text, "    {}: Any", argument.name).unwrap();
+    }
+    text + "\n\n"
+}
+
 /// The file.
 pub fn text() -> String {
     let arguments = arguments();
     let mut text = format!(
         "\"\"\"The keys of a scenario.\n\n{HEAD}\n\"\"\"\n\nfrom __future__ import annotations\n\n\
-         from collections.abc import Mapping, Sequence\nfrom typing import Any, Literal, TypedDict, Union\n\n\
+         from collections.abc import Mapping, Sequence\nfrom typing import Any, Literal, NoReturn, TypedDict, Union\n\n\
          import numpy as np\nimport numpy.typing as npt\n\nfrom ._sensor import Sensor\nfrom .faults import Fault\n\n\
          Profile = Mapping[str, Union[Sequence[float], npt.NDArray[np.float64]]]\n\
          \"\"\"``time_s`` and ``value``: speed or torque against time.\"\"\"\n"
@@ -93,7 +104,9 @@ pub fn text() -> String {
     for argument in arguments.iter().filter(|argument| argument.key.required) {
         writeln!(text, "    \"{}\",", argument.name).unwrap();
     }
-    text.push_str(")\n\"\"\"Keys without a default.\"\"\"\n\n\nclass ScenarioKeys:\n    \"\"\"The arguments and attributes of a scenario.\"\"\"\n\n    __slots__ = ()\n\n");
+    text.push_str(")\n\"\"\"Keys without a default.\"\"\"\n\n\n");
+    text.push_str(&changes(&arguments));
+    text.push_str("class ScenarioKeys:\n    \"\"\"The arguments and attributes of a scenario.\"\"\"\n\n    __slots__ = ()\n\n");
     for argument in arguments.iter().filter(in_section) {
         let none = if argument.key.required || has_default_value(&argument.key) { "" } else { " | None" };
         writeln!(text, "    {}: {}{none}", argument.name, attribute_type(&argument.key)).unwrap();
@@ -110,7 +123,7 @@ pub fn text() -> String {
         writeln!(text, "        {name}: {kind}{default},").unwrap();
     }
     text.push_str(
-        "        **unknown: Any,\n    ) -> None:\n        \"\"\"A scenario; ``None`` is the default of a key.\n\n        \
+        "        **unknown: NoReturn,\n    ) -> None:\n        \"\"\"A scenario; ``None`` is the default of a key.\n\n        \
          Parameters\n        ----------\n",
     );
     let mut lists = "        fault : a fault, optional\n            The damage, if there is but one; a healthy pair by default.\n        \

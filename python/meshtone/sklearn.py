@@ -1,0 +1,116 @@
+"""The chain as a transformer of scikit-learn, which must be installed: ``pip install scikit-learn``."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from sklearn.base import BaseEstimator, TransformerMixin
+
+from .signal import Record, ShaftPhase, process_channel
+
+__all__ = ["IndicatorTransformer"]
+
+
+class IndicatorTransformer(TransformerMixin, BaseEstimator):  # type: ignore[misc]
+    """From records of one channel, a row each, to condition indicators, a column each.
+
+    All records have one rate and one constant speed; records with speeds of their own go through
+    :func:`meshtone.process_channel`, one after the other.
+
+    Parameters
+    ----------
+    sampling_rate_hz : float
+        (S/s) Of the records.
+    shaft_hz : float
+        (rev/s) Speed of the wheel's shaft.
+    teeth : int
+        Of the wheel.
+    indicators : sequence of str, optional
+        Names of those that are wanted, as ``record.indicators`` has them; all by default.
+    sidebands : int, optional
+        Sidebands on either side of each mesh harmonic that belong to the regular part.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from meshtone.sklearn import IndicatorTransformer
+    >>> time_s = np.arange(10_000) / 10e3
+    >>> records = np.cos(2 * np.pi * 20 * 19 * time_s) + 0.1 * np.random.default_rng(0).standard_normal((3, 10_000))
+    >>> chain = IndicatorTransformer(sampling_rate_hz=10e3, shaft_hz=20, teeth=19, indicators=["fm4", "difference_rms"])
+    >>> chain.fit_transform(records).shape
+    (3, 2)
+    >>> list(chain.get_feature_names_out())
+    ['fm4', 'difference_rms']
+    """
+
+    def __init__(
+        self,
+        sampling_rate_hz: float,
+        shaft_hz: float,
+        teeth: int,
+        *,
+        indicators: Sequence[str] | None = None,
+        sidebands: int | None = None,
+    ) -> None:
+        self.sampling_rate_hz = sampling_rate_hz
+        self.shaft_hz = shaft_hz
+        self.teeth = teeth
+        self.indicators = indicators
+        self.sidebands = sidebands
+
+    def fit(self, X: npt.ArrayLike, y: Any = None) -> IndicatorTransformer:
+        """Look at the first record: which indicators there are does not depend on the data.
+
+        Parameters
+        ----------
+        X : array_like, shape (records, samples)
+            The records.
+        y : ignored
+        """
+        records = _records(X)
+        self.n_features_in_ = records.shape[1]
+        known = list(self._record(records[0]).indicators)
+        unknown = [name for name in self.indicators or () if name not in known]
+        if unknown:
+            raise ValueError(f"indicators: there is no '{unknown[0]}'; there are {', '.join(known)}")
+        self.names_ = known if self.indicators is None else list(self.indicators)
+        return self
+
+    def transform(self, X: npt.ArrayLike) -> npt.NDArray[np.float64]:
+        """Take each record to its indicators.
+
+        Parameters
+        ----------
+        X : array_like, shape (records, samples)
+            The records; they may be longer or shorter than those of ``fit``.
+
+        Returns
+        -------
+        array, shape (records, indicators)
+            NaN where one is not defined.
+        """
+        names = self.names_
+        rows = [[self._record(record).indicators[name] for name in names] for record in _records(X)]
+        return np.array(rows, dtype=np.float64)
+
+    def get_feature_names_out(self, input_features: Any = None) -> npt.NDArray[np.object_]:
+        """Names of the columns."""
+        return np.array(self.names_, dtype=object)
+
+    def _record(self, record: npt.NDArray[Any]) -> Record:
+        phase = ShaftPhase.constant(self.shaft_hz, self.sampling_rate_hz, record.size)
+        return process_channel(record, phase, self.teeth, sidebands=self.sidebands)
+
+
+def _records(X: npt.ArrayLike) -> npt.NDArray[Any]:
+    records = np.asarray(X)
+    if np.ma.is_masked(X):
+        raise ValueError("records have no masked values: fill them, or leave such records out")
+    if records.ndim != 2:
+        raise ValueError(f"records are rows of an array of two dimensions; given is one of shape {records.shape}")
+    if len(records) == 0:
+        raise ValueError("there are no records")
+    return records
