@@ -9,7 +9,7 @@ use crate::contents::{Contents, INDICATORS, Looked, SampledRecord, is_drawn};
 use crate::digest::Digest;
 use crate::error::DatasetError;
 use crate::manifest::{self, CARD, MANIFEST, PREVIEW};
-use crate::part_list::PartList;
+use crate::part_list::{self, PartList};
 use crate::plan::Plan;
 use crate::shard::{self, Column, ColumnKind, FailedRecord, Shards, Wanted};
 use crate::store::Destination;
@@ -77,7 +77,7 @@ pub(crate) fn finish(
         manifest::write_complete(file, plan, shards, &contents, &units_of_split, &documents)
     })?;
     // It has what the lists had.
-    PartList::names(&to.files()?).try_for_each(|name| to.remove(name))
+    PartList::names(&to.files_in(part_list::FOLDER)?).try_for_each(|name| to.remove(name))
 }
 
 /// The units of each split that has any.

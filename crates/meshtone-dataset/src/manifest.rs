@@ -51,14 +51,24 @@ pub(crate) fn write_plan(plan: &Plan, to: &Destination) -> Result<(), DatasetErr
 
 /// Whether this plan's data set may be written there; nothing is written.
 pub(crate) fn look(plan: &Plan, shards: Shards, to: &Destination) -> Result<Begun, DatasetError> {
-    let there = to.files()?;
+    look_at(plan, shards, to, &to.files()?, read(to)?.as_ref())
+}
+
+/// As [`look`], where what is there is known.
+pub(crate) fn look_at(
+    plan: &Plan,
+    shards: Shards,
+    to: &Destination,
+    there: &BTreeMap<String, u64>,
+    manifest: Option<&ReadManifest>,
+) -> Result<Begun, DatasetError> {
     if let Some(name) = there.keys().find(|name| !is_of_a_data_set(name)) {
         return Err(DatasetError::refused(
             format!("{to} has another file in it: {name}"),
             "name a directory that is empty or does not exist with -o",
         ));
     }
-    let Some(manifest) = read(to)? else {
+    let Some(manifest) = manifest else {
         // Killed between its first file and its manifest, a run has left nothing but what it would write again.
         let data = there.keys().find(|name| name.starts_with(FOLDER));
         return match data {
@@ -69,7 +79,7 @@ pub(crate) fn look(plan: &Plan, shards: Shards, to: &Destination) -> Result<Begu
             )),
         };
     };
-    check_same(plan, to, &manifest)?;
+    check_same(plan, to, manifest)?;
     let foreign = |name: &&String| name.starts_with(FOLDER) && shards.number(name).is_none();
     if let Some(name) = there.keys().find(foreign) {
         return Err(DatasetError::refused(

@@ -1,16 +1,19 @@
 //! Putting parts together that were made apart.
 
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use meshtone_io::scenario_file::ReadScenarioError;
 
 use crate::contents::{Contents, ShardFile};
 use crate::draw::Sampler;
 use crate::error::DatasetError;
 use crate::finish;
 use crate::generate::Generated;
-use crate::manifest::{self, Begun, MANIFEST};
+use crate::manifest::{self, Begun, MANIFEST, ReadManifest};
 use crate::plan::{Plan, PlanFile};
 use crate::shard::{FailedRecord, Shards};
-use crate::store::Destination;
+use crate::store::{Claimed, Destination};
 use crate::verify::Check;
 
 /// Merges the parts of a data set.
@@ -36,10 +39,17 @@ pub fn merge(parts: &[Destination], to: &Destination, check: Check) -> Result<Ge
     let plan = plan_of(first)?;
     let sampler = Sampler::new(&plan.content).map_err(|error| manifest::plan_error(&plan, error))?;
     let shards = Shards::new(&plan, &sampler);
+    // Before anything is looked at, so that it is looked at once.
+    let claimed = if to.has(MANIFEST)? { Some(claim(to)?) } else { None };
     let mut contents = Contents::default();
     let mut places = Vec::with_capacity(parts.len());
     for part in parts {
-        places.push(Place::read(part, &plan, shards, &mut contents)?);
+        let mut place = Place::read(part, &plan, shards, &mut contents)?;
+        if !is_same(part, to) {
+            // A million names take a hundred megabytes.
+            place.files.clear();
+        }
+        places.push(place);
     }
     let nowhere = |shard: &u64| !places.iter().any(|place| place.shards.contains_key(shard));
     let missing: Vec<u64> = (0..shards.count()).filter(nowhere).collect();
@@ -57,18 +67,26 @@ pub fn merge(parts: &[Destination], to: &Destination, check: Check) -> Result<Ge
         remade: Vec::new(),
         complete: true,
     };
-    let begun = manifest::look(&plan, shards, to)?;
+    let elsewhere;
+    let target = match places.iter().find(|place| is_same(place.at, to)) {
+        Some(part) => part,
+        None => {
+            let manifest = manifest::read(to)?;
+            elsewhere = Place::look(to, manifest, &plan, shards, &mut Contents::default())?;
+            &elsewhere
+        }
+    };
+    let begun = target.begun;
     if begun == Begun::Incomplete {
         manifest::begin(&plan, to)?;
     }
-    let _claimed = to.claim("merge", "is merging parts in")?;
+    let _claimed = claimed.map_or_else(|| claim(to), Ok)?;
     to.remove_leftovers();
-    let target = Target::read(to, &plan, check)?;
     for shard in 0..shards.count() {
         let name = shards.name(shard);
         let of_parts: Vec<(&Destination, ShardFile)> =
             places.iter().filter_map(|place| Some((place.at, *place.shards.get(&shard)?))).collect();
-        let file = match target.has(shard, &name, &of_parts)? {
+        let file = match target.has(shard, &name, &of_parts, check)? {
             Some(file) => {
                 merged.kept_shards += 1;
                 file
@@ -87,6 +105,15 @@ pub fn merge(parts: &[Destination], to: &Destination, check: Check) -> Result<Ge
     Ok(merged)
 }
 
+/// The place of the whole, for this program alone.
+fn claim(to: &Destination) -> Result<Claimed, DatasetError> {
+    to.claim("merge", "is merging parts in")
+}
+
+fn is_same(place: &Destination, other: &Destination) -> bool {
+    place.to_string() == other.to_string()
+}
+
 /// Copies a shard from the first part in which it is as it was written.
 fn take_over(
     name: &str,
@@ -95,7 +122,7 @@ fn take_over(
 ) -> Result<ShardFile, DatasetError> {
     for (at, file) in of_parts {
         // In the same place it has been looked at.
-        if at.to_string() != to.to_string() && to.take_over(at, name, &file.digest)? {
+        if !is_same(at, to) && to.take_over(at, name, &file.digest)? {
             return Ok(*file);
         }
     }
@@ -109,16 +136,20 @@ fn take_over(
     ))
 }
 
-/// Where a part is, and what is there.
+/// Where a part is, or the whole, and what is there.
 struct Place<'p> {
     at: &'p Destination,
-    /// Those that are there with the sizes that are listed.
+    begun: Begun,
+    /// All files, with their sizes.
+    files: BTreeMap<String, u64>,
+    /// Shards that were made there, and are there with the sizes that are listed.
     shards: BTreeMap<u64, ShardFile>,
     /// Others that are there.
     doubtful: Vec<u64>,
 }
 
 impl<'p> Place<'p> {
+    /// Looks at a part.
     fn read(
         at: &'p Destination,
         plan: &Plan,
@@ -129,30 +160,28 @@ impl<'p> Place<'p> {
             let help = "name the directories that `meshtone dataset` has written to";
             return Err(DatasetError::refused(format!("{at} is no data set: it has no {MANIFEST}"), help));
         };
-        manifest::look(plan, shards, at)?;
-        let files = at.files()?;
-        let mut listed = contents.add_place(plan, at, &files, Some(manifest))?;
-        listed.retain(|&shard, file| files.get(&shards.name(shard)) == Some(&file.digest.bytes));
-        let there = files.keys().filter_map(|name| shards.number(name));
-        let doubtful = there.filter(|shard| !listed.contains_key(shard)).collect();
-        Ok(Self { at, shards: listed, doubtful })
+        Self::look(at, Some(manifest), plan, shards, contents)
     }
-}
 
-/// The place of the whole, and what is there.
-struct Target<'t> {
-    at: &'t Destination,
-    files: BTreeMap<String, u64>,
-    /// Those that were made there.
-    listed: BTreeMap<u64, ShardFile>,
-    check: Check,
-}
-
-impl<'t> Target<'t> {
-    fn read(at: &'t Destination, plan: &Plan, check: Check) -> Result<Self, DatasetError> {
+    /// Looks at a place once: very many names take seconds to be listed.
+    ///
+    /// # Arguments
+    /// * `contents` - gets what its manifest and lists say
+    fn look(
+        at: &'p Destination,
+        manifest: Option<ReadManifest>,
+        plan: &Plan,
+        shards: Shards,
+        contents: &mut Contents,
+    ) -> Result<Self, DatasetError> {
         let files = at.files()?;
-        let listed = Contents::default().add_place(plan, at, &files, manifest::read(at)?)?;
-        Ok(Self { at, files, listed, check })
+        let begun = manifest::look_at(plan, shards, at, &files, manifest.as_ref())?;
+        let mut listed = contents.add_place(plan, at, &files, manifest)?;
+        let there: BTreeMap<u64, u64> =
+            files.iter().filter_map(|(name, &bytes)| Some((shards.number(name)?, bytes))).collect();
+        listed.retain(|shard, file| there.get(shard) == Some(&file.digest.bytes));
+        let doubtful = there.into_keys().filter(|shard| !listed.contains_key(shard)).collect();
+        Ok(Self { at, begun, files, shards: listed, doubtful })
     }
 
     /// The shard that is there already, as it was written; what is not listed there may be of a merge that was stopped.
@@ -161,11 +190,14 @@ impl<'t> Target<'t> {
         shard: u64,
         name: &str,
         of_parts: &[(&Destination, ShardFile)],
+        check: Check,
     ) -> Result<Option<ShardFile>, DatasetError> {
-        let Some(&size) = self.files.get(name) else { return Ok(None) };
-        let own = self.listed.get(&shard).filter(|own| own.digest.bytes == size).copied();
-        if own.is_some() && self.check == Check::Sizes {
+        let own = self.shards.get(&shard).copied();
+        if own.is_some() && check == Check::Sizes {
             return Ok(own);
+        }
+        if !self.files.contains_key(name) {
+            return Ok(None);
         }
         let digest = self.at.digest(name)?;
         let mut known = own.into_iter().chain(of_parts.iter().map(|(_, file)| *file));
@@ -199,7 +231,25 @@ fn plan_of(place: &Destination) -> Result<Plan, DatasetError> {
             help,
         ));
     }
-    Ok(Plan::read_copy(&path)?)
+    // The copies of the copies are gone when somebody reads of them.
+    let named = |path: &Path| {
+        let name = path.file_name().map(|name| name.to_string_lossy());
+        PathBuf::from(name.map_or_else(|| place.to_string(), |name| place.name_of(&name)))
+    };
+    let mut plan = Plan::read_copy(&path).map_err(|error| with_path(error, named))?;
+    plan.sources.iter_mut().for_each(|source| *source = named(source));
+    Ok(plan)
+}
+
+/// The same error about a file of another name.
+fn with_path(error: ReadScenarioError, named: impl Fn(&Path) -> PathBuf) -> ReadScenarioError {
+    use ReadScenarioError::{Invalid, NotText, Unreadable};
+
+    match error {
+        Unreadable { path, source } => Unreadable { path: named(&path), source },
+        NotText { path, line, byte } => NotText { path: named(&path), line, byte },
+        Invalid { path, text, error } => Invalid { path: named(&path), text, error },
+    }
 }
 
 #[cfg(test)]
@@ -207,7 +257,6 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use std::fs::{self, File};
-    use std::time::Instant;
 
     use super::*;
     use crate::contents::{Counts, ShardContents, WarningCounts};
@@ -242,6 +291,34 @@ mod tests {
         peak.map_or(f64::NAN, |kilobytes| kilobytes.trim().parse::<f64>().unwrap() / 1e3)
     }
 
+    #[test]
+    fn an_error_names_the_parts_own_files() {
+        let directory = tempfile::tempdir().unwrap();
+        let part = Destination::directory(directory.path().join("part"));
+        let to = Destination::directory(directory.path().join("whole"));
+        let plan = Plan::read_text(PLAN.to_owned(), Path::new("plan.toml")).unwrap();
+        manifest::begin(&plan, &part).unwrap();
+        assert_eq!(plan_of(&part).unwrap().sources[0], directory.path().join("part/plan.toml"));
+        for (name, damaged) in [("plan.toml", "units = 4"), ("scenario.toml", "module_mm = 3.0")] {
+            let path = directory.path().join("part").join(name);
+            let text = fs::read_to_string(&path).unwrap();
+            assert!(text.contains(damaged), "{text}");
+            fs::write(&path, text.replace(damaged, &format!("{damaged}\nwrong = 1"))).unwrap();
+            let error = merge(std::slice::from_ref(&part), &to, Check::Sizes).unwrap_err().to_string();
+            assert!(error.starts_with(&path.display().to_string()), "{error}");
+            assert!(error.contains("wrong"), "{error}");
+            fs::write(&path, text).unwrap();
+        }
+    }
+
+    /// (s) Processor time that this program has taken, where the system says so.
+    fn processor_s() -> f64 {
+        const TICKS_PER_S: f64 = 100.0;
+        let stat = fs::read_to_string("/proc/self/stat").unwrap_or_default();
+        let ticks = stat.rsplit(") ").next().unwrap_or_default().split(' ').skip(11).take(2);
+        ticks.filter_map(|ticks| ticks.parse::<f64>().ok()).sum::<f64>() / TICKS_PER_S
+    }
+
     /// Parts of very many shards that were made in one place. Only their names, sizes and lists are there: merging reads no data.
     ///
     /// `MESHTONE_SHARDS=1000000 cargo test --release -p meshtone-dataset very_many -- --nocapture` prints time and memory.
@@ -254,7 +331,7 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let to = Destination::directory(directory.path());
         manifest::begin(&plan, &to).unwrap();
-        let start = Instant::now();
+        let start = processor_s();
         for number in 1..=64 {
             let part = Part { number, of: 64 };
             let mut listing = Listing::new(&to, plan.hash().to_string(), part);
@@ -271,17 +348,17 @@ mod tests {
             });
             listing.add_all(made).unwrap();
         }
-        println!("{shards} shards listed in {:.1} s", start.elapsed().as_secs_f64());
-        let start = Instant::now();
+        println!("{shards} shards listed in {:.1} s of the processor", processor_s() - start);
+        let start = processor_s();
         let merged = merge(std::slice::from_ref(&to), &to, Check::Sizes).unwrap();
         assert_eq!((merged.kept_shards, merged.written_shards, merged.complete), (shards, 0, true));
-        println!("merged in {:.1} s, {:.0} MB at most", start.elapsed().as_secs_f64(), peak_mb());
-        let start = Instant::now();
+        println!("merged in {:.1} s of the processor, {:.0} MB at most", processor_s() - start, peak_mb());
+        let start = processor_s();
         let found = verify(&to, Check::Sizes).unwrap();
         assert!(found.is_good() && found.complete && found.rows == 100 * shards, "{:?}", found.problems);
         println!(
-            "names, sizes and counts in {:.1} s, {:.0} MB at most",
-            start.elapsed().as_secs_f64(),
+            "names, sizes and counts in {:.1} s of the processor, {:.0} MB at most",
+            processor_s() - start,
             peak_mb()
         );
         // Names sort as the shards' numbers do, and no folder has more than a thousand.

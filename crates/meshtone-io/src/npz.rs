@@ -4,7 +4,7 @@
 //! with a grammar are read by the [`recording`](crate::recording)'s reader, which has to know more of them.
 
 use std::fs::File;
-use std::io::{self, BufReader, BufWriter, Read, Seek, Write};
+use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
@@ -22,19 +22,19 @@ const MARK: [u8; 8] = *b"\x93NUMPY\x01\x00";
 
 /// An archive that is written.
 pub(crate) struct NpzWriter<W: Write + Seek> {
-    archive: ZipWriter<W>,
+    archive: ZipWriter<Resigned<W>>,
     method: CompressionMethod,
 }
 
 impl<W: Write + Seek> NpzWriter<W> {
     /// Numbers as they are: those of computed signals hardly become smaller.
     pub fn stored(to: W) -> Self {
-        Self { archive: ZipWriter::new(to), method: CompressionMethod::Stored }
+        Self { archive: ZipWriter::new(Resigned::new(to)), method: CompressionMethod::Stored }
     }
 
     /// Compressed numbers.
     pub fn compressed(to: W) -> Self {
-        Self { archive: ZipWriter::new(to), method: CompressionMethod::Deflated }
+        Self { archive: ZipWriter::new(Resigned::new(to)), method: CompressionMethod::Deflated }
     }
 
     /// Adds an array of numbers.
@@ -77,7 +77,46 @@ impl<W: Write + Seek> NpzWriter<W> {
 
     /// Ends the archive.
     pub fn finish(self) -> io::Result<W> {
-        Ok(self.archive.finish()?)
+        let Resigned { to, has_failed } = self.archive.finish()?;
+        if has_failed { Err(io::Error::other("a part of it was not written")) } else { Ok(to) }
+    }
+}
+
+/// A writer that takes everything once something has failed. What failed is told by the error; the crate `zip` would try to end the
+/// archive all the same where it is dropped, and print on standard error that it cannot.
+struct Resigned<W> {
+    to: W,
+    has_failed: bool,
+}
+
+impl<W> Resigned<W> {
+    fn new(to: W) -> Self {
+        Self { to, has_failed: false }
+    }
+
+    fn act<T>(&mut self, afterwards: T, act: impl FnOnce(&mut W) -> io::Result<T>) -> io::Result<T> {
+        if self.has_failed {
+            return Ok(afterwards);
+        }
+        let done = act(&mut self.to);
+        self.has_failed = done.as_ref().is_err_and(|error| error.kind() != io::ErrorKind::Interrupted);
+        done
+    }
+}
+
+impl<W: Write> Write for Resigned<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.act(bytes.len(), |to| to.write(bytes))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.act((), W::flush)
+    }
+}
+
+impl<W: Seek> Seek for Resigned<W> {
+    fn seek(&mut self, place: SeekFrom) -> io::Result<u64> {
+        self.act(0, |to| to.seek(place))
     }
 }
 

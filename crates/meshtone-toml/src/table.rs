@@ -8,6 +8,9 @@ use crate::document::{line_at, written};
 use crate::nearest::{has_another_unit, is_slip, nearest_name};
 use crate::{ErrorKind, ReadResult, TomlError, TomlValue};
 
+/// Keys that are named where a name says not whose it is; more of them have no more in common than a unit.
+const MOST_OWNERS: usize = 3;
+
 /// One table of a TOML text, read key by key.
 ///
 /// It remembers which keys were asked for, so that [`TomlTable::finish`] can refuse the others.
@@ -247,6 +250,12 @@ impl<'a> TomlTable<'a> {
             .with_help(format!("did you mean `{key}`?")))
     }
 
+    /// The keys of which a name says only what, and not whose: of `addendum` those of pinion and gear.
+    fn whose(&self, name: &str) -> Vec<String> {
+        let is_of = |key: &&&str| key.strip_suffix(name).is_some_and(|owner| owner.ends_with('_'));
+        self.asked.borrow().iter().filter(is_of).map(|key| format!("`{key}`")).collect()
+    }
+
     fn unknown(&self, name: &str, nearest: Option<&str>) -> TomlError {
         let allowed = self.asked.borrow().join(", ");
         let place = match self.path.as_str() {
@@ -254,7 +263,11 @@ impl<'a> TomlTable<'a> {
             path => format!("in `{path}`"),
         };
         let error = self.error(name, format!("unknown key; allowed {place}: {allowed}"));
+        let several = self.whose(name);
         error.of_kind(ErrorKind::UnknownKey).with_help(match nearest {
+            _ if (2..=MOST_OWNERS).contains(&several.len()) => {
+                format!("did you mean {}?", several.join(" or "))
+            }
             Some(nearest) => format!("did you mean `{nearest}`?"),
             None => "remove it, or move it to the section it belongs to".to_string(),
         })

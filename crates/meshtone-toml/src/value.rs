@@ -134,6 +134,9 @@ impl<'a> TomlValue<'a> {
             return Ok(meaning.clone());
         }
         let error = self.error(format!("must be one of {listed}"));
+        if let Some(right) = names().find(|name| name.to_lowercase() == written.to_lowercase()) {
+            return Err(error.with_help(format!("write \"{right}\": large and small letters count")));
+        }
         Err(match nearest_name(written, names()) {
             Some(nearest) => error.with_help(format!("did you mean \"{nearest}\"?")),
             None => error,

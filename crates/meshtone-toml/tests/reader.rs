@@ -196,3 +196,17 @@ fn errors_are_told_apart_by_their_kind() {
     assert_eq!(kind("speed_hz = true"), ErrorKind::WrongType);
     assert_eq!(kind("speed_hz = inf"), ErrorKind::NotAllowed);
 }
+
+#[test]
+fn a_key_that_says_not_whose_it_is_means_any_of_them() {
+    let document = TomlDocument::parse("[gears]\naddendum = 1.1\nmodul = 3\n").unwrap();
+    let read = |gears: &TomlTable<'_>| -> Result<(), TomlError> {
+        for key in ["module_mm", "pinion_addendum", "gear_addendum", "pinion_dedendum"] {
+            gears.optional(key);
+        }
+        Ok(())
+    };
+    let error = document.root().read(|root| root.table_or_empty("gears")?.read(read)).unwrap_err();
+    assert_eq!(error.key, "gears.addendum");
+    assert_eq!(error.help.as_deref(), Some("did you mean `pinion_addendum` or `gear_addendum`?"));
+}

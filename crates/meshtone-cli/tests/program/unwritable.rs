@@ -151,6 +151,19 @@ fn results_on_a_full_disk() {
     assert!(message.contains("cannot write new/signals.parquet"), "{message}");
     assert!(!workplace.path("new").exists());
 
+    // One sentence, whatever is written.
+    for arguments in [&["init", "healthy", "-o", "new.toml"][..], &["wheels", "worn.toml", "-o", "new.npz"]] {
+        let output = program_with_small_files(1)
+            .args(arguments)
+            .current_dir(workplace.directory.path())
+            .output()
+            .unwrap();
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!((output.status.code(), message.lines().count()), (Some(1), 1), "{message}");
+        assert!(message.starts_with(&format!("error: cannot write {}: ", arguments[3])), "{message}");
+        assert!(!workplace.path(arguments[3]).exists());
+    }
+
     workplace.succeeds(&["simulate", "fast.toml", "-o", "old"]);
     let before = all.map(|name| workplace.read(&format!("old/{name}")));
     let message = simulate(16, "worn.toml", "old");

@@ -84,6 +84,7 @@ pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
             TomlError::new(key, "", problem)
                 .with_help("widen the ranges of the keys that it is about, or the condition")
         })?;
+        refuse_severity(&plan.content, &record)?;
         let of_class: &mut Vec<_> = &mut made[record.class];
         let tried_enough = of_class.len() >= MADE || of_class.last().is_some_and(Option::is_none);
         if !tried_enough {
@@ -115,6 +116,30 @@ pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
         }
     }
     every_choice(&plan.content, &sampler, &first)
+}
+
+/// A severity that is no part of the worst damage would lose its records one by one.
+fn refuse_severity(content: &Content, record: &DrawnRecord) -> ReadResult<()> {
+    let is_wrong = |(key, value): &&(String, f64)| is_severity(key) && !(0.0..=1.0).contains(value);
+    let Some((key, value)) = record.values.iter().find(is_wrong) else { return Ok(()) };
+    let class = &content.classes[record.class];
+    let of = |rules: &[Rule], before: String| {
+        let place = rules.iter().position(|rule| rule.keys.contains(key))?;
+        Some(format!("{before}vary[{place}].{}", rules[place].distribution.name()))
+    };
+    let place =
+        of(&class.rules, format!("class[{}].", record.class)).or_else(|| of(&content.rules, String::new()));
+    let problem = format!(
+        "gives {key} = {value:.4} to record {} of the class \"{}\"; a severity must be from 0 to 1",
+        record.index, class.label
+    );
+    Err(TomlError::new(place.unwrap_or_else(|| "vary".to_owned()), "", problem).with_help(
+        "narrow what it draws, or add a constraint such as constraints = [\"fault.severity < 1\"]",
+    ))
+}
+
+fn is_severity(key: &str) -> bool {
+    key.strip_suffix(".severity").is_some_and(|section| section.starts_with("fault"))
 }
 
 /// Those of the first records whose scenarios show that they cannot be simulated, without a profile of them being computed.

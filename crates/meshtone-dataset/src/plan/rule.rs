@@ -57,6 +57,18 @@ pub enum Distribution {
 }
 
 impl Distribution {
+    /// The key of a rule that says so.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Fixed(_) => "fixed",
+            Self::Grid(_) => "grid",
+            Self::Choice { .. } => "choice",
+            Self::Uniform(_) => "uniform",
+            Self::LogUniform(_) => "log_uniform",
+            Self::Normal { .. } => "normal",
+        }
+    }
+
     /// Whether a coordinate of the design decides the value.
     pub fn is_drawn(&self) -> bool {
         !matches!(self, Self::Fixed(_) | Self::Grid(_))

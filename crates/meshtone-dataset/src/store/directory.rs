@@ -35,6 +35,15 @@ impl Place for Directory {
         Ok(files)
     }
 
+    fn files_in(&self, folder: &str) -> io::Result<BTreeMap<String, u64>> {
+        let mut files = BTreeMap::new();
+        let path = self.path.join(folder);
+        if path.exists() {
+            collect(&path, &format!("{folder}/"), &mut files)?;
+        }
+        Ok(files)
+    }
+
     fn open(&self, name: &str) -> io::Result<Box<dyn Read + '_>> {
         Ok(Box::new(File::open(self.path.join(name))?))
     }
@@ -112,7 +121,10 @@ fn collect(directory: &Path, before: &str, files: &mut BTreeMap<String, u64>) ->
         if is_own_folder(before, &name) && entry.file_type()?.is_dir() {
             collect(&entry.path(), &format!("{before}{name}/"), files)?;
         } else if !name.starts_with(PREFIX) {
-            match fs::metadata(entry.path()) {
+            // Of the entry itself, as a look by the whole path takes longer; only a link leads elsewhere.
+            let is_link = entry.file_type()?.is_symlink();
+            let metadata = if is_link { fs::metadata(entry.path()) } else { entry.metadata() };
+            match metadata {
                 Ok(metadata) => drop(files.insert(format!("{before}{name}"), metadata.len())),
                 // Another part has just removed it.
                 Err(error) if error.kind() == io::ErrorKind::NotFound => {}
@@ -126,6 +138,10 @@ fn collect(directory: &Path, before: &str, files: &mut BTreeMap<String, u64>) ->
 /// In all folders of a data set.
 fn remove_leftovers(directory: &Path, before: &str) {
     own_file::remove_leftovers(directory);
+    // Only these have folders in them; the others may hold a thousand files each.
+    if !before.is_empty() && before.strip_suffix('/') != Some(shard::FOLDER) {
+        return;
+    }
     for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
         let name = entry.file_name().to_string_lossy().into_owned();
         if is_own_folder(before, &name) {

@@ -35,6 +35,13 @@ trait Place: fmt::Debug + fmt::Display + Send + Sync {
     /// The names of all files with their sizes in bytes; none where the place does not exist.
     fn files(&self) -> io::Result<BTreeMap<String, u64>>;
 
+    /// Those of one of the data set's folders.
+    fn files_in(&self, folder: &str) -> io::Result<BTreeMap<String, u64>> {
+        let mut files = self.files()?;
+        files.retain(|name, _| name.strip_prefix(folder).is_some_and(|rest| rest.starts_with('/')));
+        Ok(files)
+    }
+
     /// Reads a file from its start.
     fn open(&self, name: &str) -> io::Result<Box<dyn Read + '_>>;
 
@@ -155,6 +162,22 @@ impl Destination {
     /// place does not exist.
     pub(crate) fn files(&self) -> Result<BTreeMap<String, u64>, DatasetError> {
         self.place.files().map_err(DatasetError::read(self.to_string()))
+    }
+
+    /// As [`Self::files`], of one of the data set's folders.
+    pub(crate) fn files_in(&self, folder: &str) -> Result<BTreeMap<String, u64>, DatasetError> {
+        self.place.files_in(folder).map_err(DatasetError::read(self.to_string()))
+    }
+
+    /// Whether there is a file of a name.
+    pub(crate) fn has(&self, name: &str) -> Result<bool, DatasetError> {
+        match self.place.open(name) {
+            Ok(_) => Ok(true),
+            Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => {
+                Ok(false)
+            }
+            Err(error) => Err(DatasetError::read(self.place.name_of(name))(error)),
+        }
     }
 
     /// The content of a small file; none where there is none. What is no text any more is replaced, and fails its seal.

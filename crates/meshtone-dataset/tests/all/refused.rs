@@ -40,6 +40,19 @@ fn empty_and_unfinished() {
     refused(&format!("class = []\n{no_class}"), &["has no class"]);
 }
 
+/// Told from the plan, rather than by records that are missing in the end.
+#[test]
+fn severities_beyond_the_worst_damage() {
+    let cracked = "fault = { kind = \"root-crack\", severity = 0.5 }\nseverity = 4\n[[class.vary]]\n\
+                   key = \"fault.severity\"\nuniform = [0.5, 1.5]";
+    let text = FAST.replace("fault = { kind = \"missing-tooth\" }\nseverity = 4", cracked);
+    let line = 1 + text.lines().position(|line| line == "uniform = [0.5, 1.5]").unwrap();
+    let line = format!("line {line}: class[2].vary[0].uniform");
+    refused(&text, &[&line, "gives fault.severity = 1.", "must be from 0 to 1", "narrow what it draws"]);
+    let constrained = text.replace("seed = 3", "seed = 3\nconstraints = [\"fault.severity < 1\"]");
+    assert!(Plan::read_text(constrained, Path::new("plan.toml")).unwrap().foreseen_failures().is_empty());
+}
+
 #[test]
 fn contradictory() {
     let twice = "[[vary]]\nkey = \"operation.pinion_speed_hz\"\nfixed = 50\n[keep]";

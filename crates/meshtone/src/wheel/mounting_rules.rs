@@ -71,12 +71,17 @@ pub(super) fn least_shift(gears: &Gears, wheel: WheelName) -> f64 {
     rounded_up(straight_dedendum(gears, wheel) - f64::from(gears.teeth(wheel)) * sin * sin / 2.0)
 }
 
+/// Number of teeth below which a wheel without a shift is undercut, where it has no shift and fewer.
+pub(super) fn fewer_than_limit(gears: &Gears, wheel: WheelName) -> Option<f64> {
+    limit_without_shift(gears, wheel).filter(|_| gears.profile_shift(wheel) == 0.0)
+}
+
 /// Number of teeth below which a wheel without a shift is undercut, `2h/sin²α`, where it has fewer. Rounded down, as in the textbooks:
 /// for 20° it is 17.1, and 17 teeth are made without undercut to speak of.
-pub(super) fn fewer_than_limit(gears: &Gears, wheel: WheelName) -> Option<f64> {
+fn limit_without_shift(gears: &Gears, wheel: WheelName) -> Option<f64> {
     let per_height = 2.0 / gears.pressure_angle_deg.to_radians().sin().powi(2);
     let limit = (straight_dedendum(gears, wheel) * per_height).floor();
-    let is_undercut = gears.profile_shift(wheel) == 0.0 && f64::from(gears.teeth(wheel)) < limit;
+    let is_undercut = f64::from(gears.teeth(wheel)) < limit;
     is_undercut.then_some(limit)
 }
 
@@ -100,11 +105,17 @@ fn undercut(gears: &Gears, wheel: WheelName) -> Check {
     );
     let key = Coefficient::Shift(wheel).key();
     require(&key, gears.profile_shift(wheel), is_not_undercut(gears, wheel), problem)
-        .map_err(|error| error.with_help(UNDERCUT_HELP))
+        .map_err(|error| error.with_help(undercut_help(gears, wheel)))
 }
 
-const UNDERCUT_HELP: &str =
-    "without a shift (0) such teeth are simulated as if they were not undercut, with a warning";
+fn undercut_help(gears: &Gears, wheel: WheelName) -> &'static str {
+    match limit_without_shift(gears, wheel) {
+        Some(_) => {
+            "without a shift (0) such teeth are simulated as if they were not undercut, with a warning"
+        }
+        None => "raise it; without a shift (0) so many teeth are not undercut",
+    }
+}
 
 /// Whether there is a distance at which the teeth fit into one another: not with shifts too far inwards.
 fn mesh_somewhere(gears: &Gears) -> bool {

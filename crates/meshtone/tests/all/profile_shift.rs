@@ -332,8 +332,17 @@ fn what_is_refused_names_the_number_that_does() {
     for (dedendum, least) in [(1.25, "must be at least -1.2225"), (1.4, "must be at least -1.0725")] {
         let keys =
             format!("gear_profile_shift = -1.4\npinion_profile_shift = 0.5\ngear_dedendum = {dedendum}");
-        assert_refused(&with_keys(&keys), "gears.gear_profile_shift", 6, &["38 teeth are undercut", least]);
+        let error = assert_refused(
+            &with_keys(&keys),
+            "gears.gear_profile_shift",
+            6,
+            &["38 teeth are undercut", least],
+        );
+        assert!(error.help.unwrap().contains("so many teeth are not undercut"));
     }
+    let few = with_keys("pinion_profile_shift = 0.1").replace("pinion_teeth = 17", "pinion_teeth = 12");
+    let error = assert_refused(&few, "gears.pinion_profile_shift", 6, &["12 teeth are undercut"]);
+    assert!(error.help.unwrap().contains("simulated as if they were not undercut"));
     let error = assert_refused(
         &with_keys("backlash_mm = 0.1\ncentre_distance_mm = 83.0"),
         "gears.backlash_mm",

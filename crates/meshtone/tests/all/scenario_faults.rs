@@ -104,6 +104,12 @@ fn a_fault_may_be_on_several_teeth() {
     assert_refused(&at("[]"), "fault.tooth", 11, &["at least one tooth", "\"all\""]);
     assert_refused(&at("[1.0]"), "fault.tooth[0]", 11, &["whole number"]);
     assert_refused(&at("\"al\""), "fault.tooth", 11, &["must be one of \"all\"", "did you mean \"all\""]);
+    assert_refused(
+        &at("\"ALL\""),
+        "fault.tooth",
+        11,
+        &["must be one of \"all\"", "write \"all\": large and small letters"],
+    );
     assert_refused(&at("true"), "fault.tooth", 11, &["a whole number, an array of them or \"all\""]);
     // A tooth of both has no room for the second.
     let missing = "kind = \"missing-tooth\"";
