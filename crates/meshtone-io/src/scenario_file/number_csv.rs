@@ -1,9 +1,8 @@
 //! Columns of numbers in a CSV file.
 
-use std::io;
 use std::path::Path;
 
-use csv::{ReaderBuilder, StringRecord, Trim};
+use csv::{ErrorKind, ReaderBuilder, StringRecord, Trim};
 use meshtone::scenario::FileProblem;
 
 use super::unreadable;
@@ -33,9 +32,12 @@ impl<const COLUMNS: usize> NumberCsv<COLUMNS> {
             .from_reader(file);
         let mut columns = std::array::from_fn(|_| Vec::new());
         for (index, record) in reader.records().enumerate() {
-            let record = record.map_err(|error| match error.is_io_error() {
-                true => unreadable(path, &io::Error::from(error)),
-                false => self.problem(path, &format!("is not a CSV file: {error}")),
+            let record = record.map_err(|error| {
+                let words = error.to_string();
+                match error.into_kind() {
+                    ErrorKind::Io(error) => unreadable(path, &error),
+                    _ => self.problem(path, &format!("is not a CSV file: {words}")),
+                }
             })?;
             if index == 0 && (self.needs_names || is_header(&record)) {
                 self.check_names(path, &record)?;
