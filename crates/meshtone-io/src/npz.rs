@@ -77,7 +77,7 @@ impl<W: Write + Seek> NpzWriter<W> {
 
     /// Ends the archive.
     pub fn finish(self) -> io::Result<W> {
-        let Resigned { to, has_failed } = self.archive.finish()?;
+        let Resigned { to, has_failed, .. } = self.archive.finish()?;
         if has_failed { Err(io::Error::other("a part of it was not written")) } else { Ok(to) }
     }
 }
@@ -86,38 +86,54 @@ impl<W: Write + Seek> NpzWriter<W> {
 /// archive all the same where it is dropped, and print on standard error that it cannot.
 struct Resigned<W> {
     to: W,
+    /// Where it writes, or would.
+    at: u64,
     has_failed: bool,
 }
 
 impl<W> Resigned<W> {
     fn new(to: W) -> Self {
-        Self { to, has_failed: false }
-    }
-
-    fn act<T>(&mut self, afterwards: T, act: impl FnOnce(&mut W) -> io::Result<T>) -> io::Result<T> {
-        if self.has_failed {
-            return Ok(afterwards);
-        }
-        let done = act(&mut self.to);
-        self.has_failed = done.as_ref().is_err_and(|error| error.kind() != io::ErrorKind::Interrupted);
-        done
+        Self { to, at: 0, has_failed: false }
     }
 }
 
 impl<W: Write> Write for Resigned<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.act(bytes.len(), |to| to.write(bytes))
+        let done = if self.has_failed { Ok(bytes.len()) } else { self.to.write(bytes) };
+        self.has_failed |= is_failure(&done);
+        self.at += done.as_ref().map_or(0, |&written| written as u64);
+        done
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.act((), W::flush)
+        if self.has_failed {
+            return Ok(());
+        }
+        let done = self.to.flush();
+        self.has_failed = is_failure(&done);
+        done
     }
 }
 
 impl<W: Seek> Seek for Resigned<W> {
     fn seek(&mut self, place: SeekFrom) -> io::Result<u64> {
-        self.act(0, |to| to.seek(place))
+        if self.has_failed {
+            self.at = match place {
+                SeekFrom::Start(at) => at,
+                SeekFrom::Current(further) => self.at.saturating_add_signed(further),
+                SeekFrom::End(_) => self.at,
+            };
+            return Ok(self.at);
+        }
+        let done = self.to.seek(place);
+        self.has_failed = is_failure(&done);
+        self.at = done.as_ref().copied().unwrap_or(self.at);
+        done
     }
+}
+
+fn is_failure<T>(done: &io::Result<T>) -> bool {
+    done.as_ref().is_err_and(|error| error.kind() != io::ErrorKind::Interrupted)
 }
 
 /// What stands before an array's numbers.
