@@ -5,7 +5,7 @@ every indicator of the gear's difference signal, and for the mesh force: the cha
 change of a draw, in per cent. Before that, how a motion's sensitivity shows: two simulations whose loads differ by 1e-9. Last, such a
 motion: no step repeats it, and what can be compared are means over many draws, and the draws' scatter beside that of the 1e-9.
 
-Prints the tables of the book's chapter Validation; takes some minutes:
+Prints the figures of the book's chapter Validation, case by case; takes some minutes:
 
     python python/validation/convergence.py
 """
