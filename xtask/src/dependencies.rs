@@ -93,7 +93,7 @@ fn list<'r>(rules: &'r Table, section: &str, key: &str) -> &'r [Value] {
     list.map_or(&[], Vec::as_slice)
 }
 
-fn texts<'r>(list: &'r [Value]) -> impl Iterator<Item = &'r str> {
+fn texts(list: &[Value]) -> impl Iterator<Item = &str> {
     list.iter().filter_map(Value::as_str)
 }
 

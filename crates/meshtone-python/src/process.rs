@@ -153,7 +153,10 @@ pub fn process_series(
     Ok(records.into_iter().map(Record).collect())
 }
 
-/// What a recording says against what is told: cause, likelier value, its words, and how much more energy the average would hold.
+/// Cause, likelier value, words, and how much more energy the average would hold.
+type Misfit = (&'static str, f64, String, Option<f64>);
+
+/// What a recording says against what is told.
 #[pyfunction]
 #[pyo3(signature = (signal, phase, teeth, mate_teeth=None, pulses_per_revolution=None, speed_hz=None))]
 pub fn misfit(
@@ -164,7 +167,7 @@ pub fn misfit(
     mate_teeth: Option<u32>,
     pulses_per_revolution: Option<u32>,
     speed_hz: Option<f64>,
-) -> PyResult<Option<(&'static str, f64, String, Option<f64>)>> {
+) -> PyResult<Option<Misfit>> {
     let signal = samples(&signal)?;
     let turning = match (pulses_per_revolution, speed_hz) {
         (Some(per_revolution), _) => ToldTurning::Pulses { per_revolution },
