@@ -40,8 +40,12 @@ Tasks:
                Only the check that dependencies are such as deny.toml allows
   check-docs   Only the check of the book: its table of contents, its links, pictures and formulas
   docs         Build the book into docs/book (needs mdbook)
+  fuzz         Try wrong input on every reader: --minutes 10, --seed 7 for the same again
   help         Print this text (also -h, --help)
 ";
+
+/// Runs the program that tries wrong input; its arguments come behind.
+const FUZZ: [&str; 7] = ["run", "--release", "--package", "meshtone-dataset", "--example", "fuzz", "--"];
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -51,6 +55,7 @@ fn main() -> ExitCode {
         ["check"] => checks::quick(root),
         ["test"] => checks::all(root),
         ["dist"] => dist::make(&Row::at_terminal(root)),
+        ["fuzz", arguments @ ..] => Row::at_terminal(root).cargo(&[&FUZZ[..], arguments].concat(), &[]),
         ["docs"] => docs::build(root),
         ["wheel"] => dist::make_wheel(&Row::at_terminal(root)),
         ["generate"] => checks::generate(&Row::at_terminal(root)),
