@@ -153,4 +153,5 @@ def _ticks(least: float, largest: float, *, most: int) -> list[float]:
     power = 10.0 ** math.floor(math.log10(rough))
     step = next(factor * power for factor in (1, 2, 5, 10) if factor * power >= rough * (1 - 1e-9))
     first, last = math.ceil(least / step - 1e-9), math.floor(largest / step + 1e-9)
-    return [round(number * step, 12) for number in range(first, last + 1)]
+    # The digits that the step has, not those of a number times it.
+    return [float(f"{number * step:.12g}") for number in range(first, last + 1)]

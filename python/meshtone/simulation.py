@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal, Union
@@ -572,7 +573,7 @@ class Signals:
     def _repr_html_(self) -> str:
         channel = next(iter(self.channels))
         rows = {**_facts(self.scenario), "Signal": _length(self.channels[channel].size, self.sampling_rate_hz)}
-        return _page(self, channel, {**rows, "Channels": ", ".join(self.channels)}, [])
+        return _page(self, channel, {**rows, "Channels": ", ".join(self.channels)}, self.warnings)
 
 
 def _facts(scenario: Scenario) -> dict[str, str]:
@@ -598,10 +599,14 @@ def _page(of: Simulation | Signals, channel: str, rows: dict[str, str], remarks:
     turn_s = 1 / speed_hz if wheel == "pinion" else of.scenario.gear_teeth / (of.scenario.pinion_teeth * speed_hz)
     shown = signal[: round(2 * turn_s * of.sampling_rate_hz)]
     label = _display.channel_label(channel)
+    unit = label.rpartition("(")[2]
     span = (of.start_s, of.start_s + shown.size / of.sampling_rate_hz)
     pictures = [_display.curve(shown, span=span, over="Time (s)", label=label)]
     try:
-        record = of.process(channel, wheel)
+        with warnings.catch_warnings():
+            # What is shown is not asked for anew: the page lists what is doubtful.
+            warnings.simplefilter("ignore")
+            record = of.process(channel, wheel)
     except ValueError:
         # Too short for an average, or no vibration: the signal is all there is to see.
         pass
@@ -609,7 +614,7 @@ def _page(of: Simulation | Signals, channel: str, rows: dict[str, str], remarks:
         names = ("difference_rms", "difference_kurtosis", "fm0")
         rows = rows | {name: f"{record.indicators[name]:.4g}" for name in names if name in record.indicators}
         over = f"Angle of the {wheel} (revolutions)"
-        pictures.append(_display.curve(record.difference, span=(0.0, 1.0), over=over, label="Difference (g)"))
+        pictures.append(_display.curve(record.difference, span=(0.0, 1.0), over=over, label=f"Difference ({unit}"))
     return _display.page(type(of).__name__, _display.table(rows), *pictures, _display.remarks(remarks))
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 from sklearn.base import BaseEstimator, TransformerMixin
+from sklearn.utils.validation import check_is_fitted
 
 from .signal import Record, ShaftPhase, process_channel
 
@@ -73,10 +74,11 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):  # type: ignore[mis
         records = _records(X)
         self.n_features_in_ = records.shape[1]
         known = list(self._record(records[0]).indicators)
-        unknown = [name for name in self.indicators or () if name not in known]
+        asked = known if self.indicators is None else list(self.indicators)
+        unknown = [name for name in asked if name not in known]
         if unknown:
             raise ValueError(f"indicators: there is no '{unknown[0]}'; there are {', '.join(known)}")
-        self.names_ = known if self.indicators is None else list(self.indicators)
+        self.names_ = asked
         return self
 
     def transform(self, X: npt.ArrayLike) -> npt.NDArray[np.float64]:
@@ -92,6 +94,7 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):  # type: ignore[mis
         array, shape (records, indicators)
             NaN where one is not defined.
         """
+        check_is_fitted(self)
         names = self.names_
         rows = [[self._record(record).indicators[name] for name in names] for record in _records(X)]
         return np.array(rows, dtype=np.float64)

@@ -24,6 +24,7 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+import itertools
 import os
 import re
 import shutil
@@ -140,9 +141,12 @@ def judged(ended: Ended, left: set[str], place: str) -> tuple[str, str | None]:
 def all_of(row: Row, trials: Iterator[Callable[[], tuple[str, str | None]]]) -> Row:
     """Makes trials, as many at a time as there are processors."""
     with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
-        for done, (outcome, defect) in enumerate(pool.map(lambda trial: trial(), trials), 1):
-            row.add(outcome, defect)
-            print(f"\r{row.tried}: {done}, {len(row.defects)} defects ", end="", file=sys.stderr, flush=True)
+        # Some at a time: every trial holds what it will write.
+        while some := list(itertools.islice(trials, 64)):
+            for outcome, defect in pool.map(lambda trial: trial(), some):
+                row.add(outcome, defect)
+                told = f"\r{row.tried}: {row.outcomes.total()}, {len(row.defects)} defects "
+                print(told, end="", file=sys.stderr, flush=True)
     print(file=sys.stderr)
     return row
 
@@ -388,7 +392,7 @@ def recordings(program: str, number: int, seed: int) -> Row:
             name = draw.choice(sorted(whole))
             yield trial_of(name, spoilt_bytes(whole[name], draw, list(whole.values())))
 
-    return all_of(Row("recordings with bytes changed, of eleven files in seven formats"), trials())
+    return all_of(Row("recordings with bytes changed, of eleven files in six formats"), trials())
 
 
 # Ends
@@ -474,10 +478,10 @@ def ends(program: str, number: int, seed: int) -> Row:
 
 def together(program: str, number: int, seed: int) -> Row:
     """Two programs that write to one folder at once."""
-    draw = Random(f"together {seed}")
     made = [(command, inputs, *undisturbed(command, inputs)) for command, inputs in commands_to_end(program)]
 
-    def trial() -> tuple[str, str | None]:
+    def trial(number: int) -> tuple[str, str | None]:
+        draw = Random(f"together {seed} {number}")
         command, inputs, whole, duration_s = made[draw.choice([0, 0, 1, 2, 3])]
         with tempfile.TemporaryDirectory() as place:
             folder = Path(place)
@@ -499,7 +503,7 @@ def together(program: str, number: int, seed: int) -> Row:
                 return outcome, f"{command[1]}: {set(comparable(folder).items()) ^ set(whole.items())}"
             return outcome, None
 
-    return all_of(Row("two programs in one folder"), (trial for _ in range(number)))
+    return all_of(Row("two programs in one folder"), (partial(trial, i) for i in range(number)))
 
 
 # Data sets that have changed

@@ -174,6 +174,8 @@ impl<'p> Place<'p> {
         shards: Shards,
         contents: &mut Contents,
     ) -> Result<Self, DatasetError> {
+        // What is written in the end says that all shards have this version's columns.
+        manifest.as_ref().map_or(Ok(()), |manifest| manifest.check_columns(at))?;
         let files = at.files()?;
         let begun = manifest::look_at(plan, shards, at, &files, manifest.as_ref())?;
         let mut listed = contents.add_place(plan, at, &files, manifest)?;

@@ -132,9 +132,14 @@ fn read_shard(value: &Value) -> Option<(u64, ShardContents)> {
     let failures =
         value["failures"].as_array()?.iter().map(FailedRecord::from_json).collect::<Option<_>>()?;
     let file = ShardFile { digest, rows: value["rows"].as_u64()? };
-    let warnings = value["warnings"].as_object()?.iter();
-    let warnings =
-        warnings.map(|(code, count)| Some((code.clone(), count.as_u64()?))).collect::<Option<_>>()?;
+    // Lists of manifests before format 3 have none.
+    let warnings = match value.get("warnings") {
+        None => BTreeMap::new(),
+        Some(codes) => {
+            let codes = codes.as_object()?.iter();
+            codes.map(|(code, count)| Some((code.clone(), count.as_u64()?))).collect::<Option<_>>()?
+        }
+    };
     Some((value["shard"].as_u64()?, ShardContents { file, counts, warnings, failures }))
 }
 

@@ -181,8 +181,18 @@ fn a_data_set_of_format_2_gets_no_more_records() {
     let path = directory.path().join("manifest.json");
     let text = fs::read_to_string(&path).unwrap();
     fs::write(&path, text.replace("\"format_version\": 3", "\"format_version\": 2")).unwrap();
+    let words = "has the format 2, whose records have other columns";
     let refused = run(&plan, &to, Part { number: 2, of: 2 }, 2).unwrap_err().to_string();
-    assert!(refused.contains("has the format 2, whose records have other columns"), "{refused}");
+    assert!(refused.contains(words), "{refused}");
+    // Neither by a merge, which would call them records of this format.
+    let (_whole, complete) = made();
+    let path = complete.path().unwrap().join("manifest.json");
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, text.replace("\"format_version\": 3", "\"format_version\": 2")).unwrap();
+    let elsewhere = tempfile::tempdir().unwrap();
+    let other = Destination::directory(elsewhere.path().join("set"));
+    let refused = merge(&[complete], &other, Check::Sizes).unwrap_err().to_string();
+    assert!(refused.contains(words), "{refused}");
 }
 
 /// A shard that nothing proves is not certified by a new hash.
