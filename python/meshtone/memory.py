@@ -17,7 +17,8 @@ def set_memory_limit(limit_bytes: int | None) -> None:
     ----------
     limit_bytes : int or None
         (bytes) The limit, for everything that is read and simulated from then on; None for what is free on the machine, where the
-        system says so, and at most 8 GiB, as it is at first.
+        system says so, and at most 8 GiB, as it is at first. Each simulation of a batch or a data set is compared by itself, with
+        the limit or with 8 GiB, not with what is free.
 
     Raises
     ------

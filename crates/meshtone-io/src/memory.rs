@@ -27,7 +27,15 @@ fn available_in(meminfo: &str) -> Option<u64> {
 fn left_to_container() -> Option<u64> {
     let number = |file: &str| fs::read_to_string(file).ok()?.trim().parse::<u64>().ok();
     let limit = number("/sys/fs/cgroup/memory.max")?;
-    Some(limit.saturating_sub(number("/sys/fs/cgroup/memory.current")?))
+    let current = number("/sys/fs/cgroup/memory.current")?;
+    let statistics = fs::read_to_string("/sys/fs/cgroup/memory.stat").unwrap_or_default();
+    Some(limit.saturating_sub(current.saturating_sub(reclaimable_in(&statistics))))
+}
+
+/// (bytes) Of files that were read a while ago: they count as a container's, and are let go of as soon as it needs memory.
+fn reclaimable_in(statistics: &str) -> u64 {
+    let line = statistics.lines().find_map(|line| line.strip_prefix("inactive_file "));
+    line.and_then(|number| number.trim().parse().ok()).unwrap_or(0)
 }
 
 /// (bytes) An amount of memory as a user writes it: `2GB`, `1.5 GiB`, `300 MB`, or a number of bytes.
@@ -71,13 +79,21 @@ pub fn parse_bytes(text: &str) -> Result<u64, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{available_in, parse_bytes};
+    use super::{available_in, parse_bytes, reclaimable_in};
 
     #[test]
     fn meminfo() {
         let text = "MemTotal:       24689764 kB\nMemAvailable:   23000000 kB\nBuffers: 1 kB\n";
         assert_eq!(available_in(text), Some(23_000_000 * 1024));
         assert_eq!(available_in("MemTotal: 1 kB\n"), None);
+    }
+
+    #[test]
+    fn statistics_of_a_container() {
+        let text = "anon 4096\nfile 12288\ninactive_anon 1\nactive_file 4096\ninactive_file 8192\n";
+        assert_eq!(reclaimable_in(text), 8192);
+        assert_eq!(reclaimable_in("anon 4096\nworkingset_refault_file 7\n"), 0);
+        assert_eq!(reclaimable_in(""), 0);
     }
 
     #[test]

@@ -56,6 +56,6 @@ pub mod wheel;
 pub use error::Error;
 pub use machine::Excitation;
 pub use simd::InstructionSet;
-pub use simulate::{Simulation, StageTime, Stages, simulate, stages};
+pub use simulate::{Simulation, StageTime, Stages, simulate, stages, stages_within};
 pub use trace::{Trace, TraceField, stage_trace, trace, trace_at};
 pub use warnings::{Observer, stages_and_warnings};

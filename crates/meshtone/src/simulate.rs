@@ -21,7 +21,7 @@ use crate::mesh::{
 };
 use crate::model::Model;
 use crate::operation::{CycleGrid, Solver, TimeGrid};
-use crate::scenario::Scenario;
+use crate::scenario::{MemoryLimit, Scenario};
 use crate::sensor::{Channels, ContactFigures};
 use crate::simd::InstructionSet;
 use crate::solver::{Diverged, Output, Problem, Recorder, ReducedModel, integrate};
@@ -62,6 +62,8 @@ pub struct Stages {
     pub timings: Vec<StageTime>,
     /// Stage 1: what is doubtful by the scenario alone.
     pub(crate) warnings_of_scenario: Vec<ScenarioWarning>,
+    /// Most memory that the simulation may need, and one that repeats it.
+    pub(crate) memory_limit: MemoryLimit,
 }
 
 /// Time that a stage took.
@@ -116,8 +118,29 @@ pub fn simulate(scenario: &Scenario) -> Result<Simulation, Error> {
 /// # Errors
 /// A scenario that is not valid, or a fault that does not fit the tooth.
 pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
+    stages_within(scenario, MemoryLimit::default())
+}
+
+/// As [`stages`], with another limit of memory.
+///
+/// # Arguments
+/// * `scenario` - what is simulated
+/// * `limit` - most memory that the simulation may need
+///
+/// # Errors
+/// As [`stages`].
+///
+/// ```
+/// use meshtone::scenario::{GearPair, MemoryLimit, Scenario};
+///
+/// let scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+/// let needed = scenario.memory_estimate_bytes();
+/// assert!(meshtone::stages_within(&scenario, MemoryLimit::Given { bytes: needed }).is_ok());
+/// assert!(meshtone::stages_within(&scenario, MemoryLimit::Given { bytes: needed - 1 }).is_err());
+/// ```
+pub fn stages_within(scenario: &Scenario, limit: MemoryLimit) -> Result<Stages, ScenarioError> {
     let mut clock = Clock::default();
-    let mut warnings_of_scenario = scenario.validate()?;
+    let mut warnings_of_scenario = scenario.validate_within(limit)?;
     warnings_of_scenario.extend(scenario.ignored_by_model());
     let mut scenario = scenario.as_honoured();
     let (gears, rig, model) = (&scenario.gears, &scenario.rig, scenario.model);
@@ -210,6 +233,7 @@ pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
         structure,
         timings: Vec::new(),
         warnings_of_scenario,
+        memory_limit: limit,
         scenario,
     };
     stages.time.first_simulated_sample = stages.start_of_settling();

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use meshtone::scenario::MemoryLimit;
+
 use super::selection::Selection;
 use super::{ReadRecordingError, RecordingOptions};
 use crate::memory;
@@ -12,13 +14,26 @@ const NUMBER_BYTES: u64 = 8;
 /// Copies of the time column that are made to compare its steps.
 const COPIES_OF_TIME: u64 = 2;
 
-/// Refuses samples that would take more memory than is allowed, before or while they are read.
+/// Refuses samples that would take more memory than is allowed, before they are read.
 ///
 /// # Arguments
 /// * `path`, `options`, `selection` - of the recording
 /// * `samples` - of each column that is read
 /// * `beside_bytes` - (bytes) what reading takes beside the samples
 pub(super) fn check(
+    path: &Path,
+    options: &RecordingOptions,
+    selection: &Selection,
+    samples: impl Iterator<Item = u64>,
+    beside_bytes: u64,
+) -> Result<(), ReadRecordingError> {
+    check_within(memory::limit(), path, options, selection, samples, beside_bytes)
+}
+
+/// As [`check`], with a limit that was asked for before: what is free grows less while samples are read, and they would count
+/// twice.
+pub(super) fn check_within(
+    limit: MemoryLimit,
     path: &Path,
     options: &RecordingOptions,
     selection: &Selection,
@@ -38,7 +53,7 @@ pub(super) fn check(
         .saturating_add(later)
         .saturating_mul(NUMBER_BYTES)
         .saturating_add(beside_bytes);
-    let Some(objection) = memory::limit().objection(needed) else { return Ok(()) };
+    let Some(objection) = limit.objection(needed) else { return Ok(()) };
     let columns = if columns == 1 { "one column".to_string() } else { format!("{columns} columns") };
     let computed = if later > 0 { ", with what is computed from them," } else { "" };
     Err(ReadRecordingError::TooLarge {

@@ -169,7 +169,7 @@ pub fn read_recording(path: &Path, options: &RecordingOptions) -> Result<Recordi
     let path = if path.is_dir() && inside.exists() { inside.as_path() } else { path };
     let mut file = open_ordinary(path).map_err(|source| error::unreadable(path, source))?;
     let format = format::detect(path, &mut file, options.format)?;
-    options.check_format(format)?;
+    options.check_format(path, format)?;
     match format {
         RecordingFormat::Text => text::read(path, file, options),
         RecordingFormat::Parquet => parquet_file::read(path, file, options),

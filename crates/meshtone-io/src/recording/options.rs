@@ -1,5 +1,7 @@
 //! What is to be read, and what the file does not say itself.
 
+use std::path::Path;
+
 use super::{ReadRecordingError, RecordingFormat};
 
 /// A column of a file, by its name or its number.
@@ -139,11 +141,21 @@ pub struct RecordingOptions {
 
 impl RecordingOptions {
     /// What applies to some formats only.
-    pub(super) fn check_format(&self, format: RecordingFormat) -> Result<(), ReadRecordingError> {
+    ///
+    /// # Arguments
+    /// * `path`, `format` - of the recording
+    pub(super) fn check_format(
+        &self,
+        path: &Path,
+        format: RecordingFormat,
+    ) -> Result<(), ReadRecordingError> {
         let holds_variables = matches!(format, RecordingFormat::Npz | RecordingFormat::Mat);
         match &self.variable {
             Some(variable) if !holds_variables => Err(ReadRecordingError::Option {
-                problem: format!("variable `{variable}` is given, but only NPZ and MAT files hold variables"),
+                problem: format!(
+                    "{}: variable `{variable}` is given, but only NPZ and MAT files hold variables",
+                    path.display()
+                ),
             }),
             _ => Ok(()),
         }

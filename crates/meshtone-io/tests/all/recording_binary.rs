@@ -302,6 +302,11 @@ fn wav_of_double_precision_is_read() {
         let message = refused("a.wav", &bytes[..60], &defaults());
         assert!(message.contains("is not a whole WAV file"), "{message}");
     }
+    let message = refused("a.wav", &wav_of_doubles(&samples[..5], false), &defaults());
+    assert!(
+        message.contains("its 40 bytes of samples are no whole number of doubles for each of 2"),
+        "{message}"
+    );
     let huge = wav_of_doubles(&samples, false);
     let data = huge.len() - 8 * samples.len() - 4;
     let lying = [&huge[..data], &[0xf0, 0xff, 0xff, 0xff], &huge[data + 4..]].concat();
@@ -352,7 +357,7 @@ fn options_are_checked() {
         assert!(refused("a.npy", &bytes, &rate(wrong)).contains("must be a finite number above 0"));
     }
     let variable = RecordingOptions { variable: Some("x".to_string()), ..rate(1.0) };
-    assert!(refused("a.npy", &bytes, &variable).contains("only NPZ and MAT files hold variables"));
+    assert!(refused("a.npy", &bytes, &variable).contains("a.npy: variable `x` is given, but only NPZ"));
     assert!(refused("a.npy", &bytes, &defaults()).contains("does not say its sampling rate"));
     let directory = tempfile::tempdir().unwrap();
     let empty = read_recording(directory.path(), &defaults()).unwrap_err().to_string();

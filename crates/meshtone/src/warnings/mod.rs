@@ -13,7 +13,7 @@ use crate::machine::coordinates::{X_GEAR, X_PINION};
 use crate::machine::{DecayingMode, Shaft, Structure, WheelBody};
 use crate::mesh::Mesh;
 use crate::scenario::{MemoryLimit, Scenario};
-use crate::simulate::{Stages, stages};
+use crate::simulate::{Stages, stages_within};
 use crate::wheel::WheelName;
 
 /// (-) Part of the starting transient that may be left where the kept signal starts.
@@ -21,14 +21,14 @@ const TOLERATED_TRANSIENT: f64 = 0.01;
 /// (-) Part of the module by which the nominal load may press the teeth together without a warning.
 const TOLERATED_DEFLECTION: f64 = 0.1;
 
-/// Runs stages 1 to 6, as [`stages`] does, and tells all that deserves attention before the time loop.
+/// Runs stages 1 to 6, as [`stages_within`] does, and tells all that deserves attention before the time loop.
 ///
 /// # Arguments
 /// * `scenario` - what is simulated
 /// * `limit` - most memory that the simulation may need
 ///
 /// # Errors
-/// As [`stages`].
+/// As [`stages_within`].
 ///
 /// ```
 /// use meshtone::scenario::{GearPair, MemoryLimit, Scenario};
@@ -45,8 +45,7 @@ pub fn stages_and_warnings(
     scenario: &Scenario,
     limit: MemoryLimit,
 ) -> Result<(Stages, Vec<ScenarioWarning>), ScenarioError> {
-    scenario.validate_within(limit)?;
-    let stages = stages(scenario)?;
+    let stages = stages_within(scenario, limit)?;
     let warnings = stages.warnings();
     Ok((stages, warnings))
 }

@@ -2,9 +2,10 @@
 
 use std::f64::consts::TAU;
 
+use crate::error::Error;
 use crate::machine::ClosedMesh;
 use crate::operation::{greatest_common_divisor, least_common_multiple};
-use crate::simulate::{Simulation, Stages, simulate};
+use crate::simulate::{Simulation, Stages, stages_within};
 use crate::solver::MeanMachine;
 use meshtone_fourier::real_spectrum;
 
@@ -44,7 +45,8 @@ pub(super) fn step_error(stages: &Stages, observer: &Observer) -> Option<StepErr
     }
     let mut scenario = stages.scenario.clone();
     scenario.solver.sampling_rate_hz = nominal_rate_of_half_step_hz(stages);
-    let Ok(Simulation { channels: finer, .. }) = simulate(&scenario) else {
+    let finer = stages_within(&scenario, stages.memory_limit).map_err(Error::from).and_then(Stages::simulate);
+    let Ok(Simulation { channels: finer, .. }) = finer else {
         return Some(StepError::Suspected(estimate));
     };
     let gain = |coarse: &OverTurns, finer: &[f64]| {

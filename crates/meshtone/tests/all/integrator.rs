@@ -3,9 +3,9 @@
 
 use meshtone::machine::coordinates::*;
 use meshtone::mesh::Mesh;
-use meshtone::scenario::{DampingRatio, GearPair, Model, Profile, Scenario};
+use meshtone::scenario::{DampingRatio, GearPair, MemoryLimit, Model, Profile, Scenario};
 use meshtone::solver::{Block, Output, Recorder};
-use meshtone::{Stages, stages};
+use meshtone::{Stages, stages, stages_within};
 
 const PINION_SPEED_HZ: f64 = 1.0;
 
@@ -157,7 +157,9 @@ fn smoothly_forced(sampling_rate_hz: f64, seconds: f64) -> Stages {
     scenario.solver.sampling_rate_hz = sampling_rate_hz;
     scenario.solver.initial_displacement = Some(push().into());
     scenario.solver.settle_tolerance = 0.0;
-    let mut stages = stages(&scenario).unwrap();
+    // Some 11 GiB would be needed if all samples of the scenario were simulated; here are `seconds`.
+    let limit = MemoryLimit::Given { bytes: 16 << 30 };
+    let mut stages = stages_within(&scenario, limit).unwrap();
     level_the_mesh(&mut stages);
     let dt = stages.time.step_s();
     stages.time.samples = (seconds / dt).round() as usize + 1;

@@ -58,8 +58,12 @@ impl Dialect {
             return false;
         };
         let rest = &fraction[digits(fraction)..];
-        let is_word =
-            rest.iter().all(|byte| byte.is_ascii_alphanumeric() || [b'.', b',', b'+', b'-'].contains(byte));
+        // A sign has its place behind an exponent's e only: `0.1-10kHz` is a name.
+        let follows_e = |at: usize| at > 0 && matches!(rest[at - 1], b'e' | b'E');
+        let is_word = rest.iter().enumerate().all(|(at, byte)| match byte {
+            b'+' | b'-' => follows_e(at),
+            _ => byte.is_ascii_alphanumeric() || [b'.', b','].contains(byte),
+        });
         let mixed = rest.iter().any(u8::is_ascii_alphabetic) && rest.iter().any(u8::is_ascii_digit);
         let cut_exponent = matches!(rest, [b'e' | b'E'] | [b'e' | b'E', b'+' | b'-']);
         is_word && (mixed || cut_exponent || rest.first() == Some(&sign) && fraction.first() == Some(&sign))
@@ -133,12 +137,23 @@ mod tests {
         for text in ["1.5", "1.234,5", "1,234,567"] {
             assert_eq!(comma.cell(text.as_bytes()), Cell::Text, "{text}");
         }
-        for spoiled in ["0.1x2", "-1..5", "2.5e", "+2.5E-", "0.1O2"] {
+        for spoiled in ["0.1x2", "-1..5", "2.5e", "+2.5E-", "0.1O2", "2.5e-1x"] {
             assert!(point.is_spoiled_number(spoiled.as_bytes()), "{spoiled}");
             assert!(comma.is_spoiled_number(spoiled.replace('.', ",").as_bytes()), "{spoiled}");
         }
-        for name in ["0.5Hz", "1X", "3rd", "10.05.2024", "0.5 g2", "0.5[m/s2]", "x0.1", "1.5", ".1x2", "1x2"]
-        {
+        for name in [
+            "0.5Hz",
+            "0.1-10kHz",
+            "1X",
+            "3rd",
+            "10.05.2024",
+            "0.5 g2",
+            "0.5[m/s2]",
+            "x0.1",
+            "1.5",
+            ".1x2",
+            "1x2",
+        ] {
             assert!(!point.is_spoiled_number(name.as_bytes()), "{name}");
         }
         assert_eq!(point.cell(b""), Cell::Empty);

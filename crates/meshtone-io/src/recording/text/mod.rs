@@ -23,6 +23,7 @@ use super::assemble::{Parts, assemble};
 use super::error::{broken, read_failed, unreadable};
 use super::selection::select;
 use super::{ReadRecordingError, Recording, RecordingOptions, memory_need};
+use crate::memory;
 
 const FORMAT: &str = "text";
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
@@ -43,7 +44,11 @@ pub(super) fn read(
     file.seek(SeekFrom::Start(head.data_offset)).map_err(failed)?;
     // A little more than expected, as a column that grows is copied.
     let rows = 1.01 * file_bytes as f64 / head.line_bytes.max((CELL_BYTES * wanted.len()) as f64);
-    let check = |rows: u64| memory_need::check(path, options, &selection, wanted.iter().map(|_| rows), 0);
+    // Asked for once, before anything of it is taken.
+    let limit = memory::limit();
+    let check = |rows: u64| {
+        memory_need::check_within(limit, path, options, &selection, wanted.iter().map(|_| rows), 0)
+    };
     check(rows as u64)?;
     let mut numbers = Numbers::new(path, &head, &wanted, rows as usize + 1);
     let mut blocks = Blocks::new(&file);

@@ -38,6 +38,11 @@ impl DoubleWav {
         }
     }
 
+    /// Whether every channel has a sample as often as the others, and none is cut.
+    pub(super) fn is_whole(&self) -> bool {
+        self.bytes.is_multiple_of(SAMPLE_BYTES * u64::from(self.channels))
+    }
+
     /// Samples of each channel.
     pub(super) fn samples(&self) -> u64 {
         self.bytes / (SAMPLE_BYTES * u64::from(self.channels))

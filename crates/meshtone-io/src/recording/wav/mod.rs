@@ -30,6 +30,13 @@ pub(super) fn read(
         let head =
             Head { channels: double.channels, rate_hz: double.sampling_rate_hz, samples: double.samples() };
         check_bytes(path, double.bytes(), file_bytes)?;
+        if !double.is_whole() {
+            let (bytes, channels) = (double.bytes(), double.channels);
+            let problem = format!(
+                "its {bytes} bytes of samples are no whole number of doubles for each of {channels} channels"
+            );
+            return Err(broken(path, FORMAT, problem));
+        }
         return channels(path, head, options, |wanted| {
             double.read(file, wanted).map_err(|error| read_failed(path, FORMAT, error))
         });
