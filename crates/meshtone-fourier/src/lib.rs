@@ -117,23 +117,34 @@ pub fn convenient_length(len: usize) -> usize {
     best
 }
 
+/// The greatest count of at most `count` that has no prime factors but 2, 3 and 5; 0 where that is 0.
+pub fn convenient_count(count: usize) -> usize {
+    (1..=count).rev().find(|count| is_smooth(*count)).unwrap_or(0)
+}
+
+/// Whether a number of at least 1 has no prime factors but 2, 3 and 5.
+fn is_smooth(number: usize) -> bool {
+    let without = |mut rest: usize, prime: usize| {
+        while rest.is_multiple_of(prime) {
+            rest /= prime;
+        }
+        rest
+    };
+    [2, 3, 5].into_iter().fold(number, without) == 1
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn convenient_lengths() {
-        let smooth = |n: &usize| {
-            let rest = [2, 3, 5].iter().fold(*n, |mut n: usize, prime| {
-                while n.is_multiple_of(*prime) {
-                    n /= prime;
-                }
-                n
-            });
-            n.is_multiple_of(2) && rest == 1
-        };
+        let smooth = |n: &usize| n.is_multiple_of(2) && is_smooth(*n);
         for len in [1, 2, 7, 11, 97, 121, 1001, 44_101, 3_000_001] {
             assert_eq!(Some(convenient_length(len)), (len..).find(smooth), "{len}");
+        }
+        for (count, convenient) in [(0, 0), (1, 1), (7, 6), (11, 10), (27, 27), (97, 96), (1001, 1000)] {
+            assert_eq!(convenient_count(count), convenient);
         }
     }
 

@@ -182,10 +182,10 @@ pub fn misfit(
     Ok(found.map_err(value_error)?.map(|misfit| {
         let (cause, value) = match misfit.likelier {
             Likelier::Teeth { teeth } => ("teeth", f64::from(teeth)),
-            Likelier::MateTeeth { teeth } => ("mate_teeth", f64::from(teeth)),
-            Likelier::OtherShaft => ("other_shaft", f64::from(mate_teeth.unwrap_or(0))),
-            Likelier::PulsesPerRevolution { pulses } => ("pulses_per_revolution", f64::from(pulses)),
-            Likelier::ShaftSpeed { speed_hz } => ("speed_hz", speed_hz),
+            Likelier::MateTeeth { teeth, .. } => ("mate_teeth", f64::from(teeth)),
+            Likelier::OtherShaft { mate_teeth } => ("other_shaft", f64::from(mate_teeth)),
+            Likelier::PulsesPerRevolution { pulses, .. } => ("pulses_per_revolution", f64::from(pulses)),
+            Likelier::ShaftSpeed { speed_hz, .. } => ("speed_hz", speed_hz),
             _ => ("other", f64::NAN),
         };
         (cause, value, misfit.to_string(), misfit.energy_ratio)

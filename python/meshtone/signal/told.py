@@ -44,7 +44,7 @@ def misfit(
 ) -> Misfit | None:
     """Look for a sign that a recording is not of what is told: another tooth count, the other shaft, other pulses, another speed.
 
-    Where the recording is too short or too noisy to tell, there is none.
+    Where the recording is too short or too noisy to tell, or a wheel is told to have more than 100 000 teeth, there is none.
 
     Parameters
     ----------

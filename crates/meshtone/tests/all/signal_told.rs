@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use meshtone::scenario::Scenario;
 use meshtone::signal::{
-    AngularSettings, Edge, Likelier, Misfit, ShaftPhase, Told, ToldTurning, angular_resample,
+    AngularSettings, AngularSignal, Edge, Likelier, Misfit, ShaftPhase, Told, ToldTurning, angular_resample,
     interpolate_band_limited, misfit, resample,
 };
 use meshtone::simulate;
@@ -258,17 +258,20 @@ impl Case {
                 Some(Likelier::Teeth { teeth })
             }
             Mistake::MateTeeth => {
-                told.mate_teeth = mate_teeth.checked_add_signed(by);
-                Some(Likelier::MateTeeth { teeth: mate_teeth })
+                let told_teeth = mate_teeth.checked_add_signed(by)?;
+                told.mate_teeth = Some(told_teeth);
+                Some(Likelier::MateTeeth { teeth: mate_teeth, told: told_teeth })
             }
             Mistake::OtherShaft if teeth == mate_teeth => return None,
-            Mistake::OtherShaft => Some(Likelier::OtherShaft),
-            Mistake::Pulses => Some(Likelier::PulsesPerRevolution { pulses: right_pulses }),
+            Mistake::OtherShaft => Some(Likelier::OtherShaft { mate_teeth }),
+            Mistake::Pulses => {
+                Some(Likelier::PulsesPerRevolution { pulses: right_pulses, told: told_pulses })
+            }
             Mistake::Speed => {
                 let off = draws.in_octaves(1e-4, 0.03) * draws.one(&[-1.0, 1.0]);
-                let right = Likelier::ShaftSpeed { speed_hz };
+                let right_hz = speed_hz;
                 speed_hz *= 1.0 + off;
-                Some(right)
+                Some(Likelier::ShaftSpeed { speed_hz: right_hz, told_hz: speed_hz })
             }
         };
         let phase = if constant {
@@ -294,7 +297,7 @@ impl Case {
     fn mesh_turns(&self, speed_hz: f64) -> f64 {
         let seconds = self.recording.signal.len() as f64 / self.recording.rate_hz;
         match self.right {
-            Some(Likelier::ShaftSpeed { speed_hz: right }) => {
+            Some(Likelier::ShaftSpeed { speed_hz: right, .. }) => {
                 (speed_hz - right).abs() * f64::from(self.recording.teeth) * seconds
             }
             _ => 0.0,
@@ -304,7 +307,7 @@ impl Case {
     /// Whether cause and value are right.
     fn is_right(&self, likelier: Likelier) -> (bool, bool) {
         match (likelier, self.right) {
-            (Likelier::ShaftSpeed { speed_hz }, Some(Likelier::ShaftSpeed { .. })) => {
+            (Likelier::ShaftSpeed { speed_hz, .. }, Some(Likelier::ShaftSpeed { .. })) => {
                 (true, self.mesh_turns(speed_hz) < 0.25)
             }
             (likelier, Some(right)) => {
@@ -445,11 +448,15 @@ fn each_mistake_is_named_with_the_better_value() {
         (1.0, told(own, mate, pulses(1)), None),
         (1.0, told(own, mate, ToldTurning::Other), None),
         (1.0, told(own + 1, mate, pulses(1)), Some(Likelier::Teeth { teeth: own })),
-        (1.0, told(own, mate - 1, pulses(1)), Some(Likelier::MateTeeth { teeth: mate })),
-        (23.0 / 38.0, told(own, mate, pulses(1)), Some(Likelier::OtherShaft)),
-        (2.0, told(own, mate, pulses(1)), Some(Likelier::PulsesPerRevolution { pulses: 2 })),
-        (0.75, told(own, mate, pulses(4)), Some(Likelier::PulsesPerRevolution { pulses: 3 })),
-        (59.0 / 60.0, told(own, mate, pulses(60)), Some(Likelier::PulsesPerRevolution { pulses: 59 })),
+        (1.0, told(own, mate - 1, pulses(1)), Some(Likelier::MateTeeth { teeth: mate, told: mate - 1 })),
+        (23.0 / 38.0, told(own, mate, pulses(1)), Some(Likelier::OtherShaft { mate_teeth: mate })),
+        (2.0, told(own, mate, pulses(1)), Some(Likelier::PulsesPerRevolution { pulses: 2, told: 1 })),
+        (0.75, told(own, mate, pulses(4)), Some(Likelier::PulsesPerRevolution { pulses: 3, told: 4 })),
+        (
+            59.0 / 60.0,
+            told(own, mate, pulses(60)),
+            Some(Likelier::PulsesPerRevolution { pulses: 59, told: 60 }),
+        ),
     ] {
         let found = misfit_of(told_per_right, told);
         assert_eq!(found.map(|misfit| misfit.likelier), likelier, "{told:?}: {found:?}");
@@ -468,13 +475,42 @@ fn a_speed_that_is_off_is_found_to_parts_per_million() {
         let found = misfit(&angular, &Told { teeth: TEETH[0], mate_teeth: Some(TEETH[1]), turning });
         match found.map(|misfit| misfit.likelier) {
             None => assert_eq!(off, 0.0),
-            Some(Likelier::ShaftSpeed { speed_hz }) => {
+            Some(Likelier::ShaftSpeed { speed_hz, .. }) => {
                 println!("{off:+.1e}: {:+.1e}, {}", speed_hz / 20.0 - 1.0, found.unwrap());
                 assert!(off != 0.0 && (speed_hz / 20.0 - 1.0).abs() < 3e-6, "{off}: {speed_hz}");
             }
             other => assert_eq!(other, None, "{off}"),
         }
     }
+}
+
+#[test]
+fn impossible_tooth_counts_are_not_compared() {
+    let turned: Vec<f64> = (0..40_960).map(|i| 20.0 * f64::from(i) / RATE_HZ).collect();
+    let phase = ShaftPhase::constant(20.0, RATE_HZ, turned.len()).unwrap();
+    let signal = meshing(TEETH, &turned);
+    let angular = angular_resample(&signal, &phase, &AngularSettings::default()).unwrap();
+    let turning = ToldTurning::ConstantSpeed { speed_hz: 20.0 };
+    for (teeth, mate_teeth) in [(TEETH[0], Some(1_000_000_000)), (u32::MAX, None)] {
+        assert_eq!(misfit(&angular, &Told { teeth, mate_teeth, turning }), None);
+    }
+}
+
+// Eight times as many revolutions as are transformed at once, over which the mesh tone gains four cycles.
+#[test]
+fn a_speed_that_is_hardly_off_is_found_in_a_long_recording() {
+    let (points_per_revolution, revolutions, off) = (128, 16_384, 1e-5);
+    let mesh = |i: usize| -> f64 {
+        let mesh_turned = 23.0 * (1.0 + off) * i as f64 / points_per_revolution as f64;
+        [1.0, 2.0].into_iter().map(|harmonic| (TAU * (harmonic * mesh_turned).fract()).cos()).sum()
+    };
+    let values = (0..revolutions * points_per_revolution).map(mesh).collect();
+    let angular = AngularSignal { points_per_revolution, start_rev: 0.0, nyquist_order: 64.0, values };
+    let turning = ToldTurning::ConstantSpeed { speed_hz: 20.0 };
+    let found = misfit(&angular, &Told { teeth: 23, mate_teeth: None, turning }).unwrap();
+    let Likelier::ShaftSpeed { speed_hz, told_hz } = found.likelier else { panic!("{found}") };
+    assert_eq!(told_hz, 20.0);
+    assert!((speed_hz / told_hz - 1.0 - off).abs() < 1e-7, "{found}");
 }
 
 // Nothing but noise; too short for the mate's orders.

@@ -19,6 +19,8 @@ const USUAL_PULSES: [u32; 31] = [
 ];
 /// Part by which a stated speed may be off.
 const SPEED_RANGE: f64 = 0.06;
+/// Least order up to which the steps of the speed are fine enough, even where the recording does not show it.
+const LEAST_HIGHEST_ORDER: f64 = 1000.0;
 /// Steps of a comb's speed in one of the mesh lines'.
 const FINER: i32 = 16;
 /// (bins) Distance of orders that are one line.
@@ -72,7 +74,7 @@ impl Claim {
     fn of_mates_shaft(teeth: u32, mate_teeth: u32) -> Self {
         let ratio = f64::from(mate_teeth) / f64::from(teeth);
         Self {
-            likelier: Likelier::OtherShaft,
+            likelier: Likelier::OtherShaft { mate_teeth },
             mesh_order: f64::from(mate_teeth),
             wheel_spacing: ratio,
             combs: [Some(1.0), Some(ratio)],
@@ -83,7 +85,7 @@ impl Claim {
     /// What happens more easily, in units of the evidence.
     pub(super) fn prior(&self) -> f64 {
         match self.likelier {
-            Likelier::OtherShaft => 2.0,
+            Likelier::OtherShaft { .. } => 2.0,
             Likelier::PulsesPerRevolution { .. } | Likelier::Teeth { .. } => 1.0,
             Likelier::MateTeeth { .. } | Likelier::ShaftSpeed { .. } => 0.0,
         }
@@ -142,9 +144,9 @@ impl Claim {
 /// All that could be instead of what is told.
 pub(super) fn others<'a>(told: &'a Told, orders: &'a FineOrders) -> impl Iterator<Item = Claim> + 'a {
     let other_teeth = other_counts(told.teeth).map(|teeth| Claim::with_teeth(told, teeth, told.mate_teeth));
-    let other_mates = told.mate_teeth.into_iter().flat_map(|mate_teeth| {
-        other_counts(mate_teeth).map(|teeth| Claim {
-            likelier: Likelier::MateTeeth { teeth },
+    let other_mates = told.mate_teeth.into_iter().flat_map(move |mate_teeth| {
+        other_counts(mate_teeth).map(move |teeth| Claim {
+            likelier: Likelier::MateTeeth { teeth, told: mate_teeth },
             ..Claim::with_teeth(told, told.teeth, Some(teeth))
         })
     });
@@ -178,18 +180,21 @@ fn other_pulses(told: &Told, per_revolution: u32) -> Vec<Claim> {
     counts.retain(|&count| count > 0 && count != per_revolution);
     let claim = |pulses: u32| {
         let factor = f64::from(per_revolution) / f64::from(pulses);
-        Claim::scaled(told, factor, Likelier::PulsesPerRevolution { pulses })
+        Claim::scaled(told, factor, Likelier::PulsesPerRevolution { pulses, told: per_revolution })
     };
     counts.into_iter().map(claim).collect()
 }
 
 /// The speeds within some percent at which the mesh lines stand out most, and at which the wheel's orders do.
 fn other_speeds(told: &Told, speed_hz: f64, orders: &FineOrders) -> Vec<Claim> {
-    // Two bins of the highest harmonic, as wide as its line.
-    let step = 2.0 / (f64::from(HARMONICS * told.teeth) * orders.bins_per_order);
+    // Two bins of the highest harmonic, as wide as its line; none is read far beyond what the recording shows.
+    let highest = f64::from(HARMONICS * told.teeth).min(orders.highest_order().max(LEAST_HIGHEST_ORDER));
+    let step = 2.0 / (highest * orders.bins_per_order);
     let steps = (SPEED_RANGE / step) as i32;
-    let claim =
-        |factor: f64| Claim::scaled(told, factor, Likelier::ShaftSpeed { speed_hz: factor * speed_hz });
+    let claim = |factor: f64| {
+        let likelier = Likelier::ShaftSpeed { speed_hz: factor * speed_hz, told_hz: speed_hz };
+        Claim::scaled(told, factor, likelier)
+    };
     let best = |claims: &[Claim], of: &dyn Fn(&Claim) -> f64| {
         let all = claims.iter().map(|claim| (of(claim), claim));
         all.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, claim)| *claim)

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use meshtone_fourier::real_spectrum;
+use meshtone_fourier::{convenient_count, real_spectrum};
 
 use crate::signal::AngularSignal;
 
@@ -44,7 +44,7 @@ impl FineOrders {
     pub(super) fn of(angular: &AngularSignal) -> Option<Self> {
         let points = angular.points_per_revolution;
         let affordable = (MOST_VALUES / points.max(1)).max(FEWEST_REVOLUTIONS);
-        let revolutions = quickly_transformed(angular.revolutions().min(affordable));
+        let revolutions = convenient_count(angular.revolutions().min(affordable));
         let values = angular.values.get(..revolutions * points)?;
         let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
         let step = TAU / values.len().max(1) as f64;
@@ -76,6 +76,11 @@ impl FineOrders {
             logarithms: lines.iter().take(of_comb).map(|line| (line + 1e-24 * strongest).ln()).collect(),
             lines,
         })
+    }
+
+    /// Highest order that is shown.
+    pub(super) fn highest_order(&self) -> f64 {
+        self.lines.len() as f64 / self.bins_per_order
     }
 
     fn bin(&self, order: f64) -> usize {
@@ -148,18 +153,4 @@ impl FineOrders {
         let noise = NOISE_CONTRAST * (contrasts.len() as f64).sqrt();
         (contrasts.len() >= fewest).then(|| contrasts.iter().sum::<f64>() / noise)
     }
-}
-
-/// The largest number up to `count` whose only prime factors are 2, 3 and 5.
-fn quickly_transformed(count: usize) -> usize {
-    let smooth = |&n: &usize| {
-        let rest = [2, 3, 5].iter().fold(n, |mut rest, prime| {
-            while rest > 0 && rest.is_multiple_of(*prime) {
-                rest /= prime;
-            }
-            rest
-        });
-        rest == 1
-    };
-    (1..=count).rev().find(smooth).unwrap_or(0)
 }

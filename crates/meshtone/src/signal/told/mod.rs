@@ -26,6 +26,8 @@ const LEAST_COMB: f64 = 6.0;
 const POOR_COMB: f64 = 3.0;
 /// Least ratio of the mesh harmonics' energy in the average at a better speed.
 const LEAST_ENERGY_RATIO: f64 = 1.2;
+/// Most teeth of a wheel: every count between half and twice as many is compared.
+const MOST_TEETH: u32 = 100_000;
 
 /// What tells how far the shaft has turned.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,18 +70,27 @@ pub enum Likelier {
     MateTeeth {
         /// How many.
         teeth: u32,
+        /// How many it is told to have.
+        told: u32,
     },
     /// Speed or pulses are those of the mate's shaft.
-    OtherShaft,
+    OtherShaft {
+        /// Teeth that the mate is told to have.
+        mate_teeth: u32,
+    },
     /// Another number of pulses in a revolution.
     PulsesPerRevolution {
         /// How many.
         pulses: u32,
+        /// How many are told.
+        told: u32,
     },
     /// Another constant speed.
     ShaftSpeed {
         /// (Hz) The speed.
         speed_hz: f64,
+        /// (Hz) The one that is told.
+        told_hz: f64,
     },
 }
 
@@ -123,7 +134,7 @@ pub struct Misfit {
 ///
 /// The mesh harmonics of the right reading stand out of their neighbours, and the orders of either shaft out of what lies
 /// between them. A reading is reported where it has clearly more of both than what is told. Where the recording is too
-/// short or too noisy to tell, nothing is.
+/// short or too noisy to tell, nothing is; nor where a wheel is told to have more than 100 000 teeth, which are not compared.
 ///
 /// # Arguments
 /// * `angular` - the recording over the angle of the shaft, as it is told
@@ -146,6 +157,9 @@ pub struct Misfit {
 /// # Ok::<(), meshtone::signal::SignalError>(())
 /// ```
 pub fn misfit(angular: &AngularSignal, told: &Told) -> Option<Misfit> {
+    if told.teeth.max(told.mate_teeth.unwrap_or(0)) > MOST_TEETH {
+        return None;
+    }
     let orders = FineOrders::of(angular)?;
     let as_told = Claim::as_told(told);
     let told_evidence = as_told.evidence(&orders);
@@ -159,7 +173,7 @@ pub fn misfit(angular: &AngularSignal, told: &Told) -> Option<Misfit> {
         let steadied = steadied(angular, &orders, &claim, told.teeth)
             .filter(|steadied| is_of_speed && steadied.energy_ratio >= LEAST_ENERGY_RATIO);
         if let Some(Steadied { factor, energy_ratio }) = steadied {
-            let likelier = Likelier::ShaftSpeed { speed_hz: speed_hz * factor };
+            let likelier = Likelier::ShaftSpeed { speed_hz: speed_hz * factor, told_hz: speed_hz };
             let energy_ratio = Some(energy_ratio);
             return Some(Misfit { told: *told, told_evidence, likelier, evidence, energy_ratio });
         }
@@ -184,7 +198,7 @@ fn gained(claim: &Claim, as_told: &Claim, told: &Evidence, orders: &FineOrders) 
         && told.wheel_orders > Some(POOR_COMB);
     let is_founded = match claim.likelier {
         Likelier::MateTeeth { .. } => has_mate,
-        Likelier::Teeth { .. } | Likelier::OtherShaft => has_mesh || has_mate && lost_mesh <= 0.0,
+        Likelier::Teeth { .. } | Likelier::OtherShaft { .. } => has_mesh || has_mate && lost_mesh <= 0.0,
         Likelier::PulsesPerRevolution { .. } => {
             let is_possible = own.wheel_orders.is_some() && lost_mesh <= 0.0;
             is_possible && (has_mesh && wheel_gain > LEAST_WHEEL_GAIN || has_wheel && mesh_gain > 0.0)

@@ -1,8 +1,9 @@
 //! The constant speed at which the mesh harmonics turn least over the recording.
 
 use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
 
-use meshtone_fourier::Complex64;
+use meshtone_fourier::{Complex64, convenient_length, inverse_complex};
 
 use super::claims::Claim;
 use super::fine_orders::FineOrders;
@@ -18,7 +19,8 @@ const RANGE: f64 = 2.0;
 const STEPS: f64 = 4.0;
 /// Least part of the harmonics' energy that is steady at the best speed.
 const LEAST_STEADY: f64 = 0.3;
-
+/// Values of the spectrum in which the speed is looked for, at least, of every revolution.
+const OVERSAMPLING: usize = 8;
 /// Least sum of the followed harmonics' prominences.
 const LEAST_PROMINENCE: f64 = 2.0;
 
@@ -61,6 +63,19 @@ impl Harmonic {
         let turned =
             |(sum, turning): (Complex64, Complex64), turn: &Complex64| (sum + turn * turning, turning * step);
         self.turns.iter().fold((Complex64::default(), Complex64::new(1.0, 0.0)), turned).0.norm_sqr()
+    }
+
+    /// [`Self::steady`] at as many speeds as are asked for, of the nearest line of a fine spectrum: each costs no sum over the
+    /// revolutions, of which a long recording has as many as speeds.
+    fn steady_nearly(&self) -> impl Fn(f64) -> f64 + use<> {
+        let mut padded = self.turns.clone();
+        padded.resize(convenient_length(OVERSAMPLING * self.turns.len()), Complex64::default());
+        let spectrum: Vec<f64> = inverse_complex(padded).iter().map(Complex64::norm_sqr).collect();
+        let (order, lines) = (self.order, spectrum.len() as i64);
+        move |by| {
+            let line = (-order * by * lines as f64).round() as i64;
+            spectrum[line.rem_euclid(lines) as usize]
+        }
     }
 
     fn energy(&self) -> f64 {
@@ -109,8 +124,14 @@ pub(super) fn steadied(
     let steady = |by: f64| windowed.iter().map(|harmonic| harmonic.steady(by)).sum::<f64>();
     let step = 1.0 / (STEPS * revolutions * highest);
     let steps = (RANGE / (orders.bins_per_order * lowest) / step).ceil() as i32;
-    let (_, best) =
-        (-steps..=steps).map(|k| (steady(f64::from(k) * step), k)).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let nearly: Vec<_> = windowed.iter().map(Harmonic::steady_nearly).collect();
+    let steady_nearly = |by: f64| nearly.iter().map(|steady| steady(by)).sum::<f64>();
+    let best_of = |steps: RangeInclusive<i32>, steady: &dyn Fn(f64) -> f64| {
+        let all = steps.map(|k| (steady(f64::from(k) * step), k));
+        all.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, k)| k)
+    };
+    let about = best_of(-steps..=steps, &steady_nearly)?;
+    let best = best_of((about - 1).max(-steps)..=(about + 1).min(steps), &steady)?;
     let near = f64::from(best) * step;
     let [below, at, above] = [near - step, near, near + step].map(steady);
     let bend = below - 2.0 * at + above;

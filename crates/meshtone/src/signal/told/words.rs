@@ -12,16 +12,11 @@ impl Display for Misfit {
                 f,
                 "the mesh lines are those of {likelier} teeth on this shaft rather than {teeth}: check the tooth count"
             ),
-            Likelier::MateTeeth { teeth: likelier } => {
-                let mate_teeth = self.told.mate_teeth.unwrap_or(0);
-                write!(
-                    f,
-                    "the other shaft's orders are those of a mate of {likelier} teeth rather than {mate_teeth}: check its \
-                     tooth count"
-                )
-            }
-            Likelier::OtherShaft => {
-                let mate_teeth = self.told.mate_teeth.unwrap_or(0);
+            Likelier::MateTeeth { teeth: likelier, told } => write!(
+                f,
+                "the other shaft's orders are those of a mate of {likelier} teeth rather than {told}: check its tooth count"
+            ),
+            Likelier::OtherShaft { mate_teeth } => {
                 let what = match self.told.turning {
                     ToldTurning::Pulses { .. } => "the pulses are",
                     ToldTurning::ConstantSpeed { .. } | ToldTurning::Other => "the speed is",
@@ -32,18 +27,10 @@ impl Display for Misfit {
                      {teeth} and {mate_teeth}"
                 )
             }
-            Likelier::PulsesPerRevolution { pulses } => {
-                let told = match self.told.turning {
-                    ToldTurning::Pulses { per_revolution } => per_revolution,
-                    ToldTurning::ConstantSpeed { .. } | ToldTurning::Other => 0,
-                };
+            Likelier::PulsesPerRevolution { pulses, told } => {
                 write!(f, "there are rather {pulses} pulses in a revolution than {told}: check their number")
             }
-            Likelier::ShaftSpeed { speed_hz } => {
-                let told_hz = match self.told.turning {
-                    ToldTurning::ConstantSpeed { speed_hz } => speed_hz,
-                    ToldTurning::Pulses { .. } | ToldTurning::Other => speed_hz,
-                };
+            Likelier::ShaftSpeed { speed_hz, told_hz } => {
                 let percent = 100.0 * (speed_hz / told_hz - 1.0);
                 write!(
                     f,
