@@ -4,13 +4,17 @@ use std::fmt::{Display, Formatter, Result};
 
 use super::{Likelier, Misfit, ToldTurning};
 
+/// (-) How near to a whole tooth count a speed leads that may as well be one.
+const SAME_COUNT: f64 = 0.01;
+
 impl Display for Misfit {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         let teeth = self.told.teeth;
         match self.likelier {
             Likelier::Teeth { teeth: likelier } => write!(
                 f,
-                "the mesh lines are those of {likelier} teeth on this shaft rather than {teeth}: check the tooth count"
+                "the mesh lines are those of {likelier} teeth on this shaft, or of a whole part of that, rather than {teeth}: check \
+                 the tooth count"
             ),
             Likelier::MateTeeth { teeth: likelier, told } => write!(
                 f,
@@ -39,7 +43,13 @@ impl Display for Misfit {
                 if let Some(ratio) = self.energy_ratio {
                     write!(f, ": the average then holds {ratio:.1} times the energy at the mesh orders")?;
                 }
-                write!(f, "; state that speed, or follow the mesh tone")
+                write!(f, "; state that speed, or follow the mesh tone")?;
+                // The mesh frequency alone does not tell a speed from a tooth count.
+                let count = f64::from(teeth) * speed_hz / told_hz;
+                if count.round() != f64::from(teeth) && (count - count.round()).abs() < SAME_COUNT {
+                    write!(f, ". Or the wheel has {count:.0} teeth and the speed is right")?;
+                }
+                Ok(())
             }
         }
     }
