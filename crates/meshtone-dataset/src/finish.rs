@@ -8,7 +8,7 @@ use crate::card;
 use crate::contents::{Contents, INDICATORS, Looked, SampledRecord, is_drawn};
 use crate::digest::Digest;
 use crate::error::DatasetError;
-use crate::manifest::{self, CARD, MANIFEST, PREVIEW};
+use crate::manifest::{self, CARD, MANIFEST, PREVIEW, ReadManifest};
 use crate::part_list::{self, PartList};
 use crate::plan::Plan;
 use crate::shard::{self, Column, ColumnKind, FailedRecord, Shards, Wanted};
@@ -25,7 +25,7 @@ pub(crate) fn finish_if_complete(
     let manifest = manifest::read(to)?;
     let was_complete = manifest.as_ref().is_some_and(|manifest| manifest.complete);
     let mut contents = Contents::default();
-    contents.add_place(plan, to, &files, manifest)?;
+    contents.add_place(plan, to, &files, manifest.filter(ReadManifest::can_be_relied_on))?;
     let is_there =
         |shard: u64| files.contains_key(&shards.name(shard)) && contents.files.contains_key(&shard);
     if !(0..shards.count()).all(is_there) {

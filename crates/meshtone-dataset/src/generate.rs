@@ -17,7 +17,7 @@ use crate::digest::{Digest, Hashing};
 use crate::draw::{DrawnRecord, Sampler};
 use crate::error::DatasetError;
 use crate::finish;
-use crate::manifest::{self, Begun, CARD, PREVIEW};
+use crate::manifest::{self, Begun, CARD, MANIFEST, PREVIEW, ReadManifest};
 use crate::part_list::Listing;
 use crate::plan::{Plan, PlanFile};
 use crate::record::{KeepRecords, Role};
@@ -205,7 +205,8 @@ impl There {
         let documents = manifest.as_ref().map(|manifest| manifest.documents.clone()).unwrap_or_default();
         let mut contents = Contents::default();
         let columns = manifest.as_ref().map_or(Ok(()), |manifest| manifest.check_columns(to));
-        contents.add_place(plan, to, &files, manifest)?;
+        let is_whole = manifest.as_ref().is_none_or(|manifest| manifest.is_whole);
+        contents.add_place(plan, to, &files, manifest.filter(ReadManifest::can_be_relied_on))?;
         let own = (0..shards.count()).into_par_iter().filter(|&shard| part.has(shard));
         let looked = own.map(|shard| {
             let name = shards.name(shard);
@@ -216,7 +217,11 @@ impl There {
             });
             (shard, objection)
         });
-        let (changed, has_documents) = look_at_documents(plan, to, &files, &documents)?;
+        let (mut changed, has_all) = look_at_documents(plan, to, &files, &documents)?;
+        if !is_whole {
+            changed.push(Remade { file: MANIFEST.to_owned(), reason: WRONG_BYTES.to_owned() });
+        }
+        let has_documents = has_all && is_whole;
         let mut there =
             Self { kept: 0, missing: Vec::new(), remade: changed, failures: Vec::new(), has_documents };
         for (shard, objection) in looked.collect::<Vec<_>>() {

@@ -145,6 +145,12 @@ pub(crate) struct ReadManifest {
 }
 
 impl ReadManifest {
+    /// Whether what it says of shards can be relied on: it is as it was written, or its shards' own hashes are all that is taken from
+    /// it. Nothing else proves which records failed and why.
+    pub fn can_be_relied_on(&self) -> bool {
+        self.is_whole || self.failures.is_empty()
+    }
+
     /// Refuses to add records to a data set whose records have other columns.
     pub fn check_columns(&self, place: &Destination) -> Result<(), DatasetError> {
         if self.format == FORMAT_VERSION {

@@ -95,6 +95,20 @@ fn the_card_and_the_preview_are_made_again() {
     }
 }
 
+/// Also where what has changed says nothing of a shard.
+#[test]
+fn a_changed_manifest_is_made_again() {
+    let (directory, to) = made();
+    let before = bytes(directory.path());
+    let path = directory.path().join("manifest.json");
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, text.replacen("CC-BY-4.0", "CC-BY-4.1", 1)).unwrap();
+    let again = run(&plan(FAST), &to, Part::WHOLE, 2).unwrap();
+    assert_eq!(again.remade.iter().map(|remade| &remade.file[..]).collect::<Vec<_>>(), ["manifest.json"]);
+    assert_eq!((again.kept_shards, again.written_shards), (8, 0));
+    assert_eq!(differing(&before, &bytes(directory.path())), [""; 0]);
+}
+
 #[test]
 fn names_and_sizes_are_always_looked_at() {
     let (directory, to) = made();
