@@ -146,7 +146,7 @@ pub struct Misfit {
 /// // A wheel of 19 teeth at 20 Hz with sidebands and three harmonics, and a little noise, as every recording has.
 /// let wave = |order: f64, i: usize| (std::f64::consts::TAU * order * 20.0 * i as f64 / 1e4).cos();
 /// let mesh = |i| wave(19.0, i) + 0.5 * wave(38.0, i) + 0.4 * wave(57.0, i);
-/// let noise = |i: usize| 1e-4 * (i * 7919 % 1001) as f64;
+/// let noise = |i: usize| 4e-5 * (i * i % 10_007) as f64;
 /// let sidebands = |i| 0.1 * wave(20.0, i) + 0.1 * wave(18.0, i);
 /// let signal: Vec<f64> = (0..20_000).map(|i| mesh(i) + sidebands(i) + noise(i)).collect();
 /// let phase = ShaftPhase::constant(20.0, 1e4, signal.len())?;
