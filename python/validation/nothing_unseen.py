@@ -676,6 +676,8 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--defects", type=int, default=5, help="defects to show of each part")
     asked = parser.parse_args()
+    # In the background of a script Control-C is ignored, and what is started there ignores it too.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     program = str(Path(asked.program).resolve())
     rows = []
     for name in asked.only or PARTS:
