@@ -23,8 +23,6 @@ results = mt.simulate_many([healthy.copy(fault=case) for case in cases], channel
 gear_hz = healthy.pinion_speed_hz * healthy.pinion_teeth / healthy.gear_teeth
 table: dict[str, list[float]] = {"tip loss (mm)": [], "chip width (mm)": [], "rms (g)": [], "kurtosis (-)": []}
 for case, result in zip(cases, results):
-    if isinstance(result, ValueError):
-        raise result
     phase = mt.ShaftPhase.constant(gear_hz, result.sampling_rate_hz, result.vertical_g.size)
     indicators = mt.process_channel(result.vertical_g, phase, healthy.gear_teeth).indicators
     table["tip loss (mm)"].append(case.tip_loss_mm or 0.0)

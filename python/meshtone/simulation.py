@@ -6,7 +6,7 @@ import functools
 import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Literal, Union
+from typing import TYPE_CHECKING, Any, Literal, Union, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -17,7 +17,7 @@ from ._warnings import warn
 from .faults import in_words
 from .scenario import Scenario, native_scenario
 from .signal import Record, resample
-from .signal._arguments import read_only, separation_settings, whole
+from .signal._arguments import positive, read_only, separation_settings, whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -505,7 +505,8 @@ class Signals:
         Parameters
         ----------
         target_rate_hz : float
-            (S/s) The rate, more than 0.
+            (S/s) The rate, more than 0. Of at most twice the mesh frequency it leaves nothing of the mesh, and a
+            :class:`~meshtone.MeshtoneWarning` says so.
 
         Returns
         -------
@@ -514,7 +515,7 @@ class Signals:
         Raises
         ------
         ValueError
-            A rate that is not more than 0.
+            A rate that is not more than 0, or below 1e-5 of the simulation's own.
 
         Examples
         --------
@@ -523,10 +524,13 @@ class Signals:
         >>> signals.sampling_rate_hz, signals.at_rate(25_000).sampling_rate_hz
         (258400.0, 25000.0)
         """
-        channels = {
-            name: resample(signal, self.sampling_rate_hz, target_rate_hz).astype(np.float32) for name, signal in self.channels.items()
-        }
-        return replace(self, sampling_rate_hz=float(target_rate_hz), channels=channels, is_resampled=True)
+        rate_hz = positive("target_rate_hz", target_rate_hz)
+        _warn_of_rate(rate_hz, [self.scenario])
+        return self._resampled(rate_hz)
+
+    def _resampled(self, rate_hz: float) -> Signals:
+        channels = {name: resample(signal, self.sampling_rate_hz, rate_hz).astype(np.float32) for name, signal in self.channels.items()}
+        return replace(self, sampling_rate_hz=rate_hz, channels=channels, is_resampled=True)
 
     def __getattr__(self, name: str) -> npt.NDArray[np.float32]:
         if name.startswith("_") or name == "channels":
@@ -696,14 +700,35 @@ def trace(scenario: Scenario, *, average_rate_hz: float | None = None) -> dict[s
     return _core.trace(native_scenario(scenario), average_rate_hz)
 
 
+@overload
 def simulate_many(
     scenarios: Iterable[Scenario],
     *,
     channels: Sequence[str] = ("horizontal_g", "vertical_g"),
     target_rate_hz: float | None = None,
+    on_error: Literal["raise"] = "raise",
     threads: int | None = None,
     progress: bool | Callable[[int, int], None] = False,
-) -> list[Union[Signals, ValueError]]:
+) -> list[Signals]: ...
+@overload
+def simulate_many(
+    scenarios: Iterable[Scenario],
+    *,
+    channels: Sequence[str] = ("horizontal_g", "vertical_g"),
+    target_rate_hz: float | None = None,
+    on_error: Literal["return"],
+    threads: int | None = None,
+    progress: bool | Callable[[int, int], None] = False,
+) -> list[Union[Signals, ValueError]]: ...
+def simulate_many(
+    scenarios: Iterable[Scenario],
+    *,
+    channels: Sequence[str] = ("horizontal_g", "vertical_g"),
+    target_rate_hz: float | None = None,
+    on_error: Literal["raise", "return"] = "raise",
+    threads: int | None = None,
+    progress: bool | Callable[[int, int], None] = False,
+) -> list[Signals] | list[Union[Signals, ValueError]]:
     """Simulate many scenarios side by side: several times faster than one after the other.
 
     Parameters
@@ -711,10 +736,13 @@ def simulate_many(
     scenarios : iterable of Scenario
         What is simulated.
     channels : sequence of str
-        What is kept of each, in single precision: some of ``scenario.channels``. A scenario without a sensor that is named has its
-        error in its place.
+        What is kept of each, in single precision: some of ``scenario.channels``. A scenario without a sensor that is named cannot be
+        simulated so.
     target_rate_hz : float, optional
         (S/s) The rate of the results, met exactly by resampling, as of :meth:`Signals.at_rate`; by default the simulations' own.
+    on_error : {'raise', 'return'}
+        What becomes of the error of a scenario that cannot be simulated: it is raised, with the scenario's index, or it stands in the
+        place of the signals and stops no other.
     threads : int, optional
         How many; all cores by default. Results do not depend on it.
     progress : bool or callable, optional
@@ -722,38 +750,68 @@ def simulate_many(
 
     Returns
     -------
-    list of Signals or ValueError
-        In the order of the scenarios. One that could not be simulated has its error in its place, and stops no other. What is doubtful
-        is told once a code, with how many scenarios it concerns; each result's ``warnings`` have its own.
+    list of Signals, or with ``on_error="return"`` of Signals and ValueError
+        In the order of the scenarios. What is doubtful is told once a code, with how many scenarios it concerns; each result's
+        ``warnings`` have its own.
 
     Raises
     ------
     ValueError
-        A channel that there is not.
+        A channel that there is not; a rate that is not more than 0; with ``on_error="raise"`` a scenario that cannot be simulated.
     KeyboardInterrupt
         Ctrl-C stops the simulations.
 
     Examples
     --------
-    >>> from meshtone import examples, simulate_many
-    >>> results = simulate_many(examples.healthy().copy(seed=seed) for seed in range(8))
+    >>> from meshtone import MissingTooth, PitCircle, Signals, ThroughFace, examples, simulate_many
+    >>> healthy = examples.healthy()
+    >>> results = simulate_many(healthy.copy(seed=seed) for seed in range(8))
     >>> len(results), results[0].vertical_g.dtype
     (8, dtype('float32'))
+
+    Of many, some of which may not fit their tooth, those that can be simulated:
+
+    >>> damage = [MissingTooth(), ThroughFace(circle=PitCircle(10.0, 30.0, 0.5))]
+    >>> results_or_errors = simulate_many([healthy.copy(fault=fault) for fault in damage], on_error="return")
+    >>> [isinstance(result, Signals) for result in results_or_errors]
+    [True, False]
     """
     if isinstance(scenarios, Scenario):
         raise TypeError("scenarios: must be several, in a list or the like; simulate takes one")
     if isinstance(channels, str):
         raise TypeError(f"channels = '{channels}': must be a sequence of names: ['{channels}']")
+    if on_error not in ("raise", "return"):
+        raise ValueError(f"on_error = {on_error!r}: must be 'raise' or 'return'")
+    rate_hz = None if target_rate_hz is None else positive("target_rate_hz", target_rate_hz)
     scenarios = list(scenarios)
     ask = _progress.shown("simulations") if progress is True else (progress or None)
     told = None if ask is None else functools.partial(_tell, ask, len(scenarios))
     native = [native_scenario(scenario) for scenario in scenarios]
     results = _core.simulate_many(native, list(channels), None if threads is None else whole("threads", threads, 1), told)
+    if on_error == "raise":
+        _raise_first(results)
     made = [_signals(scenario, result) for scenario, result in zip(scenarios, results)]
     _warn_of_many([result for result in made if isinstance(result, Signals)])
-    if target_rate_hz is None:
+    if rate_hz is None:
         return made
-    return [result.at_rate(target_rate_hz) if isinstance(result, Signals) else result for result in made]
+    _warn_of_rate(rate_hz, [result.scenario for result in made if isinstance(result, Signals)])
+    return [result._resampled(rate_hz) if isinstance(result, Signals) else result for result in made]
+
+
+def _raise_first(results: Sequence[dict[str, Any] | ValueError]) -> None:
+    """The first error, with its place, as that of all."""
+    for index, result in enumerate(results):
+        if isinstance(result, ValueError):
+            raise ValueError(f"scenarios[{index}]: {result}") from result
+
+
+def _warn_of_rate(rate_hz: float, scenarios: Sequence[Scenario]) -> None:
+    """One warning of all scenarios whose mesh frequency a rate does not show."""
+    mesh_hz = [scenario.pinion_teeth * scenario.pinion_speed_hz for scenario in scenarios]
+    beyond_hz = [frequency_hz for frequency_hz in mesh_hz if rate_hz <= 2 * frequency_hz]
+    if beyond_hz:
+        of = f" of {len(beyond_hz)} of {len(scenarios)} scenarios, the first" if len(scenarios) > 1 else ""
+        warn([f"target_rate_hz = {rate_hz:g}: leaves nothing of the mesh, whose frequency{of} of {beyond_hz[0]:g} Hz is not below half of it"])
 
 
 def _signals(scenario: Scenario, result: dict[str, Any] | ValueError) -> Signals | ValueError:

@@ -88,20 +88,17 @@ def test_many_are_the_same_as_one(broken: meshtone.Simulation) -> None:
     results = simulate_many(scenarios, threads=2, progress=lambda done, of: told.append((done, of)))
     assert told[-1] == (4, 4)
     for scenario, result in zip(scenarios, results):
-        assert isinstance(result, meshtone.Signals)
         assert result.scenario == scenario
         alone = simulate(scenario)
         assert result.sampling_rate_hz == alone.sampling_rate_hz
         assert result.vertical_g.dtype == np.float32
         assert np.array_equal(result.vertical_g, alone.vertical_g.astype(np.float32))
     first = results[0]
-    assert isinstance(first, meshtone.Signals)
     ours, theirs = first.process().indicators, broken.process().indicators
     assert ours["difference_kurtosis"] == pytest.approx(theirs["difference_kurtosis"], rel=1e-5)
     with pytest.raises(ValueError, match="no channel 'axial_g' was kept"):
         first.process("axial_g")
     [forces] = simulate_many([healthy], channels=["mesh_force_n"])
-    assert isinstance(forces, meshtone.Signals)
     assert list(forces.channels) == ["mesh_force_n"]
     with pytest.raises(AttributeError, match="no channel 'vertical_g' was kept"):
         _ = forces.vertical_g
@@ -111,13 +108,19 @@ def test_many_keep_the_errors_in_their_places() -> None:
     healthy = examples.healthy().copy(sampling_rate_hz=1e4)
     # Valid as a scenario, but the circle misses the tooth.
     misses = healthy.copy(fault=meshtone.ThroughFace(circle=meshtone.PitCircle(10.0, 30.0, 0.5)))
-    first, second, third = simulate_many([healthy, misses, healthy])
+    first, second, third = simulate_many([healthy, misses, healthy], on_error="return")
     assert isinstance(second, ValueError)
     assert "fault.circle" in str(second)
     assert isinstance(first, meshtone.Signals) and isinstance(third, meshtone.Signals)
     with pytest.raises(ValueError, match=r"fault\.circle") as alone:
         simulate(misses)
     assert str(alone.value) == str(second)
+    # Unless asked for, the first error is that of all, and says whose it is.
+    with pytest.raises(ValueError) as of_all:
+        simulate_many([healthy, misses, misses])
+    assert str(of_all.value) == f"scenarios[1]: {second}"
+    with pytest.raises(ValueError, match="on_error = 'ignore': must be 'raise' or 'return'"):
+        simulate_many([healthy], on_error="ignore")  # type: ignore[call-overload]
 
 
 def test_what_is_not_a_scenario() -> None:
@@ -145,7 +148,7 @@ def test_many_refuse() -> None:
     with pytest.raises(ValueError, match="threads = -1: must be at least 1"):
         simulate_many([examples.healthy()], threads=-1)
     with pytest.raises(TypeError, match="simulate takes one"):
-        simulate_many(examples.healthy())  # type: ignore[arg-type]
+        simulate_many(examples.healthy())  # type: ignore[call-overload]
     with pytest.raises(TypeError, match=r"channels = 'axial_g': .*\['axial_g'\]"):
         simulate_many([examples.healthy()], channels="axial_g")
     assert simulate_many([]) == []
@@ -255,10 +258,10 @@ def test_many_simulations_warn_once_a_code() -> None:
     assert [str(warning.message).split(": ")[0] for warning in told if warning.message.code == "undercut"] == [  # type: ignore[union-attr]
         "3 of 4 simulations, the first"
     ]
-    codes = [result.warning_codes for result in made if isinstance(result, meshtone.Signals)]
+    codes = [result.warning_codes for result in made]
     assert ["undercut" in of_one for of_one in codes] == [False, True, True, True]
     alone = meshtone.simulate(healthy.copy(pinion_teeth=14, seed=0))
-    assert isinstance(made[1], meshtone.Signals) and made[1].warnings == alone.warnings
+    assert made[1].warnings == alone.warnings
 
 
 def test_signals_cannot_be_written_to(broken: meshtone.Simulation) -> None:
@@ -272,7 +275,6 @@ def test_signals_cannot_be_written_to(broken: meshtone.Simulation) -> None:
 def test_a_target_rate_is_met() -> None:
     scenario = examples.healthy().copy(sampling_rate_hz=2e4)
     [own], [at_rate] = simulate_many([scenario]), simulate_many([scenario], target_rate_hz=1e4)
-    assert isinstance(own, meshtone.Signals) and isinstance(at_rate, meshtone.Signals)
     assert at_rate.sampling_rate_hz == 1e4 and own.sampling_rate_hz > 1e4
     seconds = own.vertical_g.size / own.sampling_rate_hz
     assert at_rate.vertical_g.size == pytest.approx(seconds * 1e4, abs=1)
@@ -281,3 +283,24 @@ def test_a_target_rate_is_met() -> None:
     assert np.array_equal(meshtone.simulate(scenario).signals(1e4).vertical_g, at_rate.vertical_g)
     with pytest.raises(ValueError, match="own rate"):
         at_rate.process()
+    for refused in (0, -1, float("nan"), float("inf")):
+        with pytest.raises(ValueError, match=f"target_rate_hz = {refused}: must be more than 0, and finite"):
+            simulate_many([scenario], target_rate_hz=refused)
+        with pytest.raises(ValueError, match=f"target_rate_hz = {refused}: must be more than 0, and finite"):
+            own.at_rate(refused)
+    with pytest.raises(TypeError, match="target_rate_hz = '10 kHz': must be a number"):
+        own.at_rate("10 kHz")  # type: ignore[arg-type]
+
+
+def test_a_rate_below_the_mesh_is_told() -> None:
+    # 17 teeth at 40 Hz: 680 Hz.
+    scenario = examples.healthy().copy(sampling_rate_hz=2e4)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        [own] = simulate_many([scenario], target_rate_hz=1400)
+    with pytest.warns(meshtone.MeshtoneWarning, match=r"target_rate_hz = 1360: .* the mesh, whose frequency of 680 Hz is not below half"):
+        own = simulate(scenario).signals(1360)
+    assert own.sampling_rate_hz == 1360
+    fast = scenario.copy(pinion_speed_hz=50)
+    with pytest.warns(meshtone.MeshtoneWarning, match=r"frequency of 1 of 2 scenarios, the first of 850 Hz is not below half"):
+        simulate_many([scenario, fast], target_rate_hz=1500)

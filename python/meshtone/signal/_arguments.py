@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Sequence
+from typing import SupportsIndex
 
 import numpy as np
 import numpy.typing as npt
@@ -29,10 +31,23 @@ def read_only(values: Array) -> Array:
     return values
 
 
-def whole(name: str, value: int, least: int = 0) -> int:
-    """A whole number that an argument is, or an error that names it."""
+def positive(name: str, value: float) -> float:
+    """A number above 0 that an argument is, or an error that names it."""
     try:
-        number = operator.index(value)
+        number = float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} = {value!r}: must be a number") from None
+    if not 0 < number < math.inf:
+        raise ValueError(f"{name} = {number:g}: must be more than 0, and finite")
+    return number
+
+
+def whole(name: str, value: float | SupportsIndex, least: int = 0) -> int:
+    """A whole number that an argument is, also as a float, which computing makes of it; or an error that names the argument."""
+    if isinstance(value, (float, np.floating)) and value.is_integer():
+        value = int(value)
+    try:
+        number = operator.index(value)  # type: ignore[arg-type]  # a float is no index, which the error says
     except TypeError:
         raise TypeError(f"{name} = {value!r}: must be a whole number") from None
     if number < least:
