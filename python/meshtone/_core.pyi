@@ -135,6 +135,7 @@ def simulate_many(
     scenarios: Sequence[Scenario],
     channels: Sequence[str],
     threads: int | None,
+    stop_at_error: bool,
     progress: Callable[[int], None] | None,
 ) -> list[Any]: ...
 @final

@@ -27,8 +27,39 @@ LABELS = {
 
 
 def channel_label(channel: str) -> str:
-    """What an axis says of a channel: a sensor's is its name."""
-    return LABELS.get(channel) or f"{channel.removesuffix('_g').replace('_', ' ').capitalize()} (g)"
+    """What an axis says of a channel: a sensor's is its name; the unit where the name has it."""
+    if channel in LABELS:
+        return LABELS[channel]
+    return with_unit(channel.removesuffix("_g").replace("_", " ").capitalize(), unit_of(channel))
+
+
+def unit_of(channel: str) -> str:
+    """The unit of a channel, as its name has it; empty where it has none, as of a recording's."""
+    if channel in LABELS:
+        return LABELS[channel].rpartition("(")[2].rstrip(")")
+    return "g" if channel.endswith("_g") else ""
+
+
+def with_unit(quantity: str, unit: str) -> str:
+    """What an axis says of a quantity."""
+    return f"{quantity} ({unit})" if unit else quantity
+
+
+def indicators(values: Mapping[str, float], names: Sequence[str], channel: str) -> dict[str, str]:
+    """Rows of a table: some condition indicators of a channel; rms and peaks have its unit, the others none.
+
+    Parameters
+    ----------
+    values : mapping of str to float
+        All indicators.
+    names : sequence of str
+        Those that are shown, as far as they are there.
+    channel : str
+        The channel.
+    """
+    unit = unit_of(channel)
+    units = {name: unit if name.endswith(("_rms", "_peak_to_peak")) else "" for name in names}
+    return {name: f"{values[name]:.4g} {units[name]}".rstrip() for name in names if name in values}
 
 
 def page(title: str, *parts: str) -> str:

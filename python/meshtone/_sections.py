@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Iterable
+from collections.abc import Mapping
+from typing import Any
 
 from ._keys import SECTION_OF_KEY
+from ._names import hint
 
 OTHER_ARGUMENTS = ("fault", "faults", "sensors", "pinion_profile_errors_mm", "gear_profile_errors_mm")
 
@@ -15,10 +16,23 @@ FORMER_KEYS: dict[str, str] = {
 """What has become of keys that a scenario had before."""
 
 
-def hint(name: str, known: Iterable[str]) -> str:
-    """The known name that is meant, to be put behind an error; empty if none is near."""
-    near = difflib.get_close_matches(name, known, n=1)
-    return f"; did you mean '{near[0]}'?" if near else ""
+def with_whole_numbers(entries: Mapping[str, Any], types: Mapping[str, str]) -> dict[str, Any]:
+    """The same entries, with whole numbers where a key is one and computing made a float of it; others are left to be refused.
+
+    Parameters
+    ----------
+    entries : mapping
+        Numbers, lists and so on, by their keys.
+    types : mapping of str to str
+        What each key is, as the classes' annotations have it.
+    """
+    return {key: _as_whole(entry) if types.get(key, "").startswith("int") else entry for key, entry in entries.items()}
+
+
+def _as_whole(entry: Any) -> Any:
+    if isinstance(entry, list):
+        return [_as_whole(each) for each in entry]
+    return int(entry) if isinstance(entry, float) and entry.is_integer() else entry
 
 
 def check_key(key: str) -> None:

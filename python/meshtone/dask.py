@@ -7,7 +7,9 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 from . import _core
+from ._extras import extra
 from .datasets import Dataset, load_dataset
+from .signal._arguments import whole
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -52,15 +54,15 @@ def generate(
     FileNotFoundError, ValueError, OSError
         As :func:`meshtone.datasets.generate_dataset`.
     """
-    import pyarrow.dataset  # noqa: F401  # before hours of work, not after them
-    from distributed import as_completed
+    with extra("dask"):
+        import pyarrow.dataset  # noqa: F401  # before hours of work, not after them
+        from distributed import as_completed
 
     # Workers have working directories of their own.
     plan, path = os.path.abspath(plan), os.path.abspath(path)
     _core.check_plan(plan)
-    if parts is not None and parts < 1:
-        raise ValueError(f"parts = {parts}: must be at least 1")
-    count = parts or max(1, 4 * sum(client.nthreads().values()))
+    count = max(1, 4 * sum(client.nthreads().values())) if parts is None else whole("parts", parts, 1)
+    retries = whole("retries", retries)
     futures: list[Any] = [
         client.submit(_part, plan, path, number, count, pure=False, retries=retries) for number in range(1, count + 1)
     ]

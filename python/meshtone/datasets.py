@@ -37,9 +37,10 @@ dtype('float32')
 
 from __future__ import annotations
 
-import difflib
 import errno
 import json
+import os
+import stat
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from os import PathLike, fspath
@@ -50,7 +51,11 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, _display, _progress
+from ._extras import extra
+from ._files import written_whole
+from ._names import hint
 from ._warnings import warn
+from .signal._arguments import whole
 
 if TYPE_CHECKING:
     import pandas
@@ -123,11 +128,13 @@ def generate_dataset(
     KeyboardInterrupt
         Ctrl-C stops it; what is finished stays.
     """
-    import pyarrow.dataset  # noqa: F401  # before hours of work, not after them
+    with extra("datasets"):
+        import pyarrow.dataset  # noqa: F401  # before hours of work, not after them
 
     told = _progress.shown("records") if progress is True else (progress or None)
-    number, of = (1, 1) if part is None else part
-    remade = _core.generate_dataset(plan, fspath(path), jobs, number, of, told)
+    number, of = (1, 1) if part is None else _part(part)
+    threads = None if jobs is None else whole("jobs", jobs, 1)
+    remade = _core.generate_dataset(plan, fspath(path), threads, number, of, told)
     if remade:
         file, reason = remade[0]
         warn([f"{len(remade)} files were made again; {file}: {reason}"])
@@ -141,6 +148,14 @@ def generate_dataset(
             ]
         )
     return made
+
+
+def _part(part: tuple[int, int]) -> tuple[int, int]:
+    try:
+        number, of = part
+    except (TypeError, ValueError):
+        raise TypeError(f"part = {part!r}: must be (i, n) with i from 1 to n") from None
+    return whole("part[0]", number), whole("part[1]", of)
 
 
 def merge_datasets(
@@ -165,11 +180,15 @@ def merge_datasets(
 
     Raises
     ------
+    FileNotFoundError, NotADirectoryError
+        A part that is no directory, or has no data set in it.
     ValueError
         Parts of different plans; files that no part has, or that are damaged in all of them.
     OSError
         What kept it from being written.
     """
+    for part in parts:
+        _check_place(part, "plan.toml")
     _core.merge_datasets([fspath(part) for part in parts], fspath(path), verify)
     return load_dataset(path)
 
@@ -189,9 +208,12 @@ def verify_dataset(path: str | PathLike[str]) -> dict[str, str]:
 
     Raises
     ------
+    FileNotFoundError, NotADirectoryError
+        There is no such directory, or no data set in it.
     ValueError
-        There is no data set; a manifest that cannot be read, or of a later version.
+        A manifest that cannot be read, or of a later version.
     """
+    _check_place(path, "manifest.json")
     _, _, missing, problems = _core.verify_dataset(fspath(path), True)
     return {**problems, **dict.fromkeys(missing, "it is missing")}
 
@@ -212,8 +234,8 @@ def load_dataset(path: str | PathLike[str], *, verify: bool = False) -> Dataset:
 
     Raises
     ------
-    FileNotFoundError
-        There is no data set in this directory.
+    FileNotFoundError, NotADirectoryError
+        There is no such directory, or no data set in it.
     ValueError
         A file that the manifest does not name, or that has another size than it says; counts that disagree; a manifest of a later
         version; with `verify` whatever is not as it was written.
@@ -234,12 +256,12 @@ def load_dataset(path: str | PathLike[str], *, verify: bool = False) -> Dataset:
 
 
 def _open(path: str | PathLike[str], verify: bool = False) -> Dataset:
-    import pyarrow
-    import pyarrow.dataset
+    with extra("datasets"):
+        import pyarrow
+        import pyarrow.dataset
 
     folder = Path(path)
-    if not (folder / "manifest.json").exists():
-        raise FileNotFoundError(errno.ENOENT, "it holds no data set: there is no manifest.json in it", fspath(folder))
+    _check_place(folder, "manifest.json")
     _, names, _, problems = _core.verify_dataset(fspath(path), verify)
     # A data card that is missing is no reason not to read the data.
     wrong = {name: what for name, what in problems.items() if verify or name.startswith(("data/", "manifest.json"))}
@@ -255,6 +277,18 @@ def _open(path: str | PathLike[str], verify: bool = False) -> Dataset:
     # A part that has no shard of its own, the first there.
     schema = pyarrow.schema([("label", pyarrow.string()), ("split", pyarrow.string())])
     return Dataset(folder, pyarrow.dataset.dataset(schema.empty_table()), None)
+
+
+def _check_place(path: str | PathLike[str], file: str) -> None:
+    """Refuse a place without a data set, of which `file` is a part."""
+    name = fspath(path)
+    if "://" in name:
+        # An object store, which tells for itself.
+        return
+    if not stat.S_ISDIR(os.stat(name).st_mode):
+        raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR), name)
+    if not Path(name, file).exists():
+        raise FileNotFoundError(errno.ENOENT, f"it holds no data set: there is no {file} in it", name)
 
 
 class Dataset:
@@ -398,7 +432,8 @@ class Dataset:
             A column that there is not.
         """
         chosen = self.scalar_columns if columns is None else list(columns)
-        return self.to_arrow(chosen).to_pandas()
+        with extra("tables"):
+            return self.to_arrow(chosen).to_pandas()
 
     @property
     def scalar_columns(self) -> list[str]:
@@ -483,6 +518,7 @@ class Dataset:
         """
         self._check(columns or ())
         chosen = self.columns if columns is None else list(columns)
+        batch_size = whole("batch_size", batch_size, 1)
         signals = set(self.signal_columns)
         for batch in self._native.to_batches(columns=chosen, filter=self._filter, batch_size=batch_size):
             values = [
@@ -526,7 +562,7 @@ class Dataset:
     ) -> Any:
         """A ``torch.utils.data.Dataset`` of (signal, class number); its attribute ``classes`` has the labels.
 
-        Needs torch, which this package does not install. The labels are read at once; of the signals, the last file that was
+        Needs torch: ``pip install 'meshtone[torch]'``. The labels are read at once; of the signals, the last file that was
         asked for is kept in memory, so that reading in order is fast.
 
         Parameters
@@ -549,7 +585,8 @@ class Dataset:
         ValueError
             A column that there is not.
         """
-        from ._torch import TorchDataset
+        with extra("torch"):
+            from ._torch import TorchDataset
 
         self._check([signal, label])
         return TorchDataset(self, signal, label, transform)
@@ -571,7 +608,8 @@ class Dataset:
         ValueError
             A column that there is not; no records; more than the 2 GiB that a variable of such a file holds.
         """
-        import scipy.io
+        with extra("matlab"):
+            import scipy.io
 
         rows, size = [], 0
         for record in self.records(columns):
@@ -584,21 +622,14 @@ class Dataset:
         array = np.empty(len(rows), dtype=[(name, object) for name in rows[0]])
         for place, row in enumerate(rows):
             array[place] = tuple(np.nan if value is None else value for value in row.values())
-        target = Path(file)
-        beside = target.with_name(target.name + ".tmp")
-        try:
-            with beside.open("wb") as stream:
-                scipy.io.savemat(stream, {"records": array}, do_compression=True, long_field_names=True)
-            beside.replace(target)
-        finally:
-            beside.unlink(missing_ok=True)
+        with written_whole(file) as stream:
+            scipy.io.savemat(stream, {"records": array}, do_compression=True, long_field_names=True)
 
     def _check(self, columns: Sequence[str]) -> None:
         for name in columns:
             if name not in self.columns:
-                near = difflib.get_close_matches(name, self.columns, n=1)
-                hint = f"; did you mean '{near[0]}'?" if near else f", but {', '.join(self.columns)}"
-                raise ValueError(f"there is no column '{name}'{hint}")
+                meant = hint(name, self.columns) or f", but {', '.join(self.columns)}"
+                raise ValueError(f"there is no column '{name}'{meant}")
 
 
 def _signals_of(chunk: Any) -> list[FloatSignal]:

@@ -6,17 +6,16 @@ What the three modifications mean, and how they are tuned: the book's chapters "
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core, _progress
+from ._files import written_whole
 from .faults import in_words
 from .scenario import Scenario, native_scenario
 from .signal._arguments import signal_array, whole
@@ -145,11 +144,14 @@ class Tuning:
         ----------
         path : str or path
             The file; it appears whole or not at all.
+
+        Raises
+        ------
+        OSError
+            A directory, or what else kept it from being written.
         """
-        target = Path(path)
-        beside = target.with_name(target.name + ".tmp")
-        beside.write_text(self.tuned_toml, encoding="utf-8")
-        os.replace(beside, target)
+        with written_whole(path) as stream:
+            stream.write(self.tuned_toml.encode())
 
 
 def tune(experiment: str | PathLike[str], *, progress: bool | Callable[[int, int], None] = False) -> Tuning:

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from . import _core
+from .signal._arguments import whole
 
 __all__ = ["set_memory_limit"]
+
+LARGEST_BYTES = 2**64 - 1
+"""What a limit can be: no machine has more."""
 
 
 def set_memory_limit(limit_bytes: int | None) -> None:
@@ -23,7 +27,9 @@ def set_memory_limit(limit_bytes: int | None) -> None:
     Raises
     ------
     ValueError
-        A limit of 0.
+        A limit below 1.
+    TypeError
+        One that is no whole number.
 
     Examples
     --------
@@ -37,4 +43,4 @@ def set_memory_limit(limit_bytes: int | None) -> None:
     True
     >>> meshtone.set_memory_limit(None)
     """
-    _core.set_memory_limit(limit_bytes)
+    _core.set_memory_limit(None if limit_bytes is None else min(whole("limit_bytes", limit_bytes, 1), LARGEST_BYTES))

@@ -14,7 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from ._display import LABELS, channel_label
+from ._extras import extra
 from .faults import Fault, MissingTooth, PartialFace, Pits, RootCrack, ToothBreakage, Wear, in_words, numbers_of_teeth
+from .signal._arguments import whole
 from .simulation import chosen_channel
 
 if TYPE_CHECKING:
@@ -55,7 +57,8 @@ AROUND_DAMAGE = 8
 
 
 def _new_figure(size: tuple[float, float]) -> Figure:
-    import matplotlib.pyplot as plt
+    with extra("plot"):
+        import matplotlib.pyplot as plt
 
     return plt.figure(figsize=size, layout="constrained")
 
@@ -151,7 +154,7 @@ def plot_mesh_stiffness(
     ValueError
         Pitches before the first one, or none.
     """
-    first, last = pitches if pitches is not None else _around_damage(simulation)
+    first, last = _whole_pitches(pitches) if pitches is not None else _around_damage(simulation)
     if not 0 <= first < last:
         raise ValueError(f"pitches = {pitches}: must be from 0 or more to more than that")
     ax = _axes(ax)
@@ -181,6 +184,11 @@ def _damaged_teeth(simulation: Simulation, wheel: str) -> list[int]:
 
 def _teeth(simulation: Simulation, wheel: str) -> int:
     return simulation.scenario.pinion_teeth if wheel == "pinion" else simulation.scenario.gear_teeth
+
+
+def _whole_pitches(pitches: tuple[int, int]) -> tuple[int, int]:
+    first, last = pitches
+    return whole("pitches[0]", first), whole("pitches[1]", last)
 
 
 def _tint(ax: Axes, simulation: Simulation, wheels: Sequence[str], pitches: tuple[float, float]) -> None:
@@ -289,7 +297,7 @@ def plot_tooth(
     damaged = _damaged_teeth(simulation, wheel)
     if tooth is None:
         tooth = damaged[0] if damaged else 1
-    teeth = _teeth(simulation, wheel)
+    tooth, teeth = whole("tooth", tooth), _teeth(simulation, wheel)
     if not 1 <= tooth <= teeth:
         raise ValueError(f"tooth = {tooth}: must be from 1 to {teeth}, as many as the {wheel} has")
     ax = _axes(ax, (4.0, 4.0))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
 from typing import Union
@@ -11,7 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._names import hint
 from .scenario import Scenario
+from .signal._arguments import positive, whole
 
 __all__ = ["Recording", "read_recording"]
 
@@ -21,7 +23,7 @@ Column = Union[int, str]
 
 @dataclass(frozen=True)
 class Recording:
-    """Channels that were recorded together.
+    """Channels that were recorded together: as of a dictionary, ``recording["bearing"]`` has one, ``in`` and ``for`` go over the names.
 
     Attributes
     ----------
@@ -48,7 +50,22 @@ class Recording:
         try:
             return self.channels[name]
         except KeyError:
-            raise KeyError(f"no channel '{name}'; the recording has {', '.join(self.channels)}") from None
+            meant = hint(name, self.channels)
+            raise KeyError(f"no channel '{name}'; the recording has {', '.join(self.channels)}{meant}") from None
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.channels
+
+    def __iter__(self) -> Iterator[str]:
+        """The names of the channels, as of a dictionary."""
+        return iter(self.channels)
+
+    def __len__(self) -> int:
+        """How many channels there are."""
+        return len(self.channels)
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self.channels)
 
 
 def read_recording(
@@ -86,8 +103,8 @@ def read_recording(
 
     Raises
     ------
-    FileNotFoundError
-        There is no such file.
+    FileNotFoundError, IsADirectoryError, OSError
+        There is no such file; a folder that ``meshtone simulate`` did not write; what else the system refused.
     ValueError
         A broken file, a column that there is not, NaN, times that are not uniform, no sampling rate: with the place in the file.
 
@@ -102,12 +119,20 @@ def read_recording(
     Recording(sampling_rate_hz=100.0, start_s=0.0, units={'bearing': 'g'})
     >>> recording["bearing"]
     array([ 1.5 , -2.25,  0.5 ])
+    >>> "tacho" in recording, list(recording)
+    (False, ['bearing'])
     """
+    if isinstance(channels, str):
+        raise TypeError(f"channels = '{channels}': must be a sequence of names or numbers: ['{channels}']")
+    chosen = [_column("channels", column) for column in channels]
     sensitivities, named = dict(sensitivity_v_per_unit or {}), dict(units or {})
     calibrations = [
-        (channel, sensitivities.get(channel), named.get(channel)) for channel in {**sensitivities, **named}
+        (_column("sensitivity_v_per_unit, units", channel), sensitivities.get(channel), named.get(channel))
+        for channel in {**sensitivities, **named}
     ]
-    read = _core.read_recording(path, list(channels), sampling_rate_hz, variable, time, calibrations)
+    rate_hz = None if sampling_rate_hz is None else positive("sampling_rate_hz", sampling_rate_hz)
+    time = None if time is None else _column("time", time)
+    read = _core.read_recording(path, chosen, rate_hz, variable, time, calibrations)
     text = read["scenario_toml"]
     return Recording(
         sampling_rate_hz=read["sampling_rate_hz"],
@@ -116,3 +141,8 @@ def read_recording(
         units={name: unit for name, unit, _ in read["channels"]},
         scenario=None if text is None else Scenario.from_toml(text),
     )
+
+
+def _column(argument: str, column: Column) -> Column:
+    """A column's name, or its number, from 1."""
+    return column if isinstance(column, str) else whole(argument, column, 1)

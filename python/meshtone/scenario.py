@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -11,7 +12,8 @@ import numpy.typing as npt
 
 from . import _core, _display
 from ._keys import KEY_IN_FILE, REQUIRED_KEYS, SECTION_OF_KEY, ScenarioChanges, ScenarioKeys, Shaft, TipRelief, WheelInertia
-from ._sections import FORMER_KEYS, OTHER_ARGUMENTS, check_key, hint
+from ._names import hint
+from ._sections import FORMER_KEYS, OTHER_ARGUMENTS, check_key, with_whole_numbers
 from .faults import Fault, from_section, to_section
 from .sensors import Sensor, sections_of
 
@@ -47,9 +49,16 @@ brake_torque_nm=10.0, din_grade=7)
     _flat: dict[str, Any]
     _native: _core.Scenario
 
+    if not TYPE_CHECKING:  # the arguments are those of the base class
+
+        @functools.wraps(ScenarioKeys.__init__)
+        def __init__(self, *values: Any, **arguments: Any) -> None:
+            # Before Python says what is missing: a misspelt key is why.
+            for key in arguments:
+                check_key(key)
+            super().__init__(*values, **arguments)
+
     def _from_keys(self, arguments: dict[str, Any], unknown: dict[str, Any]) -> None:
-        for key in unknown:
-            check_key(key)
         self._set(_native_of({**arguments, **unknown}))
 
     def _set(self, native: _core.Scenario) -> None:
@@ -316,18 +325,17 @@ def native_scenario(scenario: Scenario) -> _core.Scenario:
 
 def _sections_of(arguments: Mapping[str, Any]) -> dict[str, Any]:
     sections: dict[str, Any] = {}
-    for key, value in arguments.items():
-        if value is None or key in OTHER_ARGUMENTS:
-            continue
+    given = {key: _plain(value) for key, value in arguments.items() if value is not None and key not in OTHER_ARGUMENTS}
+    for key, value in with_whole_numbers(given, ScenarioKeys.__annotations__).items():
         section = SECTION_OF_KEY[key]
         keys = sections.setdefault(section, {}) if section else sections
-        keys[KEY_IN_FILE.get(key, key)] = plain = _plain(value)
-        if isinstance(plain, int) and abs(plain) >= 2**63:
+        keys[KEY_IN_FILE.get(key, key)] = value
+        if isinstance(value, int) and abs(value) >= 2**63:
             raise ValueError(f"{key} = {value}: must be below 2**63 = {2**63}")
-    faults = [_plain(to_section(fault, name)) for name, fault in _faults_of(arguments)]
+    faults = [with_whole_numbers(_plain(to_section(fault, name)), type(fault).__annotations__) for name, fault in _faults_of(arguments)]
     if faults:
         sections["fault"] = faults[0] if len(faults) == 1 else faults
-    sensors = [_plain(section) for section in sections_of(arguments.get("sensors"))]
+    sensors = [with_whole_numbers(_plain(section), Sensor.__annotations__) for section in sections_of(arguments.get("sensors"))]
     if sensors:
         sections["sensor"] = sensors[0] if len(sensors) == 1 else sensors
     return sections

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, _display, _progress
-from ._sections import hint
+from ._names import hint
 from ._warnings import warn
 from .faults import in_words
 from .scenario import Scenario, native_scenario
@@ -603,7 +603,6 @@ def _page(of: Simulation | Signals, channel: str, rows: dict[str, str], remarks:
     turn_s = 1 / speed_hz if wheel == "pinion" else of.scenario.gear_teeth / (of.scenario.pinion_teeth * speed_hz)
     shown = signal[: round(2 * turn_s * of.sampling_rate_hz)]
     label = _display.channel_label(channel)
-    unit = label.rpartition("(")[2]
     span = (of.start_s, of.start_s + shown.size / of.sampling_rate_hz)
     pictures = [_display.curve(shown, span=span, over="Time (s)", label=label)]
     try:
@@ -616,9 +615,9 @@ def _page(of: Simulation | Signals, channel: str, rows: dict[str, str], remarks:
         pass
     else:
         names = ("difference_rms", "difference_kurtosis", "fm0")
-        rows = rows | {name: f"{record.indicators[name]:.4g}" for name in names if name in record.indicators}
+        rows = rows | _display.indicators(record.indicators, names, channel)
         over = f"Angle of the {wheel} (revolutions)"
-        pictures.append(_display.curve(record.difference, span=(0.0, 1.0), over=over, label=f"Difference ({unit}"))
+        pictures.append(_display.curve(record.difference, span=(0.0, 1.0), over=over, label=_display.with_unit("Difference", _display.unit_of(channel))))
     return _display.page(type(of).__name__, _display.table(rows), *pictures, _display.remarks(remarks))
 
 
@@ -695,9 +694,8 @@ def trace(scenario: Scenario, *, average_rate_hz: float | None = None) -> dict[s
     >>> trace(examples.healthy())["acceleration"].shape
     (4000, 13)
     """
-    if average_rate_hz is not None and not average_rate_hz > 0:
-        raise ValueError(f"average_rate_hz = {average_rate_hz}: must be more than 0")
-    return _core.trace(native_scenario(scenario), average_rate_hz)
+    rate_hz = None if average_rate_hz is None else positive("average_rate_hz", average_rate_hz)
+    return _core.trace(native_scenario(scenario), rate_hz)
 
 
 @overload
@@ -741,8 +739,8 @@ def simulate_many(
     target_rate_hz : float, optional
         (S/s) The rate of the results, met exactly by resampling, as of :meth:`Signals.at_rate`; by default the simulations' own.
     on_error : {'raise', 'return'}
-        What becomes of the error of a scenario that cannot be simulated: it is raised, with the scenario's index, or it stands in the
-        place of the signals and stops no other.
+        What becomes of the error of a scenario that cannot be simulated: it is raised, with the scenario's index, and what has not
+        begun is not simulated any more; or it stands in the place of the signals and stops no other.
     threads : int, optional
         How many; all cores by default. Results do not depend on it.
     progress : bool or callable, optional
@@ -787,8 +785,10 @@ def simulate_many(
     ask = _progress.shown("simulations") if progress is True else (progress or None)
     told = None if ask is None else functools.partial(_tell, ask, len(scenarios))
     native = [native_scenario(scenario) for scenario in scenarios]
-    results = _core.simulate_many(native, list(channels), None if threads is None else whole("threads", threads, 1), told)
-    if on_error == "raise":
+    most = None if threads is None else whole("threads", threads, 1)
+    raises = on_error == "raise"
+    results = _core.simulate_many(native, list(channels), most, raises, told)
+    if raises:
         _raise_first(results)
     made = [_signals(scenario, result) for scenario, result in zip(scenarios, results)]
     _warn_of_many([result for result in made if isinstance(result, Signals)])

@@ -1,4 +1,4 @@
-"""The chain as a transformer of scikit-learn, which must be installed: ``pip install scikit-learn``."""
+"""The chain as a transformer of scikit-learn, which must be installed: ``pip install 'meshtone[sklearn]'``."""
 
 from __future__ import annotations
 
@@ -7,10 +7,14 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from sklearn.base import BaseEstimator, TransformerMixin
-from sklearn.utils.validation import check_is_fitted
 
+from ._extras import extra
+from ._names import hint
 from .signal import Record, ShaftPhase, process_channel
+
+with extra("sklearn"):
+    from sklearn.base import BaseEstimator, TransformerMixin
+    from sklearn.utils.validation import check_is_fitted
 
 __all__ = ["IndicatorTransformer"]
 
@@ -30,9 +34,10 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):  # type: ignore[mis
     teeth : int
         Of the wheel.
     indicators : sequence of str, optional
-        Names of those that are wanted, as ``record.indicators`` has them; all by default.
+        Names of those that are wanted, as ``record.indicators`` has them; all by default. Units, formulas and sources:
+        :class:`meshtone.signal.Indicators`.
     sidebands : int, optional
-        Sidebands on either side of each mesh harmonic that belong to the regular part.
+        Sidebands on either side of each mesh harmonic that belong to the regular part; 2 by default.
 
     Examples
     --------
@@ -68,8 +73,14 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):  # type: ignore[mis
         Parameters
         ----------
         X : array_like, shape (records, samples)
-            The records.
+            (any unit) The records.
         y : ignored
+
+        Raises
+        ------
+        ValueError
+            An array of another number of dimensions, or without records; masked values; an indicator that there is not; a first record
+            that :func:`meshtone.process_channel` refuses.
         """
         records = _records(X)
         self.n_features_in_ = records.shape[1]
@@ -77,7 +88,7 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):  # type: ignore[mis
         asked = known if self.indicators is None else list(self.indicators)
         unknown = [name for name in asked if name not in known]
         if unknown:
-            raise ValueError(f"indicators: there is no '{unknown[0]}'; there are {', '.join(known)}")
+            raise ValueError(f"indicators: there is no '{unknown[0]}'; there are {', '.join(known)}{hint(unknown[0], known)}")
         self.names_ = asked
         return self
 
@@ -87,12 +98,19 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):  # type: ignore[mis
         Parameters
         ----------
         X : array_like, shape (records, samples)
-            The records; they may be longer or shorter than those of ``fit``.
+            (any unit) The records; they may be longer or shorter than those of ``fit``.
 
         Returns
         -------
         array, shape (records, indicators)
-            NaN where one is not defined.
+            Rms and peak-to-peak in the records' unit, the others without one; NaN where one is not defined.
+
+        Raises
+        ------
+        ValueError
+            As :meth:`fit`, of any record.
+        sklearn.exceptions.NotFittedError
+            :meth:`fit` has not been called.
         """
         check_is_fitted(self)
         names = self.names_

@@ -248,13 +248,29 @@ def test_refused(gears: datasets.Dataset, tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError, match="holds no data set") as absent:
         datasets.load_dataset(tmp_path)
     assert (absent.value.errno, absent.value.filename) == (errno.ENOENT, str(tmp_path))
+    with pytest.raises(FileNotFoundError, match="holds no data set"):
+        datasets.verify_dataset(tmp_path)
     (tmp_path / "file").touch()
+    places = {"absent": (FileNotFoundError, errno.ENOENT), "file": (NotADirectoryError, errno.ENOTDIR)}
+    for name, (kind, number) in places.items():
+        place = str(tmp_path / name)
+        for call in (datasets.load_dataset, datasets.verify_dataset, lambda place: datasets.merge_datasets([place], tmp_path / "set")):
+            with pytest.raises(kind) as wrong_place:
+                call(place)
+            assert (wrong_place.value.errno, wrong_place.value.filename) == (number, place)
+    with pytest.raises(IsADirectoryError) as directory:
+        gears.to_mat(tmp_path)
+    assert directory.value.filename == str(tmp_path)
     with pytest.raises(OSError) as refused:
         datasets.generate_dataset(plan, tmp_path / "file")
     assert refused.value.errno
     assert refused.value.filename
     with pytest.raises(ValueError, match=r"part = \(3, 2\)"):
         datasets.generate_dataset(plan, tmp_path / "set", part=(3, 2))
+    with pytest.raises(TypeError, match=r"part = 3: must be \(i, n\)"):
+        datasets.generate_dataset(plan, tmp_path / "set", part=3)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match=r"jobs = 2\.5: must be a whole number"):
+        datasets.generate_dataset(plan, tmp_path / "set", jobs=2.5)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="jobs = 0"):
         datasets.generate_dataset(plan, tmp_path / "set", jobs=0)
     plan.write_text(PLAN.replace("uniform = [20.0, 50.0]", "uniform = [50.0, 20.0]"), encoding="utf-8")
@@ -274,6 +290,13 @@ def stand_in_for_torch(monkeypatch: pytest.MonkeyPatch) -> None:
     vars(utils)["data"] = data
     for module in (torch, utils, data):
         monkeypatch.setitem(sys.modules, module.__name__, module)
+
+
+def test_without_torch(gears: datasets.Dataset, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "torch", None)
+    monkeypatch.delitem(sys.modules, "meshtone._torch", raising=False)
+    with pytest.raises(ModuleNotFoundError, match=r"torch is not installed: pip install 'meshtone\[torch\]'"):
+        gears.to_torch("average_g")
 
 
 def test_torch(gears: datasets.Dataset, monkeypatch: pytest.MonkeyPatch) -> None:

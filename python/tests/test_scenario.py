@@ -150,6 +150,10 @@ def test_a_fault_on_several_teeth(tooth: Any) -> None:
 def test_keys_that_there_are_not() -> None:
     with pytest.raises(TypeError, match="no key 'modul_mm'; did you mean 'module_mm'"):
         Scenario(**REQUIRED, modul_mm=3)  # type: ignore[arg-type]
+    # A misspelt key is why one is missing: that is said, not only what is missing.
+    others = {key: value for key, value in REQUIRED.items() if key != "module_mm"}
+    with pytest.raises(TypeError, match="no key 'Modul_mm'; did you mean 'module_mm'"):
+        Scenario(**others, Modul_mm=3)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="no key 'speed'"):
         examples.healthy().copy(speed=3)  # type: ignore[call-arg]
     with pytest.raises(TypeError, match="fault = 'broken'"):
@@ -210,3 +214,15 @@ def test_faults_say_which_argument_is_meant() -> None:
     assert pits == meshtone.Pits(random=meshtone.RandomPits(**drawn))
     with pytest.raises(TypeError, match=r"RandomPits has no argument 'radius'; did you mean 'radius_mm'\?"):
         meshtone.Pits(random={"radius": 1})  # type: ignore[arg-type]
+
+
+def test_whole_numbers_may_be_floats() -> None:
+    computed = {key: float(value) if key.endswith("teeth") else value for key, value in REQUIRED.items()}
+    sensors = [meshtone.Sensor(range_g=50, bits=16.0)]  # type: ignore[arg-type]
+    for number in (float, np.float32):
+        tooth = [number(3), number(4)]
+        scenario = Scenario(**computed, seed=number(2), fault=meshtone.MissingTooth(tooth=tooth), sensors=sensors)  # type: ignore[arg-type]
+        assert (scenario.pinion_teeth, scenario.seed, scenario.faults[0].tooth, scenario.sensors[0].bits) == (17, 2, [3, 4], 16)
+        assert Scenario.from_toml(scenario.to_toml()) == scenario
+    with pytest.raises(ValueError, match=r"gears.pinion_teeth = 17.5: must be a whole number"):
+        examples.healthy().copy(pinion_teeth=17.5)

@@ -105,6 +105,8 @@ def test_resample() -> None:
     half = signal.resample(tone, RATE_HZ, RATE_HZ / 2, edge="periodic")
     assert half.size == 5000
     assert np.allclose(half, tone[::2], atol=2e-3)
+    with pytest.raises(ValueError, match="sample 7 is nan; 1 of 10000 samples are not finite numbers"):
+        signal.resample(np.where(np.arange(10_000) == 7, np.nan, tone), RATE_HZ, 5000)
     with pytest.raises(ValueError, match="edge = 'mirror'"):
         signal.resample(tone, RATE_HZ, 5000, edge="mirror")  # type: ignore[arg-type]
 
@@ -135,6 +137,8 @@ def test_arguments_that_are_refused() -> None:
         signal.process_channel(tone * 1j, phase, TEETH)
     with pytest.raises(TypeError, match=r"teeth = 19\.5: must be a whole number"):
         signal.process_channel(tone, phase, 19.5)  # type: ignore[arg-type]
+    # Whole numbers that were computed are whole numbers.
+    assert signal.process_channel(tone, phase, np.float64(19), sidebands=2.0).teeth == 19  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="sidebands = -1: must be at least 0"):
         signal.process_channel(tone, phase, TEETH, sidebands=-1)
     with pytest.raises(ValueError, match="samples = -5: must be at least 0"):
@@ -212,3 +216,32 @@ def test_a_transformer_of_scikit_learn() -> None:
         chain.set_params(indicators=["fm5"]).fit(records)
     with pytest.raises(ValueError, match=r"given is one of shape \(10000,\)"):
         chain.fit(records[0])
+
+
+def test_an_indicator_that_there_is_not() -> None:
+    tone = vibration()
+    record = signal.process_channel(tone, ShaftPhase.constant(SHAFT_HZ, RATE_HZ, tone.size), TEETH)
+    assert isinstance(record.indicators, signal.Indicators) and len(record.indicators) == 32
+    with pytest.raises(KeyError, match="there is no indicator 'FM4'; did you mean 'fm4'[?] There are average_rms, .*sideband_level_factor"):
+        _ = record.indicators["FM4"]
+    with pytest.raises(KeyError, match="did you mean 'average_kurtosis' or .* or 'envelope_kurtosis'[?]"):
+        _ = record.indicators["kurtosis"]
+    with pytest.raises(KeyError, match="there is no indicator 'xyz'; there are average_rms"):
+        _ = record.indicators["xyz"]
+    assert record.indicators.get("FM4") is None
+    assert pickle.loads(pickle.dumps(record)).indicators == record.indicators
+
+
+def test_every_indicator_is_documented() -> None:
+    """With its unit, what it refuses, and where it is from."""
+    of_gears = (signal.fm0, signal.fm4, signal.m6a, signal.m8a, signal.na4, signal.energy_ratio, signal.sideband_level_factor)
+    text = signal.Indicators.__doc__ or ""
+    tone = vibration()
+    record = signal.process_channel(tone, ShaftPhase.constant(SHAFT_HZ, RATE_HZ, tone.size), TEETH)
+    for name in record.indicators:
+        part, _, shape = name.partition("_")
+        assert f"``{name}``" in text or (f"``{part}``" in text and f"``…_{shape}``" in text), name
+    functions = (*of_gears, signal.statistics, signal.envelope, signal.envelope_spectrum, signal.separate, signal.tsa)
+    for function in functions:
+        documented = function.__doc__ or ""
+        assert all(heading in documented for heading in ("unit", "shape", "Returns", "Raises", "Notes", "Examples")), function.__name__

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pickle
 import signal
+import subprocess
+import sys
 import threading
 import time
 import warnings
@@ -119,6 +121,10 @@ def test_many_keep_the_errors_in_their_places() -> None:
     with pytest.raises(ValueError) as of_all:
         simulate_many([healthy, misses, misses])
     assert str(of_all.value) == f"scenarios[1]: {second}"
+    told: list[tuple[int, int]] = []
+    with pytest.raises(ValueError, match=r"^scenarios\[0\]: "):
+        simulate_many([misses, *[healthy] * 400], threads=1, progress=lambda done, of: told.append((done, of)))
+    assert told[-1][0] < told[-1][1] == 401
     with pytest.raises(ValueError, match="on_error = 'ignore': must be 'raise' or 'return'"):
         simulate_many([healthy], on_error="ignore")  # type: ignore[call-overload]
 
@@ -304,3 +310,29 @@ def test_a_rate_below_the_mesh_is_told() -> None:
     fast = scenario.copy(pinion_speed_hz=50)
     with pytest.warns(meshtone.MeshtoneWarning, match=r"frequency of 1 of 2 scenarios, the first of 850 Hz is not below half"):
         simulate_many([scenario, fast], target_rate_hz=1500)
+
+
+def test_a_memory_limit_that_is_refused() -> None:
+    for limit_bytes in (0, -1):
+        with pytest.raises(ValueError, match=f"limit_bytes = {limit_bytes}: must be at least 1"):
+            meshtone.set_memory_limit(limit_bytes)
+    with pytest.raises(TypeError, match="limit_bytes = '1 GB': must be a whole number"):
+        meshtone.set_memory_limit("1 GB")  # type: ignore[arg-type]
+    for large_bytes in (8e9, 1e30):
+        meshtone.set_memory_limit(large_bytes)  # type: ignore[arg-type]
+    meshtone.set_memory_limit(None)
+
+
+@pytest.mark.parametrize(
+    ("missing", "extra", "use"),
+    [
+        ("matplotlib", "plot", "meshtone.simulate(meshtone.examples.healthy().copy(sampling_rate_hz=1e4)).plot_signal()"),
+        ("pyarrow", "datasets", "meshtone.load_dataset('gears')"),
+        ("sklearn", "sklearn", "import meshtone.sklearn"),
+        ("distributed", "dask", "from meshtone import dask; dask.generate('plan.toml', 'gears', None)"),
+    ],
+)
+def test_what_is_not_installed_is_told_with_its_extra(missing: str, extra: str, use: str) -> None:
+    program = f"import sys; sys.modules['{missing}'] = None\nimport meshtone\n{use}"
+    done = subprocess.run([sys.executable, "-W", "ignore", "-c", program], capture_output=True, text=True, check=False)
+    assert f"ModuleNotFoundError: {missing} is not installed: pip install 'meshtone[{extra}]'" in done.stderr

@@ -13,13 +13,15 @@ use crate::error::{simulation_error, value_error};
 use crate::interrupt::interruptible;
 use crate::scenario::Scenario;
 
-/// Simulates scenarios side by side; of each a dictionary of its channels, or the error that it gave.
+/// Simulates scenarios side by side; of each a dictionary of its channels, or the error that it gave. Where the first error is that
+/// of all, what has not begun is left out then.
 #[pyfunction]
 pub fn simulate_many<'py>(
     py: Python<'py>,
     scenarios: Vec<PyRef<'py, Scenario>>,
     channels: Vec<String>,
     threads: Option<usize>,
+    stop_at_error: bool,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Vec<Bound<'py, PyAny>>> {
     let sensors = listed(scenarios.iter().map(|scenario| &scenario.0));
@@ -41,7 +43,12 @@ pub fn simulate_many<'py>(
             let control = Control { progress: &told, cancelled, ..Control::default() };
             let mut results = Vec::with_capacity(scenarios.len());
             pool.install(|| {
-                simulate(scenarios, &KeepObserved::new(kept), &control, |_, result| results.push(result));
+                simulate(scenarios, &KeepObserved::new(kept), &control, |_, result| {
+                    if stop_at_error && result.is_err() {
+                        cancelled.store(true, Ordering::Relaxed);
+                    }
+                    results.push(result);
+                });
             });
             results
         },

@@ -40,20 +40,24 @@ pub fn read_error(path: &Path, error: &ReadScenarioError) -> PyErr {
             Some(help) => PyValueError::new_err(format!("{error}\n{help}")),
             None => value_error(error),
         },
-        _ => file_error(path, error),
+        ReadScenarioError::Unreadable { source, .. } => file_error(path, Some(source), error),
+        _ => file_error(path, None, error),
     }
 }
 
-/// A file that could not be read: absent, or with bad content.
-pub fn file_error(path: &Path, error: impl Display) -> PyErr {
-    if path.exists() {
-        return value_error(error);
+/// A file that could not be read: what the system refused, or bad content.
+///
+/// # Arguments
+/// * `path` - the file
+/// * `source` - why it could not be opened or read, if that is what is wrong
+/// * `error` - the same in words
+pub fn file_error(path: &Path, source: Option<&io::Error>, error: impl Display) -> PyErr {
+    let name = || path.to_string_lossy().into_owned();
+    match source.filter(|source| source.raw_os_error().is_some()) {
+        Some(source) => os_error("read", name(), source),
+        None if path.exists() => value_error(error),
+        None => PyFileNotFoundError::new_err((NOT_FOUND, "No such file or directory", name())),
     }
-    PyFileNotFoundError::new_err((
-        NOT_FOUND,
-        "No such file or directory",
-        path.to_string_lossy().into_owned(),
-    ))
 }
 
 /// What the system refused, as the subclass of `OSError` that Python has for it, with `errno` and `filename`.
@@ -64,7 +68,12 @@ pub fn file_error(path: &Path, error: impl Display) -> PyErr {
 /// * `source` - why
 pub fn os_error(doing: &str, name: String, source: &io::Error) -> PyErr {
     match source.raw_os_error() {
-        Some(number) => PyOSError::new_err((number, format!("cannot {doing}: {source}"), name)),
+        Some(number) => {
+            let reason = source.to_string();
+            // Python tells the number by itself.
+            let words = reason.strip_suffix(&format!(" (os error {number})")).unwrap_or(&reason);
+            PyOSError::new_err((number, format!("cannot {doing}: {words}"), name))
+        }
         None => PyOSError::new_err(format!("cannot {doing} {name}: {source}")),
     }
 }

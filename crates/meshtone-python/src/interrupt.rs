@@ -35,7 +35,8 @@ pub fn interruptible<T: Send>(
                 match from.recv_timeout(INTERVAL) {
                     Err(RecvTimeoutError::Timeout) if outcome.is_ok() => {
                         outcome = Python::attach(|py| py.check_signals().and_then(|()| while_waiting(py)));
-                        cancelled.store(outcome.is_err(), Ordering::Relaxed);
+                        // The work may have set it too.
+                        cancelled.fetch_or(outcome.is_err(), Ordering::Relaxed);
                     }
                     Err(RecvTimeoutError::Timeout) => {}
                     Ok(result) => break Some(result),

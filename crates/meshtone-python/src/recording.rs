@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use meshtone_io::recording::{self, Calibration, ColumnChoice, RecordingOptions, TimeColumn};
+use meshtone_io::recording::{
+    self, Calibration, ColumnChoice, ReadRecordingError, RecordingOptions, TimeColumn,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -52,8 +54,13 @@ pub fn read_recording<'py>(
         calibrations,
         ..RecordingOptions::default()
     };
-    let read =
-        py.detach(|| recording::read_recording(&path, &options)).map_err(|error| file_error(&path, error))?;
+    let read = py.detach(|| recording::read_recording(&path, &options)).map_err(|error| {
+        let source = match &error {
+            ReadRecordingError::Unreadable { source, .. } => Some(source),
+            _ => None,
+        };
+        file_error(&path, source, &error)
+    })?;
     let all = PyDict::new(py);
     all.set_item("sampling_rate_hz", read.sampling_rate_hz)?;
     all.set_item("start_s", read.start_s)?;

@@ -1,12 +1,12 @@
 //! What is simulated.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use meshtone::scenario::{self, ProfileErrors, ScenarioError};
 use meshtone::sensor::Channel;
 use meshtone::wheel::ErrorTable;
 use meshtone_io::memory;
-use meshtone_io::scenario_file::{ReadScenarioError, read_scenario};
+use meshtone_io::scenario_file::read_scenario;
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -14,7 +14,7 @@ use pyo3::types::PyDict;
 use toml::Table;
 
 use crate::array::array;
-use crate::error::{file_error, scenario_error, value_error};
+use crate::error::{read_error, scenario_error, value_error};
 use crate::value::{dictionary, table};
 
 /// A scenario as the library has it.
@@ -61,14 +61,7 @@ impl Scenario {
     /// From a scenario file, and the files that it names.
     #[staticmethod]
     fn from_file(path: PathBuf) -> PyResult<Self> {
-        read_scenario(&path).map(Self).map_err(|error| {
-            let help = match &error {
-                ReadScenarioError::Invalid { error, .. } => error.help.clone(),
-                _ => None,
-            };
-            let problem = describe(&path, error);
-            file_error(&path, help.map_or_else(|| problem.clone(), |help| format!("{problem}\n{help}")))
-        })
+        read_scenario(&path).map(Self).map_err(|error| read_error(&path, &error))
     }
 
     /// As the text of a scenario file.
@@ -126,19 +119,6 @@ pub fn template(kind: &str) -> PyResult<String> {
 /// The error without the line: the text was made from Python's values.
 fn without_line(error: ScenarioError) -> PyErr {
     scenario_error(&error.at_line(None))
-}
-
-fn describe(path: &Path, error: ReadScenarioError) -> String {
-    let mut text = error.to_string();
-    let mut source = std::error::Error::source(&error);
-    while let Some(cause) = source {
-        let cause_text = cause.to_string();
-        if !text.contains(&cause_text) {
-            text = format!("{text}: {cause_text}");
-        }
-        source = cause.source();
-    }
-    if text.contains(&path.display().to_string()) { text } else { format!("{}: {text}", path.display()) }
 }
 
 fn matrix(array: &PyReadonlyArray2<'_, f64>) -> ErrorTable {

@@ -22,7 +22,7 @@ A rig's recording with a tachometer:
 
 from .angular import AngularSignal, angular_resample, resample, synchronous_average
 from .at_once import difference, tsa
-from .indicators import energy_ratio, fm0, fm4, m6a, m8a, na4, sideband_level_factor, statistics
+from .indicators import Indicators, energy_ratio, fm0, fm4, m6a, m8a, na4, sideband_level_factor, statistics
 from .phase import ShaftPhase, repair_pulses, tachometer_pulses
 from .record import Record, process_channel, process_series
 from .separation import Parts, separate
@@ -31,6 +31,7 @@ from .told import Misfit, misfit
 
 __all__ = [
     "AngularSignal",
+    "Indicators",
     "Misfit",
     "Parts",
     "Record",

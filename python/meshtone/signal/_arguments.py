@@ -25,6 +25,15 @@ def signal_array(values: npt.ArrayLike) -> Array:
     return np.ascontiguousarray(array, dtype=np.float64)
 
 
+def finite_signal(values: npt.ArrayLike) -> Array:
+    """A signal without NaN or infinity."""
+    array = signal_array(values)
+    wrong = np.flatnonzero(~np.isfinite(array))
+    if wrong.size:
+        raise ValueError(f"sample {wrong[0]} is {array[wrong[0]]}; {wrong.size} of {array.size} samples are not finite numbers")
+    return array
+
+
 def read_only(values: Array) -> Array:
     """What is handed out of an object: changing it would change what the object says of itself."""
     values.flags.writeable = False

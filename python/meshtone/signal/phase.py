@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from .. import _core
 from .._warnings import warn
-from ._arguments import Array, read_only, signal_array, teeth_number, whole
+from ._arguments import Array, positive, read_only, signal_array, teeth_number, whole
 
 
 class ShaftPhase:
@@ -21,6 +21,11 @@ class ShaftPhase:
         (rev) Angle at each sample; it rises.
     first_sample : int
         Number of the recording's sample that the first angle belongs to.
+
+    Raises
+    ------
+    ValueError
+        NaN; fewer than two angles; one that is not larger than the one before it: the shaft stands still or turns backwards.
 
     Examples
     --------
@@ -57,6 +62,11 @@ class ShaftPhase:
             (S/s) Of the recording.
         samples : int
             Length of the recording.
+
+        Raises
+        ------
+        ValueError
+            A speed or rate that is not above 0; fewer than two samples.
         """
         return cls._wrap(_core.ShaftPhase.constant(speed_hz, sampling_rate_hz, whole("samples", samples)))
 
@@ -74,7 +84,7 @@ class ShaftPhase:
 
         Parameters
         ----------
-        time_s : array_like
+        time_s : array_like, shape (pulses,)
             (s) Times of the pulses; 0 is the first sample.
         pulses_per_revolution : int
             At least 1.
@@ -88,7 +98,12 @@ class ShaftPhase:
         Raises
         ------
         ValueError
-            Pulses that are equal or out of order, or that cannot be mended; a stated speed that is not theirs.
+            Fewer than three pulses; some that are equal or out of order, or that cannot be mended; a stated speed that is not theirs.
+
+        Notes
+        -----
+        Between the pulses the angle follows monotone cubics: F. N. Fritsch, R. E. Carlson, "Monotone piecewise cubic interpolation",
+        SIAM Journal on Numerical Analysis 17 (1980) 238–246.
         """
         native = _core.ShaftPhase.from_pulses(
             signal_array(time_s),
@@ -103,18 +118,23 @@ class ShaftPhase:
     def from_speed_profile(
         cls, time_s: npt.ArrayLike, speed_hz: npt.ArrayLike, sampling_rate_hz: float, samples: int
     ) -> ShaftPhase:
-        """From a speed that is known at some times, with straight lines between them.
+        """From a speed that is known at some times, with straight lines between them, which are integrated exactly.
 
         Parameters
         ----------
-        time_s : array_like
+        time_s : array_like, shape (points,)
             (s) Times; 0 is the first sample.
-        speed_hz : array_like
+        speed_hz : array_like, shape (points,)
             (rev/s) Speed at them.
         sampling_rate_hz : float
             (S/s) Of the recording.
         samples : int
             Length of the recording.
+
+        Raises
+        ------
+        ValueError
+            NaN; another number of speeds than of times; times that do not rise; a speed that is not above 0.
         """
         times, speeds = signal_array(time_s), signal_array(speed_hz)
         return cls._told(
@@ -123,7 +143,7 @@ class ShaftPhase:
 
     @classmethod
     def from_speed_samples(cls, speed_hz: npt.ArrayLike, sampling_rate_hz: float) -> ShaftPhase:
-        """From the speed at every sample.
+        """From the speed at every sample, by the trapezoidal rule.
 
         Parameters
         ----------
@@ -131,6 +151,11 @@ class ShaftPhase:
             (rev/s) Speed.
         sampling_rate_hz : float
             (S/s) Of the recording.
+
+        Raises
+        ------
+        ValueError
+            NaN; fewer than two samples; a shaft that stands still or turns backwards.
         """
         return cls._wrap(_core.ShaftPhase.from_speed_samples(signal_array(speed_hz), sampling_rate_hz))
 
@@ -150,7 +175,7 @@ class ShaftPhase:
         Parameters
         ----------
         signal : array_like, shape (samples,)
-            The vibration.
+            (any unit) The vibration.
         sampling_rate_hz : float
             (S/s) Its sampling rate.
         teeth : int
@@ -160,7 +185,17 @@ class ShaftPhase:
         harmonic : int
             Which mesh harmonic is followed.
         half_band_hz : float, optional
-            (Hz) Half width of the band around it.
+            (Hz) Half width of the band around it; half of ``shaft_hz`` by default, without the sidebands of one revolution.
+
+        Raises
+        ------
+        ValueError
+            NaN, a constant signal; no mesh tone stands out in the band; a band beyond half the sampling rate.
+
+        Notes
+        -----
+        F. Bonnardot, M. El Badaoui, R. B. Randall, J. Danière, F. Guillet, "Use of the acceleration signal of a gearbox in order to
+        perform angular resampling", Mechanical Systems and Signal Processing 19 (2005) 766–785.
         """
         native = _core.ShaftPhase.from_mesh_tone(
             signal_array(signal), sampling_rate_hz, teeth_number(teeth), shaft_hz, whole("harmonic", harmonic, 1), half_band_hz
@@ -168,7 +203,7 @@ class ShaftPhase:
         return cls._told(native)
 
     def of_mate(self, teeth: int, mate_teeth: int) -> ShaftPhase:
-        """Phase of the other shaft.
+        """Phase of the other shaft: this one times ``teeth / mate_teeth``.
 
         Parameters
         ----------
@@ -176,6 +211,11 @@ class ShaftPhase:
             Of the wheel on this shaft.
         mate_teeth : int
             Of the wheel on the other.
+
+        Raises
+        ------
+        ValueError
+            A number of teeth below 1.
         """
         return ShaftPhase._wrap(self._native.of_mate(teeth_number(teeth), whole("mate_teeth", mate_teeth, 1)))
 
@@ -204,8 +244,13 @@ class ShaftPhase:
         ----------
         sampling_rate_hz : float
             (S/s) Of the recording.
+
+        Raises
+        ------
+        ValueError
+            A rate that is not above 0.
         """
-        return self._native.mean_speed_hz(sampling_rate_hz)
+        return self._native.mean_speed_hz(positive("sampling_rate_hz", sampling_rate_hz))
 
     def __repr__(self) -> str:
         revolutions = self.revolutions
@@ -233,16 +278,16 @@ def tachometer_pulses(
     hysteresis: float | None = None,
     edge: Literal["rising", "falling"] = "rising",
 ) -> Array:
-    """Times at which a tachometer's waveform crosses the threshold.
+    """Times at which a tachometer's waveform crosses the threshold, on straight lines between its samples.
 
     Parameters
     ----------
     waveform : array_like, shape (samples,)
-        The tachometer's channel.
+        (any unit) The tachometer's channel.
     sampling_rate_hz : float
         (S/s) Its sampling rate.
     threshold : float, optional
-        (the waveform's unit) By default the middle of its levels.
+        (the waveform's unit) By default the middle of its levels, which are the quantiles of 0.5 and 99.5 %.
     hysteresis : float, optional
         (the waveform's unit) How far it must go back before another pulse counts. By default 0.2 of the levels' distance.
     edge : {'rising', 'falling'}
@@ -264,14 +309,17 @@ def tachometer_pulses(
 def repair_pulses(time_s: npt.ArrayLike) -> tuple[Array, list[str]]:
     """Put missing pulses in and take doubled ones out.
 
+    Each interval is compared with the median of four neighbours on each side: below half of it the later pulse is one too many, above
+    1.6 of it pulses are missing, which are put in at equal distances.
+
     Parameters
     ----------
-    time_s : array_like
+    time_s : array_like, shape (pulses,)
         (s) Times of the pulses.
 
     Returns
     -------
-    time_s : array
+    time_s : array, shape (mended pulses,)
         (s) Times of the mended pulses.
     warnings : list of str
         What was found.
@@ -279,6 +327,6 @@ def repair_pulses(time_s: npt.ArrayLike) -> tuple[Array, list[str]]:
     Raises
     ------
     ValueError
-        Fewer than two pulses; pulses that are equal or out of order; so many missing or doubled ones that the rest cannot be trusted.
+        Fewer than three pulses; pulses that are equal or out of order; so many missing or doubled ones that the rest cannot be trusted.
     """
     return _core.repair_pulses(signal_array(time_s))

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from .. import _core, _display
 from .._warnings import warn
 from ._arguments import Array, read_only, separation_settings, signal_array, teeth_number
+from .indicators import Indicators
 from .phase import ShaftPhase, native_phase
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ class Record:
 
     @property
     def nyquist_order(self) -> float:
-        """Highest order that the sampling rate shows."""
+        """(orders of the shaft) Highest order that the sampling rate shows."""
         return self._native.nyquist_order
 
     @property
@@ -68,18 +69,19 @@ class Record:
 
     @property
     def order_spectrum(self) -> Array:
-        """Amplitude at each order of the shaft; the index is the order."""
+        """Amplitude at each order of the shaft, in the channel's unit; the index is the order; shape (points // 2 + 1,)."""
         return read_only(self._native.order_spectrum)
 
     @property
     def envelope_spectrum(self) -> Array:
-        """The envelope's amplitude at each order; the index is the order."""
+        """The envelope's amplitude at each order, in the channel's unit; the index is the order; shape (points // 2 + 1,)."""
         return read_only(self._native.envelope_spectrum)
 
     @property
-    def indicators(self) -> dict[str, float]:
-        """Condition indicators by name: ``difference_kurtosis``, ``fm0``, ``fm4``, ``na4``, ...; NaN where one is not defined."""
-        return self._native.indicators
+    def indicators(self) -> Indicators:
+        """Condition indicators by name, ``difference_kurtosis``, ``fm4`` and so on, with units, formulas and sources in
+        :class:`~meshtone.signal.Indicators`; NaN where one is not defined."""
+        return Indicators(self._native.indicators)
 
     @property
     def warnings(self) -> list[str]:
@@ -96,15 +98,15 @@ class Record:
         return plotting.plot_record(self)
 
     def _repr_html_(self) -> str:
-        label = _display.channel_label(self.name) if self.name != "signal" else "Signal"
+        label, unit = _display.channel_label(self.name), _display.unit_of(self.name)
         span, over = (0.0, 1.0), "Angle of the shaft (revolutions)"
         shown = ("average_rms", "difference_rms", "difference_kurtosis", "fm0", "fm4", "na4")
-        rows = [(name, f"{self.indicators[name]:.4g}") for name in shown if name in self.indicators]
+        rows = _display.indicators(self.indicators, shown, self.name)
         return _display.page(
             f"{label}: average of {self.revolutions} revolutions of a wheel with {self.teeth} teeth",
             _display.table(rows),
-            _display.curve(self.average, span=span, over=over, label="Average"),
-            _display.curve(self.difference, span=span, over=over, label="Difference"),
+            _display.curve(self.average, span=span, over=over, label=_display.with_unit("Average", unit)),
+            _display.curve(self.difference, span=span, over=over, label=_display.with_unit("Difference", unit)),
             _display.remarks(self.warnings),
         )
 
@@ -162,15 +164,15 @@ def process_channel(
     Parameters
     ----------
     signal : array_like, shape (samples,)
-        The channel.
+        (any unit) The channel.
     phase : ShaftPhase
         Of the wheel's shaft.
     teeth : int
         Of the wheel.
     sidebands : int, optional
-        Sidebands on either side of each mesh harmonic that belong to the regular part.
+        Sidebands on either side of each mesh harmonic that belong to the regular part; 2 by default.
     shaft_orders : sequence of int, optional
-        Orders of the shaft that belong to the regular part.
+        Orders of the shaft that belong to the regular part; 1 to 7 by default.
     name : str
         Of the channel, for figures.
 
@@ -203,7 +205,7 @@ def process_series(
     Parameters
     ----------
     signals : sequence of array_like, shape (samples,)
-        The channel in each recording.
+        (any unit, the same of all) The channel in each recording.
     phases : sequence of ShaftPhase
         Of the wheel's shaft in each recording.
     teeth, sidebands, shaft_orders, name

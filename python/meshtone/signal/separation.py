@@ -13,15 +13,15 @@ from ._arguments import Array, regular_part, signal_array, teeth_number
 
 @dataclass(frozen=True)
 class Parts:
-    """Parts of an average; they are as long as it.
+    """Parts of an average, in its unit.
 
     Attributes
     ----------
-    regular : array
-        Mesh harmonics and their sidebands.
-    residual : array
-        The average without the mesh harmonics.
-    difference : array
+    regular : array, shape (points,)
+        Mesh harmonics, their sidebands and the low orders of the shaft.
+    residual : array, shape (points,)
+        The average without the mesh harmonics and the low orders of the shaft; the sidebands stay in it.
+    difference : array, shape (points,)
         The average without the regular part.
     """
 
@@ -42,13 +42,13 @@ def separate(
     Parameters
     ----------
     average : array_like, shape (points,)
-        One revolution at equal angles.
+        (any unit) One revolution at equal angles.
     teeth : int
         Of the wheel.
     sidebands : int, optional
-        Sidebands on either side of each mesh harmonic that belong to the regular part.
+        Sidebands on either side of each mesh harmonic that belong to the regular part; 2 by default.
     shaft_orders : sequence of int, optional
-        Orders of the shaft that belong to the regular part.
+        Orders of the shaft that belong to the regular part; 1 to 7 by default.
 
     Returns
     -------
@@ -57,7 +57,12 @@ def separate(
     Raises
     ------
     ValueError
-        NaN; a mesh order beyond the Nyquist order.
+        NaN; a mesh order beyond the Nyquist order; so many sidebands that those of two mesh harmonics meet.
+
+    Notes
+    -----
+    P. D. McFadden, Journal of Vibration and Acoustics 108 (1986) 165–170; J. J. Zakrajsek, D. P. Townsend, H. J. Decker, NASA
+    TM-105950 (1993).
 
     Examples
     --------

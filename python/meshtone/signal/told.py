@@ -49,7 +49,7 @@ def misfit(
     Parameters
     ----------
     signal : array_like, shape (samples,)
-        The channel.
+        (any unit) The channel.
     phase : ShaftPhase
         Of the wheel's shaft, as it is told.
     teeth : int
@@ -69,6 +69,10 @@ def misfit(
     ------
     ValueError
         As :func:`process_channel`; both pulses and a speed.
+
+    Notes
+    -----
+    Its measures and bounds are the project's own: the book's chapter "From a recording to indicators".
 
     Examples
     --------
