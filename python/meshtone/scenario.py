@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import inspect
 from collections.abc import Mapping, Sequence
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -298,6 +299,15 @@ brake_torque_nm=10.0, din_grade=7)
             text += ", pinion_profile_errors_mm=..., gear_profile_errors_mm=..."
         return f"Scenario({text})"
 
+
+def _signature_of_copy() -> inspect.Signature:
+    """The keys of its argument ``**changes``, for those who complete names or ask for help at run time; ``...`` leaves one as it is."""
+    given = inspect.signature(ScenarioKeys.__init__).parameters.values()
+    keys = [parameter.replace(default=...) for parameter in given if parameter.kind is inspect.Parameter.KEYWORD_ONLY]
+    return inspect.Signature([inspect.Parameter("self", inspect.Parameter.POSITIONAL_OR_KEYWORD), *keys], return_annotation="Scenario")
+
+
+vars(Scenario)["copy"].__signature__ = _signature_of_copy()
 
 # The generated base class is no name that a user knows: what is missing is missing in a call of Scenario.
 ScenarioKeys.__init__.__qualname__ = "Scenario"

@@ -540,6 +540,9 @@ class Signals:
         except KeyError:
             raise AttributeError(f"no channel '{name}' was kept, but {', '.join(self.channels)}") from None
 
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *self.channels})
+
     def process(self, channel: str | None = None, wheel: Wheel = "gear", *, sidebands: int | None = None) -> Record:
         """Take one of the channels to its average over a revolution, its parts and its indicators.
 

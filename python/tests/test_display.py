@@ -13,6 +13,7 @@ import nbclient
 import nbformat
 import numpy as np
 import pytest
+from IPython.core.completer import IPCompleter, provisionalcompleter
 
 import meshtone as mt
 from meshtone import _display, _progress
@@ -78,6 +79,41 @@ def test_progress_on_the_terminal(capsys: pytest.CaptureFixture[str]) -> None:
     written = capsys.readouterr().err
     assert written.count("\r") == 2
     assert written.endswith("\n")
+
+
+def test_names_and_keys_are_completed() -> None:
+    scenario = mt.examples.healthy().copy(sampling_rate_hz=1e4, sensors=[mt.Sensor(name="casing")])
+    simulation = mt.simulate(scenario)
+    record = simulation.process()
+    names = {
+        "mt": mt,
+        "scenario": scenario,
+        "simulation": simulation,
+        "signals": simulation.signals(),
+        "record": record,
+        "indicators": record.indicators,
+        "recording": mt.Recording(10.0, 0.0, {"bearing": np.zeros(3)}, {}, None),
+    }
+    wanted = {
+        "mt.Scenario(din": "din_grade=",
+        "mt.Scenario(faul": "faults=",
+        "mt.MissingTooth(too": "tooth=",
+        "mt.simulate_many([scenario], on": "on_error=",
+        "scenario.": "module_mm",
+        "scenario.copy(din": "din_grade=",
+        "simulation.": "vertical_g",
+        "simulation.gear_rad": "gear_radii_mm",
+        "simulation.cas": "casing_g",
+        "signals.cas": "casing_g",
+        'indicators["': "fm4",
+        'record.indicators["difference_k': "difference_kurtosis",
+        'recording["': "bearing",
+    }
+    completer = IPCompleter(namespace=names)
+    for typed, expected in wanted.items():
+        with provisionalcompleter():
+            offered = [completion.text.lstrip(".") for completion in completer.completions(typed, len(typed))]
+        assert expected in offered, typed
 
 
 @pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Sequence
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -77,7 +78,8 @@ class Record:
         """The envelope's amplitude at each order, in the channel's unit; the index is the order; shape (points // 2 + 1,)."""
         return read_only(self._native.envelope_spectrum)
 
-    @property
+    # Not a property, behind which notebooks do not look for keys.
+    @functools.cached_property
     def indicators(self) -> Indicators:
         """Condition indicators by name, ``difference_kurtosis``, ``fm4`` and so on, with units, formulas and sources in
         :class:`~meshtone.signal.Indicators`; NaN where one is not defined."""
