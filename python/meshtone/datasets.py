@@ -39,6 +39,7 @@ from __future__ import annotations
 
 import errno
 import json
+import operator
 import os
 import stat
 from collections import Counter
@@ -55,16 +56,21 @@ from ._extras import extra
 from ._files import written_whole
 from ._names import hint
 from ._warnings import warn
+from .signal import resample
 from .signal._arguments import whole
 
 if TYPE_CHECKING:
     import pandas
+    import polars
     import pyarrow
     import pyarrow.dataset
 
 __all__ = ["Dataset", "dataset_template", "generate_dataset", "load_dataset", "merge_datasets", "verify_dataset"]
 
 FloatSignal = npt.NDArray[np.float32]
+
+OVER_A_REVOLUTION = ("average_g", "difference_g", "enhanced_relative_difference")
+"""Columns of signals at equal angles of one revolution; the others are at equal times."""
 
 
 def dataset_template() -> str:
@@ -294,6 +300,9 @@ def _check_place(path: str | PathLike[str], file: str) -> None:
 class Dataset:
     """A data set, or those of its records that a filter leaves. :func:`load_dataset` opens one.
 
+    Its length is the number of records; ``dataset[0]`` is the first one, and ``for record in dataset`` goes through them as
+    :meth:`records` does.
+
     Attributes
     ----------
     path : pathlib.Path
@@ -307,6 +316,7 @@ class Dataset:
         self._native = native
         self._filter = expression
         self._length: int | None = None
+        self._rows: Rows | None = None
 
     @property
     def arrow(self) -> pyarrow.dataset.Dataset:
@@ -352,6 +362,31 @@ class Dataset:
         if self._length is None:
             self._length = int(self._native.count_rows(filter=self._filter))
         return self._length
+
+    def __getitem__(self, index: int) -> dict[str, Any]:
+        """A record, by its place among these, as :meth:`records` gives it; the last file that was read is kept in memory.
+
+        Parameters
+        ----------
+        index : int
+            From 0, or from -1 backwards.
+
+        Returns
+        -------
+        dict
+            A value or an array of float32 for each column.
+
+        Raises
+        ------
+        IndexError
+            There are not so many records.
+        """
+        if self._rows is None:
+            self._rows = Rows(self, self.columns)
+        return self._rows[index]
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        return self.records()
 
     def __repr__(self) -> str:
         labels = Counter(self.column("label").tolist())
@@ -421,6 +456,8 @@ class Dataset:
     def to_pandas(self, columns: Sequence[str] | None = None) -> pandas.DataFrame:
         """The records as a table of pandas; without the signals, which do not belong there, if no columns are named.
 
+        Needs pandas: ``pip install 'meshtone[tables]'``.
+
         Parameters
         ----------
         columns : sequence of str, optional
@@ -428,12 +465,35 @@ class Dataset:
 
         Raises
         ------
+        ModuleNotFoundError
+            pandas is not installed.
         ValueError
             A column that there is not.
         """
         chosen = self.scalar_columns if columns is None else list(columns)
         with extra("tables"):
             return self.to_arrow(chosen).to_pandas()
+
+    def to_polars(self, columns: Sequence[str] | None = None) -> polars.DataFrame:
+        """The records as a table of polars; without the signals if no columns are named.
+
+        Needs polars: ``pip install 'meshtone[polars]'``.
+
+        Parameters
+        ----------
+        columns : sequence of str, optional
+            All but the signals by default.
+
+        Raises
+        ------
+        ModuleNotFoundError
+            polars is not installed.
+        ValueError
+            A column that there is not.
+        """
+        with extra("polars"):
+            import polars
+        return polars.DataFrame(self.to_arrow(self.scalar_columns if columns is None else columns))
 
     @property
     def scalar_columns(self) -> list[str]:
@@ -490,9 +550,7 @@ class Dataset:
         ValueError
             A column that there is not, or that holds no signals.
         """
-        self._check([name])
-        if name not in self.signal_columns:
-            raise ValueError(f"column '{name}' holds one value a record: column('{name}') gives them")
+        self._check_signals([name])
         chunks = self.to_arrow([name]).column(0).chunks
         return [signal for chunk in chunks for signal in _signals_of(chunk)]
 
@@ -519,14 +577,8 @@ class Dataset:
         self._check(columns or ())
         chosen = self.columns if columns is None else list(columns)
         batch_size = whole("batch_size", batch_size, 1)
-        signals = set(self.signal_columns)
         for batch in self._native.to_batches(columns=chosen, filter=self._filter, batch_size=batch_size):
-            values = [
-                _signals_of(batch.column(k)) if name in signals else batch.column(k).to_pylist()
-                for k, name in enumerate(chosen)
-            ]
-            for row in range(batch.num_rows):
-                yield {name: values[k][row] for k, name in enumerate(chosen)}
+            yield from _records_of(batch)
 
     def matrix(self, columns: Sequence[str]) -> npt.NDArray[np.float64]:
         """Columns of numbers side by side, as classifiers take them.
@@ -557,8 +609,65 @@ class Dataset:
                 raise
         return np.column_stack(values)
 
+    def arrays(
+        self, signals: str | Sequence[str], *, points: int | None = None, label: str = "label"
+    ) -> tuple[npt.NDArray[np.float32], npt.NDArray[Any]]:
+        """Signals of one length and their labels, X and y, as aeon and sktime take them; ``X.reshape(len(X), -1)`` is as scikit-learn does.
+
+        Parameters
+        ----------
+        signals : str or sequence of str
+            One or several of :attr:`signal_columns`: the channels.
+        points : int, optional
+            Length of all. Signals over a revolution, such as ``average_g``, are resampled to it, as :func:`meshtone.signal.resample`
+            does; of others it takes the first ones. Where it is left out, all must be of one length.
+        label : str
+            The column that y is.
+
+        Returns
+        -------
+        X : array of float32, shape (records, channels, points)
+            In the units that :attr:`units` has.
+        y : array, shape (records,)
+
+        Raises
+        ------
+        ValueError
+            A column that there is not, or that holds no signals; signals of several lengths; one that is shorter than asked for.
+
+        Examples
+        --------
+        With scikit-learn, and a transformer of aeon::
+
+            X, y = train.arrays(["average_g", "difference_g"], points=1024)
+            LogisticRegression().fit(X.reshape(len(X), -1), y)
+            RocketClassifier().fit(X, y)
+        """
+        names = [signals] if isinstance(signals, str) else list(signals)
+        self._check_signals(names)
+        length = None if points is None else whole("points", points, 1)
+        y = self.column(label)
+        X = np.empty((len(self), len(names), length or 0), dtype=np.float32)
+        for row, record in enumerate(self.records(names)):
+            if length is None:
+                length = record[names[0]].size
+                X = np.empty((len(self), len(names), length), dtype=np.float32)
+            for channel, name in enumerate(names):
+                if points is None and record[name].size != length:
+                    raise ValueError(
+                        f"record {row} has {record[name].size} points of '{name}', the first one {length} of '{names[0]}': "
+                        "points=… makes them of one length"
+                    )
+                X[row, channel] = with_points(name, record[name], length)
+        return X, y
+
     def to_torch(
-        self, signal: str, *, label: str = "label", transform: Callable[[FloatSignal], Any] | None = None
+        self,
+        signal: str,
+        *,
+        points: int | None = None,
+        label: str = "label",
+        transform: Callable[[FloatSignal], Any] | None = None,
     ) -> Any:
         """A ``torch.utils.data.Dataset`` of (signal, class number); its attribute ``classes`` has the labels.
 
@@ -569,10 +678,12 @@ class Dataset:
         ----------
         signal : str
             One of :attr:`signal_columns`.
+        points : int, optional
+            Length of all, as of :meth:`arrays`, so that a ``DataLoader`` puts them into batches as it is; by default their own.
         label : str
             The column of labels.
         transform : callable, optional
-            Given each signal; what it returns stands in its place.
+            Given each signal, as long as asked for; what it returns stands in its place.
 
         Returns
         -------
@@ -588,8 +699,9 @@ class Dataset:
         with extra("torch"):
             from ._torch import TorchDataset
 
-        self._check([signal, label])
-        return TorchDataset(self, signal, label, transform)
+        self._check_signals([signal])
+        self._check([label])
+        return TorchDataset(self, signal, label, None if points is None else whole("points", points, 1), transform)
 
     def to_mat(self, file: str | PathLike[str], columns: Sequence[str] | None = None) -> None:
         """Write the records as a MATLAB v5 file: a struct array ``records`` with a field for each column.
@@ -625,11 +737,92 @@ class Dataset:
         with written_whole(file) as stream:
             scipy.io.savemat(stream, {"records": array}, do_compression=True, long_field_names=True)
 
+    def _check_signals(self, columns: Sequence[str]) -> None:
+        self._check(columns)
+        for name in columns:
+            if name not in self.signal_columns:
+                raise ValueError(f"column '{name}' holds one value a record: column('{name}') gives them")
+        if not columns:
+            raise ValueError(f"no signals are named; there are {', '.join(self.signal_columns)}")
+
     def _check(self, columns: Sequence[str]) -> None:
         for name in columns:
             if name not in self.columns:
                 meant = hint(name, self.columns) or f", but {', '.join(self.columns)}"
                 raise ValueError(f"there is no column '{name}'{meant}")
+
+
+class Rows:
+    """Records of a data set by their places; the last file that was read is kept in memory, so that reading in order is fast.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        The records.
+    columns : sequence of str
+        What is read of them.
+    """
+
+    def __init__(self, dataset: Dataset, columns: Sequence[str]) -> None:
+        self._columns, self._filter = list(columns), dataset._filter
+        self._fragments = list(dataset.arrow.get_fragments())
+        self._ends = np.cumsum([fragment.count_rows(filter=self._filter) for fragment in self._fragments], dtype=int)
+        self._read: tuple[int, list[dict[str, Any]]] | None = None
+
+    def __len__(self) -> int:
+        return int(self._ends[-1]) if self._ends.size else 0
+
+    def __getitem__(self, index: int) -> dict[str, Any]:
+        try:
+            number = operator.index(index)
+        except TypeError:
+            raise TypeError(f"record {index!r}: must be a whole number; filter and split give several records") from None
+        if not -len(self) <= number < len(self):
+            raise IndexError(f"record {number} of {len(self)}")
+        number %= len(self)
+        place = int(np.searchsorted(self._ends, number, side="right"))
+        if self._read is None or self._read[0] != place:
+            batches = self._fragments[place].to_batches(columns=self._columns, filter=self._filter)
+            self._read = (place, [record for batch in batches for record in _records_of(batch)])
+        first = int(self._ends[place - 1]) if place else 0
+        return dict(self._read[1][number - first])
+
+
+def with_points(name: str, values: FloatSignal, points: int) -> FloatSignal:
+    """A signal of a column, as long as it is asked for.
+
+    Parameters
+    ----------
+    name : str
+        The column.
+    values : array, shape (samples,)
+        The signal.
+    points : int
+        Its wanted length.
+
+    Raises
+    ------
+    ValueError
+        There are fewer samples, and they are not those of a revolution.
+    """
+    if values.size == points:
+        return values
+    if name in OVER_A_REVOLUTION:
+        return resample(values, values.size, points, edge="periodic").astype(np.float32)
+    if values.size < points:
+        raise ValueError(f"points = {points}: a record has {values.size} of '{name}'")
+    return values[:points]
+
+
+def _records_of(batch: pyarrow.RecordBatch) -> Iterator[dict[str, Any]]:
+    """The rows of an Arrow table, with signals as views of its memory."""
+    import pyarrow.types
+
+    columns = [
+        _signals_of(column) if pyarrow.types.is_list(column.type) else column.to_pylist() for column in batch.columns
+    ]
+    for row in range(batch.num_rows):
+        yield {name: values[row] for name, values in zip(batch.schema.names, columns)}
 
 
 def _signals_of(chunk: Any) -> list[FloatSignal]:

@@ -107,6 +107,59 @@ def test_signals_are_those_of_the_records(gears: datasets.Dataset) -> None:
     assert len(fast.signals("vertical_g")) == len(fast)
 
 
+def test_a_record_by_its_place(gears: datasets.Dataset) -> None:
+    test = gears.split("test")
+    for dataset in (gears, test):
+        records = list(dataset)
+        assert len(records) == len(dataset) and list(records[0]) == dataset.columns
+        # In any order, over the borders of the files.
+        for place in (0, 11, len(dataset) - 1, -1, -len(dataset), np.int64(3)):
+            record = dataset[place]
+            assert record["record"] == records[place]["record"]
+            assert np.array_equal(record["vertical_g"], records[place]["vertical_g"])
+    # What is done to a record is done to no other.
+    test[0]["label"] = "mended"
+    assert test[0]["label"] in ("healthy", "tooth-breakage")
+    for place in (len(gears), -len(gears) - 1):
+        with pytest.raises(IndexError, match=f"record {place} of 24"):
+            gears[place]
+    with pytest.raises(TypeError, match="filter and split give several records"):
+        gears[:3]  # type: ignore[index]
+
+
+def test_tables(gears: datasets.Dataset) -> None:
+    of_pandas, of_polars = gears.to_pandas(), gears.to_polars()
+    assert of_polars.columns == list(of_pandas.columns) == gears.scalar_columns
+    assert of_polars["difference_kurtosis"].to_list() == of_pandas["difference_kurtosis"].tolist()
+    [signals] = gears.to_polars(["average_g"])
+    assert np.array_equal(signals[5].to_numpy(), gears.signals("average_g")[5])
+
+
+def test_arrays_for_learners(gears: datasets.Dataset) -> None:
+    test = gears.split("test")
+    X, y = test.arrays(["average_g", "difference_g"], points=1024)
+    assert X.shape == (len(test), 2, 1024) and X.dtype == np.float32
+    assert np.array_equal(y, test.column("label"))
+    # The orders that both lengths have are the signal's own.
+    spectra = [np.fft.rfft(values)[:200] / len(values) for values in (test.signals("average_g")[0], X[0, 0])]
+    assert np.abs(spectra[1] - spectra[0]).max() < 2e-3 * np.abs(spectra[0]).max()
+    # Raw channels are not resampled: their samples belong to a rate.
+    shortest = min(signal.size for signal in test.signals("vertical_g"))
+    raw, severity = test.arrays("vertical_g", points=float(shortest), label="severity")  # type: ignore[arg-type]
+    assert raw.shape == (len(test), 1, shortest) and np.array_equal(raw[2, 0], test.signals("vertical_g")[2][:shortest])
+    assert np.array_equal(severity, test.column("severity"))
+    slow = gears.filter(pyarrow.dataset.field("record") == int(test.column("record")[0]))
+    assert slow.arrays("vertical_g")[0].shape == (1, 1, slow.signals("vertical_g")[0].size)
+    with pytest.raises(ValueError, match=r"record \d+ has \d+ points of 'vertical_g', the first one \d+ of .*points="):
+        gears.arrays("vertical_g")
+    with pytest.raises(ValueError, match=r"points = 1000000: a record has \d+ of 'vertical_g'"):
+        gears.arrays("vertical_g", points=1_000_000)
+    with pytest.raises(ValueError, match=r"'fm4' holds one value a record: column\('fm4'\)"):
+        gears.arrays(["fm4"])
+    with pytest.raises(ValueError, match="no signals are named; there are horizontal_g, vertical_g, average_g"):
+        gears.arrays([])
+
+
 def test_repr(gears: datasets.Dataset) -> None:
     assert all(label in gears._repr_html_() for label in ("healthy", "train"))
     assert "24 records" in repr(gears) and "healthy" in repr(gears)
@@ -316,6 +369,11 @@ def test_torch(gears: datasets.Dataset, monkeypatch: pytest.MonkeyPatch) -> None
         pairs[99]
     halves = train.to_torch("average_g", transform=lambda signal: signal[::2])
     assert np.array_equal(halves[1][0], signals[1][::2])
+    # Of one length, a DataLoader stacks them as it is.
+    batch = np.stack([np.asarray(train.to_torch("average_g", points=512)[index][0]) for index in range(4)])
+    assert np.array_equal(batch, train.arrays("average_g", points=512)[0][:4, 0])
+    with pytest.raises(ValueError, match=r"column\('fm4'\) gives them"):
+        train.to_torch("fm4")
     with pytest.raises(ValueError, match="no column 'mean_g'"):
         train.to_torch("mean_g")
     monkeypatch.delitem(sys.modules, "meshtone._torch", raising=False)
