@@ -49,6 +49,11 @@ class Sensor:
         What goes through the frequency response: the acceleration of the sensor's place, magnitudes without unit; or
         the force along the line of action, magnitudes in (m/s²)/N, whatever ``at`` and ``direction`` say. Default:
         "acceleration".
+
+    Notes
+    -----
+    Its signal is in g, of shape (samples,). What is not allowed is a ``ValueError`` of the scenario that has the sensor.
+    Mounted resonance: ISO 5348. Frequency response: ISO 7626-5. The book's chapter "Sensors" has the formulas.
     """
 
     name: str | None = None

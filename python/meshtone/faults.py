@@ -4,6 +4,7 @@ Their fields have the names, units and defaults of the scenario file's sections 
 'pinion', and ``tooth``: its number from 1, several numbers, or 'all'; the gear's first tooth by default. In place of its sizes it
 may have ``severity``, from 0, none, to 1, the largest that the tooth allows: :meth:`Scenario.with_own_sizes` has the sizes.
 
+>>> from meshtone import MissingTooth, RootCrack, ToothBreakage
 >>> MissingTooth(wheel="pinion", tooth=3)
 MissingTooth(wheel='pinion', tooth=3, severity=None)
 >>> RootCrack(depth_mm=1.0, tooth=[1, 2])

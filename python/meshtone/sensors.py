@@ -2,10 +2,6 @@
 
 The fields of :class:`Sensor` have the names, units and defaults of the scenario file's sections ``[[sensor]]``; all may be left out.
 
-A sensor's signal is in g, of shape (samples,). Its mounted resonance is that of one degree of freedom after ISO 5348, its frequency
-response one as ISO 7626-5 measures them; the book's chapter "Sensors" has the formulas. What does not fit, such as ``bits`` without
-``range_g``, is a ``ValueError`` of the :class:`Scenario` that has the sensor.
-
 >>> from meshtone import Sensor, examples, simulate
 >>> scenario = examples.healthy().copy(sampling_rate_hz=2e4, sensors=[Sensor(resonance_hz=6e3, range_g=50, bits=16)])
 >>> simulation = simulate(scenario)

@@ -116,6 +116,7 @@ def angular_resample(
     Examples
     --------
     >>> import numpy as np
+    >>> from meshtone import ShaftPhase
     >>> phase = ShaftPhase.constant(20.0, 1000.0, 1000)
     >>> angular = angular_resample(np.cos(2 * np.pi * 3 * phase.revolutions), phase)
     >>> angular.points_per_revolution, angular.values.size, round(angular.nyquist_order, 6)

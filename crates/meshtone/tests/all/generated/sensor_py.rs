@@ -6,6 +6,14 @@ use meshtone::scenario::{KeyDescription, sections};
 
 use super::python::{HEAD, argument_type, lines, parameter};
 
+/// What its signal is, what refuses it, and where its parts are from.
+const NOTES: &str = "
+    Notes
+    -----
+    Its signal is in g, of shape (samples,). What is not allowed is a ``ValueError`` of the scenario that has the sensor.
+    Mounted resonance: ISO 5348. Frequency response: ISO 7626-5. The book's chapter \"Sensors\" has the formulas.
+";
+
 /// The file.
 pub fn text() -> String {
     let keys: Vec<KeyDescription> = sections()
@@ -24,6 +32,7 @@ pub fn text() -> String {
     for key in &keys {
         text.push_str(&parameter("    ", key, &key.key, true));
     }
+    text.push_str(NOTES);
     text.push_str("    \"\"\"\n\n");
     for key in &keys {
         writeln!(text, "    {}: {} | None = None", key.key, argument_type(key)).unwrap();
