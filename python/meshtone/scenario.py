@@ -54,10 +54,12 @@ brake_torque_nm=10.0, din_grade=7)
 
         @functools.wraps(ScenarioKeys.__init__)
         def __init__(self, *values: Any, **arguments: Any) -> None:
+            if values:
+                raise TypeError(f"{values[0]!r}: a scenario takes its keys by name, Scenario(module_mm=3, …); Scenario.from_file reads a file")
             # Before Python says what is missing: a misspelt key is why.
             for key in arguments:
                 check_key(key)
-            super().__init__(*values, **arguments)
+            super().__init__(**arguments)
 
     def _from_keys(self, arguments: dict[str, Any], unknown: dict[str, Any]) -> None:
         self._set(_native_of({**arguments, **unknown}))
@@ -329,7 +331,8 @@ def _plain(value: Any) -> Any:
 def native_scenario(scenario: Scenario) -> _core.Scenario:
     """The compiled module's scenario."""
     if not isinstance(scenario, Scenario):
-        raise TypeError(f"a Scenario is needed, not {scenario!r}; Scenario.from_file reads one from a file")
+        several = "; simulate_many takes several" if isinstance(scenario, (list, tuple)) else ""
+        raise TypeError(f"a Scenario is needed, not {scenario!r}; Scenario.from_file reads one from a file{several}")
     return scenario._native
 
 

@@ -189,6 +189,9 @@ def test_a_file_name_is_not_a_files_text() -> None:
 
 
 def test_what_is_missing_is_missing_in_a_scenario() -> None:
+    for positional in ("healthy.toml", REQUIRED):
+        with pytest.raises(TypeError, match=r"takes its keys by name, Scenario\(module_mm=3, …\); Scenario.from_file reads a file"):
+            Scenario(positional)  # type: ignore[arg-type, call-arg]
     with pytest.raises(TypeError, match=r"^Scenario\(\) missing 6 required keyword-only arguments: 'module_mm', 'pinion_teeth'"):
         Scenario()  # type: ignore[call-arg]
     with pytest.raises(ValueError, match='the corrected model is called "linear" now'):

@@ -134,6 +134,8 @@ def test_what_is_not_a_scenario() -> None:
     for call in (simulate, meshtone.trace, lambda scenario: simulate_many([scenario])):
         with pytest.raises(TypeError, match="a Scenario is needed, not 'healthy.toml'; Scenario.from_file"):
             call(name)
+    with pytest.raises(TypeError, match="; simulate_many takes several"):
+        simulate([examples.healthy()])  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="average_rate_hz = -1: must be more than 0"):
         meshtone.trace(examples.healthy(), average_rate_hz=-1)
 
