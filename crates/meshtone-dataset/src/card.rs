@@ -25,6 +25,7 @@ pub(crate) fn card(
     let _ = counts(&mut text, plan, contents, units_of_split);
     let _ = warnings(&mut text, plan, contents);
     let _ = classes(&mut text, plan, contents);
+    let _ = questions(&mut text, plan);
     let _ = columns_table(&mut text, plan.content.keep.wheel.name(), columns, contents);
     let _ = files(&mut text, shards, contents);
     let _ = loading(&mut text, shards, columns);
@@ -39,18 +40,29 @@ fn head(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Result
     }
     let rows = plan.records() - contents.failures.len() as u64;
     let keep = &plan.content.keep;
-    let length = match keep.duration_s {
-        Some(seconds) => format!("{seconds} s"),
-        None => "one hunting period, after which the same teeth meet again".to_owned(),
+    let channels = match (keep.over_angle, keep.duration_s) {
+        (Some(angle), _) => format!(
+            "raw channels over {} of the {} at {} points each, of a sampling rate of {} S/s",
+            counted(angle.revolutions as u64, "revolution"),
+            keep.wheel.name(),
+            angle.points_per_revolution,
+            keep.sampling_rate_hz
+        ),
+        (None, Some(seconds)) => format!("raw channels at {} S/s over {seconds} s", keep.sampling_rate_hz),
+        (None, None) => format!(
+            "raw channels at {} S/s over one hunting period, after which the same teeth meet again",
+            keep.sampling_rate_hz
+        ),
     };
+    let mountings = plan.content.mountings;
+    let mounted = if mountings > 1 { format!(", each mounted {mountings} times") } else { String::new() };
     writeln!(
         text,
-        "{} of spur gear vibration from {} (pairs of wheels), raw channels at {} S/s over {length}. \
+        "{} of spur gear vibration from {} (pairs of wheels){mounted}, {channels}. \
          Made with Meshtone {} from `{}`, which makes the same bytes again; the base scenario \
          is `{}`.\n",
         counted(rows, "simulated record"),
         counted(plan.content.units, "unit"),
-        keep.sampling_rate_hz,
         env!("CARGO_PKG_VERSION"),
         PlanFile::NAMES[0],
         PlanFile::NAMES[1]
@@ -150,16 +162,35 @@ fn classes(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Res
             if seen.contains(&name) {
                 continue;
             }
-            let level = match rule.level {
-                crate::plan::Level::Unit => "unit",
-                crate::plan::Level::Record => "record",
-            };
             let [least, largest] = contents.seen.ranges.get(&name).copied().unwrap_or([f64::NAN; 2]);
-            writeln!(text, "| `{name}` | `{key}` | {level} | {} | {} |", short(least), short(largest))?;
+            writeln!(
+                text,
+                "| `{name}` | `{key}` | {} | {} | {} |",
+                rule.level.name(),
+                short(least),
+                short(largest)
+            )?;
             seen.push(name);
         }
     }
     writeln!(text)
+}
+
+/// What the data set asks, and how answers are scored.
+fn questions(text: &mut String, plan: &Plan) -> std::fmt::Result {
+    if plan.about.questions.is_empty() {
+        return Ok(());
+    }
+    writeln!(text, "## Questions\n\n| question | to be told | score |\n|---|---|---|")?;
+    for question in &plan.about.questions {
+        writeln!(text, "| {} | {} | {} |", question.name(), question.target(), question.score())?;
+    }
+    writeln!(
+        text,
+        "\nFrom the signals, the indicators and what is known of a machine: teeth, module, face width, speed, load. Columns of the \
+         fault, seeds, numbers of records, units and mountings, and all that was drawn besides are not known of a real gear: they are \
+         there to see where an answer fails. Train on `train`, choose on `validation`.\n"
+    )
 }
 
 fn severity(class: &Class) -> String {

@@ -163,6 +163,7 @@ pub(crate) fn is_drawn(column: &Column) -> bool {
             | ColumnKind::PinionTeeth
             | ColumnKind::GearTeeth
             | ColumnKind::Severity
+            | ColumnKind::Age
     )
 }
 

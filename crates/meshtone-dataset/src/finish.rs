@@ -10,7 +10,7 @@ use crate::digest::Digest;
 use crate::error::DatasetError;
 use crate::manifest::{self, CARD, MANIFEST, PREVIEW, ReadManifest};
 use crate::part_list::{self, PartList};
-use crate::plan::Plan;
+use crate::plan::{Content, Plan, SplitBy};
 use crate::shard::{self, Column, ColumnKind, FailedRecord, Shards, Wanted};
 use crate::store::Destination;
 use crate::words::counted;
@@ -80,9 +80,13 @@ pub(crate) fn finish(
     PartList::names(&to.files_in(part_list::FOLDER)?).try_for_each(|name| to.remove(name))
 }
 
-/// The units of each split that has any.
+/// The units, or mountings, of each split that has any.
 fn units_of_split(plan: &Plan) -> BTreeMap<String, u64> {
-    let counts = plan.content.splits.unit_counts(plan.content.units);
+    let Content { splits, units, mountings, .. } = &plan.content;
+    let counts = splits.counts(match splits.by {
+        SplitBy::Unit => *units,
+        SplitBy::Mounting => units * mountings,
+    });
     let names = plan.content.splits.names().into_iter().map(str::to_owned);
     names.zip(counts).filter(|(_, units)| *units > 0).collect()
 }

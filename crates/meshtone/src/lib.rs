@@ -58,4 +58,4 @@ pub use machine::Excitation;
 pub use simd::InstructionSet;
 pub use simulate::{Simulation, StageTime, Stages, simulate, stages, stages_within};
 pub use trace::{Trace, TraceField, stage_trace, trace, trace_at};
-pub use warnings::{Observer, stages_and_warnings};
+pub use warnings::{Observer, StepJudgement, stages_and_warnings};

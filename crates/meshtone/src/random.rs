@@ -50,6 +50,12 @@ pub enum Purpose {
     SensorNoise = 18,
     /// Pits of a tooth: how many, where, how large; index: the tooth, and its wheel.
     Pits = 19,
+    /// Values that a mounting of a data set's unit is drawn with, and its seed; index: mounting.
+    DatasetMounting = 20,
+    /// Ripple of the path to a sensor over frequency; index: channel.
+    PathRipple = 21,
+    /// Life of a run to failure, its end and when its damage grows; index: unit.
+    DatasetRun = 22,
 }
 
 /// A sequence of random numbers.

@@ -256,6 +256,24 @@ fn the_benchmark_and_the_template_are_plans() {
     workplace.succeeds(&["dataset", "scenario", "template.toml", "0"]);
 }
 
+/// The template as it is printed, shortened: no record fails.
+#[test]
+fn the_template_makes_a_data_set() {
+    let workplace = workplace();
+    let template = stdout(&workplace.succeeds(&["init", "dataset"]));
+    let short = template.replace("records = 600", "records = 40");
+    assert_ne!(short, template);
+    workplace.write("plan.toml", short);
+    let said = stdout(&workplace.succeeds(&["dataset", "plan.toml", "-o", "set"]));
+    assert!(said.contains("complete: 40 records of 20 units"), "{said}");
+    let card = String::from_utf8(workplace.read("set/README.md")).unwrap();
+    for words in
+        ["each mounted 2 times", "## Questions", "| detection |", "`path_ripple_db`", "`latent_load_nm`"]
+    {
+        assert!(card.contains(words), "{words}");
+    }
+}
+
 /// A limit of the size of files stands in for a full disk: writing beyond it fails just so.
 #[cfg(unix)]
 #[test]

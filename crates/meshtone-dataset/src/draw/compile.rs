@@ -6,9 +6,9 @@ use meshtone::scenario::Scenario;
 use meshtone_toml::{ReadResult, TomlError, nearest_name};
 
 use super::values::{SEVERITY, fault_of_severity};
-use super::{NOISE_KEYS, Sampler};
+use super::{FAULT_SEVERITY, NOISE_KEYS, PATH_KEYS, Sampler, is_of_plan};
 use crate::expression::{Condition, derived_names, underlying};
-use crate::plan::{Content, Distribution, Level, Rule, kinds};
+use crate::plan::{Content, Distribution, Level, Rule, SplitBy, kinds};
 
 /// Keys that every record or unit has its own of.
 const OWN: [(&str, &str); 2] =
@@ -47,33 +47,41 @@ pub(super) fn sampler(content: &Content) -> ReadResult<Sampler<'_>> {
         let own: Vec<Placed> =
             class.rules.iter().enumerate().map(|(i, rule)| (rule, format!("class[{c}].vary[{i}]"))).collect();
         for (rule, place) in &own {
-            if rule.level == Level::Unit {
-                let problem = "varies by unit; a rule of a class varies by record";
+            if rule.level != Level::Record {
+                let problem = format!("varies by {}; a rule of a class varies by record", rule.level.name());
                 return Err(TomlError::new(place, "", problem)
                     .with_help("move it to the top as [[vary]], or write per = \"record\""));
             }
         }
-        let has = |key: &str| NOISE_KEYS.contains(&key) || known.iter().any(|number| number.key == key);
+        let has = |key: &str| is_of_plan(key) || known.iter().any(|number| number.key == key);
         // A rule at the top concerns the classes whose faults have its keys.
         let concerned = top.iter().filter(|(rule, _)| rule.keys.iter().all(|key| has(key)));
         let all: Vec<Placed> = concerned.cloned().chain(own).collect();
         check_keys(&all, &known, &base)?;
+        check_growth(content, c, &all, &known)?;
         let ordered = in_order(&all, &known)?;
         let rules = ordered.into_iter().filter(|rule| rule.level == Level::Record).collect();
         let numbers = known.iter().map(|number| (number.key.clone(), number.value)).collect();
         classes.push(ClassRules { base, numbers, rules, constraints: Vec::new() });
     }
     check_top(content, &top, &classes)?;
-    let of_unit: Vec<Placed> = top.iter().filter(|(rule, _)| rule.level == Level::Unit).cloned().collect();
     let base_numbers = content.base.numbers();
-    let unit_rules = in_order(&of_unit, &base_numbers)?;
-    let by_unit = |condition: &Condition| is_decided_by_unit(condition, content);
-    let unit_constraints: Vec<&Condition> = content.constraints.iter().filter(|c| by_unit(c)).collect();
+    let of_groups: Vec<Placed> =
+        top.iter().filter(|(rule, _)| rule.level != Level::Record).cloned().collect();
+    let ordered = in_order(&of_groups, &base_numbers)?;
+    let of_level = |level: Level| ordered.iter().copied().filter(|rule| rule.level == level).collect();
+    let (unit_rules, mounting_rules) = (of_level(Level::Unit), of_level(Level::Mounting));
+    let decides = |condition: &Condition| level_of(condition, content);
+    let constraints: Vec<(Level, &Condition)> =
+        content.constraints.iter().map(|condition| (decides(condition), condition)).collect();
+    let (by_record, group_constraints): (Vec<_>, Vec<_>) =
+        constraints.into_iter().partition(|(level, _)| *level == Level::Record);
     for class in &mut classes {
-        class.constraints = content.constraints.iter().filter(|c| !by_unit(c)).collect();
+        class.constraints = by_record.iter().map(|(_, condition)| *condition).collect();
     }
-    let shift_levels =
-        content.splits.shifts.iter().map(|shift| shift.when.iter().map(by_unit).collect()).collect();
+    let shift_levels: Vec<Vec<Level>> =
+        content.splits.shifts.iter().map(|shift| shift.when.iter().map(decides).collect()).collect();
+    refuse_unit_shifts(content, &shift_levels)?;
     check_conditions(content, &classes)?;
     check_severities(content, &classes)?;
     let mut end = 0;
@@ -81,7 +89,8 @@ pub(super) fn sampler(content: &Content) -> ReadResult<Sampler<'_>> {
         end += class.count;
         end
     });
-    Ok(Sampler { ends: ends.collect(), content, unit_rules, classes, unit_constraints, shift_levels })
+    let ends = ends.collect();
+    Ok(Sampler { content, unit_rules, mounting_rules, classes, ends, group_constraints, shift_levels })
 }
 
 /// Whether a key is a fault's: `fault.…`, or of several `fault[1].…`.
@@ -109,8 +118,10 @@ fn check_keys(
                 return Err(refuse(key, format!("`{key}` is varied by {other} too; must be varied once")));
             }
             seen.push((key, place));
-            if NOISE_KEYS.contains(&key.as_str()) {
-                if seen.iter().filter(|(seen, _)| NOISE_KEYS.contains(seen)).count() > 1 {
+            if is_of_plan(key) {
+                if NOISE_KEYS.contains(&key.as_str())
+                    && seen.iter().filter(|(seen, _)| NOISE_KEYS.contains(seen)).count() > 1
+                {
                     return Err(refuse(
                         key,
                         "noise is given both relative and in g; give one of the two".to_owned(),
@@ -126,15 +137,17 @@ fn check_keys(
                 return Err(refuse(key, problem).with_help("use choice or grid with whole numbers"));
             }
             let fixed_wheels = key.starts_with("gears.") || key.starts_with("quality.");
-            if fixed_wheels && rule.level == Level::Record {
-                let problem =
-                    format!("`{key}` would differ between records of one unit, which share their wheels");
+            if fixed_wheels && rule.level != Level::Unit {
+                let problem = format!(
+                    "`{key}` would differ between {}s of one unit, which share their wheels",
+                    rule.level.name()
+                );
                 return Err(
                     refuse(key, problem).with_help("leave out per: it is \"unit\" for gears and quality")
                 );
             }
-            if is_of_fault(key) && rule.level == Level::Unit {
-                let problem = format!("`{key}` varies by unit; faults vary by record");
+            if is_of_fault(key) && rule.level != Level::Record {
+                let problem = format!("`{key}` varies by {}; faults vary by record", rule.level.name());
                 return Err(refuse(key, problem).with_help("leave out per"));
             }
         }
@@ -169,7 +182,10 @@ fn unknown(
         return error.with_help("write the fault with severity = … in place of its sizes");
     }
     error.with_help(
-        match nearest_name(key, known.iter().map(|number| number.key.as_str()).chain(NOISE_KEYS)) {
+        match nearest_name(
+            key,
+            known.iter().map(|number| number.key.as_str()).chain(NOISE_KEYS).chain(PATH_KEYS),
+        ) {
             Some(nearest) => format!("did you mean `{nearest}`?"),
             None => {
                 "`meshtone init KIND` prints every key of a kind of fault; sections are part of a key, as in \
@@ -183,9 +199,7 @@ fn unknown(
 /// Every rule at the top concerns some class.
 fn check_top(content: &Content, top: &[Placed], classes: &[ClassRules]) -> ReadResult<()> {
     for (rule, place) in top {
-        let has = |class: &ClassRules, key: &String| {
-            NOISE_KEYS.contains(&key.as_str()) || class.numbers.contains_key(key)
-        };
+        let has = |class: &ClassRules, key: &String| is_of_plan(key) || class.numbers.contains_key(key);
         if classes.iter().any(|class| rule.keys.iter().all(|key| has(class, key))) {
             continue;
         }
@@ -251,10 +265,9 @@ fn check_dependency(
     if varied.is_none() && !known.iter().any(|number| number.key == key) {
         return Err(no_such_number(place, key, known.iter().map(|number| number.key.as_str())));
     }
-    if let Some((_, other)) =
-        varied.filter(|(other, _)| rule.level == Level::Unit && other.level == Level::Record)
-    {
-        let problem = format!("depends on `{key}`, which {other} varies by record; what a unit has cannot");
+    if let Some((varied, other)) = varied.filter(|(other, _)| rule.level < other.level) {
+        let (by, own) = (varied.level.name(), rule.level.name());
+        let problem = format!("depends on `{key}`, which {other} varies by {by}; what a {own} has cannot");
         return Err(TomlError::new(place, "", problem));
     }
     Ok(())
@@ -269,18 +282,61 @@ fn no_such_number<'n>(place: &str, key: &str, known: impl Iterator<Item = &'n st
     }
 }
 
-/// Whether all that a condition is about is the same for all records of a unit.
-fn is_decided_by_unit(condition: &Condition, content: &Content) -> bool {
+/// What decides a condition: a unit, where all that it is about is the same for all records of one, a mounting likewise, or a record.
+fn level_of(condition: &Condition, content: &Content) -> Level {
     let class_rules = content.classes.iter().flat_map(|class| &class.rules);
-    let by_record: Vec<&str> = content
-        .rules
-        .iter()
-        .chain(class_rules)
-        .filter(|rule| rule.level == Level::Record)
-        .flat_map(|rule| rule.keys.iter().map(String::as_str))
-        .collect();
-    let varies = |key: &str| key == SEVERITY || is_of_fault(key) || by_record.contains(&key);
-    !underlying(condition.keys()).into_iter().any(varies)
+    let rules: Vec<&Rule> = content.rules.iter().chain(class_rules).collect();
+    let level = |key: &str| {
+        if key == SEVERITY || is_of_fault(key) {
+            return Level::Record;
+        }
+        let of_key = rules.iter().filter(|rule| rule.keys.iter().any(|own| own == key));
+        of_key.map(|rule| rule.level).max().unwrap_or(Level::Unit)
+    };
+    underlying(condition.keys()).into_iter().map(level).max().unwrap_or(Level::Unit)
+}
+
+/// Where mountings are divided a unit may be in several splits: what it has belongs to none of them alone.
+fn refuse_unit_shifts(content: &Content, shift_levels: &[Vec<Level>]) -> ReadResult<()> {
+    if content.splits.by == SplitBy::Unit {
+        return Ok(());
+    }
+    for (s, (shift, levels)) in content.splits.shifts.iter().zip(shift_levels).enumerate() {
+        if let Some(of_unit) = levels.iter().position(|level| *level == Level::Unit) {
+            let problem = format!(
+                "`{}` is the same for all mountings of a unit, which are in several splits where split.by is \"mounting\"",
+                shift.when[of_unit]
+            );
+            return Err(TomlError::new(super::shift_key(s), "", problem)
+                .with_help("leave out split.by, or vary its keys per mounting or record"));
+        }
+    }
+    Ok(())
+}
+
+/// A damage that grows is given by its severity, which nothing else varies.
+fn check_growth(
+    content: &Content,
+    class: usize,
+    rules: &[Placed],
+    known: &[meshtone::scenario::ScenarioNumber],
+) -> ReadResult<()> {
+    if content.classes[class].growth.is_none() {
+        return Ok(());
+    }
+    let place = format!("class[{class}].growth");
+    if !known.iter().any(|number| number.key == FAULT_SEVERITY) {
+        let problem = "is of a fault that is given by its sizes; must be given by its severity, which grows";
+        return Err(TomlError::new(place, "", problem)
+            .with_help("write the class's fault as { kind = \"…\", severity = 0.5 }"));
+    }
+    match rules.iter().find(|(rule, _)| rule.keys.iter().any(|key| key == FAULT_SEVERITY)) {
+        Some((_, other)) => {
+            Err(TomlError::new(place, "", format!("sets `{FAULT_SEVERITY}`, which {other} varies too"))
+                .with_help("remove one of the two"))
+        }
+        None => Ok(()),
+    }
 }
 
 /// Constraints and conditions of shifts are about numbers that some class has.
@@ -294,7 +350,7 @@ fn check_conditions(content: &Content, classes: &[ClassRules]) -> ReadResult<()>
             let known = || classes.iter().flat_map(|class| class.numbers.keys().map(String::as_str));
             if key != SEVERITY
                 && !classes.iter().any(|class| class.knows(key))
-                && !(NOISE_KEYS.contains(&key) && varied(key))
+                && !(is_of_plan(key) && varied(key))
             {
                 return Err(no_such_number(&place, key, known()));
             }

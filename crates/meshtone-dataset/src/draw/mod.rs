@@ -10,18 +10,38 @@ use meshtone::scenario::{Scenario, ScenarioError};
 use meshtone_toml::ReadResult;
 
 use crate::expression::Condition;
-use crate::plan::{Content, Distribution, Rule};
+use crate::plan::{Age, Content, Distribution, Level, Rule, SplitBy};
 use crate::sampling::{Points, permuted};
 use compile::ClassRules;
 use values::{Values, of_scenario};
 
 /// How often values are drawn anew until all constraints are met.
 const MOST_ATTEMPTS: u32 = 10_000;
+/// What a growing damage is given by.
+const FAULT_SEVERITY: &str = "fault.severity";
 /// Seeds are exact in double precision, so that every program can read them.
 const SEED_BITS: u32 = 53;
 
 /// Keys of the noise that is added to the raw channels.
 pub const NOISE_KEYS: [&str; 2] = ["noise.snr_db", "noise.level_g"];
+/// Keys of the path from the simulated sensor's place to where a rig's is.
+pub const PATH_KEYS: [&str; 2] = ["path.gain_db", "path.ripple_db"];
+/// What names of one's own begin with: numbers that stand in terms and columns alone.
+const LATENT: &str = "latent.";
+
+/// Whether a key is of the plan alone: noise, path, or a name of one's own as `latent.load`. No scenario has it.
+///
+/// # Arguments
+/// * `key` - as a rule names it
+pub fn is_of_plan(key: &str) -> bool {
+    NOISE_KEYS.contains(&key) || PATH_KEYS.contains(&key) || key.strip_prefix(LATENT).is_some_and(is_name)
+}
+
+/// Letters, digits and `_`, the first no digit: what a column may be called.
+fn is_name(text: &str) -> bool {
+    let allowed = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    !text.is_empty() && text.chars().all(allowed) && !text.starts_with(|c: char| c.is_ascii_digit())
+}
 
 /// What the seeds of a plan's orders and designs are for; the number is the index of their draw.
 #[derive(Clone, Copy)]
@@ -29,6 +49,7 @@ enum SeedOf {
     Order = 0,
     Splits = 1,
     Units = 2,
+    Mountings = 3,
     /// And those after it, two for each class.
     Classes = 16,
 }
@@ -38,12 +59,14 @@ enum SeedOf {
 pub struct Sampler<'a> {
     content: &'a Content,
     unit_rules: Vec<&'a Rule>,
+    mounting_rules: Vec<&'a Rule>,
     classes: Vec<ClassRules<'a>>,
     /// Number of the record after the last of each class, in the order before it is shuffled.
     ends: Vec<u64>,
-    /// Of the constraints and the shifts' conditions, those that a unit alone decides.
-    unit_constraints: Vec<&'a Condition>,
-    shift_levels: Vec<Vec<bool>>,
+    /// Constraints that a unit alone decides, or a mounting.
+    group_constraints: Vec<(Level, &'a Condition)>,
+    /// What decides each of the shifts' conditions.
+    shift_levels: Vec<Vec<Level>>,
 }
 
 /// One record of a plan, before it is simulated.
@@ -55,12 +78,18 @@ pub struct DrawnRecord {
     pub class: usize,
     /// Number of its unit.
     pub unit: u64,
+    /// Number of its mounting, of those of all units.
+    pub mounting: u64,
+    /// Where it is in its unit's run to failure, where its class has one.
+    pub age: Option<Age>,
     /// Number of its split.
     pub split: usize,
     /// Seed of its noise and fluctuations.
     pub seed: u64,
     /// Seed of its unit's profile errors.
     pub wheels_seed: u64,
+    /// Seed of what its mounting has of its own.
+    pub mounting_seed: u64,
     /// Grade of its fault, 0 for healthy.
     pub severity: u8,
     /// What the grade was taken from.
@@ -78,11 +107,19 @@ pub struct DrawError {
     pub problem: String,
 }
 
-/// Values of a unit.
-struct Unit {
+/// What a record has in common with others.
+struct Group {
     split: usize,
-    wheels_seed: u64,
     values: Vec<(String, f64)>,
+}
+
+/// Where a record is among its class's.
+struct Place {
+    unit: u64,
+    mounting: u64,
+    /// Of the class's records of this unit, from 0.
+    of_unit: u64,
+    records_of_unit: u64,
 }
 
 /// Values of a record that suit its split.
@@ -123,26 +160,52 @@ impl<'a> Sampler<'a> {
         let number = place - start;
         let [design_seed, unit_seed] =
             [0, 1].map(|which| self.seed(SeedOf::Classes as u64 + 2 * class as u64 + which));
-        let count = self.content.classes[class].count;
-        // Units are shuffled against the design, whose points of equal distance lie near each other.
-        let units = self.content.units;
-        let unit_number = (permuted(number, count, unit_seed) + unit_seed % units) % units;
-        let unit = self.unit(unit_number)?;
+        let place = self.place(class, number, unit_seed);
+        let group = self.group(place.unit, place.mounting)?;
         let seed = keyed(self.content.seed, Purpose::DatasetSeed, index);
+        let growth = self.content.classes[class].growth.as_ref();
+        let run_seed = keyed(unit_seed, Purpose::DatasetRun, place.unit);
+        let age = growth.map(|growth| growth.age(run_seed, place.of_unit, place.records_of_unit));
         let Suitable { values, severity, severity_measure } =
-            self.record_values(class, number, design_seed, &unit)?;
-        let Unit { split, wheels_seed, .. } = unit;
+            self.record_values(class, number, design_seed, &group, age)?;
         Ok(DrawnRecord {
             index,
             class,
-            unit: unit_number,
-            split,
+            unit: place.unit,
+            mounting: place.mounting,
+            age,
+            split: group.split,
             seed,
-            wheels_seed,
+            wheels_seed: keyed(self.content.seed, Purpose::DatasetWheels, place.unit),
+            mounting_seed: keyed(self.content.seed, Purpose::DatasetMounting, place.mounting),
             severity,
             severity_measure,
             values,
         })
+    }
+
+    /// Where a record is among its class's.
+    ///
+    /// # Arguments
+    /// * `class` - its class
+    /// * `number` - its number in the class
+    /// * `seed` - of the class's units
+    fn place(&self, class: usize, number: u64, seed: u64) -> Place {
+        let Content { units, mountings, .. } = *self.content;
+        let count = self.content.classes[class].count;
+        // Units are shuffled against the design, whose points of equal distance lie near each other.
+        let first = seed % units;
+        let shuffled = first + permuted(number, count, seed);
+        let unit = shuffled % units;
+        // Those before the class's first one have their first record a turn later.
+        let begun = u64::from(unit < first);
+        let of_unit = shuffled / units - begun;
+        let records_of_unit = (first + count - 1 - unit) / units + 1 - begun;
+        // A run is not taken apart.
+        let turns = if self.content.classes[class].growth.is_some() { 0 } else { of_unit };
+        let turned = keyed(seed, Purpose::DatasetMounting, unit);
+        let mounting = unit * mountings + (turned % mountings + turns) % mountings;
+        Place { unit, mounting, of_unit, records_of_unit }
     }
 
     /// The scenario of a record.
@@ -159,57 +222,93 @@ impl<'a> Sampler<'a> {
         Ok(scenario)
     }
 
-    /// The split of a unit.
+    /// The split of a record by what it shares with others.
     ///
     /// # Arguments
-    /// * `unit` - its number
-    pub fn split_of_unit(&self, unit: u64) -> usize {
-        let Content { splits, units, .. } = self.content;
-        splits.of_unit(unit, *units, self.seed(SeedOf::Splits as u64))
+    /// * `unit` - its unit's number
+    /// * `mounting` - its mounting's number, of those of all units
+    pub fn split_of(&self, unit: u64, mounting: u64) -> usize {
+        let Content { splits, units, mountings, .. } = self.content;
+        let seed = self.seed(SeedOf::Splits as u64);
+        match splits.by {
+            SplitBy::Unit => splits.split_of(unit, *units, seed),
+            SplitBy::Mounting => splits.split_of(mounting, units * mountings, seed),
+        }
     }
 
     fn seed(&self, index: u64) -> u64 {
         Draws::new(self.content.seed, Purpose::DatasetDesign, index).bits()
     }
 
-    fn unit(&self, unit: u64) -> Result<Unit, DrawError> {
-        let split = self.split_of_unit(unit);
-        let shift = self.content.splits.shift(split);
-        let points = Points {
-            design: self.content.design,
-            seed: self.seed(SeedOf::Units as u64),
-            purpose: Purpose::DatasetUnit,
-            count: self.content.units,
+    /// What the records of a mounting have in common.
+    fn group(&self, unit: u64, mounting: u64) -> Result<Group, DrawError> {
+        let Content { design, units, mountings, ref splits, .. } = *self.content;
+        let split = self.split_of(unit, mounting);
+        let of_unit = match splits.by {
+            SplitBy::Unit => Some(split),
+            SplitBy::Mounting => None,
         };
+        let seed = self.seed(SeedOf::Units as u64);
+        let points = Points { design, seed, purpose: Purpose::DatasetUnit, count: units };
+        let values = self.group_values(Level::Unit, points, unit, Vec::new(), of_unit)?;
+        let seed = self.seed(SeedOf::Mountings as u64);
+        let count = units * mountings;
+        let points = Points { design, seed, purpose: Purpose::DatasetMounting, count };
+        let values = self.group_values(Level::Mounting, points, mounting, values, Some(split))?;
+        Ok(Group { split, values })
+    }
+
+    /// The values of a unit or a mounting, after those of what it belongs to.
+    ///
+    /// # Arguments
+    /// * `split` - its own; none where its records are in several
+    fn group_values(
+        &self,
+        level: Level,
+        points: Points,
+        number: u64,
+        before: Vec<(String, f64)>,
+        split: Option<usize>,
+    ) -> Result<Vec<(String, f64)>, DrawError> {
+        let rules = if level == Level::Unit { &self.unit_rules } else { &self.mounting_rules };
+        let constraints: Vec<&Condition> = self
+            .group_constraints
+            .iter()
+            .filter(|(decided, _)| *decided == level)
+            .map(|(_, condition)| *condition)
+            .collect();
         let any = &self.classes[0];
         let mut obstacles = Obstacles::default();
         for attempt in 0..MOST_ATTEMPTS {
             let mut values = Values::new(&any.base, &any.numbers);
-            draw(&self.unit_rules, points, unit, attempt, &mut values);
-            let met = self.meets(&self.unit_constraints, &values, &mut obstacles)
-                && self.unit_suits(shift, &values, &mut obstacles);
+            before.iter().for_each(|(key, value)| values.set(key, *value));
+            draw(rules, points, number, attempt, &mut values);
+            let met = self.meets(&constraints, &values, &mut obstacles)
+                && split.is_none_or(|split| self.group_suits(level, split, &values, &mut obstacles));
             if met {
-                let wheels_seed = keyed(self.content.seed, Purpose::DatasetWheels, unit);
-                return Ok(Unit { split, wheels_seed, values: values.drawn() });
+                return Ok(values.drawn());
             }
         }
-        Err(obstacles.error(&format!("unit {unit} of the split {}", self.content.splits.names()[split])))
+        let names = self.content.splits.names();
+        let of_split = split.map(|split| format!(" of the split {}", names[split])).unwrap_or_default();
+        Err(obstacles.error(&format!("{} {number}{of_split}", level.name())))
     }
 
-    /// Whether a unit of a split, which is a shift or not, may have these values.
-    fn unit_suits(&self, own: Option<usize>, values: &Values, obstacles: &mut Obstacles) -> bool {
+    /// Whether a unit or a mounting of a split, which is a shift or not, may have these values.
+    fn group_suits(&self, level: Level, split: usize, values: &Values, obstacles: &mut Obstacles) -> bool {
         let number = |key: &str| values.number(key);
-        self.content.splits.shifts.iter().zip(&self.shift_levels).enumerate().all(|(s, (shift, of_unit))| {
-            let mut decided = shift.when.iter().zip(of_unit).filter(|(_, of_unit)| **of_unit);
+        let own = self.content.splits.shift(split);
+        self.content.splits.shifts.iter().zip(&self.shift_levels).enumerate().all(|(s, (shift, levels))| {
+            let mut decided = shift.when.iter().zip(levels).filter(|(_, decided)| **decided <= level);
             if own == Some(s) {
                 decided.all(|(condition, _)| {
                     let holds = condition.holds(&number) != Some(false);
                     holds || obstacles.note(shift_key(s), format!("`{condition}`"))
                 })
             } else {
-                let by_unit_alone = of_unit.iter().all(|of_unit| *of_unit);
+                let by_group_alone = levels.iter().all(|decided| *decided <= level);
                 let fulfilled =
-                    by_unit_alone && decided.all(|(condition, _)| condition.holds(&number) == Some(true));
+                    by_group_alone && decided.all(|(condition, _)| condition.holds(&number) == Some(true));
                 !fulfilled
                     || obstacles.note(shift_key(s), format!("not what belongs to the split {}", shift.name))
             }
@@ -221,7 +320,8 @@ impl<'a> Sampler<'a> {
         class: usize,
         number: u64,
         seed: u64,
-        unit: &Unit,
+        group: &Group,
+        age: Option<Age>,
     ) -> Result<Suitable, DrawError> {
         let rules = &self.classes[class];
         let plan = &self.content.classes[class];
@@ -230,7 +330,10 @@ impl<'a> Sampler<'a> {
         let mut obstacles = Obstacles::default();
         for attempt in 0..MOST_ATTEMPTS {
             let mut values = Values::new(&rules.base, &rules.numbers);
-            unit.values.iter().for_each(|(key, value)| values.set(key, *value));
+            group.values.iter().for_each(|(key, value)| values.set(key, *value));
+            if let Some(age) = age {
+                values.set(FAULT_SEVERITY, age.severity);
+            }
             draw(&rules.rules, points, number, attempt, &mut values);
             let severity = plan.severity.of(&|key| values.number(key));
             let (grade, measure) = severity.unwrap_or((u8::from(!plan.faults.is_empty()), None));
@@ -239,12 +342,12 @@ impl<'a> Sampler<'a> {
                 values.set_severity(grade);
             }
             let met = self.meets(&rules.constraints, &values, &mut obstacles)
-                && self.record_suits(self.content.splits.shift(unit.split), &values, &mut obstacles);
+                && self.record_suits(self.content.splits.shift(group.split), &values, &mut obstacles);
             if met {
                 return Ok(Suitable { values: values.drawn(), severity: grade, severity_measure: measure });
             }
         }
-        let split = self.content.splits.names()[unit.split];
+        let split = self.content.splits.names()[group.split];
         Err(obstacles.error(&format!("a record of the class \"{}\" in the split {split}", plan.label)))
     }
 

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use meshtone::scenario::Scenario;
 
-use super::NOISE_KEYS;
+use super::is_of_plan;
 use crate::expression::derived;
 
 /// Name of the severity in conditions.
@@ -65,7 +65,7 @@ impl<'a> Values<'a> {
 
 /// The values at keys of the scenario.
 pub(super) fn of_scenario(values: &[(String, f64)]) -> Vec<(&str, f64)> {
-    let of_scenario = values.iter().filter(|(key, _)| !NOISE_KEYS.contains(&key.as_str()));
+    let of_scenario = values.iter().filter(|(key, _)| !is_of_plan(key));
     of_scenario.map(|(key, value)| (key.as_str(), *value)).collect()
 }
 

@@ -5,8 +5,8 @@ use std::collections::HashSet;
 use meshtone::scenario::ScenarioError;
 use meshtone_toml::{ReadResult, TomlError, TomlTable};
 
-use super::{Content, Distribution, Plan, Rule};
-use crate::draw::{DrawError, DrawnRecord, NOISE_KEYS, Sampler};
+use super::{Content, Distribution, Plan, Rule, SplitBy};
+use crate::draw::{DrawError, DrawnRecord, Sampler, is_of_plan};
 use crate::shard::FailedRecord;
 
 /// Records whose values are drawn before anything is written.
@@ -25,9 +25,14 @@ pub(super) fn check(content: &Content, root: &TomlTable<'_>) -> ReadResult<()> {
         return Err(root.error("units", format!("is more than the {records} records")));
     }
     let needed = content.splits.all_parts().iter().filter(|&&part| part > 0.0).count() as u64;
-    if content.units < needed {
-        let problem = format!("is fewer than the {needed} splits, each of which must have one of its own");
-        return Err(root.error("units", problem).with_help("raise units, or write [split] with train = 1.0"));
+    let (key, divided) = match content.splits.by {
+        SplitBy::Unit => ("units", content.units),
+        SplitBy::Mounting => ("mountings", content.units * content.mountings),
+    };
+    if divided < needed {
+        let problem =
+            format!("are {divided}, fewer than the {needed} splits, each of which must have one of its own");
+        return Err(root.error(key, problem).with_help("raise it, or write [split] with train = 1.0"));
     }
     for (given, key, why) in [
         (
@@ -206,7 +211,7 @@ fn refuse_value(
     rule: &Rule,
     row: &[f64],
 ) -> Result<(), ScenarioError> {
-    if rule.keys.iter().all(|key| NOISE_KEYS.contains(&key.as_str())) {
+    if rule.keys.iter().all(|key| is_of_plan(key)) {
         return Ok(());
     }
     let mut refused = Ok(());

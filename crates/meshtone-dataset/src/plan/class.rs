@@ -2,7 +2,7 @@
 
 use meshtone::scenario::Fault;
 
-use super::Rule;
+use super::{Growth, Rule};
 use crate::expression::Expression;
 
 /// Records of one label.
@@ -18,6 +18,8 @@ pub struct Class {
     pub severity: Severity,
     /// Rules for this class alone.
     pub rules: Vec<Rule>,
+    /// How the damage of its units grows to failure, record by record; none where records do not follow one another.
+    pub growth: Option<Growth>,
 }
 
 /// The kinds of some faults, in their order; none of a healthy pair.

@@ -13,6 +13,8 @@ pub struct Keep {
     pub sampling_rate_hz: f64,
     /// (s) Length of the raw channels; none for a hunting period, after which the same teeth meet again.
     pub duration_s: Option<f64>,
+    /// How the raw channels lie over the angle of `wheel`, as many values in every record; none where they are over time.
+    pub over_angle: Option<OverAngle>,
     /// Raw channels that are kept.
     pub channels: Vec<Channel>,
     /// The channel that is averaged.
@@ -34,6 +36,22 @@ pub struct Keep {
     pub aligned: bool,
     /// Records in a shard; by default as many as make about 32 MB.
     pub records_per_shard: Option<u64>,
+}
+
+/// Channels over the angle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct OverAngle {
+    /// Values in a revolution, of channels, average and difference.
+    pub points_per_revolution: usize,
+    /// Revolutions of the channels.
+    pub revolutions: usize,
+}
+
+impl OverAngle {
+    /// Values of a channel.
+    pub fn values(self) -> usize {
+        self.points_per_revolution * self.revolutions
+    }
 }
 
 impl Keep {

@@ -5,7 +5,9 @@
 mod check;
 mod class;
 mod files;
+mod growth;
 mod keep;
+mod question;
 mod read;
 mod rule;
 mod split;
@@ -21,9 +23,11 @@ use sha2::{Digest, Sha256};
 pub(crate) use class::kinds;
 pub use class::{Class, Severity};
 pub use files::PlanFile;
-pub use keep::{Keep, MOST_SHARD_RECORDS};
+pub use growth::{Age, Growth, Law};
+pub use keep::{Keep, MOST_SHARD_RECORDS, OverAngle};
+pub use question::Question;
 pub use rule::{Distribution, Level, Rule};
-pub use split::{Shift, Splits};
+pub use split::{Shift, SplitBy, Splits};
 pub use template::template;
 
 use crate::expression::Condition;
@@ -52,6 +56,8 @@ pub struct About {
     pub description: String,
     /// Licence of the data, by its SPDX identifier or in words.
     pub licence: String,
+    /// What it asks of a record.
+    pub questions: Vec<Question>,
 }
 
 /// What decides every byte of the records.
@@ -63,6 +69,8 @@ pub struct Content {
     pub base: Scenario,
     /// How many units there are: pairs of wheels.
     pub units: u64,
+    /// How often each unit is mounted: its records are spread evenly over that many mountings.
+    pub mountings: u64,
     /// How drawn values fill their ranges.
     pub design: Design,
     /// Rules for all classes.

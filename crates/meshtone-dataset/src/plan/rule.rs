@@ -4,18 +4,31 @@ use crate::expression::Expression;
 use crate::sampling::{normal_distribution, normal_quantile};
 
 /// What a value is drawn for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
     /// Once for all records of a unit.
     Unit,
+    /// Once for all records of a mounting: a unit that was taken apart and put together again has another one.
+    Mounting,
     /// For each record.
     Record,
+}
+
+impl Level {
+    /// All with their names, the one that holds most records first.
+    pub const NAMES: [(&'static str, Self); 3] =
+        [("unit", Self::Unit), ("mounting", Self::Mounting), ("record", Self::Record)];
+
+    /// Its name in a plan.
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize].0
+    }
 }
 
 /// How one key, or several together, vary.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rule {
-    /// Dotted keys of the scenario file, or `noise.snr_db`, `noise.level_g`.
+    /// Dotted keys of the scenario file, or of the plan alone: [`crate::draw::is_of_plan`].
     pub keys: Vec<String>,
     /// What is drawn for.
     pub level: Level,

@@ -3,10 +3,32 @@
 use crate::expression::Condition;
 use crate::sampling::permuted;
 
-/// How units are divided. A unit is in one split, with all its records.
+/// What is divided into splits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum SplitBy {
+    /// Units: a pair of wheels is in one split, with all its mountings.
+    #[default]
+    Unit,
+    /// Mountings: the same wheels may be in two splits, mounted anew.
+    Mounting,
+}
+
+impl SplitBy {
+    /// All with their names in a plan.
+    pub const NAMES: [(&'static str, Self); 2] = [("unit", Self::Unit), ("mounting", Self::Mounting)];
+
+    /// Its name in a plan.
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize].0
+    }
+}
+
+/// How units, or their mountings, are divided. Each is in one split, with all its records.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Splits {
-    /// (-) Parts of the units for training, validation and test.
+    /// What is divided.
+    pub by: SplitBy,
+    /// (-) Parts of the units, or mountings, for training, validation and test.
     pub parts: [f64; 3],
     /// Splits that are unlike the training.
     pub shifts: Vec<Shift>,
@@ -17,7 +39,7 @@ pub struct Splits {
 pub struct Shift {
     /// Its name.
     pub name: String,
-    /// (-) Part of the units.
+    /// (-) Part of the units, or mountings.
     pub part: f64,
     /// What holds for all of its records, together, and for no other record.
     pub when: Vec<Condition>,
@@ -25,7 +47,7 @@ pub struct Shift {
 
 impl Default for Splits {
     fn default() -> Self {
-        Self { parts: [0.7, 0.15, 0.15], shifts: Vec::new() }
+        Self { by: SplitBy::Unit, parts: [0.7, 0.15, 0.15], shifts: Vec::new() }
     }
 }
 
@@ -52,7 +74,7 @@ impl Splits {
         split.checked_sub(Self::ALIKE.len())
     }
 
-    /// How many units each split has: by largest remainder, and at least one where its part is more than 0 and there are
+    /// How many units, or mountings, each split has: by largest remainder, and at least one where its part is more than 0 and there are
     /// enough.
     ///
     /// # Arguments
@@ -61,11 +83,11 @@ impl Splits {
     /// ```
     /// use meshtone_dataset::plan::Splits;
     ///
-    /// let splits = Splits { parts: [0.7, 0.15, 0.15], shifts: Vec::new() };
-    /// assert_eq!(splits.unit_counts(20), [14, 3, 3]);
-    /// assert_eq!(splits.unit_counts(3), [1, 1, 1]);
+    /// let splits = Splits::default();
+    /// assert_eq!(splits.counts(20), [14, 3, 3]);
+    /// assert_eq!(splits.counts(3), [1, 1, 1]);
     /// ```
-    pub fn unit_counts(&self, units: u64) -> Vec<u64> {
+    pub fn counts(&self, units: u64) -> Vec<u64> {
         let mut counts = largest_remainder(&self.all_parts(), units);
         let parts = self.all_parts();
         for (split, part) in parts.iter().enumerate() {
@@ -80,15 +102,15 @@ impl Splits {
         counts
     }
 
-    /// The split of a unit.
+    /// The split of a unit, or a mounting.
     ///
     /// # Arguments
     /// * `unit`, `units` - which of how many
     /// * `seed` - of the division
-    pub fn of_unit(&self, unit: u64, units: u64, seed: u64) -> usize {
+    pub fn split_of(&self, unit: u64, units: u64, seed: u64) -> usize {
         let place = permuted(unit, units, seed);
         let mut end = 0;
-        let counts = self.unit_counts(units);
+        let counts = self.counts(units);
         counts
             .iter()
             .position(|count| {
@@ -121,16 +143,19 @@ mod tests {
     #[test]
     fn every_unit_is_in_one_split_and_the_parts_are_kept() {
         let when = vec![Condition::parse("operation.pinion_speed_hz > 50").unwrap()];
-        let splits =
-            Splits { parts: [0.6, 0.1, 0.2], shifts: vec![Shift { name: "fast".into(), part: 0.1, when }] };
+        let splits = Splits {
+            by: SplitBy::Unit,
+            parts: [0.6, 0.1, 0.2],
+            shifts: vec![Shift { name: "fast".into(), part: 0.1, when }],
+        };
         for units in [4, 10, 37, 1000] {
             let mut counts = vec![0; 4];
-            (0..units).for_each(|unit| counts[splits.of_unit(unit, units, 9)] += 1);
-            assert_eq!(counts, splits.unit_counts(units));
+            (0..units).for_each(|unit| counts[splits.split_of(unit, units, 9)] += 1);
+            assert_eq!(counts, splits.counts(units));
             assert_eq!(counts.iter().sum::<u64>(), units);
             assert!(counts.iter().all(|&count| count > 0));
         }
-        assert_eq!(splits.unit_counts(1000), [600, 100, 200, 100]);
+        assert_eq!(splits.counts(1000), [600, 100, 200, 100]);
     }
 
     #[test]

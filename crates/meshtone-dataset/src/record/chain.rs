@@ -10,14 +10,14 @@ use meshtone::scenario::{Fault, Model, Scenario, ScenarioWarning, WarningKind, W
 use meshtone::sensor::Channel;
 use meshtone::signal::{
     AngularSettings, AntiAliasing, ChainSettings, Edge, MeanPart, Record as Analysis, SeparationSettings,
-    ShaftPhase, SignalError, process_channel,
+    ShaftPhase, SignalError, angular_resample, octave_bands, process_channel,
 };
 
 use meshtone::tuning::DifferenceChain;
 
-use super::{Record, RecordFault, Start, noise};
+use super::{Record, RecordFault, Start, noise, path};
 use crate::draw::DrawnRecord;
-use crate::plan::{Content, Keep};
+use crate::plan::{Content, Keep, OverAngle};
 
 /// What is kept of a record's simulation.
 pub(super) fn record(
@@ -41,6 +41,11 @@ pub(super) fn record(
     let parts = stages.scenario.model == Model::Contact;
     record.slack_fraction = if parts { observed.apart_fraction } else { observed.tension_fraction };
     record.warnings = kinds(&observed.warnings);
+    for (number, (kind, channel)) in simulated.iter().zip(&mut channels).enumerate() {
+        if kind.is_acceleration() {
+            path::pass(&record.drawn, number as u64, keep.sampling_rate_hz, channel);
+        }
+    }
     if let (Some(analysed), true) = (analysed, enhanced) {
         record.clean_difference = view.clean_difference(&channels[analysed], content).map_err(signals)?;
     }
@@ -53,20 +58,27 @@ pub(super) fn record(
         let analysis = view
             .analyse(&channels[analysed], AngularSettings::default(), MeanPart::default())
             .map_err(signals)?;
-        let single = |values: &[f64]| values.iter().map(|&value| value as f32).collect();
         if keep.average {
-            record.average = single(&analysis.average.values);
+            record.average = view.of_revolution(&analysis.average.values).map_err(signals)?;
         }
         if keep.difference {
-            record.difference = single(&analysis.parts.difference);
+            record.difference = view.of_revolution(&analysis.parts.difference).map_err(signals)?;
         }
         if keep.indicators {
             record.indicators = analysis.indicators.table("g");
+            let (teeth, nyquist) = (view.teeth(), analysis.average.nyquist_order);
+            record.octaves = octave_bands(&analysis.parts.difference, teeth, nyquist).map_err(signals)?;
         }
     }
     channels.truncate(keep.channels.len());
     if let Some(seconds) = keep.duration_s {
         view.cut(&mut channels, seconds).map_err(signals)?;
+    }
+    if let Some(angle) = keep.over_angle {
+        record.sampling_rate_hz = angle.points_per_revolution as f64 * view.shaft_hz();
+        for channel in &mut channels {
+            *channel = view.over_angle(channel, angle).map_err(signals)?;
+        }
     }
     record.channels = channels;
     Ok(record)
@@ -96,7 +108,8 @@ pub(super) fn twin(
     let analysed = content.keep.simulated().iter().position(|channel| *channel == content.keep.analysed);
     let mut record = view.empty(drawn);
     if let Some(analysed) = analysed {
-        let channels = view.at_rate(&samples[analysed..=analysed]).map_err(signals)?;
+        let mut channels = view.at_rate(&samples[analysed..=analysed]).map_err(signals)?;
+        path::pass(&record.drawn, analysed as u64, content.keep.sampling_rate_hz, &mut channels[0]);
         record.clean_difference = view.clean_difference(&channels[0], content).map_err(signals)?;
     }
     Ok(record)
@@ -124,6 +137,20 @@ fn refuse_growth(channels: &[Channel], samples: &[Vec<f32>]) -> Result<(), Strin
         ));
     }
     Ok(())
+}
+
+/// Values at equal angles at another number of points in a revolution.
+fn at_points(
+    values: &[f64],
+    from: usize,
+    to: usize,
+    count: usize,
+    edge: Edge,
+) -> Result<Vec<f32>, SignalError> {
+    let step = from as f64 / to as f64;
+    let filter = AntiAliasing::steep(from as f64, to as f64)?;
+    let read = filter.read_double(values, (0..count).map(|i| i as f64 * step), edge);
+    Ok(read.into_iter().map(|value| value as f32).collect())
 }
 
 /// A simulation as a recording: from the mark on, at the rate of the data set.
@@ -185,12 +212,15 @@ impl<'a> View<'a> {
             teeth: [scenario.gears.pinion_teeth, scenario.gears.gear_teeth],
             pinion_speed_hz: scenario.operation.pinion_speed_hz,
             brake_torque_nm: scenario.operation.brake_torque_nm,
+            sampling_rate_hz: self.keep.sampling_rate_hz,
+            simulated_s: self.stages.time.kept_samples() as f64 * self.stages.time.step_s(),
             warnings: Vec::new(),
             slack_fraction: 0.0,
             channels: Vec::new(),
             average: Vec::new(),
             difference: Vec::new(),
             indicators: Vec::new(),
+            octaves: Vec::new(),
             clean_difference: Vec::new(),
         }
     }
@@ -210,7 +240,8 @@ impl<'a> View<'a> {
     fn at_rate(&self, samples: &[Vec<f32>]) -> Result<Vec<Vec<f32>>, SignalError> {
         let from_hz = self.stages.time.sampling_rate_hz;
         let step = from_hz / self.keep.sampling_rate_hz;
-        let filter = AntiAliasing::new(from_hz, self.keep.sampling_rate_hz)?;
+        // Records begin at any moment: what the filter folded back would differ between them.
+        let filter = AntiAliasing::steep(from_hz, self.keep.sampling_rate_hz)?;
         let kept = self.stages.time.kept_samples();
         let (offset, edge) = match self.offset {
             Some(offset) => (offset as f64, Edge::Periodic),
@@ -237,12 +268,7 @@ impl<'a> View<'a> {
         let rate_hz = self.keep.sampling_rate_hz;
         let gears = &self.scenario().gears;
         if self.offset.is_some() {
-            let pinion_hz = self.scenario().operation.pinion_speed_hz;
-            let shaft_hz = match self.keep.wheel {
-                WheelName::Pinion => pinion_hz,
-                WheelName::Gear => pinion_hz * f64::from(gears.pinion_teeth) / f64::from(gears.gear_teeth),
-            };
-            return ShaftPhase::constant(shaft_hz, rate_hz, samples);
+            return ShaftPhase::constant(self.shaft_hz(), rate_hz, samples);
         }
         let angles = self.gear_angles();
         let turns_per_gear_turn = f64::from(gears.gear_teeth) / f64::from(gears.teeth(self.keep.wheel));
@@ -263,7 +289,7 @@ impl<'a> View<'a> {
         angular: AngularSettings,
         mean: MeanPart,
     ) -> Result<Analysis, SignalError> {
-        let teeth = self.scenario().gears.teeth(self.keep.wheel);
+        let teeth = self.teeth();
         let separation = SeparationSettings {
             sidebands: self.keep.sidebands,
             shaft_orders: (1..=self.keep.shaft_orders).collect(),
@@ -283,6 +309,51 @@ impl<'a> View<'a> {
         // As the signals were taken that the enhancement was tuned with.
         let angular = DifferenceChain::angular_settings(self.scenario().model);
         Ok(self.analyse(signal, angular, MeanPart::Removed)?.parts.difference)
+    }
+
+    /// Teeth of the averaged wheel.
+    fn teeth(&self) -> u32 {
+        self.scenario().gears.teeth(self.keep.wheel)
+    }
+
+    /// (Hz) Nominal speed of the averaged wheel's shaft.
+    fn shaft_hz(&self) -> f64 {
+        let gears = &self.scenario().gears;
+        let pinion_hz = self.scenario().operation.pinion_speed_hz;
+        match self.keep.wheel {
+            WheelName::Pinion => pinion_hz,
+            WheelName::Gear => pinion_hz * f64::from(gears.pinion_teeth) / f64::from(gears.gear_teeth),
+        }
+    }
+
+    /// A signal over one revolution, with as many values as are asked for.
+    fn of_revolution(&self, values: &[f64]) -> Result<Vec<f32>, SignalError> {
+        let Some(angle) = self.keep.over_angle else {
+            return Ok(values.iter().map(|&value| value as f32).collect());
+        };
+        at_points(
+            values,
+            values.len(),
+            angle.points_per_revolution,
+            angle.points_per_revolution,
+            Edge::Periodic,
+        )
+    }
+
+    /// A channel over whole revolutions, from the mark on.
+    fn over_angle(&self, signal: &[f32], angle: OverAngle) -> Result<Vec<f32>, SignalError> {
+        let double: Vec<f64> = signal.iter().map(|&x| f64::from(x)).collect();
+        let angular = angular_resample(&double, &self.phase(signal.len())?, &AngularSettings::default())?;
+        if angular.revolutions() < angle.revolutions {
+            let what = "revolutions of a record for keep.revolutions";
+            return Err(SignalError::TooFew {
+                what,
+                given: angular.revolutions(),
+                needed: angle.revolutions,
+            });
+        }
+        let (from, to) = (angular.points_per_revolution, angle.points_per_revolution);
+        at_points(&angular.values, from, to, angle.values(), Edge::Reflect)
     }
 
     /// Cuts the channels to a duration.

@@ -2,15 +2,16 @@
 
 mod chain;
 mod noise;
+mod path;
 mod start;
 
 pub use start::Start;
 
-use meshtone::Stages;
 use meshtone::batch::{Keep as BatchKeep, KeepObserved, ObservedRecorder, Output};
 use meshtone::operation::TimeGrid;
 use meshtone::scenario::{Fault, Scenario, ScenarioError, WarningKind, WheelName};
-use meshtone::signal::IndicatorValue;
+use meshtone::signal::{IndicatorValue, OctaveBand};
+use meshtone::{Stages, StepJudgement};
 
 use crate::draw::DrawnRecord;
 use crate::plan::Content;
@@ -42,6 +43,12 @@ pub struct Record {
     pub difference: Vec<f32>,
     /// Its indicators.
     pub indicators: Vec<IndicatorValue>,
+    /// Octaves of mesh orders of its difference signal.
+    pub octaves: Vec<OctaveBand>,
+    /// (S/s) Sampling rate of the raw channels; over the angle their mean one.
+    pub sampling_rate_hz: f64,
+    /// (s) Simulated time that it was made of.
+    pub simulated_s: f64,
     /// Difference signal without the added noise, to be enhanced; empty where nothing is.
     pub clean_difference: Vec<f64>,
 }
@@ -104,7 +111,9 @@ impl<F: Fn(usize) -> Option<Role> + Sync> BatchKeep for KeepRecords<'_, F> {
     fn keep(&self, index: usize, stages: Stages, recorder: ObservedRecorder) -> Self::Kept {
         match (self.role)(index) {
             Some(Role::Record(drawn)) => {
-                chain::record(self.content, drawn, &stages, recorder.finish(&stages))
+                // A second simulation of every record in doubt would make three times the work.
+                let observed = recorder.finish(&stages, StepJudgement::Estimated);
+                chain::record(self.content, drawn, &stages, observed)
             }
             Some(Role::HealthyTwin(drawn, faults)) => {
                 let samples = recorder.signals(&stages).channels;
@@ -121,7 +130,11 @@ pub(crate) fn kept_bytes(content: &Content, time: &TimeGrid) -> usize {
     let keep = &content.keep;
     let rate = (keep.sampling_rate_hz / time.sampling_rate_hz).min(1.0);
     let period = time.kept_samples() as f64 * rate;
-    let raw = keep.duration_s.map_or(period, |seconds| seconds * keep.sampling_rate_hz);
+    let raw = match (keep.over_angle, keep.duration_s) {
+        (Some(angle), _) => angle.values() as f64,
+        (None, Some(seconds)) => seconds * keep.sampling_rate_hz,
+        (None, None) => period,
+    };
     // An average's length is the next power of two above a revolution's.
     let turns = time.kept_samples() as f64 / time.samples_per_pinion_revolution as f64;
     let average = 4.0 * period / turns.max(1.0);

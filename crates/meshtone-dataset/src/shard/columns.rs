@@ -3,9 +3,10 @@
 use meshtone::damage::Damage;
 use meshtone::scenario::Model;
 use meshtone::sensor::Channel;
+use meshtone::signal::OCTAVES;
 use meshtone_io::table::{CellType, TableColumn};
 
-use crate::draw::NOISE_KEYS;
+use crate::draw::{NOISE_KEYS, PATH_KEYS, is_of_plan};
 use crate::plan::Plan;
 
 /// Name of the column of codes.
@@ -33,6 +34,22 @@ pub enum ColumnKind {
     Record,
     /// Number of the unit.
     Unit,
+    /// Number of the mounting.
+    Mounting,
+    /// How far its run has come.
+    Age,
+    /// What is left of its run.
+    Remaining,
+    /// Whether its run was stopped before failure.
+    Censored,
+    /// Simulated time.
+    SimulatedTime,
+    /// Values in a revolution of the raw channels.
+    PointsPerRevolution,
+    /// Rms of an octave of mesh orders, by its number in the list of octaves.
+    OctaveRms(usize),
+    /// Kurtosis of an octave, likewise.
+    OctaveKurtosis(usize),
     /// Name of the split.
     Split,
     /// The label.
@@ -95,11 +112,16 @@ impl ColumnKind {
 
     fn cells(&self) -> CellType {
         match self {
-            Self::Record | Self::Unit | Self::Seed | Self::WheelsSeed => CellType::Int64,
+            Self::Record | Self::Unit | Self::Mounting | Self::Seed | Self::WheelsSeed => CellType::Int64,
             Self::Split | Self::Label | Self::FaultKind(_) | Self::FaultWheel(_) | Self::Warnings => {
                 CellType::Text
             }
-            Self::Severity | Self::FaultTooth(_) | Self::PinionTeeth | Self::GearTeeth => CellType::Int32,
+            Self::Severity
+            | Self::FaultTooth(_)
+            | Self::PinionTeeth
+            | Self::GearTeeth
+            | Self::Censored
+            | Self::PointsPerRevolution => CellType::Int32,
             kind if kind.is_signal() => CellType::Float32List { nullable_items: false },
             _ => CellType::Float64,
         }
@@ -116,6 +138,11 @@ impl ColumnKind {
                 | Self::FaultArea(_)
                 | Self::Key(_)
                 | Self::Indicator(_)
+                | Self::OctaveRms(_)
+                | Self::OctaveKurtosis(_)
+                | Self::Age
+                | Self::Remaining
+                | Self::Censored
         )
     }
 }
@@ -126,6 +153,8 @@ impl ColumnKind {
 /// * `plan` - the plan
 pub fn columns(plan: &Plan) -> Vec<Column> {
     let classes = &plan.content.classes;
+    let keep = &plan.content.keep;
+    let wheel = keep.wheel.name();
     let most_faults = classes.iter().map(|class| class.faults.len()).max().unwrap_or(0);
     let is_pits = |number: usize| {
         classes.iter().any(|class| {
@@ -133,12 +162,17 @@ pub fn columns(plan: &Plan) -> Vec<Column> {
         })
     };
     let mut columns = of_record(most_faults, is_pits);
+    if classes.iter().any(|class| class.growth.is_some()) {
+        columns.extend(of_run());
+    }
+    if keep.over_angle.is_some() {
+        let meaning = format!("values in a revolution of the {wheel}, of channels, average and difference");
+        columns.push(column("points_per_revolution", "", &meaning, ColumnKind::PointsPerRevolution));
+    }
     columns.extend(of_simulation(plan.content.base.model));
     let taken: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
     columns
         .extend(varied_keys(plan).into_iter().map(key_column).filter(|column| !taken.contains(&column.name)));
-    let keep = &plan.content.keep;
-    let wheel = keep.wheel.name();
     if keep.indicators {
         columns.extend(indicator_names().into_iter().map(|(name, unit)| Column {
             name: if unit == "g" { format!("{name}_g") } else { name.clone() },
@@ -146,11 +180,19 @@ pub fn columns(plan: &Plan) -> Vec<Column> {
             unit,
             kind: ColumnKind::Indicator(name),
         }));
+        columns.extend(OCTAVES.iter().enumerate().flat_map(|(number, (name, _))| of_octave(number, name)));
     }
     let channel = |(number, kind): (usize, &Channel)| Column {
         name: kind.name().into_owned(),
         unit: kind.unit().to_owned(),
-        description: format!("raw channel, its samples one after the other: {}", kind.meaning()),
+        description: match keep.over_angle {
+            None => format!("raw channel, its samples one after the other: {}", kind.meaning()),
+            Some(angle) => format!(
+                "raw channel over {} revolutions of the {wheel}, at equal angles: {}",
+                angle.revolutions,
+                kind.meaning()
+            ),
+        },
         kind: ColumnKind::Channel(number),
     };
     columns.extend(keep.channels.iter().enumerate().map(channel));
@@ -201,7 +243,8 @@ fn of_record(most_faults: usize, is_pits: impl Fn(usize) -> bool) -> Vec<Column>
     let mut columns = vec![
         column("record", "", "number of the record; with the plan it determines everything else", Record),
         column("unit", "", "number of the unit: the pair of wheels, shared by several records", Unit),
-        column("split", "", "the split that the unit belongs to", Split),
+        column("mounting", "", "number of the mounting: a unit as it was put together once", Mounting),
+        column("split", "", "the split that the unit, or its mounting, belongs to", Split),
         column("label", "", "the class", Label),
         column("severity", "", "grade of the fault, from 1; 0 for healthy", Severity),
         column("severity_measure", "-", "the number that the grade was taken from", SeverityMeasure),
@@ -235,7 +278,7 @@ fn of_record(most_faults: usize, is_pits: impl Fn(usize) -> bool) -> Vec<Column>
 }
 
 /// What its simulation says of itself.
-fn of_simulation(model: Model) -> [Column; 2] {
+fn of_simulation(model: Model) -> [Column; 3] {
     let codes = "codes of what is doubtful about the simulation, with `;` between; empty where nothing is";
     let (name, slack) = if model == Model::Contact {
         ("apart_fraction", "part of the simulated time in which no teeth touch")
@@ -245,7 +288,48 @@ fn of_simulation(model: Model) -> [Column; 2] {
             "part of the simulated time in which the linear mesh pulls where real teeth would part",
         )
     };
-    [column(WARNINGS, "", codes, ColumnKind::Warnings), column(name, "-", slack, ColumnKind::SlackFraction)]
+    [
+        column(WARNINGS, "", codes, ColumnKind::Warnings),
+        column(name, "-", slack, ColumnKind::SlackFraction),
+        column(
+            "simulated_s",
+            "s",
+            "simulated time that average and indicators are of",
+            ColumnKind::SimulatedTime,
+        ),
+    ]
+}
+
+/// Where a record is in its unit's run to failure.
+fn of_run() -> [Column; 3] {
+    let left = "turns of the damaged wheel to failure; where `censored` is 1 to the end of the run, at least so many were left";
+    [
+        column("age_rev", "rev", "turns of the damaged wheel since its run began", ColumnKind::Age),
+        column("remaining_rev", "rev", left, ColumnKind::Remaining),
+        column("censored", "", "1 where the run was stopped before failure, else 0", ColumnKind::Censored),
+    ]
+}
+
+/// What the difference signal has in an octave.
+fn of_octave(number: usize, name: &str) -> [Column; 2] {
+    let octave = format!(
+        "of the difference signal in the octave around {name} mesh order{}",
+        if number > 1 { "s" } else { "" }
+    );
+    [
+        column(
+            &format!("difference_octave_{name}_rms_g"),
+            "g",
+            &format!("rms {octave}; null beyond half the sampling rate"),
+            ColumnKind::OctaveRms(number),
+        ),
+        column(
+            &format!("difference_octave_{name}_kurtosis"),
+            "-",
+            &format!("kurtosis {octave}; likewise"),
+            ColumnKind::OctaveKurtosis(number),
+        ),
+    ]
 }
 
 /// Kind, place and severity of a fault.
@@ -290,9 +374,13 @@ fn varied_keys(plan: &Plan) -> Vec<&str> {
 fn key_column(key: &str) -> Column {
     let name = column_name(key);
     let unit = unit_of(&name).to_owned();
-    let description = match NOISE_KEYS.iter().position(|noise| *noise == key) {
+    let of_plan = NOISE_KEYS.iter().chain(&PATH_KEYS).position(|other| *other == key);
+    let description = match of_plan {
         Some(0) => "signal-to-noise ratio of the added noise".to_owned(),
-        Some(_) => "standard deviation of the added noise".to_owned(),
+        Some(1) => "standard deviation of the added noise".to_owned(),
+        Some(2) => "gain of the path to the sensor".to_owned(),
+        Some(_) => "standard deviation of that gain over frequency, its mounting's own".to_owned(),
+        None if is_of_plan(key) => format!("{key} of the plan, which other keys depend on"),
         None if is_tooth(key) => format!(
             "{key} of the scenario, from 1: the same tooth counted from where the scenario's first teeth meet, as the plan \
              and `meshtone dataset scenario` have it"
@@ -302,10 +390,10 @@ fn key_column(key: &str) -> Column {
     Column { name, unit, description, kind: ColumnKind::Key(key.to_owned()) }
 }
 
-/// Name of a varied key's column: without its section, unless that is a fault, a sensor or the noise.
+/// Name of a varied key's column: without its section, unless that is a fault, a sensor or one of the plan's own.
 pub(crate) fn column_name(key: &str) -> String {
     let name = match key.split_once('.') {
-        Some(("fault" | "noise" | "sensor", _)) | None => key.to_owned(),
+        Some(("fault" | "noise" | "path" | "latent" | "sensor", _)) | None => key.to_owned(),
         Some((section, rest)) => {
             let numbered = |list| Some(name_in_list(list, number_in(section, list)?));
             let entry = ["fault", "sensor"].into_iter().find_map(numbered);
@@ -382,6 +470,8 @@ mod tests {
             ("rig.misalignment_um", "misalignment_um", "µm"),
             ("fault.random.density_per_cm2", "fault_random_density_per_cm2", "1/cm²"),
             ("noise.snr_db", "noise_snr_db", "dB"),
+            ("path.gain_db", "path_gain_db", "dB"),
+            ("latent.load", "latent_load", "-"),
             ("rig.bearing_stiffness_n_per_m", "bearing_stiffness_n_per_m", "N/m"),
             ("rig.wheel_rotational_stiffness_nm_per_rad", "wheel_rotational_stiffness_nm_per_rad", "N m/rad"),
             ("operation.brake_torque_nm", "brake_torque_nm", "N m"),

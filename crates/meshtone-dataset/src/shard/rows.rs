@@ -44,6 +44,18 @@ pub(super) fn cells<'r>(column: &Column, rows: &'r [Row], content: &Content) -> 
     match &column.kind {
         ColumnKind::Record => whole(&|r| r.drawn.index),
         ColumnKind::Unit => whole(&|r| r.drawn.unit),
+        ColumnKind::Mounting => whole(&|r| r.drawn.mounting),
+        ColumnKind::Age => number(&|r| r.drawn.age.map(|age| age.age_rev)),
+        ColumnKind::Remaining => number(&|r| r.drawn.age.map(|age| age.remaining_rev)),
+        ColumnKind::Censored => small(&|r| r.drawn.age.map(|age| u32::from(age.is_censored))),
+        ColumnKind::SimulatedTime => number(&|r| Some(r.simulated_s)),
+        ColumnKind::PointsPerRevolution => {
+            small(&|_| content.keep.over_angle.map(|angle| angle.points_per_revolution as u32))
+        }
+        ColumnKind::OctaveRms(octave) => number(&|r| r.octaves.get(*octave).map(|band| band.rms)),
+        ColumnKind::OctaveKurtosis(octave) => {
+            number(&|r| r.octaves.get(*octave).and_then(|band| band.kurtosis))
+        }
         ColumnKind::Seed => whole(&|r| r.drawn.seed),
         ColumnKind::WheelsSeed => whole(&|r| r.drawn.wheels_seed),
         ColumnKind::Split => text(&|r| names[r.drawn.split].to_owned()),
@@ -61,7 +73,7 @@ pub(super) fn cells<'r>(column: &Column, rows: &'r [Row], content: &Content) -> 
         ColumnKind::FaultArea(of_fault) => {
             number(&|r| r.faults.get(*of_fault).and_then(|fault| fault.area_percent))
         }
-        ColumnKind::SamplingRate => number(&|_| Some(content.keep.sampling_rate_hz)),
+        ColumnKind::SamplingRate => number(&|r| Some(r.sampling_rate_hz)),
         ColumnKind::GearAngle => number(&|r| Some(r.gear_angle_rev)),
         ColumnKind::PinionTeeth => small(&|r| Some(r.teeth[0])),
         ColumnKind::GearTeeth => small(&|r| Some(r.teeth[1])),

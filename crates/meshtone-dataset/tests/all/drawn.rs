@@ -218,3 +218,103 @@ fn severities_of_a_kinds_own_scale() {
     }
     assert!(grades[2][1..].iter().all(|&count| count > 3), "{grades:?}");
 }
+
+#[test]
+fn a_mounting_has_its_own_values_and_every_class() {
+    let more = "[[vary]]\nkey = \"rig.support.stiffness_n_per_m\"\nlog_uniform = [1e8, 3e8]\nper = \"mounting\"\n\
+                [[vary]]\nkey = \"path.ripple_db\"\nfixed = 3\nper = \"mounting\"\n\
+                [[vary]]\nkey = \"rig.support.mass_kg\"\nuniform = [1, 2]\n\
+                [[vary]]\nkey = \"latent.load\"\nuniform = [50, 250]\nper = \"mounting\"\n\
+                [[vary]]\nkey = \"operation.brake_torque_nm\"\nuniform = [0.95, 1.05]\ntimes = \"latent.load\"";
+    let mounted = |by: &str| {
+        let plan = larger(3000, 40, more);
+        let text = plan.files[0].text.replace("units = 40", "units = 40\nmountings = 3");
+        crate::support::plan(&text.replace("[split]", &format!("[split]\nby = \"{by}\"")))
+    };
+    let plan = mounted("unit");
+    let records = all(&plan);
+    let mut mountings: BTreeMap<u64, Vec<&DrawnRecord>> = BTreeMap::new();
+    for record in &records {
+        assert_eq!(record.mounting / 3, record.unit);
+        mountings.entry(record.mounting).or_default().push(record);
+    }
+    assert_eq!(mountings.len(), 120);
+    let stiffness = |record: &DrawnRecord| value(record, "rig.support.stiffness_n_per_m").unwrap();
+    for of_mounting in mountings.values() {
+        let first = of_mounting[0];
+        assert!((20..=30).contains(&of_mounting.len()), "{}", of_mounting.len());
+        assert!(of_mounting.iter().all(|record| stiffness(record) == stiffness(first)));
+        assert!(of_mounting.iter().all(|record| record.mounting_seed == first.mounting_seed));
+        for class in 0..3 {
+            let count = of_mounting.iter().filter(|record| record.class == class).count();
+            assert!((5..=12).contains(&count), "{count}");
+        }
+        for record in of_mounting {
+            let load = value(record, "latent.load").unwrap();
+            assert_eq!(load, value(first, "latent.load").unwrap());
+            let torque = plan_torque(&plan, record);
+            assert!((0.95..=1.05).contains(&(torque / load)), "{torque} {load}");
+        }
+    }
+    let of_unit: Vec<f64> = (0..3).map(|mounting| stiffness(mountings[&mounting][0])).collect();
+    assert!(of_unit[0] != of_unit[1] && of_unit[1] != of_unit[2]);
+    let mass = |mounting: u64| value(mountings[&mounting][0], "rig.support.mass_kg");
+    assert!(mass(0) == mass(1) && mass(1) == mass(2) && mass(2) != mass(3));
+    // By unit all mountings of one are in one split; by mounting each is, and units are in several.
+    let splits_of_units = |records: &[DrawnRecord]| {
+        let mut splits: BTreeMap<u64, std::collections::BTreeSet<usize>> = BTreeMap::new();
+        records.iter().for_each(|record| _ = splits.entry(record.unit).or_default().insert(record.split));
+        splits.values().map(std::collections::BTreeSet::len).max().unwrap()
+    };
+    assert_eq!(splits_of_units(&records), 1);
+    let remounted = all(&mounted("mounting"));
+    assert!(splits_of_units(&remounted) > 1);
+    let mut split_of_mounting = BTreeMap::new();
+    for record in &remounted {
+        assert_eq!(*split_of_mounting.entry(record.mounting).or_insert(record.split), record.split);
+    }
+    // What a shift's condition says holds there alone.
+    let speed = |record: &DrawnRecord| value(record, "operation.pinion_speed_hz").unwrap();
+    assert!(remounted.iter().all(|record| (record.split == 3) == (speed(record) > 50.0)));
+}
+
+fn plan_torque(plan: &Plan, record: &DrawnRecord) -> f64 {
+    Sampler::new(&plan.content).unwrap().scenario(record).unwrap().operation.brake_torque_nm
+}
+
+#[test]
+fn a_unit_runs_to_failure_in_one_mounting() {
+    let grown = "fault = { kind = \"root-crack\", severity = 0.5 }\n\
+                 growth = { law = \"paris\", start = 0.05, failure = 0.9, life_rev = { log_uniform = [1e6, 1e7] }, censored = 0.3 }";
+    let text = larger(1500, 25, "").files[0].text.clone();
+    let text = text
+        .replace("fault = { kind = \"missing-tooth\" }\nseverity = 4", grown)
+        .replace("units = 25", "units = 25\nmountings = 2");
+    let plan = plan(&text);
+    let mut runs: BTreeMap<u64, Vec<DrawnRecord>> = BTreeMap::new();
+    for record in all(&plan) {
+        assert_eq!(record.age.is_some(), record.class == 2);
+        if record.class == 2 {
+            runs.entry(record.unit).or_default().push(record);
+        }
+    }
+    assert_eq!(runs.len(), 25);
+    let mut censored = 0;
+    for records in runs.values_mut() {
+        records.sort_by(|a, b| a.age.unwrap().age_rev.total_cmp(&b.age.unwrap().age_rev));
+        assert_eq!(records.len(), 20);
+        assert!(records.iter().all(|record| record.mounting == records[0].mounting));
+        let severities: Vec<f64> =
+            records.iter().map(|record| value(record, "fault.severity").unwrap()).collect();
+        assert!(severities.windows(2).all(|pair| pair[0] < pair[1]), "{severities:?}");
+        let last = records[19].age.unwrap();
+        let end = last.age_rev + last.remaining_rev;
+        censored += u32::from(last.is_censored);
+        // One in each twentieth of its time.
+        for (place, record) in records.iter().enumerate() {
+            let part = 20.0 * record.age.unwrap().age_rev / end;
+            assert!((place as f64..=place as f64 + 1.0).contains(&part));
+        }
+    }
+    assert!((1..20).contains(&censored), "{censored}");
+}

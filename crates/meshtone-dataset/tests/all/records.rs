@@ -6,7 +6,10 @@ use std::path::Path;
 
 use crate::support::{FAST, plan, run};
 use meshtone::scenario::{MemoryLimit, WheelName};
-use meshtone::signal::{ChainSettings, Edge, ShaftPhase, process_channel, resample, resampling_ratio, rms};
+use meshtone::signal::{
+    ChainSettings, Edge, ShaftPhase, angular_resample, kaiser, octave_bands, process_channel, resample_with,
+    resampling_ratio, rms,
+};
 use meshtone_dataset::draw::Sampler;
 use meshtone_dataset::generate::Part;
 use meshtone_dataset::plan::Plan;
@@ -179,6 +182,21 @@ fn the_raw_channel_gives_the_same_average() {
     }
 }
 
+/// A low-pass filter of 80 dB between 0.8 and 1 of half the lower rate, by Kaiser's formulas.
+fn steep_taps(up: usize, down: usize) -> Vec<f64> {
+    let crossing = up.max(down) as f64 / 0.9;
+    let half = (23.0 * crossing) as usize;
+    let sinc =
+        |t: f64| if t == 0.0 { 1.0 } else { (std::f64::consts::PI * t).sin() / (std::f64::consts::PI * t) };
+    let tap = |i: usize| {
+        let t = (i as f64 - half as f64) / crossing;
+        sinc(t) * kaiser(t / 23.0, 7.857)
+    };
+    let taps: Vec<f64> = (0..=2 * half).map(tap).collect();
+    let scale = up as f64 / taps.iter().sum::<f64>();
+    taps.into_iter().map(|tap| tap * scale).collect()
+}
+
 /// A record is its scenario's simulation, begun at the mark and brought to the data set's rate.
 #[test]
 fn the_simulation_is_in_the_record() {
@@ -197,7 +215,8 @@ fn the_simulation_is_in_the_record() {
         // It begins when some tooth comes into contact; nothing else differs.
         let simulated = &simulation.channels.vertical_g;
         let from = |start: usize| {
-            resample(&[&simulated[start..], &simulated[..start]].concat(), up, down, Edge::Periodic).unwrap()
+            let turned = [&simulated[start..], &simulated[..start]].concat();
+            resample_with(&turned, up, down, &steep_taps(up, down), Edge::Periodic).unwrap()
         };
         let kept = made.signal("vertical_g", row);
         let period = from(0).len();
@@ -531,4 +550,112 @@ fn sensors_are_what_is_kept() {
         keep.channels.iter().map(|channel| channel.name()).collect::<Vec<_>>(),
         ["vertical_g", "casing_g"]
     );
+}
+
+/// Two records of one unit under one condition differ by their noise alone, wherever they begin, up to 0.8 of half the sampling
+/// rate.
+#[test]
+fn averages_repeat_but_for_their_noise() {
+    let text = FAST
+        .replace("records = 60", "records = 40")
+        .replace("units = 10", "units = 1")
+        .replace("uniform = [30.0, 60.0]", "fixed = 40.0")
+        .replace("uniform = [10.0, 30.0]", "fixed = 40.0");
+    let text = format!(
+        "{}[keep]\nsampling_rate_hz = 8e3\n[split]\ntrain = 1.0\n",
+        &text[..text.find("[keep]").unwrap()]
+    );
+    let healthy = |text: &str| {
+        let (first, last) =
+            (text.find("[[class]]\nlabel = \"breakage\"").unwrap(), text.find("[[vary]]").unwrap());
+        [&text[..first], &text[last..]].concat()
+    };
+    let made = made(&plan(&healthy(&text)));
+    let averages: Vec<Vec<f64>> = (0..40).map(|row| made.signal("average_g", row)).collect();
+    let revolutions = made.number("simulated_s", 0) * made.number("gear_speed_hz", 0);
+    assert!((revolutions - 20.0).abs() < 1e-9);
+    let raw = made.signal("vertical_g", 0);
+    let noise = rms(&raw) * 1e-2;
+    let nyquist_order = 4e3 / made.number("gear_speed_hz", 0);
+    let lines = averages[0].len();
+    for band in 0..8 {
+        let [from, to] = [band, band + 1].map(|tenth| (f64::from(tenth) / 10.0 * nyquist_order) as usize);
+        let mut power = 0.0;
+        for (a, b) in (0..20).map(|pair| (2 * pair, 2 * pair + 1)) {
+            let difference: Vec<f64> = averages[a].iter().zip(&averages[b]).map(|(x, y)| x - y).collect();
+            let spectrum = meshtone_fourier::real_spectrum(&difference);
+            power += spectrum[from..to].iter().map(|line| 2.0 * line.norm_sqr()).sum::<f64>() / 20.0;
+        }
+        let power = power / (lines * lines) as f64;
+        // White: a tenth of the band has a tenth of it; of twice that of one average.
+        let expected = 2.0 * noise * noise / revolutions * (to - from) as f64 / nyquist_order;
+        let off_db = 10.0 * (power / expected).log10();
+        assert!(off_db.abs() < 1.0, "band {band}: {off_db} dB");
+    }
+}
+
+/// As many values in every record, at equal angles from the mark on, whatever the speed.
+#[test]
+fn records_over_the_angle_are_of_one_length() {
+    let keep = "[keep]\npoints_per_revolution = 256\nrevolutions = 3";
+    let over_time = FAST.replace("records = 60", "records = 12");
+    let (angular, timely) = (made(&plan(&over_time.replace("[keep]", keep))), made(&plan(&over_time)));
+    for row in 0..12 {
+        let kept = angular.signal("vertical_g", row);
+        assert_eq!(
+            (kept.len(), angular.signal("average_g", row).len(), angular.signal("difference_g", row).len()),
+            (768, 256, 256)
+        );
+        let speed = angular.number("gear_speed_hz", row);
+        assert!((angular.number("sampling_rate_hz", row) - 256.0 * speed).abs() < 1e-9);
+        // What both show of the same channel: tones below 0.7 of what 256 values show.
+        let raw = timely.signal("vertical_g", row);
+        let phase = ShaftPhase::constant(speed, 8e3, raw.len()).unwrap();
+        let read = angular_resample(&raw, &phase, &Default::default()).unwrap();
+        let points = read.points_per_revolution;
+        let low = |values: &[f64], points: usize| {
+            let mut spectrum = meshtone_fourier::real_spectrum(&values[points..2 * points]);
+            spectrum.truncate(90);
+            spectrum.into_iter().map(|line| line / points as f64).collect::<Vec<_>>()
+        };
+        let (a, b) = (low(&kept, 256), low(&read.values, points));
+        let size = b.iter().map(|line| line.norm_sqr()).sum::<f64>().sqrt();
+        let off = a.iter().zip(&b).map(|(x, y)| (x - y).norm_sqr()).sum::<f64>().sqrt();
+        assert!(off < 0.02 * size, "{row}: {off} of {size}");
+        // Indicators are of the whole recording, whatever is kept of it.
+        assert_eq!(angular.number("difference_kurtosis", row), timely.number("difference_kurtosis", row));
+    }
+}
+
+/// Octaves are those of the difference signal; null beyond what the rate shows.
+#[test]
+fn octaves_are_of_the_difference_signal() {
+    let made = made(&plan(&FAST.replace("records = 60", "records = 10")));
+    for row in 0..10 {
+        let difference = made.signal("difference_g", row);
+        let nyquist_order = 4e3 / made.number("gear_speed_hz", row);
+        let bands = octave_bands(&difference, 40, nyquist_order).unwrap();
+        assert!((3..=4).contains(&bands.len()), "{}", bands.len());
+        for (band, name) in bands.iter().zip(["half", "1", "2", "4"]) {
+            let kept = made.number(&format!("difference_octave_{name}_rms_g"), row);
+            assert!((kept - band.rms).abs() < 1e-6 * band.rms, "{name}: {kept} {}", band.rms);
+        }
+        assert!(matches!(made.field("difference_octave_32_rms_g", row), Field::Null));
+    }
+}
+
+/// A path's gain is in the channel, and in nothing that is computed of the mechanics.
+#[test]
+fn a_path_multiplies_the_channel() {
+    let text = FAST.replace("records = 60", "records = 10").replace("noise.snr_db", "path.gain_db");
+    let text = text.replace("uniform = [10.0, 30.0]", "fixed = 20.0");
+    let without = text.replace("[[vary]]\nkey = \"path.gain_db\"\nfixed = 20.0\n", "");
+    let (passed, plain) = (made(&plan(&text)), made(&plan(&without)));
+    for row in 0..10 {
+        let ratio = rms(&passed.signal("vertical_g", row)) / rms(&plain.signal("vertical_g", row));
+        assert!((ratio - 10.0).abs() < 1e-5, "{ratio}");
+        let ratio = passed.number("difference_kurtosis", row) / plain.number("difference_kurtosis", row);
+        assert!((ratio - 1.0).abs() < 1e-5, "{ratio}");
+        assert_eq!(passed.number("path_gain_db", row), 20.0);
+    }
 }

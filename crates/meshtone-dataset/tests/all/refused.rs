@@ -273,3 +273,45 @@ fn channels_that_there_are_not() {
         &["must be one of \"casting_g\", \"horizontal_g\"", "did you mean \"casting_g\"?"],
     );
 }
+
+#[test]
+fn mountings_and_growth() {
+    let wheels = "[[vary]]\nkey = \"quality.din_grade\"\nchoice = [5, 6]\nper = \"mounting\"\n[keep]";
+    refused_with("[keep]", wheels, &["vary[2].key", "between mountings of one unit", "share their wheels"]);
+    let latent = "[[vary]]\nkey = \"rig.support.mass_kg\"\nuniform = [1, 2]\ntimes = \"latent.size\"\n[keep]";
+    refused_with("[keep]", latent, &["vary[2].times", "`latent.size` is no number"]);
+    let deep = "[[vary]]\nkey = \"latent.size\"\nuniform = [1, 2]\n[[vary]]\nkey = \"rig.support.mass_kg\"\nuniform = [1, 2]\n\
+                times = \"latent.size\"\n[keep]";
+    refused_with("[keep]", deep, &["vary[3].times", "varies by record; what a unit has cannot"]);
+    let by_mounting = "[split]\nby = \"mounting\"";
+    let shift = "when = \"rig.support.mass_kg > 1.5\"";
+    let text = FAST
+        .replace(
+            "[split]",
+            &format!("[[vary]]\nkey = \"rig.support.mass_kg\"\nuniform = [1, 2]\n{by_mounting}"),
+        )
+        .replace("when = \"operation.pinion_speed_hz > 50\"", shift);
+    refused(&text, &["split.shift[0].when", "in several splits where split.by is"]);
+    let grown = |growth: &str, words: &[&str]| {
+        let into = format!("fault = {{ kind = \"wear\", severity = 0.5 }}\ngrowth = {growth}");
+        refused_with("fault = { kind = \"missing-tooth\" }\nseverity = 4", &into, words);
+    };
+    let life = "life_rev = { uniform = [1e5, 1e6] }";
+    grown("{ law = \"archard\" }", &["growth.life_rev", "missing"]);
+    grown(&format!("{{ law = \"rust\", {life} }}"), &["law", "\"paris\", \"archard\", \"pits\""]);
+    grown(&format!("{{ law = \"paris\", start = 0, {life} }}"), &["start", "from more than that"]);
+    grown(
+        &format!("{{ law = \"archard\", start = 0.5, failure = 0.2, {life} }}"),
+        &["failure", "more than start"],
+    );
+    grown("{ law = \"archard\", life_rev = { uniform = [-1e5, 1e6] } }", &["life_rev", "more than 0"]);
+    let by_sizes =
+        "fault = { kind = \"wear\", depth_um = 20 }\ngrowth = { law = \"archard\", life_rev = 1e6 }";
+    refused_with(
+        "fault = { kind = \"missing-tooth\" }\nseverity = 4",
+        by_sizes,
+        &["class[2].growth", "must be given by its severity"],
+    );
+    refused_with("seed = 3", "seed = 3\nquestions = [\"remaining-life\"]", &["needs a class with growth"]);
+    refused_with("[keep]", "[keep]\nrevolutions = 4", &["keep.revolutions", "points_per_revolution"]);
+}

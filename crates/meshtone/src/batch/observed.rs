@@ -6,7 +6,7 @@ use crate::scenario::Scenario;
 use crate::sensor::Channel;
 use crate::simulate::Stages;
 use crate::solver::{Block, Output, Recorder};
-use crate::warnings::Observer;
+use crate::warnings::{Observer, StepJudgement};
 
 /// Keeps some of the channels, as [`KeepChannels`] does, and what deserves attention, as [`crate::simulate`]'s user is told.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -64,14 +64,15 @@ impl ObservedRecorder {
         self.signals.finish(stages)
     }
 
-    /// Everything, once all samples are recorded. Where a step is suspected to be too long the simulation is repeated.
+    /// Everything, once all samples are recorded.
     ///
     /// # Arguments
     /// * `stages` - as of [`Keep::recorder`]
-    pub fn finish(self, stages: &Stages) -> ObservedSignals {
+    /// * `judgement` - how the step is judged where a resonance is suspected
+    pub fn finish(self, stages: &Stages, judgement: StepJudgement) -> ObservedSignals {
         let observer = &self.observer;
         ObservedSignals {
-            warnings: [stages.warnings(), stages.warnings_of_signals(observer)].concat(),
+            warnings: [stages.warnings(), stages.warnings_of_signals(observer, judgement)].concat(),
             apart_fraction: observer.apart_fraction(),
             tension_fraction: observer.tension_fraction(),
             signals: self.signals.finish(stages),
@@ -111,6 +112,6 @@ impl Keep for KeepObserved {
     }
 
     fn keep(&self, _: usize, stages: Stages, recorder: ObservedRecorder) -> ObservedSignals {
-        recorder.finish(&stages)
+        recorder.finish(&stages, StepJudgement::Repeated)
     }
 }

@@ -25,6 +25,7 @@ mod filter_bank;
 mod indicators;
 mod interpolate;
 mod kaiser;
+mod octaves;
 mod phase;
 mod record;
 mod resample;
@@ -47,6 +48,7 @@ pub use indicators::{
 };
 pub use interpolate::{interpolate_band_limited, interpolate_pchip};
 pub use kaiser::kaiser;
+pub use octaves::{OCTAVES, OctaveBand, octave_bands};
 pub use phase::{MeshTone, PulseEdge, PulseTrain, ShaftPhase, Tachometer, repair_pulses, tachometer_pulses};
 pub use record::{
     ChainSettings, Record, Recording, process_angular, process_angular_segments, process_average,

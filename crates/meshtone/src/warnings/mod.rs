@@ -5,6 +5,7 @@ mod of_signals;
 mod step_error;
 
 pub use observer::Observer;
+pub use step_error::StepJudgement;
 
 use std::f64::consts::TAU;
 

@@ -2,7 +2,7 @@
 
 use super::largest_torque;
 use super::observer::{ForceFigures, Observer};
-use super::step_error::{StepError, step_error};
+use super::step_error::{StepError, StepJudgement, step_error};
 use crate::error::{ScenarioWarning, WarningKind};
 use crate::simulate::{Simulation, Stages};
 
@@ -25,7 +25,7 @@ impl Simulation {
     pub fn warnings_of_signals(&self) -> Vec<ScenarioWarning> {
         let mut observer = Observer::new(&self.stages);
         observer.observe(Observer::CHANNELS.map(|kind| self.channels.get(kind)));
-        self.stages.warnings_of_signals(&observer)
+        self.stages.warnings_of_signals(&observer, StepJudgement::Repeated)
     }
 }
 
@@ -34,11 +34,12 @@ impl Stages {
     ///
     /// # Arguments
     /// * `observer` - it has seen all kept samples
-    pub fn warnings_of_signals(&self, observer: &Observer) -> Vec<ScenarioWarning> {
+    /// * `judgement` - how the step is judged where a resonance is suspected
+    pub fn warnings_of_signals(&self, observer: &Observer, judgement: StepJudgement) -> Vec<ScenarioWarning> {
         let is_damaged = !self.damaged.is_empty();
         let is_linear = self.mesh.contact().is_none();
         let pulling = is_linear.then(|| tension(&observer.force, is_damaged)).flatten();
-        let step = step_error(self, observer).and_then(|error| long_step(error, self));
+        let step = step_error(self, observer, judgement).and_then(|error| long_step(error, self));
         let doubtful = [pulling, self.resonance(observer.force.largest_n), self.other_speed(observer), step];
         doubtful.into_iter().flatten().collect()
     }

@@ -5,7 +5,7 @@ use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
 use super::super::split::largest_remainder;
 use super::super::{Class, Severity};
-use super::rule;
+use super::{growth, rule};
 use crate::expression::Expression;
 
 const MOST_RECORDS: u64 = 1 << 40;
@@ -113,7 +113,8 @@ fn class(table: &TomlTable<'_>) -> ReadResult<(Class, Share)> {
         (Some(_), Some(_)) => return Err(table.error("weight", "given beside count; give one of the two")),
     };
     let rules = rule::read_all(table)?;
-    Ok((Class { label: name.to_owned(), faults, count: 0, severity, rules }, share))
+    let growth = table.optional("growth").map(|value| growth::read(&value, &faults)).transpose()?;
+    Ok((Class { label: name.to_owned(), faults, count: 0, severity, rules, growth }, share))
 }
 
 fn severity(table: &TomlTable<'_>, faulty: bool) -> ReadResult<Severity> {

@@ -7,10 +7,12 @@ use meshtone_io::experiment::Tuned;
 use meshtone_io::wheel_name::read_wheel;
 use meshtone_toml::{ReadResult, TomlTable};
 
-use super::super::{Keep, MOST_SHARD_RECORDS};
+use super::super::{Keep, MOST_SHARD_RECORDS, OverAngle};
 
 const RATE_HZ: f64 = 25e3;
 const LARGEST_RATE_HZ: f64 = 1e7;
+const MOST_POINTS: u64 = 1 << 20;
+const MOST_REVOLUTIONS: u64 = 1 << 20;
 
 pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>) -> ReadResult<Keep> {
     let default_rate =
@@ -65,6 +67,7 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
     let keep = Keep {
         sampling_rate_hz,
         duration_s: duration_s.map(|value| value.number()).transpose()?,
+        over_angle: over_angle(table)?,
         channels,
         wheel,
         analysed: analysed
@@ -87,6 +90,31 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
     Ok(keep)
 }
 
+/// Channels over the angle: both numbers, or none.
+fn over_angle(table: &TomlTable<'_>) -> ReadResult<Option<OverAngle>> {
+    let points = table.optional("points_per_revolution");
+    let revolutions = table.optional("revolutions");
+    let (points, revolutions) = match (points, revolutions) {
+        (None, None) => return Ok(None),
+        (Some(points), Some(revolutions)) => (points, revolutions),
+        (Some(points), None) => {
+            let problem =
+                "given without revolutions; must be both: how many values, over how many revolutions";
+            return Err(points.error(problem));
+        }
+        (None, Some(revolutions)) => {
+            return Err(revolutions.error("given without points_per_revolution; must be both"));
+        }
+    };
+    if table.optional("duration_s").is_some() {
+        return Err(table.error("duration_s", "given beside revolutions; give one of the two lengths"));
+    }
+    Ok(Some(OverAngle {
+        points_per_revolution: points.integer(4..=MOST_POINTS)? as usize,
+        revolutions: revolutions.integer(1..=MOST_REVOLUTIONS)? as usize,
+    }))
+}
+
 /// The listed sensors, or the horizontal and the vertical acceleration.
 fn default_channels(base: &Scenario) -> Vec<Channel> {
     if base.sensors.is_empty() {
@@ -105,6 +133,7 @@ fn agree(table: &TomlTable<'_>, keep: &Keep, tuned: Option<&Tuned>) -> ReadResul
         ("sidebands", keep.sidebands == tuned.sidebands),
         ("shaft_orders", keep.shaft_orders == tuned.shaft_orders),
         ("duration_s", keep.duration_s.is_none()),
+        ("points_per_revolution", keep.over_angle.is_none()),
     ] {
         if !same {
             let problem = "is not what the enhancement was tuned to";

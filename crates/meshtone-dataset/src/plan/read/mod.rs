@@ -2,6 +2,7 @@
 
 mod base;
 mod class;
+mod growth;
 mod keep;
 mod rule;
 mod split;
@@ -12,11 +13,12 @@ use meshtone_io::experiment::{Tuned, read_tuned};
 use meshtone_io::scenario_file::{FileKind, ReadScenarioError, read_text};
 use meshtone_toml::{ReadResult, TomlDocument, TomlError, TomlTable, TomlValue};
 
-use super::{About, Content, Plan, PlanFile, Splits, check};
+use super::{About, Class, Content, Plan, PlanFile, Question, Splits, check};
 use crate::expression::Condition;
 use crate::sampling::Design;
 
 const MOST_UNITS: u64 = 1 << 40;
+const MOST_MOUNTINGS: u64 = 1 << 20;
 const LICENCE: &str = "CC-BY-4.0";
 
 /// Where a plan is, and what was read on the way.
@@ -104,6 +106,7 @@ fn plan(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Plan> {
         title: text("title")?.unwrap_or("Spur gear vibration").to_owned(),
         description: text("description")?.unwrap_or_default().to_owned(),
         licence: text("licence")?.unwrap_or(LICENCE).to_owned(),
+        questions: Vec::new(),
     };
     let seed = root.optional("seed").map(|value| value.integer(0..=u64::MAX)).transpose()?;
     let design = root.optional("design").map(|value| value.choice(&Design::NAMES)).transpose()?;
@@ -116,6 +119,7 @@ fn plan(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Plan> {
     let tuned = tuned.map(|(_, tuned)| tuned);
     let units = root.required("units", "how many units, that is pairs of wheels, share the records")?;
     let units = units.integer(1..=MOST_UNITS)?;
+    let mountings = root.optional("mountings").map(|value| value.integer(1..=MOST_MOUNTINGS)).transpose()?;
     let keep = root.table_or_empty("keep")?.read(|table| keep::read(table, &base, tuned.as_ref()))?;
     let classes = class::read_all(root)?;
     let rules = rule::read_all(root)?;
@@ -131,6 +135,7 @@ fn plan(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Plan> {
         seed: seed.unwrap_or(1),
         base,
         units,
+        mountings: mountings.unwrap_or(1),
         design: design.unwrap_or_default(),
         rules,
         constraints,
@@ -140,12 +145,26 @@ fn plan(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Plan> {
         tuned,
     };
     check::check(&content, root)?;
+    let questions =
+        root.optional("questions").map(|value| questions(&value, &content.classes)).transpose()?;
     Ok(Plan {
-        about,
+        about: About { questions: questions.unwrap_or_default(), ..about },
         content,
         files: std::mem::take(&mut reading.files),
         sources: std::mem::take(&mut reading.sources),
     })
+}
+
+/// What the data set asks.
+fn questions(value: &TomlValue<'_>, classes: &[Class]) -> ReadResult<Vec<Question>> {
+    let one = |value: &TomlValue<'_>| {
+        let question = value.choice(&Question::NAMES)?;
+        match question.obstacle(classes) {
+            None => Ok(question),
+            Some(obstacle) => Err(value.error(obstacle)),
+        }
+    };
+    value.array()?.iter().map(one).collect()
 }
 
 fn tuned<'a>(value: &TomlValue<'a>, reading: &mut Reading) -> ReadResult<(TomlValue<'a>, Tuned)> {

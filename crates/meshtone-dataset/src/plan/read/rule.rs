@@ -5,7 +5,6 @@ use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 use super::super::{Distribution, Level, Rule};
 use crate::expression::Expression;
 
-const LEVELS: [(&str, Level); 2] = [("unit", Level::Unit), ("record", Level::Record)];
 const DISTRIBUTIONS: &str = "fixed, grid, choice, uniform, log_uniform or normal";
 /// Sections whose keys make the wheels and the rig, which a unit's records share unless said otherwise.
 const OF_A_UNIT: [&str; 3] = ["gears", "quality", "rig"];
@@ -35,7 +34,7 @@ fn rule(table: &TomlTable<'_>) -> ReadResult<Rule> {
     }
     let unit = OF_A_UNIT.iter().any(|section| keys[0].starts_with(&format!("{section}.")));
     let default = if unit { Level::Unit } else { Level::Record };
-    let level = table.optional("per").map(|value| value.choice(&LEVELS)).transpose()?;
+    let level = table.optional("per").map(|value| value.choice(&Level::NAMES)).transpose()?;
     Ok(Rule { keys, level: level.unwrap_or(default), distribution, times: times.or(fraction_of), plus })
 }
 
@@ -64,7 +63,7 @@ fn expression(table: &TomlTable<'_>, key: &'static str) -> ReadResult<Option<Exp
     Expression::parse(text).map(Some).map_err(|problem| value.error(format!("the expression {problem}")))
 }
 
-fn distribution(table: &TomlTable<'_>, keys: usize) -> ReadResult<Distribution> {
+pub(super) fn distribution(table: &TomlTable<'_>, keys: usize) -> ReadResult<Distribution> {
     let names = ["fixed", "grid", "choice", "uniform", "log_uniform", "normal"];
     let given = names.map(|name| table.optional(name));
     let weights = table.optional("weights");

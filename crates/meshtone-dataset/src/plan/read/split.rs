@@ -2,13 +2,14 @@
 
 use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
-use super::super::{Shift, Splits};
+use super::super::{Shift, SplitBy, Splits};
 use super::conditions;
 
 /// Deviation of a sum of parts from 1 that is rounding.
 const ROUNDING: f64 = 1e-9;
 
 pub(super) fn read(table: &TomlTable<'_>) -> ReadResult<Splits> {
+    let by = table.optional("by").map(|value| value.choice(&SplitBy::NAMES)).transpose()?.unwrap_or_default();
     let parts = Splits::ALIKE.map(|name| table.optional(name));
     let shifts = match table.optional("shift") {
         None => Vec::new(),
@@ -24,7 +25,9 @@ pub(super) fn read(table: &TomlTable<'_>) -> ReadResult<Splits> {
     let where_told = parts.iter().rposition(Option::is_some).map_or("shift", |last| Splits::ALIKE[last]);
     if given > 1.0 + ROUNDING {
         let problem = format!("the parts of all splits add up to {given}; must be 1");
-        return Err(table.error(where_told, problem).with_help("parts are fractions of the units"));
+        return Err(table
+            .error(where_told, problem)
+            .with_help("parts are fractions of what `by` names: units, or mountings"));
     }
     if parts[2].is_none() {
         // What is left.
@@ -36,7 +39,7 @@ pub(super) fn read(table: &TomlTable<'_>) -> ReadResult<Splits> {
         let problem = format!("the parts of all splits add up to {given}; must be 1");
         return Err(table.error(where_told, problem).with_help("leave out test: it is then what is left"));
     }
-    Ok(Splits { parts: numbers, shifts })
+    Ok(Splits { by, parts: numbers, shifts })
 }
 
 fn fraction(value: &TomlValue<'_>) -> ReadResult<f64> {
@@ -44,7 +47,7 @@ fn fraction(value: &TomlValue<'_>) -> ReadResult<f64> {
     if (0.0..=1.0).contains(&number) {
         Ok(number)
     } else {
-        Err(value.error("must be from 0 to 1, a part of the units"))
+        Err(value.error("must be from 0 to 1, a part of the units or mountings"))
     }
 }
 
@@ -62,7 +65,7 @@ fn shifts(listed: &TomlValue<'_>) -> ReadResult<Vec<Shift>> {
             if taken {
                 return Err(name.error("is the name of another split"));
             }
-            let part = table.required("part", "the part of the units that is this split's")?;
+            let part = table.required("part", "the part of the units, or mountings, that is this split's")?;
             let number = fraction(&part)?;
             if number == 0.0 {
                 return Err(part.error("must be more than 0"));

@@ -1,0 +1,76 @@
+//! The table `growth` of a class.
+
+use meshtone::scenario::Fault;
+use meshtone_toml::{ReadResult, TomlTable, TomlValue};
+
+use super::super::{Distribution, Growth, Law};
+use super::rule::distribution;
+
+/// Of ductile steels, for Paris's law: 2 to 4.
+const PARIS_EXPONENT: f64 = 3.0;
+const PITS_EXPONENT: f64 = 2.0;
+const PITS: u32 = 40;
+const LARGEST_EXPONENT: f64 = 10.0;
+
+pub(super) fn read(value: &TomlValue<'_>, faults: &[Fault]) -> ReadResult<Growth> {
+    if faults.len() != 1 {
+        let count = faults.len();
+        return Err(value.error(format!("is of a class with {count} faults; must be one, which grows")));
+    }
+    value.table()?.read(growth)
+}
+
+fn growth(table: &TomlTable<'_>) -> ReadResult<Growth> {
+    let names = Law::NAMES.map(|name| (name, name));
+    let law = table.required("law", "how the damage grows: paris, archard or pits")?.choice(&names)?;
+    let exponent = |default: f64| -> ReadResult<f64> {
+        let Some(value) = table.optional("exponent") else { return Ok(default) };
+        let number = value.number()?;
+        let allowed = number > 0.0 && number <= LARGEST_EXPONENT;
+        if allowed { Ok(number) } else { Err(value.error("must be more than 0 and at most 10")) }
+    };
+    let law = match law {
+        "paris" => Law::Paris { exponent: exponent(PARIS_EXPONENT)? },
+        "pits" => {
+            let count = table.optional("count").map(|value| value.integer(1..=100_000)).transpose()?;
+            let count = count.map_or(PITS, |count| count as u32);
+            Law::Pits { count, exponent: exponent(PITS_EXPONENT)? }
+        }
+        _ => Law::Archard,
+    };
+    let start = part(table, "start")?.unwrap_or(0.02);
+    if start == 0.0 && matches!(law, Law::Paris { .. }) {
+        return Err(table.error("start", "is 0; a crack grows by Paris's law from more than that"));
+    }
+    let failure = part(table, "failure")?.unwrap_or(1.0);
+    if failure <= start {
+        let problem = format!("must be more than start, {start:?}: the severity at which it has failed");
+        return Err(table.error("failure", problem));
+    }
+    let life = table.required(
+        "life_rev",
+        "turns of the damaged wheel from start to failure, as { log_uniform = [1e6, 1e7] }",
+    )?;
+    let life_rev = match &life {
+        value if value.is_table() => value.table()?.read(|table| distribution(table, 1))?,
+        value => Distribution::Fixed(value.number()?),
+    };
+    let least = (0..2)
+        .map(|end| life_rev.at(f64::from(end) * (1.0 - f64::EPSILON), 0)[0])
+        .fold(f64::INFINITY, f64::min);
+    let is_grid = matches!(life_rev, Distribution::Grid(_));
+    if is_grid || least.is_nan() || least <= 0.0 {
+        return Err(life.error(
+            "must be more than 0 revolutions, fixed or drawn: uniform, log_uniform, normal or choice",
+        ));
+    }
+    let censored = part(table, "censored")?.unwrap_or(0.0);
+    Ok(Growth { law, start, failure, life_rev, censored })
+}
+
+/// A number from 0 to 1.
+fn part(table: &TomlTable<'_>, key: &'static str) -> ReadResult<Option<f64>> {
+    let Some(value) = table.optional(key) else { return Ok(None) };
+    let number = value.number()?;
+    if (0.0..=1.0).contains(&number) { Ok(Some(number)) } else { Err(value.error("must be from 0 to 1")) }
+}

@@ -1,0 +1,137 @@
+//! The path from the simulated sensor's place to where a rig's is.
+
+use meshtone::random::{Draws, Purpose};
+use meshtone_fourier::{convenient_length, from_real_spectrum, real_spectrum};
+
+use crate::draw::{DrawnRecord, PATH_KEYS};
+
+/// (Hz) Where the ripple begins; it is the same below.
+const FIRST_HZ: f64 = 16.0;
+/// Draws of the ripple in an octave.
+const DRAWS_PER_OCTAVE: f64 = 2.0;
+/// Octaves that are drawn: to a megahertz.
+const OCTAVES: usize = 16;
+
+/// Lets an acceleration channel pass the record's path, as its values say: a gain that is the same at all frequencies, and a
+/// ripple over frequency that is its mounting's own.
+///
+/// The ripple is normal in decibels at half octaves and goes along straight lines over the logarithm of the frequency between them.
+/// It changes magnitudes alone: no vibration comes sooner or later.
+///
+/// # Arguments
+/// * `drawn` - the record
+/// * `channel` - number of the channel
+/// * `rate_hz` - (S/s) its sampling rate
+/// * `signal` - (g) its samples
+pub(super) fn pass(drawn: &DrawnRecord, channel: u64, rate_hz: f64, signal: &mut [f32]) {
+    let value = |key: &str| drawn.values.iter().find(|(other, _)| other == key).map(|(_, value)| *value);
+    let [gain_db, ripple_db] = PATH_KEYS.map(value);
+    match ripple_db {
+        Some(ripple_db) if ripple_db != 0.0 && signal.len() > 1 => {
+            let ripple = Ripple::new(drawn.mounting_seed, channel, ripple_db);
+            let gain_db = gain_db.unwrap_or(0.0);
+            filter(signal, rate_hz, |hz| factor(gain_db + ripple.db_at(hz)));
+        }
+        _ => {
+            if let Some(gain_db) = gain_db {
+                let factor = factor(gain_db);
+                signal.iter_mut().for_each(|sample| *sample = (f64::from(*sample) * factor) as f32);
+            }
+        }
+    }
+}
+
+fn factor(db: f64) -> f64 {
+    libm::pow(10.0, db / 20.0)
+}
+
+/// Gains in decibels over frequency.
+struct Ripple {
+    /// At half octaves from [`FIRST_HZ`] on.
+    db: Vec<f64>,
+}
+
+impl Ripple {
+    fn new(seed: u64, channel: u64, deviation_db: f64) -> Self {
+        let mut draws = Draws::new(seed, Purpose::PathRipple, channel);
+        let count = OCTAVES * DRAWS_PER_OCTAVE as usize + 1;
+        let db = (0..count.div_ceil(2)).flat_map(|_| draws.normals()).map(|normal| normal * deviation_db);
+        Self { db: db.collect() }
+    }
+
+    fn db_at(&self, hz: f64) -> f64 {
+        let place =
+            (DRAWS_PER_OCTAVE * libm::log2(hz.max(FIRST_HZ) / FIRST_HZ)).min((self.db.len() - 1) as f64);
+        let index = (place as usize).min(self.db.len() - 2);
+        self.db[index] + (place - index as f64) * (self.db[index + 1] - self.db[index])
+    }
+}
+
+/// Multiplies the spectrum of a signal, mirrored at its ends.
+fn filter(signal: &mut [f32], rate_hz: f64, gain: impl Fn(f64) -> f64) {
+    let length = convenient_length(2 * signal.len());
+    let there = signal.iter().map(|&x| f64::from(x));
+    let mut mirrored: Vec<f64> = there.clone().chain(there.rev()).collect();
+    mirrored.resize(length, f64::from(signal[0]));
+    let mut spectrum = real_spectrum(&mirrored);
+    for (line, value) in spectrum.iter_mut().enumerate() {
+        *value *= gain(line as f64 * rate_hz / length as f64);
+    }
+    let filtered = from_real_spectrum(spectrum, length);
+    signal.iter_mut().zip(filtered).for_each(|(sample, value)| *sample = value as f32);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    fn tone(hz: f64) -> Vec<f32> {
+        (0..10_000).map(|i| (TAU * hz * f64::from(i) / 1e4).cos() as f32).collect()
+    }
+
+    fn drawn(values: &[(&str, f64)], mounting_seed: u64) -> DrawnRecord {
+        DrawnRecord {
+            index: 0,
+            class: 0,
+            unit: 0,
+            mounting: 0,
+            age: None,
+            split: 0,
+            seed: 1,
+            wheels_seed: 1,
+            mounting_seed,
+            severity: 0,
+            severity_measure: None,
+            values: values.iter().map(|(key, value)| ((*key).to_owned(), *value)).collect(),
+        }
+    }
+
+    fn rms(signal: &[f32]) -> f64 {
+        (signal.iter().map(|&x| f64::from(x).powi(2)).sum::<f64>() / signal.len() as f64).sqrt()
+    }
+
+    #[test]
+    fn a_gain_is_the_same_everywhere() {
+        let mut signal = tone(1000.0);
+        pass(&drawn(&[("path.gain_db", 6.0)], 1), 0, 1e4, &mut signal);
+        assert!((rms(&signal) / rms(&tone(1000.0)) - 1.995).abs() < 1e-3);
+    }
+
+    // Of many mountings: the standard deviation that was asked for at a knot; the same for records of one mounting.
+    #[test]
+    fn a_ripple_is_the_mountings_own() {
+        let gain_db = |mounting_seed: u64, record_seed: u64| {
+            let mut signal = tone(1024.0);
+            let record =
+                DrawnRecord { seed: record_seed, ..drawn(&[("path.ripple_db", 3.0)], mounting_seed) };
+            pass(&record, 0, 1e4, &mut signal);
+            20.0 * (rms(&signal) / rms(&tone(1024.0))).log10()
+        };
+        assert_eq!(gain_db(5, 1), gain_db(5, 2));
+        let gains: Vec<f64> = (0..400).map(|seed| gain_db(seed, 1)).collect();
+        let mean = gains.iter().sum::<f64>() / 400.0;
+        let deviation = (gains.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / 400.0).sqrt();
+        assert!(mean.abs() < 0.5 && (deviation - 3.0).abs() < 0.4, "{mean} {deviation}");
+    }
+}
