@@ -145,7 +145,8 @@ fn figure(
         Failure::failed(format!("cannot draw the figure: {error}"))
             .with_help("--no-figure writes the other results without it")
     };
-    let figure = tuning_figure(experiment, result, name).map_err(cannot)?;
+    let title = format!("Simulations tuned to measurements: {name}");
+    let figure = tuning_figure(experiment, result, &title).map_err(cannot)?;
     let png = figure.png().map_err(cannot)?;
     let [svg_path, png_path] = FIGURE.map(|name| directory.join(name));
     Ok(vec![

@@ -80,8 +80,7 @@ fn indicator(canvas: &mut Canvas, area: Area, data: &Data, j: usize, indicator: 
     });
     let records = (0..cases).flat_map(|case| data.measured().records(case, j).iter().copied());
     let axes = axes_of(area, cases, axes::range(simulated.chain(records), MARGIN));
-    let unit = if indicator.is_logarithmic() { "log10 (–)" } else { "(–)" };
-    ground(canvas, &axes, cases, name(indicator), unit);
+    ground(canvas, &axes, cases, &title(indicator), "(–)");
     for case in 0..cases {
         dots(canvas, &axes, case, data.measured().records(case, j), every_nth(data));
     }
@@ -234,6 +233,12 @@ fn label_lines(width: f64, data: &Data) -> Vec<Vec<String>> {
 pub(super) fn labels_height(width: f64, data: &Data) -> f64 {
     let most = label_lines(width, data).iter().map(Vec::len).max().unwrap_or(1).max(1);
     FIRST_LABEL + LABEL_PITCH * (most as f64 - 1.0)
+}
+
+/// What the indicator is and whether its logarithm is drawn.
+fn title(indicator: TuningIndicator) -> String {
+    let name = name(indicator);
+    if indicator.is_logarithmic() { format!("{name}, decadic logarithm") } else { name.to_owned() }
 }
 
 fn name(indicator: TuningIndicator) -> &'static str {

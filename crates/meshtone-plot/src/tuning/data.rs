@@ -22,6 +22,8 @@ pub(super) struct Data<'a> {
     pub(super) original_signals: Vec<Vec<f64>>,
     /// The same enhanced, with one draw of noise.
     pub(super) enhanced_signals: Vec<Vec<f64>>,
+    /// A measured difference signal of each case, likewise; none where only indicators were measured.
+    pub(super) measured_signals: Option<Vec<&'a [f64]>>,
     /// Lowest and highest enhanced indicator over the draws, by case and indicator.
     pub(super) spread: Vec<Vec<[f64; 2]>>,
 }
@@ -48,6 +50,9 @@ impl<'a> Data<'a> {
             tuning,
             original_signals: first(&original),
             enhanced_signals: first(&enhanced),
+            measured_signals: (0..measured)
+                .map(|case| experiment.measured.typical_difference(case))
+                .collect(),
             spread: spread(&experiment.measured, &enhanced)?,
         })
     }

@@ -1,15 +1,17 @@
-//! Difference signals of the cases, original and enhanced.
+//! Difference signals of the cases: original, enhanced, and measured where such were given.
 
 use meshtone::scenario::WheelName;
 
 use super::data::Data;
-use super::symbols::{ENHANCED_CURVE, ORIGINAL_CURVE};
+use super::symbols::{ENHANCED_CURVE, MEASURED_CURVE, ORIGINAL_CURVE};
 use crate::axes::{self, Area, Axes};
 use crate::canvas::Canvas;
 use crate::style::{Anchor, Stroke, TextStyle};
 use crate::ticks::Ticks;
 
-const TITLES: [&str; 2] = ["Original simulation", "Enhanced, one draw of the noise"];
+const ORIGINAL_TITLE: &str = "Original simulation";
+const ENHANCED_TITLE: &str = "Enhanced, one draw of the noise";
+const MEASURED_TITLE: &str = "Measured, of each case the record that is the nearest to the medians";
 const UNIT: &str = "(healthy rms)";
 /// (px) Numbers left of each plot, and the gap right of it.
 const NUMBERS: f64 = 33.0;
@@ -18,8 +20,17 @@ const MARGIN: f64 = 1.08;
 /// The case's number, where the columns are not those of the indicators.
 const NUMBER: TextStyle = TextStyle::TICK.anchored(Anchor::Start).with_halo();
 
-pub(super) fn heading(wheel: WheelName) -> String {
-    format!("Difference signals over one {} revolution, each on its own scale", wheel.name())
+pub(super) fn heading(data: &Data) -> String {
+    let scales = match data.measured_signals {
+        None => "each on its own scale",
+        Some(_) => "enhanced and measured ones of a case on the same scale",
+    };
+    format!("Difference signals over one {} revolution, {scales}", data.experiment.chain.wheel.name())
+}
+
+/// How many rows of signals there are.
+pub(super) fn rows(data: &Data) -> usize {
+    if data.measured_signals.is_some() { 3 } else { 2 }
 }
 
 fn angle(wheel: WheelName) -> &'static str {
@@ -29,34 +40,70 @@ fn angle(wheel: WheelName) -> &'static str {
     }
 }
 
-/// Draws the original signals in the first area and enhanced in the second.
-pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], data: &Data) {
+/// One row: a signal of each case.
+struct Row<'a> {
+    title: &'static str,
+    stroke: Stroke,
+    /// By case.
+    signals: Vec<&'a [f64]>,
+    /// (healthy rms) Largest value that the vertical axis of a case is made for.
+    sizes: Vec<f64>,
+}
+
+impl<'a> Row<'a> {
+    fn new(title: &'static str, stroke: Stroke, signals: Vec<&'a [f64]>) -> Self {
+        let sizes = signals.iter().map(|values| size(values)).collect();
+        Self { title, stroke, signals, sizes }
+    }
+}
+
+fn size(values: &[f64]) -> f64 {
+    let drawn = values.iter().copied().filter(|value| axes::drawable(*value));
+    drawn.fold(0.0f64, |size, value| size.max(value.abs()))
+}
+
+fn rows_of<'a>(data: &'a Data) -> Vec<Row<'a>> {
+    let all = |signals: &'a [Vec<f64>]| signals.iter().map(Vec::as_slice).collect();
+    let mut enhanced = Row::new(ENHANCED_TITLE, ENHANCED_CURVE, all(&data.enhanced_signals));
+    let measured = data.measured_signals.clone().map(|signals| {
+        let mut row = Row::new(MEASURED_TITLE, MEASURED_CURVE, signals);
+        // Compared by eye, so on the same scale.
+        for (one, other) in row.sizes.iter_mut().zip(&mut enhanced.sizes) {
+            *one = one.max(*other);
+            *other = *one;
+        }
+        row
+    });
+    let original = Row::new(ORIGINAL_TITLE, ORIGINAL_CURVE, all(&data.original_signals));
+    [Some(original), Some(enhanced), measured].into_iter().flatten().collect()
+}
+
+/// Draws the rows of signals, one in each area.
+pub(super) fn draw(canvas: &mut Canvas, areas: &[Area], data: &Data) {
     let shown = data.shown_cases();
-    let rows = [(&data.original_signals, ORIGINAL_CURVE), (&data.enhanced_signals, ENHANCED_CURVE)];
-    for (row, (signals, stroke)) in rows.into_iter().enumerate() {
-        let area = areas[row];
-        canvas.text((area.left + NUMBERS, area.top - axes::TITLE_ABOVE), TITLES[row], TextStyle::AXES_TITLE);
+    let Some(&lowest) = areas.last() else { return };
+    for (number, (row, &area)) in rows_of(data).iter().zip(areas).enumerate() {
+        canvas.text((area.left + NUMBERS, area.top - axes::TITLE_ABOVE), row.title, TextStyle::AXES_TITLE);
         let unit_at = (area.left - super::NAME_LEFT + 19.0, area.top + area.height / 2.0);
         canvas.text(unit_at, UNIT, TextStyle::AXIS.upwards());
         let slot = area.width / shown.len() as f64;
         for (column, &case) in shown.iter().enumerate() {
             let left = area.left + column as f64 * slot;
             let plot = Area::new(left + NUMBERS, area.top, slot - NUMBERS - GAP, area.height);
-            signal(canvas, plot, &signals[case], stroke, row == 1);
+            signal(canvas, plot, row, case, number + 1 == areas.len());
             if shown.len() < data.cases() {
                 canvas.text((plot.left + 4.0, plot.top + 13.0), &format!("case {case}"), NUMBER);
             }
         }
     }
-    let middle = areas[1].left + areas[1].width / 2.0;
+    let middle = lowest.left + lowest.width / 2.0;
     let angle = angle(data.experiment.chain.wheel);
-    canvas.text((middle, areas[1].bottom() + axes::NAME_BELOW), angle, TextStyle::AXIS);
+    canvas.text((middle, lowest.bottom() + axes::NAME_BELOW), angle, TextStyle::AXIS);
 }
 
-fn signal(canvas: &mut Canvas, area: Area, values: &[f64], stroke: Stroke, numbered: bool) {
-    let size = values.iter().copied().filter(|value| axes::drawable(*value));
-    let size = size.fold(0.0f64, |size, value| size.max(value.abs()));
-    let half = if size > 0.0 { MARGIN * size } else { 1.0 };
+fn signal(canvas: &mut Canvas, area: Area, row: &Row, case: usize, numbered: bool) {
+    let values = row.signals[case];
+    let half = if row.sizes[case] > 0.0 { MARGIN * row.sizes[case] } else { 1.0 };
     let axes = Axes::new(area, [-0.5, 0.5], [-half, half]);
     let angles = Ticks::every(0.4, -0.4, 0.4);
     axes.x_grid(canvas, &angles);
@@ -66,6 +113,6 @@ fn signal(canvas: &mut Canvas, area: Area, values: &[f64], stroke: Stroke, numbe
     axes.y_axis(canvas, &Ticks::about_zero(half), "", super::NAME_LEFT);
     let count = values.len() as f64;
     let points = values.iter().enumerate().map(|(i, &value)| ((i as f64 + 0.5) / count - 0.5, value));
-    axes.line(canvas, points, stroke);
+    axes.line(canvas, points, row.stroke);
     axes.frame(canvas);
 }

@@ -3,6 +3,7 @@
 use meshtone::tuning::Tuning;
 
 use super::data::Data;
+use super::key_words::in_words;
 use crate::canvas::Canvas;
 use crate::font;
 use crate::style::TextStyle;
@@ -62,7 +63,7 @@ fn parameters(data: &Data) -> Vec<String> {
 fn keys(data: &Data) -> Vec<String> {
     let Some(keys) = &data.result.with_keys else { return Vec::new() };
     let values = data.experiment.keys.iter().zip(&keys.values);
-    values.map(|(key, &value)| format!("{} = {}", key.key, number(value))).collect()
+    values.map(|(key, &value)| in_words(&key.key, value)).collect()
 }
 
 fn errors(data: &Data) -> Vec<String> {

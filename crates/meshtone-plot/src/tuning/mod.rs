@@ -1,13 +1,14 @@
 //! An experiment of the hybrid stage on one page.
 //!
 //! On the left, above each other and with the cases as their common horizontal axis, the indicators, the error of each
-//! case, and the difference signals of the original simulation and enhanced; on the right the error around the optimum. The indicators
-//! are drawn as in Figure 6 of arXiv:2410.05073.
+//! case, and the difference signals of the original simulation, enhanced and, where recordings or difference signals were given,
+//! measured; on the right the error around the optimum. Indicators and signals are compared as in Figure 6 of arXiv:2410.05073.
 
 mod cases;
 mod data;
 mod differences;
 mod heading;
+mod key_words;
 mod surface;
 mod symbols;
 mod width;
@@ -21,7 +22,9 @@ use crate::{Figure, PlotError};
 use data::Data;
 
 const WIDTH: u32 = 1600;
+/// With two rows of difference signals; each more makes the figure higher by [`MORE_SIGNALS`].
 const HEIGHT: u32 = 1000;
+const MORE_SIGNALS: u32 = 136;
 
 const LEFT: f64 = 74.0;
 const CASES_WIDTH: f64 = 1010.0;
@@ -35,13 +38,13 @@ const TEXT_LEFT: f64 = 15.0;
 const HEADING_BASELINE: f64 = 125.0;
 /// (px) From a heading's baseline to the frame of the first plot below it, which has a title.
 const BELOW_HEADING: f64 = 38.0;
-/// (px) Lower edge of the lowest plots.
+/// (px) Lower edge of the lowest plots, with two rows of difference signals.
 const BOTTOM: f64 = 950.0;
 
 /// (px) From the last line of the cases' names to the next heading's baseline.
 const BELOW_LABELS: f64 = 36.0;
 const DIFFERENCES_HEIGHT: f64 = 108.0;
-/// (px) Between the two rows of difference signals: the second one's title.
+/// (px) Between two rows of difference signals: the lower one's title.
 const DIFFERENCES_GAP: f64 = 28.0;
 /// (px) Of a plot of an indicator, and of the title above the next one.
 const LARGEST_PITCH: f64 = 200.0;
@@ -99,7 +102,10 @@ pub fn tuning_figure(
     title: &str,
 ) -> Result<Figure, PlotError> {
     let data = Data::new(experiment, result)?;
-    let mut canvas = Canvas::new(WIDTH, HEIGHT);
+    let signals = differences::rows(&data);
+    let more = MORE_SIGNALS * (signals as u32).saturating_sub(2);
+    let figure_bottom = BOTTOM + f64::from(more);
+    let mut canvas = Canvas::new(WIDTH, HEIGHT + more);
     heading::draw(&mut canvas, title, &data);
 
     // Error of each case below the indicators.
@@ -117,17 +123,19 @@ pub fn tuning_figure(
     cases::draw(&mut canvas, &areas, &data);
 
     let baseline = bottom + labels + BELOW_LABELS;
-    section(&mut canvas, (LEFT, baseline), CASES_WIDTH, &differences::heading(experiment.chain.wheel));
+    section(&mut canvas, (LEFT, baseline), CASES_WIDTH, &differences::heading(&data));
     let top = baseline + BELOW_HEADING;
-    let height = (BOTTOM - top - DIFFERENCES_GAP) / 2.0;
-    let both = [top, top + height + DIFFERENCES_GAP].map(|top| Area::new(LEFT, top, CASES_WIDTH, height));
-    differences::draw(&mut canvas, both, &data);
+    let pitch = (figure_bottom - top + DIFFERENCES_GAP) / signals as f64;
+    let areas: Vec<Area> = (0..signals)
+        .map(|row| Area::new(LEFT, top + row as f64 * pitch, CASES_WIDTH, pitch - DIFFERENCES_GAP))
+        .collect();
+    differences::draw(&mut canvas, &areas, &data);
 
     section(&mut canvas, (ERRORS_LEFT, HEADING_BASELINE), ERRORS_WIDTH, "Error around the optimum");
     let [width, height] = SURFACE_SIZE;
     surface::draw(&mut canvas, Area::new(ERRORS_LEFT, first_top, width, height), &data)?;
     let top = BOTTOM - WIDTH_PLOT_HEIGHT;
-    width::draw(&mut canvas, Area::new(ERRORS_LEFT, top, ERRORS_WIDTH, WIDTH_PLOT_HEIGHT), &data)?;
+    width::draw(&mut canvas, Area::new(ERRORS_LEFT, top, ERRORS_WIDTH, figure_bottom - top), &data)?;
     Ok(canvas.finish(title, &heading::description(&data)))
 }
 

@@ -10,6 +10,7 @@ pub(super) const ENHANCED: Stroke = Stroke::solid(colour::GREEN, 1.8);
 pub(super) const LEFT_OUT: Stroke = Stroke::dashed(colour::PURPLE, 1.4, &[2.0, 2.5]);
 pub(super) const ORIGINAL_CURVE: Stroke = Stroke::solid(colour::BLUE, 1.0);
 pub(super) const ENHANCED_CURVE: Stroke = Stroke::solid(colour::GREEN, 1.0);
+pub(super) const MEASURED_CURVE: Stroke = Stroke::solid(colour::MUTED, 1.0);
 
 pub(super) const ORIGINAL_MARKER: Marker = Marker {
     shape: Shape::Square,

@@ -80,7 +80,7 @@ fn seven_cases_with_long_names() {
         "A rig",
         "healthy",
         "F5",
-        "Kurtosis",
+        "Kurtosis, decadic logarithm",
         "Original simulation",
         "Noise level ν (–)",
         "Width ratio w (–)",
@@ -100,6 +100,41 @@ fn two_cases_many_cases_and_one_to_three_indicators() {
     let many: Vec<&str> = many.iter().map(String::as_str).collect();
     let figure = drawn(&experiment(&many, &TWO), "Many");
     assert!(has(&figure, "case 0") && has(&figure, "case 13"));
+}
+
+/// What `experiment` simulates, as if it had been measured: each record begins elsewhere and is noisy.
+fn measured_signals(experiment: &Experiment) -> Vec<Vec<Vec<f64>>> {
+    let of_case = |case: &Case| experiment.base.clone().with_faults(case.faults.clone());
+    let scenarios = experiment.cases.iter().map(of_case).collect();
+    let noisy = |signal: &Vec<f64>, record: usize| {
+        let mut noisy: Vec<f64> =
+            signal.iter().enumerate().map(|(i, x)| x + (i * (record + 7)) as f64 % 1.7).collect();
+        noisy.rotate_left(300 + 211 * record);
+        noisy
+    };
+    let signals = difference_signals(scenarios, &experiment.chain).unwrap();
+    signals.iter().map(|signal| (0..3).map(|record| noisy(signal, record)).collect()).collect()
+}
+
+#[test]
+fn measured_difference_signals_stand_below_the_enhanced_ones() {
+    let mut experiment = experiment(&LABELS[..4], &TWO);
+    let without = tuning_figure(&experiment, &result(&experiment), "A rig").unwrap();
+    assert!(!without.labels().iter().any(|label| label.text.starts_with("Measured")));
+    let signals = measured_signals(&experiment);
+    experiment.measured = Measurements::from_difference_signals(TWO.to_vec(), &signals).unwrap();
+    let figure = tuning_figure(&experiment, &result(&experiment), "A rig").unwrap();
+    check(&figure, LARGEST);
+    assert_eq!(figure.size_px(), (1600, 1136));
+    assert!(has(&figure, "Measured, of each case the record that is the nearest to the medians"));
+
+    // The largest case's burst lies in the middle, wherever its records begin; all are relative to the healthy ones.
+    let typical = experiment.measured.typical_difference(3).unwrap();
+    let largest = typical.iter().enumerate().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).unwrap().0;
+    assert!(largest.abs_diff(typical.len() / 2) < typical.len() / 20, "{largest} of {}", typical.len());
+    let healthy = experiment.measured.typical_difference(0).unwrap();
+    let rms = (healthy.iter().map(|x| x * x).sum::<f64>() / healthy.len() as f64).sqrt();
+    assert!((rms - 1.0).abs() < 0.05, "{rms}");
 }
 
 #[test]
@@ -131,7 +166,7 @@ fn tuned_keys_are_told() {
     experiment.keys = vec![TunedKey { key: "rig.damping_ratio".into(), range }];
     experiment.candidates = 16;
     let figure = drawn(&experiment, "With a key");
-    assert!(figure.labels().iter().any(|label| label.text.contains("rig.damping_ratio = ")));
+    assert!(figure.labels().iter().any(|label| label.text.contains("damping ratio 0.")));
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! What was measured on a rig.
 
+use super::simulated::burst_centre_rev;
 use super::{HybridError, TuningIndicator};
 use crate::random::{Draws, Purpose};
 
@@ -13,6 +14,8 @@ pub struct Measurements {
     paired: bool,
     /// Standard deviation of all records, by indicator.
     scale: Vec<f64>,
+    /// As of [`Self::typical_difference`], by case; empty where only indicators were measured.
+    typical_differences: Vec<Vec<f64>>,
 }
 
 /// All records of one case and indicator.
@@ -103,7 +106,9 @@ impl Measurements {
                 values[case].push(compared);
             }
         }
-        Self::new(indicators, values, true)
+        let mut measurements = Self::new(indicators, values, true)?;
+        measurements.typical_differences = measurements.typical(signals)?;
+        Ok(measurements)
     }
 
     fn new(
@@ -127,7 +132,38 @@ impl Measurements {
         }
         let scale = scales(&indicators, &values)?;
         let of_case = |case: Vec<Vec<f64>>| case.into_iter().map(Records::new).collect();
-        Ok(Self { indicators, records: values.into_iter().map(of_case).collect(), paired, scale })
+        let records = values.into_iter().map(of_case).collect();
+        Ok(Self { indicators, records, paired, scale, typical_differences: Vec::new() })
+    }
+
+    /// What [`Self::typical_difference`] hands out.
+    fn typical(&self, signals: &[Vec<Vec<f64>>]) -> Result<Vec<Vec<f64>>, HybridError> {
+        let rms = |signal: &Vec<f64>| TuningIndicator::Rms.measure(signal);
+        let healthy_rms = mean(&signals[0].iter().map(rms).collect::<Result<Vec<_>, _>>()?);
+        let of_case = |(case, records): (usize, &Vec<Vec<f64>>)| {
+            let mut signal = records[self.nearest_to_medians(case)].clone();
+            signal.iter_mut().for_each(|value| *value /= healthy_rms);
+            if case > 0 {
+                let points = signal.len();
+                let centre = (burst_centre_rev(&signal) * points as f64) as usize;
+                signal.rotate_left((centre + points - points / 2) % points);
+            }
+            signal
+        };
+        Ok(signals.iter().enumerate().map(of_case).collect())
+    }
+
+    /// The record of a case whose indicators together are the nearest to their medians, distances in σ̂.
+    fn nearest_to_medians(&self, case: usize) -> usize {
+        let by_indicator = &self.records[case];
+        let distance = |record: usize| -> f64 {
+            let of = |(records, scale): (&Records, &f64)| {
+                (records.values[record] - records.median()).abs() / scale
+            };
+            by_indicator.iter().zip(&self.scale).map(of).sum()
+        };
+        let records = 0..by_indicator[0].values.len();
+        records.min_by(|&a, &b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
     }
 
     /// What was measured.
@@ -154,6 +190,16 @@ impl Measurements {
     /// * `case`, `indicator` - their numbers
     pub fn median(&self, case: usize, indicator: usize) -> f64 {
         self.records[case][indicator].median()
+    }
+
+    /// A measured difference signal of a case to be looked at, in mean rms of the healthy records: the record whose indicators
+    /// are the nearest to the case's medians. That of a faulty case is turned until the response of its fault, the centre of
+    /// its fourth power, lies in the middle of the cycle. None where only indicators were measured.
+    ///
+    /// # Arguments
+    /// * `case` - its number
+    pub fn typical_difference(&self, case: usize) -> Option<&[f64]> {
+        self.typical_differences.get(case).map(Vec::as_slice)
     }
 
     /// σ̂ of Eq. 7: standard deviation of all records of an indicator, of a sample (n − 1).
@@ -206,7 +252,8 @@ impl Measurements {
         self.case_error(case, &medians)
     }
 
-    /// One bootstrap sample: cases drawn again with replacement, and records within each. σ̂ stays.
+    /// One bootstrap sample: cases drawn again with replacement, and records within each. σ̂ stays; there is no typical
+    /// difference signal.
     ///
     /// # Arguments
     /// * `seed`, `sample` - the same numbers give the same sample
@@ -227,8 +274,14 @@ impl Measurements {
                 })
                 .collect()
         });
-        let records = records.collect();
-        (Self { records, ..self.clone() }, weights)
+        let sample = Self {
+            indicators: self.indicators.clone(),
+            records: records.collect(),
+            paired: self.paired,
+            scale: self.scale.clone(),
+            typical_differences: Vec::new(),
+        };
+        (sample, weights)
     }
 }
 

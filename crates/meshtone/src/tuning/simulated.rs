@@ -168,14 +168,27 @@ impl AtWidth<'_> {
     }
 }
 
-/// (rev) Where faults show: the centre on the circle of the fourth power of what they add.
+/// (rev) Where faults show: the centre of the burst of what they add.
 fn fault_centre_rev(healthy: &[f64], faulty: &[Vec<f64>]) -> f64 {
-    let points = healthy.len() as f64;
+    let added = faulty.iter().map(|signal| signal.iter().zip(healthy).map(|(x, h)| x - h));
+    centre_of_bursts_rev(added, healthy.len())
+}
+
+/// (rev) Where the burst of a cycle is.
+///
+/// # Arguments
+/// * `cycle` - one revolution
+pub(super) fn burst_centre_rev(cycle: &[f64]) -> f64 {
+    centre_of_bursts_rev(std::iter::once(cycle.iter().copied()), cycle.len())
+}
+
+/// (rev) The centre on the circle of the fourth power of cycles of so many points.
+fn centre_of_bursts_rev(cycles: impl Iterator<Item: Iterator<Item = f64>>, points: usize) -> f64 {
     let (mut cosine, mut sine) = (0.0, 0.0);
-    for signal in faulty {
-        for (i, (x, h)) in signal.iter().zip(healthy).enumerate() {
-            let angle = std::f64::consts::TAU * (i as f64 + 0.5) / points;
-            let weight = (x - h).powi(4);
+    for cycle in cycles {
+        for (i, value) in cycle.enumerate() {
+            let angle = std::f64::consts::TAU * (i as f64 + 0.5) / points as f64;
+            let weight = value.powi(4);
             cosine += weight * angle.cos();
             sine += weight * angle.sin();
         }
