@@ -52,8 +52,8 @@ class RandomPits:
     density_per_cm2 : float
         (1/cm²) The mean number of pits in a square centimetre of flank; Poisson. Allowed: ≥ 0; at most 1000 a tooth.
     spread : float
-        (-) The standard deviation of their centres about the working pitch circle, as a fraction of the flank's contact
-        part; normal. Allowed: 0…1.
+        (-) The standard deviation of their centres about the working pitch circle, a fraction of the contact part;
+        normal. Allowed: 0…1.
     radius_mm : float
         (mm) The median of their radii; lognormal. Allowed: > 0.
     radius_spread : float
@@ -78,11 +78,11 @@ class MissingTooth:
     wheel : {'pinion', 'gear'}, optional
         The damaged wheel. Default: "gear".
     tooth : int, sequence of ints or 'all', optional
-        The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
-        Allowed: whole number > 0; at most the wheel's teeth, each once. Default: 1.
+        The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
+        number > 0; at most the wheel's teeth, each once. Default: 1.
     severity : float, optional
-        (-) How severe the damage is, in place of its sizes: from 0, none, to 1, the largest that the tooth allows.
-        Allowed: 0…1; 1 for a missing tooth. Default: that of the sizes.
+        (-) How severe the damage is, in place of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
+        0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 
     kind: ClassVar[str] = "missing-tooth"
@@ -109,11 +109,11 @@ class ToothBreakage:
     wheel : {'pinion', 'gear'}, optional
         The damaged wheel. Default: "gear".
     tooth : int, sequence of ints or 'all', optional
-        The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
-        Allowed: whole number > 0; at most the wheel's teeth, each once. Default: 1.
+        The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
+        number > 0; at most the wheel's teeth, each once. Default: 1.
     severity : float, optional
-        (-) How severe the damage is, in place of its sizes: from 0, none, to 1, the largest that the tooth allows.
-        Allowed: 0…1; 1 for a missing tooth. Default: that of the sizes.
+        (-) How severe the damage is, in place of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
+        0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 
     kind: ClassVar[str] = "tooth-breakage"
@@ -142,11 +142,11 @@ class RootCrack:
     wheel : {'pinion', 'gear'}, optional
         The damaged wheel. Default: "gear".
     tooth : int, sequence of ints or 'all', optional
-        The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
-        Allowed: whole number > 0; at most the wheel's teeth, each once. Default: 1.
+        The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
+        number > 0; at most the wheel's teeth, each once. Default: 1.
     severity : float, optional
-        (-) How severe the damage is, in place of its sizes: from 0, none, to 1, the largest that the tooth allows.
-        Allowed: 0…1; 1 for a missing tooth. Default: that of the sizes.
+        (-) How severe the damage is, in place of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
+        0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 
     kind: ClassVar[str] = "root-crack"
@@ -168,26 +168,25 @@ class PartialFace:
         (mm) The width of the pit along the face, from one side. Allowed: > 0; less than the face width. Required,
         unless ``severity`` is given.
     start : float, optional
-        (-) The pit's first edge as a fraction of the flank's contact part, from its root side. Allowed: ≥ 0, < 1.
-        Required, unless ``circle`` or ``severity`` is given.
+        (-) The pit's first edge, a fraction of the flank's contact part from its root. Allowed: ≥ 0, < 1. Required,
+        unless ``circle`` or ``severity`` is given.
     end : float, optional
         (-) The pit's second edge, likewise. Allowed: more than ``start``, ≤ 1. Required, unless ``circle`` or
         ``severity`` is given.
     depth : float, optional
-        (-) The pit's depth over half its chord. Allowed: > 0, ≤ 1; so small that the circle does not undercut the
-        flank, which depends on the flank's slope: about 0.7 in its middle, 0.4 at the tip. Required, unless ``circle``
-        or ``severity`` is given.
+        (-) The pit's depth over half its chord. Allowed: > 0, ≤ 1; the circle must not undercut the flank: about 0.7 in
+        its middle, 0.4 at the tip. Required, unless ``circle`` or ``severity`` is given.
     circle : PitCircle, optional
         The circle that is cut into the flank, instead of start, end and depth. Allowed: must cut the flank twice.
         Default: none.
     wheel : {'pinion', 'gear'}, optional
         The damaged wheel. Default: "gear".
     tooth : int, sequence of ints or 'all', optional
-        The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
-        Allowed: whole number > 0; at most the wheel's teeth, each once. Default: 1.
+        The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
+        number > 0; at most the wheel's teeth, each once. Default: 1.
     severity : float, optional
-        (-) How severe the damage is, in place of its sizes: from 0, none, to 1, the largest that the tooth allows.
-        Allowed: 0…1; 1 for a missing tooth. Default: that of the sizes.
+        (-) How severe the damage is, in place of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
+        0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 
     kind: ClassVar[str] = "partial-face"
@@ -208,26 +207,25 @@ class ThroughFace:
     Parameters
     ----------
     start : float, optional
-        (-) The pit's first edge as a fraction of the flank's contact part, from its root side. Allowed: ≥ 0, < 1.
-        Required, unless ``circle`` or ``severity`` is given.
+        (-) The pit's first edge, a fraction of the flank's contact part from its root. Allowed: ≥ 0, < 1. Required,
+        unless ``circle`` or ``severity`` is given.
     end : float, optional
         (-) The pit's second edge, likewise. Allowed: more than ``start``, ≤ 1. Required, unless ``circle`` or
         ``severity`` is given.
     depth : float, optional
-        (-) The pit's depth over half its chord. Allowed: > 0, ≤ 1; so small that the circle does not undercut the
-        flank, which depends on the flank's slope: about 0.7 in its middle, 0.4 at the tip. Required, unless ``circle``
-        or ``severity`` is given.
+        (-) The pit's depth over half its chord. Allowed: > 0, ≤ 1; the circle must not undercut the flank: about 0.7 in
+        its middle, 0.4 at the tip. Required, unless ``circle`` or ``severity`` is given.
     circle : PitCircle, optional
         The circle that is cut into the flank, instead of start, end and depth. Allowed: must cut the flank twice.
         Default: none.
     wheel : {'pinion', 'gear'}, optional
         The damaged wheel. Default: "gear".
     tooth : int, sequence of ints or 'all', optional
-        The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
-        Allowed: whole number > 0; at most the wheel's teeth, each once. Default: 1.
+        The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
+        number > 0; at most the wheel's teeth, each once. Default: 1.
     severity : float, optional
-        (-) How severe the damage is, in place of its sizes: from 0, none, to 1, the largest that the tooth allows.
-        Allowed: 0…1; 1 for a missing tooth. Default: that of the sizes.
+        (-) How severe the damage is, in place of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
+        0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 
     kind: ClassVar[str] = "through-face"
@@ -247,8 +245,8 @@ class Pits:
     Parameters
     ----------
     at : sequence of floats, optional
-        (-) The centre of each pit as a fraction of the flank's contact part, from its root side. Allowed: 0…1.
-        Required, unless ``random`` or ``severity`` is given.
+        (-) The centre of each pit, a fraction of the flank's contact part from its root. Allowed: 0…1. Required, unless
+        ``random`` or ``severity`` is given.
     z_mm : sequence of floats, optional
         (mm) The centre of each along the face, from the face's middle; one number a pit, as of all keys here. Allowed:
         within half the face width and the radius. Required, unless ``random`` or ``severity`` is given.
@@ -264,11 +262,11 @@ class Pits:
     wheel : {'pinion', 'gear'}, optional
         The damaged wheel. Default: "gear".
     tooth : int, sequence of ints or 'all', optional
-        The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
-        Allowed: whole number > 0; at most the wheel's teeth, each once. Default: 1.
+        The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
+        number > 0; at most the wheel's teeth, each once. Default: 1.
     severity : float, optional
-        (-) How severe the damage is, in place of its sizes: from 0, none, to 1, the largest that the tooth allows.
-        Allowed: 0…1; 1 for a missing tooth. Default: that of the sizes.
+        (-) How severe the damage is, in place of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
+        0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 
     kind: ClassVar[str] = "pits"
@@ -290,27 +288,27 @@ class ToothDestruction:
     Parameters
     ----------
     start : float, optional
-        (-) Where the ground line begins, as a fraction of the flank's contact part from its root side; negative: below
-        the part in contact. Allowed: > −1, < 1. Required, unless ``severity`` is given.
+        (-) Where the ground line begins, a fraction of the flank's contact part from its root; negative: below it.
+        Allowed: > −1, < 1. Required, unless ``severity`` is given.
     end : float, optional
-        (-) The flank point that the line is aimed at, as a fraction. Allowed: more than ``start``, ≤ 1. Required,
-        unless ``slope_deg`` or ``severity`` is given.
+        (-) The flank point that the line is aimed at, likewise. Allowed: more than ``start``, ≤ 1. Required, unless
+        ``slope_deg`` or ``severity`` is given.
     slope_deg : float, optional
         (°) The angle to the tooth's centre line by which the line falls towards the tip, instead of end. Allowed: > 0,
         < 90. Default: none.
     offset_mm : float, optional
-        (mm) How far inside the flank the line begins. Allowed: ≥ 0; less than half the tooth's thickness at the pitch
-        circle, π/4 modules. Default: 0.0.
+        (mm) How far inside the flank the line begins. Allowed: ≥ 0; less than π/4 modules, half the tooth's thickness.
+        Default: 0.0.
     noise_mm : float, optional
         (mm) The half width of a uniform roughness of the ground flank. Allowed: ≥ 0; likewise. Default: 0.0.
     wheel : {'pinion', 'gear'}, optional
         The damaged wheel. Default: "gear".
     tooth : int, sequence of ints or 'all', optional
-        The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
-        Allowed: whole number > 0; at most the wheel's teeth, each once. Default: 1.
+        The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
+        number > 0; at most the wheel's teeth, each once. Default: 1.
     severity : float, optional
-        (-) How severe the damage is, in place of its sizes: from 0, none, to 1, the largest that the tooth allows.
-        Allowed: 0…1; 1 for a missing tooth. Default: that of the sizes.
+        (-) How severe the damage is, in place of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
+        0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 
     kind: ClassVar[str] = "tooth-destruction"
@@ -336,11 +334,11 @@ class Wear:
     wheel : {'pinion', 'gear'}, optional
         The damaged wheel. Default: "gear".
     tooth : int, sequence of ints or 'all', optional
-        The number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or "all".
-        Allowed: whole number > 0; at most the wheel's teeth, each once. Default: "all".
+        The damaged tooth's number, in the order of entering contact; an array of several, or "all". Allowed: whole
+        number > 0; at most the wheel's teeth, each once. Default: "all".
     severity : float, optional
-        (-) How severe the damage is, in place of its sizes: from 0, none, to 1, the largest that the tooth allows.
-        Allowed: 0…1; 1 for a missing tooth. Default: that of the sizes.
+        (-) How severe the damage is, in place of its sizes: 0 is none, 1 the largest that the tooth allows. Allowed:
+        0…1; 1 for a missing tooth. Default: that of the sizes.
     """
 
     kind: ClassVar[str] = "wear"

@@ -24,13 +24,13 @@ class TipRelief(TypedDict, total=False):
     Attributes
     ----------
     shape : {'parabolic', 'linear'}
-        A parabola that leaves the flank with its slope, or a straight line.
+        A parabola that leaves the flank smoothly, or a straight line.
     length_mm : float
-        (mm) The length along the tooth's centre line, from the tip inwards. Allowed: > 0, less than 2 modules.
+        (mm) The length from the tip along the tooth's centre line. Allowed: > 0, less than 2 modules.
     depth_mm : float
-        (mm) How far the tip ends below the flank point where the relief starts. The unrelieved tooth itself thins from
-        there to the tip (by 0.54 mm on 1 mm for 17 teeth of module 3), so less than that adds metal, and is warned of.
-        Allowed: ≥ 0; less than half the tooth's thickness at the pitch circle, π/4 modules.
+        (mm) How far the tip ends below the flank point where the relief starts; less than the tooth itself thins from
+        there (0.54 mm on 1 mm for 17 teeth of module 3) would add metal, and is warned of. Allowed: ≥ 0; less than π/4
+        modules, half the tooth's thickness.
     """
 
     shape: Literal["parabolic", "linear"]
@@ -44,11 +44,11 @@ class FlankRelief(TypedDict, total=False):
     Attributes
     ----------
     shape : {'parabolic', 'linear'}
-        A parabola that leaves the flank with its slope, or a straight line.
+        A parabola that leaves the flank smoothly, or a straight line.
     length_mm : float
-        (mm) The length along the tooth's centre line, from the tip inwards. Allowed: > 0; less than 2 modules.
+        (mm) The length from the tip along the tooth's centre line. Allowed: > 0; less than 2 modules.
     amount_um : float
-        (µm) How far the flank lies back at the tip, along its normal; 10 to 40 in practice. Allowed: ≥ 0, ≤ 1000.
+        (µm) How far the flank lies back at the tip, along its normal; usually 10 to 40. Allowed: ≥ 0, ≤ 1000.
     """
 
     shape: Literal["parabolic", "linear"]
@@ -83,15 +83,15 @@ class Shaft(TypedDict, total=False):
     Attributes
     ----------
     length_mm : float
-        (mm) The length between wheel and motor or brake. Allowed: > 0, ≤ 1000000.
+        (mm) The length from the wheel to motor or brake. Allowed: > 0, ≤ 1000000.
     radius_mm : float
-        (mm) The radius, which is also that of the wheel's bore. Allowed: > 0; less than the wheel's root radius.
+        (mm) The radius, also of the wheel's bore. Allowed: > 0; less than the wheel's root radius.
     bearing_span_mm : float
-        (mm) The distance between the two bearings on which the shaft bends. Allowed: > 0, ≤ 100000.
+        (mm) The distance between the shaft's two bearings. Allowed: > 0, ≤ 100000.
     wheel_at : float
-        (-) Where between the bearings the wheel sits, as a part of their distance. Allowed: > 0, < 1.
+        (-) Where between them the wheel sits. Allowed: > 0, < 1.
     bearing_stiffness_n_per_m : float
-        (N/m) The stiffness of both bearings together, across the shaft. Allowed: > 0, ≤ 1e15.
+        (N/m) The stiffness of both bearings together. Allowed: > 0, ≤ 1e15.
     damping_ratio : float
         (-) The damping ratio of the shaft and its bearings. Allowed: ≥ 0, < 1.
     """
@@ -433,16 +433,13 @@ class ScenarioKeys:
         ----------
         module_mm : float
             (mm) The module of both wheels. Allowed: > 0, ≤ 100.
-        pinion_teeth : int
-            The tooth count of the pinion, the driving wheel. Allowed: whole number 6…10000; the contact ratio must be
-            at least 1. Undercut teeth (fewer than 17 at 20°) are simulated without undercut, with a warning.
-        gear_teeth : int
-            The tooth count of the gear, the driven wheel. Allowed: whole number 6…10000; likewise.
+        pinion_teeth, gear_teeth : int
+            The tooth count. Allowed: whole number 6…10000; contact ratio at least 1; undercut (fewer than 17 at 20°) is
+            left out, with a warning.
         face_width_mm : float
             (mm) The face width of both wheels. Allowed: > 0, ≤ 10000.
         pinion_speed_hz : float
-            (rev/s) The nominal speed of the motor, which turns the pinion; the sampling rate is chosen for it. Allowed:
-            > 0, ≤ 100000.
+            (rev/s) The nominal speed of the motor and the pinion. Allowed: > 0, ≤ 100000.
         brake_torque_nm : float
             (N m) The nominal torque of the brake on the gear's shaft. Allowed: ≥ 0, ≤ 1e9.
         fault : a fault, optional
@@ -458,27 +455,19 @@ class ScenarioKeys:
             The seed of every random draw: profile errors, fluctuations, roughness of a destroyed flank, sensors' noise.
             Allowed: whole number. Default: 1.
         pressure_angle_deg : float, optional
-            (°) The pressure angle at the pitch circle. Allowed: 10…35; teeth must not become pointed below full height.
-            Default: 20.0.
-        pinion_profile_shift : float, optional
-            (-) The profile shift coefficient x of the pinion, in modules. Allowed: −2…2; a shift must leave no undercut
-            and no pointed tip. Default: 0.0.
-        gear_profile_shift : float, optional
-            (-) The profile shift coefficient x of the gear, in modules. Allowed: −2…2; likewise. Default: 0.0.
-        pinion_addendum : float, optional
-            (-) The addendum coefficient of the pinion's basic rack, in modules. Allowed: 0.3…2; tips must not be
-            pointed, nor reach into the mate's fillet. Default: 1.0.
-        gear_addendum : float, optional
-            (-) The addendum coefficient of the gear's basic rack, in modules. Allowed: 0.3…2; likewise. Default: 1.0.
-        pinion_dedendum : float, optional
-            (-) The dedendum coefficient of the pinion's basic rack, in modules. Allowed: 0.5…2.5; roots must clear the
-            mate's tips. Default: 1.25.
-        gear_dedendum : float, optional
-            (-) The dedendum coefficient of the gear's basic rack, in modules. Allowed: 0.5…2.5; likewise. Default:
-            1.25.
+            (°) The pressure angle at the pitch circle. Allowed: 10…35; no teeth pointed below full height. Default:
+            20.0.
+        pinion_profile_shift, gear_profile_shift : float, optional
+            (-) The profile shift coefficient x, in modules. Allowed: −2…2; no undercut, no pointed tip. Default: 0.0.
+        pinion_addendum, gear_addendum : float, optional
+            (-) The addendum coefficient of the basic rack, in modules. Allowed: 0.3…2; tips not pointed, clear of the
+            mate's fillets. Default: 1.0.
+        pinion_dedendum, gear_dedendum : float, optional
+            (-) The dedendum coefficient of the basic rack, in modules. Allowed: 0.5…2.5; roots clear of the mate's
+            tips. Default: 1.25.
         centre_distance_mm : float, optional
-            (mm) The distance between the axes. Allowed: > 0; at least the default; the contact ratio must be at least
-            1. Default: the one at which the teeth, of nominal thickness, have no backlash.
+            (mm) The distance between the axes. Allowed: > 0; at least the default; contact ratio at least 1. Default:
+            that without backlash.
         material : {'steel', 'copper', 'aluminium', 'brass', 'cast-iron', 'bronze'}, optional
             The material of wheels and shafts. Default: "steel".
         tip_relief : TipRelief or False, optional
@@ -488,89 +477,68 @@ class ScenarioKeys:
             The relief of the flanks near the tips, as a gap in µm. Default: { shape = "parabolic", length_mm = 1.0,
             amount_um = 0.0 }. Ignored by linear and published.
         tip_chamfer_mm : float, optional
-            (mm) The height of the chamfer or rounding of all tips, which the flank ends below. Allowed: ≥ 0; less than
-            1 module. Default: 0.2 modules. Ignored by linear and published.
+            (mm) The height of the chamfer or rounding of all tips. Allowed: ≥ 0; less than 1 module. Default: 0.2
+            modules. Ignored by linear and published.
         backlash_mm : float, optional
             (mm) The backlash along the line of action. Allowed: ≥ 0; less than 1 module; at least what a given centre
-            distance opens. Default: two thirds of 0.06 + 0.0005 a + 0.03 m, a the centre distance, and what a given one
-            opens. Ignored by linear and published.
+            distance opens. Default: ⅔ (0.06 + 0.0005 a + 0.03 m), a the centre distance, and what a given one opens.
+            Ignored by linear and published.
         crowning_mm : float, optional
-            (mm) A constant reduction of the working flank. Allowed: ≥ 0; less than half the tooth's thickness at the
-            pitch circle, π/4 modules. Default: 0.0.
+            (mm) A constant reduction of the working flank. Allowed: ≥ 0; less than π/4 modules, half the tooth's
+            thickness. Default: 0.0.
         points_per_tooth : int, optional
             The number of points along a tooth's profile. Allowed: whole number 500…1000000. Default: 10000.
         foundation : Foundation, optional
-            The coefficients A to F of the four polynomials of the fillet foundation's compliance; the default is of
-            Sainsot, Velex and Duverger (2004). Ignored by published.
+            The coefficients A to F of the four polynomials of the fillet foundation's compliance, by Sainsot, Velex and
+            Duverger (2004). Ignored by published.
         speed_fluctuation_hz : float, optional
-            (Hz) The half width of a uniform error of the speed, drawn anew for every sample. Allowed: ≥ 0; less than
-            the lowest speed. Default: 0.0.
+            (Hz) The half width of a uniform error of every sample's speed. Allowed: ≥ 0; less than the lowest speed.
+            Default: 0.0.
         torque_fluctuation_nm : float, optional
-            (N m) The half width of a uniform error of the torque, drawn anew for every sample. Allowed: ≥ 0; less than
-            the lowest torque. Default: 0.0.
+            (N m) The half width of a uniform error of every sample's torque. Allowed: ≥ 0; less than the lowest torque.
+            Default: 0.0.
         speed_profile_hz : dict of time_s and value, optional
-            (s, Hz) The speed against time, instead of the constant: straight lines between the points, constant outside
-            them. Times count from the start of the simulation. A CSV file of two columns, time_s and value, is { file =
-            "….csv" }. Allowed: at least 2 points, times increasing, values > 0. Default: none. Ignored by published.
+            (s, Hz) The speed against time from the simulation's start, straight between the points, constant outside
+            them; or { file = "….csv" } with the columns time_s and value. Allowed: at least 2 points, times increasing,
+            values > 0. Default: none. Ignored by published.
         torque_profile_nm : dict of time_s and value, optional
             (s, N m) The torque against time, likewise. Allowed: likewise, values ≥ 0. Default: none.
         din_grade : int, optional
-            The grade of DIN 3962 that profile errors are drawn for, 1 (best) to 12; 0 for ideal teeth. Allowed: whole
-            number 0…12. Default: 0.
+            The grade of DIN 3962 of the profile errors, 1 (best) to 12; 0: ideal teeth. Allowed: whole number 0…12.
+            Default: 0.
         wheels_seed : int, optional
-            The seed of that draw alone, so that scenarios of different seeds share their wheels. Allowed: whole number.
-            Default: the scenario's ``seed``.
+            The seed of the wheels alone, for several scenarios of the same wheels. Allowed: whole number. Default: the
+            scenario's ``seed``.
         iso_class : int, optional
-            The class of ISO 1328-1:2013 that deviations are drawn for, 1 (best) to 11, instead of din_grade; 0 for
-            none. Allowed: whole number 0…11. Default: 0. Ignored by linear and published.
+            The class of ISO 1328-1:2013 of the deviations, 1 (best) to 11, instead of din_grade; 0: none. Allowed:
+            whole number 0…11. Default: 0. Ignored by linear and published.
         tooth_share : float, optional
-            (-) The part of the tolerances of profile slope and form that each tooth has of its own; the rest all teeth
-            of a wheel have in common, as one tool makes them. Allowed: 0…1. Default: 0.4. Ignored by linear and
-            published.
+            (-) The part of the tolerances of profile slope and form that each tooth has of its own; the rest is common
+            to a wheel's teeth. Allowed: 0…1. Default: 0.4. Ignored by linear and published.
         pitch_share : float, optional
-            (-) The largest single pitch deviation of a wheel as a part of its tolerance f_p. Allowed: 0…1. Default:
-            0.15. Ignored by linear and published.
+            (-) A wheel's largest single pitch deviation over its tolerance f_p. Allowed: 0…1. Default: 0.15. Ignored by
+            linear and published.
         run_out_share : float, optional
-            (-) The run-out of each wheel as a part of its tolerance F_r. Allowed: 0…1. Default: 0.3. Ignored by linear
-            and published.
+            (-) A wheel's run-out over its tolerance F_r. Allowed: 0…1. Default: 0.3. Ignored by linear and published.
         helix_share : float, optional
-            (-) The part of its tolerance f_Hβ within which each wheel's helix slope deviation is drawn, of either sign.
-            Allowed: 0…1. Default: 0.0. Ignored by linear and published.
-        pinion_profile_errors_mm : array of float64, shape (100, teeth), optional
-            (mm) The pinion's profile errors, instead of a draw: 100 rows of one number per tooth. Allowed: 100 × pinion
-            teeth, each smaller than the module. Default: none.
-        gear_profile_errors_mm : array of float64, shape (100, teeth), optional
-            (mm) The gear's profile errors, likewise. Allowed: 100 × gear teeth, likewise. Default: none.
-        pinion_cumulative_pitch_um : sequence of floats, optional
-            (µm) The cumulative pitch deviations of the pinion's working flanks along the pitch circle, one a tooth;
-            metal added is positive, and they are added to given profile errors. Allowed: one a tooth of the pinion,
-            each smaller than the module. Default: drawn, or none beside given profile errors.
-        pinion_run_out_um : float, optional
-            (µm) The run-out F_r of the pinion, of which the deviation is F_r/2 sin(θ + φ). Allowed: ≥ 0, ≤ 10000.
-            Default: drawn, or none beside given profile errors or pitches, which have it in them. Ignored by linear and
-            published.
-        pinion_run_out_phase_rad : float, optional
-            (rad) Its phase φ, with θ counted from where the first tooth of the pinion enters contact. Default: drawn,
-            or 0 beside given profile errors. Ignored by linear and published.
-        pinion_helix_slope_um : float, optional
-            (µm) The helix slope deviation of the pinion over the face width; positive where metal is added towards
-            positive z. Allowed: −1000…1000. Default: drawn, or none beside given profile errors. Ignored by linear and
-            published.
-        gear_cumulative_pitch_um : sequence of floats, optional
-            (µm) The cumulative pitch deviations of the gear's working flanks along the pitch circle, one a tooth; metal
-            added is positive, and they are added to given profile errors. Allowed: one a tooth of the gear, each
-            smaller than the module. Default: drawn, or none beside given profile errors.
-        gear_run_out_um : float, optional
-            (µm) The run-out F_r of the gear, of which the deviation is F_r/2 sin(θ + φ). Allowed: ≥ 0, ≤ 10000.
-            Default: drawn, or none beside given profile errors or pitches, which have it in them. Ignored by linear and
-            published.
-        gear_run_out_phase_rad : float, optional
-            (rad) Its phase φ, with θ counted from where the first tooth of the gear enters contact. Default: drawn, or
-            0 beside given profile errors. Ignored by linear and published.
-        gear_helix_slope_um : float, optional
-            (µm) The helix slope deviation of the gear over the face width; positive where metal is added towards
-            positive z. Allowed: −1000…1000. Default: drawn, or none beside given profile errors. Ignored by linear and
-            published.
+            (-) A wheel's largest helix slope deviation, of either sign, over its tolerance f_Hβ. Allowed: 0…1. Default:
+            0.0. Ignored by linear and published.
+        pinion_profile_errors_mm, gear_profile_errors_mm : array of float64, shape (100, teeth), optional
+            (mm) The profile errors, instead of a draw: 100 rows of one number a tooth. Allowed: 100 × teeth, each below
+            the module. Default: none.
+        pinion_cumulative_pitch_um, gear_cumulative_pitch_um : sequence of floats, optional
+            (µm) The working flanks' cumulative pitch deviations along the pitch circle, positive where metal is added;
+            given profile errors are added to. Allowed: one a tooth, each below the module. Default: drawn, or none
+            beside given profile errors.
+        pinion_run_out_um, gear_run_out_um : float, optional
+            (µm) The run-out F_r, of which the deviation is F_r/2 sin(θ + φ). Allowed: ≥ 0, ≤ 10000. Default: drawn, or
+            none beside given profile errors or pitches, which have it in them. Ignored by linear and published.
+        pinion_run_out_phase_rad, gear_run_out_phase_rad : float, optional
+            (rad) Its phase φ; θ counts from where the wheel's first tooth enters contact. Default: drawn, or 0 beside
+            given profile errors. Ignored by linear and published.
+        pinion_helix_slope_um, gear_helix_slope_um : float, optional
+            (µm) The helix slope deviation over the face width, positive where metal is added towards positive z.
+            Allowed: −1000…1000. Default: drawn, or none beside given profile errors. Ignored by linear and published.
         bearing_stiffness_n_per_m : float, optional
             (N/m) The stiffness of each wheel's bearings in x, y and z. Allowed: > 0, ≤ 1e15. Default: 1.9e8. Ignored by
             published.
@@ -580,51 +548,45 @@ class ScenarioKeys:
         brake_inertia_kgm2 : float, optional
             (kg m²) The inertia of the brake. Allowed: > 0, ≤ 1e9. Default: 0.0045.
         damping_ratio : float or sequence of 13 floats, optional
-            (-) The modal damping over critical damping: one number for all modes, or 13 in the order of rising
-            frequency. Allowed: ≥ 0, < 1. Default: 0.05. Ignored by contact.
+            (-) The modal damping ratio: one for all modes, or 13 by rising frequency. Allowed: ≥ 0, < 1. Default: 0.05.
+            Ignored by contact.
         eccentricity_mm : float, optional
             (mm) The eccentricity of both wheels. Allowed: ≥ 0; less than the module. Default: 0.0. Ignored by
             published.
         misalignment_um : float, optional
-            (µm) How far the shafts deviate from parallel in the plane of action, over the face width; positive where it
-            brings the flanks closer together towards positive z: of the unloaded shafts, with the slope that the
-            nominal load gives them where a wheel is not midway; the tilt that an uneven load adds is computed. Allowed:
-            −1000…1000. Default: 0.0. Ignored by linear and published.
+            (µm) How far the shafts, with the slope that the nominal load gives them, are from parallel in the plane of
+            action over the face width; positive where flanks come closer towards positive z. The tilt by an uneven load
+            is computed. Allowed: −1000…1000. Default: 0.0. Ignored by linear and published.
         pinion_shaft : Shaft, optional
-            The motor's shaft. Default: { length_mm = 200.0, radius_mm = 10.0, bearing_span_mm = 130.0, wheel_at = 0.5,
-            damping_ratio = 0.025 }.
+            The shaft to motor (pinion) or brake (gear). Default: { length_mm = 200.0, radius_mm = 10.0, bearing_span_mm
+            = 130.0, wheel_at = 0.5, damping_ratio = 0.025 }.
         gear_shaft : Shaft, optional
-            The brake's shaft. Default: { length_mm = 600.0, radius_mm = 10.0, bearing_span_mm = 130.0, wheel_at = 0.5,
-            damping_ratio = 0.025 }.
-        pinion_inertia : WheelInertia, optional
-            The mass and inertias of the pinion, instead of a solid disc's; any of the three may be left out. Default: a
-            solid disc's, of pitch radius.
-        gear_inertia : WheelInertia, optional
-            The same of the gear. Default: a solid disc's, of pitch radius.
+            The shaft to motor (pinion) or brake (gear). Default: { length_mm = 600.0, radius_mm = 10.0, bearing_span_mm
+            = 130.0, wheel_at = 0.5, damping_ratio = 0.025 }.
+        pinion_inertia, gear_inertia : WheelInertia, optional
+            The wheel's mass and inertias, any of the three. Default: those of a solid disc of pitch radius.
         support : Support, optional
-            What the bearings of each shaft sit in, two alike: mass, stiffness to the base and to one another, damping.
-            Default: { mass_kg = 1.6, stiffness_n_per_m = 1.6e8, coupling_n_per_m = 5e8, damping_ratio = 0.025 }.
-            Ignored by linear and published.
+            What each shaft's bearings sit in. Default: { mass_kg = 1.6, stiffness_n_per_m = 1.6e8, coupling_n_per_m =
+            5e8, damping_ratio = 0.025 }. Ignored by linear and published.
         mesh_damping_ratio : float, optional
-            (-) The damping of teeth in contact over the critical damping of the wheels' rotation on the mean mesh
+            (-) The damping of teeth in contact over the critical one of the wheels' rotation on the mean mesh
             stiffness. Allowed: ≥ 0, < 1. Default: 0.15. Ignored by linear and published.
         sampling_rate_hz : float, optional
-            (S/s) The nominal sampling rate; the actual one is higher, so that both wheels turn a whole number of
+            (S/s) The nominal sampling rate; the actual one is higher, so that both wheels turn whole numbers of
             samples. Allowed: > 0. Default: 1e5.
         settle_fraction : float, optional
-            (-) The part of the simulated time that is discarded from its start, while the vibration settles. Allowed: ≥
-            0, < 1. Default: 0.5.
+            (-) The part of the time that is discarded from the start, while the vibration settles. Allowed: ≥ 0, < 1.
+            Default: 0.5.
         settle_tolerance : float, optional
-            (-) How far the slowest mode's transient must have decayed where the kept signal starts. A steady simulation
-            starts in the static equilibrium of the loaded mesh, and what is discarded is simulated only as far back as
-            this needs; 0 for all of it, as always under published. Allowed: ≥ 0, < 1. Default: 1e-6.
+            (-) What must be left of the slowest mode's transient where the kept signal starts: a steady simulation
+            starts in equilibrium and simulates only as much of the discarded part as this needs; 0: all of it, as
+            always under published. Allowed: ≥ 0, < 1. Default: 1e-6.
         initial_displacement : sequence of 13 floats, optional
-            (m, rad) The displacement of the 13 coordinates at the start: x, y of the gear, x, y of the pinion, rotation
-            of gear, pinion and brake, z of gear and pinion, tilt φ of both, tilt ψ of both. Default: the static
-            equilibrium of the loaded mesh; zeros under the published model.
+            (m, rad) The displacement at the start: x, y of the gear, x, y of the pinion, rotation of gear, pinion and
+            brake, z of gear and pinion, tilt φ of both, tilt ψ of both. Default: the loaded mesh's equilibrium; zeros
+            under published.
         initial_velocity : sequence of 13 floats, optional
-            (m/s, rad/s) The velocity of the same coordinates at the start. Default: rigid rotation at the nominal
-            speed.
+            (m/s, rad/s) The velocity of the same at the start. Default: rigid rotation at the nominal speed.
 
         Raises
         ------

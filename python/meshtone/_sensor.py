@@ -20,35 +20,31 @@ class Sensor:
         The sensor's name; its signal is the channel ``NAME_g``. Allowed: a letter, then letters, digits and ``_``; no
         other channel's. Default: place and direction, such as ``gear_support_vertical``.
     at : {'support', 'pinion-support', 'gear-support', 'wheels'}, optional
-        Where it sits: on both supports (their mean), on one, or on the wheels (their sum); under linear and published,
-        which have no supports that move, the wheels are read whatever it says. Default: "support". Ignored by linear
-        and published.
+        Where it sits: on both supports (their mean), on one, or on the wheels (their sum); always the wheels under
+        linear and published. Default: "support". Ignored by linear and published.
     direction : {'vertical', 'horizontal', 'axial'}, optional
-        In which direction it measures; under contact axial only at the wheels, for supports move across the shafts.
-        Default: "vertical".
+        The direction it measures in; under contact axial only at the wheels. Default: "vertical".
     resonance_hz : float, optional
         (Hz) The natural frequency of the sensor on its mount. Allowed: > 0, ≤ 10000000. Default: none.
     resonance_damping_ratio : float, optional
-        (-) The damping of that resonance over the critical one. Allowed: > 0, ≤ 10. Default: 0.02.
+        (-) The damping ratio of that resonance. Allowed: > 0, ≤ 10. Default: 0.02.
     noise_density_g_per_rthz : float, optional
-        (g/√Hz) The density of its noise, white and normal: the standard deviation is the density times the root of half
-        the sampling rate. Allowed: ≥ 0, ≤ 1000. Default: 0.0.
+        (g/√Hz) The density of its white normal noise: the standard deviation over the root of half the sampling rate.
+        Allowed: ≥ 0, ≤ 1000. Default: 0.0.
     noise_seed : int, optional
         The seed of the noise alone. Allowed: whole number. Default: the scenario's ``seed``.
     range_g : float, optional
-        (g) The largest acceleration of either sign that it shows. Allowed: > 0, ≤ 1e9. Default: none.
+        (g) The largest acceleration, of either sign, that it shows. Allowed: > 0, ≤ 1e9. Default: none.
     bits : int, optional
-        The resolution: the range from minus to plus has 2 to that power steps. Allowed: whole number 8…32; with
-        range_g. Default: none.
+        The resolution: the range from minus to plus has 2^bits steps. Allowed: whole number 8…32; with range_g.
+        Default: none.
     frequency_response : dict of frequency_hz, magnitude and phase_deg, optional
-        (Hz, -, °) What was measured of the path to the sensor: magnitude and phase over frequency, straight lines
-        between the points, the phase unwrapped; outside them nothing passes. A CSV file of three columns, frequency_hz,
-        magnitude and phase_deg, is { file = "….csv" }. Allowed: at least 2 points, frequencies increasing from 0 on,
-        magnitudes ≥ 0. Default: none.
+        (Hz, -, °) The measured path to the sensor: magnitude and phase over frequency, straight between the points, the
+        phase unwrapped; outside them nothing passes. Or { file = "….csv" } with the columns frequency_hz, magnitude,
+        phase_deg. Allowed: at least 2 points, frequencies increasing from 0 on, magnitudes ≥ 0. Default: none.
     response_input : {'acceleration', 'force'}, optional
-        What goes through the frequency response: the acceleration of the sensor's place, magnitudes without unit; or
-        the force along the line of action, magnitudes in (m/s²)/N, whatever ``at`` and ``direction`` say. Default:
-        "acceleration".
+        What goes through the frequency response: the place's acceleration, magnitudes without unit; or, whatever ``at``
+        and ``direction`` say, the force along the line of action, magnitudes in (m/s²)/N. Default: "acceleration".
 
     Notes
     -----

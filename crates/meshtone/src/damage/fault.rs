@@ -145,8 +145,7 @@ impl Keys for Place {
             row(
                 "tooth",
                 "",
-                "the number of the damaged tooth, in the order in which the teeth enter contact; an array of several, or \
-                 \"all\"",
+                "the damaged tooth's number, in the order of entering contact; an array of several, or \"all\"",
                 field!(tooth),
             )
             .range(Range::positive().message("must be at least 1, the first tooth"))
@@ -154,7 +153,7 @@ impl Keys for Place {
             row(
                 "severity",
                 "-",
-                "how severe the damage is, in place of its sizes: from 0, none, to 1, the largest that the tooth allows",
+                "how severe the damage is, in place of its sizes: 0 is none, 1 the largest that the tooth allows",
                 field!(severity),
             )
             .otherwise("that of the sizes")

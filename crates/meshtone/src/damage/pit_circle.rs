@@ -49,14 +49,13 @@ impl Keys for PitCircle {
             row(
                 "start",
                 "-",
-                "the pit's first edge as a fraction of the flank's contact part, from its root side",
+                "the pit's first edge, a fraction of the flank's contact part from its root",
                 field!(Self::Fractions, start),
             )
             .required_unless(&["circle", "severity"])
-            .range(
-                Range::below_one()
-                    .message("must be from 0 to less than 1; 0 is where contact starts at the root side, 1 the tip"),
-            ),
+            .range(Range::below_one().message(
+                "must be from 0 to less than 1; 0 is where contact starts at the root side, 1 the tip",
+            )),
             row("end", "-", "the pit's second edge, likewise", field!(Self::Fractions, end))
                 .required_unless(&["circle", "severity"])
                 .rule("more than `start`, ≤ 1"),
@@ -66,10 +65,7 @@ impl Keys for PitCircle {
                     Range::between(Excluded(0.0), Included(1.0))
                         .help("depth is relative: the depth of the pit over half its chord"),
                 )
-                .rule(
-                    "so small that the circle does not undercut the flank, which depends on the flank's slope: about 0.7 in its \
-                     middle, 0.4 at the tip",
-                ),
+                .rule("the circle must not undercut the flank: about 0.7 in its middle, 0.4 at the tip"),
             sub_table(
                 "circle",
                 "the circle that is cut into the flank, instead of start, end and depth",

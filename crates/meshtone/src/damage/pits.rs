@@ -83,7 +83,7 @@ impl Keys for Pits {
             listed(row(
                 "at",
                 "-",
-                "the centre of each pit as a fraction of the flank's contact part, from its root side",
+                "the centre of each pit, a fraction of the flank's contact part from its root",
                 field!(Self::Listed, at),
             ))
             .range(Range::from_to(0.0, 1.0)),
@@ -129,7 +129,7 @@ impl Keys for Pits {
                     row(
                         "spread",
                         "-",
-                        "the standard deviation of their centres about the working pitch circle, as a fraction of the flank's \
+                        "the standard deviation of their centres about the working pitch circle, a fraction of the \
                          contact part; normal",
                         field!(Self::Drawn, spread),
                     )

@@ -52,8 +52,7 @@ impl Keys for ToothDestruction {
         let start = row(
             "start",
             "-",
-            "where the ground line begins, as a fraction of the flank's contact part from its root side; negative: below the \
-             part in contact",
+            "where the ground line begins, a fraction of the flank's contact part from its root; negative: below it",
             field!(start),
         )
         .required_unless(&["severity"])
@@ -64,7 +63,7 @@ impl Keys for ToothDestruction {
         let rest = [
             row("offset_mm", "mm", "how far inside the flank the line begins", field!(offset_mm))
                 .range(Range::not_negative())
-                .rule("less than half the tooth's thickness at the pitch circle, π/4 modules"),
+                .rule("less than π/4 modules, half the tooth's thickness"),
             row(
                 "noise_mm",
                 "mm",
@@ -92,7 +91,7 @@ impl Keys for DestructionLine {
             row(
                 "end",
                 "-",
-                "the flank point that the line is aimed at, as a fraction",
+                "the flank point that the line is aimed at, likewise",
                 field!(Self::End, 0),
             )
             .required_unless(&["slope_deg", "severity"])

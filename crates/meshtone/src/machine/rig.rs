@@ -69,7 +69,7 @@ impl Keys for Rig {
     }
 
     fn rows() -> Vec<Row<Self>> {
-        const DISC: &str = "a solid disc's, of pitch radius";
+        const DISC: &str = "those of a solid disc of pitch radius";
         vec![
             row(
                 "bearing_stiffness_n_per_m",
@@ -91,7 +91,7 @@ impl Keys for Rig {
             row(
                 "damping_ratio",
                 "-",
-                "the modal damping over critical damping: one number for all modes, or 13 in the order of rising frequency",
+                "the modal damping ratio: one for all modes, or 13 by rising frequency",
                 field!(damping_ratio),
             )
             .range(
@@ -107,37 +107,38 @@ impl Keys for Rig {
             row(
                 "misalignment_um",
                 "µm",
-                "how far the shafts deviate from parallel in the plane of action, over the face width; positive where it brings the \
-                 flanks closer together towards positive z: of the unloaded shafts, with the slope that the nominal load gives them where a \
-                 wheel is not midway; the tilt that an uneven load adds is computed",
+                "how far the shafts, with the slope that the nominal load gives them, are from parallel in the plane \
+                 of action over the face width; positive where flanks come closer towards positive z. The tilt by an \
+                 uneven load is computed",
                 field!(misalignment_um),
             )
             .range(Range::from_to(-1e3, 1e3))
             .ignored_by(&["linear", "published"]),
-            row("pinion_shaft", "", "the motor's shaft", field!(pinion_shaft)),
-            row("gear_shaft", "", "the brake's shaft", field!(gear_shaft)),
+            row("pinion_shaft", "", "the shaft to motor (pinion) or brake (gear)", field!(pinion_shaft)),
+            row("gear_shaft", "", "the shaft to motor (pinion) or brake (gear)", field!(gear_shaft)),
             row(
                 "pinion_inertia",
                 "",
-                "the mass and inertias of the pinion, instead of a solid disc's; any of the three may be left out",
+                "the wheel's mass and inertias, any of the three",
                 field!(pinion_inertia),
             )
             .otherwise(DISC)
             .alternative("{ mass_kg = 0.24, polar_inertia_kgm2 = 7.8e-5, transverse_inertia_kgm2 = 4.4e-5 }"),
-            row("gear_inertia", "", "the same of the gear", field!(gear_inertia))
+            row("gear_inertia", "", "the wheel's mass and inertias, any of the three", field!(gear_inertia))
                 .otherwise(DISC)
                 .alternative("{ mass_kg = 1.20, polar_inertia_kgm2 = 1.95e-3, transverse_inertia_kgm2 = 1.0e-3 }"),
             row(
                 "support",
                 "",
-                "what the bearings of each shaft sit in, two alike: mass, stiffness to the base and to one another, damping",
+                "what each shaft's bearings sit in",
                 field!(support),
             )
             .ignored_by(&["linear", "published"]),
             row(
                 "mesh_damping_ratio",
                 "-",
-                "the damping of teeth in contact over the critical damping of the wheels' rotation on the mean mesh stiffness",
+                "the damping of teeth in contact over the critical one of the wheels' rotation on the mean mesh \
+                 stiffness",
                 field!(mesh_damping_ratio),
             )
             .range(Range::below_one().help("measured ratios are 0.03 to 0.17"))
@@ -322,32 +323,26 @@ impl Keys for Shaft {
 
     fn rows() -> Vec<Row<Self>> {
         vec![
-            row("length_mm", "mm", "the length between wheel and motor or brake", field!(length_mm))
+            row("length_mm", "mm", "the length from the wheel to motor or brake", field!(length_mm))
                 .range(Range::positive().slip_above(1e6)),
-            row("radius_mm", "mm", "the radius, which is also that of the wheel's bore", field!(radius_mm))
+            row("radius_mm", "mm", "the radius, also of the wheel's bore", field!(radius_mm))
                 .range(Range::positive())
                 .rule("less than the wheel's root radius"),
             row(
                 "bearing_span_mm",
                 "mm",
-                "the distance between the two bearings on which the shaft bends",
+                "the distance between the shaft's two bearings",
                 field!(bearing_span_mm),
             )
             .range(Range::positive().slip_above(1e5)),
-            row(
-                "wheel_at",
-                "-",
-                "where between the bearings the wheel sits, as a part of their distance",
-                field!(wheel_at),
-            )
-            .range(
+            row("wheel_at", "-", "where between them the wheel sits", field!(wheel_at)).range(
                 Range::between(Excluded(0.0), Excluded(1.0))
                     .message("must be more than 0 and less than 1 (0.5: midway between the bearings)"),
             ),
             row(
                 "bearing_stiffness_n_per_m",
                 "N/m",
-                "the stiffness of both bearings together, across the shaft",
+                "the stiffness of both bearings together",
                 field!(bearing_stiffness_n_per_m),
             )
             .otherwise("`rig.bearing_stiffness_n_per_m`")

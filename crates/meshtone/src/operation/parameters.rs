@@ -52,7 +52,7 @@ impl Keys for Operation {
             row(
                 "pinion_speed_hz",
                 "rev/s",
-                "the nominal speed of the motor, which turns the pinion; the sampling rate is chosen for it",
+                "the nominal speed of the motor and the pinion",
                 field!(pinion_speed_hz),
             )
             .required()
@@ -63,7 +63,7 @@ impl Keys for Operation {
             row(
                 "speed_fluctuation_hz",
                 "Hz",
-                "the half width of a uniform error of the speed, drawn anew for every sample",
+                "the half width of a uniform error of every sample's speed",
                 field!(speed_fluctuation_hz),
             )
             .range(Range::not_negative())
@@ -71,7 +71,7 @@ impl Keys for Operation {
             row(
                 "torque_fluctuation_nm",
                 "N m",
-                "the half width of a uniform error of the torque, drawn anew for every sample",
+                "the half width of a uniform error of every sample's torque",
                 field!(torque_fluctuation_nm),
             )
             .range(Range::not_negative())
@@ -79,8 +79,8 @@ impl Keys for Operation {
             row(
                 "speed_profile_hz",
                 "s, Hz",
-                "the speed against time, instead of the constant: straight lines between the points, constant outside them. Times \
-                 count from the start of the simulation. A CSV file of two columns, time_s and value, is { file = \"….csv\" }",
+                "the speed against time from the simulation's start, straight between the points, constant outside \
+                 them; or { file = \"….csv\" } with the columns time_s and value",
                 field!(speed_profile_hz),
             )
             .otherwise("none")

@@ -44,14 +44,15 @@ impl Keys for Solver {
             row(
                 "sampling_rate_hz",
                 "S/s",
-                "the nominal sampling rate; the actual one is higher, so that both wheels turn a whole number of samples",
+                "the nominal sampling rate; the actual one is higher, so that both wheels turn whole numbers of \
+                 samples",
                 field!(sampling_rate_hz),
             )
             .range(Range::positive()),
             row(
                 "settle_fraction",
                 "-",
-                "the part of the simulated time that is discarded from its start, while the vibration settles",
+                "the part of the time that is discarded from the start, while the vibration settles",
                 field!(settle_fraction),
             )
             .range(Range::below_one().message(
@@ -60,22 +61,22 @@ impl Keys for Solver {
             row(
                 "settle_tolerance",
                 "-",
-                "how far the slowest mode's transient must have decayed where the kept signal starts. A \
-                 steady simulation starts in the static equilibrium of the loaded mesh, and what is discarded is simulated only \
-                 as far back as this needs; 0 for all of it, as always under published",
+                "what must be left of the slowest mode's transient where the kept signal starts: a steady simulation \
+                 starts in equilibrium and simulates only as much of the discarded part as this needs; 0: all of it, \
+                 as always under published",
                 field!(settle_tolerance),
             )
             .range(Range::below_one().message("must be from 0 (the whole settling is simulated) to less than 1")),
             row(
                 "initial_displacement",
                 "m, rad",
-                "the displacement of the 13 coordinates at the start: x, y of the gear, x, y of the pinion, rotation of gear, \
-                 pinion and brake, z of gear and pinion, tilt φ of both, tilt ψ of both",
+                "the displacement at the start: x, y of the gear, x, y of the pinion, rotation of gear, pinion and \
+                 brake, z of gear and pinion, tilt φ of both, tilt ψ of both",
                 field!(initial_displacement),
             )
-            .otherwise("the static equilibrium of the loaded mesh; zeros under the published model")
+            .otherwise("the loaded mesh's equilibrium; zeros under published")
             .example("[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]"),
-            row("initial_velocity", "m/s, rad/s", "the velocity of the same coordinates at the start", field!(initial_velocity))
+            row("initial_velocity", "m/s, rad/s", "the velocity of the same at the start", field!(initial_velocity))
                 .otherwise("rigid rotation at the nominal speed")
                 .alternative("[ 13 numbers ]"),
         ]

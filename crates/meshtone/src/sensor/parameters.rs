@@ -137,15 +137,15 @@ impl Keys for Sensor {
             row(
                 "at",
                 "",
-                "where it sits: on both supports (their mean), on one, or on the wheels (their sum); under linear and published, \
-                 which have no supports that move, the wheels are read whatever it says",
+                "where it sits: on both supports (their mean), on one, or on the wheels (their sum); always the \
+                 wheels under linear and published",
                 field!(at),
             )
             .ignored_by(&["linear", "published"]),
             row(
                 "direction",
                 "",
-                "in which direction it measures; under contact axial only at the wheels, for supports move across the shafts",
+                "the direction it measures in; under contact axial only at the wheels",
                 field!(direction),
             ),
             row("resonance_hz", "Hz", "the natural frequency of the sensor on its mount", field!(resonance_hz))
@@ -155,26 +155,26 @@ impl Keys for Sensor {
             row(
                 "resonance_damping_ratio",
                 "-",
-                "the damping of that resonance over the critical one",
+                "the damping ratio of that resonance",
                 field!(resonance_damping_ratio),
             )
             .range(Range::positive().slip_above(10.0)),
             row(
                 "noise_density_g_per_rthz",
                 "g/√Hz",
-                "the density of its noise, white and normal: the standard deviation is the density times the root of half the \
-                 sampling rate",
+                "the density of its white normal noise: the standard deviation over the root of half the sampling \
+                 rate",
                 field!(noise_density_g_per_rthz),
             )
             .range(Range::not_negative().slip_above(1e3)),
             row("noise_seed", "", "the seed of the noise alone", field!(noise_seed))
                 .otherwise("the scenario's `seed`")
                 .example("1"),
-            row("range_g", "g", "the largest acceleration of either sign that it shows", field!(range_g))
+            row("range_g", "g", "the largest acceleration, of either sign, that it shows", field!(range_g))
                 .otherwise("none")
                 .range(Range::positive().slip_above(1e9))
                 .example("50.0"),
-            row("bits", "", "the resolution: the range from minus to plus has 2 to that power steps", field!(bits))
+            row("bits", "", "the resolution: the range from minus to plus has 2^bits steps", field!(bits))
                 .otherwise("none")
                 .range(Range::from_to(8.0, 32.0))
                 .rule("with range_g")
@@ -182,9 +182,9 @@ impl Keys for Sensor {
             row(
                 "frequency_response",
                 "Hz, -, °",
-                "what was measured of the path to the sensor: magnitude and phase over frequency, straight lines between the \
-                 points, the phase unwrapped; outside them nothing passes. A CSV file of three columns, frequency_hz, \
-                 magnitude and phase_deg, is { file = \"….csv\" }",
+                "the measured path to the sensor: magnitude and phase over frequency, straight between the points, \
+                 the phase unwrapped; outside them nothing passes. Or { file = \"….csv\" } with the columns \
+                 frequency_hz, magnitude, phase_deg",
                 field!(frequency_response),
             )
             .otherwise("none")
@@ -193,8 +193,8 @@ impl Keys for Sensor {
             row(
                 "response_input",
                 "",
-                "what goes through the frequency response: the acceleration of the sensor's place, magnitudes without unit; or the \
-                 force along the line of action, magnitudes in (m/s²)/N, whatever `at` and `direction` say",
+                "what goes through the frequency response: the place's acceleration, magnitudes without unit; or, \
+                 whatever `at` and `direction` say, the force along the line of action, magnitudes in (m/s²)/N",
                 field!(response_input),
             )
             .rule("\"force\" with frequency_response"),

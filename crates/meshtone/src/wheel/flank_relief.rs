@@ -44,16 +44,11 @@ impl Keys for FlankRelief {
 
     fn rows() -> Vec<Row<Self>> {
         vec![
-            row(
-                "shape",
-                "",
-                "a parabola that leaves the flank with its slope, or a straight line",
-                field!(shape),
-            ),
+            row("shape", "", "a parabola that leaves the flank smoothly, or a straight line", field!(shape)),
             row(
                 "length_mm",
                 "mm",
-                "the length along the tooth's centre line, from the tip inwards",
+                "the length from the tip along the tooth's centre line",
                 field!(length_mm),
             )
             .range(Range::positive())
@@ -61,7 +56,7 @@ impl Keys for FlankRelief {
             row(
                 "amount_um",
                 "µm",
-                "how far the flank lies back at the tip, along its normal; 10 to 40 in practice",
+                "how far the flank lies back at the tip, along its normal; usually 10 to 40",
                 field!(amount_um),
             )
             .range(Range::not_negative().slip_above(1000.0)),

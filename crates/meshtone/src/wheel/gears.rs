@@ -108,75 +108,74 @@ impl Keys for Gears {
             row("module_mm", "mm", "the module of both wheels", field!(module_mm))
                 .required()
                 .range(Range::positive().slip_above(100.0)),
-            row("pinion_teeth", "", "the tooth count of the pinion, the driving wheel", field!(pinion_teeth))
+            row("pinion_teeth", "", "the tooth count", field!(pinion_teeth))
                 .required()
                 .range(TEETH)
                 .rule(
-                    "the contact ratio must be at least 1. Undercut teeth (fewer than 17 at 20°) are simulated without \
-                     undercut, with a warning",
+                    "contact ratio at least 1; undercut (fewer than 17 at 20°) is left out, with a warning",
                 ),
-            row("gear_teeth", "", "the tooth count of the gear, the driven wheel", field!(gear_teeth))
+            row("gear_teeth", "", "the tooth count", field!(gear_teeth))
                 .required()
                 .range(TEETH)
-                .rule("likewise"),
+                .rule("contact ratio at least 1; undercut (fewer than 17 at 20°) is left out, with a warning"),
             row("face_width_mm", "mm", "the face width of both wheels", field!(face_width_mm))
                 .required()
                 .range(Range::positive().slip_above(10_000.0)),
             row("pressure_angle_deg", "°", "the pressure angle at the pitch circle", field!(pressure_angle_deg))
                 .range(Range::from_to(10.0, 35.0).help("usual pressure angles are 14.5°, 20° and 25°"))
-                .rule("teeth must not become pointed below full height"),
+                .rule("no teeth pointed below full height"),
             row(
                 "pinion_profile_shift",
                 "-",
-                "the profile shift coefficient x of the pinion, in modules",
+                "the profile shift coefficient x, in modules",
                 field!(pinion_profile_shift),
             )
             .range(SHIFT)
-            .rule("a shift must leave no undercut and no pointed tip"),
+            .rule("no undercut, no pointed tip"),
             row(
                 "gear_profile_shift",
                 "-",
-                "the profile shift coefficient x of the gear, in modules",
+                "the profile shift coefficient x, in modules",
                 field!(gear_profile_shift),
             )
             .range(SHIFT)
-            .rule("likewise"),
+            .rule("no undercut, no pointed tip"),
             row(
                 "pinion_addendum",
                 "-",
-                "the addendum coefficient of the pinion's basic rack, in modules",
+                "the addendum coefficient of the basic rack, in modules",
                 field!(pinion_addendum),
             )
             .range(ADDENDUM)
-            .rule("tips must not be pointed, nor reach into the mate's fillet"),
+            .rule("tips not pointed, clear of the mate's fillets"),
             row(
                 "gear_addendum",
                 "-",
-                "the addendum coefficient of the gear's basic rack, in modules",
+                "the addendum coefficient of the basic rack, in modules",
                 field!(gear_addendum),
             )
             .range(ADDENDUM)
-            .rule("likewise"),
+            .rule("tips not pointed, clear of the mate's fillets"),
             row(
                 "pinion_dedendum",
                 "-",
-                "the dedendum coefficient of the pinion's basic rack, in modules",
+                "the dedendum coefficient of the basic rack, in modules",
                 field!(pinion_dedendum),
             )
             .range(DEDENDUM)
-            .rule("roots must clear the mate's tips"),
+            .rule("roots clear of the mate's tips"),
             row(
                 "gear_dedendum",
                 "-",
-                "the dedendum coefficient of the gear's basic rack, in modules",
+                "the dedendum coefficient of the basic rack, in modules",
                 field!(gear_dedendum),
             )
             .range(DEDENDUM)
-            .rule("likewise"),
+            .rule("roots clear of the mate's tips"),
             row("centre_distance_mm", "mm", "the distance between the axes", field!(centre_distance_mm))
-                .otherwise("the one at which the teeth, of nominal thickness, have no backlash")
+                .otherwise("that without backlash")
                 .range(Range::positive())
-                .rule("at least the default; the contact ratio must be at least 1")
+                .rule("at least the default; contact ratio at least 1")
                 .alternative("83.0"),
             row("material", "", "the material of wheels and shafts", field!(material)),
             row("tip_relief", "", "the material removed near the tips, or `false` for none", field!(tip_relief))
@@ -186,23 +185,25 @@ impl Keys for Gears {
             row(
                 "tip_chamfer_mm",
                 "mm",
-                "the height of the chamfer or rounding of all tips, which the flank ends below",
+                "the height of the chamfer or rounding of all tips",
                 field!(tip_chamfer_mm),
             )
             .otherwise("0.2 modules")
+            .alternative("0.6")
             .range(Range::not_negative())
             .rule("less than 1 module")
             .ignored_by(&["linear", "published"]),
             row("backlash_mm", "mm", "the backlash along the line of action", field!(backlash_mm))
                 .otherwise(
-                    "two thirds of 0.06 + 0.0005 a + 0.03 m, a the centre distance, and what a given one opens",
+                    "⅔ (0.06 + 0.0005 a + 0.03 m), a the centre distance, and what a given one opens",
                 )
                 .range(Range::not_negative())
                 .rule("less than 1 module; at least what a given centre distance opens")
+                .alternative("0.1275")
                 .ignored_by(&["linear", "published"]),
             row("crowning_mm", "mm", "a constant reduction of the working flank", field!(crowning_mm))
                 .range(Range::not_negative())
-                .rule("less than half the tooth's thickness at the pitch circle, π/4 modules"),
+                .rule("less than π/4 modules, half the tooth's thickness"),
             row("points_per_tooth", "", "the number of points along a tooth's profile", field!(points_per_tooth))
                 .range(
                     Range::from_to(500.0, 1e6).message("must be from 500 to 1000000; the default is 10000"),
@@ -210,8 +211,8 @@ impl Keys for Gears {
             row(
                 "foundation",
                 "",
-                "the coefficients A to F of the four polynomials of the fillet foundation's compliance; the default is of \
-                 Sainsot, Velex and Duverger (2004)",
+                "the coefficients A to F of the four polynomials of the fillet foundation's compliance, by Sainsot, \
+                 Velex and Duverger (2004)",
                 field!(foundation),
             )
             .ignored_by(&["published"]),
@@ -284,18 +285,18 @@ impl Keys for TipRelief {
 
     fn rows() -> Vec<Row<Self>> {
         vec![
-            row("shape", "", "a parabola that leaves the flank with its slope, or a straight line", field!(shape)),
-            row("length_mm", "mm", "the length along the tooth's centre line, from the tip inwards", field!(length_mm))
+            row("shape", "", "a parabola that leaves the flank smoothly, or a straight line", field!(shape)),
+            row("length_mm", "mm", "the length from the tip along the tooth's centre line", field!(length_mm))
                 .rule("> 0, less than 2 modules"),
             row(
                 "depth_mm",
                 "mm",
-                "how far the tip ends below the flank point where the relief starts. The unrelieved tooth itself thins from \
-                 there to the tip (by 0.54 mm on 1 mm for 17 teeth of module 3), so less than that adds metal, and is warned of",
+                "how far the tip ends below the flank point where the relief starts; less than the tooth itself \
+                 thins from there (0.54 mm on 1 mm for 17 teeth of module 3) would add metal, and is warned of",
                 field!(depth_mm),
             )
             .range(Range::not_negative().help(NO_RELIEF))
-            .rule("less than half the tooth's thickness at the pitch circle, π/4 modules"),
+            .rule("less than π/4 modules, half the tooth's thickness"),
         ]
     }
 }

@@ -69,6 +69,35 @@ fn keys_that_are_commented_out_show_their_defaults() {
 }
 
 #[test]
+fn keys_whose_default_follows_from_others_are_shown_as_well() {
+    let text = template("healthy").unwrap();
+    let set =
+        text.replace("# tip_chamfer_mm =", "tip_chamfer_mm =").replace("# backlash_mm =", "backlash_mm =");
+    let default = Scenario::from_toml(&text).unwrap();
+    let gears = Scenario::from_toml(&set).unwrap().gears;
+    assert_eq!((gears.tip_chamfer_mm, gears.backlash_mm), (Some(0.6), Some(0.1275)));
+    assert!((gears.chamfer_mm() - default.gears.chamfer_mm()).abs() < 1e-12);
+    assert!((gears.normal_backlash_mm() - default.gears.normal_backlash_mm()).abs() < 1e-12);
+
+    let mut set = text.clone();
+    for wheel in ["pinion", "gear"] {
+        for key in ["run_out_um", "run_out_phase_rad", "helix_slope_um"] {
+            let line = format!("# {wheel}_{key} = 0.0");
+            assert!(text.contains(&line), "{line}");
+            set = set.replace(&line, &line[2..]);
+        }
+        for key in ["profile_errors_mm", "cumulative_pitch_um"] {
+            assert!(text.contains(&format!("\n# {wheel}_{key} = [ ")), "{wheel}_{key}");
+        }
+    }
+    let quality = Scenario::from_toml(&set).unwrap().quality;
+    assert_eq!(
+        (quality.pinion_deviations.run_out_um, quality.gear_deviations.helix_slope_um),
+        (Some(0.0), Some(0.0))
+    );
+}
+
+#[test]
 fn alternatives_are_valid_in_place_of_what_they_replace() {
     let inertias = template("healthy").unwrap().replace("# pinion_inertia", "pinion_inertia");
     let rig = Scenario::from_toml(&inertias.replace("# gear_inertia", "gear_inertia")).unwrap().rig;

@@ -94,51 +94,47 @@ impl Quality {
 
 /// The rows of a wheel's deviations that are given beside the profiles.
 macro_rules! deviation_rows {
-    ($wheel:literal, $field:ident, $keys:expr) => {{
+    ($field:ident, $keys:expr) => {{
         let [pitch, run_out, phase, helix] = $keys;
         [
             row(
                 pitch,
                 "µm",
-                concat!(
-                    "the cumulative pitch deviations of the ",
-                    $wheel,
-                    "'s working flanks along the pitch circle, one a tooth; metal added is positive, and they are added to given \
-                     profile errors"
-                ),
+                "the working flanks' cumulative pitch deviations along the pitch circle, positive where metal is added; given \
+                 profile errors are added to",
                 field!($field.cumulative_pitch_um),
             )
             .otherwise("drawn, or none beside given profile errors")
-            .rule(concat!("one a tooth of the ", $wheel, ", each smaller than the module")),
+            .rule("one a tooth, each below the module")
+            .alternative("[ one number a tooth ]"),
             row(
                 run_out,
                 "µm",
-                concat!("the run-out F_r of the ", $wheel, ", of which the deviation is F_r/2 sin(θ + φ)"),
+                "the run-out F_r, of which the deviation is F_r/2 sin(θ + φ)",
                 field!($field.run_out_um),
             )
             .otherwise("drawn, or none beside given profile errors or pitches, which have it in them")
             .range(Range::not_negative().slip_above(1e4))
+            .alternative("0.0")
             .ignored_by(&["linear", "published"]),
             row(
                 phase,
                 "rad",
-                concat!("its phase φ, with θ counted from where the first tooth of the ", $wheel, " enters contact"),
+                "its phase φ; θ counts from where the wheel's first tooth enters contact",
                 field!($field.run_out_phase_rad),
             )
             .otherwise("drawn, or 0 beside given profile errors")
+            .alternative("0.0")
             .ignored_by(&["linear", "published"]),
             row(
                 helix,
                 "µm",
-                concat!(
-                    "the helix slope deviation of the ",
-                    $wheel,
-                    " over the face width; positive where metal is added towards positive z"
-                ),
+                "the helix slope deviation over the face width, positive where metal is added towards positive z",
                 field!($field.helix_slope_um),
             )
             .otherwise("drawn, or none beside given profile errors")
             .range(Range::from_to(-1e3, 1e3))
+            .alternative("0.0")
             .ignored_by(&["linear", "published"]),
         ]
     }};
@@ -156,7 +152,7 @@ impl Keys for Quality {
             row(
                 "din_grade",
                 "",
-                "the grade of DIN 3962 that profile errors are drawn for, 1 (best) to 12; 0 for ideal teeth",
+                "the grade of DIN 3962 of the profile errors, 1 (best) to 12; 0: ideal teeth",
                 field!(din_grade),
             )
             .range(Range::from_to(0.0, 12.0).message(
@@ -165,7 +161,7 @@ impl Keys for Quality {
             row(
                 "seed",
                 "",
-                "the seed of that draw alone, so that scenarios of different seeds share their wheels",
+                "the seed of the wheels alone, for several scenarios of the same wheels",
                 field!(seed),
             )
             .otherwise("the scenario's `seed`")
@@ -173,7 +169,7 @@ impl Keys for Quality {
             row(
                 "iso_class",
                 "",
-                "the class of ISO 1328-1:2013 that deviations are drawn for, 1 (best) to 11, instead of din_grade; 0 for none",
+                "the class of ISO 1328-1:2013 of the deviations, 1 (best) to 11, instead of din_grade; 0: none",
                 field!(iso_class),
             )
             .range(Range::from_to(0.0, 11.0).message(
@@ -183,8 +179,8 @@ impl Keys for Quality {
             row(
                 "tooth_share",
                 "-",
-                "the part of the tolerances of profile slope and form that each tooth has of its own; the rest all teeth of a \
-                 wheel have in common, as one tool makes them",
+                "the part of the tolerances of profile slope and form that each tooth has of its own; the rest is \
+                 common to a wheel's teeth",
                 field!(tooth_share),
             )
             .range(Range::from_to(0.0, 1.0))
@@ -192,27 +188,26 @@ impl Keys for Quality {
             row(
                 "pitch_share",
                 "-",
-                "the largest single pitch deviation of a wheel as a part of its tolerance f_p",
+                "a wheel's largest single pitch deviation over its tolerance f_p",
                 field!(pitch_share),
             )
             .range(Range::from_to(0.0, 1.0))
             .ignored_by(&["linear", "published"]),
-            row("run_out_share", "-", "the run-out of each wheel as a part of its tolerance F_r", field!(run_out_share))
+            row("run_out_share", "-", "a wheel's run-out over its tolerance F_r", field!(run_out_share))
                 .range(Range::from_to(0.0, 1.0))
                 .ignored_by(&["linear", "published"]),
             row(
                 "helix_share",
                 "-",
-                "the part of its tolerance f_Hβ within which each wheel's helix slope deviation is drawn, of either sign",
+                "a wheel's largest helix slope deviation, of either sign, over its tolerance f_Hβ",
                 field!(helix_share),
             )
             .range(Range::from_to(0.0, 1.0))
             .ignored_by(&["linear", "published"]),
             documented(
                 "errors_file",
-                "a file with the teeth's profile errors themselves, instead of a draw by din_grade: an .npz with the entries \
-                 pinion_profile_errors_mm and gear_profile_errors_mm, as `meshtone wheels` writes it; it may have the further keys \
-                 below as entries too",
+                "an .npz with the profile errors, instead of a draw, as `meshtone wheels` writes it; its entries are \
+                 the keys below",
                 KeyKind::File,
             )
             .otherwise("none")
@@ -220,29 +215,31 @@ impl Keys for Quality {
             row(
                 ERROR_KEYS[0],
                 "mm",
-                "the pinion's profile errors, instead of a draw: 100 rows of one number per tooth",
+                "the profile errors, instead of a draw: 100 rows of one number a tooth",
                 Field::new(
                     |quality: &Self| quality.profile_errors.as_ref().map(|errors| &errors.pinion_profile_errors_mm),
                     |quality| quality.profile_errors.as_mut().map(|errors| &mut errors.pinion_profile_errors_mm),
                 ),
             )
             .otherwise("none")
-            .rule("100 × pinion teeth, each smaller than the module"),
+            .rule("100 × teeth, each below the module")
+            .alternative("[ 100 rows of one number a tooth ]"),
             row(
                 ERROR_KEYS[1],
                 "mm",
-                "the gear's profile errors, likewise",
+                "the profile errors, instead of a draw: 100 rows of one number a tooth",
                 Field::new(
                     |quality: &Self| quality.profile_errors.as_ref().map(|errors| &errors.gear_profile_errors_mm),
                     |quality| quality.profile_errors.as_mut().map(|errors| &mut errors.gear_profile_errors_mm),
                 ),
             )
             .otherwise("none")
-            .rule("100 × gear teeth, likewise"),
+            .rule("100 × teeth, each below the module")
+            .alternative("[ 100 rows of one number a tooth ]"),
         ]
         .into_iter()
-        .chain(deviation_rows!("pinion", pinion_deviations, DEVIATION_KEYS[0]))
-        .chain(deviation_rows!("gear", gear_deviations, DEVIATION_KEYS[1]))
+        .chain(deviation_rows!(pinion_deviations, DEVIATION_KEYS[0]))
+        .chain(deviation_rows!(gear_deviations, DEVIATION_KEYS[1]))
         .collect()
     }
 

@@ -5,6 +5,8 @@ use std::fmt::Write;
 use meshtone::damage::{damage_kinds, keys_of_every_fault};
 use meshtone::scenario::{KeyDescription, sections};
 
+use super::both_wheels::of_both_wheels;
+
 /// The pages that have such tables.
 pub const PAGES: [&str; 1] = ["docs/src/guide/scenario-file.md"];
 
@@ -42,16 +44,32 @@ fn table(name: &str) -> String {
 
 fn rows(keys: &[KeyDescription], first: &str) -> String {
     let mut text = format!("| key | meaning | unit | default | allowed |\n|---|---|---|---|---|\n{first}");
-    for key in keys {
-        let default = match key.default.as_str() {
-            "" => "required".to_owned(),
-            value if format!("x = {value}").parse::<toml::Table>().is_ok() => format!("`{value}`"),
-            words => words.to_owned(),
-        };
+    for (key, of_gear) in of_both_wheels(keys) {
+        let mut defaults = vec![default(key, keys)];
+        let mut names = format!("`{}`", key.key);
+        if let Some(of_gear) = of_gear {
+            write!(names, ", `{}`", of_gear.key).unwrap();
+            defaults.push(default(of_gear, keys));
+            defaults.dedup();
+        }
         let ignored = key.ignored_in_words();
         let ignored = if ignored.is_empty() { ignored } else { format!(". *{ignored}*") };
-        let KeyDescription { key, meaning, unit, allowed, .. } = key;
-        writeln!(text, "| `{key}` | {meaning}{ignored} | {unit} | {default} | {allowed} |").unwrap();
+        let KeyDescription { meaning, unit, allowed, .. } = key;
+        let default = defaults.join(", ");
+        writeln!(text, "| {names} | {meaning}{ignored} | {unit} | {default} | {allowed} |").unwrap();
     }
     text
+}
+
+/// What is taken where a key is left out; of a table whose own keys follow, what they say.
+fn default(key: &KeyDescription, keys: &[KeyDescription]) -> String {
+    let of_its_keys = format!("{}.", key.key);
+    match key.default.as_str() {
+        "" => "required".to_owned(),
+        table if table.starts_with('{') && keys.iter().any(|other| other.key.starts_with(&of_its_keys)) => {
+            "as below".to_owned()
+        }
+        value if format!("x = {value}").parse::<toml::Table>().is_ok() => format!("`{value}`"),
+        words => words.to_owned(),
+    }
 }

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use meshtone::scenario::{KeyDescription, KeyKind, sections};
 
+use super::both_wheels::of_both_wheels;
 use super::python::{HEAD, argument_type, attribute_type, class_name, has_default_value, inside, parameter};
 
 /// Keys that are called otherwise in Python: two sections have a `seed`.
@@ -130,11 +131,27 @@ pub fn text() -> String {
          faults : sequence of faults, optional\n            All damage, instead of ``fault``: any number of faults, on any teeth of \
          either wheel.\n        sensors : sequence of Sensor, optional\n            Sensors on the rig, whose signals come first; none by \
          default.\n";
-    for Argument { name, key, .. } in &arguments {
+    let keys: Vec<KeyDescription> = arguments.iter().map(|argument| argument.key.clone()).collect();
+    for (key, of_gear) in of_both_wheels(&keys) {
         if !key.required {
             text.push_str(std::mem::take(&mut lists));
         }
-        text.push_str(&parameter("        ", key, name, !key.required));
+        let name = |key: &KeyDescription| {
+            arguments
+                .iter()
+                .find(|argument| argument.key == *key)
+                .map(|argument| argument.name.clone())
+                .unwrap()
+        };
+        match of_gear {
+            Some(other) if other.default == key.default => {
+                let names = format!("{}, {}", name(key), name(other));
+                text.push_str(&parameter("        ", key, &names, !key.required));
+            }
+            _ => [Some(key), of_gear].into_iter().flatten().for_each(|key| {
+                text.push_str(&parameter("        ", key, &name(key), !key.required));
+            }),
+        }
     }
     text.push_str(
         "\n        Raises\n        ------\n        ValueError\n            A value that is not allowed: the text names the key, the value and \

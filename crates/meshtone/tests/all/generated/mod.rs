@@ -3,6 +3,7 @@
 //! `cargo xtask generate` writes them; these tests fail where they are stale.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+mod both_wheels;
 mod damage_py;
 mod guide;
 mod keys_py;
