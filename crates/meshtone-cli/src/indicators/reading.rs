@@ -6,8 +6,8 @@ use meshtone::scenario::Scenario;
 use meshtone::sensor::Channel as SimulatedChannel;
 use meshtone_io::indicators::WarningEntry;
 use meshtone_io::recording::{
-    Calibration, Channel, ColumnChoice, Recording, RecordingOptions, RecordingWarning, TextOptions,
-    TimeColumn, read_recording,
+    Channel, ColumnChoice, Recording, RecordingOptions, RecordingWarning, TextOptions, TimeColumn,
+    read_recording,
 };
 
 use super::options::ReadingOptions;
@@ -59,7 +59,6 @@ impl Input {
     ) -> Result<Self, Failure> {
         let chosen = RecordingOptions {
             channels: options.channel.iter().map(|choice| ColumnChoice::parse(choice)).collect(),
-            calibrations: calibration(options)?,
             ..plain(options)
         };
         // The tachometer comes by itself: only so is it known which of the columns it is.
@@ -76,8 +75,11 @@ impl Input {
                 !is_turning && simulated.as_ref().is_none_or(|name| channel.name == *name)
             };
             recording.channels.retain(keep);
+            let (live, told) = without_dead(recording.channels, path);
+            recording.channels = live;
+            warnings.extend(told);
         }
-        let channel = one(path, recording.channels, options.channel.as_deref())?;
+        let mut channel = one(path, recording.channels, options.channel.as_deref())?;
         if let (Some(turning), Some(choice)) = (&turning, options.channel.as_deref()) {
             check_different(path, options, turning, &channel, choice)?;
         }
@@ -94,6 +96,7 @@ impl Input {
             );
             return Err(Failure::bad_input(problem));
         }
+        calibrate(&mut channel, options)?;
         Ok(Self {
             source: path.to_path_buf(),
             sampling_rate_hz: recording.sampling_rate_hz,
@@ -198,19 +201,25 @@ fn plain(options: &ReadingOptions) -> RecordingOptions {
     }
 }
 
-fn calibration(options: &ReadingOptions) -> Result<Vec<Calibration>, Failure> {
-    let (sensitivity, unit) = (options.sensitivity_mv_per_unit, &options.unit);
-    let Some(channel) = options.channel.as_deref() else { return Ok(Vec::new()) };
+/// What the samples of the channel mean, where the options say it: whether or not they name the channel.
+fn calibrate(channel: &mut Channel, options: &ReadingOptions) -> Result<(), Failure> {
+    let sensitivity = options.sensitivity_mv_per_unit;
     if let Some(wrong) = sensitivity.filter(|sensitivity| !sensitivity.is_finite() || *sensitivity == 0.0) {
         let problem = format!("--sensitivity-mv-per-unit: is {wrong}; must be a finite number other than 0");
         return Err(Failure::bad_input(problem));
     }
-    if sensitivity.is_none() && unit.is_none() {
-        return Ok(Vec::new());
+    Ok(channel.calibrate(sensitivity.map(|millivolts| millivolts / 1e3), options.unit.as_deref())?)
+}
+
+/// Leaves out what is 0 throughout beside channels that are not, as of inputs that nothing was connected to. Which is told.
+fn without_dead(channels: Vec<Channel>, source: &Path) -> (Vec<Channel>, Option<WarningEntry>) {
+    let is_dead = |channel: &Channel| channel.samples.iter().all(|sample| *sample == 0.0);
+    let (dead, live): (Vec<Channel>, Vec<Channel>) = channels.into_iter().partition(is_dead);
+    if live.is_empty() || dead.is_empty() {
+        return (if live.is_empty() { dead } else { live }, None);
     }
-    Ok(vec![Calibration {
-        channel: ColumnChoice::parse(channel),
-        sensitivity_v_per_unit: sensitivity.map(|millivolts| millivolts / 1e3),
-        unit: unit.clone(),
-    }])
+    let names: Vec<&str> = dead.iter().map(|channel| channel.name.as_str()).collect();
+    let (names, is) = (names.join(", "), if dead.len() == 1 { "is" } else { "are" });
+    let message = format!("{names} {is} 0 throughout and left out; --channel NAME reads it all the same");
+    (live, Some(WarningEntry { source: Some(source.to_path_buf()), message }))
 }

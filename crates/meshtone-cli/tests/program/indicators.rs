@@ -217,6 +217,29 @@ fn pulses_and_speeds_from_other_files() {
 }
 
 #[test]
+fn the_only_channel_that_is_alive_needs_no_name() {
+    let workplace = Workplace::new();
+    let rows: String = vibration(8000, 1.0).iter().map(|value| format!("{value},0\n")).collect();
+    workplace.write("two.csv", format!("left,right\n{rows}"));
+    let rows: String = vibration(8000, 1.0).iter().map(|value| format!("{value}\n")).collect();
+    workplace.write("one.csv", format!("left\n{rows}"));
+    let calibrated = ["--sensitivity-mv-per-unit", "500", "--unit", "m/s²"];
+    let constant = ["--teeth", "19", "--shaft-hz", "20", "--sampling-rate-hz", "5000", "--no-figure"];
+    let of = |file: &str, named: &[&str]| {
+        let all = [&["indicators", file, "-o", "out"], named, &calibrated, &constant].concat();
+        let told = stderr(&workplace.succeeds(&all));
+        (results(&workplace, "out"), told)
+    };
+    let (named, _) = of("one.csv", &["-c", "left"]);
+    let (unnamed, told) = of("one.csv", &[]);
+    assert_eq!((&unnamed["records"], told.as_str()), (&named["records"], ""));
+    assert!(unnamed.to_string().contains("m/s²"));
+    let (beside_a_dead_one, told) = of("two.csv", &[]);
+    assert!(told.contains("two.csv: right is 0 throughout and left out"), "{told}");
+    assert_eq!(beside_a_dead_one["records"][0]["indicators"], named["records"][0]["indicators"]);
+}
+
+#[test]
 fn what_is_doubtful_is_said() {
     let workplace = Workplace::new();
     let pulses = tacho(20.0, RATE_HZ);

@@ -112,15 +112,34 @@ fn calibrate(
                     format!("a unit or sensitivity is given for column `{column}`, which is not read");
                 return Err(ReadRecordingError::Option { problem });
             };
-            if let Some(sensitivity) = calibration.sensitivity_v_per_unit {
-                divide(channel, sensitivity)?;
-            }
-            if let Some(unit) = &calibration.unit {
-                channel.unit = Some(unit.clone());
-            }
+            channel.calibrate(calibration.sensitivity_v_per_unit, calibration.unit.as_deref())?;
         }
     }
     Ok(())
+}
+
+impl Channel {
+    /// Gives the samples their meaning, as a [calibration](super::Calibration) of the options does.
+    ///
+    /// # Arguments
+    /// * `sensitivity_v_per_unit` - (V/unit) finite and not 0: the samples are volts and are divided by it
+    /// * `unit` - of the samples, after the division
+    ///
+    /// # Errors
+    /// A channel whose unit is none of voltage, or that becomes infinite, where a sensitivity is given.
+    pub fn calibrate(
+        &mut self,
+        sensitivity_v_per_unit: Option<f64>,
+        unit: Option<&str>,
+    ) -> Result<(), ReadRecordingError> {
+        if let Some(sensitivity) = sensitivity_v_per_unit {
+            divide(self, sensitivity)?;
+        }
+        if let Some(unit) = unit {
+            self.unit = Some(unit.to_owned());
+        }
+        Ok(())
+    }
 }
 
 /// Turns volts into what was measured; its unit is then unknown.

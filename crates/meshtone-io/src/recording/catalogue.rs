@@ -36,6 +36,8 @@ pub(super) struct ArrayEntry {
     pub type_name: String,
     /// Its number, if it holds only one.
     pub single: Option<f64>,
+    /// Whether it is 0 throughout and another array has its name.
+    pub is_zero_twin: bool,
 }
 
 impl ArrayEntry {
@@ -116,6 +118,7 @@ impl Catalogue {
             unit: None,
             array: None,
             not_numeric: None,
+            is_zero_twin: entry.is_zero_twin,
         };
         let mut push = |label: Label, channel: usize| {
             self.labels.push(label);

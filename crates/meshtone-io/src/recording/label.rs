@@ -14,6 +14,8 @@ pub(super) struct Label {
     pub array: Option<String>,
     /// What the column holds, where that is no real numbers.
     pub not_numeric: Option<String>,
+    /// Whether it is 0 throughout and another column has its name: only its number chooses it.
+    pub is_zero_twin: bool,
 }
 
 /// Names that mean time, in small letters, without unit.
@@ -45,7 +47,7 @@ impl Label {
         let raw = header.trim().to_string();
         let (name, unit) = split_unit(&raw).unwrap_or((&raw, None));
         let (name, unit) = (name.to_string(), unit.map(str::to_string));
-        Label { raw: raw.clone(), name, unit, array: None, not_numeric: None }
+        Label { raw: raw.clone(), name, unit, array: None, not_numeric: None, is_zero_twin: false }
     }
 
     /// Of a column that has no name: a word and its number, counted from 1.

@@ -95,8 +95,11 @@ fn channels(
 ) -> Result<Vec<usize>, ReadRecordingError> {
     let is_time = |index: usize| times.iter().any(|(time, _)| *time == index);
     if options.channels.is_empty() {
-        let all = (0..labels.len()).filter(|index| labels[*index].not_numeric.is_none() && !is_time(*index));
-        let all: Vec<usize> = all.collect();
+        let is_read = |index: &usize| {
+            let label = &labels[*index];
+            label.not_numeric.is_none() && !label.is_zero_twin && !is_time(*index)
+        };
+        let all: Vec<usize> = (0..labels.len()).filter(is_read).collect();
         if all.is_empty() && times.is_empty() {
             labels.iter().try_for_each(|label| check_numeric(path, label))?;
         }
@@ -148,9 +151,10 @@ pub(super) fn matching(
         ColumnChoice::Number(_) => return Err(no_column(path, labels, choice, None)),
         ColumnChoice::Name(name) => name.trim(),
     };
+    // By a name, the twins that hold something are meant.
     let last_part = |array: &String| array.rsplit('.').next() == Some(name);
     let by = |matches: &dyn Fn(&Label) -> bool| -> Vec<usize> {
-        (0..labels.len()).filter(|index| matches(&labels[*index])).collect()
+        (0..labels.len()).filter(|index| !labels[*index].is_zero_twin && matches(&labels[*index])).collect()
     };
     let exact = by(&|label| label.name == name || label.raw == name);
     if !exact.is_empty() {

@@ -20,4 +20,14 @@ pub enum RecordingWarning {
         /// The cell.
         text: String,
     },
+    /// Of two arrays of one name one is 0 throughout, and the other was read.
+    #[error(
+        "the file has `{name}` more than once; as column {number} it is 0 throughout and left out: choose it by that number"
+    )]
+    ZeroTwin {
+        /// The name.
+        name: String,
+        /// The column that was left out, counted from 1.
+        number: usize,
+    },
 }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::recording_help::{rate, read, refused};
-use meshtone_io::recording::{Recording, RecordingOptions, read_recording};
+use meshtone_io::recording::{ColumnChoice, Recording, RecordingOptions, RecordingWarning, read_recording};
 
 fn fixture(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/recordings").join(name)
@@ -110,4 +110,61 @@ fn cut_files_are_refused_wherever_they_end() {
     let message = refused("cut.mat", &file[..400], &rate(1.0));
     assert!(message.contains("is not a whole MAT file: the variable at byte 128"), "{message}");
     assert!(message.contains("is the file cut off?"), "{message}");
+}
+
+/// An element: type, length, content, and what fills the last eight bytes.
+fn element(kind: u32, content: &[u8]) -> Vec<u8> {
+    let mut bytes = [kind.to_le_bytes(), (content.len() as u32).to_le_bytes()].concat();
+    bytes.extend_from_slice(content);
+    bytes.resize(bytes.len().next_multiple_of(8), 0);
+    bytes
+}
+
+/// A column of doubles as MATLAB's `save -v6` writes it.
+fn column(name: &str, values: &[f64]) -> Vec<u8> {
+    let numbers = |numbers: [u32; 2]| numbers.map(u32::to_le_bytes).concat();
+    let values: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+    let flags = element(6, &numbers([6, 0]));
+    let shape = element(5, &numbers([values.len() as u32 / 8, 1]));
+    element(14, &[flags, shape, element(1, name.as_bytes()), element(9, &values)].concat())
+}
+
+fn mat(columns: &[(&str, &[f64])]) -> Vec<u8> {
+    let mut bytes = vec![b' '; 124];
+    bytes.extend_from_slice(&[0, 1, b'I', b'M']);
+    bytes.extend(columns.iter().flat_map(|(name, values)| column(name, values)));
+    bytes
+}
+
+#[test]
+fn variables_of_one_name_are_chosen_by_number() {
+    let by = |channel: ColumnChoice| RecordingOptions { channels: vec![channel], ..rate(1e3) };
+    let (first, second) = (one(), scaled(2.0));
+    let twins = mat(&[("acc", &first), ("speed", &[1.0; 50]), ("acc", &second)]);
+    let problem = refused("twins.mat", &twins, &by("acc".into()));
+    assert!(problem.contains("`acc` is the name of columns 1 and 3; choose one by its number"), "{problem}");
+    for (number, samples) in [(1, &first), (3, &second)] {
+        let recording = read("twins.mat", &twins, &by(number.into())).unwrap();
+        assert_eq!(recording.channels[0].samples, *samples);
+        assert_eq!(recording.warnings, []);
+    }
+}
+
+#[test]
+fn of_variables_of_one_name_one_that_is_zero_is_left_out() {
+    let by = |channel: ColumnChoice| RecordingOptions { channels: vec![channel], ..rate(1e3) };
+    let twins = mat(&[("acc", &[0.0; 50]), ("acc", &one()), ("other", &[0.0; 50])]);
+    let left_out = RecordingWarning::ZeroTwin { name: "acc".to_string(), number: 1 };
+    let recording = read("twins.mat", &twins, &by("acc".into())).unwrap();
+    assert_eq!(
+        (recording.channels[0].samples.clone(), &recording.warnings[..]),
+        (one(), &[left_out.clone()][..])
+    );
+    // Nothing else is left out.
+    let recording = read("twins.mat", &twins, &rate(1e3)).unwrap();
+    assert_eq!((names(&recording), &recording.warnings[..]), (vec!["acc", "other"], &[left_out][..]));
+    let recording = read("twins.mat", &twins, &by(1.into())).unwrap();
+    assert_eq!((recording.channels[0].samples.clone(), recording.warnings.len()), (vec![0.0; 50], 0));
+    let both_zero = mat(&[("acc", &[0.0; 50]), ("acc", &[0.0; 50])]);
+    assert_eq!(names(&read("twins.mat", &both_zero, &rate(1e3)).unwrap()), ["acc", "acc"]);
 }

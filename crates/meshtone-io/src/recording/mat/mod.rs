@@ -9,6 +9,7 @@ mod class;
 mod source;
 mod walk;
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
@@ -19,8 +20,9 @@ use super::array::read_channels;
 use super::assemble::{Parts, assemble};
 use super::catalogue::{ArrayEntry, Catalogue};
 use super::error::{broken, read_failed, unreadable};
-use super::selection::select;
-use super::{ReadRecordingError, Recording, RecordingOptions, memory_need};
+use super::label::Label;
+use super::selection::{Selection, select};
+use super::{ReadRecordingError, Recording, RecordingOptions, RecordingWarning, memory_need};
 
 const FORMAT: &str = "MAT";
 const HEADER_BYTES: u64 = 128;
@@ -41,7 +43,8 @@ pub(super) fn read(
     let failed = |error: io::Error| read_failed(path, FORMAT, error);
     let walk = walk(path, &file, file_bytes)?;
     let big_endian = walk.big_endian;
-    let (entries, places): (Vec<ArrayEntry>, Vec<Place>) = walk.arrays.into_iter().unzip();
+    let (mut entries, places): (Vec<ArrayEntry>, Vec<Place>) = walk.arrays.into_iter().unzip();
+    mark_zero_twins(&file, big_endian, &mut entries, &places).map_err(failed)?;
     let catalogue = Catalogue::new(path, &entries, options, false)?;
     let selection = select(path, &catalogue.labels, options)?;
     let wanted = selection.wanted();
@@ -65,7 +68,60 @@ pub(super) fn read(
     })?;
     open.map_or(Ok(()), |(_, done)| done.finish()).map_err(failed)?;
     let stated = &catalogue.stated;
-    assemble(Parts { path, labels: &catalogue.labels, selection: &selection, samples, stated }, options)
+    let labels = &catalogue.labels;
+    let mut recording = assemble(Parts { path, labels, selection: &selection, samples, stated }, options)?;
+    recording.warnings.extend(left_out(labels, &selection));
+    Ok(recording)
+}
+
+/// Finds, among the arrays of one name, those that are 0 throughout, where another is not.
+fn mark_zero_twins(
+    file: &File,
+    big_endian: bool,
+    entries: &mut [ArrayEntry],
+    places: &[Place],
+) -> io::Result<()> {
+    let mut by_name: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for (index, entry) in entries.iter().enumerate().filter(|(_, entry)| entry.numbers.is_ok()) {
+        by_name.entry(&entry.name).or_default().push(index);
+    }
+    let mut zero = Vec::new();
+    for twins in by_name.values().filter(|twins| twins.len() > 1) {
+        let zeros = twins.iter().map(|&twin| Ok((twin, is_zero(file, big_endian, places[twin])?)));
+        let zeros: Vec<(usize, bool)> = zeros.collect::<io::Result<_>>()?;
+        if zeros.iter().any(|(_, is_zero)| !is_zero) {
+            zero.extend(zeros.into_iter().filter(|(_, is_zero)| *is_zero).map(|(twin, _)| twin));
+        }
+    }
+    zero.into_iter().for_each(|twin| entries[twin].is_zero_twin = true);
+    Ok(())
+}
+
+/// Whether an array's numbers are all 0, of which every byte is 0 then; read only as far as they are.
+fn is_zero(file: &File, big_endian: bool, Place { variable, offset, bytes }: Place) -> io::Result<bool> {
+    let mut source = Source::open(file, variable, big_endian)?;
+    source.skip_to(offset)?;
+    let mut block = [0; 1 << 12];
+    let mut left = bytes;
+    while left > 0 {
+        let part = &mut block[..left.min(1 << 12) as usize];
+        source.read_exact(part)?;
+        if part.iter().any(|byte| *byte != 0) {
+            return Ok(false);
+        }
+        left -= part.len() as u64;
+    }
+    Ok(bytes > 0)
+}
+
+/// Zero twins of what was read.
+fn left_out(labels: &[Label], selection: &Selection) -> Vec<RecordingWarning> {
+    let is_read = |name: &str| selection.channels.iter().any(|&index| labels[index].raw == name);
+    let told = |(index, label): (usize, &Label)| {
+        let left_out = label.is_zero_twin && !selection.channels.contains(&index) && is_read(&label.raw);
+        left_out.then(|| RecordingWarning::ZeroTwin { name: label.raw.clone(), number: index + 1 })
+    };
+    labels.iter().enumerate().filter_map(told).collect()
 }
 
 /// Finds all arrays of the file.

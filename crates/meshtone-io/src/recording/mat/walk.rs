@@ -198,7 +198,15 @@ impl Walk {
         }
         let name = inside.name;
         let type_name = type_name.to_string();
-        let entry = ArrayEntry { name, shape, first_runs_fastest: true, numbers, type_name, single };
+        let entry = ArrayEntry {
+            name,
+            shape,
+            first_runs_fastest: true,
+            numbers,
+            type_name,
+            single,
+            is_zero_twin: false,
+        };
         self.arrays.push((entry, Place { variable: inside.variable, offset, bytes }));
         Ok(())
     }

@@ -184,6 +184,7 @@ fn entries(surveyed: Vec<Surveyed>) -> (Vec<ArrayEntry>, Vec<Stored>) {
                 numbers: if wide || long { Err(records) } else { field.numbers.clone() },
                 type_name: field.type_name.clone(),
                 single,
+                is_zero_twin: false,
             });
             stored.push(Stored { header: header.clone(), field: field.clone(), file });
         }
