@@ -24,10 +24,10 @@ whole_face_mm = healthy.face_width_mm
 
 
 def stiffness(depth_mm: float, length_mm: float | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """Position (base pitches) and stiffness (kN/mm) of the pair of the cracked tooth."""
+    """Position (base pitches) and stiffness (N/mm) of the pair of the cracked tooth."""
     trace = mt.trace(healthy.copy(fault=mt.RootCrack(depth_mm=depth_mm, length_mm=length_mm)))
-    pair_kn_per_mm = trace["pair_stiffness_faulty_n_per_mm"] / 1e3
-    return np.linspace(0, trace["contact_ratio"], pair_kn_per_mm.size), pair_kn_per_mm
+    pair_n_per_mm = trace["pair_stiffness_faulty_n_per_mm"]
+    return np.linspace(0, trace["contact_ratio"], pair_n_per_mm.size), pair_n_per_mm
 
 
 curves = [stiffness(depth_mm) for depth_mm in depths_mm.tolist()]
@@ -39,7 +39,7 @@ shades = plt.get_cmap("viridis")(np.linspace(0, 0.9, 6))
 for depth_mm, shade in zip((0, 0.5, 1, 2, 3, 4), shades):
     cracked = curves[int(np.argmin(abs(depths_mm - depth_mm)))][1]
     path.plot(position, cracked, color=shade, label=f"{depth_mm:g} mm" if depth_mm else "sound")
-path.set(title="Pair with the cracked tooth", xlabel="Position on the path (base pitches)", ylabel="Stiffness (kN/mm)", ylim=(0, None))
+path.set(title="Pair with the cracked tooth", xlabel="Position on the path (base pitches)", ylabel="Stiffness (N/mm)", ylim=(0, None))
 path.legend(title="Crack", frameon=False, ncols=2, loc="lower center")
 
 names = ["tip of the cracked tooth", "begin of single contact", "pitch point", "end of the path"]

@@ -37,12 +37,12 @@ fn rows(summary: &Summary) -> [(&'static str, String); 8] {
         ),
         ("contact ratio", format!("{:.4}{}", summary.contact_ratio, along_the_face(summary))),
         (
-            "mesh stiffness, kN/mm",
+            "mesh stiffness, N/mm",
             format!(
                 "min {}, mean {}, max {}",
-                short(stiffness.min_n_per_mm / 1e3),
-                short(stiffness.mean_n_per_mm / 1e3),
-                short(stiffness.max_n_per_mm / 1e3)
+                short(stiffness.min_n_per_mm),
+                short(stiffness.mean_n_per_mm),
+                short(stiffness.max_n_per_mm)
             ),
         ),
         (

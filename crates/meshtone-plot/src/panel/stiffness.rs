@@ -27,7 +27,7 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, stages: &Stages) {
     let revolution = damage.revolution();
     let around = damage.first + ENLARGED[0]..damage.first + ENLARGED[1];
     let mesh = Mesh::new(stages, revolution.start.min(around.start)..revolution.end.max(around.end));
-    let y = axes::range(mesh.values().map(|stiffness| stiffness / 1e3), 0.07);
+    let y = axes::range(mesh.values(), 0.07);
     let ticks = Ticks::nice(y[0], y[1], 5);
     let x = |pitches: &Range<i64>| [pitches.start as f64, pitches.end as f64];
     let whole = Axes::new(
@@ -46,7 +46,7 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, stages: &Stages) {
     let start = damage::start_of_revolution(&damage.gear);
     let name = format!("Pitches since the gear’s {start}");
     whole.x_axis(canvas, &Ticks::whole(whole.x[0], whole.x[1], 20), &name);
-    whole.y_axis(canvas, &ticks, "Stiffness (N/µm)", super::NAME_LEFT);
+    whole.y_axis(canvas, &ticks, "Stiffness (N/mm)", super::NAME_LEFT);
     enlarged.title(canvas, &damage.title_of_enlarged());
     enlarged.x_axis(canvas, &Ticks::nice(enlarged.x[0], enlarged.x[1], 8), "Pitches");
     enlarged.y_grid(canvas, &ticks);
@@ -173,7 +173,7 @@ impl Mesh {
         }
         axes.line(canvas, self.curve(&self.mesh_n_per_mm, self.first_pitch, axes.x), MESH);
     }
-    /// (pitches, N/µm) Values of a window.
+    /// (pitches, N/mm) Values of a window.
     ///
     /// Where a pair enters or leaves contact, a point holds a part of that pair; to the window's edges reach the values beside them.
     fn curve<'a>(
@@ -188,7 +188,7 @@ impl Mesh {
         let (first, last) = ((from * per_pitch).ceil() as i64, (to * per_pitch).floor() as i64);
         let inside = move |k: i64| if last - first > 1 { k.clamp(first + 1, last - 1) } else { k };
         let value = move |k: i64| values[(k - first_point).rem_euclid(values.len() as i64) as usize];
-        (first..=last).map(move |k| (k as f64 / per_pitch, value(inside(k)) / 1e3))
+        (first..=last).map(move |k| (k as f64 / per_pitch, value(inside(k))))
     }
 }
 

@@ -45,7 +45,7 @@ const EVERY_PANEL: [&str; 22] = [
     "Error (µm)",
     "Vertical acceleration (g)",
     "Mesh stiffness over a gear revolution",
-    "Stiffness (N/µm)",
+    "Stiffness (N/mm)",
     "working",
     "back",
     "root",
