@@ -53,6 +53,8 @@ pub(crate) mod colour {
     pub(crate) const GREEN: Colour = Colour(0x00_9e_73);
     /// Start of the tip relief.
     pub(crate) const PURPLE: Colour = Colour(0xaa_4a_8a);
+    /// One more where there are many.
+    pub(crate) const ORANGE: Colour = Colour(0xe6_9f_00);
     /// Background.
     pub(crate) const WHITE: Colour = Colour(0xff_ff_ff);
 }

@@ -1,9 +1,9 @@
 //! How the varied keys are distributed.
 
-use super::{DatasetPreview, TRAIN, split_stroke};
+use super::{DatasetPreview, TRAIN, as_strips, split_colour, split_stroke};
 use crate::axes::{Area, Axes};
 use crate::canvas::{Canvas, Pixel};
-use crate::style::{TextStyle, colour};
+use crate::style::{Fill, TextStyle, colour};
 use crate::text::fitted;
 use crate::ticks::Ticks;
 
@@ -17,6 +17,10 @@ const TALLEST: f64 = 150.0;
 /// the least and the largest.
 const LOGARITHMIC: f64 = 15.0;
 const SKEWED: f64 = 0.3;
+/// (px) Between the strips of two splits.
+const STRIP_GAP: f64 = 2.0;
+/// Of the fullest bin.
+const DARKEST: f64 = 0.95;
 /// Fewer different values than this have a bar each.
 const FEW: usize = 12;
 
@@ -83,11 +87,16 @@ fn histogram(canvas: &mut Canvas, area: Area, name: &str, values: &[f64], previe
     };
     axes.x_grid(canvas, &ticks);
     axes.x_numbers(canvas, &ticks);
+    let edge = |bin: usize| range[0] + (range[1] - range[0]) * bin as f64 / bins as f64;
+    if as_strips(preview) {
+        strips(canvas, &axes, &shares, edge);
+        axes.frame(canvas);
+        return;
+    }
     for (split, shares) in shares.iter().enumerate() {
         if shares.iter().all(|&share| share == 0.0) {
             continue;
         }
-        let edge = |bin: usize| range[0] + (range[1] - range[0]) * bin as f64 / bins as f64;
         if split == 0 {
             let bars: Vec<[Pixel; 2]> = shares
                 .iter()
@@ -105,6 +114,22 @@ fn histogram(canvas: &mut Canvas, area: Area, name: &str, values: &[f64], previe
         }
     }
     axes.frame(canvas);
+}
+
+/// A strip for each split that has records with the key, in the order of the legend: the darker, the more of its records are in a
+/// bin, over those in its fullest one. Outlines of so many splits would hide each other.
+fn strips(canvas: &mut Canvas, axes: &Axes, shares: &[Vec<f64>], edge: impl Fn(usize) -> f64) {
+    let Area { top, height, .. } = axes.area;
+    let pitch = height / shares.len().max(1) as f64;
+    for (split, shares) in shares.iter().enumerate() {
+        let fullest = shares.iter().copied().fold(0.0f64, f64::max);
+        let upper = top + pitch * split as f64 + STRIP_GAP / 2.0;
+        for (bin, share) in shares.iter().enumerate().filter(|(_, share)| **share > 0.0) {
+            let opacity = DARKEST * share / fullest;
+            let corners = [(axes.px(edge(bin)), upper), (axes.px(edge(bin + 1)), upper + pitch - STRIP_GAP)];
+            canvas.rectangle(corners[0], corners[1], Fill::tint(split_colour(split), opacity));
+        }
+    }
 }
 
 /// Part of a split's records in each bin.

@@ -86,18 +86,34 @@ pub struct Indicator {
     pub values: Vec<f64>,
 }
 
-/// Colours of the splits after the training.
-const SPLIT_COLOURS: [Colour; 5] =
-    [colour::INK, colour::GREEN, colour::VERMILLION, colour::PURPLE, colour::MUTED];
+/// Colours of the splits; of more, the order tells which is which.
+const SPLIT_COLOURS: [Colour; 7] = [
+    colour::BLUE,
+    colour::INK,
+    colour::GREEN,
+    colour::VERMILLION,
+    colour::PURPLE,
+    colour::MUTED,
+    colour::ORANGE,
+];
+/// Splits whose outlines can be told apart when they are drawn over each other.
+const MOST_OUTLINES: usize = 3;
 
-/// How a split's distribution is drawn.
+fn split_colour(split: usize) -> Colour {
+    SPLIT_COLOURS[split % SPLIT_COLOURS.len()]
+}
+
+/// How the distribution of a split after the training is drawn over that.
 fn split_stroke(split: usize) -> Stroke {
-    let after = split.saturating_sub(1);
-    let dash = if after < SPLIT_COLOURS.len() { &[][..] } else { &[4.0, 3.0] };
-    Stroke { dash, ..Stroke::solid(SPLIT_COLOURS[after % SPLIT_COLOURS.len()], 1.5) }
+    Stroke::solid(split_colour(split), 1.5)
 }
 
 const TRAIN: Fill = Fill::tint(colour::BLUE, 0.3);
+
+/// Whether each split has a strip of its own, as there are too many for outlines.
+fn as_strips(preview: &DatasetPreview) -> bool {
+    preview.splits.len() > MOST_OUTLINES
+}
 
 /// Draws a preview of a data set.
 ///
@@ -124,7 +140,11 @@ pub fn dataset_figure(preview: &DatasetPreview) -> Figure {
         TextStyle::FACTS,
     );
     section(&mut canvas, EXAMPLES, &format!("One example of each class: {}", preview.signal_name));
-    section(&mut canvas, KEYS, "Distribution of the varied keys, by split");
+    let distribution = match as_strips(preview) {
+        true => "Distribution of the varied keys, a strip each split",
+        false => "Distribution of the varied keys, by split",
+    };
+    section(&mut canvas, KEYS, distribution);
     section(&mut canvas, INDICATORS, "Indicators by class");
     examples::draw(&mut canvas, column(EXAMPLES), preview);
     keys::draw(&mut canvas, column(KEYS), preview);
@@ -159,7 +179,11 @@ fn splits_legend(canvas: &mut Canvas, preview: &DatasetPreview) {
         .enumerate()
         .filter(|(split, _)| there(*split))
         .map(|(split, name)| {
-            let sample = if split == 0 { Sample::Area(TRAIN) } else { Sample::Line(split_stroke(split)) };
+            let sample = match split {
+                _ if as_strips(preview) => Sample::Area(Fill::solid(split_colour(split))),
+                0 => Sample::Area(TRAIN),
+                _ => Sample::Line(split_stroke(split)),
+            };
             Entry { sample, text: name }
         })
         .collect();
