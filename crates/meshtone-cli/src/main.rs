@@ -9,6 +9,8 @@ mod earlier_results;
 mod ending;
 mod failure;
 mod indicators;
+mod other_kind;
+mod other_option;
 mod output_directory;
 mod progress;
 mod report;
@@ -49,7 +51,9 @@ Examples:
 Exit codes: 0 all went well, 1 it could not be carried out, 2 the input is wrong.";
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = Arguments::try_parse();
+    let arguments =
+        arguments.unwrap_or_else(|error| other_option::with_tip(error, std::env::args_os()).exit());
     ending::leave_nothing_unfinished();
     MemoryLimit::set(arguments.memory_limit);
     match arguments.command.run() {

@@ -63,10 +63,11 @@ pub(crate) fn look_at(
     manifest: Option<&ReadManifest>,
 ) -> Result<Begun, DatasetError> {
     if let Some(name) = there.keys().find(|name| !is_of_a_data_set(name)) {
-        return Err(DatasetError::refused(
-            format!("{to} has another file in it: {name}"),
-            "name a directory that is empty or does not exist with -o",
-        ));
+        let help = match manifest {
+            Some(_) => "move that file elsewhere: in the data set's folders, programs read whatever there is",
+            None => "name a directory that is empty or does not exist with -o",
+        };
+        return Err(DatasetError::refused(format!("{to} has another file in it: {name}"), help));
     }
     let Some(manifest) = manifest else {
         // Killed between its first file and its manifest, a run has left nothing but what it would write again.

@@ -1,21 +1,23 @@
 //! `meshtone dataset`
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::atomic::AtomicBool;
 
 use clap::{Args, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use meshtone_dataset::counted;
 use meshtone_dataset::draw::Sampler;
 use meshtone_dataset::generate::{GenerateControl, Generated, Part, generate};
 use meshtone_dataset::merge::merge;
 use meshtone_dataset::plan::Plan;
 use meshtone_dataset::store::Destination;
 use meshtone_dataset::verify::{Check, Verified, verify};
+use meshtone_dataset::{DatasetError, counted};
+use meshtone_io::scenario_file::ReadScenarioError;
 
 use crate::failure::Failure;
+use crate::other_kind::{MANIFEST, or_other_kind};
 use crate::output_directory::named_after;
 use crate::terminal::{print, print_error_line};
 
@@ -210,11 +212,17 @@ impl Merge {
 impl Verify {
     fn run(&self) -> Result<(), Failure> {
         let place = Destination::parse(&self.place)?;
-        let found = verify(&place, if self.sizes_only { Check::Sizes } else { Check::Bytes })?;
+        let check = if self.sizes_only { Check::Sizes } else { Check::Bytes };
+        let found = verify(&place, check).map_err(|error| self.refuse(error))?;
+        // What it says of the others may be wrong.
+        if let Some(problem) = found.problems.get(MANIFEST) {
+            print_error_line(format!("{MANIFEST}: {problem}"));
+        }
         for name in found.missing.iter().take(NAMED) {
             print_error_line(format!("{name}: it is missing"));
         }
-        for (name, problem) in found.problems.iter().take(NAMED) {
+        let others = found.problems.iter().filter(|(name, _)| *name != MANIFEST);
+        for (name, problem) in others.take(NAMED) {
             print_error_line(format!("{name}: {problem}"));
         }
         let wrong = (found.missing.len() + found.problems.len()) as u64;
@@ -223,10 +231,22 @@ impl Verify {
             let are = if wrong == 1 { "is" } else { "are" };
             return Err(Failure::failed(format!("{place}: {files} {are} not as written")).with_help(
                 "put the files back from a copy, or remove them and run the command that made the data set: it makes again what \
-                 is missing or differs",
+                 is missing or differs. Move elsewhere what no manifest names",
             ));
         }
         if self.quiet { Ok(()) } else { print(&told(&found, &place, self.sizes_only)) }
+    }
+}
+
+impl Verify {
+    /// Of a path that is no data set, which command reads it.
+    fn refuse(&self, error: DatasetError) -> Failure {
+        let failure = error.into();
+        let path = Path::new(&self.place);
+        match path.join(MANIFEST).is_file() {
+            true => failure,
+            false => or_other_kind(path, "a data set", failure),
+        }
     }
 }
 
@@ -272,8 +292,13 @@ impl Scenario {
     }
 }
 
-fn read_plan(path: &std::path::Path) -> Result<Plan, Failure> {
-    Plan::read(path).map_err(|error| meshtone_dataset::DatasetError::from(error).into())
+fn read_plan(path: &Path) -> Result<Plan, Failure> {
+    Plan::read(path).map_err(|error| {
+        // Of a text it is told already what kind it is.
+        let is_text = matches!(error, ReadScenarioError::Invalid { .. });
+        let failure = DatasetError::from(error).into();
+        if is_text { failure } else { or_other_kind(path, "the plan of a data set", failure) }
+    })
 }
 
 /// What the plan shows to be missing in the end, before anything is computed.

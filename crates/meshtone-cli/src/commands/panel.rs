@@ -13,9 +13,13 @@ use meshtone_io::summary::read_run;
 
 use crate::earlier_results;
 use crate::failure::Failure;
+use crate::other_kind::or_other_kind;
 use crate::output_directory::claim;
 use crate::results::{PANEL, SIGNALS, SUMMARY, stage_panel};
 use crate::terminal::{print, print_error_line};
+
+/// What the panel is drawn of.
+const WRITTEN: &str = "a directory that `meshtone simulate` wrote";
 
 /// Draw the panel of a simulation's results again
 ///
@@ -27,6 +31,9 @@ pub struct Panel {
     /// Directory that `meshtone simulate` wrote its results to
     #[arg(value_name = "DIR")]
     directory: PathBuf,
+    /// Do not print the files' names; warnings and errors are still printed
+    #[arg(short, long)]
+    quiet: bool,
 }
 
 impl Panel {
@@ -41,7 +48,10 @@ impl Panel {
             ));
         }
         let path = self.directory.join(SIGNALS);
-        let recorded = read_signals(&path)?;
+        let recorded = read_signals(&path).map_err(|error| {
+            let is_there = path.try_exists().unwrap_or(false);
+            if is_there { error.into() } else { or_other_kind(&self.directory, WRITTEN, error.into()) }
+        })?;
         self.check_summary(recorded.run)?;
         let refuse = |problem: String| ReadResultsError::Foreign { path: path.clone(), problem };
         let stages = meshtone::stages(&recorded.scenario)
@@ -56,7 +66,7 @@ impl Panel {
         let files = stage_panel(&self.directory, recorded.run, &stages, &recorded.channels)?;
         undisturbed(|| files.into_iter().try_for_each(StagedFile::commit))?;
         let [svg, png] = PANEL.map(|name| self.directory.join(name));
-        print(&format!("{}\n{}\n", svg.display(), png.display()))
+        if self.quiet { Ok(()) } else { print(&format!("{}\n{}\n", svg.display(), png.display())) }
     }
 
     /// Signals without a summary can be drawn all the same; but a panel is not to make the files of two runs look like

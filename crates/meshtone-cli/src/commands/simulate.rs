@@ -1,6 +1,5 @@
 //! `meshtone simulate`
 
-use std::convert::Infallible;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -12,11 +11,12 @@ use meshtone::{Simulation, StageTime, Stages, Trace};
 use meshtone_io::experiment::{Tuned, read_tuned};
 use meshtone_io::memory;
 use meshtone_io::run_identity::RunIdentity;
-use meshtone_io::scenario_file::{FilesBeside, ScenarioFile};
+use meshtone_io::scenario_file::{FilesBeside, ReadScenarioError, ScenarioFile};
 use meshtone_io::summary::Summary;
 
 use crate::check::check;
 use crate::failure::Failure;
+use crate::other_kind::or_other_kind;
 use crate::output_directory::OutputDirectory;
 use crate::progress::Progress;
 use crate::results::Results;
@@ -41,10 +41,8 @@ pub struct Simulate {
     /// Model of the mesh, instead of the scenario's own
     #[arg(long, value_parser = ModelParser)]
     model: Option<ModelArgument>,
-    /// What --model was called
-    #[arg(long, hide = true, num_args = 0..=1, default_missing_value = "", value_parser = renamed_to_model)]
-    convention: Option<Infallible>,
-    /// Profile errors, as `meshtone wheels` writes them, instead of the scenario's own
+    /// Profile errors, as `meshtone wheels` writes them, in place of all that the scenario says of quality; the name is relative to
+    /// the current directory
     #[arg(long, value_name = "WHEELS.npz")]
     errors_file: Option<PathBuf>,
     /// What `meshtone tune` found: its numbers of the scenario are put into every scenario that has them
@@ -112,12 +110,6 @@ impl TypedValueParser for ModelParser {
         let values = ModelArgument::value_variants().iter();
         Some(Box::new(values.filter_map(ValueEnum::to_possible_value)))
     }
-}
-
-/// Refuses the option that was renamed, whatever its value.
-fn renamed_to_model(value: &str) -> Result<Infallible, String> {
-    let model = if value == "published" { value } else { "linear" };
-    Err(format!("the option is called --model now; write --model {model}"))
 }
 
 /// A scenario that can be simulated, and where its results go.
@@ -199,7 +191,11 @@ impl Simulate {
         errors: Option<&Quality>,
         tuned: Option<&Tuned>,
     ) -> Result<Run, Failure> {
-        let file = ScenarioFile::read_within(path, memory::limit())?;
+        let file = ScenarioFile::read_within(path, memory::limit()).map_err(|error| {
+            // Of a text it is told already what kind it is.
+            let is_text = matches!(error, ReadScenarioError::Invalid { .. });
+            if is_text { error.into() } else { or_other_kind(path, "a scenario", error.into()) }
+        })?;
         let mut scenario = file.scenario.clone();
         if let (Some(tuned), Some(tuned_path)) = (tuned, &self.tuned) {
             if let Some(warning) = tuned.warning_for(&scenario) {
@@ -269,6 +265,12 @@ impl Simulate {
 
 /// Wheels with the deviations of a file.
 fn read_errors(path: &Path) -> Result<Quality, Failure> {
+    if !path.try_exists().unwrap_or(true) {
+        let problem = format!("--errors-file: there is no file {}", path.display());
+        return Err(
+            Failure::bad_input(problem).with_help("check the name; it is relative to the current directory")
+        );
+    }
     let (files, name) = (FilesBeside::new(""), path.to_string_lossy());
     let errors = files.profile_errors(&name);
     let wheels = errors.and_then(|errors| Ok(Quality::of_wheels(errors, files.wheel_deviations(&name)?)));

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use meshtone::scenario::ScenarioError;
+use meshtone::scenario::{ProfileErrors, Scenario, ScenarioError};
+use meshtone::wheel::{ERROR_POINTS, ErrorTable};
 use meshtone_io::scenario_file::{ScenarioFile, write_wheels_npz};
 
 use crate::failure::Failure;
@@ -22,6 +23,9 @@ pub struct Wheels {
     /// File to write; it is replaced if it exists
     #[arg(short, long, value_name = "FILE.npz")]
     output: PathBuf,
+    /// Print nothing but errors: this command never does
+    #[arg(short, long)]
+    quiet: bool,
 }
 
 const EXAMPLES: &str = "\
@@ -41,8 +45,22 @@ impl Wheels {
         scenario.faults.clear();
         let stages = meshtone::stages(&scenario).map_err(|error| file.refuse(error))?;
         let deviations = stages.wheel_deviations();
-        let errors = stages.profile_errors.ok_or_else(|| file.refuse(ideal_teeth()))?;
+        // Run-out and helix slopes may be all that these wheels deviate by.
+        let is_off = |given: Option<f64>| given.is_some_and(|value| value != 0.0);
+        let has_others =
+            deviations.iter().any(|wheel| is_off(wheel.run_out_um) || is_off(wheel.helix_slope_um));
+        let errors = stages.profile_errors.or_else(|| has_others.then(|| without_errors(&scenario)));
+        let errors = errors.ok_or_else(|| file.refuse(ideal_teeth()))?;
         Ok(write_wheels_npz(&self.output, &errors, &deviations)?)
+    }
+}
+
+/// Ideal profiles.
+fn without_errors(scenario: &Scenario) -> ProfileErrors {
+    let of = |teeth: u32| ErrorTable::filled(ERROR_POINTS, teeth as usize, 0.0);
+    ProfileErrors {
+        pinion_profile_errors_mm: of(scenario.gears.pinion_teeth),
+        gear_profile_errors_mm: of(scenario.gears.gear_teeth),
     }
 }
 

@@ -24,10 +24,10 @@ pub struct ReadingOptions {
     #[arg(long, value_name = "NAME")]
     pub variable: Option<String>,
     /// (mV/unit) Sensitivity of the sensor: the channel holds volts and is divided by it
-    #[arg(long, value_name = "MV", requires = "channel", allow_negative_numbers = true)]
+    #[arg(long, value_name = "MV", allow_negative_numbers = true)]
     pub sensitivity_mv_per_unit: Option<f64>,
     /// Unit of the channel (after the division), such as g or m/s²
-    #[arg(long, value_name = "UNIT", requires = "channel")]
+    #[arg(long, value_name = "UNIT")]
     pub unit: Option<String>,
     /// What stands between two cells of a text file. [default: found out]
     #[arg(long)]

@@ -7,6 +7,10 @@ use meshtone::signal::SignalError;
 use meshtone_io::recording::ReadRecordingError;
 
 use crate::failure::Failure;
+use crate::other_kind::or_other_kind;
+
+/// What is read here.
+const RECORDING: &str = "a recording";
 
 /// The option that names the column which is processed.
 const CHANNEL: &str = "--channel";
@@ -38,10 +42,16 @@ pub fn unreadable(error: ReadRecordingError, option: &str) -> Failure {
     if let ReadRecordingError::Unreadable { path, source } = &error {
         return match source.kind() {
             ErrorKind::NotFound => Failure::bad_input(format!("there is no recording {}", path.display())),
-            ErrorKind::IsADirectory => Failure::bad_input(format!("{} is a directory", path.display()))
-                .with_help("name a file, or a directory that `meshtone simulate` wrote"),
+            ErrorKind::IsADirectory => {
+                let failure = Failure::bad_input(format!("{} is a directory", path.display()))
+                    .with_help("name a file, or a directory that `meshtone simulate` wrote");
+                or_other_kind(path, RECORDING, failure)
+            }
             kind => Failure::of_reading(kind, error.to_string()),
         };
+    }
+    if let ReadRecordingError::UnknownFormat { path, .. } = &error {
+        return or_other_kind(path, RECORDING, Failure::bad_input(error.to_string()));
     }
     let message =
         OPTIONS.iter().fold(error.to_string(), |message, (option, flag)| message.replace(option, flag));

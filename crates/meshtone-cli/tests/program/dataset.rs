@@ -336,6 +336,17 @@ fn a_data_set_is_verified() {
     assert!(stdout(&again).contains("16 records in 2 shards written, 10 shards were there already"));
     assert!(bytes(&workplace.path("set")) == whole);
     workplace.fails(2, &["dataset", "verify", "absent"], &["absent is no data set"]);
+
+    workplace.write("set/data/notes.txt", "mine");
+    let words = ["set has another file in it: data/notes.txt", "move that file elsewhere"];
+    workplace.fails(2, &["dataset", "plan.toml", "-o", "set"], &words);
+    // A manifest that is damaged itself is told first: what it says of the others may be wrong.
+    let manifest = String::from_utf8(workplace.read("set/manifest.json")).unwrap();
+    workplace.write("set/manifest.json", manifest.replacen("000004", "000044", 1));
+    let output = workplace.command(&["dataset", "verify", "set"]).assert().code(1);
+    let told = crate::support::stderr(&output);
+    assert!(told.starts_with("manifest.json: it is not as it was written"), "{told}");
+    assert!(told.contains("data/notes.txt: no manifest or list of a part names it"), "{told}");
 }
 
 #[test]

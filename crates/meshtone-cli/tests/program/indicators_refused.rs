@@ -34,6 +34,7 @@ fn what_is_missing_or_contradicts() {
     refused(&workplace, &[&teeth[..], &["--shaft-hz", "20", "--pulses-per-rev", "2"]].concat(), &["--tach"]);
     refused(&workplace, &[&teeth[..], &["--shaft-hz", "-20"]].concat(), &["--shaft-hz"]);
     refused(&workplace, &[&teeth[..], &["--shaft-hz=nan"]].concat(), &["--shaft-hz", "above 0"]);
+    refused(&workplace, &[&teeth[..], &["--shaft-rpm", "1200"]].concat(), &["write --shaft-hz 20"]);
     let all = [&bearing[..], &CONSTANT].concat();
     refused(
         &workplace,

@@ -32,6 +32,18 @@ fn ideal_wheels_have_no_errors_to_write() {
 }
 
 #[test]
+fn wheels_may_deviate_by_their_run_out_alone() {
+    let workplace = Workplace::new();
+    workplace.write("off.toml", fast_and("[quality]\npinion_run_out_um = 12.0\ngear_helix_slope_um = -3.0"));
+    workplace.succeeds(&["wheels", "off.toml", "-o", "wheels.npz", "-q"]).stdout("");
+    let files = FilesBeside::new(workplace.directory.path());
+    let [pinion, gear] = files.wheel_deviations("wheels.npz").unwrap();
+    assert_eq!((pinion.run_out_um, gear.helix_slope_um), (Some(12.0), Some(-3.0)));
+    let errors = files.profile_errors("wheels.npz").unwrap().gear_profile_errors_mm;
+    assert!((0..errors.points()).all(|point| (0..errors.teeth()).all(|tooth| errors[(point, tooth)] == 0.0)));
+}
+
+#[test]
 fn the_panel_is_drawn_again_from_the_signals_alone() {
     let workplace = Workplace::new();
     workplace.write("worn.toml", fast_and("[quality]\ndin_grade = 7"));

@@ -37,7 +37,8 @@ impl FileKind {
         found.next().filter(|_| found.next().is_none()).map(|(_, kind)| kind)
     }
 
-    fn in_words(self) -> &'static str {
+    /// What such a file is.
+    pub fn in_words(self) -> &'static str {
         match self {
             Self::Scenario => "a scenario",
             Self::Plan => "the plan of a data set",
@@ -45,7 +46,8 @@ impl FileKind {
         }
     }
 
-    fn reader(self) -> &'static str {
+    /// The command that reads such a file.
+    pub fn reader(self) -> &'static str {
         match self {
             Self::Scenario => "meshtone simulate",
             Self::Plan => "meshtone dataset",
