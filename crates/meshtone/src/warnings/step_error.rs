@@ -5,8 +5,9 @@ use std::f64::consts::TAU;
 use crate::error::Error;
 use crate::machine::ClosedMesh;
 use crate::operation::{greatest_common_divisor, least_common_multiple};
-use crate::simulate::{Simulation, Stages, stages_within};
-use crate::solver::MeanMachine;
+use crate::sensor::ChannelKind;
+use crate::simulate::{Stages, stages_within};
+use crate::solver::{Block, MeanMachine, Recorder};
 use meshtone_fourier::real_spectrum;
 
 use super::observer::{Observer, OverTurns, Turns};
@@ -64,17 +65,44 @@ pub(super) fn step_error(
     }
     let mut scenario = stages.scenario.clone();
     scenario.solver.sampling_rate_hz = nominal_rate_of_half_step_hz(stages);
-    let finer = stages_within(&scenario, stages.memory_limit).map_err(Error::from).and_then(Stages::simulate);
-    let Ok(Simulation { channels: finer, .. }) = finer else {
+    let finer = stages_within(&scenario, stages.memory_limit).map_err(Error::from);
+    let Ok((finer_rate_hz, [finer_acceleration, finer_force])) = finer.and_then(|finer| rms_of(&finer))
+    else {
         return Some(StepError::Suspected(estimate));
     };
-    let gain = |coarse: &OverTurns, finer: &[f64]| {
+    let gain = |coarse: &OverTurns, finer: f64| {
         let coarse = coarse.rms();
-        if coarse < ROUNDING { 0.0 } else { rms(finer) / coarse - 1.0 }
+        if coarse < ROUNDING { 0.0 } else { finer / coarse - 1.0 }
     };
-    let (acceleration, force) = (gain(acceleration, &finer.vertical_g), gain(force, &finer.mesh_force_n));
+    let (acceleration, force) = (gain(acceleration, finer_acceleration), gain(force, finer_force));
     let gain = if acceleration.abs() > force.abs() { acceleration } else { force };
-    Some(StepError::Shown { gain, finer_rate_hz: finer.sampling_rate_hz })
+    Some(StepError::Shown { gain, finer_rate_hz })
+}
+
+/// (S/s; g, N) A simulation's sampling rate, and the rms of its vertical acceleration and of its mesh force: the signals
+/// themselves are kept nowhere.
+fn rms_of(stages: &Stages) -> Result<(f64, [f64; 2]), Error> {
+    let outputs = [ChannelKind::Vertical, ChannelKind::MeshForce].map(ChannelKind::output);
+    let mut squares = Squares::default();
+    stages.integrate(&stages.reduced_model(), &outputs, stages.time.first_kept_sample, &mut squares)?;
+    let rms = squares.sums.map(|sum| (sum / squares.samples.max(1) as f64).sqrt());
+    Ok((stages.time.sampling_rate_hz, rms))
+}
+
+/// Sums of the squares of two outputs.
+#[derive(Default)]
+struct Squares {
+    samples: usize,
+    sums: [f64; 2],
+}
+
+impl Recorder for Squares {
+    fn record(&mut self, block: &Block) {
+        self.samples += block.len();
+        for (index, sum) in self.sums.iter_mut().enumerate() {
+            *sum = block.output(index).iter().fold(*sum, |sum, value| sum + value * value);
+        }
+    }
 }
 
 /// (S/s) The nominal rate whose actual one is twice that of a simulation: [`TimeGrid::new`](crate::operation::TimeGrid::new)
@@ -84,10 +112,6 @@ fn nominal_rate_of_half_step_hz(stages: &Stages) -> f64 {
     let unit_hz = f64::from(multiple) * stages.scenario.operation.pinion_speed_hz;
     // Half a unit below, so that rounding up is safe.
     (2.0 * stages.time.sampling_rate_hz - 6.5 * unit_hz).max(0.5 * unit_hz)
-}
-
-fn rms(signal: &[f64]) -> f64 {
-    (signal.iter().map(|value| value * value).sum::<f64>() / signal.len().max(1) as f64).sqrt()
 }
 
 /// (-) How far the step may falsify the rms, without a second simulation.
