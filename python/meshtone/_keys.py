@@ -439,7 +439,8 @@ class ScenarioKeys:
         face_width_mm : float
             (mm) The face width of both wheels. Allowed: > 0, ≤ 10000.
         pinion_speed_hz : float
-            (rev/s) The nominal speed of the motor and the pinion. Allowed: > 0, ≤ 100000.
+            (rev/s) The nominal speed of the motor and the pinion; the sampling rate is chosen for it. Allowed: > 0, ≤
+            100000.
         brake_torque_nm : float
             (N m) The nominal torque of the brake on the gear's shaft. Allowed: ≥ 0, ≤ 1e9.
         fault : a fault, optional

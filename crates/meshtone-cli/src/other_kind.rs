@@ -38,10 +38,12 @@ fn found(path: &Path) -> Option<(&'static str, Vec<&'static str>)> {
             false => path.join(SIGNALS).is_file().then(results),
         };
     }
+    // To open a pipe would wait for its other end.
+    let metadata = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
     if starts_as_parquet(path) {
         return Some(("a recording", vec!["meshtone indicators"]));
     }
-    if fs::metadata(path).ok()?.len() > LARGEST {
+    if metadata.len() > LARGEST {
         return None;
     }
     let kind = FileKind::of(&fs::read_to_string(path).ok()?)?;

@@ -62,11 +62,14 @@ fn an_experiment_to_start_from_can_be_read_where_its_files_are() {
 }
 
 /// A pulse a revolution of the gear, and something that shakes.
-fn recording() -> String {
+fn recording(number: u32) -> String {
     let turned = |i: u32| 17.894_736_842 * f64::from(i) / 25e3;
     let row = |i: u32| {
         let pulse = if turned(i).fract() < 0.1 { 5.0 } else { 0.0 };
-        format!("{},{pulse}\n", (f64::from(i) * 0.37).sin() + (f64::from(i) * 1.91).cos() * turned(i).fract())
+        format!(
+            "{},{pulse}\n",
+            (f64::from(i) * 0.37).sin() + (f64::from(i) * 1.91).cos() * turned(i).fract().powi(number as i32)
+        )
     };
     std::iter::once("bearing [g],tacho\n".to_owned()).chain((0..12_000).map(row)).collect()
 }
@@ -84,8 +87,8 @@ fn uncommented(text: &str, mark: &str, starts: &[&str]) -> String {
 fn keys_that_are_commented_out_in_an_experiment_can_be_set() {
     let workplace = Workplace::new();
     workplace.write("rig.toml", template("healthy").unwrap());
-    for name in ["healthy_1.csv", "healthy_2.csv", "chipped_1.csv", "chipped_2.csv"] {
-        workplace.write(name, recording());
+    for (number, name) in (1..).zip(["healthy_1.csv", "healthy_2.csv", "chipped_1.csv", "chipped_2.csv"]) {
+        workplace.write(name, recording(number));
     }
     let rows = [0, 1].map(|severity| {
         let row = |value: f64| {

@@ -52,7 +52,7 @@ impl Keys for Operation {
             row(
                 "pinion_speed_hz",
                 "rev/s",
-                "the nominal speed of the motor and the pinion",
+                "the nominal speed of the motor and the pinion; the sampling rate is chosen for it",
                 field!(pinion_speed_hz),
             )
             .required()

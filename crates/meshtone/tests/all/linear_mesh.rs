@@ -23,7 +23,7 @@ fn pair(module_mm: f64, pinion_teeth: u32, gear_teeth: u32, face_width_mm: f64) 
     scenario
 }
 
-// Least, mean and largest stiffness of an implementation of its own (numpy), given to 0.1 kN/mm.
+// Least, mean and largest stiffness of an implementation of its own (numpy), given to 100 N/mm.
 #[test]
 fn mesh_stiffness_of_a_trial() {
     let points = NonZeroUsize::new(4_000).unwrap();
