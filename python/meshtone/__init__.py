@@ -10,12 +10,13 @@ True
 
 The parts: :class:`Scenario` and the faults say what is simulated; :func:`simulate` and :func:`simulate_many` do it; :mod:`meshtone.signal`
 takes signals, simulated or measured, to condition indicators; :mod:`meshtone.hybrid` tunes simulations to a rig;
-:mod:`meshtone.datasets` makes and loads labelled data sets; :mod:`meshtone.plotting` draws; :mod:`meshtone.examples` has scenarios to start from.
+:mod:`meshtone.datasets` makes and loads labelled data sets; :func:`explore` opens a page on which a scenario is changed and seen; :mod:`meshtone.plotting` draws; :mod:`meshtone.examples` has scenarios to start from.
 """
 
 from . import _damage, datasets, examples, hybrid, signal
 from ._core import __version__
 from ._damage import *
+from ._explore import Explorer, explore
 from ._warnings import MeshtoneWarning
 from .datasets import Dataset, generate_dataset, load_dataset, verify_dataset
 from .hybrid import enhance, tune
@@ -30,6 +31,7 @@ __all__ = [
     "CHANNELS",
     "ContactFigures",
     "Dataset",
+    "Explorer",
     "MeshtoneWarning",
     "Record",
     "Recording",
@@ -43,6 +45,7 @@ __all__ = [
     "datasets",
     "enhance",
     "examples",
+    "explore",
     "generate_dataset",
     "hybrid",
     "load_dataset",

@@ -44,6 +44,7 @@ const EXAMPLES: &str = "\
 Examples:
   meshtone init tooth-breakage > broken.toml   a commented scenario file to start from
   meshtone simulate broken.toml -o broken      signals, summary and results panel in the folder broken
+  meshtone explore broken.toml                 change it on a page in the browser and see what comes of it
   meshtone indicators broken                   their condition indicators, as of any recording
   meshtone dataset plan.toml -o gears          a labelled data set (a plan: meshtone init dataset)
   meshtone simulate --help                     more on one command

@@ -10,6 +10,7 @@ mod array;
 mod batch;
 mod dataset;
 mod error;
+mod explore;
 mod hybrid;
 mod interrupt;
 mod memory;
@@ -29,6 +30,8 @@ mod _core {
     use crate::batch::simulate_many;
     #[pymodule_export]
     use crate::dataset::{check_plan, dataset_template, generate_dataset, merge_datasets, verify_dataset};
+    #[pymodule_export]
+    use crate::explore::ExploreServer;
     #[pymodule_export]
     use crate::hybrid::{add_noise, change_duration, change_fault_to_harmonics_ratio, enhance, tune};
     #[pymodule_export]

@@ -24,7 +24,7 @@ use crate::operation::{CycleGrid, Solver, TimeGrid};
 use crate::scenario::{MemoryLimit, Scenario};
 use crate::sensor::{Channels, ContactFigures};
 use crate::simd::InstructionSet;
-use crate::solver::{Diverged, Output, Problem, Recorder, ReducedModel, integrate};
+use crate::solver::{Block, Diverged, Output, Problem, Recorder, ReducedModel, integrate};
 use crate::wheel::quality::{deviations, profile_errors};
 use crate::wheel::{Deviations, ProfileErrors, RunOut, Teeth, WheelDeviations, WheelName, teeth};
 
@@ -451,17 +451,55 @@ impl Stages {
     /// # Ok::<(), meshtone::Error>(())
     /// ```
     pub fn simulate(self) -> Result<Simulation, Error> {
-        let mut clock = Clock::default();
-        let model = self.reduced_model();
+        let clock = Clock::default();
         let mut channels = self.channels();
-        self.integrate(&model, &self.channel_outputs(), self.time.first_kept_sample, &mut channels)?;
+        self.integrate_into(&mut channels)?;
+        Ok(self.simulated(channels, clock))
+    }
+
+    /// As [`Self::simulate`], for those who may change their mind meanwhile.
+    ///
+    /// # Arguments
+    /// * `is_wanted` - asked after every block of samples whether the simulation still is
+    ///
+    /// # Returns
+    /// None where it is no longer wanted.
+    ///
+    /// # Errors
+    /// As [`Self::integrate`].
+    ///
+    /// ```
+    /// use meshtone::scenario::{GearPair, Scenario};
+    ///
+    /// let scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 34, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+    /// let stages = meshtone::stages(&scenario)?;
+    /// assert_eq!(stages.clone().simulate_while(&|| true)?.map(|wanted| wanted.channels), Some(stages.clone().simulate()?.channels));
+    /// assert!(stages.simulate_while(&|| false)?.is_none());
+    /// # Ok::<(), meshtone::Error>(())
+    /// ```
+    pub fn simulate_while(self, is_wanted: &dyn Fn() -> bool) -> Result<Option<Simulation>, Error> {
+        let clock = Clock::default();
+        let mut wanted = WantedChannels { channels: self.channels(), is_wanted };
+        self.integrate_into(&mut wanted)?;
+        let channels = wanted.channels;
+        Ok(is_wanted().then(|| self.simulated(channels, clock)))
+    }
+
+    /// Stage 7, with what the channels take of it.
+    fn integrate_into(&self, recorder: &mut dyn Recorder) -> Result<(), Error> {
+        let model = self.reduced_model();
+        self.integrate(&model, &self.channel_outputs(), self.time.first_kept_sample, recorder)
+    }
+
+    /// Stage 8, and everything together.
+    fn simulated(self, mut channels: Channels, mut clock: Clock) -> Simulation {
         clock.lap("time integration");
         if !channels.sensors.is_empty() {
             channels = self.measured(channels);
             clock.lap("sensors");
         }
         let timings = self.timings.iter().copied().chain(clock.laps).collect();
-        Ok(Simulation { stages: self, channels, timings })
+        Simulation { stages: self, channels, timings }
     }
 
     /// (rev) Simulated revolutions of the pinion at the nominal speed, settling included.
@@ -635,6 +673,22 @@ fn most_neighbours(damaged: &[DamagedTooth], wheel: WheelName, teeth: usize) -> 
 impl ForcingSource for Stages {
     fn forcing(&self, directions: &[usize]) -> Box<dyn Forcing + '_> {
         self.forcing_from(self.time.first_simulated_sample, directions)
+    }
+}
+
+/// Channels that somebody waits for, as long as they do.
+struct WantedChannels<'a> {
+    channels: Channels,
+    is_wanted: &'a dyn Fn() -> bool,
+}
+
+impl Recorder for WantedChannels<'_> {
+    fn record(&mut self, block: &Block) {
+        self.channels.record(block);
+    }
+
+    fn goes_on(&self) -> bool {
+        (self.is_wanted)()
     }
 }
 

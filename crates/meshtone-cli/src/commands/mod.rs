@@ -3,6 +3,7 @@
 mod completions;
 mod dataset;
 mod enhance;
+mod explore;
 mod indicators;
 mod init;
 mod panel;
@@ -20,6 +21,7 @@ pub enum Command {
     Simulate(simulate::Simulate),
     // It has many more options than the others.
     Indicators(Box<indicators::Indicators>),
+    Explore(explore::Explore),
     Init(init::Init),
     Wheels(wheels::Wheels),
     Panel(panel::Panel),
@@ -35,6 +37,7 @@ impl Command {
         match self {
             Self::Simulate(arguments) => arguments.run(),
             Self::Indicators(arguments) => arguments.run(),
+            Self::Explore(arguments) => arguments.run(),
             Self::Init(arguments) => arguments.run(),
             Self::Wheels(arguments) => arguments.run(),
             Self::Panel(arguments) => arguments.run(),

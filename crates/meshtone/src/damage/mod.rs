@@ -223,6 +223,7 @@ macro_rules! kinds {
                 place: fault::keys_of_place(&Damage::$kind($kind::start())),
                 start: Damage::$kind($kind::start()),
                 example: Damage::$kind($kind::example()),
+                sizes: $kind::SIZES,
                 rig: $kind::RIG,
             }),+]
         }
@@ -264,6 +265,8 @@ pub struct DamageKind {
     pub place: Vec<KeyDescription>,
     /// What a file to start from has.
     pub example: Damage,
+    /// Its keys that a severity stands in place of, by their names.
+    pub sizes: &'static [&'static str],
     pub(crate) start: Damage,
     pub(crate) rig: PaperRig,
 }

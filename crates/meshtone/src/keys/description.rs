@@ -17,6 +17,9 @@ pub struct KeyDescription {
     pub default: String,
     /// What is allowed; empty where that is plain from `kind`.
     pub allowed: String,
+    /// Bounds of its numbers whatever the other keys say, the least and the largest, where there are such; they may themselves not be
+    /// allowed, as `allowed` says.
+    pub bounds: [Option<f64>; 2],
     /// What kind of value it has.
     pub kind: KeyKind,
     /// Names of the models that simulate its default whatever it says.

@@ -100,6 +100,15 @@ impl Range {
         }
     }
 
+    /// The least and the largest number, as far as there are such: the bounds themselves, be they allowed or not.
+    pub fn bounds(&self) -> [Option<f64>; 2] {
+        let number = |bound| match bound {
+            Unbounded => None,
+            Included(number) | Excluded(number) => Some(number),
+        };
+        [number(self.least), number(self.most).or(self.slip_above)]
+    }
+
     /// What is allowed; none where every finite number is.
     ///
     /// # Arguments

@@ -244,6 +244,7 @@ impl<S> Row<S> {
                 Absent::Default => self.shown_value(start).unwrap_or_default(),
             },
             allowed: allowed.join("; "),
+            bounds: self.range.bounds(),
             kind,
             ignored_by: self.ignored_by,
         };

@@ -56,6 +56,11 @@ impl<'r, const L: usize> Handout<'r, L> {
         self.spans.iter().any(|span| span.start + step > span.first_recorded)
     }
 
+    /// Whether any of the recorders still wants samples.
+    pub(super) fn goes_on(&self) -> bool {
+        self.recorders.iter().any(|recorder| recorder.goes_on())
+    }
+
     /// Hands out the samples after the first `done` steps.
     ///
     /// # Arguments

@@ -61,6 +61,12 @@ pub trait Recorder {
     /// # Arguments
     /// * `block` - the outputs
     fn record(&mut self, block: &Block);
+
+    /// Whether the samples that follow are still wanted: asked after every block. Where they are not, the solution ends there,
+    /// without an error. By default they always are.
+    fn goes_on(&self) -> bool {
+        true
+    }
 }
 
 /// One simulation to integrate.
@@ -210,6 +216,9 @@ impl<'a, 'r, S: Copy, const L: usize, const N: usize, const R: usize> Run<'a, 'r
             }
             let coefficients = &self.coefficients;
             self.out.hand_out(done, steps, |l| coefficients.is_sound(&state, l));
+            if !self.out.goes_on() {
+                break;
+            }
             done += steps;
         }
         self.out.results

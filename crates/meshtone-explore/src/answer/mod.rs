@@ -1,0 +1,272 @@
+//! From a scenario to everything that the page draws.
+
+mod healthy;
+mod mesh_cycle;
+mod recording;
+mod severity;
+mod teeth;
+mod wheel_signals;
+
+use meshtone::scenario::{Fault, Model, Scenario, ScenarioWarning};
+use meshtone::sensor::Channel;
+use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
+use meshtone::wheel::WheelName;
+use meshtone::{Simulation, StageTime};
+use serde_json::{Map, Value, json};
+
+pub use healthy::{HealthyIndicators, healthy_indicators};
+pub use mesh_cycle::MeshCycle;
+pub use recording::{RecordingQuestion, recording};
+pub use severity::severity_curve;
+pub use teeth::TeethInPlane;
+pub use wheel_signals::WheelSignals;
+
+use crate::packet::Packet;
+use crate::question::memory_limit;
+use crate::refusal::Refusal;
+
+/// How much of a simulation is wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Detail {
+    /// While a control moves: the same motion over three revolutions of the gear.
+    Coarse,
+    /// All that the scenario says.
+    #[default]
+    Full,
+}
+
+impl Detail {
+    /// The scenario that is simulated for it.
+    ///
+    /// # Arguments
+    /// * `scenario` - what is asked for
+    pub fn of(self, scenario: &Scenario) -> Scenario {
+        match self {
+            Self::Full => scenario.clone(),
+            Self::Coarse => shortened(scenario),
+        }
+    }
+}
+
+/// Revolutions of the gear that are kept of a shortened simulation: enough for an average.
+const SHORT_REVOLUTIONS: f64 = 3.0;
+
+/// The scenario with no more than some revolutions kept. What comes before is not simulated either, but for the settling; where the
+/// speed varies, or the published model simulates all of it, nothing is gained and the scenario stays as it is.
+fn shortened(scenario: &Scenario) -> Scenario {
+    let mut short = scenario.clone();
+    if scenario.model != Model::Published && scenario.operation.speed_profile_hz.is_none() {
+        // 2 z_g revolutions of the pinion are 2 z_p of the gear.
+        let kept = SHORT_REVOLUTIONS / f64::from(2 * scenario.gears.pinion_teeth);
+        short.solver.settle_fraction = scenario.solver.settle_fraction.max(1.0 - kept);
+    }
+    short
+}
+
+/// What is asked beside the scenario.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct AnswerOptions {
+    /// How much of it.
+    pub detail: Detail,
+    /// The channel that is drawn and processed, by its name; where there is none of it, the first sensor's, or the vertical
+    /// acceleration.
+    pub channel: Option<String>,
+}
+
+/// Everything that the page draws of a scenario.
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    /// What was asked for, whatever was shortened of it.
+    pub scenario: Scenario,
+    /// How much was asked for.
+    pub detail: Detail,
+    /// What is doubtful.
+    pub warnings: Vec<ScenarioWarning>,
+    /// (-) How severe each fault is.
+    pub severities: Vec<f64>,
+    /// The faults by their sizes, those too that were given by their severity.
+    pub sized_faults: Vec<Fault>,
+    /// Key figures: what, value, unit.
+    pub figures: Vec<(&'static str, f64, &'static str)>,
+    /// The teeth in their plane.
+    pub teeth: TeethInPlane,
+    /// Stiffness and forces over the mesh cycle.
+    pub mesh: MeshCycle,
+    /// The channels that there are, and which of them is drawn.
+    pub channels: Vec<Channel>,
+    /// The one that is drawn.
+    pub channel: Channel,
+    /// (unit of the channel) The signal.
+    pub signal: Vec<f64>,
+    /// (S/s) Its sampling rate.
+    pub sampling_rate_hz: f64,
+    /// (s) Time of its first sample.
+    pub start_s: f64,
+    /// What the signal shows of each wheel, the pinion first.
+    pub wheels: [WheelSignals; 2],
+    /// Time that each stage took.
+    pub timings: Vec<StageTime>,
+}
+
+/// Simulates a scenario and prepares all that the page draws.
+///
+/// # Arguments
+/// * `scenario` - what is asked for
+/// * `options` - what of it
+/// * `is_wanted` - whether the answer still is: asked between stages, and many times while the simulation runs
+///
+/// # Errors
+/// As [`meshtone::simulate`]; a simulation that needs more memory than one for the page may; no longer wanted.
+///
+/// ```
+/// use meshtone::scenario::Scenario;
+/// use meshtone_explore::{AnswerOptions, answer, presets};
+///
+/// let mut scenario = Scenario::from_toml(presets()[3].toml)?;
+/// scenario.solver.sampling_rate_hz = 2e4;
+/// let state = answer(&scenario, &AnswerOptions::default(), &|| true).unwrap();
+/// assert!(state.severities[0] > 0.0);
+/// # Ok::<(), meshtone::scenario::ScenarioError>(())
+/// ```
+pub fn answer(
+    scenario: &Scenario,
+    options: &AnswerOptions,
+    is_wanted: &dyn Fn() -> bool,
+) -> Result<State, Refusal> {
+    let simulated = options.detail.of(scenario);
+    let (stages, mut warnings) = meshtone::stages_and_warnings(&simulated, memory_limit())?;
+    wanted(is_wanted)?;
+    let simulation = stages.simulate_while(is_wanted)?.ok_or(Refusal::Superseded)?;
+    if options.detail == Detail::Full {
+        warnings.extend(simulation.warnings_of_signals());
+    }
+    wanted(is_wanted)?;
+    let Simulation { stages, channels, timings, .. } = &simulation;
+    let channel = chosen(&channels.list(), options.channel.as_deref(), &channels.leading().0);
+    let signal = channels.signal(&channel).unwrap_or_default();
+    let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
+    let of_wheel = |shaft: Shaft| {
+        let damaged = teeth::damaged_numbers(stages, wheel_of(shaft));
+        WheelSignals::new(
+            shafts.process(signal, shaft, &ChainSettings::default()),
+            shafts.teeth(shaft),
+            damaged,
+        )
+    };
+    Ok(State {
+        scenario: scenario.clone(),
+        detail: options.detail,
+        warnings,
+        severities: stages.fault_severities.clone(),
+        sized_faults: stages
+            .scenario
+            .faults
+            .iter()
+            .map(|fault| Fault { severity: None, ..fault.clone() })
+            .collect(),
+        figures: figures(&simulation),
+        teeth: TeethInPlane::new(stages),
+        mesh: MeshCycle::new(stages),
+        channels: channels.list(),
+        signal: signal.to_vec(),
+        channel,
+        sampling_rate_hz: channels.sampling_rate_hz,
+        start_s: channels.start_s,
+        wheels: Shaft::BOTH.map(of_wheel),
+        timings: timings.clone(),
+    })
+}
+
+/// Ends what nobody waits for.
+fn wanted(is_wanted: &dyn Fn() -> bool) -> Result<(), Refusal> {
+    if is_wanted() { Ok(()) } else { Err(Refusal::Superseded) }
+}
+
+fn chosen(all: &[Channel], name: Option<&str>, leading: &Channel) -> Channel {
+    let named = name.and_then(|name| all.iter().find(|channel| channel.name() == name));
+    named.unwrap_or(leading).clone()
+}
+
+fn wheel_of(shaft: Shaft) -> WheelName {
+    match shaft {
+        Shaft::Pinion => WheelName::Pinion,
+        Shaft::Gear => WheelName::Gear,
+    }
+}
+
+/// Key figures of a simulation.
+fn figures(simulation: &Simulation) -> Vec<(&'static str, f64, &'static str)> {
+    let Simulation { stages, channels, .. } = simulation;
+    let Scenario { gears, operation, .. } = &stages.scenario;
+    let mesh_hz = operation.pinion_speed_hz * f64::from(gears.pinion_teeth);
+    let frequencies = stages.natural_frequencies_hz();
+    // Rigid rotation has none.
+    let lowest = frequencies.into_iter().find(|&frequency| frequency > 1.0);
+    let largest = channels.mesh_force_n.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let mut figures = vec![
+        ("contact ratio", stages.teeth.path.contact_ratio, ""),
+        ("mesh frequency", mesh_hz, "Hz"),
+        ("mean mesh stiffness", stages.mesh.mean_stiffness_n_per_mm() * 1e-3, "N/µm"),
+        ("static mesh force", stages.static_force_n(), "N"),
+        ("largest mesh force", largest, "N"),
+    ];
+    figures.extend(
+        simulation
+            .contact_figures()
+            .map(|contact| ("teeth apart", 100.0 * contact.apart_fraction, "% of the time")),
+    );
+    figures.extend(lowest.map(|frequency| ("lowest natural frequency", frequency, "Hz")));
+    figures.push(("sampling rate", channels.sampling_rate_hz, "S/s"));
+    figures
+}
+
+impl State {
+    /// The answer's bytes.
+    ///
+    /// # Arguments
+    /// * `more` - what else is said beside it
+    pub fn packet(&self, more: Map<String, Value>) -> Vec<u8> {
+        let mut packet = Packet::default();
+        let timing = |stage: &StageTime| json!([stage.stage, stage.elapsed.as_secs_f64() * 1e3]);
+        let warning = |warning: &ScenarioWarning| json!({ "key": warning.key, "message": warning.message });
+        let channels: Vec<Value> = self.channels.iter().map(channel_json).collect();
+        let mut said = json!({
+            "detail": if self.detail == Detail::Full { "full" } else { "coarse" },
+            "toml": self.scenario.to_toml(),
+            "scenario": serde_json::to_value(&self.scenario).unwrap_or_default(),
+            "warnings": self.warnings.iter().map(warning).collect::<Vec<_>>(),
+            "severities": self.severities,
+            "sized_faults": faults_json(&self.scenario, &self.sized_faults),
+            "figures": self.figures,
+            "teeth": self.teeth.json(&mut packet),
+            "mesh": self.mesh.json(&mut packet),
+            "channels": channels,
+            "signal": {
+                "channel": channel_json(&self.channel),
+                "sampling_rate_hz": self.sampling_rate_hz,
+                "start_s": self.start_s,
+                "values": packet.array(self.signal.iter().copied()),
+            },
+            "wheels": self.wheels.each_ref().map(|wheel| wheel.json(self.channel.unit(), &mut packet)),
+            "timings_ms": self.timings.iter().map(timing).collect::<Vec<_>>(),
+        });
+        if let Value::Object(entries) = &mut said {
+            entries.extend(more);
+        }
+        packet.bytes(&said)
+    }
+}
+
+/// The sections of faults, always as a list.
+fn faults_json(scenario: &Scenario, faults: &[Fault]) -> Value {
+    let sections = serde_json::to_value(scenario.clone().with_faults(faults.to_vec())).unwrap_or_default();
+    match sections.get("fault") {
+        Some(Value::Array(several)) => Value::Array(several.clone()),
+        Some(single) => Value::Array(vec![single.clone()]),
+        None => Value::Array(Vec::new()),
+    }
+}
+
+fn channel_json(channel: &Channel) -> Value {
+    json!({ "name": channel.name(), "unit": channel.unit(), "meaning": channel.meaning() })
+}

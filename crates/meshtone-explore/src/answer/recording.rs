@@ -1,0 +1,202 @@
+//! A recording that was dropped on the page, through the same chain as the simulation.
+
+use std::io::Write;
+use std::path::Path;
+
+use meshtone::scenario::Scenario;
+use meshtone::sensor::Channel as SimulatedChannel;
+use meshtone::signal::{
+    AngularSettings, ChainSettings, Shaft, ShaftPhase, SignalError, SimulatedShafts, Tachometer,
+    angular_resample, process_angular, tachometer_pulses,
+};
+use meshtone_io::recording::{Channel, Recording, RecordingOptions, read_recording};
+use serde_json::{Value, json};
+
+use super::wanted;
+use super::wheel_signals::WheelSignals;
+use crate::packet::Packet;
+use crate::refusal::Refusal;
+
+/// Numbers that processing holds for each sample beside the recording, at most.
+const NUMBERS_BESIDE_EACH_SAMPLE: u64 = 8;
+
+/// What the file does not say itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordingQuestion {
+    /// Name of the file: its ending tells text from other formats.
+    pub name: String,
+    /// The channel that is processed; the only one, or the first, where none is named.
+    pub channel: Option<String>,
+    /// (S/s) Sampling rate, where the file does not say it.
+    pub sampling_rate_hz: Option<f64>,
+    /// Channel with a tachometer's pulses, one a revolution of the pinion's shaft; the scenario's speed, constant, where none is named.
+    pub tachometer: Option<String>,
+}
+
+impl RecordingQuestion {
+    /// As the page says it.
+    ///
+    /// # Arguments
+    /// * `told` - the fields by their names
+    pub fn of(told: &Value) -> Self {
+        let text = |name: &str| told.get(name).and_then(Value::as_str).map(str::to_owned);
+        Self {
+            name: text("name").unwrap_or_else(|| "the recording".to_owned()),
+            channel: text("channel"),
+            sampling_rate_hz: told.get("sampling_rate_hz").and_then(Value::as_f64),
+            tachometer: text("tachometer"),
+        }
+    }
+}
+
+/// What a recording shows of both wheels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordingState {
+    /// Name of the file.
+    pub name: String,
+    /// Names of its channels.
+    pub channels: Vec<String>,
+    /// The channel that was processed.
+    pub channel: Channel,
+    /// (S/s) Sampling rate.
+    pub sampling_rate_hz: f64,
+    /// (s) Time of the first sample.
+    pub start_s: f64,
+    /// What tells how far the shaft has turned.
+    pub turning: &'static str,
+    /// What it shows of each wheel, the pinion first.
+    pub wheels: [WheelSignals; 2],
+    /// What is doubtful about the file.
+    pub warnings: Vec<String>,
+}
+
+/// Takes a recording through the chain, with the wheels and the speed of a scenario.
+///
+/// # Arguments
+/// * `bytes` - the file
+/// * `question` - what it does not say itself
+/// * `scenario` - whose teeth and speed are taken, unless the file is of a simulation
+/// * `is_wanted` - whether the answer still is
+///
+/// # Errors
+/// What [`read_recording`] refuses; a channel that is not there; no longer wanted. Where only one wheel's average cannot be made, its
+/// part says why.
+pub fn recording(
+    bytes: &[u8],
+    question: &RecordingQuestion,
+    scenario: &Scenario,
+    is_wanted: &dyn Fn() -> bool,
+) -> Result<RecordingState, Refusal> {
+    let recording = read(bytes, question)?;
+    wanted(is_wanted)?;
+    let names: Vec<String> = recording.channels.iter().map(|channel| channel.name.clone()).collect();
+    let simulated = recording.scenario_toml.as_deref().and_then(|toml| Scenario::from_toml(toml).ok());
+    let leading =
+        simulated.as_ref().map(|scenario| SimulatedChannel::leading(&scenario.sensors).name().into_owned());
+    let channel = named(&recording, question.channel.as_deref().or(leading.as_deref()))?.clone();
+    let (turning, wheels) = match (&simulated, &question.tachometer) {
+        (Some(simulated), None) => ("scenario", of_simulation(&recording, &channel, simulated)),
+        _ => of_measurement(&recording, &channel, question, scenario)?,
+    };
+    Ok(RecordingState {
+        name: question.name.clone(),
+        channels: names,
+        sampling_rate_hz: recording.sampling_rate_hz,
+        start_s: recording.start_s,
+        turning,
+        wheels,
+        warnings: recording.warnings.iter().map(ToString::to_string).collect(),
+        channel,
+    })
+}
+
+/// The file as it would be read from a folder, without the name of where it lay meanwhile in what is wrong with it.
+fn read(bytes: &[u8], question: &RecordingQuestion) -> Result<Recording, Refusal> {
+    let failed =
+        |error: std::io::Error| Refusal::unfit(format!("the recording cannot be kept for reading: {error}"));
+    let ending = Path::new(&question.name).extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    let ending: String = ending.chars().filter(char::is_ascii_alphanumeric).take(8).collect();
+    let mut file = tempfile::Builder::new().suffix(&format!(".{ending}")).tempfile().map_err(failed)?;
+    file.write_all(bytes).and_then(|()| file.flush()).map_err(failed)?;
+    let options = RecordingOptions {
+        sampling_rate_hz: question.sampling_rate_hz,
+        numbers_beside_each_sample: NUMBERS_BESIDE_EACH_SAMPLE,
+        ..RecordingOptions::default()
+    };
+    let kept_at = file.path().display().to_string();
+    read_recording(file.path(), &options)
+        .map_err(|error| Refusal::unfit(error.to_string().replace(&kept_at, &question.name)))
+}
+
+/// The channel of a name, or the first.
+fn named<'r>(recording: &'r Recording, name: Option<&str>) -> Result<&'r Channel, Refusal> {
+    let found = match name {
+        None => recording.channels.first(),
+        Some(name) => recording.channel(name),
+    };
+    found.ok_or_else(|| {
+        let known: Vec<_> = recording.channels.iter().map(|channel| channel.name.as_str()).collect();
+        let asked = name.unwrap_or_default();
+        Refusal::unfit(format!("there is no channel {asked}; there are {}", known.join(", ")))
+    })
+}
+
+/// The scenario that a file of ours has says how far the shafts have turned.
+fn of_simulation(recording: &Recording, channel: &Channel, scenario: &Scenario) -> [WheelSignals; 2] {
+    let shafts = SimulatedShafts::new(scenario, recording.start_s, recording.len());
+    let of_wheel = |shaft| {
+        let record = shafts.process(&channel.samples, shaft, &ChainSettings::default());
+        WheelSignals::new(record, shafts.teeth(shaft), Vec::new())
+    };
+    Shaft::BOTH.map(of_wheel)
+}
+
+fn of_measurement(
+    recording: &Recording,
+    channel: &Channel,
+    question: &RecordingQuestion,
+    scenario: &Scenario,
+) -> Result<(&'static str, [WheelSignals; 2]), Refusal> {
+    let (rate_hz, samples) = (recording.sampling_rate_hz, recording.len());
+    let [pinion_teeth, gear_teeth] = [scenario.gears.pinion_teeth, scenario.gears.gear_teeth];
+    let (turning, phase) = match &question.tachometer {
+        Some(name) => {
+            let pulses = &named(recording, Some(name))?.samples;
+            let times = tachometer_pulses(pulses, rate_hz, &Tachometer::default())?;
+            ("tachometer", ShaftPhase::from_pulses(&times, 1, None, rate_hz, samples)?)
+        }
+        None => {
+            ("constant speed", ShaftPhase::constant(scenario.operation.pinion_speed_hz, rate_hz, samples)?)
+        }
+    };
+    let settings = ChainSettings::default();
+    let process = |phase: &ShaftPhase, teeth: u32| {
+        let record = angular_resample(&channel.samples, phase, &AngularSettings::default())
+            .and_then(|angular| process_angular(&angular, teeth, &settings));
+        WheelSignals::new(record, teeth, Vec::new())
+    };
+    let of_gear: Result<ShaftPhase, SignalError> = phase.of_mate(pinion_teeth, gear_teeth);
+    Ok((turning, [process(&phase, pinion_teeth), process(&of_gear?, gear_teeth)]))
+}
+
+impl RecordingState {
+    /// The answer's bytes.
+    pub fn packet(&self) -> Vec<u8> {
+        let mut packet = Packet::default();
+        let unit = self.channel.unit.as_deref().unwrap_or("");
+        let said: Value = json!({
+            "name": self.name,
+            "channels": self.channels,
+            "turning": self.turning,
+            "warnings": self.warnings,
+            "signal": {
+                "channel": { "name": self.channel.name, "unit": unit },
+                "sampling_rate_hz": self.sampling_rate_hz,
+                "start_s": self.start_s,
+                "values": packet.array(self.channel.samples.iter().copied()),
+            },
+            "wheels": self.wheels.each_ref().map(|wheel| wheel.json(unit, &mut packet)),
+        });
+        packet.bytes(&said)
+    }
+}

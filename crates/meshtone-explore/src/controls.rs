@@ -1,0 +1,85 @@
+//! What the page's controls are made from: the same rows as the guide's tables, the commented files and Python's signatures.
+
+use meshtone::damage::{DamageKind, damage_kinds};
+use meshtone::scenario::{Fault, KeyDescription, KeyKind, Scenario, sections};
+use serde_json::{Value, json};
+
+use crate::presets::{Preset, presets};
+
+/// Sections and keys, kinds of damage, and scenarios to start from.
+pub fn controls() -> Value {
+    let section = |name: &str, keys: &[KeyDescription]| json!({ "name": name, "keys": keys.iter().map(key_json).collect::<Vec<_>>() });
+    let sections: Vec<Value> = sections().iter().map(|entry| section(entry.name, &entry.keys)).collect();
+    let preset = |preset: &Preset| json!({ "name": preset.name, "title": preset.title, "toml": preset.toml });
+    json!({
+        "sections": sections,
+        "kinds": damage_kinds().iter().map(kind_json).collect::<Vec<_>>(),
+        "presets": presets().iter().map(preset).collect::<Vec<_>>(),
+        "version": env!("CARGO_PKG_VERSION"),
+    })
+}
+
+fn key_json(key: &KeyDescription) -> Value {
+    let (kind, names) = match &key.kind {
+        KeyKind::Number => ("number", Vec::new()),
+        KeyKind::Whole => ("whole", Vec::new()),
+        KeyKind::Teeth => ("teeth", Vec::new()),
+        KeyKind::Name(names) => ("name", names.clone()),
+        KeyKind::Numbers(_) | KeyKind::List | KeyKind::NumberOrNumbers(_) => ("numbers", Vec::new()),
+        KeyKind::Table => ("table", Vec::new()),
+        KeyKind::TableOrFalse => ("table-or-false", Vec::new()),
+        KeyKind::Text => ("text", Vec::new()),
+        KeyKind::File => ("file", Vec::new()),
+        // Profiles, frequency responses, matrices: too many numbers for a control; the scenario's text has them.
+        _ => ("value", Vec::new()),
+    };
+    json!({
+        "key": key.key,
+        "unit": key.unit,
+        "meaning": key.meaning,
+        "required": key.required,
+        "default": key.default,
+        "allowed": key.allowed,
+        "bounds": key.bounds,
+        "kind": kind,
+        "names": names,
+        "ignored_by": key.ignored_by,
+    })
+}
+
+fn kind_json(kind: &DamageKind) -> Value {
+    json!({
+        "name": kind.name,
+        "summary": kind.summary,
+        "sizes": kind.sizes,
+        "keys": kind.keys.iter().map(key_json).collect::<Vec<_>>(),
+        "example": example_json(kind),
+    })
+}
+
+/// The section of a fault to start from.
+fn example_json(kind: &DamageKind) -> Value {
+    let healthy = presets().first().and_then(|preset| Scenario::from_toml(preset.toml).ok());
+    let example =
+        healthy.map(|healthy| healthy.with_faults(vec![Fault::at_usual_place(kind.example.clone())]));
+    let sections = example.and_then(|example| serde_json::to_value(example).ok()).unwrap_or_default();
+    sections.get("fault").cloned().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn controls_have_units_bounds_and_examples() {
+        let controls = controls();
+        let module = &controls["sections"][1]["keys"][0];
+        assert_eq!((&module["key"], &module["unit"]), (&json!("module_mm"), &json!("mm")));
+        assert_eq!(module["bounds"], json!([0.0, 100.0]));
+        for kind in controls["kinds"].as_array().unwrap() {
+            assert_eq!(kind["example"]["kind"], kind["name"]);
+        }
+        let breakage = &controls["kinds"][1];
+        assert_eq!(breakage["sizes"], json!(["chip_height_mm", "chip_width_mm", "tip_loss_mm"]));
+    }
+}

@@ -1,0 +1,131 @@
+// What the page asks the program, in order: while a control moves one coarse answer is on its way and the newest wish waits; a full
+// answer takes the place of all before it.
+
+const page = Array.from(crypto.getRandomValues(new Uint32Array(2)), (number) => number.toString(36)).join("");
+let numbered = 0;
+
+/** A refusal by the program, in its own words. */
+export class Refusal extends Error {
+  constructor(told) {
+    super(told.text ?? "the program refused, without saying why");
+    this.told = told;
+  }
+}
+
+async function refusalOf(response) {
+  const text = await response.text();
+  try {
+    return new Refusal(JSON.parse(text).error);
+  } catch {
+    const tooLarge = response.status === 413 ? "this is larger than the page takes (a recording: 64 MiB)" : text;
+    return new Refusal({ kind: "unfit", text: tooLarge || `the program answered ${response.status}` });
+  }
+}
+
+async function post(path, body, signal) {
+  const response = await fetch(path, { method: "POST", body, signal });
+  if (!response.ok) throw await refusalOf(response);
+  return response;
+}
+
+/** An answer's JSON, in which what stands for an array has become one. */
+export function unpacked(buffer) {
+  const length = new DataView(buffer).getUint32(0, true);
+  const text = new TextDecoder().decode(new Uint8Array(buffer, 4, length));
+  const isArray = (value) => value !== null && typeof value === "object" && Object.hasOwn(value, "at");
+  const array = ({ at, length: count }) => new Float32Array(buffer, 4 + length + 4 * at, count);
+  return JSON.parse(text, (_, value) => (isArray(value) ? array(value) : value));
+}
+
+export async function start() {
+  const response = await fetch("start");
+  if (!response.ok) throw await refusalOf(response);
+  return response.json();
+}
+
+/** Asks for one thing, of which only the newest answer counts. */
+export class Newest {
+  #path;
+  #abort = null;
+
+  constructor(path) {
+    this.#path = path;
+  }
+
+  stop() {
+    this.#abort?.abort();
+    this.#abort = null;
+  }
+
+  /** The response; null where a later question has taken its place. */
+  async ask(question, file = null) {
+    this.stop();
+    const abort = new AbortController();
+    this.#abort = abort;
+    const text = JSON.stringify({ ...question, page, number: ++numbered });
+    try {
+      const response = await post(this.#path, file ? framed(text, file) : text, abort.signal);
+      const buffer = await response.arrayBuffer();
+      return this.#abort === abort ? buffer : null;
+    } catch (error) {
+      if (abort.signal.aborted || error.told?.kind === "superseded") return null;
+      throw error instanceof Refusal ? error : new Refusal({ kind: "gone", text: "the program no longer answers: was it ended?" });
+    }
+  }
+}
+
+/** A text and a file behind it, as the program reads them. */
+function framed(text, file) {
+  const bytes = new TextEncoder().encode(text);
+  const length = new Uint8Array(4);
+  new DataView(length.buffer).setUint32(0, bytes.length, true);
+  return new Blob([length, bytes, file]);
+}
+
+/** Answers about the scenario, in order. */
+export class Answers {
+  #newest = new Newest("answer");
+  #busy = null;
+  #waiting = null;
+  #show;
+  #refuse;
+
+  constructor(show, refuse) {
+    this.#show = show;
+    this.#refuse = refuse;
+  }
+
+  /** Asks; a coarse question waits for the one before it, and only the last of those that wait is asked. */
+  ask(question) {
+    if (question.detail === "coarse" && this.#busy) {
+      if (this.#busy === "coarse") this.#waiting = question;
+      return;
+    }
+    this.#waiting = null;
+    this.#send(question);
+  }
+
+  async #send(question) {
+    this.#busy = question.detail;
+    const asked = performance.now();
+    const mine = (this.turn = {});
+    try {
+      const buffer = await this.#newest.ask(question);
+      if (buffer && mine === this.turn) this.#show(unpacked(buffer), asked);
+    } catch (error) {
+      if (mine === this.turn) this.#refuse(error);
+    }
+    if (mine !== this.turn) return;
+    this.#busy = null;
+    const next = this.#waiting;
+    this.#waiting = null;
+    if (next) this.#send(next);
+  }
+}
+
+/** A file of the scenario: its bytes and its name. */
+export async function exported(form, scenario) {
+  const response = await post(`export/${form}`, JSON.stringify({ scenario, page: `${page}-${form}`, number: ++numbered }));
+  const name = /filename="([^"]+)"/.exec(response.headers.get("Content-Disposition") ?? "")?.[1];
+  return { blob: await response.blob(), name: name ?? `scenario.${form}` };
+}

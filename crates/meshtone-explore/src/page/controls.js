@@ -1,0 +1,371 @@
+// The scenario's keys as controls: made from the program's own descriptions, with its units, ranges and words.
+
+/** Sections in the order in which they are shown, with what is seen of them at first. */
+const SECTIONS = [
+  { name: "gears", title: "Gears", open: true, first: ["module_mm", "pinion_teeth", "gear_teeth", "face_width_mm", "pressure_angle_deg"] },
+  { name: "operation", title: "Operation", open: true, first: ["pinion_speed_hz", "brake_torque_nm"] },
+  { name: "quality", title: "Quality", first: ["din_grade", "iso_class", "seed"] },
+  { name: "fault", title: "Damage", open: true },
+  { name: "rig", title: "Structure", first: ["damping_ratio", "mesh_damping_ratio", "bearing_stiffness_n_per_m", "brake_inertia_kgm2", "misalignment_um"] },
+  { name: "sensor", title: "Sensors" },
+  { name: "solver", title: "Solver", first: ["sampling_rate_hz", "settle_fraction"] },
+  { name: "", title: "Model", first: ["model", "seed"] },
+];
+const UNIT_ENDING = /_(mm|um|deg|rad|hz|nm|g|s|n_per_m|nm_per_rad|kgm2|kg|per_cent)$/;
+/** From here on a slider goes by powers of ten. */
+const LARGE = 1e3;
+
+const words = (key) => key.replace(UNIT_ENDING, "").replaceAll("_", " ");
+
+function element(name, attributes = {}, ...children) {
+  const made = document.createElement(name);
+  for (const [key, value] of Object.entries(attributes)) {
+    if (key in made && key !== "list") made[key] = value;
+    else made.setAttribute(key, value);
+  }
+  made.append(...children);
+  return made;
+}
+
+/** What stands at a path of a tree; undefined where nothing does. */
+function at(tree, path) {
+  return path.reduce((part, key) => (part === undefined || part === null ? undefined : part[key]), tree);
+}
+
+/** The key of a path, as the program names it. */
+function keyOf(path) {
+  return path.reduce((text, part) => (typeof part === "number" ? `${text}[${part}]` : text ? `${text}.${part}` : part), "");
+}
+
+/** The values that a slider goes through: as far as the program allows, and about as far around a value as one looks. */
+function rangeOf(description, value) {
+  let [least, most] = description.bounds;
+  const whole = description.kind === "whole";
+  const size = Math.abs(value) || Math.abs(Number(description.default)) || 0;
+  const isLog = !whole && size >= LARGE && (least ?? 0) >= 0;
+  if (isLog) return { isLog, least: Math.max(least ?? 0, size / 20), most: Math.min(most ?? Infinity, size * 20) };
+  const around = whole ? Math.max(4 * size, 12) : size ? 3 * size : { mm: 1, "µm": 50, "": 1, "-": 1, deg: 10 }[description.unit] ?? 10;
+  if (most === null || most > 4 * around) most = around;
+  if (least === null) least = -most;
+  // A bound that is no value itself.
+  const step = whole ? 1 : 10 ** Math.floor(Math.log10((most - least) / 200));
+  if (description.allowed.startsWith(">")) least += step;
+  if (/< \S+$|, < /.test(description.allowed)) most -= step;
+  return { isLog, least: whole ? Math.ceil(least) : least, most: whole ? Math.floor(most) : most, step };
+}
+
+class Slider {
+  constructor(label, description, moved, released) {
+    this.description = description;
+    this.input = element("input", { type: "range", "aria-label": label });
+    this.range = null;
+    this.input.addEventListener("input", () => moved(this.value));
+    this.input.addEventListener("change", () => released(this.value));
+  }
+
+  get value() {
+    const { isLog, least, most } = this.range;
+    const place = Number(this.input.value);
+    if (isLog) return Number((least * (most / least) ** place).toPrecision(3));
+    return Number(place.toPrecision(10));
+  }
+
+  set value(value) {
+    this.input.hidden = typeof value !== "number" || !Number.isFinite(value);
+    if (this.input.hidden) return;
+    if (!this.range || value < this.range.least - 1e-9 || value > this.range.most + 1e-9) this.range = rangeOf(this.description, value);
+    const { isLog, least, most, step } = this.range;
+    Object.assign(this.input, isLog ? { min: 0, max: 1, step: 0.002 } : { min: least, max: most, step });
+    this.input.value = isLog ? Math.log(value / least) / Math.log(most / least) : value;
+    this.input.setAttribute("aria-valuetext", `${value} ${this.description.unit}`);
+  }
+}
+
+/** One key. */
+class Control {
+  constructor(controls, path, description) {
+    Object.assign(this, { controls, path, description });
+    const key = keyOf(path);
+    const id = `key-${key}`;
+    const label = words(String(path[path.length - 1]));
+    const unit = description.unit === "-" ? "" : description.unit;
+    const told = [description.meaning + (unit ? `, in ${unit}` : ""), description.allowed && `Allowed: ${description.allowed}.`,
+      description.default && `Default: ${description.default}.`].filter(Boolean).join(". ").replace("..", ".");
+    this.field = this.#field(id);
+    this.problem = element("p", { className: "problem", id: `${id}-problem`, hidden: true });
+    this.field.setAttribute("aria-describedby", `${id}-told ${id}-problem`);
+    this.row = element("div", { className: "control", title: told },
+      element("div", { className: "row" }, element("label", { htmlFor: id }, label),
+        element("span", {}, this.field, element("span", { className: "unit" }, unit ? ` ${unit}` : ""))),
+      element("span", { id: `${id}-told`, className: "hidden" }, told));
+    this.row.dataset.key = key;
+    if (["number", "whole"].includes(description.kind)) {
+      const change = (detail) => (value) => {
+        this.field.value = value;
+        this.controls.set(this.path, value, detail);
+      };
+      this.slider = new Slider(`${label}${unit ? `, ${unit}` : ""}`, description, change("coarse"), change("full"));
+      this.row.append(this.slider.input);
+    }
+    this.row.append(this.problem);
+  }
+
+  #field(id) {
+    const { kind, names, default: otherwise } = this.description;
+    if (kind === "name") {
+      const field = element("select", { id }, ...names.map((name) => element("option", { value: name }, name)));
+      field.addEventListener("change", () => this.controls.set(this.path, field.value, "full"));
+      return field;
+    }
+    const field = element("input", { id, type: "text", placeholder: /^[-\d.e]*$/.test(otherwise) ? "" : otherwise });
+    if (["number", "whole"].includes(kind)) field.inputMode = "decimal";
+    field.addEventListener("change", () => this.controls.set(this.path, this.#typed(field.value.trim()), "full"));
+    return field;
+  }
+
+  /** What was typed, as a value where it is one: what is none is for the program to refuse. */
+  #typed(text) {
+    const { kind } = this.description;
+    const number = (part) => (part !== "" && Number.isFinite(Number(part)) ? Number(part) : part);
+    if (text === "") return undefined;
+    if (kind === "text") return text;
+    const parts = text.replace(/^\[|\]$/g, "").split(",").map((part) => number(part.trim()));
+    if (parts.length > 1 || (kind === "numbers" && text.startsWith("["))) return parts;
+    return parts[0];
+  }
+
+  show(value, model) {
+    const text = value === undefined || value === null ? "" : Array.isArray(value) ? value.join(", ") : String(value);
+    if (document.activeElement !== this.field) this.field.value = text;
+    if (this.slider && document.activeElement !== this.slider.input) this.slider.value = value;
+    const isIgnored = this.description.ignored_by.includes(model);
+    this.row.classList.toggle("ignored", isIgnored);
+  }
+
+  refuse(text) {
+    this.problem.textContent = text ?? "";
+    this.problem.hidden = !text;
+    if (text) this.field.setAttribute("aria-invalid", "true");
+    else this.field.removeAttribute("aria-invalid");
+  }
+}
+
+export class Controls {
+  #form;
+  #told;
+  #changed;
+  #controls = new Map();
+  #groups = new Map();
+  #answer = null;
+  #shape = "";
+  tree = {};
+
+  /** @param changed called with "coarse" while a control moves and with "full" once it is set */
+  constructor(form, told, changed) {
+    this.#form = form;
+    this.#told = told;
+    this.#changed = changed;
+    form.addEventListener("submit", (event) => event.preventDefault());
+  }
+
+  /** Another scenario: its sections and keys. */
+  open(tree) {
+    this.tree = structuredClone(tree);
+    for (const list of ["fault", "sensor"]) {
+      const entries = this.tree[list] ?? [];
+      this.tree[list] = Array.isArray(entries) ? entries : [entries];
+    }
+    this.#answer = null;
+    this.#shape = "";
+    this.#controls.forEach((control) => { if (control.slider) control.slider.range = null; });
+  }
+
+  /** What is sent: lists that are empty are left out. */
+  get scenario() {
+    return Object.fromEntries(Object.entries(this.tree).filter(([, value]) => !Array.isArray(value) || value.length));
+  }
+
+  /** Sets a key, or takes it away. */
+  set(path, value, detail) {
+    if (path[0] === "fault" && path.length > 2) this.#settle(path);
+    let part = this.tree;
+    path.slice(0, -1).forEach((key, index) => {
+      if (typeof part[key] !== "object" || part[key] === null) part[key] = typeof path[index + 1] === "number" ? [] : {};
+      part = part[key];
+    });
+    const last = path[path.length - 1];
+    if (value === undefined) delete part[last];
+    else part[last] = value;
+    this.#changed(detail);
+  }
+
+  /** A severity stands in place of a fault's sizes, or they in place of it. */
+  #settle([, index, key]) {
+    const fault = this.tree.fault[index];
+    const sizes = this.#kind(fault).sizes;
+    if (key === "severity") {
+      sizes.forEach((size) => delete fault[size]);
+      delete fault.circle;
+    } else if (sizes.includes(key) && fault.severity !== undefined) {
+      this.tree.fault[index] = { ...(this.#answer?.sized_faults[index] ?? fault) };
+      delete this.tree.fault[index].severity;
+    }
+  }
+
+  #kind(fault) {
+    return this.#told.kinds.find(({ name }) => name === fault.kind) ?? this.#told.kinds[0];
+  }
+
+  /** Shows the values of an answer. */
+  show(answer) {
+    this.#answer = answer;
+    const entries = (list) => [list ?? []].flat();
+    const full = { ...answer.scenario, fault: entries(answer.scenario.fault), sensor: entries(answer.scenario.sensor) };
+    const shape = JSON.stringify([full.fault.map(({ kind }) => kind), full.sensor.length, Boolean(full.gears.tip_relief)]);
+    if (shape !== this.#shape) this.#build(full);
+    this.#shape = shape;
+    for (const control of this.#controls.values()) control.show(this.#value(control.path, full), full.model);
+    this.refuse(null);
+  }
+
+  #value(path, full) {
+    const own = at(full, path);
+    if (path[0] !== "fault" || own !== undefined) return own;
+    if (path[2] === "severity") return Number(this.#answer.severities[path[1]].toPrecision(3));
+    return at(this.#answer.sized_faults, path.slice(1));
+  }
+
+  /** Shows a refusal at the key that it is about. @returns whether it has a place here */
+  refuse(told) {
+    this.#controls.forEach((control) => control.refuse(null));
+    if (!told?.key) return false;
+    const key = told.key.replace(/^(fault|sensor)(?=\.|$)/, "$1[0]");
+    const keys = [...this.#controls.keys()].filter((known) => key === known || key.startsWith(`${known}[`) || key.startsWith(`${known}.`));
+    const found = this.#controls.get(keys.sort((a, b) => b.length - a.length)[0]);
+    found?.refuse([told.problem, told.help].filter(Boolean).join("; "));
+    for (let around = found?.row.closest("details"); around; around = around.parentElement.closest("details")) around.open = true;
+    return Boolean(found);
+  }
+
+  #build(full) {
+    const focused = document.activeElement?.id;
+    const open = new Map([...this.#groups].map(([name, group]) => [name, group.open]));
+    this.#controls.clear();
+    this.#groups.clear();
+    this.#form.replaceChildren(...SECTIONS.map((section) => {
+      const told = this.#told.sections.find(({ name }) => name === section.name);
+      const group = element("details", { className: "group", open: open.get(section.name) ?? Boolean(section.open) },
+        element("summary", {}, section.title));
+      this.#groups.set(section.name, group);
+      if (section.name === "fault") group.append(...this.#faults(full.fault));
+      else if (section.name === "sensor") group.append(...this.#sensors(full.sensor, told.keys));
+      else group.append(...this.#section(section, told.keys, full));
+      return group;
+    }));
+    if (focused) document.getElementById(focused)?.focus();
+  }
+
+  #section(section, keys, full) {
+    const base = section.name ? [section.name] : [];
+    const more = element("details", { className: "more", open: false }, element("summary", {}, "More"));
+    const first = section.first.map((name) => keys.find(({ key }) => key === name)).filter(Boolean);
+    const rest = keys.filter((key) => !first.includes(key));
+    more.append(...this.#fields(base, rest, full));
+    return [...this.#fields(base, first, full), ...(rest.length ? [more] : [])];
+  }
+
+  /** The controls of keys; those inside a table stand together. */
+  #fields(base, keys, full) {
+    const tables = new Map();
+    const fields = [];
+    for (const description of keys) {
+      const { key, kind } = description;
+      const [table, ...inside] = key.split(".");
+      if (kind === "value" || kind === "file") continue;
+      if (kind === "table" || kind === "table-or-false") {
+        const set = element("fieldset", { title: description.meaning }, element("legend", {}, words(key)));
+        if (kind === "table-or-false") set.firstChild.prepend(this.#switch([...base, key], keys, key, full), " ");
+        tables.set(key, { set, isOn: kind === "table" || Boolean(at(full, [...base, key])) });
+        fields.push(set);
+      } else if (inside.length && tables.has(table)) {
+        const { set, isOn } = tables.get(table);
+        if (isOn) set.append(this.#add([...base, table, ...inside], description));
+      } else {
+        fields.push(this.#add([...base, ...key.split(".")], description));
+      }
+    }
+    return fields.filter((field) => field.tagName !== "FIELDSET" || field.children.length > 1 || field.querySelector("input"));
+  }
+
+  /** Turns a table on, with the defaults of its keys, or off. */
+  #switch(path, keys, name, full) {
+    const box = element("input", { type: "checkbox", checked: Boolean(at(full, path)), "aria-label": words(name) });
+    box.addEventListener("change", () => {
+      const inside = keys.filter(({ key }) => key.startsWith(`${name}.`));
+      const value = ({ default: text }) => { try { return JSON.parse(text); } catch { return undefined; } };
+      const table = Object.fromEntries(inside.map((key) => [key.key.slice(name.length + 1), value(key)]));
+      this.set(path, box.checked ? table : false, "full");
+    });
+    return box;
+  }
+
+  #add(path, description) {
+    const control = new Control(this, path, description);
+    this.#controls.set(keyOf(path), control);
+    return control.row;
+  }
+
+  #faults(faults) {
+    const place = this.#told.sections.find(({ name }) => name === "fault").keys;
+    const sets = faults.map((fault, index) => {
+      const kind = this.#kind(fault);
+      const choice = element("select", { "aria-label": `Kind of damage ${index + 1}` },
+        ...this.#told.kinds.map(({ name }) => element("option", { value: name, selected: name === fault.kind }, words(name.replaceAll("-", "_")))));
+      choice.addEventListener("change", () => {
+        const example = this.#told.kinds.find(({ name }) => name === choice.value).example;
+        this.tree.fault[index] = { ...example, wheel: fault.wheel, tooth: choice.value === "wear" ? example.tooth : fault.tooth };
+        this.#changed("full");
+      });
+      const remove = element("button", { type: "button", "aria-label": `Remove damage ${index + 1}` }, "Remove");
+      remove.addEventListener("click", () => {
+        this.tree.fault.splice(index, 1);
+        this.#changed("full");
+      });
+      // A pit is given by its edges or by a circle: by a circle where the scenario has one.
+      const keys = kind.keys.filter(({ key }) => (fault.circle ? !kind.sizes.includes(key) || key.startsWith("circle") : !key.startsWith("circle")));
+      const places = place.filter(({ key }) => kind.sizes.length || key !== "severity");
+      return element("fieldset", {}, element("legend", {}, `Damage ${index + 1}`), element("div", { className: "row" }, choice, remove),
+        element("p", { className: "note" }, kind.summary),
+        ...this.#fields(["fault", index], [...places, ...keys], { fault: faults }));
+    });
+    const kinds = element("select", { "aria-label": "Kind of damage to add" },
+      ...this.#told.kinds.map(({ name }) => element("option", { value: name }, words(name.replaceAll("-", "_")))));
+    const add = element("button", { type: "button", id: "add-fault" }, "Add damage");
+    add.addEventListener("click", () => {
+      const example = structuredClone(this.#told.kinds.find(({ name }) => name === kinds.value).example);
+      // Beside what there is, where a tooth has room for one alone.
+      if (example.tooth === 1) example.tooth = 1 + this.tree.fault.length;
+      this.tree.fault.push(example);
+      this.#changed("full");
+    });
+    return [...sets, element("div", { className: "row" }, kinds, add)];
+  }
+
+  #sensors(sensors, keys) {
+    const sets = sensors.map((_, index) => {
+      const remove = element("button", { type: "button", "aria-label": `Remove sensor ${index + 1}` }, "Remove");
+      remove.addEventListener("click", () => {
+        this.tree.sensor.splice(index, 1);
+        this.#changed("full");
+      });
+      return element("fieldset", {}, element("legend", {}, `Sensor ${index + 1}`), remove, ...this.#fields(["sensor", index], keys, { sensor: sensors }));
+    });
+    const add = element("button", { type: "button", id: "add-sensor" }, "Add sensor");
+    add.addEventListener("click", () => {
+      // Two that are alike would have one name.
+      this.tree.sensor.push(this.tree.sensor.length ? { name: `sensor_${this.tree.sensor.length + 1}` } : {});
+      this.#changed("full");
+    });
+    return [...sets, element("div", { className: "row" }, add)];
+  }
+}

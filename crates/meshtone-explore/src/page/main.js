@@ -1,0 +1,274 @@
+// The page: controls ask, the program answers, views show.
+
+import { Answers, Newest, Refusal, exported, start, unpacked } from "./ask.js";
+import { Controls } from "./controls.js";
+import { shown } from "./plots.js";
+import { Views } from "./views.js";
+
+const byId = (id) => document.getElementById(id);
+/** How long nothing changes before what takes longer is asked for, in ms. */
+const PAUSE = 150;
+
+let controls;
+let views;
+let answers;
+let channel = null;
+let recording = null;
+let pause = 0;
+const healthy = new Newest("healthy");
+const severity = new Newest("severity");
+const recordings = new Newest("recording");
+
+/** For measurements: when the last picture was asked for and drawn, and how detailed it was. */
+window.meshtone = { drawn: 0, coarse: 0, last: null };
+
+const question = (detail) => ({ scenario: controls.scenario, detail, channel });
+
+function change(detail) {
+  clearTimeout(pause);
+  status(detail === "coarse" ? "…" : "computing…");
+  answers.ask(question(detail));
+}
+
+function status(text) {
+  byId("status").textContent = text;
+}
+
+function show(answer, asked) {
+  controls.show(answer);
+  views.show(answer);
+  tell(null);
+  const now = performance.now();
+  const isFull = answer.detail === "full";
+  status(isFull ? `${shown(now - asked, 3)} ms` : `${shown(now - asked, 3)} ms, three revolutions`);
+  if (document.activeElement !== byId("toml")) byId("toml").value = answer.toml;
+  window.meshtone.drawn += isFull ? 1 : 0;
+  window.meshtone.coarse += isFull ? 0 : 1;
+  window.meshtone.last = { asked, drawn: now, detail: answer.detail };
+  clearTimeout(pause);
+  if (isFull) pause = setTimeout(compare, PAUSE, answer);
+}
+
+/** What the full answer is compared with. */
+async function compare(answer) {
+  const faults = [answer.scenario.fault ?? []].flat();
+  try {
+    if (!answer.healthy) {
+      const buffer = await healthy.ask(question("full"));
+      if (buffer) views.setHealthy(JSON.parse(new TextDecoder().decode(buffer)).healthy);
+    }
+    if (faults.length) {
+      const fault = Math.min(views.fault, faults.length - 1);
+      const buffer = await severity.ask({ ...question("coarse"), fault });
+      if (buffer) views.setSeverity(unpacked(buffer));
+    }
+  } catch (error) {
+    tell(error);
+  }
+}
+
+/** Says what is wrong: at its key, and in a line above all. */
+function tell(error) {
+  const problem = byId("problem");
+  problem.hidden = !error;
+  byId("views").classList.toggle("stale", Boolean(error?.told?.key));
+  if (!error) return;
+  if (!(error instanceof Refusal)) throw error;
+  const { told } = error;
+  controls.refuse(told);
+  problem.textContent = [told.text, told.help].filter(Boolean).join("; ");
+  status("not computed");
+}
+
+/** Opens a scenario by its file's text. @returns the refusal, where there is one */
+async function openText(toml) {
+  const asking = new Newest("answer");
+  try {
+    const buffer = await asking.ask({ toml, detail: "full", channel });
+    if (buffer) open(unpacked(buffer).brief);
+    return null;
+  } catch (error) {
+    if (!(error instanceof Refusal)) throw error;
+    return error.told;
+  }
+}
+
+function open(tree) {
+  controls.open(tree);
+  change("full");
+}
+
+const encoded = (tree) => btoa(String.fromCharCode(...new TextEncoder().encode(JSON.stringify(tree)))).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+
+/** The scenario that the address names; null where it names none. */
+function ofAddress() {
+  if (location.hash.length < 2) return null;
+  try {
+    const bytes = Uint8Array.from(atob(location.hash.slice(1).replaceAll("-", "+").replaceAll("_", "/")), (letter) => letter.charCodeAt(0));
+    return JSON.parse(new TextDecoder().decode(bytes));
+  } catch {
+    tell(new Refusal({ kind: "unfit", text: "what follows # in the address is no scenario of this page: was it cut off?" }));
+    return null;
+  }
+}
+
+async function copyLink() {
+  history.replaceState(null, "", `#${encoded(views.now?.brief ?? controls.scenario)}`);
+  try {
+    await navigator.clipboard.writeText(location.href);
+    status("link copied");
+  } catch {
+    status("the link is in the address line");
+  }
+}
+
+async function save(form) {
+  try {
+    const { blob, name } = await exported(form, controls.scenario);
+    const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(blob), download: name });
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+    status(`${name} saved`);
+  } catch (error) {
+    tell(error);
+  }
+}
+
+/** A file: a scenario is opened, all else is a recording. */
+async function take(file) {
+  if (!file) return;
+  if (file.name.endsWith(".toml")) {
+    const refused = await openText(await file.text());
+    if (refused) tell(new Refusal({ ...refused, text: `${file.name}: ${refused.text}`, key: null }));
+    return;
+  }
+  recording = { file, told: { name: file.name } };
+  await process();
+}
+
+async function process() {
+  if (!recording) return;
+  status("reading…");
+  try {
+    const buffer = await recordings.ask({ ...question("full"), channel: recording.told.channel, ...recording.told }, recording.file);
+    if (!buffer) return;
+    const told = unpacked(buffer);
+    views.setRecording(told);
+    showRecording(told);
+    tell(null);
+    status(`${told.name}: ${told.warnings.length ? told.warnings.join("; ") : "read"}`);
+  } catch (error) {
+    // What was there before stays; this file was none.
+    if (!byId("recording").childElementCount) recording = null;
+    tell(error);
+  }
+}
+
+/** What can be said about a recording. */
+function showRecording(told) {
+  const box = byId("recording");
+  const choice = (label, names, chosen, set) => {
+    const select = document.createElement("select");
+    select.append(...names.map((name) => new Option(name, name, false, name === chosen)));
+    select.addEventListener("change", () => set(select.value));
+    const around = document.createElement("label");
+    around.append(`${label} `, select);
+    return around;
+  };
+  const constant = "constant speed";
+  const set = (key) => (value) => {
+    recording.told[key] = value === constant ? undefined : value;
+    process();
+  };
+  const remove = Object.assign(document.createElement("button"), { textContent: "Remove recording" });
+  remove.addEventListener("click", () => {
+    recording = null;
+    box.replaceChildren();
+    box.hidden = true;
+    views.setRecording(null);
+  });
+  const name = Object.assign(document.createElement("span"), { textContent: `Recording ${told.name}, by ${told.turning}` });
+  box.replaceChildren(name, choice("channel", told.channels, told.signal.channel.name, set("channel")),
+    choice("tachometer", [constant, ...told.channels], recording.told.tachometer ?? constant, set("tachometer")), remove);
+  box.hidden = false;
+}
+
+function hold() {
+  const button = byId("hold");
+  const isHeld = button.getAttribute("aria-pressed") !== "true" && Boolean(views.now);
+  button.setAttribute("aria-pressed", String(isHeld));
+  button.textContent = isHeld ? "Held" : "Hold";
+  views.hold(isHeld ? views.now : null);
+}
+
+function setTheme(theme) {
+  document.documentElement.dataset.theme = theme;
+  views?.repaint();
+}
+
+function listen(told) {
+  byId("preset").append(new Option("begin with…", ""), ...told.presets.map(({ name, title }) => new Option(title, name)));
+  byId("preset").addEventListener("change", async ({ target }) => {
+    const preset = told.presets.find(({ name }) => name === target.value);
+    if (preset) await openText(preset.toml);
+  });
+  byId("hold").addEventListener("click", hold);
+  byId("link").addEventListener("click", copyLink);
+  byId("theme").addEventListener("click", () => setTheme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
+  document.querySelectorAll("[data-export]").forEach((button) => button.addEventListener("click", () => save(button.dataset.export)));
+  byId("file").addEventListener("change", ({ target }) => {
+    take(target.files[0]);
+    target.value = "";
+  });
+  byId("file").parentElement.addEventListener("keydown", ({ key }) => ["Enter", " "].includes(key) && byId("file").click());
+  byId("channel").addEventListener("change", ({ target }) => {
+    channel = target.value;
+    change("full");
+  });
+  byId("apply").addEventListener("click", async () => {
+    const refused = await openText(byId("toml").value);
+    byId("toml-problem").textContent = refused ? [refused.text, refused.help].filter(Boolean).join("; ") : "";
+    if (refused?.line) selectLine(refused.line);
+  });
+  document.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("input, select, textarea, button, summary, label")) return;
+    if (event.key === "h") hold();
+    if (event.key === " ") {
+      event.preventDefault();
+      views.togglePlay();
+    }
+  });
+  for (const [name, isOver] of [["dragover", true], ["dragleave", false], ["drop", false]]) {
+    document.addEventListener(name, (event) => {
+      event.preventDefault();
+      document.body.classList.toggle("dropping", isOver);
+      if (name === "drop") take(event.dataTransfer.files[0]);
+    });
+  }
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", ({ matches }) => setTheme(matches ? "dark" : "light"));
+  addEventListener("hashchange", () => {
+    const tree = ofAddress();
+    if (tree) open(tree);
+  });
+}
+
+function selectLine(number) {
+  const area = byId("toml");
+  const lines = area.value.split("\n");
+  const from = lines.slice(0, number - 1).join("\n").length + (number > 1 ? 1 : 0);
+  area.focus();
+  area.setSelectionRange(from, from + (lines[number - 1]?.length ?? 0));
+}
+
+setTheme(matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
+try {
+  const told = await start();
+  controls = new Controls(byId("controls"), told, change);
+  views = new Views(() => views.now && compare(views.now));
+  answers = new Answers(show, tell);
+  listen(told);
+  open(ofAddress() ?? told.scenario);
+} catch (error) {
+  byId("problem").hidden = false;
+  byId("problem").textContent = error.message;
+}

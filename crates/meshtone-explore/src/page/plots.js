@@ -1,0 +1,292 @@
+// Lines over an axis, drawn by uPlot from arrays of any length: what lies within a pixel is drawn from its least to its largest value,
+// and the values under the pointer are those of the arrays.
+
+/* global uPlot */
+
+const COLUMNS = 700;
+const HEIGHT = 190;
+
+const style = () => getComputedStyle(document.documentElement);
+export const colour = (name) => style().getPropertyValue(`--${name}`).trim();
+
+/** A number as one reads it. */
+export function shown(value, digits = 4) {
+  if (value === null || value === undefined || !Number.isFinite(value)) return "–";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  return size >= 1e5 || size < 1e-3 ? value.toExponential(digits - 2) : String(Number(value.toPrecision(digits)));
+}
+
+/** A line: y over from, from + step, … */
+export function line(label, y, from, step, look = "now", dash = null) {
+  return { label, y, from, step, look, dash };
+}
+
+const lastX = ({ y, from, step }) => from + step * Math.max(y.length - 1, 0);
+
+/** The values of a line at both sides of each column. */
+function columnsOf({ y, from, step }, [least, most], columns, into) {
+  const width = (most - least) / columns;
+  for (let column = 0; column < columns; column++) {
+    const start = (least + column * width - from) / step;
+    const end = start + width / step;
+    let first = Math.max(Math.ceil(start), 0);
+    const last = Math.min(Math.ceil(end) - 1, y.length - 1);
+    let [a, b] = [NaN, NaN];
+    if (first <= last) {
+      [a, b] = [y[first], y[first]];
+      let rises = true;
+      for (let index = first + 1; index <= last; index++) {
+        const value = y[index];
+        if (value < a) { a = value; rises = false; } else if (value > b) { b = value; rises = true; }
+      }
+      if (!rises) [a, b] = [b, a];
+    } else if (start >= 0 && end <= y.length - 1) {
+      const before = Math.floor(start);
+      const at = (place) => y[before] + (y[Math.min(before + 1, y.length - 1)] - y[before]) * (place - before);
+      [a, b] = [at(start), at(end)];
+    }
+    into[2 * column] = Number.isFinite(a) ? a : null;
+    into[2 * column + 1] = Number.isFinite(b) ? b : null;
+  }
+  return into;
+}
+
+export class Plot {
+  #element;
+  #options;
+  #lines = [];
+  #bands = [];
+  #mark = null;
+  #range = [0, 1];
+  #zoomed = null;
+  #plot = null;
+  #drawnAs = "";
+  #values;
+  #title;
+  #empty;
+  #buffers = [];
+
+  /** @param options title, x and y with their units, kind: "line" or "points" */
+  constructor(element, options) {
+    this.#element = element;
+    this.#options = options;
+    element.tabIndex = 0;
+    element.setAttribute("role", "group");
+    const head = document.createElement("div");
+    head.className = "title";
+    this.#title = document.createElement("span");
+    this.#title.textContent = options.title;
+    this.#values = document.createElement("span");
+    this.#values.className = "values";
+    head.append(this.#title, this.#values);
+    this.#empty = document.createElement("p");
+    this.#empty.className = "empty";
+    this.#empty.hidden = true;
+    element.append(head, this.#empty);
+    element.addEventListener("keydown", (event) => this.#key(event));
+    element.addEventListener("dblclick", () => this.zoom(null));
+    new ResizeObserver(() => this.#resize()).observe(element);
+    this.set([]);
+  }
+
+  /** Draws lines; what was zoomed stays so. @param range shown where nothing is zoomed */
+  set(lines, { range = null, bands = [], title = null, y = null, empty = "" } = {}) {
+    this.#lines = lines.filter(({ y: values }) => values?.length);
+    this.#bands = bands;
+    if (title) this.#title.textContent = title;
+    if (y) this.#options.y = y;
+    const least = Math.min(...this.#lines.map(({ from }) => from));
+    const most = Math.max(...this.#lines.map(lastX));
+    this.#range = range ?? (this.#lines.length && most > least ? [least, most] : [0, 1]);
+    this.#empty.textContent = empty;
+    this.#empty.hidden = this.#lines.length > 0 || !empty;
+    this.#draw();
+  }
+
+  /** Marks a place on the axis. */
+  mark(x) {
+    this.#mark = x;
+    this.#plot?.redraw(false, false);
+  }
+
+  get view() {
+    return this.#zoomed ?? this.#range;
+  }
+
+  zoom(range) {
+    if (range && !(range[1] - range[0] > 1e-9 * Math.max(1, Math.abs(range[0])))) return;
+    this.#zoomed = range;
+    this.#draw();
+  }
+
+  repaint() {
+    this.#plot?.destroy();
+    this.#plot = null;
+    this.#draw();
+  }
+
+  #draw() {
+    const drawnAs = this.#lines.map(({ label, look, dash }) => [label, look, dash]).join() + this.#options.y;
+    if (!this.#plot || drawnAs !== this.#drawnAs) this.#build();
+    this.#drawnAs = drawnAs;
+    const view = this.view;
+    const isPoints = this.#options.kind === "points";
+    const count = isPoints ? (this.#lines[0]?.y.length ?? 0) : 2 * COLUMNS;
+    const buffer = (index) => {
+      if (this.#buffers[index]?.length !== count) this.#buffers[index] = new Array(count);
+      return this.#buffers[index];
+    };
+    const xs = buffer(0);
+    if (isPoints) {
+      for (let k = 0; k < count; k++) xs[k] = this.#lines[0].from + k * this.#lines[0].step;
+    } else {
+      const width = (view[1] - view[0]) / COLUMNS;
+      for (let k = 0; k < count; k++) xs[k] = view[0] + ((k >> 1) + (k & 1 ? 0.75 : 0.25)) * width;
+    }
+    const ys = this.#lines.map((entry, index) => {
+      const into = buffer(index + 1);
+      if (!isPoints) return columnsOf(entry, view, COLUMNS, into);
+      for (let k = 0; k < count; k++) into[k] = Number.isFinite(entry.y[k]) ? entry.y[k] : null;
+      return into;
+    });
+    this.#plot.batch(() => {
+      this.#plot.setData([xs, ...ys], false);
+      this.#plot.setScale("x", { min: view[0], max: view[1] });
+    });
+    this.#describe();
+  }
+
+  #build() {
+    this.#plot?.destroy();
+    const axis = (label, size) => ({
+      label, size, labelSize: 18, gap: 3, labelGap: 0, font: "12px system-ui", labelFont: "12px system-ui",
+      stroke: () => colour("muted"), grid: { stroke: () => colour("grid"), width: 1 }, ticks: { stroke: () => colour("line"), width: 1 },
+      values: (_, splits) => splits.map((value) => (value === null ? "" : shown(value, 6))),
+    });
+    const isPoints = this.#options.kind === "points";
+    const series = this.#lines.map(({ label, look, dash }) => ({
+      label, stroke: () => colour(look), width: 1.25, dash: dash ?? undefined, spanGaps: isPoints,
+      points: { show: isPoints, size: 6, fill: () => colour(look) },
+    }));
+    this.#plot = new uPlot({
+      width: Math.max(this.#element.clientWidth, 200),
+      height: HEIGHT,
+      legend: { show: false },
+      cursor: { y: false, points: { show: false }, drag: { x: true, y: false, setScale: false } },
+      scales: { x: { time: false, auto: false }, y: { range: (_, least, most) => around(least, most) } },
+      axes: [axis(this.#options.x, 34), axis(this.#options.y, 54)],
+      series: [{}, ...series],
+      hooks: {
+        drawClear: [(plot) => this.#drawBands(plot)],
+        draw: [(plot) => this.#drawMark(plot)],
+        setSelect: [(plot) => this.#select(plot)],
+        setCursor: [(plot) => this.#hover(plot)],
+      },
+    }, [[], ...series.map(() => [])], this.#element);
+  }
+
+  #select(plot) {
+    const { left, width } = plot.select;
+    if (width < 4) return;
+    const range = [left, left + width].map((place) => plot.posToVal(place, "x"));
+    plot.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
+    this.zoom(range);
+  }
+
+  /** The lines' own values nearest to the pointer. */
+  #hover(plot) {
+    const { left } = plot.cursor;
+    if (left === null || left === undefined || left < 0) {
+      this.#values.textContent = "";
+      return;
+    }
+    this.showAt(plot.posToVal(left, "x"));
+  }
+
+  showAt(x) {
+    const at = ({ y, from, step }) => {
+      const index = Math.round((x - from) / step);
+      return index >= 0 && index < y.length ? y[index] : NaN;
+    };
+    const parts = [document.createTextNode(`${shown(x, 5)}: `)];
+    for (const entry of this.#lines) {
+      const value = document.createElement("b");
+      value.textContent = shown(at(entry));
+      value.style.color = colour(entry.look);
+      if (this.#lines.length > 1) parts.push(document.createTextNode(` ${entry.label} `));
+      parts.push(value);
+    }
+    this.#values.replaceChildren(...parts);
+  }
+
+  #drawBands(plot) {
+    const { ctx, bbox } = plot;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    ctx.clip();
+    ctx.fillStyle = colour("tint");
+    for (const [from, to] of this.#bands) {
+      const [left, right] = [from, to].map((x) => plot.valToPos(x, "x", true));
+      ctx.fillRect(left, bbox.top, Math.max(right - left, 1), bbox.height);
+    }
+    ctx.restore();
+  }
+
+  #drawMark(plot) {
+    if (this.#mark === null || this.#mark < this.view[0] || this.#mark > this.view[1]) return;
+    const { ctx, bbox } = plot;
+    const x = plot.valToPos(this.#mark, "x", true);
+    ctx.save();
+    ctx.strokeStyle = colour("ink");
+    ctx.lineWidth = 1;
+    ctx.beginPath();
+    ctx.moveTo(x, bbox.top);
+    ctx.lineTo(x, bbox.top + bbox.height);
+    ctx.stroke();
+    ctx.restore();
+  }
+
+  #key(event) {
+    const [least, most] = this.view;
+    const width = most - least;
+    const middle = (least + most) / 2;
+    const moves = {
+      "+": [middle - width / 4, middle + width / 4],
+      "-": [Math.max(middle - width, this.#range[0]), Math.min(middle + width, this.#range[1])],
+      ArrowLeft: [least - width / 8, most - width / 8],
+      ArrowRight: [least + width / 8, most + width / 8],
+      0: null,
+    };
+    if (!(event.key in moves) || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    this.zoom(moves[event.key]);
+    if (this.#lines.length) this.showAt((this.view[0] + this.view[1]) / 2);
+  }
+
+  #resize() {
+    const width = this.#element.clientWidth;
+    if (this.#plot && width > 0 && width !== this.#plot.width) this.#plot.setSize({ width, height: HEIGHT });
+  }
+
+  /** For those who do not see it. */
+  #describe() {
+    const of = this.#lines.map(({ label, y }) => {
+      let [least, most] = [Infinity, -Infinity];
+      for (const value of y) {
+        if (value < least) least = value;
+        if (value > most) most = value;
+      }
+      return `${label} from ${shown(least)} to ${shown(most)}`;
+    });
+    const said = `${this.#title.textContent}: ${this.#options.y} over ${this.#options.x}. ${of.join("; ")}`;
+    if (this.#element.getAttribute("aria-label") !== said) this.#element.setAttribute("aria-label", said);
+  }
+}
+
+function around(least, most) {
+  if (least === null || most === null || !Number.isFinite(least + most)) return [0, 1];
+  const room = 0.06 * (most - least) || 0.1 * Math.abs(most) || 1;
+  return [least === 0 ? 0 : least - room, most + room];
+}

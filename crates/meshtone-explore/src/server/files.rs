@@ -1,0 +1,34 @@
+//! The page itself.
+
+use axum::Router;
+use axum::http::StatusCode;
+use axum::routing::get;
+
+use super::guard::respond;
+
+/// One row a file: its path, its kind, where it lies.
+macro_rules! files {
+    ($($path:literal $media_type:literal $file:literal;)+) => {
+        /// The page and its parts.
+        pub(super) fn router() -> Router {
+            Router::new()$(.route($path, get(|| async {
+                respond(StatusCode::OK, $media_type, &include_bytes!(concat!("../page/", $file))[..])
+            })))+
+        }
+    };
+}
+
+files! {
+    "/" "text/html; charset=utf-8" "index.html";
+    "/style.css" "text/css; charset=utf-8" "style.css";
+    "/icon.svg" "image/svg+xml" "icon.svg";
+    "/main.js" "text/javascript; charset=utf-8" "main.js";
+    "/ask.js" "text/javascript; charset=utf-8" "ask.js";
+    "/controls.js" "text/javascript; charset=utf-8" "controls.js";
+    "/plots.js" "text/javascript; charset=utf-8" "plots.js";
+    "/teeth.js" "text/javascript; charset=utf-8" "teeth.js";
+    "/views.js" "text/javascript; charset=utf-8" "views.js";
+    "/uplot.js" "text/javascript; charset=utf-8" "uplot/uPlot.iife.min.js";
+    "/uplot.css" "text/css; charset=utf-8" "uplot/uPlot.min.css";
+    "/uplot-licence.txt" "text/plain; charset=utf-8" "uplot/LICENSE";
+}

@@ -1,0 +1,176 @@
+//! The server: this machine alone, and its own page alone.
+
+mod files;
+mod guard;
+mod latest;
+mod requests;
+#[cfg(test)]
+mod tests;
+
+use std::net::{Ipv4Addr, SocketAddr};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+
+use axum::Router;
+use meshtone::scenario::Scenario;
+use tokio::net::TcpListener;
+use tokio::sync::{Semaphore, oneshot};
+
+use crate::answer::HealthyIndicators;
+use guard::Guard;
+use latest::Latest;
+
+/// Requests that are computed at once: one for what is seen, one for what is compared with it.
+const AT_ONCE: usize = 2;
+/// Bytes of the token in the address.
+const TOKEN_BYTES: usize = 16;
+
+/// Whether another page may show this one in a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Embedding {
+    /// None may.
+    #[default]
+    Refused,
+    /// A notebook of this machine may.
+    Notebook,
+}
+
+/// How the page is served.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ServerSettings {
+    /// The scenario that the page opens with.
+    pub scenario: Scenario,
+    /// The port; 0 for any that is free.
+    pub port: u16,
+    /// Whether a notebook may show it.
+    pub embedding: Embedding,
+}
+
+/// A page that is served, until it is dropped.
+#[derive(Debug)]
+pub struct Server {
+    address: SocketAddr,
+    token: String,
+    shared: Arc<Shared>,
+    stop: Option<oneshot::Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// What all requests share.
+#[derive(Debug)]
+struct Shared {
+    /// What the page opens with.
+    start: Scenario,
+    /// What is set on the page: the last scenario that was answered in full.
+    current: Mutex<Scenario>,
+    /// The newest request of each page.
+    latest: Latest,
+    /// Room for computations.
+    room: Arc<Semaphore>,
+    /// The gears without damage that were computed last, and for what.
+    healthy: Mutex<Option<(String, HealthyIndicators)>>,
+}
+
+impl Shared {
+    fn set_current(&self, scenario: &Scenario) {
+        self.current.lock().unwrap_or_else(PoisonError::into_inner).clone_from(scenario);
+    }
+}
+
+impl Server {
+    /// Serves a page on 127.0.0.1, in a thread of its own.
+    ///
+    /// # Arguments
+    /// * `settings` - what, and where
+    ///
+    /// # Errors
+    /// The port cannot be had; no random numbers for the address; no thread.
+    ///
+    /// ```
+    /// use meshtone::scenario::Scenario;
+    /// use meshtone_explore::{Embedding, Server, ServerSettings, presets};
+    ///
+    /// let scenario = Scenario::from_toml(presets()[0].toml)?;
+    /// let server = Server::start(ServerSettings { scenario: scenario.clone(), port: 0, embedding: Embedding::Refused })?;
+    /// assert!(server.url().starts_with("http://127.0.0.1:"));
+    /// assert_eq!(server.scenario(), scenario);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn start(settings: ServerSettings) -> std::io::Result<Self> {
+        let ServerSettings { scenario, port, embedding } = settings;
+        let token = random_token()?;
+        let listener = std::net::TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
+        listener.set_nonblocking(true)?;
+        let address = listener.local_addr()?;
+        let shared = Arc::new(Shared {
+            start: scenario.clone(),
+            current: Mutex::new(scenario),
+            latest: Latest::default(),
+            room: Arc::new(Semaphore::new(AT_ONCE)),
+            healthy: Mutex::new(None),
+        });
+        let guard = Guard::new(address.port(), &token, embedding);
+        let router = guard.protect(requests::router(Arc::clone(&shared)).merge(files::router()));
+        // What needs the runtime is made before the thread, so that its failure is told.
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_all()
+            .max_blocking_threads(2 * AT_ONCE)
+            .build()?;
+        let listener = {
+            let _entered = runtime.enter();
+            TcpListener::from_std(listener)?
+        };
+        let (stop, stopped) = oneshot::channel();
+        let work = move || {
+            // Neither waits for requests that are still open.
+            runtime.block_on(serve(listener, router, stopped));
+            runtime.shutdown_background();
+        };
+        let thread = std::thread::Builder::new().name("explore".to_owned()).spawn(work)?;
+        Ok(Self { address, token, shared, stop: Some(stop), thread: Some(thread) })
+    }
+
+    /// The page's address, with the token that its requests need.
+    pub fn url(&self) -> String {
+        format!("http://{}/{}/", self.address, self.token)
+    }
+
+    /// What is set on the page: the last scenario that it was answered in full, or the one that it opens with.
+    pub fn scenario(&self) -> Scenario {
+        self.shared.current.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Waits until the page is no longer served.
+    pub fn wait(mut self) {
+        if let Some(thread) = self.thread.take() {
+            // A thread that panicked has ended too.
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        if let Some(stop) = self.stop.take() {
+            let _ = stop.send(());
+        }
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+async fn serve(listener: TcpListener, router: Router, stopped: oneshot::Receiver<()>) {
+    let served = async { axum::serve(listener, router).await };
+    tokio::select! {
+        // Serving ends by no error: what a connection suffers is its own.
+        _ = served => {}
+        _ = stopped => {}
+    }
+}
+
+fn random_token() -> std::io::Result<String> {
+    let mut bytes = [0; TOKEN_BYTES];
+    getrandom::fill(&mut bytes).map_err(|error| std::io::Error::other(error.to_string()))?;
+    Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
+}

@@ -1,0 +1,230 @@
+//! What the page asks.
+
+use std::sync::{Arc, PoisonError};
+
+use axum::Router;
+use axum::body::Bytes;
+use axum::extract::{DefaultBodyLimit, Path, State as Shares};
+use axum::http::{StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use axum::routing::{get, post};
+use meshtone::scenario::Scenario;
+use serde_json::{Map, Value, json};
+
+use super::Shared;
+use super::guard::respond;
+use super::latest::Turn;
+use crate::answer::{
+    AnswerOptions, Detail, HealthyIndicators, RecordingQuestion, State, answer, healthy_indicators,
+    recording, severity_curve,
+};
+use crate::controls::controls;
+use crate::export::{export, without_defaults};
+use crate::question;
+use crate::refusal::Refusal;
+
+/// (bytes) Largest request about a scenario: one with given deviations of two large wheels.
+const MOST_OF_SCENARIO: usize = 8 << 20;
+/// (bytes) Largest recording.
+const MOST_OF_RECORDING: usize = 64 << 20;
+/// Bytes of the length, little endian, that stands before what is said about a recording.
+const LENGTH_BYTES: usize = 4;
+
+/// Where the page asks, and what.
+pub(super) fn router(shared: Arc<Shared>) -> Router {
+    let about_recordings =
+        Router::new().route("/recording", post(of_recording)).layer(DefaultBodyLimit::max(MOST_OF_RECORDING));
+    Router::new()
+        .route("/start", get(start))
+        .route("/answer", post(of_answer))
+        .route("/healthy", post(of_healthy))
+        .route("/severity", post(of_severity))
+        .route("/export/{form}", post(of_export))
+        .layer(DefaultBodyLimit::max(MOST_OF_SCENARIO))
+        .merge(about_recordings)
+        .with_state(shared)
+}
+
+/// What a request says beside the scenario.
+#[derive(Debug)]
+struct Asked {
+    /// Which page asks.
+    page: String,
+    /// Number of the request: later ones are higher.
+    number: u64,
+    /// How much of the simulation, and which channel.
+    options: AnswerOptions,
+    /// Which fault's severity.
+    fault: usize,
+}
+
+impl Asked {
+    fn of(question: &Value) -> Self {
+        let text = |name: &str| question.get(name).and_then(Value::as_str);
+        let number = |name: &str| question.get(name).and_then(Value::as_u64).unwrap_or(0);
+        let detail = if text("detail") == Some("coarse") { Detail::Coarse } else { Detail::Full };
+        Self {
+            page: text("page").unwrap_or_default().to_owned(),
+            number: number("number"),
+            options: AnswerOptions { detail, channel: text("channel").map(str::to_owned) },
+            fault: usize::try_from(number("fault")).unwrap_or(usize::MAX),
+        }
+    }
+}
+
+/// A request about a scenario, taken apart.
+fn parsed(body: &[u8]) -> Result<(Asked, Value), Refusal> {
+    let wrong = |error: serde_json::Error| Refusal::unfit(format!("the request is not understood: {error}"));
+    let question: Value = serde_json::from_slice(body).map_err(wrong)?;
+    Ok((Asked::of(&question), question))
+}
+
+/// Computes an answer beside the server's own thread, while somebody waits for it.
+async fn compute<T: Send + 'static>(
+    shared: &Arc<Shared>,
+    turn: Turn,
+    work: impl FnOnce(&Turn) -> Result<T, Refusal> + Send + 'static,
+) -> Result<T, Refusal> {
+    let _abandoned = turn.abandoned_on_drop();
+    let failed = |what: &str| {
+        Refusal::unfit(format!("the computation {what}")).with_help("reload the page; tell us what was set")
+    };
+    let permit = Arc::clone(&shared.room).acquire_owned().await.map_err(|_| failed("was ended"))?;
+    if !turn.is_wanted() {
+        return Err(Refusal::Superseded);
+    }
+    let worked = tokio::task::spawn_blocking(move || {
+        let _permit = permit;
+        work(&turn).map_err(|refusal| if turn.is_late() { too_long() } else { refusal })
+    });
+    worked.await.map_err(|_| failed("broke off"))?
+}
+
+fn too_long() -> Refusal {
+    Refusal::unfit("the simulation takes longer than a minute").with_help(
+        "lower solver.sampling_rate_hz or the numbers of teeth; `meshtone simulate` has no such limit",
+    )
+}
+
+/// What the page is made from, and what it opens with.
+async fn start(Shares(shared): Shares<Arc<Shared>>) -> Response {
+    let mut said = controls();
+    said["scenario"] = Value::Object(without_defaults(&shared.start));
+    respond(StatusCode::OK, "application/json", said.to_string())
+}
+
+/// Everything that is drawn.
+async fn of_answer(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Result<Response, Refusal> {
+    let (asked, question) = parsed(&body)?;
+    let turn = shared.latest.note(&format!("answer {}", asked.page), asked.number);
+    let sharing = Arc::clone(&shared);
+    let bytes = compute(&shared, turn, move |turn| {
+        let scenario = question::scenario(&question)?;
+        let state = answer(&scenario, &asked.options, &|| turn.is_wanted())?;
+        if asked.options.detail == Detail::Full {
+            sharing.set_current(&scenario);
+        }
+        let mut more = Map::from_iter([
+            ("number".to_owned(), asked.number.into()),
+            ("brief".to_owned(), Value::Object(without_defaults(&scenario))),
+        ]);
+        if let Some(healthy) = known_healthy(&sharing, &state, &asked.options) {
+            more.insert("healthy".to_owned(), healthy.json());
+        }
+        Ok(state.packet(more))
+    });
+    Ok(respond(StatusCode::OK, "application/octet-stream", bytes.await?))
+}
+
+/// Where the gears without damage are known already: where they have none, or the damage alone has changed.
+fn known_healthy(shared: &Shared, state: &State, options: &AnswerOptions) -> Option<HealthyIndicators> {
+    if state.scenario.faults.is_empty() {
+        let unit = state.channel.unit();
+        return Some(HealthyIndicators {
+            wheels: state.wheels.each_ref().map(|wheel| wheel.indicators(unit)),
+        });
+    }
+    let known = shared.healthy.lock().unwrap_or_else(PoisonError::into_inner);
+    known
+        .as_ref()
+        .filter(|(key, _)| *key == key_of_healthy(&state.scenario, options))
+        .map(|(_, healthy)| healthy.clone())
+}
+
+fn key_of_healthy(scenario: &Scenario, options: &AnswerOptions) -> String {
+    format!("{:?}\n{}", options, scenario.clone().with_faults(Vec::new()).to_toml())
+}
+
+/// Indicators of the same gears without damage.
+async fn of_healthy(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Result<Response, Refusal> {
+    let (asked, question) = parsed(&body)?;
+    let turn = shared.latest.note(&format!("healthy {}", asked.page), asked.number);
+    let sharing = Arc::clone(&shared);
+    let said = compute(&shared, turn, move |turn| {
+        let scenario = question::scenario(&question)?;
+        let healthy = healthy_indicators(&scenario, &asked.options, &|| turn.is_wanted())?;
+        let said = json!({ "number": asked.number, "healthy": healthy.json() });
+        let key = key_of_healthy(&scenario, &asked.options);
+        *sharing.healthy.lock().unwrap_or_else(PoisonError::into_inner) = Some((key, healthy));
+        Ok(said.to_string())
+    });
+    Ok(respond(StatusCode::OK, "application/json", said.await?))
+}
+
+/// Indicators against severity.
+async fn of_severity(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Result<Response, Refusal> {
+    let (asked, question) = parsed(&body)?;
+    let turn = shared.latest.note(&format!("severity {}", asked.page), asked.number);
+    let bytes = compute(&shared, turn, move |turn| {
+        let scenario = question::scenario(&question)?;
+        let curve =
+            severity_curve(&scenario, asked.fault, asked.options.channel.as_deref(), turn.abandoned())?;
+        if turn.is_wanted() { Ok(curve.packet()) } else { Err(Refusal::Superseded) }
+    });
+    Ok(respond(StatusCode::OK, "application/octet-stream", bytes.await?))
+}
+
+/// A recording that was dropped on the page: the file stands behind what is said about it, as an answer's numbers do.
+async fn of_recording(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Result<Response, Refusal> {
+    let cut = || Refusal::unfit("the request is not understood: it ends before the recording begins");
+    let (length, rest) = body.split_at_checked(LENGTH_BYTES).ok_or_else(cut)?;
+    let length = length.iter().rev().fold(0, |length, &byte| length << 8 | usize::from(byte));
+    let (asked, question) = parsed(rest.get(..length).ok_or_else(cut)?)?;
+    let file = body.slice(LENGTH_BYTES + length..);
+    let turn = shared.latest.note(&format!("recording {}", asked.page), asked.number);
+    let bytes = compute(&shared, turn, move |turn| {
+        let scenario = question::scenario(&question)?;
+        Ok(recording(&file, &RecordingQuestion::of(&question), &scenario, &|| turn.is_wanted())?.packet())
+    });
+    Ok(respond(StatusCode::OK, "application/octet-stream", bytes.await?))
+}
+
+/// A file for the user.
+async fn of_export(
+    Shares(shared): Shares<Arc<Shared>>,
+    Path(form): Path<String>,
+    body: Bytes,
+) -> Result<Response, Refusal> {
+    let (asked, question) = parsed(&body)?;
+    let turn = shared.latest.note(&format!("export {}", asked.page), asked.number);
+    let file = compute(&shared, turn, move |turn| {
+        export(&form, &question::scenario(&question)?, &|| turn.is_wanted())
+    });
+    let file = file.await?;
+    let disposition = format!("attachment; filename=\"scenario.{}\"", file.ending);
+    let mut response = respond(StatusCode::OK, file.media_type, file.bytes);
+    if let Ok(value) = disposition.parse() {
+        response.headers_mut().insert(header::CONTENT_DISPOSITION, value);
+    }
+    Ok(response)
+}
+
+impl IntoResponse for Refusal {
+    fn into_response(self) -> Response {
+        let status = match self {
+            Self::Superseded => StatusCode::CONFLICT,
+            Self::Wrong(_) | Self::Unfit { .. } => StatusCode::UNPROCESSABLE_ENTITY,
+        };
+        respond(status, "application/json", json!({ "error": self.json() }).to_string())
+    }
+}

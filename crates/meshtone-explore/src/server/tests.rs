@@ -1,0 +1,212 @@
+//! The server, asked as a browser asks it.
+
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::time::{Duration, Instant};
+
+use meshtone::scenario::{GearPair, Scenario};
+use serde_json::{Value, json};
+
+use super::*;
+
+/// Tooth counts with a large common factor need few samples a revolution.
+fn fast() -> Scenario {
+    let mut scenario = Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 20,
+        gear_teeth: 40,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 200.0,
+    });
+    scenario.solver.sampling_rate_hz = 1000.0;
+    scenario
+}
+
+fn server() -> Server {
+    Server::start(ServerSettings { scenario: fast(), port: 0, embedding: Embedding::Refused }).unwrap()
+}
+
+struct Answered {
+    status: u16,
+    head: String,
+    body: Vec<u8>,
+}
+
+impl Answered {
+    fn json(&self) -> Value {
+        serde_json::from_slice(&self.body).unwrap()
+    }
+
+    /// What is said of a packet, and how many numbers follow.
+    fn packet(&self) -> (Value, usize) {
+        let length = u32::from_le_bytes(self.body[..4].try_into().unwrap()) as usize;
+        (serde_json::from_slice(&self.body[4..4 + length]).unwrap(), (self.body.len() - 4 - length) / 4)
+    }
+}
+
+impl Server {
+    fn request(&self, method: &str, path: &str, body: &[u8]) -> TcpStream {
+        let mut stream = TcpStream::connect(self.address).unwrap();
+        let (host, token, length) = (self.address, &self.token, body.len());
+        let head = format!(
+            "{method} /{token}/{path} HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nConnection: close\r\nContent-Length: {length}\r\n\r\n"
+        );
+        // A server that refuses may not read all of it.
+        let _ = stream.write_all(head.as_bytes()).and_then(|()| stream.write_all(body));
+        stream
+    }
+
+    fn ask(&self, method: &str, path: &str, body: &[u8]) -> Answered {
+        answered(self.request(method, path, body))
+    }
+
+    fn post(&self, path: &str, question: &Value) -> Answered {
+        self.ask("POST", path, question.to_string().as_bytes())
+    }
+}
+
+fn answered(mut stream: TcpStream) -> Answered {
+    let mut bytes = Vec::new();
+    let _ = stream.read_to_end(&mut bytes);
+    let end = bytes.windows(4).position(|four| four == b"\r\n\r\n").unwrap();
+    let head = String::from_utf8(bytes[..end].to_vec()).unwrap();
+    let status = head.split(' ').nth(1).unwrap().parse().unwrap();
+    Answered { status, head, body: bytes[end + 4..].to_vec() }
+}
+
+fn question(scenario: &Scenario, number: u64) -> Value {
+    json!({ "page": "one", "number": number, "detail": "full", "scenario": scenario })
+}
+
+#[test]
+fn the_page_comes_with_a_strict_policy_and_all_that_it_names() {
+    let server = server();
+    let page = server.ask("GET", "", b"");
+    assert_eq!(page.status, 200);
+    assert!(page.head.contains("default-src 'none'; script-src 'self'; style-src 'self'"), "{}", page.head);
+    assert!(page.head.contains("frame-ancestors 'none'"));
+    let html = String::from_utf8(page.body).unwrap();
+    for part in html.split(['"', '\'']).filter(|part| part.ends_with(".js") || part.ends_with(".css")) {
+        assert_eq!(server.ask("GET", part, b"").status, 200, "{part}");
+    }
+    assert_eq!(server.ask("GET", "nothing.js", b"").status, 404);
+    assert_eq!(server.ask("GET", "start", b"").json()["scenario"]["gears"]["pinion_teeth"], 20);
+}
+
+#[test]
+fn an_answer_has_all_that_is_drawn() {
+    let server = server();
+    let mut scenario = fast();
+    scenario.operation.pinion_speed_hz = 41.0;
+    let (said, numbers) = server.post("answer", &question(&scenario, 1)).packet();
+    assert_eq!((&said["number"], &said["detail"]), (&json!(1), &json!("full")));
+    assert_eq!(serde_json::from_value::<Scenario>(said["brief"].clone()).unwrap(), scenario);
+    assert_eq!(said["wheels"][1]["average"]["length"], said["wheels"][1]["difference"]["length"]);
+    assert!(numbers > 1000);
+    // It is its own healthy gear.
+    assert_eq!(said["healthy"][1], said["wheels"][1]["indicators"]);
+    assert_eq!(server.scenario(), scenario);
+    let coarse = json!({ "page": "one", "number": 2, "detail": "coarse", "scenario": fast() });
+    let (said, _) = server.post("answer", &coarse).packet();
+    assert!(said["wheels"][1]["revolutions"].as_u64() <= Some(3));
+    assert_eq!(server.scenario(), scenario);
+}
+
+#[test]
+fn wrong_values_are_told_in_the_programs_words() {
+    let server = server();
+    let mut wrong = question(&fast(), 1);
+    wrong["scenario"]["gears"]["module_mm"] = json!(-3);
+    let refused = server.post("answer", &wrong);
+    assert_eq!(refused.status, 422);
+    let error = &refused.json()["error"];
+    assert_eq!(
+        (&error["key"], &error["problem"]),
+        (&json!("gears.module_mm"), &json!("must be more than 0 mm"))
+    );
+    let file =
+        server.post("answer", &json!({ "page": "one", "number": 2, "toml": "[gears]\nmodul_mm = 3\n" }));
+    assert_eq!(file.json()["error"]["line"], 2);
+    for nonsense in [&b"{"[..], b"[]", b"{}"] {
+        assert_eq!(server.ask("POST", "answer", nonsense).status, 422);
+    }
+    // As of the program, what would fill the memory is refused before it is begun.
+    let mut large = question(&fast(), 3);
+    large["scenario"]["solver"]["sampling_rate_hz"] = json!(1e12);
+    let refused = server.post("answer", &large).json();
+    assert!(refused["error"]["text"].as_str().unwrap().contains("memory"), "{refused}");
+}
+
+#[test]
+fn requests_are_bounded() {
+    let server = server();
+    assert_eq!(server.ask("POST", "answer", &vec![b' '; (8 << 20) + 1]).status, 413);
+}
+
+#[test]
+fn an_older_request_gives_way() {
+    let server = server();
+    let mut slow = fast();
+    slow.solver.sampling_rate_hz = 3e6;
+    let start = Instant::now();
+    let waiting = server.request("POST", "answer", question(&slow, 1).to_string().as_bytes());
+    std::thread::sleep(Duration::from_millis(30));
+    assert_eq!(server.post("answer", &question(&fast(), 2)).status, 200);
+    let old = answered(waiting);
+    assert_eq!((old.status, old.json()["error"]["kind"].as_str()), (409, Some("superseded")));
+    assert!(start.elapsed() < Duration::from_secs(20));
+    assert_eq!(server.post("answer", &question(&fast(), 1)).status, 409);
+}
+
+#[test]
+fn severity_healthy_and_files_are_answered() {
+    let server = server();
+    let broken = json!({ "kind": "tooth-breakage", "chip_height_mm": 5.0, "chip_width_mm": 12.0 });
+    let mut asked = question(&fast(), 1);
+    asked["scenario"]["fault"] = broken;
+    let (curve, _) = server.post("severity", &asked).packet();
+    assert_eq!((&curve["wheel"], &curve["severities"]["length"]), (&json!("gear"), &json!(9)));
+    let healthy = server.post("healthy", &asked).json();
+    assert_eq!(healthy["healthy"][0].as_array().unwrap().len(), 32);
+    // It is remembered.
+    let (said, _) = server.post("answer", &asked).packet();
+    assert_eq!(said["healthy"], healthy["healthy"]);
+    for (form, start) in
+        [("toml", &b"model"[..]), ("python", b"import meshtone"), ("svg", b"<"), ("parquet", b"PAR1")]
+    {
+        let file = server.post(&format!("export/{form}"), &asked);
+        assert!(file.body.starts_with(start), "{form}: {}", file.status);
+        assert!(file.head.contains("attachment; filename="), "{form}");
+    }
+    assert_eq!(server.post("export/exe", &asked).status, 422);
+}
+
+#[test]
+fn a_recording_goes_through_the_same_chain() {
+    let server = server();
+    let wave =
+        |i: u32| (std::f64::consts::TAU * 800.0 * f64::from(i) / 8000.0).sin() + 0.1 * f64::from(i * i % 7);
+    let csv: String = std::iter::once("acceleration [g]".to_owned())
+        .chain((0..4000).map(|i| format!("{:.4}", wave(i))))
+        .collect::<Vec<_>>()
+        .join("\n");
+    let told = |name: &str| {
+        let mut told = question(&fast(), 1);
+        told["name"] = json!(name);
+        told["sampling_rate_hz"] = json!(8000.0);
+        told.to_string().into_bytes()
+    };
+    let framed = |said: Vec<u8>, file: &[u8]| [&(said.len() as u32).to_le_bytes()[..], &said, file].concat();
+    let answered = server.ask("POST", "recording", &framed(told("run.csv"), csv.as_bytes()));
+    let (said, _) = answered.packet();
+    assert_eq!(
+        (&said["signal"]["channel"]["name"], &said["turning"]),
+        (&json!("acceleration"), &json!("constant speed"))
+    );
+    assert_eq!(said["wheels"][0]["revolutions"], 19);
+    let refused = server.ask("POST", "recording", &framed(told("run.wav"), b"no sound")).json();
+    let text = refused["error"]["text"].as_str().unwrap().to_owned();
+    assert!(text.starts_with("run.wav"), "{text}");
+    assert_eq!(server.ask("POST", "recording", &[9, 0]).status, 422);
+}

@@ -1,0 +1,328 @@
+"""The page of ``mt.explore``: from Python, and in a browser where one is installed."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import shutil
+import time
+import urllib.error
+import urllib.request
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+import meshtone as mt
+
+if TYPE_CHECKING:
+    from selenium.webdriver import Chrome
+
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+CHANGES = int(os.environ.get("MESHTONE_EXPLORE_CHANGES", "60"))
+"""Random changes of the long test; ``MESHTONE_EXPLORE_CHANGES=1000 python -m pytest python/tests/test_explore.py`` for many."""
+PATIENCE_S = 30
+
+
+def fast() -> mt.Scenario:
+    """A scenario that takes milliseconds."""
+    return mt.Scenario(
+        module_mm=3, pinion_teeth=20, gear_teeth=40, face_width_mm=15, pinion_speed_hz=40, brake_torque_nm=200, sampling_rate_hz=1e4
+    )
+
+
+def ask(explorer: mt.Explorer, path: str, question: dict[str, Any], **headers: str) -> bytes:
+    """What the page's server answers."""
+    assert explorer.url is not None
+    origin = "/".join(explorer.url.split("/")[:3])
+    data = json.dumps(question).encode()
+    request = urllib.request.Request(explorer.url + path, data=data, headers={"Origin": origin, **headers})
+    with urllib.request.urlopen(request, timeout=PATIENCE_S) as response:
+        return bytes(response.read())
+
+
+@pytest.fixture
+def explorer() -> Iterator[mt.Explorer]:
+    """A page that opens no browser."""
+    with mt.explore(fast(), open_browser=False) as explorer:
+        yield explorer
+
+
+def test_what_is_set_on_the_page_comes_back(explorer: mt.Explorer) -> None:
+    assert explorer.scenario == fast()
+    other = fast().copy(pinion_speed_hz=35, fault=mt.RootCrack(severity=0.5))
+    ask(explorer, "answer", {"page": "test", "number": 1, "detail": "full", "toml": other.to_toml()})
+    assert explorer.scenario == other
+    explorer.close()
+    assert explorer.url is None
+    assert explorer.scenario == other
+    assert "closed" in explorer._repr_html_()
+
+
+def test_only_the_page_itself_may_ask(explorer: mt.Explorer) -> None:
+    with pytest.raises(urllib.error.HTTPError, match="403"):
+        ask(explorer, "answer", {}, Origin="http://elsewhere.example")
+    assert explorer.url is not None
+    with pytest.raises(urllib.error.HTTPError, match="403"):
+        urllib.request.urlopen("/".join(explorer.url.split("/")[:3]) + "/")
+
+
+def test_a_notebook_shows_the_page(explorer: mt.Explorer) -> None:
+    assert f'<iframe src="{explorer.url}"' in explorer._repr_html_()
+
+
+def test_a_port_that_is_taken_is_told(explorer: mt.Explorer) -> None:
+    assert explorer.url is not None
+    port = int(explorer.url.split(":")[2].split("/")[0])
+    with pytest.raises(OSError, match=f"port = {port}: cannot serve"):
+        mt.explore(fast(), port=port, open_browser=False)
+
+
+@pytest.mark.parametrize("name", sorted(mt.examples.all()))
+def test_python_of_the_page_makes_the_scenario(explorer: mt.Explorer, name: str) -> None:
+    scenario = mt.examples.all()[name].copy(model="linear", tip_relief={"length_mm": 1, "depth_mm": 0.6}, seed=3, wheels_seed=5)
+    text = ask(explorer, "export/python", {"page": name, "number": 1, "toml": scenario.to_toml()}).decode()
+    made: dict[str, Any] = {}
+    exec(text.split("\nsimulation")[0], made)
+    assert made["scenario"] == scenario
+
+
+# In a browser.
+
+
+def changes_words(page: Chrome) -> str:
+    """What the page says is wrong; empty where nothing is."""
+    shown: str = page.execute_script("const p = document.getElementById('problem'); return p.hidden ? '' : p.textContent")
+    return shown
+
+
+class Page:
+    """The page in a browser."""
+
+    def __init__(self, browser: Chrome, url: str) -> None:
+        self.browser = browser
+        self.browser.get("about:blank")
+        self.browser.get(url)
+        self.wait(lambda: self.run("return window.meshtone?.drawn > 0"), "the first picture")
+
+    def run(self, script: str, *arguments: object) -> Any:
+        """What a script returns."""
+        return self.browser.execute_script(script, *arguments)
+
+    def wait(self, holds: Callable[[], object], what: str) -> None:
+        """Wait until something holds."""
+        until = time.monotonic() + PATIENCE_S
+        while not holds():
+            assert time.monotonic() < until, f"waited in vain for {what}; the page says: {changes_words(self.browser)}"
+            time.sleep(0.02)
+
+    def settled(self, change: Callable[[], object], what: str) -> str:
+        """Do something and wait for the picture or the refusal that follows; what is wrong."""
+        self.run("document.getElementById('status').textContent = ''; window.before = window.meshtone.drawn")
+        change()
+        done = "return meshtone.drawn > before || document.getElementById('status').textContent === 'not computed'"
+        self.wait(lambda: self.run(done), what)
+        return changes_words(self.browser)
+
+    def enter(self, key: str, value: str) -> str:
+        """Type a value at a key; what is wrong with it."""
+        script = """
+            const field = document.getElementById('key-' + arguments[0]);
+            field.value = arguments[1];
+            field.dispatchEvent(new Event('change', { bubbles: true }));
+        """
+        return self.settled(lambda: self.run(script, key, value), f"{key} = {value}")
+
+    def drop(self, name: str, content: bytes) -> None:
+        """Drop a file on the page."""
+        script = """
+            const files = new DataTransfer();
+            files.items.add(new File([new Uint8Array(arguments[1])], arguments[0]));
+            document.dispatchEvent(new DragEvent('drop', { dataTransfer: files, bubbles: true }));
+        """
+        self.run(script, name, list(content))
+
+    def errors(self) -> list[str]:
+        """What the console holds of errors; a refusal's status is none."""
+        entries = self.browser.get_log("browser")  # type: ignore[no-untyped-call]
+        refused = ("status of 422", "status of 409")
+        return [
+            entry["message"]
+            for entry in entries
+            if entry["level"] == "SEVERE" and not any(words in entry["message"] for words in refused)
+        ]
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Chrome]:
+    """A browser without a window."""
+    program = next(filter(None, map(shutil.which, BROWSERS)), None)
+    driver = shutil.which("chromedriver")
+    if program is None or driver is None:
+        pytest.skip("no browser: install chromium and chromedriver to try the page in one")
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+
+    options = webdriver.ChromeOptions()
+    options.binary_location = program
+    for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1400,1000", "--disable-gpu"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    browser = webdriver.Chrome(options=options, service=Service(driver))
+    yield browser
+    browser.quit()
+
+
+@pytest.fixture
+def page(browser: Chrome, explorer: mt.Explorer) -> Iterator[Page]:
+    """The page in the browser, at whose end the console holds no error."""
+    assert explorer.url is not None
+    page = Page(browser, explorer.url)
+    yield page
+    assert page.errors() == []
+
+
+def test_every_control_can_be_moved(page: Page, explorer: mt.Explorer) -> None:
+    page.settled(lambda: page.run("document.getElementById('add-fault').previousSibling.value = 'root-crack'; "
+                                  "document.getElementById('add-fault').click()"), "a crack")
+    moved = """
+        const control = [...document.querySelectorAll('#controls .control')][arguments[0]];
+        const slider = control.querySelector('input[type=range]:not([hidden])');
+        const choice = control.querySelector('select');
+        const field = slider ?? choice ?? control.querySelector('input');
+        if (slider) slider.value = Number(slider.value) + (Number(slider.max) - Number(slider.min)) * 0.02;
+        if (choice) choice.selectedIndex = (choice.selectedIndex + 1) % choice.options.length;
+        field.dispatchEvent(new Event('input', { bubbles: true }));
+        field.dispatchEvent(new Event('change', { bubbles: true }));
+        return control.dataset.key;
+    """
+    count = page.run("return document.querySelectorAll('#controls .control').length")
+    assert count > 80
+    start = page.run("return document.querySelector('#text textarea').value")
+    keys = set()
+    for index in range(0, count, 3 if CHANGES < 1000 else 1):
+        page.settled(lambda index=index: keys.add(page.run(moved, index)), f"control {index}")
+        if index % 15 == 0:
+            # From the start again, so that what is set together can be.
+            page.drop("start.toml", start.encode())
+            page.wait(lambda: page.run("return !document.querySelector('#controls [aria-invalid]')"), "the start")
+    assert len(keys) >= count // 3
+    assert explorer.scenario.pinion_teeth == 20
+
+
+def test_wrong_values_are_told_at_their_key(page: Page, explorer: mt.Explorer) -> None:
+    assert page.enter("gears.module_mm", "-3") == "gears.module_mm = -3: must be more than 0 mm"
+    told = page.run("return document.getElementById('key-gears.module_mm-problem').textContent")
+    assert told == "must be more than 0 mm"
+    assert page.run("return document.getElementById('key-gears.module_mm').getAttribute('aria-invalid')") == "true"
+    assert page.enter("gears.module_mm", "three") == 'gears.module_mm = "three": must be a number, not text'
+    assert explorer.scenario == fast()
+    assert page.enter("gears.module_mm", "2.5") == ""
+    assert explorer.scenario.module_mm == 2.5
+    assert not page.run("return document.querySelector('#controls [aria-invalid]')")
+
+
+def test_a_preset_its_damage_and_severity(page: Page, explorer: mt.Explorer) -> None:
+    script = "const p = document.getElementById('preset'); p.value = 'tooth_breakage'; p.dispatchEvent(new Event('change'))"
+    page.settled(lambda: page.run(script), "the preset")
+    assert explorer.scenario.fault == mt.examples.tooth_breakage().fault
+    page.wait(lambda: page.run("return document.querySelectorAll('#indicators tbody tr').length === 32"), "indicators")
+    page.wait(lambda: "The line marks" in page.run("return document.getElementById('severity-note').textContent"), "severities")
+    page.enter("fault[0].severity", "0.3")
+    fault = explorer.scenario.fault
+    assert fault is not None
+    assert (fault.severity, explorer.scenario.fault_severities) == (0.3, [0.3])
+    # A size takes the severity's place, and the others stay as it made them.
+    page.enter("fault[0].chip_width_mm", "9")
+    fault = explorer.scenario.fault
+    assert isinstance(fault, mt.ToothBreakage)
+    assert (fault.severity, fault.chip_width_mm) == (None, 9.0)
+    assert fault.chip_height_mm is not None and fault.chip_height_mm > 0
+
+
+def test_exported_reopened_held_and_linked(page: Page, explorer: mt.Explorer) -> None:
+    page.enter("operation.pinion_speed_hz", "33")
+    page.run("document.getElementById('hold').click()")
+    wanted = explorer.scenario
+    toml = ask(explorer, "export/toml", {"page": "x", "number": 1, "toml": wanted.to_toml()})
+    page.enter("operation.pinion_speed_hz", "37")
+    assert "held" in page.run("return document.getElementById('average').getAttribute('aria-label')")
+    page.settled(lambda: page.drop("mine.toml", toml), "the file")
+    assert explorer.scenario == wanted
+    page.run("document.getElementById('link').click()")
+    page.wait(lambda: page.run("return location.hash.length > 100"), "the link")
+    link = page.run("return location.href")
+    page.enter("operation.pinion_speed_hz", "38")
+    Page(page.browser, link)
+    assert explorer.scenario == wanted
+    for form in ("toml", "python", "svg", "parquet"):
+        page.run("document.getElementById('status').textContent = ''; "
+                 "document.querySelector(`[data-export=${arguments[0]}]`).click()", form)
+        page.wait(lambda: page.run("return document.getElementById('status').textContent.includes('saved')"), form)
+
+
+def test_a_recording_is_dropped(page: Page) -> None:
+    times = np.arange(8000) / 8000
+    samples = np.sin(2 * np.pi * 800 * times) + 0.1 * np.random.default_rng(1).normal(size=8000)
+    csv = "time_s,bearing [g]\n" + "\n".join(f"{t:.6f},{x:.5f}" for t, x in zip(times, samples))
+    page.drop("rig.csv", csv.encode())
+    page.wait(lambda: page.run("return document.getElementById('recording').textContent.includes('rig.csv')"), "the recording")
+    label = page.run("return document.getElementById('average').getAttribute('aria-label')")
+    assert "recording" in label
+    page.drop("rig.wav", b"no sound")
+    page.wait(lambda: "rig.wav" in changes_words(page.browser), "the refusal")
+
+
+def test_many_random_changes_leave_no_error(page: Page, explorer: mt.Explorer) -> None:
+    """Sliders, typed values, damage added and removed, channels and wheels, faster than answers come."""
+    draw = random.Random(7)
+    script = """
+        const [pick, place] = arguments;
+        const controls = [...document.querySelectorAll('#controls .control')];
+        const control = controls[Math.floor(pick * controls.length)];
+        const slider = control.querySelector('input[type=range]:not([hidden])');
+        const kind = Math.floor(place * 1000) % 12;
+        if (kind === 0) document.getElementById('add-fault').click();
+        else if (kind === 1) document.querySelector('#controls button[aria-label^="Remove"]')?.click();
+        else if (kind === 2) document.getElementById('hold').click();
+        else if (kind === 3) {
+          const choice = document.getElementById(pick < 0.5 ? 'wheel' : 'channel');
+          choice.selectedIndex = Math.floor(place * choice.options.length);
+          choice.dispatchEvent(new Event('change', { bubbles: true }));
+        } else if (slider && !/sampling_rate|teeth$/.test(control.dataset.key)) {
+          for (const way of [0.4 * place, 0.7 * place, place]) {
+            slider.value = Number(slider.min) + (Number(slider.max) - Number(slider.min)) * way;
+            slider.dispatchEvent(new Event('input', { bubbles: true }));
+          }
+          slider.dispatchEvent(new Event('change', { bubbles: true }));
+        }
+    """
+    for number in range(CHANGES):
+        page.run(script, draw.random(), draw.random())
+        if number % 20 == 19:
+            preset = draw.randrange(1, 12)
+            choose = "const p = document.getElementById('preset'); p.selectedIndex = arguments[0]; p.dispatchEvent(new Event('change'))"
+            page.run(choose, preset)
+            time.sleep(0.2)
+    page.settled(lambda: page.drop("end.toml", fast().to_toml().encode()), "the end")
+    page.wait(lambda: explorer.scenario == fast(), "the last scenario")
+    assert changes_words(page.browser) == ""
+
+
+def test_what_is_seen_has_names(page: Page) -> None:
+    """Every field has a label, every plot a description, on a narrow screen too."""
+    page.browser.set_window_size(420, 900)
+    nameless = """
+        return [...document.querySelectorAll('input, select, textarea, button')].filter((field) => {
+          const text = field.labels?.[0]?.textContent ?? field.getAttribute('aria-label') ?? field.textContent;
+          return !text.trim();
+        }).map((field) => field.outerHTML);
+    """
+    assert page.run(nameless) == []
+    assert page.run("return [...document.querySelectorAll('.plot')].every((plot) => plot.getAttribute('aria-label').length > 10)")
+    assert page.run("return document.documentElement.scrollWidth <= innerWidth")
+    page.browser.set_window_size(1400, 1000)
+
+
