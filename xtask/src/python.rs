@@ -7,6 +7,15 @@ use crate::environment::pip_install;
 use crate::step::Row;
 use crate::surroundings::unusual;
 
+/// What the tests of the page need to try it in a browser, each by one of its names.
+const BROWSER: [&[&str]; 2] = [&["chromium", "chromium-browser", "google-chrome"], &["chromedriver"]];
+
+/// Whether a program is found by its name.
+fn is_installed(name: &str) -> bool {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&path).any(|folder| folder.join(name).is_file())
+}
+
 /// Installs a wheel beside what its tests need and tests the package there: its tests, the examples in its
 /// documentation, its types.
 ///
@@ -27,6 +36,9 @@ pub fn test(row: &Row, python: &Path, wheel: &Path) -> Result<(), u8> {
         })
     };
     run("Python tests", &["-m", "pytest", "--quiet", "python/tests"])?;
+    if let Some(missing) = BROWSER.into_iter().find(|names| !names.iter().any(|name| is_installed(name))) {
+        println!("    the page was not tried in a browser: {} is not installed", missing[0]);
+    }
     run(
         "Python examples",
         &[

@@ -1,7 +1,7 @@
 //! An answer on its way to the page: what is said about it as JSON, and its arrays in single precision behind that.
 //!
 //! Four bytes, little endian, are the length of the JSON text, which spaces fill up to a multiple of four; the numbers follow, little
-//! endian. In the JSON an array is `{"at": first number, "length": numbers}`, so that the page looks at them where they lie.
+//! endian. In the JSON an array is `{"array_at": first number, "length": numbers}`, so that the page looks at them where they lie.
 
 use serde_json::{Value, json};
 
@@ -22,7 +22,7 @@ impl Packet {
     pub fn array(&mut self, values: impl IntoIterator<Item = f64>) -> Value {
         let at = self.numbers.len();
         self.numbers.extend(values.into_iter().map(|value| value as f32));
-        json!({ "at": at, "length": self.numbers.len() - at })
+        json!({ "array_at": at, "length": self.numbers.len() - at })
     }
 
     /// The bytes.

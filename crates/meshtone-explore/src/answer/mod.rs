@@ -50,6 +50,8 @@ impl Detail {
 
 /// Revolutions of the gear that are kept of a shortened simulation: enough for an average.
 const SHORT_REVOLUTIONS: f64 = 3.0;
+/// (-) What may be left of the transient then: less than a picture shows. The settling is half as long as by default.
+const SHORT_TOLERANCE: f64 = 1e-3;
 
 /// The scenario with no more than some revolutions kept. What comes before is not simulated either, but for the settling; where the
 /// speed varies, or the published model simulates all of it, nothing is gained and the scenario stays as it is.
@@ -59,6 +61,7 @@ fn shortened(scenario: &Scenario) -> Scenario {
         // 2 z_g revolutions of the pinion are 2 z_p of the gear.
         let kept = SHORT_REVOLUTIONS / f64::from(2 * scenario.gears.pinion_teeth);
         short.solver.settle_fraction = scenario.solver.settle_fraction.max(1.0 - kept);
+        short.solver.settle_tolerance = scenario.solver.settle_tolerance.max(SHORT_TOLERANCE);
     }
     short
 }
@@ -137,22 +140,22 @@ pub fn answer(
     let (stages, mut warnings) = meshtone::stages_and_warnings(&simulated, memory_limit())?;
     wanted(is_wanted)?;
     let simulation = stages.simulate_while(is_wanted)?.ok_or(Refusal::Superseded)?;
-    if options.detail == Detail::Full {
-        warnings.extend(simulation.warnings_of_signals());
-    }
-    wanted(is_wanted)?;
     let Simulation { stages, channels, timings, .. } = &simulation;
     let channel = chosen(&channels.list(), options.channel.as_deref(), &channels.leading().0);
     let signal = channels.signal(&channel).unwrap_or_default();
     let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
     let of_wheel = |shaft: Shaft| {
         let damaged = teeth::damaged_numbers(stages, wheel_of(shaft));
-        WheelSignals::new(
-            shafts.process(signal, shaft, &ChainSettings::default()),
-            shafts.teeth(shaft),
-            damaged,
-        )
+        let record = shafts.process(signal, shaft, &ChainSettings::default());
+        WheelSignals::new(record, shafts.teeth(shaft), damaged)
     };
+    let of_signals = || match options.detail {
+        Detail::Full => simulation.warnings_of_signals(),
+        Detail::Coarse => Vec::new(),
+    };
+    let (of_signals, wheels) = rayon::join(of_signals, || Shaft::BOTH.map(of_wheel));
+    warnings.extend(of_signals);
+    wanted(is_wanted)?;
     Ok(State {
         scenario: scenario.clone(),
         detail: options.detail,
@@ -172,7 +175,7 @@ pub fn answer(
         channel,
         sampling_rate_hz: channels.sampling_rate_hz,
         start_s: channels.start_s,
-        wheels: Shaft::BOTH.map(of_wheel),
+        wheels,
         timings: timings.clone(),
     })
 }

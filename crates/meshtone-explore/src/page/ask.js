@@ -32,8 +32,8 @@ async function post(path, body, signal) {
 export function unpacked(buffer) {
   const length = new DataView(buffer).getUint32(0, true);
   const text = new TextDecoder().decode(new Uint8Array(buffer, 4, length));
-  const isArray = (value) => value !== null && typeof value === "object" && Object.hasOwn(value, "at");
-  const array = ({ at, length: count }) => new Float32Array(buffer, 4 + length + 4 * at, count);
+  const isArray = (value) => value !== null && typeof value === "object" && Object.hasOwn(value, "array_at");
+  const array = ({ array_at: at, length: count }) => new Float32Array(buffer, 4 + length + 4 * at, count);
   return JSON.parse(text, (_, value) => (isArray(value) ? array(value) : value));
 }
 

@@ -59,8 +59,17 @@ class Slider {
     this.description = description;
     this.input = element("input", { type: "range", "aria-label": label });
     this.range = null;
+    this.isAnew = false;
+    this.shown = null;
+    this.input.hidden = true;
     this.input.addEventListener("input", () => moved(this.value));
     this.input.addEventListener("change", () => released(this.value));
+  }
+
+  #look(value) {
+    this.range = rangeOf(this.description, value);
+    const { isLog, least, most, step } = this.range;
+    Object.assign(this.input, isLog ? { min: 0, max: 1, step: 0.002 } : { min: least, max: most, step });
   }
 
   get value() {
@@ -71,11 +80,13 @@ class Slider {
   }
 
   set value(value) {
+    if (value === this.shown && !this.isAnew) return;
+    this.shown = value;
     this.input.hidden = typeof value !== "number" || !Number.isFinite(value);
     if (this.input.hidden) return;
-    if (!this.range || value < this.range.least - 1e-9 || value > this.range.most + 1e-9) this.range = rangeOf(this.description, value);
-    const { isLog, least, most, step } = this.range;
-    Object.assign(this.input, isLog ? { min: 0, max: 1, step: 0.002 } : { min: least, max: most, step });
+    if (!this.range || this.isAnew || value < this.range.least - 1e-9 || value > this.range.most + 1e-9) this.#look(value);
+    this.isAnew = false;
+    const { isLog, least, most } = this.range;
     this.input.value = isLog ? Math.log(value / least) / Math.log(most / least) : value;
     this.input.setAttribute("aria-valuetext", `${value} ${this.description.unit}`);
   }
@@ -102,6 +113,7 @@ class Control {
     if (["number", "whole"].includes(description.kind)) {
       const change = (detail) => (value) => {
         this.field.value = value;
+        this.slider.shown = null;
         this.controls.set(this.path, value, detail);
       };
       this.slider = new Slider(`${label}${unit ? `, ${unit}` : ""}`, description, change("coarse"), change("full"));
@@ -136,7 +148,7 @@ class Control {
 
   show(value, model) {
     const text = value === undefined || value === null ? "" : Array.isArray(value) ? value.join(", ") : String(value);
-    if (document.activeElement !== this.field) this.field.value = text;
+    if (document.activeElement !== this.field && this.field.value !== text) this.field.value = text;
     if (this.slider && document.activeElement !== this.slider.input) this.slider.value = value;
     const isIgnored = this.description.ignored_by.includes(model);
     this.row.classList.toggle("ignored", isIgnored);
@@ -158,6 +170,7 @@ export class Controls {
   #groups = new Map();
   #answer = null;
   #shape = "";
+  #refused = null;
   tree = {};
 
   /** @param changed called with "coarse" while a control moves and with "full" once it is set */
@@ -177,7 +190,7 @@ export class Controls {
     }
     this.#answer = null;
     this.#shape = "";
-    this.#controls.forEach((control) => { if (control.slider) control.slider.range = null; });
+    this.#controls.forEach(({ slider }) => { if (slider) slider.isAnew = true; });
   }
 
   /** What is sent: lists that are empty are left out. */
@@ -187,6 +200,8 @@ export class Controls {
 
   /** Sets a key, or takes it away. */
   set(path, value, detail) {
+    // A control of what has been removed stands until the answer to that comes.
+    if (typeof path[1] === "number" && !this.tree[path[0]][path[1]]) return;
     if (path[0] === "fault" && path.length > 2) this.#settle(path);
     let part = this.tree;
     path.slice(0, -1).forEach((key, index) => {
@@ -237,11 +252,13 @@ export class Controls {
 
   /** Shows a refusal at the key that it is about. @returns whether it has a place here */
   refuse(told) {
-    this.#controls.forEach((control) => control.refuse(null));
+    this.#refused?.refuse(null);
+    this.#refused = null;
     if (!told?.key) return false;
     const key = told.key.replace(/^(fault|sensor)(?=\.|$)/, "$1[0]");
     const keys = [...this.#controls.keys()].filter((known) => key === known || key.startsWith(`${known}[`) || key.startsWith(`${known}.`));
     const found = this.#controls.get(keys.sort((a, b) => b.length - a.length)[0]);
+    this.#refused = found;
     found?.refuse([told.problem, told.help].filter(Boolean).join("; "));
     for (let around = found?.row.closest("details"); around; around = around.parentElement.closest("details")) around.open = true;
     return Boolean(found);

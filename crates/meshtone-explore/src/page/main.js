@@ -19,13 +19,15 @@ const healthy = new Newest("healthy");
 const severity = new Newest("severity");
 const recordings = new Newest("recording");
 
-/** For measurements: when the last picture was asked for and drawn, and how detailed it was. */
+/** For tests and measurements: how many pictures were drawn, and what the last one was; each is told by the event `drawn`. */
 window.meshtone = { drawn: 0, coarse: 0, last: null };
 
 const question = (detail) => ({ scenario: controls.scenario, detail, channel });
 
 function change(detail) {
   clearTimeout(pause);
+  healthy.stop();
+  severity.stop();
   status(detail === "coarse" ? "…" : "computing…");
   answers.ask(question(detail));
 }
@@ -45,6 +47,7 @@ function show(answer, asked) {
   window.meshtone.drawn += isFull ? 1 : 0;
   window.meshtone.coarse += isFull ? 0 : 1;
   window.meshtone.last = { asked, drawn: now, detail: answer.detail };
+  document.dispatchEvent(new CustomEvent("drawn", { detail: answer.detail }));
   clearTimeout(pause);
   if (isFull) pause = setTimeout(compare, PAUSE, answer);
 }
@@ -52,14 +55,15 @@ function show(answer, asked) {
 /** What the full answer is compared with. */
 async function compare(answer) {
   const faults = [answer.scenario.fault ?? []].flat();
+  const asked = { scenario: answer.brief, channel };
   try {
     if (!answer.healthy) {
-      const buffer = await healthy.ask(question("full"));
+      const buffer = await healthy.ask({ ...asked, detail: "full" });
       if (buffer) views.setHealthy(JSON.parse(new TextDecoder().decode(buffer)).healthy);
     }
     if (faults.length) {
       const fault = Math.min(views.fault, faults.length - 1);
-      const buffer = await severity.ask({ ...question("coarse"), fault });
+      const buffer = await severity.ask({ ...asked, fault });
       if (buffer) views.setSeverity(unpacked(buffer));
     }
   } catch (error) {

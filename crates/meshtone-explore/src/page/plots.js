@@ -5,6 +5,8 @@
 
 const COLUMNS = 700;
 const HEIGHT = 190;
+/** Letters of a title before the rest is told by pointing at it. */
+const LONGEST_TITLE = 60;
 
 const style = () => getComputedStyle(document.documentElement);
 export const colour = (name) => style().getPropertyValue(`--${name}`).trim();
@@ -14,7 +16,7 @@ export function shown(value, digits = 4) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (value === 0) return "0";
   const size = Math.abs(value);
-  return size >= 1e5 || size < 1e-3 ? value.toExponential(digits - 2) : String(Number(value.toPrecision(digits)));
+  return size >= 1e6 || size < 1e-3 ? value.toExponential(digits - 2) : String(Number(value.toPrecision(digits)));
 }
 
 /** A line: y over from, from + step, … */
@@ -66,6 +68,9 @@ export class Plot {
   #title;
   #empty;
   #buffers = [];
+  #describing = 0;
+  #isSeen = true;
+  #isWaiting = false;
 
   /** @param options title, x and y with their units, kind: "line" or "points" */
   constructor(element, options) {
@@ -76,7 +81,6 @@ export class Plot {
     const head = document.createElement("div");
     head.className = "title";
     this.#title = document.createElement("span");
-    this.#title.textContent = options.title;
     this.#values = document.createElement("span");
     this.#values.className = "values";
     head.append(this.#title, this.#values);
@@ -87,14 +91,21 @@ export class Plot {
     element.addEventListener("keydown", (event) => this.#key(event));
     element.addEventListener("dblclick", () => this.zoom(null));
     new ResizeObserver(() => this.#resize()).observe(element);
+    new IntersectionObserver(([{ isIntersecting }]) => this.#see(isIntersecting)).observe(element);
+    this.#head(options.title);
     this.set([]);
+  }
+
+  #head(title) {
+    this.#title.title = title;
+    this.#title.textContent = title.length > LONGEST_TITLE ? `${title.slice(0, LONGEST_TITLE).replace(/[\s,;]*\S*$/, "")} …` : title;
   }
 
   /** Draws lines; what was zoomed stays so. @param range shown where nothing is zoomed */
   set(lines, { range = null, bands = [], title = null, y = null, empty = "" } = {}) {
     this.#lines = lines.filter(({ y: values }) => values?.length);
     this.#bands = bands;
-    if (title) this.#title.textContent = title;
+    if (title) this.#head(title);
     if (y) this.#options.y = y;
     const least = Math.min(...this.#lines.map(({ from }) => from));
     const most = Math.max(...this.#lines.map(lastX));
@@ -126,7 +137,18 @@ export class Plot {
     this.#draw();
   }
 
+  /** What is out of sight is drawn once it comes into sight. */
+  #see(isSeen) {
+    this.#isSeen = isSeen;
+    if (isSeen && this.#isWaiting) this.#draw();
+  }
+
   #draw() {
+    // Not before the picture is seen.
+    clearTimeout(this.#describing);
+    this.#describing = setTimeout(() => this.#describe(), 200);
+    this.#isWaiting = !this.#isSeen;
+    if (this.#isWaiting) return;
     const drawnAs = this.#lines.map(({ label, look, dash }) => [label, look, dash]).join() + this.#options.y;
     if (!this.#plot || drawnAs !== this.#drawnAs) this.#build();
     this.#drawnAs = drawnAs;
@@ -154,7 +176,6 @@ export class Plot {
       this.#plot.setData([xs, ...ys], false);
       this.#plot.setScale("x", { min: view[0], max: view[1] });
     });
-    this.#describe();
   }
 
   #build() {
@@ -280,7 +301,7 @@ export class Plot {
       }
       return `${label} from ${shown(least)} to ${shown(most)}`;
     });
-    const said = `${this.#title.textContent}: ${this.#options.y} over ${this.#options.x}. ${of.join("; ")}`;
+    const said = `${this.#title.title}: ${this.#options.y} over ${this.#options.x}. ${of.join("; ")}`;
     if (this.#element.getAttribute("aria-label") !== said) this.#element.setAttribute("aria-label", said);
   }
 }

@@ -20,6 +20,7 @@ export class Views {
   #healthy = null;
   #indicator = "difference_kurtosis";
   #askSeverity;
+  #tableShape = "";
 
   /** @param askSeverity called when another fault's severity is wanted */
   constructor(askSeverity) {
@@ -236,21 +237,35 @@ export class Views {
     const held = this.#held && values(this.#held.wheels[wheel].indicators);
     const recorded = this.#recording && values(this.#recording.wheels[wheel].indicators);
     const rows = this.#now.wheels[wheel].indicators ?? [];
+    const shape = [rows.length, Boolean(held), Boolean(recorded)].join();
+    if (shape !== this.#tableShape) this.#table(rows, held, recorded);
+    this.#tableShape = shape;
+    const cells = byId("indicators").tBodies[0].rows;
+    rows.forEach(([name, , value], index) => {
+      const ratio = value !== null && healthy.get(name) ? value / healthy.get(name) : null;
+      const texts = [shown(value), shown(healthy.get(name)), shown(ratio, 3), held && shown(held.get(name)), recorded && shown(recorded.get(name))];
+      texts.filter((text) => typeof text === "string").forEach((text, column) => {
+        const { firstChild } = cells[index].cells[column + 1];
+        if (firstChild.data !== text) firstChild.data = text;
+      });
+    });
+    this.#drawSeverity();
+  }
+
+  /** The rows, whose numbers are still to come. */
+  #table(rows, held, recorded) {
     const heads = ["indicator", "now", "healthy", "ratio", ...(held ? ["held"] : []), ...(recorded ? ["recording"] : [])];
-    const cell = (text) => Object.assign(document.createElement("td"), { textContent: text });
+    const cell = () => Object.assign(document.createElement("td"), { textContent: "–" });
     const head = document.createElement("thead");
     head.insertRow().append(...heads.map((text) => Object.assign(document.createElement("th"), { textContent: text, scope: "col" })));
     const body = document.createElement("tbody");
-    for (const [name, unit, value] of rows) {
+    for (const [name, unit] of rows) {
       const row = body.insertRow();
       row.setAttribute("aria-selected", String(name === this.#indicator));
       const choose = Object.assign(document.createElement("button"), { textContent: `${name.replaceAll("_", " ")}${unit === "-" ? "" : `, ${unit}`}`, type: "button" });
       const title = Object.assign(document.createElement("th"), { scope: "row" });
       title.append(choose);
-      const ratio = value !== null && healthy.get(name) ? value / healthy.get(name) : null;
-      row.append(title, cell(shown(value)), cell(shown(healthy.get(name))), cell(shown(ratio, 3)));
-      if (held) row.append(cell(shown(held.get(name))));
-      if (recorded) row.append(cell(shown(recorded.get(name))));
+      row.append(title, ...heads.slice(1).map(cell));
       row.addEventListener("click", () => {
         this.#indicator = name;
         body.querySelectorAll("tr").forEach((other) => other.setAttribute("aria-selected", String(other === row)));
@@ -258,7 +273,6 @@ export class Views {
       });
     }
     byId("indicators").replaceChildren(head, body);
-    this.#drawSeverity();
   }
 
   #drawSeverity() {
