@@ -209,7 +209,7 @@ fn figures(simulation: &Simulation) -> Vec<(&'static str, f64, &'static str)> {
     let mut figures = vec![
         ("contact ratio", stages.teeth.path.contact_ratio, ""),
         ("mesh frequency", mesh_hz, "Hz"),
-        ("mean mesh stiffness", stages.mesh.mean_stiffness_n_per_mm() * 1e-3, "N/µm"),
+        ("mean mesh stiffness", stages.mesh.mean_stiffness_n_per_mm(), "N/mm"),
         ("static mesh force", stages.static_force_n(), "N"),
         ("largest mesh force", largest, "N"),
     ];

@@ -196,7 +196,7 @@ export class Plot {
       legend: { show: false },
       cursor: { y: false, points: { show: false }, drag: { x: true, y: false, setScale: false } },
       scales: { x: { time: false, auto: false }, y: { range: (_, least, most) => around(least, most) } },
-      axes: [axis(this.#options.x, 34), axis(this.#options.y, 54)],
+      axes: [axis(this.#options.x, 34), axis(this.#options.y, 62)],
       series: [{}, ...series],
       hooks: {
         drawClear: [(plot) => this.#drawBands(plot)],

@@ -27,7 +27,7 @@ export class Views {
     const plot = (id, options) => new Plot(byId(id), options);
     this.#plots = {
       forces: plot("forces", { title: "Force of each pair", x: "pitches", y: "N" }),
-      stiffness: plot("stiffness", { title: "Mesh stiffness over a gear revolution", x: "pitches", y: "N/µm" }),
+      stiffness: plot("stiffness", { title: "Mesh stiffness over a gear revolution", x: "pitches", y: "N/mm" }),
       waveform: plot("waveform", { title: "Signal", x: "time (s)", y: "g" }),
       average: plot("average", { title: "Average", x: "angle (°)", y: "g" }),
       difference: plot("difference", { title: "Difference and its envelope", x: "angle (°)", y: "g" }),
@@ -150,11 +150,11 @@ export class Views {
     this.#plots.forces.set(pairs, { range, bands, empty: "the published model shares no load among pairs" });
     const gearTeeth = teeth.wheels[1].teeth;
     const perPitch = Math.round(1 / mesh.stiffness_step);
-    const repeated = Float32Array.from({ length: gearTeeth * mesh.healthy_n_per_um.length },
-      (_, k) => mesh.healthy_n_per_um[k % mesh.healthy_n_per_um.length]);
-    const lines = [line("this pair", mesh.stiffness_n_per_um, 0, mesh.stiffness_step)];
+    const repeated = Float32Array.from({ length: gearTeeth * mesh.healthy_n_per_mm.length },
+      (_, k) => mesh.healthy_n_per_mm[k % mesh.healthy_n_per_mm.length]);
+    const lines = [line("this pair", mesh.stiffness_n_per_mm, 0, mesh.stiffness_step)];
     if (bands.length) lines.unshift(line("sound", repeated, 0, 1 / perPitch, "held", [4, 3]));
-    if (held) lines.unshift(line("held", held.stiffness_n_per_um, 0, held.stiffness_step, "held"));
+    if (held) lines.unshift(line("held", held.stiffness_n_per_mm, 0, held.stiffness_step, "held"));
     this.#plots.stiffness.set(lines, { bands, range: [0, gearTeeth] });
   }
 
