@@ -10,6 +10,7 @@ import time
 import urllib.error
 import urllib.request
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -210,9 +211,13 @@ def test_every_control_can_be_moved(page: Page, explorer: mt.Explorer) -> None:
     assert count > 80
     start = page.run("return document.querySelector('#text textarea').value")
     keys = set()
+
+    def move(index: int) -> None:
+        keys.add(page.run(moved, index))
+
     step = 1 if CHANGES >= 1000 else 6
     for index in range(0, count, step):
-        page.settled(lambda index=index: keys.add(page.run(moved, index)), f"control {index}")
+        page.settled(partial(move, index), f"control {index}")
         if index % (5 * step) == 0:
             # From the start again, so that what is set together can be.
             page.drop("start.toml", start.encode())
