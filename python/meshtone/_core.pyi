@@ -12,6 +12,7 @@ _Path = str | PathLike[str]
 _Column = int | str
 
 __all__ = [
+    "ExploreServer",
     "Record",
     "Scenario",
     "ShaftPhase",
