@@ -4,6 +4,7 @@
 mod bad_input;
 mod dataset;
 mod examples;
+mod explore;
 mod indicators;
 mod indicators_refused;
 mod init;
