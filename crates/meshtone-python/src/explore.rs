@@ -17,7 +17,7 @@ pub struct ExploreServer {
 /// What is served, or was at last.
 enum Served {
     Now(Server),
-    Before(meshtone::scenario::Scenario),
+    Before(Box<meshtone::scenario::Scenario>),
 }
 
 #[pymethods]
@@ -47,7 +47,7 @@ impl ExploreServer {
     fn scenario(&self) -> Scenario {
         match &*self.served.lock().unwrap_or_else(PoisonError::into_inner) {
             Served::Now(server) => Scenario(server.scenario()),
-            Served::Before(scenario) => Scenario(scenario.clone()),
+            Served::Before(scenario) => Scenario((**scenario).clone()),
         }
     }
 
@@ -56,7 +56,7 @@ impl ExploreServer {
         py.detach(|| {
             let mut served = self.served.lock().unwrap_or_else(PoisonError::into_inner);
             if let Served::Now(server) = &*served {
-                *served = Served::Before(server.scenario());
+                *served = Served::Before(Box::new(server.scenario()));
             }
         });
     }
