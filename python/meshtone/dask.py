@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _core
 from ._extras import extra
-from .datasets import Dataset, load_dataset
+from .datasets import Dataset, is_url, load_dataset
 from .signal._arguments import whole
 
 if TYPE_CHECKING:
@@ -28,7 +28,8 @@ def generate(
 ) -> Dataset:
     """Make a data set with the workers of a Dask cluster.
 
-    The parts of the plan are the tasks; all write into one directory, which every worker must reach under the same path. A part
+    The parts of the plan are the tasks; all write into one directory, which every worker must reach under the same path, or into one
+    object store, whose keys and region stand in every worker's environment. A part
     whose worker is lost is done again by another, which keeps the shards that were finished. The result has the same bytes
     as that of :func:`meshtone.datasets.generate_dataset`.
 
@@ -37,7 +38,7 @@ def generate(
     plan : str or path
         The plan file, on a path that every worker reaches.
     path : str or path
-        Directory to write to.
+        Directory to write to, or the URL of an object store where the compiled module was built with those.
     client : distributed.Client
         Of the cluster.
     parts : int, optional
@@ -59,7 +60,8 @@ def generate(
         from distributed import as_completed
 
     # Workers have working directories of their own.
-    plan, path = os.path.abspath(plan), os.path.abspath(path)
+    plan, path = os.path.abspath(plan), os.fspath(path)
+    path = path if is_url(path) else os.path.abspath(path)
     _core.check_plan(plan)
     count = max(1, 4 * sum(client.nthreads().values())) if parts is None else whole("parts", parts, 1)
     retries = whole("retries", retries)

@@ -64,6 +64,7 @@ if TYPE_CHECKING:
     import polars
     import pyarrow
     import pyarrow.dataset
+    import pyarrow.fs
 
 __all__ = ["Dataset", "dataset_template", "generate_dataset", "load_dataset", "merge_datasets", "verify_dataset"]
 
@@ -107,7 +108,7 @@ def generate_dataset(
     plan : str or path
         The plan file.
     path : str or path
-        Directory to write to.
+        Directory to write to, or the URL of an object store where the compiled module was built with those.
     jobs : int, optional
         Threads that simulate; all cores by default.
     part : tuple of int, optional
@@ -230,7 +231,7 @@ def load_dataset(path: str | PathLike[str], *, verify: bool = False) -> Dataset:
     Parameters
     ----------
     path : str or path
-        Its directory.
+        Its directory, or its URL in an object store where the compiled module was built with those.
     verify : bool
         Whether every byte is compared with what was written, as :func:`verify_dataset` does.
 
@@ -250,11 +251,11 @@ def load_dataset(path: str | PathLike[str], *, verify: bool = False) -> Dataset:
     """
     opened = _open(path, verify)
     if not opened.is_complete:
-        warn([f"{opened.path} is not complete: it has {len(opened)} records; generate_dataset goes on with it"])
+        warn([f"{opened.place} is not complete: it has {len(opened)} records; generate_dataset goes on with it"])
     elif opened.manifest.get("format_version") == 1:
         warn(
             [
-                f"{opened.path} was made by an earlier version: its hashes are of what was on the disk when it was completed, not of "
+                f"{opened.place} was made by an earlier version: its hashes are of what was on the disk when it was completed, not of "
                 "what was written"
             ]
         )
@@ -266,8 +267,8 @@ def _open(path: str | PathLike[str], verify: bool = False) -> Dataset:
         import pyarrow
         import pyarrow.dataset
 
-    folder = Path(path)
-    _check_place(folder, "manifest.json")
+    place = fspath(path)
+    _check_place(place, "manifest.json")
     _, names, _, problems = _core.verify_dataset(fspath(path), verify)
     # A data card that is missing is no reason not to read the data.
     wrong = {name: what for name, what in problems.items() if verify or name.startswith(("data/", "manifest.json"))}
@@ -275,20 +276,45 @@ def _open(path: str | PathLike[str], verify: bool = False) -> Dataset:
         name, what = next(iter(wrong.items()))
         more = f", and {len(wrong) - 1} more files" if len(wrong) > 1 else ""
         raise ValueError(
-            f"{folder} is not as it was written: {name}: {what}{more}; verify_dataset tells all of them, generate_dataset makes them again"
+            f"{place} is not as it was written: {name}: {what}{more}; verify_dataset tells all of them, generate_dataset makes them again"
         )
     if names:
-        files = [fspath(folder / name) for name in names]
-        return Dataset(folder, pyarrow.dataset.dataset(files, format="parquet"), None)
+        filesystem, folder = _filesystem(place)
+        files = [f"{folder}/{name}" for name in names]
+        return Dataset(place, pyarrow.dataset.dataset(files, format="parquet", filesystem=filesystem), None)
     # A part that has no shard of its own, the first there.
     schema = pyarrow.schema([("label", pyarrow.string()), ("split", pyarrow.string())])
-    return Dataset(folder, pyarrow.dataset.dataset(schema.empty_table()), None)
+    return Dataset(place, pyarrow.dataset.dataset(schema.empty_table()), None)
+
+
+def is_url(place: str) -> bool:
+    """Whether a place is none of this machine's directories by its name."""
+    return "://" in place
+
+
+def _filesystem(place: str) -> tuple[pyarrow.fs.FileSystem, str]:
+    """What pyarrow reads a place's files with, and the place's name there."""
+    import pyarrow.fs
+
+    scheme, _, name = place.partition("://")
+    if not name:
+        return pyarrow.fs.LocalFileSystem(), Path(place).as_posix()
+    name = name.rstrip("/")
+    if scheme.lower() != "s3":
+        filesystem, name = pyarrow.fs.FileSystem.from_uri(f"{scheme}://{name}")
+        return filesystem, name
+    # By the variables that the compiled module knows, of which pyarrow reads the keys for itself.
+    endpoint, region = (
+        next((os.environ[name] for name in names if name in os.environ), None)
+        for names in (("AWS_ENDPOINT", "AWS_ENDPOINT_URL"), ("AWS_REGION", "AWS_DEFAULT_REGION"))
+    )
+    return pyarrow.fs.S3FileSystem(endpoint_override=endpoint, region=region), name
 
 
 def _check_place(path: str | PathLike[str], file: str) -> None:
     """Refuse a place without a data set, of which `file` is a part."""
     name = fspath(path)
-    if "://" in name:
+    if is_url(name):
         # An object store, which tells for itself.
         return
     if not stat.S_ISDIR(os.stat(name).st_mode):
@@ -305,18 +331,31 @@ class Dataset:
 
     Attributes
     ----------
-    path : pathlib.Path
-        Its directory.
+    place : str
+        Its directory, or its URL in an object store.
     """
 
     def __init__(
-        self, path: Path, native: pyarrow.dataset.Dataset, expression: pyarrow.dataset.Expression | None
+        self, place: str, native: pyarrow.dataset.Dataset, expression: pyarrow.dataset.Expression | None
     ) -> None:
-        self.path = path
+        self.place = place
         self._native = native
         self._filter = expression
         self._length: int | None = None
         self._rows: Rows | None = None
+
+    @property
+    def path(self) -> Path:
+        """Its directory.
+
+        Raises
+        ------
+        ValueError
+            It is in an object store.
+        """
+        if is_url(self.place):
+            raise ValueError(f"{self.place} is no directory: `place` has its URL")
+        return Path(self.place)
 
     @property
     def arrow(self) -> pyarrow.dataset.Dataset:
@@ -326,16 +365,26 @@ class Dataset:
     @property
     def manifest(self) -> dict[str, Any]:
         """``manifest.json``: versions, hashes, counts, failures; without most of them as long as parts are missing."""
-        file = self.path / "manifest.json"
-        manifest: dict[str, Any] = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
+        filesystem, folder = _filesystem(self.place)
+        try:
+            with filesystem.open_input_stream(f"{folder}/manifest.json") as file:
+                manifest: dict[str, Any] = json.loads(file.read())
+        except FileNotFoundError:
+            return {}
         return manifest
 
     @property
     def is_complete(self) -> bool:
         """Whether all parts are there, with all the files that the manifest lists."""
         manifest = self.manifest
-        there = {file.relative_to(self.path).as_posix() for file in (self.path / "data").rglob("*.parquet")}
-        return manifest.get("complete") is True and all(file["name"] in there for file in manifest.get("files", ()))
+        if manifest.get("complete") is not True:
+            return False
+        import pyarrow.fs
+
+        filesystem, folder = _filesystem(self.place)
+        there = filesystem.get_file_info(pyarrow.fs.FileSelector(f"{folder}/data", allow_not_found=True, recursive=True))
+        names = {file.path.removeprefix(f"{folder}/") for file in there}
+        return all(file["name"] in names for file in manifest["files"])
 
     @property
     def failures(self) -> list[dict[str, Any]]:
@@ -401,7 +450,7 @@ class Dataset:
         labels, splits = (sorted({pair[place] for pair in pairs}) for place in (0, 1))
         counts = [(label, *(pairs[label, split] for split in splits)) for label in labels]
         state = "" if self.is_complete else ", not complete"
-        facts = {"Directory": self.path, "Columns": ", ".join(self.columns)}
+        facts = {"Directory": self.place, "Columns": ", ".join(self.columns)}
         return _display.page(
             f"Dataset of {len(self)} records{state}", _display.table([("", *splits), *counts]), _display.table(facts)
         )
@@ -415,7 +464,7 @@ class Dataset:
             ``pyarrow.dataset.field("pinion_speed_hz") > 30``.
         """
         both = expression if self._filter is None else self._filter & expression
-        return Dataset(self.path, self._native, both)
+        return Dataset(self.place, self._native, both)
 
     def split(self, name: str) -> Dataset:
         """The records of a split.

@@ -6,10 +6,12 @@ import errno
 import hashlib
 import importlib.util
 import json
+import re
 import shutil
 import sys
 import types
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow.dataset
@@ -158,6 +160,56 @@ def test_arrays_for_learners(gears: datasets.Dataset) -> None:
         gears.arrays(["fm4"])
     with pytest.raises(ValueError, match="no signals are named; there are horizontal_g, vertical_g, average_g"):
         gears.arrays([])
+
+
+def test_python_of_the_data_card(gears: datasets.Dataset, monkeypatch: pytest.MonkeyPatch) -> None:
+    blocks = re.findall(r"^```python\n(.*?)^```$", (gears.path / "README.md").read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+    monkeypatch.chdir(gears.path)
+    for block, package in zip(blocks, ("meshtone", "pandas", "polars", "dask"), strict=True):
+        assert package in block
+        names: dict[str, Any] = {}
+        exec(compile(block, f"{package} on the card", "exec"), names)
+        assert len(names["train"]) == len(gears.split("train"))
+    assert set(names["train"].columns) == {"label", "split", "severity", "horizontal_g"}
+
+
+def test_croissant(gears: datasets.Dataset) -> None:
+    """What machines read of a data set agrees with its files."""
+    metadata = json.loads((gears.path / "croissant.json").read_text(encoding="utf-8"))
+    assert metadata["conformsTo"] == "http://mlcommons.org/croissant/1.0" and metadata["version"] == "1.0.0"
+    splits, records = metadata["recordSet"]
+    assert {entry["splits/name"] for entry in splits["data"]} == set(gears.column("split"))
+    assert [field["name"] for field in records["field"]] == gears.columns
+    assert [field["name"] for field in records["field"] if field.get("repeated")] == gears.signal_columns
+    kinds = {"string": "sc:Text", "int": "sc:Integer", "double": "sc:Float", "list": "sc:Float"}
+    for field, column in zip(records["field"], gears.arrow.schema, strict=True):
+        kind = next(kind for name, kind in kinds.items() if str(column.type).startswith(name))
+        assert kind in (field["dataType"], field["dataType"][0])
+        unit = column.metadata[b"unit"].decode()
+        assert unit in ("", "-") or field["description"].endswith(f"; unit: {unit}")
+    shards, _, *files = metadata["distribution"]
+    assert len(list(gears.path.glob(shards["includes"]))) == len(gears.manifest["files"])
+    found = digests(gears.path)
+    assert {file["contentUrl"]: file["sha256"] for file in files} == {
+        name: found[name] for name in ("README.md", "plan.toml", "preview.png", "preview.svg", "scenario.toml")
+    }
+
+
+def test_croissant_is_read_by_its_own_library(tmp_path: Path) -> None:
+    mlcroissant = pytest.importorskip("mlcroissant", reason="mlcroissant is not installed: pip install mlcroissant")
+    plan = write_plan(tmp_path)
+    text = 'title = "Gears"\npublished = "2026-11-22"\n' + PLAN.replace("[keep]", '[keep]\nchannels = ["vertical_g"]\nduration_s = 0.05')
+    plan.write_text(text, encoding="utf-8")
+    made = datasets.generate_dataset(plan, tmp_path / "set")
+    read = mlcroissant.Dataset(tmp_path / "set" / "croissant.json")
+    issues = read.metadata.ctx.issues
+    assert not issues.errors and not issues.warnings, issues.report()
+    records = list(read.records("records"))
+    assert [record["records/record"] for record in records] == made.column("record").tolist()
+    assert [record["records/split"].decode() for record in records] == made.column("split").tolist()
+    for record, signal in zip(records, made.signals("vertical_g"), strict=True):
+        assert record["records/vertical_g"] == signal.tolist()
+    assert [record["records/fault_tooth"] for record in records] == made.to_arrow(["fault_tooth"]).column(0).to_pylist()
 
 
 def test_repr(gears: datasets.Dataset) -> None:

@@ -256,7 +256,7 @@ fn files(text: &mut String, shards: Shards, contents: &Contents) -> std::fmt::Re
 
 fn loading(text: &mut String, shards: Shards, columns: &[Column]) -> std::fmt::Result {
     let signal = columns.iter().find(|column| column.kind.is_signal()).map_or("label", |column| &column.name);
-    let all = if shards.is_flat() { "data/*.parquet" } else { "data/*/*.parquet" };
+    let all = shards.pattern();
     let first = shards.name(0);
     writeln!(
         text,
@@ -288,6 +288,15 @@ import polars as pl
 
 lazy = pl.scan_parquet(\"{all}\")
 train = lazy.filter(pl.col(\"split\") == \"train\").select(\"label\", \"severity\", \"{signal}\").collect()
+```
+
+With Dask:
+
+```python
+import dask.dataframe as dd
+
+lazy = dd.read_parquet(\"{all}\", columns=[\"label\", \"split\", \"severity\", \"{signal}\"])
+train = lazy[lazy[\"split\"] == \"train\"].compute()
 ```
 
 MATLAB:

@@ -1,4 +1,4 @@
-//! The end of a data set: its data card, preview and manifest.
+//! The end of a data set: its data card, preview, Croissant metadata and manifest.
 
 use std::collections::BTreeMap;
 
@@ -6,9 +6,10 @@ use meshtone_plot::dataset::{DatasetPreview, Example, Indicator, Key, dataset_fi
 
 use crate::card;
 use crate::contents::{Contents, INDICATORS, Looked, SampledRecord, is_drawn};
+use crate::croissant;
 use crate::digest::Digest;
 use crate::error::DatasetError;
-use crate::manifest::{self, CARD, MANIFEST, PREVIEW, ReadManifest};
+use crate::manifest::{self, CARD, CROISSANT, MANIFEST, PREVIEW, ReadManifest};
 use crate::part_list::{self, PartList};
 use crate::plan::{Content, Plan, SplitBy};
 use crate::shard::{self, Column, ColumnKind, FailedRecord, Shards, Wanted};
@@ -41,7 +42,7 @@ pub(crate) fn finish_if_complete(
     Ok(true)
 }
 
-/// Writes data card, preview and manifest of a data set whose shards are all there and known.
+/// Writes data card, preview, Croissant metadata and manifest of a data set whose shards are all there and known.
 pub(crate) fn finish(
     plan: &Plan,
     shards: Shards,
@@ -72,6 +73,9 @@ pub(crate) fn finish(
     }
     manifest::write_plan(plan, to)?;
     documents.extend(plan.files.iter().map(|file| (file.name, Digest::of(file.text.as_bytes()))));
+    let metadata = croissant::metadata(plan, shards, &units_of_split, &columns, &documents);
+    to.write_bytes(CROISSANT, metadata.as_bytes())?;
+    documents.insert(CROISSANT, Digest::of(metadata.as_bytes()));
     // A data set with this manifest has everything.
     to.write(MANIFEST, |file| {
         manifest::write_complete(file, plan, shards, &contents, &units_of_split, &documents)

@@ -269,7 +269,10 @@ fn look_at_documents(
         }
     }
     let copies = plan.files.iter().map(|file: &PlanFile| file.name);
-    let are_there = [CARD].into_iter().chain(PREVIEW).chain(copies).all(|name| files.contains_key(name));
+    // Of a data set that was finished before there was other metadata, its own list says what it has.
+    let listed = documents.keys().map(String::as_str);
+    let are_there =
+        [CARD].into_iter().chain(PREVIEW).chain(copies).chain(listed).all(|name| files.contains_key(name));
     let has_all = are_there && changed.is_empty();
     Ok((changed, has_all))
 }

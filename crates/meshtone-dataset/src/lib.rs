@@ -7,6 +7,7 @@
 
 mod card;
 mod contents;
+mod croissant;
 pub mod digest;
 pub mod draw;
 mod error;

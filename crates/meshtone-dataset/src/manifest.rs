@@ -19,6 +19,7 @@ use crate::store::Destination;
 
 pub(crate) const MANIFEST: &str = "manifest.json";
 pub(crate) const CARD: &str = "README.md";
+pub(crate) const CROISSANT: &str = "croissant.json";
 pub(crate) const PREVIEW: [&str; 2] = ["preview.svg", "preview.png"];
 /// Since 2 a shard's SHA-256 is that of the bytes that were to be written; of a data set of format 1 it was taken from the disk.
 /// Since 3 records have the columns of [`crate::shard::WARNINGS`] and of the time in which the teeth do not push.
@@ -117,7 +118,7 @@ fn check_same(plan: &Plan, to: &Destination, manifest: &ReadManifest) -> Result<
 
 /// Whether a data set may have a file of a name.
 pub(crate) fn is_of_a_data_set(name: &str) -> bool {
-    let known = [MANIFEST, CARD].into_iter().chain(PREVIEW).chain(PlanFile::NAMES);
+    let known = [MANIFEST, CARD, CROISSANT].into_iter().chain(PREVIEW).chain(PlanFile::NAMES);
     known.into_iter().any(|known| known == name) || Shards::is_name(name) || part_list::is_list(name)
 }
 

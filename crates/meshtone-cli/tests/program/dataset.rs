@@ -74,11 +74,27 @@ fn a_data_set_and_what_is_said_about_it() {
     for words in ["96 records in 12 shards written", "complete: 96 records of 12 units", "plan_dataset"] {
         assert!(said.contains(words), "{said}");
     }
-    let names =
-        ["README.md", "data", "manifest.json", "plan.toml", "preview.png", "preview.svg", "scenario.toml"];
+    let names = [
+        "README.md",
+        "croissant.json",
+        "data",
+        "manifest.json",
+        "plan.toml",
+        "preview.png",
+        "preview.svg",
+        "scenario.toml",
+    ];
     assert_eq!(workplace.names("plan_dataset"), names);
     let card = String::from_utf8(workplace.read("plan_dataset/README.md")).unwrap();
-    for words in ["| chipped |", "CC-BY-4.0", "parquetread", "scan_parquet", "`fault_tooth`", "| *units* |"] {
+    for words in [
+        "| chipped |",
+        "CC-BY-4.0",
+        "parquetread",
+        "scan_parquet",
+        "dask.dataframe",
+        "`fault_tooth`",
+        "| *units* |",
+    ] {
         assert!(card.contains(words), "{card}");
     }
     let again = stdout(&workplace.succeeds(&["dataset", "plan.toml"]));

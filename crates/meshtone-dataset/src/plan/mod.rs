@@ -56,6 +56,12 @@ pub struct About {
     pub description: String,
     /// Licence of the data, by its SPDX identifier or in words.
     pub licence: String,
+    /// Version of the data set, as `1.0.0`.
+    pub version: String,
+    /// The day on which it is published, as `2026-11-22`.
+    pub published: Option<String>,
+    /// How it is to be cited; by its title where that is left out.
+    pub citation: Option<String>,
     /// What it asks of a record.
     pub questions: Vec<Question>,
 }

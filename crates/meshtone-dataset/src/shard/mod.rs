@@ -103,6 +103,11 @@ impl Shards {
         self.count() <= FOLDER_SHARDS
     }
 
+    /// What matches the names of all shards, and nothing else.
+    pub fn pattern(&self) -> &'static str {
+        if self.is_flat() { "data/*.parquet" } else { "data/*/*.parquet" }
+    }
+
     /// The number of the shard of a name; none where no shard has it.
     ///
     /// # Arguments

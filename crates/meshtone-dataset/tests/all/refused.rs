@@ -40,6 +40,21 @@ fn empty_and_unfinished() {
     refused(&format!("class = []\n{no_class}"), &["has no class"]);
 }
 
+/// What goes into the metadata of an exchange format, where others read it.
+#[test]
+fn versions_and_days() {
+    for version in ["1.0", "1.0.0.0", "v1.0.0", "1..0"] {
+        let told = format!("version = \"{version}\": must be three whole numbers");
+        refused(&format!("version = \"{version}\"\n{FAST}"), &[&told]);
+    }
+    for day in ["2026-13-01", "2026-1-01", "26-01-01", "2026-01-32", "2026-01", "+026-01-01", "tomorrow"] {
+        let told = format!("published = \"{day}\": must be a day, as \"2026-11-22\"");
+        refused(&format!("published = \"{day}\"\n{FAST}"), &[&told]);
+    }
+    let about = plan(&format!("version = \"2.0.1\"\npublished = \"2026-02-28\"\n{FAST}")).about;
+    assert_eq!((&*about.version, about.published.as_deref()), ("2.0.1", Some("2026-02-28")));
+}
+
 /// Told from the plan, rather than by records that are missing in the end.
 #[test]
 fn severities_beyond_the_worst_damage() {

@@ -63,7 +63,7 @@ fn every_flipped_bit_of_a_shard_is_found_and_the_shard_made_again() {
 #[test]
 fn every_flipped_bit_of_another_file_is_found() {
     let (directory, to) = made();
-    for name in ["manifest.json", "README.md", "preview.svg", "preview.png", "plan.toml"] {
+    for name in ["manifest.json", "README.md", "croissant.json", "preview.svg", "preview.png", "plan.toml"] {
         let path = directory.path().join(name);
         let before = fs::read(&path).unwrap();
         for number in 1..=60 {
@@ -79,10 +79,10 @@ fn every_flipped_bit_of_another_file_is_found() {
 }
 
 #[test]
-fn the_card_and_the_preview_are_made_again() {
+fn what_is_written_beside_the_shards_is_made_again() {
     let (directory, to) = made();
     let before = bytes(directory.path());
-    for name in ["README.md", "preview.svg", "preview.png", "plan.toml"] {
+    for name in ["README.md", "croissant.json", "preview.svg", "preview.png", "plan.toml"] {
         fs::remove_file(directory.path().join(name)).unwrap();
         assert_only(&verify(&to, Check::Sizes).unwrap(), name, "it is missing");
         let again = run(&plan(FAST), &to, Part::WHOLE, 2).unwrap();

@@ -7,6 +7,7 @@ mod keep;
 mod rule;
 mod split;
 
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use meshtone_io::experiment::{Tuned, read_tuned};
@@ -20,6 +21,7 @@ use crate::sampling::Design;
 const MOST_UNITS: u64 = 1 << 40;
 const MOST_MOUNTINGS: u64 = 1 << 20;
 const LICENCE: &str = "CC-BY-4.0";
+const VERSION: &str = "1.0.0";
 
 /// Where a plan is, and what was read on the way.
 struct Reading<'a> {
@@ -106,6 +108,14 @@ fn plan(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Plan> {
         title: text("title")?.unwrap_or("Spur gear vibration").to_owned(),
         description: text("description")?.unwrap_or_default().to_owned(),
         licence: text("licence")?.unwrap_or(LICENCE).to_owned(),
+        version: root
+            .optional("version")
+            .map(|value| version(&value))
+            .transpose()?
+            .unwrap_or(VERSION)
+            .to_owned(),
+        published: root.optional("published").map(|value| date(&value)).transpose()?.map(str::to_owned),
+        citation: text("citation")?.map(str::to_owned),
         questions: Vec::new(),
     };
     let seed = root.optional("seed").map(|value| value.integer(0..=u64::MAX)).transpose()?;
@@ -153,6 +163,29 @@ fn plan(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Plan> {
         files: std::mem::take(&mut reading.files),
         sources: std::mem::take(&mut reading.sources),
     })
+}
+
+/// Three numbers with points between.
+fn version<'a>(value: &TomlValue<'a>) -> ReadResult<&'a str> {
+    let text = value.string()?;
+    let is_number = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    if text.split('.').count() == 3 && text.split('.').all(is_number) {
+        return Ok(text);
+    }
+    Err(value.error("must be three whole numbers with points between, as \"1.0.0\""))
+}
+
+/// Year, month and day, as ISO 8601 writes them.
+fn date<'a>(value: &TomlValue<'a>) -> ReadResult<&'a str> {
+    let text = value.string()?;
+    let is = |part: &str, digits: usize, allowed: RangeInclusive<u32>| {
+        let is_number = part.len() == digits && part.bytes().all(|byte| byte.is_ascii_digit());
+        is_number && part.parse().is_ok_and(|number| allowed.contains(&number))
+    };
+    match text.split('-').collect::<Vec<&str>>()[..] {
+        [year, month, day] if is(year, 4, 1..=9999) && is(month, 2, 1..=12) && is(day, 2, 1..=31) => Ok(text),
+        _ => Err(value.error("must be a day, as \"2026-11-22\"")),
+    }
 }
 
 /// What the data set asks.

@@ -1,0 +1,215 @@
+//! Croissant 1.0 metadata, <https://docs.mlcommons.org/croissant/docs/croissant-spec.html>: croissant.json.
+
+use std::collections::BTreeMap;
+
+use meshtone_io::table::{CellType, TableColumn};
+use serde_json::{Map, Value, json};
+
+use crate::digest::Digest;
+use crate::manifest::MANIFEST;
+use crate::plan::Plan;
+use crate::shard::{Column, ColumnKind, Shards};
+
+const CONFORMS_TO: &str = "http://mlcommons.org/croissant/1.0";
+/// Identifiers of the files of records, of their rows, and of the list of splits.
+const SHARDS: &str = "shards";
+const RECORDS: &str = "records";
+const SPLITS: &str = "splits";
+
+/// The metadata's text.
+///
+/// # Arguments
+/// * `units_of_split` - by the splits' names
+/// * `documents` - all files but the shards, the manifest and the metadata themselves; the manifest has their digest
+pub(crate) fn metadata(
+    plan: &Plan,
+    shards: Shards,
+    units_of_split: &BTreeMap<String, u64>,
+    columns: &[Column],
+    documents: &BTreeMap<&str, Digest>,
+) -> String {
+    let about = &plan.about;
+    let simulated = format!("simulated with Meshtone {}", env!("CARGO_PKG_VERSION"));
+    let citation = about.citation.clone();
+    let citation =
+        citation.unwrap_or_else(|| format!("{}, version {}, {simulated}", about.title, about.version));
+    let description = match about.description.trim() {
+        "" => format!("{}, {simulated}", about.title),
+        description => description.to_owned(),
+    };
+    let splits: Vec<&str> = plan.content.splits.names();
+    let splits: Vec<&str> = splits.into_iter().filter(|name| units_of_split.contains_key(*name)).collect();
+    let mut metadata = json!({
+        "@context": context(),
+        "@type": "sc:Dataset",
+        "conformsTo": CONFORMS_TO,
+        "name": about.title,
+        "description": description,
+        "license": about.licence,
+        "version": about.version,
+        "citeAs": citation,
+        "distribution": distribution(shards, documents),
+        "recordSet": [of_splits(&splits), of_records(columns)],
+    });
+    if let Some(day) = &about.published {
+        metadata["datePublished"] = json!(day);
+    }
+    format!("{metadata:#}\n")
+}
+
+/// What the words in it stand for: the context that the specification prescribes, and those words of the vocabulary on responsible use and
+/// of samples' rates that the standard's own library misses otherwise.
+fn context() -> Value {
+    let mut context = Map::new();
+    let mut define = |word: &str, meaning: Value| context.insert(word.to_owned(), meaning);
+    define("@language", json!("en"));
+    define("@vocab", json!("https://schema.org/"));
+    define("cr", json!("http://mlcommons.org/croissant/"));
+    define("rai", json!("http://mlcommons.org/croissant/RAI/"));
+    define("dct", json!("http://purl.org/dc/terms/"));
+    define("sc", json!("https://schema.org/"));
+    define("conformsTo", json!("dct:conformsTo"));
+    define("data", json!({ "@id": "cr:data", "@type": "@json" }));
+    define("dataType", json!({ "@id": "cr:dataType", "@type": "@vocab" }));
+    define("examples", json!({ "@id": "cr:examples", "@type": "@json" }));
+    for word in [
+        "citeAs",
+        "column",
+        "equivalentProperty",
+        "extract",
+        "field",
+        "fileObject",
+        "fileProperty",
+        "fileSet",
+        "format",
+        "includes",
+        "isLiveDataset",
+        "jsonPath",
+        "key",
+        "md5",
+        "parentField",
+        "path",
+        "recordSet",
+        "references",
+        "regex",
+        "repeated",
+        "replace",
+        "samplingRate",
+        "separator",
+        "source",
+        "subField",
+        "transform",
+    ] {
+        define(word, json!(format!("cr:{word}")));
+    }
+    Value::Object(context)
+}
+
+/// The files. That of all hashes cannot stand here with its own, as it has this file's; nor do a million shards.
+fn distribution(shards: Shards, documents: &BTreeMap<&str, Digest>) -> Value {
+    let file_set = |id: &str, includes: &str, format: &str, description: &str| {
+        json!({
+            "@type": "cr:FileSet",
+            "@id": id,
+            "name": id,
+            "description": description,
+            "encodingFormat": format,
+            "includes": includes,
+        })
+    };
+    let manifest = "counts, failures, and the SHA-256 of every file";
+    let mut files = vec![
+        file_set(SHARDS, shards.pattern(), "application/x-parquet", "the records, in random order"),
+        file_set("manifest", MANIFEST, "application/json", manifest),
+    ];
+    files.extend(documents.iter().map(|(name, digest)| {
+        json!({
+            "@type": "cr:FileObject",
+            "@id": name,
+            "name": name,
+            "contentUrl": name,
+            "contentSize": format!("{} B", digest.bytes),
+            "encodingFormat": media_type(name),
+            "sha256": digest.sha256.to_string(),
+        })
+    }));
+    Value::Array(files)
+}
+
+fn media_type(name: &str) -> &'static str {
+    match name.rsplit_once('.') {
+        Some((_, "md")) => "text/markdown",
+        Some((_, "svg")) => "image/svg+xml",
+        Some((_, "png")) => "image/png",
+        Some((_, "toml")) => "application/toml",
+        _ => "text/plain",
+    }
+}
+
+/// The list of splits, which a record's split refers to.
+fn of_splits(splits: &[&str]) -> Value {
+    let (name, url) = (format!("{SPLITS}/name"), format!("{SPLITS}/url"));
+    let data = splits.iter().map(|split| {
+        let kind = match *split {
+            "train" => "cr:TrainingSplit",
+            "validation" => "cr:ValidationSplit",
+            // Shifts are held out as the test is.
+            _ => "cr:TestSplit",
+        };
+        json!({ &name: split, &url: kind })
+    });
+    json!({
+        "@type": "cr:RecordSet",
+        "@id": SPLITS,
+        "name": SPLITS,
+        "dataType": "cr:Split",
+        "key": { "@id": name },
+        "field": [
+            { "@type": "cr:Field", "@id": name, "name": "name", "dataType": "sc:Text" },
+            { "@type": "cr:Field", "@id": url, "name": "url", "dataType": ["sc:URL", "cr:Split"] },
+        ],
+        "data": data.collect::<Vec<Value>>(),
+    })
+}
+
+fn of_records(columns: &[Column]) -> Value {
+    json!({
+        "@type": "cr:RecordSet",
+        "@id": RECORDS,
+        "name": RECORDS,
+        "description": "One row a record.",
+        "key": { "@id": format!("{RECORDS}/record") },
+        "field": columns.iter().map(field).collect::<Vec<Value>>(),
+    })
+}
+
+fn field(column: &Column) -> Value {
+    let description = match column.unit.as_str() {
+        "" | "-" => column.description.clone(),
+        unit => format!("{}; unit: {unit}", column.description),
+    };
+    let mut field = json!({
+        "@type": "cr:Field",
+        "@id": format!("{RECORDS}/{}", column.name),
+        "name": column.name,
+        "description": description,
+        "dataType": data_type(column),
+        "source": { "fileSet": { "@id": SHARDS }, "extract": { "column": column.name } },
+    });
+    if column.kind.is_signal() {
+        field["repeated"] = json!(true);
+    }
+    if column.kind == ColumnKind::Split {
+        field["references"] = json!({ "field": { "@id": format!("{SPLITS}/name") } });
+    }
+    field
+}
+
+fn data_type(column: &Column) -> Value {
+    let cells = match TableColumn::from(column).cells {
+        CellType::Int32 | CellType::Int64 | CellType::UInt32 | CellType::UInt64 => "sc:Integer",
+        CellType::Float64 | CellType::Float32List { .. } => "sc:Float",
+        CellType::Text => "sc:Text",
+    };
+    if column.kind == ColumnKind::Label { json!([cells, "cr:Label"]) } else { json!(cells) }
+}
