@@ -173,6 +173,14 @@ def test_python_of_the_data_card(gears: datasets.Dataset, monkeypatch: pytest.Mo
     assert set(names["train"].columns) == {"label", "split", "severity", "horizontal_g"}
 
 
+def test_card_of_splits_by_mounting(tmp_path: Path) -> None:
+    plan = write_plan(tmp_path)
+    text = PLAN.replace("records = 24", "records = 8").replace("units = 6", "units = 2\nmountings = 2")
+    plan.write_text(text.replace("[split]", '[split]\nby = "mounting"'), encoding="utf-8")
+    card = (datasets.generate_dataset(plan, tmp_path / "set").path / "README.md").read_text(encoding="utf-8")
+    assert "**Splits are by mounting**: " in card and "| *mountings* | 2 | 2 | 4 |" in card
+
+
 def test_croissant(gears: datasets.Dataset) -> None:
     """What machines read of a data set agrees with its files."""
     metadata = json.loads((gears.path / "croissant.json").read_text(encoding="utf-8"))

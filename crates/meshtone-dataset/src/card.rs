@@ -7,7 +7,7 @@ use meshtone::scenario::WarningKind;
 
 use crate::contents::Contents;
 use crate::manifest::PREVIEW;
-use crate::plan::{Class, Plan, PlanFile, Severity, kinds};
+use crate::plan::{Class, Plan, PlanFile, Severity, SplitBy, kinds};
 use crate::shard::{Column, ColumnKind, Shards, WARNINGS};
 use crate::words::counted;
 
@@ -99,12 +99,20 @@ fn counts(
         writeln!(text, "{}", row(&class.label, numbers))?;
     }
     let units = splits.iter().map(|split| units_of_split.get(*split).copied().unwrap_or(0)).collect();
-    writeln!(text, "{}\n", row("*units*", units))?;
-    writeln!(
-        text,
-        "**Splits are by unit**: all records of a pair of wheels are in one split, so that nothing about particular wheels that was \
-         learned in training helps in the test."
-    )?;
+    let (divided, meaning) = match plan.content.splits.by {
+        SplitBy::Unit => (
+            "unit",
+            "all records of a pair of wheels are in one split, so that nothing about particular wheels that was learned in training \
+             helps in the test",
+        ),
+        SplitBy::Mounting => (
+            "mounting",
+            "all records of a pair of wheels as it was put together once are in one split, which may share the wheels with others, \
+             mounted anew: what was learned in training about particular wheels helps in the test, about a mounting it does not",
+        ),
+    };
+    writeln!(text, "{}\n", row(&format!("*{divided}s*"), units))?;
+    writeln!(text, "**Splits are by {divided}**: {meaning}.")?;
     for shift in &plan.content.splits.shifts {
         let when: Vec<String> = shift.when.iter().map(|condition| format!("`{condition}`")).collect();
         writeln!(

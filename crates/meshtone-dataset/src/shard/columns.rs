@@ -379,7 +379,10 @@ fn key_column(key: &str) -> Column {
         Some(0) => "signal-to-noise ratio of the added noise".to_owned(),
         Some(1) => "standard deviation of the added noise".to_owned(),
         Some(2) => "gain of the path to the sensor".to_owned(),
-        Some(_) => "standard deviation over frequency of the gain of the path to the sensor, its mounting's own".to_owned(),
+        Some(_) => {
+            "standard deviation over frequency of the gain of the path to the sensor, its mounting's own"
+                .to_owned()
+        }
         None if is_of_plan(key) => format!("{key} of the plan, which other keys depend on"),
         None if is_tooth(key) => format!(
             "{key} of the scenario, from 1: the same tooth counted from where the scenario's first teeth meet, as the plan \
