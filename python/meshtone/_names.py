@@ -10,11 +10,12 @@ __all__ = ["hint", "near"]
 
 def near(name: str, known: Iterable[str]) -> list[str]:
     """The known names that have one in them, or else resemble it; all are of small letters."""
-    names, wanted = list(known), name.lower()
+    names, wanted = list(known), str(name).lower()
     return [each for each in names if wanted in each] or difflib.get_close_matches(wanted, names)
 
 
 def hint(name: str, known: Iterable[str]) -> str:
     """The known name that is meant, to be put behind an error; empty if none is near."""
-    meant = difflib.get_close_matches(name.lower(), known, n=1)
-    return f"; did you mean '{meant[0]}'?" if meant else ""
+    lowered = {each.lower(): each for each in known}
+    meant = difflib.get_close_matches(str(name).lower(), lowered, n=1)
+    return f"; did you mean '{lowered[meant[0]]}'?" if meant else ""

@@ -830,11 +830,13 @@ class Rows:
             raise IndexError(f"record {number} of {len(self)}")
         number %= len(self)
         place = int(np.searchsorted(self._ends, number, side="right"))
-        if self._read is None or self._read[0] != place:
+        # Other threads may put another shard there meanwhile.
+        read = self._read
+        if read is None or read[0] != place:
             batches = self._fragments[place].to_batches(columns=self._columns, filter=self._filter)
-            self._read = (place, [record for batch in batches for record in _records_of(batch)])
+            self._read = read = (place, [record for batch in batches for record in _records_of(batch)])
         first = int(self._ends[place - 1]) if place else 0
-        return dict(self._read[1][number - first])
+        return dict(read[1][number - first])
 
 
 def with_points(name: str, values: FloatSignal, points: int) -> FloatSignal:

@@ -7,7 +7,7 @@ use meshtone::scenario::WarningKind;
 
 use crate::contents::Contents;
 use crate::manifest::PREVIEW;
-use crate::plan::{Class, Plan, PlanFile, Severity, SplitBy, kinds};
+use crate::plan::{Class, Growth, Plan, PlanFile, Severity, SplitBy, kinds};
 use crate::shard::{Column, ColumnKind, Shards, WARNINGS};
 use crate::words::counted;
 
@@ -158,7 +158,8 @@ fn classes(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Res
     writeln!(text, "## Classes\n\n| label | fault | severity |\n|---|---|---|")?;
     for class in &plan.content.classes {
         let fault = kinds(&class.faults).unwrap_or_else(|| "none".to_owned());
-        writeln!(text, "| {} | {fault} | {} |", class.label, severity(class))?;
+        let grows = class.growth.as_ref().map(grows).unwrap_or_default();
+        writeln!(text, "| {} | {fault}{grows} | {} |", class.label, severity(class))?;
     }
     writeln!(text, "\n## How it was drawn\n\nDesign: {}. \n", design(plan))?;
     writeln!(text, "| column | key | for each | least | largest |\n|---|---|---|---:|---:|")?;
@@ -198,6 +199,16 @@ fn questions(text: &mut String, plan: &Plan) -> std::fmt::Result {
         "\nFrom the signals, the indicators and what is known of a machine: teeth, module, face width, speed, load. Columns of the \
          fault, seeds, numbers of records, units and mountings, and all that was drawn besides are not known of a real gear: they are \
          there to see where an answer fails. Train on `train`, choose on `validation`.\n"
+    )
+}
+
+/// How a damage grows, in words.
+fn grows(growth: &Growth) -> String {
+    let Growth { law, start, failure, censored, .. } = growth;
+    let name = law.name();
+    format!(
+        ", which grows by the law `{name}` from severity {start} to failure at {failure}; {:.0} % of the runs are stopped before",
+        100.0 * censored
     )
 }
 

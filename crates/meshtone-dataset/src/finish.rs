@@ -140,7 +140,8 @@ fn preview(
             counted(contents.files.len() as u64, "shard")
         ),
         signal_name: shown.map_or_else(String::new, |column| column.name.clone()),
-        over_angle: shown.is_some_and(|column| !matches!(column.kind, ColumnKind::Channel(_))),
+        over_angle: plan.content.keep.over_angle.is_some()
+            || shown.is_some_and(|column| !matches!(column.kind, ColumnKind::Channel(_))),
         examples: examples.collect(),
         class_of: sampled.iter().map(|record| place(&classes, &record.label)).collect(),
         split_of: sampled.iter().map(|record| place(&splits, &record.split)).collect(),

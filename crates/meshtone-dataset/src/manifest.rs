@@ -330,6 +330,7 @@ pub(crate) fn write_complete(
 ) -> io::Result<()> {
     let mut manifest = head(plan, true);
     manifest.insert("records_per_shard".into(), json!(shards.records_per_shard));
+    manifest.insert("split_by".into(), json!(plan.content.splits.by.name()));
     manifest.insert("units_of_split".into(), json!(units_of_split));
     manifest.insert("counts".into(), counts_table(&contents.counts));
     manifest.insert("warnings".into(), json!(contents.warnings));

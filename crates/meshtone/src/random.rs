@@ -52,10 +52,16 @@ pub enum Purpose {
     Pits = 19,
     /// Values that a mounting of a data set's unit is drawn with, and its seed; index: mounting.
     DatasetMounting = 20,
-    /// Ripple of the path to a sensor over frequency; index: channel.
+    /// Ripple of the path to a sensor over frequency; index: what stands for the channel's name.
     PathRipple = 21,
-    /// Life of a run to failure, its end and when its damage grows; index: unit.
+    /// Seed of a unit's run to failure; index: unit. Under it its life and its end; index: 0.
     DatasetRun = 22,
+    /// When the pits of a run come; index: 0.
+    DatasetPits = 23,
+    /// When a run is looked at; index: record of the run.
+    DatasetInspection = 24,
+    /// The mounting that a unit's first record of a class is of; index: unit.
+    DatasetTurn = 25,
 }
 
 /// A sequence of random numbers.

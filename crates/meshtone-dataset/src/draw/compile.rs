@@ -326,9 +326,29 @@ fn check_growth(
     }
     let place = format!("class[{class}].growth");
     if !known.iter().any(|number| number.key == FAULT_SEVERITY) {
-        let problem = "is of a fault that is given by its sizes; must be given by its severity, which grows";
-        return Err(TomlError::new(place, "", problem)
-            .with_help("write the class's fault as { kind = \"…\", severity = 0.5 }"));
+        let problem =
+            "is of a fault without a severity that can be set; must be given by its severity, which grows";
+        return Err(TomlError::new(place, "", problem).with_help(
+            "write the class's fault as { kind = \"…\", severity = 0.5 }; a missing tooth cannot grow",
+        ));
+    }
+    let of_fault = rules.iter().find_map(|(rule, place)| {
+        let key = rule.keys.iter().find(|key| is_of_fault(key) && *key != FAULT_SEVERITY)?;
+        Some((key, place))
+    });
+    if let Some((key, other)) = of_fault {
+        let problem = format!("`{key}` would jump from record to record of a run, in which one damage grows");
+        return Err(TomlError::new(other, "", problem)
+            .with_help("give it in the class's fault, the same for all runs"));
+    }
+    let of_severity = |condition: &&Condition| {
+        underlying(condition.keys()).into_iter().any(|key| key == SEVERITY || key == FAULT_SEVERITY)
+    };
+    let shifts = content.splits.shifts.iter().flat_map(|shift| &shift.when);
+    if let Some(condition) = content.constraints.iter().chain(shifts).find(of_severity) {
+        let problem =
+            format!("has severities that `{condition}` would leave out; a run passes through all of them");
+        return Err(TomlError::new(place, "", problem).with_help("leave out the condition, or the growth"));
     }
     match rules.iter().find(|(rule, _)| rule.keys.iter().any(|key| key == FAULT_SEVERITY)) {
         Some((_, other)) => {

@@ -203,7 +203,7 @@ impl<'a> Sampler<'a> {
         let records_of_unit = (first + count - 1 - unit) / units + 1 - begun;
         // A run is not taken apart.
         let turns = if self.content.classes[class].growth.is_some() { 0 } else { of_unit };
-        let turned = keyed(seed, Purpose::DatasetMounting, unit);
+        let turned = keyed(seed, Purpose::DatasetTurn, unit);
         let mounting = unit * mountings + (turned % mountings + turns) % mountings;
         Place { unit, mounting, of_unit, records_of_unit }
     }

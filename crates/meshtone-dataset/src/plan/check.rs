@@ -2,10 +2,10 @@
 
 use std::collections::HashSet;
 
-use meshtone::scenario::ScenarioError;
+use meshtone::scenario::{ScenarioError, WheelName};
 use meshtone_toml::{ReadResult, TomlError, TomlTable};
 
-use super::{Content, Distribution, Plan, Rule, SplitBy};
+use super::{Content, Distribution, OverAngle, Plan, Rule, SplitBy};
 use crate::draw::{DrawError, DrawnRecord, Sampler, is_of_plan};
 use crate::shard::FailedRecord;
 
@@ -24,10 +24,15 @@ pub(super) fn check(content: &Content, root: &TomlTable<'_>) -> ReadResult<()> {
     if content.units > records {
         return Err(root.error("units", format!("is more than the {records} records")));
     }
+    let mounted = content.units.saturating_mul(content.mountings);
+    if mounted > records {
+        let problem = format!("gives {mounted} mountings of all units, more than the {records} records");
+        return Err(root.error("mountings", problem).with_help("lower it, or units"));
+    }
     let needed = content.splits.all_parts().iter().filter(|&&part| part > 0.0).count() as u64;
     let (key, divided) = match content.splits.by {
         SplitBy::Unit => ("units", content.units),
-        SplitBy::Mounting => ("mountings", content.units * content.mountings),
+        SplitBy::Mounting => ("mountings", mounted),
     };
     if divided < needed {
         let problem =
@@ -233,6 +238,9 @@ fn refuse_value(
 
 /// A record is a hunting period long, and cannot be cut to more.
 fn refuse_short(content: &Content, scenario: &meshtone::scenario::Scenario) -> ReadResult<()> {
+    if let Some(angle) = content.keep.over_angle {
+        refuse_turns(content, scenario, angle)?;
+    }
     let Some(duration_s) = content.keep.duration_s else { return Ok(()) };
     let time = scenario.time_grid();
     let period_s = time.kept_samples() as f64 / time.sampling_rate_hz;
@@ -244,6 +252,41 @@ fn refuse_short(content: &Content, scenario: &meshtone::scenario::Scenario) -> R
         format!("is longer than the hunting period, {period_s:.4} s, which is all that is simulated");
     Err(TomlError::new("keep.duration_s", duration_s.to_string(), problem)
         .with_help("shorten it, or leave it out: a record is then a whole hunting period long"))
+}
+
+/// Channels over the angle are of a steady motion, and no longer than it is simulated.
+fn refuse_turns(
+    content: &Content,
+    scenario: &meshtone::scenario::Scenario,
+    angle: OverAngle,
+) -> ReadResult<()> {
+    let operation = &scenario.operation;
+    let is_steady = operation.speed_profile_hz.is_none()
+        && operation.torque_profile_nm.is_none()
+        && operation.speed_fluctuation_hz == 0.0
+        && operation.torque_fluctuation_nm == 0.0;
+    if !is_steady {
+        let problem = "is of a speed and a load that are constant within a record; the scenario's are not";
+        return Err(TomlError::new("keep.points_per_revolution", "", problem)
+            .with_help("leave it and revolutions out, or the profiles and fluctuations"));
+    }
+    let time = scenario.time_grid();
+    let turns = time.kept_samples() / time.samples_per_pinion_revolution.max(1);
+    let gears = &scenario.gears;
+    let simulated = match content.keep.wheel {
+        WheelName::Pinion => turns,
+        WheelName::Gear => turns * gears.pinion_teeth as usize / gears.gear_teeth as usize,
+    };
+    if angle.revolutions <= simulated {
+        return Ok(());
+    }
+    let problem = format!(
+        "is more than the {simulated} revolutions of the {} that are simulated of {}/{} teeth",
+        content.keep.wheel.name(),
+        gears.pinion_teeth,
+        gears.gear_teeth
+    );
+    Err(TomlError::new("keep.revolutions", angle.revolutions.to_string(), problem).with_help("lower it"))
 }
 
 /// A varied key that the model ignores would be a label without effect.

@@ -14,7 +14,7 @@ pub enum Law {
     },
     /// Wear, by Archard: as the distance that the flanks slide under their load.
     Archard,
-    /// Pits, by their count: it rises from pit to pit, the chance of the next one growing as a power of the age.
+    /// Pits, by their count: the severity rises by as much with each of them, the chance of the next one growing as a power of the age.
     Pits {
         /// How many there are at failure.
         count: u32,
@@ -99,7 +99,7 @@ impl Growth {
             }
             Law::Archard => start + part * (failure - start),
             Law::Pits { count, exponent } => {
-                let mut draws = Draws::new(seed, Purpose::DatasetRun, 1);
+                let mut draws = Draws::new(seed, Purpose::DatasetPits, 0);
                 // The last of them is the failure.
                 let came =
                     (1..count).filter(|_| libm::pow(draws.uniform(0.5, 0.5), 1.0 / exponent) <= part).count();
@@ -122,7 +122,7 @@ impl Growth {
         let life_rev = self.life_rev.at(life, 0)[0];
         let is_censored = stopped < self.censored;
         let observed = if is_censored { EARLIEST_END + (1.0 - EARLIEST_END) * end } else { 1.0 };
-        let within = Draws::new(seed, Purpose::DatasetRun, 2 + place).uniform(0.5, 0.5);
+        let within = Draws::new(seed, Purpose::DatasetInspection, place).uniform(0.5, 0.5);
         let part = observed * (place as f64 + within) / records.max(1) as f64;
         Age {
             age_rev: part * life_rev,

@@ -33,9 +33,11 @@ impl Question {
     pub fn target(self) -> &'static str {
         match self {
             Self::Detection => "whether `fault_kind` is null",
-            Self::Diagnosis => "`label`, which is `fault_kind` on `fault_wheel`",
+            Self::Diagnosis => "`label`",
             Self::Severity => "`fault_severity`, 0 for healthy",
-            Self::RemainingLife => "`remaining_rev`, at least that where `censored` is 1",
+            Self::RemainingLife => {
+                "`remaining_rev` of records that have it, at least that where `censored` is 1"
+            }
         }
     }
 

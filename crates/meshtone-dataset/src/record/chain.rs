@@ -41,9 +41,9 @@ pub(super) fn record(
     let parts = stages.scenario.model == Model::Contact;
     record.slack_fraction = if parts { observed.apart_fraction } else { observed.tension_fraction };
     record.warnings = kinds(&observed.warnings);
-    for (number, (kind, channel)) in simulated.iter().zip(&mut channels).enumerate() {
+    for (kind, channel) in simulated.iter().zip(&mut channels) {
         if kind.is_acceleration() {
-            path::pass(&record.drawn, number as u64, keep.sampling_rate_hz, channel);
+            path::pass(&record.drawn, &kind.name(), keep.sampling_rate_hz, channel);
         }
     }
     if let (Some(analysed), true) = (analysed, enhanced) {
@@ -66,8 +66,10 @@ pub(super) fn record(
         }
         if keep.indicators {
             record.indicators = analysis.indicators.table("g");
-            let (teeth, nyquist) = (view.teeth(), analysis.average.nyquist_order);
-            record.octaves = octave_bands(&analysis.parts.difference, teeth, nyquist).map_err(signals)?;
+            // Beyond, the filter takes from what is there.
+            let passed = PASSED * analysis.average.nyquist_order;
+            record.octaves =
+                octave_bands(&analysis.parts.difference, view.teeth(), passed).map_err(signals)?;
         }
     }
     channels.truncate(keep.channels.len());
@@ -109,12 +111,15 @@ pub(super) fn twin(
     let mut record = view.empty(drawn);
     if let Some(analysed) = analysed {
         let mut channels = view.at_rate(&samples[analysed..=analysed]).map_err(signals)?;
-        path::pass(&record.drawn, analysed as u64, content.keep.sampling_rate_hz, &mut channels[0]);
+        let name = content.keep.analysed.name();
+        path::pass(&record.drawn, &name, content.keep.sampling_rate_hz, &mut channels[0]);
         record.clean_difference = view.clean_difference(&channels[0], content).map_err(signals)?;
     }
     Ok(record)
 }
 
+/// (-) Part of half the sampling rate up to which signals are whole.
+const PASSED: f64 = 0.8;
 /// Part of the record at either end by which it is seen to grow.
 const END: usize = 10;
 /// Growth from the first to the last of those parts that no steady motion shows.
@@ -342,6 +347,12 @@ impl<'a> View<'a> {
 
     /// A channel over whole revolutions, from the mark on.
     fn over_angle(&self, signal: &[f32], angle: OverAngle) -> Result<Vec<f32>, SignalError> {
+        // A channel in which nothing happens is none to the chain.
+        if let Some(&first) = signal.first()
+            && signal.iter().all(|&x| x == first)
+        {
+            return Ok(vec![first; angle.values()]);
+        }
         let double: Vec<f64> = signal.iter().map(|&x| f64::from(x)).collect();
         let angular = angular_resample(&double, &self.phase(signal.len())?, &AngularSettings::default())?;
         if angular.revolutions() < angle.revolutions {

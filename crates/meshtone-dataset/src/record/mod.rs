@@ -137,7 +137,10 @@ pub(crate) fn kept_bytes(content: &Content, time: &TimeGrid) -> usize {
     };
     // An average's length is the next power of two above a revolution's.
     let turns = time.kept_samples() as f64 / time.samples_per_pinion_revolution as f64;
-    let average = 4.0 * period / turns.max(1.0);
+    let average = match keep.over_angle {
+        Some(angle) => angle.points_per_revolution as f64,
+        None => 4.0 * period / turns.max(1.0),
+    };
     let averages = f64::from(u8::from(keep.average) + u8::from(keep.difference)) * average;
     let enhanced = if content.tuned.is_some() { 3.0 * average } else { 0.0 };
     (4.0 * (raw * keep.channels.len() as f64 + averages + enhanced)) as usize + 1000

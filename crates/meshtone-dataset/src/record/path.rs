@@ -20,15 +20,15 @@ const OCTAVES: usize = 16;
 ///
 /// # Arguments
 /// * `drawn` - the record
-/// * `channel` - number of the channel
+/// * `channel` - its name: what else is kept changes nothing
 /// * `rate_hz` - (S/s) its sampling rate
 /// * `signal` - (g) its samples
-pub(super) fn pass(drawn: &DrawnRecord, channel: u64, rate_hz: f64, signal: &mut [f32]) {
+pub(super) fn pass(drawn: &DrawnRecord, channel: &str, rate_hz: f64, signal: &mut [f32]) {
     let value = |key: &str| drawn.values.iter().find(|(other, _)| other == key).map(|(_, value)| *value);
     let [gain_db, ripple_db] = PATH_KEYS.map(value);
     match ripple_db {
         Some(ripple_db) if ripple_db != 0.0 && signal.len() > 1 => {
-            let ripple = Ripple::new(drawn.mounting_seed, channel, ripple_db);
+            let ripple = Ripple::new(drawn.mounting_seed, number_of(channel), ripple_db);
             let gain_db = gain_db.unwrap_or(0.0);
             filter(signal, rate_hz, |hz| factor(gain_db + ripple.db_at(hz)));
         }
@@ -43,6 +43,12 @@ pub(super) fn pass(drawn: &DrawnRecord, channel: u64, rate_hz: f64, signal: &mut
 
 fn factor(db: f64) -> f64 {
     libm::pow(10.0, db / 20.0)
+}
+
+/// A number that stands for a name: FNV-1a (RFC 9923).
+fn number_of(name: &str) -> u64 {
+    let step = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+    name.bytes().fold(0xcbf2_9ce4_8422_2325, step)
 }
 
 /// Gains in decibels over frequency.
@@ -114,7 +120,7 @@ mod tests {
     #[test]
     fn a_gain_is_the_same_everywhere() {
         let mut signal = tone(1000.0);
-        pass(&drawn(&[("path.gain_db", 6.0)], 1), 0, 1e4, &mut signal);
+        pass(&drawn(&[("path.gain_db", 6.0)], 1), "vertical_g", 1e4, &mut signal);
         assert!((rms(&signal) / rms(&tone(1000.0)) - 1.995).abs() < 1e-3);
     }
 
@@ -125,7 +131,7 @@ mod tests {
             let mut signal = tone(1024.0);
             let record =
                 DrawnRecord { seed: record_seed, ..drawn(&[("path.ripple_db", 3.0)], mounting_seed) };
-            pass(&record, 0, 1e4, &mut signal);
+            pass(&record, "vertical_g", 1e4, &mut signal);
             20.0 * (rms(&signal) / rms(&tone(1024.0))).log10()
         };
         assert_eq!(gain_db(5, 1), gain_db(5, 2));

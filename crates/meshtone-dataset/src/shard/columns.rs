@@ -320,7 +320,7 @@ fn of_octave(number: usize, name: &str) -> [Column; 2] {
         column(
             &format!("difference_octave_{name}_rms_g"),
             "g",
-            &format!("rms {octave}; null beyond half the sampling rate"),
+            &format!("rms {octave}; null beyond 0.8 of half the sampling rate"),
             ColumnKind::OctaveRms(number),
         ),
         column(

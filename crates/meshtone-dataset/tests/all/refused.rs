@@ -327,6 +327,32 @@ fn mountings_and_growth() {
         by_sizes,
         &["class[2].growth", "must be given by its severity"],
     );
+    grown("{ law = \"archard\", life_rev = { choice = [1e6, -1e6, 1e7] } }", &["life_rev", "more than 0"]);
+    grown("{ law = \"archard\", life_rev = { grid = [1e6, 1e7] } }", &["life_rev", "write choice"]);
+    grown(
+        &format!("{{ law = \"archard\", {life} }}\n[[class.vary]]\nkey = \"fault.tooth\"\nchoice = [1, 7]"),
+        &["class[2].vary[0]", "would jump from record to record", "in the class's fault"],
+    );
+    let severe =
+        FAST.replace("when = \"operation.pinion_speed_hz > 50\"", "when = \"fault.severity > 0.5\"").replace(
+            "fault = { kind = \"missing-tooth\" }\nseverity = 4",
+            &format!(
+                "fault = {{ kind = \"wear\", severity = 0.5 }}\ngrowth = {{ law = \"archard\", {life} }}"
+            ),
+        );
+    refused(&severe, &["class[2].growth", "passes through all of them"]);
+    refused_with("units = 10", "units = 10\nmountings = 7", &["mountings = 7", "70 mountings"]);
+    let turns = "[keep]\npoints_per_revolution = 64\nrevolutions = 21";
+    refused_with("[keep]", turns, &["keep.revolutions", "the 20 revolutions of the gear"]);
+    let angular = FAST.replace("[keep]", "[keep]\npoints_per_revolution = 64\nrevolutions = 2");
+    let restless =
+        angular.replace("brake_torque_nm = 200.0", "brake_torque_nm = 200.0\ntorque_fluctuation_nm = 1.0");
+    refused(&restless, &["keep.points_per_revolution", "constant within a record"]);
+    refused_with(
+        "seed = 3",
+        "seed = 3\nquestions = [\"severity\", \"severity\"]",
+        &["questions[1]", "asked twice"],
+    );
     refused_with("seed = 3", "seed = 3\nquestions = [\"remaining-life\"]", &["needs a class with growth"]);
     refused_with("[keep]", "[keep]\nrevolutions = 4", &["keep.revolutions", "points_per_revolution"]);
 }

@@ -55,14 +55,17 @@ fn growth(table: &TomlTable<'_>) -> ReadResult<Growth> {
         value if value.is_table() => value.table()?.read(|table| distribution(table, 1))?,
         value => Distribution::Fixed(value.number()?),
     };
-    let least = (0..2)
-        .map(|end| life_rev.at(f64::from(end) * (1.0 - f64::EPSILON), 0)[0])
-        .fold(f64::INFINITY, f64::min);
-    let is_grid = matches!(life_rev, Distribution::Grid(_));
-    if is_grid || least.is_nan() || least <= 0.0 {
-        return Err(life.error(
-            "must be more than 0 revolutions, fixed or drawn: uniform, log_uniform, normal or choice",
-        ));
+    let least = match &life_rev {
+        Distribution::Grid(_) => {
+            return Err(life.error("is a grid; every run has a life of its own, drawn: write choice instead"));
+        }
+        Distribution::Choice { rows, .. } => rows.iter().map(|row| row[0]).fold(f64::INFINITY, f64::min),
+        Distribution::Fixed(value) => *value,
+        Distribution::Uniform([least, _]) | Distribution::LogUniform([least, _]) => *least,
+        Distribution::Normal { within: [least, _], .. } => *least,
+    };
+    if least.is_nan() || least <= 0.0 {
+        return Err(life.error("must be more than 0 revolutions"));
     }
     let censored = part(table, "censored")?.unwrap_or(0.0);
     Ok(Growth { law, start, failure, life_rev, censored })

@@ -194,10 +194,17 @@ fn questions(value: &TomlValue<'_>, classes: &[Class]) -> ReadResult<Vec<Questio
         let question = value.choice(&Question::NAMES)?;
         match question.obstacle(classes) {
             None => Ok(question),
-            Some(obstacle) => Err(value.error(obstacle)),
+            Some(obstacle) => {
+                Err(value.error(obstacle).with_help("add such a class, or leave the question out"))
+            }
         }
     };
-    value.array()?.iter().map(one).collect()
+    let listed = value.array()?;
+    let questions: Vec<Question> = listed.iter().map(one).collect::<ReadResult<_>>()?;
+    match (1..questions.len()).find(|&n| questions[..n].contains(&questions[n])) {
+        Some(twice) => Err(listed[twice].error("is asked twice")),
+        None => Ok(questions),
+    }
 }
 
 fn tuned<'a>(value: &TomlValue<'a>, reading: &mut Reading) -> ReadResult<(TomlValue<'a>, Tuned)> {

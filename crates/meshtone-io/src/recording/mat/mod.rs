@@ -74,6 +74,9 @@ pub(super) fn read(
     Ok(recording)
 }
 
+/// Arrays of one name that are looked at.
+const MOST_TWINS: usize = 16;
+
 /// Finds, among the arrays of one name, those that are 0 throughout, where another is not.
 fn mark_zero_twins(
     file: &File,
@@ -86,7 +89,8 @@ fn mark_zero_twins(
         by_name.entry(&entry.name).or_default().push(index);
     }
     let mut zero = Vec::new();
-    for twins in by_name.values().filter(|twins| twins.len() > 1) {
+    // Each is inflated from its variable's start: of more no one chooses by number.
+    for twins in by_name.values().filter(|twins| (2..=MOST_TWINS).contains(&twins.len())) {
         let zeros = twins.iter().map(|&twin| Ok((twin, is_zero(file, big_endian, places[twin])?)));
         let zeros: Vec<(usize, bool)> = zeros.collect::<io::Result<_>>()?;
         if zeros.iter().any(|(_, is_zero)| !is_zero) {
