@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import errno
 import os
-import tempfile
+import secrets
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from os import PathLike
 from pathlib import Path
-from typing import BinaryIO, cast
+from typing import BinaryIO
 
 __all__ = ["written_whole"]
 
@@ -31,15 +31,16 @@ def written_whole(path: str | PathLike[str]) -> Iterator[BinaryIO]:
     target = Path(path)
     if target.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), os.fspath(path))
-    with tempfile.NamedTemporaryFile(prefix=f".{target.name}-", dir=target.parent, delete=False) as stream:
-        beside = Path(stream.name)
-        try:
-            yield cast(BinaryIO, stream)
-            stream.close()
-            # Such files are for their owner alone at first.
-            umask = os.umask(0)
-            os.umask(umask)
-            beside.chmod(0o666 & ~umask)
-            beside.replace(target)
-        finally:
-            beside.unlink(missing_ok=True)
+    # A name of its own: others may write to the same place meanwhile.
+    beside = target.with_name(f".{target.name}-{secrets.token_hex(6)}")
+    try:
+        with beside.open("xb") as stream:
+            yield stream
+        beside.replace(target)
+    except OSError as error:
+        if error.filename == os.fspath(beside):
+            error.filename = os.fspath(target)
+        raise
+    finally:
+        with suppress(OSError):
+            beside.unlink()

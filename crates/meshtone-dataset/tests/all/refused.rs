@@ -329,8 +329,13 @@ fn mountings_and_growth() {
     );
     grown("{ law = \"archard\", life_rev = { choice = [1e6, -1e6, 1e7] } }", &["life_rev", "more than 0"]);
     grown("{ law = \"archard\", life_rev = { grid = [1e6, 1e7] } }", &["life_rev", "write choice"]);
-    grown(
-        &format!("{{ law = \"archard\", {life} }}\n[[class.vary]]\nkey = \"fault.tooth\"\nchoice = [1, 7]"),
+    let cracked = format!(
+        "fault = {{ kind = \"root-crack\", severity = 0.5 }}\ngrowth = {{ law = \"paris\", {life} }}\n\
+         [[class.vary]]\nkey = \"fault.tooth\"\nchoice = [1, 7]"
+    );
+    refused_with(
+        "fault = { kind = \"missing-tooth\" }\nseverity = 4",
+        &cracked,
         &["class[2].vary[0]", "would jump from record to record", "in the class's fault"],
     );
     let severe =

@@ -204,10 +204,10 @@ mod tests {
         let mesh = Mesh { mesh_n_per_mm: pitch.repeat(4), first_pitch: -1, healthy_n_per_mm: pitch.clone() };
         let of = |window| mesh.curve(&mesh.mesh_n_per_mm, mesh.first_pitch, window).collect::<Vec<_>>();
         let whole = of([0.0, 2.0]);
-        assert_eq!((whole[0], whole[1]), ((0.0, 2.0), (0.1, 2.0)));
-        assert_eq!((whole[20], whole[19]), ((2.0, 1.0), (1.9, 1.0)));
+        assert_eq!((whole[0], whole[1]), ((0.0, 2e3), (0.1, 2e3)));
+        assert_eq!((whole[20], whole[19]), ((2.0, 1e3), (1.9, 1e3)));
         // Within the window a pair enters as it does.
-        assert_eq!(whole[10], (1.0, 1.5));
-        assert_eq!(of([0.25, 0.35]), [(0.3, 2.0)]);
+        assert_eq!(whole[10], (1.0, 1.5e3));
+        assert_eq!(of([0.25, 0.35]), [(0.3, 2e3)]);
     }
 }
