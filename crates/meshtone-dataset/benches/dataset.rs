@@ -50,10 +50,10 @@ fn main() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/datasets");
     let benchmark = std::fs::read_to_string(folder.join("benchmark.toml")).expect("the example is there");
-    let benchmark = benchmark.replace("records = 12000", &format!("records = {records}"));
+    let benchmark = benchmark.replace("records = 8000", &format!("records = {records}"));
     let plans = [
         ("six classes at 40 Hz", REFERENCE.replace("RECORDS", &records.to_string())),
-        ("benchmark.toml, 10 to 60 Hz, noise", benchmark),
+        ("benchmark.toml, 15 to 45 Hz, a sensor, noise", benchmark),
     ];
     for (name, text) in plans {
         let plan = Plan::read_text(text, &folder.join("plan.toml")).unwrap_or_else(|error| panic!("{error}"));

@@ -1,0 +1,401 @@
+"""Scores baselines on a data set's questions, and looks for shortcuts.
+
+    pip install meshtone scikit-learn matplotlib       # aeon for random kernels, torch for the network: left out where they are missing
+    python score.py benchmark -o scores                # scores.json, scores.md and three figures
+    python score.py benchmark -o scores --check        # exit code 1 where the bounds of a fair question do not hold
+
+Every model is trained on the split `train` with five seeds, and scored on `test`. Intervals hold 90 % of what a bootstrap over the test
+split's units and the seeds gives: records of one unit are no independent witnesses.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from sklearn.dummy import DummyClassifier
+from sklearn.ensemble import HistGradientBoostingClassifier, HistGradientBoostingRegressor
+from sklearn.impute import SimpleImputer
+from sklearn.linear_model import LogisticRegression, RidgeClassifierCV
+from sklearn.metrics import roc_auc_score, roc_curve
+from sklearn.pipeline import make_pipeline
+from sklearn.preprocessing import StandardScaler
+
+import meshtone as mt
+
+# What is known of a machine without looking at its vibration.
+CONDITIONS = ["pinion_speed_hz", "brake_torque_nm", "pinion_teeth", "gear_teeth", "module_mm", "face_width_mm"]
+PARTS = ("average_", "regular_", "residual_", "difference_", "envelope_")
+GEAR = ["fm0", "fm4", "m6a", "m8a", "na4", "energy_ratio", "sideband_level_factor"]
+QUANTILES = np.arange(0.1, 0.95, 0.1)
+DRAWS = 400
+
+# The question is fair where a method can win on merit: neither hopeless nor solved, and nothing but the vibration tells.
+BOUNDS = {"detection": (0.85, 0.97), "diagnosis": (0.6, 0.9), "kind at its largest severity": (0.75, 1.0)}
+
+
+class Records:
+    """The records of a split, as models take them."""
+
+    def __init__(self, table: pd.DataFrame, signals: np.ndarray, indicators: list[str]) -> None:
+        self.table, self.signals = table, signals
+        self.labels = table["label"].to_numpy(str)
+        self.damaged = (self.labels != "healthy").astype(int)
+        self.severity = table["fault_severity"].fillna(0.0).to_numpy()
+        self.grades = table["severity"].to_numpy(int)
+        self.units = table["unit"].to_numpy()
+        conditions = table[[name for name in CONDITIONS if name in table]].to_numpy(float)
+        self.conditions = np.log(conditions)
+        # Indicators span decades; a skewness may be negative, and 0 is no logarithm.
+        self.features = np.hstack([np.arcsinh(100.0 * table[indicators].to_numpy(float)), self.conditions])
+
+
+def records(dataset: mt.Dataset) -> tuple[Records, Records]:
+    plain = [name for name in dataset.scalar_columns if name.startswith(PARTS) or name in GEAR]
+    # Octaves beyond half the sampling rate are null in all records.
+    told = dataset.split("train").to_pandas(plain).notna().any()
+    indicators = [name for name in plain if told[name]]
+
+    def of(split: str) -> Records:
+        part = dataset.split(split)
+        # Each over its own size: what is left is the shape.
+        signals = np.stack([np.stack(part.signals(name)) for name in ("average_g", "difference_g")], axis=1)
+        return Records(part.to_pandas(), signals.astype(np.float32), indicators)
+
+    return of("train"), of("test")
+
+
+def scaled(signals: np.ndarray) -> np.ndarray:
+    """Signals over their rms, and its logarithm as one more channel: sizes vary over decades."""
+    size = np.sqrt(np.mean(signals**2, axis=2, keepdims=True)) + 1e-12
+    level = np.repeat(np.log10(size), signals.shape[2], axis=2)
+    return np.concatenate([signals / size, level], axis=1).astype(np.float32)
+
+
+class OnFeatures:
+    """A scikit-learn classifier on the indicators."""
+
+    def __init__(self, make: Callable[[int], object]) -> None:
+        self.make = make
+
+    def probabilities(self, train: Records, target: np.ndarray, test: Records, seed: int) -> np.ndarray:
+        model = self.make(seed).fit(train.features, target)
+        return model.predict_proba(test.features)
+
+
+class RandomKernels:
+    """MiniRocket (Dempster, Schmidt and Webb 2021) on averages, and a ridge classifier."""
+
+    def probabilities(self, train: Records, target: np.ndarray, test: Records, seed: int) -> np.ndarray:
+        from aeon.transformations.collection.convolution_based import MiniRocket
+
+        kernels = MiniRocket(random_state=seed).fit(scaled(train.signals))
+        inputs = [np.hstack([np.asarray(kernels.transform(scaled(part.signals))), part.features]) for part in (train, test)]
+        inputs = [SimpleImputer(keep_empty_features=True).fit(inputs[0]).transform(part) for part in inputs]
+        scaler = StandardScaler().fit(inputs[0])
+        ridge = RidgeClassifierCV(alphas=np.logspace(0, 5, 11), class_weight="balanced")
+        ridge.fit(scaler.transform(inputs[0]), target)
+        margin = ridge.decision_function(scaler.transform(inputs[1]))
+        margin = np.stack([-margin, margin], axis=1) if margin.ndim == 1 else margin
+        odds = np.exp(margin - margin.max(axis=1, keepdims=True))
+        return odds / odds.sum(axis=1, keepdims=True)
+
+
+class Network:
+    """Three convolutions and a mean over the angle: no tooth is the first."""
+
+    def probabilities(self, train: Records, target: np.ndarray, test: Records, seed: int) -> np.ndarray:
+        import torch
+        from torch import nn
+
+        torch.manual_seed(seed)
+        channels = 2 * train.signals.shape[1]
+        classes = int(target.max()) + 1
+
+        def stage(inputs: int, outputs: int, width: int) -> list[nn.Module]:
+            ring = nn.Conv1d(inputs, outputs, width, padding=width // 2, padding_mode="circular")
+            return [ring, nn.BatchNorm1d(outputs), nn.ReLU(), nn.MaxPool1d(4)]
+
+        network = nn.Sequential(
+            *stage(channels, 24, 15), *stage(24, 48, 9), *stage(48, 64, 5),
+            nn.AdaptiveMaxPool1d(1), nn.Flatten(), nn.Dropout(0.2), nn.Linear(64, classes),
+        )  # fmt: skip
+        inputs = torch.from_numpy(scaled(train.signals))
+        answers = torch.from_numpy(target.astype(np.int64))
+        weights = len(target) / (classes * np.bincount(target, minlength=classes))
+        loss = nn.CrossEntropyLoss(weight=torch.tensor(weights, dtype=torch.float32))
+        optimiser = torch.optim.AdamW(network.parameters(), lr=2e-3, weight_decay=1e-3)
+        epochs, batch = 30, 64
+        schedule = torch.optim.lr_scheduler.OneCycleLR(
+            optimiser, 4e-3, total_steps=epochs * -(-len(target) // batch)
+        )
+        for _ in range(epochs):
+            for chosen in torch.randperm(len(target)).split(batch):
+                turned = torch.roll(inputs[chosen], int(torch.randint(inputs.shape[2], ())), 2)
+                optimiser.zero_grad()
+                loss(network(turned), answers[chosen]).backward()
+                optimiser.step()
+                schedule.step()
+        network.eval()
+        with torch.no_grad():
+            return torch.softmax(network(torch.from_numpy(scaled(test.signals))), 1).numpy()
+
+
+def logistic(seed: int) -> object:
+    model = LogisticRegression(C=0.3, max_iter=5000, class_weight="balanced")
+    return make_pipeline(SimpleImputer(keep_empty_features=True), StandardScaler(), model)
+
+
+def boosting(seed: int) -> object:
+    return HistGradientBoostingClassifier(
+        max_iter=150, learning_rate=0.1, l2_regularization=1.0, class_weight="balanced", random_state=seed
+    )
+
+
+MODELS = {
+    "constant": (OnFeatures(lambda seed: DummyClassifier(strategy="prior")), None),
+    "logistic regression": (OnFeatures(logistic), None),
+    "gradient boosting": (OnFeatures(boosting), None),
+    "random kernels": (RandomKernels(), "aeon"),
+    "network": (Network(), "torch"),
+}
+
+
+def resampled(units: np.ndarray, seed: int) -> np.ndarray:
+    """Records of units that are drawn with replacement."""
+    draw = np.random.default_rng([2024, seed])
+    names, numbers = np.unique(units, return_inverse=True)
+    of_unit = [np.flatnonzero(numbers == number) for number in range(len(names))]
+    return np.concatenate([of_unit[number] for number in draw.integers(len(names), size=len(names))])
+
+
+def interval(score: Callable[[np.ndarray], float], units: np.ndarray) -> list[float]:
+    """The score of all records, and the ends of its 90 % interval."""
+    drawn = np.array([score(resampled(units, seed)) for seed in range(DRAWS)])
+    ends = np.nanquantile(drawn, [0.05, 0.95])
+    return [round(float(value), 3) for value in (score(np.arange(len(units))), *ends)]
+
+
+def auc(damaged: np.ndarray, probability: np.ndarray) -> float:
+    return float("nan") if len(set(damaged)) < 2 else float(roc_auc_score(damaged, probability))
+
+
+def mean_recall(labels: np.ndarray, named: np.ndarray) -> float:
+    return float(np.mean([np.mean(named[labels == label] == label) for label in np.unique(labels)]))
+
+
+def detection(test: Records, probability: np.ndarray) -> dict[str, object]:
+    """Of all damaged records, of each kind, in each grade of severity; and the limit of each kind."""
+    healthy = test.damaged == 0
+    alarm = np.quantile(probability[healthy], 0.95)
+    kinds = {}
+    for label in sorted(set(test.labels) - {"healthy"}):
+        of_kind = test.labels == label
+        chosen = healthy | of_kind
+        by_grade, limit = {}, None
+        for grade in np.unique(test.grades[of_kind]):
+            graded = of_kind & (test.grades == grade)
+            by_grade[str(grade)] = round(auc(test.damaged[healthy | graded], probability[healthy | graded]), 3)
+            if limit is None and np.mean(probability[graded] > alarm) >= 0.9:
+                limit = round(float(test.severity[graded].min()), 2)
+        kinds[label] = {
+            "auc": interval(lambda i, c=chosen: auc(test.damaged[i][c[i]], probability[i][c[i]]), test.units),
+            "auc by grade": by_grade,
+            "found from severity": limit,
+        }
+    return {"auc": interval(lambda i: auc(test.damaged[i], probability[i]), test.units), "kinds": kinds}
+
+
+def severity(train: Records, test: Records, model: str) -> list[float]:
+    """Continuous ranked probability score of the severity, from quantiles."""
+    def predicted(quantile: float) -> np.ndarray:
+        if model == "constant":
+            return np.full(len(test.severity), np.quantile(train.severity, quantile))
+        machine = HistGradientBoostingRegressor(loss="quantile", quantile=quantile, max_iter=100, random_state=0)
+        return machine.fit(train.features, train.severity).predict(test.features)
+
+    off = [test.severity - predicted(quantile) for quantile in QUANTILES]
+    # Twice the mean pinball loss over the quantiles.
+    losses = 2.0 * np.mean([np.maximum(q * e, (q - 1.0) * e) for q, e in zip(QUANTILES, off, strict=True)], axis=0)
+    return interval(lambda i: float(np.mean(losses[i])), test.units)
+
+
+def shortcuts(train: Records, test: Records) -> dict[str, list[float]]:
+    """What tells damage without a look at it; each must be chance, 0.5, within its interval."""
+    def by(inputs: Callable[[Records], np.ndarray]) -> list[float]:
+        probability = boosting(0).fit(inputs(train), train.damaged).predict_proba(inputs(test))[:, 1]
+        return interval(lambda i: auc(test.damaged[i], probability[i]), test.units)
+
+    def length(part: Records) -> np.ndarray:
+        return part.table[["simulated_s", "sampling_rate_hz"]].to_numpy(float)
+
+    def twin(part: Records) -> np.ndarray:
+        """How far the average is from that of the unit's healthy record nearest in speed and load."""
+        far = np.full(len(part.labels), np.nan)
+        averages = part.signals[:, 0]
+        for unit in np.unique(part.units):
+            of_unit = np.flatnonzero(part.units == unit)
+            healthy = of_unit[part.damaged[of_unit] == 0]
+            for record in of_unit:
+                others = healthy[healthy != record]
+                if len(others):
+                    apart = np.sum((part.conditions[others, :2] - part.conditions[record, :2]) ** 2, axis=1)
+                    other = averages[others[np.argmin(apart)]]
+                    size = np.sqrt(np.mean(averages[record] ** 2) + np.mean(other**2))
+                    far[record] = np.sqrt(np.mean((averages[record] - other) ** 2)) / size
+        return far[:, None]
+
+    return {"conditions": by(lambda part: part.conditions), "length": by(length), "healthy twin": by(twin)}
+
+
+def scores(train: Records, test: Records, models: list[str], seeds: int) -> tuple[dict, dict]:
+    labels = np.unique(train.labels)
+    numbers = np.searchsorted(labels, train.labels)
+    result: dict = {"records": {"train": len(train.labels), "test": len(test.labels)}, "models": {}}
+    probabilities = {}
+    for name in models:
+        model, needs = MODELS[name]
+        try:
+            runs = range(1 if name in ("constant", "logistic regression") else seeds)
+            damaged = [model.probabilities(train, train.damaged, test, seed)[:, 1] for seed in runs]
+            kinds = [labels[np.argmax(model.probabilities(train, numbers, test, seed), axis=1)] for seed in runs]
+        except ModuleNotFoundError:
+            print(f"{name}: left out, for {needs} is not installed", file=sys.stderr)
+            continue
+        single = [auc(test.damaged, run) for run in damaged]
+        mean = np.mean(damaged, axis=0)
+        probabilities[name] = damaged[int(np.argsort(single)[len(single) // 2])]
+        result["models"][name] = {
+            # Of the middle one of the seeds; the seeds' own spread beside it.
+            "detection": detection(test, probabilities[name]),
+            "detection of all seeds": [round(float(value), 3) for value in single],
+            "detection of their mean": round(auc(test.damaged, mean), 3),
+            "diagnosis": interval(lambda i, k=kinds[0]: mean_recall(test.labels[i], k[i]), test.units),
+            "diagnosis of all seeds": [round(mean_recall(test.labels, named), 3) for named in kinds],
+            "recall": {str(label): round(float(np.mean(kinds[0][test.labels == label] == label)), 3) for label in labels},
+        }
+        print(f"{name}: detection {result['models'][name]['detection']['auc']}, diagnosis {result['models'][name]['diagnosis']}")
+    result["severity crps"] = {name: severity(train, test, name) for name in ("constant", "gradient boosting")}
+    result["shortcuts"] = shortcuts(train, test)
+    return result, probabilities
+
+
+def broken(result: dict) -> list[str]:
+    """Where the bounds of a fair question do not hold."""
+    found = []
+    best = {key: max(model[key]["auc"][0] if key == "detection" else model[key][0] for model in result["models"].values()) for key in ("detection", "diagnosis")}
+    for key, value in best.items():
+        least, most = BOUNDS[key]
+        if not least <= value <= most:
+            found.append(f"best {key} {value} is not from {least} to {most}")
+    name = max(result["models"], key=lambda name: result["models"][name]["detection"]["auc"][0])
+    for kind, told in result["models"][name]["detection"]["kinds"].items():
+        grades = list(told["auc by grade"].values())
+        if grades[-1] < BOUNDS["kind at its largest severity"][0]:
+            found.append(f"{kind} at its largest severity: {grades[-1]}")
+        # So much is within what the records of a grade say.
+        if any(after < before - 0.03 for before, after in zip(grades, grades[1:], strict=False)):
+            found.append(f"{kind} is not monotonic in severity: {grades}")
+    for shortcut, (value, least, _) in result["shortcuts"].items():
+        if least > 0.5:
+            found.append(f"shortcut {shortcut}: {value}, from {least} on")
+    return found
+
+
+def table(result: dict) -> str:
+    lines = ["| model | detection, AUC | diagnosis, mean recall |", "|---|---:|---:|"]
+    shown = "{0[0]:.3f} ({0[1]:.3f} to {0[2]:.3f})"
+    for name, model in result["models"].items():
+        lines.append(f"| {name} | {shown.format(model['detection']['auc'])} | {shown.format(model['diagnosis'])} |")
+    best = max(result["models"], key=lambda name: result["models"][name]["detection"]["auc"][0])
+    lines += ["", f"Of {best}:", "", "| kind | AUC | by grade of severity | 90 % found from | named rightly |", "|---|---:|---|---:|---:|"]
+    for kind, told in result["models"][best]["detection"]["kinds"].items():
+        grades = ", ".join(f"{value:.2f}" for value in told["auc by grade"].values())
+        limit = "–" if told["found from severity"] is None else told["found from severity"]
+        lines.append(f"| {kind} | {shown.format(told['auc'])} | {grades} | {limit} | {result['models'][best]['recall'][kind]:.2f} |")
+    lines += ["", "| severity | CRPS |", "|---|---:|"]
+    lines += [f"| {name} | {shown.format(value)} |" for name, value in result["severity crps"].items()]
+    lines += ["", "| shortcut | AUC |", "|---|---:|"]
+    lines += [f"| {name} | {shown.format(value)} |" for name, value in result["shortcuts"].items()]
+    return "\n".join(lines) + "\n"
+
+
+def figures(test: Records, result: dict, probabilities: dict, folder: Path) -> None:
+    import matplotlib
+
+    matplotlib.use("agg")
+    import matplotlib.pyplot as plt
+
+    best = max(result["models"], key=lambda name: result["models"][name]["detection"]["auc"][0])
+    probability = probabilities[best]
+    kinds = result["models"][best]["detection"]["kinds"]
+    colours = dict(zip(kinds, plt.get_cmap("tab10").colors, strict=False))
+    healthy = test.damaged == 0
+
+    figure, axes = plt.subplots(figsize=(5.5, 5), layout="constrained")
+    for kind in kinds:
+        chosen = healthy | (test.labels == kind)
+        false, true, _ = roc_curve(test.damaged[chosen], probability[chosen])
+        axes.plot(false, true, color=colours[kind], label=f"{kind}, {kinds[kind]['auc'][0]:.2f}")
+    axes.plot([0, 1], [0, 1], ":", color="grey")
+    axes.set(xlabel="false alarms, part of the healthy records", ylabel="found, part of the damaged records", title=f"Detection by {best}")
+    axes.legend(title="kind, AUC", fontsize=8)
+    figure.savefig(folder / "roc.png", dpi=130)
+    plt.close(figure)
+
+    figure, axes = plt.subplots(figsize=(6, 4.2), layout="constrained")
+    for kind in kinds:
+        grades = kinds[kind]["auc by grade"]
+        of_grade = [np.median(test.severity[(test.labels == kind) & (test.grades == int(grade))]) for grade in grades]
+        axes.plot(of_grade, list(grades.values()), "o-", color=colours[kind], label=kind)
+    axes.axhline(0.5, ls=":", color="grey")
+    axes.set(xlim=(0, 1), ylim=(0.4, 1.02), xlabel="severity, 1 the largest that the tooth allows", ylabel="AUC against healthy", title=f"Detection over severity by {best}")
+    axes.legend(fontsize=8, loc="lower right")
+    figure.savefig(folder / "severity.png", dpi=130)
+    plt.close(figure)
+
+    shown = ["healthy", *kinds]
+    figure, rows = plt.subplots(len(shown), 1, figsize=(7, 1.05 * len(shown)), sharex=True, layout="constrained")
+    for axes, label in zip(np.atleast_1d(rows), shown, strict=True):
+        of_kind = np.flatnonzero(test.labels == label)
+        record = of_kind[np.argmax(test.severity[of_kind])]
+        difference = test.signals[record, 1]
+        axes.plot(np.linspace(0, 360, len(difference), endpoint=False), difference, lw=0.6, color=colours.get(label, "black"))
+        told = "" if label == "healthy" else f", severity {test.severity[record]:.2f}"
+        speed, load = test.table.iloc[record][["pinion_speed_hz", "brake_torque_nm"]]
+        axes.set_title(f"{label}{told}, {speed:.0f} Hz, {load:.0f} N m", fontsize=8, loc="left", pad=2)
+        axes.margins(x=0)
+    axes.set_xlabel("angle of the gear, °")
+    figure.supylabel("difference signal, g", fontsize=9)
+    figure.savefig(folder / "examples.png", dpi=130)
+    plt.close(figure)
+
+
+def main() -> int:
+    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    arguments.add_argument("dataset", type=Path)
+    arguments.add_argument("-o", "--output", type=Path, required=True, help="folder of the scores")
+    arguments.add_argument("--models", nargs="+", choices=MODELS, default=list(MODELS), metavar="MODEL", help=", ".join(MODELS))
+    arguments.add_argument("--seeds", type=int, default=5)
+    arguments.add_argument("--check", action="store_true", help="exit code 1 where the bounds of a fair question do not hold")
+    given = arguments.parse_args()
+    train, test = records(mt.load_dataset(given.dataset))
+    result, probabilities = scores(train, test, given.models, given.seeds)
+    result["broken bounds"] = broken(result)
+    given.output.mkdir(parents=True, exist_ok=True)
+    (given.output / "scores.json").write_text(json.dumps(result, indent=1) + "\n")
+    (given.output / "scores.md").write_text(table(result))
+    figures(test, result, probabilities, given.output)
+    print(table(result))
+    for problem in result["broken bounds"]:
+        print(f"not fair: {problem}", file=sys.stderr)
+    return int(given.check and bool(result["broken bounds"]))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
