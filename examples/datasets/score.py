@@ -63,9 +63,8 @@ def records(dataset: mt.Dataset) -> tuple[Records, Records]:
 
     def of(split: str) -> Records:
         part = dataset.split(split)
-        # Each over its own size: what is left is the shape.
-        signals = np.stack([np.stack(part.signals(name)) for name in ("average_g", "difference_g")], axis=1)
-        return Records(part.to_pandas(), signals.astype(np.float32), indicators)
+        signals, _ = part.arrays(["average_g", "difference_g"])
+        return Records(part.to_pandas(), signals, indicators)
 
     return of("train"), of("test")
 
