@@ -82,8 +82,7 @@ fn counts(
     units_of_split: &BTreeMap<String, u64>,
 ) -> std::fmt::Result {
     writeln!(text, "## What is in it\n")?;
-    let splits: Vec<&str> = plan.content.splits.names();
-    let splits: Vec<&str> = splits.into_iter().filter(|name| units_of_split.contains_key(*name)).collect();
+    let splits = plan.content.splits.names_in(units_of_split);
     writeln!(text, "| class | {} | all |", splits.join(" | "))?;
     writeln!(text, "|---|{}---:|", "---:|".repeat(splits.len()))?;
     let count = |split: &str, label: &str| {

@@ -37,8 +37,7 @@ pub(crate) fn metadata(
         "" => format!("{}, {simulated}", about.title),
         description => description.to_owned(),
     };
-    let splits: Vec<&str> = plan.content.splits.names();
-    let splits: Vec<&str> = splits.into_iter().filter(|name| units_of_split.contains_key(*name)).collect();
+    let splits = plan.content.splits.names_in(units_of_split);
     let mut metadata = json!({
         "@context": context(),
         "@type": "sc:Dataset",
