@@ -172,7 +172,9 @@ def browser() -> Iterator[Chrome]:
 
     options = webdriver.ChromeOptions()
     options.binary_location = program
-    for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1400,1000", "--disable-gpu"):
+    # The wheels stand still where nobody asks that they turn.
+    more = ("--disable-gpu", "--force-prefers-reduced-motion")
+    for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1400,1000", *more):
         options.add_argument(argument)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     # The path of a socket there may be no longer than some 100 letters.
@@ -236,6 +238,30 @@ def test_wrong_values_are_told_at_their_key(page: Page, explorer: mt.Explorer) -
     assert page.enter("gears.module_mm", "2.5") == ""
     assert explorer.scenario.module_mm == 2.5
     assert not page.run("return document.querySelector('#controls [aria-invalid]')")
+
+
+def test_speed_over_time_is_a_table(page: Page, explorer: mt.Explorer) -> None:
+    page.settled(lambda: page.run("document.getElementById('key-operation.speed_profile_hz').click()"), "a profile")
+    insert = "document.querySelector('[aria-label=\"Insert a point after point 1\"]').click()"
+    page.settled(lambda: page.run(insert), "a point")
+    profile = explorer.scenario.speed_profile_hz
+    assert profile is not None
+    end_s = profile["time_s"][-1]
+    assert profile == {"time_s": [0.0, end_s / 2, end_s], "value": [40.0] * 3}
+    name = "speed profile, point 2: value in Hz"
+    script = """
+        const field = document.querySelector(`[aria-label="${arguments[0]}"]`);
+        field.value = arguments[1];
+        field.dispatchEvent(new Event('change'));
+    """
+    told = page.settled(lambda: page.run(script, name, "-4"), "a wrong speed")
+    assert told == "operation.speed_profile_hz.value[1] = -4: must be more than 0 rev/s"
+    assert page.run("return document.querySelector('#controls [aria-invalid]').getAttribute('aria-label')") == name
+    assert page.settled(lambda: page.run(script, name, "41"), "a speed") == ""
+    assert explorer.scenario.speed_profile_hz == {**profile, "value": [40.0, 41.0, 40.0]}
+    page.settled(lambda: page.run("document.querySelector('[aria-label=\"Remove point 2\"]').click()"), "two points")
+    page.settled(lambda: page.run("document.getElementById('key-operation.speed_profile_hz').click()"), "no profile")
+    assert explorer.scenario == fast()
 
 
 def test_a_preset_its_damage_and_severity(page: Page, explorer: mt.Explorer) -> None:
@@ -324,7 +350,12 @@ def test_many_random_changes_leave_no_error(page: Page, explorer: mt.Explorer) -
 
 
 def test_what_is_seen_has_names(page: Page) -> None:
-    """Every field has a label, every plot a description, on a narrow screen too."""
+    """Every field has a label, every plot a description, on a narrow screen too; the wheels turn when they are asked to."""
+    turned = "return document.getElementById('turn').value"
+    before = page.run(turned)
+    page.run("document.getElementById('play').click()")
+    page.wait(lambda: page.run(turned) != before, "the wheels to turn")
+    page.run("document.getElementById('play').click()")
     page.browser.set_window_size(420, 900)
     nameless = """
         return [...document.querySelectorAll('input, select, textarea, button')].filter((field) => {

@@ -4,17 +4,21 @@ use meshtone::damage::{DamageKind, damage_kinds};
 use meshtone::scenario::{Fault, KeyDescription, KeyKind, Scenario, sections};
 use serde_json::{Value, json};
 
+use crate::export::without_defaults;
 use crate::presets::{Preset, presets};
 
 /// Sections and keys, kinds of damage, and scenarios to start from.
 pub fn controls() -> Value {
     let section = |name: &str, keys: &[KeyDescription]| json!({ "name": name, "keys": keys.iter().map(key_json).collect::<Vec<_>>() });
     let sections: Vec<Value> = sections().iter().map(|entry| section(entry.name, &entry.keys)).collect();
-    let preset = |preset: &Preset| json!({ "name": preset.name, "title": preset.title, "toml": preset.toml });
+    let preset = |Preset { name, title, toml }: Preset| {
+        let scenario = Scenario::from_toml(toml).ok()?;
+        Some(json!({ "name": name, "title": title, "scenario": Value::Object(without_defaults(&scenario)) }))
+    };
     json!({
         "sections": sections,
         "kinds": damage_kinds().iter().map(kind_json).collect::<Vec<_>>(),
-        "presets": presets().iter().map(preset).collect::<Vec<_>>(),
+        "presets": presets().into_iter().filter_map(preset).collect::<Vec<_>>(),
         "version": env!("CARGO_PKG_VERSION"),
     })
 }
@@ -30,7 +34,8 @@ fn key_json(key: &KeyDescription) -> Value {
         KeyKind::TableOrFalse => ("table-or-false", Vec::new()),
         KeyKind::Text => ("text", Vec::new()),
         KeyKind::File => ("file", Vec::new()),
-        // Profiles, frequency responses, matrices: too many numbers for a control; the scenario's text has them.
+        KeyKind::Profile => ("profile", Vec::new()),
+        // Frequency responses, matrices: too many numbers for a control; the scenario's text has them.
         _ => ("value", Vec::new()),
     };
     json!({
@@ -79,6 +84,7 @@ mod tests {
         for kind in controls["kinds"].as_array().unwrap() {
             assert_eq!(kind["example"]["kind"], kind["name"]);
         }
+        assert_eq!(controls["presets"].as_array().unwrap().len(), presets().len());
         let breakage = &controls["kinds"][1];
         assert_eq!(breakage["sizes"], json!(["chip_height_mm", "chip_width_mm", "tip_loss_mm"]));
     }

@@ -11,8 +11,8 @@ pub struct Preset {
     pub toml: &'static str,
 }
 
-/// One row a scenario. The files are those of the examples, which stand here too so that a package holds all that it needs; a test
-/// compares them.
+/// One row a scenario. They are the examples, which stand here too so that a package holds all that it needs; a file that one of them
+/// names is written out. A test compares them.
 macro_rules! presets {
     ($($name:literal $title:literal;)+) => {
         /// The scenarios to start from, the healthy one first.
@@ -40,18 +40,23 @@ presets! {
     "wear" "Wear of all teeth";
     "several_faults" "Several faults";
     "profile_shift" "Shifted profiles";
+    "sensors" "Three sensors";
 }
 
 #[cfg(test)]
 mod tests {
+    use meshtone::scenario::Scenario;
+    use meshtone_io::scenario_file::read_scenario;
+
     use super::*;
 
     #[test]
     fn presets_are_the_examples() {
         let examples = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
         for preset in presets() {
-            let example = std::fs::read_to_string(examples.join(format!("{}.toml", preset.name))).unwrap();
-            assert_eq!(preset.toml, example, "copy examples/{}.toml to src/presets", preset.name);
+            let example = read_scenario(&examples.join(format!("{}.toml", preset.name))).unwrap();
+            let own = Scenario::from_toml(preset.toml).unwrap();
+            assert_eq!(own, example, "copy examples/{}.toml to src/presets", preset.name);
         }
     }
 }

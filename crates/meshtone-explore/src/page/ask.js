@@ -32,9 +32,13 @@ async function post(path, body, signal) {
 export function unpacked(buffer) {
   const length = new DataView(buffer).getUint32(0, true);
   const text = new TextDecoder().decode(new Uint8Array(buffer, 4, length));
-  const isArray = (value) => value !== null && typeof value === "object" && Object.hasOwn(value, "array_at");
-  const array = ({ array_at: at, length: count }) => new Float32Array(buffer, 4 + length + 4 * at, count);
-  return JSON.parse(text, (_, value) => (isArray(value) ? array(value) : value));
+  const withArrays = (value) => {
+    if (value === null || typeof value !== "object") return value;
+    if (value.array_at !== undefined) return new Float32Array(buffer, 4 + length + 4 * value.array_at, value.length);
+    for (const key of Object.keys(value)) value[key] = withArrays(value[key]);
+    return value;
+  };
+  return withArrays(JSON.parse(text));
 }
 
 export async function start() {
@@ -95,14 +99,34 @@ export class Answers {
     this.#refuse = refuse;
   }
 
-  /** Asks; a coarse question waits for the one before it, and only the last of those that wait is asked. */
+  /**
+   * Asks; a coarse question waits for the one before it, and a moment at least: a press of a key moves and releases a control at once.
+   * Only the last of those that wait is asked.
+   */
   ask(question) {
-    if (question.detail === "coarse" && this.#busy) {
-      if (this.#busy === "coarse") this.#waiting = question;
+    if (question.detail === "coarse") {
+      if (this.#busy === "full") return;
+      this.#waiting = question;
+      setTimeout(() => this.#next());
       return;
     }
     this.#waiting = null;
     this.#send(question);
+  }
+
+  /** What is on its way or waits is no longer wanted. */
+  forget() {
+    this.#newest.stop();
+    this.turn = {};
+    this.#busy = null;
+    this.#waiting = null;
+  }
+
+  #next() {
+    const next = this.#waiting;
+    if (!next || this.#busy) return;
+    this.#waiting = null;
+    this.#send(next);
   }
 
   async #send(question) {
@@ -117,9 +141,7 @@ export class Answers {
     }
     if (mine !== this.turn) return;
     this.#busy = null;
-    const next = this.#waiting;
-    this.#waiting = null;
-    if (next) this.#send(next);
+    this.#next();
   }
 }
 

@@ -14,6 +14,9 @@ const SECTIONS = [
 const UNIT_ENDING = /_(mm|um|deg|rad|hz|nm|g|s|n_per_m|nm_per_rad|kgm2|kg|per_cent)$/;
 /** From here on a slider goes by powers of ten. */
 const LARGE = 1e3;
+/** The keys that a profile over time begins from, and rows of it that are shown. */
+const NOMINAL = { speed_profile_hz: "pinion_speed_hz", torque_profile_nm: "brake_torque_nm" };
+const MOST_ROWS = 60;
 
 const words = (key) => key.replace(UNIT_ENDING, "").replaceAll("_", " ");
 
@@ -162,6 +165,115 @@ class Control {
   }
 }
 
+/** A quantity over time: a table of its points. */
+class Profile {
+  #box;
+  #table;
+  #rest;
+  #points = null;
+
+  constructor(controls, path, description) {
+    Object.assign(this, { controls, path, description });
+    const key = keyOf(path);
+    const id = `key-${key}`;
+    const label = words(path.at(-1));
+    this.#box = element("input", { type: "checkbox", id, "aria-describedby": `${id}-problem` });
+    this.#box.addEventListener("change", () => this.#set(this.#box.checked ? this.#constant() : undefined));
+    this.#table = element("table", { className: "points", "aria-label": label });
+    this.#rest = element("p", { className: "note", hidden: true });
+    this.problem = element("p", { className: "problem", id: `${id}-problem`, hidden: true });
+    this.row = element("div", { className: "control", title: `${description.meaning}. Allowed: ${description.allowed}.` },
+      element("label", {}, this.#box, ` ${label}`), this.#table, this.#rest, this.problem);
+    this.row.dataset.key = key;
+  }
+
+  /** The nominal value from the start to the end. */
+  #constant() {
+    const nominal = this.controls.tree[this.path[0]][NOMINAL[this.path.at(-1)]];
+    return { time_s: [0, this.controls.end_s], value: [nominal, nominal] };
+  }
+
+  #set(points) {
+    this.#points = points;
+    this.controls.set(this.path, points, "full");
+  }
+
+  /** Puts points in place of some. */
+  #splice(at, removed, ...added) {
+    const time_s = this.#points.time_s.toSpliced(at, removed, ...added.map(([time]) => time));
+    this.#set({ time_s, value: this.#points.value.toSpliced(at, removed, ...added.map(([, value]) => value)) });
+  }
+
+  /** Between a point and the next one, or as far behind the last as that is behind the one before it. */
+  #insert(after) {
+    const { time_s: times, value } = this.#points;
+    const isLast = after + 1 === times.length;
+    const [time, level] = isLast ? [2 * times[after] - (times[after - 1] ?? times[after] - 1), value[after]]
+      : [(times[after] + times[after + 1]) / 2, (value[after] + value[after + 1]) / 2];
+    const rounded = (number) => (Number.isFinite(number) ? Number(number.toPrecision(6)) : "");
+    this.#splice(after + 1, 0, [rounded(time), rounded(level)]);
+  }
+
+  show(points, model) {
+    this.#box.checked = Boolean(points);
+    const rows = Math.min(points?.time_s.length ?? 0, MOST_ROWS);
+    if (rows !== this.#table.rows.length - 1) this.#build(rows);
+    this.#points = points && { time_s: [...points.time_s], value: [...points.value] };
+    for (let row = 0; row < rows; row++) {
+      ["time_s", "value"].forEach((name, column) => {
+        const field = this.#field(row, column);
+        const text = String(points[name][row]);
+        if (field.value !== text && document.activeElement !== field) field.value = text;
+      });
+    }
+    const more = (points?.time_s.length ?? 0) - rows;
+    this.#rest.textContent = `and ${more} more: in the scenario as text`;
+    this.#rest.hidden = more === 0;
+    this.row.classList.toggle("ignored", this.description.ignored_by.includes(model));
+  }
+
+  #field(row, column) {
+    return this.#table.rows[row + 1].cells[column].firstChild;
+  }
+
+  #build(rows) {
+    const units = this.description.unit.split(", ");
+    const label = words(this.path.at(-1));
+    const number = (row, column, name) => {
+      const field = element("input", { type: "text", inputMode: "decimal", "aria-label": `${label}, point ${row + 1}: ${name} in ${units[column]}` });
+      field.addEventListener("change", () => {
+        const text = field.value.trim();
+        const typed = text !== "" && Number.isFinite(Number(text)) ? Number(text) : text;
+        const point = [this.#points.time_s[row], this.#points.value[row]];
+        point[column] = typed;
+        this.#splice(row, 1, point);
+      });
+      return element("td", {}, field);
+    };
+    const button = (text, said, act) => {
+      const made = element("button", { type: "button", "aria-label": said, title: said }, text);
+      made.addEventListener("click", act);
+      return made;
+    };
+    const head = element("tr", {}, element("th", { scope: "col" }, `time, ${units[0]}`), element("th", { scope: "col" }, `value, ${units[1]}`), element("td"));
+    this.#table.replaceChildren(...(rows ? [head] : []), ...Array.from({ length: rows }, (_, row) =>
+      element("tr", {}, number(row, 0, "time"), number(row, 1, "value"), element("td", {},
+        button("+", `Insert a point after point ${row + 1}`, () => this.#insert(row)),
+        button("−", `Remove point ${row + 1}`, () => this.#splice(row, 1))))));
+  }
+
+  /** @param key what the words are about: this, or a number in it */
+  refuse(text, key = "") {
+    this.problem.textContent = text ?? "";
+    this.problem.hidden = !text;
+    this.row.querySelectorAll("[aria-invalid]").forEach((field) => field.removeAttribute("aria-invalid"));
+    if (!text) return;
+    const [, name, row] = /\.(time_s|value)\[(\d+)\]$/.exec(key) ?? [];
+    const isShown = name && Number(row) < this.#table.rows.length - 1;
+    (isShown ? this.#field(Number(row), name === "value" ? 1 : 0) : this.#box).setAttribute("aria-invalid", "true");
+  }
+}
+
 export class Controls {
   #form;
   #told;
@@ -191,6 +303,13 @@ export class Controls {
     this.#answer = null;
     this.#shape = "";
     this.#controls.forEach(({ slider }) => { if (slider) slider.isAnew = true; });
+  }
+
+  /** (s) About where the signal ends. */
+  get end_s() {
+    if (!this.#answer) return 1;
+    const { start_s: start, values, sampling_rate_hz: rate } = this.#answer.signal;
+    return Number((start + values.length / rate).toPrecision(2));
   }
 
   /** What is sent: lists that are empty are left out. */
@@ -259,7 +378,7 @@ export class Controls {
     const keys = [...this.#controls.keys()].filter((known) => key === known || key.startsWith(`${known}[`) || key.startsWith(`${known}.`));
     const found = this.#controls.get(keys.sort((a, b) => b.length - a.length)[0]);
     this.#refused = found;
-    found?.refuse([told.problem, told.help].filter(Boolean).join("; "));
+    found?.refuse([told.problem, told.help].filter(Boolean).join("; "), told.key);
     for (let around = found?.row.closest("details"); around; around = around.parentElement.closest("details")) around.open = true;
     return Boolean(found);
   }
@@ -299,6 +418,10 @@ export class Controls {
       const { key, kind } = description;
       const [table, ...inside] = key.split(".");
       if (kind === "value" || kind === "file") continue;
+      if (kind === "profile") {
+        fields.push(this.#add([...base, key], description, Profile));
+        continue;
+      }
       if (kind === "table" || kind === "table-or-false") {
         const set = element("fieldset", { title: description.meaning }, element("legend", {}, words(key)));
         if (kind === "table-or-false") set.firstChild.prepend(this.#switch([...base, key], keys, key, full), " ");
@@ -326,8 +449,8 @@ export class Controls {
     return box;
   }
 
-  #add(path, description) {
-    const control = new Control(this, path, description);
+  #add(path, description, Kind = Control) {
+    const control = new Kind(this, path, description);
     this.#controls.set(keyOf(path), control);
     return control.row;
   }

@@ -30,6 +30,7 @@ function change(detail) {
   severity.stop();
   status(detail === "coarse" ? "…" : "computing…");
   answers.ask(question(detail));
+  views.rest();
 }
 
 function status(text) {
@@ -87,9 +88,14 @@ function tell(error) {
 /** Opens a scenario by its file's text. @returns the refusal, where there is one */
 async function openText(toml) {
   const asking = new Newest("answer");
+  const asked = performance.now();
   try {
     const buffer = await asking.ask({ toml, detail: "full", channel });
-    if (buffer) open(unpacked(buffer).brief);
+    if (!buffer) return null;
+    const answer = unpacked(buffer);
+    answers.forget();
+    controls.open(answer.brief);
+    show(answer, asked);
     return null;
   } catch (error) {
     if (!(error instanceof Refusal)) throw error;
@@ -212,9 +218,9 @@ function setTheme(theme) {
 
 function listen(told) {
   byId("preset").append(new Option("begin with…", ""), ...told.presets.map(({ name, title }) => new Option(title, name)));
-  byId("preset").addEventListener("change", async ({ target }) => {
+  byId("preset").addEventListener("change", ({ target }) => {
     const preset = told.presets.find(({ name }) => name === target.value);
-    if (preset) await openText(preset.toml);
+    if (preset) open(preset.scenario);
   });
   byId("hold").addEventListener("click", hold);
   byId("link").addEventListener("click", copyLink);

@@ -3,13 +3,24 @@
 
 /* global uPlot */
 
-const COLUMNS = 700;
 const HEIGHT = 190;
+/** Of lines, in pixels: a browser without a graphics card strokes wider ones many times slower. */
+const WIDTH = 1;
 /** Letters of a title before the rest is told by pointing at it. */
 const LONGEST_TITLE = 60;
 
-const style = () => getComputedStyle(document.documentElement);
-export const colour = (name) => style().getPropertyValue(`--${name}`).trim();
+const colours = new Map();
+
+/** A colour of the theme, asked of the style sheet once: asking lays the page out. */
+export function colour(name) {
+  if (!colours.get(name)) colours.set(name, getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());
+  return colours.get(name);
+}
+
+/** Another theme is shown. */
+export function forgetColours() {
+  colours.clear();
+}
 
 /** A number as one reads it. */
 export function shown(value, digits = 4) {
@@ -26,9 +37,10 @@ export function line(label, y, from, step, look = "now", dash = null) {
 
 const lastX = ({ y, from, step }) => from + step * Math.max(y.length - 1, 0);
 
-/** The values of a line at both sides of each column. */
+/** Writes the values of a line at both sides of each column. @returns whether others stood there */
 function columnsOf({ y, from, step }, [least, most], columns, into) {
   const width = (most - least) / columns;
+  let isOther = false;
   for (let column = 0; column < columns; column++) {
     const start = (least + column * width - from) / step;
     const end = start + width / step;
@@ -48,10 +60,18 @@ function columnsOf({ y, from, step }, [least, most], columns, into) {
       const at = (place) => y[before] + (y[Math.min(before + 1, y.length - 1)] - y[before]) * (place - before);
       [a, b] = [at(start), at(end)];
     }
-    into[2 * column] = Number.isFinite(a) ? a : null;
-    into[2 * column + 1] = Number.isFinite(b) ? b : null;
+    isOther = put(into, 2 * column, a) || isOther;
+    isOther = put(into, 2 * column + 1, b) || isOther;
   }
-  return into;
+  return isOther;
+}
+
+/** Writes a number, or a gap for what is none. @returns whether another stood there */
+function put(into, index, number) {
+  const value = Number.isFinite(number) ? number : null;
+  if (into[index] === value) return false;
+  into[index] = value;
+  return true;
 }
 
 export class Plot {
@@ -63,7 +83,9 @@ export class Plot {
   #range = [0, 1];
   #zoomed = null;
   #plot = null;
-  #drawnAs = "";
+  #marker = null;
+  #builtAs = "";
+  #framedAs = "";
   #values;
   #title;
   #empty;
@@ -91,7 +113,7 @@ export class Plot {
     element.addEventListener("keydown", (event) => this.#key(event));
     element.addEventListener("dblclick", () => this.zoom(null));
     new ResizeObserver(() => this.#resize()).observe(element);
-    new IntersectionObserver(([{ isIntersecting }]) => this.#see(isIntersecting)).observe(element);
+    new IntersectionObserver((entries) => this.#see(entries.at(-1).isIntersecting)).observe(element);
     this.#head(options.title);
     this.set([]);
   }
@@ -118,7 +140,7 @@ export class Plot {
   /** Marks a place on the axis. */
   mark(x) {
     this.#mark = x;
-    this.#plot?.redraw(false, false);
+    this.#placeMark();
   }
 
   get view() {
@@ -140,7 +162,9 @@ export class Plot {
   /** What is out of sight is drawn once it comes into sight. */
   #see(isSeen) {
     this.#isSeen = isSeen;
+    this.#element.classList.toggle("unseen", !isSeen);
     if (isSeen && this.#isWaiting) this.#draw();
+    this.#placeMark();
   }
 
   #draw() {
@@ -149,29 +173,35 @@ export class Plot {
     this.#describing = setTimeout(() => this.#describe(), 200);
     this.#isWaiting = !this.#isSeen;
     if (this.#isWaiting) return;
-    const drawnAs = this.#lines.map(({ label, look, dash }) => [label, look, dash]).join() + this.#options.y;
-    if (!this.#plot || drawnAs !== this.#drawnAs) this.#build();
-    this.#drawnAs = drawnAs;
+    const builtAs = this.#lines.map(({ label, look, dash }) => [label, look, dash]).join() + this.#options.y;
+    if (!this.#plot || builtAs !== this.#builtAs) this.#build();
+    this.#builtAs = builtAs;
     const view = this.view;
     const isPoints = this.#options.kind === "points";
-    const count = isPoints ? (this.#lines[0]?.y.length ?? 0) : 2 * COLUMNS;
+    // One column a pixel.
+    const columns = this.#plot.width;
+    const count = isPoints ? (this.#lines[0]?.y.length ?? 0) : 2 * columns;
     const buffer = (index) => {
       if (this.#buffers[index]?.length !== count) this.#buffers[index] = new Array(count);
       return this.#buffers[index];
     };
+    const framedAs = [view, this.#bands, columns, builtAs].join();
+    let isOther = framedAs !== this.#framedAs;
+    this.#framedAs = framedAs;
     const xs = buffer(0);
-    if (isPoints) {
-      for (let k = 0; k < count; k++) xs[k] = this.#lines[0].from + k * this.#lines[0].step;
-    } else {
-      const width = (view[1] - view[0]) / COLUMNS;
-      for (let k = 0; k < count; k++) xs[k] = view[0] + ((k >> 1) + (k & 1 ? 0.75 : 0.25)) * width;
+    const width = (view[1] - view[0]) / columns;
+    for (let k = 0; k < count; k++) {
+      const x = isPoints ? this.#lines[0].from + k * this.#lines[0].step : view[0] + ((k >> 1) + (k & 1 ? 0.75 : 0.25)) * width;
+      isOther = put(xs, k, x) || isOther;
     }
     const ys = this.#lines.map((entry, index) => {
       const into = buffer(index + 1);
-      if (!isPoints) return columnsOf(entry, view, COLUMNS, into);
-      for (let k = 0; k < count; k++) into[k] = Number.isFinite(entry.y[k]) ? entry.y[k] : null;
+      if (!isPoints) isOther = columnsOf(entry, view, columns, into) || isOther;
+      else for (let k = 0; k < count; k++) isOther = put(into, k, entry.y[k]) || isOther;
       return into;
     });
+    // What looks alike stays.
+    if (!isOther) return;
     this.#plot.batch(() => {
       this.#plot.setData([xs, ...ys], false);
       this.#plot.setScale("x", { min: view[0], max: view[1] });
@@ -187,7 +217,7 @@ export class Plot {
     });
     const isPoints = this.#options.kind === "points";
     const series = this.#lines.map(({ label, look, dash }) => ({
-      label, stroke: () => colour(look), width: 1.25, dash: dash ?? undefined, spanGaps: isPoints,
+      label, stroke: () => colour(look), width: WIDTH, dash: dash ?? undefined, spanGaps: isPoints,
       points: { show: isPoints, size: 6, fill: () => colour(look) },
     }));
     this.#plot = new uPlot({
@@ -200,11 +230,15 @@ export class Plot {
       series: [{}, ...series],
       hooks: {
         drawClear: [(plot) => this.#drawBands(plot)],
-        draw: [(plot) => this.#drawMark(plot)],
+        draw: [() => this.#placeMark()],
         setSelect: [(plot) => this.#select(plot)],
         setCursor: [(plot) => this.#hover(plot)],
       },
     }, [[], ...series.map(() => [])], this.#element);
+    this.#marker = document.createElement("div");
+    this.#marker.className = "mark";
+    this.#plot.over.append(this.#marker);
+    this.#framedAs = "";
   }
 
   #select(plot) {
@@ -255,18 +289,12 @@ export class Plot {
     ctx.restore();
   }
 
-  #drawMark(plot) {
-    if (this.#mark === null || this.#mark < this.view[0] || this.#mark > this.view[1]) return;
-    const { ctx, bbox } = plot;
-    const x = plot.valToPos(this.#mark, "x", true);
-    ctx.save();
-    ctx.strokeStyle = colour("ink");
-    ctx.lineWidth = 1;
-    ctx.beginPath();
-    ctx.moveTo(x, bbox.top);
-    ctx.lineTo(x, bbox.top + bbox.height);
-    ctx.stroke();
-    ctx.restore();
+  /** An element of its own: the lines below it are not drawn anew while it moves. */
+  #placeMark() {
+    if (!this.#plot || !this.#isSeen) return;
+    const isInView = this.#mark !== null && this.#mark >= this.view[0] && this.#mark <= this.view[1];
+    this.#marker.hidden = !isInView;
+    if (isInView) this.#marker.style.transform = `translateX(${this.#plot.valToPos(this.#mark, "x").toFixed(1)}px)`;
   }
 
   #key(event) {
@@ -288,7 +316,9 @@ export class Plot {
 
   #resize() {
     const width = this.#element.clientWidth;
-    if (this.#plot && width > 0 && width !== this.#plot.width) this.#plot.setSize({ width, height: HEIGHT });
+    if (!this.#plot || width === 0 || width === this.#plot.width) return;
+    this.#plot.setSize({ width, height: HEIGHT });
+    this.#draw();
   }
 
   /** For those who do not see it. */

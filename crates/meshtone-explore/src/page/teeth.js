@@ -5,6 +5,11 @@ import { colour, shown } from "./plots.js";
 const TAU = 2 * Math.PI;
 /** Pitches a second. */
 const SPEED = 0.35;
+/** Time between two pictures of the turning wheels, and between two notes of the forces, in ms; a picture waits for the screen too. */
+const REST = 24;
+const NOTE = 240;
+/** How long the wheels stand still at most for an answer that is awaited: what draws them is wanted for it, in ms. */
+const STILL = 150;
 
 /** The outline of a tooth and of the root to the next one, in the tooth's own plane: [x, y] from the back foot over the tip. */
 function outline(flankX, flankY, workingY, end, halfPitch) {
@@ -47,28 +52,50 @@ class Wheel {
     return this.told.first_tooth_rad + this.sign * this.pitch * (turned - index);
   }
 
-  path(turned) {
-    const path = new Path2D();
-    let started = false;
+  /** The wheel's teeth that come within a distance of the pitch point, as the first one's index and their number: counter-clockwise. */
+  near(turned, distance) {
+    const { teeth, pitch_radius_mm: radius } = this.told;
+    if (distance >= radius) return [0, teeth];
+    // A ray from the centre passes the pitch point at this distance.
+    const half = Math.asin(distance / radius) / this.pitch;
+    const towards = this.sign > 0 ? 0 : Math.PI;
+    const middle = (towards - this.direction(0, turned)) / this.pitch;
+    const count = Math.min(2 * Math.ceil(half) + 3, teeth);
+    return [Math.round(middle) - Math.floor(count / 2), count];
+  }
+
+  /** Number of the tooth that stands so many places counter-clockwise of the first one. */
+  numberAt(place) {
     const { teeth } = this.told;
-    // Counter-clockwise, whichever way the teeth are numbered.
-    for (let k = 0; k < teeth; k++) {
-      const index = this.sign > 0 ? (teeth - k) % teeth : k;
-      const points = this.damaged.get(index + 1)?.points ?? this.sound;
-      const angle = this.direction(index, turned);
+    return ((((this.sign > 0 ? -place : place) % teeth) + teeth) % teeth) + 1;
+  }
+
+  /** What is seen of teeth, and the body within them. */
+  paths(turned, [first, count]) {
+    const edge = new Path2D();
+    for (let place = first; place < first + count; place++) {
+      const number = this.numberAt(place);
+      const points = this.damaged.get(number)?.points ?? this.sound;
+      const angle = this.direction(number - 1, turned);
       const [sin, cos] = [Math.sin(angle), Math.cos(angle)];
-      for (const [x, y] of points) {
-        const place = [this.centreX + x * cos - y * sin, x * sin + y * cos];
-        if (started) path.lineTo(...place);
-        else path.moveTo(...place);
-        started = true;
+      for (let k = 0; k < points.length; k++) {
+        const [x, y] = points[k];
+        const isFirst = k === 0 && place === first;
+        edge[isFirst ? "moveTo" : "lineTo"](this.centreX + x * cos - y * sin, x * sin + y * cos);
       }
     }
-    path.closePath();
+    const isWhole = count === this.told.teeth;
+    if (isWhole) edge.closePath();
+    const body = new Path2D(edge);
+    // Out of sight, where it is not the whole.
+    if (!isWhole) body.lineTo(this.centreX, 0);
+    body.closePath();
     const { bore_radius_mm: bore } = this.told;
-    path.moveTo(this.centreX + bore, 0);
-    path.arc(this.centreX, 0, bore, 0, TAU);
-    return path;
+    for (const path of [edge, body]) {
+      path.moveTo(this.centreX + bore, 0);
+      path.arc(this.centreX, 0, bore, 0, TAU);
+    }
+    return { edge, body };
   }
 }
 
@@ -82,7 +109,11 @@ export class Teeth {
   #playing = !matchMedia("(prefers-reduced-motion: reduce)").matches;
   #frame = 0;
   #last = 0;
+  #noted = 0;
+  #stillUntil = 0;
   #moved;
+  #isSeen = true;
+  #size = [0, 0];
   whole = false;
 
   /** @param moved called with the pitches that the wheels have turned */
@@ -90,7 +121,14 @@ export class Teeth {
     this.#canvas = canvas;
     this.#note = note;
     this.#moved = moved;
-    new ResizeObserver(() => this.draw()).observe(canvas);
+    new ResizeObserver(([{ contentRect }]) => {
+      this.#size = [contentRect.width, contentRect.height];
+      this.draw();
+    }).observe(canvas);
+    new IntersectionObserver((entries) => {
+      this.#isSeen = entries.at(-1).isIntersecting;
+      this.draw();
+    }).observe(canvas);
     this.#run();
   }
 
@@ -111,10 +149,17 @@ export class Teeth {
 
   play(playing) {
     this.#playing = playing;
+    this.draw();
     this.#run();
   }
 
+  /** Another answer is awaited. */
+  rest() {
+    this.#stillUntil = performance.now() + STILL;
+  }
+
   set(teeth, mesh) {
+    this.#stillUntil = 0;
     this.#told = teeth;
     this.#mesh = mesh;
     this.#wheels = teeth.wheels.map((told, index) => new Wheel(told, index * teeth.centre_distance_mm, index ? -1 : 1));
@@ -138,11 +183,11 @@ export class Teeth {
       const passed = Math.min(now - this.#last, 100) / 1000;
       this.#last = now;
       const [from, to] = this.span;
-      if (this.#told && this.#canvas.checkVisibility?.() !== false) {
+      if (this.#told && this.#isSeen && now > this.#stillUntil) {
         const on = this.#turned + SPEED * passed;
         this.turnTo(on > to ? from : on);
       }
-      this.#frame = requestAnimationFrame(step);
+      this.#frame = setTimeout(() => requestAnimationFrame(step), REST);
     };
     this.#frame = requestAnimationFrame(step);
   }
@@ -169,10 +214,10 @@ export class Teeth {
 
   draw() {
     const told = this.#told;
-    if (!told) return;
+    const [width, height] = this.#size;
+    if (!told || !this.#isSeen || !width) return;
     const canvas = this.#canvas;
     const ratio = devicePixelRatio || 1;
-    const [width, height] = [canvas.clientWidth, canvas.clientHeight];
     if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
       canvas.width = Math.round(width * ratio);
       canvas.height = Math.round(height * ratio);
@@ -189,24 +234,29 @@ export class Teeth {
     const scale = Math.min(width / view.w, height / view.h) * 0.96;
     context.setTransform(ratio * scale, 0, 0, -ratio * scale, (ratio * width) / 2 - ratio * scale * view.x, (ratio * height) / 2 + ratio * scale * view.y);
     const pixel = 1 / scale;
+    const seen = this.whole ? Infinity : Math.hypot(width, height) / scale / 2;
     for (const wheel of this.#wheels) {
-      const path = wheel.path(this.#turned);
+      const teeth = wheel.near(this.#turned, seen);
+      const { edge, body } = wheel.paths(this.#turned, teeth);
       context.fillStyle = colour(wheel.sign > 0 ? "pinion" : "gear");
-      context.fill(path, "evenodd");
+      context.fill(body, "evenodd");
       context.strokeStyle = colour("ink");
       context.lineWidth = 1.2 * pixel;
       context.lineJoin = "round";
-      context.stroke(path);
-      this.#drawDamage(context, wheel, pixel);
+      context.stroke(edge);
+      this.#drawDamage(context, wheel, teeth, pixel);
     }
     this.#drawLine(context, pixel);
     this.#drawContacts(context, pixel, module);
   }
 
   /** What is lost of the damaged teeth, and their cracks. */
-  #drawDamage(context, wheel, pixel) {
+  #drawDamage(context, wheel, [first, count], pixel) {
     const { flank_x_mm: x, flank_y_mm: y } = wheel.told;
-    for (const [number, tooth] of wheel.damaged) {
+    for (let place = first; place < first + count; place++) {
+      const number = wheel.numberAt(place);
+      const tooth = wheel.damaged.get(number);
+      if (!tooth) continue;
       context.save();
       context.translate(wheel.centreX, 0);
       context.rotate(wheel.direction(number - 1, this.#turned));
@@ -292,6 +342,10 @@ export class Teeth {
       context.lineTo(at[0] + dx, at[1] + dy);
       context.stroke();
     }
+    const now = performance.now();
+    // As often as one can read it.
+    if (this.#playing && now - this.#noted < NOTE) return;
+    this.#noted = now;
     const words = contacts.filter(({ force }) => force !== 0).map(({ pair, force }) => {
       const numbers = this.#told.wheels.map(({ teeth }) => (((pair % teeth) + teeth) % teeth) + 1);
       return `pinion tooth ${numbers[0]} on gear tooth ${numbers[1]}${force === null ? "" : `: ${shown(force, 3)} N`}`;

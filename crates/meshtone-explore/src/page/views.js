@@ -1,6 +1,6 @@
 // What is seen of an answer: figures, mesh cycle, signal, revolution, indicators.
 
-import { Plot, line, shown } from "./plots.js";
+import { Plot, forgetColours, line, shown } from "./plots.js";
 import { Teeth } from "./teeth.js";
 
 const byId = (id) => document.getElementById(id);
@@ -9,6 +9,11 @@ const SEEN_REVOLUTIONS = 3;
 /** Mesh orders that are seen of a spectrum at first. */
 const SEEN_HARMONICS = 5;
 const PAIR_LOOKS = ["now", "second", "recorded", "damage"];
+
+/** Changes a text that is another: what stays is not laid out anew. */
+function setText(node, text) {
+  if (node.data !== text) node.data = text;
+}
 
 export class Views {
   #plots;
@@ -21,6 +26,8 @@ export class Views {
   #indicator = "difference_kurtosis";
   #askSeverity;
   #tableShape = "";
+  #figureNames = "";
+  #warned = "";
 
   /** @param askSeverity called when another fault's severity is wanted */
   constructor(askSeverity) {
@@ -61,6 +68,10 @@ export class Views {
     return this.#now;
   }
 
+  rest() {
+    this.#teeth.rest();
+  }
+
   show(answer) {
     this.#now = answer;
     if (answer.healthy) this.#healthy = answer.healthy;
@@ -94,7 +105,9 @@ export class Views {
     this.#drawSeverity();
   }
 
+  /** The theme is another. */
   repaint() {
+    forgetColours();
     Object.values(this.#plots).forEach((plot) => plot.repaint());
     this.#teeth.draw();
   }
@@ -128,14 +141,21 @@ export class Views {
 
   #figures() {
     const { figures, warnings } = this.#now;
-    byId("figures").replaceChildren(...figures.map(([name, value, unit]) => {
-      const row = document.createElement("div");
-      row.append(Object.assign(document.createElement("dt"), { textContent: name }),
-        Object.assign(document.createElement("dd"), { textContent: `${shown(value)}${unit ? ` ${unit}` : ""}` }));
-      return row;
-    }));
-    byId("warnings").replaceChildren(...warnings.map(({ key, message }) =>
-      Object.assign(document.createElement("li"), { textContent: `${key}: ${message}` })));
+    const list = byId("figures");
+    const names = figures.map(([name]) => name).join();
+    if (names !== this.#figureNames) {
+      list.replaceChildren(...figures.map(([name]) => {
+        const row = document.createElement("div");
+        row.append(Object.assign(document.createElement("dt"), { textContent: name }), Object.assign(document.createElement("dd"), { textContent: "–" }));
+        return row;
+      }));
+    }
+    this.#figureNames = names;
+    figures.forEach(([, value, unit], index) => setText(list.children[index].lastChild.firstChild, `${shown(value)}${unit ? ` ${unit}` : ""}`));
+    const told = warnings.map(({ key, message }) => `${key}: ${message}`);
+    if (told.join("\n") === this.#warned) return;
+    this.#warned = told.join("\n");
+    byId("warnings").replaceChildren(...told.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
   }
 
   #mesh() {
@@ -171,9 +191,8 @@ export class Views {
 
   #signal() {
     const { signal, scenario, channels } = this.#now;
-    const options = channels.map(({ name, meaning }) => Object.assign(document.createElement("option"), { value: name, textContent: name, title: meaning }));
-    if (byId("channel").options.length !== options.length || [...byId("channel").options].some(({ value }, index) => value !== options[index].value)) {
-      byId("channel").replaceChildren(...options);
+    if ([...byId("channel").options].map(({ value }) => value).join() !== channels.map(({ name }) => name).join()) {
+      byId("channel").replaceChildren(...channels.map(({ name, meaning }) => Object.assign(document.createElement("option"), { value: name, textContent: name, title: meaning })));
     }
     byId("channel").value = signal.channel.name;
     const of = (label, told, look, from = told.start_s) => line(label, told.values, from, 1 / told.sampling_rate_hz, look);
@@ -245,8 +264,7 @@ export class Views {
       const ratio = value !== null && healthy.get(name) ? value / healthy.get(name) : null;
       const texts = [shown(value), shown(healthy.get(name)), shown(ratio, 3), held && shown(held.get(name)), recorded && shown(recorded.get(name))];
       texts.filter((text) => typeof text === "string").forEach((text, column) => {
-        const { firstChild } = cells[index].cells[column + 1];
-        if (firstChild.data !== text) firstChild.data = text;
+        setText(cells[index].cells[column + 1].firstChild, text);
       });
     });
     this.#drawSeverity();
