@@ -153,7 +153,9 @@ pub fn answer(
         Detail::Full => simulation.warnings_of_signals(),
         Detail::Coarse => Vec::new(),
     };
-    let (of_signals, wheels) = rayon::join(of_signals, || Shaft::BOTH.map(of_wheel));
+    // About as long as the wheels' signals.
+    let of_rest = || (of_signals(), figures(&simulation), TeethInPlane::new(stages), MeshCycle::new(stages));
+    let ((of_signals, figures, teeth, mesh), wheels) = rayon::join(of_rest, || Shaft::BOTH.map(of_wheel));
     warnings.extend(of_signals);
     wanted(is_wanted)?;
     Ok(State {
@@ -167,9 +169,9 @@ pub fn answer(
             .iter()
             .map(|fault| Fault { severity: None, ..fault.clone() })
             .collect(),
-        figures: figures(&simulation),
-        teeth: TeethInPlane::new(stages),
-        mesh: MeshCycle::new(stages),
+        figures,
+        teeth,
+        mesh,
         channels: channels.list(),
         signal: signal.to_vec(),
         channel,

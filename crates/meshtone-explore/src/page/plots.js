@@ -325,9 +325,9 @@ export class Plot {
   #describe() {
     const of = this.#lines.map(({ label, y }) => {
       let [least, most] = [Infinity, -Infinity];
-      for (const value of y) {
-        if (value < least) least = value;
-        if (value > most) most = value;
+      for (let k = 0; k < y.length; k++) {
+        if (y[k] < least) least = y[k];
+        if (y[k] > most) most = y[k];
       }
       return `${label} from ${shown(least)} to ${shown(most)}`;
     });

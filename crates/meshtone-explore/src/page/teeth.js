@@ -241,12 +241,12 @@ export class Teeth {
       context.fillStyle = colour(wheel.sign > 0 ? "pinion" : "gear");
       context.fill(body, "evenodd");
       context.strokeStyle = colour("ink");
-      context.lineWidth = 1.2 * pixel;
+      context.lineWidth = pixel;
       context.lineJoin = "round";
       context.stroke(edge);
       this.#drawDamage(context, wheel, teeth, pixel);
     }
-    this.#drawLine(context, pixel);
+    this.#drawLine(context, seen, pixel);
     this.#drawContacts(context, pixel, module);
   }
 
@@ -294,7 +294,7 @@ export class Teeth {
   }
 
   /** The path of contact and the pitch circles. */
-  #drawLine(context, pixel) {
+  #drawLine(context, seen, pixel) {
     const { path_start_mm: start, path_per_pitch_mm: step, contact_ratio: ratio, wheels, centre_distance_mm: distance } = this.#told;
     context.strokeStyle = colour("second");
     context.lineWidth = 1.6 * pixel;
@@ -306,8 +306,11 @@ export class Teeth {
     context.lineWidth = 0.8 * pixel;
     context.setLineDash([6 * pixel, 4 * pixel]);
     wheels.forEach((wheel, index) => {
+      // Dashes out of sight take as long.
+      const half = seen < wheel.pitch_radius_mm ? Math.asin(seen / wheel.pitch_radius_mm) : Math.PI;
+      const towards = index ? Math.PI : 0;
       context.beginPath();
-      context.arc(index * distance, 0, wheel.pitch_radius_mm, 0, TAU);
+      context.arc(index * distance, 0, wheel.pitch_radius_mm, towards - half, towards + half);
       context.stroke();
     });
     context.setLineDash([]);
