@@ -226,6 +226,19 @@ def test_every_control_can_be_moved(page: Page, explorer: mt.Explorer) -> None:
             page.wait(lambda: page.run("return !document.querySelector('#controls [aria-invalid]')"), "the start")
     assert len(keys) >= count // step
     assert explorer.scenario.pinion_teeth == 20
+    # A key that is held down moves; let go, it releases.
+    held = """
+        window.slider = document.querySelector('[data-key="operation.pinion_speed_hz"] input[type=range]');
+        slider.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowRight', repeat: true }));
+        slider.value = 42;
+        slider.dispatchEvent(new Event('change', { bubbles: true }));
+        window.coarse = meshtone.coarse;
+    """
+    page.run(held)
+    page.wait(lambda: page.run("return meshtone.coarse > coarse"), "a coarse picture")
+    assert explorer.scenario.pinion_speed_hz != 42
+    page.settled(lambda: page.run("slider.dispatchEvent(new KeyboardEvent('keyup', { key: 'ArrowRight' }))"), "the release")
+    assert explorer.scenario.pinion_speed_hz == 42
 
 
 def test_wrong_values_are_told_at_their_key(page: Page, explorer: mt.Explorer) -> None:

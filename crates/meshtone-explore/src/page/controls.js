@@ -63,10 +63,18 @@ class Slider {
     this.input = element("input", { type: "range", "aria-label": label });
     this.range = null;
     this.isAnew = false;
+    this.isHeld = false;
     this.shown = null;
     this.input.hidden = true;
     this.input.addEventListener("input", () => moved(this.value));
-    this.input.addEventListener("change", () => released(this.value));
+    this.input.addEventListener("change", () => (this.isHeld ? moved : released)(this.value));
+    // A key that is held down moves: each of its steps would take the place of the answer to the one before.
+    this.input.addEventListener("keydown", ({ repeat }) => { this.isHeld = repeat; });
+    ["keyup", "blur"].forEach((name) => this.input.addEventListener(name, () => {
+      if (!this.isHeld) return;
+      this.isHeld = false;
+      released(this.value);
+    }));
   }
 
   #look(value) {
