@@ -6,7 +6,9 @@ use std::process::ExitCode;
 use meshtone_dataset::DatasetError;
 use meshtone_io::ReadResultsError;
 use meshtone_io::atomic_file::WriteFileError;
-use meshtone_io::scenario_file::ReadScenarioError;
+use meshtone_io::scenario_file::{FileKind, ReadScenarioError};
+
+use crate::other_kind::or_other_kind;
 
 /// Why a command did not succeed.
 #[derive(Debug)]
@@ -87,18 +89,35 @@ impl Failure {
 
 impl From<ReadScenarioError> for Failure {
     fn from(error: ReadScenarioError) -> Self {
+        Self::of_file(FileKind::Scenario, error)
+    }
+}
+
+impl Failure {
+    /// A file that could not be read.
+    ///
+    /// # Arguments
+    /// * `kind` - what it should be
+    /// * `error` - what is wrong
+    pub fn of_file(kind: FileKind, error: ReadScenarioError) -> Self {
         match error {
             ReadScenarioError::Unreadable { path, source } => {
-                let path = path.display();
-                match source.kind() {
-                    ErrorKind::NotFound => Self::bad_input(format!("there is no scenario file {path}"))
-                        .with_help(
-                            "check the name; `meshtone init healthy -o FILE` writes one to start from",
-                        ),
-                    ErrorKind::IsADirectory => {
-                        Self::bad_input(format!("{path} is a directory; must be a scenario file"))
+                let shown = path.display();
+                match (source.kind(), kind) {
+                    (ErrorKind::NotFound, FileKind::Tuned) => {
+                        Self::bad_input(format!("there is no file {shown}"))
+                            .with_help(format!("check the name; `{}` writes it", kind.writer()))
                     }
-                    kind => Self::of_reading(kind, format!("cannot read {path}: {source}")),
+                    (ErrorKind::NotFound, _) => Self::bad_input(format!(
+                        "there is no {} {shown}",
+                        noun(kind)
+                    ))
+                    .with_help(format!("check the name; `{}` writes one to start from", kind.writer())),
+                    (ErrorKind::IsADirectory, _) => {
+                        let plain = format!("{shown} is a directory; must be a file");
+                        or_other_kind(&path, "a file", Self::bad_input(plain))
+                    }
+                    (other, _) => Self::of_reading(other, format!("cannot read {shown}: {source}")),
                 }
             }
             ReadScenarioError::NotText { .. } => Self::bad_input(error.to_string())
@@ -111,6 +130,16 @@ impl From<ReadScenarioError> for Failure {
                 Self { kind: Kind::BadInput, message, help, snippet }
             }
         }
+    }
+}
+
+/// What a file of a kind is called.
+fn noun(kind: FileKind) -> &'static str {
+    match kind {
+        FileKind::Scenario => "scenario file",
+        FileKind::Plan => "plan",
+        FileKind::Experiment => "experiment",
+        FileKind::Tuned => "file",
     }
 }
 
@@ -140,13 +169,7 @@ impl From<DatasetError> for Failure {
     fn from(error: DatasetError) -> Self {
         let message = error.to_string();
         match error {
-            DatasetError::Plan(ReadScenarioError::Unreadable { path, source })
-                if source.kind() == ErrorKind::NotFound =>
-            {
-                Self::bad_input(format!("there is no plan {}", path.display()))
-                    .with_help("check the name; `meshtone init dataset -o FILE` writes one to start from")
-            }
-            DatasetError::Plan(error) => error.into(),
+            DatasetError::Plan(error) => Self::of_file(FileKind::Plan, error),
             DatasetError::Refused { problem, help } => Self::bad_input(problem).with_help(help),
             DatasetError::File { doing: "read", source, .. } => Self::of_reading(source.kind(), message),
             DatasetError::File { source, .. } => Self::of_writing(source.kind(), message).with_help(

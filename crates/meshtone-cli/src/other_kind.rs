@@ -2,7 +2,7 @@
 
 use std::fs::{self, File};
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use meshtone_io::scenario_file::FileKind;
 
@@ -11,6 +11,10 @@ use crate::results::SIGNALS;
 
 /// A data set's list of its files.
 pub const MANIFEST: &str = "manifest.json";
+/// What `meshtone tune` found.
+pub const TUNED: &str = "tuned.toml";
+/// Directories of a directory that are looked into.
+const LOOKED_INTO: usize = 100;
 /// (bytes) Larger files than this are none that users write.
 const LARGEST: u64 = 1 << 20;
 
@@ -22,32 +26,60 @@ const LARGEST: u64 = 1 << 20;
 /// * `failure` - what would be said otherwise
 pub fn or_other_kind(path: &Path, expected: &str, failure: Failure) -> Failure {
     let Some((what, readers)) = found(path) else { return failure };
-    let path = path.display();
-    let readers: Vec<String> = readers.iter().map(|reader| format!("`{reader} {path}`")).collect();
+    let readers: Vec<String> = readers.iter().map(|reader| format!("`{reader}`")).collect();
     let read = if readers.len() == 1 { "reads" } else { "read" };
-    Failure::bad_input(format!("{path}: is {what}, and {expected} is expected here"))
+    Failure::bad_input(format!("{}: is {what}, and {expected} is expected here", path.display()))
         .with_help(format!("{} {read} it", readers.join(" and ")))
 }
 
 /// What a path is, and the commands that read it.
-fn found(path: &Path) -> Option<(&'static str, Vec<&'static str>)> {
+fn found(path: &Path) -> Option<(&'static str, Vec<String>)> {
+    let by = |commands: &[&str], path: &Path| -> Vec<String> {
+        commands.iter().map(|command| format!("{command} {}", path.display())).collect()
+    };
     if path.is_dir() {
-        let results = || ("what `meshtone simulate` wrote", vec!["meshtone indicators", "meshtone panel"]);
-        return match path.join(MANIFEST).is_file() {
-            true => Some(("a data set", vec!["meshtone dataset verify"])),
-            false => path.join(SIGNALS).is_file().then(results),
-        };
+        let inside = |name: &str| Some(path.join(name)).filter(|file| file.is_file());
+        if inside(MANIFEST).is_some() {
+            return Some(("a data set", by(&["meshtone dataset verify"], path)));
+        }
+        if inside(SIGNALS).is_some() {
+            let readers = by(&["meshtone indicators", "meshtone panel"], path);
+            return Some(("what `meshtone simulate` wrote", readers));
+        }
+        return inside(TUNED)
+            .map(|file| ("what `meshtone tune` wrote", by(&[FileKind::Tuned.reader()], &file)));
     }
     // To open a pipe would wait for its other end.
     let metadata = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
     if starts_as_parquet(path) {
-        return Some(("a recording", vec!["meshtone indicators"]));
+        return Some(("a recording", by(&["meshtone indicators"], path)));
     }
     if metadata.len() > LARGEST {
         return None;
     }
     let kind = FileKind::of(&fs::read_to_string(path).ok()?)?;
-    Some((kind.in_words(), vec![kind.reader()]))
+    Some((kind.in_words(), by(&[kind.reader()], path)))
+}
+
+/// A directory of recordings or of results, or of directories of such: one of them.
+pub fn recording_within(directory: &Path) -> Option<PathBuf> {
+    let mut entries: Vec<PathBuf> =
+        fs::read_dir(directory).ok()?.flatten().map(|entry| entry.path()).collect();
+    entries.sort();
+    entries.iter().find(|path| is_recording(path)).cloned().or_else(|| {
+        entries.iter().filter(|path| path.is_dir()).take(LOOKED_INTO).find_map(|inner| {
+            let mut files: Vec<PathBuf> =
+                fs::read_dir(inner).ok()?.flatten().map(|entry| entry.path()).collect();
+            files.sort();
+            files.into_iter().find(|path| is_recording(path))
+        })
+    })
+}
+
+fn is_recording(path: &Path) -> bool {
+    const ENDINGS: [&str; 10] = ["csv", "tsv", "txt", "dat", "asc", "parquet", "npy", "npz", "mat", "wav"];
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    path.join(SIGNALS).is_file() || path.is_file() && ENDINGS.contains(&ending.as_str())
 }
 
 fn starts_as_parquet(path: &Path) -> bool {

@@ -15,9 +15,15 @@ pub fn with_tip(mut error: clap::Error, arguments: impl Iterator<Item = OsString
         return error;
     }
     let Some(ContextValue::String(option)) = error.get(ContextKind::InvalidArg) else { return error };
-    let tip = match option.as_str() {
-        "--convention" => renamed_to_model(&value(option, arguments)),
-        "--shaft-rpm" => rpm_as_hz(&value(option, arguments)),
+    let arguments: Vec<String> = arguments.map(|argument| argument.to_string_lossy().into_owned()).collect();
+    let command = arguments.iter().skip(1).find(|argument| !argument.starts_with('-'));
+    let value = value(option, &arguments);
+    let tip = match (option.as_str(), command.map(String::as_str)) {
+        ("--convention", _) => renamed_to_model(&value),
+        ("--shaft-rpm", _) | ("--rpm" | "--speed-rpm", Some("indicators")) => rpm_as_hz(&value),
+        ("--rpm" | "--speed-rpm" | "--pinion-speed-rpm", _) => speed_of_scenario(&value),
+        ("--seed", Some("dataset")) => seed_of("plan", &value),
+        ("--seed", Some("simulate" | "explore" | "panel" | "wheels")) => seed_of("scenario", &value),
         _ => return error,
     };
     // What is only spelt like it would be a second tip.
@@ -27,14 +33,12 @@ pub fn with_tip(mut error: clap::Error, arguments: impl Iterator<Item = OsString
 }
 
 /// What stands behind an option; nothing where nothing does.
-fn value(option: &str, arguments: impl Iterator<Item = OsString>) -> String {
-    let mut rest = arguments
-        .map(|argument| argument.to_string_lossy().into_owned())
-        .skip_while(|argument| argument.split('=').next() != Some(option));
-    let named = rest.next().unwrap_or_default();
+fn value(option: &str, arguments: &[String]) -> String {
+    let mut rest = arguments.iter().skip_while(|argument| argument.split('=').next() != Some(option));
+    let named = rest.next().map(String::as_str).unwrap_or_default();
     match named.split_once('=') {
         Some((_, value)) => value.to_owned(),
-        None => rest.next().unwrap_or_default(),
+        None => rest.next().cloned().unwrap_or_default(),
     }
 }
 
@@ -44,9 +48,25 @@ fn renamed_to_model(value: &str) -> String {
 }
 
 fn rpm_as_hz(value: &str) -> String {
-    let hz = value.parse().ok().filter(|rpm: &f64| rpm.is_finite() && *rpm > 0.0).map(|rpm| rpm / 60.0);
-    let hz = hz.map_or("HZ".to_owned(), |hz| hz.to_string());
+    let hz = in_hz(value);
     format!("speeds are in revolutions per second, a sixtieth of those per minute; write --shaft-hz {hz}")
+}
+
+fn speed_of_scenario(value: &str) -> String {
+    let hz = in_hz(value);
+    format!(
+        "the speed is a key of the scenario, in revolutions per second; write pinion_speed_hz = {hz} below its [operation]"
+    )
+}
+
+fn seed_of(file: &str, value: &str) -> String {
+    let seed = value.parse::<u64>().map_or("N".to_owned(), |seed| seed.to_string());
+    format!("the seed is a key of the {file}; write seed = {seed} there, above its first [section]")
+}
+
+fn in_hz(rpm: &str) -> String {
+    let hz = rpm.parse().ok().filter(|rpm: &f64| rpm.is_finite() && *rpm > 0.0).map(|rpm| rpm / 60.0);
+    hz.map_or("HZ".to_owned(), |hz| hz.to_string())
 }
 
 #[cfg(test)]
@@ -55,7 +75,7 @@ mod tests {
 
     #[test]
     fn the_value_is_what_stands_behind_the_option() {
-        let of = |line: &str| value("--shaft-rpm", line.split(' ').map(OsString::from));
+        let of = |line: &str| value("--shaft-rpm", &line.split(' ').map(str::to_owned).collect::<Vec<_>>());
         assert_eq!(of("meshtone indicators run.csv --shaft-rpm 1074 -q"), "1074");
         assert_eq!(of("meshtone indicators --shaft-rpm=1074 run.csv"), "1074");
         assert_eq!(of("meshtone indicators run.csv --shaft-rpm"), "");

@@ -57,7 +57,7 @@ pub fn add_noise<'py>(
 #[pyfunction]
 pub fn tune(py: Python<'_>, path: PathBuf, progress: Option<Bound<'_, PyAny>>) -> PyResult<(String, String)> {
     let file = py.detach(|| read_experiment(&path)).map_err(|error| read_error(&path, &error))?;
-    let experiment = file.experiment;
+    let experiment = &file.experiment;
     let (finished, all) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let progress = progress.map(Bound::unbind);
     let result = interruptible(
@@ -67,7 +67,7 @@ pub fn tune(py: Python<'_>, path: PathBuf, progress: Option<Bound<'_, PyAny>>) -
                 finished.store(done, Ordering::Relaxed);
                 all.store(of, Ordering::Relaxed);
             };
-            tuning::run_experiment(&experiment, &ExperimentControl { progress: &told, cancelled })
+            tuning::run_experiment(experiment, &ExperimentControl { progress: &told, cancelled })
         },
         |py| match &progress {
             Some(progress) => {
@@ -78,8 +78,8 @@ pub fn tune(py: Python<'_>, path: PathBuf, progress: Option<Bound<'_, PyAny>>) -
         },
     )?;
     let result = result.map_err(|error| value_error(format!("{}: {error}", path.display())))?;
-    let tuned = write_tuned(&Tuned::of(&experiment, &result), &path.display().to_string());
-    Ok((tuning_json(&experiment, &result), tuned))
+    let tuned = write_tuned(&Tuned::of(experiment, &result), &path.display().to_string());
+    Ok((tuning_json(&file, &result), tuned))
 }
 
 /// Enhanced difference signals of a scenario, a row a draw, relative to the healthy rms; and that rms in g.

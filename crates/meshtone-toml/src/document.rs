@@ -73,16 +73,49 @@ fn syntax_error(text: &str, error: &toml::de::Error) -> TomlError {
     let start = error.span().map_or(text.len(), |span| span.start).min(text.len());
     let line = line_at(text, start);
     let written = text.lines().nth(line - 1).unwrap_or_default().trim();
-    // A table stands once, or is one of a list from its first time on.
-    let help = if written.starts_with("[[") {
-        "write the table's name in double brackets wherever it stands, the first time too"
-    } else {
-        "write `key = value`, one key a line, text in double quotes, below a `[section]`"
-    };
+    let is_twice = error.message().contains("duplicate key");
+    let help = syntax_help(written, is_twice);
     TomlError::new("", shorten(written), format!("not valid TOML: {}", error.message()))
         .of_kind(ErrorKind::NotToml)
         .with_help(help)
         .at_line(Some(line))
+}
+
+/// What to write instead of a line.
+///
+/// # Arguments
+/// * `written` - the line
+/// * `is_twice` - whether what it names is there already
+fn syntax_help(written: &str, is_twice: bool) -> String {
+    // A table stands once, or is one of a list from its first time on.
+    if written.starts_with("[[") {
+        return "write the table's name in double brackets wherever it stands, the first time too".to_owned();
+    }
+    if let Some(name) = written.strip_prefix('[').and_then(|rest| rest.split(']').next()).filter(|_| is_twice)
+    {
+        return format!(
+            "write all its keys below one [{name}]; or, where several are allowed, [[{name}]] in double brackets above each, the \
+             first too"
+        );
+    }
+    match (written.split_once('='), is_twice) {
+        (Some((key, _)), true) => format!("write `{}` once", key.trim()),
+        (Some((key, value)), false) => match with_decimal_point(value) {
+            Some(number) => format!("write a decimal point: {} = {number}", key.trim()),
+            None => GENERAL_HELP.to_owned(),
+        },
+        _ => GENERAL_HELP.to_owned(),
+    }
+}
+
+const GENERAL_HELP: &str = "write `key = value`, one key a line, text in double quotes, below a `[section]`";
+
+/// `5,0` as `5.0`; none of anything else.
+fn with_decimal_point(value: &str) -> Option<String> {
+    let number = value.split('#').next().unwrap_or_default().trim();
+    let (whole, part) = number.split_once(',')?;
+    let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    (digits(whole.trim_start_matches(['-', '+'])) && digits(part)).then(|| format!("{whole}.{part}"))
 }
 
 /// The 1-based line of a byte position.

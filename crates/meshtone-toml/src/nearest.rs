@@ -41,6 +41,25 @@ pub(crate) fn has_another_unit(written: &str, name: &str) -> bool {
     }
 }
 
+/// Whether a name is of revolutions per minute and the other of the same per second: `rpm`, `speed_rpm` or `pinion_rpm` for
+/// `pinion_speed_hz`, not `gear_speed_rpm`.
+pub(crate) fn is_rpm_of(written: &str, name: &str) -> bool {
+    match (written.strip_suffix("rpm"), name.strip_suffix("_hz")) {
+        (Some(written), Some(quantity)) => {
+            let written = written.trim_end_matches('_');
+            let is_part = |rest: Option<&str>, at_end: bool| {
+                rest.is_some_and(|rest| {
+                    rest.is_empty() || if at_end { rest.ends_with('_') } else { rest.starts_with('_') }
+                })
+            };
+            is_part(quantity.strip_suffix(written), true)
+                || is_part(quantity.strip_prefix(written), false)
+                || written.is_empty()
+        }
+        _ => false,
+    }
+}
+
 fn similarity(written: &str, candidate: &str) -> f64 {
     // A forgotten unit suffix or prefix is the likeliest slip, and weighs heavily by letters.
     let contained = written.len() >= 4 && (candidate.contains(written) || written.contains(candidate));

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use toml::de::DeTable;
 
 use crate::document::{line_at, written};
-use crate::nearest::{has_another_unit, is_slip, nearest_name};
+use crate::nearest::{has_another_unit, is_rpm_of, is_slip, nearest_name};
 use crate::{ErrorKind, ReadResult, TomlError, TomlValue};
 
 /// Keys that are named where a name says not whose it is; more of them have no more in common than a unit.
@@ -22,6 +22,8 @@ pub struct TomlTable<'a> {
     line: Option<usize>,
     /// None where the text leaves the table out: every key is then at its default.
     table: Option<&'a DeTable<'a>>,
+    /// The table that this one is a section of, where that is known.
+    around: Option<&'a DeTable<'a>>,
     asked: RefCell<Vec<&'static str>>,
 }
 
@@ -32,7 +34,7 @@ impl<'a> TomlTable<'a> {
         line: Option<usize>,
         table: Option<&'a DeTable<'a>>,
     ) -> Self {
-        Self { text, path, line, table, asked: RefCell::default() }
+        Self { text, path, line, table, around: None, asked: RefCell::default() }
     }
 
     /// The dotted key of this table, empty for the top level.
@@ -71,6 +73,7 @@ impl<'a> TomlTable<'a> {
             return Ok(value);
         }
         self.refuse_slip(key, Some(meaning))?;
+        self.refuse_outside(key)?;
         let problem = format!("missing, and it has no default; it is {meaning}");
         Err(self.error(key, problem).of_kind(ErrorKind::MissingKey))
     }
@@ -107,10 +110,10 @@ impl<'a> TomlTable<'a> {
     /// The value is no table, or it is absent and another key looks like it misspelt.
     pub fn table_or_empty(&self, key: &'static str) -> ReadResult<TomlTable<'a>> {
         match self.optional(key) {
-            Some(value) => value.table(),
+            Some(value) => Ok(Self { around: self.table, ..value.table()? }),
             None => {
                 self.refuse_slip_of(key)?;
-                Ok(Self::new(self.text, self.path_of(key), self.line, None))
+                Ok(Self { around: self.table, ..Self::new(self.text, self.path_of(key), self.line, None) })
             }
         }
     }
@@ -189,10 +192,23 @@ impl<'a> TomlTable<'a> {
     /// # Errors
     /// The unknown key, its line, the nearest right name and all the names allowed here.
     pub fn finish(self) -> ReadResult<()> {
-        let asked = self.asked.borrow();
-        match self.unasked().min_by_key(|(start, _)| *start) {
+        self.refuse_unknown(&[])
+    }
+
+    /// Refuses the first key that nobody has asked for, and nobody will: to be told before what is missing for it.
+    ///
+    /// # Arguments
+    /// * `later` - keys that may be here and have not been asked for yet
+    ///
+    /// # Errors
+    /// As [`Self::finish`].
+    pub fn refuse_unknown(&self, later: &[&'static str]) -> ReadResult<()> {
+        let mut allowed = self.asked.borrow().clone();
+        allowed.extend(later.iter().filter(|key| !allowed.contains(key)).copied().collect::<Vec<_>>());
+        let unknown = self.unasked().filter(|(_, name)| !allowed.contains(name));
+        match unknown.min_by_key(|(start, _)| *start) {
             None => Ok(()),
-            Some((_, name)) => Err(self.unknown(name, nearest_name(name, asked.iter().copied()))),
+            Some((_, name)) => Err(self.unknown(name, &allowed)),
         }
     }
 
@@ -238,7 +254,8 @@ impl<'a> TomlTable<'a> {
 
     /// As [`Self::refuse_slip_of`]; who writes another unit is told the right one.
     fn refuse_slip(&self, key: &'static str, meaning: Option<&str>) -> ReadResult<()> {
-        let Some((_, name)) = self.unasked().find(|(_, name)| is_slip(name, key)) else {
+        let Some((_, name)) = self.unasked().find(|(_, name)| is_slip(name, key) || is_rpm_of(name, key))
+        else {
             return Ok(());
         };
         let is =
@@ -247,7 +264,36 @@ impl<'a> TomlTable<'a> {
         Err(self
             .error(name, format!("unknown key, while `{key}` is missing{}", is.unwrap_or_default()))
             .of_kind(ErrorKind::UnknownKey)
-            .with_help(format!("did you mean `{key}`?")))
+            .with_help(self.meant(name, key)))
+    }
+
+    /// The key that is meant, with its value where that is of revolutions per minute.
+    fn meant(&self, name: &str, key: &str) -> String {
+        let value = self.table.and_then(|table| table.get_key_value(name));
+        let number =
+            value.and_then(|(_, value)| written(self.text, value).replace('_', "").parse::<f64>().ok());
+        match number.filter(|rpm| rpm.is_finite() && is_rpm_of(name, key)) {
+            Some(rpm) => format!(
+                "did you mean `{key}`? Write `{key} = {}`: revolutions per second, a sixtieth of those per minute",
+                rpm / 60.0
+            ),
+            None => format!("did you mean `{key}`?"),
+        }
+    }
+
+    /// A key that is missing here while it stands in the table around.
+    fn refuse_outside(&self, key: &str) -> ReadResult<()> {
+        let Some((name, value)) = self.around.and_then(|around| around.get_key_value(key)) else {
+            return Ok(());
+        };
+        let problem = format!("stands outside of its section, `[{}]`", self.path);
+        Err(TomlError::new(key, written(self.text, value), problem)
+            .of_kind(ErrorKind::UnknownKey)
+            .at_line(Some(line_at(self.text, name.span().start)))
+            .with_help(format!(
+                "write [{}] on a line above it, and every other key below its own section",
+                self.path
+            )))
     }
 
     /// The keys of which a name says only what, and not whose: of `addendum` those of pinion and gear.
@@ -256,8 +302,8 @@ impl<'a> TomlTable<'a> {
         self.asked.borrow().iter().filter(is_of).map(|key| format!("`{key}`")).collect()
     }
 
-    fn unknown(&self, name: &str, nearest: Option<&str>) -> TomlError {
-        let allowed = self.asked.borrow().join(", ");
+    fn unknown(&self, name: &str, keys: &[&str]) -> TomlError {
+        let (allowed, nearest) = (keys.join(", "), nearest_name(name, keys.iter().copied()));
         let place = match self.path.as_str() {
             "" => "at the top level".to_string(),
             path => format!("in `{path}`"),
@@ -268,7 +314,7 @@ impl<'a> TomlTable<'a> {
             _ if (2..=MOST_OWNERS).contains(&several.len()) => {
                 format!("did you mean {}?", several.join(" or "))
             }
-            Some(nearest) => format!("did you mean `{nearest}`?"),
+            Some(nearest) => self.meant(name, nearest),
             None => "remove it, or move it to the section it belongs to".to_string(),
         })
     }

@@ -184,6 +184,44 @@ fn a_table_that_becomes_a_list_is_told_how() {
 }
 
 #[test]
+fn usual_slips_are_answered_with_what_to_write() {
+    let help = |text: &str| TomlDocument::parse(text).map(drop).unwrap_err().help.unwrap();
+    assert!(help("[fault]\ntooth = 1\n[fault]\ntooth = 2\n").contains("[[fault]] in double brackets"));
+    assert_eq!(help("module_mm = 5,0  # of both\n"), "write a decimal point: module_mm = 5.0");
+    assert_eq!(help("a = 1\na = 2\n"), "write `a` once");
+    assert!(help("a = 5,\n").contains("key = value"));
+
+    let flat = read_motor("# a motor\nspeed_hz = 2\n").unwrap_err();
+    assert!(flat.help.as_deref().unwrap().contains("write [motor] on a line above it"), "{flat:?}");
+    assert_error(Some(flat), "speed_hz", 2, "2", "stands outside of its section, `[motor]`");
+    let above = read_motor("speed_hz = 2\n[motor]\ntorque_nm = 1\n").unwrap_err();
+    assert_eq!((above.key.as_str(), above.line), ("speed_hz", Some(1)));
+
+    for key in ["speed_rpm", "rpm"] {
+        let rpm = read_motor(&format!("[motor]\n{key} = 1_200\n")).unwrap_err();
+        assert!(rpm.help.as_deref().unwrap().contains("Write `speed_hz = 20`"), "{rpm:?}");
+    }
+    let mates = read_motor("[motor]\ngear_speed_rpm = 1200\n").unwrap_err();
+    assert_eq!((mates.kind, mates.key.as_str()), (ErrorKind::MissingKey, "motor.speed_hz"));
+}
+
+#[test]
+fn keys_that_will_be_asked_for_are_known() {
+    let document = TomlDocument::parse("law = \"a\"\nlife = 1\nlater = 2\n").unwrap();
+    let root = document.root();
+    assert!(root.optional("law").is_some());
+    let unknown = root.refuse_unknown(&["later", "life_rev"]).unwrap_err();
+    assert_eq!(unknown.help.as_deref(), Some("did you mean `life_rev`?"));
+    assert_error(
+        Some(unknown),
+        "life",
+        2,
+        "1",
+        "unknown key; allowed at the top level: law, later, life_rev",
+    );
+}
+
+#[test]
 fn errors_are_told_apart_by_their_kind() {
     let kind = |text: &str| {
         let speed = |root: &TomlTable<'_>| root.required("speed_hz", "(rev/s) speed")?.number();

@@ -301,8 +301,11 @@ fn read_plan(path: &Path) -> Result<Plan, Failure> {
     })
 }
 
-/// What the plan shows to be missing in the end, before anything is computed.
+/// What is doubtful about the plan, and what it shows to be missing in the end, before anything is computed.
 fn foretell(name: &str, plan: &Plan) {
+    for warning in plan.warnings() {
+        print_error_line(format!("warning: {name}: {warning}"));
+    }
     let foreseen = plan.foreseen_failures();
     if let Some(first) = foreseen.first() {
         let count = counted(foreseen.len() as u64, "record");

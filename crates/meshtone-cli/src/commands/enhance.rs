@@ -9,7 +9,7 @@ use meshtone_io::experiment::{
     EnhancedDraws, EnhancedHead, EnhancedRecord, Tuned, enhance, read_tuned, write_enhanced,
 };
 use meshtone_io::memory;
-use meshtone_io::scenario_file::ScenarioFile;
+use meshtone_io::scenario_file::{FileKind, ScenarioFile};
 
 use crate::check::check;
 use crate::failure::Failure;
@@ -54,7 +54,7 @@ Example:
 impl Enhance {
     pub fn run(&self) -> Result<(), Failure> {
         let file = ScenarioFile::read_within(&self.scenario, memory::limit())?;
-        let tuned = read_tuned(&self.tuned)?;
+        let tuned = read_tuned(&self.tuned).map_err(|error| Failure::of_file(FileKind::Tuned, error))?;
         let scenario = tuned
             .apply(&file.scenario)
             .map_err(|error| Failure::bad_input(format!("{}: {error}", self.tuned.display())))?;

@@ -65,7 +65,12 @@ impl Indicators {
             let of = format!("({} of {})", number + 1, self.recordings.len());
             let _progress = Progress::start(format!("{} {of}", path.display()), !self.quiet);
             let input = Input::read(path, &self.reading, self.phase.channel())?;
-            let processed = process(&input, &self.phase, &self.processing)?;
+            let processed = process(&input, &self.phase, &self.processing).map_err(|failure| {
+                match self.reading.in_kilohertz() {
+                    Some(help) => failure.with_help(help),
+                    None => failure,
+                }
+            })?;
             series.add(input, processed, self.processing.revolutions.is_some())?;
         }
         series.finish()?;

@@ -11,7 +11,7 @@ use meshtone::{Simulation, StageTime, Stages, Trace};
 use meshtone_io::experiment::{Tuned, read_tuned};
 use meshtone_io::memory;
 use meshtone_io::run_identity::RunIdentity;
-use meshtone_io::scenario_file::{FilesBeside, ReadScenarioError, ScenarioFile};
+use meshtone_io::scenario_file::{FileKind, FilesBeside, ReadScenarioError, ScenarioFile};
 use meshtone_io::summary::Summary;
 
 use crate::check::check;
@@ -132,7 +132,8 @@ impl Simulate {
         }
         let directories = self.directories()?;
         let errors = self.errors_file.as_deref().map(read_errors).transpose()?;
-        let tuned = self.tuned.as_deref().map(read_tuned).transpose()?;
+        let tuned = self.tuned.as_deref().map(read_tuned).transpose();
+        let tuned = tuned.map_err(|error| Failure::of_file(FileKind::Tuned, error))?;
         let runs = self.scenarios.iter().zip(directories);
         let runs =
             runs.map(|(path, directory)| self.prepare(path, directory, errors.as_ref(), tuned.as_ref()));

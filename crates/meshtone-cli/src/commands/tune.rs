@@ -10,17 +10,18 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use meshtone::tuning::{Experiment, ExperimentControl, ExperimentResult, Tuning, run_experiment};
 use meshtone_io::atomic_file::StagedFile;
-use meshtone_io::experiment::{Tuned, read_experiment, tuning_json, write_tuned};
+use meshtone_io::experiment::{ExperimentFile, Tuned, read_experiment, tuning_json, warnings, write_tuned};
 use meshtone_io::own_file::undisturbed;
+use meshtone_io::scenario_file::FileKind;
 use meshtone_plot::tuning_figure;
 
 use crate::failure::Failure;
+use crate::other_kind::TUNED;
 use crate::output_directory::{OutputDirectory, named_after};
 use crate::same_file::is_same_file;
 use crate::terminal::{print, print_error_line};
 
 const TUNING: &str = "tuning.json";
-const TUNED: &str = "tuned.toml";
 const FIGURE: [&str; 2] = ["tuning.svg", "tuning.png"];
 const FILES: [&str; 4] = [TUNING, TUNED, FIGURE[0], FIGURE[1]];
 
@@ -52,7 +53,8 @@ Examples:
 
 impl Tune {
     pub fn run(&self) -> Result<(), Failure> {
-        let file = read_experiment(&self.experiment)?;
+        let file = read_experiment(&self.experiment)
+            .map_err(|error| Failure::of_file(FileKind::Experiment, error))?;
         let directory = self.directory()?;
         for name in FILES {
             let target = directory.join(name);
@@ -62,7 +64,7 @@ impl Tune {
             }
         }
         let directory = OutputDirectory::for_files(&directory, &FILES)?;
-        self.tune(&file.experiment, directory.path())?;
+        self.tune(&file, directory.path())?;
         Ok(())
     }
 
@@ -74,7 +76,8 @@ impl Tune {
             .ok_or_else(|| Failure::bad_input(format!("{} is no experiment file", self.experiment.display())))
     }
 
-    fn tune(&self, experiment: &Experiment, directory: &Path) -> Result<(), Failure> {
+    fn tune(&self, file: &ExperimentFile, directory: &Path) -> Result<(), Failure> {
+        let experiment = &file.experiment;
         let bar = Mutex::new(self.progress_bar());
         let progress = |finished: usize, all: usize| {
             // A poisoned lock means another thread's end, which is told elsewhere.
@@ -90,8 +93,8 @@ impl Tune {
         if let Ok(bar) = bar.lock() {
             bar.finish_and_clear();
         }
-        self.write(experiment, &result, directory)?;
-        for warning in &result.tuning().warnings {
+        self.write(file, &result, directory)?;
+        for warning in warnings(file, &result) {
             print_error_line(format!("warning: {warning}"));
         }
         if self.quiet { Ok(()) } else { print(&table(experiment, &result, directory)) }
@@ -112,11 +115,12 @@ impl Tune {
 
     fn write(
         &self,
-        experiment: &Experiment,
+        file: &ExperimentFile,
         result: &ExperimentResult,
         directory: &Path,
     ) -> Result<(), Failure> {
-        let json = tuning_json(experiment, result);
+        let experiment = &file.experiment;
+        let json = tuning_json(file, result);
         let name = self.experiment.file_name().unwrap_or_default().to_string_lossy();
         let toml = write_tuned(&Tuned::of(experiment, result), &name);
         let mut staged =
@@ -219,7 +223,10 @@ fn table(experiment: &Experiment, result: &ExperimentResult, directory: &Path) -
 }
 
 fn short(value: f64) -> String {
-    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) {
+    if value.fract() == 0.0 && value.abs() < 1e5 {
+        // A seed, or a grade.
+        format!("{value}")
+    } else if (1e-3..1e5).contains(&value.abs()) {
         format!("{value:.4}")
     } else {
         format!("{value:.3e}")

@@ -40,6 +40,18 @@ pub struct ReadingOptions {
     pub skip_lines: usize,
 }
 
+impl ReadingOptions {
+    /// What to write where the sampling rate is so low that it is rather meant in kHz.
+    pub fn in_kilohertz(&self) -> Option<String> {
+        const MOST_KILOHERTZ: f64 = 200.0;
+        let rate = self.sampling_rate_hz.filter(|rate| *rate <= MOST_KILOHERTZ)?;
+        Some(format!(
+            "--sampling-rate-hz {rate} are {rate} samples a second; for {rate} kHz write --sampling-rate-hz {}",
+            (1e6 * rate).round() / 1e3
+        ))
+    }
+}
+
 /// The wheels, and how far their shafts have turned.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Wheels and phase (what `meshtone simulate` wrote needs none of these)")]

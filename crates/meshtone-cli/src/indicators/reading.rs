@@ -65,6 +65,8 @@ impl Input {
         let turning = turning.map(|(option, choice)| read_one(path, options, option, choice)).transpose()?;
         let (turning, mut warnings) =
             turning.map_or((None, Vec::new()), |(channel, warnings)| (Some(channel), warnings));
+        let source = Some(path.to_path_buf());
+        warnings.extend(options.in_kilohertz().map(|message| WarningEntry { source, message }));
         let mut recording = read_recording(path, &chosen)?;
         warnings.extend(warnings_of(&recording));
         warnings.dedup();

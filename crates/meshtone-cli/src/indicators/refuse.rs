@@ -7,7 +7,7 @@ use meshtone::signal::SignalError;
 use meshtone_io::recording::ReadRecordingError;
 
 use crate::failure::Failure;
-use crate::other_kind::or_other_kind;
+use crate::other_kind::{or_other_kind, recording_within};
 
 /// What is read here.
 const RECORDING: &str = "a recording";
@@ -43,8 +43,14 @@ pub fn unreadable(error: ReadRecordingError, option: &str) -> Failure {
         return match source.kind() {
             ErrorKind::NotFound => Failure::bad_input(format!("there is no recording {}", path.display())),
             ErrorKind::IsADirectory => {
-                let failure = Failure::bad_input(format!("{} is a directory", path.display()))
-                    .with_help("name a file, or a directory that `meshtone simulate` wrote");
+                let help = match recording_within(path) {
+                    Some(one) => {
+                        format!("name the recordings in it, as `meshtone indicators {} …`", one.display())
+                    }
+                    None => "name a file, or a directory that `meshtone simulate` wrote".to_owned(),
+                };
+                let failure =
+                    Failure::bad_input(format!("{} is a directory", path.display())).with_help(help);
                 or_other_kind(path, RECORDING, failure)
             }
             kind => Failure::of_reading(kind, error.to_string()),

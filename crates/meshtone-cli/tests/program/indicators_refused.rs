@@ -66,6 +66,14 @@ fn columns_and_files() {
     let of = |name: &'static str| [&[name], &CONSTANT[..]].concat();
     refused(&workplace, &of("absent.csv"), &["there is no recording absent.csv"]);
     refused(&workplace, &of("."), &["."]);
+    workplace.write("one.csv", "1\n2\n3\n");
+    refused(
+        &workplace,
+        &of("one.csv"),
+        &["has one column alone; give the sampling rate (--sampling-rate-hz)"],
+    );
+    let kilohertz = [&of("one.csv")[..], &["--sampling-rate-hz", "25.6"]].concat();
+    refused(&workplace, &kilohertz, &["for 25.6 kHz write --sampling-rate-hz 25600"]);
     workplace.write("empty.csv", "");
     refused(&workplace, &of("empty.csv"), &["empty.csv", "is empty"]);
     let whole = workplace.read("run.csv");

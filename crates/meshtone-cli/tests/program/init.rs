@@ -45,6 +45,39 @@ fn files_of_other_kinds_are_named() {
     }
 }
 
+/// Nor are what `meshtone tune` found, other formats and directories.
+#[test]
+fn what_is_no_scenario_is_told_what_reads_it() {
+    let workplace = Workplace::new();
+    workplace.write("tuned.toml", "[enhancement]\nwidth_ratio = 0.2\n");
+    std::fs::create_dir(workplace.path("found")).unwrap();
+    std::fs::create_dir_all(workplace.path("days/monday")).unwrap();
+    workplace.write("found/tuned.toml", "[enhancement]\nwidth_ratio = 0.2\n");
+    workplace.write("rig.json", "{\"module_mm\": 3}");
+    workplace.write("run.csv", "time [s],acc [g]\n0,1\n");
+    workplace.write("days/monday/run.csv", "0\n1\n");
+    for (arguments, words) in [
+        (&["simulate", "tuned.toml"][..], "`meshtone enhance SCENARIO.toml --tuned tuned.toml` reads it"),
+        (&["enhance", "fast.toml", "--tuned", "found"], "--tuned found/tuned.toml` reads it"),
+        (
+            &["enhance", "fast.toml", "--tuned", "fast.toml"],
+            "is a scenario, and what `meshtone tune` found is expected",
+        ),
+        (&["enhance", "fast.toml", "--tuned", "none.toml"], "`meshtone tune EXPERIMENT.toml` writes it"),
+        (&["indicators", "tuned.toml"], "is what `meshtone tune` found, and a recording is expected here"),
+        (&["simulate", "rig.json"], "is JSON, and a scenario is expected here"),
+        (&["tune", "run.csv"], "`meshtone indicators run.csv` reads recordings"),
+        (&["tune", "none.toml"], "`meshtone init experiment -o FILE` writes one"),
+        (&["dataset", "days"], "days is a directory; must be a file"),
+        (&["indicators", "days"], "as `meshtone indicators days/monday/run.csv"),
+        (&["simulate", "fast.toml", "--seed", "4"], "write seed = 4 there"),
+        (&["explore", "fast.toml", "--rpm=1200"], "write pinion_speed_hz = 20 below its [operation]"),
+        (&["indicators", "run.csv", "--rpm", "1200"], "write --shaft-hz 20"),
+    ] {
+        workplace.fails(2, arguments, &[words]);
+    }
+}
+
 #[test]
 fn an_experiment_to_start_from_can_be_read_where_its_files_are() {
     let workplace = Workplace::new();

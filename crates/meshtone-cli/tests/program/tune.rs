@@ -29,6 +29,7 @@ fn table(change: impl Fn(usize, &'static str, usize) -> Option<String>) -> Strin
 
 const HEAD: &str = "scenario = \"fast.toml\"\n[signal]\nsampling_rate_hz = 10e3\n";
 const MEASURED: &str = "[measured]\nindicators_file = \"table.csv\"\nexperiment = \"rig\"\n";
+const CASES_START: &str = "[[case]]\nlabel = \"healthy\"\n";
 const CASES: &str = "[[case]]\nlabel = \"healthy\"\nseverity = 0\n\
                      [[case]]\nlabel = \"chipped\"\nseverity = 1\n\
                      fault = { kind = \"tooth-breakage\", chip_height_mm = 4.0, chip_width_mm = 10.0, tip_loss_mm = 1.0 }\n\
@@ -262,6 +263,14 @@ fn difference_signals_must_be_of_one_length_and_whole() {
     workplace.write("rig.toml", &text);
     let warned = stderr(&workplace.succeeds(&["tune", "rig.toml", "-o", "out", "--no-figure"]));
     assert!(warned.contains("only 2 records"), "{warned}");
+    assert!(!warned.contains("measured ones"), "{warned}");
+    // As many numbers as were measured.
+    workplace.write(
+        "rig.toml",
+        text.replace(CASES_START, &format!("[tune]\nindicators = [\"rms\"]\n{CASES_START}")),
+    );
+    let warned = stderr(&workplace.succeeds(&["tune", "rig.toml", "-o", "out", "--no-figure"]));
+    assert!(warned.contains("3 numbers are tuned to 3 measured ones"), "{warned}");
     assert_eq!(workplace.names("out"), ["tuned.toml", "tuning.json"]);
 }
 
@@ -301,7 +310,15 @@ fn recordings_are_taken_to_difference_signals() {
     // The "measured" ones are simulated: nothing needs to be changed.
     let error = tuning.pointer("/error/original").and_then(Value::as_f64).unwrap();
     assert!(error < 0.5, "{tuning:#}");
+    assert!(!tuning.to_string().contains("signals.parquet"), "{tuning:#}");
     refused(&workplace, &text.replace("vertical_g", "vertikal"), &["healthy1", "vertikal"]);
+    // A speed that is not the simulations'.
+    let slow = text.replace("channel = \"vertical_g\"", "channel = \"vertical_g\"\ngear_shaft_hz = 15.0");
+    workplace.write("slow.toml", slow);
+    let warned = stderr(&workplace.succeeds(&["tune", "slow.toml", "-o", "slow", "-q", "--no-figure"]));
+    for words in ["at 15.0000 Hz", "(-", "operation.pinion_speed_hz = ", "likewise of 8 other recordings"] {
+        assert!(warned.contains(words), "{warned}");
+    }
 }
 
 const RIG_HZ: f64 = 8000.0;

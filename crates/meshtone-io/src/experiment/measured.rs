@@ -61,6 +61,7 @@ pub(super) fn read(
     table: &TomlTable<'_>,
     wanted: &Wanted,
     sources: &mut Vec<PathBuf>,
+    warnings: &mut Vec<String>,
 ) -> ReadResult<Measurements> {
     let by_table = table.optional("indicators_file");
     let by_difference = wanted.files.iter().any(|files| files.difference.is_some());
@@ -69,7 +70,7 @@ pub(super) fn read(
         (Some(file), false, false) => indicator_table::read(table, &file, wanted, sources),
         (None, true, false) => difference_files(wanted, sources),
         (None, false, true) => {
-            let signals = recordings::differences(table, wanted, sources)?;
+            let signals = recordings::differences(table, wanted, sources, warnings)?;
             from_differences(wanted, &signals)
         }
         (None, false, false) => Err(table.error(

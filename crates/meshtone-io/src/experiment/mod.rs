@@ -13,4 +13,4 @@ pub use enhanced::{EnhancedDraws, EnhancedHead, EnhancedRecord, enhance, write_e
 pub use read::{ExperimentFile, read_experiment};
 pub use template::template;
 pub use tuned::{Tuned, read_tuned, write_tuned};
-pub use tuning_json::tuning_json;
+pub use tuning_json::{tuning_json, warnings};

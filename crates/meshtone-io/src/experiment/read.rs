@@ -21,6 +21,9 @@ use crate::scenario_file::{FileKind, ReadScenarioError, ScenarioFile, read_text}
 /// Combinations of the tuned keys' values that are simulated unless the file says otherwise.
 const CANDIDATES: u64 = 160;
 
+/// A rate of at most so much may be meant in kHz.
+const MOST_KILOHERTZ: f64 = 200.0;
+
 /// An experiment file that has been read, with everything that it names.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExperimentFile {
@@ -32,6 +35,8 @@ pub struct ExperimentFile {
     pub experiment: Experiment,
     /// All files that were read: this one, the scenario's, the measurements'.
     pub sources: Vec<PathBuf>,
+    /// What is doubtful about the recordings.
+    pub warnings: Vec<String>,
 }
 
 /// Reads an experiment, its base scenario and its measurements.
@@ -45,16 +50,24 @@ pub fn read_experiment(path: &Path) -> Result<ExperimentFile, ReadScenarioError>
     let text = read_text(path)?;
     let directory = path.parent().unwrap_or(Path::new(""));
     let mut sources = vec![path.to_path_buf()];
-    let mut base = None;
+    let (mut warnings, mut base) = (Vec::new(), None);
     let read = TomlDocument::parse(&text).and_then(|document| {
         let result = document.root().read(|root| {
-            let mut reading = Reading { path, directory, sources: &mut sources, scenario_error: &mut base };
+            let mut reading = Reading {
+                path,
+                directory,
+                sources: &mut sources,
+                warnings: &mut warnings,
+                scenario_error: &mut base,
+            };
             reading.experiment(root)
         });
         result.map_err(|error| document.locate(error))
     });
     match (read, base) {
-        (Ok(experiment), _) => Ok(ExperimentFile { path: path.to_path_buf(), text, experiment, sources }),
+        (Ok(experiment), _) => {
+            Ok(ExperimentFile { path: path.to_path_buf(), text, experiment, sources, warnings })
+        }
         // What is wrong in the scenario file is told with that file's lines.
         (Err(_), Some(error)) => Err(error),
         (Err(error), None) => {
@@ -68,6 +81,8 @@ struct Reading<'a> {
     directory: &'a Path,
     /// Files that were read.
     sources: &'a mut Vec<PathBuf>,
+    /// What is doubtful about the recordings.
+    warnings: &'a mut Vec<String>,
     /// What is wrong in the scenario file, with that file's lines.
     scenario_error: &'a mut Option<ReadScenarioError>,
 }
@@ -75,7 +90,7 @@ struct Reading<'a> {
 impl Reading<'_> {
     fn experiment(&mut self, root: &TomlTable<'_>) -> ReadResult<Experiment> {
         let base = self.scenario(root)?;
-        experiment(root, base, self.directory, self.sources)
+        experiment(root, base, self.directory, self.sources, self.warnings)
     }
 
     fn scenario(&mut self, root: &TomlTable<'_>) -> ReadResult<Scenario> {
@@ -107,6 +122,7 @@ fn experiment(
     base: Scenario,
     directory: &Path,
     sources: &mut Vec<PathBuf>,
+    warnings: &mut Vec<String>,
 ) -> ReadResult<Experiment> {
     let chain = root.table_or_empty("signal")?.read(|table| signal(table, &base))?;
     let listed = root.required("case", "the cases, [[case]] each, the healthy one first")?;
@@ -137,6 +153,7 @@ fn experiment(
                 base: &base,
             },
             sources,
+            warnings,
         )
     })?;
     let Tune { bounds, keys, candidates, seed, .. } = tune;
@@ -194,7 +211,16 @@ fn signal(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<DifferenceChain>
     let mesh_hz = base.operation.pinion_speed_hz * f64::from(base.gears.pinion_teeth);
     if sampling_rate_hz <= 2.0 * mesh_hz {
         let problem = format!("must be more than twice the mesh frequency of {mesh_hz} Hz");
-        return Err(rate.error(problem));
+        let error = rate.error(problem);
+        let kilohertz = sampling_rate_hz > 0.0 && sampling_rate_hz <= MOST_KILOHERTZ;
+        return Err(if kilohertz {
+            error.with_help(format!(
+                "in samples a second: {sampling_rate_hz} kHz are {}",
+                1e3 * sampling_rate_hz
+            ))
+        } else {
+            error
+        });
     }
     let simulated_hz = stages(base).map_err(|error| rate.error(error.to_string()))?.time.sampling_rate_hz;
     if sampling_rate_hz > simulated_hz * (1.0 + RATE_TOLERANCE) {
@@ -291,10 +317,8 @@ fn tuned_key(table: &TomlTable<'_>) -> ReadResult<TunedKey> {
     let one_of = table.optional("one_of");
     let ends = ["least", "largest"].map(|end| table.optional(end));
     let logarithmic = table.optional("logarithmic").map(|value| value.boolean()).transpose()?;
-    if one_of.is_none() && ends.iter().any(Option::is_none) {
-        // Told before what is missing.
-        ["one_of", "least", "largest"].into_iter().try_for_each(|key| table.refuse_slip_of(key))?;
-    }
+    // Told before what is missing.
+    table.refuse_unknown(&[])?;
     let range = match (one_of, ends) {
         (Some(values), [None, None]) if logarithmic.is_none() => KeyRange::OneOf(values.numbers()?),
         (None, [Some(least), Some(largest)]) => KeyRange::Between {

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use meshtone::scenario::WheelName;
 use meshtone::signal::{
-    AngularSettings, ChainSettings, MeshTone, ShaftPhase, SignalError, Tachometer, points_per_revolution,
-    process_channel, process_segments, tachometer_pulses,
+    AngularSettings, AngularSignal, ChainSettings, MeshTone, ShaftPhase, SignalError, Tachometer, Told,
+    ToldTurning, angular_resample, misfit, points_per_revolution, process_angular, process_angular_segments,
+    tachometer_pulses,
 };
 use meshtone::tuning::DifferenceChain;
 use meshtone_toml::{ReadResult, TomlError, TomlTable};
@@ -16,6 +17,9 @@ use crate::wheel_name::read_wheel;
 
 /// Of a sampling rate, relative: what a file's rounded times are off.
 pub(super) const RATE_TOLERANCE: f64 = 1e-4;
+
+/// Deviation of a recording's speed from the simulations' that is no other speed, relative.
+const SPEED_TOLERANCE: f64 = 0.05;
 
 /// How the phase of a recording's shafts is known.
 enum Phase<'a> {
@@ -32,6 +36,7 @@ pub(super) fn differences(
     table: &TomlTable<'_>,
     wanted: &Wanted,
     sources: &mut Vec<PathBuf>,
+    warnings: &mut Vec<String>,
 ) -> ReadResult<Vec<Vec<Vec<f64>>>> {
     let channel = table.required("channel", "name or number of the recordings' channel")?.string()?;
     let rate = table.number("sampling_rate_hz")?;
@@ -42,6 +47,7 @@ pub(super) fn differences(
     let phase = phase(table, wanted)?;
     let teeth = wanted.base.gears.teeth(wanted.chain.wheel);
     let settings = settings(wanted)?;
+    let mut doubts = Doubts::default();
     let mut all = Vec::new();
     for (case, files) in wanted.cases.iter().zip(wanted.files) {
         if files.recordings.is_empty() {
@@ -67,24 +73,131 @@ pub(super) fn differences(
                     named.name
                 )));
             }
-            let phase = shaft_phase(&recording, &phase, wanted).map_err(refuse)?;
+            let known = &phase;
+            let phase = shaft_phase(&recording, known, wanted).map_err(refuse)?;
             let signal = &recording.channels[0].samples;
+            let angular = angular_resample(signal, &phase, &settings.angular).map_err(refuse)?;
+            doubts.look(&named.name, wanted, known, (&phase, &angular), given);
             let found = match segment {
-                None => process_channel(signal, &phase, teeth, &settings).map(|record| vec![record]),
-                Some(count) => process_segments(signal, &phase, teeth, &settings, count as usize),
+                None => process_angular(&angular, teeth, &settings).map(|record| vec![record]),
+                Some(count) => process_angular_segments(&angular, teeth, &settings, count as usize),
             };
             records.extend(found.map_err(refuse)?.into_iter().map(|record| record.parts.difference));
         }
         all.push(records);
     }
+    warnings.extend(doubts.in_words());
     Ok(all)
+}
+
+/// What is doubtful about recordings. Of many that say the same the first is told.
+#[derive(Default)]
+struct Doubts {
+    told: Vec<Doubt>,
+}
+
+struct Doubt {
+    about: About,
+    /// The first file that it is of.
+    file: String,
+    words: String,
+    /// Other files that the like could be said of.
+    more: usize,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum About {
+    /// The shaft turns at another speed than the scenario's.
+    Speed,
+    /// The recording is hardly of what is told.
+    Misfit,
+    /// How the phase was found.
+    Phase,
+}
+
+impl Doubts {
+    /// # Arguments
+    /// * `file` - the recording's name
+    /// * `known` - how its phase is known
+    /// * `phase`, `angular` - of the wheel over whose revolutions is averaged
+    /// * `rate` - (S/s) of the recording
+    fn look(
+        &mut self,
+        file: &str,
+        wanted: &Wanted,
+        known: &Phase<'_>,
+        (phase, angular): (&ShaftPhase, &AngularSignal),
+        rate: f64,
+    ) {
+        if let Some(warning) = phase.warnings.first() {
+            self.add(About::Phase, file, warning.to_string());
+        }
+        let wheel = wanted.chain.wheel;
+        let (turned, simulated) = (phase.mean_speed_hz(rate), nominal_speed_hz(wanted, wheel));
+        if (turned / simulated - 1.0).abs() > SPEED_TOLERANCE {
+            self.add(About::Speed, file, other_speed(wanted, turned / simulated));
+            return;
+        }
+        let gears = &wanted.base.gears;
+        let told = Told {
+            teeth: gears.teeth(wheel),
+            mate_teeth: Some(gears.teeth(wheel.mate())),
+            turning: match *known {
+                Phase::Constant { gear_shaft_hz } if wheel == WheelName::Gear => {
+                    ToldTurning::ConstantSpeed { speed_hz: gear_shaft_hz }
+                }
+                Phase::Constant { .. } => ToldTurning::ConstantSpeed { speed_hz: turned },
+                Phase::Tachometer { pulses_per_revolution, shaft, .. } if shaft == wheel => {
+                    ToldTurning::Pulses { per_revolution: pulses_per_revolution }
+                }
+                Phase::Tachometer { .. } | Phase::MeshTone { .. } => ToldTurning::Other,
+            },
+        };
+        if let Some(misfit) = misfit(angular, &told) {
+            let words =
+                format!("over the revolutions of the {}, {} teeth: {misfit}", wheel.name(), told.teeth);
+            self.add(About::Misfit, file, words);
+        }
+    }
+
+    fn add(&mut self, about: About, file: &str, words: String) {
+        match self.told.iter_mut().find(|doubt| doubt.about == about) {
+            Some(doubt) => doubt.more += 1,
+            None => self.told.push(Doubt { about, file: file.to_owned(), words, more: 0 }),
+        }
+    }
+
+    fn in_words(self) -> impl Iterator<Item = String> {
+        self.told.into_iter().map(|Doubt { file, words, more, .. }| match more {
+            0 => format!("{file}: {words}"),
+            1 => format!("{file}: {words} (likewise of another recording)"),
+            more => format!("{file}: {words} (likewise of {more} other recordings)"),
+        })
+    }
+}
+
+/// (Hz) Speed of the shaft of a wheel in the simulations.
+fn nominal_speed_hz(wanted: &Wanted, wheel: WheelName) -> f64 {
+    let gears = &wanted.base.gears;
+    wanted.base.operation.pinion_speed_hz * f64::from(gears.pinion_teeth) / f64::from(gears.teeth(wheel))
+}
+
+/// # Arguments
+/// * `ratio` - of the recording's speed to the scenario's
+fn other_speed(wanted: &Wanted, ratio: f64) -> String {
+    let simulated_hz = nominal_speed_hz(wanted, WheelName::Gear);
+    format!(
+        "the gear's shaft turns at {:.4} Hz, but in the scenario at {simulated_hz:.4} Hz ({:+.1} %), and what is tuned are simulations \
+         at that speed: correct what [measured] says of it, or write operation.pinion_speed_hz = {:.4} in the scenario",
+        simulated_hz * ratio,
+        100.0 * (ratio - 1.0),
+        wanted.base.operation.pinion_speed_hz * ratio,
+    )
 }
 
 /// As simulated signals are processed: so many points a revolution, read in the same way.
 fn settings(wanted: &Wanted) -> ReadResult<ChainSettings> {
-    let gears = &wanted.base.gears;
-    let shaft_hz = wanted.base.operation.pinion_speed_hz * f64::from(gears.pinion_teeth)
-        / f64::from(gears.teeth(wanted.chain.wheel));
+    let shaft_hz = nominal_speed_hz(wanted, wanted.chain.wheel);
     let rate = wanted.chain.sampling_rate_hz;
     let revolution = ShaftPhase::constant(shaft_hz, rate, (3.0 * rate / shaft_hz).ceil() as usize)
         .map_err(|error| TomlError::new("signal.sampling_rate_hz", rate, error.to_string()))?;
@@ -96,9 +209,7 @@ fn settings(wanted: &Wanted) -> ReadResult<ChainSettings> {
 }
 
 fn phase<'a>(table: &TomlTable<'a>, wanted: &Wanted) -> ReadResult<Phase<'a>> {
-    let gears = &wanted.base.gears;
-    let nominal =
-        wanted.base.operation.pinion_speed_hz * f64::from(gears.pinion_teeth) / f64::from(gears.gear_teeth);
+    let nominal = nominal_speed_hz(wanted, WheelName::Gear);
     let stated = table.number("gear_shaft_hz")?;
     let gear_shaft_hz = stated.unwrap_or(nominal);
     let tachometer = table.optional("tachometer_channel");

@@ -11,7 +11,7 @@ use meshtone::signal::{MeanPart, SeparationSettings};
 use meshtone::tuning::{DifferenceChain, Enhancement, Experiment, ExperimentResult};
 use meshtone_toml::{ReadResult, TomlDocument, TomlTable, TomlValue};
 
-use crate::scenario_file::{ReadScenarioError, read_text};
+use crate::scenario_file::{FileKind, ReadScenarioError, read_text};
 
 /// What tuning found.
 #[derive(Debug, Clone, PartialEq)]
@@ -182,11 +182,7 @@ pub fn read_tuned(path: &Path) -> Result<Tuned, ReadScenarioError> {
     let text = read_text(path)?;
     let read = TomlDocument::parse(&text)
         .and_then(|document| document.root().read(tuned).map_err(|error| document.locate(error)));
-    read.map_err(|error| ReadScenarioError::Invalid {
-        path: path.to_path_buf(),
-        text,
-        error: Box::new(error),
-    })
+    read.map_err(|error| ReadScenarioError::invalid(FileKind::Tuned, path.to_path_buf(), text, error))
 }
 
 fn tuned(root: &TomlTable<'_>) -> ReadResult<Tuned> {

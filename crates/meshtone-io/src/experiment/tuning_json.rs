@@ -3,15 +3,20 @@
 use meshtone::tuning::{Experiment, ExperimentResult, Tuning};
 use serde_json::{Map, Value, json};
 
+use super::ExperimentFile;
+
 /// The content of a `tuning.json`.
 ///
 /// # Arguments
-/// * `experiment`, `result` - as of [`meshtone::tuning::run_experiment`]
+/// * `file` - the experiment
+/// * `result` - as of [`meshtone::tuning::run_experiment`]
 ///
 /// `parameters`, `intervals` and `error` are those of the best that was found; where keys of the scenario were tuned,
 /// `enhancement_alone` holds what the three parameters reach without them.
-pub fn tuning_json(experiment: &Experiment, result: &ExperimentResult) -> String {
+pub fn tuning_json(file: &ExperimentFile, result: &ExperimentResult) -> String {
+    let experiment = &file.experiment;
     let mut all = tuning(experiment, result.tuning());
+    all.insert("warnings".into(), json!(warnings(file, result)));
     all.insert("meshtone_version".into(), json!(env!("CARGO_PKG_VERSION")));
     all.insert("seed".into(), json!(experiment.seed));
     all.insert("wheel".into(), json!(experiment.chain.wheel.name()));
@@ -33,6 +38,16 @@ pub fn tuning_json(experiment: &Experiment, result: &ExperimentResult) -> String
     }
     // Alternate: indented.
     format!("{:#}\n", Value::Object(all))
+}
+
+/// What is doubtful about a tuning: about its recordings, then about what was found.
+///
+/// # Arguments
+/// * `file` - the experiment
+/// * `result` - as of [`meshtone::tuning::run_experiment`]
+pub fn warnings(file: &ExperimentFile, result: &ExperimentResult) -> Vec<String> {
+    let of_tuning = result.tuning().warnings.iter().map(ToString::to_string);
+    file.warnings.iter().cloned().chain(of_tuning).collect()
 }
 
 fn tuning(experiment: &Experiment, tuning: &Tuning) -> Map<String, Value> {

@@ -183,11 +183,7 @@ pub enum ReadRecordingError {
         lengths: Vec<String>,
     },
     /// Nothing says the sampling rate.
-    #[error(
-        "{}: does not say its sampling rate, and no column is named as time; give the sampling rate (option \
-         sampling_rate_hz) or say which column holds the time (option time); it has {}",
-        path.display(), names(present)
-    )]
+    #[error("{}: does not say its sampling rate{}", path.display(), without_rate(present))]
     NoRate {
         /// The file.
         path: PathBuf,
@@ -255,6 +251,18 @@ fn did_you_mean(nearest: &Option<String>) -> String {
 
 fn it_has(present: &[String]) -> String {
     if present.is_empty() { String::new() } else { format!("; it has {}", names(present)) }
+}
+
+/// What to do where nothing says the sampling rate: a single column is hardly the time.
+fn without_rate(present: &[String]) -> String {
+    match present {
+        [_] => ", and has one column alone; give the sampling rate (option sampling_rate_hz)".to_owned(),
+        _ => format!(
+            ", and no column is named as time; give the sampling rate (option sampling_rate_hz) or say which column holds the \
+             time (option time); it has {}",
+            names(present)
+        ),
+    }
 }
 
 /// A list in words, shortened where it is long.

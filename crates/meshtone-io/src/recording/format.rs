@@ -6,6 +6,7 @@ use std::path::Path;
 
 use super::ReadRecordingError;
 use super::error::unreadable;
+use crate::scenario_file::{FileKind, read_text};
 
 /// Bytes that are looked at: those of a MATLAB header, and the mark of HDF5 behind it.
 const HEAD_BYTES: u64 = 520;
@@ -67,7 +68,9 @@ pub(super) fn detect(
             let kind = if binary { "binary" } else { "text" };
             let first: Vec<String> = head.iter().take(4).map(|byte| format!("{byte:02x}")).collect();
             let first = first.join(" ");
-            let found = if ending.is_empty() {
+            let found = if let Some(kind) = file_kind(path, &ending) {
+                format!("it is {}, which `{} {}` reads", kind.in_words(), kind.reader(), path.display())
+            } else if ending.is_empty() {
                 format!("it has no ending, and its {kind} begins with the bytes {first}")
             } else {
                 format!("it ends in .{ending}, and its {kind} begins with the bytes {first}")
@@ -75,6 +78,14 @@ pub(super) fn detect(
             Err(ReadRecordingError::UnknownFormat { path: path.to_path_buf(), found })
         }
     }
+}
+
+/// What a file is that is written for another command.
+fn file_kind(path: &Path, ending: &str) -> Option<FileKind> {
+    if ending != "toml" {
+        return None;
+    }
+    FileKind::of(&read_text(path).ok()?)
 }
 
 fn by_content(head: &[u8]) -> Option<RecordingFormat> {

@@ -1,8 +1,8 @@
 //! What a file is that another was expected to be.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use meshtone_toml::{TomlDocument, TomlError};
+use meshtone_toml::{ErrorKind, TomlDocument, TomlError};
 
 use super::ReadScenarioError;
 
@@ -15,6 +15,8 @@ pub enum FileKind {
     Plan,
     /// What simulations are tuned to.
     Experiment,
+    /// What was found so, which `meshtone tune` writes.
+    Tuned,
 }
 
 impl FileKind {
@@ -31,7 +33,12 @@ impl FileKind {
     /// ```
     pub fn of(text: &str) -> Option<Self> {
         let document = TomlDocument::parse(text).ok()?;
-        let own = [("gears", Self::Scenario), ("class", Self::Plan), ("case", Self::Experiment)];
+        let own = [
+            ("gears", Self::Scenario),
+            ("class", Self::Plan),
+            ("case", Self::Experiment),
+            ("enhancement", Self::Tuned),
+        ];
         let mut found = own.into_iter().filter(|(table, _)| document.line_of_key(table).is_some());
         // A file that looks like two is none.
         found.next().filter(|_| found.next().is_none()).map(|(_, kind)| kind)
@@ -43,6 +50,7 @@ impl FileKind {
             Self::Scenario => "a scenario",
             Self::Plan => "the plan of a data set",
             Self::Experiment => "an experiment",
+            Self::Tuned => "what `meshtone tune` found",
         }
     }
 
@@ -52,6 +60,17 @@ impl FileKind {
             Self::Scenario => "meshtone simulate",
             Self::Plan => "meshtone dataset",
             Self::Experiment => "meshtone tune",
+            Self::Tuned => "meshtone enhance SCENARIO.toml --tuned",
+        }
+    }
+
+    /// The command that writes such a file to start from.
+    pub fn writer(self) -> &'static str {
+        match self {
+            Self::Scenario => "meshtone init healthy -o FILE",
+            Self::Plan => "meshtone init dataset -o FILE",
+            Self::Experiment => "meshtone init experiment -o FILE",
+            Self::Tuned => "meshtone tune EXPERIMENT.toml",
         }
     }
 }
@@ -71,8 +90,28 @@ impl ReadScenarioError {
                 let help = format!("`{} {}` reads it", other.reader(), path.display());
                 TomlError::new("", "", problem).with_help(help)
             }
-            _ => error,
+            _ => no_toml(expected, &path, &text, &error).unwrap_or(error),
         };
         Self::Invalid { path, text, error: Box::new(error) }
     }
+}
+
+/// What is told of a text that is another format altogether.
+fn no_toml(expected: FileKind, path: &Path, text: &str, error: &TomlError) -> Option<TomlError> {
+    if error.kind != ErrorKind::NotToml {
+        return None;
+    }
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let is_table = ["csv", "tsv", "txt", "dat", "asc"].contains(&ending.as_str());
+    let (what, help) = if serde_json::from_str::<serde_json::Value>(text).is_ok_and(|json| json.is_object()) {
+        ("JSON", format!("write it as TOML; `{}` writes one to start from", expected.writer()))
+    } else if is_table {
+        ("a table", format!("`meshtone indicators {}` reads recordings", path.display()))
+    } else {
+        return None;
+    };
+    Some(
+        TomlError::new("", "", format!("is {what}, and {} is expected here", expected.in_words()))
+            .with_help(help),
+    )
 }

@@ -87,8 +87,11 @@ pub fn run_experiment(
         let keys = KeySearch::new(experiment, &simulations, common, &original)?.run()?;
         with_keys = kept(keys, &mut enhancement_alone);
     }
+    let keys = if with_keys.is_some() { experiment.keys.len() } else { 0 };
     let reported = with_keys.as_mut().map_or(&mut enhancement_alone, |keys| &mut keys.tuning);
     reported.warnings.extend(damaged_on_the_mate(experiment));
+    reported.warnings.extend(few_numbers(experiment, keys));
+    reported.warnings.extend(predicts_worse(reported));
     Ok(ExperimentResult { original, enhancement_alone, with_keys })
 }
 
@@ -103,6 +106,23 @@ fn damaged_on_the_mate(experiment: &Experiment) -> impl Iterator<Item = TuningWa
     faulty
         .filter(move |(_, case)| fades && on_the_mate(case))
         .map(move |(case, _)| TuningWarning::OtherWheel { case, averaged })
+}
+
+/// That the measurements are no more than what is tuned to them.
+///
+/// # Arguments
+/// * `keys` - that were tuned as well
+fn few_numbers(experiment: &Experiment, keys: usize) -> Option<TuningWarning> {
+    let measured = experiment.measured.cases() * experiment.measured.indicators().len();
+    let free = experiment.bounds.all().into_iter().filter(|(_, [least, largest])| least < largest);
+    let tuned = free.count() + keys;
+    (measured <= tuned).then_some(TuningWarning::FewNumbers { measured, tuned })
+}
+
+/// That other cases were better predicted before anything was tuned.
+fn predicts_worse(tuning: &Tuning) -> Option<TuningWarning> {
+    let (original, left_out) = (tuning.original_error, tuning.mean_leave_one_out_error());
+    (left_out > original).then_some(TuningWarning::PredictsWorse { original, left_out })
 }
 
 /// The tuned keys, where they are better than the scenario as it is; what is doubtful is told to whichever is reported.

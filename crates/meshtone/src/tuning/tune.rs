@@ -111,6 +111,20 @@ pub enum TuningWarning {
         /// With the keys.
         together: f64,
     },
+    /// Cases that are left out are predicted worse than they were before anything was tuned.
+    PredictsWorse {
+        /// Mean error of the simulation as it was.
+        original: f64,
+        /// Mean leave-one-out error.
+        left_out: f64,
+    },
+    /// No more numbers were measured than are tuned.
+    FewNumbers {
+        /// Cases times indicators.
+        measured: usize,
+        /// Parameters and keys that are not held.
+        tuned: usize,
+    },
     /// Combinations of the keys' values that could not be simulated.
     Failed {
         /// How many.
@@ -149,6 +163,16 @@ impl std::fmt::Display for TuningWarning {
                 formatter,
                 "left out, the cases are predicted worse with the keys ({together:.3}) than by the three parameters alone \
                  ({alone:.3}): the keys may have learned the cases instead of the rig"
+            ),
+            Self::PredictsWorse { original, left_out } => write!(
+                formatter,
+                "left out, the cases are predicted worse ({left_out:.3}) than by the simulation before it was tuned ({original:.3}): \
+                 do not rely on it for damage that was not measured; measure more cases, or tune fewer numbers"
+            ),
+            Self::FewNumbers { measured, tuned } => write!(
+                formatter,
+                "{tuned} numbers are tuned to {measured} measured ones (cases times indicators), which they can follow whatever was \
+                 measured: measure more cases, name more indicators, or hold numbers"
             ),
             Self::Failed { failed, first } => write!(
                 formatter,

@@ -11,6 +11,8 @@ const PARIS_EXPONENT: f64 = 3.0;
 const PITS_EXPONENT: f64 = 2.0;
 const PITS: u32 = 40;
 const LARGEST_EXPONENT: f64 = 10.0;
+/// Of all laws.
+const KEYS: [&str; 7] = ["law", "exponent", "count", "start", "failure", "life_rev", "censored"];
 
 pub(super) fn read(value: &TomlValue<'_>, faults: &[Fault]) -> ReadResult<Growth> {
     if faults.len() != 1 {
@@ -21,6 +23,8 @@ pub(super) fn read(value: &TomlValue<'_>, faults: &[Fault]) -> ReadResult<Growth
 }
 
 fn growth(table: &TomlTable<'_>) -> ReadResult<Growth> {
+    // Told before what is missing for it.
+    table.refuse_unknown(&KEYS)?;
     let names = Law::NAMES.map(|name| (name, name));
     let law = table.required("law", "how the damage grows: paris, archard or pits")?.choice(&names)?;
     let exponent = |default: f64| -> ReadResult<f64> {

@@ -9,6 +9,21 @@ const DISTRIBUTIONS: &str = "fixed, grid, choice, uniform, log_uniform or normal
 /// Sections whose keys make the wheels and the rig, which a unit's records share unless said otherwise.
 const OF_A_UNIT: [&str; 3] = ["gears", "quality", "rig"];
 const MOST_STEPS: u64 = 100_000;
+const KEYS: [&str; 13] = [
+    "key",
+    "keys",
+    "fixed",
+    "grid",
+    "choice",
+    "weights",
+    "uniform",
+    "log_uniform",
+    "normal",
+    "times",
+    "plus",
+    "fraction_of",
+    "per",
+];
 
 pub(super) fn read_all(table: &TomlTable<'_>) -> ReadResult<Vec<Rule>> {
     match table.optional("vary") {
@@ -18,6 +33,8 @@ pub(super) fn read_all(table: &TomlTable<'_>) -> ReadResult<Vec<Rule>> {
 }
 
 fn rule(table: &TomlTable<'_>) -> ReadResult<Rule> {
+    // Told before what is missing for it.
+    table.refuse_unknown(&KEYS)?;
     let keys = keys(table)?;
     let distribution = distribution(table, keys.len())?;
     let (times, plus) = (expression(table, "times")?, expression(table, "plus")?);
