@@ -186,6 +186,7 @@ pub fn misfit(
             Likelier::OtherShaft { mate_teeth } => ("other_shaft", f64::from(mate_teeth)),
             Likelier::PulsesPerRevolution { pulses, .. } => ("pulses_per_revolution", f64::from(pulses)),
             Likelier::ShaftSpeed { speed_hz, .. } => ("speed_hz", speed_hz),
+            Likelier::VaryingSpeed { variation, .. } => ("varying_speed", variation),
             _ => ("other", f64::NAN),
         };
         (cause, value, misfit.to_string(), misfit.energy_ratio)

@@ -18,9 +18,11 @@ class Misfit:
     Attributes
     ----------
     cause : str
-        What is told wrongly: ``teeth``, ``mate_teeth``, ``other_shaft``, ``pulses_per_revolution`` or ``speed_hz``.
+        What is told wrongly: ``teeth``, ``mate_teeth``, ``other_shaft``, ``pulses_per_revolution``, ``speed_hz``,
+        or ``varying_speed`` where a constant one is.
     likelier : float
-        The better value; of ``other_shaft`` the teeth of the wheel that is on the shaft that speed or pulses are of.
+        The better value; of ``other_shaft`` the teeth of the wheel that is on the shaft that speed or pulses are of; of
+        ``varying_speed`` (-) the standard deviation of the revolutions' speeds over their mean.
     message : str
         Both in words.
     energy_ratio : float or None

@@ -184,6 +184,7 @@ enum Mistake {
     OtherShaft,
     Pulses,
     Speed,
+    ConstantSpeed,
 }
 
 /// A recording of which something is said.
@@ -213,8 +214,9 @@ fn pulses(turned: &[f64], per_revolution: u32, rate_hz: f64) -> Vec<f64> {
 impl Case {
     /// None where the chain itself refuses the recording.
     fn new(machine: &Machine, mistake: Mistake, draws: &mut Draws) -> Option<Self> {
-        let constant = matches!(mistake, Mistake::NoneAtConstantSpeed | Mistake::Speed);
-        let varies = !constant && draws.chance(0.5);
+        let constant =
+            matches!(mistake, Mistake::NoneAtConstantSpeed | Mistake::Speed | Mistake::ConstantSpeed);
+        let varies = mistake == Mistake::ConstantSpeed || !constant && draws.chance(0.5);
         let recording = recording(machine, varies, draws);
         let Recording { teeth, mate_teeth, rate_hz, .. } = recording;
         let (samples, turned) = (recording.signal.len(), &recording.revolutions);
@@ -273,6 +275,7 @@ impl Case {
                 speed_hz *= 1.0 + off;
                 Some(Likelier::ShaftSpeed { speed_hz: right_hz, told_hz: speed_hz })
             }
+            Mistake::ConstantSpeed => Some(Likelier::VaryingSpeed { variation: 0.0, told_hz: speed_hz }),
         };
         let phase = if constant {
             told.turning = ToldTurning::ConstantSpeed { speed_hz };
@@ -310,6 +313,8 @@ impl Case {
             (Likelier::ShaftSpeed { speed_hz, .. }, Some(Likelier::ShaftSpeed { .. })) => {
                 (true, self.mesh_turns(speed_hz) < 0.25)
             }
+            // How much it varies is not known better.
+            (Likelier::VaryingSpeed { .. }, Some(Likelier::VaryingSpeed { .. })) => (true, true),
             (likelier, Some(right)) => {
                 (std::mem::discriminant(&likelier) == std::mem::discriminant(&right), likelier == right)
             }
@@ -382,13 +387,14 @@ fn recordings_with_every_mistake() {
         (Mistake::OtherShaft, "pulses of the other shaft", 300),
         (Mistake::Pulses, "another number of pulses", 300),
         (Mistake::Speed, "speed off by 0.01 to 3 %", 400),
+        (Mistake::ConstantSpeed, "constant, but it varies by 0.2 to 1 %", 300),
     ] {
         let cases = draw(mistake, count);
         let of =
             |keep: &dyn Fn(&Case) -> bool| cases.iter().filter(|(case, _)| keep(case)).map(|(_, t)| *t).sum();
         row(name, of(&|_| true));
         match mistake {
-            Mistake::None | Mistake::NoneAtConstantSpeed => {}
+            Mistake::None | Mistake::NoneAtConstantSpeed | Mistake::ConstantSpeed => {}
             Mistake::Speed => {
                 let turns = |case: &Case| match case.told.turning {
                     ToldTurning::ConstantSpeed { speed_hz } => case.mesh_turns(speed_hz),
@@ -406,8 +412,13 @@ fn recordings_with_every_mistake() {
     }
 }
 
-/// Mesh harmonics with the sidebands and orders of both shafts, at half as much noise as signal.
+/// Five mesh harmonics with the sidebands and orders of both shafts, at half as much noise as signal.
 fn meshing(teeth: [u32; 2], revolutions: &[f64]) -> Vec<f64> {
+    meshing_with(5, teeth, revolutions)
+}
+
+/// As [`meshing`], of so many harmonics.
+fn meshing_with(harmonics: u32, teeth: [u32; 2], revolutions: &[f64]) -> Vec<f64> {
     let [own, mate] = teeth.map(f64::from);
     let tone = |order: f64, turned: f64| (TAU * (order * turned).fract()).cos();
     let all = revolutions.iter().zip(noise(3, revolutions.len()));
@@ -418,7 +429,7 @@ fn meshing(teeth: [u32; 2], revolutions: &[f64]) -> Vec<f64> {
             + 0.1 * tone(2.0, turned)
             + 0.2 * tone(1.0, other)
             + 0.1 * tone(3.0, other);
-        let mesh: f64 = (1..=5).map(|h| tone(f64::from(h) * own, turned) / f64::from(h)).sum();
+        let mesh: f64 = (1..=harmonics).map(|h| tone(f64::from(h) * own, turned) / f64::from(h)).sum();
         let orders: f64 =
             (1..=60).map(|k| 0.1 * (tone(f64::from(k), turned) + tone(f64::from(k), other))).sum();
         modulation * mesh + orders + 0.7 * noise
@@ -480,6 +491,61 @@ fn a_speed_that_is_off_is_found_to_parts_per_million() {
                 assert!(off != 0.0 && (speed_hz / 20.0 - 1.0).abs() < 3e-6, "{off}: {speed_hz}");
             }
             other => assert_eq!(other, None, "{off}"),
+        }
+    }
+}
+
+/// Two mesh harmonics with a little modulation in noise, as on many rigs.
+fn two_harmonics(teeth: u32, revolutions: &[f64]) -> Vec<f64> {
+    let tone = |order: f64, turned: f64| (TAU * (order * turned).fract()).cos();
+    let mesh = |turned: f64| tone(f64::from(teeth), turned) + 0.6 * tone(2.0 * f64::from(teeth), turned);
+    let all = revolutions.iter().zip(noise(11, revolutions.len()));
+    all.map(|(&turned, noise)| (1.0 + 0.1 * tone(1.0, turned)) * mesh(turned) + 0.5 * noise).collect()
+}
+
+fn misfit_at(speed_hz: f64, signal: &[f64], teeth: u32, turning: ToldTurning) -> Option<Misfit> {
+    let phase = ShaftPhase::constant(speed_hz, RATE_HZ, signal.len()).unwrap();
+    let angular = angular_resample(signal, &phase, &AngularSettings::default()).unwrap();
+    misfit(&angular, &Told { teeth, mate_teeth: None, turning })
+}
+
+#[test]
+fn two_harmonics_are_enough() {
+    let turned: Vec<f64> = (0..81_920).map(|i| 20.0 * i as f64 / RATE_HZ).collect();
+    let signal = two_harmonics(23, &turned);
+    let constant = |speed_hz: f64| ToldTurning::ConstantSpeed { speed_hz };
+    let pulses = ToldTurning::Pulses { per_revolution: 1 };
+    for turning in [constant(20.0), pulses] {
+        assert_eq!(misfit_at(20.0, &signal, 23, turning), None);
+    }
+    for teeth in [22, 24, 26] {
+        let found = misfit_at(20.0, &signal, teeth, pulses).map(|misfit| misfit.likelier);
+        assert_eq!(found, Some(Likelier::Teeth { teeth: 23 }), "{teeth}");
+    }
+    for off in [-0.02, 0.004, 0.03] {
+        let speed_hz = 20.0 * (1.0 + off);
+        let found = misfit_at(speed_hz, &signal, 23, constant(speed_hz));
+        let Some(Likelier::ShaftSpeed { speed_hz, .. }) = found.map(|misfit| misfit.likelier) else {
+            panic!("{off}: {found:?}")
+        };
+        assert!((speed_hz / 20.0 - 1.0).abs() < 1e-5, "{off}: {speed_hz}");
+    }
+}
+
+#[test]
+fn a_shaft_that_wobbles_does_not_turn_at_a_constant_speed() {
+    for (depth, cycles_hz) in [(0.003, 0.2), (0.01, 0.3), (0.01, 1.1), (0.012, 0.5)] {
+        let turned: Vec<f64> = (0..81_920)
+            .map(|i| i as f64 / RATE_HZ)
+            .map(|time| 20.0 * (time + depth / (TAU * cycles_hz) * (TAU * cycles_hz * time).sin()))
+            .collect();
+        for signal in [two_harmonics(23, &turned), meshing(TEETH, &turned)] {
+            let found = misfit_at(20.0, &signal, 23, ToldTurning::ConstantSpeed { speed_hz: 20.0 });
+            let Some(Likelier::VaryingSpeed { variation, .. }) = found.map(|misfit| misfit.likelier) else {
+                panic!("{depth} {cycles_hz}: {found:?}")
+            };
+            let rms = depth / 2f64.sqrt();
+            assert!((variation / rms - 1.0).abs() < 0.15, "{depth} {cycles_hz}: {}", found.unwrap());
         }
     }
 }

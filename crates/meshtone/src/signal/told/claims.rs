@@ -23,6 +23,12 @@ const SPEED_RANGE: f64 = 0.06;
 const LEAST_HIGHEST_ORDER: f64 = 1000.0;
 /// Steps of a comb's speed in one of the mesh lines'.
 const FINER: i32 = 16;
+/// (Hz) Mains frequencies.
+const MAINS_HZ: [f64; 2] = [50.0, 60.0];
+/// Harmonics that hum has.
+const MAINS_HARMONICS: f64 = 8.0;
+/// (bins) Distance from a harmonic of hum at which a line may be it.
+const MAINS_BINS: f64 = 2.0;
 /// (bins) Distance of orders that are one line.
 const SAME_LINE: f64 = 1.5;
 
@@ -83,11 +89,15 @@ impl Claim {
     }
 
     /// What happens more easily, in units of the evidence.
-    pub(super) fn prior(&self) -> f64 {
+    ///
+    /// # Arguments
+    /// * `may_be_speed` - whether other teeth are told from another speed by nothing, which names the teeth as well
+    pub(super) fn prior(&self, may_be_speed: bool) -> f64 {
         match self.likelier {
+            Likelier::Teeth { .. } if may_be_speed => -1.0,
             Likelier::OtherShaft { .. } => 2.0,
             Likelier::PulsesPerRevolution { .. } | Likelier::Teeth { .. } => 1.0,
-            Likelier::MateTeeth { .. } | Likelier::ShaftSpeed { .. } => 0.0,
+            Likelier::MateTeeth { .. } | Likelier::ShaftSpeed { .. } | Likelier::VaryingSpeed { .. } => 0.0,
         }
     }
 
@@ -96,8 +106,25 @@ impl Claim {
         matches!(self.likelier, Likelier::PulsesPerRevolution { .. } | Likelier::ShaftSpeed { .. })
     }
 
+    /// Whether its mesh would be at a multiple of a mains frequency, whose hum has harmonics as a mesh has; known of a constant speed.
+    pub(super) fn is_of_mains(&self, told: &Told, orders: &FineOrders) -> bool {
+        let ToldTurning::ConstantSpeed { speed_hz } = told.turning else { return false };
+        if !matches!(self.likelier, Likelier::Teeth { .. } | Likelier::ShaftSpeed { .. }) {
+            return false;
+        }
+        let mesh_hz = self.mesh_order * speed_hz;
+        let near_hz = MAINS_BINS * speed_hz / orders.bins_per_order;
+        MAINS_HZ.into_iter().any(|mains_hz| {
+            let multiple = (mesh_hz / mains_hz).round().clamp(1.0, MAINS_HARMONICS);
+            (mesh_hz - multiple * mains_hz).abs() < near_hz
+        })
+    }
+
     /// The mesh harmonics' orders, and how far each stands out.
-    fn mesh_lines<'a>(&self, orders: &'a FineOrders) -> impl Iterator<Item = (f64, f64)> + use<'a> {
+    pub(super) fn mesh_lines<'a>(
+        &self,
+        orders: &'a FineOrders,
+    ) -> impl Iterator<Item = (f64, f64)> + use<'a> {
         let (mesh_order, reach) = (self.mesh_order, self.reach());
         let highest_order = self.highest_order * (1.0 + 1e-9);
         let all = (1..=MOST_HARMONICS).map(move |harmonic| f64::from(harmonic) * mesh_order);
@@ -110,6 +137,12 @@ impl Claim {
     pub(super) fn reach(&self) -> f64 {
         let of_wheel = if self.moves_wheel() { SIDEBANDS * self.wheel_spacing } else { 0.0 };
         of_wheel.max(SIDEBANDS.min(0.6 * self.mesh_order))
+    }
+
+    /// Whether so many mesh lines stand out that the orders are as steady as the mesh needs them.
+    pub(super) fn stands_out(&self, orders: &FineOrders) -> bool {
+        const ENOUGH: usize = 2;
+        self.mesh_lines(orders).filter(|(_, prominence)| *prominence > 0.0).count() >= ENOUGH
     }
 
     fn mesh(&self, orders: &FineOrders) -> f64 {

@@ -20,12 +20,22 @@ const HIGHEST_ORDER: f64 = 400.0;
 const BLOCK: usize = 16;
 /// Least and largest logarithm of a mesh line over its strongest neighbour that counts: one line must not decide alone.
 const PROMINENCES: (f64, f64) = (-1.0, 3.0);
+/// Energy of a line over the median of its surroundings, from which on it is hardly noise.
+const LINE: f64 = 8.0;
 /// Largest logarithm of a comb's line over what lies between, likewise.
 const LARGEST_CONTRAST: f64 = 3.0;
 /// Standard deviation of that logarithm in noise.
 const NOISE_CONTRAST: f64 = 1.3;
 /// Fewest bins between a comb's lines, and fewest lines.
 const LEAST_COMB: (f64, usize) = (6.0, 3);
+
+/// The values of as many revolutions as can be transformed quickly.
+pub(super) fn affordable(angular: &AngularSignal) -> Option<&[f64]> {
+    let points = angular.points_per_revolution;
+    let affordable = (MOST_VALUES / points.max(1)).max(FEWEST_REVOLUTIONS);
+    let revolutions = convenient_count(angular.revolutions().min(affordable));
+    angular.values.get(..revolutions * points)
+}
 
 /// Energies of lines at fine steps of the order.
 pub(super) struct FineOrders {
@@ -43,9 +53,8 @@ impl FineOrders {
     /// Of as many revolutions as can be transformed quickly. None where there is nothing to see.
     pub(super) fn of(angular: &AngularSignal) -> Option<Self> {
         let points = angular.points_per_revolution;
-        let affordable = (MOST_VALUES / points.max(1)).max(FEWEST_REVOLUTIONS);
-        let revolutions = convenient_count(angular.revolutions().min(affordable));
-        let values = angular.values.get(..revolutions * points)?;
+        let values = affordable(angular)?;
+        let revolutions = values.len() / points.max(1);
         let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
         let step = TAU / values.len().max(1) as f64;
         let windowed: Vec<f64> = values
@@ -104,7 +113,20 @@ impl FineOrders {
         let neighbour = below.max(above);
         let own = self.lines[bin - 1..=bin + 1].iter().copied().fold(0.0, f64::max);
         let (least, largest) = PROMINENCES;
-        (neighbour > 0.0).then(|| (own / neighbour).ln().clamp(least, largest))
+        if neighbour <= 0.0 {
+            return None;
+        }
+        // Where nothing is but noise a harmonic is weak, which says nothing of its order.
+        let is_noise = || neighbour < LINE * self.median(bin.saturating_sub(reach), bin + reach);
+        let prominence = (own / neighbour).ln().clamp(least, largest);
+        Some(if prominence < 0.0 && is_noise() { 0.0 } else { prominence })
+    }
+
+    /// The median of a range of bins, its ends included.
+    fn median(&self, from: usize, to: usize) -> f64 {
+        let mut lines = self.lines[from..=to.min(self.lines.len() - 1)].to_vec();
+        let middle = lines.len() / 2;
+        *lines.select_nth_unstable_by(middle, f64::total_cmp).1
     }
 
     /// The strongest line of a range of bins, its ends included.

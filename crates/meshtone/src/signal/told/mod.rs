@@ -3,12 +3,14 @@
 mod claims;
 mod fine_orders;
 mod steady;
+mod varying;
 mod words;
 
 use super::AngularSignal;
 use claims::Claim;
 use fine_orders::FineOrders;
 use steady::{Steadied, steadied};
+use varying::varying;
 
 /// Least gain in evidence over what is told.
 const LEAST_GAIN: f64 = 6.0;
@@ -16,8 +18,8 @@ const LEAST_GAIN: f64 = 6.0;
 const LEAST_MESH: f64 = 4.0;
 /// Least of these of the mesh lines that are not those of what is told.
 const LEAST_MESH_GAIN: f64 = 3.0;
-/// The same as [`LEAST_MESH`] of a speed, of which many are tried.
-const LEAST_MESH_OF_SPEED: f64 = 6.0;
+/// The same as [`LEAST_MESH`] of a speed, of which many are tried: two lines that stand out as far as counts.
+const LEAST_MESH_OF_SPEED: f64 = 5.5;
 /// Least gain of the wheel's orders where the mesh lines speak for another number of pulses: noise.
 const LEAST_WHEEL_GAIN: f64 = -1.0;
 /// Least score of a comb of shaft orders that decides, in standard deviations of noise.
@@ -92,6 +94,13 @@ pub enum Likelier {
         /// (Hz) The one that is told.
         told_hz: f64,
     },
+    /// A speed that varies, where a constant one is told.
+    VaryingSpeed {
+        /// (-) Standard deviation of the revolutions' speeds over their mean.
+        variation: f64,
+        /// (Hz) The one that is told.
+        told_hz: f64,
+    },
 }
 
 /// What speaks for a reading of the recording.
@@ -130,7 +139,7 @@ pub struct Misfit {
 }
 
 /// Looks for a sign that the recording is not of what is told: another tooth count, the other shaft, another number of pulses,
-/// another speed.
+/// another speed, one that varies where a constant one is told.
 ///
 /// The mesh harmonics of the right reading stand out of their neighbours, and the orders of either shaft out of what lies
 /// between them. A reading is reported where it has clearly more of both than what is told. Where the recording is too
@@ -165,15 +174,28 @@ pub fn misfit(angular: &AngularSignal, told: &Told) -> Option<Misfit> {
     let orders = FineOrders::of(angular)?;
     let as_told = Claim::as_told(told);
     let told_evidence = as_told.evidence(&orders);
+    // Where the shaft's own orders are not seen, a mesh frequency is as well of another speed as of other teeth.
+    let may_be_speed = matches!(told.turning, ToldTurning::ConstantSpeed { .. })
+        && told_evidence.wheel_orders.is_none_or(|score| score < POOR_COMB);
+    let total = |claim: &Claim, evidence: &Evidence| evidence.total() + claim.prior(may_be_speed);
     let likeliest = claims::others(told, &orders)
-        .filter_map(|claim| Some((claim, gained(&claim, &as_told, &told_evidence, &orders)?)))
-        .max_by(|(a, of_a), (b, of_b)| (of_a.total() + a.prior()).total_cmp(&(of_b.total() + b.prior())));
+        .filter(|claim| !claim.is_of_mains(told, &orders))
+        .filter_map(|claim| Some((claim, gained(&claim, &as_told, &told_evidence, may_be_speed, &orders)?)))
+        .max_by(|(a, of_a), (b, of_b)| total(a, of_a).total_cmp(&total(b, of_b)));
     if let ToldTurning::ConstantSpeed { speed_hz } = told.turning {
         let (claim, evidence) = likeliest.unwrap_or((as_told, told_evidence));
-        let is_of_speed =
-            likeliest.is_none_or(|(claim, _)| matches!(claim.likelier, Likelier::ShaftSpeed { .. }));
-        let steadied = steadied(angular, &orders, &claim, told.teeth)
-            .filter(|steadied| is_of_speed && steadied.energy_ratio >= LEAST_ENERGY_RATIO);
+        let speed_is_likelier =
+            likeliest.is_some_and(|(claim, _)| matches!(claim.likelier, Likelier::ShaftSpeed { .. }));
+        let steadied = steadied(angular, &orders, &claim, told.teeth).filter(|steadied| {
+            (likeliest.is_none() || speed_is_likelier) && steadied.energy_ratio >= LEAST_ENERGY_RATIO
+        });
+        let is_doubtful = steadied.is_some() || speed_is_likelier || !as_told.stands_out(&orders);
+        let variation = if is_doubtful { varying(angular, &orders, &as_told, told.teeth) } else { None };
+        if let Some(variation) = variation {
+            let likelier = Likelier::VaryingSpeed { variation, told_hz: speed_hz };
+            let evidence = told_evidence;
+            return Some(Misfit { told: *told, told_evidence, likelier, evidence, energy_ratio: None });
+        }
         if let Some(Steadied { factor, energy_ratio }) = steadied {
             let likelier = Likelier::ShaftSpeed { speed_hz: speed_hz * factor, told_hz: speed_hz };
             let energy_ratio = Some(energy_ratio);
@@ -185,15 +207,30 @@ pub fn misfit(angular: &AngularSignal, told: &Told) -> Option<Misfit> {
 }
 
 /// The evidence for a claim, where it is clearly more than that for what is told.
-fn gained(claim: &Claim, as_told: &Claim, told: &Evidence, orders: &FineOrders) -> Option<Evidence> {
+///
+/// # Arguments
+/// * `may_be_speed` - whether other teeth are told from another speed by nothing
+fn gained(
+    claim: &Claim,
+    as_told: &Claim,
+    told: &Evidence,
+    may_be_speed: bool,
+    orders: &FineOrders,
+) -> Option<Evidence> {
     let own = claim.evidence(orders);
     let new_mesh = claim.own_mesh(as_told, orders);
     let lost_mesh = as_told.own_mesh(claim, orders).unwrap_or(0.0);
     let wheel_gain = gain(own.wheel_orders, told.wheel_orders);
     let mate_gain = gain(own.mate_orders, told.mate_orders);
     let mesh_gain = new_mesh.unwrap_or(0.0) - lost_mesh;
+    let is_of_speed = match claim.likelier {
+        Likelier::ShaftSpeed { .. } => true,
+        Likelier::Teeth { .. } => may_be_speed,
+        _ => false,
+    };
+    let least_mesh = if is_of_speed { LEAST_MESH_OF_SPEED } else { LEAST_MESH };
     let has_mesh =
-        own.mesh > LEAST_MESH && new_mesh.is_some_and(|new| new > LEAST_MESH_GAIN) && lost_mesh <= 0.0;
+        own.mesh > least_mesh && new_mesh.is_some_and(|new| new > LEAST_MESH_GAIN) && lost_mesh <= 0.0;
     let has_wheel = own.wheel_orders > Some(LEAST_COMB) && wheel_gain > LEAST_COMB;
     let has_mate = own.mate_orders > Some(LEAST_COMB) && told.mate_orders.is_some_and(|told| told < POOR_COMB)
         // Only beside the orders of the one shaft can those of the other be read.
@@ -205,8 +242,8 @@ fn gained(claim: &Claim, as_told: &Claim, told: &Evidence, orders: &FineOrders) 
             let is_possible = own.wheel_orders.is_some() && lost_mesh <= 0.0;
             is_possible && (has_mesh && wheel_gain > LEAST_WHEEL_GAIN || has_wheel && mesh_gain > 0.0)
         }
-        Likelier::ShaftSpeed { .. } => {
-            has_mesh && own.mesh > LEAST_MESH_OF_SPEED || has_wheel && lost_mesh <= 0.0
+        Likelier::ShaftSpeed { .. } | Likelier::VaryingSpeed { .. } => {
+            has_mesh || has_wheel && lost_mesh <= 0.0
         }
     };
     let counted_mate_gain = if claim.moves_wheel() { mate_gain.min(0.0) } else { mate_gain };

@@ -34,6 +34,12 @@ impl Display for Misfit {
             Likelier::PulsesPerRevolution { pulses, told } => {
                 write!(f, "there are rather {pulses} pulses in a revolution than {told}: check their number")
             }
+            Likelier::VaryingSpeed { variation, told_hz } => write!(
+                f,
+                "the shaft does not turn at a constant {told_hz} Hz: its speed varies by {:.2} % (rms), and the average loses the mesh; \
+                 follow the mesh tone, or record a tachometer",
+                100.0 * variation
+            ),
             Likelier::ShaftSpeed { speed_hz, told_hz } => {
                 let percent = 100.0 * (speed_hz / told_hz - 1.0);
                 write!(
