@@ -141,7 +141,8 @@ def generate_dataset(
     told = _progress.shown("records") if progress is True else (progress or None)
     number, of = (1, 1) if part is None else _part(part)
     threads = None if jobs is None else whole("jobs", jobs, 1)
-    remade = _core.generate_dataset(plan, fspath(path), threads, number, of, told)
+    remade, doubts = _core.generate_dataset(plan, fspath(path), threads, number, of, told)
+    warn(doubts)
     if remade:
         file, reason = remade[0]
         warn([f"{len(remade)} files were made again; {file}: {reason}"])

@@ -29,7 +29,10 @@ pub fn check_plan(py: Python<'_>, plan: PathBuf) -> PyResult<()> {
     py.detach(|| Plan::read(&plan)).map(drop).map_err(|error| read_error(&plan, &error))
 }
 
-/// Makes a data set, or a part of it, or goes on with one. Returns files that were made again, and why.
+/// What was made again, and why; what is doubtful about the plan.
+type Made = (Vec<(String, String)>, Vec<String>);
+
+/// Makes a data set, or a part of it, or goes on with one.
 #[pyfunction]
 pub fn generate_dataset(
     py: Python<'_>,
@@ -39,7 +42,7 @@ pub fn generate_dataset(
     part: u64,
     of: u64,
     progress: Option<Bound<'_, PyAny>>,
-) -> PyResult<Vec<(String, String)>> {
+) -> PyResult<Made> {
     if part < 1 || part > of {
         return Err(value_error(format!("part = ({part}, {of}): must be (i, n) with i from 1 to n")));
     }
@@ -47,6 +50,7 @@ pub fn generate_dataset(
         return Err(value_error("jobs = 0: must be at least 1"));
     }
     let read = py.detach(|| Plan::read(&plan)).map_err(|error| read_error(&plan, &error))?;
+    let doubts = read.warnings();
     let to = destination(to)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs.unwrap_or(0)).build();
     let pool = pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
@@ -71,7 +75,7 @@ pub fn generate_dataset(
         },
     )?;
     let remade = generated.map_err(dataset_error)?.remade.into_iter();
-    Ok(remade.map(|remade| (remade.file, remade.reason)).collect())
+    Ok((remade.map(|remade| (remade.file, remade.reason)).collect(), doubts))
 }
 
 /// Puts parts together.

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use meshtone::scenario::{ScenarioError, WheelName};
 use meshtone_toml::{ReadResult, TomlError, TomlTable};
 
-use super::{Content, Distribution, OverAngle, Plan, Rule, SplitBy};
+use super::{Class, Content, Distribution, Level, OverAngle, Plan, Rule, SplitBy, Splits};
 use crate::draw::{DrawError, DrawnRecord, Sampler, is_of_plan};
 use crate::shard::FailedRecord;
 
@@ -15,6 +15,8 @@ const DRAWN: u64 = 5_000;
 const MADE: usize = 8;
 /// Records of each class beside whose other values a value of a choice is tried, until one can be.
 const TRIED: usize = 24;
+/// Fewest records of a run in which a damage is seen to grow.
+const FEWEST_OF_A_RUN: u64 = 3;
 /// Values of choices and grids that are tried.
 const MOST_VALUES: usize = 2_000;
 
@@ -162,6 +164,80 @@ pub(super) fn foreseen(plan: &Plan) -> ReadResult<Vec<FailedRecord>> {
         Some(FailedRecord { record: index, reason: refused.to_string() })
     };
     Ok((0..plan.records().min(DRAWN)).filter_map(cannot).collect())
+}
+
+/// What is doubtful about a plan whose records can be made.
+pub(super) fn doubts(plan: &Plan) -> ReadResult<Vec<String>> {
+    let units = plan.content.units;
+    let short = plan.content.classes.iter().filter_map(|class| short_runs(class, units));
+    Ok(short.chain(unlearned(plan)?).collect())
+}
+
+/// Runs to failure in which nothing is seen to grow.
+fn short_runs(class: &Class, units: u64) -> Option<String> {
+    class.growth.as_ref()?;
+    let (least, most) = (class.count / units, class.count.div_ceil(units));
+    let records = if least == most { format!("{least}") } else { format!("{least} or {most}") };
+    (least < FEWEST_OF_A_RUN).then(|| {
+        format!(
+            "the runs to failure of the class \"{}\" have {records} records each, {} over {units} units: damage is seen to grow in \
+             {FEWEST_OF_A_RUN} or more; raise the records, or lower units",
+            class.label, class.count
+        )
+    })
+}
+
+/// Values that units or mountings choose, and that validation or test have and the training has not.
+fn unlearned(plan: &Plan) -> ReadResult<Vec<String>> {
+    let content = &plan.content;
+    let is_chosen = |rule: &&Rule| {
+        let listed = matches!(rule.distribution, Distribution::Choice { .. } | Distribution::Grid(_));
+        listed && rule.level != Level::Record && rule.times.is_none() && rule.plus.is_none()
+    };
+    let of_classes = content.classes.iter().flat_map(|class| &class.rules);
+    let rules: Vec<&Rule> = content.rules.iter().chain(of_classes).filter(is_chosen).collect();
+    if rules.is_empty() || content.splits.parts[0] == 0.0 {
+        return Ok(Vec::new());
+    }
+    let sampler = Sampler::new(content)?;
+    let (mut seen, mut groups) = (HashSet::new(), HashSet::new());
+    for index in 0..plan.records().min(DRAWN) {
+        let Ok(record) = sampler.record(index) else { continue };
+        groups.insert((record.unit, record.mounting));
+        for (number, rule) in rules.iter().enumerate() {
+            let value =
+                |key: &String| record.values.iter().find(|(drawn, _)| drawn == key).map(|(_, value)| *value);
+            if let Some(row) = rule.keys.iter().map(value).collect::<Option<Vec<f64>>>() {
+                seen.insert((number, record.split, bits(&row)));
+            }
+        }
+    }
+    // Of what has not been drawn nothing is known.
+    if plan.records() > DRAWN && (groups.len() as u64) < content.units.saturating_mul(content.mountings) {
+        return Ok(Vec::new());
+    }
+    let unlearned = |(number, rule): (usize, &&Rule)| {
+        let is_in = |split: usize, row: &[f64]| seen.contains(&(number, split, bits(row)));
+        let rows = values_of(&rule.distribution).into_iter().map(|(_, row)| row);
+        let missing: Vec<Vec<f64>> = rows
+            .filter(|row| !is_in(0, row) && (1..Splits::ALIKE.len()).any(|split| is_in(split, row)))
+            .collect();
+        (!missing.is_empty()).then(|| {
+            let row = |row: &Vec<f64>| row.iter().map(f64::to_string).collect::<Vec<_>>().join("/");
+            format!(
+                "{} = {}: chosen once for a {group}, and in validation or test alone: nothing is learned of it in train; have more \
+                 {group}s, or fewer values",
+                rule.keys.join("/"),
+                missing.iter().map(row).collect::<Vec<_>>().join(", "),
+                group = rule.level.name(),
+            )
+        })
+    };
+    Ok(rules.iter().enumerate().filter_map(unlearned).collect())
+}
+
+fn bits(row: &[f64]) -> Vec<u64> {
+    row.iter().map(|value| value.to_bits()).collect()
 }
 
 /// Every value of a choice or a grid is allowed beside the other values of some record, as far as no profile is needed.

@@ -116,6 +116,12 @@ impl Plan {
         check::foreseen(self).unwrap_or_default()
     }
 
+    /// What is doubtful about what the plan asks for: runs to failure of one or two records, and values that its units or mountings
+    /// choose of which none is in the training.
+    pub fn warnings(&self) -> Vec<String> {
+        check::doubts(self).unwrap_or_default()
+    }
+
     /// What stands for the plan: the same for plans that say the same, whatever their layout, comments and description.
     ///
     /// Another version of the program may compute other numbers, and gives another hash.

@@ -143,7 +143,11 @@ fn keys_that_are_none() {
     );
     let teeth = "[[vary]]\nkey = \"gears.gear_teeth\"\nuniform = [30, 50]\n[keep]";
     refused_with("[keep]", teeth, &["is a whole number", "choice or grid"]);
-    refused_with("uniform = [30.0, 60.0]", "unifrom = [30.0, 60.0]", &["says not how it varies"]);
+    refused_with(
+        "uniform = [30.0, 60.0]",
+        "unifrom = [30.0, 60.0]",
+        &["vary[0].unifrom", "unknown key", "did you mean `uniform`?"],
+    );
     refused_with("kind = \"missing-tooth\"", "kind = \"missing\"", &["did you mean \"missing-tooth\"?"]);
     refused_with("[split]", "[splits]", &["splits", "did you mean `split`?"]);
 }
@@ -273,6 +277,29 @@ fn base_scenarios() {
     refused("scenario = \"absent.toml\"\nunits = 1", &["line 1", "absent.toml"]);
 }
 
+/// What can be made, and is hardly what was meant.
+#[test]
+fn doubtful_plans_are_warned_of() {
+    assert_eq!(plan(FAST).warnings(), [""; 0]);
+    let life = "growth = { law = \"archard\", life_rev = 1e6 }";
+    let runs = FAST.replace(
+        "fault = { kind = \"missing-tooth\" }\nseverity = 4",
+        &format!("fault = {{ kind = \"wear\", severity = 0.5 }}\n{life}"),
+    );
+    let short = plan(&runs.replacen("units = 10", "units = 12", 1)).warnings();
+    assert!(short.len() == 1 && short[0].contains("1 or 2 records each"), "{short:?}");
+    let teeth = |values: &str| {
+        let choice = format!("[[vary]]\nkey = \"gears.gear_teeth\"\nchoice = [{values}]\n[keep]");
+        plan(&FAST.replacen("[keep]", &choice, 1)).warnings()
+    };
+    let unlearned = teeth("30, 31, 32, 33, 34, 35, 36, 37");
+    assert!(
+        unlearned.len() == 1 && unlearned[0].contains("nothing is learned of it in train"),
+        "{unlearned:?}"
+    );
+    assert_eq!(teeth("38"), [""; 0]);
+}
+
 #[test]
 fn channels_that_there_are_not() {
     let keep = "[keep]\nchannels = [\"casing_g\"]";
@@ -313,6 +340,7 @@ fn mountings_and_growth() {
     };
     let life = "life_rev = { uniform = [1e5, 1e6] }";
     grown("{ law = \"archard\" }", &["growth.life_rev", "missing"]);
+    grown("{ law = \"archard\", life = 1e6 }", &["growth.life", "unknown key", "did you mean `life_rev`?"]);
     grown(&format!("{{ law = \"rust\", {life} }}"), &["law", "\"paris\", \"archard\", \"pits\""]);
     grown(&format!("{{ law = \"paris\", start = 0, {life} }}"), &["start", "from more than that"]);
     grown(
