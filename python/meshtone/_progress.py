@@ -13,7 +13,7 @@ SHORTEST_S = 0.1
 
 
 def shown(what: str) -> Callable[[int, int], None]:
-    """A line that is written anew as things are finished, and ended once; in a notebook one bar that moves.
+    """A line that is written anew as things are finished, and ended once; in a file that once; in a notebook one bar that moves.
 
     Parameters
     ----------
@@ -37,6 +37,11 @@ def shown(what: str) -> Callable[[int, int], None]:
 
 
 def _on_terminal(finished: int, total: int, words: str) -> None:
+    if not sys.stderr.isatty():
+        # A file keeps what a terminal writes over: the end alone.
+        if finished == total:
+            sys.stderr.write(f"{words}\n")
+        return
     sys.stderr.write(f"\r{words}   " + ("\n" if finished == total else ""))
     sys.stderr.flush()
 

@@ -35,8 +35,23 @@ def _as_whole(entry: Any) -> Any:
     return int(entry) if isinstance(entry, float) and entry.is_integer() else entry
 
 
-def check_key(key: str) -> None:
-    """Refuse a key that a scenario does not have."""
+_SPEED_RPM = ("rpm", "speed_rpm", "shaft_rpm", "pinion_rpm", "pinion_speed_rpm")
+"""What is tried for ``pinion_speed_hz``."""
+
+
+def check_key(key: str, value: object = None) -> None:
+    """Refuse a key that a scenario does not have.
+
+    Parameters
+    ----------
+    key : str
+        The key.
+    value : object, optional
+        What it is given, told in the right unit.
+    """
+    if key in _SPEED_RPM:
+        written = f"{value / 60:.12g}" if isinstance(value, (int, float)) else "…"
+        raise TypeError(f"a scenario has no key '{key}': speeds are revolutions per second, pinion_speed_hz={written}")
     if key in FORMER_KEYS:
         raise TypeError(f"'{key}' {FORMER_KEYS[key]}")
     known = [*SECTION_OF_KEY, *OTHER_ARGUMENTS]

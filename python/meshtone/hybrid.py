@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from . import _core, _progress
 from ._files import written_whole
+from ._warnings import warn
 from .faults import in_words
 from .scenario import Scenario, native_scenario
 from .signal._arguments import signal_array, whole
@@ -155,7 +156,7 @@ class Tuning:
 
 
 def tune(experiment: str | PathLike[str], *, progress: bool | Callable[[int, int], None] = False) -> Tuning:
-    """Tune simulations to what was measured on a rig.
+    """Tune simulations to what was measured on a rig. What is doubtful is told as a :class:`~meshtone.MeshtoneWarning` each.
 
     Parameters
     ----------
@@ -180,6 +181,7 @@ def tune(experiment: str | PathLike[str], *, progress: bool | Callable[[int, int
     told = _progress.shown("simulations") if progress is True else (progress or None)
     text, tuned_toml = _core.tune(experiment, told)
     report = json.loads(text)
+    warn(report["warnings"])
     return Tuning(report["parameters"], report["error"], report, tuned_toml)
 
 

@@ -17,6 +17,7 @@ from ._display import LABELS, channel_label
 from ._extras import extra
 from .faults import Fault, MissingTooth, PartialFace, Pits, RootCrack, ToothBreakage, Wear, in_words, numbers_of_teeth
 from .signal._arguments import whole
+from .signal.indicators import INDICATORS, SHOWN
 from .simulation import chosen_channel
 
 if TYPE_CHECKING:
@@ -483,6 +484,9 @@ def plot_indicators(
 ) -> Figure:
     """Indicators against what was varied, an axes each.
 
+    A line joins the values of one ``x`` each, or the medians where several records have one ``x``. Values at more than 30 places that
+    come once each, as where ``x`` was drawn, are points alone: a line through scatter would show but zigzags.
+
     Parameters
     ----------
     table : pandas.DataFrame, polars.DataFrame, or mapping of str to sequence
@@ -490,7 +494,7 @@ def plot_indicators(
     x : str
         The column that is varied: severity, speed, number of the record.
     indicators : sequence of str, optional
-        Which columns are shown; all other numeric ones by default.
+        Which columns are shown; all other numeric ones by default, of all of a record's indicators those that its notebook page shows.
     by : str, optional
         A column of labels: a line each.
 
@@ -513,7 +517,8 @@ def plot_indicators(
     """
     columns = {str(name): np.asarray(table[name]) for name in (table.keys() if isinstance(table, Mapping) else table.columns)}
     if indicators is None:
-        indicators = [name for name, values in columns.items() if name not in (x, by) and values.dtype.kind in "fiu"]
+        numeric = [name for name, values in columns.items() if name not in (x, by) and values.dtype.kind in "fiu"]
+        indicators = [name for name in SHOWN if name in numeric] if set(INDICATORS) <= set(numeric) else numeric
     for name in [x, *indicators, *([by] if by else [])]:
         if name not in columns:
             raise ValueError(f"the table has no column '{name}', but {', '.join(columns)}")
@@ -529,16 +534,15 @@ def plot_indicators(
             colour, marker = LINES[number % len(LINES)]
             style = "-" if number < len(LINES) else "--"
             chosen = np.ones(columns[x].size, bool) if group is None else columns[by or x] == group
-            order = np.argsort(columns[x][chosen], kind="stable")
-            ax.plot(
-                columns[x][chosen][order],
-                columns[name][chosen][order],
-                color=colour,
-                marker=marker,
-                linestyle=style,
-                markersize=4,
-                label=str(group),
-            )
+            places, values = columns[x][chosen], columns[name][chosen]
+            levels = np.unique(places)
+            if levels.size < places.size:
+                ax.plot(places, values, color=colour, marker=marker, linestyle="none", markersize=3, alpha=0.4)
+                values = np.array([np.nanmedian(values[places == level]) for level in levels])
+            else:
+                values = values[np.argsort(places, kind="stable")]
+                style = style if _is_stepped(levels) else "none"
+            ax.plot(levels, values, color=colour, marker=marker, linestyle=style, markersize=4, label=str(group))
         ax.set(xlabel=x, ylabel=name)
         ax.grid(alpha=0.3)
         if by:
@@ -546,3 +550,12 @@ def plot_indicators(
     for ax in axes[len(indicators) :]:
         ax.remove()
     return figure
+
+
+def _is_stepped(levels: npt.NDArray[Any]) -> bool:
+    """Whether values were chosen rather than drawn: few, or at equal steps."""
+    few = 30
+    if levels.size <= few or levels.dtype.kind not in "fiu":
+        return True
+    steps = np.diff(levels)
+    return bool(np.allclose(steps, steps[0]))

@@ -57,8 +57,8 @@ brake_torque_nm=10.0, din_grade=7)
             if values:
                 raise TypeError(f"{values[0]!r}: a scenario takes its keys by name, Scenario(module_mm=3, …); Scenario.from_file reads a file")
             # Before Python says what is missing: a misspelt key is why.
-            for key in arguments:
-                check_key(key)
+            for key, value in arguments.items():
+                check_key(key, value)
             super().__init__(**arguments)
 
     def _from_keys(self, arguments: dict[str, Any], unknown: dict[str, Any]) -> None:
@@ -154,8 +154,8 @@ brake_torque_nm=10.0, din_grade=7)
         >>> examples.healthy().copy(pinion_speed_hz=25).pinion_speed_hz
         25.0
         """
-        for key in changes:
-            check_key(key)
+        for key, value in changes.items():
+            check_key(key, value)
         arguments = dict(self._flat)
         if "fault" in changes:
             del arguments["faults"]
@@ -258,7 +258,8 @@ brake_torque_nm=10.0, din_grade=7)
                 if name in FORMER_KEYS:
                     raise AttributeError(f"'{name}' {FORMER_KEYS[name]}") from None
                 known = [*SECTION_OF_KEY, *OTHER_ARGUMENTS]
-                raise AttributeError(f"a scenario has no key '{name}'{hint(name, known)}") from None
+                way = f"; {_OTHER_WAYS[name]}" if name in _OTHER_WAYS else hint(name, known)
+                raise AttributeError(f"a scenario has no key '{name}'{way}") from None
 
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError(f"a scenario does not change: scenario.copy({name}={value!r}) gives another one")
@@ -300,6 +301,17 @@ brake_torque_nm=10.0, din_grade=7)
         if self._native.profile_errors_mm() is not None:
             text += ", pinion_profile_errors_mm=..., gear_profile_errors_mm=..."
         return f"Scenario({text})"
+
+
+_WRITES = "open('scenario.toml', 'w').write(scenario.to_toml()) writes its file"
+_SIMULATED = "what shows vibration is its simulation, meshtone.simulate(scenario)"
+_OTHER_WAYS = {
+    **dict.fromkeys(("save", "write", "to_file", "dump"), _WRITES),
+    **dict.fromkeys(("load", "read", "open"), "Scenario.from_file reads a file"),
+    **dict.fromkeys(("simulate", "run"), "meshtone.simulate(scenario) simulates it"),
+    **dict.fromkeys(("process", "signals", "plot", "vertical_g", "indicators"), _SIMULATED),
+}
+"""What is tried on a scenario, and how it is done."""
 
 
 def _signature_of_copy() -> inspect.Signature:

@@ -17,6 +17,7 @@ from ._warnings import warn
 from .faults import in_words
 from .scenario import Scenario, native_scenario
 from .signal import Record, resample
+from .signal.indicators import INDICATORS
 from .signal._arguments import positive, read_only, separation_settings, whole
 
 if TYPE_CHECKING:
@@ -254,6 +255,11 @@ class Simulation:
         try:
             return self.fields[name]
         except KeyError:
+            if name == "indicators" or name in INDICATORS:
+                key = "" if name == "indicators" else f'["{name}"]'
+                raise AttributeError(f"a simulation has no '{name}'; its record has: simulation.process().indicators{key}") from None
+            if name in ("save", "to_pandas", "to_csv"):
+                raise AttributeError(f"a simulation has no '{name}'; {_SAVED}") from None
             near = hint(name, [*self.fields, *self.scenario.channels]) or "; simulation.fields has all"
             raise AttributeError(f"a simulation has no field '{name}'{near}") from None
 
@@ -538,6 +544,9 @@ class Signals:
         try:
             return self.channels[name]
         except KeyError:
+            if name == "indicators" or name in INDICATORS:
+                key = "" if name == "indicators" else f'["{name}"]'
+                raise AttributeError(f"signals have no '{name}'; their record has: signals.process().indicators{key}") from None
             raise AttributeError(f"no channel '{name}' was kept, but {', '.join(self.channels)}") from None
 
     def __dir__(self) -> list[str]:
@@ -569,7 +578,7 @@ class Signals:
         17
         """
         if self.is_resampled:
-            raise ValueError("process takes signals at the simulation's own rate; meshtone.process_channel takes any rate, with a ShaftPhase")
+            raise ValueError(_not_at_own_rate(self.scenario, self.sampling_rate_hz, wheel))
         if channel is None:
             leading = chosen_channel(self.scenario, None)
             channel = leading if leading in self.channels else "vertical_g"
@@ -581,6 +590,22 @@ class Signals:
         channel = next(iter(self.channels))
         rows = {**_facts(self.scenario), "Signal": _length(self.channels[channel].size, self.sampling_rate_hz)}
         return _page(self, channel, {**rows, "Channels": ", ".join(self.channels)}, self.warnings)
+
+
+_SAVED = "numpy.savez('signals.npz', vertical_g=simulation.vertical_g) writes a signal, `meshtone simulate` all results"
+"""How a simulation is kept."""
+
+
+def _not_at_own_rate(scenario: Scenario, rate_hz: float, wheel: Wheel) -> str:
+    """Why signals that were brought to another rate are not processed, and what is."""
+    _check_wheel(wheel)
+    teeth = scenario.gear_teeth if wheel == "gear" else scenario.pinion_teeth
+    shaft_hz = scenario.pinion_speed_hz * scenario.pinion_teeth / teeth
+    return (
+        f"process takes signals at the simulation's own rate, of which a revolution has a whole number of samples; at {rate_hz:g} S/s it "
+        "has not. Process them before the rate is changed (simulate_many without target_rate_hz, then at_rate), or as a rig's: "
+        f"meshtone.process_channel(x, meshtone.ShaftPhase.constant({shaft_hz:.6g}, {rate_hz:g}, x.size), {teeth})"
+    )
 
 
 def _facts(scenario: Scenario) -> dict[str, str]:

@@ -54,6 +54,16 @@ def test_indicators() -> None:
     first = figure.axes[0]
     assert [np.asarray(line.get_xdata()).tolist() for line in first.lines] == [[1, 2, 3], [1]]
     assert [ax.get_ylabel() for ax in figure.axes] == ["rms", "kurtosis"]
+    # Several of one place are points beside the line through their medians; what was drawn is points alone.
+    [points, medians] = plotting.plot_indicators({"mm": [1, 2, 1, 2], "rms": [1.0, 2.0, 3.0, 6.0]}, x="mm").axes[0].lines
+    assert points.get_linestyle() == "None" and np.asarray(medians.get_ydata()).tolist() == [2, 4]
+    drawn = np.random.default_rng(1).uniform(size=50)
+    [points] = plotting.plot_indicators({"mm": drawn, "rms": drawn}, x="mm").axes[0].lines
+    assert points.get_linestyle() == "None"
+    # Of all of a record's indicators those that say most.
+    record = meshtone.simulate(meshtone.examples.healthy().copy(sampling_rate_hz=1e4)).process()
+    rows = {"mm": [1, 2], **{name: [value] * 2 for name, value in record.indicators.items()}}
+    assert len(plotting.plot_indicators(rows, x="mm").axes) == 6
     plt.close("all")
     with pytest.raises(ValueError, match="no column 'severity'"):
         plotting.plot_indicators(table, x="severity")

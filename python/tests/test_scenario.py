@@ -172,6 +172,12 @@ def test_keys_that_there_are_not() -> None:
         examples.healthy().seed = 2
     with pytest.raises(AttributeError, match="no key 'speed'"):
         _ = examples.healthy().speed  # type: ignore[attr-defined]
+    with pytest.raises(TypeError, match="no key 'speed_rpm': speeds are revolutions per second, pinion_speed_hz=40"):
+        examples.healthy().copy(speed_rpm=2400)  # type: ignore[call-arg]
+    with pytest.raises(AttributeError, match=r"scenario.to_toml\(\)\) writes its file"):
+        examples.healthy().save("rig.toml")  # type: ignore[attr-defined]
+    with pytest.raises(AttributeError, match=r"its simulation, meshtone.simulate\(scenario\)"):
+        _ = examples.healthy().vertical_g  # type: ignore[attr-defined]
 
 
 def test_seed_of_the_wheels() -> None:

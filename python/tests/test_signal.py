@@ -170,6 +170,8 @@ def test_average_and_difference_at_once_are_those_of_the_chain() -> None:
     phase = signal.ShaftPhase.from_pulses(pulses_s, 2, 1e4, vibration.size)
     record = signal.process_channel(vibration, phase, TEETH)
     assert np.array_equal(signal.tsa(vibration, 1e4, pulses_s, 2), record.average)
+    with pytest.raises(TypeError, match=r"pulses_s = 17.9: must be times .* np.arange\(0, \d+ / 10000, 1 / 17.9\)"):
+        signal.tsa(vibration, 1e4, 17.9)
     assert np.array_equal(signal.difference(vibration, 1e4, pulses_s, TEETH, 2), record.difference)
     with pytest.raises(ValueError, match="a signal has no masked values"):
         signal.tsa(np.ma.masked_greater(vibration, 0.9), 1e4, pulses_s, 2)

@@ -289,8 +289,10 @@ def test_a_target_rate_is_met() -> None:
     assert at_rate.vertical_g.dtype == np.float32
     # Both begin with the samples in single precision.
     assert np.array_equal(meshtone.simulate(scenario).signals(1e4).vertical_g, at_rate.vertical_g)
-    with pytest.raises(ValueError, match="own rate"):
+    with pytest.raises(ValueError, match=r"own rate.*ShaftPhase.constant\(17.8947, 10000, x.size\), 38\)"):
         at_rate.process()
+    with pytest.raises(AttributeError, match=r'signals.process\(\).indicators\["fm4"\]'):
+        _ = own.fm4
     for refused in (0, -1, float("nan"), float("inf")):
         with pytest.raises(ValueError, match=f"target_rate_hz = {refused}: must be more than 0, and finite"):
             simulate_many([scenario], target_rate_hz=refused)

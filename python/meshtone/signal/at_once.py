@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
 import numpy.typing as npt
 
 from ._arguments import Array, signal_array
@@ -58,8 +59,21 @@ def tsa(
     2.0
     """
     values = signal_array(signal)
+    if np.ndim(pulses_s) == 0:
+        raise TypeError(_no_times(pulses_s, sampling_rate_hz, values.size))
     phase = ShaftPhase.from_pulses(pulses_s, pulses_per_revolution, sampling_rate_hz, values.size)
     return synchronous_average(angular_resample(values, phase, points_per_revolution=points_per_revolution))
+
+
+def _no_times(given: object, sampling_rate_hz: float, samples: int) -> str:
+    """What is told of a number where times of pulses belong: it is rather a speed."""
+    times = "times of the shaft's pulses in s, an array"
+    if not isinstance(given, (int, float)):
+        return f"pulses_s = {given!r}: must be {times}"
+    return (
+        f"pulses_s = {given:g}: must be {times}; of a constant speed of {given:g} revolutions per second "
+        f"np.arange(0, {samples} / {sampling_rate_hz:g}, 1 / {given:g})"
+    )
 
 
 def difference(

@@ -16,6 +16,21 @@ from .._names import near
 from ._arguments import Array, signal_array, teeth_number
 
 
+INDICATORS = (
+    *(
+        f"{part}_{size}"
+        for part in ("average", "regular", "residual", "difference", "envelope")
+        for size in ("rms", "peak_to_peak", "crest_factor", "skewness", "kurtosis")
+    ),
+    *("fm0", "fm4", "m6a", "m8a", "na4", "energy_ratio", "sideband_level_factor"),
+)
+"""Names of all."""
+
+
+SHOWN = ("average_rms", "difference_rms", "difference_kurtosis", "fm0", "fm4", "na4")
+"""Names of those that are shown where there is little room."""
+
+
 class Indicators(dict[str, float]):
     """All condition indicators of a record, by name: a dictionary that says which name was meant by one that it does not have.
 

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from .. import _core, _display
 from .._warnings import warn
 from ._arguments import Array, read_only, separation_settings, signal_array, teeth_number
-from .indicators import Indicators
+from .indicators import SHOWN, Indicators
 from .phase import ShaftPhase, native_phase
 
 if TYPE_CHECKING:
@@ -102,8 +102,7 @@ class Record:
     def _repr_html_(self) -> str:
         label, unit = _display.channel_label(self.name), _display.unit_of(self.name)
         span, over = (0.0, 1.0), "Angle of the shaft (revolutions)"
-        shown = ("average_rms", "difference_rms", "difference_kurtosis", "fm0", "fm4", "na4")
-        rows = _display.indicators(self.indicators, shown, self.name)
+        rows = _display.indicators(self.indicators, SHOWN, self.name)
         return _display.page(
             f"{label}: average of {self.revolutions} revolutions of a wheel with {self.teeth} teeth",
             _display.table(rows),

@@ -141,7 +141,7 @@ pub fn dataset_figure(preview: &DatasetPreview) -> Figure {
     );
     section(&mut canvas, EXAMPLES, &format!("One example of each class: {}", preview.signal_name));
     let distribution = match as_strips(preview) {
-        true => "Distribution of the varied keys, a strip each split",
+        true => "Varied keys, a strip each split: darker, more of its records",
         false => "Distribution of the varied keys, by split",
     };
     section(&mut canvas, KEYS, distribution);

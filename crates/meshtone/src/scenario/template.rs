@@ -9,6 +9,7 @@ const HEALTHY: &str = "healthy";
 
 const HEAD: &str = "\
 # A Meshtone scenario: a pair of spur gears, how it is driven, and what is broken.
+# The pinion drives, on the motor's shaft; the gear is driven, on the brake's.
 # What stands behind \"# \" is a comment. What stands directly behind \"#\" is a key that may be left
 # out: take the \"#\" away to set it.
 
