@@ -186,7 +186,7 @@ fn unknown(
             key,
             known.iter().map(|number| number.key.as_str()).chain(NOISE_KEYS).chain(PATH_KEYS),
         ) {
-            Some(nearest) => format!("did you mean `{nearest}`?"),
+            Some(nearest) => meant(key, nearest),
             None => {
                 "`meshtone init KIND` prints every key of a kind of fault; sections are part of a key, as in \
                  `operation.pinion_speed_hz`"
@@ -273,11 +273,19 @@ fn check_dependency(
     Ok(())
 }
 
+/// The key that is meant; who writes revolutions per minute is told what becomes of the values.
+fn meant(key: &str, nearest: &str) -> String {
+    let by_minute = key.ends_with("rpm") && nearest.ends_with("_hz");
+    let unit =
+        if by_minute { " Its values are revolutions per second, a sixtieth of those per minute" } else { "" };
+    format!("did you mean `{nearest}`?{unit}")
+}
+
 fn no_such_number<'n>(place: &str, key: &str, known: impl Iterator<Item = &'n str>) -> TomlError {
     let error = TomlError::new(place, "", format!("`{key}` is no number of the scenario"));
     let others = derived_names().chain([SEVERITY]).map(|name| -> &'n str { name });
     match nearest_name(key, known.chain(others)) {
-        Some(nearest) => error.with_help(format!("did you mean `{nearest}`?")),
+        Some(nearest) => error.with_help(meant(key, nearest)),
         None => error.with_help("sections are part of a key, as in `gears.module_mm`"),
     }
 }

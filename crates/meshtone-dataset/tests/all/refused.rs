@@ -117,6 +117,11 @@ fn keys_that_are_none() {
         ],
     );
     refused_with(
+        "operation.pinion_speed_hz\"\nuniform",
+        "operation.pinion_speed_rpm\"\nuniform",
+        &["did you mean `operation.pinion_speed_hz`?", "a sixtieth of those per minute"],
+    );
+    refused_with(
         "key = \"fault.chip_height_mm\"",
         "key = \"fault.width_mm\"",
         &["tooth-breakage", "chip_width_mm"],

@@ -45,7 +45,9 @@ pub(super) struct FineOrders {
     lines: Vec<f64>,
     /// The largest of each block of them.
     largest: Vec<f64>,
-    /// Their logarithms.
+    /// The median of each of these blocks.
+    medians: Vec<f64>,
+    /// The logarithms of the lines.
     logarithms: Vec<f64>,
 }
 
@@ -81,6 +83,7 @@ impl FineOrders {
         Some(Self {
             bins_per_order: revolutions as f64,
             largest: lines.chunks(BLOCK).map(|block| block.iter().copied().fold(0.0, f64::max)).collect(),
+            medians: lines.chunks(BLOCK).map(|block| median(&mut block.to_vec())).collect(),
             // What is nothing but rounding has no shape.
             logarithms: lines.iter().take(of_comb).map(|line| (line + 1e-24 * strongest).ln()).collect(),
             lines,
@@ -122,11 +125,10 @@ impl FineOrders {
         Some(if prominence < 0.0 && is_noise() { 0.0 } else { prominence })
     }
 
-    /// The median of a range of bins, its ends included.
+    /// About the median of a range of bins: that of its blocks' medians.
     fn median(&self, from: usize, to: usize) -> f64 {
-        let mut lines = self.lines[from..=to.min(self.lines.len() - 1)].to_vec();
-        let middle = lines.len() / 2;
-        *lines.select_nth_unstable_by(middle, f64::total_cmp).1
+        let (first, last) = (from / BLOCK, (to / BLOCK).min(self.medians.len() - 1));
+        median(&mut self.medians[first.min(last)..=last].to_vec())
     }
 
     /// The strongest line of a range of bins, its ends included.
@@ -174,5 +176,13 @@ impl FineOrders {
         let contrasts: Vec<f64> = (1..=multiples).filter_map(contrast).collect();
         let noise = NOISE_CONTRAST * (contrasts.len() as f64).sqrt();
         (contrasts.len() >= fewest).then(|| contrasts.iter().sum::<f64>() / noise)
+    }
+}
+
+/// The upper median of values, which are reordered; 0 of none.
+fn median(values: &mut [f64]) -> f64 {
+    match values.len() / 2 {
+        middle if middle < values.len() => *values.select_nth_unstable_by(middle, f64::total_cmp).1,
+        _ => 0.0,
     }
 }

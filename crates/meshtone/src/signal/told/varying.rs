@@ -24,19 +24,19 @@ pub(super) fn varying(
     teeth: u32,
 ) -> Option<f64> {
     let points = angular.points_per_revolution;
-    let part = AngularSignal { values: affordable(angular)?.to_vec(), ..angular.clone() };
+    let part = affordable(angular)?;
     let mut gain = 0.0;
     let mut variation = None;
     for harmonic in FOLLOWED {
         // A revolution is the unit of time.
         let tone = MeshTone { harmonic, half_band_hz: Some(HALF_BAND), ..MeshTone::new(teeth, 1.0) };
-        let Ok(phase) = ShaftPhase::from_mesh_tone(&part.values, points as f64, &tone) else { continue };
+        let Ok(phase) = ShaftPhase::from_mesh_tone(part, points as f64, &tone) else { continue };
         let of_harmonic = wander(&phase, points);
         if of_harmonic.rms_rev * f64::from(teeth) < LEAST_WANDER {
             return None;
         }
         let settings = AngularSettings { points_per_revolution: Some(points), ..AngularSettings::default() };
-        let Ok(followed) = angular_resample(&part.values, &phase, &settings) else { continue };
+        let Ok(followed) = angular_resample(part, &phase, &settings) else { continue };
         let nyquist_order = followed.nyquist_order.min(angular.nyquist_order);
         let Some(along) = FineOrders::of(&AngularSignal { nyquist_order, ..followed }) else { continue };
         let others = |of: &FineOrders| -> f64 {
