@@ -74,6 +74,7 @@ proptest! {
     // The sizes of a severity have that severity again, and can be: whatever the wheels.
     #[test]
     fn sizes_and_severity_are_each_others_inverse(scenario in pairs(), wheel in wheels(), drawn in 0.0..1.0) {
+        let teeth = stages(&scenario).unwrap().teeth;
         for damage in graded() {
             for severity in [drawn, 1e-7, 1e-3, 0.02, 0.5, 1.0] {
                 let given = with_severity(&scenario, &damage, wheel, severity);
@@ -88,7 +89,6 @@ proptest! {
                 let back = sized.fault_severities().unwrap()[0];
                 prop_assert!((back - severity).abs() < 1e-9, "{:?}: {severity} is {back}", fault);
                 prop_assert_eq!(given.fault_severities().unwrap(), [severity]);
-                let teeth = stages(&scenario).unwrap().teeth;
                 for faults in [&given.faults, &sized.faults] {
                     let damaged = damaged_teeth(faults, &teeth, 1);
                     prop_assert!(damaged.is_ok(), "{:?}: {:?}", fault, damaged);
