@@ -8,7 +8,7 @@ pub mod experiment;
 pub mod indicators;
 mod input_file;
 pub mod memory;
-mod npz;
+pub mod npz;
 pub mod own_file;
 mod read_results;
 pub mod recording;

@@ -21,7 +21,7 @@ const ALIGNMENT: usize = 64;
 const MARK: [u8; 8] = *b"\x93NUMPY\x01\x00";
 
 /// An archive that is written.
-pub(crate) struct NpzWriter<W: Write + Seek> {
+pub struct NpzWriter<W: Write + Seek> {
     archive: ZipWriter<Resigned<W>>,
     method: CompressionMethod,
 }
@@ -150,15 +150,17 @@ fn header(element: &str, shape: &[usize]) -> io::Result<Vec<u8>> {
 }
 
 /// An array that was read.
-pub(crate) struct ReadArray {
+pub struct ReadArray {
+    /// Its lengths.
     pub shape: Vec<u64>,
     /// Whether the first dimension runs fastest, rather than the last.
     pub first_runs_fastest: bool,
+    /// In the order of the file.
     pub numbers: Vec<f64>,
 }
 
 /// An archive that is read.
-pub(crate) struct NpzReader {
+pub struct NpzReader {
     archive: ZipArchive<BufReader<File>>,
 }
 

@@ -62,6 +62,14 @@ pub enum Purpose {
     DatasetInspection = 24,
     /// The mounting that a unit's first record of a class is of; index: unit.
     DatasetTurn = 25,
+    /// What the pairs of a reference set have in common with their records; index: unit.
+    DiagnosisUnit = 26,
+    /// What a record of a reference set is; index: record.
+    DiagnosisRecord = 27,
+    /// Noise that is added to the averages of a reference set; index: record.
+    DiagnosisNoise = 28,
+    /// Random Fourier features of a diagnosis; index: feature.
+    DiagnosisFeature = 29,
 }
 
 /// A sequence of random numbers.

@@ -1,16 +1,9 @@
 //! The path from the simulated sensor's place to where a rig's is.
 
-use meshtone::random::{Draws, Purpose};
+use meshtone::sensor::PathRipple;
 use meshtone_fourier::{convenient_length, from_real_spectrum, real_spectrum};
 
 use crate::draw::{DrawnRecord, PATH_KEYS};
-
-/// (Hz) Where the ripple begins; it is the same below.
-const FIRST_HZ: f64 = 16.0;
-/// Draws of the ripple in an octave.
-const DRAWS_PER_OCTAVE: f64 = 2.0;
-/// Octaves that are drawn: to a megahertz.
-const OCTAVES: usize = 16;
 
 /// Lets an acceleration channel pass the record's path, as its values say: a gain that is the same at all frequencies, and a
 /// ripple over frequency that is its mounting's own.
@@ -28,7 +21,7 @@ pub(super) fn pass(drawn: &DrawnRecord, channel: &str, rate_hz: f64, signal: &mu
     let [gain_db, ripple_db] = PATH_KEYS.map(value);
     match ripple_db {
         Some(ripple_db) if ripple_db != 0.0 && signal.len() > 1 => {
-            let ripple = Ripple::new(drawn.mounting_seed, number_of(channel), ripple_db);
+            let ripple = PathRipple::new(drawn.mounting_seed, number_of(channel), ripple_db);
             let gain_db = gain_db.unwrap_or(0.0);
             filter(signal, rate_hz, |hz| factor(gain_db + ripple.db_at(hz)));
         }
@@ -49,28 +42,6 @@ fn factor(db: f64) -> f64 {
 fn number_of(name: &str) -> u64 {
     let step = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
     name.bytes().fold(0xcbf2_9ce4_8422_2325, step)
-}
-
-/// Gains in decibels over frequency.
-struct Ripple {
-    /// At half octaves from [`FIRST_HZ`] on.
-    db: Vec<f64>,
-}
-
-impl Ripple {
-    fn new(seed: u64, channel: u64, deviation_db: f64) -> Self {
-        let mut draws = Draws::new(seed, Purpose::PathRipple, channel);
-        let count = OCTAVES * DRAWS_PER_OCTAVE as usize + 1;
-        let db = (0..count.div_ceil(2)).flat_map(|_| draws.normals()).map(|normal| normal * deviation_db);
-        Self { db: db.collect() }
-    }
-
-    fn db_at(&self, hz: f64) -> f64 {
-        let place =
-            (DRAWS_PER_OCTAVE * libm::log2(hz.max(FIRST_HZ) / FIRST_HZ)).min((self.db.len() - 1) as f64);
-        let index = (place as usize).min(self.db.len() - 2);
-        self.db[index] + (place - index as f64) * (self.db[index + 1] - self.db[index])
-    }
 }
 
 /// Multiplies the spectrum of a signal, mirrored at its ends.

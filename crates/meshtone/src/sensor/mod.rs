@@ -9,6 +9,7 @@ mod contact_figures;
 mod frequency_response;
 mod measure;
 mod parameters;
+mod path_ripple;
 
 pub use channel::{Channel, UnknownChannel};
 pub use contact_figures::ContactFigures;
@@ -16,6 +17,7 @@ pub use frequency_response::FrequencyResponse;
 pub use measure::{Measurement, measure};
 pub(crate) use parameters::check_sensors;
 pub use parameters::{ResponseInput, Sensor, SensorDirection, SensorPlace};
+pub use path_ripple::PathRipple;
 
 use std::f64::consts::TAU;
 
