@@ -10,12 +10,13 @@ True
 
 The parts: :class:`Scenario` and the faults say what is simulated; :func:`simulate` and :func:`simulate_many` do it; :mod:`meshtone.signal`
 takes signals, simulated or measured, to condition indicators; :mod:`meshtone.hybrid` tunes simulations to a rig;
-:mod:`meshtone.datasets` makes and loads labelled data sets; :func:`explore` opens a page on which a scenario is changed and seen; :mod:`meshtone.plotting` draws; :mod:`meshtone.examples` has scenarios to start from.
+:mod:`meshtone.datasets` makes and loads labelled data sets; :func:`diagnose` says what may be wrong with a gear; :func:`explore` opens a page on which a scenario is changed and seen; :mod:`meshtone.plotting` draws; :mod:`meshtone.examples` has scenarios to start from.
 """
 
 from . import _damage, datasets, examples, hybrid, signal
 from ._core import __version__
 from ._damage import *
+from ._diagnose import Diagnosis, diagnose
 from ._explore import Explorer, explore
 from ._warnings import MeshtoneWarning
 from .datasets import Dataset, generate_dataset, load_dataset, verify_dataset
@@ -31,6 +32,7 @@ __all__ = [
     "CHANNELS",
     "ContactFigures",
     "Dataset",
+    "Diagnosis",
     "Explorer",
     "MeshtoneWarning",
     "Record",
@@ -43,6 +45,7 @@ __all__ = [
     "StaticMesh",
     "__version__",
     "datasets",
+    "diagnose",
     "enhance",
     "examples",
     "explore",

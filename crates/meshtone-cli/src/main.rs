@@ -5,6 +5,7 @@
 
 mod check;
 mod commands;
+mod diagnose;
 mod earlier_results;
 mod ending;
 mod failure;
@@ -46,6 +47,7 @@ Examples:
   meshtone simulate broken.toml -o broken      signals, summary and results panel in the folder broken
   meshtone explore broken.toml                 change it on a page in the browser and see what comes of it
   meshtone indicators broken                   their condition indicators, as of any recording
+  meshtone diagnose run.csv --scenario rig.toml   what may be wrong with the gear, and how probable it is
   meshtone dataset plan.toml -o gears          a labelled data set (a plan: meshtone init dataset)
   meshtone simulate --help                     more on one command
 

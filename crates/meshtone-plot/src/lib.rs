@@ -7,6 +7,7 @@
 //! * [`panel`]: teeth, damage, profile errors, averages and mesh stiffness of one simulation
 //! * [`record`]: a recording, its average, order spectrum and difference signal
 //! * [`trend`]: indicators over a series of recordings
+//! * [`diagnosis`]: what may be wrong with a gear: probabilities, severity, and what explains a recording
 //! * [`dataset::dataset_figure`]: a data set, examples, distributions and indicators by class
 //! * [`tuning_figure`]: an experiment of the hybrid stage, measured, simulated and enhanced
 #![deny(missing_docs)]
@@ -16,6 +17,7 @@ mod canvas;
 mod curve;
 mod damaged_tooth;
 pub mod dataset;
+pub mod diagnosis;
 mod error;
 mod figure;
 mod font;

@@ -9,6 +9,7 @@
 mod array;
 mod batch;
 mod dataset;
+mod diagnose;
 mod error;
 mod explore;
 mod hybrid;
@@ -30,6 +31,8 @@ mod _core {
     use crate::batch::simulate_many;
     #[pymodule_export]
     use crate::dataset::{check_plan, dataset_template, generate_dataset, merge_datasets, verify_dataset};
+    #[pymodule_export]
+    use crate::diagnose::{Observation, diagnose};
     #[pymodule_export]
     use crate::explore::ExploreServer;
     #[pymodule_export]

@@ -2,6 +2,7 @@
 
 mod completions;
 mod dataset;
+mod diagnose;
 mod enhance;
 mod explore;
 mod indicators;
@@ -19,8 +20,9 @@ use crate::failure::Failure;
 #[derive(Debug, Subcommand)]
 pub enum Command {
     Simulate(simulate::Simulate),
-    // It has many more options than the others.
+    // These two have many more options than the others.
     Indicators(Box<indicators::Indicators>),
+    Diagnose(Box<diagnose::Diagnose>),
     Explore(explore::Explore),
     Init(init::Init),
     Wheels(wheels::Wheels),
@@ -37,6 +39,7 @@ impl Command {
         match self {
             Self::Simulate(arguments) => arguments.run(),
             Self::Indicators(arguments) => arguments.run(),
+            Self::Diagnose(arguments) => arguments.run(),
             Self::Explore(arguments) => arguments.run(),
             Self::Init(arguments) => arguments.run(),
             Self::Wheels(arguments) => arguments.run(),

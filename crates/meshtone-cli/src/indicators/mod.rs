@@ -7,6 +7,6 @@ pub mod phase;
 mod phase_files;
 pub mod process;
 pub mod reading;
-mod refuse;
+pub mod refuse;
 pub mod results;
 pub mod table;

@@ -53,7 +53,7 @@ impl ReadingOptions {
 }
 
 /// The wheels, and how far their shafts have turned.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Wheels and phase (what `meshtone simulate` wrote needs none of these)")]
 pub struct PhaseOptions {
     /// Teeth of the wheel on the shaft that speed or pulses are of

@@ -38,6 +38,13 @@ impl PhaseOptions {
         tach.or(self.speed_channel.as_deref().map(|name| ("--speed-channel", name)))
     }
 
+    /// Whether it is said how far the shaft has turned.
+    pub fn says_turning(&self) -> bool {
+        let has_source =
+            self.channel().is_some() || self.pulse_times.is_some() || self.speed_profile.is_some();
+        has_source || self.shaft_hz.is_some()
+    }
+
     /// What is missing on the command line for a measured recording.
     pub fn check(&self, input: &Input) -> Result<(), Failure> {
         let path = input.source.display();
@@ -47,9 +54,7 @@ impl PhaseOptions {
                     "state them with --teeth; only what `meshtone simulate` wrote tells them itself",
                 ));
         }
-        let has_source =
-            self.channel().is_some() || self.pulse_times.is_some() || self.speed_profile.is_some();
-        if !has_source && self.shaft_hz.is_none() {
+        if !self.says_turning() {
             let help = if input.scenario_toml.is_some() {
                 "leave out --teeth: what `meshtone simulate` wrote needs no options; or state the speed too, with --shaft-hz"
             } else {

@@ -112,6 +112,40 @@ impl Input {
     }
 }
 
+/// Names of columns that say where in a revolution its values are.
+const PLACES: [&str; 6] = ["angle", "time", "revolution", "rev", "tooth", "pitch"];
+
+/// Reads one revolution of a wheel; when or where its values were taken is not looked at.
+///
+/// # Arguments
+/// * `path` - a file
+/// * `options` - what is read
+pub fn read_revolution(
+    path: &Path,
+    options: &ReadingOptions,
+) -> Result<(Channel, Vec<WarningEntry>), Failure> {
+    let chosen = RecordingOptions {
+        channels: options.channel.iter().map(|choice| ColumnChoice::parse(choice)).collect(),
+        // Whatever it is, no sample is asked when it was taken.
+        sampling_rate_hz: Some(options.sampling_rate_hz.unwrap_or(1.0)),
+        ..plain(options)
+    };
+    let mut recording = read_recording(path, &chosen)?;
+    let warnings = warnings_of(&recording);
+    if options.channel.is_none() && recording.channels.len() > 1 {
+        let is_place = |name: &str| {
+            let word = name.to_lowercase();
+            PLACES
+                .iter()
+                .any(|place| word.split(|letter: char| !letter.is_alphabetic()).next() == Some(place))
+        };
+        recording.channels.retain(|channel| !is_place(&channel.name));
+    }
+    let mut channel = one(path, recording.channels, options.channel.as_deref())?;
+    calibrate(&mut channel, options)?;
+    Ok((channel, warnings))
+}
+
 /// What is doubtful about a file that was read.
 pub fn warnings_of(recording: &Recording) -> Vec<WarningEntry> {
     let source = Some(recording.source.clone());

@@ -3,6 +3,7 @@
 
 mod bad_input;
 mod dataset;
+mod diagnose;
 mod examples;
 mod explore;
 mod indicators;

@@ -1,0 +1,70 @@
+//! The figure of a diagnosis.
+
+use meshtone::wheel::WheelName;
+use meshtone_diagnose::{Answer, HEALTHY};
+use meshtone_plot::Figure;
+use meshtone_plot::diagnosis::{self, DiagnosisFigure, SeverityView};
+
+use super::words::{outside, percent};
+
+/// Draws a diagnosis.
+///
+/// # Arguments
+/// * `answer` - what is drawn
+/// * `title` - names of what was recorded
+/// * `gear_teeth` - teeth of the gear
+pub fn draw(answer: &Answer, title: &str, gear_teeth: u32) -> Figure {
+    let compared =
+        if answer.has_healthy { "with a healthy recording" } else { "without a healthy recording" };
+    let facts = [
+        format!("damaged with a probability of {}", percent(answer.damaged())),
+        outside(answer),
+        compared.to_owned(),
+        format!("{} simulations", answer.reference_records),
+        format!("Meshtone {}", env!("CARGO_PKG_VERSION")),
+    ];
+    let kinds: Vec<(&str, f64)> = answer.kinds.iter().map(|kind| (kind.label, kind.probability)).collect();
+    let damage = answer.likeliest_damage();
+    let is_damaged = answer.kinds.first().is_some_and(|kind| kind.label != HEALTHY);
+    let on_gear =
+        damage.and_then(|kind| kind.place).filter(|place| is_damaged && place.wheel == WheelName::Gear);
+    let severity = damage.and_then(|kind| {
+        let severity = kind.severity?;
+        Some(SeverityView {
+            kind: kind.label,
+            draws: &answer.severity_draws,
+            median: severity.median,
+            within_50: severity.within_50,
+            within_90: severity.within_90,
+        })
+    });
+    let explanations: Vec<(String, &[f64])> = answer
+        .explanations
+        .iter()
+        .map(|explanation| {
+            let words = match explanation.wheel {
+                None => explanation.label.to_owned(),
+                Some(wheel) => {
+                    format!(
+                        "{} of the {}, severity {:.2}",
+                        explanation.label,
+                        wheel.name(),
+                        explanation.severity
+                    )
+                }
+            };
+            (words, &explanation.difference_g[..])
+        })
+        .collect();
+    diagnosis::draw(&DiagnosisFigure {
+        title,
+        facts: &facts,
+        gear_teeth,
+        damaged_tooth: on_gear.and_then(|place| place.tooth),
+        difference_g: &answer.difference_g,
+        band_g: [&answer.band_g[0], &answer.band_g[1]],
+        kinds: &kinds,
+        severity,
+        explanations: &explanations,
+    })
+}

@@ -1,0 +1,7 @@
+//! From recordings to what may be wrong: what `meshtone diagnose` is made of.
+
+pub mod figure;
+pub mod observe;
+pub mod refuse;
+pub mod table;
+pub mod words;

@@ -1,0 +1,219 @@
+//! What a recording shows of the scenario's wheels.
+
+use std::path::Path;
+
+use meshtone::scenario::Scenario;
+use meshtone::sensor::GRAVITY_M_PER_S2;
+use meshtone::signal::{
+    AngularSettings, AngularSignal, ChainSettings, Shaft, ShaftPhase, SignalError, angular_resample, misfit,
+};
+use meshtone_diagnose::{Observation, SignalKind};
+use meshtone_io::indicators::WarningEntry;
+use meshtone_io::recording::Channel;
+
+use crate::failure::Failure;
+use crate::indicators::options::{PhaseOptions, ReadingOptions};
+use crate::indicators::phase::simulated;
+use crate::indicators::reading::{Input, read_revolution};
+use crate::indicators::refuse::{Subject, refuse};
+
+/// What one file shows, and what is doubtful about the file.
+pub struct Observed {
+    /// What it shows.
+    pub observation: Observation,
+    /// What is doubtful.
+    pub warnings: Vec<WarningEntry>,
+}
+
+/// Reads what recordings of a rig show.
+pub struct Observer<'a> {
+    scenario: &'a Scenario,
+    signal: SignalKind,
+    reading: &'a ReadingOptions,
+    told: &'a PhaseOptions,
+    /// What is told, and where that is not enough what the scenario says.
+    phase: PhaseOptions,
+}
+
+impl<'a> Observer<'a> {
+    /// # Arguments
+    /// * `scenario` - of the rig
+    /// * `signal` - what the recordings are
+    /// * `reading`, `told` - the options
+    pub fn new(
+        scenario: &'a Scenario,
+        signal: SignalKind,
+        reading: &'a ReadingOptions,
+        told: &'a PhaseOptions,
+    ) -> Result<Self, Failure> {
+        if signal != SignalKind::Recording && !told.is_empty() {
+            let problem =
+                format!("--signal {}: is one revolution of the gear, which needs no phase", signal.name());
+            return Err(
+                Failure::bad_input(problem).with_help("leave out --teeth and what says how the shaft turns")
+            );
+        }
+        Ok(Self { scenario, signal, reading, told, phase: with_scenario(told, scenario)? })
+    }
+
+    /// What a file shows.
+    pub fn observe(&self, path: &Path) -> Result<Observed, Failure> {
+        match self.signal {
+            SignalKind::Recording => self.recording(path),
+            _ => self.revolution(path),
+        }
+    }
+
+    fn revolution(&self, path: &Path) -> Result<Observed, Failure> {
+        let (mut channel, warnings) = read_revolution(path, self.reading)?;
+        to_g(&mut channel, path)?;
+        let last_order = self.reading.sampling_rate_hz.map(|rate_hz| rate_hz / gear_hz(self.scenario) / 2.0);
+        let gear_teeth = self.scenario.gears.gear_teeth;
+        let observation = Observation::of_revolution(&channel.samples, gear_teeth, self.signal, last_order);
+        let what = format!("channel {}", channel.name);
+        let observation = observation.map_err(|error| refuse(path, &what, Subject::Phase, &error))?;
+        Ok(Observed { observation, warnings })
+    }
+
+    fn recording(&self, path: &Path) -> Result<Observed, Failure> {
+        let mut input = Input::read(path, self.reading, self.told.channel())?;
+        to_g(&mut input.channel, path)?;
+        match &input.scenario_toml {
+            Some(toml) if !self.told.says_turning() => self.simulated(&input, toml),
+            _ => self.measured(&input),
+        }
+    }
+
+    fn simulated(&self, input: &Input, scenario_toml: &str) -> Result<Observed, Failure> {
+        let (_, shafts) = simulated(input, scenario_toml)?;
+        let teeth = Shaft::BOTH.map(|shaft| shafts.teeth(shaft));
+        let expected = teeth_of(self.scenario);
+        if teeth != expected {
+            let problem = format!(
+                "{}: is of wheels with {} and {} teeth, but the scenario has {} and {}",
+                input.source.display(),
+                teeth[0],
+                teeth[1],
+                expected[0],
+                expected[1]
+            );
+            return Err(
+                Failure::bad_input(problem).with_help("name the scenario of its own rig with --scenario")
+            );
+        }
+        let over = |shaft| shafts.angular(&input.channel.samples, shaft, &ChainSettings::default());
+        let observe =
+            || self.of_angles(over(Shaft::Pinion)?, over(Shaft::Gear)?, shafts.mean_speed_hz(Shaft::Pinion));
+        let what = format!("channel {}", input.channel.name);
+        let observation =
+            observe().map_err(|error| refuse(&input.source, &what, Subject::Simulated, &error))?;
+        Ok(Observed { observation, warnings: input.warnings.clone() })
+    }
+
+    fn measured(&self, input: &Input) -> Result<Observed, Failure> {
+        let (shaft, of_phase) = self.phase.measured(input)?;
+        let speed_hz = shaft.mean_speed_hz(input.sampling_rate_hz);
+        let subject = Subject::Measured { speed_hz, by: self.phase.source() };
+        let observe = || self.of_phase(input, &shaft, speed_hz);
+        let what = format!("channel {}", input.channel.name);
+        let observation = observe().map_err(|error| refuse(&input.source, &what, subject, &error))?;
+        let doubtful = shaft
+            .warnings
+            .iter()
+            .map(|warning| WarningEntry { source: Some(input.source.clone()), message: warning.to_string() });
+        let warnings = input.warnings.iter().cloned().chain(of_phase).chain(doubtful).collect();
+        Ok(Observed { observation, warnings })
+    }
+
+    fn of_phase(&self, input: &Input, shaft: &ShaftPhase, speed_hz: f64) -> Result<Observation, SignalError> {
+        let [pinion_teeth, gear_teeth] = teeth_of(self.scenario);
+        let own_teeth = self.phase.teeth.unwrap_or(pinion_teeth);
+        let mate_teeth = self.phase.mate_teeth.unwrap_or(gear_teeth);
+        let over =
+            |phase: &ShaftPhase| angular_resample(&input.channel.samples, phase, &AngularSettings::default());
+        let own = over(shaft)?;
+        let mate = over(&shaft.of_mate(own_teeth, mate_teeth)?)?;
+        let against = misfit(&own, &self.phase.told(own_teeth));
+        let (pinion, gear, pinion_hz) = if own_teeth == pinion_teeth {
+            (own, mate, speed_hz)
+        } else {
+            (mate, own, speed_hz * f64::from(gear_teeth) / f64::from(pinion_teeth))
+        };
+        let mut observation = self.of_angles(pinion, gear, pinion_hz)?;
+        if let Some(against) = against {
+            let against = against.to_string();
+            observation.misfit = Some(match observation.misfit.take() {
+                Some(also) => format!("{against}; {also}"),
+                None => against,
+            });
+        }
+        Ok(observation)
+    }
+
+    fn of_angles(
+        &self,
+        pinion: AngularSignal,
+        gear: AngularSignal,
+        hz: f64,
+    ) -> Result<Observation, SignalError> {
+        Observation::of_recording(&pinion, &gear, teeth_of(self.scenario), hz)
+    }
+}
+
+fn teeth_of(scenario: &Scenario) -> [u32; 2] {
+    [scenario.gears.pinion_teeth, scenario.gears.gear_teeth]
+}
+
+fn gear_hz(scenario: &Scenario) -> f64 {
+    let [pinion, gear] = teeth_of(scenario).map(f64::from);
+    scenario.operation.pinion_speed_hz * pinion / gear
+}
+
+/// What is told, completed by the scenario: its teeth, and where nothing says how the shaft turns, its speed, which the mesh tone
+/// makes exact.
+fn with_scenario(told: &PhaseOptions, scenario: &Scenario) -> Result<PhaseOptions, Failure> {
+    let [pinion, gear] = teeth_of(scenario);
+    let refuse = |option: &str, given: u32, allowed: String| {
+        let problem = format!("{option} {given}: is no wheel of the scenario; must be {allowed}");
+        Err(Failure::bad_input(problem).with_help("--teeth chooses the wheel that speed or pulses are of"))
+    };
+    let mut phase = told.clone();
+    let teeth = told.teeth.unwrap_or(pinion);
+    let mate = match teeth {
+        _ if teeth == pinion => gear,
+        _ if teeth == gear => pinion,
+        _ => return refuse("--teeth", teeth, format!("{pinion}, the pinion's, or {gear}, the gear's")),
+    };
+    if let Some(given) = told.mate_teeth.filter(|given| *given != mate) {
+        return refuse("--mate-teeth", given, mate.to_string());
+    }
+    (phase.teeth, phase.mate_teeth) = (Some(teeth), Some(mate));
+    if !told.says_turning() {
+        let speed_hz = scenario.operation.pinion_speed_hz * f64::from(pinion) / f64::from(teeth);
+        (phase.shaft_hz, phase.from_mesh_tone) = (Some(speed_hz), true);
+    }
+    Ok(phase)
+}
+
+/// Brings a channel to g.
+fn to_g(channel: &mut Channel, path: &Path) -> Result<(), Failure> {
+    let unit = channel.unit.as_deref().unwrap_or("").trim();
+    let in_g = match unit {
+        "g" | "gn" | "g0" => 1.0,
+        "m/s²" | "m/s2" | "m/s^2" | "m/s**2" | "m s-2" | "ms-2" | "m·s⁻²" => 1.0 / GRAVITY_M_PER_S2,
+        "mm/s²" | "mm/s2" | "mm/s^2" => 1e-3 / GRAVITY_M_PER_S2,
+        "mg" => 1e-3,
+        _ => {
+            let is = if unit.is_empty() { "has no stated unit".to_owned() } else { format!("is in {unit}") };
+            let problem = format!("{}: channel {} {is}; must be g or m/s²", path.display(), channel.name);
+            return Err(Failure::bad_input(problem).with_help(
+                "state what it is with --unit g or --unit m/s², of volts with --sensitivity-mv-per-unit too",
+            ));
+        }
+    };
+    if in_g != 1.0 {
+        channel.samples.iter_mut().for_each(|value| *value *= in_g);
+    }
+    channel.unit = Some("g".to_owned());
+    Ok(())
+}

@@ -1,0 +1,33 @@
+//! Why there is no diagnosis.
+
+use meshtone_diagnose::{DiagnoseError, StoreError};
+
+use crate::failure::Failure;
+
+impl From<StoreError> for Failure {
+    fn from(error: StoreError) -> Self {
+        const HELP: &str = "name another folder for the simulations with --reference DIR";
+        let message = error.to_string();
+        match error {
+            StoreError::Folder { source, .. } => Self::of_writing(source.kind(), message).with_help(HELP),
+            StoreError::File(error) => Self::from(error).with_help(HELP),
+            StoreError::Cancelled => Self::failed(message),
+        }
+    }
+}
+
+impl From<DiagnoseError> for Failure {
+    fn from(error: DiagnoseError) -> Self {
+        let message = error.to_string();
+        match error {
+            DiagnoseError::TooFewOrders { .. } => Self::bad_input(message).with_help(
+                "record at a higher rate, or check --sampling-rate-hz and the scenario's speed and teeth",
+            ),
+            DiagnoseError::NoReference => {
+                Self::bad_input(message).with_help("or make more of them, with --records")
+            }
+            DiagnoseError::NotSolved | DiagnoseError::Cancelled => Self::failed(message),
+            _ => Self::bad_input(message),
+        }
+    }
+}

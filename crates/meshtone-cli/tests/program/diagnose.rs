@@ -1,0 +1,185 @@
+//! `meshtone diagnose`
+
+use std::fmt::Write;
+use std::fs;
+use std::process::Stdio;
+
+use meshtone_io::signals::read_signals;
+use serde_json::Value;
+
+use crate::indicators::{csv, tacho};
+use crate::support::{Workplace, fast_with, names, program, stderr, stdout};
+
+const DATA: &str = "diagnosis.json";
+const FIGURES: [&str; 2] = ["diagnosis.png", "diagnosis.svg"];
+/// The fewest simulations that can be learnt from.
+const FEW: &str = "512";
+
+fn workplace() -> Workplace {
+    let workplace = Workplace::new();
+    let rig = fast_with("sampling_rate_hz", "sampling_rate_hz = 8000.0");
+    let rig = format!("model = \"linear\"\n{rig}[quality]\ndin_grade = 6\n");
+    workplace.write("rig.toml", &rig);
+    workplace.write("other.toml", rig.clone() + "seed = 7\n");
+    workplace.write("gone.toml", rig + "[fault]\nkind = \"missing-tooth\"\ntooth = 8\n");
+    for (scenario, to) in [("rig.toml", "sound"), ("gone.toml", "gone"), ("other.toml", "other")] {
+        workplace.succeeds(&["simulate", scenario, "-o", to, "--no-panel", "-q"]);
+    }
+    workplace
+}
+
+/// What was simulated, as a CSV file with a tachometer.
+fn as_measured(workplace: &Workplace, of: &str) {
+    let channels = read_signals(&workplace.path(&format!("{of}/signals.parquet"))).unwrap().channels;
+    let rate = channels.sampling_rate_hz;
+    workplace.write(&format!("{of}.csv"), csv(rate, &channels.vertical_g, tacho(40.0, rate)));
+}
+
+fn answer(workplace: &Workplace, directory: &str) -> Value {
+    serde_json::from_slice(&workplace.read(&format!("{directory}/{DATA}"))).unwrap()
+}
+
+fn likeliest(answer: &Value) -> (String, Value) {
+    let (label, said) = answer["kinds"].as_object().unwrap().iter().next().unwrap();
+    (label.clone(), said.clone())
+}
+
+#[test]
+fn from_recordings_to_an_answer() {
+    let workplace = workplace();
+    let told = ["--scenario", "rig.toml", "--records", FEW, "--reference", "kept"];
+
+    // What is finished stays where the program is killed, and the next question goes on with it.
+    let mut child = program()
+        .args([
+            "diagnose",
+            "gone",
+            "-q",
+            "--scenario",
+            "rig.toml",
+            "--records",
+            "1000000",
+            "--reference",
+            "kept",
+        ])
+        .current_dir(workplace.directory.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let batches = || names_within(&workplace, "kept");
+    while batches().is_empty() && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(!workplace.path("gone_diagnosis").join(DATA).exists());
+    let first = batches()[0].clone();
+    let made = fs::metadata(&first).unwrap().modified().unwrap();
+
+    let diagnose = |of: &[&str]| workplace.succeeds(&[&["diagnose"], of, &told].concat());
+    let assert = diagnose(&["gone", "--healthy", "sound"]);
+    assert_eq!(fs::metadata(&first).unwrap().modified().unwrap(), made, "it was made again");
+    assert_eq!(workplace.names("gone_diagnosis"), [DATA, FIGURES[0], FIGURES[1]]);
+    let found = answer(&workplace, "gone_diagnosis");
+    let (label, said) = likeliest(&found);
+    assert!(["missing-tooth", "tooth-destruction", "tooth-breakage"].contains(&label.as_str()), "{found:#}");
+    assert_eq!((&said["wheel"], &said["tooth"]), (&"gear".into(), &8.into()), "{said:#}");
+    assert!(found["damaged"].as_f64().unwrap() > 0.9 && found["outside_model"].as_f64().unwrap() > 0.01);
+    for words in [
+        "gone -> gone_diagnosis",
+        "damaged with a probability of",
+        "tooth 8 at 63°",
+        "given the scenario",
+        "p = ",
+    ] {
+        assert!(stdout(&assert).contains(words), "{words} in {}", stdout(&assert));
+    }
+
+    // The schema.
+    let sum: f64 =
+        found["kinds"].as_object().unwrap().values().map(|kind| kind["probability"].as_f64().unwrap()).sum();
+    assert!((sum - 1.0).abs() < 1e-9 && found["kinds"]["healthy"]["severity"].is_null());
+    assert_eq!((&found["signal"], &found["has_healthy"]), (&"recording".into(), &true.into()));
+    assert_eq!((&found["recordings"][0], &found["healthy"][0]), (&"gone".into(), &"sound".into()));
+    assert_eq!((&found["scenario"], &found["tuned"]), (&"rig.toml".into(), &Value::Null));
+    let severity = &found["kinds"]["tooth-breakage"]["severity"];
+    assert!(severity["within_90"][0].as_f64().unwrap() <= severity["median"].as_f64().unwrap());
+    assert!(found["kinds"]["tooth-breakage"]["sizes"]["chip_height_mm"]["within_50"].is_array());
+
+    // A measurement with a tachometer.
+    for of in ["other", "sound"] {
+        as_measured(&workplace, of);
+    }
+    let assert = diagnose(&["other.csv", "--tach", "tacho", "--healthy", "sound.csv", "--no-figure"]);
+    let healthy = answer(&workplace, "other_diagnosis");
+    assert_eq!(workplace.names("other_diagnosis"), [DATA]);
+    assert_eq!(likeliest(&healthy).0, "healthy", "{healthy:#}");
+    assert!(!stderr(&assert).contains("when it was healthy"));
+
+    // One revolution of the gear; the same bits, whatever the number of threads.
+    let mut text = "angle_deg,difference [m/s²]\n".to_owned();
+    for point in 0..1024 {
+        let since = (f64::from(point) / 1024.0 - 0.4).rem_euclid(1.0);
+        let burst = 80.0 * (-60.0 * since).exp() * (std::f64::consts::TAU * 130.0 * since).sin();
+        writeln!(text, "{},{burst:e}", 360.0 * f64::from(point) / 1024.0).unwrap();
+    }
+    workplace.write("figure.csv", text);
+    let answers = ["1", "2"].map(|threads| {
+        let arguments = ["diagnose", "figure.csv", "--signal", "difference", "--no-figure", "-q"];
+        let mut command = workplace.command(&[&arguments[..], &told].concat());
+        let assert = command.env("RAYON_NUM_THREADS", threads).assert().success().stdout("");
+        assert!(stderr(&assert).contains("when it was healthy"), "{}", stderr(&assert));
+        answer(&workplace, "figure_diagnosis")
+    });
+    assert_eq!(answers[0], answers[1]);
+    assert_eq!(answers[0]["signal"], "difference");
+}
+
+fn names_within(workplace: &Workplace, folder: &str) -> Vec<std::path::PathBuf> {
+    let folder = workplace.path(folder);
+    let sets = if folder.is_dir() { names(&folder) } else { Vec::new() };
+    let files = sets.iter().flat_map(|set| {
+        let set = folder.join(set);
+        names(&set).into_iter().map(move |name| set.join(name))
+    });
+    files.filter(|path| path.extension().is_some_and(|ending| ending == "npz")).collect()
+}
+
+#[test]
+fn what_is_refused() {
+    let workplace = workplace();
+    workplace.write("volts.csv", "time_s,bearing [V]\n0,1\n1e-4,0\n2e-4,1\n");
+    workplace.write("plain.csv", "time_s,bearing\n0,1\n1e-4,0\n2e-4,1\n");
+    workplace.write("more_teeth.toml", fast_with("gear_teeth", "gear_teeth = 41"));
+    let tuned = "model = \"published\"\n[enhancement]\nwidth_ratio = 0.2\nfault_to_harmonics_ratio = 2.0\nnoise_level = 1.0\n\
+                 [signal]\nsampling_rate_hz = 25000.0\n";
+    workplace.write("tuned.toml", tuned);
+    as_measured(&workplace, "other");
+    let here = workplace.path("").display().to_string();
+    for (arguments, words) in [
+        (&["absent.csv"][..], &["there is no recording absent.csv"][..]),
+        (&["."], &["is a directory"]),
+        (&["volts.csv"], &["channel bearing is in V", "must be g or m/s²", "--sensitivity-mv-per-unit"]),
+        // With nothing said the speed is the scenario's, about which the mesh tone is looked for.
+        (&["other.csv", "-c", "bearing"], &["no mesh tone at 800.00 Hz"]),
+        (&["plain.csv"], &["has no stated unit", "--unit g"]),
+        (&["plain.csv", "--teeth", "19"], &["--teeth 19", "20, the pinion's, or 40, the gear's"]),
+        (&["plain.csv", "--teeth", "20", "--mate-teeth", "41"], &["--mate-teeth 41", "must be 40"]),
+        (&["gone", "--scenario", "absent.toml"], &["there is no scenario file absent.toml"]),
+        (&["gone", "--scenario", "more_teeth.toml"], &["20 and 40 teeth", "20 and 41"]),
+        (&["gone", "--tuned", "tuned.toml"], &["published", "linear"]),
+        (&["plain.csv", "--signal", "average", "--teeth", "20"], &["--signal average", "needs no phase"]),
+        (&["gone", "--records", "100"], &["100", "512"]),
+        (&["gone", "--signal", "spectrum"], &["difference"]),
+        (&["gone", "-o", "rig.toml"], &["it is a file"]),
+        (&[], &["RECORDING"]),
+    ] {
+        let mut all = [&["diagnose"], arguments, &["--reference", &here]].concat();
+        if !arguments.contains(&"--scenario") {
+            all.extend(["--scenario", "rig.toml"]);
+        }
+        workplace.fails(2, &all, words);
+    }
+    workplace.fails(2, &["diagnose", "gone"], &["--scenario"]);
+}

@@ -1,0 +1,201 @@
+//! How far a diagnosis can be believed, on simulated recordings that it was not learnt from.
+//!
+//! ```text
+//! cargo run --release -p meshtone-diagnose --example calibration -- examples/healthy.toml recording healthy calibration.csv
+//! ```
+//!
+//! Writes a row for each recording: what it is, what is said about it. Of every pair of wheels the first record is the healthy one
+//! that the others are compared with; with `alone` in place of `healthy` they are compared with none. A last argument leaves a kind
+//! of damage out of the reference set, or asks about recordings that are not what they are told to be: `bearing`,
+//! `teeth`, `ratio`; or about whole signals of healthy and damaged pairs: `signals`.
+#![allow(clippy::print_stderr)]
+
+use std::error::Error;
+use std::f64::consts::TAU;
+use std::fmt::Write;
+use std::fs;
+use std::sync::atomic::AtomicBool;
+
+use meshtone::random::{Draws, Purpose};
+use meshtone::scenario::Scenario;
+use meshtone::signal::{AngularSettings, ShaftPhase, angular_resample};
+use meshtone::wheel::WheelName;
+use meshtone_diagnose::{
+    Answer, HEALTHY, Learned, Observation, Prior, Question, ReferenceControl, ReferenceRecord,
+    ReferenceStore, SignalKind, WheelLines, diagnose,
+};
+
+/// Simulations that are learnt from, and those that are asked about.
+const LEARNT: u64 = 6144;
+const ASKED: u64 = 1024;
+/// Recordings that are not what they are told to be.
+const OTHERS: u64 = 60;
+/// (g) Noise in each line of an average, of every recording that is asked about.
+const NOISE_G: f64 = 2e-4;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().collect();
+    let [_, rig, signal, healthy, output, other @ ..] = &arguments[..] else {
+        return Err("needs RIG.toml, recording | average | difference, healthy | alone, OUTPUT.csv".into());
+    };
+    let signal = SignalKind::NAMES.into_iter().find(|(name, _)| name == signal).ok_or("no such signal")?.1;
+    let has_healthy = healthy == "healthy";
+    let prior = Prior::new(&Scenario::from_toml(&fs::read_to_string(rig)?)?);
+    let store = ReferenceStore::new(std::env::temp_dir().join("meshtone-calibration"));
+    let control = ReferenceControl { progress: &|_| {}, cancelled: &AtomicBool::new(false) };
+    let mut reference = store.get(&prior, LEARNT, &control)?;
+    let asked = store.get(&Prior { seed: 77, ..prior.clone() }, ASKED, &control)?;
+    let name = |record: &ReferenceRecord| {
+        record.fault.as_ref().map_or(HEALTHY, |fault| reference_kind(&prior, fault.kind))
+    };
+    let other = other.first().map_or("", String::as_str);
+    reference.records.retain(|record| other.is_empty() || name(record) != other);
+    let mut learned: Option<Learned> = None;
+    let mut table = String::from(
+        "kind,wheel,severity,tooth,said,damaged,probability,outside,healthy_outside,q05,q25,q50,q75,q95,said_wheel,said_tooth,tooth_probability\n",
+    );
+    let is_strange = ["signals", "bearing", "teeth", "ratio"].contains(&other);
+    for record in &asked.records {
+        let of_gear = record.fault.as_ref().is_none_or(|fault| fault.wheel == WheelName::Gear);
+        let kind = name(record);
+        let is_asked = if is_strange {
+            record.number < 8 * OTHERS
+                && record.number % 8 == (if other == "signals" { 1 + record.number / 8 % 7 } else { 1 })
+        } else {
+            record.number % 8 > 0
+        };
+        if !is_asked
+            || (signal != SignalKind::Recording && !of_gear)
+            || (!other.is_empty() && !is_strange && kind != other)
+        {
+            continue;
+        }
+        let Some(before) = asked.records.iter().find(|before| before.number == record.number / 8 * 8) else {
+            continue;
+        };
+        let now =
+            if is_strange { strange(&asked.prior, record.number, other)? } else { observed(record, signal) };
+        let before = if is_strange {
+            strange(&asked.prior, before.number, "signals")?
+        } else {
+            observed(before, signal)
+        };
+        let (now, before) = ([now], [before]);
+        let question = Question { now: &now, healthy: if has_healthy { &before } else { &[] } };
+        if learned.is_none() {
+            learned = Some(Learned::new(&reference, &question)?);
+        }
+        let Some(learned) = &learned else { continue };
+        let answer = diagnose(learned, &question)?;
+        row(&mut table, record, kind, &answer)?;
+    }
+    fs::write(output, table)?;
+    Ok(())
+}
+
+fn reference_kind(prior: &Prior, kind: usize) -> &'static str {
+    prior.kinds().get(kind).map_or("", |kind| kind.name)
+}
+
+/// What a simulated record shows, with noise.
+fn observed(record: &ReferenceRecord, signal: SignalKind) -> Observation {
+    let mut draws = Draws::new(4711, Purpose::DiagnosisNoise, record.number);
+    let mut noisy = |lines: &WheelLines| {
+        let mut lines = lines.clone();
+        for line in &mut lines.lines {
+            let [re, im] = draws.normals();
+            line.re += re * NOISE_G / 2f64.sqrt();
+            line.im += im * NOISE_G / 2f64.sqrt();
+        }
+        lines
+    };
+    let is_recording = signal == SignalKind::Recording;
+    let noise = if is_recording { vec![NOISE_G] } else { Vec::new() };
+    Observation {
+        signal,
+        pinion_speed_hz: is_recording.then_some(record.pinion_speed_hz),
+        gear: noisy(&record.wheels[1]),
+        pinion: is_recording.then(|| noisy(&record.wheels[0])),
+        noise: [noise.clone(), noise],
+        misfit: None,
+        doubts: Vec::new(),
+    }
+}
+
+/// A recording that is not of the pair that it is told to be of.
+fn strange(prior: &Prior, number: u64, what: &str) -> Result<Observation, Box<dyn Error>> {
+    let mut draws = Draws::new(99, Purpose::DiagnosisNoise, number);
+    let drawn = prior.draw(number)?;
+    let mut scenario = drawn.scenario.clone();
+    let told = [scenario.gears.pinion_teeth, scenario.gears.gear_teeth];
+    match what {
+        "teeth" => scenario.gears.pinion_teeth += 2,
+        "ratio" => scenario.gears.gear_teeth = (f64::from(told[1]) * draws.uniform(0.8, 0.1)) as u32,
+        _ => {}
+    }
+    let simulation = meshtone::simulate(&scenario)?;
+    let rate_hz = simulation.stages.time.sampling_rate_hz;
+    // The same teeth meet again where it ends: it goes on as it began.
+    let mut signal = simulation.channels.vertical_g.repeat(4);
+    let rms = meshtone::signal::rms(&signal);
+    if what == "bearing" {
+        // A defect of an outer race: impulses that ring at a resonance, a little off every order, jittered by 1 %.
+        let (every_s, ring_hz) = (
+            1.0 / (scenario.operation.pinion_speed_hz * draws.uniform(3.6, 0.2)),
+            draws.uniform(5000.0, 2500.0),
+        );
+        let (size, decay_s) = (rms * draws.uniform(4.0, 2.0), 8e-4);
+        let mut at_s = 0.0;
+        while at_s < signal.len() as f64 / rate_hz {
+            let first = (at_s * rate_hz) as usize;
+            for (later, value) in
+                signal.iter_mut().skip(first).take((6.0 * decay_s * rate_hz) as usize).enumerate()
+            {
+                let t = later as f64 / rate_hz;
+                *value += size * (-t / decay_s).exp() * (TAU * ring_hz * t).sin();
+            }
+            at_s += every_s * (1.0 + 0.01 * draws.normal());
+        }
+    }
+    let samples = signal.len();
+    let phase = ShaftPhase::constant(scenario.operation.pinion_speed_hz, rate_hz, samples)?;
+    let mate = phase.of_mate(told[0], told[1])?;
+    let settings = AngularSettings::default();
+    let [pinion, gear] =
+        [angular_resample(&signal, &phase, &settings)?, angular_resample(&signal, &mate, &settings)?];
+    Ok(Observation::of_recording(&pinion, &gear, told, scenario.operation.pinion_speed_hz)?)
+}
+
+fn row(
+    table: &mut String,
+    record: &ReferenceRecord,
+    kind: &str,
+    answer: &Answer,
+) -> Result<(), Box<dyn Error>> {
+    let of_kind = answer.kinds.iter().find(|of| of.label == kind);
+    let (wheel, severity, tooth) = record.fault.as_ref().map_or(("", 0.0, 0), |fault| {
+        (fault.wheel.name(), fault.severity, if fault.is_on_one_tooth { fault.tooth } else { 0 })
+    });
+    write!(table, "{kind},{wheel},{severity},{tooth},{},{}", answer.kinds[0].label, answer.damaged())?;
+    let probability = of_kind.map_or(0.0, |of| of.probability);
+    write!(
+        table,
+        ",{probability},{},{}",
+        answer.outside_model,
+        answer.healthy_outside_model.unwrap_or(f64::NAN)
+    )?;
+    match of_kind.and_then(|of| of.severity) {
+        Some(said) => {
+            let [lowest, highest] = said.within_90;
+            let [low, high] = said.within_50;
+            write!(table, ",{lowest},{low},{},{high},{highest}", said.median)?;
+        }
+        None => write!(table, ",,,,,")?,
+    }
+    let place = of_kind.and_then(|of| of.place);
+    let said_wheel = place.map_or("", |place| place.wheel.name());
+    let said_tooth = place.and_then(|place| place.tooth).unwrap_or(0);
+    let sure = place.and_then(|place| place.tooth_probability).unwrap_or(f64::NAN);
+    writeln!(table, ",{said_wheel},{said_tooth},{sure}")?;
+    Ok(())
+}

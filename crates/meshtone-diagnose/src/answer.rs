@@ -1,0 +1,113 @@
+//! What a diagnosis says.
+
+use meshtone::wheel::WheelName;
+
+use crate::observation::SignalKind;
+
+/// A number with its uncertainty.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// As likely to be larger as to be smaller.
+    pub median: f64,
+    /// It is within with a probability of 0.5.
+    pub within_50: [f64; 2],
+    /// It is within with a probability of 0.9.
+    pub within_90: [f64; 2],
+}
+
+/// A size of a damage.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SizeAnswer {
+    /// Key of the scenario file, with the unit at its end.
+    pub key: &'static str,
+    /// What it may be.
+    pub interval: Interval,
+}
+
+/// Where a damage is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlaceAnswer {
+    /// The damaged wheel.
+    pub wheel: WheelName,
+    /// (-) Probability that it is this one rather than its mate.
+    pub wheel_probability: f64,
+    /// Number of the damaged tooth, counted from 1 from the first sample of the revolution on; none of damage to all teeth.
+    pub tooth: Option<u32>,
+    /// (°) Angle of its wheel, from the first sample of the revolution on, at which it enters contact.
+    pub angle_deg: Option<f64>,
+    /// (-) Probability that the tooth is this one, given the kind and the wheel.
+    pub tooth_probability: Option<f64>,
+}
+
+/// What is said about one kind.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KindAnswer {
+    /// `healthy`, or the name of a kind of damage.
+    pub label: &'static str,
+    /// (-) Its probability.
+    pub probability: f64,
+    /// (-) How severe it is, if it is of this kind, from 0 to 1; none of a healthy pair.
+    pub severity: Option<Interval>,
+    /// Its sizes, likewise; none where they are lists.
+    pub sizes: Vec<SizeAnswer>,
+    /// Where it is, likewise.
+    pub place: Option<PlaceAnswer>,
+}
+
+/// A simulation that resembles the recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Explanation {
+    /// `healthy`, or the name of a kind of damage.
+    pub label: &'static str,
+    /// The damaged wheel; none of a healthy pair.
+    pub wheel: Option<WheelName>,
+    /// (-) How severe it is; 0 of a healthy pair.
+    pub severity: f64,
+    /// (g) The gear's difference signal over a revolution, turned so that the burst is where the recording has it.
+    pub difference_g: Vec<f64>,
+}
+
+/// What a diagnosis says.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answer {
+    /// What was asked about.
+    pub signal: SignalKind,
+    /// Whether it was compared with a healthy recording of the same rig.
+    pub has_healthy: bool,
+    /// Recordings that were asked about.
+    pub recordings: usize,
+    /// Simulations that it was learnt from.
+    pub reference_records: usize,
+    /// The kinds, the most probable first; their probabilities sum to 1.
+    pub kinds: Vec<KindAnswer>,
+    /// (-) p-value: the part of the simulated records that are as far as the recording, or farther, from the others.
+    pub outside_model: f64,
+    /// The same of the healthy recording, held against healthy simulations alone; none where there is no healthy recording.
+    pub healthy_outside_model: Option<f64>,
+    /// What deserves attention.
+    pub warnings: Vec<String>,
+    /// (g) The recording's difference signal over a revolution of the gear, at equal angles.
+    pub difference_g: Vec<f64>,
+    /// (g) Between which values nine in ten of the simulated signals that resemble it are, angle by angle.
+    pub band_g: [Vec<f64>; 2],
+    /// The simulations that resemble it most, the likeliest kinds first.
+    pub explanations: Vec<Explanation>,
+    /// (-) Draws of the likeliest damage's severity, for a histogram.
+    pub severity_draws: Vec<f64>,
+}
+
+impl Answer {
+    /// (-) Probability that something is damaged.
+    pub fn damaged(&self) -> f64 {
+        let healthy = self.kinds.iter().find(|kind| kind.label == HEALTHY);
+        1.0 - healthy.map_or(0.0, |kind| kind.probability)
+    }
+
+    /// The likeliest damage.
+    pub fn likeliest_damage(&self) -> Option<&KindAnswer> {
+        self.kinds.iter().find(|kind| kind.label != HEALTHY)
+    }
+}
+
+/// The label of a pair without damage.
+pub const HEALTHY: &str = "healthy";

@@ -1,0 +1,56 @@
+//! What a diagnosis says, as JSON.
+
+use serde_json::{Map, Value, json};
+
+use crate::answer::{Answer, Explanation, Interval, KindAnswer};
+
+/// Of the layout of what is written; another one where a key changes its meaning.
+const FORMAT_VERSION: u32 = 1;
+
+impl Answer {
+    /// As JSON: what is probable, how severe and where, the likeliest kinds first. The signals are not in it.
+    pub fn to_json(&self) -> Value {
+        let kinds: Map<String, Value> =
+            self.kinds.iter().map(|kind| (kind.label.to_owned(), kind_json(kind))).collect();
+        json!({
+            "format_version": FORMAT_VERSION,
+            "meshtone_version": env!("CARGO_PKG_VERSION"),
+            "signal": self.signal.name(),
+            "has_healthy": self.has_healthy,
+            "damaged": self.damaged(),
+            "kinds": kinds,
+            "outside_model": self.outside_model,
+            "healthy_outside_model": self.healthy_outside_model,
+            "explanations": self.explanations.iter().map(explanation).collect::<Vec<_>>(),
+            "warnings": self.warnings,
+        })
+    }
+}
+
+fn kind_json(kind: &KindAnswer) -> Value {
+    let sizes: Map<String, Value> =
+        kind.sizes.iter().map(|size| (size.key.to_owned(), interval(&size.interval))).collect();
+    let place = kind.place.as_ref();
+    json!({
+        "probability": kind.probability,
+        "severity": kind.severity.as_ref().map(interval),
+        "sizes": sizes,
+        "wheel": place.map(|place| place.wheel.name()),
+        "wheel_probability": place.map(|place| place.wheel_probability),
+        "tooth": place.and_then(|place| place.tooth),
+        "tooth_probability": place.and_then(|place| place.tooth_probability),
+        "angle_deg": place.and_then(|place| place.angle_deg),
+    })
+}
+
+fn interval(interval: &Interval) -> Value {
+    json!({ "median": interval.median, "within_50": interval.within_50, "within_90": interval.within_90 })
+}
+
+fn explanation(explanation: &Explanation) -> Value {
+    json!({
+        "kind": explanation.label,
+        "wheel": explanation.wheel.map(|wheel| wheel.name()),
+        "severity": explanation.severity,
+    })
+}

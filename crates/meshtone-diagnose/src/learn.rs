@@ -1,0 +1,409 @@
+//! What is learnt from a reference set for one question.
+
+use std::sync::OnceLock;
+
+use meshtone::random::{Draws, Purpose};
+use meshtone::scenario::DamageKind;
+use meshtone::wheel::WheelName;
+use meshtone_fourier::Complex64;
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+
+use crate::DiagnoseError;
+use crate::features::{WheelFeatures, wheel_features};
+use crate::healthy::beyond_healthy;
+use crate::matrix::{FOLDS, RandomFeatures, Standard, ridge};
+use crate::observation::{Observation, SignalKind, WheelLines};
+use crate::outside::Outside;
+use crate::prior::{DrawnFault, RECORDS_PER_UNIT};
+use crate::reference::{ReferenceRecord, ReferenceSet};
+use crate::severity::SizeModel;
+use crate::softmax::Softmax;
+
+/// Random features beside the linear ones.
+const RANDOM_FEATURES: usize = 512;
+/// (-) Penalty of the regression on classes, by which the linear features were best on other simulations.
+const PENALTY: f64 = 30.0;
+/// (-) Probability before anything is seen that nothing is damaged; the kinds of damage share the rest evenly.
+const PRIOR_HEALTHY: f64 = 0.5;
+/// (-) Noise in an average of unknown noise, as a part of its difference signal's rms: least and largest.
+const UNKNOWN_NOISE: [f64; 2] = [0.003, 0.2];
+/// Fewest records that can be learnt from.
+const FEWEST_RECORDS: usize = 200;
+/// Fewest mesh orders that a signal must show.
+const FEWEST_MESH_ORDERS: usize = 2;
+
+/// What is asked: recordings of a gear pair in one state, and what it was like when it was healthy.
+#[derive(Debug, Clone, Copy)]
+pub struct Question<'a> {
+    /// What is asked about: recordings of one state, at least one.
+    pub now: &'a [Observation],
+    /// The same rig when it was healthy; may be empty.
+    pub healthy: &'a [Observation],
+}
+
+/// A class: what is damaged; none where nothing is.
+pub(crate) type Class = Option<(usize, WheelName)>;
+
+/// What is learnt from a reference set for one question.
+pub struct Learned<'a> {
+    pub(crate) reference: &'a ReferenceSet,
+    pub(crate) kinds: Vec<DamageKind>,
+    pub(crate) layout: Layout,
+    /// The records that it was learnt from.
+    pub(crate) records: Vec<&'a ReferenceRecord>,
+    pub(crate) rows: Vec<Row>,
+    pub(crate) classes: Vec<Class>,
+    class_of: Vec<usize>,
+    folds: Vec<usize>,
+    standard: Standard,
+    random: RandomFeatures,
+    features: DMatrix<f64>,
+    coefficients: DMatrix<f64>,
+    softmax: Softmax,
+    size_models: Vec<OnceLock<SizeModels>>,
+    pub(crate) outside: Outside,
+    /// Healthy records as they are, without a healthy one before them.
+    pub(crate) healthy_outside: Option<Outside>,
+}
+
+/// Severity and sizes of a class's damages, by their places among the sizes; none of the severity.
+type SizeModels = Result<Vec<(Option<usize>, SizeModel)>, DiagnoseError>;
+
+/// What is compared.
+#[derive(Debug, Clone)]
+pub(crate) struct Layout {
+    pub signal: SignalKind,
+    pub has_healthy: bool,
+    /// The last order that is whole everywhere, of the pinion and of the gear.
+    pub last: [usize; 2],
+}
+
+/// What one record shows.
+#[derive(Debug, Clone)]
+pub(crate) struct Row {
+    pub values: Vec<f64>,
+    /// (rev) Where the burst is, of the pinion and of the gear.
+    pub burst_rev: [f64; 2],
+}
+
+impl Layout {
+    fn of(question: &Question, reference: &ReferenceSet) -> Result<Self, DiagnoseError> {
+        let first = question.now.first().ok_or(DiagnoseError::NoRecording)?;
+        let gears = &reference.prior.base.gears;
+        let expected = [gears.pinion_teeth, gears.gear_teeth];
+        for asked in question.now.iter().chain(question.healthy) {
+            let pinion = asked.pinion.as_ref().map_or(expected[0], |wheel| wheel.teeth);
+            let given = [pinion, asked.gear.teeth];
+            if given != expected {
+                return Err(DiagnoseError::OtherWheels { given, expected });
+            }
+            if asked.signal != first.signal {
+                let (healthy, asked) = (asked.signal.name(), first.signal.name());
+                return Err(DiagnoseError::OtherSignal { healthy, asked });
+            }
+        }
+        let last_of = |wheel: usize| {
+            let of_reference = reference.records.iter().map(|record| record.wheels[wheel].last());
+            let of_observation =
+                question.now.iter().chain(question.healthy).filter_map(|asked| match wheel {
+                    0 => asked.pinion.as_ref().map(WheelLines::last),
+                    _ => Some(asked.gear.last()),
+                });
+            of_reference.chain(of_observation).min().unwrap_or(0)
+        };
+        let last = [last_of(0), last_of(1)];
+        let needed = FEWEST_MESH_ORDERS * expected[1] as usize + expected[1] as usize / 2;
+        if last[1] < needed {
+            return Err(DiagnoseError::TooFewOrders { of: first.signal.name(), last: last[1], needed });
+        }
+        Ok(Self { signal: first.signal, has_healthy: !question.healthy.is_empty(), last })
+    }
+
+    /// What two states of one rig, or one alone, show.
+    ///
+    /// # Arguments
+    /// * `now`, `healthy` - lines of the pinion, of a recording, and of the gear
+    /// * `speed` - (-) logarithm of the speed over the rig's; 0 where it is not known
+    fn row(&self, now: [Option<&WheelLines>; 2], healthy: [Option<&WheelLines>; 2], speed: f64) -> Row {
+        let mut row = Row { values: vec![speed], burst_rev: [0.0; 2] };
+        let regular = self.signal.has_regular_part();
+        for wheel in [0, 1] {
+            let (Some(now), last) = (now[wheel], self.last[wheel]) else { continue };
+            let plain = wheel_features(now, last, regular);
+            row.burst_rev[wheel] = plain.burst_rev;
+            row.values.extend(&plain.levels);
+            row.values.extend(&plain.shapes);
+            if let Some(healthy) = healthy[wheel] {
+                let before = wheel_features(healthy, last, regular);
+                let beyond = wheel_features(&beyond_healthy(now, healthy, last), last, false);
+                row.burst_rev[wheel] = beyond.burst_rev;
+                row.values.extend(less(&plain.levels, &before.levels));
+                row.values.extend(less(&plain.shapes, &before.shapes));
+                row.values.extend(less(&beyond.levels, &before.levels));
+                let WheelFeatures { shapes, .. } = beyond;
+                row.values.extend(shapes);
+            }
+        }
+        row
+    }
+
+    /// What the question shows: the mean over its recordings.
+    fn question(&self, question: &Question, reference: &ReferenceSet) -> Row {
+        let nominal = reference.prior.base.operation.pinion_speed_hz;
+        let lines = |of: &Observation| [of.pinion.clone(), Some(of.gear.clone())];
+        let healthy: Vec<[Option<WheelLines>; 2]> = match question.healthy {
+            [] => vec![[None, None]],
+            several => several.iter().map(lines).collect(),
+        };
+        let mut rows = Vec::new();
+        for now in question.now {
+            let speed = now.pinion_speed_hz.map_or(0.0, |hz| (hz / nominal).ln());
+            for before in &healthy {
+                let of = lines(now);
+                rows.push(self.row(
+                    of.each_ref().map(Option::as_ref),
+                    before.each_ref().map(Option::as_ref),
+                    speed,
+                ));
+            }
+        }
+        let count = rows.len() as f64;
+        let mut mean = rows[0].clone();
+        for other in &rows[1..] {
+            mean.values.iter_mut().zip(&other.values).for_each(|(sum, value)| *sum += value);
+        }
+        mean.values.iter_mut().for_each(|value| *value /= count);
+        mean
+    }
+}
+
+fn less(now: &[f64], before: &[f64]) -> Vec<f64> {
+    now.iter().zip(before).map(|(now, before)| now - before).collect()
+}
+
+impl<'a> Learned<'a> {
+    /// Learns what a question needs.
+    ///
+    /// # Arguments
+    /// * `reference` - simulations of what may be
+    /// * `question` - recordings; what they are decides which simulations, orders and noise they are held against
+    ///
+    /// # Errors
+    /// A recording of other wheels, or of too few orders; too few simulations.
+    pub fn new(reference: &'a ReferenceSet, question: &Question) -> Result<Self, DiagnoseError> {
+        let layout = Layout::of(question, reference)?;
+        let noises = [noise_of(question.now), noise_of(question.healthy)];
+        let kinds = reference.prior.kinds();
+        let healthy_of = |record: &ReferenceRecord| {
+            let number = record.number / RECORDS_PER_UNIT * RECORDS_PER_UNIT;
+            reference.records.binary_search_by_key(&number, |other| other.number).ok()
+        };
+        let is_asked = |record: &&ReferenceRecord| {
+            let of_gear = record.fault.as_ref().is_none_or(|fault| fault.wheel == WheelName::Gear);
+            let is_first = record.number.is_multiple_of(RECORDS_PER_UNIT);
+            (layout.signal == SignalKind::Recording || of_gear)
+                && (!layout.has_healthy || (!is_first && healthy_of(record).is_some()))
+        };
+        let records: Vec<&ReferenceRecord> = reference.records.iter().filter(is_asked).collect();
+        if records.len() < FEWEST_RECORDS {
+            return Err(DiagnoseError::NoReference);
+        }
+        let nominal = reference.prior.base.operation.pinion_speed_hz;
+        let noisy = |record: &ReferenceRecord, noise: &[Vec<f64>; 2]| {
+            with_noise(record, &layout, noise, reference.prior.seed)
+        };
+        let row_of = |layout: &Layout, record: &ReferenceRecord, noise: &[Vec<f64>; 2]| {
+            let now = noisy(record, noise);
+            let before = healthy_of(record)
+                .filter(|_| layout.has_healthy)
+                .map(|at| noisy(&reference.records[at], &noises[1]));
+            let speed =
+                match (layout.signal, question.now.iter().any(|asked| asked.pinion_speed_hz.is_some())) {
+                    (_, true) => (record.pinion_speed_hz / nominal).ln(),
+                    (_, false) => 0.0,
+                };
+            let of_signal = |wheels: &'_ [WheelLines; 2]| {
+                [layout.signal == SignalKind::Recording, true]
+                    .map(|is| is)
+                    .into_iter()
+                    .zip(wheels.clone())
+                    .map(|(is, wheel)| is.then_some(wheel))
+                    .collect::<Vec<_>>()
+            };
+            let (now, before) = (of_signal(&now), before.map(|wheels| of_signal(&wheels)));
+            let before = before.unwrap_or_else(|| vec![None, None]);
+            layout.row([now[0].as_ref(), now[1].as_ref()], [before[0].as_ref(), before[1].as_ref()], speed)
+        };
+        let rows: Vec<Row> = records.par_iter().map(|record| row_of(&layout, record, &noises[0])).collect();
+        let mut classes: Vec<Class> = records.iter().map(|record| class_of(record)).collect();
+        classes.sort_unstable_by_key(|class| class.map(|(kind, wheel)| (kind, wheel as usize)));
+        classes.dedup();
+        let place = |record: &&ReferenceRecord| classes.iter().position(|class| *class == class_of(record));
+        let class_of: Vec<usize> = records.iter().filter_map(place).collect();
+        let units: Vec<u64> = records.iter().map(|record| record.number / RECORDS_PER_UNIT).collect();
+        let folds: Vec<usize> = units.iter().map(|unit| (unit % FOLDS as u64) as usize).collect();
+        let weights = weights(&class_of, &classes);
+        let values: Vec<Vec<f64>> = rows.iter().map(|row| row.values.clone()).collect();
+        let standard = Standard::of(&values);
+        let standardised: Vec<Vec<f64>> = values.iter().map(|row| standard.apply(row)).collect();
+        let width = values.first().map_or(0, Vec::len);
+        let random = RandomFeatures::new(width, RANDOM_FEATURES, reference.prior.seed);
+        let features = random.of(&standardised);
+        let is_class = |class: usize, row: usize| if class_of[row] == class { 1.0 } else { 0.0 };
+        let targets = DMatrix::from_fn(classes.len(), records.len(), is_class);
+        let regression = ridge(&features, &targets, &weights, &folds, PENALTY)?;
+        let softmax = Softmax::fit(&regression.out_of_fold, &class_of, &weights)?;
+        let outside = Outside::new(&values, &units, &weights);
+        let healthy_outside = layout.has_healthy.then(|| {
+            let alone = Layout { has_healthy: false, ..layout.clone() };
+            let healthy: Vec<&ReferenceRecord> =
+                reference.records.iter().filter(|record| record.fault.is_none()).collect();
+            let rows: Vec<Vec<f64>> =
+                healthy.par_iter().map(|record| row_of(&alone, record, &noises[1]).values).collect();
+            let units: Vec<u64> = healthy.iter().map(|record| record.number / RECORDS_PER_UNIT).collect();
+            Outside::new(&rows, &units, &vec![1.0; rows.len()])
+        });
+        let size_models = classes.iter().map(|_| OnceLock::new()).collect();
+        Ok(Self {
+            reference,
+            kinds,
+            layout,
+            records,
+            rows,
+            classes,
+            class_of,
+            folds,
+            standard,
+            random,
+            features,
+            coefficients: regression.coefficients,
+            softmax,
+            size_models,
+            outside,
+            healthy_outside,
+        })
+    }
+
+    /// What the question shows.
+    pub(crate) fn row(&self, question: &Question) -> Row {
+        self.layout.question(question, self.reference)
+    }
+
+    /// What the healthy recordings show alone.
+    pub(crate) fn healthy_row(&self, question: &Question) -> Row {
+        let alone = Layout { has_healthy: false, ..self.layout.clone() };
+        alone.question(&Question { now: question.healthy, healthy: &[] }, self.reference)
+    }
+
+    /// What regressions take of a row.
+    pub(crate) fn features(&self, row: &Row) -> Vec<f64> {
+        self.random.of(&[self.standard.apply(&row.values)]).column(0).iter().copied().collect()
+    }
+
+    /// (-) The probability of each class.
+    pub(crate) fn probabilities(&self, features: &[f64]) -> Vec<f64> {
+        let scores: Vec<f64> = self
+            .coefficients
+            .column_iter()
+            .map(|column| column.iter().zip(features).map(|(a, b)| a * b).sum())
+            .collect();
+        self.softmax.probabilities(&scores)
+    }
+
+    /// The rows of a class.
+    pub(crate) fn rows_of(&self, class: usize) -> Vec<usize> {
+        (0..self.class_of.len()).filter(|&row| self.class_of[row] == class).collect()
+    }
+
+    /// What is learnt about the numbers of the damages of a class: the severity, then the sizes that vary, by their places.
+    ///
+    /// # Arguments
+    /// * `class` - a damaged one, by its place
+    ///
+    /// # Errors
+    /// Too few simulations.
+    pub(crate) fn sizes(&self, class: usize) -> Result<&[(Option<usize>, SizeModel)], DiagnoseError> {
+        let known = self.size_models[class].get_or_init(|| self.fit_sizes(class));
+        known.as_deref().map_err(Clone::clone)
+    }
+
+    fn fit_sizes(&self, class: usize) -> Result<Vec<(Option<usize>, SizeModel)>, DiagnoseError> {
+        let rows = self.rows_of(class);
+        let faults: Vec<&DrawnFault> =
+            rows.iter().filter_map(|&row| self.records[row].fault.as_ref()).collect();
+        let mut places = vec![None];
+        let mut numbers = vec![faults.iter().map(|fault| fault.severity).collect::<Vec<f64>>()];
+        for place in 0..faults.first().map_or(0, |fault| fault.sizes.len()) {
+            let values: Vec<f64> = faults.iter().map(|fault| fault.sizes[place]).collect();
+            // A list is no number; what is the same always needs no regression.
+            if values.iter().all(|value| value.is_finite()) && values.iter().any(|value| *value != values[0])
+            {
+                places.push(Some(place));
+                numbers.push(values);
+            }
+        }
+        let folds: Vec<usize> = rows.iter().map(|&row| self.folds[row]).collect();
+        let models = SizeModel::fit(&self.features.select_columns(&rows), &numbers, &folds)?;
+        Ok(places.into_iter().zip(models).collect())
+    }
+}
+
+fn class_of(record: &ReferenceRecord) -> Class {
+    record.fault.as_ref().map(|fault| (fault.kind, fault.wheel))
+}
+
+/// Weights by which half of all records are healthy, and each kind of damage on each wheel is as likely as the next.
+fn weights(class_of: &[usize], classes: &[Class]) -> Vec<f64> {
+    let counts: Vec<f64> =
+        (0..classes.len()).map(|class| class_of.iter().filter(|of| **of == class).count() as f64).collect();
+    let damaged = classes.iter().filter(|class| class.is_some()).count().max(1) as f64;
+    let total = class_of.len() as f64;
+    let weight = |class: usize| match classes[class] {
+        None => PRIOR_HEALTHY * total / counts[class],
+        Some(_) => (1.0 - PRIOR_HEALTHY) / damaged * total / counts[class],
+    };
+    class_of.iter().map(|&class| weight(class)).collect()
+}
+
+/// (g) The noise in the lines by mesh order, the mean of the recordings; empty where it is not known.
+fn noise_of(recordings: &[Observation]) -> [Vec<f64>; 2] {
+    [0, 1].map(|wheel| {
+        let known: Vec<&Vec<f64>> =
+            recordings.iter().map(|asked| &asked.noise[wheel]).filter(|noise| !noise.is_empty()).collect();
+        let Some(count) = known.iter().map(|noise| noise.len()).min() else { return Vec::new() };
+        let square =
+            |band: usize| known.iter().map(|noise| noise[band].powi(2)).sum::<f64>() / known.len() as f64;
+        (0..count).map(|band| square(band).sqrt()).collect()
+    })
+}
+
+/// The lines of a record as they would be in a recording with such noise.
+fn with_noise(
+    record: &ReferenceRecord,
+    layout: &Layout,
+    noise: &[Vec<f64>; 2],
+    seed: u64,
+) -> [WheelLines; 2] {
+    let mut draws = Draws::new(seed, Purpose::DiagnosisNoise, record.number);
+    let [least, largest] = UNKNOWN_NOISE;
+    let part = least * (largest / least).powf(draws.uniform(0.5, 0.5));
+    [0, 1].map(|wheel| {
+        let mut lines = record.wheels[wheel].clone();
+        lines.lines.truncate(layout.last[wheel] + 1);
+        let count = lines.lines.len().max(1) as f64;
+        let energy: f64 = lines.difference().iter().map(Complex64::norm_sqr).sum();
+        let unknown = part * (energy / count).sqrt();
+        let teeth = lines.teeth.max(1) as usize;
+        for (order, line) in lines.lines.iter_mut().enumerate() {
+            let known = &noise[wheel];
+            let deviation = match known.get((order + teeth / 2) / teeth).or(known.last()) {
+                Some(deviation) => *deviation,
+                None => unknown,
+            };
+            let [re, im] = draws.normals();
+            *line += Complex64::new(re, im) * (deviation * std::f64::consts::FRAC_1_SQRT_2);
+        }
+        lines
+    })
+}

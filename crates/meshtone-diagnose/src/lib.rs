@@ -1,0 +1,32 @@
+//! What is wrong with a gear, told from its vibration by simulations.
+//!
+//! A [`Prior`] says what may be: kinds of damage and their sizes, and everything that differs from rig to rig. A
+//! [`ReferenceSet`] holds simulations of it, as averages over the revolutions of both wheels. An [`Observation`] is what a recording
+//! shows; [`diagnose`] says what it may be, by what it learns from the reference set.
+#![deny(missing_docs)]
+
+mod answer;
+mod diagnose;
+mod error;
+mod features;
+mod healthy;
+mod json;
+mod learn;
+mod matrix;
+mod observation;
+mod outside;
+mod prior;
+mod quantile;
+mod reference;
+mod severity;
+mod softmax;
+mod store;
+
+pub use answer::{Answer, Explanation, HEALTHY, Interval, KindAnswer, PlaceAnswer, SizeAnswer};
+pub use diagnose::diagnose;
+pub use error::DiagnoseError;
+pub use learn::{Learned, Question};
+pub use observation::{Observation, SignalKind, WheelLines};
+pub use prior::{Drawn, DrawnFault, Prior, Spread};
+pub use reference::{ReferenceControl, ReferenceRecord, ReferenceSet, build_reference};
+pub use store::{ReferenceStore, StoreError};

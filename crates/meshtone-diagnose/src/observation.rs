@@ -1,0 +1,400 @@
+//! What a recording, or a simulation, shows of the two wheels.
+
+use meshtone::signal::{
+    AngularSignal, SeparationSettings, SignalError, SynchronousAverage, check_channel, kurtosis, rms,
+    synchronous_average,
+};
+use meshtone_fourier::{Complex64, from_real_spectrum, real_spectrum};
+
+/// Mesh orders of which lines are looked at.
+pub(crate) const MESH_ORDERS: usize = 16;
+/// (-) Part of a recording's Nyquist order up to which its lines are whole.
+const PASSED: f64 = 0.8;
+
+/// What a signal is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SignalKind {
+    /// A recording: any number of revolutions, from which both wheels' averages are taken.
+    Recording,
+    /// One revolution of the gear: its synchronous average.
+    Average,
+    /// One revolution of the gear: the difference signal, mesh harmonics and their sidebands taken away.
+    Difference,
+}
+
+impl SignalKind {
+    /// All with their names.
+    pub const NAMES: [(&'static str, Self); 3] =
+        [("recording", Self::Recording), ("average", Self::Average), ("difference", Self::Difference)];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize].0
+    }
+
+    /// Whether the mesh harmonics are in it.
+    pub(crate) fn has_regular_part(self) -> bool {
+        self != Self::Difference
+    }
+}
+
+/// The lines of a wheel's average over the orders of its shaft.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WheelLines {
+    /// Teeth of the wheel.
+    pub teeth: u32,
+    /// (g) Complex amplitude at each order from 0 on: half the peak of a tone, as a line of the spectrum over its length.
+    pub lines: Vec<Complex64>,
+}
+
+impl WheelLines {
+    /// The lines of an average, as far as it is whole and they are looked at.
+    ///
+    /// # Arguments
+    /// * `average` - over the revolutions of the wheel
+    /// * `teeth` - of the wheel
+    pub fn of_average(average: &SynchronousAverage, teeth: u32) -> Self {
+        let passed = (PASSED * average.nyquist_order) as usize;
+        Self::of_values(&average.values, teeth, passed)
+    }
+
+    /// The lines of one revolution.
+    ///
+    /// # Arguments
+    /// * `values` - (g) at equal angles
+    /// * `teeth` - of the wheel
+    /// * `last` - the last order that is whole
+    pub fn of_values(values: &[f64], teeth: u32, last: usize) -> Self {
+        let count = values.len().max(1) as f64;
+        let mut lines = real_spectrum(values);
+        lines.truncate(1 + last.min(Self::most(teeth)));
+        lines.iter_mut().for_each(|line| *line /= count);
+        Self { teeth, lines }
+    }
+
+    /// The last order that is looked at.
+    pub(crate) fn most(teeth: u32) -> usize {
+        MESH_ORDERS * teeth as usize + teeth as usize / 2
+    }
+
+    /// The last order there is.
+    pub(crate) fn last(&self) -> usize {
+        self.lines.len().saturating_sub(1)
+    }
+
+    /// Whether an order belongs to the regular part: the shaft's low orders, mesh harmonics and their sidebands.
+    pub(crate) fn is_regular(order: usize, teeth: u32) -> bool {
+        let settings = SeparationSettings::new(teeth as usize);
+        let (mesh, beside) = (order / teeth.max(1) as usize, order % teeth.max(1) as usize);
+        let near =
+            (mesh > 0 && beside <= settings.sidebands) || teeth as usize - beside <= settings.sidebands;
+        order == 0 || settings.shaft_orders.contains(&order) || near
+    }
+
+    /// The lines without the regular part.
+    pub(crate) fn difference(&self) -> Vec<Complex64> {
+        let kept = |(order, &line): (usize, &Complex64)| {
+            if Self::is_regular(order, self.teeth) { Complex64::default() } else { line }
+        };
+        self.lines.iter().enumerate().map(kept).collect()
+    }
+}
+
+/// (g) Values of one revolution.
+///
+/// # Arguments
+/// * `lines` - complex amplitudes by order
+/// * `points` - how many values
+pub(crate) fn revolution(lines: &[Complex64], points: usize) -> Vec<f64> {
+    let count = points as f64;
+    let mut spectrum: Vec<Complex64> = lines.iter().take(points / 2 + 1).map(|line| line * count).collect();
+    spectrum.resize(points / 2 + 1, Complex64::default());
+    from_real_spectrum(spectrum, points)
+}
+
+/// What a recording shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Observation {
+    /// What the signal was.
+    pub signal: SignalKind,
+    /// (Hz) Speed of the pinion's shaft, where it is known.
+    pub pinion_speed_hz: Option<f64>,
+    /// The gear's average, or its difference signal.
+    pub gear: WheelLines,
+    /// The pinion's average, of a recording.
+    pub pinion: Option<WheelLines>,
+    /// (g) Standard deviation of what does not repeat, as it is left in the averages' lines, by mesh order from 0 on, of the gear
+    /// and of the pinion; empty where it is not known.
+    pub noise: [Vec<f64>; 2],
+    /// Why the recording is not what it is told to be, where that is seen without a simulation.
+    pub misfit: Option<String>,
+    /// What else is doubtful about it.
+    pub doubts: Vec<String>,
+}
+
+impl Observation {
+    /// What a recording shows, over the angles of both shafts.
+    ///
+    /// # Arguments
+    /// * `pinion`, `gear` - the same channel over the angle of either shaft ([`meshtone::signal::angular_resample`]), in g
+    /// * `teeth` - of the pinion and of the gear
+    /// * `pinion_speed_hz` - (Hz) mean speed of the pinion's shaft
+    ///
+    /// # Errors
+    /// Fewer than two whole revolutions of the gear.
+    pub fn of_recording(
+        pinion: &AngularSignal,
+        gear: &AngularSignal,
+        teeth: [u32; 2],
+        pinion_speed_hz: f64,
+    ) -> Result<Self, SignalError> {
+        let [of_pinion, of_gear] = [synchronous_average(pinion)?, synchronous_average(gear)?];
+        let ratio = f64::from(teeth[1]) / f64::from(teeth[0]);
+        let misfit = beside_the_shafts(gear, teeth[1], ratio);
+        Ok(Self {
+            signal: SignalKind::Recording,
+            pinion_speed_hz: Some(pinion_speed_hz),
+            gear: WheelLines::of_average(&of_gear, teeth[1]),
+            pinion: Some(WheelLines::of_average(&of_pinion, teeth[0])),
+            noise: [noise(pinion, teeth[0], 1.0 / ratio), noise(gear, teeth[1], ratio)],
+            misfit,
+            doubts: too_short(gear.revolutions(), teeth).into_iter().collect(),
+        })
+    }
+
+    /// What one revolution of the gear shows.
+    ///
+    /// # Arguments
+    /// * `values_g` - (g) at equal angles, a whole revolution
+    /// * `gear_teeth` - teeth of the gear
+    /// * `signal` - whether they are an average or a difference signal
+    /// * `last_order` - the last order of the gear's shaft that the recording holds, where it was sampled more slowly than these
+    ///   values tell
+    ///
+    /// # Errors
+    /// Values that are not finite, or all the same.
+    pub fn of_revolution(
+        values_g: &[f64],
+        gear_teeth: u32,
+        signal: SignalKind,
+        last_order: Option<f64>,
+    ) -> Result<Self, SignalError> {
+        check_channel(values_g)?;
+        let nyquist_order = (values_g.len() / 2) as f64;
+        let last = last_order.map_or(nyquist_order, |order| order.min(nyquist_order));
+        Ok(Self {
+            signal,
+            pinion_speed_hz: None,
+            gear: WheelLines::of_values(values_g, gear_teeth, (PASSED * last) as usize),
+            pinion: None,
+            noise: [Vec::new(), Vec::new()],
+            misfit: None,
+            doubts: Vec::new(),
+        })
+    }
+}
+
+/// What is doubtful about averages over so few revolutions that each wheel's is not free of its mate's.
+fn too_short(gear_revolutions: usize, [pinion, gear]: [u32; 2]) -> Option<String> {
+    let (mut a, mut b) = (pinion, gear);
+    while b != 0 {
+        (a, b) = (b, a % b);
+    }
+    // Revolutions of the gear after which the same teeth meet again.
+    let sequence = (pinion / a.max(1)) as usize;
+    let needed = SEQUENCES * sequence;
+    // Over whole sequences each wheel's orders are lines of their own.
+    (gear_revolutions < needed && !gear_revolutions.is_multiple_of(sequence)).then(|| {
+        format!(
+            "the gear turns {gear_revolutions} times in the recording, the same teeth meet again after {sequence}: below {needed} \
+             revolutions the average of one wheel is not free of its mate's"
+        )
+    })
+}
+
+/// Times that the same teeth should meet in a recording.
+const SEQUENCES: usize = 3;
+/// Revolutions below which noise is not told from what repeats.
+const FEWEST_REVOLUTIONS: usize = 4;
+/// (-) Median over mean of the squared magnitude of normal noise.
+const MEDIAN_OF_SQUARES: f64 = std::f64::consts::LN_2;
+/// (lines) How near a line is to an order, to belong to it: the main lobe of Hann's window, and a little.
+const NEAR_LINES: f64 = 2.5;
+/// (-) Mean square of Hann's window.
+const WINDOW_SQUARE: f64 = 0.375;
+
+/// The spectrum of a signal over whole revolutions, behind Hann's window: the mate's orders lie between lines and must not leak.
+/// And for each line whether it lies beside the orders of both shafts.
+fn lines_beside(angular: &AngularSignal, ratio: f64) -> (Vec<Complex64>, Vec<bool>) {
+    let revolutions = angular.revolutions();
+    let whole = revolutions * angular.points_per_revolution;
+    let window = |at: usize| 0.5 - 0.5 * (std::f64::consts::TAU * at as f64 / whole as f64).cos();
+    let windowed = angular.values.iter().take(whole).enumerate().map(|(at, value)| window(at) * value);
+    let spectrum = real_spectrum(&windowed.collect::<Vec<_>>());
+    let is_beside = |line: usize| {
+        let order = line as f64 / revolutions.max(1) as f64;
+        let from_own = (order - order.round()).abs() * revolutions as f64;
+        // Orders of the mate's shaft are `ratio` of these apart: a gear turns once while the pinion turns `ratio` times.
+        let of_mate = order / ratio;
+        let from_mate = (of_mate - of_mate.round()).abs() * ratio * revolutions as f64;
+        from_own > NEAR_LINES && from_mate > NEAR_LINES
+    };
+    let beside = (0..spectrum.len()).map(is_beside).collect();
+    (spectrum, beside)
+}
+
+/// (g) Standard deviation of the noise in the lines of an average, by mesh order: from the median of the lines beside the orders of
+/// both shafts, which tones do not move. Empty where there are too few revolutions.
+fn noise(angular: &AngularSignal, teeth: u32, ratio: f64) -> Vec<f64> {
+    let revolutions = angular.revolutions();
+    if revolutions < FEWEST_REVOLUTIONS {
+        return Vec::new();
+    }
+    let (spectrum, beside) = lines_beside(angular, ratio);
+    let per_mesh_order = teeth as usize * revolutions;
+    let count = (revolutions * angular.points_per_revolution) as f64;
+    let last = (PASSED * angular.nyquist_order) as usize * revolutions;
+    let band = |mesh: usize| {
+        let from = (mesh * per_mesh_order).saturating_sub(per_mesh_order / 2);
+        let to = (mesh * per_mesh_order + per_mesh_order / 2).min(last).min(spectrum.len());
+        let mut squares: Vec<f64> =
+            (from..to).filter(|&line| beside[line]).map(|line| spectrum[line].norm_sqr()).collect();
+        if squares.is_empty() {
+            return None;
+        }
+        squares.sort_by(f64::total_cmp);
+        Some((squares[squares.len() / 2] / MEDIAN_OF_SQUARES / WINDOW_SQUARE).sqrt() / count)
+    };
+    (0..=MESH_ORDERS).map_while(band).collect()
+}
+
+/// (-) Kurtosis of what belongs to neither shaft, from which on it is impulsive.
+const IMPULSIVE: f64 = 4.5;
+/// (-) Its part of the energy from which on it counts: teeth that strike and part make up to a tenth that repeats with neither
+/// shaft, since it depends on which two teeth meet.
+const COUNTS: f64 = 0.1;
+/// (-) A line is a tone where its square is so many times the median of its neighbours'. Of noise, one in 10⁹ is.
+const TONE: f64 = 30.0;
+/// (-) Part of the energy in tones of neither shaft from which on they count, likewise.
+const TONES_COUNT: f64 = 0.2;
+
+/// What speaks against the recording where the orders of the two shafts do not explain it: impulses, or tones, that repeat with
+/// neither.
+fn beside_the_shafts(gear: &AngularSignal, teeth: u32, ratio: f64) -> Option<String> {
+    if gear.revolutions() < FEWEST_REVOLUTIONS {
+        return None;
+    }
+    let whole = gear.revolutions() * gear.points_per_revolution;
+    let (mut spectrum, beside) = lines_beside(gear, ratio);
+    let passed = (PASSED * gear.nyquist_order) as usize * gear.revolutions();
+    let energy: f64 = spectrum.iter().take(passed).skip(1).map(Complex64::norm_sqr).sum();
+    let lines: Vec<(usize, f64)> = (0..passed.min(spectrum.len()))
+        .filter(|&line| beside[line])
+        .map(|line| (line, spectrum[line].norm_sqr()))
+        .collect();
+    let tones: f64 = lines
+        .chunks(teeth as usize * gear.revolutions())
+        .flat_map(|band| {
+            let mut squares: Vec<f64> = band.iter().map(|(_, square)| *square).collect();
+            squares.sort_by(f64::total_cmp);
+            let median = squares[squares.len() / 2];
+            band.iter().map(|(_, square)| *square).filter(move |square| *square > TONE * median)
+        })
+        .sum();
+    for (line, value) in spectrum.iter_mut().enumerate() {
+        if !beside[line] || line >= passed {
+            *value = Complex64::default();
+        }
+    }
+    // The middle half, where the window is level enough to leave the shape.
+    let rest = from_real_spectrum(spectrum, whole);
+    let rest = &rest[whole / 4..3 * whole / 4];
+    let part = (rms(rest) / rms(&gear.values).max(f64::MIN_POSITIVE)).powi(2);
+    let impulses = kurtosis(rest)?;
+    if impulses > IMPULSIVE && part > COUNTS {
+        return Some(format!(
+            "impulses that repeat with neither shaft make {:.0} % of the recording's energy (kurtosis {impulses:.1}): a bearing, or \
+             something else than these teeth",
+            100.0 * part
+        ));
+    }
+    (tones > TONES_COUNT * energy).then(|| {
+        format!(
+            "tones at no order of either shaft make {:.0} % of the recording's energy: another machine, or teeth or speed that are not \
+             as told",
+            100.0 * tones / energy
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use meshtone::random::{Draws, Purpose};
+    use std::f64::consts::TAU;
+
+    const TEETH: [u32; 2] = [17, 38];
+
+    /// Both shafts' views of a signal over the gear's angle, in revolutions of the gear.
+    fn views(signal: &mut dyn FnMut(f64) -> f64, revolutions: usize) -> [AngularSignal; 2] {
+        [(1024, 38.0 / 17.0), (2048, 1.0)].map(|(points, turns)| {
+            let count = (revolutions as f64 * turns) as usize * points;
+            AngularSignal {
+                points_per_revolution: points,
+                start_rev: 0.0,
+                nyquist_order: points as f64 / 2.0,
+                values: (0..count).map(|at| signal(at as f64 / points as f64 / turns)).collect(),
+            }
+        })
+    }
+
+    fn tones(gear_rev: f64) -> f64 {
+        let of_pinion = 38.0 / 17.0 * gear_rev;
+        (TAU * 38.0 * gear_rev).cos()
+            + 0.1 * (TAU * 43.0 * gear_rev).cos()
+            + 0.2 * (TAU * 5.0 * of_pinion).sin()
+    }
+
+    // The variance of a mean over revolutions, and of a line of it: the sample's over their number and that of the points.
+    #[test]
+    fn noise_is_told_from_both_shafts_tones() {
+        let mut draws = Draws::new(1, Purpose::DiagnosisNoise, 0);
+        let [pinion, gear] = views(&mut |rev| tones(rev) + 0.5 * draws.normal(), 34);
+        let observed = Observation::of_recording(&pinion, &gear, TEETH, 40.0).unwrap();
+        for (wheel, view) in [&pinion, &gear].into_iter().enumerate() {
+            let expected = 0.5 / ((view.revolutions() * view.points_per_revolution) as f64).sqrt();
+            for (mesh, said) in observed.noise[wheel].iter().enumerate().skip(1) {
+                assert!((said / expected - 1.0).abs() < 0.2, "{wheel} {mesh}: {said} of {expected}");
+            }
+        }
+        assert_eq!(observed.misfit, None);
+    }
+
+    #[test]
+    fn impulses_of_neither_shaft_are_told() {
+        // Every 0.2713 revolutions: no order of either shaft.
+        let mut struck = |rev: f64| {
+            let since = rev % 0.2713;
+            tones(rev) + 10.0 * (-since * 400.0).exp() * (TAU * 300.0 * since).sin()
+        };
+        let [pinion, gear] = views(&mut struck, 34);
+        let observed = Observation::of_recording(&pinion, &gear, TEETH, 40.0).unwrap();
+        assert!(observed.misfit.is_some_and(|said| said.contains("neither shaft")));
+    }
+
+    #[test]
+    fn lines_are_those_of_a_revolution() {
+        let value = |rev: f64| (TAU * 38.0 * rev).cos() + 0.1 * (TAU * 43.0 * rev).cos();
+        let values: Vec<f64> = (0..2048).map(|at| value(f64::from(at) / 2048.0)).collect();
+        let lines = WheelLines::of_values(&values, 38, 800);
+        assert_eq!(lines.last(), WheelLines::most(38));
+        assert!((lines.lines[38].norm() - 0.5).abs() < 1e-9);
+        assert!(lines.difference()[38].norm() == 0.0 && (lines.difference()[43].norm() - 0.05).abs() < 1e-9);
+        let error = revolution(&lines.lines, 2048)
+            .iter()
+            .zip(&values)
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max);
+        assert!(error < 1e-9, "{error}");
+    }
+}

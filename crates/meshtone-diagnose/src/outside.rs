@@ -1,0 +1,121 @@
+//! Whether a signal is like any that was simulated.
+//!
+//! A conformal p-value (Vovk, Gammerman, Shafer, "Algorithmic learning in a random world", 2005): the part of the simulations that
+//! are as far from those of other wheels as the recording is from all, or farther. The distance is that to the nearest of them, of
+//! whitened principal components and of what these leave.
+
+use nalgebra::{DMatrix, SymmetricEigen};
+use rayon::prelude::*;
+
+use crate::matrix::Standard;
+
+/// Principal components that are whitened.
+const COMPONENTS: usize = 40;
+/// Neighbours whose mean distance counts.
+const NEIGHBOURS: usize = 8;
+
+/// Simulations as points.
+pub(crate) struct Outside {
+    standard: Standard,
+    /// Principal components over their deviation, a column each.
+    components: DMatrix<f64>,
+    /// Standard deviation of what the components leave.
+    left: f64,
+    points: Vec<Vec<f64>>,
+    units: Vec<u64>,
+    weights: Vec<f64>,
+    /// How far each simulation is from those of other units.
+    scores: Vec<f64>,
+}
+
+impl Outside {
+    /// # Arguments
+    /// * `rows` - features of the simulations
+    /// * `units` - the pair of wheels of each
+    /// * `weights` - how often each is to be expected
+    pub fn new(rows: &[Vec<f64>], units: &[u64], weights: &[f64]) -> Self {
+        let standard = Standard::of(rows);
+        let width = rows.first().map_or(0, Vec::len);
+        let matrix: Vec<Vec<f64>> = rows.iter().map(|row| standard.apply(row)).collect();
+        let data = DMatrix::from_fn(width, rows.len(), |feature, row| matrix[row][feature]);
+        let covariance = &data * data.transpose() / rows.len().max(1) as f64;
+        let eigen = SymmetricEigen::new(covariance);
+        let mut order: Vec<usize> = (0..width).collect();
+        order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+        order.truncate(COMPONENTS);
+        let deviation = |at: usize| eigen.eigenvalues[at].max(1e-9).sqrt();
+        let components = DMatrix::from_fn(width, order.len(), |feature, place| {
+            eigen.eigenvectors[(feature, order[place])] / deviation(order[place])
+        });
+        let left = order.iter().map(|&at| eigen.eigenvalues[at]).sum::<f64>();
+        let left = (eigen.eigenvalues.sum() - left).max(1e-9).sqrt();
+        let mut of = Self {
+            standard,
+            components,
+            left,
+            points: Vec::new(),
+            units: units.to_vec(),
+            weights: weights.to_vec(),
+            scores: Vec::new(),
+        };
+        of.points = rows.par_iter().map(|row| of.point(row)).collect();
+        of.scores = (0..rows.len())
+            .into_par_iter()
+            .map(|row| of.distance(&of.points[row], Some(units[row])))
+            .collect();
+        of
+    }
+
+    /// Where a signal is among the simulations.
+    pub fn point(&self, row: &[f64]) -> Vec<f64> {
+        let standard = self.standard.unbounded(row);
+        let mut point: Vec<f64> = self
+            .components
+            .column_iter()
+            .map(|component| component.iter().zip(&standard).map(|(a, b)| a * b).sum())
+            .collect();
+        // The components' part of the squares, in the units of the features.
+        let inside: f64 = self
+            .components
+            .column_iter()
+            .zip(&point)
+            .map(|(component, place)| {
+                (place / component.norm_squared().max(1e-30)).powi(2) * component.norm_squared()
+            })
+            .sum();
+        let all: f64 = standard.iter().map(|value| value * value).sum();
+        point.push(2.0 * (all - inside).max(0.0).sqrt() / self.left);
+        point
+    }
+
+    fn distance(&self, point: &[f64], but: Option<u64>) -> f64 {
+        let nearest = self.nearest(point, |row| Some(self.units[row]) != but, NEIGHBOURS);
+        nearest.iter().map(|(distance, _)| distance).sum::<f64>() / nearest.len().max(1) as f64
+    }
+
+    /// The nearest simulations among some, with their distances, nearest first.
+    pub fn nearest(&self, point: &[f64], among: impl Fn(usize) -> bool, count: usize) -> Vec<(f64, usize)> {
+        let mut nearest: Vec<(f64, usize)> = Vec::with_capacity(count + 1);
+        for (row, other) in self.points.iter().enumerate().filter(|(row, _)| among(*row)) {
+            let square: f64 = other.iter().zip(point).map(|(a, b)| (a - b) * (a - b)).sum();
+            if nearest.len() < count || square < nearest[nearest.len() - 1].0 {
+                let place = nearest.partition_point(|(known, _)| *known <= square);
+                nearest.insert(place, (square, row));
+                nearest.truncate(count);
+            }
+        }
+        nearest.into_iter().map(|(square, row)| (square.sqrt(), row)).collect()
+    }
+
+    /// (-) The part of the simulations that are as far from the others, or farther.
+    ///
+    /// # Arguments
+    /// * `row` - features of the recording
+    pub fn p_value(&self, row: &[f64]) -> f64 {
+        let distance = self.distance(&self.point(row), None);
+        let total: f64 = self.weights.iter().sum();
+        let farther = self.scores.iter().zip(&self.weights).filter(|(score, _)| **score >= distance);
+        let mean = total / self.weights.len().max(1) as f64;
+        (farther.map(|(_, weight)| weight).sum::<f64>() + mean) / (total + mean)
+    }
+}

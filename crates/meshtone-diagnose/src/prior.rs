@@ -1,0 +1,222 @@
+//! What may be: damage, and everything that differs from rig to rig.
+
+use meshtone::damage::{Fault, FaultyTeeth, damage_kinds};
+use meshtone::random::{Draws, Purpose};
+use meshtone::scenario::{DamageKind, Scenario, ScenarioError};
+use meshtone::sensor::PathRipple;
+use meshtone::wheel::WheelName;
+
+/// Records of one pair of wheels: how it was when it was healthy, how it is healthy another day, and damaged.
+pub(crate) const RECORDS_PER_UNIT: u64 = 8;
+/// (-) The least severity that is drawn.
+const LEAST_SEVERITY: f64 = 0.02;
+/// (-) How far the sizes of a damage lie from those of its severity: the largest logarithm of the ratio.
+const SIZE_SPREAD: f64 = 0.3;
+/// Draws of a damage before the record goes without other sizes than those of its severity.
+const MOST_ATTEMPTS: usize = 4;
+
+/// How uncertain a number of the scenario is: it is multiplied by e to the power of a normal number.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spread {
+    /// Dotted key, as in the scenario file.
+    pub key: String,
+    /// (-) Standard deviation of its logarithm.
+    pub deviation: f64,
+}
+
+/// What may be.
+///
+/// Drawn for a pair of wheels ([`RECORDS_PER_UNIT`] records): its wheels' deviations, its structure, its path to the sensor. Drawn
+/// for a record: speed, load, damage.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prior {
+    /// The rig, healthy; its wheels are one draw of those that may be.
+    pub base: Scenario,
+    /// Of what is not known well: stiffnesses, dampings, tip chamfer, backlash.
+    pub spreads: Vec<Spread>,
+    /// (-) Most by which the grade of the wheels is another; each of them as likely as the next.
+    pub grade_steps: u32,
+    /// (-) Speed: the largest logarithm of its ratio to the rig's, either way; uniform.
+    pub speed_spread: f64,
+    /// (-) Load, likewise.
+    pub load_spread: f64,
+    /// (dB) Standard deviation of the sensor path's gain.
+    pub gain_db: f64,
+    /// (dB) Standard deviation of its ripple at half octaves.
+    pub ripple_db: f64,
+    /// Seed of all draws.
+    pub seed: u64,
+}
+
+/// A damage that was drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DrawnFault {
+    /// Its kind, by its place in [`Prior::kinds`].
+    pub kind: usize,
+    /// The damaged wheel.
+    pub wheel: WheelName,
+    /// Number of the damaged tooth from 1, of several of the first.
+    pub tooth: u32,
+    /// Whether that is the only one.
+    pub is_on_one_tooth: bool,
+    /// (-) How severe it is, from 0 to 1.
+    pub severity: f64,
+    /// Its sizes, in the order and units of the kind's [`DamageKind::sizes`].
+    pub sizes: Vec<f64>,
+}
+
+/// A record that was drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drawn {
+    /// What is simulated.
+    pub scenario: Scenario,
+    /// What is damaged; none of a healthy one.
+    pub fault: Option<DrawnFault>,
+    /// Seed of the path from the simulated sensor to the rig's.
+    pub path_seed: u64,
+    /// (dB) Gain of that path.
+    pub gain_db: f64,
+}
+
+impl Prior {
+    /// What may be about a rig by default.
+    ///
+    /// # Arguments
+    /// * `rig` - the rig's scenario; its faults are left out
+    pub fn new(rig: &Scenario) -> Self {
+        let spread = |key: &str, deviation: f64| Spread { key: key.to_owned(), deviation };
+        Self {
+            base: rig.clone().with_faults(Vec::new()),
+            spreads: vec![
+                spread("rig.bearing_stiffness_n_per_m", 0.15),
+                spread("rig.support.stiffness_n_per_m", 0.15),
+                spread("rig.support.coupling_n_per_m", 0.15),
+                spread("rig.support.damping_ratio", 0.3),
+                spread("rig.pinion_shaft.damping_ratio", 0.3),
+                spread("rig.gear_shaft.damping_ratio", 0.3),
+                spread("rig.mesh_damping_ratio", 0.3),
+                spread("gears.tip_chamfer_mm", 0.3),
+                spread("gears.backlash_mm", 0.2),
+            ],
+            grade_steps: 1,
+            speed_spread: 0.1,
+            load_spread: 0.4,
+            gain_db: 6.0,
+            ripple_db: 2.0,
+            seed: 1,
+        }
+    }
+
+    /// The kinds of damage that the rig's model knows.
+    pub fn kinds(&self) -> Vec<DamageKind> {
+        let of_kind = |kind: &DamageKind| {
+            let faults = vec![Fault::at_usual_place(kind.example.clone()).with_severity(1.0)];
+            self.base.clone().with_faults(faults).validate().is_ok()
+        };
+        damage_kinds().into_iter().filter(of_kind).collect()
+    }
+
+    /// The path's gain over frequency.
+    ///
+    /// # Arguments
+    /// * `drawn` - one of its records
+    pub fn path(&self, drawn: &Drawn) -> impl Fn(f64) -> f64 {
+        let (ripple, gain_db) = (PathRipple::new(drawn.path_seed, 0, self.ripple_db), drawn.gain_db);
+        move |hz| 10f64.powf((gain_db + ripple.db_at(hz)) / 20.0)
+    }
+
+    /// A record, the same whatever else is drawn.
+    ///
+    /// # Arguments
+    /// * `number` - of the record: the first two of every [`RECORDS_PER_UNIT`] are healthy
+    ///
+    /// # Errors
+    /// A scenario that is not valid.
+    pub fn draw(&self, number: u64) -> Result<Drawn, ScenarioError> {
+        self.draw_among(&self.kinds(), number)
+    }
+
+    /// As [`Self::draw`], where the kinds are known already: to find them is to check a scenario of each.
+    pub(crate) fn draw_among(&self, kinds: &[DamageKind], number: u64) -> Result<Drawn, ScenarioError> {
+        let (unit, place) = (number / RECORDS_PER_UNIT, number % RECORDS_PER_UNIT);
+        let mut common = Draws::new(self.seed, Purpose::DiagnosisUnit, unit);
+        let mut own = Draws::new(self.seed, Purpose::DiagnosisRecord, number);
+        let mut numbers: Vec<(&str, f64)> = Vec::new();
+        for spread in &self.spreads {
+            let factor = (spread.deviation * common.normal()).exp();
+            if let Some(value) = self.base.number(&spread.key) {
+                numbers.push((&spread.key, value * factor));
+            }
+        }
+        let steps = i64::from(self.grade_steps);
+        let step = (common.bits() % (2 * steps as u64 + 1)) as i64 - steps;
+        let grade = (i64::from(self.base.quality.din_grade) + step).clamp(1, 12) as f64;
+        if self.base.quality.din_grade > 0 {
+            numbers.push(("quality.din_grade", grade));
+        }
+        let (path_seed, gain_db) = (common.bits(), self.gain_db * common.normal());
+        let seed = common.bits() >> 1;
+        // A pair runs at about its own load and speed.
+        let mut about =
+            |spread: f64| (spread * (0.7 * common.uniform(0.0, 1.0) + 0.3 * own.uniform(0.0, 1.0))).exp();
+        let speed_hz = self.base.operation.pinion_speed_hz * about(self.speed_spread);
+        let load_nm = self.base.operation.brake_torque_nm * about(self.load_spread);
+        numbers.push(("operation.pinion_speed_hz", speed_hz));
+        numbers.push(("operation.brake_torque_nm", load_nm));
+        let mut scenario = self.base.with_known_numbers(&numbers)?.with_seed(seed);
+        // Other wheels than those of the rig's own.
+        scenario.quality.seed = None;
+        let fault = match place.checked_sub(2) {
+            None => None,
+            Some(damaged) => damage(kinds, unit * (RECORDS_PER_UNIT - 2) + damaged, &mut scenario, &mut own)?,
+        };
+        Ok(Drawn { scenario, fault, path_seed, gain_db })
+    }
+}
+
+/// Damages a pair: each kind on each wheel in turn.
+fn damage(
+    kinds: &[DamageKind],
+    number: u64,
+    scenario: &mut Scenario,
+    own: &mut Draws,
+) -> Result<Option<DrawnFault>, ScenarioError> {
+    let classes = 2 * kinds.len() as u64;
+    let Some(class) = number.checked_rem(classes) else { return Ok(None) };
+    let kind = (class / 2) as usize;
+    let wheel = if class.is_multiple_of(2) { WheelName::Gear } else { WheelName::Pinion };
+    let of_kind = &kinds[kind];
+    let usual = Fault::at_usual_place(of_kind.example.clone()).tooth;
+    let tooth = 1 + (own.bits() % u64::from(scenario.gears.teeth(wheel))) as u32;
+    let is_on_one_tooth = usual == FaultyTeeth::One(1);
+    let teeth = if is_on_one_tooth { FaultyTeeth::One(tooth) } else { usual };
+    for attempt in 0..MOST_ATTEMPTS {
+        let least = LEAST_SEVERITY;
+        let drawn = least + (1.0 - least) * own.uniform(0.5, 0.5);
+        let severity = if of_kind.sizes.is_empty() { 1.0 } else { drawn };
+        let fault = Fault::new(wheel, teeth.clone(), of_kind.example.clone()).with_severity(severity);
+        let sized = scenario.clone().with_faults(vec![fault]).with_own_sizes()?;
+        if sized.faults.is_empty() {
+            continue;
+        }
+        let spread = if attempt + 1 < MOST_ATTEMPTS { SIZE_SPREAD } else { 0.0 };
+        let keys: Vec<String> = of_kind.sizes.iter().map(|size| format!("fault.{size}")).collect();
+        let other: Vec<(&str, f64)> = keys
+            .iter()
+            .filter_map(|key| Some((key.as_str(), sized.number(key)? * own.uniform(0.0, spread).exp())))
+            .collect();
+        let Ok(damaged) = sized.with_known_numbers(&other) else { continue };
+        let Ok(severities) = damaged.fault_severities() else { continue };
+        let sizes = keys.iter().map(|key| damaged.number(key).unwrap_or(f64::NAN)).collect();
+        *scenario = damaged;
+        return Ok(Some(DrawnFault {
+            kind,
+            wheel,
+            tooth,
+            is_on_one_tooth,
+            severity: severities[0].min(1.0),
+            sizes,
+        }));
+    }
+    Ok(None)
+}

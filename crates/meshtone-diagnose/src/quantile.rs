@@ -1,0 +1,55 @@
+//! Weighted quantiles.
+
+use crate::answer::Interval;
+
+/// The median and the intervals of a weighted sample.
+///
+/// # Arguments
+/// * `sample` - values and their weights, none of them negative; not empty
+pub(crate) fn interval(sample: &[(f64, f64)]) -> Interval {
+    let mut sorted = sample.to_vec();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let [lowest, low, median, high, highest] =
+        [0.05, 0.25, 0.5, 0.75, 0.95].map(|part| quantile(&sorted, part));
+    Interval { median, within_50: [low, high], within_90: [lowest, highest] }
+}
+
+/// The value below which a part of the weight of a sorted sample lies, between its values along straight lines.
+pub(crate) fn quantile(sorted: &[(f64, f64)], part: f64) -> f64 {
+    let total: f64 = sorted.iter().map(|(_, weight)| weight).sum();
+    let mut below = 0.0;
+    let mut last: Option<(f64, f64)> = None;
+    for &(value, weight) in sorted.iter().filter(|(_, weight)| *weight > 0.0) {
+        let middle = (below + 0.5 * weight) / total.max(f64::MIN_POSITIVE);
+        if middle >= part {
+            return match last {
+                Some((before, at)) if middle > at => before + (value - before) * (part - at) / (middle - at),
+                _ => value,
+            };
+        }
+        below += weight;
+        last = Some((value, middle));
+    }
+    last.map_or(f64::NAN, |(value, _)| value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // Of the numbers 1 to 100 by their plotting positions (i − ½)/100 (Hazen).
+    #[test]
+    fn quantiles_of_equal_weights() {
+        let sample: Vec<(f64, f64)> = (1..=100).rev().map(|value| (f64::from(value), 1.0)).collect();
+        let interval = interval(&sample);
+        assert!((interval.median - 50.5).abs() < 1e-9);
+        assert!((interval.within_90[0] - 5.5).abs() < 1e-9 && (interval.within_90[1] - 95.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_value_without_weight_counts_nothing() {
+        let interval = interval(&[(1.0, 1.0), (2.0, 1.0), (3.0, 1.0), (1000.0, 0.0)]);
+        assert_eq!(interval.median, 2.0);
+        assert!(interval.within_90[1] <= 3.0);
+    }
+}

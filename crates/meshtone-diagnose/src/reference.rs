@@ -1,0 +1,113 @@
+//! Simulations of what may be.
+
+use std::sync::atomic::AtomicBool;
+
+use meshtone::Stages;
+use meshtone::batch::{Control, Keep, KeepChannels, Output, SignalRecorder, Signals, simulate_many};
+use meshtone::scenario::{Scenario, ScenarioError};
+use meshtone::sensor::Channel;
+use meshtone::signal::{ChainSettings, Shaft, SignalError, SimulatedShafts};
+use meshtone_fourier::Complex64;
+
+use crate::observation::WheelLines;
+use crate::prior::{Drawn, DrawnFault, Prior};
+
+/// A simulation of a reference set.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReferenceRecord {
+    /// Its number in the prior.
+    pub number: u64,
+    /// What is damaged; none of a healthy one.
+    pub fault: Option<DrawnFault>,
+    /// (Hz) Speed of the pinion's shaft.
+    pub pinion_speed_hz: f64,
+    /// The averages of the pinion and of the gear, behind the path to the sensor.
+    pub wheels: [WheelLines; 2],
+}
+
+/// Simulations of what may be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReferenceSet {
+    /// What they were drawn from.
+    pub prior: Prior,
+    /// Those that could be simulated, in the order of their numbers.
+    pub records: Vec<ReferenceRecord>,
+}
+
+/// What a caller wants to know, and to say, while a reference set is made.
+pub struct ReferenceControl<'a> {
+    /// Called with the number of finished simulations, from any thread.
+    pub progress: &'a (dyn Fn(usize) + Sync),
+    /// Set by the caller to stop.
+    pub cancelled: &'a AtomicBool,
+}
+
+/// Simulates records of a prior.
+///
+/// # Arguments
+/// * `prior` - what may be
+/// * `numbers` - of the records
+/// * `control` - progress, cancellation
+///
+/// Returns those that could be simulated, in their order; fewer where it was cancelled.
+pub fn build_reference(
+    prior: &Prior,
+    numbers: std::ops::Range<u64>,
+    control: &ReferenceControl,
+) -> Vec<ReferenceRecord> {
+    // A record that cannot be drawn is one that cannot be simulated: neither is in the set.
+    let drawn: Vec<(u64, Drawn)> = {
+        use rayon::prelude::*;
+        let kinds = prior.kinds();
+        let draw = |number| Some((number, prior.draw_among(&kinds, number).ok()?));
+        numbers.into_par_iter().filter_map(draw).collect()
+    };
+    let scenarios: Vec<Scenario> = drawn.iter().map(|(_, drawn)| drawn.scenario.clone()).collect();
+    let keep = KeepWheels { channel: KeepChannels::new([Channel::leading(&prior.base.sensors)]) };
+    let batch = Control { progress: control.progress, cancelled: control.cancelled, ..Control::default() };
+    let mut records = Vec::with_capacity(drawn.len());
+    simulate_many(scenarios, &keep, &batch, |index, kept| {
+        let (number, drawn) = &drawn[index];
+        if let Ok(Ok(mut wheels)) = kept {
+            let pinion_speed_hz = drawn.scenario.operation.pinion_speed_hz;
+            let path = prior.path(drawn);
+            let ratio = f64::from(wheels[0].teeth) / f64::from(wheels[1].teeth);
+            for (wheel, shaft_hz) in wheels.iter_mut().zip([pinion_speed_hz, pinion_speed_hz * ratio]) {
+                let pass = |(order, line): (usize, &mut Complex64)| *line *= path(order as f64 * shaft_hz);
+                wheel.lines.iter_mut().enumerate().for_each(pass);
+            }
+            let fault = drawn.fault.clone();
+            records.push(ReferenceRecord { number: *number, fault, pinion_speed_hz, wheels });
+        }
+    });
+    records
+}
+
+/// Keeps both wheels' averages of each of many simulations.
+struct KeepWheels {
+    channel: KeepChannels,
+}
+
+impl Keep for KeepWheels {
+    type Recorder = SignalRecorder;
+    type Kept = Result<[WheelLines; 2], SignalError>;
+
+    fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
+        self.channel.outputs(scenario)
+    }
+
+    fn recorder(&self, stages: &Stages) -> SignalRecorder {
+        self.channel.recorder(stages)
+    }
+
+    fn keep(&self, _: usize, stages: Stages, recorder: SignalRecorder) -> Self::Kept {
+        let Signals { start_s, channels, .. } = recorder.finish(&stages);
+        let signal: Vec<f64> = channels.into_iter().flatten().map(f64::from).collect();
+        let shafts = SimulatedShafts::new(&stages.scenario, start_s, signal.len());
+        let lines = |shaft: Shaft| {
+            let average = shafts.average(&signal, shaft, &ChainSettings::default())?;
+            Ok(WheelLines::of_average(&average, shafts.teeth(shaft)))
+        };
+        Ok([lines(Shaft::Pinion)?, lines(Shaft::Gear)?])
+    }
+}

@@ -1,0 +1,206 @@
+//! Reference sets on disk, in batches: a set that was begun is gone on with, and one that is there is read.
+
+use std::env::var_os;
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+
+use meshtone::wheel::WheelName;
+use meshtone_fourier::Complex64;
+use meshtone_io::atomic_file::{WriteFileError, write_atomically};
+use meshtone_io::npz::{NpzReader, NpzWriter};
+use sha2::{Digest, Sha256};
+
+use crate::observation::WheelLines;
+use crate::prior::{DrawnFault, Prior};
+use crate::reference::{ReferenceControl, ReferenceRecord, ReferenceSet, build_reference};
+
+/// Records of a batch, which is one file: whole pairs of wheels.
+const BATCH: u64 = 512;
+/// Numbers of a record beside its lines: its own, kind, wheel, tooth, whether on one, severity, speed.
+const COLUMNS: usize = 7;
+/// Sizes of a damage, at most.
+const SIZES: usize = 6;
+
+/// A reference set that could not be kept.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    /// A file or folder that could not be made.
+    #[error("cannot keep the reference set in {}: {source}", path.display())]
+    Folder {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// A file that could not be written.
+    #[error(transparent)]
+    File(#[from] WriteFileError),
+    /// The caller has stopped it; what is finished stays.
+    #[error("cancelled; the simulations that are finished are kept, and the next question goes on with them")]
+    Cancelled,
+}
+
+/// Where reference sets are kept: a folder for each prior, named after what it says and the program's version.
+#[derive(Debug, Clone)]
+pub struct ReferenceStore {
+    folder: PathBuf,
+}
+
+impl ReferenceStore {
+    /// # Arguments
+    /// * `folder` - in which the sets are; made where it is not there
+    pub fn new(folder: impl Into<PathBuf>) -> Self {
+        Self { folder: folder.into() }
+    }
+
+    /// Where sets are kept unless a user says otherwise: in the user's folder for what can be made again. None where the
+    /// environment names no home directory.
+    pub fn default_folder() -> Option<PathBuf> {
+        let given = |name: &str| var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+        let caches = if cfg!(windows) {
+            given("LOCALAPPDATA")
+        } else if cfg!(target_os = "macos") {
+            given("HOME").map(|home| home.join("Library/Caches"))
+        } else {
+            // A relative one is to be left out, as its specification says.
+            let stated = given("XDG_CACHE_HOME").filter(|path| path.is_absolute());
+            stated.or_else(|| given("HOME").map(|home| home.join(".cache")))
+        };
+        Some(caches?.join("meshtone").join("reference"))
+    }
+
+    /// The folder of a prior's set.
+    ///
+    /// # Arguments
+    /// * `prior` - what the set is drawn from
+    pub fn folder_of(&self, prior: &Prior) -> PathBuf {
+        let mut hash = Sha256::new();
+        hash.update(env!("CARGO_PKG_VERSION"));
+        // Every field is plain data, and numbers are written so that they are read back exactly.
+        hash.update(format!("{prior:?}"));
+        let name: String = hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect();
+        self.folder.join(name)
+    }
+
+    /// The first records of a prior's set: those that are there are read, the others simulated and kept.
+    ///
+    /// # Arguments
+    /// * `prior` - what may be
+    /// * `count` - records, rounded up to whole batches
+    /// * `control` - progress, in records that are there, and cancellation
+    ///
+    /// # Errors
+    /// A folder that cannot be written; cancelled.
+    pub fn get(
+        &self,
+        prior: &Prior,
+        count: u64,
+        control: &ReferenceControl,
+    ) -> Result<ReferenceSet, StoreError> {
+        let folder = self.folder_of(prior);
+        let failed = |source| StoreError::Folder { path: folder.clone(), source };
+        fs::create_dir_all(&folder).map_err(failed)?;
+        let mut records = Vec::new();
+        for batch in 0..count.div_ceil(BATCH) {
+            let path = folder.join(format!("batch-{batch:04}.npz"));
+            let before = (batch * BATCH) as usize;
+            // A file that cannot be read is made again: it holds nothing that a simulation does not give.
+            let of_batch = match read(&path, prior) {
+                Ok(of_batch) => of_batch,
+                Err(_) => {
+                    let progress = |finished: usize| (control.progress)(before + finished);
+                    let own = ReferenceControl { progress: &progress, cancelled: control.cancelled };
+                    let of_batch = build_reference(prior, batch * BATCH..(batch + 1) * BATCH, &own);
+                    if control.cancelled.load(Ordering::Relaxed) {
+                        return Err(StoreError::Cancelled);
+                    }
+                    write_atomically(&path, |file| write(file, &of_batch))?;
+                    of_batch
+                }
+            };
+            (control.progress)(before + BATCH as usize);
+            records.extend(of_batch);
+        }
+        Ok(ReferenceSet { prior: prior.clone(), records })
+    }
+}
+
+fn write(file: &mut File, records: &[ReferenceRecord]) -> io::Result<()> {
+    let mut archive = NpzWriter::stored(file);
+    let mut numbers = Vec::with_capacity(records.len() * (COLUMNS + SIZES));
+    for record in records {
+        let fault = record.fault.as_ref();
+        let of = |value: &dyn Fn(&DrawnFault) -> f64| fault.map_or(f64::NAN, value);
+        numbers.extend([
+            record.number as f64,
+            of(&|fault| fault.kind as f64),
+            of(&|fault| f64::from(u8::from(fault.wheel == WheelName::Gear))),
+            of(&|fault| f64::from(fault.tooth)),
+            of(&|fault| f64::from(u8::from(fault.is_on_one_tooth))),
+            of(&|fault| fault.severity),
+            record.pinion_speed_hz,
+        ]);
+        // One more than there are, so that NaN among them is not the end.
+        let count = fault.map_or(0, |fault| fault.sizes.len());
+        numbers.push(count as f64);
+        let sizes = fault.map_or(&[][..], |fault| &fault.sizes);
+        numbers.extend((0..SIZES).map(|size| sizes.get(size).copied().unwrap_or(f64::NAN)));
+    }
+    archive.add("records", &[records.len(), COLUMNS + 1 + SIZES], &numbers)?;
+    for (wheel, name) in ["pinion", "gear"].into_iter().enumerate() {
+        let lines = |record: &ReferenceRecord| record.wheels[wheel].lines.len();
+        let lengths: Vec<f64> = records.iter().map(|record| lines(record) as f64).collect();
+        archive.add(&format!("{name}_lengths"), &[records.len()], &lengths)?;
+        let parts = records
+            .iter()
+            .flat_map(|record| record.wheels[wheel].lines.iter().flat_map(|line| [line.re, line.im]));
+        let parts: Vec<f64> = parts.collect();
+        archive.add(&format!("{name}_lines"), &[parts.len() / 2, 2], &parts)?;
+    }
+    archive.finish()?;
+    Ok(())
+}
+
+fn read(path: &Path, prior: &Prior) -> io::Result<Vec<ReferenceRecord>> {
+    let wrong = || io::Error::other("it is no batch of a reference set");
+    let mut archive = NpzReader::new(File::open(path)?)?;
+    let gears = &prior.base.gears;
+    let teeth = [gears.pinion_teeth, gears.gear_teeth];
+    let width = COLUMNS + 1 + SIZES;
+    let numbers = archive.floats("records", BATCH * width as u64)?.numbers;
+    if !numbers.len().is_multiple_of(width) {
+        return Err(wrong());
+    }
+    let mut wheels: [Vec<WheelLines>; 2] = [Vec::new(), Vec::new()];
+    for (wheel, name) in ["pinion", "gear"].into_iter().enumerate() {
+        let lengths = archive.floats(&format!("{name}_lengths"), BATCH)?.numbers;
+        let most = BATCH * 2 * (WheelLines::most(teeth[wheel]) as u64 + 1);
+        let parts = archive.floats(&format!("{name}_lines"), most)?.numbers;
+        let mut rest = &parts[..];
+        for length in &lengths {
+            let (own, later) = rest.split_at_checked(2 * *length as usize).ok_or_else(wrong)?;
+            rest = later;
+            let lines = own.chunks_exact(2).map(|part| Complex64::new(part[0], part[1])).collect();
+            wheels[wheel].push(WheelLines { teeth: teeth[wheel], lines });
+        }
+        if !rest.is_empty() || wheels[wheel].len() != numbers.len() / width {
+            return Err(wrong());
+        }
+    }
+    let [pinions, gears] = wheels;
+    let record = |(row, wheels): (&[f64], [WheelLines; 2])| {
+        let fault = row[1].is_finite().then(|| DrawnFault {
+            kind: row[1] as usize,
+            wheel: if row[2] == 0.0 { WheelName::Pinion } else { WheelName::Gear },
+            tooth: row[3] as u32,
+            is_on_one_tooth: row[4] != 0.0,
+            severity: row[5],
+            sizes: row[COLUMNS + 1..].iter().take(row[COLUMNS] as usize).copied().collect(),
+        });
+        ReferenceRecord { number: row[0] as u64, fault, pinion_speed_hz: row[6], wheels }
+    };
+    let wheels = pinions.into_iter().zip(gears).map(|(pinion, gear)| [pinion, gear]);
+    Ok(numbers.chunks_exact(width).zip(wheels).map(record).collect())
+}

@@ -1,0 +1,272 @@
+//! A diagnosis on one page: the recording within what was simulated, probabilities, severity, and what explains it best.
+
+use crate::Figure;
+use crate::axes::{self, Area, Axes};
+use crate::canvas::Canvas;
+use crate::legend::{self, Entry, Sample};
+use crate::style::{Anchor, Fill, Stroke, TextStyle, colour};
+use crate::text::fitted;
+use crate::ticks::Ticks;
+
+/// (px) Size of the figure.
+pub const WIDTH: u32 = 1600;
+/// (px) Size of the figure.
+pub const HEIGHT: u32 = 1000;
+
+const EDGE: f64 = 17.0;
+const NAME_LEFT: f64 = 56.0;
+const SIGNALS: Area = Area::new(84.0, 118.0, 900.0, 330.0);
+const EXPLANATIONS_TOP: f64 = 532.0;
+const EXPLANATIONS_BOTTOM: f64 = 950.0;
+const EXPLANATIONS_GAP: f64 = 30.0;
+const MOST_EXPLANATIONS: usize = 3;
+const BARS: Area = Area::new(1200.0, 118.0, 330.0, 330.0);
+const SEVERITY: Area = Area::new(1082.0, 532.0, 494.0, 418.0);
+/// Kinds that are shown; the others are counted.
+const MOST_KINDS: usize = 10;
+const BINS: usize = 40;
+const MARGIN: f64 = 0.08;
+const RECORDED: Stroke = Stroke::solid(colour::INK, 1.2);
+const EXPLAINED: Stroke = Stroke::solid(colour::BLUE, 1.4);
+const BAND: Fill = Fill::tint(colour::BLUE, 0.22);
+const DAMAGE: Fill = Fill::tint(colour::VERMILLION, 0.22);
+
+/// What the figure shows.
+#[derive(Debug, Clone, Copy)]
+pub struct DiagnosisFigure<'a> {
+    /// Title: what was recorded.
+    pub title: &'a str,
+    /// Facts in the line below it.
+    pub facts: &'a [String],
+    /// Teeth of the gear.
+    pub gear_teeth: u32,
+    /// The damaged tooth of the gear from 1, if it is on the gear and it is known which.
+    pub damaged_tooth: Option<u32>,
+    /// (g) The recording's difference signal over a revolution of the gear.
+    pub difference_g: &'a [f64],
+    /// (g) Between which values nine in ten of the simulations that resemble it are, angle by angle.
+    pub band_g: [&'a [f64]; 2],
+    /// Names of the kinds with their probabilities, the likeliest first.
+    pub kinds: &'a [(&'a str, f64)],
+    /// How severe the likeliest damage is.
+    pub severity: Option<SeverityView<'a>>,
+    /// What explains the recording best: words, and its difference signal in g.
+    pub explanations: &'a [(String, &'a [f64])],
+}
+
+/// How severe a damage is.
+#[derive(Debug, Clone, Copy)]
+pub struct SeverityView<'a> {
+    /// The kind.
+    pub kind: &'a str,
+    /// (-) Draws of its severity.
+    pub draws: &'a [f64],
+    /// (-) As likely to be larger as to be smaller.
+    pub median: f64,
+    /// (-) It is within with a probability of 0.5.
+    pub within_50: [f64; 2],
+    /// (-) It is within with a probability of 0.9.
+    pub within_90: [f64; 2],
+}
+
+/// Draws a diagnosis.
+///
+/// # Arguments
+/// * `figure` - what it shows
+///
+/// ```
+/// use meshtone_plot::diagnosis::{self, DiagnosisFigure};
+///
+/// let signal: Vec<f64> = (0..256).map(|i| (i as f64 / 9.0).sin()).collect();
+/// let [low, high] = [-1.2, 1.2].map(|end| vec![end; signal.len()]);
+/// let figure = DiagnosisFigure {
+///     title: "worn.csv",
+///     facts: &["damaged with a probability of 90 %".to_owned()],
+///     gear_teeth: 38,
+///     damaged_tooth: Some(7),
+///     difference_g: &signal,
+///     band_g: [&low, &high],
+///     kinds: &[("missing-tooth", 0.9), ("healthy", 0.1)],
+///     severity: None,
+///     explanations: &[("missing-tooth".to_owned(), &signal)],
+/// };
+/// assert!(diagnosis::draw(&figure).svg().contains("missing-tooth"));
+/// ```
+pub fn draw(figure: &DiagnosisFigure) -> Figure {
+    let mut canvas = Canvas::new(WIDTH, HEIGHT);
+    let width = f64::from(WIDTH) - 2.0 * EDGE;
+    canvas.text((EDGE, 36.0), &fitted(figure.title, TextStyle::TITLE, width), TextStyle::TITLE);
+    let facts = figure.facts.join("  ·  ");
+    canvas.text((EDGE, 61.0), &fitted(&facts, TextStyle::FACTS, width), TextStyle::FACTS);
+    recording(&mut canvas, figure);
+    probabilities(&mut canvas, figure.kinds);
+    severity(&mut canvas, figure.severity.as_ref());
+    explanations(&mut canvas, figure);
+    canvas.finish(figure.title, &format!("What may be wrong with a gear. {}.", figure.facts.join(", ")))
+}
+
+/// The values of a revolution over the teeth: tooth k is from k − 1 to k.
+fn over(values: &[f64], teeth: u32) -> impl DoubleEndedIterator<Item = (f64, f64)> + '_ {
+    let per_value = f64::from(teeth) / values.len().max(1) as f64;
+    values.iter().enumerate().map(move |(k, &value)| (k as f64 * per_value, value))
+}
+
+fn teeth_ticks(teeth: u32) -> Ticks {
+    Ticks::whole(0.0, f64::from(teeth), 20)
+}
+
+fn tooth(canvas: &mut Canvas, axes: &Axes, figure: &DiagnosisFigure) {
+    if let Some(tooth) = figure.damaged_tooth {
+        axes.band(canvas, f64::from(tooth) - 1.0, f64::from(tooth), DAMAGE);
+    }
+}
+
+fn recording(canvas: &mut Canvas, figure: &DiagnosisFigure) {
+    let values = figure.difference_g.iter().chain(figure.band_g[0]).chain(figure.band_g[1]).copied();
+    let axes = Axes::new(SIGNALS, [0.0, f64::from(figure.gear_teeth)], axes::range(values, MARGIN));
+    axes.title(canvas, "Difference signal of the recording");
+    let tooth_in_words = figure.damaged_tooth.map(|tooth| format!("tooth {tooth}"));
+    let marked = tooth_in_words.as_deref().map(|text| Entry { sample: Sample::Area(DAMAGE), text });
+    let others = [
+        Entry { sample: Sample::Area(BAND), text: "nine in ten of the simulations that resemble it" },
+        Entry { sample: Sample::Line(RECORDED), text: "recording" },
+    ];
+    let entries: Vec<Entry> = marked.into_iter().chain(others).collect();
+    legend::row(canvas, (axes.area.right(), axes.area.top - axes::TITLE_ABOVE), &entries);
+    axes.x_axis(
+        canvas,
+        &teeth_ticks(figure.gear_teeth),
+        "Pitches that the gear has turned (tooth k: from k – 1 to k)",
+    );
+    axes.y_axis(canvas, &Ticks::nice(axes.y[0], axes.y[1], 6), "Acceleration (g)", NAME_LEFT);
+    tooth(canvas, &axes, figure);
+    let [low, high] = figure.band_g.map(|end| axes.along_x(over(end, figure.gear_teeth)));
+    let around: Vec<_> = low.into_iter().chain(high.into_iter().rev()).collect();
+    canvas.polygon(&around, BAND);
+    axes.line(canvas, over(figure.difference_g, figure.gear_teeth), RECORDED);
+    axes.frame(canvas);
+}
+
+fn probabilities(canvas: &mut Canvas, kinds: &[(&str, f64)]) {
+    let shown = &kinds[..kinds.len().min(MOST_KINDS)];
+    let rest: f64 = kinds[shown.len()..].iter().map(|(_, probability)| probability).sum();
+    let others = format!("{} others", kinds.len() - shown.len());
+    let more = (kinds.len() > shown.len()).then_some((others.as_str(), rest));
+    let bars: Vec<(&str, f64)> = shown.iter().copied().chain(more).collect();
+    let axes = Axes::new(BARS, [0.0, 100.0], [bars.len().max(1) as f64, 0.0]);
+    axes.title(canvas, "Probability, given the scenario");
+    axes.x_axis(
+        canvas,
+        &Ticks::every(20.0, 0.0, 100.0),
+        "Probability (%); before: healthy 50, kinds of damage alike",
+    );
+    for (place, (label, probability)) in bars.iter().enumerate() {
+        let place = place as f64;
+        let fill = if *label == "healthy" { colour::BLUE } else { colour::VERMILLION };
+        canvas.rectangle(
+            axes.at(0.0, place + 0.2),
+            axes.at(100.0 * probability, place + 0.8),
+            Fill::solid(fill),
+        );
+        let style = TextStyle::NOTE;
+        let baseline = axes.py(place + 0.5) + 0.36 * style.size;
+        canvas.text((axes.area.left - 8.0, baseline), label, style.anchored(Anchor::End));
+        let percent =
+            if *probability < 0.001 { "< 0.1 %".to_owned() } else { format!("{:.1} %", 100.0 * probability) };
+        // Inside a bar that leaves no room beside it.
+        let (x, style) = if *probability > 0.8 {
+            (axes.px(100.0 * probability) - 6.0, style.coloured(colour::WHITE).anchored(Anchor::End))
+        } else {
+            (axes.px(100.0 * probability) + 6.0, style)
+        };
+        canvas.text((x, baseline), &percent, style);
+    }
+    axes.frame(canvas);
+}
+
+fn severity(canvas: &mut Canvas, severity: Option<&SeverityView>) {
+    let mut counts = [0.0f64; BINS];
+    let draws = severity.map_or(&[][..], |severity| severity.draws);
+    for draw in draws {
+        let bin = (draw.clamp(0.0, 1.0) * BINS as f64) as usize;
+        counts[bin.min(BINS - 1)] += 100.0 / draws.len() as f64;
+    }
+    let highest = counts.iter().copied().fold(1.0, f64::max);
+    let axes = Axes::new(SEVERITY, [0.0, 1.0], [0.0, 1.12 * highest]);
+    let title = severity.map_or_else(
+        || "Severity".to_owned(),
+        |severity| format!("Severity of {}, if it is that", severity.kind),
+    );
+    axes.title(canvas, &title);
+    axes.x_axis(canvas, &Ticks::nice(0.0, 1.0, 6), "Severity (–)");
+    axes.y_axis(canvas, &Ticks::nice(0.0, axes.y[1], 5), "Part of the draws (%)", 48.0);
+    let Some(severity) = severity else {
+        axes.note(canvas, "no damage is known to the scenario's model");
+        axes.frame(canvas);
+        return;
+    };
+    if severity.within_90[0] == severity.within_90[1] {
+        axes.note(canvas, "damage of this kind has one severity alone");
+        axes.frame(canvas);
+        return;
+    }
+    let bands = [(severity.within_90, 0.14), (severity.within_50, 0.2)];
+    let [ninety, fifty] = bands.map(|(ends, opacity)| (ends, Fill::tint(colour::VERMILLION, opacity)));
+    for ([from, to], fill) in [ninety, fifty] {
+        axes.band(canvas, from, to, fill);
+    }
+    let bars: Vec<_> = counts
+        .iter()
+        .enumerate()
+        .filter(|(_, count)| **count > 0.0)
+        .map(|(bin, count)| {
+            let [from, to] = [bin, bin + 1].map(|edge| edge as f64 / BINS as f64);
+            [axes.at(from, *count), axes.at(to, 0.0)]
+        })
+        .collect();
+    canvas.rectangles(&bars, Fill::tint(colour::VERMILLION, 0.75));
+    let median = Stroke::solid(colour::INK, 1.6);
+    canvas.line(axes.at(severity.median, 0.0), axes.at(severity.median, axes.y[1]), median);
+    let text = format!("median {:.2}", severity.median);
+    let entries = [
+        Entry { sample: Sample::Area(ninety.1), text: "90 %" },
+        Entry { sample: Sample::Area(Fill::tint(colour::VERMILLION, 0.34)), text: "50 %" },
+        Entry { sample: Sample::Line(median), text: &text },
+    ];
+    // Where there is more room.
+    let x = if severity.median > 0.5 { axes.px(0.0) + 12.0 } else { axes.px(1.0) - 132.0 };
+    legend::column(canvas, (x, axes.area.top + 22.0), &entries);
+    axes.frame(canvas);
+}
+
+fn explanations(canvas: &mut Canvas, figure: &DiagnosisFigure) {
+    let shown = &figure.explanations[..figure.explanations.len().min(MOST_EXPLANATIONS)];
+    let values = shown.iter().flat_map(|(_, signal)| signal.iter()).chain(figure.difference_g).copied();
+    let y = axes::range(values, MARGIN);
+    let pitch = (EXPLANATIONS_BOTTOM - EXPLANATIONS_TOP + EXPLANATIONS_GAP) / shown.len().max(1) as f64;
+    for (row, (words, signal)) in shown.iter().enumerate() {
+        let top = EXPLANATIONS_TOP + row as f64 * pitch;
+        let area = Area::new(SIGNALS.left, top, SIGNALS.width, pitch - EXPLANATIONS_GAP);
+        let axes = Axes::new(area, [0.0, f64::from(figure.gear_teeth)], y);
+        let title = format!("Simulation that resembles it: {words}");
+        axes.title(canvas, &fitted(&title, TextStyle::AXES_TITLE, 0.75 * area.width));
+        let ticks = teeth_ticks(figure.gear_teeth);
+        if row + 1 == shown.len() {
+            axes.x_axis(canvas, &ticks, "Pitches that the gear has turned");
+        } else {
+            axes.x_grid(canvas, &ticks);
+        }
+        axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 3), "(g)", NAME_LEFT);
+        tooth(canvas, &axes, figure);
+        axes.line(canvas, over(figure.difference_g, figure.gear_teeth), Stroke::solid(colour::FRAME, 0.9));
+        axes.line(canvas, over(signal, figure.gear_teeth), EXPLAINED);
+        if row == 0 {
+            let entries = [
+                Entry { sample: Sample::Line(EXPLAINED), text: "simulation" },
+                Entry { sample: Sample::Line(Stroke::solid(colour::FRAME, 0.9)), text: "recording" },
+            ];
+            legend::row(canvas, (area.right(), area.top - axes::TITLE_ABOVE), &entries);
+        }
+        axes.frame(canvas);
+    }
+}

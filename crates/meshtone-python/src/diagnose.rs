@@ -1,0 +1,164 @@
+//! What may be wrong with a gear.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use meshtone::scenario;
+use meshtone::signal::{
+    AngularSettings, ChainSettings, Shaft, SignalError, SimulatedShafts, Told, ToldTurning, angular_resample,
+    misfit,
+};
+use meshtone_diagnose::{
+    Answer, Learned, Observation as Observed, Prior, Question, ReferenceControl, ReferenceStore, SignalKind,
+    StoreError,
+};
+use meshtone_io::experiment::read_tuned;
+use numpy::PyArray1;
+use pyo3::exceptions::{PyOSError, PyRuntimeError};
+use pyo3::prelude::*;
+
+use crate::array::{Signal, array, samples};
+use crate::error::{file_error, read_error, scenario_error, value_error};
+use crate::interrupt::interruptible;
+use crate::phase::ShaftPhase;
+use crate::scenario::Scenario;
+
+/// What a recording shows.
+#[pyclass(frozen, module = "meshtone._core")]
+pub struct Observation(Observed);
+
+#[pymethods]
+impl Observation {
+    /// Of a simulated signal, in g.
+    #[staticmethod]
+    fn of_simulated(py: Python<'_>, scenario: &Scenario, signal: Signal<'_>, start_s: f64) -> PyResult<Self> {
+        let signal = samples(&signal)?;
+        let observe = || {
+            let shafts = SimulatedShafts::new(&scenario.0, start_s, signal.len());
+            let over = |shaft| shafts.angular(signal, shaft, &ChainSettings::default());
+            let (pinion, gear) = (over(Shaft::Pinion)?, over(Shaft::Gear)?);
+            let teeth = Shaft::BOTH.map(|shaft| shafts.teeth(shaft));
+            Observed::of_recording(&pinion, &gear, teeth, shafts.mean_speed_hz(Shaft::Pinion))
+        };
+        py.detach(observe).map(Self).map_err(value_error)
+    }
+
+    /// Of a measured signal, in g, with the phase of the pinion's shaft.
+    #[staticmethod]
+    fn of_measured(
+        py: Python<'_>,
+        signal: Signal<'_>,
+        sampling_rate_hz: f64,
+        phase: &ShaftPhase,
+        teeth: [u32; 2],
+    ) -> PyResult<Self> {
+        let signal = samples(&signal)?;
+        py.detach(|| measured(signal, sampling_rate_hz, phase, teeth)).map(Self).map_err(value_error)
+    }
+
+    /// Of one revolution of the gear, in g.
+    #[staticmethod]
+    fn of_revolution(py: Python<'_>, values: Signal<'_>, gear_teeth: u32, signal: &str) -> PyResult<Self> {
+        let kind = SignalKind::NAMES.into_iter().find(|(name, _)| *name == signal);
+        let (_, kind) = kind.ok_or_else(|| {
+            value_error(format!("signal '{signal}': must be 'recording', 'average' or 'difference'"))
+        })?;
+        let values = samples(&values)?;
+        py.detach(|| Observed::of_revolution(values, gear_teeth, kind, None)).map(Self).map_err(value_error)
+    }
+}
+
+fn measured(
+    signal: &[f64],
+    sampling_rate_hz: f64,
+    phase: &ShaftPhase,
+    teeth: [u32; 2],
+) -> Result<Observed, SignalError> {
+    let settings = AngularSettings::default();
+    let pinion = angular_resample(signal, &phase.0, &settings)?;
+    let gear = angular_resample(signal, &phase.0.of_mate(teeth[0], teeth[1])?, &settings)?;
+    let told = Told { teeth: teeth[0], mate_teeth: Some(teeth[1]), turning: ToldTurning::Other };
+    let mut observed =
+        Observed::of_recording(&pinion, &gear, teeth, phase.0.mean_speed_hz(sampling_rate_hz))?;
+    if let Some(against) = misfit(&pinion, &told) {
+        let also = observed.misfit.take().map_or_else(String::new, |also| format!("; {also}"));
+        observed.misfit = Some(format!("{against}{also}"));
+    }
+    Ok(observed)
+}
+
+/// The text of the answer's JSON, the difference signal, and the predictive band's ends.
+type Diagnosed<'py> = (String, Bound<'py, PyArray1<f64>>, [Bound<'py, PyArray1<f64>>; 2]);
+
+/// Says what may be wrong.
+#[pyfunction]
+pub fn diagnose<'py>(
+    py: Python<'py>,
+    scenario: &Scenario,
+    now: Vec<PyRef<'py, Observation>>,
+    healthy: Vec<PyRef<'py, Observation>>,
+    tuned: Option<PathBuf>,
+    reference: Option<PathBuf>,
+    records: u64,
+    progress: Option<Bound<'py, PyAny>>,
+) -> PyResult<Diagnosed<'py>> {
+    let rig = with_tuned(&scenario.0, tuned.as_deref())?;
+    let folder = reference.or_else(ReferenceStore::default_folder);
+    let folder = folder.ok_or_else(|| {
+        value_error("reference: the environment names no home directory; name a folder for the simulations")
+    })?;
+    let [now, healthy] =
+        [now, healthy].map(|all| all.iter().map(|one| one.0.clone()).collect::<Vec<Observed>>());
+    let prior = Prior::new(&rig);
+    let store = ReferenceStore::new(folder);
+    let finished = AtomicUsize::new(0);
+    let progress = progress.map(Bound::unbind);
+    let answer = interruptible(
+        py,
+        |cancelled| {
+            answer(&store, &prior, records, &Question { now: &now, healthy: &healthy }, &finished, cancelled)
+        },
+        |py| match &progress {
+            Some(progress) => {
+                let finished = finished.load(Ordering::Relaxed) as u64;
+                progress.call1(py, (finished.min(records), records)).map(drop)
+            }
+            None => Ok(()),
+        },
+    )??;
+    let mut json = answer.to_json();
+    json["reference"] = serde_json::json!({
+        "records": answer.reference_records,
+        "folder": store.folder_of(&prior).display().to_string(),
+    });
+    let band = answer.band_g.map(|end| array(py, end));
+    Ok((json.to_string(), array(py, answer.difference_g), band))
+}
+
+fn answer(
+    store: &ReferenceStore,
+    prior: &Prior,
+    records: u64,
+    question: &Question,
+    finished: &AtomicUsize,
+    cancelled: &AtomicBool,
+) -> PyResult<Answer> {
+    let told = |count| finished.store(count, Ordering::Relaxed);
+    let reference = store.get(prior, records, &ReferenceControl { progress: &told, cancelled });
+    let reference = reference.map_err(|error| match &error {
+        StoreError::Folder { path, source } => file_error(path, Some(source), &error),
+        StoreError::File(_) => PyOSError::new_err(error.to_string()),
+        StoreError::Cancelled => PyRuntimeError::new_err(error.to_string()),
+    })?;
+    let learned = Learned::new(&reference, question).map_err(value_error)?;
+    meshtone_diagnose::diagnose(&learned, question).map_err(value_error)
+}
+
+fn with_tuned(scenario: &scenario::Scenario, path: Option<&Path>) -> PyResult<scenario::Scenario> {
+    let Some(path) = path else { return Ok(scenario.clone()) };
+    let tuned = read_tuned(path).map_err(|error| read_error(path, &error))?;
+    match tuned.warning_for(scenario) {
+        Some(problem) => Err(value_error(format!("{}: {problem}", path.display()))),
+        None => tuned.apply(scenario).map_err(|error| scenario_error(&error)),
+    }
+}

@@ -1,0 +1,192 @@
+"""What may be wrong with a gear, told from recordings by simulations."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from html import escape
+from os import PathLike
+from typing import Any, Literal, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core, _progress
+from .recording import Recording
+from .scenario import Scenario, native_scenario
+from .signal._arguments import finite_signal, positive, read_only, whole
+from .signal.phase import ShaftPhase, native_phase
+from .simulation import Simulation, chosen_channel
+
+__all__ = ["Diagnosis", "diagnose"]
+
+Array = npt.NDArray[np.float64]
+Recorded = Union[Simulation, Recording, tuple[npt.ArrayLike, float, ShaftPhase], npt.NDArray[Any]]
+SignalKind = Literal["recording", "average", "difference"]
+
+SHOWN = 0.005
+"""(-) Probability below which a notebook's table leaves a kind out."""
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What may be wrong with a gear. Probabilities are given the scenario.
+
+    Attributes
+    ----------
+    kinds : dict of str to dict
+        ``healthy`` and every kind of damage, the likeliest first: ``probability``; and if it is that, ``severity`` and ``sizes``
+        (``median``, ``within_50``, ``within_90``), ``wheel``, ``wheel_probability``, ``tooth``, ``tooth_probability``, ``angle_deg``.
+    damaged : float
+        (-) Probability that anything is damaged.
+    outside_model : float
+        (-) p-value: the part of the simulations that are as unlike the others as the recordings are. Below 0.05 the probabilities
+        mean nothing.
+    warnings : list of str
+        What deserves attention.
+    difference_g : array, shape (points,)
+        (g) The first recording's difference signal over a revolution of the gear.
+    band_g : tuple of array, shape (points,)
+        (g) Between which values nine in ten of the simulations that resemble it are.
+    """
+
+    kinds: dict[str, dict[str, Any]] = field(repr=False)
+    damaged: float
+    outside_model: float
+    warnings: list[str]
+    difference_g: Array = field(repr=False)
+    band_g: tuple[Array, Array] = field(repr=False)
+    _report: dict[str, Any] = field(repr=False)
+
+    def to_dict(self) -> dict[str, Any]:
+        """All but the signals, as in ``diagnosis.json``."""
+        copy: dict[str, Any] = json.loads(json.dumps(self._report))
+        return copy
+
+    def _repr_html_(self) -> str:
+        shown = [(kind, said) for kind, said in self.kinds.items() if said["probability"] >= SHOWN]
+        rows = "".join(f"<tr><td>{kind}</td>{_cells(said)}</tr>" for kind, said in shown)
+        head = "<tr><th>kind</th><th>probability</th><th>severity (90 %)</th><th>where</th></tr>"
+        facts = f"damaged with a probability of {100 * self.damaged:.1f} %, p = {self.outside_model:.3f}; given the scenario"
+        told = "".join(f"<p>{escape(warning)}</p>" for warning in self.warnings)
+        return f"<p>{facts}</p><table>{head}{rows}</table>{told}"
+
+
+def _cells(said: dict[str, Any]) -> str:
+    severity, where = said["severity"], said["wheel"]
+    size = "-"
+    if severity is not None:
+        low, high = severity["within_90"]
+        size = f"{severity['median']:.2f} ({low:.2f} to {high:.2f})"
+    if said["tooth"] is not None:
+        where = f"{where}, tooth {said['tooth']}"
+    return f"<td>{100 * said['probability']:.1f} %</td><td>{size}</td><td>{where or '-'}</td>"
+
+
+def diagnose(
+    recordings: Recorded | Sequence[Recorded],
+    scenario: Scenario,
+    healthy: Recorded | Sequence[Recorded] | None = None,
+    *,
+    signal: SignalKind = "recording",
+    tuned: str | PathLike[str] | None = None,
+    reference: str | PathLike[str] | None = None,
+    records: int = 6144,
+    progress: bool | Callable[[int, int], None] = False,
+) -> Diagnosis:
+    """Say what may be wrong with a gear, by simulations of its rig with all kinds of damage.
+
+    The first question about a scenario takes minutes; its simulations are kept for the next one.
+
+    Parameters
+    ----------
+    recordings : one or several, all of one state of the gear
+        A :class:`Simulation`; a :class:`Recording` of what ``meshtone simulate`` wrote; or a measured signal with its rate and the
+        pinion's phase, ``(signal_g, sampling_rate_hz, phase)``. With another `signal` arrays: one revolution of the gear, in g.
+    scenario : Scenario
+        The rig; its faults are left out.
+    healthy : the same, optional
+        The same rig when it was healthy.
+    signal : {'recording', 'average', 'difference'}
+        What the recordings are.
+    tuned : str or path, optional
+        A ``tuned.toml``, whose numbers are put into the scenario.
+    reference : str or path, optional
+        Folder in which simulations are kept; by default ``meshtone/reference`` in the user's cache directory.
+    records : int
+        (at least 512) Simulations to learn from, in batches of 512.
+    progress : bool or callable, optional
+        True for a line on the terminal or a bar in a notebook; or called with the numbers of simulations that are there and of all.
+
+    Returns
+    -------
+    Diagnosis
+
+    Raises
+    ------
+    ValueError
+        Recordings of other wheels, too short, or in which too few orders are whole; a ``tuned.toml`` of another model.
+    OSError
+        A folder or file that cannot be read or written.
+    KeyboardInterrupt
+        Ctrl-C stops it; simulations in finished batches of 512 stay.
+
+    Examples
+    --------
+    >>> from meshtone import MissingTooth, diagnose, examples, simulate
+    >>> rig = examples.healthy()
+    >>> found = diagnose(simulate(rig.replace(fault=MissingTooth())), rig, simulate(rig))   # doctest: +SKIP
+    >>> next(iter(found.kinds)), found.damaged > 0.99                                      # doctest: +SKIP
+    ('missing-tooth', True)
+    """
+    if signal not in ("recording", "average", "difference"):
+        raise ValueError(f"signal '{signal}': must be 'recording', 'average' or 'difference'")
+    told = _progress.shown("simulations") if progress is True else (progress or None)
+    text, difference_g, (low, high) = _core.diagnose(
+        native_scenario(scenario),
+        _observations("recordings", recordings, scenario, signal),
+        [] if healthy is None else _observations("healthy", healthy, scenario, signal),
+        tuned,
+        reference,
+        whole("records", records, 512),
+        told,
+    )
+    report = json.loads(text)
+    return Diagnosis(
+        kinds=report["kinds"],
+        damaged=report["damaged"],
+        outside_model=report["outside_model"],
+        warnings=report["warnings"],
+        difference_g=read_only(difference_g),
+        band_g=(read_only(low), read_only(high)),
+        _report=report,
+    )
+
+
+def _observations(
+    name: str, given: Recorded | Sequence[Recorded], scenario: Scenario, signal: str
+) -> list[_core.Observation]:
+    several: Sequence[Any] = given if isinstance(given, list) else [given]
+    if not several:
+        raise ValueError(f"{name}: must be at least one")
+    return [_observation(name, one, scenario, signal) for one in several]
+
+
+def _observation(name: str, one: Any, scenario: Scenario, signal: str) -> _core.Observation:
+    if signal != "recording":
+        return _core.Observation.of_revolution(finite_signal(one), scenario.gear_teeth, signal)
+    if isinstance(one, Simulation):
+        values = getattr(one, chosen_channel(one.scenario, None))
+        return _core.Observation.of_simulated(native_scenario(one.scenario), values, one.start_s)
+    if isinstance(one, Recording) and one.scenario is not None:
+        values = one[chosen_channel(one.scenario, None)]
+        return _core.Observation.of_simulated(native_scenario(one.scenario), values, one.start_s)
+    if isinstance(one, tuple) and len(one) == 3:
+        values, rate_hz, phase = one
+        rate_hz = positive("sampling_rate_hz", rate_hz)
+        teeth = (scenario.pinion_teeth, scenario.gear_teeth)
+        return _core.Observation.of_measured(finite_signal(values), rate_hz, native_phase(phase), teeth)
+    raise TypeError(
+        f"{name}: must be simulations, recordings of them, or (signal_g, sampling_rate_hz, phase) of what was measured"
+    )

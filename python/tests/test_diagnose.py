@@ -1,0 +1,61 @@
+"""What may be wrong with a gear."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import meshtone as mt
+
+RIG = mt.Scenario(
+    model="linear",
+    module_mm=3,
+    pinion_teeth=20,
+    gear_teeth=40,
+    face_width_mm=15,
+    pinion_speed_hz=40,
+    brake_torque_nm=200,
+    din_grade=6,
+    sampling_rate_hz=8000,
+)
+
+
+@pytest.mark.filterwarnings("ignore::meshtone.MeshtoneWarning")
+def test_from_signals_to_an_answer(tmp_path: Path) -> None:
+    told: list[tuple[int, int]] = []
+    gone = mt.simulate(RIG.copy(fault=mt.MissingTooth(tooth=8)))
+
+    def ask(recording: object, healthy: object = None, **options: object) -> mt.Diagnosis:
+        return mt.diagnose(recording, RIG, healthy, reference=tmp_path, records=512, **options)  # type: ignore[arg-type]
+
+    found = ask(gone, mt.simulate(RIG), progress=lambda *counts: told.append(counts))
+    assert told[-1] == (512, 512)
+    kind, said = next(iter(found.kinds.items()))
+    assert kind in ("missing-tooth", "tooth-breakage", "tooth-destruction")
+    assert (said["wheel"], said["tooth"], said["angle_deg"]) == ("gear", 8, 63.0)
+    assert found.damaged > 0.9
+    assert found.outside_model > 0.01
+    assert found.difference_g.shape == found.band_g[0].shape
+    assert np.mean(found.band_g[0] <= found.band_g[1]) == 1
+    assert json.loads(json.dumps(found.to_dict()))["kinds"] == found.kinds
+    assert "tooth 8" in found._repr_html_()
+
+    revolution = ask(found.difference_g, signal="difference")
+    assert revolution.to_dict()["signal"] == "difference"
+    assert "when it was healthy" in revolution.warnings[-1]
+
+    short = mt.ShaftPhase.constant(40, 8000, gone.vertical_g.size + 1)
+    other_teeth = mt.simulate(RIG.copy(gear_teeth=60))
+    for recording, signal, message in [
+        ([], "recording", "at least one"),
+        (gone, "spectrum", "must be 'recording', 'average' or 'difference'"),
+        (other_teeth, "recording", "teeth"),
+        ((gone.vertical_g, 8000.0, short), "recording", "phase"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            ask(recording, signal=signal)
+    with pytest.raises(TypeError, match="sampling_rate_hz, phase"):
+        ask(gone.vertical_g)
