@@ -8,11 +8,13 @@ Prints scores with 95 % intervals and draws reliability, ranks, coverage and det
 
 import csv
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
-from scipy.stats import binomtest, chisquare
+from scipy.stats import chisquare
 
 from meshtone.plotting import BLUE, ORANGE
 
@@ -26,6 +28,7 @@ source = Path(sys.argv[1])
 rows = list(csv.DictReader(source.open()))
 kind = np.array([row["kind"] for row in rows])
 healthy = kind == "healthy"
+unit = np.array([int(row["unit"]) for row in rows])
 severity = np.array([float(row["severity"]) for row in rows])
 damaged = np.array([float(row["damaged"]) for row in rows])
 outside = np.array([float(row["outside"]) for row in rows])
@@ -34,21 +37,21 @@ said = np.array([row["said"] for row in rows])
 weights = np.where(healthy, PRIOR_HEALTHY / healthy.mean(), (1 - PRIOR_HEALTHY) / (~healthy).mean())
 
 
-def share(of):
-    """A part with its 95 % interval (Wilson 1927)."""
-    test = binomtest(int(of.sum()), len(of))
-    low, high = test.proportion_ci(method="wilson")
-    return f"{of.mean():.3f} ({low:.3f} to {high:.3f})"
+def bootstrapped(score: Callable[[np.ndarray[Any, Any]], Any]) -> str:
+    """A score of the recordings, with the 95 % interval of 1000 samples of pairs of wheels: those of one pair are not independent."""
+    pairs = [np.flatnonzero(unit == one) for one in np.unique(unit)]
+    draws = np.random.default_rng(1).integers(len(pairs), size=(1000, len(pairs)))
+    values = [score(np.concatenate([pairs[place] for place in chosen])) for chosen in draws]
+    low, high = np.nanquantile(values, [0.025, 0.975])
+    return f"{score(np.arange(len(rows))):.3f} ({low:.3f} to {high:.3f})"
 
 
-def bootstrapped(score):
-    """A score of the recordings, with the interval of 1000 samples of them."""
-    draws = np.random.default_rng(1).integers(len(rows), size=(1000, len(rows)))
-    values = [score(chosen) for chosen in draws]
-    return f"{score(np.arange(len(rows))):.3f} ({np.quantile(values, 0.025):.3f} to {np.quantile(values, 0.975):.3f})"
+def share(of: np.ndarray[Any, Any], among: np.ndarray[Any, Any]) -> str:
+    """A part of some recordings with its interval."""
+    return bootstrapped(lambda chosen: np.mean(of[chosen][among[chosen]]))
 
 
-def brier(chosen):
+def brier(chosen: np.ndarray[Any, Any]) -> Any:
     """Brier (1950) of the probability of damage."""
     return np.average((damaged[chosen] - ~healthy[chosen]) ** 2, weights=weights[chosen])
 
@@ -59,10 +62,10 @@ inside = [(quantiles[:, low] <= severity) & (severity <= quantiles[:, high]) for
 ranks = np.bincount((severity[sized, None] > quantiles[sized]).sum(axis=1), minlength=6)
 print(f"{len(rows)} recordings, {healthy.sum()} healthy")
 print(f"Brier score of the probability of damage: {bootstrapped(brier)}; 0.25 knows nothing")
-print(f"healthy called damaged: {share(damaged[healthy] > 0.5)}")
-print(f"severity within 50 %: {share(inside[0][sized])}, within 90 %: {share(inside[1][sized])}")
-print(f"ranks flat: chi-squared p = {chisquare(ranks, SHARES * ranks.sum()).pvalue:.2f}")
-print(f"called outside (p < 0.05): healthy {share(outside[healthy] < 0.05)}, damaged {share(outside[~healthy] < 0.05)}")
+print(f"healthy called damaged: {share(damaged > 0.5, healthy)}")
+print(f"severity within 50 %: {share(inside[0], sized)}, within 90 %: {share(inside[1], sized)}")
+print(f"ranks flat, were all independent: chi-squared p = {chisquare(ranks, SHARES * ranks.sum()).pvalue:.2f}")
+print(f"called outside (p < 0.05): healthy {share(outside < 0.05, healthy)}, damaged {share(outside < 0.05, ~healthy)}")
 kinds = [name for name in dict.fromkeys(kind) if name != "healthy"]
 print("kind                 called damaged    the same, severity above 0.4    named rightly    50 %  90 %   detected from severity")
 edges = np.linspace(0.0, 1.0, 6)

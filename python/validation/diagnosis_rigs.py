@@ -6,8 +6,9 @@ Then the case is asked: is it damaged, and how far has it come? Takes about a mi
 """
 
 import sys
-import tomllib
+import tomllib  # type: ignore[import-not-found, unused-ignore]
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -25,14 +26,14 @@ PRIOR_HEALTHY = 0.5
 LEAST_DEVIATION = 0.05
 
 
-def between(first, second, part):
+def between(first: Any, second: Any, part: float) -> Any:
     """A fault between two of one kind."""
     if isinstance(first, dict):
         return {key: between(first[key], second[key], part) for key in first}
     return first if isinstance(first, str) else (1 - part) * first + part * second
 
 
-def states(experiment, rig):
+def states(experiment: dict[str, Any], rig: str) -> list[tuple[float, Any]]:
     """Places along the case list, with the faults there; 0 is healthy."""
     faults = [case.get("fault") for case in experiment["case"]]
     severity = rig_with(rig, faults[1]).fault_severities[0]
@@ -52,9 +53,9 @@ def states(experiment, rig):
     return places
 
 
-def rig_with(rig, fault):
+def rig_with(rig: str, fault: Any) -> mt.Scenario:
     """The rig's scenario with a fault."""
-    def inline(value):
+    def inline(value: Any) -> str:
         if isinstance(value, dict):
             return "{ " + ", ".join(f"{key} = {inline(inner)}" for key, inner in value.items()) + " }"
         return f'"{value}"' if isinstance(value, str) else repr(float(value))
@@ -62,7 +63,7 @@ def rig_with(rig, fault):
     return mt.Scenario.from_toml(rig + "\n" + "\n".join(lines) + "\n")
 
 
-def simulated(rig, places, rate_hz):
+def simulated(rig: str, places: list[tuple[float, Any]], rate_hz: float) -> np.ndarray[Any, Any]:
     """log10 of rms and kurtosis over those of the same wheels without damage: (place, wheels, indicator)."""
     draws = np.random.default_rng(1)
     wheels = [
@@ -83,28 +84,42 @@ def simulated(rig, places, rate_hz):
         record = mt.process_channel(x, mt.ShaftPhase.constant(gear_hz, signals.sampling_rate_hz, len(x)), teeth)
         difference = record.difference
         values.append((np.log10(difference.std()), np.log10(((difference - difference.mean()) ** 4).mean() / difference.var() ** 2)))
-    values = np.array(values).reshape(len(places), WHEELS, 2)
-    return values - values[0]
+    logs: np.ndarray[Any, Any] = np.array(values).reshape(len(places), WHEELS, 2)
+    related: np.ndarray[Any, Any] = logs - logs[0]
+    return related
 
 
-def measured(name):
-    """(case, indicator): median of log10 over the records, over the healthy case's; and the healthy case's deviation."""
+def measured(name: str) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+    """(case, indicator): median of log10 over the records, over the healthy case's; and the healthy case's deviation.
+
+    Of the healthy records every other one is what all is related to, and the rest is the case that is asked.
+    """
     rows = [line.split(",") for line in (FOLDER / "fig6_indicators.csv").read_text().splitlines()[1:] if not line.startswith("#")]
-    def of(indicator, severity):
+
+    def of(indicator: str, severity: int) -> np.ndarray[Any, Any]:
         return np.array([float(r[4]) for r in rows if r[:3] == [name, indicator, "measured"] and int(r[3]) == severity])
+
     count = 1 + max(int(r[3]) for r in rows if r[0] == name and r[2] == "measured")
-    medians = np.array([[np.median(of(indicator, case)) for indicator in ("rms", "kurtosis")] for case in range(count)])
+    related = np.array([np.median(of(indicator, 0)[::2]) for indicator in ("rms", "kurtosis")])
+    healthy = [np.median(of(indicator, 0)[1::2]) for indicator in ("rms", "kurtosis")]
+    damaged = [[np.median(of(indicator, case)) for indicator in ("rms", "kurtosis")] for case in range(1, count)]
     scatter = np.array([of(indicator, 0).std() for indicator in ("rms", "kurtosis")])
-    return medians - medians[0], np.maximum(scatter, LEAST_DEVIATION)
+    return np.array([healthy, *damaged]) - related, np.maximum(scatter, LEAST_DEVIATION)
 
 
-def quantile(places, weights, part):
+def quantile(places: np.ndarray[Any, Any], weights: np.ndarray[Any, Any], part: float) -> float:
     """The first place up to which so much of the weight lies."""
     total = np.cumsum(weights)
     return float(places[np.searchsorted(total, part * total[-1])])
 
 
-def ask(case, seen, scatter, places, simulations):
+def ask(
+    case: int,
+    seen: np.ndarray[Any, Any],
+    scatter: np.ndarray[Any, Any],
+    places: list[float],
+    simulations: np.ndarray[Any, Any],
+) -> tuple[float, list[float]]:
     """Probability of damage, and place along the case list, of a case that is left out."""
     means, deviations = simulations.mean(axis=1), simulations.std(axis=1)
     others = [other for other in range(1, len(seen)) if other != case]
@@ -112,12 +127,12 @@ def ask(case, seen, scatter, places, simulations):
     beyond = np.array([seen[other] - means[place] for other, place in zip(others, at)])
     # How the rig differs from the simulations grows with the damage: none at the healthy case, which both are related to.
     bias, spread = beyond.mean(axis=0), np.maximum(beyond.std(axis=0, ddof=1), LEAST_DEVIATION)
-    logs = []
+    logged = []
     for place, mean, deviation in zip(places, means, deviations):
         grown = min(place, 1.0)
         variance = scatter**2 + deviation**2 + (grown * spread) ** 2 * (1 + 1 / len(others))
-        logs.append(-0.5 * np.sum((seen[case] - mean - grown * bias) ** 2 / variance + np.log(variance)))
-    logs = np.array(logs)
+        logged.append(-0.5 * np.sum((seen[case] - mean - grown * bias) ** 2 / variance + np.log(variance)))
+    logs = np.array(logged)
     likelihood = np.exp(logs - logs.max())
     damaged = np.array(places) > 0
     weights = np.gradient(np.array(places)[damaged])
@@ -145,11 +160,11 @@ for ax, name in zip(axes, ("breakage", "pitting", "destruction")):
     print(f"{name:12s} rank correlation {correlation:.2f}, the 90 % interval holds {holds:.0%} of the damaged cases\n")
     cases = np.arange(len(answers))
     lows, middles, highs = np.array([interval for _, interval in answers]).T
-    probability = np.array([probability for probability, _ in answers])
+    said = [probability for probability, _ in answers]
     ax.plot(cases, cases, color="grey", linewidth=0.8, label="true")
     ax.errorbar(cases[1:], middles[1:], [(middles - lows)[1:], (highs - middles)[1:]], fmt="o", color=BLUE, label="median, 90 %")
-    for case, value in zip(cases, probability):
-        ax.annotate(f"{value:.2f}", (case, -0.9), ha="center", fontsize=8, color=ORANGE)
+    for at, value in zip(cases, said):
+        ax.annotate(f"{value:.2f}", (at, -0.9), ha="center", fontsize=8, color=ORANGE)
     labels = [case["label"].removeprefix("chipped, ").removesuffix(" destroyed") for case in experiment["case"]]
     ax.set_xticks(cases, labels, rotation=40, ha="right", rotation_mode="anchor", fontsize=9)
     ax.set_ylim(-1.2, places[-1] + 0.5)

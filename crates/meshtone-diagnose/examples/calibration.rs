@@ -24,12 +24,15 @@ use meshtone_diagnose::{
     Answer, HEALTHY, Learned, Observation, Prior, Question, ReferenceControl, ReferenceRecord,
     ReferenceStore, SignalKind, WheelLines, diagnose,
 };
+use meshtone_fourier::{from_real_spectrum, real_spectrum};
 
 /// Simulations that are learnt from, and those that are asked about.
 const LEARNT: u64 = 6144;
 const ASKED: u64 = 1024;
 /// Recordings that are not what they are told to be.
 const OTHERS: u64 = 60;
+/// (-) Noise of whole signals, as a part of their rms.
+const NOISE_PART: f64 = 0.05;
 /// (g) Noise in each line of an average, of every recording that is asked about.
 const NOISE_G: f64 = 2e-4;
 
@@ -52,7 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     reference.records.retain(|record| other.is_empty() || name(record) != other);
     let mut learned: Option<Learned> = None;
     let mut table = String::from(
-        "kind,wheel,severity,tooth,said,damaged,probability,outside,healthy_outside,q05,q25,q50,q75,q95,said_wheel,said_tooth,tooth_probability\n",
+        "unit,kind,wheel,severity,tooth,said,damaged,probability,outside,healthy_outside,q05,q25,q50,q75,q95,said_wheel,said_tooth,tooth_probability\n",
     );
     let is_strange = ["signals", "bearing", "teeth", "ratio"].contains(&other);
     for record in &asked.records {
@@ -135,8 +138,12 @@ fn strange(prior: &Prior, number: u64, what: &str) -> Result<Observation, Box<dy
     }
     let simulation = meshtone::simulate(&scenario)?;
     let rate_hz = simulation.stages.time.sampling_rate_hz;
-    // The same teeth meet again where it ends: it goes on as it began.
-    let mut signal = simulation.channels.vertical_g.repeat(4);
+    // Behind the path to the sensor. The same teeth meet again where the simulation ends: it goes on as it began.
+    let (path, (_, once)) = (prior.path(&drawn), simulation.channels.leading());
+    let mut spectrum = real_spectrum(once);
+    let hz = |line: usize| line as f64 * rate_hz / once.len() as f64;
+    spectrum.iter_mut().enumerate().for_each(|(line, value)| *value *= path(hz(line)));
+    let mut signal = from_real_spectrum(spectrum, once.len()).repeat(4);
     let rms = meshtone::signal::rms(&signal);
     if what == "bearing" {
         // A defect of an outer race: impulses that ring at a resonance, a little off every order, jittered by 1 %.
@@ -157,6 +164,8 @@ fn strange(prior: &Prior, number: u64, what: &str) -> Result<Observation, Box<dy
             at_s += every_s * (1.0 + 0.01 * draws.normal());
         }
     }
+    // Noise of the sensor and of the machine.
+    signal.iter_mut().for_each(|value| *value += NOISE_PART * rms * draws.normal());
     let samples = signal.len();
     let phase = ShaftPhase::constant(scenario.operation.pinion_speed_hz, rate_hz, samples)?;
     let mate = phase.of_mate(told[0], told[1])?;
@@ -176,7 +185,13 @@ fn row(
     let (wheel, severity, tooth) = record.fault.as_ref().map_or(("", 0.0, 0), |fault| {
         (fault.wheel.name(), fault.severity, if fault.is_on_one_tooth { fault.tooth } else { 0 })
     });
-    write!(table, "{kind},{wheel},{severity},{tooth},{},{}", answer.kinds[0].label, answer.damaged())?;
+    write!(
+        table,
+        "{},{kind},{wheel},{severity},{tooth},{},{}",
+        record.number / 8,
+        answer.kinds[0].label,
+        answer.damaged()
+    )?;
     let probability = of_kind.map_or(0.0, |of| of.probability);
     write!(
         table,

@@ -5,7 +5,7 @@ use meshtone::wheel::WheelName;
 use crate::DiagnoseError;
 use crate::answer::{Answer, Explanation, HEALTHY, KindAnswer, PlaceAnswer, SizeAnswer};
 use crate::features::burst_rev;
-use crate::learn::{Learned, Question, Row};
+use crate::learn::{Layout, Learned, Question, Row};
 use crate::observation::{WheelLines, revolution};
 use crate::quantile::{interval, quantile};
 
@@ -28,8 +28,14 @@ type Draws = Vec<(f64, f64)>;
 /// * `question` - the recordings
 ///
 /// # Errors
-/// Too few simulations of a kind.
+/// A question unlike the one that was learnt for; too few simulations of a kind.
 pub fn diagnose(learned: &Learned, question: &Question) -> Result<Answer, DiagnoseError> {
+    let asked = Layout::of(question, learned.reference)?;
+    let known = &learned.layout;
+    let is_shorter = asked.last.iter().zip(known.last).any(|(asked, known)| *asked < known);
+    if asked.signal != known.signal || asked.has_healthy != known.has_healthy || is_shorter {
+        return Err(DiagnoseError::OtherQuestion);
+    }
     let row = learned.row(question);
     let features = learned.features(&row);
     let of_class = learned.probabilities(&features);
@@ -159,7 +165,7 @@ fn place(learned: &Learned, row: &Row, class: usize, wheel: WheelName, of_wheel:
     }
     // Those that resemble the recording most show how far the burst is behind.
     let point = learned.outside.point(&row.values);
-    let near = learned.outside.nearest(&point, |other| rows.contains(&other), 60);
+    let near = learned.outside.nearest(&point, |other| learned.class_of[other] == class, 60);
     let behind: Vec<f64> = near
         .iter()
         .filter_map(|&(_, other)| {
@@ -187,7 +193,7 @@ struct Shown {
     difference_g: Vec<f64>,
     /// (rev) Where its burst is.
     burst_rev: f64,
-    /// (log10) Level of the healthy recording's difference signal, by which simulations are brought to the path's gain.
+    /// (g) Rms of the healthy recording's difference signal, by which simulations are brought to the path's gain.
     healthy_rms_g: Option<f64>,
     last: usize,
     points: usize,
@@ -245,14 +251,13 @@ impl Shown {
         [low, high]
     }
 
-    /// The nearest simulation of each of the likeliest kinds.
+    /// The nearest simulation of each of the likeliest kinds, of either wheel.
     fn explanations(&self, learned: &Learned, row: &Row, of_class: &[f64]) -> Vec<Explanation> {
         let mut order: Vec<usize> = (0..of_class.len()).collect();
         order.sort_by(|&a, &b| of_class[b].total_cmp(&of_class[a]));
         let point = learned.outside.point(&row.values);
         let explain = |class: usize| {
-            let rows = learned.rows_of(class);
-            let nearest = learned.outside.nearest(&point, |other| rows.contains(&other), 1);
+            let nearest = learned.outside.nearest(&point, |other| learned.class_of[other] == class, 1);
             let record = nearest.first()?.1;
             let fault = learned.records[record].fault.as_ref();
             Some(Explanation {
@@ -280,7 +285,7 @@ fn resembling(learned: &Learned, row: &Row, of_class: &[f64], count: usize) -> V
         let rows = learned.rows_of(class);
         let share = share.min(rows.len() / 3);
         if share > 0 {
-            near.extend(learned.outside.nearest(&point, |other| rows.contains(&other), share));
+            near.extend(learned.outside.nearest(&point, |other| learned.class_of[other] == class, share));
         }
     }
     near
@@ -288,6 +293,14 @@ fn resembling(learned: &Learned, row: &Row, of_class: &[f64], count: usize) -> V
 
 fn warnings(answer: &Answer, learned: &Learned, question: &Question) -> Vec<String> {
     let mut warnings = Vec::new();
+    let quality = &learned.reference.prior.base.quality;
+    if quality.din_grade == 0 && quality.profile_errors.is_none() {
+        warnings.push(
+            "the scenario's wheels have no deviations (quality.din_grade = 0), as none has: the probabilities are far too sure; \
+             write the grade of the rig's wheels"
+                .to_owned(),
+        );
+    }
     for misfit in question.now.iter().chain(question.healthy).filter_map(|asked| asked.misfit.clone()) {
         if !warnings.contains(&misfit) {
             warnings.push(misfit);

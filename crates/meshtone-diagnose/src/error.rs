@@ -9,7 +9,7 @@ pub enum DiagnoseError {
         "too few records of the reference set could be simulated to learn from; look at what `meshtone simulate` says of the scenario"
     )]
     NoReference,
-    /// Features that are not numbers.
+    /// Features that are not numbers, or a search for probabilities that found none.
     #[error("the regression on the reference set has no solution")]
     NotSolved,
     /// The wheels of the recording are not those of the scenario.
@@ -22,7 +22,7 @@ pub enum DiagnoseError {
     },
     /// So few orders that no mesh order is whole.
     #[error(
-        "the {of} shows orders up to {last} of the gear's shaft; at least 2 mesh orders, {needed}, are needed"
+        "the {of}, or the simulations, show orders up to {last} of the gear's shaft; at least 2 mesh orders, {needed}, are needed"
     )]
     TooFewOrders {
         /// Which signal.
@@ -36,14 +36,26 @@ pub enum DiagnoseError {
     #[error("there is no recording to ask about")]
     NoRecording,
     /// What is asked about and what it is compared with are not alike.
-    #[error("the healthy recording is {healthy}, the one that is asked about {asked}; both must be the same")]
+    #[error("one recording is of the signal `{healthy}`, another of `{asked}`; all must be the same")]
     OtherSignal {
-        /// Kind of the healthy signal.
+        /// Kind of one.
         healthy: &'static str,
-        /// Kind of the other.
+        /// Kind of another.
         asked: &'static str,
     },
-    /// The caller has stopped it.
-    #[error("cancelled")]
-    Cancelled,
+    /// A question that is unlike the one that was learnt for.
+    #[error(
+        "the question is unlike the one that was learnt for: another signal, with or without healthy recordings, or fewer orders"
+    )]
+    OtherQuestion,
+    /// A speed or lines that are not finite.
+    #[error("a recording's {what} is {value}; must be finite{beside}")]
+    NotFinite {
+        /// What is wrong.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// What else it must be.
+        beside: &'static str,
+    },
 }

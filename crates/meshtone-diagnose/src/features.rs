@@ -63,11 +63,13 @@ pub(crate) fn wheel_features(view: &WheelLines, last: usize, has_regular_part: b
     levels.push(level(scale));
     levels.extend((0..bands).map(|mesh| level(band(&difference, mesh as f64 + 0.5, mesh as f64 + 1.5))));
     if has_regular_part {
-        let tone = |order: usize| view.lines.get(order).map_or(0.0, |line| line.norm());
+        let tone =
+            |order: usize| view.lines.get(order).filter(|_| order <= last).map_or(0.0, |line| line.norm());
         let harmonics = bands.min(HARMONICS);
         levels.extend((1..=harmonics).map(|mesh| level(tone(mesh * teeth))));
         let beside = |mesh: usize| {
-            let orders = [mesh * teeth - 2, mesh * teeth - 1, mesh * teeth + 1, mesh * teeth + 2];
+            let below = |less: usize| (mesh * teeth).saturating_sub(less);
+            let orders = [below(2), below(1), mesh * teeth + 1, mesh * teeth + 2];
             orders.iter().map(|&order| tone(order).powi(2)).sum::<f64>().sqrt()
         };
         levels.extend((1..=harmonics).map(|mesh| level(beside(mesh))));

@@ -54,7 +54,7 @@ pub struct Learned<'a> {
     pub(crate) records: Vec<&'a ReferenceRecord>,
     pub(crate) rows: Vec<Row>,
     pub(crate) classes: Vec<Class>,
-    class_of: Vec<usize>,
+    pub(crate) class_of: Vec<usize>,
     folds: Vec<usize>,
     standard: Standard,
     random: RandomFeatures,
@@ -88,7 +88,7 @@ pub(crate) struct Row {
 }
 
 impl Layout {
-    fn of(question: &Question, reference: &ReferenceSet) -> Result<Self, DiagnoseError> {
+    pub(crate) fn of(question: &Question, reference: &ReferenceSet) -> Result<Self, DiagnoseError> {
         let first = question.now.first().ok_or(DiagnoseError::NoRecording)?;
         let gears = &reference.prior.base.gears;
         let expected = [gears.pinion_teeth, gears.gear_teeth];
@@ -97,6 +97,17 @@ impl Layout {
             let given = [pinion, asked.gear.teeth];
             if given != expected {
                 return Err(DiagnoseError::OtherWheels { given, expected });
+            }
+            if let Some(value) = asked.pinion_speed_hz.filter(|hz| !hz.is_finite() || *hz <= 0.0) {
+                return Err(DiagnoseError::NotFinite {
+                    what: "speed (Hz)",
+                    value,
+                    beside: " and more than 0",
+                });
+            }
+            let lines = asked.gear.lines.iter().chain(asked.pinion.iter().flat_map(|wheel| &wheel.lines));
+            if let Some(line) = lines.into_iter().find(|line| !line.norm().is_finite()) {
+                return Err(DiagnoseError::NotFinite { what: "average", value: line.norm(), beside: "" });
             }
             if asked.signal != first.signal {
                 let (healthy, asked) = (asked.signal.name(), first.signal.name());
@@ -218,22 +229,14 @@ impl<'a> Learned<'a> {
             let before = healthy_of(record)
                 .filter(|_| layout.has_healthy)
                 .map(|at| noisy(&reference.records[at], &noises[1]));
-            let speed =
-                match (layout.signal, question.now.iter().any(|asked| asked.pinion_speed_hz.is_some())) {
-                    (_, true) => (record.pinion_speed_hz / nominal).ln(),
-                    (_, false) => 0.0,
-                };
-            let of_signal = |wheels: &'_ [WheelLines; 2]| {
-                [layout.signal == SignalKind::Recording, true]
-                    .map(|is| is)
-                    .into_iter()
-                    .zip(wheels.clone())
-                    .map(|(is, wheel)| is.then_some(wheel))
-                    .collect::<Vec<_>>()
+            let is_known = question.now.iter().any(|asked| asked.pinion_speed_hz.is_some());
+            let speed = if is_known { (record.pinion_speed_hz / nominal).ln() } else { 0.0 };
+            let shown = |wheels: &'_ [WheelLines; 2]| {
+                let [pinion, gear] = wheels.clone();
+                [(layout.signal == SignalKind::Recording).then_some(pinion), Some(gear)]
             };
-            let (now, before) = (of_signal(&now), before.map(|wheels| of_signal(&wheels)));
-            let before = before.unwrap_or_else(|| vec![None, None]);
-            layout.row([now[0].as_ref(), now[1].as_ref()], [before[0].as_ref(), before[1].as_ref()], speed)
+            let (now, before) = (shown(&now), before.as_ref().map_or([None, None], shown));
+            layout.row(now.each_ref().map(Option::as_ref), before.each_ref().map(Option::as_ref), speed)
         };
         let rows: Vec<Row> = records.par_iter().map(|record| row_of(&layout, record, &noises[0])).collect();
         let mut classes: Vec<Class> = records.iter().map(|record| class_of(record)).collect();

@@ -9,6 +9,9 @@ use crate::DiagnoseError;
 /// Parts of the rows: each is predicted by a regression on the others.
 pub(crate) const FOLDS: usize = 5;
 
+/// Of a feature that is the same in all simulations: logarithms and shapes differ by more where they differ.
+const LEAST_DEVIATION: f64 = 1e-3;
+
 /// Each feature less its mean, over its standard deviation, and within ± [`Self::MOST`].
 #[derive(Debug, Clone)]
 pub(crate) struct Standard {
@@ -31,16 +34,19 @@ impl Standard {
             let squares = deviation.iter_mut().zip(row.iter().zip(&mean));
             squares.for_each(|(sum, (value, mean))| *sum += (value - mean).powi(2) / count);
         }
-        deviation.iter_mut().for_each(|value| *value = value.sqrt().max(1e-9));
+        deviation.iter_mut().for_each(|value| *value = value.sqrt().max(LEAST_DEVIATION));
         Self { mean, deviation }
     }
 
     pub fn apply(&self, row: &[f64]) -> Vec<f64> {
-        self.unbounded(row).into_iter().map(|value| value.clamp(-Self::MOST, Self::MOST)).collect()
+        self.within(row, Self::MOST)
     }
 
-    pub fn unbounded(&self, row: &[f64]) -> Vec<f64> {
-        let of = |((value, mean), deviation): ((&f64, &f64), &f64)| (value - mean) / deviation;
+    /// The same within ± other bounds.
+    pub fn within(&self, row: &[f64], most: f64) -> Vec<f64> {
+        let of = |((value, mean), deviation): ((&f64, &f64), &f64)| {
+            ((value - mean) / deviation).clamp(-most, most)
+        };
         row.iter().zip(&self.mean).zip(&self.deviation).map(of).collect()
     }
 }

@@ -2,7 +2,7 @@
 
 use meshtone::signal::{
     AngularSignal, SeparationSettings, SignalError, SynchronousAverage, check_channel, kurtosis, rms,
-    synchronous_average,
+    standard_deviation, synchronous_average,
 };
 use meshtone_fourier::{Complex64, from_real_spectrum, real_spectrum};
 
@@ -83,8 +83,7 @@ impl WheelLines {
     }
 
     /// Whether an order belongs to the regular part: the shaft's low orders, mesh harmonics and their sidebands.
-    pub(crate) fn is_regular(order: usize, teeth: u32) -> bool {
-        let settings = SeparationSettings::new(teeth as usize);
+    fn is_regular(order: usize, teeth: u32, settings: &SeparationSettings) -> bool {
         let (mesh, beside) = (order / teeth.max(1) as usize, order % teeth.max(1) as usize);
         let near =
             (mesh > 0 && beside <= settings.sidebands) || teeth as usize - beside <= settings.sidebands;
@@ -93,8 +92,9 @@ impl WheelLines {
 
     /// The lines without the regular part.
     pub(crate) fn difference(&self) -> Vec<Complex64> {
+        let settings = SeparationSettings::new(self.teeth as usize);
         let kept = |(order, &line): (usize, &Complex64)| {
-            if Self::is_regular(order, self.teeth) { Complex64::default() } else { line }
+            if Self::is_regular(order, self.teeth, &settings) { Complex64::default() } else { line }
         };
         self.lines.iter().enumerate().map(kept).collect()
     }
@@ -148,6 +148,10 @@ impl Observation {
         teeth: [u32; 2],
         pinion_speed_hz: f64,
     ) -> Result<Self, SignalError> {
+        if let Some(wrong) = teeth.into_iter().find(|teeth| *teeth == 0) {
+            let (name, value, allowed) = ("teeth", f64::from(wrong), "at least 1");
+            return Err(SignalError::Parameter { name, value, allowed });
+        }
         let [of_pinion, of_gear] = [synchronous_average(pinion)?, synchronous_average(gear)?];
         let ratio = f64::from(teeth[1]) / f64::from(teeth[0]);
         let misfit = beside_the_shafts(gear, teeth[1], ratio);
@@ -194,8 +198,15 @@ impl Observation {
     }
 }
 
-/// What is doubtful about averages over so few revolutions that each wheel's is not free of its mate's.
+/// What is doubtful about averages over so few revolutions that each wheel's is not free of its mate's, or that nothing is told
+/// from what repeats.
 fn too_short(gear_revolutions: usize, [pinion, gear]: [u32; 2]) -> Option<String> {
+    if gear_revolutions < FEWEST_REVOLUTIONS {
+        return Some(format!(
+            "the gear turns {gear_revolutions} times in the recording: below {FEWEST_REVOLUTIONS} noise, and what repeats with neither \
+             shaft, is not told from what does"
+        ));
+    }
     let (mut a, mut b) = (pinion, gear);
     while b != 0 {
         (a, b) = (b, a % b);
@@ -215,13 +226,15 @@ fn too_short(gear_revolutions: usize, [pinion, gear]: [u32; 2]) -> Option<String
 /// Times that the same teeth should meet in a recording.
 const SEQUENCES: usize = 3;
 /// Revolutions below which noise is not told from what repeats.
-const FEWEST_REVOLUTIONS: usize = 4;
+const FEWEST_REVOLUTIONS: usize = 6;
 /// (-) Median over mean of the squared magnitude of normal noise.
 const MEDIAN_OF_SQUARES: f64 = std::f64::consts::LN_2;
 /// (lines) How near a line is to an order, to belong to it: the main lobe of Hann's window, and a little.
 const NEAR_LINES: f64 = 2.5;
 /// (-) Mean square of Hann's window.
 const WINDOW_SQUARE: f64 = 0.375;
+/// (-) The same over its middle half: 3/8 + 1/π.
+const MIDDLE_SQUARE: f64 = 0.375 + std::f64::consts::FRAC_1_PI;
 
 /// The spectrum of a signal over whole revolutions, behind Hann's window: the mate's orders lie between lines and must not leak.
 /// And for each line whether it lies beside the orders of both shafts.
@@ -229,7 +242,10 @@ fn lines_beside(angular: &AngularSignal, ratio: f64) -> (Vec<Complex64>, Vec<boo
     let revolutions = angular.revolutions();
     let whole = revolutions * angular.points_per_revolution;
     let window = |at: usize| 0.5 - 0.5 * (std::f64::consts::TAU * at as f64 / whole as f64).cos();
-    let windowed = angular.values.iter().take(whole).enumerate().map(|(at, value)| window(at) * value);
+    // Without its mean, which would leak too.
+    let mean = angular.values.iter().take(whole).sum::<f64>() / whole.max(1) as f64;
+    let windowed =
+        angular.values.iter().take(whole).enumerate().map(|(at, value)| window(at) * (value - mean));
     let spectrum = real_spectrum(&windowed.collect::<Vec<_>>());
     let is_beside = |line: usize| {
         let order = line as f64 / revolutions.max(1) as f64;
@@ -270,9 +286,9 @@ fn noise(angular: &AngularSignal, teeth: u32, ratio: f64) -> Vec<f64> {
 
 /// (-) Kurtosis of what belongs to neither shaft, from which on it is impulsive.
 const IMPULSIVE: f64 = 4.5;
-/// (-) Its part of the energy from which on it counts: teeth that strike and part make up to a tenth that repeats with neither
+/// (-) Its part of the energy from which on it counts: teeth that strike and part make up to a seventh that repeats with neither
 /// shaft, since it depends on which two teeth meet.
-const COUNTS: f64 = 0.1;
+const COUNTS: f64 = 0.15;
 /// (-) A line is a tone where its square is so many times the median of its neighbours'. Of noise, one in 10⁹ is.
 const TONE: f64 = 30.0;
 /// (-) Part of the energy in tones of neither shaft from which on they count, likewise.
@@ -287,7 +303,7 @@ fn beside_the_shafts(gear: &AngularSignal, teeth: u32, ratio: f64) -> Option<Str
     let whole = gear.revolutions() * gear.points_per_revolution;
     let (mut spectrum, beside) = lines_beside(gear, ratio);
     let passed = (PASSED * gear.nyquist_order) as usize * gear.revolutions();
-    let energy: f64 = spectrum.iter().take(passed).skip(1).map(Complex64::norm_sqr).sum();
+    let energy: f64 = spectrum.iter().take(passed).skip(3).map(Complex64::norm_sqr).sum();
     let lines: Vec<(usize, f64)> = (0..passed.min(spectrum.len()))
         .filter(|&line| beside[line])
         .map(|line| (line, spectrum[line].norm_sqr()))
@@ -309,7 +325,7 @@ fn beside_the_shafts(gear: &AngularSignal, teeth: u32, ratio: f64) -> Option<Str
     // The middle half, where the window is level enough to leave the shape.
     let rest = from_real_spectrum(spectrum, whole);
     let rest = &rest[whole / 4..3 * whole / 4];
-    let part = (rms(rest) / rms(&gear.values).max(f64::MIN_POSITIVE)).powi(2);
+    let part = (rms(rest) / standard_deviation(&gear.values).max(f64::MIN_POSITIVE)).powi(2) / MIDDLE_SQUARE;
     let impulses = kurtosis(rest)?;
     if impulses > IMPULSIVE && part > COUNTS {
         return Some(format!(

@@ -11,6 +11,8 @@ use crate::matrix::Standard;
 
 /// Principal components that are whitened.
 const COMPONENTS: usize = 40;
+/// (standard deviations) Beyond which a feature is no farther away: one that is the same in all simulations must not decide alone.
+const FARTHEST: f64 = 20.0;
 /// Neighbours whose mean distance counts.
 const NEIGHBOURS: usize = 8;
 
@@ -68,7 +70,7 @@ impl Outside {
 
     /// Where a signal is among the simulations.
     pub fn point(&self, row: &[f64]) -> Vec<f64> {
-        let standard = self.standard.unbounded(row);
+        let standard = self.standard.within(row, FARTHEST);
         let mut point: Vec<f64> = self
             .components
             .column_iter()

@@ -34,9 +34,10 @@ pub struct Prior {
     pub base: Scenario,
     /// Of what is not known well: stiffnesses, dampings, tip chamfer, backlash.
     pub spreads: Vec<Spread>,
-    /// (-) Most by which the grade of the wheels is another; each of them as likely as the next.
+    /// (-) Most by which the grade of the wheels is another; each step as likely as the next, within grades 1 to 12.
     pub grade_steps: u32,
-    /// (-) Speed: the largest logarithm of its ratio to the rig's, either way; uniform.
+    /// (-) Speed: the largest logarithm of its ratio to the rig's, either way. Seven tenths of it are the pair's, the rest is the
+    /// record's, each uniform.
     pub speed_spread: f64,
     /// (-) Load, likewise.
     pub load_spread: f64,
@@ -218,5 +219,7 @@ fn damage(
             sizes,
         }));
     }
-    Ok(None)
+    // A record that is counted as healthy because its damage cannot be would be wrong.
+    let problem = "no damage of this kind that was drawn fits the tooth";
+    Err(ScenarioError::new("fault.kind", format!("\"{}\"", of_kind.name), problem))
 }

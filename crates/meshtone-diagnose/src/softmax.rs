@@ -14,6 +14,8 @@ const PENALTY: f64 = 1.0;
 const SCALE: f64 = 5.0;
 const MOST_ITERATIONS: u64 = 200;
 const MEMORY: usize = 10;
+/// Of the mean cost's slope, where the search ends.
+const TOLERANCE: f64 = 1e-6;
 /// Rows whose gradients are computed together.
 const CHUNK: usize = 512;
 
@@ -41,7 +43,10 @@ impl Softmax {
         let start: Vec<f64> = (0..count * (count + 1))
             .map(|at| if at % (count + 1) == at / (count + 1) { 1.0 } else { 0.0 })
             .collect();
-        let solver = LBFGS::new(MoreThuenteLineSearch::new(), MEMORY);
+        let solver = LBFGS::new(MoreThuenteLineSearch::new(), MEMORY)
+            .with_tolerance_grad(TOLERANCE)
+            .and_then(|solver| solver.with_tolerance_cost(TOLERANCE * TOLERANCE))
+            .map_err(|_| DiagnoseError::NotSolved)?;
         let found = Executor::new(problem, solver)
             .configure(|state| state.param(start).max_iters(MOST_ITERATIONS))
             .run()
@@ -110,7 +115,10 @@ impl Problem<'_> {
                 *sum += PENALTY * value;
             }
         }
-        (cost, gradient)
+        // The mean: so its tolerances mean the same for any number of rows.
+        let total: f64 = self.weights.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+        gradient.iter_mut().for_each(|slope| *slope /= total);
+        (cost / total, gradient)
     }
 }
 

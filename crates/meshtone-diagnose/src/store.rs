@@ -12,10 +12,12 @@ use meshtone_io::atomic_file::{WriteFileError, write_atomically};
 use meshtone_io::npz::{NpzReader, NpzWriter};
 use sha2::{Digest, Sha256};
 
-use crate::observation::WheelLines;
-use crate::prior::{DrawnFault, Prior};
+use crate::observation::{MESH_ORDERS, WheelLines};
+use crate::prior::{DrawnFault, Prior, RECORDS_PER_UNIT};
 use crate::reference::{ReferenceControl, ReferenceRecord, ReferenceSet, build_reference};
 
+/// Raised when a record of the same number becomes another one, or its file another.
+const FORMAT: u32 = 1;
 /// Records of a batch, which is one file: whole pairs of wheels.
 const BATCH: u64 = 512;
 /// Numbers of a record beside its lines: its own, kind, wheel, tooth, whether on one, severity, speed.
@@ -38,7 +40,9 @@ pub enum StoreError {
     #[error(transparent)]
     File(#[from] WriteFileError),
     /// The caller has stopped it; what is finished stays.
-    #[error("cancelled; the simulations that are finished are kept, and the next question goes on with them")]
+    #[error(
+        "cancelled; the batches of simulations that are finished are kept, and the next question goes on with them"
+    )]
     Cancelled,
 }
 
@@ -79,7 +83,10 @@ impl ReferenceStore {
         let mut hash = Sha256::new();
         hash.update(env!("CARGO_PKG_VERSION"));
         // Every field is plain data, and numbers are written so that they are read back exactly.
-        hash.update(format!("{prior:?}"));
+        hash.update(format!("{FORMAT} {RECORDS_PER_UNIT} {MESH_ORDERS} {prior:?}"));
+        for kind in prior.kinds() {
+            hash.update(format!("{} {:?};", kind.name, kind.sizes));
+        }
         let name: String = hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect();
         self.folder.join(name)
     }
@@ -180,7 +187,8 @@ fn read(path: &Path, prior: &Prior) -> io::Result<Vec<ReferenceRecord>> {
         let parts = archive.floats(&format!("{name}_lines"), most)?.numbers;
         let mut rest = &parts[..];
         for length in &lengths {
-            let (own, later) = rest.split_at_checked(2 * *length as usize).ok_or_else(wrong)?;
+            let (own, later) =
+                rest.split_at_checked((*length as usize).saturating_mul(2)).ok_or_else(wrong)?;
             rest = later;
             let lines = own.chunks_exact(2).map(|part| Complex64::new(part[0], part[1])).collect();
             wheels[wheel].push(WheelLines { teeth: teeth[wheel], lines });
@@ -202,5 +210,17 @@ fn read(path: &Path, prior: &Prior) -> io::Result<Vec<ReferenceRecord>> {
         ReferenceRecord { number: row[0] as u64, fault, pinion_speed_hz: row[6], wheels }
     };
     let wheels = pinions.into_iter().zip(gears).map(|(pinion, gear)| [pinion, gear]);
-    Ok(numbers.chunks_exact(width).zip(wheels).map(record).collect())
+    let records: Vec<ReferenceRecord> = numbers.chunks_exact(width).zip(wheels).map(record).collect();
+    let kinds = prior.kinds();
+    let is_known = |fault: &DrawnFault| {
+        let teeth = prior.base.gears.teeth(fault.wheel);
+        kinds.get(fault.kind).is_some_and(|kind| kind.sizes.len() == fault.sizes.len())
+            && (1..=teeth).contains(&fault.tooth)
+    };
+    let is_good = |record: &ReferenceRecord| {
+        record.fault.as_ref().is_none_or(is_known)
+            && record.wheels.iter().all(|wheel| !wheel.lines.is_empty())
+    };
+    let is_rising = records.windows(2).all(|pair| pair[0].number < pair[1].number);
+    if is_rising && records.iter().all(is_good) { Ok(records) } else { Err(wrong()) }
 }

@@ -26,7 +26,7 @@ impl From<DiagnoseError> for Failure {
             DiagnoseError::NoReference => {
                 Self::bad_input(message).with_help("or make more of them, with --records")
             }
-            DiagnoseError::NotSolved | DiagnoseError::Cancelled => Self::failed(message),
+            DiagnoseError::NotSolved => Self::failed(message),
             _ => Self::bad_input(message),
         }
     }

@@ -159,7 +159,7 @@ fn what_is_refused() {
     let here = workplace.path("").display().to_string();
     for (arguments, words) in [
         (&["absent.csv"][..], &["there is no recording absent.csv"][..]),
-        (&["."], &["is a directory"]),
+        (&["."], &["a recording is expected here"]),
         (&["volts.csv"], &["channel bearing is in V", "must be g or m/s²", "--sensitivity-mv-per-unit"]),
         // With nothing said the speed is the scenario's, about which the mesh tone is looked for.
         (&["other.csv", "-c", "bearing"], &["no mesh tone at 800.00 Hz"]),
