@@ -26,7 +26,7 @@ pub struct Spread {
 
 /// What may be.
 ///
-/// Drawn for a pair of wheels ([`RECORDS_PER_UNIT`] records): its wheels' deviations, its structure, its path to the sensor. Drawn
+/// Drawn for a pair of wheels (eight records): its wheels' deviations, its structure, its path to the sensor. Drawn
 /// for a record: speed, load, damage.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prior {
@@ -129,7 +129,7 @@ impl Prior {
     /// A record, the same whatever else is drawn.
     ///
     /// # Arguments
-    /// * `number` - of the record: the first two of every [`RECORDS_PER_UNIT`] are healthy
+    /// * `number` - of the record: the first two of every eight are healthy
     ///
     /// # Errors
     /// A scenario that is not valid.
