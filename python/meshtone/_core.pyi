@@ -13,6 +13,7 @@ _Column = int | str
 
 __all__ = [
     "ExploreServer",
+    "Observation",
     "Record",
     "Scenario",
     "ShaftPhase",
@@ -24,6 +25,7 @@ __all__ = [
     "change_fault_to_harmonics_ratio",
     "check_plan",
     "dataset_template",
+    "diagnose",
     "energy_ratio",
     "enhance",
     "envelope",
