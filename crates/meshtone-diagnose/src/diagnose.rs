@@ -204,13 +204,10 @@ impl Shown {
         let last = learned.layout.last[1];
         let points = (2 * last + 1).next_power_of_two();
         let gear = &question.now[0].gear;
-        let rms = |lines: &WheelLines| {
-            lines.difference().iter().take(last + 1).map(|line| 2.0 * line.norm_sqr()).sum::<f64>().sqrt()
-        };
         Self {
             difference_g: revolution(&cut(gear, last), points),
             burst_rev: burst_rev(gear, last),
-            healthy_rms_g: question.healthy.first().map(|healthy| rms(&healthy.gear)),
+            healthy_rms_g: question.healthy.first().map(|healthy| rms_g(&healthy.gear, last)),
             last,
             points,
         }
@@ -224,9 +221,7 @@ impl Shown {
         let of_unit = learned.reference.records.iter().find(|other| other.number == number);
         let gain = match (self.healthy_rms_g, of_unit) {
             (Some(measured), Some(healthy)) => {
-                let simulated: f64 =
-                    cut(&healthy.wheels[1], self.last).iter().map(|line| 2.0 * line.norm_sqr()).sum();
-                measured / simulated.sqrt().max(f64::MIN_POSITIVE)
+                measured / rms_g(&healthy.wheels[1], self.last).max(f64::MIN_POSITIVE)
             }
             _ => 1.0,
         };
@@ -276,6 +271,11 @@ fn cut(gear: &WheelLines, last: usize) -> Vec<meshtone_fourier::Complex64> {
     gear.difference().into_iter().take(last + 1).collect()
 }
 
+/// (g) Rms of the difference signal.
+fn rms_g(gear: &WheelLines, last: usize) -> f64 {
+    cut(gear, last).iter().map(|line| 2.0 * line.norm_sqr()).sum::<f64>().sqrt()
+}
+
 /// The simulations that resemble the recording most: of each class as many as it is probable.
 fn resembling(learned: &Learned, row: &Row, of_class: &[f64], count: usize) -> Vec<(f64, usize)> {
     let point = learned.outside.point(&row.values);
@@ -301,14 +301,11 @@ fn warnings(answer: &Answer, learned: &Learned, question: &Question) -> Vec<Stri
                 .to_owned(),
         );
     }
-    for misfit in question.now.iter().chain(question.healthy).filter_map(|asked| asked.misfit.clone()) {
-        if !warnings.contains(&misfit) {
-            warnings.push(misfit);
-        }
-    }
-    for doubt in question.now.iter().chain(question.healthy).flat_map(|asked| asked.doubts.clone()) {
-        if !warnings.contains(&doubt) {
-            warnings.push(doubt);
+    let all = || question.now.iter().chain(question.healthy);
+    let misfits = all().filter_map(|asked| asked.misfit.clone());
+    for said in misfits.chain(all().flat_map(|asked| asked.doubts.clone())) {
+        if !warnings.contains(&said) {
+            warnings.push(said);
         }
     }
     if answer.outside_model < OUTSIDE {

@@ -95,7 +95,7 @@ pub(crate) fn wheel_features(view: &WheelLines, last: usize, has_regular_part: b
     // The burst: where the envelope's energy over one tooth is largest.
     let pitch = points as f64 / teeth as f64;
     let smooth = energy_over_tooth(&whole, teeth);
-    let at = (0..points).max_by(|&a, &b| smooth[a].total_cmp(&smooth[b])).unwrap_or(0);
+    let at = largest_at(&smooth);
     let total = smooth.iter().sum::<f64>().max(f64::MIN_POSITIVE) / points as f64;
     let around = |teeth_on: f64| smooth[wrapped(at as f64 + teeth_on * pitch, points)] / total;
     shapes.extend(WINDOWS.iter().map(|&on| around(on).max(1e-4).ln()));
@@ -145,8 +145,12 @@ pub(crate) fn burst_rev(view: &WheelLines, last: usize) -> f64 {
     let difference: Vec<Complex64> = view.difference().into_iter().take(last + 1).collect();
     let points = (2 * last + 1).next_power_of_two().max(64);
     let smooth = energy_over_tooth(&revolution(&difference, points), view.teeth as usize);
-    let at = (0..points).max_by(|&a, &b| smooth[a].total_cmp(&smooth[b])).unwrap_or(0);
-    at as f64 / points as f64
+    largest_at(&smooth) as f64 / points as f64
+}
+
+/// Where a sequence is largest.
+fn largest_at(values: &[f64]) -> usize {
+    (0..values.len()).max_by(|&a, &b| values[a].total_cmp(&values[b])).unwrap_or(0)
 }
 
 /// The squared envelope, the mean over one tooth around each point.

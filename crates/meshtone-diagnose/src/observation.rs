@@ -166,6 +166,16 @@ impl Observation {
         })
     }
 
+    /// The same with something else that speaks against the recording.
+    ///
+    /// # Arguments
+    /// * `against` - in words; said before what is known already
+    pub fn with_misfit(mut self, against: impl ToString) -> Self {
+        let also = self.misfit.take().map_or_else(String::new, |also| format!("; {also}"));
+        self.misfit = Some(format!("{}{also}", against.to_string()));
+        self
+    }
+
     /// What one revolution of the gear shows.
     ///
     /// # Arguments

@@ -78,13 +78,11 @@ fn measured(
     let pinion = angular_resample(signal, &phase.0, &settings)?;
     let gear = angular_resample(signal, &phase.0.of_mate(teeth[0], teeth[1])?, &settings)?;
     let told = Told { teeth: teeth[0], mate_teeth: Some(teeth[1]), turning: ToldTurning::Other };
-    let mut observed =
-        Observed::of_recording(&pinion, &gear, teeth, phase.0.mean_speed_hz(sampling_rate_hz))?;
-    if let Some(against) = misfit(&pinion, &told) {
-        let also = observed.misfit.take().map_or_else(String::new, |also| format!("; {also}"));
-        observed.misfit = Some(format!("{against}{also}"));
-    }
-    Ok(observed)
+    let observed = Observed::of_recording(&pinion, &gear, teeth, phase.0.mean_speed_hz(sampling_rate_hz))?;
+    Ok(match misfit(&pinion, &told) {
+        Some(against) => observed.with_misfit(against),
+        None => observed,
+    })
 }
 
 /// The text of the answer's JSON, the difference signal, and the predictive band's ends.

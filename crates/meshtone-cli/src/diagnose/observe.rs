@@ -139,15 +139,11 @@ impl<'a> Observer<'a> {
         } else {
             (mate, own, speed_hz * f64::from(gear_teeth) / f64::from(pinion_teeth))
         };
-        let mut observation = self.of_angles(pinion, gear, pinion_hz)?;
-        if let Some(against) = against {
-            let against = against.to_string();
-            observation.misfit = Some(match observation.misfit.take() {
-                Some(also) => format!("{against}; {also}"),
-                None => against,
-            });
-        }
-        Ok(observation)
+        let observation = self.of_angles(pinion, gear, pinion_hz)?;
+        Ok(match against {
+            Some(against) => observation.with_misfit(against),
+            None => observation,
+        })
     }
 
     fn of_angles(
