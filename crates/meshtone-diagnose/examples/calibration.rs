@@ -6,7 +6,7 @@
 //!
 //! Writes a row for each recording: what it is, what is said about it. Of every pair of wheels the first record is the healthy one
 //! that the others are compared with; with `alone` in place of `healthy` they are compared with none. A last argument leaves a kind
-//! of damage out of the reference set, or asks about recordings that are not what they are told to be: `bearing`,
+//! of damage out of the reference set; goes on with refined rounds, `refined`; or asks about recordings that are not what they are told to be: `bearing`,
 //! `teeth`, `ratio`; or about whole signals of healthy and damaged pairs: `signals`.
 #![allow(clippy::print_stderr)]
 
@@ -22,7 +22,7 @@ use meshtone::signal::{AngularSettings, ShaftPhase, angular_resample};
 use meshtone::wheel::WheelName;
 use meshtone_diagnose::{
     Answer, HEALTHY, Learned, Observation, Prior, Question, ReferenceControl, ReferenceRecord,
-    ReferenceStore, SignalKind, WheelLines, diagnose,
+    ReferenceStore, SignalKind, WheelLines, diagnose, refine,
 };
 use meshtone_fourier::{from_real_spectrum, real_spectrum};
 
@@ -52,11 +52,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         record.fault.as_ref().map_or(HEALTHY, |fault| reference_kind(&prior, fault.kind))
     };
     let other = other.first().map_or("", String::as_str);
-    reference.records.retain(|record| other.is_empty() || name(record) != other);
+    reference.records.retain(|record| name(record) != other);
     let mut learned: Option<Learned> = None;
     let mut table = String::from(
         "unit,kind,wheel,severity,tooth,said,damaged,probability,outside,healthy_outside,q05,q25,q50,q75,q95,said_wheel,said_tooth,tooth_probability\n",
     );
+    let is_refined = other == "refined";
     let is_strange = ["signals", "bearing", "teeth", "ratio"].contains(&other);
     for record in &asked.records {
         let of_gear = record.fault.as_ref().is_none_or(|fault| fault.wheel == WheelName::Gear);
@@ -69,7 +70,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         };
         if !is_asked
             || (signal != SignalKind::Recording && !of_gear)
-            || (!other.is_empty() && !is_strange && kind != other)
+            || (!other.is_empty() && !is_strange && !is_refined && kind != other)
         {
             continue;
         }
@@ -89,7 +90,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             learned = Some(Learned::new(&reference, &question)?);
         }
         let Some(learned) = &learned else { continue };
-        let answer = diagnose(learned, &question)?;
+        let refined = match is_refined {
+            true => refine(learned, &question, &control)?,
+            false => None,
+        };
+        let answer = diagnose(learned, &question, refined.as_ref())?;
         row(&mut table, record, kind, &answer)?;
     }
     fs::write(output, table)?;

@@ -78,6 +78,8 @@ pub struct Answer {
     pub recordings: usize,
     /// Simulations that it was learnt from.
     pub reference_records: usize,
+    /// Simulations of a refined round, of the likeliest damage within its likely severities; 0 where there was none.
+    pub refined_records: usize,
     /// The kinds, the most probable first; their probabilities sum to 1.
     pub kinds: Vec<KindAnswer>,
     /// (-) p-value: the part of the simulated records that are as far as the recording, or farther, from the others.

@@ -8,6 +8,7 @@ use crate::features::burst_rev;
 use crate::learn::{Layout, Learned, Question, Row};
 use crate::observation::{WheelLines, revolution};
 use crate::quantile::{interval, quantile};
+use crate::refine::Refined;
 
 /// (-) p-value below which a recording is called unlike all that was simulated.
 const OUTSIDE: f64 = 0.05;
@@ -26,10 +27,15 @@ type Draws = Vec<(f64, f64)>;
 /// # Arguments
 /// * `learned` - of the reference set, for a question like this one
 /// * `question` - the recordings
+/// * `refined` - what a refined round for this question adds, where there was one
 ///
 /// # Errors
 /// A question unlike the one that was learnt for; too few simulations of a kind.
-pub fn diagnose(learned: &Learned, question: &Question) -> Result<Answer, DiagnoseError> {
+pub fn diagnose(
+    learned: &Learned,
+    question: &Question,
+    refined: Option<&Refined>,
+) -> Result<Answer, DiagnoseError> {
     let asked = Layout::of(question, learned.reference)?;
     let known = &learned.layout;
     let is_shorter = asked.last.iter().zip(known.last).any(|(asked, known)| *asked < known);
@@ -77,7 +83,11 @@ pub fn diagnose(learned: &Learned, question: &Question) -> Result<Answer, Diagno
             numbers.push((None, vec![(1.0, 1.0)]));
         } else {
             for &(class, part) in &counted {
-                for (number, model) in learned.sizes(class)? {
+                let models = match refined.and_then(|refined| refined.of_class(class)) {
+                    Some(models) => models,
+                    None => learned.sizes(class)?,
+                };
+                for (number, model) in models {
                     let draws = model.posterior(&features);
                     let total: f64 = draws.iter().map(|(_, weight)| weight).sum();
                     let draws = draws.into_iter().map(|(value, weight)| (value, part * weight / total));
@@ -126,6 +136,7 @@ pub fn diagnose(learned: &Learned, question: &Question) -> Result<Answer, Diagno
         has_healthy: learned.layout.has_healthy,
         recordings: question.now.len(),
         reference_records: learned.records.len(),
+        refined_records: refined.map_or(0, |refined| refined.records),
         kinds,
         outside_model,
         healthy_outside_model,
@@ -217,8 +228,7 @@ impl Shown {
     fn of_record(&self, learned: &Learned, record: usize) -> Vec<f64> {
         let record = learned.records[record];
         let gear = &record.wheels[1];
-        let number = record.number / crate::prior::RECORDS_PER_UNIT * crate::prior::RECORDS_PER_UNIT;
-        let of_unit = learned.reference.records.iter().find(|other| other.number == number);
+        let of_unit = learned.reference.healthy_of(record);
         let gain = match (self.healthy_rms_g, of_unit) {
             (Some(measured), Some(healthy)) => {
                 measured / rms_g(&healthy.wheels[1], self.last).max(f64::MIN_POSITIVE)

@@ -50,6 +50,7 @@ pub struct Learned<'a> {
     pub(crate) reference: &'a ReferenceSet,
     pub(crate) kinds: Vec<DamageKind>,
     pub(crate) layout: Layout,
+    appearance: Appearance,
     /// The records that it was learnt from.
     pub(crate) records: Vec<&'a ReferenceRecord>,
     pub(crate) rows: Vec<Row>,
@@ -68,7 +69,7 @@ pub struct Learned<'a> {
 }
 
 /// Severity and sizes of a class's damages, by their places among the sizes; none of the severity.
-type SizeModels = Result<Vec<(Option<usize>, SizeModel)>, DiagnoseError>;
+pub(crate) type SizeModels = Result<Vec<(Option<usize>, SizeModel)>, DiagnoseError>;
 
 /// What is compared.
 #[derive(Debug, Clone)]
@@ -77,6 +78,47 @@ pub(crate) struct Layout {
     pub has_healthy: bool,
     /// The last order that is whole everywhere, of the pinion and of the gear.
     pub last: [usize; 2],
+}
+
+/// How a simulation looks in recordings like those of the question.
+struct Appearance {
+    layout: Layout,
+    /// (g) Noise in the lines of the recordings that are asked about, and of the healthy ones.
+    noises: [[Vec<f64>; 2]; 2],
+    /// (Hz) The rig's speed of the pinion.
+    nominal_hz: f64,
+    /// Whether the recordings' speed is known.
+    knows_speed: bool,
+}
+
+impl Appearance {
+    /// Of the healthy recordings alone.
+    fn of_healthy(&self) -> Self {
+        let layout = Layout { has_healthy: false, ..self.layout.clone() };
+        let noises = [self.noises[1].clone(), Default::default()];
+        Self { layout, noises, nominal_hz: self.nominal_hz, knows_speed: self.knows_speed }
+    }
+
+    /// What a simulation shows.
+    ///
+    /// # Arguments
+    /// * `record` - the simulation
+    /// * `healthy` - of the same pair of wheels, where it is compared with one
+    /// * `seed` - of the noise
+    fn row(&self, record: &ReferenceRecord, healthy: Option<&ReferenceRecord>, seed: u64) -> Row {
+        let [now, before] = &self.noises;
+        let noisy = |record, noise| with_noise(record, &self.layout, noise, seed);
+        let (now, before) = (noisy(record, now), healthy.map(|healthy| noisy(healthy, before)));
+        let speed = if self.knows_speed { (record.pinion_speed_hz / self.nominal_hz).ln() } else { 0.0 };
+        let signal = self.layout.signal;
+        let before = before.as_ref().map_or([None, None], |wheels| shown(signal, wheels));
+        self.layout.row(shown(signal, &now), before, speed)
+    }
+}
+
+/// The wheels that a signal shows.
+fn shown(signal: SignalKind, wheels: &[WheelLines; 2]) -> [Option<&WheelLines>; 2] {
+    [(signal == SignalKind::Recording).then_some(&wheels[0]), Some(&wheels[1])]
 }
 
 /// What one record shows.
@@ -206,46 +248,34 @@ impl<'a> Learned<'a> {
         let layout = Layout::of(question, reference)?;
         let noises = [noise_of(question.now), noise_of(question.healthy)];
         let kinds = reference.prior.kinds();
-        let healthy_of = |record: &ReferenceRecord| {
-            let number = record.number / RECORDS_PER_UNIT * RECORDS_PER_UNIT;
-            reference.records.binary_search_by_key(&number, |other| other.number).ok()
-        };
         let is_asked = |record: &&ReferenceRecord| {
             let of_gear = record.fault.as_ref().is_none_or(|fault| fault.wheel == WheelName::Gear);
             let is_first = record.number.is_multiple_of(RECORDS_PER_UNIT);
             (layout.signal == SignalKind::Recording || of_gear)
-                && (!layout.has_healthy || (!is_first && healthy_of(record).is_some()))
+                && (!layout.has_healthy || (!is_first && reference.healthy_of(record).is_some()))
         };
         let records: Vec<&ReferenceRecord> = reference.records.iter().filter(is_asked).collect();
         if records.len() < FEWEST_RECORDS {
             return Err(DiagnoseError::NoReference);
         }
-        let nominal = reference.prior.base.operation.pinion_speed_hz;
-        let noisy = |record: &ReferenceRecord, noise: &[Vec<f64>; 2]| {
-            with_noise(record, &layout, noise, reference.prior.seed)
+        let appearance = Appearance {
+            layout: layout.clone(),
+            noises,
+            nominal_hz: reference.prior.base.operation.pinion_speed_hz,
+            knows_speed: question.now.iter().any(|asked| asked.pinion_speed_hz.is_some()),
         };
-        let row_of = |layout: &Layout, record: &ReferenceRecord, noise: &[Vec<f64>; 2]| {
-            let now = noisy(record, noise);
-            let before = healthy_of(record)
-                .filter(|_| layout.has_healthy)
-                .map(|at| noisy(&reference.records[at], &noises[1]));
-            let is_known = question.now.iter().any(|asked| asked.pinion_speed_hz.is_some());
-            let speed = if is_known { (record.pinion_speed_hz / nominal).ln() } else { 0.0 };
-            let shown = |wheels: &'_ [WheelLines; 2]| {
-                let [pinion, gear] = wheels.clone();
-                [(layout.signal == SignalKind::Recording).then_some(pinion), Some(gear)]
-            };
-            let (now, before) = (shown(&now), before.as_ref().map_or([None, None], shown));
-            layout.row(now.each_ref().map(Option::as_ref), before.each_ref().map(Option::as_ref), speed)
+        let row_of = |record: &&ReferenceRecord| {
+            let before = reference.healthy_of(record).filter(|_| layout.has_healthy);
+            appearance.row(record, before, reference.prior.seed)
         };
-        let rows: Vec<Row> = records.par_iter().map(|record| row_of(&layout, record, &noises[0])).collect();
+        let rows: Vec<Row> = records.par_iter().map(row_of).collect();
         let mut classes: Vec<Class> = records.iter().map(|record| class_of(record)).collect();
         classes.sort_unstable_by_key(|class| class.map(|(kind, wheel)| (kind, wheel as usize)));
         classes.dedup();
         let place = |record: &&ReferenceRecord| classes.iter().position(|class| *class == class_of(record));
         let class_of: Vec<usize> = records.iter().filter_map(place).collect();
         let units: Vec<u64> = records.iter().map(|record| record.number / RECORDS_PER_UNIT).collect();
-        let folds: Vec<usize> = units.iter().map(|unit| (unit % FOLDS as u64) as usize).collect();
+        let folds: Vec<usize> = records.iter().map(|record| fold_of(record)).collect();
         let weights = weights(&class_of, &classes);
         let values: Vec<Vec<f64>> = rows.iter().map(|row| row.values.clone()).collect();
         let standard = Standard::of(&values);
@@ -259,11 +289,11 @@ impl<'a> Learned<'a> {
         let softmax = Softmax::fit(&regression.out_of_fold, &class_of, &weights)?;
         let outside = Outside::new(&values, &units, &weights);
         let healthy_outside = layout.has_healthy.then(|| {
-            let alone = Layout { has_healthy: false, ..layout.clone() };
+            let alone = appearance.of_healthy();
             let healthy: Vec<&ReferenceRecord> =
                 reference.records.iter().filter(|record| record.fault.is_none()).collect();
-            let rows: Vec<Vec<f64>> =
-                healthy.par_iter().map(|record| row_of(&alone, record, &noises[1]).values).collect();
+            let row_of = |record: &&ReferenceRecord| alone.row(record, None, reference.prior.seed).values;
+            let rows: Vec<Vec<f64>> = healthy.par_iter().map(row_of).collect();
             let units: Vec<u64> = healthy.iter().map(|record| record.number / RECORDS_PER_UNIT).collect();
             Outside::new(&rows, &units, &vec![1.0; rows.len()])
         });
@@ -272,6 +302,7 @@ impl<'a> Learned<'a> {
             reference,
             kinds,
             layout,
+            appearance,
             records,
             rows,
             classes,
@@ -327,14 +358,35 @@ impl<'a> Learned<'a> {
     /// # Errors
     /// Too few simulations.
     pub(crate) fn sizes(&self, class: usize) -> Result<&[(Option<usize>, SizeModel)], DiagnoseError> {
-        let known = self.size_models[class].get_or_init(|| self.fit_sizes(class));
+        let known = self.size_models[class].get_or_init(|| self.fit_sizes(class, None));
         known.as_deref().map_err(Clone::clone)
     }
 
-    fn fit_sizes(&self, class: usize) -> Result<Vec<(Option<usize>, SizeModel)>, DiagnoseError> {
-        let rows = self.rows_of(class);
-        let faults: Vec<&DrawnFault> =
-            rows.iter().filter_map(|&row| self.records[row].fault.as_ref()).collect();
+    /// As [`Self::sizes`], by the simulations within a range of severities.
+    ///
+    /// # Arguments
+    /// * `refined` - the range, with more simulations in it; none: all severities, without more
+    pub(crate) fn fit_sizes(&self, class: usize, refined: Option<([f64; 2], &ReferenceSet)>) -> SizeModels {
+        let is_within = |fault: &DrawnFault| {
+            refined.is_none_or(|([least, most], _)| (least..=most).contains(&fault.severity))
+        };
+        let (rows, mut faults): (Vec<usize>, Vec<&DrawnFault>) = self
+            .rows_of(class)
+            .into_iter()
+            .filter_map(|row| Some((row, self.records[row].fault.as_ref().filter(|fault| is_within(fault))?)))
+            .unzip();
+        let mut folds: Vec<usize> = rows.iter().map(|&row| self.folds[row]).collect();
+        let mut features = self.features.select_columns(&rows);
+        if let Some((_, refined)) = refined {
+            let more = self.refined_rows(refined);
+            let values: Vec<Vec<f64>> =
+                more.iter().map(|(_, row)| self.standard.apply(&row.values)).collect();
+            let known = features.ncols();
+            features = features.resize_horizontally(known + more.len(), 0.0);
+            features.columns_mut(known, more.len()).copy_from(&self.random.of(&values));
+            folds.extend(more.iter().map(|(record, _)| fold_of(record)));
+            faults.extend(more.iter().filter_map(|(record, _)| record.fault.as_ref()));
+        }
         let mut places = vec![None];
         let mut numbers = vec![faults.iter().map(|fault| fault.severity).collect::<Vec<f64>>()];
         for place in 0..faults.first().map_or(0, |fault| fault.sizes.len()) {
@@ -346,10 +398,31 @@ impl<'a> Learned<'a> {
                 numbers.push(values);
             }
         }
-        let folds: Vec<usize> = rows.iter().map(|&row| self.folds[row]).collect();
-        let models = SizeModel::fit(&self.features.select_columns(&rows), &numbers, &folds)?;
+        let models = SizeModel::fit(&features, &numbers, &folds)?;
         Ok(places.into_iter().zip(models).collect())
     }
+
+    /// The damaged records of a refined round that can be compared with the question, with what they show.
+    fn refined_rows<'r>(&self, refined: &'r ReferenceSet) -> Vec<(&'r ReferenceRecord, Row)> {
+        let is_whole = |record: &ReferenceRecord| {
+            record.wheels.iter().zip(self.layout.last).all(|(wheel, last)| wheel.last() >= last)
+        };
+        let seed = refined.prior.seed;
+        let row = |record: &'r ReferenceRecord| {
+            let healthy = refined.healthy_of(record).filter(|healthy| is_whole(healthy));
+            if record.fault.is_none() || !is_whole(record) || self.layout.has_healthy && healthy.is_none() {
+                return None;
+            }
+            let healthy = healthy.filter(|_| self.layout.has_healthy);
+            Some((record, self.appearance.row(record, healthy, seed)))
+        };
+        refined.records.par_iter().filter_map(row).collect()
+    }
+}
+
+/// Which part of the simulations a record is in: pairs of wheels are not divided.
+fn fold_of(record: &ReferenceRecord) -> usize {
+    (record.number / RECORDS_PER_UNIT % FOLDS as u64) as usize
 }
 
 fn class_of(record: &ReferenceRecord) -> Class {

@@ -18,15 +18,19 @@ mod outside;
 mod prior;
 mod quantile;
 mod reference;
+mod refine;
 mod severity;
 mod softmax;
 mod store;
+#[cfg(test)]
+mod synthetic;
 
 pub use answer::{Answer, Explanation, HEALTHY, Interval, KindAnswer, PlaceAnswer, SizeAnswer};
 pub use diagnose::diagnose;
 pub use error::DiagnoseError;
 pub use learn::{Learned, Question};
 pub use observation::{Observation, SignalKind, WheelLines};
-pub use prior::{Drawn, DrawnFault, Prior, Spread};
+pub use prior::{Drawn, DrawnFault, Focus, Prior, Spread};
 pub use reference::{ReferenceControl, ReferenceRecord, ReferenceSet, build_reference};
+pub use refine::{REFINED_RECORDS, Refined, refine};
 pub use store::{ReferenceStore, StoreError};

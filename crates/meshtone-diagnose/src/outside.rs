@@ -121,3 +121,32 @@ impl Outside {
         (farther.map(|(_, weight)| weight).sum::<f64>() + mean) / (total + mean)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use meshtone::random::{Draws, Purpose};
+
+    // Points on a line within noise in ten dimensions: new ones of the kind are as often below a p-value as it says, one beside the line
+    // is not among them.
+    #[test]
+    fn p_values_are_uniform_and_small_beside_what_was_simulated() {
+        let mut draws = Draws::new(2, Purpose::DiagnosisNoise, 0);
+        let mut row = || -> Vec<f64> {
+            let along = draws.normal();
+            (0..10).map(|feature| along * f64::from(feature) + 0.2 * draws.normal()).collect()
+        };
+        let rows: Vec<Vec<f64>> = (0..600).map(|_| row()).collect();
+        let units: Vec<u64> = (0..600).map(|number| number / 4).collect();
+        let outside = Outside::new(&rows, &units, &[1.0; 600]);
+        let mut values: Vec<f64> = (0..400).map(|_| outside.p_value(&row())).collect();
+        values.sort_by(f64::total_cmp);
+        // Kolmogorov and Smirnov: 1.63 / √400 is passed by one in a hundred.
+        let apart = |(at, value): (usize, &f64)| ((at as f64 + 0.5) / 400.0 - value).abs();
+        let farthest = values.iter().enumerate().map(apart).fold(0.0, f64::max);
+        assert!(farthest < 0.0815, "{farthest}");
+        let mut strange = row();
+        strange[9] -= 3.0;
+        assert!(outside.p_value(&strange) < 0.01);
+    }
+}

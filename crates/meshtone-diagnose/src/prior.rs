@@ -15,6 +15,11 @@ const SIZE_SPREAD: f64 = 0.3;
 /// Draws of a damage before the record goes without other sizes than those of its severity.
 const MOST_ATTEMPTS: usize = 4;
 
+/// (-) Spread of the speed in a refined round for a recording of known speed: what a speed is known to.
+const KNOWN_SPEED_SPREAD: f64 = 0.002;
+/// Draws of a damage before a record of a [`Focus`] is given up: a range of severities is a tenth of all at least.
+const MOST_FOCUSED_ATTEMPTS: usize = 100;
+
 /// How uncertain a number of the scenario is: it is multiplied by e to the power of a normal number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spread {
@@ -22,6 +27,20 @@ pub struct Spread {
     pub key: String,
     /// (-) Standard deviation of its logarithm.
     pub deviation: f64,
+}
+
+/// What damage a refined round draws: one kind on one wheel, within a range of severities.
+///
+/// Within the range its density is that of the prior, so that what is left out is all that is lost: Deistler, Goncalves, Macke,
+/// "Truncated proposals for scalable and hassle-free simulation-based inference", NeurIPS 2022.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Focus {
+    /// The kind, by its place in [`Prior::kinds`].
+    pub kind: usize,
+    /// The damaged wheel.
+    pub wheel: WheelName,
+    /// (-) The least and the largest severity.
+    pub severity: [f64; 2],
 }
 
 /// What may be.
@@ -47,6 +66,8 @@ pub struct Prior {
     pub ripple_db: f64,
     /// Seed of all draws.
     pub seed: u64,
+    /// The damage of a refined round; none where every kind on either wheel is drawn.
+    pub focus: Option<Focus>,
 }
 
 /// A damage that was drawn.
@@ -105,7 +126,22 @@ impl Prior {
             gain_db: 6.0,
             ripple_db: 2.0,
             seed: 1,
+            focus: None,
         }
+    }
+
+    /// Other wheels with one damage, at a recording's speed.
+    ///
+    /// # Arguments
+    /// * `focus` - the damage
+    /// * `pinion_speed_hz` - (Hz) of the recording, where it is known
+    pub fn narrowed(&self, focus: Focus, pinion_speed_hz: Option<f64>) -> Self {
+        let mut narrowed = Self { seed: self.seed.wrapping_add(1), focus: Some(focus), ..self.clone() };
+        if let Some(speed_hz) = pinion_speed_hz {
+            narrowed.base.operation.pinion_speed_hz = speed_hz;
+            narrowed.speed_spread = KNOWN_SPEED_SPREAD;
+        }
+        narrowed
     }
 
     /// The kinds of damage that the rig's model knows.
@@ -167,31 +203,49 @@ impl Prior {
         let mut scenario = self.base.with_known_numbers(&numbers)?.with_seed(seed);
         // Other wheels than those of the rig's own.
         scenario.quality.seed = None;
-        let fault = match place.checked_sub(2) {
-            None => None,
-            Some(damaged) => damage(kinds, unit * (RECORDS_PER_UNIT - 2) + damaged, &mut scenario, &mut own)?,
+        let fault = match (&self.focus, place) {
+            (_, 0) | (None, 1) => None,
+            (None, _) => {
+                let class = turn(kinds, unit * (RECORDS_PER_UNIT - 2) + place - 2);
+                damage(kinds, class, None, &mut scenario, &mut own)?
+            }
+            (Some(focus), _) => {
+                let class = (focus.kind, focus.wheel);
+                damage(kinds, Some(class), Some(focus.severity), &mut scenario, &mut own)?
+            }
         };
         Ok(Drawn { scenario, fault, path_seed, gain_db })
     }
 }
 
-/// Damages a pair: each kind on each wheel in turn.
+/// Each kind on each wheel in turn; none where there are no kinds.
+fn turn(kinds: &[DamageKind], number: u64) -> Option<(usize, WheelName)> {
+    let class = number.checked_rem(2 * kinds.len() as u64)?;
+    let wheel = if class.is_multiple_of(2) { WheelName::Gear } else { WheelName::Pinion };
+    Some(((class / 2) as usize, wheel))
+}
+
+/// Damages a pair.
+///
+/// # Arguments
+/// * `kinds` - that the model knows
+/// * `class` - kind and wheel; none: nothing is damaged
+/// * `within` - (-) severities that count, others are drawn again; none: all
 fn damage(
     kinds: &[DamageKind],
-    number: u64,
+    class: Option<(usize, WheelName)>,
+    within: Option<[f64; 2]>,
     scenario: &mut Scenario,
     own: &mut Draws,
 ) -> Result<Option<DrawnFault>, ScenarioError> {
-    let classes = 2 * kinds.len() as u64;
-    let Some(class) = number.checked_rem(classes) else { return Ok(None) };
-    let kind = (class / 2) as usize;
-    let wheel = if class.is_multiple_of(2) { WheelName::Gear } else { WheelName::Pinion };
+    let Some((kind, wheel)) = class else { return Ok(None) };
     let of_kind = &kinds[kind];
     let usual = Fault::at_usual_place(of_kind.example.clone()).tooth;
     let tooth = 1 + (own.bits() % u64::from(scenario.gears.teeth(wheel))) as u32;
     let is_on_one_tooth = usual == FaultyTeeth::One(1);
     let teeth = if is_on_one_tooth { FaultyTeeth::One(tooth) } else { usual };
-    for attempt in 0..MOST_ATTEMPTS {
+    let attempts = if within.is_some() { MOST_FOCUSED_ATTEMPTS } else { MOST_ATTEMPTS };
+    for attempt in 0..attempts {
         let least = LEAST_SEVERITY;
         let drawn = least + (1.0 - least) * own.uniform(0.5, 0.5);
         let severity = if of_kind.sizes.is_empty() { 1.0 } else { drawn };
@@ -200,7 +254,7 @@ fn damage(
         if sized.faults.is_empty() {
             continue;
         }
-        let spread = if attempt + 1 < MOST_ATTEMPTS { SIZE_SPREAD } else { 0.0 };
+        let spread = if attempt + 1 < attempts { SIZE_SPREAD } else { 0.0 };
         let keys: Vec<String> = of_kind.sizes.iter().map(|size| format!("fault.{size}")).collect();
         let other: Vec<(&str, f64)> = keys
             .iter()
@@ -208,18 +262,66 @@ fn damage(
             .collect();
         let Ok(damaged) = sized.with_known_numbers(&other) else { continue };
         let Ok(severities) = damaged.fault_severities() else { continue };
+        let severity = severities[0].min(1.0);
+        if within.is_some_and(|[least, most]| severity < least || severity > most) {
+            continue;
+        }
         let sizes = keys.iter().map(|key| damaged.number(key).unwrap_or(f64::NAN)).collect();
         *scenario = damaged;
-        return Ok(Some(DrawnFault {
-            kind,
-            wheel,
-            tooth,
-            is_on_one_tooth,
-            severity: severities[0].min(1.0),
-            sizes,
-        }));
+        return Ok(Some(DrawnFault { kind, wheel, tooth, is_on_one_tooth, severity, sizes }));
     }
     // A record that is counted as healthy because its damage cannot be would be wrong.
     let problem = "no damage of this kind that was drawn fits the tooth";
     Err(ScenarioError::new("fault.kind", format!("\"{}\"", of_kind.name), problem))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::prior;
+
+    #[test]
+    fn a_record_is_the_same_whatever_else_is_drawn() {
+        let prior = prior();
+        let again = [13, 4, 13].map(|number| prior.draw(number).unwrap());
+        // A size that is a list is not a number, and not equal to itself.
+        let [first, other, second] = again.each_ref().map(|drawn| format!("{drawn:?}"));
+        assert!(first == second && first != other);
+        assert_ne!(again[0].scenario.seed, again[1].scenario.seed);
+    }
+
+    // The two healthy records of a pair have its wheels; each kind comes on each wheel as often as the next.
+    #[test]
+    fn pairs_have_healthy_records_and_all_damages_in_turn() {
+        let prior = prior();
+        let kinds = prior.kinds().len();
+        let mut counts = vec![0; 2 * kinds];
+        for number in 0..8 * kinds as u64 {
+            let drawn = prior.draw(number).unwrap();
+            assert_eq!(drawn.fault.is_none(), number % 8 < 2);
+            if let Some(fault) = drawn.fault {
+                counts[2 * fault.kind + fault.wheel as usize] += 1;
+                assert!((0.0..=1.0).contains(&fault.severity));
+            }
+        }
+        assert!(counts.iter().all(|count| *count == counts[0]), "{counts:?}");
+        let [first, second] = [0, 1].map(|number| prior.draw(number).unwrap());
+        assert_eq!((first.scenario.seed, first.path_seed), (second.scenario.seed, second.path_seed));
+    }
+
+    #[test]
+    fn a_focus_draws_its_damage_at_the_recordings_speed() {
+        let prior = prior();
+        let kind = prior.kinds().iter().position(|kind| kind.name == "tooth-breakage").unwrap();
+        let focus = Focus { kind, wheel: WheelName::Pinion, severity: [0.3, 0.5] };
+        let narrowed = prior.narrowed(focus, Some(43.0));
+        for number in 0..24 {
+            let drawn = narrowed.draw(number).unwrap();
+            assert!((drawn.scenario.operation.pinion_speed_hz / 43.0 - 1.0).abs() < 0.003);
+            let Some(fault) = drawn.fault else { continue };
+            assert_eq!((fault.kind, fault.wheel, number % 8 > 0), (kind, WheelName::Pinion, true));
+            assert!((0.3..=0.5).contains(&fault.severity), "{}", fault.severity);
+        }
+        assert_ne!(narrowed.draw(0).unwrap().scenario.seed, prior.draw(0).unwrap().scenario.seed);
+    }
 }

@@ -10,7 +10,7 @@ use meshtone::signal::{ChainSettings, Shaft, SignalError, SimulatedShafts};
 use meshtone_fourier::Complex64;
 
 use crate::observation::WheelLines;
-use crate::prior::{Drawn, DrawnFault, Prior};
+use crate::prior::{Drawn, DrawnFault, Prior, RECORDS_PER_UNIT};
 
 /// A simulation of a reference set.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,6 +32,18 @@ pub struct ReferenceSet {
     pub prior: Prior,
     /// Those that could be simulated, in the order of their numbers.
     pub records: Vec<ReferenceRecord>,
+}
+
+impl ReferenceSet {
+    /// The healthy record of a record's pair of wheels that all others of the pair are compared with, where it could be simulated.
+    ///
+    /// # Arguments
+    /// * `record` - one of the set
+    pub fn healthy_of(&self, record: &ReferenceRecord) -> Option<&ReferenceRecord> {
+        let number = record.number / RECORDS_PER_UNIT * RECORDS_PER_UNIT;
+        let at = self.records.binary_search_by_key(&number, |other| other.number).ok()?;
+        Some(&self.records[at])
+    }
 }
 
 /// What a caller wants to know, and to say, while a reference set is made.

@@ -139,3 +139,42 @@ impl Gradient for Problem<'_> {
         Ok(self.both(parameters).1)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use meshtone::random::{Draws, Purpose};
+
+    // Three classes, drawn with the probabilities that a known softmax of two scores and nothing gives.
+    #[test]
+    fn known_probabilities_are_found() {
+        const COUNT: usize = 4000;
+        let known = |scores: [f64; 3]| {
+            let powers = scores.map(|score| (3.0 * score).exp());
+            powers.map(|power| power / powers.iter().sum::<f64>())
+        };
+        let mut draws = Draws::new(7, Purpose::DiagnosisNoise, 0);
+        let mut scores = DMatrix::zeros(3, COUNT);
+        let mut classes = Vec::new();
+        for row in 0..COUNT {
+            let drawn = [draws.uniform(0.0, 1.0), draws.uniform(0.0, 1.0), 0.0];
+            let [first, second, _] = known(drawn);
+            let at = draws.uniform(0.5, 0.5);
+            classes.push(if at < first {
+                0
+            } else if at < first + second {
+                1
+            } else {
+                2
+            });
+            scores.column_mut(row).copy_from_slice(&drawn);
+        }
+        let fitted = Softmax::fit(&scores, &classes, &[1.0; COUNT]).unwrap();
+        for scores in [[0.5, -0.5, 0.0], [-0.8, 0.2, 0.0], [0.0, 0.0, 0.0]] {
+            let found = fitted.probabilities(&scores);
+            for (found, known) in found.iter().zip(known(scores)) {
+                assert!((found - known).abs() < 0.04, "{scores:?}: {found} of {known}");
+            }
+        }
+    }
+}

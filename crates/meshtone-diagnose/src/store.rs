@@ -224,3 +224,31 @@ fn read(path: &Path, prior: &Prior) -> io::Result<Vec<ReferenceRecord>> {
     let is_rising = records.windows(2).all(|pair| pair[0].number < pair[1].number);
     if is_rising && records.iter().all(is_good) { Ok(records) } else { Err(wrong()) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::{prior, records};
+    use std::sync::atomic::AtomicBool;
+
+    // A set whose batches are there is what was written, and nothing is simulated: cancelled, it would say so.
+    #[test]
+    fn a_batch_is_read_as_it_was_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let (store, prior) = (ReferenceStore::new(folder.path()), prior());
+        let of_batch = records(&prior, BATCH);
+        let path = store.folder_of(&prior).join("batch-0000.npz");
+        fs::create_dir_all(store.folder_of(&prior)).unwrap();
+        write_atomically(&path, |file| write(file, &of_batch)).unwrap();
+        let control = ReferenceControl { progress: &|_| {}, cancelled: &AtomicBool::new(true) };
+        assert_eq!(store.get(&prior, 1, &control).unwrap().records, of_batch);
+
+        // One that was cut off is made again.
+        let bytes = fs::read(&path).unwrap();
+        fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
+        assert!(matches!(store.get(&prior, 1, &control), Err(StoreError::Cancelled)));
+        // Of another prior there is none.
+        let other = Prior { load_spread: 0.3, ..prior.clone() };
+        assert_ne!(store.folder_of(&other), store.folder_of(&prior));
+    }
+}

@@ -10,7 +10,7 @@ use meshtone::signal::{
 };
 use meshtone_diagnose::{
     Answer, Learned, Observation as Observed, Prior, Question, ReferenceControl, ReferenceStore, SignalKind,
-    StoreError,
+    StoreError, refine,
 };
 use meshtone_io::experiment::read_tuned;
 use numpy::PyArray1;
@@ -127,6 +127,7 @@ pub fn diagnose<'py>(
     let mut json = answer.to_json();
     json["reference"] = serde_json::json!({
         "records": answer.reference_records,
+        "refined_records": answer.refined_records,
         "folder": store.folder_of(&prior).display().to_string(),
     });
     let band = answer.band_g.map(|end| array(py, end));
@@ -142,14 +143,18 @@ fn answer(
     cancelled: &AtomicBool,
 ) -> PyResult<Answer> {
     let told = |count| finished.store(count, Ordering::Relaxed);
-    let reference = store.get(prior, records, &ReferenceControl { progress: &told, cancelled });
+    let control = ReferenceControl { progress: &told, cancelled };
+    let reference = store.get(prior, records, &control);
     let reference = reference.map_err(|error| match &error {
         StoreError::Folder { path, source } => file_error(path, Some(source), &error),
         StoreError::File(_) => PyOSError::new_err(error.to_string()),
         StoreError::Cancelled => PyRuntimeError::new_err(error.to_string()),
     })?;
     let learned = Learned::new(&reference, question).map_err(value_error)?;
-    meshtone_diagnose::diagnose(&learned, question).map_err(value_error)
+    // The caller's count of simulations is complete.
+    let control = ReferenceControl { progress: &|_| {}, ..control };
+    let refined = refine(&learned, question, &control).map_err(value_error)?;
+    meshtone_diagnose::diagnose(&learned, question, refined.as_ref()).map_err(value_error)
 }
 
 fn with_tuned(scenario: &scenario::Scenario, path: Option<&Path>) -> PyResult<scenario::Scenario> {

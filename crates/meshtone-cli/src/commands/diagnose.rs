@@ -9,8 +9,8 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use meshtone::scenario::Scenario;
 use meshtone_diagnose::{
-    Answer, Learned, Observation, Prior, Question, ReferenceControl, ReferenceSet, ReferenceStore,
-    SignalKind, diagnose,
+    Answer, Learned, Observation, Prior, Question, REFINED_RECORDS, ReferenceControl, ReferenceSet,
+    ReferenceStore, Refined, SignalKind, diagnose, refine,
 };
 use meshtone_io::atomic_file::{StagedFile, WriteFileError};
 use meshtone_io::experiment::read_tuned;
@@ -126,7 +126,8 @@ impl Diagnose {
         let store = ReferenceStore::new(self.folder()?);
         let reference = self.reference(&store, &prior)?;
         let learned = Learned::new(&reference, &question)?;
-        let mut answer = diagnose(&learned, &question)?;
+        let refined = self.refined(&learned, &question)?;
+        let mut answer = diagnose(&learned, &question, refined.as_ref())?;
         answer.warnings.splice(0..0, warnings.iter().map(in_words));
         let json = self.json(&answer, &store.folder_of(&prior));
         self.write(output.path(), &answer, &json, scenario.gears.gear_teeth)?;
@@ -169,7 +170,7 @@ impl Diagnose {
     }
 
     fn reference(&self, store: &ReferenceStore, prior: &Prior) -> Result<ReferenceSet, Failure> {
-        let bar = self.progress_bar();
+        let bar = self.progress_bar(self.records, "");
         let progress = |finished: usize| bar.set_position(finished as u64);
         let control = ReferenceControl { progress: &progress, cancelled: &AtomicBool::new(false) };
         let reference = store.get(prior, self.records, &control);
@@ -177,15 +178,26 @@ impl Diagnose {
         Ok(reference?)
     }
 
-    fn progress_bar(&self) -> ProgressBar {
+    /// More simulations of what is likely.
+    fn refined(&self, learned: &Learned, question: &Question) -> Result<Option<Refined>, Failure> {
+        let bar = self.progress_bar(REFINED_RECORDS, ", of the likeliest damage");
+        let progress = |finished: usize| bar.set_position(finished as u64);
+        let control = ReferenceControl { progress: &progress, cancelled: &AtomicBool::new(false) };
+        let refined = refine(learned, question, &control);
+        bar.finish_and_clear();
+        Ok(refined?)
+    }
+
+    fn progress_bar(&self, count: u64, of: &'static str) -> ProgressBar {
         if self.quiet {
             return ProgressBar::hidden();
         }
-        let bar = ProgressBar::with_draw_target(Some(self.records), ProgressDrawTarget::stderr());
+        let bar = ProgressBar::with_draw_target(Some(count), ProgressDrawTarget::stderr());
         if let Ok(style) =
-            ProgressStyle::with_template("{bar:30} {pos} of {len} simulations, {per_sec}, {eta} left")
+            ProgressStyle::with_template("{bar:30} {pos} of {len} simulations{msg}, {per_sec}, {eta} left")
         {
             bar.set_style(style);
+            bar.set_message(of);
         }
         bar
     }
@@ -224,8 +236,7 @@ impl Diagnose {
         all["healthy"] = json!(names(&self.healthy));
         all["scenario"] = json!(self.scenario.display().to_string());
         all["tuned"] = json!(self.tuned.as_ref().map(|path| path.display().to_string()));
-        all["reference"] =
-            json!({ "records": answer.reference_records, "folder": folder.display().to_string() });
+        all["reference"] = json!({ "records": answer.reference_records, "refined_records": answer.refined_records, "folder": folder.display().to_string() });
         all
     }
 

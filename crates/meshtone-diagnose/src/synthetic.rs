@@ -1,0 +1,101 @@
+//! Reference sets that need no simulation, for tests.
+
+use meshtone::random::{Draws, Purpose};
+use meshtone::scenario::Scenario;
+use meshtone::wheel::WheelName;
+use meshtone_fourier::Complex64;
+
+use crate::observation::{Observation, SignalKind, WheelLines};
+use crate::prior::{DrawnFault, Focus, Prior, RECORDS_PER_UNIT};
+use crate::reference::{ReferenceRecord, ReferenceSet};
+
+const RIG: &str = "[gears]\nmodule_mm = 3\npinion_teeth = 17\ngear_teeth = 38\nface_width_mm = 15\n\
+    [operation]\npinion_speed_hz = 40\nbrake_torque_nm = 20\n[quality]\ndin_grade = 7\n";
+/// Mesh orders of the lines.
+const LAST_MESH: u32 = 6;
+
+/// What may be about a rig.
+pub fn prior() -> Prior {
+    Prior::new(&Scenario::from_toml(RIG).unwrap())
+}
+
+/// Records of a prior: deviations of the wheels' own, and of a damage a ringing on its tooth as large as it is severe, whose order
+/// is the kind's.
+pub fn records(prior: &Prior, count: u64) -> Vec<ReferenceRecord> {
+    let kinds = prior.kinds();
+    (0..count).map(|number| record(prior, number, kinds.len(), &|kind| kinds[kind].sizes.len())).collect()
+}
+
+fn record(prior: &Prior, number: u64, kinds: usize, sizes: &dyn Fn(usize) -> usize) -> ReferenceRecord {
+    let (unit, place) = (number / RECORDS_PER_UNIT, number % RECORDS_PER_UNIT);
+    let mut own = Draws::new(prior.seed, Purpose::DiagnosisRecord, number);
+    let class = ((unit * (RECORDS_PER_UNIT - 2) + place.saturating_sub(2)) % (2 * kinds as u64)) as usize;
+    let (kind, wheel, [least, most]) = match &prior.focus {
+        Some(Focus { kind, wheel, severity }) => (*kind, *wheel, *severity),
+        None => (class / 2, [WheelName::Gear, WheelName::Pinion][class % 2], [0.0, 1.0]),
+    };
+    let is_damaged = place >= if prior.focus.is_some() { 1 } else { 2 };
+    let fault = is_damaged.then(|| {
+        let drawn = least + (most - least) * own.uniform(0.5, 0.5);
+        let severity = if sizes(kind) == 0 { 1.0 } else { drawn };
+        DrawnFault {
+            kind,
+            wheel,
+            tooth: 1 + (own.bits() % u64::from(prior.base.gears.teeth(wheel))) as u32,
+            is_on_one_tooth: true,
+            severity,
+            sizes: vec![severity; sizes(kind)],
+        }
+    });
+    let wheels = [WheelName::Pinion, WheelName::Gear].map(|wheel| {
+        let teeth = prior.base.gears.teeth(wheel);
+        let mut of_unit = Draws::new(prior.seed, Purpose::DiagnosisUnit, 2 * unit + wheel as u64);
+        let mut lines: Vec<Complex64> = (0..=LAST_MESH * teeth)
+            .map(|order| {
+                let [re, im] = of_unit.normals();
+                Complex64::new(re, im) * if order % teeth == 0 { 1.0 } else { 0.01 }
+            })
+            .collect();
+        if let Some(fault) = fault.as_ref().filter(|fault| fault.wheel == wheel) {
+            let at = f64::from(fault.tooth - 1) / f64::from(teeth);
+            let middle = (1.5 + 4.0 * fault.kind as f64 / kinds as f64) * f64::from(teeth);
+            for (order, line) in lines.iter_mut().enumerate() {
+                let from_middle = (order as f64 - middle) / f64::from(teeth);
+                let size = 0.3 * fault.severity * (-2.0 * from_middle * from_middle).exp();
+                *line += Complex64::from_polar(size, -std::f64::consts::TAU * order as f64 * at);
+            }
+        }
+        WheelLines { teeth, lines }
+    });
+    ReferenceRecord { number, fault, pinion_speed_hz: prior.base.operation.pinion_speed_hz, wheels }
+}
+
+/// A set of them.
+pub fn reference(prior: &Prior, count: u64) -> ReferenceSet {
+    ReferenceSet { prior: prior.clone(), records: records(prior, count) }
+}
+
+/// (g) Noise in the lines of what is observed.
+const NOISE_G: f64 = 1e-3;
+
+/// A record as a recording shows it.
+pub fn observed(record: &ReferenceRecord) -> Observation {
+    let mut draws = Draws::new(4711, Purpose::DiagnosisNoise, record.number);
+    let mut noisy = |wheel: &WheelLines| {
+        let mut wheel = wheel.clone();
+        for line in &mut wheel.lines {
+            let [re, im] = draws.normals();
+            *line += Complex64::new(re, im) * (NOISE_G * std::f64::consts::FRAC_1_SQRT_2);
+        }
+        wheel
+    };
+    Observation {
+        signal: SignalKind::Recording,
+        pinion_speed_hz: Some(record.pinion_speed_hz),
+        gear: noisy(&record.wheels[1]),
+        pinion: Some(noisy(&record.wheels[0])),
+        noise: [vec![NOISE_G], vec![NOISE_G]],
+        misfit: None,
+        doubts: Vec::new(),
+    }
+}
