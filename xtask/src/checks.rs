@@ -34,6 +34,12 @@ const CORE: [&str; 4] = ["--package", "meshtone", "--package", "meshtone-cli"];
 /// project's own packages would be compiled for the tests and once more for the program and the wheel.
 const TESTED: [&str; 3] = ["--workspace", "--exclude", "meshtone-bench"];
 
+/// All of them but the core.
+const BESIDE_CORE: [&str; 2] = ["--exclude", "meshtone"];
+
+/// For the core's unit tests, which compile it once more: they run for a second, and it takes longest of all to compile for speed.
+const QUICKLY_BUILT: [&str; 2] = ["--config", "profile.release.package.meshtone.opt-level=1"];
+
 /// Everything.
 ///
 /// Two rows of steps run at once: most of what Rust needs is done by both processors, most of what Python needs by one, or by
@@ -59,7 +65,9 @@ fn rust_row(row: &Row, prepared: &Receiver<Prepared>) -> Result<(), u8> {
     surroundings.push(("MESHTONE_SCIPY_REFERENCE", prepared.scipy.into()));
     surroundings.push(("MESHTONE_PYTHON", prepared.python.into()));
     // Not the examples: the lints have looked at them, and nothing runs them.
-    row.cargo(&[&["test", "--release", "--tests"], &TESTED[..]].concat(), &surroundings)?;
+    row.cargo(&[&["test", "--release", "--tests"], &TESTED[..], &BESIDE_CORE].concat(), &surroundings)?;
+    row.cargo(&[&["test", "--release", "--test", "all"], &CORE[..]].concat(), &surroundings)?;
+    row.cargo(&[&["test", "--release", "--lib"], &CORE[..], &QUICKLY_BUILT].concat(), &surroundings)?;
     row.cargo(&[&["test", "--release", "--doc"], &TESTED[..]].concat(), &surroundings)?;
     row.step("kernels check", || kernels::check(row.root()))?;
     let program = dist::program(row)?;
