@@ -1,6 +1,6 @@
 //! How far a shaft has turned.
 
-use meshtone::signal::{self, MeshTone, PulseEdge, Tachometer};
+use meshtone::signal::{self, AngleZero, MeshTone, PulseEdge, Tachometer};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -15,10 +15,13 @@ pub struct ShaftPhase(pub signal::ShaftPhase);
 #[pymethods]
 impl ShaftPhase {
     #[new]
-    #[pyo3(signature = (revolutions, first_sample=0))]
-    fn new(revolutions: Signal<'_>, first_sample: usize) -> PyResult<Self> {
+    #[pyo3(signature = (revolutions, first_sample=0, zero="angle 0"))]
+    fn new(revolutions: Signal<'_>, first_sample: usize, zero: &str) -> PyResult<Self> {
         let revolutions = samples(&revolutions)?.to_vec();
-        signal::ShaftPhase::new(first_sample, revolutions).map(Self).map_err(value_error)
+        let known = AngleZero::NAMES.into_iter().find(|(name, _)| *name == zero);
+        let (_, zero) = known.ok_or_else(|| value_error(format!("zero '{zero}': is no angle's origin")))?;
+        let phase = signal::ShaftPhase::new(first_sample, revolutions).map_err(value_error)?;
+        Ok(Self(phase.with_zero(zero)))
     }
 
     /// Of a constant speed.
@@ -91,6 +94,12 @@ impl ShaftPhase {
     /// Of the shaft of the wheel that this one's wheel meshes with.
     fn of_mate(&self, teeth: u32, mate_teeth: u32) -> PyResult<Self> {
         self.0.of_mate(teeth, mate_teeth).map(Self).map_err(value_error)
+    }
+
+    /// What angle 0 is.
+    #[getter]
+    fn zero(&self) -> &'static str {
+        self.0.zero.name()
     }
 
     /// Number of the recording's sample that the first angle belongs to.

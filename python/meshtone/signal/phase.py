@@ -234,8 +234,13 @@ class ShaftPhase:
         """What is doubtful about it."""
         return list(self._warnings)
 
-    def __reduce__(self) -> tuple[Callable[[Array, int, list[str]], ShaftPhase], tuple[Array, int, list[str]]]:
-        return (_remembered, (self._native.revolutions, self.first_sample, self._warnings))
+    @property
+    def zero(self) -> str:
+        """What angle 0 is: ``first sample``, ``pulse``, ``first pulse``, ``angle 0`` as given, or, after a mesh tone, ``chance``."""
+        return self._native.zero
+
+    def __reduce__(self) -> tuple[Callable[[Array, int, list[str], str], ShaftPhase], tuple[Array, int, list[str], str]]:
+        return (_remembered, (self._native.revolutions, self.first_sample, self._warnings, self.zero))
 
     def mean_speed_hz(self, sampling_rate_hz: float) -> float:
         """(rev/s) Mean speed.
@@ -258,8 +263,8 @@ class ShaftPhase:
         return f"<ShaftPhase: {span:.2f} revolutions in {revolutions.size} samples from sample {self.first_sample}>"
 
 
-def _remembered(revolutions: Array, first_sample: int, warnings: list[str]) -> ShaftPhase:
-    phase = ShaftPhase(revolutions, first_sample)
+def _remembered(revolutions: Array, first_sample: int, warnings: list[str], zero: str = "angle 0") -> ShaftPhase:
+    phase = ShaftPhase._wrap(_core.ShaftPhase(revolutions, first_sample, zero))
     phase._warnings = warnings
     return phase
 

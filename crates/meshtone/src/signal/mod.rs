@@ -49,7 +49,9 @@ pub use indicators::{
 pub use interpolate::{interpolate_band_limited, interpolate_pchip};
 pub use kaiser::kaiser;
 pub use octaves::{OCTAVES, OctaveBand, octave_bands};
-pub use phase::{MeshTone, PulseEdge, PulseTrain, ShaftPhase, Tachometer, repair_pulses, tachometer_pulses};
+pub use phase::{
+    AngleZero, MeshTone, PulseEdge, PulseTrain, ShaftPhase, Tachometer, repair_pulses, tachometer_pulses,
+};
 pub use record::{
     ChainSettings, Record, Recording, process_angular, process_angular_segments, process_average,
     process_channel, process_segments, process_series,

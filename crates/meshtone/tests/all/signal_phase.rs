@@ -198,3 +198,46 @@ fn pulses_between_samples_lose_no_revolution() {
         }
     }
 }
+
+// A missing tooth rings a resonance beside the mesh: many lines of the mate's shaft, none of which is a mesh.
+#[test]
+fn ringing_beside_the_mesh_is_no_other_mesh() {
+    let noise = noise(12, 100_000);
+    let ringing = |gear_rev: f64| -> f64 {
+        let line = |k: i32| (-f64::from(k - 47).powi(2) / 9.0).exp() * wave(f64::from(k) * gear_rev);
+        (41..=53).map(line).sum()
+    };
+    let signal = |i: usize| {
+        let r = 20.0 * i as f64 / RATE_HZ;
+        0.3 * wave(17.0 * r) + ringing(r * 17.0 / 38.0) + 0.05 * noise[i]
+    };
+    let signal: Vec<f64> = (0..noise.len()).map(signal).collect();
+    let phase = ShaftPhase::from_mesh_tone(&signal, RATE_HZ, &MeshTone::new(17, 20.0)).unwrap();
+    assert_eq!(phase.warnings, []);
+    assert_eq!(phase.zero, AngleZero::Chance);
+}
+
+#[test]
+fn a_phase_knows_from_where_teeth_are_counted() {
+    let pulses = |per_revolution| {
+        let times: Vec<f64> = (1..=20).map(|i| 0.05 * f64::from(i)).collect();
+        ShaftPhase::from_pulses(&times, per_revolution, None, RATE_HZ, 20_000).unwrap()
+    };
+    let speeds = vec![20.0; 100];
+    for (phase, zero, of_mate) in [
+        (pulses(1), AngleZero::Pulse, AngleZero::FirstPulse),
+        (pulses(2), AngleZero::FirstPulse, AngleZero::FirstPulse),
+        (ShaftPhase::constant(20.0, RATE_HZ, 100).unwrap(), AngleZero::FirstSample, AngleZero::FirstSample),
+        (
+            ShaftPhase::from_speed_samples(&speeds, RATE_HZ).unwrap(),
+            AngleZero::FirstSample,
+            AngleZero::FirstSample,
+        ),
+        (ShaftPhase::new(0, vec![0.0, 0.1]).unwrap(), AngleZero::Given, AngleZero::Given),
+    ] {
+        assert_eq!((phase.zero, phase.of_mate(17, 38).unwrap().zero), (zero, of_mate));
+    }
+    for (place, (name, zero)) in AngleZero::NAMES.into_iter().enumerate() {
+        assert_eq!((zero.name(), zero as usize), (name, place));
+    }
+}

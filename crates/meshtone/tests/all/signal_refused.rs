@@ -192,11 +192,12 @@ fn rates_with_no_ratio() {
 fn structs_that_are_made_by_hand() {
     let signal = recording(5_000);
     for revolutions in [vec![], vec![1.0], vec![1.0, 1.0], vec![0.0, f64::NAN], vec![0.0, 1.0, 0.5]] {
-        let phase = ShaftPhase { first_sample: usize::MAX, revolutions, warnings: vec![] };
+        let phase =
+            ShaftPhase { first_sample: usize::MAX, revolutions, zero: AngleZero::Given, warnings: vec![] };
         assert!(process_channel(&signal, &phase, TEETH, &ChainSettings::default()).is_err());
         let _ = (phase.span_rev(), phase.mean_speed_hz(RATE_HZ), points_per_revolution(&phase));
     }
-    let far = ShaftPhase { first_sample: usize::MAX, revolutions: vec![0.0, 1.0], warnings: vec![] };
+    let far = ShaftPhase { first_sample: usize::MAX, ..ShaftPhase::new(0, vec![0.0, 1.0]).unwrap() };
     assert!(angular_resample(&signal, &far, &AngularSettings::default()).is_err());
     let nothing =
         AngularSignal { points_per_revolution: 0, start_rev: 0.0, nyquist_order: 1.0, values: vec![1.0; 9] };

@@ -1,6 +1,6 @@
 //! A shaft that turns steadily.
 
-use super::ShaftPhase;
+use super::{AngleZero, ShaftPhase};
 use crate::signal::SignalError;
 use crate::signal::check::check_positive;
 
@@ -24,6 +24,7 @@ impl ShaftPhase {
         check_positive("speed_hz", speed_hz)?;
         check_positive("sampling_rate_hz", sampling_rate_hz)?;
         let step_rev = speed_hz / sampling_rate_hz;
-        Self::new(0, (0..samples).map(|i| i as f64 * step_rev).collect())
+        let revolutions = (0..samples).map(|i| i as f64 * step_rev).collect();
+        Ok(Self::new(0, revolutions)?.with_zero(AngleZero::FirstSample))
     }
 }

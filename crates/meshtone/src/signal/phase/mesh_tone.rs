@@ -4,8 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use meshtone_fourier::{Complex64, convenient_length, inverse_complex, real_spectrum};
 
-use super::ShaftPhase;
 use super::mesh_tone_checks::{check, check_fading, check_tone};
+use super::{AngleZero, ShaftPhase};
 use crate::interpolation::NotAKnotSpline;
 use crate::signal::SignalError;
 
@@ -117,7 +117,8 @@ impl ShaftPhase {
         let angle = |i: usize| (carrier * i as f64 + curve.at(i as f64)) / tone.per_revolution();
         let origin = (angle(kept.start) * tone.per_revolution()).floor() / tone.per_revolution();
         let first_sample = kept.start;
-        Ok(Self::new(first_sample, kept.map(|i| angle(i) - origin).collect())?.with_warnings(warnings))
+        let phase = Self::new(first_sample, kept.map(|i| angle(i) - origin).collect())?;
+        Ok(phase.with_zero(AngleZero::Chance).with_warnings(warnings))
     }
 }
 

@@ -12,6 +12,10 @@ const LEAST_POWER_RATIO: f64 = 3.0;
 const STRONGER: f64 = 2.0;
 /// (shaft orders) How far beside the mesh such a line is looked for.
 const NEIGHBOURHOOD: f64 = 4.5;
+/// (shaft orders) Where the other lines of ringing are: beyond a line's own skirt, up to the next sideband.
+const RINGING: [f64; 2] = [0.2, 1.25];
+/// Least amplitude over those of a line that is a tone of its own.
+const STANDS_OUT: f64 = 1.5;
 /// Part of the mean amplitude below which the phase is doubtful.
 const FADED: f64 = 0.1;
 
@@ -74,11 +78,17 @@ pub(super) fn check_tone(
     let inside = strongest(&mut band.bins());
     let beside = strongest(&mut near.filter(|bin| !band.bins().contains(bin)));
     let (Some((_, inside)), Some((bin, beside))) = (inside, beside) else { return Ok(Vec::new()) };
+    // Ringing of damaged teeth is many lines about a resonance, none of which is a mesh.
+    let [skirt, next] = RINGING.map(|orders| (orders * tone.shaft_hz * bins_per_hz) as usize);
+    let others = bin.saturating_sub(next)..(bin + next).min(spectrum.len());
+    let around =
+        strongest(&mut others.filter(|other| other.abs_diff(bin) > skirt && !band.bins().contains(other)));
+    let is_ringing = around.is_some_and(|(_, around)| beside < STANDS_OUT.powi(2) * around);
     let ratio = (beside / inside).sqrt();
     let frequency_hz = bin as f64 / bins_per_hz;
     let speed_hz = frequency_hz / tone.per_revolution();
     let warning = SignalWarning::StrongerNeighbour { frequency_hz, ratio, speed_hz };
-    Ok((ratio >= STRONGER).then_some(warning).into_iter().collect())
+    Ok((ratio >= STRONGER && !is_ringing).then_some(warning).into_iter().collect())
 }
 
 /// Whether the tone nearly vanishes somewhere.

@@ -7,10 +7,12 @@ mod pulse_train;
 mod pulses;
 mod speed;
 mod tachometer;
+mod zero;
 
 pub use mesh_tone::MeshTone;
 pub use pulse_train::{PulseTrain, repair_pulses};
 pub use tachometer::{PulseEdge, Tachometer, tachometer_pulses};
+pub use zero::AngleZero;
 
 use super::{SignalError, SignalWarning};
 
@@ -23,6 +25,8 @@ pub struct ShaftPhase {
     pub first_sample: usize,
     /// (rev) Angle at that sample and those after it.
     pub revolutions: Vec<f64>,
+    /// What angle 0 is.
+    pub zero: AngleZero,
     /// What was doubtful while it was found.
     pub warnings: Vec<SignalWarning>,
 }
@@ -44,7 +48,7 @@ impl ShaftPhase {
     /// assert!(error.to_string().contains("turns backwards at sample 2"));
     /// ```
     pub fn new(first_sample: usize, revolutions: Vec<f64>) -> Result<Self, SignalError> {
-        let phase = Self { first_sample, revolutions, warnings: Vec::new() };
+        let phase = Self { first_sample, revolutions, zero: AngleZero::Given, warnings: Vec::new() };
         phase.check()?;
         Ok(phase)
     }
@@ -76,6 +80,7 @@ impl ShaftPhase {
         let revolutions = self.revolutions.iter().map(|angle| angle * ratio).collect();
         let mut mate = Self::new(self.first_sample, revolutions)?;
         mate.warnings.clone_from(&self.warnings);
+        mate.zero = self.zero.of_mate();
         Ok(mate)
     }
 
@@ -142,6 +147,16 @@ impl ShaftPhase {
             });
         }
         Ok(())
+    }
+
+    /// The same from an angle 0 that is known.
+    ///
+    /// # Arguments
+    /// * `zero` - what it is
+    #[must_use]
+    pub fn with_zero(mut self, zero: AngleZero) -> Self {
+        self.zero = zero;
+        self
     }
 
     pub(super) fn with_warnings(mut self, warnings: Vec<SignalWarning>) -> Self {

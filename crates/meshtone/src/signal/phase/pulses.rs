@@ -1,6 +1,6 @@
 //! Phase from pulses.
 
-use super::{PulseTrain, ShaftPhase, repair_pulses};
+use super::{AngleZero, PulseTrain, ShaftPhase, repair_pulses};
 use crate::interpolation::PchipThrough;
 use crate::signal::SignalError;
 use crate::signal::check::check_positive;
@@ -65,7 +65,8 @@ impl ShaftPhase {
         if let Some(last) = revolutions.last_mut() {
             *last += (time_s(end - 1) - last_s).max(0.0) * last_speed_hz;
         }
-        Ok(Self::new(first_sample, revolutions)?.with_warnings(warnings))
+        let zero = if pulses_per_revolution == 1 { AngleZero::Pulse } else { AngleZero::FirstPulse };
+        Ok(Self::new(first_sample, revolutions)?.with_zero(zero).with_warnings(warnings))
     }
 }
 

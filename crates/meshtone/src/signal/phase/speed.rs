@@ -1,6 +1,6 @@
 //! Phase by integration of the speed.
 
-use super::ShaftPhase;
+use super::{AngleZero, ShaftPhase};
 use crate::signal::check::{check_finite, check_positive};
 use crate::signal::{SignalError, SignalWarning};
 
@@ -64,7 +64,8 @@ impl ShaftPhase {
         let profile_end_s = time_s[last];
         let early = profile_end_s < recording_end_s * (1.0 - 1e-9) - 1.0 / sampling_rate_hz;
         let warning = early.then_some(SignalWarning::ProfileEndsEarly { profile_end_s, recording_end_s });
-        Ok(Self::new(0, revolutions)?.with_warnings(warning.into_iter().collect()))
+        let phase = Self::new(0, revolutions)?.with_zero(AngleZero::FirstSample);
+        Ok(phase.with_warnings(warning.into_iter().collect()))
     }
 
     /// A shaft whose speed is known at every sample: trapezoidal rule, angle 0 at the first sample.
@@ -90,7 +91,8 @@ impl ShaftPhase {
             sum += 0.5 * (pair[0] + pair[1]);
             sum / sampling_rate_hz
         });
-        Self::new(0, first.into_iter().chain(others).collect())
+        let phase = Self::new(0, first.into_iter().chain(others).collect())?;
+        Ok(phase.with_zero(AngleZero::FirstSample))
     }
 }
 

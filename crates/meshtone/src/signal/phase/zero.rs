@@ -1,0 +1,55 @@
+//! What angle 0 of a shaft is.
+
+/// What angle 0 of a shaft is: from there its teeth are counted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum AngleZero {
+    /// That of angles that were given; whoever gave them knows.
+    #[default]
+    Given,
+    /// That of a simulation: tooth 1 enters contact.
+    Simulated,
+    /// Each pulse of one in a revolution of this shaft: the same place of the wheel in every recording.
+    Pulse,
+    /// The first pulse of the recording.
+    FirstPulse,
+    /// The first sample of the recording.
+    FirstSample,
+    /// Any tooth's contact: a mesh tone does not say which.
+    Chance,
+}
+
+impl AngleZero {
+    /// All with their names.
+    pub const NAMES: [(&'static str, Self); 6] = [
+        ("angle 0", Self::Given),
+        ("simulation", Self::Simulated),
+        ("pulse", Self::Pulse),
+        ("first pulse", Self::FirstPulse),
+        ("first sample", Self::FirstSample),
+        ("chance", Self::Chance),
+    ];
+
+    /// Its name, in words.
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize].0
+    }
+
+    /// Whether teeth can be counted from it.
+    pub fn counts_teeth(self) -> bool {
+        self != Self::Chance
+    }
+
+    /// Whether it is the same place of the wheel in every recording.
+    pub fn is_mark(self) -> bool {
+        matches!(self, Self::Simulated | Self::Pulse)
+    }
+
+    /// That of the shaft which this one drives or is driven by: only another pulse of its own would be a mark on it.
+    pub(super) fn of_mate(self) -> Self {
+        match self {
+            Self::Pulse => Self::FirstPulse,
+            other => other,
+        }
+    }
+}
