@@ -37,7 +37,12 @@ class Diagnosis:
     ----------
     kinds : dict of str to dict
         ``healthy`` and every kind of damage, the likeliest first: ``probability``; and if it is that, ``severity`` and ``sizes``
-        (``median``, ``within_50``, ``within_90``), ``wheel``, ``wheel_probability``, ``tooth``, ``tooth_probability``, ``angle_deg``.
+        (``median``, ``within_50``, ``within_90``), ``wheel``, ``wheel_probability``, ``is_on_one_tooth``, ``tooth``,
+        ``tooth_probability``, ``angle_deg``. A tooth is None where nothing says from where to count, as after a mesh tone.
+    any_damage : dict or None
+        The same of a damage whatever its kind: ``severity``, ``wheel``, ``tooth`` and their probabilities, ``one_tooth_probability``.
+    summary : str
+        What it comes to, in a sentence.
     damaged : float
         (-) Probability that anything is damaged.
     outside_model : float
@@ -52,6 +57,8 @@ class Diagnosis:
     """
 
     kinds: dict[str, dict[str, Any]] = field(repr=False)
+    any_damage: dict[str, Any] | None = field(repr=False)
+    summary: str
     damaged: float
     outside_model: float
     warnings: list[str]
@@ -70,7 +77,7 @@ class Diagnosis:
         head = "<tr><th>kind</th><th>probability</th><th>severity (90 %)</th><th>where</th></tr>"
         facts = f"damaged with a probability of {100 * self.damaged:.1f} %, p = {self.outside_model:.3f}; given the scenario"
         told = "".join(f"<p>{escape(warning)}</p>" for warning in self.warnings)
-        return f"<p>{facts}</p><table>{head}{rows}</table>{told}"
+        return f"<p>{escape(self.summary)}</p><p>{facts}</p><table>{head}{rows}</table>{told}"
 
 
 def _cells(said: dict[str, Any]) -> str:
@@ -81,6 +88,8 @@ def _cells(said: dict[str, Any]) -> str:
         size = f"{severity['median']:.2f} ({low:.2f} to {high:.2f})"
     if said["tooth"] is not None:
         where = f"{where}, tooth {said['tooth']}"
+    elif said["is_on_one_tooth"]:
+        where = f"{where}, one tooth"
     return f"<td>{100 * said['probability']:.1f} %</td><td>{size}</td><td>{where or '-'}</td>"
 
 
@@ -115,7 +124,7 @@ def diagnose(
     reference : str or path, optional
         Folder in which simulations are kept; by default ``meshtone/reference`` in the user's cache directory.
     records : int
-        (at least 512) Simulations to learn from, in batches of 512.
+        (512 to 20480) Simulations to learn from, in batches of 512.
     progress : bool or callable, optional
         True for a line on the terminal or a bar in a notebook; or called with the numbers of simulations that are there and of all.
 
@@ -149,12 +158,14 @@ def diagnose(
         [] if healthy is None else _observations("healthy", healthy, scenario, signal),
         tuned,
         reference,
-        whole("records", records, 512),
+        _records(records),
         told,
     )
     report = json.loads(text)
     return Diagnosis(
         kinds=report["kinds"],
+        any_damage=report["any_damage"],
+        summary=report["summary"],
         damaged=report["damaged"],
         outside_model=report["outside_model"],
         warnings=report["warnings"],
@@ -162,6 +173,13 @@ def diagnose(
         band_g=(read_only(low), read_only(high)),
         _report=report,
     )
+
+
+def _records(records: int) -> int:
+    most = 20_480
+    if whole("records", records, 512) > most:
+        raise ValueError(f"records = {records}: must be at most {most}: time and memory grow with their square")
+    return records
 
 
 def _observations(
@@ -185,8 +203,8 @@ def _observation(name: str, one: Any, scenario: Scenario, signal: str) -> _core.
     if isinstance(one, tuple) and len(one) == 3:
         values, rate_hz, phase = one
         rate_hz = positive("sampling_rate_hz", rate_hz)
-        teeth = (scenario.pinion_teeth, scenario.gear_teeth)
-        return _core.Observation.of_measured(finite_signal(values), rate_hz, native_phase(phase), teeth)
+        rig = native_scenario(scenario)
+        return _core.Observation.of_measured(finite_signal(values), rate_hz, native_phase(phase), rig)
     raise TypeError(
         f"{name}: must be simulations, recordings of them, or (signal_g, sampling_rate_hz, phase) of what was measured"
     )

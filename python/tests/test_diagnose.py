@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 from pathlib import Path
 
 import numpy as np
@@ -37,6 +38,9 @@ def test_from_signals_to_an_answer(tmp_path: Path) -> None:
     assert kind in ("missing-tooth", "tooth-breakage", "tooth-destruction")
     assert (said["wheel"], said["tooth"], said["angle_deg"]) == ("gear", 8, 63.0)
     assert found.damaged > 0.9
+    assert found.any_damage is not None
+    assert (found.any_damage["wheel"], found.any_damage["tooth"]) == ("gear", 8)
+    assert found.summary.startswith("The gear is damaged")
     assert found.outside_model > 0.01
     assert found.difference_g.shape == found.band_g[0].shape
     assert np.mean(found.band_g[0] <= found.band_g[1]) == 1
@@ -45,7 +49,16 @@ def test_from_signals_to_an_answer(tmp_path: Path) -> None:
 
     revolution = ask(found.difference_g, signal="difference")
     assert revolution.to_dict()["signal"] == "difference"
-    assert "when it was healthy" in revolution.warnings[-1]
+    assert any("when it was healthy" in warning for warning in revolution.warnings)
+
+    # What has no mark tells no tooth, nor does it after it was pickled.
+    anywhere = mt.ShaftPhase.from_mesh_tone(np.cos(2 * np.pi * 800 * np.arange(gone.vertical_g.size) / 8000), 8000.0, 20, 40.0)
+    assert pickle.loads(pickle.dumps(anywhere)).zero == "chance"
+    unmarked = ask((gone.vertical_g, 8000.0, anywhere))
+    said = unmarked.kinds[next(iter(found.kinds))]
+    assert (said["tooth"], said["angle_deg"], said["is_on_one_tooth"]) == (None, None, True)
+    assert unmarked.to_dict()["teeth_counted_from"] == {"pinion": None, "gear": None}
+    quick = mt.ShaftPhase.constant(80.0, 8000.0, gone.vertical_g.size)
 
     short = mt.ShaftPhase.constant(40, 8000, gone.vertical_g.size + 1)
     other_teeth = mt.simulate(RIG.copy(gear_teeth=60))
@@ -54,6 +67,7 @@ def test_from_signals_to_an_answer(tmp_path: Path) -> None:
         (gone, "spectrum", "must be 'recording', 'average' or 'difference'"),
         (other_teeth, "recording", "teeth"),
         ((gone.vertical_g, 8000.0, short), "recording", "phase"),
+        ((gone.vertical_g, 8000.0, quick), "recording", "not the gear's"),
     ]:
         with pytest.raises(ValueError, match=message):
             ask(recording, signal=signal)

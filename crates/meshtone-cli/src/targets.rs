@@ -8,6 +8,37 @@ use crate::failure::Failure;
 use crate::results::RESULTS;
 use crate::same_file::is_same_file;
 
+/// The directory of what is told about a recording, in the current one.
+///
+/// # Arguments
+/// * `recording` - a file, or a directory that `meshtone simulate` wrote
+/// * `what` - is told
+pub fn named_after(recording: &Path, what: &str) -> PathBuf {
+    let stem = if recording.is_dir() { recording.file_name() } else { recording.file_stem() };
+    let mut name = stem.unwrap_or_default().to_os_string();
+    name.push(if name.is_empty() { what.to_owned() } else { format!("_{what}") });
+    PathBuf::from(name)
+}
+
+/// Refuses results that would replace a file that is read.
+///
+/// # Arguments
+/// * `results` - the files that are written
+/// * `read` - those that are read
+pub fn check_not_read<'f>(
+    results: &[PathBuf],
+    read: impl IntoIterator<Item = &'f PathBuf>,
+) -> Result<(), Failure> {
+    let read: Vec<&PathBuf> = read.into_iter().collect();
+    match results.iter().find(|result| read.iter().any(|file| is_same_file(result, file))) {
+        None => Ok(()),
+        Some(result) => {
+            let problem = format!("the result {} would replace a file that is read", result.display());
+            Err(Failure::bad_input(problem).with_help("name another directory with -o"))
+        }
+    }
+}
+
 /// Where runs write to.
 pub struct Targets<'t> {
     /// Directory of each run's results.

@@ -18,7 +18,7 @@ use std::sync::atomic::AtomicBool;
 
 use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::Scenario;
-use meshtone::signal::{AngularSettings, ShaftPhase, angular_resample};
+use meshtone::signal::{AngleZero, AngularSettings, ShaftPhase, angular_resample};
 use meshtone::wheel::WheelName;
 use meshtone_diagnose::{
     Answer, HEALTHY, Learned, Observation, Prior, Question, ReferenceControl, ReferenceRecord,
@@ -122,6 +122,7 @@ fn observed(record: &ReferenceRecord, signal: SignalKind) -> Observation {
     Observation {
         signal,
         pinion_speed_hz: is_recording.then_some(record.pinion_speed_hz),
+        zero: [AngleZero::Simulated; 2],
         gear: noisy(&record.wheels[1]),
         pinion: is_recording.then(|| noisy(&record.wheels[0])),
         noise: [noise.clone(), noise],

@@ -1,5 +1,6 @@
 //! What a diagnosis says.
 
+use meshtone::signal::AngleZero;
 use meshtone::wheel::WheelName;
 
 use crate::observation::SignalKind;
@@ -31,11 +32,32 @@ pub struct PlaceAnswer {
     pub wheel: WheelName,
     /// (-) Probability that it is this one rather than its mate.
     pub wheel_probability: f64,
-    /// Number of the damaged tooth, counted from 1 from the first sample of the revolution on; none of damage to all teeth.
+    /// Whether such damage is on one tooth.
+    pub is_on_one_tooth: bool,
+    /// Number of the damaged tooth, counted from 1; none of damage to several teeth, and where [`Answer::counted_from`] is none.
     pub tooth: Option<u32>,
-    /// (°) Angle of its wheel, from the first sample of the revolution on, at which it enters contact.
+    /// (°) Angle of its wheel at which it enters contact, likewise.
     pub angle_deg: Option<f64>,
     /// (-) Probability that the tooth is this one, given the kind and the wheel.
+    pub tooth_probability: Option<f64>,
+}
+
+/// What is said about a damage, whatever its kind: over all kinds, each as probable as it is said to be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AnyDamage {
+    /// (-) How severe it is, from 0 to 1.
+    pub severity: Interval,
+    /// The damaged wheel.
+    pub wheel: WheelName,
+    /// (-) Probability that it is this one rather than its mate.
+    pub wheel_probability: f64,
+    /// (-) Probability that it is of a kind that is on one tooth.
+    pub one_tooth_probability: f64,
+    /// Number of the damaged tooth, as [`PlaceAnswer::tooth`].
+    pub tooth: Option<u32>,
+    /// (°) Angle of its wheel at which it enters contact.
+    pub angle_deg: Option<f64>,
+    /// (-) Probability that the tooth is this one, given the wheel.
     pub tooth_probability: Option<f64>,
 }
 
@@ -76,7 +98,16 @@ pub struct Answer {
     pub has_healthy: bool,
     /// Recordings that were asked about.
     pub recordings: usize,
-    /// Simulations that it was learnt from.
+    /// Where tooth 1 of the pinion and of the gear meshes; none where teeth cannot be counted: after a mesh tone, or in several
+    /// recordings without a mark in common.
+    pub counted_from: [Option<AngleZero>; 2],
+    /// What it comes to, in a sentence.
+    pub summary: String,
+    /// What is said about a damage, whatever its kind, given that there is one.
+    pub any_damage: Option<AnyDamage>,
+    /// Simulations of the reference set.
+    pub simulated_records: usize,
+    /// Simulations of it that are of the asked kind, which it was learnt from.
     pub reference_records: usize,
     /// Simulations of a refined round, of the likeliest damage within its likely severities; 0 where there was none.
     pub refined_records: usize,

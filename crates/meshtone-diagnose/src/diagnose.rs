@@ -1,17 +1,20 @@
 //! From a question to its answer.
 
+use meshtone::signal::AngleZero;
 use meshtone::wheel::WheelName;
 
 use crate::DiagnoseError;
-use crate::answer::{Answer, Explanation, HEALTHY, KindAnswer, PlaceAnswer, SizeAnswer};
+use crate::answer::{Answer, AnyDamage, Explanation, HEALTHY, KindAnswer, PlaceAnswer, SizeAnswer};
+use crate::any_damage::sentence;
 use crate::features::burst_rev;
 use crate::learn::{Layout, Learned, Question, Row};
-use crate::observation::{WheelLines, revolution};
+use crate::observation::{Observation, WheelLines, revolution};
 use crate::quantile::{interval, quantile};
 use crate::refine::Refined;
+use crate::warnings::warnings;
 
 /// (-) p-value below which a recording is called unlike all that was simulated.
-const OUTSIDE: f64 = 0.05;
+pub(crate) const OUTSIDE: f64 = 0.05;
 /// Simulations whose signals make the predictive band.
 const IN_BAND: usize = 120;
 /// Explanations that are shown.
@@ -36,6 +39,7 @@ pub fn diagnose(
     question: &Question,
     refined: Option<&Refined>,
 ) -> Result<Answer, DiagnoseError> {
+    question.check(&learned.reference.prior)?;
     let asked = Layout::of(question, learned.reference)?;
     let known = &learned.layout;
     let is_shorter = asked.last.iter().zip(known.last).any(|(asked, known)| *asked < known);
@@ -110,6 +114,7 @@ pub fn diagnose(
             sizes,
             place: Some(place(
                 learned,
+                question,
                 &row,
                 likeliest,
                 wheel,
@@ -120,14 +125,16 @@ pub fn diagnose(
     }
     kinds.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     let mut outside_model = learned.outside.p_value(&row.values);
-    if question.now.iter().any(|asked| asked.misfit.is_some()) {
-        // No simulation has what speaks against the recording.
-        outside_model = outside_model.min(1.0 / (learned.records.len() + 1) as f64);
-    }
-    let healthy_outside_model = learned
-        .healthy_outside
-        .as_ref()
-        .map(|outside| outside.p_value(&learned.healthy_row(question).values));
+    // No simulation has what speaks against a recording.
+    let least = 1.0 / (learned.records.len() + 1) as f64;
+    let of_misfit = |recordings: &[Observation]| {
+        if recordings.iter().any(|asked| asked.misfit.is_some()) { least } else { 1.0 }
+    };
+    outside_model = outside_model.min(of_misfit(question.now));
+    let healthy_outside_model = learned.healthy_outside.as_ref().map(|outside| {
+        outside.p_value(&learned.healthy_row(question).values).min(of_misfit(question.healthy))
+    });
+    let any_damage = AnyDamage::over(&kinds, &draws_of);
     let likeliest = kinds.iter().find(|kind| kind.label != HEALTHY).map(|kind| kind.label);
     let severity_draws = draws_of.into_iter().find(|(label, _)| Some(*label) == likeliest);
     let shown = Shown::of(learned, question);
@@ -135,6 +142,10 @@ pub fn diagnose(
         signal: learned.layout.signal,
         has_healthy: learned.layout.has_healthy,
         recordings: question.now.len(),
+        counted_from: [WheelName::Pinion, WheelName::Gear].map(|wheel| counted_from(question, wheel)),
+        summary: String::new(),
+        any_damage,
+        simulated_records: learned.reference.records.len(),
         reference_records: learned.records.len(),
         refined_records: refined.map_or(0, |refined| refined.records),
         kinds,
@@ -147,6 +158,8 @@ pub fn diagnose(
         severity_draws: severity_draws.map_or_else(Vec::new, |(_, draws)| spread(&draws)),
     };
     answer.warnings = warnings(&answer, learned, question);
+    let is_outside = [Some(outside_model), healthy_outside_model].into_iter().flatten().any(|p| p < OUTSIDE);
+    answer.summary = sentence(answer.damaged(), answer.any_damage.as_ref(), is_outside);
     Ok(answer)
 }
 
@@ -159,10 +172,18 @@ fn spread(draws: &[(f64, f64)]) -> Vec<f64> {
 }
 
 /// Where a damage of a class is: where its burst is, less how far behind the tooth's first contact that of the simulations is.
-fn place(learned: &Learned, row: &Row, class: usize, wheel: WheelName, of_wheel: f64) -> PlaceAnswer {
+fn place(
+    learned: &Learned,
+    question: &Question,
+    row: &Row,
+    class: usize,
+    wheel: WheelName,
+    of_wheel: f64,
+) -> PlaceAnswer {
     let mut answer = PlaceAnswer {
         wheel,
         wheel_probability: of_wheel,
+        is_on_one_tooth: false,
         tooth: None,
         angle_deg: None,
         tooth_probability: None,
@@ -172,6 +193,10 @@ fn place(learned: &Learned, row: &Row, class: usize, wheel: WheelName, of_wheel:
     let rows = learned.rows_of(class);
     let on_one = |fault: &crate::prior::DrawnFault| fault.is_on_one_tooth;
     if !rows.iter().all(|&row| learned.records[row].fault.as_ref().is_some_and(on_one)) {
+        return answer;
+    }
+    answer.is_on_one_tooth = true;
+    if counted_from(question, wheel).is_none() {
         return answer;
     }
     // Those that resemble the recording most show how far the burst is behind.
@@ -196,6 +221,15 @@ fn place(learned: &Learned, row: &Row, class: usize, wheel: WheelName, of_wheel:
     answer.angle_deg = Some(360.0 * tooth / teeth);
     answer.tooth_probability = Some(inside.len() as f64 / behind.len() as f64);
     answer
+}
+
+/// From what the teeth of a wheel are counted; none where that is chance, or another place of the wheel in each recording.
+fn counted_from(question: &Question, wheel: WheelName) -> Option<AngleZero> {
+    let zero = |asked: &Observation| asked.zero[usize::from(wheel == WheelName::Gear)];
+    let first = zero(question.now.first()?);
+    let is_one = question.now.len() == 1 || first.is_mark();
+    let counts = first.counts_teeth() && is_one && question.now.iter().all(|asked| zero(asked) == first);
+    counts.then_some(first)
 }
 
 /// What is drawn of the gear.
@@ -299,51 +333,4 @@ fn resembling(learned: &Learned, row: &Row, of_class: &[f64], count: usize) -> V
         }
     }
     near
-}
-
-fn warnings(answer: &Answer, learned: &Learned, question: &Question) -> Vec<String> {
-    let mut warnings = Vec::new();
-    let quality = &learned.reference.prior.base.quality;
-    if quality.din_grade == 0 && quality.profile_errors.is_none() {
-        warnings.push(
-            "the scenario's wheels have no deviations (quality.din_grade = 0), as none has: the probabilities are far too sure; \
-             write the grade of the rig's wheels"
-                .to_owned(),
-        );
-    }
-    let all = || question.now.iter().chain(question.healthy);
-    let misfits = all().filter_map(|asked| asked.misfit.clone());
-    for said in misfits.chain(all().flat_map(|asked| asked.doubts.clone())) {
-        if !warnings.contains(&said) {
-            warnings.push(said);
-        }
-    }
-    if answer.outside_model < OUTSIDE {
-        warnings.push(format!(
-            "the recording is unlike what was simulated (p = {:.3}): what is wrong may be none of the kinds that are known here, or the scenario is not this rig; do not rely on the probabilities",
-            answer.outside_model
-        ));
-    }
-    if let Some(p) = answer.healthy_outside_model.filter(|p| *p < OUTSIDE) {
-        warnings.push(format!(
-            "the scenario does not explain the healthy recording (p = {p:.3}): check its speed, load, wheels and sensor, or tune it (`meshtone tune`); do not rely on the probabilities"
-        ));
-    }
-    if !answer.has_healthy {
-        warnings.push(
-            "without a recording of the same rig when it was healthy, small damage is not told from the wheels' own deviations and the sensor's path".to_owned(),
-        );
-    }
-    let prior = &learned.reference.prior;
-    let nominal = prior.base.operation.pinion_speed_hz;
-    for speed in question.now.iter().chain(question.healthy).filter_map(|asked| asked.pinion_speed_hz) {
-        if (speed / nominal).ln().abs() > prior.speed_spread {
-            warnings.push(format!(
-                "the pinion turns at {speed:.3} Hz, the simulations at {:.3} to {:.3} Hz: write the recording's speed into the scenario (operation.pinion_speed_hz)",
-                nominal * (-prior.speed_spread).exp(),
-                nominal * prior.speed_spread.exp()
-            ));
-        }
-    }
-    warnings
 }

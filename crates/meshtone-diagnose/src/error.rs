@@ -36,7 +36,9 @@ pub enum DiagnoseError {
     #[error("there is no recording to ask about")]
     NoRecording,
     /// What is asked about and what it is compared with are not alike.
-    #[error("one recording is of the signal `{healthy}`, another of `{asked}`; all must be the same")]
+    #[error(
+        "one recording is given as `{healthy}`, another as `{asked}` (whole recording, average or difference signal); all must be the same"
+    )]
     OtherSignal {
         /// Kind of one.
         healthy: &'static str,
@@ -48,6 +50,18 @@ pub enum DiagnoseError {
         "the question is unlike the one that was learnt for: another signal, with or without healthy recordings, or fewer orders"
     )]
     OtherQuestion,
+    /// A speed far from those of the simulations.
+    #[error(
+        "the pinion turns at {speed_hz:.4} Hz by the recording, at {nominal_hz:.4} Hz by the scenario: {reason}"
+    )]
+    OtherSpeed {
+        /// (Hz) Of the recording.
+        speed_hz: f64,
+        /// (Hz) Of the scenario.
+        nominal_hz: f64,
+        /// What may be the reason, in words.
+        reason: String,
+    },
     /// A speed or lines that are not finite.
     #[error("a recording's {what} is {value}; must be finite{beside}")]
     NotFinite {

@@ -1,8 +1,9 @@
 //! What a diagnosis says, as JSON.
 
+use meshtone::signal::AngleZero;
 use serde_json::{Map, Value, json};
 
-use crate::answer::{Answer, Explanation, Interval, KindAnswer};
+use crate::answer::{Answer, AnyDamage, Explanation, Interval, KindAnswer};
 
 /// Of the layout of what is written; another one where a key changes its meaning.
 const FORMAT_VERSION: u32 = 1;
@@ -18,6 +19,9 @@ impl Answer {
             "signal": self.signal.name(),
             "has_healthy": self.has_healthy,
             "damaged": self.damaged(),
+            "teeth_counted_from": { "pinion": self.counted_from[0].map(AngleZero::name), "gear": self.counted_from[1].map(AngleZero::name) },
+            "summary": self.summary,
+            "any_damage": self.any_damage.as_ref().map(any_damage),
             "kinds": kinds,
             "outside_model": self.outside_model,
             "healthy_outside_model": self.healthy_outside_model,
@@ -25,6 +29,18 @@ impl Answer {
             "warnings": self.warnings,
         })
     }
+}
+
+fn any_damage(any: &AnyDamage) -> Value {
+    json!({
+        "severity": interval(&any.severity),
+        "wheel": any.wheel.name(),
+        "wheel_probability": any.wheel_probability,
+        "one_tooth_probability": any.one_tooth_probability,
+        "tooth": any.tooth,
+        "tooth_probability": any.tooth_probability,
+        "angle_deg": any.angle_deg,
+    })
 }
 
 fn kind_json(kind: &KindAnswer) -> Value {
@@ -37,6 +53,7 @@ fn kind_json(kind: &KindAnswer) -> Value {
         "sizes": sizes,
         "wheel": place.map(|place| place.wheel.name()),
         "wheel_probability": place.map(|place| place.wheel_probability),
+        "is_on_one_tooth": place.map(|place| place.is_on_one_tooth),
         "tooth": place.and_then(|place| place.tooth),
         "tooth_probability": place.and_then(|place| place.tooth_probability),
         "angle_deg": place.and_then(|place| place.angle_deg),

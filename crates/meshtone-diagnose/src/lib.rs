@@ -5,13 +5,16 @@
 //! shows; [`diagnose`] says what it may be, by what it learns from the reference set.
 #![deny(missing_docs)]
 
+mod alike;
 mod answer;
+mod any_damage;
 mod diagnose;
 mod error;
 mod features;
 mod healthy;
 mod json;
 mod learn;
+mod level;
 mod matrix;
 mod observation;
 mod outside;
@@ -21,15 +24,17 @@ mod reference;
 mod refine;
 mod severity;
 mod softmax;
+mod speed;
 mod store;
 #[cfg(test)]
 mod synthetic;
+mod warnings;
 
-pub use answer::{Answer, Explanation, HEALTHY, Interval, KindAnswer, PlaceAnswer, SizeAnswer};
+pub use answer::{Answer, AnyDamage, Explanation, HEALTHY, Interval, KindAnswer, PlaceAnswer, SizeAnswer};
 pub use diagnose::diagnose;
 pub use error::DiagnoseError;
 pub use learn::{Learned, Question};
-pub use observation::{Observation, SignalKind, WheelLines};
+pub use observation::{Observation, SignalKind, WheelLines, other_teeth};
 pub use prior::{Drawn, DrawnFault, Focus, Prior, Spread};
 pub use reference::{ReferenceControl, ReferenceRecord, ReferenceSet, build_reference};
 pub use refine::{REFINED_RECORDS, Refined, refine};

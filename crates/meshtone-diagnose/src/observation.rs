@@ -1,7 +1,8 @@
 //! What a recording, or a simulation, shows of the two wheels.
 
 use meshtone::signal::{
-    AngularSignal, SeparationSettings, SignalError, SynchronousAverage, check_channel, kurtosis, rms,
+    AngleZero, AngularSettings, AngularSignal, Likelier, Misfit, SeparationSettings, ShaftPhase, SignalError,
+    SynchronousAverage, Told, ToldTurning, angular_resample, check_channel, kurtosis, misfit, rms,
     standard_deviation, synchronous_average,
 };
 use meshtone_fourier::{Complex64, from_real_spectrum, real_spectrum};
@@ -119,6 +120,8 @@ pub struct Observation {
     pub signal: SignalKind,
     /// (Hz) Speed of the pinion's shaft, where it is known.
     pub pinion_speed_hz: Option<f64>,
+    /// What angle 0 of the pinion and of the gear is, from which their teeth are counted.
+    pub zero: [AngleZero; 2],
     /// The gear's average, or its difference signal.
     pub gear: WheelLines,
     /// The pinion's average, of a recording.
@@ -158,12 +161,23 @@ impl Observation {
         Ok(Self {
             signal: SignalKind::Recording,
             pinion_speed_hz: Some(pinion_speed_hz),
+            zero: [AngleZero::Given; 2],
             gear: WheelLines::of_average(&of_gear, teeth[1]),
             pinion: Some(WheelLines::of_average(&of_pinion, teeth[0])),
             noise: [noise(pinion, teeth[0], 1.0 / ratio), noise(gear, teeth[1], ratio)],
             misfit,
-            doubts: too_short(gear.revolutions(), teeth).into_iter().collect(),
+            doubts: too_short(gear.revolutions(), teeth, pinion_speed_hz / ratio).into_iter().collect(),
         })
+    }
+
+    /// The same with what angle 0 is.
+    ///
+    /// # Arguments
+    /// * `zero` - of the pinion and of the gear
+    #[must_use]
+    pub fn with_zero(mut self, zero: [AngleZero; 2]) -> Self {
+        self.zero = zero;
+        self
     }
 
     /// The same with something else that speaks against the recording.
@@ -199,22 +213,73 @@ impl Observation {
         Ok(Self {
             signal,
             pinion_speed_hz: None,
+            zero: [AngleZero::FirstSample; 2],
             gear: WheelLines::of_values(values_g, gear_teeth, (PASSED * last) as usize),
             pinion: None,
             noise: [Vec::new(), Vec::new()],
             misfit: None,
-            doubts: Vec::new(),
+            doubts: beyond_a_revolution(values_g, gear_teeth).into_iter().collect(),
         })
     }
 }
 
+/// Which tooth counts a recording has rather than those that are told, seen at a stated speed: the phase of another tone than the
+/// mesh's hides them.
+///
+/// # Arguments
+/// * `signal`, `sampling_rate_hz` - the recording
+/// * `teeth` - of the wheel whose speed is stated, and of its mate
+/// * `speed_hz` - (Hz) about the speed of that wheel
+///
+/// # Errors
+/// What [`angular_resample`] refuses.
+pub fn other_teeth(
+    signal: &[f64],
+    sampling_rate_hz: f64,
+    teeth: [u32; 2],
+    speed_hz: f64,
+) -> Result<Option<Misfit>, SignalError> {
+    let phase = ShaftPhase::constant(speed_hz, sampling_rate_hz, signal.len())?;
+    let angular = angular_resample(signal, &phase, &AngularSettings::default())?;
+    let turning = ToldTurning::ConstantSpeed { speed_hz };
+    let found = misfit(&angular, &Told { teeth: teeth[0], mate_teeth: Some(teeth[1]), turning });
+    Ok(found.filter(|found| matches!(found.likelier, Likelier::Teeth { .. } | Likelier::MateTeeth { .. })))
+}
+
+/// (-) Part of the energy beyond the orders that are looked at, from which on values are hardly one revolution.
+const BEYOND: f64 = 0.7;
+
+/// What is doubtful about values that are told to be one revolution: those of many have their mesh orders as many times as high.
+fn beyond_a_revolution(values_g: &[f64], gear_teeth: u32) -> Option<String> {
+    let squares: Vec<f64> = real_spectrum(values_g).iter().skip(1).map(Complex64::norm_sqr).collect();
+    let (inside, all) =
+        (squares.iter().take(WheelLines::most(gear_teeth)).sum::<f64>(), squares.iter().sum::<f64>());
+    (all - inside > BEYOND * all).then(|| {
+        format!(
+            "{:.0} % of the energy is beyond mesh order {MESH_ORDERS}: are these {} values one revolution of a gear with {gear_teeth} \
+             teeth, or many?",
+            100.0 * (1.0 - inside / all),
+            values_g.len()
+        )
+    })
+}
+
 /// What is doubtful about averages over so few revolutions that each wheel's is not free of its mate's, or that nothing is told
 /// from what repeats.
-fn too_short(gear_revolutions: usize, [pinion, gear]: [u32; 2]) -> Option<String> {
+///
+/// # Arguments
+/// * `gear_revolutions` - in the recording
+/// * `teeth` - of the pinion and of the gear
+/// * `gear_hz` - (Hz) speed of the gear's shaft
+fn too_short(gear_revolutions: usize, [pinion, gear]: [u32; 2], gear_hz: f64) -> Option<String> {
+    let lasts = |revolutions: usize| {
+        format!("{revolutions} turns of the gear, {:.2} s", revolutions as f64 / gear_hz)
+    };
     if gear_revolutions < FEWEST_REVOLUTIONS {
         return Some(format!(
-            "the gear turns {gear_revolutions} times in the recording: below {FEWEST_REVOLUTIONS} noise, and what repeats with neither \
-             shaft, is not told from what does"
+            "the recording is short ({}): to tell noise from what the wheels repeat, at least {} are needed",
+            lasts(gear_revolutions),
+            lasts(FEWEST_REVOLUTIONS)
         ));
     }
     let (mut a, mut b) = (pinion, gear);
@@ -227,8 +292,10 @@ fn too_short(gear_revolutions: usize, [pinion, gear]: [u32; 2]) -> Option<String
     // Over whole sequences each wheel's orders are lines of their own.
     (gear_revolutions < needed && !gear_revolutions.is_multiple_of(sequence)).then(|| {
         format!(
-            "the gear turns {gear_revolutions} times in the recording, the same teeth meet again after {sequence}: below {needed} \
-             revolutions the average of one wheel is not free of its mate's"
+            "the recording is short ({}): what is seen of one wheel is partly of the other until the same teeth have met \
+             {SEQUENCES} times ({}); record that long",
+            lasts(gear_revolutions),
+            lasts(needed)
         )
     })
 }

@@ -2,6 +2,7 @@
 
 use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::Scenario;
+use meshtone::signal::AngleZero;
 use meshtone::wheel::WheelName;
 use meshtone_fourier::Complex64;
 
@@ -92,6 +93,7 @@ pub fn observed(record: &ReferenceRecord) -> Observation {
     Observation {
         signal: SignalKind::Recording,
         pinion_speed_hz: Some(record.pinion_speed_hz),
+        zero: [AngleZero::Simulated; 2],
         gear: noisy(&record.wheels[1]),
         pinion: Some(noisy(&record.wheels[0])),
         noise: [vec![NOISE_G], vec![NOISE_G]],

@@ -5,12 +5,12 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use meshtone::scenario;
 use meshtone::signal::{
-    AngularSettings, ChainSettings, Shaft, SignalError, SimulatedShafts, Told, ToldTurning, angular_resample,
-    misfit,
+    AngleZero, AngularSettings, ChainSettings, Shaft, SignalError, SimulatedShafts, Told, ToldTurning,
+    angular_resample, misfit,
 };
 use meshtone_diagnose::{
     Answer, Learned, Observation as Observed, Prior, Question, ReferenceControl, ReferenceStore, SignalKind,
-    StoreError, refine,
+    StoreError, other_teeth, refine,
 };
 use meshtone_io::experiment::read_tuned;
 use numpy::PyArray1;
@@ -38,7 +38,8 @@ impl Observation {
             let over = |shaft| shafts.angular(signal, shaft, &ChainSettings::default());
             let (pinion, gear) = (over(Shaft::Pinion)?, over(Shaft::Gear)?);
             let teeth = Shaft::BOTH.map(|shaft| shafts.teeth(shaft));
-            Observed::of_recording(&pinion, &gear, teeth, shafts.mean_speed_hz(Shaft::Pinion))
+            let observed = Observed::of_recording(&pinion, &gear, teeth, shafts.mean_speed_hz(Shaft::Pinion));
+            observed.map(|observed| observed.with_zero([AngleZero::Simulated; 2]))
         };
         py.detach(observe).map(Self).map_err(value_error)
     }
@@ -50,10 +51,14 @@ impl Observation {
         signal: Signal<'_>,
         sampling_rate_hz: f64,
         phase: &ShaftPhase,
-        teeth: [u32; 2],
+        scenario: &Scenario,
     ) -> PyResult<Self> {
         let signal = samples(&signal)?;
-        py.detach(|| measured(signal, sampling_rate_hz, phase, teeth)).map(Self).map_err(value_error)
+        let (gears, pinion_hz) = (&scenario.0.gears, scenario.0.operation.pinion_speed_hz);
+        let teeth = [gears.pinion_teeth, gears.gear_teeth];
+        py.detach(|| measured(signal, sampling_rate_hz, phase, teeth, pinion_hz))
+            .map(Self)
+            .map_err(value_error)
     }
 
     /// Of one revolution of the gear, in g.
@@ -73,13 +78,22 @@ fn measured(
     sampling_rate_hz: f64,
     phase: &ShaftPhase,
     teeth: [u32; 2],
+    scenario_hz: f64,
 ) -> Result<Observed, SignalError> {
     let settings = AngularSettings::default();
     let pinion = angular_resample(signal, &phase.0, &settings)?;
-    let gear = angular_resample(signal, &phase.0.of_mate(teeth[0], teeth[1])?, &settings)?;
+    let of_gear = phase.0.of_mate(teeth[0], teeth[1])?;
+    let gear = angular_resample(signal, &of_gear, &settings)?;
     let told = Told { teeth: teeth[0], mate_teeth: Some(teeth[1]), turning: ToldTurning::Other };
-    let observed = Observed::of_recording(&pinion, &gear, teeth, phase.0.mean_speed_hz(sampling_rate_hz))?;
-    Ok(match misfit(&pinion, &told) {
+    let observed = Observed::of_recording(&pinion, &gear, teeth, phase.0.mean_speed_hz(sampling_rate_hz))?
+        .with_zero([phase.0.zero, of_gear.zero]);
+    let is_doubtful = phase.0.zero == AngleZero::Chance && !phase.0.warnings.is_empty();
+    let against = match misfit(&pinion, &told) {
+        // Another tone than the mesh's may have been followed.
+        None if is_doubtful => other_teeth(signal, sampling_rate_hz, teeth, scenario_hz)?,
+        against => against,
+    };
+    Ok(match against {
         Some(against) => observed.with_misfit(against),
         None => observed,
     })
@@ -126,6 +140,8 @@ pub fn diagnose<'py>(
     )??;
     let mut json = answer.to_json();
     json["reference"] = serde_json::json!({
+        "asked": records,
+        "simulated": answer.simulated_records,
         "records": answer.reference_records,
         "refined_records": answer.refined_records,
         "folder": store.folder_of(&prior).display().to_string(),
@@ -142,6 +158,7 @@ fn answer(
     finished: &AtomicUsize,
     cancelled: &AtomicBool,
 ) -> PyResult<Answer> {
+    question.check(prior).map_err(value_error)?;
     let told = |count| finished.store(count, Ordering::Relaxed);
     let control = ReferenceControl { progress: &told, cancelled };
     let reference = store.get(prior, records, &control);

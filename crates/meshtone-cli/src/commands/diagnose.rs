@@ -4,6 +4,7 @@ use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
+use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -27,9 +28,13 @@ use crate::failure::Failure;
 use crate::indicators::figures::name;
 use crate::indicators::options::{PhaseOptions, ReadingOptions};
 use crate::output_directory::OutputDirectory;
-use crate::same_file::is_same_file;
+use crate::targets::{check_not_read, named_after};
 use crate::terminal::{print, print_error_line};
 
+/// Simulations that are kept together.
+const BATCH: u64 = 512;
+/// Most simulations that are learnt from: time and memory grow with their square; so many take 70 s and 0.7 GB.
+const MOST_RECORDS: u64 = 20_480;
 const JSON: &str = "diagnosis.json";
 const FIGURE: [&str; 2] = ["diagnosis.svg", "diagnosis.png"];
 const FILES: [&str; 3] = [JSON, FIGURE[0], FIGURE[1]];
@@ -65,8 +70,8 @@ pub struct Diagnose {
     /// Folder in which the simulations are kept. [default: in the user's cache directory, see --help]
     #[arg(long, value_name = "DIR")]
     reference: Option<PathBuf>,
-    /// Simulations to learn from, in batches of 512
-    #[arg(long, value_name = "N", default_value_t = 6144, value_parser = clap::value_parser!(u64).range(512..=1_000_000))]
+    /// Simulations to learn from, in batches of 512, up to 20480: twice as many take four times as long to compare
+    #[arg(long, value_name = "N", default_value_t = 6144, value_parser = clap::value_parser!(u64).range(512..=MOST_RECORDS))]
     records: u64,
     /// Directory to write to. [default: <name of the first recording>_diagnosis in the current directory]
     #[arg(short, long, value_name = "DIR")]
@@ -123,6 +128,7 @@ impl Diagnose {
         self.check_targets(&directory)?;
         let output = OutputDirectory::for_files(&directory, &FILES)?;
         let prior = Prior::new(&scenario);
+        question.check(&prior)?;
         let store = ReferenceStore::new(self.folder()?);
         let reference = self.reference(&store, &prior)?;
         let learned = Learned::new(&reference, &question)?;
@@ -171,11 +177,31 @@ impl Diagnose {
 
     fn reference(&self, store: &ReferenceStore, prior: &Prior) -> Result<ReferenceSet, Failure> {
         let bar = self.progress_bar(self.records, "");
+        let (folder, since) = (store.folder_of(prior), Instant::now());
+        let kept = fs::read_dir(&folder).map_or(0, Iterator::count) as u64;
+        let is_told = !self.quiet && kept < self.records.div_ceil(BATCH);
+        if is_told {
+            print_error_line(self.begins(&folder));
+        }
         let progress = |finished: usize| bar.set_position(finished as u64);
         let control = ReferenceControl { progress: &progress, cancelled: &AtomicBool::new(false) };
         let reference = store.get(prior, self.records, &control);
         bar.finish_and_clear();
-        Ok(reference?)
+        let reference = reference?;
+        if is_told {
+            print_error_line(format!("simulated in {:.0} s", since.elapsed().as_secs_f64()));
+        }
+        Ok(reference)
+    }
+
+    /// What is said before the first simulation, also where no bar can be drawn.
+    fn begins(&self, folder: &Path) -> String {
+        format!(
+            "simulating {} with every kind of damage, up to {} times; what is finished is kept in {}, also when stopped",
+            self.scenario.display(),
+            self.records,
+            folder.display()
+        )
     }
 
     /// More simulations of what is likely.
@@ -203,29 +229,15 @@ impl Diagnose {
     }
 
     fn directory(&self) -> PathBuf {
-        self.output.clone().unwrap_or_else(|| {
-            let first = &self.recordings[0];
-            let stem = if first.is_dir() { first.file_name() } else { first.file_stem() };
-            let mut name = stem.unwrap_or_default().to_os_string();
-            name.push(if name.is_empty() { "diagnosis" } else { "_diagnosis" });
-            PathBuf::from(name)
-        })
+        self.output.clone().unwrap_or_else(|| named_after(&self.recordings[0], "diagnosis"))
     }
 
     /// Refuses to replace a file that is read.
     fn check_targets(&self, directory: &Path) -> Result<(), Failure> {
         let of_phase = self.phase.pulse_times.iter().chain(&self.phase.speed_profile);
         let of_rig = std::iter::once(&self.scenario).chain(&self.tuned);
-        let read: Vec<&PathBuf> =
-            self.recordings.iter().chain(&self.healthy).chain(of_phase).chain(of_rig).collect();
-        let targets = FILES.map(|name| directory.join(name));
-        match targets.iter().find(|target| read.iter().any(|file| is_same_file(target, file))) {
-            None => Ok(()),
-            Some(target) => {
-                let problem = format!("the result {} would replace a file that is read", target.display());
-                Err(Failure::bad_input(problem).with_help("name another directory with -o"))
-            }
-        }
+        let read = self.recordings.iter().chain(&self.healthy).chain(of_phase).chain(of_rig);
+        check_not_read(&FILES.map(|name| directory.join(name)), read)
     }
 
     fn json(&self, answer: &Answer, folder: &Path) -> Value {
@@ -236,7 +248,13 @@ impl Diagnose {
         all["healthy"] = json!(names(&self.healthy));
         all["scenario"] = json!(self.scenario.display().to_string());
         all["tuned"] = json!(self.tuned.as_ref().map(|path| path.display().to_string()));
-        all["reference"] = json!({ "records": answer.reference_records, "refined_records": answer.refined_records, "folder": folder.display().to_string() });
+        all["reference"] = json!({
+            "asked": self.records,
+            "simulated": answer.simulated_records,
+            "records": answer.reference_records,
+            "refined_records": answer.refined_records,
+            "folder": folder.display().to_string(),
+        });
         all
     }
 

@@ -13,7 +13,7 @@ use crate::indicators::results::{Series, settings};
 use crate::indicators::{figures, files, table};
 use crate::output_directory::OutputDirectory;
 use crate::progress::Progress;
-use crate::same_file::is_same_file;
+use crate::targets::{check_not_read, named_after};
 use crate::terminal;
 
 /// Warnings of one recording that are printed; the others are counted.
@@ -95,12 +95,7 @@ impl Indicators {
     fn directory(&self) -> PathBuf {
         match (&self.output, &self.recordings[..]) {
             (Some(output), _) => output.clone(),
-            (None, [only]) => {
-                let stem = if only.is_dir() { only.file_name() } else { only.file_stem() };
-                let mut name = stem.unwrap_or_default().to_os_string();
-                name.push(if name.is_empty() { "indicators" } else { "_indicators" });
-                PathBuf::from(name)
-            }
+            (None, [only]) => named_after(only, "indicators"),
             (None, _) => PathBuf::from("series_indicators"),
         }
     }
@@ -108,15 +103,7 @@ impl Indicators {
     /// Refuses to replace a file that is read.
     fn check_targets(&self, directory: &Path) -> Result<(), Failure> {
         let read = self.recordings.iter().chain(&self.phase.pulse_times).chain(&self.phase.speed_profile);
-        let read: Vec<&PathBuf> = read.collect();
-        let targets = files::FILES.map(|name| directory.join(name));
-        match targets.iter().find(|target| read.iter().any(|file| is_same_file(target, file))) {
-            None => Ok(()),
-            Some(target) => {
-                let problem = format!("the result {} would replace a file that is read", target.display());
-                Err(Failure::bad_input(problem).with_help("name another directory with -o"))
-            }
-        }
+        check_not_read(&files::FILES.map(|name| directory.join(name)), read)
     }
 
     fn write(&self, directory: &Path, series: &Series) -> Result<(), Failure> {

@@ -5,17 +5,23 @@ use std::path::Path;
 use meshtone::scenario::Scenario;
 use meshtone::sensor::GRAVITY_M_PER_S2;
 use meshtone::signal::{
-    AngularSettings, AngularSignal, ChainSettings, Shaft, ShaftPhase, SignalError, angular_resample, misfit,
+    AngleZero, AngularSettings, AngularSignal, ChainSettings, Shaft, ShaftPhase, SignalError,
+    angular_resample, misfit,
 };
-use meshtone_diagnose::{Observation, SignalKind};
+use meshtone_diagnose::{Observation, SignalKind, other_teeth};
 use meshtone_io::indicators::WarningEntry;
 use meshtone_io::recording::Channel;
 
 use crate::failure::Failure;
 use crate::indicators::options::{PhaseOptions, ReadingOptions};
 use crate::indicators::phase::simulated;
-use crate::indicators::reading::{Input, read_revolution};
+use crate::indicators::reading::{Input, own_rate_hz, read_revolution};
 use crate::indicators::refuse::{Subject, refuse};
+
+/// (rev) Most revolutions in the times of a file that is one revolution of a gear at about the scenario's speed.
+const MOST_OF_OWN: f64 = 1.5;
+/// (rev) The same by the stated rate of what was recorded: an average may have more values than a revolution had samples.
+const MOST_OF_STATED: f64 = 10.0;
 
 /// What one file shows, and what is doubtful about the file.
 pub struct Observed {
@@ -66,7 +72,8 @@ impl<'a> Observer<'a> {
 
     fn revolution(&self, path: &Path) -> Result<Observed, Failure> {
         let (mut channel, warnings) = read_revolution(path, self.reading)?;
-        to_g(&mut channel, path)?;
+        to_g(&mut channel, path, self.reading.sensitivity_mv_per_unit.is_some())?;
+        self.check_is_one(path, channel.samples.len())?;
         let last_order = self.reading.sampling_rate_hz.map(|rate_hz| rate_hz / gear_hz(self.scenario) / 2.0);
         let gear_teeth = self.scenario.gears.gear_teeth;
         let observation = Observation::of_revolution(&channel.samples, gear_teeth, self.signal, last_order);
@@ -75,9 +82,26 @@ impl<'a> Observer<'a> {
         Ok(Observed { observation, warnings })
     }
 
+    /// Refuses a whole recording where one revolution is told, by its own times or the stated rate.
+    fn check_is_one(&self, path: &Path, values: usize) -> Result<(), Failure> {
+        let stated = self.reading.sampling_rate_hz.map(|rate_hz| (rate_hz, MOST_OF_STATED));
+        let own = || own_rate_hz(path, self.reading).map(|rate_hz| (rate_hz, MOST_OF_OWN));
+        let Some((rate_hz, most)) = stated.or_else(own) else { return Ok(()) };
+        let revolutions = values as f64 / rate_hz * gear_hz(self.scenario);
+        if revolutions <= most {
+            return Ok(());
+        }
+        let problem = format!(
+            "{}: its {values} values are {revolutions:.1} revolutions of the gear at the scenario's speed; --signal {} is one revolution",
+            path.display(),
+            self.signal.name()
+        );
+        Err(Failure::bad_input(problem).with_help("leave out --signal: a whole recording is averaged here"))
+    }
+
     fn recording(&self, path: &Path) -> Result<Observed, Failure> {
         let mut input = Input::read(path, self.reading, self.told.channel())?;
-        to_g(&mut input.channel, path)?;
+        to_g(&mut input.channel, path, self.reading.sensitivity_mv_per_unit.is_some())?;
         match &input.scenario_toml {
             Some(toml) if !self.told.says_turning() => self.simulated(&input, toml),
             _ => self.measured(&input),
@@ -102,8 +126,9 @@ impl<'a> Observer<'a> {
             );
         }
         let over = |shaft| shafts.angular(&input.channel.samples, shaft, &ChainSettings::default());
-        let observe =
-            || self.of_angles(over(Shaft::Pinion)?, over(Shaft::Gear)?, shafts.mean_speed_hz(Shaft::Pinion));
+        let zero = [AngleZero::Simulated; 2];
+        let pinion_hz = shafts.mean_speed_hz(Shaft::Pinion);
+        let observe = || self.of_angles([over(Shaft::Pinion)?, over(Shaft::Gear)?], zero, pinion_hz);
         let what = format!("channel {}", input.channel.name);
         let observation =
             observe().map_err(|error| refuse(&input.source, &what, Subject::Simulated, &error))?;
@@ -132,14 +157,23 @@ impl<'a> Observer<'a> {
         let over =
             |phase: &ShaftPhase| angular_resample(&input.channel.samples, phase, &AngularSettings::default());
         let own = over(shaft)?;
-        let mate = over(&shaft.of_mate(own_teeth, mate_teeth)?)?;
-        let against = misfit(&own, &self.phase.told(own_teeth));
-        let (pinion, gear, pinion_hz) = if own_teeth == pinion_teeth {
-            (own, mate, speed_hz)
-        } else {
-            (mate, own, speed_hz * f64::from(gear_teeth) / f64::from(pinion_teeth))
+        let of_mate = shaft.of_mate(own_teeth, mate_teeth)?;
+        let mate = over(&of_mate)?;
+        let against = match misfit(&own, &self.phase.told(own_teeth)) {
+            // Another tone than the mesh's may have been followed.
+            None if self.phase.from_mesh_tone && !shaft.warnings.is_empty() => {
+                let hz = self.phase.shaft_hz.unwrap_or(speed_hz);
+                other_teeth(&input.channel.samples, input.sampling_rate_hz, [own_teeth, mate_teeth], hz)?
+            }
+            against => against,
         };
-        let observation = self.of_angles(pinion, gear, pinion_hz)?;
+        let (wheels, zero, pinion_hz) = if own_teeth == pinion_teeth {
+            ([own, mate], [shaft.zero, of_mate.zero], speed_hz)
+        } else {
+            let pinion_hz = speed_hz * f64::from(gear_teeth) / f64::from(pinion_teeth);
+            ([mate, own], [of_mate.zero, shaft.zero], pinion_hz)
+        };
+        let observation = self.of_angles(wheels, zero, pinion_hz)?;
         Ok(match against {
             Some(against) => observation.with_misfit(against),
             None => observation,
@@ -148,11 +182,12 @@ impl<'a> Observer<'a> {
 
     fn of_angles(
         &self,
-        pinion: AngularSignal,
-        gear: AngularSignal,
-        hz: f64,
+        [pinion, gear]: [AngularSignal; 2],
+        zero: [AngleZero; 2],
+        pinion_hz: f64,
     ) -> Result<Observation, SignalError> {
-        Observation::of_recording(&pinion, &gear, teeth_of(self.scenario), hz)
+        let observation = Observation::of_recording(&pinion, &gear, teeth_of(self.scenario), pinion_hz)?;
+        Ok(observation.with_zero(zero))
     }
 }
 
@@ -192,7 +227,7 @@ fn with_scenario(told: &PhaseOptions, scenario: &Scenario) -> Result<PhaseOption
 }
 
 /// Brings a channel to g.
-fn to_g(channel: &mut Channel, path: &Path) -> Result<(), Failure> {
+fn to_g(channel: &mut Channel, path: &Path, is_calibrated: bool) -> Result<(), Failure> {
     let unit = channel.unit.as_deref().unwrap_or("").trim();
     let in_g = match unit {
         "g" | "gn" | "g0" => 1.0,
@@ -200,7 +235,13 @@ fn to_g(channel: &mut Channel, path: &Path) -> Result<(), Failure> {
         "mm/s²" | "mm/s2" | "mm/s^2" => 1e-3 / GRAVITY_M_PER_S2,
         "mg" => 1e-3,
         _ => {
-            let is = if unit.is_empty() { "has no stated unit".to_owned() } else { format!("is in {unit}") };
+            let is = match (unit.is_empty(), is_calibrated) {
+                (true, true) => {
+                    "is divided by --sensitivity-mv-per-unit, but per which unit is not said".to_owned()
+                }
+                (true, false) => "has no stated unit".to_owned(),
+                (false, _) => format!("is in {unit}"),
+            };
             let problem = format!("{}: channel {} {is}; must be g or m/s²", path.display(), channel.name);
             return Err(Failure::bad_input(problem).with_help(
                 "state what it is with --unit g or --unit m/s², of volts with --sensitivity-mv-per-unit too",

@@ -23,6 +23,9 @@ impl From<DiagnoseError> for Failure {
             DiagnoseError::TooFewOrders { .. } => Self::bad_input(message).with_help(
                 "record at a higher rate, or check --sampling-rate-hz and the scenario's speed and teeth",
             ),
+            DiagnoseError::OtherSpeed { .. } => Self::bad_input(message).with_help(
+                "check --shaft-hz (revolutions per second), --teeth (the wheel that speed or pulses are of) and operation.pinion_speed_hz",
+            ),
             DiagnoseError::NoReference => {
                 Self::bad_input(message).with_help("or make more of them, with --records")
             }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use meshtone_diagnose::Answer;
 
-use super::words::{PROBABILITY, outside, percent, place};
+use super::words::{PROBABILITY, counted_from, learnt, outside, percent, place};
 
 /// (-) Probability below which kinds are only counted.
 const SHOWN: f64 = 0.005;
@@ -13,6 +13,7 @@ const SHOWN: f64 = 0.005;
 pub fn table(answer: &Answer) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
+    let _ = writeln!(text, "  {}", answer.summary);
     let _ = writeln!(text, "  damaged with a probability of {}", percent(answer.damaged()));
     let _ = writeln!(text, "  {}\n", outside(answer));
     let (shown, others): (Vec<_>, Vec<_>) = answer.kinds.iter().partition(|kind| kind.probability >= SHOWN);
@@ -39,5 +40,8 @@ pub fn table(answer: &Answer) -> String {
         let _ = writeln!(text, "  {} other kinds: {} together", others.len(), percent(rest));
     }
     let _ = writeln!(text, "\n  {PROBABILITY}");
+    for line in [counted_from(answer), Some(learnt(answer))].into_iter().flatten() {
+        let _ = writeln!(text, "  {line}");
+    }
     text
 }

@@ -1,6 +1,8 @@
 //! Parts of a diagnosis in words.
 
-use meshtone_diagnose::{Answer, PlaceAnswer};
+use meshtone::signal::AngleZero;
+use meshtone::wheel::WheelName;
+use meshtone_diagnose::{Answer, PlaceAnswer, SignalKind};
 
 /// (-) p-value below which a recording is unlike all that was simulated.
 const OUTSIDE: f64 = 0.05;
@@ -27,6 +29,34 @@ pub fn outside(answer: &Answer) -> String {
     format!("{means} (p = {:.3})", answer.outside_model)
 }
 
+/// Where tooth 1 of the wheel that is named is.
+pub fn counted_from(answer: &Answer) -> Option<String> {
+    let place = answer.likeliest_damage()?.place.filter(|place| place.is_on_one_tooth)?;
+    let zero = answer.counted_from[usize::from(place.wheel == WheelName::Gear)];
+    Some(match zero {
+        Some(AngleZero::Simulated) => "teeth are counted as in the simulation".to_owned(),
+        Some(zero) => format!("tooth 1 is the one in mesh at the {}", zero.name()),
+        None if answer.recordings > 1 => {
+            "which tooth is not told: nothing marks the same tooth in all recordings; pulses once a revolution would".to_owned()
+        }
+        None => "which tooth is not told: the mesh tone has no mark; pulses (--tach), or an exact --shaft-hz, would tell".to_owned(),
+    })
+}
+
+/// How many simulations the answer was learnt from, and why not from all.
+pub fn learnt(answer: &Answer) -> String {
+    let (used, made) = (answer.reference_records, answer.simulated_records);
+    if used == made {
+        return format!("learnt from {used} simulations");
+    }
+    let others = match (answer.has_healthy, answer.signal == SignalKind::Recording) {
+        (true, true) => "the others are what these are compared with",
+        (true, false) => "the others are what these are compared with, or of a damaged pinion",
+        (false, _) => "the others are of a damaged pinion",
+    };
+    format!("learnt from {used} of {made} simulations; {others}")
+}
+
 /// `gear (99.0 %), tooth 12 at 104° (88.0 %)`.
 pub fn place(place: &PlaceAnswer) -> String {
     let mut text = format!("{} ({})", place.wheel.name(), percent(place.wheel_probability));
@@ -34,6 +64,8 @@ pub fn place(place: &PlaceAnswer) -> String {
         (place.tooth, place.angle_deg, place.tooth_probability)
     {
         text += &format!(", tooth {tooth} at {angle:.0}° ({})", percent(probability));
+    } else if place.is_on_one_tooth {
+        text += ", one tooth";
     }
     text
 }

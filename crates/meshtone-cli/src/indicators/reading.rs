@@ -146,6 +146,15 @@ pub fn read_revolution(
     Ok((channel, warnings))
 }
 
+/// (S/s) The sampling rate that a file says itself; none where it does not, as of values over an angle.
+///
+/// # Arguments
+/// * `path` - the file
+/// * `options` - what is read
+pub fn own_rate_hz(path: &Path, options: &ReadingOptions) -> Option<f64> {
+    read_recording(path, &plain(options)).ok().map(|recording| recording.sampling_rate_hz)
+}
+
 /// What is doubtful about a file that was read.
 pub fn warnings_of(recording: &Recording) -> Vec<WarningEntry> {
     let source = Some(recording.source.clone());

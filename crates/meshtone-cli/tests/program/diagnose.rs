@@ -58,7 +58,7 @@ fn from_recordings_to_an_answer() {
             "--scenario",
             "rig.toml",
             "--records",
-            "1000000",
+            "20480",
             "--reference",
             "kept",
         ])
@@ -90,6 +90,9 @@ fn from_recordings_to_an_answer() {
         "gone -> gone_diagnosis",
         "damaged with a probability of",
         "tooth 8 at 63°",
+        "tooth 8 of the gear",
+        "teeth are counted as in the simulation",
+        "simulations; the others are what these are compared with",
         "given the scenario",
         "p = ",
     ] {
@@ -102,6 +105,9 @@ fn from_recordings_to_an_answer() {
     assert!((sum - 1.0).abs() < 1e-9 && found["kinds"]["healthy"]["severity"].is_null());
     assert_eq!((&found["signal"], &found["has_healthy"]), (&"recording".into(), &true.into()));
     assert_eq!((&found["recordings"][0], &found["healthy"][0]), (&"gone".into(), &"sound".into()));
+    assert_eq!((&found["any_damage"]["wheel"], &found["any_damage"]["tooth"]), (&"gear".into(), &8.into()));
+    assert_eq!(found["teeth_counted_from"]["gear"], "simulation");
+    assert_eq!(found["reference"]["asked"], 512);
     assert_eq!((&found["scenario"], &found["tuned"]), (&"rig.toml".into(), &Value::Null));
     let severity = &found["kinds"]["tooth-breakage"]["severity"];
     assert!(severity["within_90"][0].as_f64().unwrap() <= severity["median"].as_f64().unwrap());
@@ -171,6 +177,16 @@ fn what_is_refused() {
         (&["gone", "--tuned", "tuned.toml"], &["published", "linear"]),
         (&["plain.csv", "--signal", "average", "--teeth", "20"], &["--signal average", "needs no phase"]),
         (&["gone", "--records", "100"], &["100", "512"]),
+        (&["gone", "--records", "30000"], &["30000", "20480"]),
+        (
+            &["other.csv", "-c", "bearing", "--shaft-hz", "80"],
+            &["80.0000 Hz", "40.0000 Hz", "not the gear's"],
+        ),
+        (&["plain.csv", "--sensitivity-mv-per-unit", "100"], &["per which unit is not said", "--unit g"]),
+        (
+            &["gone", "-c", "vertical_g", "--signal", "average"],
+            &["revolutions of the gear", "leave out --signal"],
+        ),
         (&["gone", "--signal", "spectrum"], &["difference"]),
         (&["gone", "-o", "rig.toml"], &["it is a file"]),
         (&[], &["RECORDING"]),

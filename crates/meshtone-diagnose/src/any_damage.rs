@@ -1,0 +1,189 @@
+//! What can be said of a damage whatever its kind.
+
+use meshtone::wheel::WheelName;
+
+use crate::answer::{AnyDamage, HEALTHY, KindAnswer};
+use crate::quantile::interval;
+
+/// (-) Probability of damage from which on it is said to be there, and below which it is not seen.
+const DECIDED: [f64; 2] = [0.1, 0.9];
+/// (-) Severities from which on damage is moderate, and heavy: thirds of the scale.
+const DEGREES: [f64; 2] = [1.0 / 3.0, 2.0 / 3.0];
+/// (-) Probability of a wheel, or a tooth, from which on it is named in words.
+const NAMED: f64 = 0.8;
+
+impl AnyDamage {
+    /// Over all kinds, each as probable as it is said to be.
+    ///
+    /// # Arguments
+    /// * `kinds` - what is said of each
+    /// * `severities` - draws of each damage's severity with their weights, by its label
+    pub(crate) fn over(kinds: &[KindAnswer], severities: &[(&'static str, Vec<(f64, f64)>)]) -> Option<Self> {
+        let damaged = || kinds.iter().filter(|kind| kind.label != HEALTHY);
+        let mut draws = Vec::new();
+        for kind in damaged() {
+            let of_kind = severities.iter().find(|(label, _)| *label == kind.label)?;
+            let total: f64 = of_kind.1.iter().map(|(_, weight)| weight).sum();
+            let share = kind.probability / total.max(f64::MIN_POSITIVE);
+            draws.extend(of_kind.1.iter().map(|(value, weight)| (*value, share * weight)));
+        }
+        let total: f64 = damaged().map(|kind| kind.probability).sum();
+        if draws.is_empty() || total <= 0.0 {
+            return None;
+        }
+        let part = |of: &dyn Fn(&KindAnswer) -> f64| {
+            damaged().map(|kind| kind.probability * of(kind)).sum::<f64>() / total
+        };
+        let of_wheel = |wheel: WheelName| {
+            part(&|kind| {
+                kind.place.map_or(0.0, |place| {
+                    if place.wheel == wheel { place.wheel_probability } else { 1.0 - place.wheel_probability }
+                })
+            })
+        };
+        let of_gear = of_wheel(WheelName::Gear);
+        let (wheel, wheel_probability) =
+            if of_gear >= 0.5 { (WheelName::Gear, of_gear) } else { (WheelName::Pinion, 1.0 - of_gear) };
+        let places =
+            || damaged().filter_map(|kind| Some((kind, kind.place.filter(|place| place.wheel == wheel)?)));
+        // Each kind's tooth with its share; of the tooth, given the wheel.
+        let mut teeth: Vec<(u32, f64, f64)> = Vec::new();
+        for (kind, place) in places() {
+            let (Some(tooth), Some(angle), Some(sure)) =
+                (place.tooth, place.angle_deg, place.tooth_probability)
+            else {
+                continue;
+            };
+            let share = kind.probability * place.wheel_probability * sure;
+            match teeth.iter_mut().find(|(known, ..)| *known == tooth) {
+                Some((.., sum)) => *sum += share,
+                None => teeth.push((tooth, angle, share)),
+            }
+        }
+        let likeliest = teeth.into_iter().max_by(|a, b| a.2.total_cmp(&b.2));
+        let of_the_wheel = total * wheel_probability;
+        Some(Self {
+            severity: interval(&draws),
+            wheel,
+            wheel_probability,
+            one_tooth_probability: part(&|kind| {
+                f64::from(u8::from(kind.place.is_some_and(|place| place.is_on_one_tooth)))
+            }),
+            tooth: likeliest.map(|(tooth, ..)| tooth),
+            angle_deg: likeliest.map(|(_, angle, _)| angle),
+            tooth_probability: likeliest.map(|(.., share)| (share / of_the_wheel).min(1.0)),
+        })
+    }
+
+    /// How severe it is, and where, in words.
+    fn in_words(&self) -> String {
+        let severity = self.severity;
+        let degree = match severity.median {
+            value if value < DEGREES[0] => "lightly",
+            value if value < DEGREES[1] => "moderately",
+            _ => "heavily",
+        };
+        let [from, to] = severity.within_90;
+        format!("{degree} ({:.1} of 1, 90 %: {from:.1} to {to:.1})", severity.median)
+    }
+
+    fn where_to_look(&self) -> String {
+        if self.wheel_probability < NAMED {
+            return "look at both wheels".to_owned();
+        }
+        let wheel = self.wheel.name();
+        match (self.tooth, self.tooth_probability) {
+            (Some(tooth), Some(sure)) if sure >= NAMED => format!("look at tooth {tooth} of the {wheel}"),
+            (Some(tooth), Some(_)) => format!("look at the {wheel}, from tooth {tooth} on"),
+            _ if self.one_tooth_probability >= NAMED => {
+                format!("look at every tooth of the {wheel}: one is damaged")
+            }
+            _ => format!("look at every tooth of the {wheel}"),
+        }
+    }
+}
+
+/// What an answer comes to, in a sentence.
+///
+/// # Arguments
+/// * `damaged` - (-) probability that anything is damaged
+/// * `any` - what can be said of it
+/// * `is_outside` - whether the recording, or the healthy one, is unlike what was simulated
+pub(crate) fn sentence(damaged: f64, any: Option<&AnyDamage>, is_outside: bool) -> String {
+    if is_outside {
+        return "Nothing can be said: the recordings are unlike what was simulated.".to_owned();
+    }
+    let [unseen, seen] = DECIDED;
+    match any {
+        Some(any) if damaged >= seen => {
+            let what = if any.wheel_probability < NAMED {
+                "One of the wheels".to_owned()
+            } else {
+                format!("The {}", any.wheel.name())
+            };
+            format!("{what} is damaged, {}; {}.", any.in_words(), any.where_to_look())
+        }
+        Some(any) if damaged >= 0.5 => {
+            format!("Damage is likely, but not sure; if so, {}; {}.", any.in_words(), any.where_to_look())
+        }
+        Some(_) if damaged > unseen => "Damage is not likely, but not excluded.".to_owned(),
+        _ => "No damage is seen; what is small may be there all the same.".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::answer::PlaceAnswer;
+
+    fn kind(label: &'static str, probability: f64, tooth: Option<u32>, wheel: WheelName) -> KindAnswer {
+        let place = PlaceAnswer {
+            wheel,
+            wheel_probability: 0.9,
+            is_on_one_tooth: true,
+            tooth,
+            angle_deg: tooth.map(f64::from),
+            tooth_probability: tooth.map(|_| 1.0),
+        };
+        let place = (label != HEALTHY).then_some(place);
+        KindAnswer { label, probability, severity: None, sizes: Vec::new(), place }
+    }
+
+    // Three quarters of the damage is a missing tooth, the rest a pit; both on the gear.
+    #[test]
+    fn kinds_count_as_they_are_probable() {
+        let kinds = [
+            kind("missing-tooth", 0.6, Some(8), WheelName::Gear),
+            kind(HEALTHY, 0.2, None, WheelName::Gear),
+            kind("pits", 0.2, Some(3), WheelName::Pinion),
+        ];
+        let draws = [("missing-tooth", vec![(1.0, 5.0)]), ("pits", vec![(0.2, 0.5), (0.4, 0.5)])];
+        let any = AnyDamage::over(&kinds, &draws).unwrap();
+        assert_eq!((any.wheel, any.tooth), (WheelName::Gear, Some(8)));
+        assert!((any.wheel_probability - (0.75 * 0.9 + 0.25 * 0.1)).abs() < 1e-12);
+        // Of the gear's 0.7: all of the missing tooth's 0.75 × 0.9.
+        assert!((any.tooth_probability.unwrap() - 0.675 / 0.7).abs() < 1e-12);
+        assert!(any.severity.median > 0.8 && any.severity.within_90[0] < 0.3, "{:?}", any.severity);
+        assert!(AnyDamage::over(&kinds[1..2], &draws).is_none());
+    }
+
+    #[test]
+    fn a_sentence_says_no_more_than_is_known() {
+        let kinds = [kind("missing-tooth", 1.0, Some(8), WheelName::Gear)];
+        let any = AnyDamage::over(&kinds, &[("missing-tooth", vec![(1.0, 1.0)])]);
+        let said = |damaged: f64, is_outside: bool| sentence(damaged, any.as_ref(), is_outside);
+        assert_eq!(
+            said(0.99, false),
+            "The gear is damaged, heavily (1.0 of 1, 90 %: 1.0 to 1.0); look at tooth 8 of the gear."
+        );
+        assert!(said(0.99, true).starts_with("Nothing can be said"));
+        assert!(said(0.6, false).starts_with("Damage is likely, but not sure"));
+        assert!(said(0.3, false).contains("not excluded"));
+        assert!(said(0.05, false).starts_with("No damage is seen"));
+        let unknown = [kind("missing-tooth", 1.0, None, WheelName::Gear)];
+        let any = AnyDamage::over(&unknown, &[("missing-tooth", vec![(1.0, 1.0)])]);
+        assert!(
+            sentence(1.0, any.as_ref(), false).ends_with("look at every tooth of the gear: one is damaged.")
+        );
+    }
+}

@@ -1,0 +1,41 @@
+//! Whether a recording is as loud as simulations of the rig are.
+
+use crate::learn::{Learned, Question};
+use crate::observation::{Observation, WheelLines};
+use crate::quantile::quantile;
+
+/// (dB) How far beyond nine in ten of the simulations a level must be: the sensor's path is among what was drawn for them.
+const BEYOND_DB: f64 = 10.0;
+
+/// What is to be said of recordings that are far louder or quieter than all simulations.
+///
+/// # Arguments
+/// * `learned`, `question` - the simulations, and the recordings
+pub(crate) fn doubt(learned: &Learned, question: &Question) -> Option<String> {
+    let of = |asked: &Observation| level_db(learned, &asked.gear);
+    // A healthy recording is held against healthy simulations: damage is loud.
+    let (name, asked, is_healthy) = match question.healthy.first() {
+        Some(healthy) => ("healthy recording", of(healthy), true),
+        None => ("recording", of(question.now.first()?), false),
+    };
+    let counted = learned.reference.records.iter().filter(|record| !is_healthy || record.fault.is_none());
+    let mut levels: Vec<(f64, f64)> =
+        counted.map(|record| (level_db(learned, &record.wheels[1]), 1.0)).collect();
+    levels.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let [low, high] = [0.05, 0.95].map(|part| quantile(&levels, part));
+    let is_within = (low - BEYOND_DB..=high + BEYOND_DB).contains(&asked);
+    (!is_within).then(|| {
+        format!(
+            "the {name} is {:.3} times as loud as the simulations (median), more than a sensor's mounting explains: are its unit (1 g is \
+             9.81 m/s²) and the sensitivity right?",
+            10f64.powf((asked - quantile(&levels, 0.5)) / 20.0)
+        )
+    })
+}
+
+/// (dB) Level of a gear's average, or of its difference signal where no more is known.
+fn level_db(learned: &Learned, gear: &WheelLines) -> f64 {
+    let lines = if learned.layout.signal.has_regular_part() { gear.lines.clone() } else { gear.difference() };
+    let energy: f64 = lines.iter().take(learned.layout.last[1] + 1).skip(1).map(|line| line.norm_sqr()).sum();
+    10.0 * energy.max(f64::MIN_POSITIVE).log10()
+}

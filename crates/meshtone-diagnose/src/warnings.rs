@@ -1,0 +1,174 @@
+//! What deserves attention about an answer.
+
+use meshtone::damage::damage_kinds;
+
+use crate::answer::Answer;
+use crate::diagnose::{OUTSIDE, diagnose};
+use crate::learn::{Learned, Question};
+use crate::{alike, level, speed};
+
+/// (-) Probability of damage from which on a recording that is given as healthy is hardly of a healthy pair.
+const SURELY: f64 = 0.9;
+
+/// What deserves attention about an answer, in words.
+///
+/// # Arguments
+/// * `answer` - all but its warnings
+/// * `learned`, `question` - what it was made of
+pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let quality = &learned.reference.prior.base.quality;
+    if quality.din_grade == 0 && quality.profile_errors.is_none() {
+        warnings.push(
+            "the scenario's wheels have no deviations (quality.din_grade = 0), as none has: the probabilities are far too sure; \
+             write the grade of the rig's wheels"
+                .to_owned(),
+        );
+    }
+    let all = || question.now.iter().chain(question.healthy);
+    let misfits = all().filter_map(|asked| asked.misfit.clone());
+    for said in misfits.chain(all().flat_map(|asked| asked.doubts.clone())) {
+        if !warnings.contains(&said) {
+            warnings.push(said);
+        }
+    }
+    if answer.outside_model < OUTSIDE {
+        warnings.push(format!(
+            "the recording is unlike what was simulated (p = {:.3}): what is wrong may be none of the kinds that are known here, or the scenario is not this rig; do not rely on the probabilities",
+            answer.outside_model
+        ));
+    }
+    if let Some(p) = answer.healthy_outside_model.filter(|p| *p < OUTSIDE) {
+        warnings.push(of_healthy(p, learned, question));
+    }
+    if !answer.has_healthy {
+        warnings.push(
+            "without a recording of the same rig when it was healthy, small damage is not told from the wheels' own deviations and the sensor's path".to_owned(),
+        );
+    }
+    warnings.extend(level::doubt(learned, question));
+    warnings.extend(alike::doubts(learned, question));
+    warnings.extend(speed::doubts(question, &learned.reference.prior));
+    warnings.extend(not_simulated(answer));
+    warnings
+}
+
+/// Why the healthy recording is unlike simulations of healthy pairs: the scenario, or it is of a damaged pair.
+fn of_healthy(p: f64, learned: &Learned, question: &Question) -> String {
+    let scenario = "check the scenario's speed, load, wheels and the sensor, or tune it (`meshtone tune`)";
+    let given = format!("the healthy recording is unlike a healthy pair of the scenario (p = {p:.3})");
+    let alone = Question { now: question.healthy, healthy: &[] };
+    let is_misfit = question.healthy.iter().any(|asked| asked.misfit.is_some());
+    let damaged = Learned::new(learned.reference, &alone).and_then(|of| diagnose(&of, &alone, None)).ok();
+    match damaged.filter(|answer| answer.outside_model >= OUTSIDE && answer.damaged() > SURELY && !is_misfit)
+    {
+        Some(answer) => format!(
+            "{given}, but like a damaged one ({}): was it healthy? If it was, {scenario}; do not rely on the probabilities",
+            answer.likeliest_damage().map_or("", |kind| kind.label)
+        ),
+        None => format!(
+            "{given}, and unlike a damaged one: {scenario}; or is it of something else than these teeth? Do not rely on the probabilities"
+        ),
+    }
+}
+
+/// Kinds of damage that the answer does not know.
+fn not_simulated(answer: &Answer) -> Option<String> {
+    let is_missing = |name: &&str| !answer.kinds.iter().any(|kind| kind.label == *name);
+    let missing: Vec<&str> = damage_kinds().iter().map(|kind| kind.name).filter(is_missing).collect();
+    (!missing.is_empty()).then(|| {
+        format!(
+            "not looked for, since the scenario cannot be simulated with it: {}; another model may know it (model = \"contact\")",
+            missing.join(", ")
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use meshtone::signal::AngleZero;
+    use meshtone::wheel::WheelName;
+
+    use super::*;
+    use crate::DiagnoseError;
+    use crate::observation::Observation;
+    use crate::synthetic::{observed, prior, reference};
+
+    fn said(learned: &Learned, now: &[Observation], healthy: &[Observation]) -> Answer {
+        diagnose(learned, &Question { now, healthy }, None).unwrap()
+    }
+
+    fn has(answer: &Answer, words: &str) -> bool {
+        answer.warnings.iter().any(|warning| warning.contains(words))
+    }
+
+    // One set for all that is asked: to learn from it is what takes long.
+    #[test]
+    fn what_an_answer_is_not_silent_about() {
+        let prior = prior();
+        let reference = reference(&prior, 1200);
+        let is_heavy = |record: &&crate::ReferenceRecord| {
+            record.fault.as_ref().is_some_and(|fault| fault.severity > 0.9 && fault.wheel == WheelName::Gear)
+        };
+        let broken = reference.records.iter().find(is_heavy).unwrap();
+        let tooth = broken.fault.as_ref().map(|fault| fault.tooth);
+        let (broken, sound) = (observed(broken), observed(reference.healthy_of(broken).unwrap()));
+        let question = Question { now: std::slice::from_ref(&broken), healthy: std::slice::from_ref(&sound) };
+        let learned = Learned::new(&reference, &question).unwrap();
+        let (broken_alone, sound_alone) = (std::slice::from_ref(&broken), std::slice::from_ref(&sound));
+        let ask = |now: &[Observation]| said(&learned, now, sound_alone);
+
+        let answer = ask(broken_alone);
+        assert_eq!(answer.counted_from, [Some(AngleZero::Simulated); 2]);
+        let any = answer.any_damage.unwrap();
+        assert_eq!((any.wheel, any.tooth), (WheelName::Gear, tooth), "{answer:#?}");
+        assert!(answer.summary.contains("damaged"), "{}", answer.summary);
+        for words in ["one state", "times as loud", "turns at", "unlike a healthy pair"] {
+            assert!(!has(&answer, words), "{:?}", answer.warnings);
+        }
+
+        // Two recordings without a mark in common, and one whose angle means nothing.
+        let turned = |zero| broken.clone().with_zero([zero; 2]);
+        for now in [vec![turned(AngleZero::Chance)], vec![turned(AngleZero::FirstSample); 2]] {
+            let answer = ask(&now);
+            let place = answer.likeliest_damage().unwrap().place.unwrap();
+            assert_eq!((place.tooth, place.angle_deg, place.tooth_probability), (None, None, None));
+            assert!(place.is_on_one_tooth && answer.counted_from == [None; 2]);
+        }
+        let place = ask(&[turned(AngleZero::FirstSample)]).likeliest_damage().unwrap().place.unwrap();
+        assert_eq!(place.tooth, tooth);
+
+        assert!(has(&ask(&[broken.clone(), sound.clone()]), "hardly of one state"));
+        let mut loud = sound.clone();
+        for wheel in [Some(&mut loud.gear), loud.pinion.as_mut()].into_iter().flatten() {
+            wheel.lines.iter_mut().for_each(|line| *line *= 1000.0);
+        }
+        assert!(has(&said(&learned, broken_alone, &[loud]), "unit"));
+        let blamed = said(&learned, sound_alone, broken_alone);
+        assert!(
+            has(&blamed, "unlike a healthy pair") && has(&blamed, "was it healthy?"),
+            "{:?}",
+            blamed.warnings
+        );
+        let other = sound.clone().with_misfit("another machine");
+        let misfit = said(&learned, broken_alone, &[other]);
+        assert!(misfit.healthy_outside_model.is_some_and(|p| p < 0.01));
+
+        let at = |speed_hz| Observation { pinion_speed_hz: Some(speed_hz), ..broken.clone() };
+        assert!(has(&ask(&[at(46.0)]), "the pinion turns at 46.000 Hz"));
+        for (speed_hz, words) in [
+            (2400.0, "rpm that was given as Hz"),
+            (2.0 / 3.0, "has the scenario its speed in rpm"),
+            (40.0 * 38.0 / 17.0, "of the pinion's shaft, not the gear's"),
+            (40.0 * 17.0 / 38.0, "of the gear's shaft, not the pinion's"),
+            (120.0, "is it in Hz"),
+        ] {
+            let now = [at(speed_hz)];
+            let refused = Question { now: &now, healthy: &[] }.check(&prior).unwrap_err();
+            assert!(
+                matches!(refused, DiagnoseError::OtherSpeed { .. }) && refused.to_string().contains(words),
+                "{refused}"
+            );
+        }
+    }
+}
