@@ -6,7 +6,6 @@ Then the case is asked: is it damaged, and how far has it come? Takes about a mi
 """
 
 import sys
-import tomllib  # type: ignore[import-not-found, unused-ignore]
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,9 @@ from scipy.stats import spearmanr
 import meshtone as mt
 from meshtone.plotting import BLUE, ORANGE
 
-FOLDER = Path("examples", "experiments")
+sys.path.insert(0, str(Path(__file__).parent))
+from rig_cases import RIGS, difference_of, experiment, indicators_of, measured, rig_with  # noqa: E402
+
 #: Wheels that are simulated for every state.
 WHEELS = 40
 #: Probability, before anything is seen, that the gear is healthy.
@@ -33,9 +34,9 @@ def between(first: Any, second: Any, part: float) -> Any:
     return first if isinstance(first, str) else (1 - part) * first + part * second
 
 
-def states(experiment: dict[str, Any], rig: str) -> list[tuple[float, Any]]:
+def states(told: dict[str, Any], rig: str) -> list[tuple[float, Any]]:
     """Places along the case list, with the faults there; 0 is healthy."""
-    faults = [case.get("fault") for case in experiment["case"]]
+    faults = [case.get("fault") for case in told["case"]]
     severity = rig_with(rig, faults[1]).fault_severities[0]
     places = [(0.0, None)] + [(part, {"kind": faults[1]["kind"], "severity": part * severity}) for part in (0.25, 0.5, 0.75)]
     for number, fault in enumerate(faults[1:], 1):
@@ -53,16 +54,6 @@ def states(experiment: dict[str, Any], rig: str) -> list[tuple[float, Any]]:
     return places
 
 
-def rig_with(rig: str, fault: Any) -> mt.Scenario:
-    """The rig's scenario with a fault."""
-    def inline(value: Any) -> str:
-        if isinstance(value, dict):
-            return "{ " + ", ".join(f"{key} = {inline(inner)}" for key, inner in value.items()) + " }"
-        return f'"{value}"' if isinstance(value, str) else repr(float(value))
-    lines = [] if fault is None else ["[[fault]]", *(f"{key} = {inline(value)}" for key, value in fault.items())]
-    return mt.Scenario.from_toml(rig + "\n" + "\n".join(lines) + "\n")
-
-
 def simulated(rig: str, places: list[tuple[float, Any]], rate_hz: float) -> np.ndarray[Any, Any]:
     """log10 of rms and kurtosis over those of the same wheels without damage: (place, wheels, indicator)."""
     draws = np.random.default_rng(1)
@@ -77,33 +68,22 @@ def simulated(rig: str, places: list[tuple[float, Any]], rate_hz: float) -> np.n
         for wheel in wheels:
             own = dict(wheel)
             scenarios.append(scenario.copy(brake_torque_nm=torque * own.pop("brake_torque_factor"), **own))
-    teeth, gear_hz = scenarios[0].gear_teeth, scenarios[0].pinion_speed_hz * scenarios[0].pinion_teeth / scenarios[0].gear_teeth
-    values = []
-    for signals in mt.simulate_many(scenarios, channels=["vertical_g"], target_rate_hz=rate_hz):
-        x = np.tile(signals.vertical_g.astype(float), 2)
-        record = mt.process_channel(x, mt.ShaftPhase.constant(gear_hz, signals.sampling_rate_hz, len(x)), teeth)
-        difference = record.difference
-        values.append((np.log10(difference.std()), np.log10(((difference - difference.mean()) ** 4).mean() / difference.var() ** 2)))
+    results = mt.simulate_many(scenarios, channels=["vertical_g"], target_rate_hz=rate_hz)
+    values = [indicators_of(difference_of(scenario, signals)) for scenario, signals in zip(scenarios, results)]
     logs: np.ndarray[Any, Any] = np.array(values).reshape(len(places), WHEELS, 2)
     related: np.ndarray[Any, Any] = logs - logs[0]
     return related
 
 
-def measured(name: str) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+def related_to_healthy(records: list[list[Any]]) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
     """(case, indicator): median of log10 over the records, over the healthy case's; and the healthy case's deviation.
 
     Of the healthy records every other one is what all is related to, and the rest is the case that is asked.
     """
-    rows = [line.split(",") for line in (FOLDER / "fig6_indicators.csv").read_text().splitlines()[1:] if not line.startswith("#")]
-
-    def of(indicator: str, severity: int) -> np.ndarray[Any, Any]:
-        return np.array([float(r[4]) for r in rows if r[:3] == [name, indicator, "measured"] and int(r[3]) == severity])
-
-    count = 1 + max(int(r[3]) for r in rows if r[0] == name and r[2] == "measured")
-    related = np.array([np.median(of(indicator, 0)[::2]) for indicator in ("rms", "kurtosis")])
-    healthy = [np.median(of(indicator, 0)[1::2]) for indicator in ("rms", "kurtosis")]
-    damaged = [[np.median(of(indicator, case)) for indicator in ("rms", "kurtosis")] for case in range(1, count)]
-    scatter = np.array([of(indicator, 0).std() for indicator in ("rms", "kurtosis")])
+    related = np.array([np.median(indicator[::2]) for indicator in records[0]])
+    healthy = [np.median(indicator[1::2]) for indicator in records[0]]
+    damaged = [[np.median(indicator) for indicator in case] for case in records[1:]]
+    scatter = np.array([indicator.std() for indicator in records[0]])
     return np.array([healthy, *damaged]) - related, np.maximum(scatter, LEAST_DEVIATION)
 
 
@@ -143,17 +123,16 @@ def ask(
 
 figure, axes = plt.subplots(1, 3, figsize=(11, 3.8), layout="constrained")
 print("rig          case                       damaged  median  90 % interval  holds it")
-for ax, name in zip(axes, ("breakage", "pitting", "destruction")):
-    experiment = tomllib.loads((FOLDER / f"{name}_contact.toml").read_text())
-    rig = (FOLDER / experiment["scenario"]).read_text()
-    steps = states(experiment, rig)
+for ax, name in zip(axes, RIGS):
+    told, rig = experiment(name)
+    steps = states(told, rig)
     places = [place for place, _ in steps]
-    seen, scatter = measured(name)
-    simulations = simulated(rig, steps, experiment["signal"]["sampling_rate_hz"])
+    seen, scatter = related_to_healthy(measured(name))
+    simulations = simulated(rig, steps, told["signal"]["sampling_rate_hz"])
     answers = [ask(case, seen, scatter, places, simulations) for case in range(len(seen))]
     for case, (probability, (low, middle, high)) in enumerate(answers):
         held = "" if case == 0 else "yes" if low <= case <= high else "no"
-        print(f"{name:12s} {experiment['case'][case]['label']:26s} {probability:7.3f} {middle:7.2f}  {low:5.2f} – {high:4.2f}   {held}")
+        print(f"{name:12s} {told['case'][case]['label']:26s} {probability:7.3f} {middle:7.2f}  {low:5.2f} – {high:4.2f}   {held}")
     expected = [probability * middle for probability, (_, middle, _) in answers]
     correlation = spearmanr(expected, np.arange(len(expected))).statistic
     holds = np.mean([low <= case <= high for case, (_, (low, _, high)) in enumerate(answers) if case])
@@ -165,7 +144,7 @@ for ax, name in zip(axes, ("breakage", "pitting", "destruction")):
     ax.errorbar(cases[1:], middles[1:], [(middles - lows)[1:], (highs - middles)[1:]], fmt="o", color=BLUE, label="median, 90 %")
     for at, value in zip(cases, said):
         ax.annotate(f"{value:.2f}", (at, -0.9), ha="center", fontsize=8, color=ORANGE)
-    labels = [case["label"].removeprefix("chipped, ").removesuffix(" destroyed") for case in experiment["case"]]
+    labels = [case["label"].removeprefix("chipped, ").removesuffix(" destroyed") for case in told["case"]]
     ax.set_xticks(cases, labels, rotation=40, ha="right", rotation_mode="anchor", fontsize=9)
     ax.set_ylim(-1.2, places[-1] + 0.5)
     ax.set_title(f"{name.capitalize()}: rank correlation {correlation:.2f}", fontsize=10)
