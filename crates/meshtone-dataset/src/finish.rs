@@ -14,7 +14,7 @@ use crate::part_list::{self, PartList};
 use crate::plan::{Content, Plan, SplitBy};
 use crate::shard::{self, Column, ColumnKind, FailedRecord, Shards, Wanted};
 use crate::store::Destination;
-use crate::words::counted;
+use crate::words::{counted, words_of};
 
 /// Finishes a data set where all shards are there. Returns whether it is complete.
 pub(crate) fn finish_if_complete(
@@ -124,11 +124,11 @@ fn preview(
     let keys = columns
         .iter()
         .filter(|column| is_varied(column, contents))
-        .map(|column| Key { name: column.name.clone(), values: values_of(&column.name) });
+        .map(|column| Key { name: words_of(&column.name), values: values_of(&column.name) });
     let indicators = INDICATORS.iter().filter_map(|name| {
         let column =
             columns.iter().find(|column| column.kind == ColumnKind::Indicator((*name).to_owned()))?;
-        Some(Indicator { name: column.name.clone(), values: values_of(&column.name) })
+        Some(Indicator { name: words_of(&column.name), values: values_of(&column.name) })
     });
     let failures = contents.failures.len() as u64;
     DatasetPreview {
@@ -139,7 +139,7 @@ fn preview(
             counted(plan.content.units, "unit"),
             counted(contents.files.len() as u64, "shard")
         ),
-        signal_name: shown.map_or_else(String::new, |column| column.name.clone()),
+        signal_name: shown.map_or_else(String::new, |column| words_of(&column.name)),
         over_angle: plan.content.keep.over_angle.is_some()
             || shown.is_some_and(|column| !matches!(column.kind, ColumnKind::Channel(_))),
         examples: examples.collect(),

@@ -8,6 +8,7 @@ use meshtone_io::table::{CellType, TableColumn};
 
 use crate::draw::{NOISE_KEYS, PATH_KEYS, is_of_plan};
 use crate::plan::Plan;
+use crate::words::unit_of;
 
 /// Name of the column of codes.
 pub(crate) const WARNINGS: &str = "warnings";
@@ -418,27 +419,6 @@ fn is_tooth(key: &str) -> bool {
 /// The number of an entry of a list such as `fault[1]`, from 0.
 fn number_in(section: &str, list: &str) -> Option<usize> {
     section.strip_prefix(list)?.strip_prefix('[')?.strip_suffix(']')?.parse().ok()
-}
-
-/// The unit that a name ends in.
-pub(crate) fn unit_of(name: &str) -> &'static str {
-    const UNITS: [(&str, &str); 14] = [
-        ("_n_per_m", "N/m"),
-        ("_nm_per_rad", "N m/rad"),
-        ("_kgm2", "kg m²"),
-        ("_mm", "mm"),
-        ("_um", "µm"),
-        ("_g_per_rthz", "g/√Hz"),
-        ("_per_cm2", "1/cm²"),
-        ("_hz", "Hz"),
-        ("_nm", "N m"),
-        ("_deg", "°"),
-        ("_kg", "kg"),
-        ("_db", "dB"),
-        ("_g", "g"),
-        ("_s", "s"),
-    ];
-    UNITS.iter().find(|(end, _)| name.ends_with(end)).map_or("-", |(_, unit)| unit)
 }
 
 /// Names and units of all indicators, in their order.

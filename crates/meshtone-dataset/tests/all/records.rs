@@ -70,6 +70,15 @@ impl Made {
         }
     }
 
+    /// A whole number of any width.
+    fn whole(&self, name: &str, row: usize) -> i64 {
+        match self.field(name, row) {
+            Field::Int(number) => i64::from(*number),
+            Field::Long(number) => *number,
+            other => panic!("{name}: {other}"),
+        }
+    }
+
     fn tooth(&self, row: usize) -> Option<i32> {
         match self.field("fault_tooth", row) {
             Field::Int(number) => Some(*number),
@@ -658,4 +667,86 @@ fn a_path_multiplies_the_channel() {
         assert!((ratio - 1.0).abs() < 1e-5, "{ratio}");
         assert_eq!(passed.number("path_gain_db", row), 20.0);
     }
+}
+
+/// (g) The amplitude of a raw channel at a frequency of which its length is a whole number of periods.
+fn amplitude(signal: &[f64], periods: f64) -> f64 {
+    let step = std::f64::consts::TAU * periods / signal.len() as f64;
+    let part =
+        |of: fn(f64) -> f64| signal.iter().enumerate().map(|(i, x)| x * of(step * i as f64)).sum::<f64>();
+    part(f64::cos).hypot(part(f64::sin)) * 2.0 / signal.len() as f64
+}
+
+// Two sets that differ by the path's ripple alone: at one frequency the two differ by a gain that is the mounting's own.
+#[test]
+fn runs_to_failure_and_ripples_of_paths_are_written() {
+    let growth = "fault = { kind = \"root-crack\", severity = 0.5 }\n\
+                  growth = { law = \"paris\", start = 0.05, failure = 0.9, life_rev = 1e6, censored = 0.5 }";
+    let (body, _) = FAST.split_once("[split]").unwrap();
+    let set = |ripple_db: &str| {
+        let text = body
+            .replace("fault = { kind = \"missing-tooth\" }\nseverity = 4", growth)
+            .replace("records = 60\nunits = 10", "records = 36\nunits = 4\nmountings = 2")
+            .replace("uniform = [30.0, 60.0]", "fixed = 40.0")
+            .replace(
+                "key = \"noise.snr_db\"\nuniform = [10.0, 30.0]",
+                &format!("key = \"path.ripple_db\"\nfixed = {ripple_db}\nper = \"mounting\""),
+            );
+        made(&plan(&format!(
+            "{text}\n[split]\nby = \"mounting\"\ntrain = 0.5\nvalidation = 0.0\ntest = 0.5\n"
+        )))
+    };
+    let [even, rippled] = ["0.0", "3.0"].map(set);
+
+    let mut gains = std::collections::BTreeMap::<i64, Vec<f64>>::new();
+    let mut runs = std::collections::BTreeMap::<i64, Vec<[f64; 4]>>::new();
+    for row in 0..rippled.rows.len() {
+        let [before, after] = [&even, &rippled].map(|set| {
+            assert_eq!(set.integer("record", row), even.integer("record", row));
+            let signal = set.signal("vertical_g", row);
+            // The mesh's 20 periods in each of the pinion's revolutions, at 40 Hz and 8 kS/s.
+            amplitude(&signal, (signal.len() as f64 / 10.0).round())
+        });
+        gains.entry(rippled.whole("mounting", row)).or_default().push(after / before);
+        if rippled.text("label", row) == "missing" {
+            let [age, left, severity] =
+                ["age_rev", "remaining_rev", "fault_severity"].map(|name| rippled.number(name, row));
+            let censored = rippled.whole("censored", row) as f64;
+            let told = [age, left, censored, severity];
+            runs.entry(rippled.whole("unit", row)).or_default().push(told);
+        } else {
+            assert!(
+                ["age_rev", "remaining_rev", "censored"]
+                    .iter()
+                    .all(|name| *rippled.field(name, row) == Field::Null)
+            );
+        }
+    }
+    assert_eq!(gains.len(), 8);
+    for of_mounting in gains.values() {
+        assert!(of_mounting.iter().all(|gain| (gain / of_mounting[0] - 1.0).abs() < 0.03), "{gains:?}");
+    }
+    let decibels: Vec<f64> = gains.values().map(|gains| 20.0 * gains[0].log10()).collect();
+    let spread = decibels.iter().map(|db| db * db).sum::<f64>() / decibels.len() as f64;
+    // Of eight normal draws with 3 dB, within four times the standard error of a variance.
+    assert!((1.0..27.0).contains(&spread), "{decibels:?}");
+
+    assert_eq!(runs.len(), 4);
+    let mut stopped = 0;
+    for run in runs.values_mut() {
+        run.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        assert_eq!(run.len(), 3);
+        assert!(run.windows(2).all(|pair| pair[0][1] > pair[1][1] && pair[0][3] < pair[1][3]), "{run:?}");
+        // Age and what is left are the run's observed life, the same of all its records: all of the life, or less where it was stopped.
+        let life = run[0][0] + run[0][1];
+        assert!(run.iter().all(|[age, left, censored, _]| {
+            (age + left - life).abs() < 1e-6 * life && *censored == run[0][2]
+        }));
+        assert_eq!(life < 0.999e6, run[0][2] == 1.0, "{run:?}");
+        stopped += u32::from(run[0][2] == 1.0);
+    }
+    assert!((1..4).contains(&stopped), "{stopped}");
+
+    let card = std::fs::read_to_string(rippled.directory.path().join("set/README.md")).unwrap();
+    assert!(card.contains("**Splits are by mounting**") && card.contains("| *mountings* | "), "{card}");
 }

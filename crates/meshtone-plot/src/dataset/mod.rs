@@ -71,7 +71,7 @@ pub struct Example {
 /// A varied key.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Key {
-    /// Name of its column.
+    /// What it is called, with its unit: `pinion speed (Hz)`.
     pub name: String,
     /// Its value in each record; NaN where it has none.
     pub values: Vec<f64>,
@@ -80,7 +80,7 @@ pub struct Key {
 /// An indicator.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Indicator {
-    /// Name of its column.
+    /// What it is called, with its unit: `pinion speed (Hz)`.
     pub name: String,
     /// Its value in each record; NaN where it has none.
     pub values: Vec<f64>,
