@@ -401,7 +401,7 @@ def main() -> int:
     result["broken bounds"] = broken(result)
     given.output.mkdir(parents=True, exist_ok=True)
     (given.output / "scores.json").write_text(json.dumps(result, indent=1) + "\n")
-    (given.output / "scores.md").write_text(table(result))
+    (given.output / "scores.md").write_text(table(result), encoding="utf-8")
     figures(test, result, probabilities, given.output)
     print(table(result))
     for problem in result["broken bounds"]:

@@ -75,7 +75,8 @@ class Diagnosis:
         shown = [(kind, said) for kind, said in self.kinds.items() if said["probability"] >= SHOWN]
         rows = "".join(f"<tr><td>{kind}</td>{_cells(said)}</tr>" for kind, said in shown)
         head = "<tr><th>kind</th><th>probability</th><th>severity (90 %)</th><th>where</th></tr>"
-        facts = f"damaged with a probability of {100 * self.damaged:.1f} %, p = {self.outside_model:.3f}; given the scenario"
+        p = "p < 0.001" if self.outside_model < 0.001 else f"p = {self.outside_model:.3f}"
+        facts = f"damaged with a probability of {100 * self.damaged:.1f} %, {p}; given the scenario"
         told = "".join(f"<p>{escape(warning)}</p>" for warning in self.warnings)
         return f"<p>{escape(self.summary)}</p><p>{facts}</p><table>{head}{rows}</table>{told}"
 

@@ -61,11 +61,15 @@ def difference_of(scenario: mt.Scenario, signals: mt.Signals, noise: Values | No
 
 
 def measured(name: str) -> list[list[Values]]:
-    """log10 of the measured records' indicators, by case and indicator; a record's two cannot be paired."""
+    """log10 of the measured records' indicators, by case and indicator; a record's two cannot be paired.
+
+    The file has them sorted: they are shuffled, so that every other one is not its neighbours' mean.
+    """
     rows = [line.split(",") for line in (FOLDER / "fig6_indicators.csv").read_text().splitlines()[1:] if not line.startswith("#")]
     of_rig = [row for row in rows if row[0] == name and row[2] == "measured"]
     count = 1 + max(int(row[3]) for row in of_rig)
+    draw = np.random.default_rng(7)
     return [
-        [np.array([float(row[4]) for row in of_rig if row[1] == indicator and int(row[3]) == case]) for indicator in INDICATORS]
+        [draw.permutation([float(row[4]) for row in of_rig if row[1] == indicator and int(row[3]) == case]) for indicator in INDICATORS]
         for case in range(count)
     ]

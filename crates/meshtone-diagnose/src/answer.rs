@@ -142,5 +142,19 @@ impl Answer {
     }
 }
 
+/// A p-value for reading: `p = 0.748`, or that it is less than can be told.
+///
+/// # Arguments
+/// * `p` - (-) of [`Answer::outside_model`] or [`Answer::healthy_outside_model`]
+///
+/// # Examples
+/// ```
+/// assert_eq!(meshtone_diagnose::p_in_words(0.7481), "p = 0.748");
+/// assert_eq!(meshtone_diagnose::p_in_words(0.0002), "p < 0.001");
+/// ```
+pub fn p_in_words(p: f64) -> String {
+    if p < 0.001 { "p < 0.001".to_owned() } else { format!("p = {p:.3}") }
+}
+
 /// The label of a pair without damage.
 pub const HEALTHY: &str = "healthy";

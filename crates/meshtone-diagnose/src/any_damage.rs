@@ -93,6 +93,8 @@ impl AnyDamage {
         }
         let wheel = self.wheel.name();
         match (self.tooth, self.tooth_probability) {
+            // Likelier all of them.
+            _ if self.one_tooth_probability < 0.5 => format!("look at every tooth of the {wheel}"),
             (Some(tooth), Some(sure)) if sure >= NAMED => format!("look at tooth {tooth} of the {wheel}"),
             (Some(tooth), Some(_)) => format!("look at the {wheel}, from tooth {tooth} on"),
             _ if self.one_tooth_probability >= NAMED => {

@@ -379,6 +379,9 @@ impl<'a> Learned<'a> {
         let mut features = self.features.select_columns(&rows);
         if let Some((_, refined)) = refined {
             let more = self.refined_rows(refined);
+            if more.len() < refined.records.len() / 2 {
+                return Err(DiagnoseError::NoReference);
+            }
             let values: Vec<Vec<f64>> =
                 more.iter().map(|(_, row)| self.standard.apply(&row.values)).collect();
             let known = features.ncols();

@@ -30,7 +30,9 @@ mod store;
 mod synthetic;
 mod warnings;
 
-pub use answer::{Answer, AnyDamage, Explanation, HEALTHY, Interval, KindAnswer, PlaceAnswer, SizeAnswer};
+pub use answer::{
+    Answer, AnyDamage, Explanation, HEALTHY, Interval, KindAnswer, PlaceAnswer, SizeAnswer, p_in_words,
+};
 pub use diagnose::diagnose;
 pub use error::DiagnoseError;
 pub use learn::{Learned, Question};

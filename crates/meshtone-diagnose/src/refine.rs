@@ -27,7 +27,8 @@ const TOO_WIDE: f64 = 0.7;
 /// Simulations of a refined round.
 pub const REFINED_RECORDS: u64 = 256;
 
-/// A refined round for a question, where the first answer is sure enough of something; none otherwise, and where it was cancelled.
+/// A refined round for a question, where the first answer is sure enough of something; none otherwise, where it was cancelled, and
+/// where too few of it could be simulated.
 ///
 /// # Arguments
 /// * `learned` - of the first round
@@ -46,7 +47,14 @@ pub fn refine(
     if control.cancelled.load(Ordering::Relaxed) {
         return Ok(None);
     }
-    learned.refined(&ReferenceSet { prior, records }).map(Some)
+    if (records.len() as u64) < REFINED_RECORDS / 2 {
+        return Ok(None);
+    }
+    match learned.refined(&ReferenceSet { prior, records }) {
+        // Too few of them can be compared with the recording: the first round's answer stands.
+        Err(DiagnoseError::NoReference) => Ok(None),
+        refined => refined.map(Some),
+    }
 }
 
 /// What is learnt from a refined round about one kind of damage on one wheel.

@@ -2,7 +2,7 @@
 
 use meshtone::damage::damage_kinds;
 
-use crate::answer::Answer;
+use crate::answer::{Answer, p_in_words};
 use crate::diagnose::{OUTSIDE, diagnose};
 use crate::learn::{Learned, Question};
 use crate::{alike, level, speed};
@@ -34,8 +34,8 @@ pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) 
     }
     if answer.outside_model < OUTSIDE {
         warnings.push(format!(
-            "the recording is unlike what was simulated (p = {:.3}): what is wrong may be none of the kinds that are known here, or the scenario is not this rig; do not rely on the probabilities",
-            answer.outside_model
+            "the recording is unlike what was simulated ({}): what is wrong may be none of the kinds that are known here, or the scenario is not this rig; do not rely on the probabilities",
+            p_in_words(answer.outside_model)
         ));
     }
     if let Some(p) = answer.healthy_outside_model.filter(|p| *p < OUTSIDE) {
@@ -56,7 +56,7 @@ pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) 
 /// Why the healthy recording is unlike simulations of healthy pairs: the scenario, or it is of a damaged pair.
 fn of_healthy(p: f64, learned: &Learned, question: &Question) -> String {
     let scenario = "check the scenario's speed, load, wheels and the sensor, or tune it (`meshtone tune`)";
-    let given = format!("the healthy recording is unlike a healthy pair of the scenario (p = {p:.3})");
+    let given = format!("the healthy recording is unlike a healthy pair of the scenario ({})", p_in_words(p));
     let alone = Question { now: question.healthy, healthy: &[] };
     let is_misfit = question.healthy.iter().any(|asked| asked.misfit.is_some());
     let damaged = Learned::new(learned.reference, &alone).and_then(|of| diagnose(&of, &alone, None)).ok();

@@ -2,7 +2,7 @@
 
 use meshtone::signal::AngleZero;
 use meshtone::wheel::WheelName;
-use meshtone_diagnose::{Answer, PlaceAnswer, SignalKind};
+use meshtone_diagnose::{Answer, PlaceAnswer, SignalKind, p_in_words};
 
 /// (-) p-value below which a recording is unlike all that was simulated.
 const OUTSIDE: f64 = 0.05;
@@ -26,7 +26,7 @@ pub fn outside(answer: &Answer) -> String {
         true => "the recording is unlike all that was simulated",
         false => "the recording is like what was simulated",
     };
-    format!("{means} (p = {:.3})", answer.outside_model)
+    format!("{means} ({})", p_in_words(answer.outside_model))
 }
 
 /// Where tooth 1 of the wheel that is named is.
