@@ -328,7 +328,7 @@ def table(result: dict) -> str:
     lines += ["", f"Of {best}:", "", "| kind | AUC | by grade of severity | 90 % found from | named rightly |", "|---|---:|---|---:|---:|"]
     for kind, told in result["models"][best]["detection"]["kinds"].items():
         grades = ", ".join(f"{value:.2f}" for value in told["auc by grade"].values())
-        limit = "–" if told["found from severity"] is None else told["found from severity"]
+        limit = "-" if told["found from severity"] is None else told["found from severity"]
         lines.append(f"| {kind} | {shown.format(told['auc'])} | {grades} | {limit} | {result['models'][best]['recall'][kind]:.2f} |")
     lines += ["", "| severity | CRPS |", "|---|---:|"]
     lines += [f"| {name} | {shown.format(value)} |" for name, value in result["severity crps"].items()]

@@ -2,7 +2,8 @@
 
 For each rig of Figure 6 of arXiv:2410.05073 a data set is simulated from what a rig's owner knows: teeth, face width, speed, load, grade.
 What nobody states (structure, damping, chamfer, the wheels' deviations) is drawn over the ranges of the rig's experiment file, machine by
-machine; load, support and noise vary from record to record. Models learn from these records alone, and are asked about the measured ones.
+machine; load, support and noise vary from record to record. The damages
+have the sizes of the rig's own cases. Models learn from these records alone, and are asked about the measured ones.
 
 * *Rig data only*: they learn from all machines.
 * *Tuned*: from the tenth of the machines that comes nearest to what the rig's *other* damaged cases measured. The case that is asked, and
