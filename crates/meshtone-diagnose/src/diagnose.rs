@@ -14,7 +14,7 @@ use crate::refine::Refined;
 use crate::warnings::warnings;
 
 /// (-) p-value below which a recording is called unlike all that was simulated.
-pub(crate) const OUTSIDE: f64 = 0.05;
+pub const OUTSIDE: f64 = 0.05;
 /// Simulations whose signals make the predictive band.
 const IN_BAND: usize = 120;
 /// Explanations that are shown.

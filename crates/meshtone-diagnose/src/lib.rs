@@ -33,7 +33,7 @@ mod warnings;
 pub use answer::{
     Answer, AnyDamage, Explanation, HEALTHY, Interval, KindAnswer, PlaceAnswer, SizeAnswer, p_in_words,
 };
-pub use diagnose::diagnose;
+pub use diagnose::{OUTSIDE, diagnose};
 pub use error::DiagnoseError;
 pub use learn::{Learned, Question};
 pub use observation::{Observation, SignalKind, WheelLines, other_teeth};

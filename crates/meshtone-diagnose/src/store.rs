@@ -53,6 +53,9 @@ pub struct ReferenceStore {
 }
 
 impl ReferenceStore {
+    /// Simulations that are kept together, in one file: whole pairs of wheels.
+    pub const BATCH: u64 = BATCH;
+
     /// # Arguments
     /// * `folder` - in which the sets are; made where it is not there
     pub fn new(folder: impl Into<PathBuf>) -> Self {

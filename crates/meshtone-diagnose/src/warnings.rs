@@ -59,9 +59,10 @@ fn of_healthy(p: f64, learned: &Learned, question: &Question) -> String {
     let given = format!("the healthy recording is unlike a healthy pair of the scenario ({})", p_in_words(p));
     let alone = Question { now: question.healthy, healthy: &[] };
     let is_misfit = question.healthy.iter().any(|asked| asked.misfit.is_some());
-    let damaged = Learned::new(learned.reference, &alone).and_then(|of| diagnose(&of, &alone, None)).ok();
-    match damaged.filter(|answer| answer.outside_model >= OUTSIDE && answer.damaged() > SURELY && !is_misfit)
-    {
+    // No simulation has what speaks against it: nothing is to be learnt.
+    let alone = || Learned::new(learned.reference, &alone).and_then(|of| diagnose(&of, &alone, None)).ok();
+    let damaged = if is_misfit { None } else { alone() };
+    match damaged.filter(|answer| answer.outside_model >= OUTSIDE && answer.damaged() > SURELY) {
         Some(answer) => format!(
             "{given}, but like a damaged one ({}): was it healthy? If it was, {scenario}; do not rely on the probabilities",
             answer.likeliest_damage().map_or("", |kind| kind.label)

@@ -31,8 +31,6 @@ use crate::output_directory::OutputDirectory;
 use crate::targets::{check_not_read, named_after};
 use crate::terminal::{print, print_error_line};
 
-/// Simulations that are kept together.
-const BATCH: u64 = 512;
 /// Most simulations that are learnt from: time and memory grow with their square; so many take 70 s and 0.7 GB.
 const MOST_RECORDS: u64 = 20_480;
 const JSON: &str = "diagnosis.json";
@@ -179,7 +177,7 @@ impl Diagnose {
         let bar = self.progress_bar(self.records, "");
         let (folder, since) = (store.folder_of(prior), Instant::now());
         let kept = fs::read_dir(&folder).map_or(0, Iterator::count) as u64;
-        let is_told = !self.quiet && kept < self.records.div_ceil(BATCH);
+        let is_told = !self.quiet && kept < self.records.div_ceil(ReferenceStore::BATCH);
         if is_told {
             print_error_line(self.begins(&folder));
         }

@@ -2,10 +2,7 @@
 
 use meshtone::signal::AngleZero;
 use meshtone::wheel::WheelName;
-use meshtone_diagnose::{Answer, PlaceAnswer, SignalKind, p_in_words};
-
-/// (-) p-value below which a recording is unlike all that was simulated.
-const OUTSIDE: f64 = 0.05;
+use meshtone_diagnose::{Answer, OUTSIDE, PlaceAnswer, SignalKind, p_in_words};
 
 /// What "probability" is, in few words.
 pub const PROBABILITY: &str =
