@@ -1,11 +1,14 @@
 //! Everything that a change must pass, and the part of it that is quick.
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use crate::step::{Row, beside};
 use crate::surroundings::unusual;
-use crate::{dependencies, dist, docs, environment, features, kernels, python, rooms, scipy, toolchain};
+use crate::{
+    dependencies, dist, docs, environment, features, kernels, packages, python, rooms, scipy, toolchain,
+};
 
 /// What the tests of the Rust packages need of Python.
 struct Prepared {
@@ -24,7 +27,8 @@ pub fn quick(root: &Path) -> Result<(), u8> {
     formatting(&row)?;
     row.step("rooms check", || rooms::check(root))?;
     lints(&row)?;
-    row.cargo(&[&["test", "--release", "--lib", "--test", "all"], &CORE[..]].concat(), &[])
+    row.cargo(&[&["test", "--release", "--test", "all"], &CORE[..]].concat(), &[])?;
+    quickly_built(&row, "meshtone", &["--lib"], &[])
 }
 
 /// The core, with the program, none of whose targets is built, so that the packages of others are those that it has built.
@@ -34,11 +38,9 @@ const CORE: [&str; 4] = ["--package", "meshtone", "--package", "meshtone-cli"];
 /// project's own packages would be compiled for the tests and once more for the program and the wheel.
 const TESTED: [&str; 3] = ["--workspace", "--exclude", "meshtone-bench"];
 
-/// All of them but the core.
-const BESIDE_CORE: [&str; 2] = ["--exclude", "meshtone"];
-
-/// For the core's unit tests, which compile it once more: they run for a second, and it takes longest of all to compile for speed.
-const QUICKLY_BUILT: [&str; 2] = ["--config", "profile.release.package.meshtone.opt-level=1"];
+/// What has all its tests by itself: the core, as the program alone asks for what it asks of others' packages, and the reading of
+/// recordings, see [`quickly_built`].
+const BY_THEMSELVES: [&str; 4] = ["--exclude", "meshtone", "--exclude", "meshtone-io"];
 
 /// Everything.
 ///
@@ -65,15 +67,17 @@ fn rust_row(row: &Row, prepared: &Receiver<Prepared>) -> Result<(), u8> {
     surroundings.push(("MESHTONE_SCIPY_REFERENCE", prepared.scipy.into()));
     surroundings.push(("MESHTONE_PYTHON", prepared.python.into()));
     // Not the examples: the lints have looked at them, and nothing runs them.
-    row.cargo(&[&["test", "--release", "--tests"], &TESTED[..], &BESIDE_CORE].concat(), &surroundings)?;
+    let programs = ["test", "--release", "--bins", "--test", "*"];
+    row.cargo(&[&programs, &TESTED[..], &BY_THEMSELVES].concat(), &surroundings)?;
     row.cargo(&[&["test", "--release", "--test", "all"], &CORE[..]].concat(), &surroundings)?;
-    row.cargo(&[&["test", "--release", "--lib"], &CORE[..], &QUICKLY_BUILT].concat(), &surroundings)?;
+    unit_tests(row, &surroundings)?;
+    features::object_stores(row, &surroundings)?;
     row.cargo(&[&["test", "--release", "--doc"], &TESTED[..]].concat(), &surroundings)?;
     row.step("kernels check", || kernels::check(row.root()))?;
     let program = dist::program(row)?;
     dist::try_program(row, &program)?;
     documentation(row)?;
-    features::check(row, &surroundings)?;
+    features::without_threads(row)?;
     toolchain::check(row)
 }
 
@@ -88,6 +92,40 @@ fn python_row(row: &Row, ready: &Sender<Prepared>) -> Result<(), u8> {
     let source = dist::source(row, &python)?;
     dist::try_source(row, &python, &source)
 }
+
+/// The unit tests of every package that has some, and the other tests of one whose tests take longer to compile than to run.
+fn unit_tests(row: &Row, surroundings: &[(&str, OsString)]) -> Result<(), u8> {
+    let tested = |package: &&String| !WITHOUT_UNIT_TESTS.contains(&package.as_str());
+    packages::names(row)?.iter().filter(tested).try_for_each(|package| match package.as_str() {
+        // They learn from many records.
+        "meshtone-diagnose" => row.cargo(
+            &["test", "--release", "--lib", "--package", package, "--package", "meshtone-cli"],
+            surroundings,
+        ),
+        "meshtone-io" => {
+            quickly_built(row, package, &["--lib", "--test", "all", "--test", "recording_fuzz"], surroundings)
+        }
+        _ => quickly_built(row, package, &["--lib"], surroundings),
+    })
+}
+
+/// Tests of a package, which is not optimised: it is compiled once more for its unit tests, and most need a second or so.
+///
+/// What it depends on has been compiled for speed, and would be once more without where it is tested in the same run: one package at
+/// a time, with the program, none of whose targets is built, for the features of others' packages.
+fn quickly_built(
+    row: &Row,
+    package: &str,
+    targets: &[&str],
+    surroundings: &[(&str, OsString)],
+) -> Result<(), u8> {
+    let level = packages::opt_level(package, 0);
+    let tests = ["test", "--release", "--package", package, "--package", "meshtone-cli", "--config", &level];
+    row.cargo(&[&tests[..], targets].concat(), surroundings)
+}
+
+/// Packages that have no unit tests of a library: the benchmarks and the interfaces.
+const WITHOUT_UNIT_TESTS: [&str; 3] = ["meshtone-bench", "meshtone-cli", "meshtone-python"];
 
 /// Writes what the tests of the core compare with the rows of the keys.
 ///

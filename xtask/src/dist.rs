@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::environment;
+use crate::packages::{self, opt_level};
 use crate::step::Row;
 
 /// What is tried of an installed package.
@@ -159,12 +160,12 @@ pub fn try_source(row: &Row, python: &Path, source: &Path) -> Result<(), u8> {
         // All files of a source distribution have the same old date, by which cargo would take what was built of another
         // one for fresh: a setting that nothing depends on, but which follows from the content, tells them apart.
         let units = LEAST_UNITS + BuildHasherDefault::<DefaultHasher>::default().hash_one(&content) % UNITS;
-        let settings = [("opt-level", 0), ("codegen-units", units)];
-        let unoptimised: Vec<String> = packages(row)?
+        // The source distribution has not all packages, which cargo only remarks.
+        let unoptimised: Vec<String> = packages::names(row)?
             .iter()
-            .flat_map(|package| {
-                settings
-                    .map(|(key, value)| format!("--config profile.release.package.{package}.{key}={value}"))
+            .map(|package| {
+                let level = opt_level(package, 0);
+                format!("--config {level} --config profile.release.package.{package}.codegen-units={units}")
             })
             .collect();
         let environment = [
@@ -182,13 +183,6 @@ pub fn try_source(row: &Row, python: &Path, source: &Path) -> Result<(), u8> {
 /// Numbers of codegen units, of which unoptimised crates never have so many.
 const LEAST_UNITS: u64 = 256;
 const UNITS: u64 = 1 << 20;
-
-/// The project's packages; the source distribution has not all of them, which cargo only remarks.
-fn packages(row: &Row) -> Result<Vec<String>, u8> {
-    let folder = row.root().join("crates");
-    let entries = std::fs::read_dir(&folder).map_err(|error| row.fail_at(&folder, &error))?;
-    Ok(entries.flatten().filter_map(|entry| entry.file_name().into_string().ok()).collect())
-}
 
 fn try_package(row: &Row, pip: &Path, name: &str, wheel: &Path) -> Result<(), u8> {
     let folder = empty_folder(row, name)?;

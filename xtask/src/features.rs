@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::process::Command;
 
+use crate::packages::opt_level;
 use crate::step::Row;
 
 /// Rust's name of the machine that a browser is.
@@ -26,16 +27,23 @@ const OBJECT_STORES: [&str; 11] = [
     "objects::",
 ];
 
-/// Checks the core without threads, also for a browser where Rust's libraries for one are installed, and data sets in object
-/// stores.
+/// Tests data sets in object stores. The package is compiled once more for these few tests, and not optimised.
 ///
 /// # Arguments
 /// * `surroundings` - variables of the tests
 ///
 /// # Errors
 /// The exit code of what failed.
-pub fn check(row: &Row, surroundings: &[(&str, OsString)]) -> Result<(), u8> {
-    row.cargo(&OBJECT_STORES, surroundings)?;
+pub fn object_stores(row: &Row, surroundings: &[(&str, OsString)]) -> Result<(), u8> {
+    let level = opt_level("meshtone-dataset", 0);
+    row.cargo(&[&["--config", &level], &OBJECT_STORES[..]].concat(), surroundings)
+}
+
+/// Checks the core without threads, also for a browser where Rust's libraries for one are installed.
+///
+/// # Errors
+/// The exit code of what failed.
+pub fn without_threads(row: &Row) -> Result<(), u8> {
     row.cargo(&CORE, &[])?;
     if is_installed(row, BROWSER)? {
         return row.cargo(&[&CORE[..], &["--target", BROWSER]].concat(), &[]);

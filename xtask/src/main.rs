@@ -9,6 +9,7 @@ mod docs;
 mod environment;
 mod features;
 mod kernels;
+mod packages;
 mod python;
 mod rooms;
 mod scipy;

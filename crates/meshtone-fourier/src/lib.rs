@@ -12,8 +12,9 @@ pub use rustfft::num_complex::Complex64;
 
 /// The longest of the short signals: averages, turns of a wheel.
 const LONGEST_SHORT: usize = 1 << 17;
-/// Lengths of short signals whose plans are kept: of an average, and of a turn of either wheel.
-const SHORT_LENGTHS: usize = 3;
+/// Lengths of short signals whose plans are kept: of an average, of a turn of either wheel, and some that signals of other lengths
+/// are padded to, see [`shared_length`].
+const SHORT_LENGTHS: usize = 8;
 /// The longest signal whose plans are kept; of a longer one they would hold more than some 20 MB in every thread.
 const LONGEST_KEPT: usize = 1 << 19;
 
@@ -117,6 +118,19 @@ pub fn convenient_length(len: usize) -> usize {
     best
 }
 
+/// The least length of at least `len` that is 4, 5 or 6 times a power of two: at most a third longer, and one that signals of other
+/// lengths are padded to as well, so that its plan is made but once.
+///
+/// ```
+/// let lengths = [130, 155, 190, 200].map(meshtone_fourier::shared_length);
+/// assert_eq!(lengths, [160, 160, 192, 256]);
+/// ```
+pub fn shared_length(len: usize) -> usize {
+    let power = len.div_ceil(4).next_power_of_two();
+    let lengths = [power * 2, power * 5 / 2, power * 3, power * 4];
+    lengths.into_iter().find(|&length| length >= len && length % 2 == 0).unwrap_or(power * 4)
+}
+
 /// The greatest count of at most `count` that has no prime factors but 2, 3 and 5; 0 where that is 0.
 pub fn convenient_count(count: usize) -> usize {
     (1..=count).rev().find(|count| is_smooth(*count)).unwrap_or(0)
@@ -142,6 +156,8 @@ mod tests {
         let smooth = |n: &usize| n.is_multiple_of(2) && is_smooth(*n);
         for len in [1, 2, 7, 11, 97, 121, 1001, 44_101, 3_000_001] {
             assert_eq!(Some(convenient_length(len)), (len..).find(smooth), "{len}");
+            let shared = shared_length(len);
+            assert!(shared >= len && smooth(&shared) && (len < 4 || 3 * shared <= 4 * len), "{len}");
         }
         for (count, convenient) in [(0, 0), (1, 1), (7, 6), (11, 10), (27, 27), (97, 96), (1001, 1000)] {
             assert_eq!(convenient_count(count), convenient);

@@ -1,7 +1,7 @@
 //! The path from the simulated sensor's place to where a rig's is.
 
 use meshtone::sensor::PathRipple;
-use meshtone_fourier::{convenient_length, from_real_spectrum, real_spectrum};
+use meshtone_fourier::{from_real_spectrum, real_spectrum, shared_length};
 
 use crate::draw::{DrawnRecord, PATH_KEYS};
 
@@ -22,8 +22,7 @@ pub(super) fn pass(drawn: &DrawnRecord, channel: &str, rate_hz: f64, signal: &mu
     match ripple_db {
         Some(ripple_db) if ripple_db != 0.0 && signal.len() > 1 => {
             let ripple = PathRipple::new(drawn.mounting_seed, number_of(channel), ripple_db);
-            let gain_db = gain_db.unwrap_or(0.0);
-            filter(signal, rate_hz, |hz| factor(gain_db + ripple.db_at(hz)));
+            filter(signal, rate_hz, &ripple, factor(gain_db.unwrap_or(0.0)));
         }
         _ => {
             if let Some(gain_db) = gain_db {
@@ -45,15 +44,14 @@ fn number_of(name: &str) -> u64 {
 }
 
 /// Multiplies the spectrum of a signal, mirrored at its ends.
-fn filter(signal: &mut [f32], rate_hz: f64, gain: impl Fn(f64) -> f64) {
-    let length = convenient_length(2 * signal.len());
+fn filter(signal: &mut [f32], rate_hz: f64, ripple: &PathRipple, factor: f64) {
+    let length = shared_length(2 * signal.len());
     let there = signal.iter().map(|&x| f64::from(x));
     let mut mirrored: Vec<f64> = there.clone().chain(there.rev()).collect();
     mirrored.resize(length, f64::from(signal[0]));
     let mut spectrum = real_spectrum(&mirrored);
-    for (line, value) in spectrum.iter_mut().enumerate() {
-        *value *= gain(line as f64 * rate_hz / length as f64);
-    }
+    let gains = ripple.gains(rate_hz / length as f64, spectrum.len());
+    spectrum.iter_mut().zip(gains).for_each(|(value, gain)| *value *= factor * gain);
     let filtered = from_real_spectrum(spectrum, length);
     signal.iter_mut().zip(filtered).for_each(|(sample, value)| *sample = value as f32);
 }
