@@ -28,7 +28,7 @@ pub fn quick(root: &Path) -> Result<(), u8> {
     row.step("rooms check", || rooms::check(root))?;
     lints(&row)?;
     row.cargo(&[&["test", "--release", "--test", "all"], &CORE[..]].concat(), &[])?;
-    quickly_built(&row, "meshtone", &["--lib"], &[])
+    tests_of(&row, "meshtone", 0, &["--lib"], &[])
 }
 
 /// The core, with the program, none of whose targets is built, so that the packages of others are those that it has built.
@@ -39,8 +39,8 @@ const CORE: [&str; 4] = ["--package", "meshtone", "--package", "meshtone-cli"];
 const TESTED: [&str; 3] = ["--workspace", "--exclude", "meshtone-bench"];
 
 /// What has all its tests by itself: the core, as the program alone asks for what it asks of others' packages, and the reading of
-/// recordings, see [`quickly_built`].
-const BY_THEMSELVES: [&str; 4] = ["--exclude", "meshtone", "--exclude", "meshtone-io"];
+/// recordings, see [`unit_tests`].
+const BY_THEMSELVES: [&str; 4] = ["--exclude", "meshtone", "--exclude", READER];
 
 /// Everything.
 ///
@@ -93,33 +93,37 @@ fn python_row(row: &Row, ready: &Sender<Prepared>) -> Result<(), u8> {
     dist::try_source(row, &python, &source)
 }
 
-/// The unit tests of every package that has some, and the other tests of one whose tests take longer to compile than to run.
+/// The unit tests of every package that has some, with the other tests of the recordings' package, which take longer to compile than
+/// to run.
 fn unit_tests(row: &Row, surroundings: &[(&str, OsString)]) -> Result<(), u8> {
     let tested = |package: &&String| !WITHOUT_UNIT_TESTS.contains(&package.as_str());
     packages::names(row)?.iter().filter(tested).try_for_each(|package| match package.as_str() {
         // They learn from many records.
-        "meshtone-diagnose" => row.cargo(
-            &["test", "--release", "--lib", "--package", package, "--package", "meshtone-cli"],
-            surroundings,
-        ),
-        "meshtone-io" => {
-            quickly_built(row, package, &["--lib", "--test", "all", "--test", "recording_fuzz"], surroundings)
+        "meshtone-diagnose" => tests_of(row, package, 3, &["--lib"], surroundings),
+        READER => {
+            let programs = packages::test_programs(row, package)?;
+            let named = programs.iter().flat_map(|program| ["--test", program]);
+            tests_of(row, package, 0, &[vec!["--lib"], named.collect()].concat(), surroundings)
         }
-        _ => quickly_built(row, package, &["--lib"], surroundings),
+        _ => tests_of(row, package, 0, &["--lib"], surroundings),
     })
 }
 
-/// Tests of a package, which is not optimised: it is compiled once more for its unit tests, and most need a second or so.
+/// The package that reads recordings.
+const READER: &str = "meshtone-io";
+
+/// Tests of a package that is compiled once more for them, as well as it is said.
 ///
-/// What it depends on has been compiled for speed, and would be once more without where it is tested in the same run: one package at
-/// a time, with the program, none of whose targets is built, for the features of others' packages.
-fn quickly_built(
+/// What it depends on stays as it was compiled for the program, hence one package a run. The program, none of whose targets is
+/// built, is named so that others' packages have the features that it asks for.
+fn tests_of(
     row: &Row,
     package: &str,
+    opt_level: u8,
     targets: &[&str],
     surroundings: &[(&str, OsString)],
 ) -> Result<(), u8> {
-    let level = packages::opt_level(package, 0);
+    let level = packages::opt_level(package, opt_level);
     let tests = ["test", "--release", "--package", package, "--package", "meshtone-cli", "--config", &level];
     row.cargo(&[&tests[..], targets].concat(), surroundings)
 }

@@ -1,5 +1,7 @@
 //! The project's packages.
 
+use std::path::Path;
+
 use crate::step::Row;
 
 /// Those below `crates`, in the order of their names.
@@ -7,8 +9,24 @@ use crate::step::Row;
 /// # Errors
 /// 1 where the folder cannot be read.
 pub fn names(row: &Row) -> Result<Vec<String>, u8> {
-    let folder = row.root().join("crates");
-    let entries = std::fs::read_dir(&folder).map_err(|error| row.fail_at(&folder, &error))?;
+    entries(row, &row.root().join("crates"))
+}
+
+/// A package's test programs, in the order of their names: files below `tests`, and folders with a `main.rs`.
+///
+/// # Errors
+/// 1 where the folder cannot be read.
+pub fn test_programs(row: &Row, package: &str) -> Result<Vec<String>, u8> {
+    let folder = row.root().join("crates").join(package).join("tests");
+    let program = |name: String| match name.strip_suffix(".rs") {
+        Some(file) => Some(file.to_owned()),
+        None => folder.join(&name).join("main.rs").is_file().then_some(name),
+    };
+    Ok(entries(row, &folder)?.into_iter().filter_map(program).collect())
+}
+
+fn entries(row: &Row, folder: &Path) -> Result<Vec<String>, u8> {
+    let entries = std::fs::read_dir(folder).map_err(|error| row.fail_at(folder, &error))?;
     let mut names: Vec<String> =
         entries.flatten().filter_map(|entry| entry.file_name().into_string().ok()).collect();
     names.sort();

@@ -118,8 +118,8 @@ pub fn convenient_length(len: usize) -> usize {
     best
 }
 
-/// The least length of at least `len` that is 4, 5 or 6 times a power of two: at most a third longer, and one that signals of other
-/// lengths are padded to as well, so that its plan is made but once.
+/// A length of at least `len` that signals of other lengths are padded to as well, so that its plan is made but once: the least that is
+/// 4, 5 or 6 times a power of two, at most a third longer. Of long signals, of whose plans one is kept, the [`convenient_length`].
 ///
 /// ```
 /// let lengths = [130, 155, 190, 200].map(meshtone_fourier::shared_length);
@@ -127,8 +127,10 @@ pub fn convenient_length(len: usize) -> usize {
 /// ```
 pub fn shared_length(len: usize) -> usize {
     let power = len.div_ceil(4).next_power_of_two();
-    let lengths = [power * 2, power * 5 / 2, power * 3, power * 4];
-    lengths.into_iter().find(|&length| length >= len && length % 2 == 0).unwrap_or(power * 4)
+    let lengths = [power * 5 / 2, power * 3];
+    let shared =
+        lengths.into_iter().find(|&length| length >= len && length.is_multiple_of(2)).unwrap_or(power * 4);
+    if shared > LONGEST_SHORT { convenient_length(len) } else { shared }
 }
 
 /// The greatest count of at most `count` that has no prime factors but 2, 3 and 5; 0 where that is 0.

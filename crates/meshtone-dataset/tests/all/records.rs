@@ -165,6 +165,30 @@ fn warnings_are_columns_and_are_counted() {
     }
 }
 
+/// Of a record the step is judged by an estimate alone: what that tells, a second simulation with half the step confirms, and of a
+/// step that is short enough it tells nothing.
+#[test]
+fn a_step_too_long_is_told_without_a_second_simulation() {
+    for (rate, expected) in [("1e4", 10..=12), ("1e5", 0..=0)] {
+        let plan = plan(&FAST.replace("records = 60", "records = 12").replacen(
+            "sampling_rate_hz = 1e4",
+            &format!("sampling_rate_hz = {rate}"),
+            1,
+        ));
+        let (made, sampler) = (made(&plan), Sampler::new(&plan.content).unwrap());
+        let told: Vec<usize> = (0..12)
+            .filter(|row| made.text("warnings", *row).split(';').any(|code| code == "step-error"))
+            .collect();
+        assert!(expected.contains(&told.len()), "{rate}: {told:?}");
+        for row in told {
+            let scenario = sampler.scenario(&sampler.record(row as u64).unwrap()).unwrap();
+            let (stages, _) = meshtone::stages_and_warnings(&scenario, MemoryLimit::default()).unwrap();
+            let repeated = stages.simulate().unwrap().warnings_of_signals();
+            assert!(repeated.iter().any(|warning| warning.kind.code() == "step-error"), "{row}");
+        }
+    }
+}
+
 /// Average, difference and indicators are those of the raw channel as it is kept, noise included.
 #[test]
 fn the_raw_channel_gives_the_same_average() {

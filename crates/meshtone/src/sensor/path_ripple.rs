@@ -10,7 +10,9 @@ const DRAWS_PER_OCTAVE: f64 = 2.0;
 const OCTAVES: usize = 16;
 /// (-) How far the lines of one binomial series are from their middle, over its frequency.
 const SERIES_REACH: f64 = 1.0 / 64.0;
-/// Its terms: of lines that rise or fall by 30 dB in an octave it leaves out 1e-13.
+/// The same of steep lines, times the power of the frequency that they are: the terms fall by as much each.
+const STEEP_REACH: f64 = 1.0 / 12.0;
+/// Its terms.
 const SERIES_TERMS: usize = 9;
 
 /// Gains in decibels over frequency, drawn at random: normal at half octaves, along straight lines over the logarithm of the
@@ -72,8 +74,10 @@ impl PathRipple {
         while gains.len() < count {
             let first = gains.len();
             let (db_per_octave, to_hz) = self.line(first as f64 * step_hz);
+            let power = db_per_octave / (20.0 * std::f64::consts::LOG10_2);
+            let reach = SERIES_REACH.min(STEEP_REACH / power.abs());
             // The line after the last of those that are on one straight line and near enough to each other.
-            let end = (first as f64 * (1.0 + 2.0 * SERIES_REACH)).min(to_hz / step_hz).ceil() as usize;
+            let end = (first as f64 * (1.0 + 2.0 * reach)).min(to_hz / step_hz).ceil() as usize;
             let end = end.clamp(first + 1, count);
             let middle = (first + end - 1) as f64 / 2.0;
             let at_middle = libm::pow(10.0, self.db_at(middle * step_hz) / 20.0);
@@ -81,7 +85,6 @@ impl PathRipple {
                 gains.push(at_middle);
                 continue;
             }
-            let power = db_per_octave / (20.0 * std::f64::consts::LOG10_2);
             let mut coefficients = [at_middle; SERIES_TERMS];
             for k in 1..SERIES_TERMS {
                 coefficients[k] = coefficients[k - 1] * (power - (k - 1) as f64) / k as f64;
@@ -124,15 +127,21 @@ mod tests {
     /// Few lines and many to an octave, from below the first knot to beyond the last.
     #[test]
     fn gains_are_those_of_each_frequency() {
-        let ripple = PathRipple::new(7, 1, 4.0);
-        for (step_hz, count) in [(0.37, 40_000), (16.0, 3000), (900.0, 2000)] {
-            let gains = ripple.gains(step_hz, count);
-            assert_eq!(gains.len(), count);
-            for (line, gain) in gains.iter().enumerate() {
-                let expected = libm::pow(10.0, ripple.db_at(line as f64 * step_hz) / 20.0);
-                assert!((gain / expected - 1.0).abs() < 1e-12, "{line} of {step_hz} Hz");
+        for (seed, deviation_db) in [(7, 0.0), (7, 3.0), (8, 10.0), (9, 40.0), (10, 40.0)] {
+            let ripple = PathRipple::new(seed, 1, deviation_db);
+            for (step_hz, count) in
+                [(0.37, 40_000), (16.0, 3000), (900.0, 2000), (5000.0, 3), (1.0, 1), (1.0, 0)]
+            {
+                let gains = ripple.gains(step_hz, count);
+                assert_eq!(gains.len(), count);
+                for (line, gain) in gains.iter().enumerate() {
+                    let expected = libm::pow(10.0, ripple.db_at(line as f64 * step_hz) / 20.0);
+                    assert!(
+                        (gain / expected - 1.0).abs() < 2e-12,
+                        "{line} of {step_hz} Hz, {deviation_db} dB"
+                    );
+                }
             }
         }
-        assert!(ripple.gains(1.0, 0).is_empty());
     }
 }
