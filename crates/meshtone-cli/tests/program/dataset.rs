@@ -442,7 +442,7 @@ fn several_at_once() {
         }
         command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
     };
-    for round in 0..2 {
+    for round in 0..3 {
         let to = format!("same_{round}");
         let all: Vec<_> = (0..4).map(|_| start(&to, None)).collect();
         let mut made = 0;
