@@ -116,7 +116,7 @@ const READER: &str = "meshtone-io";
 ///
 /// What it depends on stays as it was compiled for the program, hence one package a run. The program, none of whose targets is
 /// built, is named so that others' packages have the features that it asks for.
-fn tests_of(
+pub fn tests_of(
     row: &Row,
     package: &str,
     opt_level: u8,

@@ -4,28 +4,15 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::process::Command;
 
-use crate::packages::opt_level;
+use crate::checks::tests_of;
 use crate::step::Row;
 
 /// Rust's name of the machine that a browser is.
 const BROWSER: &str = "wasm32-unknown-unknown";
 /// Compiles the core without threads.
 const CORE: [&str; 5] = ["check", "--release", "--package", "meshtone", "--no-default-features"];
-/// Tests data sets in object stores. With the program, none of whose targets is built, so that the packages of others are those that
-/// it has built.
-const OBJECT_STORES: [&str; 11] = [
-    "test",
-    "--release",
-    "--package",
-    "meshtone-dataset",
-    "--package",
-    "meshtone-cli",
-    "--features",
-    "meshtone-dataset/objects",
-    "--test",
-    "all",
-    "objects::",
-];
+/// Those of the data sets' tests that are in object stores.
+const OBJECT_STORES: [&str; 5] = ["--features", "meshtone-dataset/objects", "--test", "all", "objects::"];
 
 /// Tests data sets in object stores. The package is compiled once more for these few tests, and not optimised.
 ///
@@ -35,8 +22,7 @@ const OBJECT_STORES: [&str; 11] = [
 /// # Errors
 /// The exit code of what failed.
 pub fn object_stores(row: &Row, surroundings: &[(&str, OsString)]) -> Result<(), u8> {
-    let level = opt_level("meshtone-dataset", 0);
-    row.cargo(&[&["--config", &level], &OBJECT_STORES[..]].concat(), surroundings)
+    tests_of(row, "meshtone-dataset", 0, &OBJECT_STORES, surroundings)
 }
 
 /// Checks the core without threads, also for a browser where Rust's libraries for one are installed.

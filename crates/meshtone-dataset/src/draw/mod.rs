@@ -98,6 +98,13 @@ pub struct DrawnRecord {
     pub values: Vec<(String, f64)>,
 }
 
+impl DrawnRecord {
+    /// The value of a varied key; none where the record's class does not vary it.
+    pub(crate) fn value(&self, key: &str) -> Option<f64> {
+        self.values.iter().find(|(varied, _)| varied == key).map(|(_, value)| *value)
+    }
+}
+
 /// A record whose values could not be drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrawError {

@@ -205,9 +205,8 @@ fn unlearned(plan: &Plan) -> ReadResult<Vec<String>> {
         let Ok(record) = sampler.record(index) else { continue };
         groups.insert((record.unit, record.mounting));
         for (number, rule) in rules.iter().enumerate() {
-            let value =
-                |key: &String| record.values.iter().find(|(drawn, _)| drawn == key).map(|(_, value)| *value);
-            if let Some(row) = rule.keys.iter().map(value).collect::<Option<Vec<f64>>>() {
+            let row: Option<Vec<f64>> = rule.keys.iter().map(|key| record.value(key)).collect();
+            if let Some(row) = row {
                 seen.insert((number, record.split, bits(&row)));
             }
         }

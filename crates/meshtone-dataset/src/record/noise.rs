@@ -11,8 +11,7 @@ use crate::draw::{DrawnRecord, NOISE_KEYS};
 /// * `channel` - number of the channel
 /// * `signal` - (g) its samples
 pub(super) fn add(drawn: &DrawnRecord, channel: u64, signal: &mut [f32]) {
-    let value = |key: &str| drawn.values.iter().find(|(other, _)| other == key).map(|(_, value)| *value);
-    let [relative_db, level_g] = NOISE_KEYS.map(value);
+    let [relative_db, level_g] = NOISE_KEYS.map(|key| drawn.value(key));
     let deviation = match (relative_db, level_g) {
         (Some(ratio_db), _) => standard_deviation(signal) * libm::pow(10.0, -ratio_db / 20.0),
         (None, Some(level)) => level,

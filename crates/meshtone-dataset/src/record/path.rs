@@ -17,8 +17,7 @@ use crate::draw::{DrawnRecord, PATH_KEYS};
 /// * `rate_hz` - (S/s) its sampling rate
 /// * `signal` - (g) its samples
 pub(super) fn pass(drawn: &DrawnRecord, channel: &str, rate_hz: f64, signal: &mut [f32]) {
-    let value = |key: &str| drawn.values.iter().find(|(other, _)| other == key).map(|(_, value)| *value);
-    let [gain_db, ripple_db] = PATH_KEYS.map(value);
+    let [gain_db, ripple_db] = PATH_KEYS.map(|key| drawn.value(key));
     match ripple_db {
         Some(ripple_db) if ripple_db != 0.0 && signal.len() > 1 => {
             let ripple = PathRipple::new(drawn.mounting_seed, number_of(channel), ripple_db);

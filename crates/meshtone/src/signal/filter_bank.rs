@@ -138,7 +138,8 @@ impl FilterBank {
         let expected = places.size_hint().0;
         let mut values: Vec<Vec<V>> = signals.iter().map(|_| Vec::with_capacity(expected)).collect();
         let mut block = [Place { first: 0, row: 0, between: 0.0 }; BLOCK];
-        let (mut read, mut beyond) = ([0.0; BLOCK], vec![0.0; self.taps]);
+        let (mut ones, mut pairs) = ([[0.0; 1]; BLOCK], [[0.0; 2]; BLOCK]);
+        let mut beyond = vec![0.0; self.taps];
         loop {
             let mut count = 0;
             for (slot, place) in block.iter_mut().zip(&mut places) {
@@ -148,45 +149,67 @@ impl FilterBank {
             if count == 0 {
                 return values;
             }
-            let places = &block[..count];
-            for (values, signal) in values.iter_mut().zip(signals) {
-                let (read, beyond) = (&mut read[..count], &mut beyond);
-                instructions.run(Reading { bank: self, signal, places, edge, beyond, read });
-                values.extend(read.iter().map(|&value| rounded(value)));
+            let (bank, places, beyond) = (self, &block[..count], &mut beyond);
+            for (values, signals) in values.chunks_mut(2).zip(signals.chunks(2)) {
+                match (values, signals) {
+                    ([first, second], &[one, other]) => {
+                        let (signals, read) = ([one, other], &mut pairs[..count]);
+                        instructions.run(Reading { bank, signals, places, edge, beyond, read });
+                        first.extend(read.iter().map(|value| rounded(value[0])));
+                        second.extend(read.iter().map(|value| rounded(value[1])));
+                    }
+                    (values, signals) => {
+                        for (values, &signal) in values.iter_mut().zip(signals) {
+                            let (signals, read) = ([signal], &mut ones[..count]);
+                            instructions.run(Reading { bank, signals, places, edge, beyond, read });
+                            values.extend(read.iter().map(|value| rounded(value[0])));
+                        }
+                    }
+                }
             }
         }
     }
 }
 
-/// A block of places of one signal.
-struct Reading<'a, T> {
+/// A block of places of signals of one length, of two at a time where there are two: both are weighted by the same taps, and no sum
+/// waits for the other.
+struct Reading<'a, T, const N: usize> {
     bank: &'a FilterBank,
-    signal: &'a [T],
+    signals: [&'a [T]; N],
     places: &'a [Place],
     edge: Edge,
     /// Room for samples of which some lie beyond the signal's ends.
     beyond: &'a mut [f64],
     /// What is read at each place.
-    read: &'a mut [f64],
+    read: &'a mut [[f64; N]],
 }
 
-impl<T: Copy + Into<f64>> Task for Reading<'_, T> {
+impl<T: Copy + Into<f64>, const N: usize> Task for Reading<'_, T, N> {
     type Output = ();
 
     #[inline(always)]
     fn run<I: Instructions>(self, simd: I) {
-        let Self { bank: FilterBank { taps, rows }, signal, places, edge, beyond, read } = self;
-        for (value, place) in read.iter_mut().zip(places) {
+        let Self { bank: FilterBank { taps, rows }, signals, places, edge, beyond, read } = self;
+        for (values, place) in read.iter_mut().zip(places) {
             let rows = &rows[place.row * taps..];
-            let first = place.first as usize;
             // A place before the first sample is far beyond the last one as a number without sign.
-            *value = match signal.get(first..first.wrapping_add(*taps)) {
-                Some(samples) => weighted(simd, rows, samples, place.between),
-                None => {
-                    continued(signal, place.first, edge, beyond);
-                    weighted(simd, rows, beyond, place.between)
+            let first = place.first as usize;
+            let mut samples: [&[T]; N] = [&[]; N];
+            let mut are_within = true;
+            for (samples, signal) in samples.iter_mut().zip(signals) {
+                match signal.get(first..first.wrapping_add(*taps)) {
+                    Some(within) => *samples = within,
+                    None => are_within = false,
                 }
-            };
+            }
+            if are_within {
+                *values = weighted(simd, rows, samples, place.between);
+                continue;
+            }
+            for (value, signal) in values.iter_mut().zip(signals) {
+                continued(signal, place.first, edge, beyond);
+                [*value] = weighted(simd, rows, [&*beyond], place.between);
+            }
         }
     }
 }
@@ -198,24 +221,38 @@ fn continued<T: Copy + Into<f64>>(signal: &[T], first: isize, edge: Edge, sample
     }
 }
 
-/// `Σ ((1 − t) a + t b) x` with the row a of taps and the one after it, b; with a alone for t = 0.
+/// `Σ ((1 − t) a + t b) x` with the row a of taps and the one after it, b; with a alone for t = 0. Of each of the signals' samples x.
 #[inline(always)]
-fn weighted<I: Instructions, T: Copy + Into<f64>>(simd: I, rows: &[f64], x: &[T], t: f64) -> f64 {
-    let (row, next) = rows.split_at(x.len());
-    let mut sum = Lanes::splat(0.0);
+fn weighted<I: Instructions, T: Copy + Into<f64>, const N: usize>(
+    simd: I,
+    rows: &[f64],
+    x: [&[T]; N],
+    t: f64,
+) -> [f64; N] {
+    let (row, next) = rows.split_at(x[0].len());
+    let chunks = x.map(|x| x.as_chunks::<LANES>().0);
+    let mut sums = [Lanes::splat(0.0); N];
     if t == 0.0 {
-        for (a, x) in row.as_chunks::<LANES>().0.iter().zip(x.as_chunks().0) {
-            sum = Lanes(*a).mul_add(simd, in_double(x), sum);
+        for (i, a) in row.as_chunks::<LANES>().0.iter().enumerate() {
+            for n in 0..N {
+                sums[n] = Lanes(*a).mul_add(simd, in_double(&chunks[n][i]), sums[n]);
+            }
         }
     } else {
         let t = Lanes::splat(t);
         let pairs = row.as_chunks::<LANES>().0.iter().zip(next.as_chunks::<LANES>().0);
-        for ((a, b), x) in pairs.zip(x.as_chunks().0) {
+        for (i, (a, b)) in pairs.enumerate() {
             let tap = Lanes(*b).sub(simd, Lanes(*a)).mul_add(simd, t, Lanes(*a));
-            sum = tap.mul_add(simd, in_double(x), sum);
+            for n in 0..N {
+                sums[n] = tap.mul_add(simd, in_double(&chunks[n][i]), sums[n]);
+            }
         }
     }
-    total(sum.0)
+    let mut totals = [0.0; N];
+    for n in 0..N {
+        totals[n] = total(sums[n].0);
+    }
+    totals
 }
 
 /// Samples in double precision.
