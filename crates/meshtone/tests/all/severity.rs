@@ -69,7 +69,7 @@ fn few(cases: u32) -> ProptestConfig {
 }
 
 proptest! {
-    #![proptest_config(few(80))]
+    #![proptest_config(few(40))]
 
     // The sizes of a severity have that severity again, and can be: whatever the wheels.
     #[test]
