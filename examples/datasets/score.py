@@ -1,20 +1,24 @@
 """Scores baselines on a data set's questions, and looks for shortcuts.
 
-    pip install meshtone scikit-learn matplotlib       # aeon for random kernels, torch for the network: left out where they are missing
+    pip install 'meshtone[datasets,tables,plot]' scikit-learn   # aeon for random kernels, torch for the network: left out without
     python score.py benchmark -o scores                # scores.json, scores.md and three figures
     python score.py benchmark -o scores --check        # exit code 1 where the bounds of a fair question do not hold
 
-Every model is trained on the split `train`, what draws with five seeds, and scored on `test`. Intervals hold 90 % of what a bootstrap over
-the test split's units and the seeds gives: records of one unit are no independent witnesses. What a model gave is kept in `scores/runs`: a long
-scoring that was stopped goes on where it was.
+Every model is trained on the split `train`, what draws with five seeds, and scored on `test`. Intervals hold 90 % of what one training scores
+where the test split's units (a bootstrap: records of one unit are no independent witnesses) and the seed are drawn. What a model answered is
+kept in `scores/runs` for this data set, script and libraries: a long scoring that was stopped goes on where it was.
 """
 
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
+import os
 import sys
+import zipfile
 from collections.abc import Callable
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import numpy as np
@@ -103,8 +107,11 @@ class SupportVectors:
     def probabilities(self, train: Records, target: np.ndarray, test: Records, seed: int) -> np.ndarray:
         machine = make_pipeline(SimpleImputer(keep_empty_features=True), StandardScaler(), SVC(class_weight="balanced"))
         penalties = {"svc__C": [1.0, 3.0, 10.0, 30.0]}
-        search = GridSearchCV(machine, penalties, scoring="balanced_accuracy", cv=GroupKFold(5), n_jobs=-1)
+        scoring = "roc_auc" if target.max() == 1 else "balanced_accuracy"
+        parts = GroupKFold(min(5, len(np.unique(train.units))))
+        search = GridSearchCV(machine, penalties, scoring=scoring, cv=parts, n_jobs=-1)
         search.fit(train.features, target, groups=train.units)
+        print(f"    best by {scoring}: C = {search.best_params_['svc__C']:g} of {penalties['svc__C']}", file=sys.stderr)
         return shares(search.decision_function(test.features))
 
 
@@ -170,7 +177,7 @@ def logistic(seed: int) -> object:
 
 def boosting(seed: int) -> object:
     return HistGradientBoostingClassifier(
-        max_iter=150, learning_rate=0.1, l2_regularization=1.0, class_weight="balanced", random_state=seed
+        max_iter=150, learning_rate=0.1, l2_regularization=1.0, class_weight="balanced", random_state=seed, early_stopping=False
     )
 
 
@@ -196,8 +203,8 @@ def resampled(units: np.ndarray, seed: int) -> np.ndarray:
 
 
 def interval(scores: list[Callable[[np.ndarray], float]], units: np.ndarray) -> list[float]:
-    """The score of all records, and the ends of its 90 % interval; of several seeds the mean, and all of theirs are in the interval."""
-    drawn = np.array([scores[draw % len(scores)](resampled(units, draw)) for draw in range(DRAWS)])
+    """The score of all records, of several seeds their mean, and the 90 % interval of one training on units and by a seed that are drawn."""
+    drawn = np.array([scores[draw % len(scores)](resampled(units, draw)) for draw in range(max(DRAWS, len(scores)))])
     ends = np.nanquantile(drawn, [0.05, 0.95])
     of_all = np.mean([score(np.arange(len(units))) for score in scores])
     return [round(float(value), 3) for value in (of_all, *ends)]
@@ -253,7 +260,7 @@ def severity(train: Records, test: Records, model: str) -> list[float]:
 
 
 def shortcuts(train: Records, test: Records) -> dict[str, list[float]]:
-    """What tells damage without a look at it; each must be chance, 0.5, within its interval."""
+    """What tells damage without a look at it: none may be better than chance, 0.5, by more than its interval."""
     def by(inputs: Callable[[Records], np.ndarray]) -> list[float]:
         probability = boosting(0).fit(inputs(train), train.damaged).predict_proba(inputs(test))[:, 1]
         return interval([lambda i: auc(test.damaged[i], probability[i])], test.units)
@@ -284,7 +291,13 @@ def answers(name: str, seed: int, train: Records, test: Records, kept: Path) -> 
     """The probability of damage and the named kind of every test record, as kept or by training."""
     file = kept / f"{name.replace(' ', '-')}-{seed}.npz"
     if file.exists():
-        return dict(np.load(file))
+        try:
+            told = dict(np.load(file))
+            print(f"{name}, seed {seed}: as kept in {file}", file=sys.stderr)
+            return told
+        except (EOFError, OSError, ValueError, zipfile.BadZipFile):
+            print(f"{name}, seed {seed}: {file} cannot be read and is made anew", file=sys.stderr)
+    print(f"{name}, seed {seed}", file=sys.stderr)
     model, _ = MODELS[name]
     labels, numbers = np.unique(train.labels, return_inverse=True)
     told = {
@@ -292,9 +305,20 @@ def answers(name: str, seed: int, train: Records, test: Records, kept: Path) -> 
         "label": labels[np.argmax(model.probabilities(train, numbers, test, seed), axis=1)],
     }
     kept.mkdir(parents=True, exist_ok=True)
-    unfinished = file.with_suffix(".part.npz")
+    unfinished = file.with_suffix(f".{os.getpid()}.npz")
     np.savez(unfinished, **told)
     unfinished.replace(file)
+    return told
+
+
+def surroundings(dataset: mt.Dataset) -> dict[str, str]:
+    """What an answer depends on: the data set, this script, the libraries."""
+    told = {"data set": dataset.manifest["sha256"], "script": hashlib.sha256(Path(__file__).read_bytes()).hexdigest()}
+    for name in ("meshtone", "numpy", "scikit-learn", "aeon", "torch"):
+        try:
+            told[name] = version(name)
+        except PackageNotFoundError:
+            continue
     return told
 
 
@@ -306,7 +330,6 @@ def scores(train: Records, test: Records, models: list[str], seeds: int, kept: P
         runs = []
         try:
             for seed in range(seeds if name in DRAWN else 1):
-                print(f"{name}, seed {seed}", file=sys.stderr)
                 runs.append(answers(name, seed, train, test, kept))
         except ModuleNotFoundError:
             print(f"{name}: left out, for {MODELS[name][1]} is not installed", file=sys.stderr)
@@ -347,7 +370,7 @@ def broken(result: dict) -> list[str]:
         if any(after < before - 0.03 for before, after in zip(grades, grades[1:], strict=False)):
             found.append(f"{kind} is not monotonic in severity: {grades}")
     for shortcut, (value, least, _) in result["shortcuts"].items():
-        if least > 0.5:
+        if not least <= 0.5:
             found.append(f"shortcut {shortcut}: {value}, from {least} on")
     return found
 
@@ -387,7 +410,7 @@ def figures(test: Records, result: dict, probabilities: dict, folder: Path) -> N
     for kind in kinds:
         chosen = healthy | (test.labels == kind)
         false, true, _ = roc_curve(test.damaged[chosen], probability[chosen])
-        axes.plot(false, true, color=colours[kind], label=f"{kind}, {kinds[kind]['auc'][0]:.2f}")
+        axes.plot(false, true, color=colours[kind], label=f"{kind}, {auc(test.damaged[chosen], probability[chosen]):.2f}")
     axes.plot([0, 1], [0, 1], ":", color="grey")
     axes.set(xlabel="false alarms, part of the healthy records", ylabel="found, part of the damaged records", title=f"Detection by {best}")
     axes.legend(title="kind, AUC", fontsize=8)
@@ -427,14 +450,21 @@ def main() -> int:
     arguments.add_argument("dataset", type=Path)
     arguments.add_argument("-o", "--output", type=Path, required=True, help="folder of the scores")
     arguments.add_argument("--models", nargs="+", choices=MODELS, default=list(MODELS), metavar="MODEL", help=", ".join(MODELS))
-    arguments.add_argument("--seeds", type=int, default=5)
+    arguments.add_argument("--seeds", type=int, default=5, help="of models that draw, at least 1")
     arguments.add_argument("--check", action="store_true", help="exit code 1 where the bounds of a fair question do not hold")
     given = arguments.parse_args()
+    if given.seeds < 1:
+        arguments.error(f"--seeds {given.seeds}: at least 1 is needed")
     dataset = mt.load_dataset(given.dataset)
+    if not dataset.is_complete or "sha256" not in dataset.manifest:
+        arguments.error(f"{given.dataset} is not complete, or of a format without checksums: make it anew")
     train, test = records(dataset)
-    # Of another data set nothing that was kept is of use.
-    kept = given.output / "runs" / dataset.manifest["sha256"][:16]
-    result, probabilities = scores(train, test, given.models, given.seeds, kept)
+    made_with = surroundings(dataset)
+    digest = hashlib.sha256(json.dumps(made_with).encode()).hexdigest()
+    result, probabilities = scores(train, test, given.models, given.seeds, given.output / "runs" / digest[:16])
+    if not result["models"]:
+        arguments.error("no model is left: install what those need that --models names")
+    result = {"made with": made_with, "seeds": given.seeds, **result}
     result["broken bounds"] = broken(result)
     given.output.mkdir(parents=True, exist_ok=True)
     (given.output / "scores.json").write_text(json.dumps(result, indent=1) + "\n")

@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
+use crate::packages::tests_of;
 use crate::step::{Row, beside};
 use crate::surroundings::unusual;
 use crate::{
@@ -111,22 +112,6 @@ fn unit_tests(row: &Row, surroundings: &[(&str, OsString)]) -> Result<(), u8> {
 
 /// The package that reads recordings.
 const READER: &str = "meshtone-io";
-
-/// Tests of a package that is compiled once more for them, as well as it is said.
-///
-/// What it depends on stays as it was compiled for the program, hence one package a run. The program, none of whose targets is
-/// built, is named so that others' packages have the features that it asks for.
-pub fn tests_of(
-    row: &Row,
-    package: &str,
-    opt_level: u8,
-    targets: &[&str],
-    surroundings: &[(&str, OsString)],
-) -> Result<(), u8> {
-    let level = packages::opt_level(package, opt_level);
-    let tests = ["test", "--release", "--package", package, "--package", "meshtone-cli", "--config", &level];
-    row.cargo(&[&tests[..], targets].concat(), surroundings)
-}
 
 /// Packages that have no unit tests of a library: the benchmarks and the interfaces.
 const WITHOUT_UNIT_TESTS: [&str; 3] = ["meshtone-bench", "meshtone-cli", "meshtone-python"];

@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::process::Command;
 
-use crate::checks::tests_of;
+use crate::packages::tests_of;
 use crate::step::Row;
 
 /// Rust's name of the machine that a browser is.

@@ -1,5 +1,6 @@
 //! The project's packages.
 
+use std::ffi::OsString;
 use std::path::Path;
 
 use crate::step::Row;
@@ -36,4 +37,28 @@ fn entries(row: &Row, folder: &Path) -> Result<Vec<String>, u8> {
 /// Cargo's setting of how well one is optimised, for `--config`.
 pub fn opt_level(package: &str, level: u8) -> String {
     format!("profile.release.package.{package}.opt-level={level}")
+}
+
+/// Tests of a package that is compiled once more for them, as well as it is said.
+///
+/// What it depends on stays as it was compiled for the program, hence one package a run. The program, none of whose targets is
+/// built, is named so that others' packages have the features that it asks for.
+///
+/// # Arguments
+/// * `level` - how well it is optimised
+/// * `targets` - which of its targets, and which of their tests
+/// * `surroundings` - variables of the tests
+///
+/// # Errors
+/// Cargo's exit code.
+pub fn tests_of(
+    row: &Row,
+    package: &str,
+    level: u8,
+    targets: &[&str],
+    surroundings: &[(&str, OsString)],
+) -> Result<(), u8> {
+    let level = opt_level(package, level);
+    let tests = ["test", "--release", "--package", package, "--package", "meshtone-cli", "--config", &level];
+    row.cargo(&[&tests[..], targets].concat(), surroundings)
 }

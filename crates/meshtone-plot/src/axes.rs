@@ -41,6 +41,8 @@ const GRID: Stroke = Stroke::solid(colour::GRID, 1.0);
 const TICK_LENGTH: f64 = 4.0;
 /// (px) From the frame to the baseline of the numbers below it, and of the axis' name.
 const NUMBERS_BELOW: f64 = 17.0;
+/// (px) Between two numbers below the frame.
+const NUMBERS_APART: f64 = 4.0;
 pub(crate) const NAME_BELOW: f64 = 36.0;
 /// (px) From the frame to the end of the numbers on its left.
 const NUMBERS_LEFT: f64 = 8.0;
@@ -122,11 +124,17 @@ impl Axes {
         }
     }
 
-    /// Numbers below the horizontal axis.
+    /// Numbers below the horizontal axis, but for those that would touch the one before.
     pub(crate) fn x_numbers(&self, canvas: &mut Canvas, ticks: &Ticks) {
+        let mut free_from = f64::NEG_INFINITY;
         for &value in &ticks.values {
-            let at = (self.px(value), self.area.bottom() + NUMBERS_BELOW);
-            canvas.text(at, &ticks.text(value), TextStyle::TICK);
+            let (x, text) = (self.px(value), ticks.text(value));
+            let half_width = font::text_width(&text, TextStyle::TICK.size, TextStyle::TICK.bold) / 2.0;
+            if x - half_width < free_from {
+                continue;
+            }
+            canvas.text((x, self.area.bottom() + NUMBERS_BELOW), &text, TextStyle::TICK);
+            free_from = x + half_width + NUMBERS_APART;
         }
     }
 

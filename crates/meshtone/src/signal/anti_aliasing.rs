@@ -196,6 +196,22 @@ mod tests {
         }
     }
 
+    // Within the signals and beyond their ends, in blocks that are full and not.
+    #[test]
+    fn signals_read_together_are_those_read_alone() {
+        let signals: Vec<Vec<f32>> = (0..3).map(|n| noise(700 + n)[n..].to_vec()).collect();
+        let signals: Vec<&[f32]> = signals.iter().map(Vec::as_slice).collect();
+        let filter = AntiAliasing::steep(1e4, 6789.0).unwrap();
+        let places = || (0..600).map(|i| f64::from(i) * 1.3 - 40.0);
+        for edge in [Edge::Periodic, Edge::Reflect] {
+            let alone: Vec<Vec<f32>> =
+                signals.iter().map(|signal| filter.read(&[*signal], places(), edge).remove(0)).collect();
+            assert_eq!(filter.read(&signals, places(), edge), alone);
+            assert_eq!(filter.read(&signals[..2], places(), edge), alone[..2]);
+            assert!(alone[0] != alone[1] && alone[1] != alone[2]);
+        }
+    }
+
     #[test]
     fn rates_that_are_none_are_refused() {
         for (from, to) in [(0.0, 1.0), (1.0, -1.0), (f64::NAN, 1.0), (1e6, 1.0)] {

@@ -134,11 +134,9 @@ impl FilterBank {
         edge: Edge,
         rounded: impl Fn(f64) -> V + Copy,
     ) -> Vec<Vec<V>> {
-        let instructions = InstructionSet::fastest();
         let expected = places.size_hint().0;
         let mut values: Vec<Vec<V>> = signals.iter().map(|_| Vec::with_capacity(expected)).collect();
         let mut block = [Place { first: 0, row: 0, between: 0.0 }; BLOCK];
-        let (mut ones, mut pairs) = ([[0.0; 1]; BLOCK], [[0.0; 2]; BLOCK]);
         let mut beyond = vec![0.0; self.taps];
         loop {
             let mut count = 0;
@@ -149,30 +147,38 @@ impl FilterBank {
             if count == 0 {
                 return values;
             }
-            let (bank, places, beyond) = (self, &block[..count], &mut beyond);
-            for (values, signals) in values.chunks_mut(2).zip(signals.chunks(2)) {
-                match (values, signals) {
-                    ([first, second], &[one, other]) => {
-                        let (signals, read) = ([one, other], &mut pairs[..count]);
-                        instructions.run(Reading { bank, signals, places, edge, beyond, read });
-                        first.extend(read.iter().map(|value| rounded(value[0])));
-                        second.extend(read.iter().map(|value| rounded(value[1])));
-                    }
-                    (values, signals) => {
-                        for (values, &signal) in values.iter_mut().zip(signals) {
-                            let (signals, read) = ([signal], &mut ones[..count]);
-                            instructions.run(Reading { bank, signals, places, edge, beyond, read });
-                            values.extend(read.iter().map(|value| rounded(value[0])));
-                        }
-                    }
-                }
+            let places = &block[..count];
+            let (pairs, last) = signals.as_chunks::<2>();
+            let (values_of_pairs, values_of_last) = values.as_chunks_mut::<2>();
+            for (signals, values) in pairs.iter().zip(values_of_pairs) {
+                self.read_block(*signals, places, edge, &mut beyond, rounded, values);
             }
+            for (signal, values) in last.iter().zip(values_of_last) {
+                self.read_block([*signal], places, edge, &mut beyond, rounded, std::array::from_mut(values));
+            }
+        }
+    }
+
+    /// Reads a block of places of signals.
+    fn read_block<T: Copy + Into<f64>, V, const N: usize>(
+        &self,
+        signals: [&[T]; N],
+        places: &[Place],
+        edge: Edge,
+        beyond: &mut [f64],
+        rounded: impl Fn(f64) -> V,
+        values: &mut [Vec<V>; N],
+    ) {
+        let mut read = [[0.0; N]; BLOCK];
+        let read = &mut read[..places.len()];
+        InstructionSet::fastest().run(Reading { bank: self, signals, places, edge, beyond, read });
+        for (n, values) in values.iter_mut().enumerate() {
+            values.extend(read.iter().map(|value| rounded(value[n])));
         }
     }
 }
 
-/// A block of places of signals of one length, of two at a time where there are two: both are weighted by the same taps, and no sum
-/// waits for the other.
+/// A block of places of signals of one length: all are weighted by the same taps, and no sum waits for another's.
 struct Reading<'a, T, const N: usize> {
     bank: &'a FilterBank,
     signals: [&'a [T]; N],
@@ -180,7 +186,7 @@ struct Reading<'a, T, const N: usize> {
     edge: Edge,
     /// Room for samples of which some lie beyond the signal's ends.
     beyond: &'a mut [f64],
-    /// What is read at each place.
+    /// What is read of each signal at each place.
     read: &'a mut [[f64; N]],
 }
 
