@@ -223,7 +223,7 @@ def mean_recall(labels: np.ndarray, named: np.ndarray) -> float:
 
 
 def detection(test: Records, runs: list[np.ndarray]) -> dict[str, object]:
-    """Of all damaged records, of each kind, in each grade of severity; and the limit of each kind."""
+    """Of all damaged records, at each level of noise, of each kind, in each grade of severity; and the limit of each kind."""
     healthy = test.damaged == 0
     alarms = [np.quantile(run[healthy], 0.95) for run in runs]
 
@@ -242,7 +242,20 @@ def detection(test: Records, runs: list[np.ndarray]) -> dict[str, object]:
             if limit is None and found >= 0.9:
                 limit = round(float(test.severity[graded].min()), 2)
         kinds[label] = {"auc": interval(told(healthy | of_kind), test.units), "auc by grade": by_grade, "found from severity": limit}
-    return {"auc": interval(told(np.ones(len(test.labels), bool)), test.units), "kinds": kinds}
+    by_noise = {name: interval(told(chosen), test.units) for name, chosen in noise_levels(test).items()}
+    return {"auc": interval(told(np.ones(len(test.labels), bool)), test.units), "auc by noise": by_noise, "kinds": kinds}
+
+
+def noise_levels(test: Records) -> dict[str, np.ndarray]:
+    """Thirds of the records by their ratio of signal to noise, the noisiest first; none where the plan varies no such ratio."""
+    if "noise_snr_db" not in test.table:
+        return {}
+    ratio = test.table["noise_snr_db"].to_numpy(float)
+    ends = np.nanquantile(ratio, [0.0, 1 / 3, 2 / 3, 1.0])
+    return {
+        f"{low:.0f} to {high:.0f} dB": (ratio >= low) & ((ratio < high) | (high == ends[-1]))
+        for low, high in zip(ends, ends[1:], strict=False)
+    }
 
 
 def severity(train: Records, test: Records, model: str) -> list[float]:
@@ -386,6 +399,9 @@ def table(result: dict) -> str:
         grades = ", ".join(f"{value:.2f}" for value in told["auc by grade"].values())
         limit = "-" if told["found from severity"] is None else told["found from severity"]
         lines.append(f"| {kind} | {shown.format(told['auc'])} | {grades} | {limit} | {result['models'][best]['recall'][kind]:.2f} |")
+    if by_noise := result["models"][best]["detection"]["auc by noise"]:
+        lines += ["", "| signal to noise | AUC |", "|---|---:|"]
+        lines += [f"| {name} | {shown.format(value)} |" for name, value in by_noise.items()]
     lines += ["", "| severity | CRPS |", "|---|---:|"]
     lines += [f"| {name} | {shown.format(value)} |" for name, value in result["severity crps"].items()]
     lines += ["", "| shortcut | AUC |", "|---|---:|"]

@@ -50,3 +50,10 @@ def test_the_benchmark_is_fair(tmp_path: Path) -> None:
     # Every kind and both halves of its severities were looked at.
     kinds = scores["models"]["logistic regression"]["detection"]["kinds"]
     assert len(kinds) == 5 and all(len(kind["auc by grade"]) == 2 for kind in kinds.values())
+    assert len(scores["models"]["logistic regression"]["detection"]["auc by noise"]) == 3
+    # What was answered once is not trained again, and what asks for no seed is refused.
+    again = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", env=surroundings)
+    assert again.returncode == 0 and "logistic regression, seed 0: as kept in" in again.stderr, again.stderr
+    assert (tmp_path / "scores" / "scores.json").read_text("utf-8") == json.dumps(scores, indent=1) + "\n"
+    refused = subprocess.run([*command, "--seeds", "0"], capture_output=True, text=True, encoding="utf-8", env=surroundings)
+    assert refused.returncode == 2 and "--seeds 0: at least 1 is needed" in refused.stderr, refused.stderr
