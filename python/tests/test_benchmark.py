@@ -57,3 +57,9 @@ def test_the_benchmark_is_fair(tmp_path: Path) -> None:
     assert (tmp_path / "scores" / "scores.json").read_text("utf-8") == json.dumps(scores, indent=1) + "\n"
     refused = subprocess.run([*command, "--seeds", "0"], capture_output=True, text=True, encoding="utf-8", env=surroundings)
     assert refused.returncode == 2 and "--seeds 0: at least 1 is needed" in refused.stderr, refused.stderr
+    # What is no data set is told, not thrown.
+    nothing = subprocess.run(
+        [sys.executable, str(FOLDER / "score.py"), str(tmp_path), "-o", "out"], capture_output=True, text=True, encoding="utf-8"
+    )
+    assert nothing.returncode == 2 and "it holds no data set" in nothing.stderr, nothing.stderr
+    assert not Path("out").exists()

@@ -203,11 +203,12 @@ fn questions(text: &mut String, plan: &Plan) -> std::fmt::Result {
 
 /// How a damage grows, in words.
 fn grows(growth: &Growth) -> String {
-    let Growth { law, start, failure, censored, .. } = growth;
+    let Growth { law, start, failure, censored, life_rev, .. } = growth;
     let name = law.name();
     format!(
-        ", which grows by the law `{name}` from severity {start} to failure at {failure}; {:.0} % of the runs are stopped before",
-        100.0 * censored
+        ", which grows by the law `{name}` from severity {start} to failure at {failure} after a life, `{}`, that each run draws; a run \
+         is stopped before with a probability of {censored}",
+        life_rev.name()
     )
 }
 

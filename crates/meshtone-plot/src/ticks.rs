@@ -51,7 +51,7 @@ impl Ticks {
     }
 
     /// Decadic logarithms of round numbers, for a logarithmic axis: the fewest of 10ⁿ, of 1, 2 and 5 × 10ⁿ, and
-    /// so on to 1 to 9 × 10ⁿ, that are three or more.
+    /// so on to 1 to 9 × 10ⁿ, that are three or more; on a shorter axis those of an even one.
     ///
     /// # Arguments
     /// * `low`, `high` - decadic logarithms of the axis' ends
@@ -64,7 +64,11 @@ impl Ticks {
         let nine = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0];
         let sets: [&[f64]; 4] = [&[1.0], &[1.0, 2.0, 5.0], &[1.0, 1.5, 2.0, 3.0, 5.0, 7.0], &nine];
         let values = sets.into_iter().map(inside).find(|values| values.len() >= 3);
-        Self { values: values.unwrap_or_else(|| inside(&nine)), step: 1.0, logarithmic: true }
+        let even = || {
+            let ticks = Self::nice(10f64.powf(low), 10f64.powf(high), 5);
+            ticks.values.iter().map(|value| value.log10()).collect()
+        };
+        Self { values: values.unwrap_or_else(even), step: 1.0, logarithmic: true }
     }
 
     /// Whole numbers only, at most `most` of them.
@@ -181,6 +185,8 @@ mod tests {
         assert_eq!(texts(0.2, 8.0), ["0.2", "0.5", "1", "2", "5"]);
         assert_eq!(texts(0.9, 3.1), ["1", "1.5", "2", "3"]);
         assert_eq!(texts(0.58, 0.82), ["0.6", "0.7", "0.8"]);
+        assert_eq!(texts(3.11, 3.42), ["3.2", "3.3", "3.4"]);
+        assert_eq!(texts(0.0101, 0.0104), ["0.0101", "0.0102", "0.0103", "0.0104"]);
     }
 
     #[test]

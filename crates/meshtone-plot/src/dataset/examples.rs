@@ -39,7 +39,7 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, preview: &DatasetPreview) {
                 canvas,
                 &ticks,
                 if preview.over_angle {
-                    "Shaft angle from tooth 1 (rev)"
+                    "Shaft angle from the mark (rev)"
                 } else {
                     "Part of the record (–)"
                 },

@@ -74,7 +74,7 @@ fn everything_has_its_place() {
         "fm4",
         "train",
         "severe",
-        "Shaft angle from tooth 1 (rev)",
+        "Shaft angle from the mark (rev)",
     ] {
         assert!(has(&figure, text), "{text}");
     }
