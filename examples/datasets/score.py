@@ -20,6 +20,7 @@ import zipfile
 from collections.abc import Callable
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from typing import NoReturn
 
 import numpy as np
 import pandas as pd
@@ -190,7 +191,7 @@ MODELS = {
     "network": (Network(), "torch"),
 }
 
-# What a seed changes; boosting draws nothing from so few records.
+# What a seed changes.
 DRAWN = ("random kernels", "network")
 
 
@@ -213,9 +214,9 @@ def interval(scores: list[Callable[[np.ndarray], float]], units: np.ndarray) -> 
 def auc(damaged: np.ndarray, probability: np.ndarray) -> float:
     """By Mann and Whitney's ranks: thousands of times for the intervals, which scikit-learn's checks of its input would make long."""
     found = damaged == 1
-    pairs = np.count_nonzero(found) * np.count_nonzero(~found)
-    above = rankdata(probability)[found].sum() - np.count_nonzero(found) * (np.count_nonzero(found) + 1) / 2
-    return float(above / pairs) if pairs else float("nan")
+    count = np.count_nonzero(found)
+    pairs = count * (len(found) - count)
+    return float((rankdata(probability)[found].sum() - count * (count + 1) / 2) / pairs) if pairs else float("nan")
 
 
 def mean_recall(labels: np.ndarray, named: np.ndarray) -> float:
@@ -441,7 +442,9 @@ def figures(test: Records, result: dict, probabilities: dict, folder: Path) -> N
         of_grade = [np.median(test.severity[(test.labels == kind) & (test.grades == int(grade))]) for grade in grades]
         axes.plot(of_grade, list(grades.values()), "o-", color=colours[kind], label=kind)
     axes.axhline(0.5, ls=":", color="grey")
-    axes.set(xlim=(0, 1), ylim=(min(0.4, *(value for kind in kinds.values() for value in kind["auc by grade"].values())) - 0.02, 1.02), xlabel="severity, 1 the largest that the tooth allows", ylabel="AUC against healthy", title=f"Detection over severity by {best}")
+    worst = min(min(kind["auc by grade"].values()) for kind in kinds.values())
+    axes.set(xlim=(0, 1), ylim=(min(0.4, worst - 0.02), 1.02), title=f"Detection over severity by {best}")
+    axes.set(xlabel="severity, 1 the largest that the tooth allows", ylabel="AUC against healthy")
     axes.legend(fontsize=8, loc="lower right")
     figure.savefig(folder / "severity.png", dpi=130)
     plt.close(figure)
@@ -463,6 +466,26 @@ def figures(test: Records, result: dict, probabilities: dict, folder: Path) -> N
     plt.close(figure)
 
 
+def opened(path: Path, refuse: Callable[[str], NoReturn]) -> tuple[mt.Dataset, Records, Records]:
+    """A data set with what is learnt from and what is asked; `refuse` tells what keeps one from being scored."""
+    try:
+        dataset = mt.load_dataset(path)
+    except (OSError, ValueError) as error:
+        refuse(str(error))
+    if not dataset.is_complete:
+        refuse(f"{path} is not complete: the `meshtone dataset` command that began it goes on with it")
+    if "sha256" not in dataset.manifest:
+        refuse(f"{path} is of an earlier format, without checksums: make it anew")
+    try:
+        train, test = records(dataset)
+    except (KeyError, ValueError) as error:
+        refuse(f"{error}\nmodels take `average_g` and `difference_g` of one length: `points_per_revolution` in the plan's [keep]")
+    for split, part in (("train", train), ("test", test)):
+        if len(set(part.damaged)) < 2:
+            refuse(f"split `{split}` of {path} needs healthy and damaged records to tell them apart")
+    return dataset, train, test
+
+
 def main() -> int:
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("dataset", type=Path)
@@ -473,21 +496,7 @@ def main() -> int:
     given = arguments.parse_args()
     if given.seeds < 1:
         arguments.error(f"--seeds {given.seeds}: at least 1 is needed")
-    try:
-        dataset = mt.load_dataset(given.dataset)
-    except (OSError, ValueError) as error:
-        arguments.error(str(error))
-    if not dataset.is_complete:
-        arguments.error(f"{given.dataset} is not complete: the `meshtone dataset` command that began it goes on with it")
-    if "sha256" not in dataset.manifest:
-        arguments.error(f"{given.dataset} is of an earlier format, without checksums: make it anew")
-    try:
-        train, test = records(dataset)
-    except (KeyError, ValueError) as error:
-        arguments.error(f"{error}\nmodels take `average_g` and `difference_g` of one length: `points_per_revolution` in the plan's [keep]")
-    for split, part in (("train", train), ("test", test)):
-        if len(set(part.damaged)) < 2:
-            arguments.error(f"split `{split}` of {given.dataset} needs healthy and damaged records to tell them apart")
+    dataset, train, test = opened(given.dataset, arguments.error)
     made_with = surroundings(dataset)
     digest = hashlib.sha256(json.dumps(made_with).encode()).hexdigest()
     result, probabilities = scores(train, test, given.models, given.seeds, given.output / "runs" / digest[:16])

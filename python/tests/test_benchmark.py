@@ -39,11 +39,18 @@ def test_the_benchmark_is_fair(tmp_path: Path) -> None:
     plan = tmp_path / "plan.toml"
     plan.write_text(small((FOLDER / "benchmark.toml").read_text("utf-8")), "utf-8")
     datasets.generate_dataset(plan, tmp_path / "small")
-    arguments = [str(tmp_path / "small"), "-o", str(tmp_path / "scores"), "--models", "logistic regression", "--check"]
     # Threads of so small models wait for each other longer than they compute where the cores are busy.
     surroundings = {**os.environ, "OMP_NUM_THREADS": "1"}
-    command = [sys.executable, str(FOLDER / "score.py"), *arguments]
-    scored = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", env=surroundings)
+
+    def score(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, str(FOLDER / "score.py"), str(folder), "-o", str(tmp_path / "scores"), "--check", *arguments]
+        return subprocess.run(command, capture_output=True, text=True, encoding="utf-8", env=surroundings)
+
+    # What is no data set is told, not thrown.
+    nothing = score(tmp_path)
+    assert nothing.returncode == 2 and "it holds no data set" in nothing.stderr, nothing.stderr
+    assert not (tmp_path / "scores").exists()
+    scored = score(tmp_path / "small", "--models", "logistic regression")
     assert scored.returncode == 0, scored.stderr
     scores = json.loads((tmp_path / "scores" / "scores.json").read_text("utf-8"))
     assert scores["broken bounds"] == []
@@ -52,14 +59,8 @@ def test_the_benchmark_is_fair(tmp_path: Path) -> None:
     assert len(kinds) == 5 and all(len(kind["auc by grade"]) == 2 for kind in kinds.values())
     assert len(scores["models"]["logistic regression"]["detection"]["auc by noise"]) == 3
     # What was answered once is not trained again, and what asks for no seed is refused.
-    again = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", env=surroundings)
+    again = score(tmp_path / "small", "--models", "logistic regression")
     assert again.returncode == 0 and "logistic regression, seed 0: as kept in" in again.stderr, again.stderr
     assert (tmp_path / "scores" / "scores.json").read_text("utf-8") == json.dumps(scores, indent=1) + "\n"
-    refused = subprocess.run([*command, "--seeds", "0"], capture_output=True, text=True, encoding="utf-8", env=surroundings)
+    refused = score(tmp_path / "small", "--seeds", "0")
     assert refused.returncode == 2 and "--seeds 0: at least 1 is needed" in refused.stderr, refused.stderr
-    # What is no data set is told, not thrown.
-    nothing = subprocess.run(
-        [sys.executable, str(FOLDER / "score.py"), str(tmp_path), "-o", "out"], capture_output=True, text=True, encoding="utf-8"
-    )
-    assert nothing.returncode == 2 and "it holds no data set" in nothing.stderr, nothing.stderr
-    assert not Path("out").exists()
