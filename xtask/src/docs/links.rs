@@ -38,10 +38,13 @@ pub fn check_summary(book: &Path, pages: &[PathBuf]) -> io::Result<Vec<Problem>>
 }
 
 /// Every relative link and picture of a page must exist, with its heading where it names one, and
-/// stay inside `book` where one is given (what lies outside is not published with it).
+/// stay inside `book` where one is given (what lies outside is not published with it). An included
+/// file must exist too; it may lie anywhere, because mdBook copies it into the page.
 pub fn check(page: &Path, text: &str, book: Option<&Path>) -> io::Result<Vec<Problem>> {
     let mut problems = Vec::new();
-    for link in links(text) {
+    let linked = links(text).into_iter().map(|link| (link, book));
+    let included = includes(text).into_iter().map(|link| (link, None));
+    for (link, book) in linked.chain(included) {
         if let Some(message) = fault_of(&link.target, page, text, book)? {
             problems.push(Problem { file: page.to_owned(), line: link.line, message });
         }
@@ -93,6 +96,17 @@ fn links(text: &str) -> Vec<Link> {
     found
 }
 
+/// The whole files that mdBook copies into a page, mostly into its code: `{{#include target}}`.
+fn includes(text: &str) -> Vec<Link> {
+    let mut found = Vec::new();
+    for (index, line) in text.lines().enumerate() {
+        for target in between(line, "{{#include ", '}') {
+            found.push(Link { line: index + 1, target: target.trim().to_owned() });
+        }
+    }
+    found
+}
+
 /// Every text in `line` between `open` and the next `close`.
 fn between<'a>(line: &'a str, open: &str, close: char) -> Vec<&'a str> {
     line.split(open).skip(1).filter_map(|rest| rest.split_once(close)).map(|(inside, _)| inside).collect()
@@ -125,6 +139,21 @@ mod tests {
     fn finds_links_pictures_and_html() {
         let text = "[a](b.md#c) and ![d](e.png \"title\")\n<img src=\"f.svg\"> `[no](no.md)`";
         assert_eq!(targets(text), ["b.md#c", "e.png", "f.svg"]);
+    }
+
+    #[test]
+    fn an_included_file_must_exist_wherever_it_lies() {
+        let book = crate::workspace_root().join("docs/src");
+        let page = book.join("introduction.md");
+        let problems = |name: &str| {
+            let text = format!("```python\n{{{{#include ../../{name}}}}}\n```\n");
+            check(&page, &text, Some(&book)).unwrap()
+        };
+        assert_eq!(problems("README.md"), []);
+        let missing = problems("no/such/file.py");
+        assert_eq!(missing.len(), 1);
+        assert_eq!(missing[0].line, 2);
+        assert!(missing[0].message.contains("leads nowhere"));
     }
 
     #[test]
