@@ -164,10 +164,7 @@ fn with_number(text: &str, name: &str, index: usize) -> String {
 /// use meshtone::Error;
 /// use meshtone::scenario::{GearPair, Scenario};
 ///
-/// let mut scenario = Scenario::new(GearPair {
-///     module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0,
-///     pinion_speed_hz: 40.0, brake_torque_nm: 10.0,
-/// });
+/// let mut scenario = Scenario::new(GearPair::example());
 /// scenario.rig.eccentricity_mm = -0.1;
 /// match meshtone::simulate(&scenario).map(drop) {
 ///     Err(Error::Scenario(error)) => assert_eq!(error.key, "rig.eccentricity_mm"),

@@ -17,7 +17,7 @@ use crate::model::Model;
 ///
 /// let mut sensor = Sensor::default();
 /// sensor.resonance_hz = Some(12e3);
-/// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 })
+/// let mut scenario = Scenario::new(GearPair::example())
 ///     .with_sensors(vec![sensor]);
 /// scenario.solver.sampling_rate_hz = 2e4;
 /// let channels = meshtone::simulate(&scenario)?.channels;

@@ -37,7 +37,7 @@ impl Scenario {
     ///     brake_torque_nm = 10.0
     ///     "#,
     /// )?;
-    /// assert_eq!(scenario, Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 }));
+    /// assert_eq!(scenario, Scenario::new(GearPair::example()));
     /// # Ok::<(), meshtone::scenario::ScenarioError>(())
     /// ```
     pub fn from_toml(text: &str) -> Result<Self, ScenarioError> {
