@@ -15,7 +15,6 @@ import meshtone
 from meshtone import Scenario, examples
 
 
-
 @pytest.mark.parametrize("fault", FAULTS.values())
 def test_round_trips(fault: meshtone.Fault | None) -> None:
     scenario = Scenario(**PAIR, fault=fault, din_grade=6, damping_ratio=[0.04] * 13, tip_relief=False)
@@ -113,7 +112,6 @@ def test_examples_are_the_files(tmp_path: Path) -> None:
         ({"din_grade": 13}, "quality.din_grade = 13"),
         ({"material": "wood"}, "gears.material"),
         ({"model": "other"}, "model"),
-        ({"model": "corrected"}, 'the corrected model is called "linear" now'),
         ({"fault": meshtone.MissingTooth(tooth=39)}, "fault.tooth = 39: must be at most 38"),
         ({"faults": [meshtone.MissingTooth(), meshtone.MissingTooth(wheel="pinion", tooth=0)]}, "fault[1].tooth = 0"),
         ({"fault": meshtone.MissingTooth(tooth=[2, 39])}, "fault.tooth[1] = 39: must be at most 38"),
@@ -154,10 +152,6 @@ def test_keys_that_there_are_not() -> None:
         Scenario(**PAIR, fault=meshtone.MissingTooth)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match=r"circle = \(57, 3, 2\): must be a PitCircle"):
         Scenario(**PAIR, fault=meshtone.ThroughFace(circle=(57, 3, 2)))  # type: ignore[arg-type]
-    with pytest.raises(TypeError, match="'convention' is called 'model' now, and its value 'corrected' is called 'linear'"):
-        Scenario(**PAIR, convention="corrected")  # type: ignore[arg-type]
-    with pytest.raises(AttributeError, match="'convention' is called 'model' now"):
-        _ = examples.healthy().convention  # type: ignore[attr-defined]
     with pytest.raises(AttributeError, match="no key 'modul_mm'; did you mean 'module_mm'"):
         _ = examples.healthy().modul_mm  # type: ignore[attr-defined]
     with pytest.raises(AttributeError, match=r"scenario.copy\(seed=2\)"):
@@ -192,8 +186,6 @@ def test_what_is_missing_is_missing_in_a_scenario() -> None:
             Scenario(positional)  # type: ignore[arg-type, call-arg]
     with pytest.raises(TypeError, match=r"^Scenario\(\) missing 6 required keyword-only arguments: 'module_mm', 'pinion_teeth'"):
         Scenario()  # type: ignore[call-arg]
-    with pytest.raises(ValueError, match='the corrected model is called "linear" now'):
-        examples.healthy().copy(model="corrected")
 
 
 def test_warnings() -> None:

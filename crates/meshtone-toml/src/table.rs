@@ -152,28 +152,6 @@ impl<'a> TomlTable<'a> {
         entries.iter().map(named).collect()
     }
 
-    /// Refuses a key that was once read here, so that whoever still writes it is told what to write instead.
-    ///
-    /// # Arguments
-    /// * `key` - the name that it had
-    /// * `problem` - that it is renamed, and to what
-    /// * `remedy` - gives the advice for the value, where that is a text
-    ///
-    /// # Errors
-    /// The key is there.
-    pub fn refuse_renamed(
-        &self,
-        key: &str,
-        problem: &str,
-        remedy: impl FnOnce(Option<&str>) -> String,
-    ) -> ReadResult<()> {
-        let Some(value) = self.table.and_then(|table| table.get(key)) else {
-            return Ok(());
-        };
-        let error = self.error(key, problem).of_kind(ErrorKind::UnknownKey);
-        Err(error.with_help(remedy(value.get_ref().as_str())))
-    }
-
     /// Reads the table and then refuses what was not asked for.
     ///
     /// # Arguments

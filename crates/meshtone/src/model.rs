@@ -37,10 +37,7 @@ impl Model {
 
 impl KeyValue for Model {
     fn read(&mut self, value: &TomlValue<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
-        *self = value.choice(&names()).map_err(|error| match value.string() {
-            Ok("corrected") => error.with_help("the corrected model is called \"linear\" now"),
-            _ => error,
-        })?;
+        *self = value.choice(&names())?;
         Ok(())
     }
 

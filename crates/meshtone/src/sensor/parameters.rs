@@ -289,15 +289,8 @@ pub(super) fn is_name(name: &str) -> bool {
         && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_')
 }
 
-/// Names whose channels would be taken for others: those of columns beside the channels, and of earlier versions' channels.
-const TAKEN: [&str; 6] = [
-    "average",
-    "difference",
-    "enhanced_difference",
-    "horizontal_acceleration",
-    "vertical_acceleration",
-    "axial_acceleration",
-];
+/// Names whose channels would be taken for others: those of columns beside the channels.
+const TAKEN: [&str; 3] = ["average", "difference", "enhanced_difference"];
 
 fn check_name(name: &str) -> Check {
     let refused = |problem: String| Err(ScenarioError::new("sensor.name", format!("{name:?}"), problem));

@@ -122,11 +122,6 @@ fn read_and_validate(
 }
 
 fn read_scenario(root: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<Scenario> {
-    root.refuse_renamed("convention", "is called `model` now", |value| match value {
-        Some("corrected") => "write model = \"linear\"".to_string(),
-        Some("published") => "write model = \"published\"".to_string(),
-        _ => "write model = \"linear\" or model = \"published\"".to_string(),
-    })?;
     let mut scenario = Scenario::start();
     read_keys(&mut scenario, root, files)?;
     section(&mut scenario.gears, root, "gears", files)?;
