@@ -54,9 +54,9 @@ impl From<TomlError> for ScenarioError {
 impl From<ScenarioError> for TomlError {
     fn from(error: ScenarioError) -> Self {
         let ScenarioError { kind, key, value, problem, help, line } = error;
-        let mut told = Self::new(key, value, problem).of_kind(kind).at_line(line);
-        told.help = help;
-        told
+        let mut error = Self::new(key, value, problem).of_kind(kind).at_line(line);
+        error.help = help;
+        error
     }
 }
 

@@ -70,7 +70,7 @@ enum ModelArgument {
     Contact,
     /// What the theory of a linear mesh says
     Linear,
-    /// The published code, its slips included
+    /// The published code, its known errors included
     Published,
 }
 
@@ -165,7 +165,7 @@ impl Simulate {
         tuned: Option<&Tuned>,
     ) -> Result<Run, Failure> {
         let file = ScenarioFile::read_within(path, memory::limit()).map_err(|error| {
-            // Of a text it is told already what kind it is.
+            // The error about a text says already what kind it is.
             let is_text = matches!(error, ReadScenarioError::Invalid { .. });
             if is_text { error.into() } else { or_other_kind(path, "a scenario", error.into()) }
         })?;
