@@ -30,13 +30,13 @@ __all__ = [
     "enhance",
     "envelope",
     "envelope_spectrum",
+    "find_mismatch",
     "fm0",
     "fm4",
     "generate_dataset",
     "m6a",
     "m8a",
     "merge_datasets",
-    "misfit",
     "na4",
     "order_spectrum",
     "process_channel",
@@ -224,7 +224,7 @@ class Record:
 def process_channel(
     signal: _Array, phase: ShaftPhase, teeth: int, settings: Mapping[str, object] | None = None
 ) -> Record: ...
-def misfit(
+def find_mismatch(
     signal: _Array,
     phase: ShaftPhase,
     teeth: int,

@@ -451,7 +451,7 @@ class ScenarioKeys:
             Sensors on the rig, whose signals come first; none by default.
         model : {'contact', 'linear', 'published'}, optional
             The model: teeth that touch and part, the theory of a linear mesh, or what the published code does, its
-            slips included. Default: "contact".
+            known errors included. Default: "contact".
         seed : int, optional
             The seed of every random draw: profile errors, fluctuations, roughness of a destroyed flank, sensors' noise.
             Allowed: whole number. Default: 1.

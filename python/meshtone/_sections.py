@@ -1,4 +1,4 @@
-"""Names that a scenario has, had, or does not have."""
+"""Names that a scenario has or does not have."""
 
 from __future__ import annotations
 
@@ -9,11 +9,6 @@ from ._keys import SECTION_OF_KEY
 from ._names import hint
 
 OTHER_ARGUMENTS = ("fault", "faults", "sensors", "pinion_profile_errors_mm", "gear_profile_errors_mm")
-
-FORMER_KEYS: dict[str, str] = {
-    "convention": "is called 'model' now, and its value 'corrected' is called 'linear'",
-}
-"""What has become of keys that a scenario had before."""
 
 
 def with_whole_numbers(entries: Mapping[str, Any], types: Mapping[str, str]) -> dict[str, Any]:
@@ -52,8 +47,6 @@ def check_key(key: str, value: object = None) -> None:
     if key in _SPEED_RPM:
         written = f"{value / 60:.12g}" if isinstance(value, (int, float)) else "…"
         raise TypeError(f"a scenario has no key '{key}': speeds are revolutions per second, pinion_speed_hz={written}")
-    if key in FORMER_KEYS:
-        raise TypeError(f"'{key}' {FORMER_KEYS[key]}")
     known = [*SECTION_OF_KEY, *OTHER_ARGUMENTS]
     if key not in known:
         raise TypeError(f"a scenario has no key '{key}'{hint(key, known) or '; it has ' + ', '.join(known)}")

@@ -15,7 +15,7 @@ def set_memory_limit(limit_bytes: int | None) -> None:
     """Set the most memory for one simulation, and for what is read of one file.
 
     What would take more is refused with a ``ValueError`` that says how much it would take, before it is computed or while it is
-    read: a tooth count or a rate with a slip in it, a compressed file of a few megabytes that stands for gigabytes.
+    read: a tooth count or a rate with a typing error in it, a compressed file of a few megabytes that stands for gigabytes.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from . import _core, _display
 from ._keys import KEY_IN_FILE, REQUIRED_KEYS, SECTION_OF_KEY, ScenarioChanges, ScenarioKeys, Shaft, TipRelief, WheelInertia
 from ._names import hint
-from ._sections import FORMER_KEYS, OTHER_ARGUMENTS, check_key, with_whole_numbers
+from ._sections import OTHER_ARGUMENTS, check_key, with_whole_numbers
 from .faults import Fault, from_section, to_section
 from .sensors import Sensor, sections_of
 
@@ -255,8 +255,6 @@ brake_torque_nm=10.0, din_grade=7)
             try:
                 return self._flat[name]
             except KeyError:
-                if name in FORMER_KEYS:
-                    raise AttributeError(f"'{name}' {FORMER_KEYS[name]}") from None
                 known = [*SECTION_OF_KEY, *OTHER_ARGUMENTS]
                 way = f"; {_OTHER_WAYS[name]}" if name in _OTHER_WAYS else hint(name, known)
                 raise AttributeError(f"a scenario has no key '{name}'{way}") from None

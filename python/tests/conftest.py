@@ -18,6 +18,16 @@ matplotlib.use("agg")
 ROOT = Path(__file__).parents[2]
 PUBLISHED = ROOT / "crates" / "meshtone" / "tests" / "published"
 
+PAIR: dict[str, Any] = {
+    "module_mm": 3,
+    "pinion_teeth": 17,
+    "gear_teeth": 38,
+    "face_width_mm": 15,
+    "pinion_speed_hz": 40,
+    "brake_torque_nm": 10,
+}
+"""The pair of the paper's rig with a broken tooth: all that a scenario requires."""
+
 FRACTIONS: dict[str, float] = {"start": 0.2, "end": 0.8, "depth": 0.5}
 
 FAULTS: dict[str, meshtone.Fault | None] = {
@@ -40,17 +50,14 @@ class Published:
         self.name = name
         with np.load(PUBLISHED / f"{name}.npz") as fields:
             self.fields: dict[str, Any] = {key: fields[key] for key in fields.files}
+        pair = PAIR
         if name.startswith("destruction"):
-            teeth = {"pinion_teeth": 18, "gear_teeth": 35, "face_width_mm": 30}
-            operation = {"pinion_speed_hz": 45, "brake_torque_nm": 15}
-        else:
-            teeth = {"pinion_teeth": 17, "gear_teeth": 38, "face_width_mm": 15}
-            operation = {"pinion_speed_hz": 40, "brake_torque_nm": 10}
+            other = {"pinion_teeth": 18, "gear_teeth": 35, "face_width_mm": 30, "pinion_speed_hz": 45, "brake_torque_nm": 15}
+            pair = {**PAIR, **other}
         errors = {}
         if name.endswith("din7"):
             errors = {f"{wheel}_profile_errors_mm": self.fields[f"{wheel}_profile_errors_mm"] for wheel in ("pinion", "gear")}
-        arguments: dict[str, Any] = {**teeth, **operation, **errors}
-        self.scenario = meshtone.Scenario(module_mm=3, model="published", fault=FAULTS[name], **arguments)
+        self.scenario = meshtone.Scenario(model="published", fault=FAULTS[name], **pair, **errors)
 
 
 @pytest.fixture(params=sorted(FAULTS), scope="module")

@@ -6,21 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import PAIR
 
 from meshtone import Scenario, simulate
 
 
 def pair(**keys: float) -> Scenario:
     """17 and 38 teeth of module 3."""
-    return Scenario(
-        module_mm=3,
-        pinion_teeth=17,
-        gear_teeth=38,
-        face_width_mm=15,
-        pinion_speed_hz=40,
-        brake_torque_nm=10,
-        **keys,  # type: ignore[arg-type]
-    )
+    return Scenario(**PAIR, **keys)
 
 
 def test_shifted_pair() -> None:

@@ -9,24 +9,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import FAULTS, ROOT
+from conftest import FAULTS, PAIR, ROOT
 
 import meshtone
 from meshtone import Scenario, examples
 
-REQUIRED: dict[str, Any] = {
-    "module_mm": 3,
-    "pinion_teeth": 17,
-    "gear_teeth": 38,
-    "face_width_mm": 15,
-    "pinion_speed_hz": 40,
-    "brake_torque_nm": 10,
-}
-
 
 @pytest.mark.parametrize("fault", FAULTS.values())
 def test_round_trips(fault: meshtone.Fault | None) -> None:
-    scenario = Scenario(**REQUIRED, fault=fault, din_grade=6, damping_ratio=[0.04] * 13, tip_relief=False)
+    scenario = Scenario(**PAIR, fault=fault, din_grade=6, damping_ratio=[0.04] * 13, tip_relief=False)
     for same in (Scenario.from_toml(scenario.to_toml()), pickle.loads(pickle.dumps(scenario)), scenario.copy()):
         assert same == scenario
         assert hash(same) == hash(scenario)
@@ -37,26 +28,26 @@ def test_round_trips(fault: meshtone.Fault | None) -> None:
 def test_lists_of_faults() -> None:
     chip = meshtone.ToothBreakage(chip_height_mm=3.0, chip_width_mm=4.0, tip_loss_mm=0.0, wheel="pinion", tooth=3)
     missing = meshtone.MissingTooth(tooth=6)
-    both = Scenario(**REQUIRED, faults=[chip, missing])
+    both = Scenario(**PAIR, faults=[chip, missing])
     assert both.faults == (chip, missing)
     for same in (Scenario.from_toml(both.to_toml()), pickle.loads(pickle.dumps(both)), both.copy()):
         assert same == both
     assert eval(repr(both), vars(meshtone)) == both
-    assert both.copy(fault=missing) == Scenario(**REQUIRED, fault=missing) == Scenario(**REQUIRED, faults=[missing])
+    assert both.copy(fault=missing) == Scenario(**PAIR, fault=missing) == Scenario(**PAIR, faults=[missing])
     assert both.copy(fault=None).faults == both.copy(faults=[]).faults == ()
     assert both.copy(faults=[missing]).fault == missing
     with pytest.raises(ValueError, match=r"there are 2 faults: scenario\.faults has them"):
         _ = both.fault
     with pytest.raises(TypeError, match="fault and faults are both given"):
-        Scenario(**REQUIRED, fault=chip, faults=[missing])
+        Scenario(**PAIR, fault=chip, faults=[missing])
     with pytest.raises(TypeError, match="fault is a sequence: faults takes several"):
-        Scenario(**REQUIRED, fault=[chip, missing])  # type: ignore[arg-type]
+        Scenario(**PAIR, fault=[chip, missing])  # type: ignore[arg-type]
     with pytest.raises(TypeError, match=r"faults\[1\] = 'broken': must be an object of MissingTooth, .*ToothDestruction, Wear"):
         examples.healthy().copy(faults=[meshtone.MissingTooth(), "broken"])
     with pytest.raises(TypeError, match=r"faults\[0\] is the class MissingTooth"):
         examples.healthy().copy(faults=[meshtone.MissingTooth])
     with pytest.raises(TypeError, match="faults = .*: must be a sequence of faults"):
-        Scenario(**REQUIRED, faults=missing)  # type: ignore[arg-type]
+        Scenario(**PAIR, faults=missing)  # type: ignore[arg-type]
 
 
 def test_every_key_of_a_fault_is_a_field() -> None:
@@ -91,15 +82,15 @@ def test_every_key_of_a_scenario_file_is_an_argument() -> None:
 
 def test_profile_errors() -> None:
     pinion, gear = np.full((100, 17), 1e-3), np.arange(3800.0).reshape(100, 38) * 1e-6
-    scenario = Scenario(**REQUIRED, pinion_profile_errors_mm=pinion, gear_profile_errors_mm=gear)
+    scenario = Scenario(**PAIR, pinion_profile_errors_mm=pinion, gear_profile_errors_mm=gear)
     for same in (scenario, scenario.copy(pinion_speed_hz=30), pickle.loads(pickle.dumps(scenario))):
         given = (same.pinion_profile_errors_mm, same.gear_profile_errors_mm)
         assert given[0] is not None and given[1] is not None
         assert np.array_equal(given[0], pinion) and np.array_equal(given[1], gear)
     with pytest.raises(ValueError, match="belong together"):
-        Scenario(**REQUIRED, pinion_profile_errors_mm=pinion)
+        Scenario(**PAIR, pinion_profile_errors_mm=pinion)
     with pytest.raises(ValueError, match="gear_profile_errors_mm"):
-        Scenario(**REQUIRED, pinion_profile_errors_mm=pinion, gear_profile_errors_mm=gear[:, :-1])
+        Scenario(**PAIR, pinion_profile_errors_mm=pinion, gear_profile_errors_mm=gear[:, :-1])
 
 
 def test_examples_are_the_files(tmp_path: Path) -> None:
@@ -121,7 +112,6 @@ def test_examples_are_the_files(tmp_path: Path) -> None:
         ({"din_grade": 13}, "quality.din_grade = 13"),
         ({"material": "wood"}, "gears.material"),
         ({"model": "other"}, "model"),
-        ({"model": "corrected"}, 'the corrected model is called "linear" now'),
         ({"fault": meshtone.MissingTooth(tooth=39)}, "fault.tooth = 39: must be at most 38"),
         ({"faults": [meshtone.MissingTooth(), meshtone.MissingTooth(wheel="pinion", tooth=0)]}, "fault[1].tooth = 0"),
         ({"fault": meshtone.MissingTooth(tooth=[2, 39])}, "fault.tooth[1] = 39: must be at most 38"),
@@ -134,14 +124,14 @@ def test_examples_are_the_files(tmp_path: Path) -> None:
 )
 def test_values_that_are_not_allowed(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError) as error:
-        Scenario(**{**REQUIRED, **changes})
+        Scenario(**{**PAIR, **changes})
     assert message in str(error.value)
     assert "line " not in str(error.value)
 
 
 @pytest.mark.parametrize("tooth", [[1, 2, 9], (1, 2, 9), "all"])
 def test_a_fault_on_several_teeth(tooth: Any) -> None:
-    scenario = Scenario(**REQUIRED, fault=meshtone.RootCrack(depth_mm=2, tooth=tooth))
+    scenario = Scenario(**PAIR, fault=meshtone.RootCrack(depth_mm=2, tooth=tooth))
     (fault,) = scenario.faults
     assert fault.tooth == (tooth if tooth == "all" else [1, 2, 9])
     assert Scenario.from_toml(scenario.to_toml()) == scenario
@@ -149,23 +139,19 @@ def test_a_fault_on_several_teeth(tooth: Any) -> None:
 
 def test_keys_that_there_are_not() -> None:
     with pytest.raises(TypeError, match="no key 'modul_mm'; did you mean 'module_mm'"):
-        Scenario(**REQUIRED, modul_mm=3)  # type: ignore[arg-type]
+        Scenario(**PAIR, modul_mm=3)  # type: ignore[arg-type]
     # A misspelt key is why one is missing: that is said, not only what is missing.
-    others = {key: value for key, value in REQUIRED.items() if key != "module_mm"}
+    others = {key: value for key, value in PAIR.items() if key != "module_mm"}
     with pytest.raises(TypeError, match="no key 'Modul_mm'; did you mean 'module_mm'"):
         Scenario(**others, Modul_mm=3)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="no key 'speed'"):
         examples.healthy().copy(speed=3)  # type: ignore[call-arg]
     with pytest.raises(TypeError, match="fault = 'broken'"):
-        Scenario(**REQUIRED, fault="broken")  # type: ignore[arg-type]
+        Scenario(**PAIR, fault="broken")  # type: ignore[arg-type]
     with pytest.raises(TypeError, match=r"fault is the class MissingTooth: .*MissingTooth\("):
-        Scenario(**REQUIRED, fault=meshtone.MissingTooth)  # type: ignore[arg-type]
+        Scenario(**PAIR, fault=meshtone.MissingTooth)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match=r"circle = \(57, 3, 2\): must be a PitCircle"):
-        Scenario(**REQUIRED, fault=meshtone.ThroughFace(circle=(57, 3, 2)))  # type: ignore[arg-type]
-    with pytest.raises(TypeError, match="'convention' is called 'model' now, and its value 'corrected' is called 'linear'"):
-        Scenario(**REQUIRED, convention="corrected")  # type: ignore[arg-type]
-    with pytest.raises(AttributeError, match="'convention' is called 'model' now"):
-        _ = examples.healthy().convention  # type: ignore[attr-defined]
+        Scenario(**PAIR, fault=meshtone.ThroughFace(circle=(57, 3, 2)))  # type: ignore[arg-type]
     with pytest.raises(AttributeError, match="no key 'modul_mm'; did you mean 'module_mm'"):
         _ = examples.healthy().modul_mm  # type: ignore[attr-defined]
     with pytest.raises(AttributeError, match=r"scenario.copy\(seed=2\)"):
@@ -195,13 +181,11 @@ def test_a_file_name_is_not_a_files_text() -> None:
 
 
 def test_what_is_missing_is_missing_in_a_scenario() -> None:
-    for positional in ("healthy.toml", REQUIRED):
+    for positional in ("healthy.toml", PAIR):
         with pytest.raises(TypeError, match=r"takes its keys by name, Scenario\(module_mm=3, …\); Scenario.from_file reads a file"):
             Scenario(positional)  # type: ignore[arg-type, call-arg]
     with pytest.raises(TypeError, match=r"^Scenario\(\) missing 6 required keyword-only arguments: 'module_mm', 'pinion_teeth'"):
         Scenario()  # type: ignore[call-arg]
-    with pytest.raises(ValueError, match='the corrected model is called "linear" now'):
-        examples.healthy().copy(model="corrected")
 
 
 def test_warnings() -> None:
@@ -226,7 +210,7 @@ def test_faults_say_which_argument_is_meant() -> None:
 
 
 def test_whole_numbers_may_be_floats() -> None:
-    computed = {key: float(value) if key.endswith("teeth") else value for key, value in REQUIRED.items()}
+    computed = {key: float(value) if key.endswith("teeth") else value for key, value in PAIR.items()}
     sensors = [meshtone.Sensor(range_g=50, bits=16.0)]  # type: ignore[arg-type]
     for number in (float, np.float32):
         tooth = [number(3), number(4)]

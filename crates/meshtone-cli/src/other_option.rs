@@ -19,7 +19,6 @@ pub fn with_tip(mut error: clap::Error, arguments: impl Iterator<Item = OsString
     let command = arguments.iter().skip(1).find(|argument| !argument.starts_with('-'));
     let value = value(option, &arguments);
     let tip = match (option.as_str(), command.map(String::as_str)) {
-        ("--convention", _) => renamed_to_model(&value),
         ("--shaft-rpm", _) | ("--rpm" | "--speed-rpm", Some("indicators")) => rpm_as_hz(&value),
         ("--rpm" | "--speed-rpm" | "--pinion-speed-rpm", _) => speed_of_scenario(&value),
         ("--seed", Some("dataset")) => seed_of("plan", &value),
@@ -40,11 +39,6 @@ fn value(option: &str, arguments: &[String]) -> String {
         Some((_, value)) => value.to_owned(),
         None => rest.next().cloned().unwrap_or_default(),
     }
-}
-
-fn renamed_to_model(value: &str) -> String {
-    let model = if value == "published" { value } else { "linear" };
-    format!("the option is called --model now; write --model {model}")
 }
 
 fn rpm_as_hz(value: &str) -> String {

@@ -16,7 +16,7 @@ pub fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Writes a line to standard error; where even that fails, nobody can be told.
+/// Writes a line to standard error; where even that fails, there is nowhere left to report.
 pub fn print_error_line(text: impl Display) {
     let _ = writeln!(io::stderr().lock(), "{text}");
 }

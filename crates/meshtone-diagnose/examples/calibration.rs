@@ -6,7 +6,7 @@
 //!
 //! Writes a row for each recording: what it is, what is said about it. Of every pair of wheels the first record is the healthy one
 //! that the others are compared with; with `alone` in place of `healthy` they are compared with none. A last argument leaves a kind
-//! of damage out of the reference set; goes on with refined rounds, `refined`; or asks about recordings that are not what they are told to be: `bearing`,
+//! of damage out of the reference set; goes on with refined rounds, `refined`; or asks about recordings that are not what they are stated to be: `bearing`,
 //! `teeth`, `ratio`; or about whole signals of healthy and damaged pairs: `signals`.
 #![allow(clippy::print_stderr)]
 
@@ -31,7 +31,7 @@ const LEARNT: u64 = 6144;
 const ASKED: u64 = 1024;
 /// Seed of those that are asked about: no threshold was chosen looking at them.
 const ASKED_SEED: u64 = 2611;
-/// Recordings that are not what they are told to be.
+/// Recordings that are not what they are stated to be.
 const OTHERS: u64 = 60;
 /// (-) Noise of whole signals, as a part of their rms.
 const NOISE_PART: f64 = 0.05;
@@ -128,20 +128,20 @@ fn observed(record: &ReferenceRecord, signal: SignalKind) -> Observation {
         gear: noisy(&record.wheels[1]),
         pinion: is_recording.then(|| noisy(&record.wheels[0])),
         noise: [noise.clone(), noise],
-        misfit: None,
+        mismatch: None,
         doubts: Vec::new(),
     }
 }
 
-/// A recording that is not of the pair that it is told to be of.
+/// A recording that is not of the pair that it is stated to be of.
 fn strange(prior: &Prior, number: u64, what: &str) -> Result<Observation, Box<dyn Error>> {
     let mut draws = Draws::new(99, Purpose::DiagnosisNoise, number);
     let drawn = prior.draw(number)?;
     let mut scenario = drawn.scenario.clone();
-    let told = [scenario.gears.pinion_teeth, scenario.gears.gear_teeth];
+    let stated = [scenario.gears.pinion_teeth, scenario.gears.gear_teeth];
     match what {
         "teeth" => scenario.gears.pinion_teeth += 2,
-        "ratio" => scenario.gears.gear_teeth = (f64::from(told[1]) * draws.uniform(0.8, 0.1)) as u32,
+        "ratio" => scenario.gears.gear_teeth = (f64::from(stated[1]) * draws.uniform(0.8, 0.1)) as u32,
         _ => {}
     }
     let simulation = meshtone::simulate(&scenario)?;
@@ -176,11 +176,11 @@ fn strange(prior: &Prior, number: u64, what: &str) -> Result<Observation, Box<dy
     signal.iter_mut().for_each(|value| *value += NOISE_PART * rms * draws.normal());
     let samples = signal.len();
     let phase = ShaftPhase::constant(scenario.operation.pinion_speed_hz, rate_hz, samples)?;
-    let mate = phase.of_mate(told[0], told[1])?;
+    let mate = phase.of_mate(stated[0], stated[1])?;
     let settings = AngularSettings::default();
     let [pinion, gear] =
         [angular_resample(&signal, &phase, &settings)?, angular_resample(&signal, &mate, &settings)?];
-    Ok(Observation::of_recording(&pinion, &gear, told, scenario.operation.pinion_speed_hz)?)
+    Ok(Observation::of_recording(&pinion, &gear, stated, scenario.operation.pinion_speed_hz)?)
 }
 
 fn row(

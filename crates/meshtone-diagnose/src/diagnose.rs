@@ -127,12 +127,12 @@ pub fn diagnose(
     let mut outside_model = learned.outside.p_value(&row.values);
     // No simulation has what speaks against a recording.
     let least = 1.0 / (learned.records.len() + 1) as f64;
-    let of_misfit = |recordings: &[Observation]| {
-        if recordings.iter().any(|asked| asked.misfit.is_some()) { least } else { 1.0 }
+    let of_mismatch = |recordings: &[Observation]| {
+        if recordings.iter().any(|asked| asked.mismatch.is_some()) { least } else { 1.0 }
     };
-    outside_model = outside_model.min(of_misfit(question.now));
+    outside_model = outside_model.min(of_mismatch(question.now));
     let healthy_outside_model = learned.healthy_outside.as_ref().map(|outside| {
-        outside.p_value(&learned.healthy_row(question).values).min(of_misfit(question.healthy))
+        outside.p_value(&learned.healthy_row(question).values).min(of_mismatch(question.healthy))
     });
     let any_damage = AnyDamage::over(&kinds, &draws_of);
     let likeliest = kinds.iter().find(|kind| kind.label != HEALTHY).map(|kind| kind.label);

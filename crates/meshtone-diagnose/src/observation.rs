@@ -1,9 +1,9 @@
 //! What a recording, or a simulation, shows of the two wheels.
 
 use meshtone::signal::{
-    AngleZero, AngularSettings, AngularSignal, Likelier, Misfit, SeparationSettings, ShaftPhase, SignalError,
-    SynchronousAverage, Told, ToldTurning, angular_resample, check_channel, kurtosis, misfit, rms,
-    standard_deviation, synchronous_average,
+    Alternative, AngleZero, AngularSettings, AngularSignal, Mismatch, SeparationSettings, ShaftPhase,
+    SignalError, StatedFacts, StatedTurning, SynchronousAverage, angular_resample, check_channel,
+    find_mismatch, kurtosis, rms, standard_deviation, synchronous_average,
 };
 use meshtone_fourier::{Complex64, from_real_spectrum, real_spectrum};
 
@@ -129,8 +129,8 @@ pub struct Observation {
     /// (g) Standard deviation of what does not repeat, as it is left in the averages' lines, by mesh order from 0 on, of the gear
     /// and of the pinion; empty where it is not known.
     pub noise: [Vec<f64>; 2],
-    /// Why the recording is not what it is told to be, where that is seen without a simulation.
-    pub misfit: Option<String>,
+    /// Why the recording is not what it is stated to be, where that is seen without a simulation.
+    pub mismatch: Option<String>,
     /// What else is doubtful about it.
     pub doubts: Vec<String>,
 }
@@ -157,7 +157,7 @@ impl Observation {
         }
         let [of_pinion, of_gear] = [synchronous_average(pinion)?, synchronous_average(gear)?];
         let ratio = f64::from(teeth[1]) / f64::from(teeth[0]);
-        let misfit = beside_the_shafts(gear, teeth[1], ratio);
+        let mismatch = beside_the_shafts(gear, teeth[1], ratio);
         Ok(Self {
             signal: SignalKind::Recording,
             pinion_speed_hz: Some(pinion_speed_hz),
@@ -165,7 +165,7 @@ impl Observation {
             gear: WheelLines::of_average(&of_gear, teeth[1]),
             pinion: Some(WheelLines::of_average(&of_pinion, teeth[0])),
             noise: [noise(pinion, teeth[0], 1.0 / ratio), noise(gear, teeth[1], ratio)],
-            misfit,
+            mismatch,
             doubts: too_short(gear.revolutions(), teeth, pinion_speed_hz / ratio).into_iter().collect(),
         })
     }
@@ -184,9 +184,9 @@ impl Observation {
     ///
     /// # Arguments
     /// * `against` - in words; said before what is known already
-    pub fn with_misfit(mut self, against: impl ToString) -> Self {
-        let also = self.misfit.take().map_or_else(String::new, |also| format!("; {also}"));
-        self.misfit = Some(format!("{}{also}", against.to_string()));
+    pub fn with_mismatch(mut self, against: impl ToString) -> Self {
+        let also = self.mismatch.take().map_or_else(String::new, |also| format!("; {also}"));
+        self.mismatch = Some(format!("{}{also}", against.to_string()));
         self
     }
 
@@ -217,13 +217,13 @@ impl Observation {
             gear: WheelLines::of_values(values_g, gear_teeth, (PASSED * last) as usize),
             pinion: None,
             noise: [Vec::new(), Vec::new()],
-            misfit: None,
+            mismatch: None,
             doubts: beyond_a_revolution(values_g, gear_teeth).into_iter().collect(),
         })
     }
 }
 
-/// Which tooth counts a recording has rather than those that are told, seen at a stated speed: the phase of another tone than the
+/// Which tooth counts a recording has rather than those that are stated, seen at a stated speed: the phase of another tone than the
 /// mesh's hides them.
 ///
 /// # Arguments
@@ -238,18 +238,21 @@ pub fn other_teeth(
     sampling_rate_hz: f64,
     teeth: [u32; 2],
     speed_hz: f64,
-) -> Result<Option<Misfit>, SignalError> {
+) -> Result<Option<Mismatch>, SignalError> {
     let phase = ShaftPhase::constant(speed_hz, sampling_rate_hz, signal.len())?;
     let angular = angular_resample(signal, &phase, &AngularSettings::default())?;
-    let turning = ToldTurning::ConstantSpeed { speed_hz };
-    let found = misfit(&angular, &Told { teeth: teeth[0], mate_teeth: Some(teeth[1]), turning });
-    Ok(found.filter(|found| matches!(found.likelier, Likelier::Teeth { .. } | Likelier::MateTeeth { .. })))
+    let turning = StatedTurning::ConstantSpeed { speed_hz };
+    let found =
+        find_mismatch(&angular, &StatedFacts { teeth: teeth[0], mate_teeth: Some(teeth[1]), turning });
+    Ok(found.filter(|found| {
+        matches!(found.alternative, Alternative::Teeth { .. } | Alternative::MateTeeth { .. })
+    }))
 }
 
 /// (-) Part of the energy beyond the orders that are looked at, from which on values are hardly one revolution.
 const BEYOND: f64 = 0.7;
 
-/// What is doubtful about values that are told to be one revolution: those of many have their mesh orders as many times as high.
+/// What is doubtful about values that are stated to be one revolution: those of many have their mesh orders as many times as high.
 fn beyond_a_revolution(values_g: &[f64], gear_teeth: u32) -> Option<String> {
     let squares: Vec<f64> = real_spectrum(values_g).iter().skip(1).map(Complex64::norm_sqr).collect();
     let (inside, all) =
@@ -264,8 +267,8 @@ fn beyond_a_revolution(values_g: &[f64], gear_teeth: u32) -> Option<String> {
     })
 }
 
-/// What is doubtful about averages over so few revolutions that each wheel's is not free of its mate's, or that nothing is told
-/// from what repeats.
+/// What is doubtful about averages over so few revolutions that each wheel's is not free of its mate's, or that noise is not
+/// separated from what repeats.
 ///
 /// # Arguments
 /// * `gear_revolutions` - in the recording
@@ -460,7 +463,7 @@ mod tests {
                 assert!((said / expected - 1.0).abs() < 0.2, "{wheel} {mesh}: {said} of {expected}");
             }
         }
-        assert_eq!(observed.misfit, None);
+        assert_eq!(observed.mismatch, None);
     }
 
     #[test]
@@ -472,7 +475,7 @@ mod tests {
         };
         let [pinion, gear] = views(&mut struck, 34);
         let observed = Observation::of_recording(&pinion, &gear, TEETH, 40.0).unwrap();
-        assert!(observed.misfit.is_some_and(|said| said.contains("neither shaft")));
+        assert!(observed.mismatch.is_some_and(|said| said.contains("neither shaft")));
     }
 
     #[test]

@@ -97,7 +97,7 @@ pub fn observed(record: &ReferenceRecord) -> Observation {
         gear: noisy(&record.wheels[1]),
         pinion: Some(noisy(&record.wheels[0])),
         noise: [vec![NOISE_G], vec![NOISE_G]],
-        misfit: None,
+        mismatch: None,
         doubts: Vec::new(),
     }
 }

@@ -26,8 +26,8 @@ pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) 
         );
     }
     let all = || question.now.iter().chain(question.healthy);
-    let misfits = all().filter_map(|asked| asked.misfit.clone());
-    for said in misfits.chain(all().flat_map(|asked| asked.doubts.clone())) {
+    let mismatches = all().filter_map(|asked| asked.mismatch.clone());
+    for said in mismatches.chain(all().flat_map(|asked| asked.doubts.clone())) {
         if !warnings.contains(&said) {
             warnings.push(said);
         }
@@ -58,10 +58,10 @@ fn of_healthy(p: f64, learned: &Learned, question: &Question) -> String {
     let scenario = "check the scenario's speed, load, wheels and the sensor, or tune it (`meshtone tune`)";
     let given = format!("the healthy recording is unlike a healthy pair of the scenario ({})", p_in_words(p));
     let alone = Question { now: question.healthy, healthy: &[] };
-    let is_misfit = question.healthy.iter().any(|asked| asked.misfit.is_some());
+    let is_mismatch = question.healthy.iter().any(|asked| asked.mismatch.is_some());
     // No simulation has what speaks against it: nothing is to be learnt.
     let alone = || Learned::new(learned.reference, &alone).and_then(|of| diagnose(&of, &alone, None)).ok();
-    let damaged = if is_misfit { None } else { alone() };
+    let damaged = if is_mismatch { None } else { alone() };
     match damaged.filter(|answer| answer.outside_model >= OUTSIDE && answer.damaged() > SURELY) {
         Some(answer) => format!(
             "{given}, but like a damaged one ({}): was it healthy? If it was, {scenario}; do not rely on the probabilities",
@@ -151,9 +151,9 @@ mod tests {
             "{:?}",
             blamed.warnings
         );
-        let other = sound.clone().with_misfit("another machine");
-        let misfit = said(&learned, broken_alone, &[other]);
-        assert!(misfit.healthy_outside_model.is_some_and(|p| p < 0.01));
+        let other = sound.clone().with_mismatch("another machine");
+        let mismatch = said(&learned, broken_alone, &[other]);
+        assert!(mismatch.healthy_outside_model.is_some_and(|p| p < 0.01));
 
         let at = |speed_hz| Observation { pinion_speed_hz: Some(speed_hz), ..broken.clone() };
         assert!(has(&ask(&[at(46.0)]), "the pinion turns at 46.000 Hz"));

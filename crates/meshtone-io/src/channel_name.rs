@@ -1,21 +1,10 @@
 //! The name of a channel in a file.
 
 use meshtone::scenario::Sensor;
-use meshtone::sensor::{Channel, ChannelKind};
+use meshtone::sensor::Channel;
 use meshtone_toml::{ReadResult, TomlValue};
 
-/// What channels are called in plans and experiments of earlier versions.
-const FORMER_NAMES: [(&str, ChannelKind); 6] = [
-    ("horizontal", ChannelKind::Horizontal),
-    ("vertical", ChannelKind::Vertical),
-    ("axial", ChannelKind::Axial),
-    ("pinion-speed", ChannelKind::PinionShaftSpeed),
-    ("gear-speed", ChannelKind::GearShaftSpeed),
-    ("mesh-force", ChannelKind::MeshForce),
-];
-
-/// Reads the name of one of some channels. What plans and experiments of earlier versions call them is understood too: a data set
-/// holds the plan that it was made from.
+/// Reads the name of one of some channels.
 ///
 /// # Arguments
 /// * `value` - a name
@@ -27,10 +16,7 @@ pub fn read_channel(value: &TomlValue<'_>, allowed: &[Channel]) -> ReadResult<Ch
     let names: Vec<_> = allowed.iter().map(|channel| (channel.name(), channel)).collect();
     let choices: Vec<(&str, Channel)> =
         names.iter().map(|(name, channel)| (name.as_ref(), (*channel).clone())).collect();
-    value.choice(&choices).or_else(|error| {
-        let former = FORMER_NAMES.iter().find(|(name, _)| value.string() == Ok(name));
-        former.map(|(_, kind)| Channel::from(*kind)).filter(|channel| allowed.contains(channel)).ok_or(error)
-    })
+    value.choice(&choices)
 }
 
 /// The accelerations of a scenario, sensors first.
@@ -51,14 +37,4 @@ pub fn accelerations(sensors: &[Sensor]) -> Vec<Channel> {
 pub(crate) fn read_any_acceleration(value: &TomlValue<'_>) -> ReadResult<Channel> {
     let sensor = value.string().ok().and_then(Channel::named).filter(Channel::is_acceleration);
     sensor.map_or_else(|| read_channel(value, &accelerations(&[])), Ok)
-}
-
-/// What a channel's column is called in files of signals of earlier versions.
-pub(crate) fn former_column(kind: ChannelKind) -> &'static str {
-    match kind {
-        ChannelKind::Horizontal => "horizontal_acceleration_g",
-        ChannelKind::Vertical => "vertical_acceleration_g",
-        ChannelKind::Axial => "axial_acceleration_g",
-        other => other.name(),
-    }
 }

@@ -15,7 +15,7 @@ use meshtone::scenario::Scenario;
 /// use meshtone::scenario::{GearPair, Scenario};
 /// use meshtone_io::run_identity::RunIdentity;
 ///
-/// let scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+/// let scenario = Scenario::new(GearPair::example());
 /// let other = scenario.clone().with_seed(2);
 /// let run = RunIdentity::of(&scenario);
 /// assert_eq!(run, RunIdentity::of(&scenario));

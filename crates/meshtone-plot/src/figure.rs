@@ -57,7 +57,7 @@ impl Figure {
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};
     ///
-    /// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+    /// let mut scenario = Scenario::new(GearPair::example());
     /// scenario.solver.sampling_rate_hz = 2e4;
     /// let simulation = meshtone::simulate(&scenario)?;
     /// let panel = meshtone_plot::panel::draw(&simulation.stages, &simulation.channels)?.of_run("00ff");

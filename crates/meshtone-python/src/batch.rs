@@ -39,8 +39,8 @@ pub fn simulate_many<'py>(
     let results = interruptible(
         py,
         |cancelled| {
-            let told = |count| finished.store(count, Ordering::Relaxed);
-            let control = Control { progress: &told, cancelled, ..Control::default() };
+            let progress = |count| finished.store(count, Ordering::Relaxed);
+            let control = Control { progress: &progress, cancelled, ..Control::default() };
             let mut results = Vec::with_capacity(scenarios.len());
             pool.install(|| {
                 simulate(scenarios, &KeepObserved::new(kept), &control, |_, result| {
@@ -89,9 +89,9 @@ fn signals<'py>(
     let all = PyDict::new(py);
     all.set_item("sampling_rate_hz", signals.sampling_rate_hz)?;
     all.set_item("start_s", signals.start_s)?;
-    let (told, codes): (Vec<_>, Vec<_>) =
+    let (messages, codes): (Vec<_>, Vec<_>) =
         warnings.iter().map(|warning| (warning.to_string(), warning.kind.code())).unzip();
-    all.set_item("warnings", told)?;
+    all.set_item("warnings", messages)?;
     all.set_item("warning_codes", codes)?;
     for (name, channel) in names.iter().zip(signals.channels) {
         all.set_item(name, array(py, channel))?;

@@ -59,11 +59,11 @@ pub fn generate_dataset(
     let generated = interruptible(
         py,
         |cancelled| {
-            let told = |done, of| {
+            let progress = |done, of| {
                 finished.store(done, Ordering::Relaxed);
                 all.store(of, Ordering::Relaxed);
             };
-            let control = GenerateControl { progress: &told, cancelled };
+            let control = GenerateControl { progress: &progress, cancelled };
             pool.install(|| generate::generate(&read, &to, Part { number: part, of }, &control))
         },
         |py| match &progress {

@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use meshtone::scenario;
 use meshtone::signal::{
-    AngleZero, AngularSettings, ChainSettings, Shaft, SignalError, SimulatedShafts, Told, ToldTurning,
-    angular_resample, misfit,
+    AngleZero, AngularSettings, ChainSettings, Shaft, SignalError, SimulatedShafts, StatedFacts,
+    StatedTurning, angular_resample, find_mismatch,
 };
 use meshtone_diagnose::{
     Answer, Learned, Observation as Observed, Prior, Question, ReferenceControl, ReferenceStore, SignalKind,
@@ -84,17 +84,17 @@ fn measured(
     let pinion = angular_resample(signal, &phase.0, &settings)?;
     let of_gear = phase.0.of_mate(teeth[0], teeth[1])?;
     let gear = angular_resample(signal, &of_gear, &settings)?;
-    let told = Told { teeth: teeth[0], mate_teeth: Some(teeth[1]), turning: ToldTurning::Other };
+    let stated = StatedFacts { teeth: teeth[0], mate_teeth: Some(teeth[1]), turning: StatedTurning::Other };
     let observed = Observed::of_recording(&pinion, &gear, teeth, phase.0.mean_speed_hz(sampling_rate_hz))?
         .with_zero([phase.0.zero, of_gear.zero]);
     let is_doubtful = phase.0.zero == AngleZero::Chance && !phase.0.warnings.is_empty();
-    let against = match misfit(&pinion, &told) {
+    let against = match find_mismatch(&pinion, &stated) {
         // Another tone than the mesh's may have been followed.
         None if is_doubtful => other_teeth(signal, sampling_rate_hz, teeth, scenario_hz)?,
         against => against,
     };
     Ok(match against {
-        Some(against) => observed.with_misfit(against),
+        Some(against) => observed.with_mismatch(against),
         None => observed,
     })
 }
@@ -159,8 +159,8 @@ fn answer(
     cancelled: &AtomicBool,
 ) -> PyResult<Answer> {
     question.check(prior).map_err(value_error)?;
-    let told = |count| finished.store(count, Ordering::Relaxed);
-    let control = ReferenceControl { progress: &told, cancelled };
+    let progress = |count| finished.store(count, Ordering::Relaxed);
+    let control = ReferenceControl { progress: &progress, cancelled };
     let reference = store.get(prior, records, &control);
     let reference = reference.map_err(|error| match &error {
         StoreError::Folder { path, source } => file_error(path, Some(source), &error),

@@ -63,11 +63,11 @@ pub fn tune(py: Python<'_>, path: PathBuf, progress: Option<Bound<'_, PyAny>>) -
     let result = interruptible(
         py,
         |cancelled| {
-            let told = |done, of| {
+            let progress = |done, of| {
                 finished.store(done, Ordering::Relaxed);
                 all.store(of, Ordering::Relaxed);
             };
-            tuning::run_experiment(experiment, &ExperimentControl { progress: &told, cancelled })
+            tuning::run_experiment(experiment, &ExperimentControl { progress: &progress, cancelled })
         },
         |py| match &progress {
             Some(progress) => {

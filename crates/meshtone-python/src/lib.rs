@@ -42,7 +42,7 @@ mod _core {
     #[pymodule_export]
     use crate::phase::{ShaftPhase, repair_pulses, tachometer_pulses};
     #[pymodule_export]
-    use crate::process::{Record, misfit, process_channel, process_series};
+    use crate::process::{Record, find_mismatch, process_channel, process_series};
     #[pymodule_export]
     use crate::recording::read_recording;
     #[pymodule_export]

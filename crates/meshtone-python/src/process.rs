@@ -1,7 +1,7 @@
 //! From a channel to its indicators.
 
 use meshtone::signal::{
-    self, AngularSettings, ChainSettings, Likelier, SeparationSettings, Told, ToldTurning,
+    self, Alternative, AngularSettings, ChainSettings, SeparationSettings, StatedFacts, StatedTurning,
 };
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -153,13 +153,13 @@ pub fn process_series(
     Ok(records.into_iter().map(Record).collect())
 }
 
-/// Cause, likelier value, words, and how much more energy the average would hold.
-type Misfit = (&'static str, f64, String, Option<f64>);
+/// Cause, better value, words, and how much more energy the average would hold.
+type Mismatch = (&'static str, f64, String, Option<f64>);
 
-/// What a recording says against what is told.
+/// Finds a sign that a recording does not fit what is stated.
 #[pyfunction]
 #[pyo3(signature = (signal, phase, teeth, mate_teeth=None, pulses_per_revolution=None, speed_hz=None))]
-pub fn misfit(
+pub fn find_mismatch(
     py: Python<'_>,
     signal: Signal<'_>,
     phase: &ShaftPhase,
@@ -167,28 +167,28 @@ pub fn misfit(
     mate_teeth: Option<u32>,
     pulses_per_revolution: Option<u32>,
     speed_hz: Option<f64>,
-) -> PyResult<Option<Misfit>> {
+) -> PyResult<Option<Mismatch>> {
     let signal = samples(&signal)?;
     let turning = match (pulses_per_revolution, speed_hz) {
-        (Some(per_revolution), _) => ToldTurning::Pulses { per_revolution },
-        (None, Some(speed_hz)) => ToldTurning::ConstantSpeed { speed_hz },
-        (None, None) => ToldTurning::Other,
+        (Some(per_revolution), _) => StatedTurning::Pulses { per_revolution },
+        (None, Some(speed_hz)) => StatedTurning::ConstantSpeed { speed_hz },
+        (None, None) => StatedTurning::Other,
     };
-    let told = Told { teeth, mate_teeth, turning };
+    let stated = StatedFacts { teeth, mate_teeth, turning };
     let found = py.detach(|| {
         signal::angular_resample(signal, &phase.0, &AngularSettings::default())
-            .map(|angular| signal::misfit(&angular, &told))
+            .map(|angular| signal::find_mismatch(&angular, &stated))
     });
-    Ok(found.map_err(value_error)?.map(|misfit| {
-        let (cause, value) = match misfit.likelier {
-            Likelier::Teeth { teeth } => ("teeth", f64::from(teeth)),
-            Likelier::MateTeeth { teeth, .. } => ("mate_teeth", f64::from(teeth)),
-            Likelier::OtherShaft { mate_teeth } => ("other_shaft", f64::from(mate_teeth)),
-            Likelier::PulsesPerRevolution { pulses, .. } => ("pulses_per_revolution", f64::from(pulses)),
-            Likelier::ShaftSpeed { speed_hz, .. } => ("speed_hz", speed_hz),
-            Likelier::VaryingSpeed { variation, .. } => ("varying_speed", variation),
+    Ok(found.map_err(value_error)?.map(|mismatch| {
+        let (cause, value) = match mismatch.alternative {
+            Alternative::Teeth { teeth } => ("teeth", f64::from(teeth)),
+            Alternative::MateTeeth { teeth, .. } => ("mate_teeth", f64::from(teeth)),
+            Alternative::OtherShaft { mate_teeth } => ("other_shaft", f64::from(mate_teeth)),
+            Alternative::PulsesPerRevolution { pulses, .. } => ("pulses_per_revolution", f64::from(pulses)),
+            Alternative::ShaftSpeed { speed_hz, .. } => ("speed_hz", speed_hz),
+            Alternative::VaryingSpeed { variation, .. } => ("varying_speed", variation),
             _ => ("other", f64::NAN),
         };
-        (cause, value, misfit.to_string(), misfit.energy_ratio)
+        (cause, value, mismatch.to_string(), mismatch.energy_ratio)
     }))
 }

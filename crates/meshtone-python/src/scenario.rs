@@ -97,7 +97,7 @@ impl Scenario {
         self.0.with_own_sizes().map(Self).map_err(|error| scenario_error(&error))
     }
 
-    /// What is doubtful about it, as far as that can be told before the time loop.
+    /// What is doubtful about it, as far as that can be known before the time loop.
     fn warnings(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         let checked = py.detach(|| meshtone::stages_and_warnings(&self.0, memory::limit()));
         let (_, warnings) = checked.map_err(|error| scenario_error(&error))?;

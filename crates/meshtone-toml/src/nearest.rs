@@ -24,8 +24,8 @@ pub fn nearest_name<'n>(written: &str, candidates: impl IntoIterator<Item = &'n 
         .map(|(_, candidate)| candidate)
 }
 
-/// Whether one of the two names is surely the other misspelt: a slip of one or two letters, or another unit at its end.
-pub(crate) fn is_slip(written: &str, name: &str) -> bool {
+/// Returns whether one of the two names is surely the other one misspelt: one or two letters differ, or the unit at its end does.
+pub(crate) fn is_misspelling(written: &str, name: &str) -> bool {
     name.len() >= 4 && (strsim::damerau_levenshtein(written, name) <= 2 || has_another_unit(written, name))
 }
 
@@ -61,7 +61,7 @@ pub(crate) fn is_rpm_of(written: &str, name: &str) -> bool {
 }
 
 fn similarity(written: &str, candidate: &str) -> f64 {
-    // A forgotten unit suffix or prefix is the likeliest slip, and weighs heavily by letters.
+    // A forgotten unit suffix or prefix is the likeliest mistake, and weighs heavily by letters.
     let contained = written.len() >= 4 && (candidate.contains(written) || written.contains(candidate));
     let by_letters = strsim::normalized_damerau_levenshtein(written, candidate);
     let by_start = strsim::jaro_winkler(written, candidate);

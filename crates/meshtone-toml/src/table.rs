@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use toml::de::DeTable;
 
 use crate::document::{line_at, written};
-use crate::nearest::{has_another_unit, is_rpm_of, is_slip, nearest_name};
+use crate::nearest::{has_another_unit, is_misspelling, is_rpm_of, nearest_name};
 use crate::{ErrorKind, ReadResult, TomlError, TomlValue};
 
 /// Keys that are named where a name says not whose it is; more of them have no more in common than a unit.
@@ -72,7 +72,7 @@ impl<'a> TomlTable<'a> {
         if let Some(value) = self.optional(key) {
             return Ok(value);
         }
-        self.refuse_slip(key, Some(meaning))?;
+        self.refuse_misspelling(key, Some(meaning))?;
         self.refuse_outside(key)?;
         let problem = format!("missing, and it has no default; it is {meaning}");
         Err(self.error(key, problem).of_kind(ErrorKind::MissingKey))
@@ -112,7 +112,7 @@ impl<'a> TomlTable<'a> {
         match self.optional(key) {
             Some(value) => Ok(Self { around: self.table, ..value.table()? }),
             None => {
-                self.refuse_slip_of(key)?;
+                self.refuse_misspelling_of(key)?;
                 Ok(Self { around: self.table, ..Self::new(self.text, self.path_of(key), self.line, None) })
             }
         }
@@ -150,28 +150,6 @@ impl<'a> TomlTable<'a> {
         let only = entries.len() == 1;
         let named = |entry: &TomlValue<'a>| if only { entry.table_at(value.path()) } else { entry.table() };
         entries.iter().map(named).collect()
-    }
-
-    /// Refuses a key that was once read here, so that whoever still writes it is told what to write instead.
-    ///
-    /// # Arguments
-    /// * `key` - the name that it had
-    /// * `problem` - that it is renamed, and to what
-    /// * `remedy` - gives the advice for the value, where that is a text
-    ///
-    /// # Errors
-    /// The key is there.
-    pub fn refuse_renamed(
-        &self,
-        key: &str,
-        problem: &str,
-        remedy: impl FnOnce(Option<&str>) -> String,
-    ) -> ReadResult<()> {
-        let Some(value) = self.table.and_then(|table| table.get(key)) else {
-            return Ok(());
-        };
-        let error = self.error(key, problem).of_kind(ErrorKind::UnknownKey);
-        Err(error.with_help(remedy(value.get_ref().as_str())))
     }
 
     /// Reads the table and then refuses what was not asked for.
@@ -248,13 +226,14 @@ impl<'a> TomlTable<'a> {
     ///
     /// # Errors
     /// A key that nobody has asked for looks like this one misspelt.
-    pub fn refuse_slip_of(&self, key: &'static str) -> ReadResult<()> {
-        self.refuse_slip(key, None)
+    pub fn refuse_misspelling_of(&self, key: &'static str) -> ReadResult<()> {
+        self.refuse_misspelling(key, None)
     }
 
-    /// As [`Self::refuse_slip_of`]; who writes another unit is told the right one.
-    fn refuse_slip(&self, key: &'static str, meaning: Option<&str>) -> ReadResult<()> {
-        let Some((_, name)) = self.unasked().find(|(_, name)| is_slip(name, key) || is_rpm_of(name, key))
+    /// As [`Self::refuse_misspelling_of`]; who writes another unit is told the right one.
+    fn refuse_misspelling(&self, key: &'static str, meaning: Option<&str>) -> ReadResult<()> {
+        let Some((_, name)) =
+            self.unasked().find(|(_, name)| is_misspelling(name, key) || is_rpm_of(name, key))
         else {
             return Ok(());
         };

@@ -131,7 +131,7 @@ fn the_first_of_several_unknown_keys_is_reported() {
 }
 
 #[test]
-fn a_slip_in_a_required_name_is_the_mistake_rather_than_the_missing_key() {
+fn a_misspelt_required_name_is_the_mistake_rather_than_the_missing_key() {
     let key = read_motor("[motor]\nsped_hz = 2\n").unwrap_err();
     assert_eq!(key.help.as_deref(), Some("did you mean `speed_hz`?"));
     assert_error(Some(key), "motor.sped_hz", 2, "2", "unknown key");
@@ -184,7 +184,7 @@ fn a_table_that_becomes_a_list_is_told_how() {
 }
 
 #[test]
-fn usual_slips_are_answered_with_what_to_write() {
+fn usual_mistakes_are_answered_with_what_to_write() {
     let help = |text: &str| TomlDocument::parse(text).map(drop).unwrap_err().help.unwrap();
     assert!(help("[fault]\ntooth = 1\n[fault]\ntooth = 2\n").contains("[[fault]] in double brackets"));
     assert_eq!(help("module_mm = 5,0  # of both\n"), "write a decimal point: module_mm = 5.0");

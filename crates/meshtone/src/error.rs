@@ -54,9 +54,9 @@ impl From<TomlError> for ScenarioError {
 impl From<ScenarioError> for TomlError {
     fn from(error: ScenarioError) -> Self {
         let ScenarioError { kind, key, value, problem, help, line } = error;
-        let mut told = Self::new(key, value, problem).of_kind(kind).at_line(line);
-        told.help = help;
-        told
+        let mut error = Self::new(key, value, problem).of_kind(kind).at_line(line);
+        error.help = help;
+        error
     }
 }
 
@@ -164,10 +164,7 @@ fn with_number(text: &str, name: &str, index: usize) -> String {
 /// use meshtone::Error;
 /// use meshtone::scenario::{GearPair, Scenario};
 ///
-/// let mut scenario = Scenario::new(GearPair {
-///     module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0,
-///     pinion_speed_hz: 40.0, brake_torque_nm: 10.0,
-/// });
+/// let mut scenario = Scenario::new(GearPair::example());
 /// scenario.rig.eccentricity_mm = -0.1;
 /// match meshtone::simulate(&scenario).map(drop) {
 ///     Err(Error::Scenario(error)) => assert_eq!(error.key, "rig.eccentricity_mm"),

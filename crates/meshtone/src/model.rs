@@ -17,7 +17,7 @@ pub enum Model {
     /// The theory of a linear mesh: flanks that are conjugate, loads that act at the flank's own angle, one angle for
     /// stiffness and deviations.
     Linear,
-    /// The published code, its slips included, so that results can be compared number by number.
+    /// The published code, its known errors included, so that results can be compared number by number.
     Published,
 }
 
@@ -37,10 +37,7 @@ impl Model {
 
 impl KeyValue for Model {
     fn read(&mut self, value: &TomlValue<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
-        *self = value.choice(&names()).map_err(|error| match value.string() {
-            Ok("corrected") => error.with_help("the corrected model is called \"linear\" now"),
-            _ => error,
-        })?;
+        *self = value.choice(&names())?;
         Ok(())
     }
 

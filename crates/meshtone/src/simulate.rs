@@ -98,7 +98,7 @@ pub struct Simulation {
 /// ```
 /// use meshtone::scenario::{GearPair, Scenario};
 ///
-/// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+/// let mut scenario = Scenario::new(GearPair::example());
 /// scenario.solver.sampling_rate_hz = 2e4;
 /// let simulation = meshtone::simulate(&scenario)?;
 /// let force = &simulation.channels.mesh_force_n;
@@ -133,7 +133,7 @@ pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
 /// ```
 /// use meshtone::scenario::{GearPair, MemoryLimit, Scenario};
 ///
-/// let scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+/// let scenario = Scenario::new(GearPair::example());
 /// let needed = scenario.memory_estimate_bytes();
 /// assert!(meshtone::stages_within(&scenario, MemoryLimit::Given { bytes: needed }).is_ok());
 /// assert!(meshtone::stages_within(&scenario, MemoryLimit::Given { bytes: needed - 1 }).is_err());
@@ -443,7 +443,7 @@ impl Stages {
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};
     ///
-    /// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+    /// let mut scenario = Scenario::new(GearPair::example());
     /// scenario.solver.sampling_rate_hz = 2e4;
     /// let stages = meshtone::stages(&scenario)?;
     /// let samples = stages.time.kept_samples();
@@ -471,7 +471,7 @@ impl Stages {
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};
     ///
-    /// let scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 34, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+    /// let scenario = Scenario::new(GearPair { gear_teeth: 34, ..GearPair::example() });
     /// let stages = meshtone::stages(&scenario)?;
     /// assert_eq!(stages.clone().simulate_while(&|| true)?.map(|wanted| wanted.channels), Some(stages.clone().simulate()?.channels));
     /// assert!(stages.simulate_while(&|| false)?.is_none());

@@ -23,16 +23,16 @@ A rig's recording with a tachometer:
 from .angular import AngularSignal, angular_resample, resample, synchronous_average
 from .at_once import difference, tsa
 from .indicators import Indicators, energy_ratio, fm0, fm4, m6a, m8a, na4, sideband_level_factor, statistics
+from .mismatch import Mismatch, find_mismatch
 from .phase import ShaftPhase, repair_pulses, tachometer_pulses
 from .record import Record, process_channel, process_series
 from .separation import Parts, separate
 from .spectra import envelope, envelope_spectrum, order_spectrum
-from .told import Misfit, misfit
 
 __all__ = [
     "AngularSignal",
     "Indicators",
-    "Misfit",
+    "Mismatch",
     "Parts",
     "Record",
     "ShaftPhase",
@@ -41,11 +41,11 @@ __all__ = [
     "energy_ratio",
     "envelope",
     "envelope_spectrum",
+    "find_mismatch",
     "fm0",
     "fm4",
     "m6a",
     "m8a",
-    "misfit",
     "na4",
     "order_spectrum",
     "process_channel",

@@ -21,9 +21,9 @@ use crate::other_kind::{MANIFEST, or_other_kind};
 use crate::output_directory::named_after;
 use crate::terminal::{print, print_error_line};
 
-/// Failed records that are told one by one.
+/// Failed records that are reported one by one.
 const TOLD: usize = 3;
-/// Failed records whose numbers are told.
+/// Failed records whose numbers are listed.
 const NAMED: usize = 20;
 
 /// Make a labelled data set after a plan
@@ -234,7 +234,7 @@ impl Verify {
                  is missing or differs. Move elsewhere what no manifest names",
             ));
         }
-        if self.quiet { Ok(()) } else { print(&told(&found, &place, self.sizes_only)) }
+        if self.quiet { Ok(()) } else { print(&report(&found, &place, self.sizes_only)) }
     }
 }
 
@@ -250,7 +250,7 @@ impl Verify {
     }
 }
 
-fn told(found: &Verified, place: &Destination, sizes_only: bool) -> String {
+fn report(found: &Verified, place: &Destination, sizes_only: bool) -> String {
     let what = if sizes_only { "names, sizes and counts are" } else { "every byte is" };
     let mut text = format!(
         "  {} in {}, {:.1} MB: {what} as written\n",
@@ -294,7 +294,7 @@ impl Scenario {
 
 fn read_plan(path: &Path) -> Result<Plan, Failure> {
     Plan::read(path).map_err(|error| {
-        // Of a text it is told already what kind it is.
+        // The error about a text says already what kind it is.
         let is_text = matches!(error, ReadScenarioError::Invalid { .. });
         let failure = DatasetError::from(error).into();
         if is_text { failure } else { or_other_kind(path, "the plan of a data set", failure) }

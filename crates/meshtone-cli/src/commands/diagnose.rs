@@ -37,7 +37,7 @@ const JSON: &str = "diagnosis.json";
 const FIGURE: [&str; 2] = ["diagnosis.svg", "diagnosis.png"];
 const FILES: [&str; 3] = [JSON, FIGURE[0], FIGURE[1]];
 
-/// What may be wrong with a gear, told from recordings by simulations
+/// What may be wrong with a gear, found from recordings by simulations
 ///
 /// Simulates the rig with every kind of damage and with everything that is not known of it, and says what the recordings resemble:
 /// kinds of damage with their probabilities, severity with an interval, wheel and tooth, and whether they are like any simulation.
@@ -177,8 +177,8 @@ impl Diagnose {
         let bar = self.progress_bar(self.records, "");
         let (folder, since) = (store.folder_of(prior), Instant::now());
         let kept = fs::read_dir(&folder).map_or(0, Iterator::count) as u64;
-        let is_told = !self.quiet && kept < self.records.div_ceil(ReferenceStore::BATCH);
-        if is_told {
+        let shows_progress = !self.quiet && kept < self.records.div_ceil(ReferenceStore::BATCH);
+        if shows_progress {
             print_error_line(self.begins(&folder));
         }
         let progress = |finished: usize| bar.set_position(finished as u64);
@@ -186,7 +186,7 @@ impl Diagnose {
         let reference = store.get(prior, self.records, &control);
         bar.finish_and_clear();
         let reference = reference?;
-        if is_told {
+        if shows_progress {
             print_error_line(format!("simulated in {:.0} s", since.elapsed().as_secs_f64()));
         }
         Ok(reference)

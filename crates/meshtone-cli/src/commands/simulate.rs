@@ -1,10 +1,8 @@
 //! `meshtone simulate`
 
-use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use clap::builder::{EnumValueParser, PossibleValue, TypedValueParser};
 use clap::{Args, ValueEnum};
 use meshtone::scenario::{Model, Quality, Scenario, ScenarioError, ScenarioFiles, ScenarioWarning};
 use meshtone::{Simulation, StageTime, Stages, Trace};
@@ -39,7 +37,7 @@ pub struct Simulate {
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Model of the mesh, instead of the scenario's own
-    #[arg(long, value_parser = ModelParser)]
+    #[arg(long)]
     model: Option<ModelArgument>,
     /// Profile errors, as `meshtone wheels` writes them, in place of all that the scenario says of quality; the name is relative to
     /// the current directory
@@ -72,7 +70,7 @@ enum ModelArgument {
     Contact,
     /// What the theory of a linear mesh says
     Linear,
-    /// The published code, its slips included
+    /// The published code, its known errors included
     Published,
 }
 
@@ -83,32 +81,6 @@ impl From<ModelArgument> for Model {
             ModelArgument::Linear => Self::Linear,
             ModelArgument::Published => Self::Published,
         }
-    }
-}
-
-/// The models, with the new name of the one that has another now.
-#[derive(Debug, Clone)]
-struct ModelParser;
-
-impl TypedValueParser for ModelParser {
-    type Value = ModelArgument;
-
-    fn parse_ref(
-        &self,
-        command: &clap::Command,
-        argument: Option<&clap::Arg>,
-        value: &OsStr,
-    ) -> Result<ModelArgument, clap::Error> {
-        if value == "corrected" {
-            let problem = "the model \"corrected\" is called \"linear\" now; write --model linear\n";
-            return Err(clap::Error::raw(clap::error::ErrorKind::InvalidValue, problem));
-        }
-        EnumValueParser::new().parse_ref(command, argument, value)
-    }
-
-    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
-        let values = ModelArgument::value_variants().iter();
-        Some(Box::new(values.filter_map(ValueEnum::to_possible_value)))
     }
 }
 
@@ -193,7 +165,7 @@ impl Simulate {
         tuned: Option<&Tuned>,
     ) -> Result<Run, Failure> {
         let file = ScenarioFile::read_within(path, memory::limit()).map_err(|error| {
-            // Of a text it is told already what kind it is.
+            // The error about a text says already what kind it is.
             let is_text = matches!(error, ReadScenarioError::Invalid { .. });
             if is_text { error.into() } else { or_other_kind(path, "a scenario", error.into()) }
         })?;

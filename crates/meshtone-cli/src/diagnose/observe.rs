@@ -6,7 +6,7 @@ use meshtone::scenario::Scenario;
 use meshtone::sensor::GRAVITY_M_PER_S2;
 use meshtone::signal::{
     AngleZero, AngularSettings, AngularSignal, ChainSettings, Shaft, ShaftPhase, SignalError,
-    angular_resample, misfit,
+    angular_resample, find_mismatch,
 };
 use meshtone_diagnose::{Observation, SignalKind, other_teeth};
 use meshtone_io::indicators::WarningEntry;
@@ -36,8 +36,8 @@ pub struct Observer<'a> {
     scenario: &'a Scenario,
     signal: SignalKind,
     reading: &'a ReadingOptions,
-    told: &'a PhaseOptions,
-    /// What is told, and where that is not enough what the scenario says.
+    stated: &'a PhaseOptions,
+    /// What the options state, and where that is not enough what the scenario says.
     phase: PhaseOptions,
 }
 
@@ -45,21 +45,21 @@ impl<'a> Observer<'a> {
     /// # Arguments
     /// * `scenario` - of the rig
     /// * `signal` - what the recordings are
-    /// * `reading`, `told` - the options
+    /// * `reading`, `stated` - the options
     pub fn new(
         scenario: &'a Scenario,
         signal: SignalKind,
         reading: &'a ReadingOptions,
-        told: &'a PhaseOptions,
+        stated: &'a PhaseOptions,
     ) -> Result<Self, Failure> {
-        if signal != SignalKind::Recording && !told.is_empty() {
+        if signal != SignalKind::Recording && !stated.is_empty() {
             let problem =
                 format!("--signal {}: is one revolution of the gear, which needs no phase", signal.name());
             return Err(
                 Failure::bad_input(problem).with_help("leave out --teeth and what says how the shaft turns")
             );
         }
-        Ok(Self { scenario, signal, reading, told, phase: with_scenario(told, scenario)? })
+        Ok(Self { scenario, signal, reading, stated, phase: with_scenario(stated, scenario)? })
     }
 
     /// What a file shows.
@@ -82,7 +82,7 @@ impl<'a> Observer<'a> {
         Ok(Observed { observation, warnings })
     }
 
-    /// Refuses a whole recording where one revolution is told, by its own times or the stated rate.
+    /// Refuses a whole recording where one revolution is stated, by its own times or the stated rate.
     fn check_is_one(&self, path: &Path, values: usize) -> Result<(), Failure> {
         let stated = self.reading.sampling_rate_hz.map(|rate_hz| (rate_hz, MOST_OF_STATED));
         let own = || own_rate_hz(path, self.reading).map(|rate_hz| (rate_hz, MOST_OF_OWN));
@@ -100,10 +100,10 @@ impl<'a> Observer<'a> {
     }
 
     fn recording(&self, path: &Path) -> Result<Observed, Failure> {
-        let mut input = Input::read(path, self.reading, self.told.channel())?;
+        let mut input = Input::read(path, self.reading, self.stated.channel())?;
         to_g(&mut input.channel, path, self.reading.sensitivity_mv_per_unit.is_some())?;
         match &input.scenario_toml {
-            Some(toml) if !self.told.says_turning() => self.simulated(&input, toml),
+            Some(toml) if !self.stated.says_turning() => self.simulated(&input, toml),
             _ => self.measured(&input),
         }
     }
@@ -159,7 +159,7 @@ impl<'a> Observer<'a> {
         let own = over(shaft)?;
         let of_mate = shaft.of_mate(own_teeth, mate_teeth)?;
         let mate = over(&of_mate)?;
-        let against = match misfit(&own, &self.phase.told(own_teeth)) {
+        let against = match find_mismatch(&own, &self.phase.stated_facts(own_teeth)) {
             // Another tone than the mesh's may have been followed.
             None if self.phase.from_mesh_tone && !shaft.warnings.is_empty() => {
                 let hz = self.phase.shaft_hz.unwrap_or(speed_hz);
@@ -175,7 +175,7 @@ impl<'a> Observer<'a> {
         };
         let observation = self.of_angles(wheels, zero, pinion_hz)?;
         Ok(match against {
-            Some(against) => observation.with_misfit(against),
+            Some(against) => observation.with_mismatch(against),
             None => observation,
         })
     }
@@ -200,26 +200,26 @@ fn gear_hz(scenario: &Scenario) -> f64 {
     scenario.operation.pinion_speed_hz * pinion / gear
 }
 
-/// What is told, completed by the scenario: its teeth, and where nothing says how the shaft turns, its speed, which the mesh tone
+/// What the options state, completed by the scenario: its teeth, and where nothing says how the shaft turns, its speed, which the mesh tone
 /// makes exact.
-fn with_scenario(told: &PhaseOptions, scenario: &Scenario) -> Result<PhaseOptions, Failure> {
+fn with_scenario(stated: &PhaseOptions, scenario: &Scenario) -> Result<PhaseOptions, Failure> {
     let [pinion, gear] = teeth_of(scenario);
     let refuse = |option: &str, given: u32, allowed: String| {
         let problem = format!("{option} {given}: is no wheel of the scenario; must be {allowed}");
         Err(Failure::bad_input(problem).with_help("--teeth chooses the wheel that speed or pulses are of"))
     };
-    let mut phase = told.clone();
-    let teeth = told.teeth.unwrap_or(pinion);
+    let mut phase = stated.clone();
+    let teeth = stated.teeth.unwrap_or(pinion);
     let mate = match teeth {
         _ if teeth == pinion => gear,
         _ if teeth == gear => pinion,
         _ => return refuse("--teeth", teeth, format!("{pinion}, the pinion's, or {gear}, the gear's")),
     };
-    if let Some(given) = told.mate_teeth.filter(|given| *given != mate) {
+    if let Some(given) = stated.mate_teeth.filter(|given| *given != mate) {
         return refuse("--mate-teeth", given, mate.to_string());
     }
     (phase.teeth, phase.mate_teeth) = (Some(teeth), Some(mate));
-    if !told.says_turning() {
+    if !stated.says_turning() {
         let speed_hz = scenario.operation.pinion_speed_hz * f64::from(pinion) / f64::from(teeth);
         (phase.shaft_hz, phase.from_mesh_tone) = (Some(speed_hz), true);
     }

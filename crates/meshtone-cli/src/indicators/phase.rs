@@ -2,7 +2,7 @@
 
 use meshtone::scenario::Scenario;
 use meshtone::signal::{
-    MeshTone, ShaftPhase, SimulatedShafts, Tachometer, Told, ToldTurning, tachometer_pulses,
+    MeshTone, ShaftPhase, SimulatedShafts, StatedFacts, StatedTurning, Tachometer, tachometer_pulses,
 };
 use meshtone_io::indicators::WarningEntry;
 
@@ -80,14 +80,16 @@ impl PhaseOptions {
         }
     }
 
-    /// What is said about a measured recording.
-    pub fn told(&self, teeth: u32) -> Told {
+    /// What the options state about a measured recording.
+    pub fn stated_facts(&self, teeth: u32) -> StatedFacts {
         let turning = match (self.source(), self.shaft_hz) {
-            ("tachometer" | "pulse times", _) => ToldTurning::Pulses { per_revolution: self.pulses_per_rev },
-            ("constant speed", Some(speed_hz)) => ToldTurning::ConstantSpeed { speed_hz },
-            _ => ToldTurning::Other,
+            ("tachometer" | "pulse times", _) => {
+                StatedTurning::Pulses { per_revolution: self.pulses_per_rev }
+            }
+            ("constant speed", Some(speed_hz)) => StatedTurning::ConstantSpeed { speed_hz },
+            _ => StatedTurning::Other,
         };
-        Told { teeth, mate_teeth: self.mate_teeth, turning }
+        StatedFacts { teeth, mate_teeth: self.mate_teeth, turning }
     }
 
     /// What tooth 1 of a wheel is.

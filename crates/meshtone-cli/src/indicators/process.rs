@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use meshtone::scenario::{Scenario, WheelName};
 use meshtone::signal::{
     AngularSettings, AngularSignal, ChainSettings, Record, SeparationSettings, Shaft, SignalError,
-    SignalWarning, angular_resample, check_channel, misfit, process_angular, process_angular_segments,
+    SignalWarning, angular_resample, check_channel, find_mismatch, process_angular, process_angular_segments,
 };
 use meshtone_io::indicators::WarningEntry;
 use meshtone_plot::DamagedTooth;
@@ -97,7 +97,7 @@ fn wheel_records(
     turning: &Turning,
     shaft: Shaft,
     wheels: &[Wheel],
-    told: &PhaseOptions,
+    options: &PhaseOptions,
     processing: &ProcessingOptions,
 ) -> Result<(WheelRecords, Option<SignalWarning>), SignalError> {
     let wheel = &wheels[shaft as usize];
@@ -112,7 +112,8 @@ fn wheel_records(
             };
             let angular = angular_resample(&input.channel.samples, &phase, &settings.angular)?;
             if wheel.is_on_shaft {
-                doubt = misfit(&angular, &told.told(wheel.teeth)).map(SignalWarning::DoesNotFit);
+                doubt = find_mismatch(&angular, &options.stated_facts(wheel.teeth))
+                    .map(SignalWarning::DoesNotFit);
             }
             let records = of_angular(&angular, wheel.teeth, &settings, processing.revolutions)?;
             let time_s = |angle_rev: f64| phase.sample_at(angle_rev) / rate_hz;

@@ -77,9 +77,9 @@ impl Input {
                 !is_turning && simulated.as_ref().is_none_or(|name| channel.name == *name)
             };
             recording.channels.retain(keep);
-            let (live, told) = without_dead(recording.channels, path);
+            let (live, warned) = without_dead(recording.channels, path);
             recording.channels = live;
-            warnings.extend(told);
+            warnings.extend(warned);
         }
         let mut channel = one(path, recording.channels, options.channel.as_deref())?;
         if let (Some(turning), Some(choice)) = (&turning, options.channel.as_deref()) {
@@ -256,7 +256,7 @@ fn calibrate(channel: &mut Channel, options: &ReadingOptions) -> Result<(), Fail
     Ok(channel.calibrate(sensitivity.map(|millivolts| millivolts / 1e3), options.unit.as_deref())?)
 }
 
-/// Leaves out what is 0 throughout beside channels that are not, as of inputs that nothing was connected to. Which is told.
+/// Leaves out what is 0 throughout beside channels that are not, as of inputs that nothing was connected to. A warning names it.
 fn without_dead(channels: Vec<Channel>, source: &Path) -> (Vec<Channel>, Option<WarningEntry>) {
     let is_dead = |channel: &Channel| channel.samples.iter().all(|sample| *sample == 0.0);
     let (dead, live): (Vec<Channel>, Vec<Channel>) = channels.into_iter().partition(is_dead);

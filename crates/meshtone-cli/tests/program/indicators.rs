@@ -79,7 +79,7 @@ fn a_simulation_and_the_same_signal_from_other_files() {
     // Teeth that part do not move alike in every revolution.
     let simulate = ["simulate", "gone.toml", "--model", "linear", "-o", "gone", "--no-panel", "-q"];
     workplace.succeeds(&simulate);
-    // A channel's name of earlier versions is answered with those that there are.
+    // A channel's name without its unit is answered with those that there are.
     let words = ["has no column `vertical`", "did you mean `vertical_g`?", "pinion_shaft_speed_hz"];
     workplace.fails(2, &["indicators", "gone", "-c", "vertical"], &words);
     let assert = workplace.succeeds(&["indicators", "gone"]);

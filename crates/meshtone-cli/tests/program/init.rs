@@ -172,8 +172,8 @@ fn completions_and_the_manual_know_all_commands() {
         for word in ["simulate", "indicators", "verify", "merge", "sampling"] {
             assert!(text.contains(word), "{kind}: {word}");
         }
-        // What only says how it is called now is offered nowhere.
-        assert!(!text.contains("convention") && !text.contains("shaft-rpm"), "{kind}");
+        // An option that is only answered with a tip is offered nowhere.
+        assert!(!text.contains("shaft-rpm"), "{kind}");
     }
     workplace.fails(2, &["completions", "tcsh"], &["bash", "zsh", "man"]);
 }

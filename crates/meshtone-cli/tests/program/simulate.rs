@@ -189,16 +189,8 @@ fn model_of_the_command_line_and_what_it_ignores() {
 }
 
 #[test]
-fn the_option_that_was_called_convention() {
+fn a_model_that_there_is_not_is_answered_with_those_that_there_are() {
     let workplace = Workplace::new();
-    for (value, model) in [("corrected", "linear"), ("published", "published"), ("both", "linear")] {
-        let words = ["--convention", &format!("is called --model now; write --model {model}")];
-        workplace.fails(2, &["simulate", "fast.toml", "--convention", value], &words);
-    }
-    workplace.fails(2, &["simulate", "fast.toml", "--convention"], &["is called --model now"]);
-    // So is what the option's value was called; what never was a name is told those that are.
-    let words = ["\"corrected\" is called \"linear\" now", "write --model linear"];
-    workplace.fails(2, &["simulate", "fast.toml", "--model", "corrected"], &words);
     workplace.fails(2, &["simulate", "fast.toml", "--model", "both"], &["linear, published"]);
 }
 

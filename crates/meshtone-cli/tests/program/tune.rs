@@ -489,19 +489,15 @@ fn what_enhance_refuses() {
     };
     workplace.fails(2, &enhance("tuned.toml", "0"), &["--draws"]);
     workplace.fails(2, &enhance("absent.toml", "1"), &["absent.toml"]);
-    workplace.write("wrong.toml", "[enhancement]\nwidth_ratio = -0.2\nfault_to_harmonics_ratio = 2.0\nnoise_level = 1.0\n[signal]\nsampling_rate_hz = 10e3\n");
+    workplace.write("wrong.toml", "model = \"linear\"\n[enhancement]\nwidth_ratio = -0.2\nfault_to_harmonics_ratio = 2.0\nnoise_level = 1.0\n[signal]\nsampling_rate_hz = 10e3\n");
     workplace.fails(
         2,
         &enhance("wrong.toml", "1"),
-        &["wrong.toml", "line 2", "enhancement.width_ratio", "more than 0"],
+        &["wrong.toml", "line 3", "enhancement.width_ratio", "more than 0"],
     );
     let other = ["other.toml", "line 7", "signal.wheel", "\"pinion\", \"gear\""];
     let with_wheel = [workplace.read("tuned.toml"), b"wheel = \"rack\"\n".to_vec()].concat();
     workplace.write("other.toml", with_wheel);
     workplace.fails(2, &enhance("other.toml", "1"), &other);
-    workplace.write("earlier.toml", "convention = \"published\"\n[signal]\nsampling_rate_hz = 10e3\n");
-    let renamed =
-        ["earlier.toml", "line 1", "convention", "is called `model` now", "write model = \"published\""];
-    workplace.fails(2, &enhance("earlier.toml", "1"), &renamed);
     workplace.succeeds(&enhance("tuned.toml", "3"));
 }

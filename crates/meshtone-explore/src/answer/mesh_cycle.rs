@@ -127,14 +127,7 @@ mod tests {
     use super::*;
 
     fn cycle(model: Model, faults: Vec<Fault>) -> (MeshCycle, f64) {
-        let pair = GearPair {
-            module_mm: 3.0,
-            pinion_teeth: 17,
-            gear_teeth: 38,
-            face_width_mm: 15.0,
-            pinion_speed_hz: 40.0,
-            brake_torque_nm: 10.0,
-        };
+        let pair = GearPair::example();
         let mut scenario = Scenario::new(pair).with_faults(faults);
         scenario.model = model;
         let stages = meshtone::stages(&scenario).unwrap();

@@ -12,12 +12,10 @@ use super::*;
 /// Tooth counts with a large common factor need few samples a revolution.
 fn fast() -> Scenario {
     let mut scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
         pinion_teeth: 20,
         gear_teeth: 40,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
         brake_torque_nm: 200.0,
+        ..GearPair::example()
     });
     scenario.solver.sampling_rate_hz = 1000.0;
     scenario

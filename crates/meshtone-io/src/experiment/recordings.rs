@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use meshtone::scenario::WheelName;
 use meshtone::signal::{
-    AngularSettings, AngularSignal, ChainSettings, MeshTone, ShaftPhase, SignalError, Tachometer, Told,
-    ToldTurning, angular_resample, misfit, points_per_revolution, process_angular, process_angular_segments,
-    tachometer_pulses,
+    AngularSettings, AngularSignal, ChainSettings, MeshTone, ShaftPhase, SignalError, StatedFacts,
+    StatedTurning, Tachometer, angular_resample, find_mismatch, points_per_revolution, process_angular,
+    process_angular_segments, tachometer_pulses,
 };
 use meshtone::tuning::DifferenceChain;
 use meshtone_toml::{ReadResult, TomlError, TomlTable};
@@ -90,10 +90,10 @@ pub(super) fn differences(
     Ok(all)
 }
 
-/// What is doubtful about recordings. Of many that say the same the first is told.
+/// Doubts about recordings. Of many that say the same, the first is reported.
 #[derive(Default)]
 struct Doubts {
-    told: Vec<Doubt>,
+    found: Vec<Doubt>,
 }
 
 struct Doubt {
@@ -109,8 +109,8 @@ struct Doubt {
 enum About {
     /// The shaft turns at another speed than the scenario's.
     Speed,
-    /// The recording is hardly of what is told.
-    Misfit,
+    /// The recording is hardly of what is stated.
+    Mismatch,
     /// How the phase was found.
     Phase,
 }
@@ -139,36 +139,36 @@ impl Doubts {
             return;
         }
         let gears = &wanted.base.gears;
-        let told = Told {
+        let stated = StatedFacts {
             teeth: gears.teeth(wheel),
             mate_teeth: Some(gears.teeth(wheel.mate())),
             turning: match *known {
                 Phase::Constant { gear_shaft_hz } if wheel == WheelName::Gear => {
-                    ToldTurning::ConstantSpeed { speed_hz: gear_shaft_hz }
+                    StatedTurning::ConstantSpeed { speed_hz: gear_shaft_hz }
                 }
-                Phase::Constant { .. } => ToldTurning::ConstantSpeed { speed_hz: turned },
+                Phase::Constant { .. } => StatedTurning::ConstantSpeed { speed_hz: turned },
                 Phase::Tachometer { pulses_per_revolution, shaft, .. } if shaft == wheel => {
-                    ToldTurning::Pulses { per_revolution: pulses_per_revolution }
+                    StatedTurning::Pulses { per_revolution: pulses_per_revolution }
                 }
-                Phase::Tachometer { .. } | Phase::MeshTone { .. } => ToldTurning::Other,
+                Phase::Tachometer { .. } | Phase::MeshTone { .. } => StatedTurning::Other,
             },
         };
-        if let Some(misfit) = misfit(angular, &told) {
+        if let Some(mismatch) = find_mismatch(angular, &stated) {
             let words =
-                format!("over the revolutions of the {}, {} teeth: {misfit}", wheel.name(), told.teeth);
-            self.add(About::Misfit, file, words);
+                format!("over the revolutions of the {}, {} teeth: {mismatch}", wheel.name(), stated.teeth);
+            self.add(About::Mismatch, file, words);
         }
     }
 
     fn add(&mut self, about: About, file: &str, words: String) {
-        match self.told.iter_mut().find(|doubt| doubt.about == about) {
+        match self.found.iter_mut().find(|doubt| doubt.about == about) {
             Some(doubt) => doubt.more += 1,
-            None => self.told.push(Doubt { about, file: file.to_owned(), words, more: 0 }),
+            None => self.found.push(Doubt { about, file: file.to_owned(), words, more: 0 }),
         }
     }
 
     fn in_words(self) -> impl Iterator<Item = String> {
-        self.told.into_iter().map(|Doubt { file, words, more, .. }| match more {
+        self.found.into_iter().map(|Doubt { file, words, more, .. }| match more {
             0 => format!("{file}: {words}"),
             1 => format!("{file}: {words} (likewise of another recording)"),
             more => format!("{file}: {words} (likewise of {more} other recordings)"),

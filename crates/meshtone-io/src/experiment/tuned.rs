@@ -186,13 +186,8 @@ pub fn read_tuned(path: &Path) -> Result<Tuned, ReadScenarioError> {
 }
 
 fn tuned(root: &TomlTable<'_>) -> ReadResult<Tuned> {
-    root.refuse_renamed("convention", "is called `model` now", |value| match value {
-        Some("published") => "write model = \"published\"".to_owned(),
-        _ => "tune again, or write model = \"linear\": the model was mended, so that the numbers are near those that fit it"
-            .to_owned(),
-    })?;
     let models = Model::ALL.map(|model| (model.name(), model));
-    let model = root.optional("model").map(|value| value.choice(&models)).transpose()?;
+    let model = root.required("model", "the model that was tuned")?.choice(&models)?;
     let (enhancement, centre_rev) = root.table_or_empty("enhancement")?.read(|table| {
         let above_0 = |key, meaning: &str| {
             let value = table.required(key, meaning)?;
@@ -236,8 +231,7 @@ fn tuned(root: &TomlTable<'_>) -> ReadResult<Tuned> {
         Some(value) => value.array()?.iter().map(key).collect::<ReadResult<_>>()?,
     };
     Ok(Tuned {
-        // Files of earlier versions that name none were tuned under what was the default then.
-        model: model.unwrap_or(Model::Linear),
+        model,
         enhancement,
         centre_rev,
         channel,

@@ -15,7 +15,7 @@ use super::parquet_depth::is_too_deep;
 use super::rate::StatedRate;
 use super::selection::select;
 use super::{Position, ReadRecordingError, Recording, RecordingOptions, memory_need};
-use crate::signals::{SCENARIO_KEY, with_model};
+use crate::signals::SCENARIO_KEY;
 use crate::table::{FoundColumn, FoundType, TableReader};
 
 const FORMAT: &str = "Parquet";
@@ -125,7 +125,7 @@ fn stated_rates(metadata: &FileMetaData) -> Vec<StatedRate> {
 fn scenario(metadata: &FileMetaData) -> Option<String> {
     let mut entries = metadata.key_value_metadata().into_iter().flatten();
     let entry = entries.find(|entry| entry.key == SCENARIO_KEY)?;
-    Some(with_model(entry.value.as_deref()?).into_owned())
+    entry.value.clone()
 }
 
 /// Numbers of a column for which memory is taken beforehand.

@@ -6,11 +6,9 @@
 //! sampling rate ([`RATE_KEY`]). Each column's unit and meaning stand in the metadata of its Arrow field. Nothing depends on when or where the
 //! file is written: the same simulation gives the same bytes.
 
-mod earlier;
 mod read;
 mod write;
 
-pub(crate) use earlier::with_model;
 pub use read::{Recorded, read_signals};
 pub use write::write_signals;
 

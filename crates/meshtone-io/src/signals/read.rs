@@ -8,13 +8,11 @@ use meshtone::sensor::{ChannelKind, Channels, SensorSignal};
 use parquet::file::metadata::FileMetaData;
 
 use crate::ReadResultsError;
-use crate::channel_name::former_column;
 use crate::input_file::open_ordinary;
 use crate::memory;
 use crate::run_identity::RunIdentity;
 use crate::table::{FoundType, NumberType, TableReader};
 
-use super::earlier::with_model;
 use super::{RATE_KEY, RUN_KEY, SCENARIO_KEY, TIME, VERSION_KEY};
 
 /// A simulation's signals, read back.
@@ -49,7 +47,7 @@ pub fn read_signals(path: &Path) -> Result<Recorded, ReadResultsError> {
         return Err(foreign(format!("its {rows} rows {objection}; raise the memory limit")));
     }
     let text = text_of(metadata, SCENARIO_KEY).map_err(foreign)?;
-    let scenario = Scenario::from_toml(&with_model(text))
+    let scenario = Scenario::from_toml(text)
         .map_err(|error| ReadResultsError::Scenario { path: path.to_path_buf(), error: Box::new(error) })?;
     let version = text_of(metadata, VERSION_KEY).map_err(foreign)?.to_string();
     let run = text_of(metadata, RUN_KEY).map_err(foreign)?.parse::<RunIdentity>();
@@ -59,9 +57,7 @@ pub fn read_signals(path: &Path) -> Result<Recorded, ReadResultsError> {
     let numbers = |name: &str| numbers(&table, name).map_err(foreign);
     channels.start_s = numbers(TIME)?.first().copied().unwrap_or(0.0);
     for kind in ChannelKind::ALL {
-        let former = former_column(kind);
-        let name = if table.column(former).is_some() { former } else { kind.name() };
-        *channels.get_mut(kind) = numbers(name)?;
+        *channels.get_mut(kind) = numbers(kind.name())?;
     }
     for sensor in &scenario.sensors {
         channels.sensors.push(SensorSignal { name: sensor.name(), values_g: numbers(&sensor.channel())? });

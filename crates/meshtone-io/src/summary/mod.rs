@@ -18,8 +18,7 @@ use meshtone::sensor::{Channel, ContactFigures};
 
 pub use read::read_run;
 
-/// Version of the summary's format: it grows when a key changes its name or meaning. Version 1 had `convention` for `model`
-/// and, for `faults`, the `fault` of the gear's first tooth by its kind alone.
+/// Version of the summary's format: it grows when a key changes its name or meaning.
 pub const FORMAT_VERSION: u32 = 2;
 
 /// The main numbers of a simulation.

@@ -39,14 +39,7 @@ fn signals_of_a_simulation_are_read_with_unit_rate_and_scenario() {
     channels.pinion_shaft_speed_hz = signal(40.0);
     channels.gear_shaft_speed_hz = signal(17.0);
     channels.mesh_force_n = signal(1e9);
-    let scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 20,
-        gear_teeth: 40,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    });
+    let scenario = Scenario::new(GearPair { pinion_teeth: 20, gear_teeth: 40, ..GearPair::example() });
     let file = File::create(directory.path().join("signals.parquet")).unwrap();
     write_signals(file, &scenario, &channels).unwrap();
     // The folder stands for its signals.

@@ -5,11 +5,11 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 
 use crate::parquet_help::{Plain, parquet};
-use meshtone::scenario::{GearPair, Model, Scenario, Sensor};
-use meshtone::sensor::{ChannelKind, Channels, SensorSignal};
+use meshtone::scenario::{GearPair, Scenario, Sensor};
+use meshtone::sensor::{Channels, SensorSignal};
 use meshtone_io::ReadResultsError;
 use meshtone_io::run_identity::RunIdentity;
-use meshtone_io::signals::{RATE_KEY, RUN_KEY, SCENARIO_KEY, VERSION_KEY, read_signals, write_signals};
+use meshtone_io::signals::{RATE_KEY, RUN_KEY, SCENARIO_KEY, read_signals, write_signals};
 use meshtone_io::table::{CellType, Cells, TableColumn, TableReader, TableWriter};
 use parquet::basic::{Compression, Encoding};
 use parquet::file::metadata::KeyValue;
@@ -17,14 +17,7 @@ use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use tempfile::tempdir;
 
 fn scenario() -> Scenario {
-    Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 20,
-        gear_teeth: 40,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    })
+    Scenario::new(GearPair { pinion_teeth: 20, gear_teeth: 40, ..GearPair::example() })
 }
 
 /// More rows than are written at once, with numbers that only exact writing keeps.
@@ -77,11 +70,6 @@ fn files_of_others_are_refused() {
     refused(&path, wrong_rate, "is `fast`; must be a number above 0");
     let single = [good(), vec![text(RATE_KEY, "1000.0")]].concat();
     refused(&path, single.clone(), "column time_s of Float32; must be of Float64");
-    // Neither is a file foreign whose scenario names its convention, as the model was called.
-    let earlier = scenario().to_toml().replacen("model = \"contact\"", "convention = \"corrected\"", 1);
-    assert!(earlier.contains("convention"));
-    let named_earlier = [vec![text(SCENARIO_KEY, &earlier)], single[1..].to_vec()].concat();
-    refused(&path, named_earlier, "column time_s of Float32; must be of Float64");
 }
 
 #[test]
@@ -184,38 +172,6 @@ fn a_full_disk_is_told_wherever_it_happens() {
 }
 
 /// A file whose accelerations are called as earlier versions called them.
-#[test]
-fn signals_of_an_earlier_version_are_read() {
-    let directory = tempdir().unwrap();
-    let path = directory.path().join("signals.parquet");
-    let metadata = |key: &str, value: String| KeyValue::new(key.to_owned(), value);
-    let mut scenario = scenario();
-    scenario.model = Model::Linear;
-    let toml = scenario.to_toml().replacen("model = \"linear\"", "convention = \"corrected\"", 1);
-    assert!(toml.starts_with("convention"));
-    let named = |name: &'static str, value: f64| (name, Plain::doubles([value; 3]));
-    let columns = vec![
-        named("time_s", 0.5),
-        named("horizontal_acceleration_g", 1.0),
-        named("vertical_acceleration_g", 2.0),
-        named("axial_acceleration_g", 3.0),
-        named("pinion_shaft_speed_hz", 4.0),
-        named("gear_shaft_speed_hz", 5.0),
-        named("mesh_force_n", 6.0),
-    ];
-    let metadata = vec![
-        metadata(SCENARIO_KEY, toml),
-        metadata(VERSION_KEY, "0.0.9".into()),
-        metadata(RUN_KEY, RunIdentity::of(&scenario).to_string()),
-        metadata(RATE_KEY, "1000.0".into()),
-    ];
-    fs::write(&path, parquet(columns, metadata)).unwrap();
-    let recorded = read_signals(&path).unwrap();
-    let read = ChannelKind::ALL.map(|kind| recorded.channels.get(kind).to_vec());
-    assert_eq!(read, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(|value| vec![value; 3]));
-    assert_eq!(recorded.scenario, scenario);
-}
-
 /// Sensors come first, in their order, and are read back by the scenario's names.
 #[test]
 fn sensors_are_the_first_columns() {

@@ -61,7 +61,7 @@ const ERRORS_WIDTH: f64 = COLUMN_WIDTH - TOOTH_WIDTH - CIRCLE_NAMES - FACE_WIDTH
 /// ```
 /// use meshtone::scenario::{Fault, GearPair, MissingTooth, Scenario};
 ///
-/// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+/// let mut scenario = Scenario::new(GearPair::example());
 /// scenario.faults = vec![Fault::on_first_gear_tooth(MissingTooth)];
 /// scenario.solver.sampling_rate_hz = 2e4;
 /// let simulation = meshtone::simulate(&scenario)?;

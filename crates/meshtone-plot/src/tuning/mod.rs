@@ -72,7 +72,7 @@ const WIDTH_PLOT_HEIGHT: f64 = 326.0;
 ///     severity: faults.len() as f64,
 ///     faults,
 /// };
-/// let mut base = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+/// let mut base = Scenario::new(GearPair::example());
 /// base.solver.sampling_rate_hz = 25e3;
 /// let experiment = Experiment {
 ///     base,

@@ -140,14 +140,8 @@ fn the_same_panel_twice_is_the_same() {
 }
 
 fn with_teeth(pinion: u32, gear: u32, damage: Option<Damage>) -> Scenario {
-    let mut scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: pinion,
-        gear_teeth: gear,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    });
+    let mut scenario =
+        Scenario::new(GearPair { pinion_teeth: pinion, gear_teeth: gear, ..GearPair::example() });
     let thinnest = 1.5 * f64::from(pinion.min(gear)) - 3.75;
     scenario.rig.pinion_shaft.radius_mm = 10f64.min(0.8 * thinnest);
     scenario.rig.gear_shaft.radius_mm = 10f64.min(0.8 * thinnest);
@@ -182,11 +176,9 @@ fn small_and_large_modules_and_no_relief() {
     for module in [0.2, 50.0] {
         let mut scenario = Scenario::new(GearPair {
             module_mm: module,
-            pinion_teeth: 17,
-            gear_teeth: 38,
             face_width_mm: 10.0 * module,
             pinion_speed_hz: 10.0,
-            brake_torque_nm: 10.0,
+            ..GearPair::example()
         });
         scenario.rig.pinion_shaft.radius_mm = 5.0 * module;
         scenario.rig.gear_shaft.radius_mm = 5.0 * module;

@@ -7,14 +7,7 @@ use meshtone::scenario::*;
 use meshtone_plot::Figure;
 
 fn small_pair(damage: Option<Damage>) -> Scenario {
-    let mut scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    });
+    let mut scenario = Scenario::new(GearPair::example());
     scenario.quality.din_grade = 7;
     scenario.faults = damage.into_iter().map(Fault::at_usual_place).collect();
     scenario

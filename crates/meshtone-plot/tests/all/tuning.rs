@@ -12,14 +12,7 @@ const LARGEST: usize = 400_000;
 
 /// A pair with more and more of a tooth's tip lost.
 fn experiment(labels: &[&str], indicators: &[TuningIndicator]) -> Experiment {
-    let mut base = Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    });
+    let mut base = Scenario::new(GearPair::example());
     base.model = Model::Linear;
     base.solver.sampling_rate_hz = 25e3;
     let cases = labels.iter().enumerate().map(|(case, label)| {

@@ -55,7 +55,7 @@ impl Default for Control<'_> {
 /// use meshtone::scenario::{GearPair, Scenario};
 ///
 /// let scenarios = (0..20).map(|n| {
-///     let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 34, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 1.0 + f64::from(n) });
+///     let mut scenario = Scenario::new(GearPair { gear_teeth: 34, brake_torque_nm: 1.0 + f64::from(n), ..GearPair::example() });
 ///     scenario.solver.sampling_rate_hz = 1e4;
 ///     scenario
 /// });

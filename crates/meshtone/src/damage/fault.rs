@@ -55,7 +55,7 @@ impl Fault {
     /// use meshtone::scenario::{GearPair, Scenario};
     ///
     /// let crack = RootCrack { depth_mm: 0.0, angle_deg: 60.0, length_mm: None };
-    /// let scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 })
+    /// let scenario = Scenario::new(GearPair::example())
     ///     .with_faults(vec![Fault::on_first_gear_tooth(crack).with_severity(0.5)]);
     /// let sized = scenario.with_own_sizes()?;
     /// assert!((sized.number("fault.depth_mm").unwrap() - 1.738).abs() < 1e-3);

@@ -14,7 +14,7 @@
 //!     fn rows() -> Vec<Row<Self>> {
 //!         vec![
 //!             row("length_mm", "mm", "length between wheel and motor or brake", field!(length_mm))
-//!                 .range(Range::positive().slip_above(1e6)),
+//!                 .range(Range::positive().implausible_above(1e6)),
 //!             row("radius_mm", "mm", "radius, which is also the wheel's bore", field!(radius_mm))
 //!                 .range(Range::positive())
 //!                 .rule("less than the root radius"),

@@ -10,8 +10,8 @@ use crate::error::ScenarioError;
 pub(crate) struct Range {
     least: Bound<f64>,
     most: Bound<f64>,
-    /// Beyond it, a number can only be a slip of the pen or of the unit.
-    slip_above: Option<f64>,
+    /// A number above it can only be a typing error or in another unit.
+    implausible_above: Option<f64>,
     message: Option<&'static str>,
     help: Option<&'static str>,
 }
@@ -19,7 +19,7 @@ pub(crate) struct Range {
 impl Range {
     /// Every finite number.
     pub const fn finite() -> Self {
-        Self { least: Unbounded, most: Unbounded, slip_above: None, message: None, help: None }
+        Self { least: Unbounded, most: Unbounded, implausible_above: None, message: None, help: None }
     }
 
     /// More than 0.
@@ -47,9 +47,9 @@ impl Range {
         Self::between(Included(0.0), Excluded(1.0))
     }
 
-    /// The same, but nothing above `largest`, which can only be a slip.
-    pub const fn slip_above(self, largest: f64) -> Self {
-        Self { slip_above: Some(largest), ..self }
+    /// This range up to `largest` only: a larger number can only be a typing error or in another unit.
+    pub const fn implausible_above(self, largest: f64) -> Self {
+        Self { implausible_above: Some(largest), ..self }
     }
 
     /// The same with a message of its own, that says what is allowed.
@@ -91,7 +91,7 @@ impl Range {
                 None => error,
             });
         }
-        match self.slip_above {
+        match self.implausible_above {
             Some(largest) if value > largest => {
                 let problem = format!("must be at most {}", with_unit(largest, unit));
                 Err(refused(problem).with_help(format!("check the unit: it is {unit}")))
@@ -106,7 +106,7 @@ impl Range {
             Unbounded => None,
             Included(number) | Excluded(number) => Some(number),
         };
-        [number(self.least), number(self.most).or(self.slip_above)]
+        [number(self.least), number(self.most).or(self.implausible_above)]
     }
 
     /// What is allowed; none where every finite number is.
@@ -149,7 +149,7 @@ impl Range {
             Excluded(least) => Some(format!("> {}", short(least))),
         };
         let most = match self.most {
-            Unbounded => self.slip_above.map(|largest| format!("≤ {}", short(largest))),
+            Unbounded => self.implausible_above.map(|largest| format!("≤ {}", short(largest))),
             Included(most) => Some(format!("≤ {}", short(most))),
             Excluded(most) => Some(format!("< {}", short(most))),
         };

@@ -169,7 +169,7 @@ impl<S> Row<S> {
         let required = self.is_required() && self.cell.write(section).is_some();
         let value = if required {
             if let (Absent::RefusedUnless(others), None) = (&self.absent, table.optional(self.name)) {
-                others.iter().try_for_each(|other| table.refuse_slip_of(other))?;
+                others.iter().try_for_each(|other| table.refuse_misspelling_of(other))?;
             }
             table.required(self.name, &self.with_unit()).map(Some)?
         } else {
@@ -178,7 +178,7 @@ impl<S> Row<S> {
         match value {
             Some(value) => self.cell.read(section, &value, files).map_err(|error| self.as_below_range(error)),
             // A misspelt table would be told with a list of keys that has nothing like it.
-            None if self.cell.kind() == KeyKind::Table => table.refuse_slip_of(self.name),
+            None if self.cell.kind() == KeyKind::Table => table.refuse_misspelling_of(self.name),
             None => Ok(()),
         }
     }

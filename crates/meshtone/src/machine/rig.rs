@@ -60,8 +60,8 @@ impl Default for Rig {
 }
 
 /// Beyond these the equations are solved in rounding errors.
-const STIFFNESS: Range = Range::positive().slip_above(1e15);
-const MASS: Range = Range::positive().slip_above(1e9);
+const STIFFNESS: Range = Range::positive().implausible_above(1e15);
+const MASS: Range = Range::positive().implausible_above(1e9);
 
 impl Keys for Rig {
     fn start() -> Self {
@@ -221,7 +221,7 @@ impl Keys for Support {
                 "the stiffness between the two supports, in x and in y",
                 field!(coupling_n_per_m),
             )
-            .range(Range::not_negative().slip_above(1e15)),
+            .range(Range::not_negative().implausible_above(1e15)),
             row(
                 "damping_ratio",
                 "-",
@@ -324,7 +324,7 @@ impl Keys for Shaft {
     fn rows() -> Vec<Row<Self>> {
         vec![
             row("length_mm", "mm", "the length from the wheel to motor or brake", field!(length_mm))
-                .range(Range::positive().slip_above(1e6)),
+                .range(Range::positive().implausible_above(1e6)),
             row("radius_mm", "mm", "the radius, also of the wheel's bore", field!(radius_mm))
                 .range(Range::positive())
                 .rule("less than the wheel's root radius"),
@@ -334,7 +334,7 @@ impl Keys for Shaft {
                 "the distance between the shaft's two bearings",
                 field!(bearing_span_mm),
             )
-            .range(Range::positive().slip_above(1e5)),
+            .range(Range::positive().implausible_above(1e5)),
             row("wheel_at", "-", "where between them the wheel sits", field!(wheel_at)).range(
                 Range::between(Excluded(0.0), Excluded(1.0))
                     .message("must be more than 0 and less than 1 (0.5: midway between the bearings)"),

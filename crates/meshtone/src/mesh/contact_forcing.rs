@@ -422,14 +422,7 @@ mod tests {
     #[test]
     fn damage_on_a_side_moves_the_load_at_any_torque() {
         for brake_torque_nm in [0.0, 10.0] {
-            let mut scenario = Scenario::new(GearPair {
-                module_mm: 3.0,
-                pinion_teeth: 17,
-                gear_teeth: 38,
-                face_width_mm: 15.0,
-                pinion_speed_hz: 40.0,
-                brake_torque_nm,
-            });
+            let mut scenario = Scenario::new(GearPair { brake_torque_nm, ..GearPair::example() });
             let chip = ToothBreakage { chip_height_mm: 6.0, chip_width_mm: 14.0, tip_loss_mm: 0.0 };
             scenario.faults = vec![Fault::on_first_gear_tooth(chip)];
             let stages = stages(&scenario).unwrap();

@@ -40,7 +40,7 @@ impl ContactMesh {
     ///
     /// use meshtone::scenario::{GearPair, Model, Scenario};
     ///
-    /// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+    /// let mut scenario = Scenario::new(GearPair::example());
     /// scenario.model = Model::Contact;
     /// let stages = meshtone::stages(&scenario)?;
     /// let mesh = stages.contact_mesh(NonZeroUsize::new(100).unwrap())?.unwrap();
@@ -103,14 +103,7 @@ mod tests {
     use crate::wheel::{FlankRelief, ReliefShape};
 
     fn mesh(change: impl FnOnce(&mut Scenario)) -> ContactMesh {
-        let mut scenario = Scenario::new(GearPair {
-            module_mm: 3.0,
-            pinion_teeth: 17,
-            gear_teeth: 38,
-            face_width_mm: 15.0,
-            pinion_speed_hz: 40.0,
-            brake_torque_nm: 10.0,
-        });
+        let mut scenario = Scenario::new(GearPair::example());
         scenario.model = Model::Contact;
         scenario.gears.tip_chamfer_mm = Some(0.0);
         change(&mut scenario);

@@ -56,10 +56,10 @@ impl Keys for Operation {
                 field!(pinion_speed_hz),
             )
             .required()
-            .range(Range::positive().slip_above(1e5)),
+            .range(Range::positive().implausible_above(1e5)),
             row("brake_torque_nm", "N m", "the nominal torque of the brake on the gear's shaft", field!(brake_torque_nm))
                 .required()
-                .range(Range::not_negative().slip_above(1e9)),
+                .range(Range::not_negative().implausible_above(1e9)),
             row(
                 "speed_fluctuation_hz",
                 "Hz",

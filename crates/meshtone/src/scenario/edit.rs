@@ -43,7 +43,7 @@ impl Scenario {
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};
     ///
-    /// let scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+    /// let scenario = Scenario::new(GearPair::example());
     /// assert_eq!(scenario.number("rig.damping_ratio"), Some(0.05));
     /// assert_eq!(scenario.number("fault.chip_width_mm"), None); // it is healthy
     /// ```
@@ -67,7 +67,7 @@ impl Scenario {
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};
     ///
-    /// let scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+    /// let scenario = Scenario::new(GearPair::example());
     /// let graded = scenario.with_number("quality.din_grade", 7.0)?;
     /// assert_eq!(graded.quality.din_grade, 7);
     /// let error = scenario.with_number("quality.din_grade", 13.0).unwrap_err();
@@ -149,7 +149,7 @@ impl Scenario {
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};
     ///
-    /// let numbers = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 }).numbers();
+    /// let numbers = Scenario::new(GearPair::example()).numbers();
     /// let teeth = numbers.iter().find(|number| number.key == "gears.pinion_teeth").unwrap();
     /// assert!(teeth.whole && teeth.value == 17.0);
     /// ```

@@ -16,7 +16,7 @@ impl Scenario {
     /// ```
     /// use meshtone::scenario::{GearPair, Model, Scenario};
     ///
-    /// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+    /// let mut scenario = Scenario::new(GearPair::example());
     /// scenario.rig.eccentricity_mm = 0.02;
     /// assert!(scenario.ignored_by_model().is_empty());
     ///
@@ -84,14 +84,7 @@ mod tests {
     use crate::scenario::{GearPair, Profile};
 
     fn with_everything_ignored() -> Scenario {
-        let mut scenario = Scenario::new(GearPair {
-            module_mm: 3.0,
-            pinion_teeth: 17,
-            gear_teeth: 38,
-            face_width_mm: 15.0,
-            pinion_speed_hz: 40.0,
-            brake_torque_nm: 10.0,
-        });
+        let mut scenario = Scenario::new(GearPair::example());
         scenario.gears.tip_relief = None;
         scenario.gears.foundation.q[3] = 0.0;
         scenario.operation.speed_profile_hz =
@@ -108,14 +101,7 @@ mod tests {
         assert_eq!(scenario.as_honoured(), scenario);
         assert_eq!(scenario.ignored_by_model(), []);
         scenario.model = Model::Published;
-        let mut default = Scenario::new(GearPair {
-            module_mm: 3.0,
-            pinion_teeth: 17,
-            gear_teeth: 38,
-            face_width_mm: 15.0,
-            pinion_speed_hz: 40.0,
-            brake_torque_nm: 10.0,
-        });
+        let mut default = Scenario::new(GearPair::example());
         default.model = Model::Published;
         assert_eq!(scenario.as_honoured(), default);
         assert_eq!(default.ignored_by_model(), []);

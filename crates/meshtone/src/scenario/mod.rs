@@ -41,7 +41,7 @@ use crate::operation::{Motion, TimeGrid};
 /// ```
 /// use meshtone::scenario::{GearPair, Scenario};
 ///
-/// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+/// let mut scenario = Scenario::new(GearPair::example());
 /// scenario.quality.din_grade = 7;
 /// assert_eq!(scenario.gears.pressure_angle_deg, 20.0);
 /// ```
@@ -88,6 +88,28 @@ pub struct GearPair {
     pub brake_torque_nm: f64,
 }
 
+impl GearPair {
+    /// The pair of the paper's rig with a broken tooth: 17 and 38 teeth of module 3 mm and 15 mm wide, 40 rev/s and 10 N m. Examples and
+    /// tests use it.
+    ///
+    /// ```
+    /// use meshtone::scenario::GearPair;
+    ///
+    /// let stronger = GearPair { face_width_mm: 30.0, ..GearPair::example() };
+    /// assert_eq!((stronger.pinion_teeth, stronger.gear_teeth), (17, 38));
+    /// ```
+    pub fn example() -> Self {
+        Self {
+            module_mm: 3.0,
+            pinion_teeth: 17,
+            gear_teeth: 38,
+            face_width_mm: 15.0,
+            pinion_speed_hz: 40.0,
+            brake_torque_nm: 10.0,
+        }
+    }
+}
+
 impl Scenario {
     /// A healthy pair with every other key at its default.
     ///
@@ -117,7 +139,7 @@ impl Scenario {
     /// ```
     /// use meshtone::scenario::{Fault, GearPair, MissingTooth, Scenario};
     ///
-    /// let healthy = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+    /// let healthy = Scenario::new(GearPair::example());
     /// let missing = healthy.clone().with_faults(vec![Fault::on_first_gear_tooth(MissingTooth)]);
     /// assert_eq!(missing.with_faults(Vec::new()), healthy);
     /// ```

@@ -25,7 +25,7 @@ impl Keys for Scenario {
             row(
                 "model",
                 "",
-                "the model: teeth that touch and part, the theory of a linear mesh, or what the published code does, its slips included",
+                "the model: teeth that touch and part, the theory of a linear mesh, or what the published code does, its known errors included",
                 field!(model),
             ),
             row(

@@ -12,10 +12,7 @@ use super::Scenario;
 /// ```
 /// use meshtone::scenario::{GearPair, Scenario};
 ///
-/// let scenario = Scenario::new(GearPair {
-///     module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0,
-///     pinion_speed_hz: 40.0, brake_torque_nm: 10.0,
-/// });
+/// let scenario = Scenario::new(GearPair::example());
 /// let json = serde_json::to_value(&scenario)?;
 /// assert_eq!(json["gears"]["pinion_teeth"], 17);
 /// assert_eq!(serde_json::from_value::<Scenario>(json)?, scenario);

@@ -14,7 +14,7 @@ impl Scenario {
     ///
     /// let chip = ToothBreakage { chip_height_mm: 5.0, chip_width_mm: 12.0, tip_loss_mm: 0.0 };
     /// let faults = vec![Fault::on_first_gear_tooth(chip), Fault::new(Default::default(), 2, MissingTooth)];
-    /// let scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 }).with_faults(faults);
+    /// let scenario = Scenario::new(GearPair::example()).with_faults(faults);
     /// let severities = scenario.fault_severities()?;
     /// assert!((severities[0] - 0.40).abs() < 0.01);
     /// assert_eq!(severities[1], 1.0);

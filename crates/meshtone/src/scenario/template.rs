@@ -67,17 +67,7 @@ pub fn template(kind: &str) -> Option<String> {
 /// The pairs of the paper's experiments.
 fn of_the_paper(rig: PaperRig) -> Scenario {
     let (mut scenario, din_grade) = match rig {
-        PaperRig::Breakage => (
-            Scenario::new(GearPair {
-                module_mm: 3.0,
-                pinion_teeth: 17,
-                gear_teeth: 38,
-                face_width_mm: 15.0,
-                pinion_speed_hz: 40.0,
-                brake_torque_nm: 10.0,
-            }),
-            7,
-        ),
+        PaperRig::Breakage => (Scenario::new(GearPair::example()), 7),
         PaperRig::Destruction => (
             Scenario::new(GearPair {
                 module_mm: 3.0,

@@ -13,7 +13,7 @@ impl Scenario {
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};
     ///
-    /// let scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+    /// let scenario = Scenario::new(GearPair::example());
     /// let text = scenario.to_toml();
     /// assert!(text.starts_with("model = \"contact\"\nseed = 1\n"));
     /// assert_eq!(Scenario::from_toml(&text)?, scenario);

@@ -17,7 +17,7 @@ use crate::model::Model;
 ///
 /// let mut sensor = Sensor::default();
 /// sensor.resonance_hz = Some(12e3);
-/// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 })
+/// let mut scenario = Scenario::new(GearPair::example())
 ///     .with_sensors(vec![sensor]);
 /// scenario.solver.sampling_rate_hz = 2e4;
 /// let channels = meshtone::simulate(&scenario)?.channels;
@@ -150,7 +150,7 @@ impl Keys for Sensor {
             ),
             row("resonance_hz", "Hz", "the natural frequency of the sensor on its mount", field!(resonance_hz))
                 .otherwise("none")
-                .range(Range::positive().slip_above(1e7))
+                .range(Range::positive().implausible_above(1e7))
                 .example("12000.0"),
             row(
                 "resonance_damping_ratio",
@@ -158,7 +158,7 @@ impl Keys for Sensor {
                 "the damping ratio of that resonance",
                 field!(resonance_damping_ratio),
             )
-            .range(Range::positive().slip_above(10.0)),
+            .range(Range::positive().implausible_above(10.0)),
             row(
                 "noise_density_g_per_rthz",
                 "g/√Hz",
@@ -166,13 +166,13 @@ impl Keys for Sensor {
                  rate",
                 field!(noise_density_g_per_rthz),
             )
-            .range(Range::not_negative().slip_above(1e3)),
+            .range(Range::not_negative().implausible_above(1e3)),
             row("noise_seed", "", "the seed of the noise alone", field!(noise_seed))
                 .otherwise("the scenario's `seed`")
                 .example("1"),
             row("range_g", "g", "the largest acceleration, of either sign, that it shows", field!(range_g))
                 .otherwise("none")
-                .range(Range::positive().slip_above(1e9))
+                .range(Range::positive().implausible_above(1e9))
                 .example("50.0"),
             row("bits", "", "the resolution: the range from minus to plus has 2^bits steps", field!(bits))
                 .otherwise("none")
@@ -289,15 +289,8 @@ pub(super) fn is_name(name: &str) -> bool {
         && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_')
 }
 
-/// Names whose channels would be taken for others: those of columns beside the channels, and of earlier versions' channels.
-const TAKEN: [&str; 6] = [
-    "average",
-    "difference",
-    "enhanced_difference",
-    "horizontal_acceleration",
-    "vertical_acceleration",
-    "axial_acceleration",
-];
+/// Names whose channels would be taken for others: those of columns beside the channels.
+const TAKEN: [&str; 3] = ["average", "difference", "enhanced_difference"];
 
 fn check_name(name: &str) -> Check {
     let refused = |problem: String| Err(ScenarioError::new("sensor.name", format!("{name:?}"), problem));

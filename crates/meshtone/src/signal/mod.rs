@@ -10,7 +10,7 @@
 //! | synchronous average | [`synchronous_average`], [`segmented_averages`] |
 //! | separation | [`separate`] |
 //! | spectra and envelope | [`order_spectrum`], [`envelope`], [`envelope_spectrum`] |
-//! | whether it is of what is told | [`misfit`] |
+//! | whether it fits what the user stated | [`find_mismatch`] |
 //! | what was simulated | [`SimulatedShafts`], whose phase the scenario says |
 //! | indicators | [`Indicators`], [`fm0`], [`fm4`], [`m6a`], [`m8a`], [`na4`], [`energy_ratio`], [`sideband_level_factor`] |
 
@@ -25,6 +25,7 @@ mod filter_bank;
 mod indicators;
 mod interpolate;
 mod kaiser;
+mod mismatch;
 mod octaves;
 mod phase;
 mod record;
@@ -33,7 +34,6 @@ mod separation;
 mod simulated;
 mod spectrum;
 mod statistics;
-mod told;
 mod warning;
 
 pub use angular::{AngularSettings, AngularSignal, Interpolation, angular_resample, points_per_revolution};
@@ -48,6 +48,7 @@ pub use indicators::{
 };
 pub use interpolate::{interpolate_band_limited, interpolate_pchip};
 pub use kaiser::kaiser;
+pub use mismatch::{Alternative, Evidence, Mismatch, StatedFacts, StatedTurning, find_mismatch};
 pub use octaves::{OCTAVES, OctaveBand, octave_bands};
 pub use phase::{
     AngleZero, MeshTone, PulseEdge, PulseTrain, ShaftPhase, Tachometer, repair_pulses, tachometer_pulses,
@@ -65,5 +66,4 @@ pub use statistics::{
     central_moment, crest_factor, kurtosis, peak, peak_to_peak, rms, skewness, standard_deviation,
     standardised_moment,
 };
-pub use told::{Evidence, Likelier, Misfit, Told, ToldTurning, misfit};
 pub use warning::SignalWarning;

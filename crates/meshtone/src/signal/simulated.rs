@@ -131,7 +131,7 @@ impl SimulatedShafts {
     /// use meshtone::scenario::{GearPair, Scenario};
     /// use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
     ///
-    /// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 20, gear_teeth: 40, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+    /// let mut scenario = Scenario::new(GearPair { pinion_teeth: 20, gear_teeth: 40, ..GearPair::example() });
     /// scenario.solver.sampling_rate_hz = 1e4;
     /// let channels = meshtone::simulate(&scenario)?.channels;
     /// let shafts = SimulatedShafts::of_channels(&scenario, &channels);
@@ -177,7 +177,7 @@ impl SimulatedShafts {
     /// use meshtone::scenario::{GearPair, Scenario};
     /// use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
     ///
-    /// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 20, gear_teeth: 40, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+    /// let mut scenario = Scenario::new(GearPair { pinion_teeth: 20, gear_teeth: 40, ..GearPair::example() });
     /// scenario.solver.sampling_rate_hz = 1e4;
     /// let channels = meshtone::simulate(&scenario)?.channels;
     /// let shafts = SimulatedShafts::of_channels(&scenario, &channels);

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::Misfit;
+use super::Mismatch;
 
 /// Something about a recording that leaves the result right but that its user should know.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -74,7 +74,7 @@ pub enum SignalWarning {
         /// (-) Part of the Nyquist order up to which the interpolation passes a tone with less than 5 % of loss.
         passed: f64,
     },
-    /// The recording is hardly of what is told: [`super::misfit`].
+    /// The recording hardly fits what is stated: [`super::find_mismatch`].
     #[error("{0}")]
-    DoesNotFit(Misfit),
+    DoesNotFit(Mismatch),
 }

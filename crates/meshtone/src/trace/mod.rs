@@ -29,7 +29,7 @@ pub struct TraceField {
 /// ```
 /// use meshtone::scenario::{GearPair, Scenario};
 ///
-/// let stages = meshtone::stages(&Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 }))?;
+/// let stages = meshtone::stages(&Scenario::new(GearPair::example()))?;
 /// let trace = meshtone::stage_trace(&stages);
 /// assert_eq!(trace.get("natural_frequencies_hz").map(|field| field.values.len()), Some(17));
 /// # Ok::<(), meshtone::Error>(())

@@ -85,7 +85,7 @@ impl DifferenceChain {
 /// use meshtone::tuning::{DifferenceChain, difference_signals};
 /// use meshtone::scenario::{Fault, GearPair, MissingTooth, Scenario};
 ///
-/// let mut healthy = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+/// let mut healthy = Scenario::new(GearPair::example());
 /// healthy.quality.din_grade = 7;
 /// let broken = healthy.clone().with_faults(vec![Fault::on_first_gear_tooth(MissingTooth)]);
 /// let signals = difference_signals(vec![healthy, broken], &DifferenceChain::new(25e3))?;

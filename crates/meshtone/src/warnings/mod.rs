@@ -34,7 +34,7 @@ const TOLERATED_DEFLECTION: f64 = 0.1;
 /// ```
 /// use meshtone::scenario::{GearPair, MemoryLimit, Scenario};
 ///
-/// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 14, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+/// let mut scenario = Scenario::new(GearPair { pinion_teeth: 14, ..GearPair::example() });
 /// scenario.solver.sampling_rate_hz = 2e4;
 /// let (stages, warnings) = meshtone::stages_and_warnings(&scenario, MemoryLimit::default())?;
 /// assert_eq!(warnings[0].key, "gears.pinion_teeth");

@@ -22,7 +22,7 @@ const SHIFTS: [f64; 5] = [-0.01, -0.005, 0.0, 0.005, 0.01];
 
 /// (-) Estimate above which a simulation is repeated.
 const SUSPICIOUS: f64 = 0.02;
-/// (-) Estimate that is told without a repetition. Linear records of the healthy example's machine are estimated at 1.4 to 3.2 %, and
+/// (-) Estimate that is reported without a repetition. Linear records of the healthy example's machine are estimated at 1.4 to 3.2 %, and
 /// change by 0.1 to 0.4 %.
 const CERTAIN: f64 = 0.1;
 
@@ -45,7 +45,7 @@ pub(super) enum StepError {
 pub enum StepJudgement {
     /// By a second simulation, with half the step: it takes twice as long as the first.
     Repeated,
-    /// By the estimate alone, where that is 10 % or more. It is a bound: errors of a few per cent are not told.
+    /// By the estimate alone, where that is 10 % or more. It is a bound: errors of a few per cent are not reported.
     Estimated,
 }
 

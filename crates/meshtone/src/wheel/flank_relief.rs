@@ -59,7 +59,7 @@ impl Keys for FlankRelief {
                 "how far the flank lies back at the tip, along its normal; usually 10 to 40",
                 field!(amount_um),
             )
-            .range(Range::not_negative().slip_above(1000.0)),
+            .range(Range::not_negative().implausible_above(1000.0)),
         ]
     }
 }

@@ -107,7 +107,7 @@ impl Keys for Gears {
         vec![
             row("module_mm", "mm", "the module of both wheels", field!(module_mm))
                 .required()
-                .range(Range::positive().slip_above(100.0)),
+                .range(Range::positive().implausible_above(100.0)),
             row("pinion_teeth", "", "the tooth count", field!(pinion_teeth))
                 .required()
                 .range(TEETH)
@@ -120,7 +120,7 @@ impl Keys for Gears {
                 .rule("contact ratio at least 1; undercut (fewer than 17 at 20°) is left out, with a warning"),
             row("face_width_mm", "mm", "the face width of both wheels", field!(face_width_mm))
                 .required()
-                .range(Range::positive().slip_above(10_000.0)),
+                .range(Range::positive().implausible_above(10_000.0)),
             row("pressure_angle_deg", "°", "the pressure angle at the pitch circle", field!(pressure_angle_deg))
                 .range(Range::from_to(10.0, 35.0).help("usual pressure angles are 14.5°, 20° and 25°"))
                 .rule("no teeth pointed below full height"),

@@ -41,7 +41,7 @@ impl Gears {
             below("gears.flank_relief.length_mm", relief.length_mm, 2.0 * self.module_mm, "2 modules")?;
         }
         below("gears.tip_chamfer_mm", self.chamfer_mm(), self.module_mm, "the module")?;
-        // The default grows with the centre distance: it is no slip of the user's.
+        // The default grows with the centre distance: it is no typing error of the user.
         if let Some(backlash_mm) = self.backlash_mm {
             below("gears.backlash_mm", backlash_mm, self.module_mm, "the module")?;
         }

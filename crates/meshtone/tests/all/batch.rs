@@ -12,12 +12,11 @@ use meshtone::simulate;
 
 fn small(pinion: u32, gear: u32, damage: Option<Damage>) -> Scenario {
     let mut scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
         pinion_teeth: pinion,
         gear_teeth: gear,
-        face_width_mm: 15.0,
         pinion_speed_hz: 30.0,
         brake_torque_nm: 60.0,
+        ..GearPair::example()
     });
     scenario.model = Model::Linear;
     scenario.gears.points_per_tooth = 1000;

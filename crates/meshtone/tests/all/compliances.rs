@@ -359,9 +359,9 @@ fn unsymmetric_bending_from_equilibrium() {
         compliance(&wheel, &profile, &section).bending_mm_per_n[points - 1]
     };
     assert_close("unsymmetric bending", 1e-11, [(value(false), exact + trapezoid)]);
-    let slip = deviation(value(true), exact + trapezoid);
-    println!("unsymmetric bending with the published sign of the coupling: {:.1} %", 100.0 * slip);
-    assert!(slip.abs() > 0.01, "the section is asymmetric enough to tell the two signs apart");
+    let difference = deviation(value(true), exact + trapezoid);
+    println!("unsymmetric bending with the published sign of the coupling: {:.1} %", 100.0 * difference);
+    assert!(difference.abs() > 0.01, "the section is asymmetric enough to tell the two signs apart");
 }
 
 #[test]

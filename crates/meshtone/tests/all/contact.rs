@@ -14,9 +14,8 @@ fn pair(module_mm: f64, pinion_teeth: u32, gear_teeth: u32, brake_torque_nm: f64
         module_mm,
         pinion_teeth,
         gear_teeth,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
         brake_torque_nm,
+        ..GearPair::example()
     });
     scenario.model = Model::Contact;
     scenario

@@ -182,14 +182,7 @@ fn the_middle_of_what_bears_acts_as_its_slices_do() {
         ),
     ];
     for (name, brake_torque_nm, most, damage) in damages {
-        let mut scenario = Scenario::new(GearPair {
-            module_mm: 3.0,
-            pinion_teeth: 17,
-            gear_teeth: 38,
-            face_width_mm: 15.0,
-            pinion_speed_hz: 40.0,
-            brake_torque_nm,
-        });
+        let mut scenario = Scenario::new(GearPair { brake_torque_nm, ..GearPair::example() });
         scenario.model = Model::Contact;
         scenario.solver.settle_fraction = 0.0;
         scenario.faults = vec![Fault::on_first_gear_tooth(damage)];
@@ -227,14 +220,7 @@ fn an_end_of_the_face_acts_as_its_slices_do() {
         (-10.0, 10.0, Some(broken)),
         (10.0, 100.0, Some(broken)),
     ] {
-        let mut scenario = Scenario::new(GearPair {
-            module_mm: 3.0,
-            pinion_teeth: 17,
-            gear_teeth: 38,
-            face_width_mm: 15.0,
-            pinion_speed_hz: 40.0,
-            brake_torque_nm,
-        });
+        let mut scenario = Scenario::new(GearPair { brake_torque_nm, ..GearPair::example() });
         scenario.model = Model::Contact;
         scenario.solver.settle_fraction = 0.0;
         scenario.faults = damage.map(Fault::on_first_gear_tooth).into_iter().collect();

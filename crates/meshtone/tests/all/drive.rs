@@ -8,12 +8,11 @@ use meshtone::simulate;
 
 fn pair() -> Scenario {
     let mut scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
         pinion_teeth: 20,
         gear_teeth: 40,
-        face_width_mm: 15.0,
         pinion_speed_hz: 30.0,
         brake_torque_nm: 20.0,
+        ..GearPair::example()
     });
     scenario.model = Model::Linear;
     scenario.gears.points_per_tooth = 2_000;

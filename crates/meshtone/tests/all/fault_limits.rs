@@ -16,12 +16,11 @@ fn scenario(damage: Option<Damage>) -> Scenario {
 
 fn sampled_scenario(damage: Option<Damage>, sampling_rate_hz: f64) -> Scenario {
     let mut scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
         pinion_teeth: 20,
         gear_teeth: 40,
-        face_width_mm: 15.0,
         pinion_speed_hz: 30.0,
         brake_torque_nm: 100.0,
+        ..GearPair::example()
     });
     scenario.model = Model::Linear;
     scenario.solver.sampling_rate_hz = sampling_rate_hz;

@@ -11,14 +11,7 @@ use meshtone::{Simulation, simulate, stages};
 
 /// Ideal wheels of 17 and 38 teeth.
 fn pair(faults: Vec<Fault>) -> Scenario {
-    let mut scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 60.0,
-    });
+    let mut scenario = Scenario::new(GearPair { brake_torque_nm: 60.0, ..GearPair::example() });
     scenario.model = Model::Linear;
     scenario.gears.points_per_tooth = 2_000;
     scenario.solver.sampling_rate_hz = 2e4;

@@ -207,14 +207,7 @@ fn indicators_of_the_envelope_can_be_tuned_by() {
 #[test]
 fn difference_signals_of_any_speed_and_rate() {
     for (speed_hz, has_profile) in [(24.6, false), (24.583, false), (29.17, false), (31.415_926_535, true)] {
-        let gears = GearPair {
-            module_mm: 3.0,
-            pinion_teeth: 17,
-            gear_teeth: 38,
-            face_width_mm: 15.0,
-            pinion_speed_hz: speed_hz,
-            brake_torque_nm: 10.0,
-        };
+        let gears = GearPair { pinion_speed_hz: speed_hz, ..GearPair::example() };
         let mut scenario = Scenario::new(gears).with_faults(vec![Fault::on_first_gear_tooth(MissingTooth)]);
         scenario.model = Model::Linear;
         if has_profile {

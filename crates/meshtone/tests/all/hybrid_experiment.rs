@@ -10,12 +10,10 @@ use meshtone::tuning::*;
 /// Tooth counts with a large common factor need few samples a revolution.
 fn base() -> Scenario {
     let mut scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
         pinion_teeth: 20,
         gear_teeth: 40,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
         brake_torque_nm: 200.0,
+        ..GearPair::example()
     });
     scenario.model = Model::Linear;
     scenario.quality.din_grade = 8;

@@ -14,14 +14,7 @@ const HIDDEN_DAMPING: f64 = 0.09;
 const RECORDS: u64 = 30;
 
 fn base() -> Scenario {
-    let mut scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    });
+    let mut scenario = Scenario::new(GearPair::example());
     scenario.model = Model::Linear;
     scenario.quality.din_grade = 7;
     scenario.solver.sampling_rate_hz = 6e4;

@@ -22,12 +22,9 @@ fn level_the_mesh(stages: &mut Stages) {
 /// rigid rotation is subtracted.
 fn constant_stiffness(sampling_rate_hz: f64, damping_ratio: f64, torque_nm: f64, seconds: f64) -> Stages {
     let mut scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
         pinion_speed_hz: PINION_SPEED_HZ,
         brake_torque_nm: torque_nm,
+        ..GearPair::example()
     });
     scenario.model = Model::Linear;
     scenario.gears.points_per_tooth = 1000;
@@ -141,14 +138,7 @@ fn push() -> CoordinateVector {
 
 /// Smoothly forced, all coordinates pushed, and no mode beyond what the coarsest step resolves.
 fn smoothly_forced(sampling_rate_hz: f64, seconds: f64) -> Stages {
-    let mut scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
-        pinion_speed_hz: PINION_SPEED_HZ,
-        brake_torque_nm: 10.0,
-    });
+    let mut scenario = Scenario::new(GearPair { pinion_speed_hz: PINION_SPEED_HZ, ..GearPair::example() });
     scenario.model = Model::Linear;
     scenario.gears.points_per_tooth = 1000;
     // Tilting at some 5 kHz instead of 100 kHz and more, and every mode damped otherwise.

@@ -8,14 +8,8 @@ use meshtone::scenario::{GearPair, Model, Scenario};
 use meshtone::{simulate, stages};
 
 fn pair(module_mm: f64, pinion_teeth: u32, gear_teeth: u32, face_width_mm: f64) -> Scenario {
-    let mut scenario = Scenario::new(GearPair {
-        module_mm,
-        pinion_teeth,
-        gear_teeth,
-        face_width_mm,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    });
+    let mut scenario =
+        Scenario::new(GearPair { module_mm, pinion_teeth, gear_teeth, face_width_mm, ..GearPair::example() });
     scenario.model = Model::Linear;
     scenario.gears.tip_relief = None;
     scenario.rig.pinion_shaft.radius_mm = 10.0;

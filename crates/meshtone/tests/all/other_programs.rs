@@ -441,14 +441,7 @@ fn natural_frequencies_of_a_pair_with_8_coordinates() {
 // Without the mesh every wheel stands alone on its bearings and its shaft; only the gear shares its shaft with the brake.
 #[test]
 fn natural_frequencies_without_the_mesh() {
-    let mut scenario = meshtone::scenario::Scenario::new(meshtone::scenario::GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    });
+    let mut scenario = meshtone::scenario::Scenario::new(meshtone::scenario::GearPair::example());
     scenario.model = meshtone::scenario::Model::Linear;
     scenario.gears.points_per_tooth = 1_000;
     let system = meshtone::stages(&scenario).unwrap().system;

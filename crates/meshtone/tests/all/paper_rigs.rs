@@ -26,14 +26,7 @@ pub fn rig(name: &str, model: Model) -> (Scenario, f64) {
         };
         (pair, 8, 50e3)
     } else {
-        let pair = GearPair {
-            module_mm: 3.0,
-            pinion_teeth: 17,
-            gear_teeth: 38,
-            face_width_mm: 15.0,
-            pinion_speed_hz: 40.0,
-            brake_torque_nm: 10.0,
-        };
+        let pair = GearPair::example();
         (pair, 7, 25e3)
     };
     let mut scenario = Scenario::new(pair);

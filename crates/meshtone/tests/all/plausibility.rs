@@ -8,14 +8,7 @@ use meshtone::scenario::{
 use meshtone::{Simulation, simulate};
 
 fn pair() -> Scenario {
-    Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    })
+    Scenario::new(GearPair::example())
 }
 
 fn about<'a>(warnings: &'a [ScenarioWarning], key: &str) -> Option<&'a str> {

@@ -105,14 +105,7 @@ fn torques_balance_with_a_broken_tooth() {
 // gear's and the pinion's mean torques balance. What the load asks for is 187 N and 4.5 N m.
 #[test]
 fn published_damping_takes_power_from_the_rigid_rotation() {
-    let mut scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    });
+    let mut scenario = Scenario::new(GearPair::example());
     scenario.model = Model::Published;
     let [motor, brake, force] = means(&scenario);
     println!("published: motor {motor:.3} N m, brake {brake:.3} N m, mesh {force:.2} N");

@@ -160,14 +160,7 @@ fn a_disc_of_the_v_circle_has_the_wheels_mass() {
 }
 
 fn scenario(model: Model) -> Scenario {
-    let mut scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    });
+    let mut scenario = Scenario::new(GearPair::example());
     scenario.model = model;
     scenario.gears.tip_relief = None;
     scenario.gears.points_per_tooth = 2_000;

@@ -96,12 +96,11 @@ fn scenarios_with(faults: impl Strategy<Value = Vec<Fault>>) -> impl Strategy<Va
         .prop_map(
             |((unit, (z1, z2)), faults, (bearing, damping, radius), speed, torque, angle, seed)| {
                 let mut scenario = Scenario::new(GearPair {
-                    module_mm: 3.0,
                     pinion_teeth: unit * z1,
                     gear_teeth: unit * z2,
-                    face_width_mm: 15.0,
                     pinion_speed_hz: speed,
                     brake_torque_nm: torque,
+                    ..GearPair::example()
                 });
                 scenario.model = Model::Linear;
                 scenario.seed = seed;
@@ -241,14 +240,7 @@ fn most_faults_of_every_kind_fit() {
 // The exception below: a shallow through pit near the tip.
 #[test]
 fn a_through_pit_can_make_the_pair_stiffer() {
-    let mut scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 20,
-        gear_teeth: 20,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    });
+    let mut scenario = Scenario::new(GearPair { pinion_teeth: 20, gear_teeth: 20, ..GearPair::example() });
     scenario.model = Model::Linear;
     scenario.gears.pressure_angle_deg = 17.5;
     scenario.gears.tip_relief = None;

@@ -62,14 +62,7 @@ pub fn scenario(name: &str, reference: &Reference) -> Scenario {
             brake_torque_nm: 15.0,
         })
     } else {
-        Scenario::new(GearPair {
-            module_mm: 3.0,
-            pinion_teeth: 17,
-            gear_teeth: 38,
-            face_width_mm: 15.0,
-            pinion_speed_hz: 40.0,
-            brake_torque_nm: 10.0,
-        })
+        Scenario::new(GearPair::example())
     };
     scenario.model = Model::Published;
     if name.ends_with("din7") {

@@ -11,14 +11,8 @@ fn some_pitches_have_a_point_more() {
     for (module_mm, pinion_teeth, gear_teeth, longer, length) in
         [(2.0, 20, 45, true, Some(45_361)), (2.0, 25, 30, true, Some(24_121)), (3.0, 17, 38, false, None)]
     {
-        let mut scenario = Scenario::new(GearPair {
-            module_mm,
-            pinion_teeth,
-            gear_teeth,
-            face_width_mm: 15.0,
-            pinion_speed_hz: 40.0,
-            brake_torque_nm: 10.0,
-        });
+        let mut scenario =
+            Scenario::new(GearPair { module_mm, pinion_teeth, gear_teeth, ..GearPair::example() });
         scenario.model = Model::Published;
         let stages = stages(&scenario).unwrap();
         let cycle = &stages.cycle;

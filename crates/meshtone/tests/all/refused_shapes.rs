@@ -9,14 +9,8 @@ use meshtone::scenario::{Fault, GearPair, MissingTooth, Model, Profile, Scenario
 fn relief_leaves_some_of_the_tip() {
     for teeth in [17, 60] {
         for module in [1.3, 1.4, 1.5, 1.6, 2.0, 3.0] {
-            let mut scenario = Scenario::new(GearPair {
-                module_mm: module,
-                pinion_teeth: teeth,
-                gear_teeth: 38,
-                face_width_mm: 15.0,
-                pinion_speed_hz: 40.0,
-                brake_torque_nm: 10.0,
-            });
+            let mut scenario =
+                Scenario::new(GearPair { module_mm: module, pinion_teeth: teeth, ..GearPair::example() });
             scenario.model = Model::Linear;
             scenario.rig.pinion_shaft.radius_mm = 4.0;
             let refused = scenario.validate().err().map(|error| error.key);
@@ -27,14 +21,7 @@ fn relief_leaves_some_of_the_tip() {
             assert!(pairs(&stages).classes[0].stiffness_n_per_m.iter().all(|k| *k > 1e7));
         }
     }
-    let mut crowned = Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    });
+    let mut crowned = Scenario::new(GearPair::example());
     crowned.model = Model::Linear;
     crowned.gears.tip_relief = None;
     crowned.gears.crowning_mm = 1.3;
@@ -44,14 +31,8 @@ fn relief_leaves_some_of_the_tip() {
 // What the rule computes is what the profile has.
 #[test]
 fn the_limit_is_the_profiles_own() {
-    let mut scenario = Scenario::new(GearPair {
-        module_mm: 2.0,
-        pinion_teeth: 25,
-        gear_teeth: 30,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    });
+    let mut scenario =
+        Scenario::new(GearPair { module_mm: 2.0, pinion_teeth: 25, gear_teeth: 30, ..GearPair::example() });
     scenario.model = Model::Linear;
     scenario.gears.tip_relief.as_mut().unwrap().depth_mm = 0.0;
     let stages = meshtone::stages(&scenario).unwrap();
@@ -69,14 +50,7 @@ fn the_limit_is_the_profiles_own() {
 
 #[test]
 fn a_speed_profile_outlasts_the_settling() {
-    let mut scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    });
+    let mut scenario = Scenario::new(GearPair::example());
     scenario.model = Model::Linear;
     let profile = |end: f64| Some(Profile { time_s: vec![0.0, end], value: vec![40.0, 41.0] });
     // Half of 76 revolutions at 40 Hz are discarded: 0.95 s.
@@ -92,14 +66,7 @@ fn a_speed_profile_outlasts_the_settling() {
 
 #[test]
 fn wheels_without_a_tooth_are_refused() {
-    let pair = GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    };
+    let pair = GearPair::example();
     let all = |wheel, teeth| (1..=teeth).map(|tooth| Fault::new(wheel, tooth, MissingTooth)).collect();
     for model in [Model::Linear, Model::Contact] {
         for faults in [all(WheelName::Gear, 38), all(WheelName::Pinion, 17)] {

@@ -199,14 +199,8 @@ fn a_broken_tooth_may_be_cracked() {
 
 /// A scenario of the pair under a model.
 fn scenario(model: Model, faults: Vec<Fault>) -> Scenario {
-    let mut scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: WIDTH_MM,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 60.0,
-    });
+    let mut scenario =
+        Scenario::new(GearPair { face_width_mm: WIDTH_MM, brake_torque_nm: 60.0, ..GearPair::example() });
     scenario.model = model;
     scenario.faults = faults;
     scenario

@@ -180,13 +180,8 @@ fn numbers_of_faults_are_edited_by_their_keys() {
 }
 
 #[test]
-fn the_old_name_of_the_model_is_told_its_new_one() {
+fn the_model_is_read_by_its_name() {
     let named = |line: &str| format!("{line}\n{}", support::REQUIRED);
-    let corrected = named("convention = \"corrected\"");
-    assert_refused(&corrected, "convention", 1, &["is called `model` now", "write model = \"linear\""]);
-    let published = named("convention = \"published\"");
-    assert_refused(&published, "convention", 1, &["write model = \"published\""]);
-    assert_refused(&named("model = \"corrected\""), "model", 1, &["is called \"linear\" now"]);
     assert_refused(&named("model = \"contacts\""), "model", 1, &["\"linear\", \"published\""]);
     assert_eq!(Scenario::from_toml(&named("model = \"contact\"")).unwrap().model, Model::Contact);
     assert_eq!(Scenario::from_toml(&named("model = \"published\"")).unwrap().model, Model::Published);

@@ -215,7 +215,7 @@ fn unknown_keys() {
     let of_drawing = replaced("pinion_speed_hz = 40.0", "pinion_speed_rpm = 1476");
     let words = ["while `pinion_speed_hz` is missing, which is (rev/s)", "did you mean `pinion_speed_hz`?"];
     assert_refused(&of_drawing, "operation.pinion_speed_rpm", 7, &words);
-    // Both a slip and a missing key: the slip is what the user has to mend.
+    // Both a misspelt and a missing key: the misspelt one is what the user has to mend.
     assert_refused(&replaced("gear_teeth = 38", "gear_width = 38"), "gears.gear_teeth", 1, &["missing"]);
 }
 

@@ -300,14 +300,7 @@ fn solver() -> impl Strategy<Value = Solver> {
 
 /// Any scenario, whose every part is then another.
 fn base() -> Scenario {
-    Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    })
+    Scenario::new(GearPair::example())
 }
 
 fn scenario() -> impl Strategy<Value = Scenario> {
@@ -347,14 +340,7 @@ proptest! {
 
 #[test]
 fn sections_come_in_the_order_of_the_documentation() {
-    let mut scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    });
+    let mut scenario = Scenario::new(GearPair::example());
     scenario.faults = vec![Fault::on_first_gear_tooth(MissingTooth)];
     let text = scenario.to_toml();
     let headers: Vec<&str> = text.lines().filter(|line| line.starts_with('[')).collect();
@@ -363,14 +349,7 @@ fn sections_come_in_the_order_of_the_documentation() {
 
 #[test]
 fn a_number_that_is_none_is_written_and_refused() {
-    let mut scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    });
+    let mut scenario = Scenario::new(GearPair::example());
     scenario.rig.eccentricity_mm = f64::NAN;
     let error = Scenario::from_toml(&scenario.to_toml()).unwrap_err();
     assert_eq!((error.key.as_str(), error.value.as_str()), ("rig.eccentricity_mm", "nan"));

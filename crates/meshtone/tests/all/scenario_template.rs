@@ -38,14 +38,7 @@ fn templates_are_of_the_two_machines() {
                 pinion_speed_hz: 45.0,
                 brake_torque_nm: 15.0,
             }),
-            _ => Scenario::new(GearPair {
-                module_mm: 3.0,
-                pinion_teeth: 17,
-                gear_teeth: 38,
-                face_width_mm: 15.0,
-                pinion_speed_hz: 40.0,
-                brake_torque_nm: 10.0,
-            }),
+            _ => Scenario::new(GearPair::example()),
         };
         expected.quality.din_grade = if kind == "tooth-destruction" { 8 } else { 7 };
         expected.faults.clone_from(&scenario.faults);

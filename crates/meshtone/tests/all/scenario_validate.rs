@@ -53,14 +53,8 @@ fn gears_out_of_range() {
 #[test]
 fn undercut_is_a_warning() {
     let warned = |pinion, gear, angle| {
-        let mut scenario = Scenario::new(GearPair {
-            module_mm: 3.0,
-            pinion_teeth: pinion,
-            gear_teeth: gear,
-            face_width_mm: 15.0,
-            pinion_speed_hz: 40.0,
-            brake_torque_nm: 10.0,
-        });
+        let mut scenario =
+            Scenario::new(GearPair { pinion_teeth: pinion, gear_teeth: gear, ..GearPair::example() });
         scenario.gears.pressure_angle_deg = angle;
         let warnings = scenario.validate().unwrap();
         warnings.into_iter().map(|warning| (warning.key, warning.message)).collect::<Vec<_>>()
@@ -226,14 +220,7 @@ fn rig_and_solver_out_of_range() {
 
 #[test]
 fn values_that_only_code_can_give() {
-    let base = Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    });
+    let base = Scenario::new(GearPair::example());
     let refused = |change: &dyn Fn(&mut Scenario)| {
         let mut scenario = base.clone();
         change(&mut scenario);
@@ -269,14 +256,7 @@ fn values_that_only_code_can_give() {
 
 #[test]
 fn transposed_profile_errors_are_recognised() {
-    let mut scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    });
+    let mut scenario = Scenario::new(GearPair::example());
     scenario.quality.profile_errors = Some(ProfileErrors {
         pinion_profile_errors_mm: ErrorTable::filled(17, 100, 0.0),
         gear_profile_errors_mm: ErrorTable::filled(100, 38, 0.0),
@@ -290,14 +270,7 @@ fn transposed_profile_errors_are_recognised() {
 
 #[test]
 fn sampling_rates_of_the_published_model() {
-    let healthy = Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    });
+    let healthy = Scenario::new(GearPair::example());
     let destruction = Scenario::new(GearPair {
         module_mm: 3.0,
         pinion_teeth: 18,

@@ -47,14 +47,7 @@ fn the_kept_signal_is_that_of_the_long_settling() {
             noise_mm: 0.0,
         })),
     ] {
-        let mut scenario = Scenario::new(GearPair {
-            module_mm: 3.0,
-            pinion_teeth: 17,
-            gear_teeth: 38,
-            face_width_mm: 15.0,
-            pinion_speed_hz: 40.0,
-            brake_torque_nm: 60.0,
-        });
+        let mut scenario = Scenario::new(GearPair { brake_torque_nm: 60.0, ..GearPair::example() });
         scenario.model = Model::Linear;
         scenario.quality.din_grade = 7;
         scenario.faults = damage.map(Fault::on_first_gear_tooth).into_iter().collect();
@@ -76,14 +69,7 @@ fn the_kept_signal_is_that_of_the_long_settling() {
 
 #[test]
 fn what_does_not_repeat_settles_for_long() {
-    let mut steady = Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 60.0,
-    });
+    let mut steady = Scenario::new(GearPair { brake_torque_nm: 60.0, ..GearPair::example() });
     steady.model = Model::Linear;
     let start = |change: &dyn Fn(&mut Scenario)| {
         let mut scenario = steady.clone();

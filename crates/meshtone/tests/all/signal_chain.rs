@@ -213,14 +213,7 @@ fn response_of_the_resampling_filter() {
 // A simulated run-up: over time the mesh lines are smeared, over the angle of the shaft each is one order wide.
 #[test]
 fn a_run_up_has_mesh_lines_one_bin_wide() {
-    let mut scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    });
+    let mut scenario = Scenario::new(GearPair::example());
     scenario.model = Model::Linear;
     scenario.solver.sampling_rate_hz = 5e4;
     let profile = Profile { time_s: vec![0.0, 1.0, 3.0], value: vec![20.0, 20.0, 60.0] };

@@ -10,12 +10,10 @@ use meshtone::{Error, simulate};
 #[test]
 fn contact_that_is_lost() {
     let mut scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
         pinion_teeth: 10,
         gear_teeth: 11,
-        face_width_mm: 15.0,
         pinion_speed_hz: 150.0,
-        brake_torque_nm: 10.0,
+        ..GearPair::example()
     });
     scenario.model = Model::Linear;
     scenario.rig.pinion_shaft.radius_mm = 4.2;
@@ -40,14 +38,7 @@ fn contact_that_is_lost() {
 // Nothing bears while many neighbours pass: more damping is no help, and the message says which faults take the teeth.
 #[test]
 fn neighbours_that_are_missing_are_named() {
-    let pair = GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    };
+    let pair = GearPair::example();
     for (model, together) in [(Model::Contact, 20), (Model::Linear, 30)] {
         let mut scenario = Scenario::new(pair);
         scenario.model = model;

@@ -158,14 +158,8 @@ fn the_strip_narrows_with_the_number_of_teeth() {
 
 /// Scenario of ideal wheels, or of wheels of a grade.
 fn scenario(model: Model, pinion_speed_hz: f64, din_grade: u8, faults: Vec<Fault>) -> Scenario {
-    let mut scenario = Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 17,
-        gear_teeth: 38,
-        face_width_mm: 15.0,
-        pinion_speed_hz,
-        brake_torque_nm: 60.0,
-    });
+    let mut scenario =
+        Scenario::new(GearPair { pinion_speed_hz, brake_torque_nm: 60.0, ..GearPair::example() });
     scenario.model = model;
     scenario.quality.din_grade = din_grade;
     scenario.faults = faults;

@@ -123,12 +123,12 @@ impl Candidate {
             .iter()
             .zip(&kinds)
             .all(|(cell, kind)| !matches!(kind, Cell::Number(_)) || cell.iter().all(u8::is_ascii_digit));
-        // Names come in rows; a single cell that is nearly a number is a sample with a slip in it.
-        let slip = texts == 1 && judged.iter().any(|cell| self.dialect.is_spoiled_number(cell));
+        // Names come in rows; a single cell that is nearly a number is a sample with a typing error in it.
+        let is_spoiled = texts == 1 && judged.iter().any(|cell| self.dialect.is_spoiled_number(cell));
         let all_missing = judged.iter().all(|cell| is_missing(cell));
         only_counts
             && texts > 0
-            && !slip
+            && !is_spoiled
             && !all_missing
             && (texts > numbers || kinds.first() == Some(&Cell::Text))
     }

@@ -48,7 +48,7 @@ impl Dialect {
         fast_float2::parse(with_point).map_or(Cell::Text, Cell::Number)
     }
 
-    /// Whether a cell is a number with a slip in it, such as `0.1x2`, `1..5` or `2.5e`, and no name such as `0.5Hz`, `1X` or a date.
+    /// Whether a cell is a number with a typing error in it, such as `0.1x2`, `1..5` or `2.5e`, and no name such as `0.5Hz`, `1X` or a date.
     pub(super) fn is_spoiled_number(&self, cell: &[u8]) -> bool {
         let sign = if self.decimal_comma { b',' } else { b'.' };
         let digits = |text: &[u8]| text.iter().take_while(|byte| byte.is_ascii_digit()).count();

@@ -37,7 +37,7 @@ impl Scenario {
     ///     brake_torque_nm = 10.0
     ///     "#,
     /// )?;
-    /// assert_eq!(scenario, Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 }));
+    /// assert_eq!(scenario, Scenario::new(GearPair::example()));
     /// # Ok::<(), meshtone::scenario::ScenarioError>(())
     /// ```
     pub fn from_toml(text: &str) -> Result<Self, ScenarioError> {
@@ -122,11 +122,6 @@ fn read_and_validate(
 }
 
 fn read_scenario(root: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<Scenario> {
-    root.refuse_renamed("convention", "is called `model` now", |value| match value {
-        Some("corrected") => "write model = \"linear\"".to_string(),
-        Some("published") => "write model = \"published\"".to_string(),
-        _ => "write model = \"linear\" or model = \"published\"".to_string(),
-    })?;
     let mut scenario = Scenario::start();
     read_keys(&mut scenario, root, files)?;
     section(&mut scenario.gears, root, "gears", files)?;

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// (bytes) Most memory that one simulation, or what is read of one file, may take unless another limit is
-/// [set](MemoryLimit::set): 8 GiB. What needs more is a slip in a tooth count, a speed or a sampling rate rather than a wish.
+/// [set](MemoryLimit::set): 8 GiB. A scenario that needs more most likely has a typing error in a tooth count, a speed or a sampling rate.
 pub const MEMORY_LIMIT_BYTES: u64 = 8 << 30;
 
 /// (bytes) What was set for the whole program; 0 for nothing.

@@ -27,7 +27,7 @@ impl Scenario {
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};
     ///
-    /// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 14, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+    /// let mut scenario = Scenario::new(GearPair { pinion_teeth: 14, ..GearPair::example() });
     /// let warnings = scenario.validate()?;
     /// assert_eq!(warnings[0].key, "gears.pinion_teeth");
     ///
@@ -50,7 +50,7 @@ impl Scenario {
     /// ```
     /// use meshtone::scenario::{GearPair, MemoryLimit, Scenario};
     ///
-    /// let mut scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+    /// let mut scenario = Scenario::new(GearPair::example());
     /// scenario.solver.sampling_rate_hz = 1e8;
     /// let error = scenario.validate_within(MemoryLimit::Machine { free_bytes: 1 << 30 }).unwrap_err();
     /// assert_eq!(error.key, "solver.sampling_rate_hz");

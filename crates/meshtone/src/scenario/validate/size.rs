@@ -35,7 +35,7 @@ impl Scenario {
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};
     ///
-    /// let scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+    /// let scenario = Scenario::new(GearPair::example());
     /// assert_eq!(scenario.actual_sampling_rate_hz(), 258_400.0);
     /// ```
     pub fn actual_sampling_rate_hz(&self) -> f64 {
@@ -51,7 +51,7 @@ impl Scenario {
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};
     ///
-    /// let scenario = Scenario::new(GearPair { module_mm: 3.0, pinion_teeth: 17, gear_teeth: 38, face_width_mm: 15.0, pinion_speed_hz: 40.0, brake_torque_nm: 10.0 });
+    /// let scenario = Scenario::new(GearPair::example());
     /// assert_eq!(scenario.memory_estimate_bytes() / 1_000_000, 39);
     /// ```
     pub fn memory_estimate_bytes(&self) -> u64 {

@@ -35,7 +35,7 @@ pub(super) fn check(scenario: &Scenario) -> Check {
     Err(refuse(&key, speed_hz, problem).with_help(help))
 }
 
-/// Speeds that may be a slip.
+/// Speeds that may be a typing error.
 pub(super) fn warnings(scenario: &Scenario) -> Vec<ScenarioWarning> {
     [unusual(scenario), off_nominal(scenario)].into_iter().flatten().collect()
 }

@@ -114,7 +114,7 @@ macro_rules! deviation_rows {
                 field!($field.run_out_um),
             )
             .otherwise("drawn, or none beside given profile errors or pitches, which have it in them")
-            .range(Range::not_negative().slip_above(1e4))
+            .range(Range::not_negative().implausible_above(1e4))
             .alternative("0.0")
             .ignored_by(&["linear", "published"]),
             row(

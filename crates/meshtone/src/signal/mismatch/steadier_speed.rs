@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 
 use meshtone_fourier::{Complex64, convenient_length, inverse_complex};
 
-use super::claims::Claim;
 use super::fine_orders::FineOrders;
+use super::hypotheses::Hypothesis;
 use crate::signal::AngularSignal;
 
 /// Harmonics that are followed, at most.
@@ -26,10 +26,10 @@ const LEAST_PROMINENCE: f64 = 2.0;
 
 /// A better speed.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Steadied {
-    /// Over the one that is told.
+pub(super) struct SteadierSpeed {
+    /// Over the one that is stated.
     pub(super) factor: f64,
-    /// Energy of the harmonics in the average over that at the told speed.
+    /// Energy of the harmonics in the average over that at the stated speed.
     pub(super) energy_ratio: f64,
 }
 
@@ -96,19 +96,19 @@ fn amplitude(values: &[f64], wave: &[Complex64]) -> Complex64 {
     sums.into_iter().sum()
 }
 
-/// The speed near that of a claim at which the mesh harmonics are steadiest.
+/// The speed near that of a hypothesis at which the mesh harmonics are steadiest.
 ///
 /// None where no harmonic stands out, or none is steady.
-pub(super) fn steadied(
+pub(super) fn steadier_speed(
     angular: &AngularSignal,
     orders: &FineOrders,
-    claim: &Claim,
+    hypothesis: &Hypothesis,
     teeth: u32,
-) -> Option<Steadied> {
-    let factor = claim.wheel_spacing;
+) -> Option<SteadierSpeed> {
+    let factor = hypothesis.wheel_spacing;
     let mut prominent: Vec<(f64, f64)> = (1..=HARMONICS)
         .map(|harmonic| f64::from(harmonic * teeth))
-        .map_while(|order| Some((orders.prominence(order * factor, claim.reach())?, order)))
+        .map_while(|order| Some((orders.prominence(order * factor, hypothesis.reach())?, order)))
         .filter(|(prominence, _)| *prominence > 0.0)
         .collect();
     prominent.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -141,15 +141,15 @@ pub(super) fn steadied(
     if whole(by) < LEAST_STEADY * energy {
         return None;
     }
-    let told = if factor == 1.0 {
+    let stated = if factor == 1.0 {
         whole(0.0)
     } else {
-        let as_told = |harmonic: &Harmonic| Harmonic::of(angular, harmonic.order, 1.0).steady(0.0);
-        harmonics.iter().map(as_told).sum()
+        let as_stated = |harmonic: &Harmonic| Harmonic::of(angular, harmonic.order, 1.0).steady(0.0);
+        harmonics.iter().map(as_stated).sum()
     };
-    let stands_out = |(_, order): &(f64, f64)| orders.prominence(order * (factor + by), claim.reach());
+    let stands_out = |(_, order): &(f64, f64)| orders.prominence(order * (factor + by), hypothesis.reach());
     if prominent.iter().filter_map(stands_out).sum::<f64>() < LEAST_PROMINENCE {
         return None;
     }
-    Some(Steadied { factor: factor + by, energy_ratio: whole(by) / told })
+    Some(SteadierSpeed { factor: factor + by, energy_ratio: whole(by) / stated })
 }

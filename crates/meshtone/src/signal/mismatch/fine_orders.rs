@@ -100,7 +100,7 @@ impl FineOrders {
     }
 
     /// Logarithm of the energy of the line at an order over that of its strongest neighbour. None where the neighbours cannot
-    /// be told from it, or lie beyond what the recording shows.
+    /// be stated from it, or lie beyond what the recording shows.
     ///
     /// # Arguments
     /// * `order` - of the line
@@ -147,7 +147,7 @@ impl FineOrders {
     }
 
     /// How far the multiples of an order stand out of what lies midway between them, in standard deviations of noise. None where
-    /// they cannot be told apart.
+    /// they cannot be stated apart.
     ///
     /// # Arguments
     /// * `spacing` - the order

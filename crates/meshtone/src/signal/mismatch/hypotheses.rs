@@ -1,9 +1,9 @@
-//! What else a recording could be of.
+//! Other interpretations of a recording.
 
 use super::fine_orders::FineOrders;
-use super::{Evidence, Likelier, Told, ToldTurning};
+use super::{Alternative, Evidence, StatedFacts, StatedTurning};
 
-/// Mesh harmonics that are looked at, of the teeth that are told: other counts have theirs in the same range, so that a multiple
+/// Mesh harmonics that are looked at, of the teeth that are stated: other counts have theirs in the same range, so that a multiple
 /// of the right one has fewer.
 const HARMONICS: u32 = 8;
 /// Most harmonics of any count.
@@ -32,11 +32,11 @@ const MAINS_BINS: f64 = 2.0;
 /// (bins) Distance of orders that are one line.
 const SAME_LINE: f64 = 1.5;
 
-/// A reading of the recording. Orders are those of the shaft as it is told.
+/// An interpretation of the recording. Orders are those of the shaft as it is stated.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Claim {
-    /// What it says.
-    pub(super) likelier: Likelier,
+pub(super) struct Hypothesis {
+    /// The fact that it assumes.
+    pub(super) alternative: Alternative,
     /// Order at which teeth mesh.
     pub(super) mesh_order: f64,
     /// Order at which the averaged wheel turns.
@@ -47,40 +47,40 @@ pub(super) struct Claim {
     highest_order: f64,
 }
 
-impl Claim {
-    /// That what is told is right.
-    pub(super) fn as_told(told: &Told) -> Self {
-        Self::with_teeth(told, told.teeth, told.mate_teeth)
+impl Hypothesis {
+    /// The hypothesis that the stated facts are right.
+    pub(super) fn as_stated(stated: &StatedFacts) -> Self {
+        Self::with_teeth(stated, stated.teeth, stated.mate_teeth)
     }
 
-    fn with_teeth(told: &Told, teeth: u32, mate_teeth: Option<u32>) -> Self {
+    fn with_teeth(stated: &StatedFacts, teeth: u32, mate_teeth: Option<u32>) -> Self {
         let ratio = mate_teeth.map(|mate_teeth| f64::from(teeth) / f64::from(mate_teeth));
         Self {
-            likelier: Likelier::Teeth { teeth },
+            alternative: Alternative::Teeth { teeth },
             mesh_order: f64::from(teeth),
             wheel_spacing: 1.0,
             combs: [Some(1.0), ratio],
-            highest_order: f64::from(HARMONICS * told.teeth),
+            highest_order: f64::from(HARMONICS * stated.teeth),
         }
     }
 
-    /// That the shaft turns `factor` times as quickly as it is told.
-    fn scaled(told: &Told, factor: f64, likelier: Likelier) -> Self {
-        let told = Self::as_told(told);
+    /// The hypothesis that the shaft turns `factor` times as quickly as it is stated.
+    fn scaled(stated: &StatedFacts, factor: f64, alternative: Alternative) -> Self {
+        let stated = Self::as_stated(stated);
         Self {
-            likelier,
-            mesh_order: factor * told.mesh_order,
+            alternative,
+            mesh_order: factor * stated.mesh_order,
             wheel_spacing: factor,
-            combs: told.combs.map(|comb| comb.map(|order| factor * order)),
-            highest_order: told.highest_order * factor.max(1.0),
+            combs: stated.combs.map(|comb| comb.map(|order| factor * order)),
+            highest_order: stated.highest_order * factor.max(1.0),
         }
     }
 
-    /// That speed or pulses are the mate's, and that this one has `mate_teeth`.
+    /// The hypothesis that speed or pulses are those of the mate's shaft, and that this wheel has `mate_teeth`.
     fn of_mates_shaft(teeth: u32, mate_teeth: u32) -> Self {
         let ratio = f64::from(mate_teeth) / f64::from(teeth);
         Self {
-            likelier: Likelier::OtherShaft { mate_teeth },
+            alternative: Alternative::OtherShaft { mate_teeth },
             mesh_order: f64::from(mate_teeth),
             wheel_spacing: ratio,
             combs: [Some(1.0), Some(ratio)],
@@ -88,28 +88,30 @@ impl Claim {
         }
     }
 
-    /// What happens more easily, in units of the evidence.
+    /// Likelihood of the mistake before the recording is looked at, in units of the evidence.
     ///
     /// # Arguments
-    /// * `may_be_speed` - whether other teeth are told from another speed by nothing, which names the teeth as well
+    /// * `may_be_speed` - whether other teeth are stated from another speed by nothing, which names the teeth as well
     pub(super) fn prior(&self, may_be_speed: bool) -> f64 {
-        match self.likelier {
-            Likelier::Teeth { .. } if may_be_speed => -1.0,
-            Likelier::OtherShaft { .. } => 2.0,
-            Likelier::PulsesPerRevolution { .. } | Likelier::Teeth { .. } => 1.0,
-            Likelier::MateTeeth { .. } | Likelier::ShaftSpeed { .. } | Likelier::VaryingSpeed { .. } => 0.0,
+        match self.alternative {
+            Alternative::Teeth { .. } if may_be_speed => -1.0,
+            Alternative::OtherShaft { .. } => 2.0,
+            Alternative::PulsesPerRevolution { .. } | Alternative::Teeth { .. } => 1.0,
+            Alternative::MateTeeth { .. }
+            | Alternative::ShaftSpeed { .. }
+            | Alternative::VaryingSpeed { .. } => 0.0,
         }
     }
 
-    /// Whether it says where else the orders of both shafts are.
+    /// Whether it moves the orders of both shafts.
     pub(super) fn moves_wheel(&self) -> bool {
-        matches!(self.likelier, Likelier::PulsesPerRevolution { .. } | Likelier::ShaftSpeed { .. })
+        matches!(self.alternative, Alternative::PulsesPerRevolution { .. } | Alternative::ShaftSpeed { .. })
     }
 
     /// Whether its mesh would be at a multiple of a mains frequency, whose hum has harmonics as a mesh has; known of a constant speed.
-    pub(super) fn is_of_mains(&self, told: &Told, orders: &FineOrders) -> bool {
-        let ToldTurning::ConstantSpeed { speed_hz } = told.turning else { return false };
-        if !matches!(self.likelier, Likelier::Teeth { .. } | Likelier::ShaftSpeed { .. }) {
+    pub(super) fn is_of_mains(&self, stated: &StatedFacts, orders: &FineOrders) -> bool {
+        let StatedTurning::ConstantSpeed { speed_hz } = stated.turning else { return false };
+        if !matches!(self.alternative, Alternative::Teeth { .. } | Alternative::ShaftSpeed { .. }) {
             return false;
         }
         let mesh_hz = self.mesh_order * speed_hz;
@@ -120,7 +122,7 @@ impl Claim {
         })
     }
 
-    /// The mesh harmonics' orders, and how far each stands out.
+    /// Orders of the mesh harmonics with their prominences.
     pub(super) fn mesh_lines<'a>(
         &self,
         orders: &'a FineOrders,
@@ -132,7 +134,7 @@ impl Claim {
             .map_while(move |order| Some((order, orders.prominence(order, reach)?)))
     }
 
-    /// (orders) How far beside a mesh line its neighbours are looked for: the sidebands of the shaft that is told, and of the
+    /// (orders) How far beside a mesh line its neighbours are looked for: the sidebands of the shaft that is stated, and of the
     /// wheel's where that turns more quickly because pulses are miscounted.
     pub(super) fn reach(&self) -> f64 {
         let of_wheel = if self.moves_wheel() { SIDEBANDS * self.wheel_spacing } else { 0.0 };
@@ -149,7 +151,7 @@ impl Claim {
         self.mesh_lines(orders).map(|(_, prominence)| prominence).sum()
     }
 
-    /// What speaks for it.
+    /// The evidence for it in the recording.
     pub(super) fn evidence(&self, orders: &FineOrders) -> Evidence {
         let [first, second] = self.combs;
         Evidence {
@@ -159,7 +161,7 @@ impl Claim {
         }
     }
 
-    /// How far those of its mesh lines stand out that the other claim does not have; none where it has all of them.
+    /// Sum of the prominences of its mesh lines that the other hypothesis does not have; none where the other has all of them.
     pub(super) fn own_mesh(&self, other: &Self, orders: &FineOrders) -> Option<f64> {
         let is_own = |order: f64| {
             let harmonic = (order / other.mesh_order).round().max(1.0);
@@ -174,23 +176,27 @@ impl Claim {
     }
 }
 
-/// All that could be instead of what is told.
-pub(super) fn others<'a>(told: &'a Told, orders: &'a FineOrders) -> impl Iterator<Item = Claim> + 'a {
-    let other_teeth = other_counts(told.teeth).map(|teeth| Claim::with_teeth(told, teeth, told.mate_teeth));
-    let other_mates = told.mate_teeth.into_iter().flat_map(move |mate_teeth| {
-        other_counts(mate_teeth).map(move |teeth| Claim {
-            likelier: Likelier::MateTeeth { teeth, told: mate_teeth },
-            ..Claim::with_teeth(told, told.teeth, Some(teeth))
+/// All hypotheses that are compared with the stated facts.
+pub(super) fn alternatives<'a>(
+    stated: &'a StatedFacts,
+    orders: &'a FineOrders,
+) -> impl Iterator<Item = Hypothesis> + 'a {
+    let other_teeth =
+        other_counts(stated.teeth).map(|teeth| Hypothesis::with_teeth(stated, teeth, stated.mate_teeth));
+    let other_mates = stated.mate_teeth.into_iter().flat_map(move |mate_teeth| {
+        other_counts(mate_teeth).map(move |teeth| Hypothesis {
+            alternative: Alternative::MateTeeth { teeth, stated: mate_teeth },
+            ..Hypothesis::with_teeth(stated, stated.teeth, Some(teeth))
         })
     });
-    let other_shaft = told
+    let other_shaft = stated
         .mate_teeth
-        .filter(|mate_teeth| *mate_teeth != told.teeth)
-        .map(|mate_teeth| Claim::of_mates_shaft(told.teeth, mate_teeth));
-    let turning: Vec<Claim> = match told.turning {
-        ToldTurning::Pulses { per_revolution } => other_pulses(told, per_revolution),
-        ToldTurning::ConstantSpeed { speed_hz } => other_speeds(told, speed_hz, orders),
-        ToldTurning::Other => Vec::new(),
+        .filter(|mate_teeth| *mate_teeth != stated.teeth)
+        .map(|mate_teeth| Hypothesis::of_mates_shaft(stated.teeth, mate_teeth));
+    let turning: Vec<Hypothesis> = match stated.turning {
+        StatedTurning::Pulses { per_revolution } => other_pulses(stated, per_revolution),
+        StatedTurning::ConstantSpeed { speed_hz } => other_speeds(stated, speed_hz, orders),
+        StatedTurning::Other => Vec::new(),
     };
     other_shaft.into_iter().chain(turning).chain(other_teeth).chain(other_mates)
 }
@@ -200,45 +206,49 @@ fn other_counts(teeth: u32) -> impl Iterator<Item = u32> {
     (FEWEST_TEETH.max(teeth / 2 + 1)..2 * teeth).filter(move |other| *other != teeth)
 }
 
-fn other_pulses(told: &Told, per_revolution: u32) -> Vec<Claim> {
+fn other_pulses(stated: &StatedFacts, per_revolution: u32) -> Vec<Hypothesis> {
     let near = [-2, -1, 1, 2].into_iter().filter_map(|by| per_revolution.checked_add_signed(by));
     let multiples = [2, 3, 4].into_iter().filter_map(|by| per_revolution.checked_mul(by));
     let parts =
         [2, 3, 4].into_iter().filter(|by| per_revolution.is_multiple_of(*by)).map(|by| per_revolution / by);
-    let of_wheels = [Some(told.teeth), told.mate_teeth].into_iter().flatten();
+    let of_wheels = [Some(stated.teeth), stated.mate_teeth].into_iter().flatten();
     let mut counts: Vec<u32> =
         USUAL_PULSES.into_iter().chain(near).chain(multiples).chain(parts).chain(of_wheels).collect();
     counts.sort_unstable();
     counts.dedup();
     counts.retain(|&count| count > 0 && count != per_revolution);
-    let claim = |pulses: u32| {
+    let hypothesis = |pulses: u32| {
         let factor = f64::from(per_revolution) / f64::from(pulses);
-        Claim::scaled(told, factor, Likelier::PulsesPerRevolution { pulses, told: per_revolution })
+        Hypothesis::scaled(
+            stated,
+            factor,
+            Alternative::PulsesPerRevolution { pulses, stated: per_revolution },
+        )
     };
-    counts.into_iter().map(claim).collect()
+    counts.into_iter().map(hypothesis).collect()
 }
 
 /// The speeds within some percent at which the mesh lines stand out most, and at which the wheel's orders do.
-fn other_speeds(told: &Told, speed_hz: f64, orders: &FineOrders) -> Vec<Claim> {
+fn other_speeds(stated: &StatedFacts, speed_hz: f64, orders: &FineOrders) -> Vec<Hypothesis> {
     // Two bins of the highest harmonic, as wide as its line; none is read far beyond what the recording shows.
-    let highest = f64::from(HARMONICS * told.teeth).min(orders.highest_order().max(LEAST_HIGHEST_ORDER));
+    let highest = f64::from(HARMONICS * stated.teeth).min(orders.highest_order().max(LEAST_HIGHEST_ORDER));
     let step = 2.0 / (highest * orders.bins_per_order);
     let steps = (SPEED_RANGE / step) as i32;
-    let claim = |factor: f64| {
-        let likelier = Likelier::ShaftSpeed { speed_hz: factor * speed_hz, told_hz: speed_hz };
-        Claim::scaled(told, factor, likelier)
+    let hypothesis = |factor: f64| {
+        let alternative = Alternative::ShaftSpeed { speed_hz: factor * speed_hz, stated_hz: speed_hz };
+        Hypothesis::scaled(stated, factor, alternative)
     };
-    let best = |claims: &[Claim], of: &dyn Fn(&Claim) -> f64| {
-        let all = claims.iter().map(|claim| (of(claim), claim));
-        all.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, claim)| *claim)
+    let best = |hypotheses: &[Hypothesis], of: &dyn Fn(&Hypothesis) -> f64| {
+        let all = hypotheses.iter().map(|hypothesis| (of(hypothesis), hypothesis));
+        all.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, hypothesis)| *hypothesis)
     };
-    let wheel_orders = |claim: &Claim| orders.comb(claim.wheel_spacing, None).unwrap_or(0.0);
-    let coarse: Vec<Claim> =
-        (-steps..=steps).filter(|k| *k != 0).map(|k| claim(1.0 + f64::from(k) * step)).collect();
-    let by_mesh = best(&coarse, &|claim| claim.mesh(orders));
+    let wheel_orders = |hypothesis: &Hypothesis| orders.comb(hypothesis.wheel_spacing, None).unwrap_or(0.0);
+    let coarse: Vec<Hypothesis> =
+        (-steps..=steps).filter(|k| *k != 0).map(|k| hypothesis(1.0 + f64::from(k) * step)).collect();
+    let by_mesh = best(&coarse, &|hypothesis| hypothesis.mesh(orders));
     // Combs reach to higher orders than the mesh lines, and are as much finer.
     let by_wheel = best(&coarse, &wheel_orders).and_then(|coarse| {
-        let finer = |k: i32| claim(coarse.wheel_spacing + f64::from(k) * step / f64::from(FINER));
+        let finer = |k: i32| hypothesis(coarse.wheel_spacing + f64::from(k) * step / f64::from(FINER));
         best(&(-FINER..=FINER).map(finer).collect::<Vec<_>>(), &wheel_orders)
     });
     by_mesh.into_iter().chain(by_wheel).collect()

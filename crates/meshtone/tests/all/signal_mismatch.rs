@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 
 use meshtone::scenario::Scenario;
 use meshtone::signal::{
-    AngularSettings, AngularSignal, Edge, Likelier, Misfit, ShaftPhase, Told, ToldTurning, angular_resample,
-    interpolate_band_limited, misfit, resample,
+    Alternative, AngularSettings, AngularSignal, Edge, Mismatch, ShaftPhase, StatedFacts, StatedTurning,
+    angular_resample, find_mismatch, interpolate_band_limited, resample,
 };
 use meshtone::simulate;
 use rand::{Rng, SeedableRng};
@@ -135,8 +135,11 @@ fn recording(machine: &Machine, varies: bool, draws: &mut Draws) -> Recording {
     if varies {
         let (depth, cycles, start) = (draws.between(0.002, 0.01), draws.between(0.3, 2.0), draws.part());
         let end = (samples - 1) as f64;
-        let wander = |x: f64| depth / (TAU * cycles) * (TAU * (cycles * x + start)).sin();
-        let warped = |x: f64| (x + wander(x) - wander(0.0)) / (1.0 + wander(1.0) - wander(0.0));
+        let phase_deviation = |x: f64| depth / (TAU * cycles) * (TAU * (cycles * x + start)).sin();
+        let warped = |x: f64| {
+            (x + phase_deviation(x) - phase_deviation(0.0))
+                / (1.0 + phase_deviation(1.0) - phase_deviation(0.0))
+        };
         let places: Vec<f64> = (0..samples).map(|i| end * warped(i as f64 / end)).collect();
         signal = interpolate_band_limited(&signal, &places, Edge::Reflect).unwrap();
         turned = places.iter().map(|place| (first as f64 + place) / per_revolution).collect();
@@ -191,8 +194,8 @@ enum Mistake {
 struct Case {
     recording: Recording,
     phase: ShaftPhase,
-    told: Told,
-    right: Option<Likelier>,
+    stated: StatedFacts,
+    right: Option<Alternative>,
     /// Revolutions of the slower wheel.
     revolutions: f64,
 }
@@ -221,8 +224,8 @@ impl Case {
         let Recording { teeth, mate_teeth, rate_hz, .. } = recording;
         let (samples, turned) = (recording.signal.len(), &recording.revolutions);
         let needs_mate = matches!(mistake, Mistake::MateTeeth | Mistake::OtherShaft);
-        let told_mate = (needs_mate || draws.chance(0.7)).then_some(mate_teeth);
-        let (right_pulses, told_pulses) = match mistake {
+        let stated_mate = (needs_mate || draws.chance(0.7)).then_some(mate_teeth);
+        let (right_pulses, stated_pulses) = match mistake {
             Mistake::Pulses => draws.one(&[
                 (2, 1),
                 (1, 2),
@@ -239,10 +242,10 @@ impl Case {
             ]),
             _ => draws.one(&[(1, 1), (1, 1), (2, 2), (60, 60)]),
         };
-        let mut told = Told {
+        let mut stated = StatedFacts {
             teeth,
-            mate_teeth: told_mate,
-            turning: ToldTurning::Pulses { per_revolution: told_pulses },
+            mate_teeth: stated_mate,
+            turning: StatedTurning::Pulses { per_revolution: stated_pulses },
         };
         let on_shaft: Vec<f64> = match mistake {
             Mistake::OtherShaft => {
@@ -256,51 +259,51 @@ impl Case {
         let right = match mistake {
             Mistake::None | Mistake::NoneAtConstantSpeed => None,
             Mistake::Teeth => {
-                told.teeth = teeth.checked_add_signed(by)?;
-                Some(Likelier::Teeth { teeth })
+                stated.teeth = teeth.checked_add_signed(by)?;
+                Some(Alternative::Teeth { teeth })
             }
             Mistake::MateTeeth => {
-                let told_teeth = mate_teeth.checked_add_signed(by)?;
-                told.mate_teeth = Some(told_teeth);
-                Some(Likelier::MateTeeth { teeth: mate_teeth, told: told_teeth })
+                let stated_teeth = mate_teeth.checked_add_signed(by)?;
+                stated.mate_teeth = Some(stated_teeth);
+                Some(Alternative::MateTeeth { teeth: mate_teeth, stated: stated_teeth })
             }
             Mistake::OtherShaft if teeth == mate_teeth => return None,
-            Mistake::OtherShaft => Some(Likelier::OtherShaft { mate_teeth }),
+            Mistake::OtherShaft => Some(Alternative::OtherShaft { mate_teeth }),
             Mistake::Pulses => {
-                Some(Likelier::PulsesPerRevolution { pulses: right_pulses, told: told_pulses })
+                Some(Alternative::PulsesPerRevolution { pulses: right_pulses, stated: stated_pulses })
             }
             Mistake::Speed => {
                 let off = draws.in_octaves(1e-4, 0.03) * draws.one(&[-1.0, 1.0]);
                 let right_hz = speed_hz;
                 speed_hz *= 1.0 + off;
-                Some(Likelier::ShaftSpeed { speed_hz: right_hz, told_hz: speed_hz })
+                Some(Alternative::ShaftSpeed { speed_hz: right_hz, stated_hz: speed_hz })
             }
-            Mistake::ConstantSpeed => Some(Likelier::VaryingSpeed { variation: 0.0, told_hz: speed_hz }),
+            Mistake::ConstantSpeed => Some(Alternative::VaryingSpeed { variation: 0.0, stated_hz: speed_hz }),
         };
         let phase = if constant {
-            told.turning = ToldTurning::ConstantSpeed { speed_hz };
+            stated.turning = StatedTurning::ConstantSpeed { speed_hz };
             ShaftPhase::constant(speed_hz, rate_hz, samples).ok()?
         } else {
             let times = pulses(&on_shaft, right_pulses, rate_hz);
-            ShaftPhase::from_pulses(&times, told_pulses, None, rate_hz, samples).ok()?
+            ShaftPhase::from_pulses(&times, stated_pulses, None, rate_hz, samples).ok()?
         };
         let slower = f64::from(teeth) / f64::from(teeth.max(mate_teeth));
         let revolutions = slower * (turned[samples - 1] - turned[0]);
-        Some(Self { phase, told, right, revolutions, recording })
+        Some(Self { phase, stated, right, revolutions, recording })
     }
 
-    fn misfit(&self) -> Option<Option<Misfit>> {
+    fn find_mismatch(&self) -> Option<Option<Mismatch>> {
         let angular =
             angular_resample(&self.recording.signal, &self.phase, &AngularSettings::default()).ok()?;
-        let shown = f64::from(self.told.teeth) < 0.8 * angular.nyquist_order && angular.revolutions() > 1;
-        shown.then(|| misfit(&angular, &self.told))
+        let shown = f64::from(self.stated.teeth) < 0.8 * angular.nyquist_order && angular.revolutions() > 1;
+        shown.then(|| find_mismatch(&angular, &self.stated))
     }
 
     /// Turns of the mesh tone, over the whole recording, between a speed and the right one.
     fn mesh_turns(&self, speed_hz: f64) -> f64 {
         let seconds = self.recording.signal.len() as f64 / self.recording.rate_hz;
         match self.right {
-            Some(Likelier::ShaftSpeed { speed_hz: right, .. }) => {
+            Some(Alternative::ShaftSpeed { speed_hz: right, .. }) => {
                 (speed_hz - right).abs() * f64::from(self.recording.teeth) * seconds
             }
             _ => 0.0,
@@ -308,15 +311,15 @@ impl Case {
     }
 
     /// Whether cause and value are right.
-    fn is_right(&self, likelier: Likelier) -> (bool, bool) {
-        match (likelier, self.right) {
-            (Likelier::ShaftSpeed { speed_hz, .. }, Some(Likelier::ShaftSpeed { .. })) => {
+    fn is_right(&self, alternative: Alternative) -> (bool, bool) {
+        match (alternative, self.right) {
+            (Alternative::ShaftSpeed { speed_hz, .. }, Some(Alternative::ShaftSpeed { .. })) => {
                 (true, self.mesh_turns(speed_hz) < 0.25)
             }
             // How much it varies is not known better.
-            (Likelier::VaryingSpeed { .. }, Some(Likelier::VaryingSpeed { .. })) => (true, true),
-            (likelier, Some(right)) => {
-                (std::mem::discriminant(&likelier) == std::mem::discriminant(&right), likelier == right)
+            (Alternative::VaryingSpeed { .. }, Some(Alternative::VaryingSpeed { .. })) => (true, true),
+            (alternative, Some(right)) => {
+                (std::mem::discriminant(&alternative) == std::mem::discriminant(&right), alternative == right)
             }
             (_, None) => (false, false),
         }
@@ -344,10 +347,11 @@ impl std::iter::Sum for Tally {
 }
 
 fn tally(case: &Case) -> Option<Tally> {
-    let found = case.misfit()?;
-    let (right_cause, right_value) = found.map_or((false, false), |misfit| case.is_right(misfit.likelier));
-    if std::env::var_os("TOLD_SHOW").is_some() && found.is_some() && !right_value {
-        println!("{:?} right {:?} revs {:.1} {:?}", case.told, case.right, case.revolutions, found);
+    let found = case.find_mismatch()?;
+    let (right_cause, right_value) =
+        found.map_or((false, false), |mismatch| case.is_right(mismatch.alternative));
+    if std::env::var_os("MISMATCH_SHOW").is_some() && found.is_some() && !right_value {
+        println!("{:?} right {:?} revs {:.1} {:?}", case.stated, case.right, case.revolutions, found);
     }
     Some(Tally {
         recordings: 1,
@@ -367,7 +371,7 @@ fn row(name: &str, tally: Tally) {
 #[ignore = "takes minutes; prints a table"]
 fn recordings_with_every_mistake() {
     let machines: Vec<Machine> = (0..300u64).into_par_iter().map(machine).collect();
-    println!("| what is told | recordings | warned | right cause | right value |");
+    println!("| what is stated | recordings | warned | right cause | right value |");
     let draw = |mistake: Mistake, count: u64| -> Vec<(Case, Tally)> {
         (0..count)
             .into_par_iter()
@@ -396,8 +400,8 @@ fn recordings_with_every_mistake() {
         match mistake {
             Mistake::None | Mistake::NoneAtConstantSpeed | Mistake::ConstantSpeed => {}
             Mistake::Speed => {
-                let turns = |case: &Case| match case.told.turning {
-                    ToldTurning::ConstantSpeed { speed_hz } => case.mesh_turns(speed_hz),
+                let turns = |case: &Case| match case.stated.turning {
+                    StatedTurning::ConstantSpeed { speed_hz } => case.mesh_turns(speed_hz),
                     _ => 0.0,
                 };
                 row("… by less than 0.3 mesh cycles in all", of(&|case| turns(case) < 0.3));
@@ -440,37 +444,41 @@ fn meshing_with(harmonics: u32, teeth: [u32; 2], revolutions: &[f64]) -> Vec<f64
 const RATE_HZ: f64 = 10_240.0;
 const TEETH: [u32; 2] = [23, 38];
 
-/// What does not fit a shaft of 20 Hz whose speed varies by 1 %, where `told_per_right` is how quickly it is told to turn.
-fn misfit_of(told_per_right: f64, told: Told) -> Option<Misfit> {
+/// What does not fit a shaft of 20 Hz whose speed varies by 1 %, where `stated_per_right` is how quickly it is stated to turn.
+fn mismatch_of(stated_per_right: f64, stated: StatedFacts) -> Option<Mismatch> {
     let seconds = |i: usize| i as f64 / RATE_HZ;
     let turned: Vec<f64> =
         (0..81_920).map(|i| 20.0 * seconds(i) + 0.1 * (TAU * 0.3 * seconds(i)).sin()).collect();
-    let phase = ShaftPhase::new(0, turned.iter().map(|angle| told_per_right * angle).collect()).unwrap();
+    let phase = ShaftPhase::new(0, turned.iter().map(|angle| stated_per_right * angle).collect()).unwrap();
     let angular = angular_resample(&meshing(TEETH, &turned), &phase, &AngularSettings::default()).unwrap();
-    misfit(&angular, &told)
+    find_mismatch(&angular, &stated)
 }
 
 #[test]
 fn each_mistake_is_named_with_the_better_value() {
-    let pulses = |per_revolution| ToldTurning::Pulses { per_revolution };
-    let told = |teeth, mate_teeth, turning| Told { teeth, mate_teeth: Some(mate_teeth), turning };
+    let pulses = |per_revolution| StatedTurning::Pulses { per_revolution };
+    let stated = |teeth, mate_teeth, turning| StatedFacts { teeth, mate_teeth: Some(mate_teeth), turning };
     let [own, mate] = TEETH;
-    for (told_per_right, told, likelier) in [
-        (1.0, told(own, mate, pulses(1)), None),
-        (1.0, told(own, mate, ToldTurning::Other), None),
-        (1.0, told(own + 1, mate, pulses(1)), Some(Likelier::Teeth { teeth: own })),
-        (1.0, told(own, mate - 1, pulses(1)), Some(Likelier::MateTeeth { teeth: mate, told: mate - 1 })),
-        (23.0 / 38.0, told(own, mate, pulses(1)), Some(Likelier::OtherShaft { mate_teeth: mate })),
-        (2.0, told(own, mate, pulses(1)), Some(Likelier::PulsesPerRevolution { pulses: 2, told: 1 })),
-        (0.75, told(own, mate, pulses(4)), Some(Likelier::PulsesPerRevolution { pulses: 3, told: 4 })),
+    for (stated_per_right, stated, alternative) in [
+        (1.0, stated(own, mate, pulses(1)), None),
+        (1.0, stated(own, mate, StatedTurning::Other), None),
+        (1.0, stated(own + 1, mate, pulses(1)), Some(Alternative::Teeth { teeth: own })),
+        (
+            1.0,
+            stated(own, mate - 1, pulses(1)),
+            Some(Alternative::MateTeeth { teeth: mate, stated: mate - 1 }),
+        ),
+        (23.0 / 38.0, stated(own, mate, pulses(1)), Some(Alternative::OtherShaft { mate_teeth: mate })),
+        (2.0, stated(own, mate, pulses(1)), Some(Alternative::PulsesPerRevolution { pulses: 2, stated: 1 })),
+        (0.75, stated(own, mate, pulses(4)), Some(Alternative::PulsesPerRevolution { pulses: 3, stated: 4 })),
         (
             59.0 / 60.0,
-            told(own, mate, pulses(60)),
-            Some(Likelier::PulsesPerRevolution { pulses: 59, told: 60 }),
+            stated(own, mate, pulses(60)),
+            Some(Alternative::PulsesPerRevolution { pulses: 59, stated: 60 }),
         ),
     ] {
-        let found = misfit_of(told_per_right, told);
-        assert_eq!(found.map(|misfit| misfit.likelier), likelier, "{told:?}: {found:?}");
+        let found = mismatch_of(stated_per_right, stated);
+        assert_eq!(found.map(|mismatch| mismatch.alternative), alternative, "{stated:?}: {found:?}");
     }
 }
 
@@ -482,11 +490,12 @@ fn a_speed_that_is_off_is_found_to_parts_per_million() {
         let speed_hz = 20.0 * (1.0 + off);
         let phase = ShaftPhase::constant(speed_hz, RATE_HZ, signal.len()).unwrap();
         let angular = angular_resample(&signal, &phase, &AngularSettings::default()).unwrap();
-        let turning = ToldTurning::ConstantSpeed { speed_hz };
-        let found = misfit(&angular, &Told { teeth: TEETH[0], mate_teeth: Some(TEETH[1]), turning });
-        match found.map(|misfit| misfit.likelier) {
+        let turning = StatedTurning::ConstantSpeed { speed_hz };
+        let found =
+            find_mismatch(&angular, &StatedFacts { teeth: TEETH[0], mate_teeth: Some(TEETH[1]), turning });
+        match found.map(|mismatch| mismatch.alternative) {
             None => assert_eq!(off, 0.0),
-            Some(Likelier::ShaftSpeed { speed_hz, .. }) => {
+            Some(Alternative::ShaftSpeed { speed_hz, .. }) => {
                 println!("{off:+.1e}: {:+.1e}, {}", speed_hz / 20.0 - 1.0, found.unwrap());
                 assert!(off != 0.0 && (speed_hz / 20.0 - 1.0).abs() < 3e-6, "{off}: {speed_hz}");
             }
@@ -503,29 +512,30 @@ fn two_harmonics(teeth: u32, revolutions: &[f64]) -> Vec<f64> {
     all.map(|(&turned, noise)| (1.0 + 0.1 * tone(1.0, turned)) * mesh(turned) + 0.5 * noise).collect()
 }
 
-fn misfit_at(speed_hz: f64, signal: &[f64], teeth: u32, turning: ToldTurning) -> Option<Misfit> {
+fn mismatch_at(speed_hz: f64, signal: &[f64], teeth: u32, turning: StatedTurning) -> Option<Mismatch> {
     let phase = ShaftPhase::constant(speed_hz, RATE_HZ, signal.len()).unwrap();
     let angular = angular_resample(signal, &phase, &AngularSettings::default()).unwrap();
-    misfit(&angular, &Told { teeth, mate_teeth: None, turning })
+    find_mismatch(&angular, &StatedFacts { teeth, mate_teeth: None, turning })
 }
 
 #[test]
 fn two_harmonics_are_enough() {
     let turned: Vec<f64> = (0..81_920).map(|i| 20.0 * i as f64 / RATE_HZ).collect();
     let signal = two_harmonics(23, &turned);
-    let constant = |speed_hz: f64| ToldTurning::ConstantSpeed { speed_hz };
-    let pulses = ToldTurning::Pulses { per_revolution: 1 };
+    let constant = |speed_hz: f64| StatedTurning::ConstantSpeed { speed_hz };
+    let pulses = StatedTurning::Pulses { per_revolution: 1 };
     for turning in [constant(20.0), pulses] {
-        assert_eq!(misfit_at(20.0, &signal, 23, turning), None);
+        assert_eq!(mismatch_at(20.0, &signal, 23, turning), None);
     }
     for teeth in [22, 24, 26] {
-        let found = misfit_at(20.0, &signal, teeth, pulses).map(|misfit| misfit.likelier);
-        assert_eq!(found, Some(Likelier::Teeth { teeth: 23 }), "{teeth}");
+        let found = mismatch_at(20.0, &signal, teeth, pulses).map(|mismatch| mismatch.alternative);
+        assert_eq!(found, Some(Alternative::Teeth { teeth: 23 }), "{teeth}");
     }
     for off in [-0.02, 0.004, 0.03] {
         let speed_hz = 20.0 * (1.0 + off);
-        let found = misfit_at(speed_hz, &signal, 23, constant(speed_hz));
-        let Some(Likelier::ShaftSpeed { speed_hz, .. }) = found.map(|misfit| misfit.likelier) else {
+        let found = mismatch_at(speed_hz, &signal, 23, constant(speed_hz));
+        let Some(Alternative::ShaftSpeed { speed_hz, .. }) = found.map(|mismatch| mismatch.alternative)
+        else {
             panic!("{off}: {found:?}")
         };
         assert!((speed_hz / 20.0 - 1.0).abs() < 1e-5, "{off}: {speed_hz}");
@@ -540,8 +550,10 @@ fn a_shaft_that_wobbles_does_not_turn_at_a_constant_speed() {
             .map(|time| 20.0 * (time + depth / (TAU * cycles_hz) * (TAU * cycles_hz * time).sin()))
             .collect();
         for signal in [two_harmonics(23, &turned), meshing(TEETH, &turned)] {
-            let found = misfit_at(20.0, &signal, 23, ToldTurning::ConstantSpeed { speed_hz: 20.0 });
-            let Some(Likelier::VaryingSpeed { variation, .. }) = found.map(|misfit| misfit.likelier) else {
+            let found = mismatch_at(20.0, &signal, 23, StatedTurning::ConstantSpeed { speed_hz: 20.0 });
+            let Some(Alternative::VaryingSpeed { variation, .. }) =
+                found.map(|mismatch| mismatch.alternative)
+            else {
                 panic!("{depth} {cycles_hz}: {found:?}")
             };
             let rms = depth / 2f64.sqrt();
@@ -556,9 +568,9 @@ fn impossible_tooth_counts_are_not_compared() {
     let phase = ShaftPhase::constant(20.0, RATE_HZ, turned.len()).unwrap();
     let signal = meshing(TEETH, &turned);
     let angular = angular_resample(&signal, &phase, &AngularSettings::default()).unwrap();
-    let turning = ToldTurning::ConstantSpeed { speed_hz: 20.0 };
+    let turning = StatedTurning::ConstantSpeed { speed_hz: 20.0 };
     for (teeth, mate_teeth) in [(TEETH[0], Some(1_000_000_000)), (u32::MAX, None)] {
-        assert_eq!(misfit(&angular, &Told { teeth, mate_teeth, turning }), None);
+        assert_eq!(find_mismatch(&angular, &StatedFacts { teeth, mate_teeth, turning }), None);
     }
 }
 
@@ -572,11 +584,11 @@ fn a_speed_that_is_hardly_off_is_found_in_a_long_recording() {
     };
     let values = (0..revolutions * points_per_revolution).map(mesh).collect();
     let angular = AngularSignal { points_per_revolution, start_rev: 0.0, nyquist_order: 64.0, values };
-    let turning = ToldTurning::ConstantSpeed { speed_hz: 20.0 };
-    let found = misfit(&angular, &Told { teeth: 23, mate_teeth: None, turning }).unwrap();
-    let Likelier::ShaftSpeed { speed_hz, told_hz } = found.likelier else { panic!("{found}") };
-    assert_eq!(told_hz, 20.0);
-    assert!((speed_hz / told_hz - 1.0 - off).abs() < 1e-7, "{found}");
+    let turning = StatedTurning::ConstantSpeed { speed_hz: 20.0 };
+    let found = find_mismatch(&angular, &StatedFacts { teeth: 23, mate_teeth: None, turning }).unwrap();
+    let Alternative::ShaftSpeed { speed_hz, stated_hz } = found.alternative else { panic!("{found}") };
+    assert_eq!(stated_hz, 20.0);
+    assert!((speed_hz / stated_hz - 1.0 - off).abs() < 1e-7, "{found}");
 }
 
 // Nothing but noise; too short for the mate's orders.
@@ -589,9 +601,12 @@ fn nothing_is_said_where_nothing_can_be_told() {
         let phase = ShaftPhase::constant(20.0, RATE_HZ, signal.len()).unwrap();
         let angular = angular_resample(&signal, &phase, &AngularSettings::default()).unwrap();
         for turning in
-            [ToldTurning::ConstantSpeed { speed_hz: 20.0 }, ToldTurning::Pulses { per_revolution: 1 }]
+            [StatedTurning::ConstantSpeed { speed_hz: 20.0 }, StatedTurning::Pulses { per_revolution: 1 }]
         {
-            assert_eq!(misfit(&angular, &Told { teeth, mate_teeth: Some(mate_teeth), turning }), None);
+            assert_eq!(
+                find_mismatch(&angular, &StatedFacts { teeth, mate_teeth: Some(mate_teeth), turning }),
+                None
+            );
         }
     }
 }

@@ -1,7 +1,7 @@
-//! Whether a speed that is told to be constant varies.
+//! A test whether a speed that is stated to be constant varies.
 
-use super::claims::Claim;
 use super::fine_orders::{FineOrders, affordable};
+use super::hypotheses::Hypothesis;
 use crate::signal::{AngularSettings, AngularSignal, MeshTone, ShaftPhase, angular_resample};
 
 /// Harmonics whose tone is followed.
@@ -11,16 +11,16 @@ const HALF_BAND: f64 = 0.95;
 /// Least gain of the harmonics that were not followed, over both trackings.
 const LEAST_GAIN: f64 = 5.0;
 /// (mesh cycles) Least rms deviation from the best constant speed that is a varying one.
-const LEAST_WANDER: f64 = 0.15;
+const LEAST_DEVIATION: f64 = 0.15;
 
 /// (-) Standard deviation of the speed over its mean, where the mesh harmonics show that it varies.
 ///
 /// Along the phase of one harmonic's tone the others become lines, if it is a mesh; in noise, or at a constant speed, they stand
 /// out no more than before. A tone that was followed does not count for itself.
-pub(super) fn varying(
+pub(super) fn varying_speed(
     angular: &AngularSignal,
     orders: &FineOrders,
-    as_told: &Claim,
+    as_stated: &Hypothesis,
     teeth: u32,
 ) -> Option<f64> {
     let points = angular.points_per_revolution;
@@ -31,8 +31,8 @@ pub(super) fn varying(
         // A revolution is the unit of time.
         let tone = MeshTone { harmonic, half_band_hz: Some(HALF_BAND), ..MeshTone::new(teeth, 1.0) };
         let Ok(phase) = ShaftPhase::from_mesh_tone(part, points as f64, &tone) else { continue };
-        let of_harmonic = wander(&phase, points);
-        if of_harmonic.rms_rev * f64::from(teeth) < LEAST_WANDER {
+        let of_harmonic = phase_deviation(&phase, points);
+        if of_harmonic.rms_rev * f64::from(teeth) < LEAST_DEVIATION {
             return None;
         }
         let settings = AngularSettings { points_per_revolution: Some(points), ..AngularSettings::default() };
@@ -41,7 +41,7 @@ pub(super) fn varying(
         let Some(along) = FineOrders::of(&AngularSignal { nyquist_order, ..followed }) else { continue };
         let others = |of: &FineOrders| -> f64 {
             let is_other = |order: f64| (order - tone_order(&tone)).abs() > 0.5;
-            let lines = as_told.mesh_lines(of).filter(|(order, _)| is_other(*order));
+            let lines = as_stated.mesh_lines(of).filter(|(order, _)| is_other(*order));
             lines.map(|(_, prominence)| prominence.max(0.0)).sum()
         };
         gain += others(&along) - others(orders);
@@ -55,7 +55,7 @@ fn tone_order(tone: &MeshTone) -> f64 {
 }
 
 /// How far a phase is from that of a constant speed.
-struct Wander {
+struct PhaseDeviation {
     /// (rev) Rms deviation from the straight line through it.
     rms_rev: f64,
     /// (-) Standard deviation of the speeds of its revolutions over their mean.
@@ -64,7 +64,7 @@ struct Wander {
 
 /// # Arguments
 /// * `points` - values of the phase in a revolution
-fn wander(phase: &ShaftPhase, points: usize) -> Wander {
+fn phase_deviation(phase: &ShaftPhase, points: usize) -> PhaseDeviation {
     // Once in each revolution.
     let turned: Vec<f64> = phase.revolutions.iter().step_by(points).copied().collect();
     let middle = 0.5 * (turned.len() as f64 - 1.0);
@@ -75,7 +75,7 @@ fn wander(phase: &ShaftPhase, points: usize) -> Wander {
     let off: f64 =
         turned.iter().enumerate().map(|(i, angle)| (angle - mean - slope * along(i)).powi(2)).sum();
     let steps = turned.windows(2).map(|pair| (pair[1] - pair[0] - slope).powi(2));
-    Wander {
+    PhaseDeviation {
         rms_rev: (off / turned.len() as f64).sqrt(),
         of_speed: (steps.sum::<f64>() / (turned.len() as f64 - 1.0)).sqrt() / slope,
     }

@@ -1,0 +1,278 @@
+//! A check of a recording against what its user states about it: teeth, shaft, pulses, speed.
+
+mod fine_orders;
+mod hypotheses;
+mod steadier_speed;
+mod varying_speed;
+mod words;
+
+use super::AngularSignal;
+use fine_orders::FineOrders;
+use hypotheses::Hypothesis;
+use steadier_speed::{SteadierSpeed, steadier_speed};
+use varying_speed::varying_speed;
+
+/// Least gain in evidence over the stated facts.
+const LEAST_GAIN: f64 = 6.0;
+/// Least sum of prominences of the mesh lines that a hypothesis has for itself.
+const LEAST_MESH: f64 = 4.0;
+/// Least of these of the mesh lines that the stated facts do not explain.
+const LEAST_MESH_GAIN: f64 = 3.0;
+/// [`LEAST_MESH`] for a speed, of which many are tried: two lines that stand out as far as counts.
+const LEAST_MESH_OF_SPEED: f64 = 5.5;
+/// Least gain of the wheel's orders where the mesh lines speak for another number of pulses: noise.
+const LEAST_WHEEL_GAIN: f64 = -1.0;
+/// Least score of a comb of shaft orders that decides, in standard deviations of noise.
+const LEAST_COMB: f64 = 6.0;
+/// Largest one of shaft orders that are not there.
+const POOR_COMB: f64 = 3.0;
+/// Least ratio of the mesh harmonics' energy in the average at a better speed.
+const LEAST_ENERGY_RATIO: f64 = 1.2;
+/// Most teeth of a wheel: every count between half and twice as many is compared.
+const MOST_TEETH: u32 = 100_000;
+
+/// The source from which the angle of the shaft is known, as the user states it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum StatedTurning {
+    /// Pulses, so many a revolution.
+    Pulses {
+        /// How many.
+        per_revolution: u32,
+    },
+    /// A constant speed.
+    ConstantSpeed {
+        /// (Hz) The speed.
+        speed_hz: f64,
+    },
+    /// A speed that was measured, or anything else that is not off as a whole.
+    Other,
+}
+
+/// The facts that a user states about a recording.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StatedFacts {
+    /// Teeth of the wheel on the shaft.
+    pub teeth: u32,
+    /// Teeth of the wheel that meshes with it.
+    pub mate_teeth: Option<u32>,
+    /// The source from which the angle of the shaft is known.
+    pub turning: StatedTurning,
+}
+
+/// A fact that fits the recording better than the stated one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Alternative {
+    /// Another number of teeth of the wheel on the shaft.
+    Teeth {
+        /// How many.
+        teeth: u32,
+    },
+    /// Another number of teeth of its mate.
+    MateTeeth {
+        /// How many.
+        teeth: u32,
+        /// The stated number.
+        stated: u32,
+    },
+    /// Speed or pulses are those of the mate's shaft.
+    OtherShaft {
+        /// Stated teeth of the mate.
+        mate_teeth: u32,
+    },
+    /// Another number of pulses in a revolution.
+    PulsesPerRevolution {
+        /// How many.
+        pulses: u32,
+        /// The stated number.
+        stated: u32,
+    },
+    /// Another constant speed.
+    ShaftSpeed {
+        /// (Hz) The speed.
+        speed_hz: f64,
+        /// (Hz) The stated speed.
+        stated_hz: f64,
+    },
+    /// A speed that varies, where a constant one is stated.
+    VaryingSpeed {
+        /// (-) Standard deviation of the revolutions' speeds over their mean.
+        variation: f64,
+        /// (Hz) The stated speed.
+        stated_hz: f64,
+    },
+}
+
+/// Evidence for an interpretation of the recording.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Evidence {
+    /// (-) Sum over the mesh harmonics of the logarithm of each line over its strongest neighbour, each from −1 to 3.
+    pub mesh: f64,
+    /// (-) Height of the wheel's shaft orders above the bins between them, in standard deviations of noise.
+    /// None where the recording is too short to tell.
+    pub wheel_orders: Option<f64>,
+    /// (-) Height of the mate's shaft orders, likewise.
+    pub mate_orders: Option<f64>,
+}
+
+impl Evidence {
+    fn total(&self) -> f64 {
+        self.mesh + self.wheel_orders.unwrap_or(0.0) + self.mate_orders.unwrap_or(0.0)
+    }
+}
+
+/// A stated fact that does not fit the recording, with an alternative that fits better.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Mismatch {
+    /// The stated facts.
+    pub stated: StatedFacts,
+    /// Evidence for the stated facts.
+    pub stated_evidence: Evidence,
+    /// The alternative.
+    pub alternative: Alternative,
+    /// Evidence for the alternative.
+    pub evidence: Evidence,
+    /// (-) Energy of the mesh harmonics in the average at the alternative speed over that at the stated one; none where the speed is
+    /// not in doubt.
+    pub energy_ratio: Option<f64>,
+}
+
+/// Looks for a sign that the recording does not fit the stated facts: another tooth count, the other shaft, another number of pulses,
+/// another speed, one that varies where a constant one is stated.
+///
+/// The mesh harmonics of the right interpretation stand out of their neighbours, and the orders of either shaft out of what lies
+/// between them. An alternative is reported where it has clearly more of both than the stated facts. Where the recording is too
+/// short or too noisy to tell, nothing is; nor where a wheel is stated to have more than 100 000 teeth, which are not compared.
+///
+/// # Arguments
+/// * `angular` - the recording over the angle of the shaft, as it is stated
+/// * `stated` - the facts that the user states
+///
+/// ```
+/// use meshtone::signal::{AngularSettings, Alternative, ShaftPhase, StatedFacts, StatedTurning, angular_resample, find_mismatch};
+///
+/// // A wheel of 19 teeth at 20 Hz with sidebands and three harmonics, and a little noise, as every recording has.
+/// let wave = |order: f64, i: usize| (std::f64::consts::TAU * order * 20.0 * i as f64 / 1e4).cos();
+/// let mesh = |i| wave(19.0, i) + 0.5 * wave(38.0, i) + 0.4 * wave(57.0, i);
+/// let noise = |i: usize| 4e-5 * (i * i % 10_007) as f64;
+/// let sidebands = |i| 0.1 * wave(20.0, i) + 0.1 * wave(18.0, i);
+/// let signal: Vec<f64> = (0..20_000).map(|i| mesh(i) + sidebands(i) + noise(i)).collect();
+/// let phase = ShaftPhase::constant(20.0, 1e4, signal.len())?;
+/// let angular = angular_resample(&signal, &phase, &AngularSettings::default())?;
+///
+/// let mut stated = StatedFacts { teeth: 19, mate_teeth: None, turning: StatedTurning::Other };
+/// assert_eq!(find_mismatch(&angular, &stated), None);
+/// stated.teeth = 20;
+/// assert_eq!(find_mismatch(&angular, &stated).map(|mismatch| mismatch.alternative), Some(Alternative::Teeth { teeth: 19 }));
+/// # Ok::<(), meshtone::signal::SignalError>(())
+/// ```
+pub fn find_mismatch(angular: &AngularSignal, stated: &StatedFacts) -> Option<Mismatch> {
+    if stated.teeth.max(stated.mate_teeth.unwrap_or(0)) > MOST_TEETH {
+        return None;
+    }
+    let orders = FineOrders::of(angular)?;
+    let as_stated = Hypothesis::as_stated(stated);
+    let stated_evidence = as_stated.evidence(&orders);
+    // Where the shaft's own orders are not seen, a mesh frequency is as well of another speed as of other teeth.
+    let may_be_speed = matches!(stated.turning, StatedTurning::ConstantSpeed { .. })
+        && stated_evidence.wheel_orders.is_none_or(|score| score < POOR_COMB);
+    let total =
+        |hypothesis: &Hypothesis, evidence: &Evidence| evidence.total() + hypothesis.prior(may_be_speed);
+    let likeliest = hypotheses::alternatives(stated, &orders)
+        .filter(|hypothesis| !hypothesis.is_of_mains(stated, &orders))
+        .filter_map(|hypothesis| {
+            Some((hypothesis, gained(&hypothesis, &as_stated, &stated_evidence, may_be_speed, &orders)?))
+        })
+        .max_by(|(a, of_a), (b, of_b)| total(a, of_a).total_cmp(&total(b, of_b)));
+    if let StatedTurning::ConstantSpeed { speed_hz } = stated.turning {
+        let (hypothesis, evidence) = likeliest.unwrap_or((as_stated, stated_evidence));
+        let speed_is_alternative = likeliest
+            .is_some_and(|(hypothesis, _)| matches!(hypothesis.alternative, Alternative::ShaftSpeed { .. }));
+        let steadier = steadier_speed(angular, &orders, &hypothesis, stated.teeth).filter(|steadier| {
+            (likeliest.is_none() || speed_is_alternative) && steadier.energy_ratio >= LEAST_ENERGY_RATIO
+        });
+        let is_doubtful = steadier.is_some() || speed_is_alternative || !as_stated.stands_out(&orders);
+        let variation =
+            if is_doubtful { varying_speed(angular, &orders, &as_stated, stated.teeth) } else { None };
+        if let Some(variation) = variation {
+            let alternative = Alternative::VaryingSpeed { variation, stated_hz: speed_hz };
+            let evidence = stated_evidence;
+            return Some(Mismatch {
+                stated: *stated,
+                stated_evidence,
+                alternative,
+                evidence,
+                energy_ratio: None,
+            });
+        }
+        if let Some(SteadierSpeed { factor, energy_ratio }) = steadier {
+            let alternative = Alternative::ShaftSpeed { speed_hz: speed_hz * factor, stated_hz: speed_hz };
+            let energy_ratio = Some(energy_ratio);
+            return Some(Mismatch { stated: *stated, stated_evidence, alternative, evidence, energy_ratio });
+        }
+    }
+    let (hypothesis, evidence) = likeliest?;
+    Some(Mismatch {
+        stated: *stated,
+        stated_evidence,
+        alternative: hypothesis.alternative,
+        evidence,
+        energy_ratio: None,
+    })
+}
+
+/// The evidence for a hypothesis, where it is clearly more than that for the stated facts.
+///
+/// # Arguments
+/// * `may_be_speed` - whether other teeth are stated from another speed by nothing
+fn gained(
+    hypothesis: &Hypothesis,
+    as_stated: &Hypothesis,
+    stated: &Evidence,
+    may_be_speed: bool,
+    orders: &FineOrders,
+) -> Option<Evidence> {
+    let own = hypothesis.evidence(orders);
+    let new_mesh = hypothesis.own_mesh(as_stated, orders);
+    let lost_mesh = as_stated.own_mesh(hypothesis, orders).unwrap_or(0.0);
+    let wheel_gain = gain(own.wheel_orders, stated.wheel_orders);
+    let mate_gain = gain(own.mate_orders, stated.mate_orders);
+    let mesh_gain = new_mesh.unwrap_or(0.0) - lost_mesh;
+    let is_of_speed = match hypothesis.alternative {
+        Alternative::ShaftSpeed { .. } => true,
+        Alternative::Teeth { .. } => may_be_speed,
+        _ => false,
+    };
+    let least_mesh = if is_of_speed { LEAST_MESH_OF_SPEED } else { LEAST_MESH };
+    let has_mesh =
+        own.mesh > least_mesh && new_mesh.is_some_and(|new| new > LEAST_MESH_GAIN) && lost_mesh <= 0.0;
+    let has_wheel = own.wheel_orders > Some(LEAST_COMB) && wheel_gain > LEAST_COMB;
+    let has_mate = own.mate_orders > Some(LEAST_COMB) && stated.mate_orders.is_some_and(|stated| stated < POOR_COMB)
+        // Only beside the orders of the one shaft can those of the other be read.
+        && stated.wheel_orders > Some(POOR_COMB);
+    let is_founded = match hypothesis.alternative {
+        Alternative::MateTeeth { .. } => has_mate,
+        Alternative::Teeth { .. } | Alternative::OtherShaft { .. } => {
+            has_mesh || has_mate && lost_mesh <= 0.0
+        }
+        Alternative::PulsesPerRevolution { .. } => {
+            let is_possible = own.wheel_orders.is_some() && lost_mesh <= 0.0;
+            is_possible && (has_mesh && wheel_gain > LEAST_WHEEL_GAIN || has_wheel && mesh_gain > 0.0)
+        }
+        Alternative::ShaftSpeed { .. } | Alternative::VaryingSpeed { .. } => {
+            has_mesh || has_wheel && lost_mesh <= 0.0
+        }
+    };
+    let counted_mate_gain = if hypothesis.moves_wheel() { mate_gain.min(0.0) } else { mate_gain };
+    (is_founded && mesh_gain + wheel_gain + counted_mate_gain > LEAST_GAIN).then_some(own)
+}
+
+/// The score of a hypothesis less that of the stated facts; 0 where the latter cannot be seen.
+fn gain(own: Option<f64>, stated: Option<f64>) -> f64 {
+    match (own, stated) {
+        (_, None) => 0.0,
+        (None, Some(stated)) => -stated.max(0.0),
+        (Some(own), Some(stated)) => own - stated,
+    }
+}

@@ -1,0 +1,65 @@
+//! The text of a [`Mismatch`].
+
+use std::fmt::{Display, Formatter, Result};
+
+use super::{Alternative, Mismatch, StatedTurning};
+
+/// (-) How near to a whole tooth count a speed leads that may as well be one.
+const SAME_COUNT: f64 = 0.01;
+
+impl Display for Mismatch {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        let teeth = self.stated.teeth;
+        match self.alternative {
+            Alternative::Teeth { teeth: alternative } => write!(
+                f,
+                "the mesh lines are those of {alternative} teeth on this shaft, or of a whole part of that, rather than {teeth}: check \
+                 the tooth count"
+            ),
+            Alternative::MateTeeth { teeth: alternative, stated } => write!(
+                f,
+                "the other shaft's orders are those of a mate of {alternative} teeth rather than {stated}: check its tooth count"
+            ),
+            Alternative::OtherShaft { mate_teeth } => {
+                let what = match self.stated.turning {
+                    StatedTurning::Pulses { .. } => "the pulses are",
+                    StatedTurning::ConstantSpeed { .. } | StatedTurning::Other => "the speed is",
+                };
+                write!(
+                    f,
+                    "{what} rather of the other shaft, that of the wheel with {mate_teeth} teeth: exchange the tooth counts \
+                     {teeth} and {mate_teeth}"
+                )
+            }
+            Alternative::PulsesPerRevolution { pulses, stated } => {
+                write!(
+                    f,
+                    "there are rather {pulses} pulses in a revolution than {stated}: check their number"
+                )
+            }
+            Alternative::VaryingSpeed { variation, stated_hz } => write!(
+                f,
+                "the shaft does not turn at a constant {stated_hz} Hz: its speed varies by {:.2} % (rms), and the average loses the mesh; \
+                 follow the mesh tone, or record a tachometer",
+                100.0 * variation
+            ),
+            Alternative::ShaftSpeed { speed_hz, stated_hz } => {
+                let percent = 100.0 * (speed_hz / stated_hz - 1.0);
+                write!(
+                    f,
+                    "the shaft turns rather at {speed_hz:.6} Hz than at {stated_hz} Hz ({percent:+.4} %)"
+                )?;
+                if let Some(ratio) = self.energy_ratio {
+                    write!(f, ": the average then holds {ratio:.1} times the energy at the mesh orders")?;
+                }
+                write!(f, "; state that speed, or follow the mesh tone")?;
+                // The mesh frequency alone does not tell a speed from a tooth count.
+                let count = f64::from(teeth) * speed_hz / stated_hz;
+                if count.round() != f64::from(teeth) && (count - count.round()).abs() < SAME_COUNT {
+                    write!(f, ". Or the wheel has {count:.0} teeth and the speed is right")?;
+                }
+                Ok(())
+            }
+        }
+    }
+}
