@@ -1,4 +1,4 @@
-"""What may be wrong with a gear, told from recordings by simulations."""
+"""What may be wrong with a gear, found from recordings by simulations."""
 
 from __future__ import annotations
 
@@ -77,8 +77,8 @@ class Diagnosis:
         head = "<tr><th>kind</th><th>probability</th><th>severity (90 %)</th><th>where</th></tr>"
         p = "p < 0.001" if self.outside_model < 0.001 else f"p = {self.outside_model:.3f}"
         facts = f"damaged with a probability of {100 * self.damaged:.1f} %, {p}; given the scenario"
-        told = "".join(f"<p>{escape(warning)}</p>" for warning in self.warnings)
-        return f"<p>{escape(self.summary)}</p><p>{facts}</p><table>{head}{rows}</table>{told}"
+        warnings = "".join(f"<p>{escape(warning)}</p>" for warning in self.warnings)
+        return f"<p>{escape(self.summary)}</p><p>{facts}</p><table>{head}{rows}</table>{warnings}"
 
 
 def _cells(said: dict[str, Any]) -> str:
@@ -152,7 +152,7 @@ def diagnose(
     """
     if signal not in ("recording", "average", "difference"):
         raise ValueError(f"signal '{signal}': must be 'recording', 'average' or 'difference'")
-    told = _progress.shown("simulations") if progress is True else (progress or None)
+    report = _progress.shown("simulations") if progress is True else (progress or None)
     text, difference_g, (low, high) = _core.diagnose(
         native_scenario(scenario),
         _observations("recordings", recordings, scenario, signal),
@@ -160,7 +160,7 @@ def diagnose(
         tuned,
         reference,
         _records(records),
-        told,
+        report,
     )
     report = json.loads(text)
     return Diagnosis(

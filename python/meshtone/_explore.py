@@ -65,7 +65,7 @@ def explore(scenario: Scenario | None = None, *, port: int = 0, open_browser: bo
     port : int
         Port of 127.0.0.1; 0, the default, for any that is free.
     open_browser : bool, optional
-        Whether the browser is told to open it; by default it is, but not in a notebook.
+        Whether the browser opens it; by default it does, but not in a notebook.
 
     Returns
     -------

@@ -473,17 +473,17 @@ class ScenarioKeys:
             The material of wheels and shafts. Default: "steel".
         tip_relief : TipRelief or False, optional
             The material removed near the tips, or ``false`` for none. Default: { shape = "parabolic", length_mm = 1.0,
-            depth_mm = 1.0 }. Ignored by published and contact.
+            depth_mm = 1.0 }. Ignored by linear, published, contact.
         flank_relief : FlankRelief, optional
             The relief of the flanks near the tips, as a gap in µm. Default: { shape = "parabolic", length_mm = 1.0,
-            amount_um = 0.0 }. Ignored by linear and published.
+            amount_um = 0.0 }. Ignored by published.
         tip_chamfer_mm : float, optional
             (mm) The height of the chamfer or rounding of all tips. Allowed: ≥ 0; less than 1 module. Default: 0.2
-            modules. Ignored by linear and published.
+            modules. Ignored by published.
         backlash_mm : float, optional
             (mm) The backlash along the line of action. Allowed: ≥ 0; less than 1 module; at least what a given centre
             distance opens. Default: ⅔ (0.06 + 0.0005 a + 0.03 m), a the centre distance, and what a given one opens.
-            Ignored by linear and published.
+            Ignored by linear, published.
         crowning_mm : float, optional
             (mm) A constant reduction of the working flank. Allowed: ≥ 0; less than π/4 modules, half the tooth's
             thickness. Default: 0.0.
@@ -512,18 +512,18 @@ class ScenarioKeys:
             scenario's ``seed``.
         iso_class : int, optional
             The class of ISO 1328-1:2013 of the deviations, 1 (best) to 11, instead of din_grade; 0: none. Allowed:
-            whole number 0…11. Default: 0. Ignored by linear and published.
+            whole number 0…11. Default: 0. Ignored by published.
         tooth_share : float, optional
             (-) The part of the tolerances of profile slope and form that each tooth has of its own; the rest is common
-            to a wheel's teeth. Allowed: 0…1. Default: 0.4. Ignored by linear and published.
+            to a wheel's teeth. Allowed: 0…1. Default: 0.4. Ignored by published.
         pitch_share : float, optional
             (-) A wheel's largest single pitch deviation over its tolerance f_p. Allowed: 0…1. Default: 0.15. Ignored by
-            linear and published.
+            published.
         run_out_share : float, optional
-            (-) A wheel's run-out over its tolerance F_r. Allowed: 0…1. Default: 0.3. Ignored by linear and published.
+            (-) A wheel's run-out over its tolerance F_r. Allowed: 0…1. Default: 0.3. Ignored by published.
         helix_share : float, optional
             (-) A wheel's largest helix slope deviation, of either sign, over its tolerance f_Hβ. Allowed: 0…1. Default:
-            0.0. Ignored by linear and published.
+            0.0. Ignored by linear, published.
         pinion_profile_errors_mm, gear_profile_errors_mm : array of float64, shape (100, teeth), optional
             (mm) The profile errors, instead of a draw: 100 rows of one number a tooth. Allowed: 100 × teeth, each below
             the module. Default: none.
@@ -533,13 +533,13 @@ class ScenarioKeys:
             beside given profile errors.
         pinion_run_out_um, gear_run_out_um : float, optional
             (µm) The run-out F_r, of which the deviation is F_r/2 sin(θ + φ). Allowed: ≥ 0, ≤ 10000. Default: drawn, or
-            none beside given profile errors or pitches, which have it in them. Ignored by linear and published.
+            none beside given profile errors or pitches, which have it in them. Ignored by published.
         pinion_run_out_phase_rad, gear_run_out_phase_rad : float, optional
             (rad) Its phase φ; θ counts from where the wheel's first tooth enters contact. Default: drawn, or 0 beside
-            given profile errors. Ignored by linear and published.
+            given profile errors. Ignored by published.
         pinion_helix_slope_um, gear_helix_slope_um : float, optional
             (µm) The helix slope deviation over the face width, positive where metal is added towards positive z.
-            Allowed: −1000…1000. Default: drawn, or none beside given profile errors. Ignored by linear and published.
+            Allowed: −1000…1000. Default: drawn, or none beside given profile errors. Ignored by linear, published.
         bearing_stiffness_n_per_m : float, optional
             (N/m) The stiffness of each wheel's bearings in x, y and z. Allowed: > 0, ≤ 1e15. Default: 1.9e8. Ignored by
             published.
@@ -557,7 +557,7 @@ class ScenarioKeys:
         misalignment_um : float, optional
             (µm) How far the shafts, with the slope that the nominal load gives them, are from parallel in the plane of
             action over the face width; positive where flanks come closer towards positive z. The tilt by an uneven load
-            is computed. Allowed: −1000…1000. Default: 0.0. Ignored by linear and published.
+            is computed. Allowed: −1000…1000. Default: 0.0. Ignored by linear, published.
         pinion_shaft : Shaft, optional
             The shaft to motor (pinion) or brake (gear). Default: { length_mm = 200.0, radius_mm = 10.0, bearing_span_mm
             = 130.0, wheel_at = 0.5, damping_ratio = 0.025 }.
@@ -568,10 +568,10 @@ class ScenarioKeys:
             The wheel's mass and inertias, any of the three. Default: those of a solid disc of pitch radius.
         support : Support, optional
             What each shaft's bearings sit in. Default: { mass_kg = 1.6, stiffness_n_per_m = 1.6e8, coupling_n_per_m =
-            5e8, damping_ratio = 0.025 }. Ignored by linear and published.
+            5e8, damping_ratio = 0.025 }. Ignored by linear, published.
         mesh_damping_ratio : float, optional
             (-) The damping of teeth in contact over the critical one of the wheels' rotation on the mean mesh
-            stiffness. Allowed: ≥ 0, < 1. Default: 0.15. Ignored by linear and published.
+            stiffness. Allowed: ≥ 0, < 1. Default: 0.15. Ignored by published.
         sampling_rate_hz : float, optional
             (S/s) The nominal sampling rate; the actual one is higher, so that both wheels turn whole numbers of
             samples. Allowed: > 0. Default: 1e5.
@@ -585,7 +585,7 @@ class ScenarioKeys:
         initial_displacement : sequence of 13 floats, optional
             (m, rad) The displacement at the start: x, y of the gear, x, y of the pinion, rotation of gear, pinion and
             brake, z of gear and pinion, tilt φ of both, tilt ψ of both. Default: the loaded mesh's equilibrium; zeros
-            under published.
+            under published. Ignored by contact.
         initial_velocity : sequence of 13 floats, optional
             (m/s, rad/s) The velocity of the same at the start. Default: rigid rotation at the nominal speed.
 

@@ -24,7 +24,7 @@ def shown(what: str) -> Callable[[int, int], None]:
     ended = False
     show = _in_notebook() or _on_terminal
 
-    def told(finished: int, total: int) -> None:
+    def report(finished: int, total: int) -> None:
         nonlocal ended
         if total == 0 or ended:
             return
@@ -33,7 +33,7 @@ def shown(what: str) -> Callable[[int, int], None]:
         left = f", {(total - finished) / rate:.0f} s left" if 0 < finished < total else ""
         show(finished, total, f"{finished} of {total} {what}, {rate:.0f} a second{left}")
 
-    return told
+    return report
 
 
 def _on_terminal(finished: int, total: int, words: str) -> None:

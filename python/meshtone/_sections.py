@@ -42,7 +42,7 @@ def check_key(key: str, value: object = None) -> None:
     key : str
         The key.
     value : object, optional
-        What it is given, told in the right unit.
+        Its value, which the error repeats in the right unit.
     """
     if key in _SPEED_RPM:
         written = f"{value / 60:.12g}" if isinstance(value, (int, float)) else "…"

@@ -21,7 +21,7 @@ class Sensor:
         other channel's. Default: place and direction, such as ``gear_support_vertical``.
     at : {'support', 'pinion-support', 'gear-support', 'wheels'}, optional
         Where it sits: on both supports (their mean), on one, or on the wheels (their sum); always the wheels under
-        linear and published. Default: "support". Ignored by linear and published.
+        linear and published. Default: "support". Ignored by linear, published.
     direction : {'vertical', 'horizontal', 'axial'}, optional
         The direction it measures in; under contact axial only at the wheels. Default: "vertical".
     resonance_hz : float, optional

@@ -25,10 +25,10 @@ class MeshtoneWarning(UserWarning):
     >>> import warnings
     >>> import meshtone
     >>> from meshtone import examples
-    >>> with warnings.catch_warnings(record=True) as told:
+    >>> with warnings.catch_warnings(record=True) as caught:
     ...     warnings.simplefilter("always", meshtone.MeshtoneWarning)
     ...     simulation = meshtone.simulate(examples.healthy().copy(pinion_teeth=14))
-    >>> [warning.message.code for warning in told if isinstance(warning.message, meshtone.MeshtoneWarning)]
+    >>> [warning.message.code for warning in caught if isinstance(warning.message, meshtone.MeshtoneWarning)]
     ['undercut']
     """
 

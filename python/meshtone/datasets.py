@@ -138,10 +138,10 @@ def generate_dataset(
     with extra("datasets"):
         import pyarrow.dataset  # noqa: F401  # before hours of work, not after them
 
-    told = _progress.shown("records") if progress is True else (progress or None)
+    report = _progress.shown("records") if progress is True else (progress or None)
     number, of = (1, 1) if part is None else _part(part)
     threads = None if jobs is None else whole("jobs", jobs, 1)
-    remade, doubts = _core.generate_dataset(plan, fspath(path), threads, number, of, told)
+    remade, doubts = _core.generate_dataset(plan, fspath(path), threads, number, of, report)
     warn(doubts)
     if remade:
         file, reason = remade[0]

@@ -111,10 +111,3 @@ def _teeth_in_words(fault: Fault) -> str:
     if isinstance(fault.tooth, int):
         return f"{fault.wheel} tooth {fault.tooth}"
     return f"{fault.wheel} teeth {', '.join(map(str, fault.tooth))}"
-
-
-def numbers_of_teeth(fault: Fault, teeth: int) -> list[int]:
-    """The numbers of the teeth that a fault is on, from 1, of a wheel with that many."""
-    if fault.tooth == "all":
-        return list(range(1, teeth + 1))
-    return [fault.tooth] if isinstance(fault.tooth, int) else [int(tooth) for tooth in fault.tooth]

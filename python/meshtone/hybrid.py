@@ -156,7 +156,7 @@ class Tuning:
 
 
 def tune(experiment: str | PathLike[str], *, progress: bool | Callable[[int, int], None] = False) -> Tuning:
-    """Tune simulations to what was measured on a rig. What is doubtful is told as a :class:`~meshtone.MeshtoneWarning` each.
+    """Tune simulations to what was measured on a rig. Each doubt is a :class:`~meshtone.MeshtoneWarning`.
 
     Parameters
     ----------
@@ -178,8 +178,8 @@ def tune(experiment: str | PathLike[str], *, progress: bool | Callable[[int, int
     KeyboardInterrupt
         Ctrl-C stops it.
     """
-    told = _progress.shown("simulations") if progress is True else (progress or None)
-    text, tuned_toml = _core.tune(experiment, told)
+    report = _progress.shown("simulations") if progress is True else (progress or None)
+    text, tuned_toml = _core.tune(experiment, report)
     report = json.loads(text)
     warn(report["warnings"])
     return Tuning(report["parameters"], report["error"], report, tuned_toml)

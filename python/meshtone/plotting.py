@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from ._display import LABELS, channel_label
 from ._extras import extra
-from .faults import Fault, MissingTooth, PartialFace, Pits, RootCrack, ToothBreakage, Wear, in_words, numbers_of_teeth
+from .faults import in_words
 from .signal._arguments import whole
 from .signal.indicators import INDICATORS, SHOWN
 from .simulation import chosen_channel
@@ -46,6 +46,7 @@ LINES = ((BLUE, "o"), (ORANGE, "s"), ("#009e73", "^"), ("#cc79a7", "D"), ("#56b4
 """Colour and marker of each line where there are several; from the seventh on they come again, dashed."""
 
 PART: dict[str, Any] = {"facecolor": "none", "edgecolor": ORANGE, "hatch": "////", "linewidth": 1.0}
+MISSING: dict[str, Any] = {"facecolor": "white", "edgecolor": ORANGE, "hatch": "//", "linewidth": 1.0}
 WHOLE: dict[str, Any] = {"facecolor": ORANGE, "edgecolor": "none", "alpha": 0.7}
 TURN: dict[str, Any] = {"facecolor": ORANGE, "edgecolor": "none", "alpha": 0.2}
 """The parts of a revolution in which a damaged tooth is in contact."""
@@ -307,32 +308,9 @@ def plot_tooth(
     ax.fill(outline_y, outline_x, facecolor="#e8e8e8", edgecolor="black", linewidth=1.0)
     flanks = {(name, number): flank for name, number, flank in simulation._native.damaged_teeth_mm()}
     flank_y_mm = flanks.get((wheel, tooth), y_mm)
-    cracks = {(name, number): (x, y) for name, number, x, y in simulation._native.cracks_mm()}
-    of_wheel = [fault for fault in simulation.scenario.with_own_sizes().faults if fault.wheel == wheel]
-    faults = [fault for fault in of_wheel if tooth in numbers_of_teeth(fault, teeth)]
-    for fault in faults:
-        if isinstance(fault, MissingTooth):
-            ax.fill(outline_y, outline_x, facecolor="white", edgecolor=ORANGE, hatch="//", linewidth=1.0, label="missing")
-        elif isinstance(fault, ToothBreakage):
-            # What is lost over a part of the width is hatched, what is lost over all of it is filled.
-            parts = [(fault.chip_height_mm or 0.0, f"chip, {fault.chip_width_mm:g} mm wide at the tip", PART)]
-            if fault.tip_loss_mm:
-                parts.append((fault.tip_loss_mm, f"tip lost, {fault.tip_loss_mm:g} mm", WHOLE))
-            for height_mm, label, style in parts:
-                lost = x_mm >= x_mm[-1] - height_mm
-                y = np.concatenate([y_mm[lost], -y_mm[lost][::-1]])
-                ax.fill(y, np.concatenate([x_mm[lost], x_mm[lost][::-1]]), label=label, **style)
-        elif isinstance(fault, RootCrack):
-            crack_x_mm, crack_y_mm = cracks[(wheel, tooth)]
-            extent = "" if fault.length_mm is None else f", {fault.length_mm:g} mm along the face"
-            ax.plot(crack_y_mm, crack_x_mm, color=ORANGE, linewidth=2.5, label=f"crack, {fault.depth_mm:g} mm deep{extent}")
-    cuts = [fault for fault in faults if not isinstance(fault, (MissingTooth, ToothBreakage, RootCrack))]
-    if cuts:
-        partial = all(isinstance(fault, (PartialFace, Pits)) for fault in cuts)
-        lost = y_mm > flank_y_mm + 1e-9
-        y = np.concatenate([y_mm[lost], flank_y_mm[lost][::-1]])
-        label = "; ".join(map(_cut_in_words, cuts))
-        ax.fill(y, np.concatenate([x_mm[lost], x_mm[lost][::-1]]), label=label, **(PART if partial else WHOLE))
+    for damage in simulation._native.damages():
+        if (damage["wheel"], damage["tooth"]) == (wheel, tooth):
+            _plot_damage(ax, damage, (x_mm, y_mm), flank_y_mm, simulation.scenario.face_width_mm)
     ax.set_aspect("equal")
     ax.set(xlabel="Across the tooth (mm)", ylabel="From the wheel's centre (mm)", title=_title_of_tooth(wheel, tooth, damaged))
     if ax.get_legend_handles_labels()[0]:
@@ -346,12 +324,38 @@ def _title_of_tooth(wheel: str, tooth: int, damaged: Sequence[int]) -> str:
     return f"{title}\n(also damaged: {_numbered(others)})" if others else title
 
 
-def _cut_in_words(fault: Fault) -> str:
-    if isinstance(fault, Wear):
-        return f"worn up to {fault.depth_um:g} µm deep"
-    if isinstance(fault, Pits):
-        return "pits" if fault.at is None else f"{len(fault.at)} pit{'' if len(fault.at) == 1 else 's'}"
-    return f"pit, {fault.width_mm:g} mm wide" if isinstance(fault, PartialFace) else fault.kind
+def _plot_damage(
+    ax: Axes,
+    damage: dict[str, Any],
+    flank_mm: tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]],
+    cut_y_mm: npt.NDArray[np.float64],
+    face_width_mm: float,
+) -> None:
+    """What a damage has taken: hatched where it takes a part of the face's width, filled where it takes all of it."""
+    label = ", ".join(line.rstrip(",") for line in damage["caption"])
+    if damage["crack_mm"] is not None:
+        crack_x_mm, crack_y_mm = damage["crack_mm"]
+        ax.plot(crack_y_mm, crack_x_mm, color=ORANGE, linewidth=2.5, label=label)
+        return
+    x_mm, y_mm = flank_mm
+    first, last = damage["range"]
+    reached = (np.arange(x_mm.size) >= first) & (np.arange(x_mm.size) <= last)
+    if damage["part"] == "flank":
+        lost = reached & (y_mm > cut_y_mm + 1e-9)
+        pieces = [(lost, cut_y_mm, PART if damage["is_partial"] else WHOLE, label)]
+    elif damage["part"] == "whole":
+        pieces = [(reached, -y_mm, MISSING, label)]
+    else:
+        # Through the whole thickness, in pieces that take more or less of the face.
+        outlines = [np.transpose(outline) for outline in damage["face_mm"]]
+        inside = [reached & (x_mm >= x.min()) & (x_mm <= x.max()) for _, x in outlines]
+        styles = [WHOLE if np.ptp(z) >= face_width_mm else PART for z, _ in outlines]
+        pieces = [
+            (lost, -y_mm, style, size) for lost, style, size in zip(inside, styles, damage["sizes"][-len(outlines) :])
+        ]
+    for lost, inner_y_mm, style, text in pieces:
+        y = np.concatenate([y_mm[lost], inner_y_mm[lost][::-1]])
+        ax.fill(y, np.concatenate([x_mm[lost], x_mm[lost][::-1]]), label=text, **style)
 
 
 def plot_record(record: Record) -> Figure:

@@ -236,7 +236,7 @@ brake_torque_nm=10.0, din_grade=7)
 
     @property
     def warnings(self) -> list[str]:
-        """What is doubtful about the scenario, though it can be simulated, as far as that can be told before simulating.
+        """Warnings about a scenario that can be simulated, as far as they can be known before simulating.
 
         These are what ``meshtone simulate`` prints before it simulates; :attr:`Simulation.warnings` has the others too.
 

@@ -282,7 +282,7 @@ class Simulation:
     def static_mesh(
         self, force_n: float | None = None, *, pitches: tuple[int, int] = (0, 2), points_per_pitch: int = 500
     ) -> StaticMesh:
-        """How the pairs share a force at rest, without deviations, with relief, chamfer and damage. Only under ``contact``.
+        """How the pairs share a force at rest, without deviations, with relief, chamfer and damage. Not under ``published``.
 
         Parameters
         ----------
@@ -300,7 +300,7 @@ class Simulation:
         Raises
         ------
         ValueError
-            Another model; a negative force.
+            The model ``published``; a negative force.
 
         Examples
         --------
@@ -355,7 +355,7 @@ class Simulation:
         -------
         dict
             (µm, rad) Run-out with its phase and helix slope of pinion and gear, by the arguments of
-            :class:`~meshtone.Scenario`: with :meth:`profile_errors_mm` they are the same wheels. Empty but under ``contact``.
+            :class:`~meshtone.Scenario`: with :meth:`profile_errors_mm` they are the same wheels. Empty under ``published``.
 
         Examples
         --------
@@ -662,7 +662,7 @@ def _process(
 
 
 def simulate(scenario: Scenario) -> Simulation:
-    """Simulate a scenario. What is doubtful about it is told as a :class:`~meshtone.MeshtoneWarning` each.
+    """Simulate a scenario. Each doubt about it is a :class:`~meshtone.MeshtoneWarning`.
 
     Parameters
     ----------
@@ -692,7 +692,7 @@ def simulate(scenario: Scenario) -> Simulation:
 
 
 def _again(scenario: Scenario) -> Simulation:
-    """What has been told of a simulation is not told once more."""
+    """Give warnings of a simulation once only."""
     return Simulation(scenario, _core.simulate(native_scenario(scenario)))
 
 
@@ -720,7 +720,7 @@ def trace(scenario: Scenario, *, average_rate_hz: float | None = None) -> dict[s
     --------
     >>> from meshtone import examples, trace
     >>> trace(examples.healthy())["acceleration"].shape
-    (4000, 13)
+    (4000, 17)
     """
     rate_hz = None if average_rate_hz is None else positive("average_rate_hz", average_rate_hz)
     return _core.trace(native_scenario(scenario), rate_hz)
@@ -777,7 +777,7 @@ def simulate_many(
     Returns
     -------
     list of Signals, or with ``on_error="return"`` of Signals and ValueError
-        In the order of the scenarios. What is doubtful is told once a code, with how many scenarios it concerns; each result's
+        In the order of the scenarios. Each kind of warning is given once, with how many scenarios it concerns; each result's
         ``warnings`` have its own.
 
     Raises
@@ -811,11 +811,11 @@ def simulate_many(
     rate_hz = None if target_rate_hz is None else positive("target_rate_hz", target_rate_hz)
     scenarios = list(scenarios)
     ask = _progress.shown("simulations") if progress is True else (progress or None)
-    told = None if ask is None else functools.partial(_tell, ask, len(scenarios))
+    report = None if ask is None else functools.partial(_report, ask, len(scenarios))
     native = [native_scenario(scenario) for scenario in scenarios]
     most = None if threads is None else whole("threads", threads, 1)
     raises = on_error == "raise"
-    results = _core.simulate_many(native, list(channels), most, raises, told)
+    results = _core.simulate_many(native, list(channels), most, raises, report)
     if raises:
         _raise_first(results)
     made = [_signals(scenario, result) for scenario, result in zip(scenarios, results)]
@@ -851,16 +851,16 @@ def _signals(scenario: Scenario, result: dict[str, Any] | ValueError) -> Signals
 
 
 def _warn_of_many(made: list[Signals]) -> None:
-    """One warning a code, with the first scenario that it is told of."""
-    told: dict[str, list[tuple[int, str]]] = {}
+    """One warning a code, with the first scenario that it is about."""
+    of_codes: dict[str, list[tuple[int, str]]] = {}
     for number, signals in enumerate(made):
         for message, code in zip(signals.warnings, signals.warning_codes):
-            told.setdefault(code, []).append((number, message))
+            of_codes.setdefault(code, []).append((number, message))
     messages = [
-        f"{len({number for number, _ in of_code})} of {len(made)} simulations, the first: {of_code[0][1]}" for of_code in told.values()
+        f"{len({number for number, _ in of_code})} of {len(made)} simulations, the first: {of_code[0][1]}" for of_code in of_codes.values()
     ]
-    warn(messages, told)
+    warn(messages, of_codes)
 
 
-def _tell(ask: Callable[[int, int], None], total: int, finished: int) -> None:
+def _report(ask: Callable[[int, int], None], total: int, finished: int) -> None:
     ask(finished, total)

@@ -55,8 +55,8 @@ def test_pairs_share_a_force_at_rest() -> None:
 def test_what_cannot_be_asked_is_refused() -> None:
     with pytest.raises(ValueError, match="force_n = -1"):
         simulate(CONTACT).static_mesh(-1)
-    with pytest.raises(ValueError, match="set model = 'contact'"):
-        simulate(CONTACT.copy(model="linear")).static_mesh()
+    with pytest.raises(ValueError, match="the published model has no pairs that share a force: set model = 'contact'"):
+        simulate(CONTACT.copy(model="published")).static_mesh()
 
 
 def test_wheels_that_were_drawn_can_be_given() -> None:

@@ -83,7 +83,7 @@ def test_a_port_that_is_taken_is_told(explorer: mt.Explorer) -> None:
 
 @pytest.mark.parametrize("name", sorted(mt.examples.all()))
 def test_python_of_the_page_makes_the_scenario(explorer: mt.Explorer, name: str) -> None:
-    scenario = mt.examples.all()[name].copy(model="linear", tip_relief={"length_mm": 1, "depth_mm": 0.6}, seed=3, wheels_seed=5)
+    scenario = mt.examples.all()[name].copy(model="linear", flank_relief={"length_mm": 1, "amount_um": 20}, seed=3, wheels_seed=5)
     text = ask(explorer, "export/python", {"page": name, "number": 1, "toml": scenario.to_toml()}).decode()
     made: dict[str, Any] = {}
     exec(text.split("\nsimulation")[0], made)

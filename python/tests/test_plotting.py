@@ -34,7 +34,7 @@ def test_each_figure(broken: meshtone.Simulation) -> None:
     spectrum = broken.plot_spectrum()
     assert "680 Hz" in legend(spectrum)[1]
     tooth = broken.plot_tooth()
-    assert "chip, 12 mm" in legend(tooth)[0]
+    assert "chip 5 mm high, 12 mm wide" in legend(tooth)[0]
     assert broken.plot_tooth("pinion").get_legend() is None
     panel = broken.plot()
     assert len(panel.axes) == 6
@@ -87,12 +87,12 @@ def test_a_run_up_is_not_drawn_as_a_constant_speed() -> None:
 def test_what_is_lost_is_told_in_the_tooth() -> None:
     crack = meshtone.simulate(meshtone.examples.root_crack()).plot_tooth()
     (line,) = crack.get_lines()
-    assert line.get_label() == "crack, 3 mm deep"
+    assert line.get_label() == "crack 3 mm deep, over the whole face"
     assert np.allclose(line.get_xydata(), [[3.0109, 53.478], [3.0109 - 3 / 2**0.5, 53.478 - 3 / 2**0.5]], atol=1e-3)
     part = meshtone.simulate(meshtone.examples.partial_face()).plot_tooth()
-    assert legend(part) == ["pit, 2 mm wide"]
+    assert legend(part) == ["pit 2 mm wide, 3.17 mm long"]
     broken = meshtone.simulate(meshtone.examples.tooth_breakage()).plot_tooth()
-    assert legend(broken) == ["chip, 12 mm wide at the tip", "tip lost, 3 mm"]
+    assert legend(broken) == ["chip 5 mm high, 12 mm wide", "tip loss 3 mm"]
     plt.close("all")
 
 
@@ -101,8 +101,8 @@ def test_damage_is_drawn_wherever_it_is() -> None:
     pit = meshtone.PartialFace(width_mm=2, start=0.2, end=0.8, depth=0.5, wheel="pinion", tooth=7)
     simulation = meshtone.simulate(scenario.copy(faults=[pit, meshtone.MissingTooth(tooth=12)]))
     pinion, gear = simulation.plot_tooth("pinion"), simulation.plot_tooth("gear")
-    assert (pinion.get_title(), legend(pinion)) == ("Tooth 7 of the pinion", ["pit, 2 mm wide"])
-    assert (gear.get_title(), legend(gear)) == ("Tooth 12 of the gear", ["missing"])
+    assert (pinion.get_title(), legend(pinion)) == ("Tooth 7 of the pinion", ["pit 2 mm wide, 2.94 mm long"])
+    assert (gear.get_title(), legend(gear)) == ("Tooth 12 of the gear", ["tooth missing"])
     assert simulation.plot_mesh_stiffness().get_xlim() == (5, 13)
     assert "partial-face of pinion tooth 7, missing-tooth of gear tooth 12" in simulation.plot().get_suptitle()
     plt.close("all")

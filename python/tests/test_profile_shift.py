@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from conftest import PAIR
 from meshtone import Scenario, simulate
 
 
-def pair(**keys: float) -> Scenario:
+def pair(**keys: Any) -> Scenario:
     """17 and 38 teeth of module 3."""
     return Scenario(**PAIR, **keys)
 

@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use crate::packages::tests_of;
-use crate::step::{Row, beside};
+use crate::step::{StepRunner, in_parallel};
 use crate::surroundings::unusual;
 use crate::{
     dependencies, dist, docs, environment, features, kernels, packages, python, rooms, scipy, toolchain,
 };
 
-/// What the tests of the Rust packages need of Python.
+/// The parts of Python that the tests of the Rust packages need.
 struct Prepared {
     /// An interpreter with pyarrow and polars, which read data sets.
     python: PathBuf,
@@ -24,7 +24,7 @@ struct Prepared {
 /// # Errors
 /// The exit code of what failed.
 pub fn quick(root: &Path) -> Result<(), u8> {
-    let row = Row::at_terminal(root);
+    let row = StepRunner::at_terminal(root);
     formatting(&row)?;
     row.step("rooms check", || rooms::check(root))?;
     lints(&row)?;
@@ -39,7 +39,7 @@ const CORE: [&str; 4] = ["--package", "meshtone", "--package", "meshtone-cli"];
 /// project's own packages would be compiled for the tests and once more for the program and the wheel.
 const TESTED: [&str; 3] = ["--workspace", "--exclude", "meshtone-bench"];
 
-/// What has all its tests by itself: the core, as the program alone asks for what it asks of others' packages, and the reading of
+/// Packages that are tested alone: the core, as the program alone asks for what it asks of others' packages, and the reading of
 /// recordings, see [`unit_tests`].
 const BY_THEMSELVES: [&str; 4] = ["--exclude", "meshtone", "--exclude", READER];
 
@@ -51,14 +51,14 @@ const BY_THEMSELVES: [&str; 4] = ["--exclude", "meshtone", "--exclude", READER];
 /// # Errors
 /// The exit code of what failed first.
 pub fn all(root: &Path) -> Result<(), u8> {
-    let [rust, python] = Row::pair(root, &root.join("target").join("checks").join("log"))?;
+    let [rust, python] = StepRunner::pair(root, &root.join("target").join("checks").join("log"))?;
     formatting(&rust)?;
     rust.step("rooms check", || rooms::check(root))?;
     let (ready, prepared) = channel();
-    beside(|| rust_row(&rust, &prepared), move || python_row(&python, &ready))
+    in_parallel(|| rust_row(&rust, &prepared), move || python_row(&python, &ready))
 }
 
-fn rust_row(row: &Row, prepared: &Receiver<Prepared>) -> Result<(), u8> {
+fn rust_row(row: &StepRunner, prepared: &Receiver<Prepared>) -> Result<(), u8> {
     lints(row)?;
     // All that the platform needs has been fetched for the lints.
     row.step("dependencies check", || dependencies::check(row.root()))?;
@@ -82,7 +82,7 @@ fn rust_row(row: &Row, prepared: &Receiver<Prepared>) -> Result<(), u8> {
     toolchain::check(row)
 }
 
-fn python_row(row: &Row, ready: &Sender<Prepared>) -> Result<(), u8> {
+fn python_row(row: &StepRunner, ready: &Sender<Prepared>) -> Result<(), u8> {
     let python = environment::of_checks(row)?;
     let scipy = scipy::reference(row, &python)?;
     // Whoever waited for it has failed where it cannot be sent.
@@ -96,7 +96,7 @@ fn python_row(row: &Row, ready: &Sender<Prepared>) -> Result<(), u8> {
 
 /// The unit tests of every package that has some, with the other tests of the recordings' package, which take longer to compile than
 /// to run.
-fn unit_tests(row: &Row, surroundings: &[(&str, OsString)]) -> Result<(), u8> {
+fn unit_tests(row: &StepRunner, surroundings: &[(&str, OsString)]) -> Result<(), u8> {
     let tested = |package: &&String| !WITHOUT_UNIT_TESTS.contains(&package.as_str());
     packages::names(row)?.iter().filter(tested).try_for_each(|package| match package.as_str() {
         // They learn from many records.
@@ -114,26 +114,27 @@ fn unit_tests(row: &Row, surroundings: &[(&str, OsString)]) -> Result<(), u8> {
 const READER: &str = "meshtone-io";
 
 /// Packages that have no unit tests of a library: the benchmarks and the interfaces.
-const WITHOUT_UNIT_TESTS: [&str; 3] = ["meshtone-bench", "meshtone-cli", "meshtone-python"];
+const WITHOUT_UNIT_TESTS: [&str; 4] =
+    ["meshtone-bench", "meshtone-cli", "meshtone-python", "workspace-features"];
 
 /// Writes what the tests of the core compare with the rows of the keys.
 ///
 /// # Errors
 /// The exit code of what failed.
-pub fn generate(row: &Row) -> Result<(), u8> {
+pub fn generate(row: &StepRunner) -> Result<(), u8> {
     let arguments = [&["test", "--release", "--test", "all"], &CORE[..], &["generated::"]].concat();
     row.cargo(&arguments, &[("MESHTONE_GENERATE", "1".into())])
 }
 
-fn formatting(row: &Row) -> Result<(), u8> {
+fn formatting(row: &StepRunner) -> Result<(), u8> {
     row.cargo(&["fmt", "--all", "--check"], &[])
 }
 
-fn lints(row: &Row) -> Result<(), u8> {
+fn lints(row: &StepRunner) -> Result<(), u8> {
     row.cargo(&["clippy", "--workspace", "--all-targets", "--release", "--", "-D", "warnings"], &[])
 }
 
-fn documentation(row: &Row) -> Result<(), u8> {
+fn documentation(row: &StepRunner) -> Result<(), u8> {
     let arguments = ["doc", "--workspace", "--no-deps", "--release"];
     row.cargo(&arguments, &[("RUSTDOCFLAGS", "-D warnings".into())])?;
     row.step("docs check", || docs::check_and_report(row.root()))

@@ -1,4 +1,4 @@
-//! Whether the packages that the workspace depends on are such as `deny.toml` allows.
+//! A check that `deny.toml` allows the packages on which the workspace depends.
 //!
 //! It is a part of what `cargo deny` checks, and needs no network: sources, doubled versions and the packages of listed advisories
 //! are those of `Cargo.lock`, for all platforms; licences are those of the packages that this platform needs.
@@ -15,7 +15,7 @@ use toml::{Table, Value};
 struct Package {
     name: String,
     version: String,
-    /// Where it comes from; none of the workspace's own.
+    /// Its source; none of the workspace's own.
     source: Option<String>,
 }
 
@@ -143,7 +143,7 @@ fn doubled(rules: &Table, packages: &[Package]) -> Vec<String> {
     doubled.chain(unneeded).collect()
 }
 
-/// Whether a package is one of a name and a version, of which the last numbers may be left out.
+/// Returns whether a package is one of a name and a version, of which the last numbers may be left out.
 fn is_of(package: &Package, (name, version): (&str, &str)) -> bool {
     let rest = package.version.strip_prefix(version);
     package.name == name
@@ -187,7 +187,7 @@ fn refused(rules: &Table, licences: &BTreeMap<String, String>) -> Vec<String> {
     refused.chain(unneeded).collect()
 }
 
-/// Whether an expression of licences can be satisfied by those that are allowed. What is no expression cannot.
+/// Returns whether an expression of licences can be satisfied by those that are allowed. What is no expression cannot.
 ///
 /// Source: SPDX specification 3.0, annex "SPDX license expressions"; `/` for OR is what packages wrote before.
 fn is_allowed(expression: &str, allowed: &[&str]) -> bool {

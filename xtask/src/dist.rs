@@ -1,4 +1,4 @@
-//! What a release carries: the program, the wheel and the source distribution, each tried where there is nothing else.
+//! Parts of a release: the program, the wheel and the source distribution, each tried where there is nothing else.
 
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 use std::path::{Path, PathBuf};
@@ -6,9 +6,9 @@ use std::process::Command;
 
 use crate::environment;
 use crate::packages::{self, opt_level};
-use crate::step::Row;
+use crate::step::StepRunner;
 
-/// What is tried of an installed package.
+/// Program that tries an installed package.
 const TRIAL: &str = "\
 import meshtone as mt
 simulation = mt.simulate(mt.examples.healthy().copy(sampling_rate_hz=1e4))
@@ -19,7 +19,7 @@ assert simulation.vertical_g.std() > 0
 ///
 /// # Errors
 /// The exit code of what failed.
-pub fn make(row: &Row) -> Result<(), u8> {
+pub fn make(row: &StepRunner) -> Result<(), u8> {
     let python = environment::of_checks(row)?;
     let made = [program(row)?, wheel(row, &python)?, source(row, &python)?];
     report(row, &made);
@@ -30,14 +30,14 @@ pub fn make(row: &Row) -> Result<(), u8> {
 ///
 /// # Errors
 /// The exit code of what failed.
-pub fn make_wheel(row: &Row) -> Result<(), u8> {
+pub fn make_wheel(row: &StepRunner) -> Result<(), u8> {
     let python = environment::of_checks(row)?;
     report(row, &[wheel(row, &python)?]);
     Ok(())
 }
 
 /// Says what was made, and how large it is.
-fn report(row: &Row, files: &[PathBuf]) {
+fn report(row: &StepRunner, files: &[PathBuf]) {
     for file in files {
         let bytes = std::fs::metadata(file).map_or(0, |metadata| metadata.len());
         row.say(&format!("{}: {:.1} MB", file.display(), bytes as f64 / 1e6));
@@ -45,7 +45,7 @@ fn report(row: &Row, files: &[PathBuf]) {
 }
 
 /// The folder of what a release carries.
-fn folder(row: &Row) -> PathBuf {
+fn folder(row: &StepRunner) -> PathBuf {
     row.root().join("target").join("dist")
 }
 
@@ -53,7 +53,7 @@ fn folder(row: &Row) -> PathBuf {
 ///
 /// # Errors
 /// The exit code of what failed.
-pub fn program(row: &Row) -> Result<PathBuf, u8> {
+pub fn program(row: &StepRunner) -> Result<PathBuf, u8> {
     row.cargo(&["build", "--release", "--locked", "--package", "meshtone-cli"], &[])?;
     row.step("Program, stripped", || {
         let name = format!("meshtone{}", std::env::consts::EXE_SUFFIX);
@@ -76,7 +76,7 @@ pub fn program(row: &Row) -> Result<PathBuf, u8> {
 ///
 /// # Errors
 /// The exit code of what failed.
-pub fn wheel(row: &Row, python: &Path) -> Result<PathBuf, u8> {
+pub fn wheel(row: &StepRunner, python: &Path) -> Result<PathBuf, u8> {
     row.step("Python wheel", || {
         maturin(row, python, "whl", &["build", "--release", "--locked", "--quiet", "--strip"])
     })
@@ -89,12 +89,12 @@ pub fn wheel(row: &Row, python: &Path) -> Result<PathBuf, u8> {
 ///
 /// # Errors
 /// The exit code of what failed.
-pub fn source(row: &Row, python: &Path) -> Result<PathBuf, u8> {
+pub fn source(row: &StepRunner, python: &Path) -> Result<PathBuf, u8> {
     row.step("Source distribution", || maturin(row, python, "gz", &["sdist"]))
 }
 
 /// Lets maturin make one file; returns it. Earlier ones of its kind are removed.
-fn maturin(row: &Row, python: &Path, extension: &str, arguments: &[&str]) -> Result<PathBuf, u8> {
+fn maturin(row: &StepRunner, python: &Path, extension: &str, arguments: &[&str]) -> Result<PathBuf, u8> {
     let folder = folder(row);
     std::fs::create_dir_all(&folder).map_err(|error| row.fail_at(&folder, &error))?;
     for old in of_kind(row, &folder, extension)? {
@@ -106,7 +106,7 @@ fn maturin(row: &Row, python: &Path, extension: &str, arguments: &[&str]) -> Res
 }
 
 /// The files of a folder whose names end alike.
-fn of_kind(row: &Row, folder: &Path, extension: &str) -> Result<Vec<PathBuf>, u8> {
+fn of_kind(row: &StepRunner, folder: &Path, extension: &str) -> Result<Vec<PathBuf>, u8> {
     let entries = std::fs::read_dir(folder).map_err(|error| row.fail_at(folder, &error))?;
     let paths = entries.flatten().map(|entry| entry.path());
     Ok(paths.filter(|path| path.extension().is_some_and(|end| end == extension)).collect())
@@ -116,7 +116,7 @@ fn of_kind(row: &Row, folder: &Path, extension: &str) -> Result<Vec<PathBuf>, u8
 ///
 /// # Errors
 /// The exit code of what failed.
-pub fn try_program(row: &Row, program: &Path) -> Result<(), u8> {
+pub fn try_program(row: &StepRunner, program: &Path) -> Result<(), u8> {
     row.step("Program, in an empty folder", || {
         let folder = empty_folder(row, "program")?;
         let run = |arguments: &[&str]| {
@@ -139,7 +139,7 @@ pub fn try_program(row: &Row, program: &Path) -> Result<(), u8> {
 ///
 /// # Errors
 /// The exit code of what failed.
-pub fn try_wheel(row: &Row, python: &Path, wheel: &Path) -> Result<(), u8> {
+pub fn try_wheel(row: &StepRunner, python: &Path, wheel: &Path) -> Result<(), u8> {
     row.step("Python wheel, in an empty environment", || try_package(row, python, "wheel", wheel))
 }
 
@@ -154,7 +154,7 @@ pub fn try_wheel(row: &Row, python: &Path, wheel: &Path) -> Result<(), u8> {
 ///
 /// # Errors
 /// The exit code of what failed.
-pub fn try_source(row: &Row, python: &Path, source: &Path) -> Result<(), u8> {
+pub fn try_source(row: &StepRunner, python: &Path, source: &Path) -> Result<(), u8> {
     row.step("Source distribution, in an empty environment", || {
         let content = std::fs::read(source).map_err(|error| row.fail_at(source, &error))?;
         // All files of a source distribution have the same old date, by which cargo would take what was built of another
@@ -184,7 +184,7 @@ pub fn try_source(row: &Row, python: &Path, source: &Path) -> Result<(), u8> {
 const LEAST_UNITS: u64 = 256;
 const UNITS: u64 = 1 << 20;
 
-fn try_package(row: &Row, pip: &Path, name: &str, wheel: &Path) -> Result<(), u8> {
+fn try_package(row: &StepRunner, pip: &Path, name: &str, wheel: &Path) -> Result<(), u8> {
     let folder = empty_folder(row, name)?;
     let python = environment::empty(row, pip, &folder.join("venv"))?;
     environment::pip_install(row, pip, &python, |pip| pip.arg(wheel))?;
@@ -192,7 +192,7 @@ fn try_package(row: &Row, pip: &Path, name: &str, wheel: &Path) -> Result<(), u8
 }
 
 /// A folder below `target/checks` with nothing in it.
-fn empty_folder(row: &Row, name: &str) -> Result<PathBuf, u8> {
+fn empty_folder(row: &StepRunner, name: &str) -> Result<PathBuf, u8> {
     let folder = row.root().join("target").join("checks").join(name);
     let emptied = if folder.exists() { std::fs::remove_dir_all(&folder) } else { Ok(()) };
     emptied.and_then(|()| std::fs::create_dir_all(&folder)).map_err(|error| row.fail_at(&folder, &error))?;

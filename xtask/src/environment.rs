@@ -3,22 +3,22 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::step::Row;
+use crate::step::StepRunner;
 
 /// Names the Python interpreter that makes the virtual environments.
 const PYTHON: &str = "PYTHON";
-/// What is installed for the checks, from the workspace's root.
+/// Packages that are installed for the checks, from the workspace's root.
 const REQUIREMENTS: &str = "python/tests/requirements.txt";
 
 /// The interpreter of the checks' environment, which is made anew when its requirements have changed.
 ///
 /// # Errors
 /// The exit code of what failed: there is no Python, or the packages cannot be installed.
-pub fn of_checks(row: &Row) -> Result<PathBuf, u8> {
+pub fn of_checks(row: &StepRunner) -> Result<PathBuf, u8> {
     row.step("Python with what the checks need", || install(row))
 }
 
-fn install(row: &Row) -> Result<PathBuf, u8> {
+fn install(row: &StepRunner) -> Result<PathBuf, u8> {
     let folder = row.root().join("target").join("python");
     let requirements = row.root().join(REQUIREMENTS);
     let python = interpreter(&folder.join("venv"));
@@ -44,7 +44,7 @@ fn install(row: &Row) -> Result<PathBuf, u8> {
 ///
 /// # Errors
 /// The exit code of what failed.
-pub fn empty(row: &Row, python: &Path, folder: &Path) -> Result<PathBuf, u8> {
+pub fn empty(row: &StepRunner, python: &Path, folder: &Path) -> Result<PathBuf, u8> {
     row.program(Command::new(python).args(["-m", "venv", "--clear", "--without-pip"]).arg(folder))?;
     Ok(interpreter(folder))
 }
@@ -59,7 +59,7 @@ pub fn empty(row: &Row, python: &Path, folder: &Path) -> Result<PathBuf, u8> {
 /// # Errors
 /// Pip's exit code.
 pub fn pip_install(
-    row: &Row,
+    row: &StepRunner,
     pip: &Path,
     python: &Path,
     what: impl FnOnce(&mut Command) -> &mut Command,
@@ -81,7 +81,7 @@ pub fn pip_install(
 /// # Errors
 /// Pip's exit code.
 pub fn pip_wheel(
-    row: &Row,
+    row: &StepRunner,
     pip: &Path,
     folder: &Path,
     what: impl FnOnce(&mut Command) -> &mut Command,

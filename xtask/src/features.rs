@@ -1,17 +1,17 @@
-//! What is built of other features than the program's.
+//! Builds with other features than the program's.
 
 use std::ffi::OsString;
 use std::path::Path;
 use std::process::Command;
 
 use crate::packages::tests_of;
-use crate::step::Row;
+use crate::step::StepRunner;
 
 /// Rust's name of the machine that a browser is.
 const BROWSER: &str = "wasm32-unknown-unknown";
 /// Compiles the core without threads.
 const CORE: [&str; 5] = ["check", "--release", "--package", "meshtone", "--no-default-features"];
-/// Those of the data sets' tests that are in object stores.
+/// Arguments of the data sets' tests in object stores.
 const OBJECT_STORES: [&str; 5] = ["--features", "meshtone-dataset/objects", "--test", "all", "objects::"];
 
 /// Tests data sets in object stores. The package is compiled once more for these few tests, and not optimised.
@@ -21,7 +21,7 @@ const OBJECT_STORES: [&str; 5] = ["--features", "meshtone-dataset/objects", "--t
 ///
 /// # Errors
 /// The exit code of what failed.
-pub fn object_stores(row: &Row, surroundings: &[(&str, OsString)]) -> Result<(), u8> {
+pub fn object_stores(row: &StepRunner, surroundings: &[(&str, OsString)]) -> Result<(), u8> {
     tests_of(row, "meshtone-dataset", 0, &OBJECT_STORES, surroundings)
 }
 
@@ -29,7 +29,7 @@ pub fn object_stores(row: &Row, surroundings: &[(&str, OsString)]) -> Result<(),
 ///
 /// # Errors
 /// The exit code of what failed.
-pub fn without_threads(row: &Row) -> Result<(), u8> {
+pub fn without_threads(row: &StepRunner) -> Result<(), u8> {
     row.cargo(&CORE, &[])?;
     if is_installed(row, BROWSER)? {
         return row.cargo(&[&CORE[..], &["--target", BROWSER]].concat(), &[]);
@@ -38,8 +38,8 @@ pub fn without_threads(row: &Row) -> Result<(), u8> {
     Ok(())
 }
 
-/// Whether Rust's libraries for a kind of machine are there.
-fn is_installed(row: &Row, machine: &str) -> Result<bool, u8> {
+/// Returns whether Rust's libraries for a kind of machine are there.
+fn is_installed(row: &StepRunner, machine: &str) -> Result<bool, u8> {
     let mut rustc = Command::new("rustc");
     rustc.args(["--print", "target-libdir", "--target", machine]).current_dir(row.root());
     let output = rustc.output().map_err(|error| row.fail(&format!("cannot start rustc: {error}")))?;

@@ -10,7 +10,7 @@ use std::path::Path;
 const INTRINSICS: &str = "4core9core_arch";
 /// Modules of the instruction sets that kernels are compiled for beside what every processor has.
 const SETS: [&str; 5] = ["3avx", "4avx2", "3fma", "avx512", "4neon"];
-/// What begins the mangled name of a function, behind the underscores: as Rust mangles, and as it did before.
+/// Prefixes of the mangled name of a function, behind the underscores: as Rust mangles, and as it did before.
 const FUNCTIONS: [&str; 3] = ["RNv", "RINv", "ZN"];
 /// The crate of the kernels, as it stands in a mangled name.
 const KERNELS: &str = "8meshtone";
@@ -52,7 +52,7 @@ fn names(program: &[u8]) -> impl Iterator<Item = &str> {
     pieces.filter_map(|piece| std::str::from_utf8(piece).ok()).map(|name| name.trim_start_matches('_'))
 }
 
-/// Whether a mangled name is that of an intrinsic of one of the [`SETS`], not of a function with one of their types.
+/// Returns whether a mangled name is that of an intrinsic of one of the [`SETS`], not of a function with one of their types.
 fn is_intrinsic(name: &str) -> bool {
     let Some((before, inside)) = name.split_once(INTRINSICS) else { return false };
     let path = FUNCTIONS.iter().find_map(|start| before.strip_prefix(start));

@@ -20,7 +20,7 @@ mod toolchain;
 use std::path::Path;
 use std::process::ExitCode;
 
-use step::Row;
+use step::StepRunner;
 
 const HELP: &str = "\
 Development tasks of Meshtone
@@ -55,16 +55,18 @@ fn main() -> ExitCode {
     let outcome = match words.as_slice() {
         ["check"] => checks::quick(root),
         ["test"] => checks::all(root),
-        ["dist"] => dist::make(&Row::at_terminal(root)),
-        ["fuzz", arguments @ ..] => Row::at_terminal(root).cargo(&[&FUZZ[..], arguments].concat(), &[]),
-        ["docs"] => docs::build(root),
-        ["wheel"] => dist::make_wheel(&Row::at_terminal(root)),
-        ["generate"] => checks::generate(&Row::at_terminal(root)),
-        ["check-rooms"] => Row::at_terminal(root).step("rooms check", || rooms::check(root)),
-        ["check-dependencies"] => {
-            Row::at_terminal(root).step("dependencies check", || dependencies::check(root))
+        ["dist"] => dist::make(&StepRunner::at_terminal(root)),
+        ["fuzz", arguments @ ..] => {
+            StepRunner::at_terminal(root).cargo(&[&FUZZ[..], arguments].concat(), &[])
         }
-        ["check-docs"] => Row::at_terminal(root).step("docs check", || docs::check_and_report(root)),
+        ["docs"] => docs::build(root),
+        ["wheel"] => dist::make_wheel(&StepRunner::at_terminal(root)),
+        ["generate"] => checks::generate(&StepRunner::at_terminal(root)),
+        ["check-rooms"] => StepRunner::at_terminal(root).step("rooms check", || rooms::check(root)),
+        ["check-dependencies"] => {
+            StepRunner::at_terminal(root).step("dependencies check", || dependencies::check(root))
+        }
+        ["check-docs"] => StepRunner::at_terminal(root).step("docs check", || docs::check_and_report(root)),
         ["help" | "-h" | "--help"] => {
             print!("{HELP}");
             Ok(())

@@ -3,13 +3,13 @@
 use std::ffi::OsString;
 use std::path::Path;
 
-use crate::step::Row;
+use crate::step::StepRunner;
 
-/// Those below `crates`, in the order of their names.
+/// Names of the packages below `crates`, in the order of their names.
 ///
 /// # Errors
 /// 1 where the folder cannot be read.
-pub fn names(row: &Row) -> Result<Vec<String>, u8> {
+pub fn names(row: &StepRunner) -> Result<Vec<String>, u8> {
     entries(row, &row.root().join("crates"))
 }
 
@@ -17,7 +17,7 @@ pub fn names(row: &Row) -> Result<Vec<String>, u8> {
 ///
 /// # Errors
 /// 1 where the folder cannot be read.
-pub fn test_programs(row: &Row, package: &str) -> Result<Vec<String>, u8> {
+pub fn test_programs(row: &StepRunner, package: &str) -> Result<Vec<String>, u8> {
     let folder = row.root().join("crates").join(package).join("tests");
     let program = |name: String| match name.strip_suffix(".rs") {
         Some(file) => Some(file.to_owned()),
@@ -26,7 +26,7 @@ pub fn test_programs(row: &Row, package: &str) -> Result<Vec<String>, u8> {
     Ok(entries(row, &folder)?.into_iter().filter_map(program).collect())
 }
 
-fn entries(row: &Row, folder: &Path) -> Result<Vec<String>, u8> {
+fn entries(row: &StepRunner, folder: &Path) -> Result<Vec<String>, u8> {
     let entries = std::fs::read_dir(folder).map_err(|error| row.fail_at(folder, &error))?;
     let mut names: Vec<String> =
         entries.flatten().filter_map(|entry| entry.file_name().into_string().ok()).collect();
@@ -52,7 +52,7 @@ pub fn opt_level(package: &str, level: u8) -> String {
 /// # Errors
 /// Cargo's exit code.
 pub fn tests_of(
-    row: &Row,
+    row: &StepRunner,
     package: &str,
     level: u8,
     targets: &[&str],

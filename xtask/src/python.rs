@@ -4,13 +4,13 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::environment::pip_install;
-use crate::step::Row;
+use crate::step::StepRunner;
 use crate::surroundings::unusual;
 
-/// What the tests of the page need to try it in a browser, each by one of its names.
+/// Programs that the tests of the page need to try it in a browser, each by one of its names.
 const BROWSER: [&[&str]; 2] = [&["chromium", "chromium-browser", "google-chrome"], &["chromedriver"]];
 
-/// Whether a program is found by its name.
+/// Returns whether a program is found by its name.
 fn is_installed(name: &str) -> bool {
     let path = std::env::var_os("PATH").unwrap_or_default();
     std::env::split_paths(&path).any(|folder| folder.join(name).is_file())
@@ -25,7 +25,7 @@ fn is_installed(name: &str) -> bool {
 ///
 /// # Errors
 /// The exit code of what failed.
-pub fn test(row: &Row, python: &Path, wheel: &Path) -> Result<(), u8> {
+pub fn test(row: &StepRunner, python: &Path, wheel: &Path) -> Result<(), u8> {
     row.step("Python wheel, installed", || {
         pip_install(row, python, python, |pip| pip.args(["--force-reinstall", "--no-deps"]).arg(wheel))
     })?;

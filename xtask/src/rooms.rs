@@ -8,18 +8,18 @@ use std::path::{Path, PathBuf};
 
 /// The rooms of `crates/meshtone/src`, floor by floor. A room imports rooms of earlier floors.
 const FLOORS: &[&[&str]] = &[
-    &["error", "error_table", "random", "interpolation", "simd", "threads"],
+    &["error", "error_table", "random", "interpolation", "simd", "threads", "model", "trace_fields"],
     &["keys"],
-    &["model"],
     &["wheel"],
     &["damage"],
     &["operation"],
     &["stiffness"],
-    &["mesh"],
     &["machine"],
+    &["mesh"],
     &["solver"],
     &["sensor"],
     &["scenario"],
+    &["published"],
     &["simulate"],
     &["warnings", "signal"],
     &["batch", "trace"],
@@ -77,7 +77,7 @@ fn room_of(file: &Path) -> String {
     first.unwrap_or_default().trim_end_matches(".rs").to_string()
 }
 
-/// What a text names of its own crate, as `crate::name`: the line, from 1, and the name. Comments and tests are left out.
+/// Modules of its own crate that a text names, as `crate::name`: the line, from 1, and the name. Comments and tests are left out.
 fn imports(text: &str) -> Vec<(usize, &str)> {
     const MARK: &str = "crate::";
     let code = text.lines().enumerate().take_while(|(_, line)| line.trim() != "#[cfg(test)]");
@@ -89,7 +89,7 @@ fn imports(text: &str) -> Vec<(usize, &str)> {
     .collect()
 }
 
-/// Whether no longer word ends here, as in `$crate::` or `my_crate::`.
+/// Returns whether no longer word ends here, as in `$crate::` or `my_crate::`.
 fn is_start(line: &str, start: usize) -> bool {
     !line[..start].ends_with(|before: char| before.is_alphanumeric() || before == '_' || before == '$')
 }
@@ -99,7 +99,7 @@ fn name(text: &str) -> &str {
     &text[..end]
 }
 
-/// What is wrong with an import, if anything.
+/// Problem of an import, if it has one.
 fn problem(room: &str, imported: &str) -> Option<String> {
     if room == imported || room == "lib" {
         return None;

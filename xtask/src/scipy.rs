@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::step::Row;
+use crate::step::StepRunner;
 
 /// The script that computes them, from the workspace's root.
 const SCRIPT: &str = "crates/meshtone/tests/scipy/reference.py";
@@ -15,7 +15,7 @@ const SCRIPT: &str = "crates/meshtone/tests/scipy/reference.py";
 ///
 /// # Errors
 /// The script's exit code.
-pub fn reference(row: &Row, python: &Path) -> Result<PathBuf, u8> {
+pub fn reference(row: &StepRunner, python: &Path) -> Result<PathBuf, u8> {
     let results = row.root().join("target").join("python").join("scipy_reference.npz");
     row.step("SciPy's results", || {
         row.program(Command::new(python).arg(row.root().join(SCRIPT)).arg(&results))

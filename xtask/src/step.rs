@@ -10,8 +10,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-/// Steps that run one after another, perhaps beside those of another row.
-pub struct Row {
+/// Runs steps one after another, perhaps beside those of another row.
+pub struct StepRunner {
     root: PathBuf,
     /// Folder of the steps' output; without one they write to the terminal.
     logs: Option<PathBuf>,
@@ -21,7 +21,7 @@ pub struct Row {
     failed: Arc<AtomicBool>,
 }
 
-impl Row {
+impl StepRunner {
     /// Steps that write to the terminal.
     ///
     /// # Arguments
@@ -150,7 +150,7 @@ impl Row {
 ///
 /// # Errors
 /// The first one's exit code, or else the second one's.
-pub fn beside(
+pub fn in_parallel(
     one: impl FnOnce() -> Result<(), u8>,
     other: impl FnOnce() -> Result<(), u8> + Send,
 ) -> Result<(), u8> {

@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use crate::step::Row;
+use crate::step::StepRunner;
 
 /// Variables of the surroundings in which tests run, with their values: a home and a folder for temporary files with nothing in
 /// them, a language that is not English, text that is not UTF-8 where nothing is said of it, a time zone of half an hour, a narrow
@@ -11,7 +11,7 @@ use crate::step::Row;
 ///
 /// # Errors
 /// 1 where a folder cannot be made.
-pub fn unusual(row: &Row) -> Result<Vec<(&'static str, OsString)>, u8> {
+pub fn unusual(row: &StepRunner) -> Result<Vec<(&'static str, OsString)>, u8> {
     let folder = row.root().join("target").join("checks");
     let [home, temporary] = ["home", "temporary files"].map(|name| folder.join(name));
     for folder in [&home, &temporary] {

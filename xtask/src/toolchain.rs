@@ -1,9 +1,9 @@
-//! What is declared about Rust: the oldest version that will do.
+//! A check of the oldest version of Rust that is declared to do.
 
 use std::io::ErrorKind;
 use std::process::Command;
 
-use crate::step::Row;
+use crate::step::StepRunner;
 
 /// The oldest Rust that the packages declare to need.
 const OLDEST: &str = env!("CARGO_PKG_RUST_VERSION");
@@ -12,12 +12,12 @@ const OLDEST: &str = env!("CARGO_PKG_RUST_VERSION");
 ///
 /// # Errors
 /// The exit code of what failed.
-pub fn check(row: &Row) -> Result<(), u8> {
+pub fn check(row: &StepRunner) -> Result<(), u8> {
     row.step(&format!("Rust {OLDEST}, the oldest that is declared"), || oldest(row))
 }
 
 /// Where the oldest version ran all other steps, nothing is left to do; else rustup's copy of it looks at all sources.
-fn oldest(row: &Row) -> Result<(), u8> {
+fn oldest(row: &StepRunner) -> Result<(), u8> {
     if is_of(&rustc(row, &["--version"])?, OLDEST) {
         row.say("the version that runs the checks");
         return Ok(());
@@ -32,14 +32,14 @@ fn oldest(row: &Row) -> Result<(), u8> {
     row.program(Command::new("rustup").args(check).env_remove("RUSTUP_TOOLCHAIN"))
 }
 
-/// What the compiler of the checks prints.
-fn rustc(row: &Row, arguments: &[&str]) -> Result<String, u8> {
+/// Output of the compiler of the checks.
+fn rustc(row: &StepRunner, arguments: &[&str]) -> Result<String, u8> {
     let output = Command::new("rustc").args(arguments).current_dir(row.root()).output();
     let output = output.map_err(|error| row.fail(&format!("cannot start rustc: {error}")))?;
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// Whether what `rustc --version` prints is of a version like `1.95`, be it the first or a corrected one.
+/// Returns whether what `rustc --version` prints is of a version like `1.95`, be it the first or a corrected one.
 fn is_of(printed: &str, version: &str) -> bool {
     let number = printed.split_whitespace().nth(1).unwrap_or_default();
     number.strip_prefix(version).is_some_and(|rest| rest.starts_with('.'))

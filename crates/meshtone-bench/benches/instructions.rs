@@ -11,10 +11,10 @@ use std::num::NonZeroUsize;
 
 use gungraun::prelude::*;
 use meshtone::batch::{Control, KeepChannels, simulate_many};
-use meshtone::mesh::PairMesh;
+use meshtone::mesh::Mesh;
 use meshtone::scenario::{Model, Scenario};
 use meshtone::sensor::channel_outputs;
-use meshtone::solver::{Block, Recorder, ReducedModel};
+use meshtone::solver::{Block, Recorder};
 use meshtone::{Stages, stages};
 
 struct Nothing;
@@ -36,21 +36,15 @@ fn prepared(index: usize, model: Model) -> Box<Stages> {
     Box::new(stages(&scenario(index, model)).expect("an example is valid"))
 }
 
-fn loop_of(index: usize, model: Model) -> (Box<Stages>, ReducedModel) {
-    let stages = prepared(index, model);
-    let model = stages.reduced_model();
-    (stages, model)
-}
-
 #[library_benchmark]
-#[bench::healthy(loop_of(0, Model::Linear))]
-#[bench::tooth_breakage(loop_of(2, Model::Linear))]
-#[bench::healthy_published(loop_of(0, Model::Published))]
-#[bench::healthy_contact(loop_of(0, Model::Contact))]
-#[bench::tooth_breakage_contact(loop_of(2, Model::Contact))]
-fn time_loop((stages, model): (Box<Stages>, ReducedModel)) -> Box<Stages> {
+#[bench::healthy(prepared(0, Model::Linear))]
+#[bench::tooth_breakage(prepared(2, Model::Linear))]
+#[bench::healthy_published(prepared(0, Model::Published))]
+#[bench::healthy_contact(prepared(0, Model::Contact))]
+#[bench::tooth_breakage_contact(prepared(2, Model::Contact))]
+fn time_loop(stages: Box<Stages>) -> Box<Stages> {
     let outputs = channel_outputs();
-    stages.integrate(&model, &outputs, stages.time.first_kept_sample, &mut Nothing).expect("a solution");
+    stages.integrate(&outputs, stages.time.first_kept_sample, &mut Nothing).expect("a solution");
     stages
 }
 
@@ -59,9 +53,9 @@ fn time_loop((stages, model): (Box<Stages>, ReducedModel)) -> Box<Stages> {
 #[bench::tooth_breakage(prepared(2, Model::Linear))]
 #[bench::partial_face(prepared(3, Model::Linear))]
 #[bench::through_face(prepared(4, Model::Linear))]
-fn stiffness(stages: Box<Stages>) -> (PairMesh, Box<Stages>) {
-    let points = NonZeroUsize::new(stages.mesh.points_per_pitch()).expect("a pitch has points");
-    (stages.pair_mesh(points).expect("an example is valid"), stages)
+fn stiffness(stages: Box<Stages>) -> (Vec<Mesh>, Box<Stages>) {
+    let points = NonZeroUsize::new(stages.meshes[0].points_per_pitch).expect("a pitch has points");
+    (stages.meshes_at(points).expect("an example is valid"), stages)
 }
 
 #[library_benchmark]

@@ -9,7 +9,7 @@ use std::num::NonZeroUsize;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use meshtone::damage::damaged_teeth;
-use meshtone::machine::System;
+use meshtone::machine::{Modes, Supports, Train};
 use meshtone::scenario::{Model, Scenario};
 use meshtone::solver::{Block, Output, Recorder};
 use meshtone::wheel::quality::profile_errors;
@@ -28,11 +28,10 @@ impl Recorder for Nothing {
 fn before_the_time_loop(criterion: &mut Criterion, name: &str, scenario: &Scenario) {
     let mut group = criterion.benchmark_group(format!("stages/{name}"));
     let whole = stages(scenario).expect("an example is valid");
-    let (gears, rig, model) = (&scenario.gears, &scenario.rig, scenario.model);
+    let (gears, rig) = (&scenario.gears, &scenario.rig);
     group.bench_function("scenario", |bencher| bencher.iter(|| black_box(scenario).validate()));
     group.bench_function("tooth profiles", |bencher| {
-        bencher
-            .iter(|| teeth(black_box(gears), [rig.pinion_shaft.radius_mm, rig.gear_shaft.radius_mm], model));
+        bencher.iter(|| teeth(black_box(gears), [rig.pinion_shaft.radius_mm, rig.gear_shaft.radius_mm]));
     });
     group.bench_function("profile errors", |bencher| {
         bencher.iter(|| profile_errors(&scenario.quality, black_box(&whole.teeth), scenario.seed));
@@ -42,26 +41,28 @@ fn before_the_time_loop(criterion: &mut Criterion, name: &str, scenario: &Scenar
             bencher.iter(|| damaged_teeth(&scenario.faults, black_box(&whole.teeth), scenario.seed));
         });
     }
-    let points = NonZeroUsize::new(whole.mesh.points_per_pitch()).expect("a pitch has points");
+    let points = NonZeroUsize::new(whole.meshes[0].points_per_pitch).expect("a pitch has points");
     group.bench_function("mesh stiffness", |bencher| {
-        bencher.iter(|| black_box(&whole).pair_mesh(points));
+        bencher.iter(|| black_box(&whole).meshes_at(points));
     });
-    group.bench_function("equations of motion", |bencher| {
-        bencher.iter(|| System::new(gears, rig, &whole.teeth, black_box(&whole.mesh), model));
+    group.bench_function("equations of motion, modes", |bencher| {
+        bencher.iter(|| {
+            let train = Train::new(gears, rig, black_box(&whole.teeth), Supports::Held);
+            Modes::damped_alike(&train.machine, 0.07)
+        });
     });
-    group.bench_function("modes", |bencher| bencher.iter(|| black_box(&whole).reduced_model()));
     group.bench_function("all", |bencher| bencher.iter(|| stages(black_box(scenario))));
     group.finish();
 }
 
 fn time_loop(criterion: &mut Criterion, name: &str, scenario: &Scenario) {
     let stages = stages(scenario).expect("an example is valid");
-    let (model, outputs) = (stages.reduced_model(), channel_outputs());
+    let outputs = channel_outputs();
     let mut group = criterion.benchmark_group(format!("time loop/{name}"));
     group.sample_size(20);
     let mut with = |id: &str, outputs: &[Output], from: usize| {
         group.bench_function(id, |bencher| {
-            bencher.iter(|| stages.integrate(&model, outputs, from, &mut Nothing).expect("a solution"));
+            bencher.iter(|| stages.integrate(outputs, from, &mut Nothing).expect("a solution"));
         });
     };
     with("no output but one", &outputs[..1], stages.time.samples - 1);

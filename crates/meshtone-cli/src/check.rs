@@ -1,4 +1,4 @@
-//! What is checked of a scenario before any result is written.
+//! Checks of a scenario before any result is written.
 
 use meshtone::Stages;
 use meshtone::scenario::{Scenario, ScenarioError, ScenarioWarning};
@@ -11,13 +11,9 @@ use meshtone_io::memory;
 pub fn check(scenario: &Scenario) -> Result<(Vec<ScenarioWarning>, Stages), ScenarioError> {
     let (stages, warnings) = meshtone::stages_and_warnings(scenario, memory::limit())?;
     if stages.time.kept_samples() == 0 {
-        return Err(nothing_is_kept(&stages.scenario));
+        let settle = format!("{:?}", stages.scenario.solver.settle_fraction);
+        let problem = "leaves no sample to keep; must be smaller";
+        return Err(ScenarioError::new("solver.settle_fraction", settle, problem));
     }
     Ok((warnings, stages))
-}
-
-fn nothing_is_kept(scenario: &Scenario) -> ScenarioError {
-    let settle = scenario.solver.settle_fraction;
-    let problem = "leaves no sample to keep; must be smaller";
-    ScenarioError::new("solver.settle_fraction", format!("{settle:?}"), problem)
 }

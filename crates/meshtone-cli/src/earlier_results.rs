@@ -10,11 +10,12 @@ use std::path::{Path, PathBuf};
 
 use meshtone_io::atomic_file::WriteFileError;
 
+use crate::replacement::unless_absent;
 use crate::results::{RESULTS, SUMMARY};
 
-/// Where a whole set of results is kept.
+/// Folder in which a whole set of results is kept.
 const KEPT: &str = ".meshtone-earlier";
-/// The same before it is whole, and a file on its way back.
+/// Folder of a set that is not yet whole, and of a file on its way back.
 const IN_THE_MAKING: &str = ".meshtone-earlier-new";
 const RETURNING: &str = ".meshtone-returning";
 
@@ -31,10 +32,7 @@ fn link_all(directory: &Path) -> io::Result<()> {
     let copies = directory.join(IN_THE_MAKING);
     fs::create_dir(&copies)?;
     for name in RESULTS {
-        match fs::hard_link(directory.join(name), copies.join(name)) {
-            Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
-            _ => {}
-        }
+        unless_absent(fs::hard_link(directory.join(name), copies.join(name)))?;
     }
     fs::rename(copies, directory.join(KEPT))
 }
@@ -50,8 +48,8 @@ pub fn put_back(directory: &Path) -> Result<bool, WriteFileError> {
         forget(directory);
         return Ok(false);
     }
-    let summary_last = RESULTS.into_iter().filter(|name| *name != SUMMARY).chain([SUMMARY]);
-    for name in summary_last {
+    // The summary last.
+    for name in RESULTS.into_iter().rev() {
         let path = directory.join(name);
         return_file(&kept.join(name), &path, &directory.join(RETURNING))
             .map_err(|source| WriteFileError { path, source })?;
@@ -67,10 +65,7 @@ fn return_file(kept: &Path, path: &PathBuf, returning: &Path) -> io::Result<()> 
     // Renaming one link of a file to another does nothing and leaves both.
     let _ = fs::remove_file(returning);
     match linked {
-        Err(error) if error.kind() == ErrorKind::NotFound => match fs::remove_file(path) {
-            Err(error) if error.kind() != ErrorKind::NotFound => Err(error),
-            _ => Ok(()),
-        },
+        Err(error) if error.kind() == ErrorKind::NotFound => unless_absent(fs::remove_file(path)),
         linked => linked,
     }
 }
@@ -113,7 +108,7 @@ mod tests {
 
     type Step = Box<dyn Fn(&TempDir)>;
 
-    /// What a run does one after the other, in place of any of which it may be killed.
+    /// Steps of a run, at any of which it may be killed.
     fn steps() -> Vec<Step> {
         let give = |name: &'static str| -> Step { Box::new(move |directory| write(directory, name, "new")) };
         vec![

@@ -1,7 +1,6 @@
 //! Why a command did not succeed, in words for its user.
 
 use std::io::ErrorKind;
-use std::process::ExitCode;
 
 use meshtone_dataset::DatasetError;
 use meshtone_io::ReadResultsError;
@@ -13,19 +12,14 @@ use crate::other_kind::or_other_kind;
 /// Why a command did not succeed.
 #[derive(Debug)]
 pub struct Failure {
-    kind: Kind,
-    /// What is wrong, where, and what is allowed.
+    /// 1: the input is good, but could not be carried out; 2: the user's input is wrong.
+    pub exit_code: u8,
+    /// The problem, its place, and what is allowed.
     pub message: String,
-    /// What to do about it, where that is not plain.
+    /// Advice, where the message does not make it plain.
     pub help: Option<String>,
     /// The line that it is about.
     pub snippet: Option<Snippet>,
-}
-
-#[derive(Debug, Clone, Copy)]
-enum Kind {
-    BadInput,
-    Failed,
 }
 
 /// A line of a file.
@@ -42,12 +36,12 @@ pub struct Snippet {
 impl Failure {
     /// The user's input is wrong.
     pub fn bad_input(message: impl Into<String>) -> Self {
-        Self { kind: Kind::BadInput, message: message.into(), help: None, snippet: None }
+        Self { exit_code: 2, message: message.into(), help: None, snippet: None }
     }
 
     /// The input is good, but could not be carried out.
     pub fn failed(message: impl Into<String>) -> Self {
-        Self { kind: Kind::Failed, message: message.into(), help: None, snippet: None }
+        Self { exit_code: 1, ..Self::bad_input(message) }
     }
 
     /// Something cannot be read: the user's input is wrong where a name or a permission stands in the way, but not where the disk is
@@ -72,18 +66,10 @@ impl Failure {
         }
     }
 
-    /// The same failure with advice.
+    /// Returns the failure with advice.
     pub fn with_help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
-    }
-
-    /// 1 or 2.
-    pub fn exit_code(&self) -> ExitCode {
-        match self.kind {
-            Kind::Failed => ExitCode::from(1),
-            Kind::BadInput => ExitCode::from(2),
-        }
     }
 }
 
@@ -103,37 +89,36 @@ impl Failure {
         match error {
             ReadScenarioError::Unreadable { path, source } => {
                 let shown = path.display();
-                match (source.kind(), kind) {
-                    (ErrorKind::NotFound, FileKind::Tuned) => {
-                        Self::bad_input(format!("there is no file {shown}"))
-                            .with_help(format!("check the name; `{}` writes it", kind.writer()))
+                let failure = match source.kind() {
+                    ErrorKind::NotFound => {
+                        let it = if kind == FileKind::Tuned { "it" } else { "one to start from" };
+                        Self::bad_input(format!("there is no {} {shown}", noun(kind)))
+                            .with_help(format!("check the name; `{}` writes {it}", kind.writer()))
                     }
-                    (ErrorKind::NotFound, _) => Self::bad_input(format!(
-                        "there is no {} {shown}",
-                        noun(kind)
-                    ))
-                    .with_help(format!("check the name; `{}` writes one to start from", kind.writer())),
-                    (ErrorKind::IsADirectory, _) => {
-                        let plain = format!("{shown} is a directory; must be a file");
-                        or_other_kind(&path, "a file", Self::bad_input(plain))
+                    ErrorKind::IsADirectory => {
+                        Self::bad_input(format!("{shown} is a directory; must be a file"))
                     }
-                    (other, _) => Self::of_reading(other, format!("cannot read {shown}: {source}")),
-                }
+                    other => Self::of_reading(other, format!("cannot read {shown}: {source}")),
+                };
+                or_other_kind(&path, kind.in_words(), failure)
             }
-            ReadScenarioError::NotText { .. } => Self::bad_input(error.to_string())
-                .with_help("a scenario is a text file; save it in UTF-8, as every editor can"),
+            ReadScenarioError::NotText { ref path, .. } => {
+                let failure = Self::bad_input(error.to_string())
+                    .with_help("a scenario is a text file; save it in UTF-8, as every editor can");
+                or_other_kind(path, kind.in_words(), failure)
+            }
+            // The error about a text says already what kind it is.
             ReadScenarioError::Invalid { path, text, error } => {
                 let file = path.display().to_string();
-                let (help, line) = (error.help.clone(), error.line);
                 let message = format!("{file}: {error}");
-                let snippet = line.map(|line| Snippet { file, text, line });
-                Self { kind: Kind::BadInput, message, help, snippet }
+                let snippet = error.line.map(|line| Snippet { file, text, line });
+                Self { help: error.help, snippet, ..Self::bad_input(message) }
             }
         }
     }
 }
 
-/// What a file of a kind is called.
+/// Name of a file of a kind.
 fn noun(kind: FileKind) -> &'static str {
     match kind {
         FileKind::Scenario => "scenario file",

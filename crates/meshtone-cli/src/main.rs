@@ -4,22 +4,23 @@
 //! that leads nowhere, a file that cannot be read).
 
 mod check;
+mod choice;
 mod commands;
 mod diagnose;
 mod earlier_results;
-mod ending;
 mod failure;
 mod indicators;
 mod other_kind;
 mod other_option;
 mod output_directory;
 mod progress;
+mod replacement;
 mod report;
 mod results;
 mod same_file;
 mod table;
-mod targets;
 mod terminal;
+mod termination;
 mod warnings;
 
 use std::process::ExitCode;
@@ -32,7 +33,7 @@ use crate::commands::Command;
 
 /// Simulates the vibration of spur gears, healthy or with damaged teeth, and takes recordings to indicators.
 #[derive(Debug, Parser)]
-#[command(name = "meshtone", version, after_help = EXAMPLES, arg_required_else_help = true)]
+#[command(name = "meshtone", version, after_help = examples(), arg_required_else_help = true)]
 struct Arguments {
     /// Most memory for one simulation, and for what is read of one file, such as 2GB. [default: what is free, at most 8GiB]
     #[arg(long, global = true, value_name = "SIZE", value_parser = parse_bytes)]
@@ -53,16 +54,22 @@ Examples:
 
 Exit codes: 0 all went well, 1 it could not be carried out, 2 the input is wrong.";
 
+/// The examples, without the page's where this build has no page.
+fn examples() -> String {
+    let is_there = |line: &&str| cfg!(feature = "explore") || !line.contains("meshtone explore");
+    EXAMPLES.split_inclusive('\n').filter(is_there).collect()
+}
+
 fn main() -> ExitCode {
     let arguments = Arguments::try_parse();
     let arguments =
         arguments.unwrap_or_else(|error| other_option::with_tip(error, std::env::args_os()).exit());
-    ending::leave_nothing_unfinished();
+    termination::remove_unfinished_files_at_end();
     MemoryLimit::set(arguments.memory_limit);
     match arguments.command.run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            let code = failure.exit_code();
+            let code = ExitCode::from(failure.exit_code);
             report::print(failure);
             code
         }

@@ -1,4 +1,4 @@
-//! What a file or directory is that a command cannot read: which command reads it.
+//! Advice for a file or directory that a command cannot read: which command reads it.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -11,7 +11,7 @@ use crate::results::SIGNALS;
 
 /// A data set's list of its files.
 pub const MANIFEST: &str = "manifest.json";
-/// What `meshtone tune` found.
+/// Name of the file that `meshtone tune` writes.
 pub const TUNED: &str = "tuned.toml";
 /// Directories of a directory that are looked into.
 const LOOKED_INTO: usize = 100;
@@ -32,7 +32,7 @@ pub fn or_other_kind(path: &Path, expected: &str, failure: Failure) -> Failure {
         .with_help(format!("{} {read} it", readers.join(" and ")))
 }
 
-/// What a path is, and the commands that read it.
+/// Kind of a path, and the commands that read it.
 fn found(path: &Path) -> Option<(&'static str, Vec<String>)> {
     let by = |commands: &[&str], path: &Path| -> Vec<String> {
         commands.iter().map(|command| format!("{command} {}", path.display())).collect()
@@ -63,17 +63,19 @@ fn found(path: &Path) -> Option<(&'static str, Vec<String>)> {
 
 /// A directory of recordings or of results, or of directories of such: one of them.
 pub fn recording_within(directory: &Path) -> Option<PathBuf> {
-    let mut entries: Vec<PathBuf> =
-        fs::read_dir(directory).ok()?.flatten().map(|entry| entry.path()).collect();
-    entries.sort();
+    let is_directory = |path: &&PathBuf| path.is_dir();
+    let entries = sorted_entries(directory);
     entries.iter().find(|path| is_recording(path)).cloned().or_else(|| {
-        entries.iter().filter(|path| path.is_dir()).take(LOOKED_INTO).find_map(|inner| {
-            let mut files: Vec<PathBuf> =
-                fs::read_dir(inner).ok()?.flatten().map(|entry| entry.path()).collect();
-            files.sort();
-            files.into_iter().find(|path| is_recording(path))
-        })
+        let inner = entries.iter().filter(is_directory).take(LOOKED_INTO);
+        inner.flat_map(|inner| sorted_entries(inner)).find(|path| is_recording(path))
     })
+}
+
+fn sorted_entries(directory: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(directory).into_iter().flatten().flatten();
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+    paths.sort();
+    paths
 }
 
 fn is_recording(path: &Path) -> bool {

@@ -31,7 +31,7 @@ pub fn with_tip(mut error: clap::Error, arguments: impl Iterator<Item = OsString
     error
 }
 
-/// What stands behind an option; nothing where nothing does.
+/// Value behind an option; empty where there is none.
 fn value(option: &str, arguments: &[String]) -> String {
     let mut rest = arguments.iter().skip_while(|argument| argument.split('=').next() != Some(option));
     let named = rest.next().map(String::as_str).unwrap_or_default();

@@ -9,6 +9,7 @@ use meshtone_io::own_file::{Claim, NewDirectory};
 use crate::earlier_results;
 use crate::failure::Failure;
 use crate::results::RESULTS;
+use crate::same_file::is_same_file;
 
 /// A directory that exists, can be written to, and is this program's alone. What had to be created for it is removed again, unless
 /// something is in it.
@@ -20,12 +21,17 @@ pub struct OutputDirectory {
     _created: Vec<NewDirectory>,
 }
 
-/// Where results of a file go unless the user says otherwise: its name without the ending and with `suffix`, in the
-/// current directory. None where the path names no file.
-pub fn named_after(input: &Path, suffix: &str) -> Option<PathBuf> {
-    let mut name = input.file_stem()?.to_os_string();
-    name.push(suffix);
-    Some(PathBuf::from(name))
+/// Directory of results unless the user names another: that of the input's name with what the results are, in the current
+/// directory, such as `run_indicators`.
+///
+/// # Arguments
+/// * `input` - a file, or a directory that `meshtone simulate` wrote
+/// * `results` - what the results are
+pub fn named_after(input: &Path, results: &str) -> PathBuf {
+    let stem = if input.is_dir() { input.file_name() } else { input.file_stem() };
+    let mut name = stem.unwrap_or_default().to_os_string();
+    name.push(if name.is_empty() { results.to_owned() } else { format!("_{results}") });
+    PathBuf::from(name)
 }
 
 /// Has a directory's results for this program alone.
@@ -41,21 +47,31 @@ pub fn claim(directory: &Path) -> Result<Claim, Failure> {
 }
 
 impl OutputDirectory {
-    /// Creates the directory where it does not exist, and tries whether the results can be written to it, so that no
-    /// simulation runs whose results could not be kept.
-    pub fn prepare(path: &Path) -> Result<Self, Failure> {
-        let directory = Self::for_files(path, &RESULTS)?;
+    /// Prepares a directory for the results of `meshtone simulate`, after it has put back what an interrupted run replaced.
+    pub fn prepare(path: &Path, read: &[&Path]) -> Result<Self, Failure> {
+        let directory = Self::for_files(path, &RESULTS, read)?;
         earlier_results::put_back(path)?;
         Ok(directory)
     }
 
-    /// The same for files of other names, for which nothing is put back.
-    pub fn for_files(path: &Path, names: &[&str]) -> Result<Self, Failure> {
+    /// Creates the directory where it does not exist, and tries whether the results can be written to it, so that no
+    /// simulation runs whose results could not be kept.
+    ///
+    /// # Arguments
+    /// * `path` - the directory
+    /// * `names` - of the results
+    /// * `read` - files that are read, which no result may replace
+    pub fn for_files(path: &Path, names: &[&str], read: &[&Path]) -> Result<Self, Failure> {
         let refuse = |error: Error| {
             let message = format!("cannot write results to the directory {}: {error}", path.display());
             Failure::of_writing(error.kind(), message)
                 .with_help("name another directory with -o, or change its permissions")
         };
+        let mut results = names.iter().map(|name| path.join(name));
+        if let Some(result) = results.find(|result| read.iter().any(|file| is_same_file(result, file))) {
+            let problem = format!("the result {} would replace a file that is read", result.display());
+            return Err(Failure::bad_input(problem).with_help("name another directory with -o"));
+        }
         if path.exists() && !path.is_dir() {
             return Err(refuse(Error::new(ErrorKind::NotADirectory, "it is a file")));
         }

@@ -5,11 +5,28 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-/// What is over sooner needs no sign of life.
+/// Time after which a bar is drawn: shorter work needs none.
 const PATIENCE: Duration = Duration::from_secs(1);
 const TICK: Duration = Duration::from_millis(120);
+
+/// A bar on a terminal's standard error.
+///
+/// # Arguments
+/// * `counted` - what is counted, such as "simulations"
+/// * `wanted` - whether anything is to be shown
+pub fn bar(counted: &str, wanted: bool) -> ProgressBar {
+    let bar = match wanted {
+        true => ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr()),
+        false => ProgressBar::hidden(),
+    };
+    let template = format!("{{bar:30}} {{pos}} of {{len}} {counted}, {{per_sec}}, {{eta}} left");
+    match ProgressStyle::with_template(&template) {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}
 
 /// A spinner on a terminal's standard error, from one second on until it is dropped.
 pub struct Progress {

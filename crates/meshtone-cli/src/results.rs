@@ -1,7 +1,6 @@
 //! The files that a run writes.
 
-use std::fs;
-use std::io::{BufWriter, ErrorKind, Write};
+use std::io::{BufWriter, Write};
 use std::path::Path;
 use std::thread;
 
@@ -18,6 +17,7 @@ use meshtone_plot::panel;
 
 use crate::earlier_results;
 use crate::failure::Failure;
+use crate::replacement::{cannot_draw, replace, stage_figure};
 
 /// The signals' file.
 pub const SIGNALS: &str = "signals.parquet";
@@ -25,12 +25,12 @@ pub const SIGNALS: &str = "signals.parquet";
 pub const SUMMARY: &str = "summary.json";
 /// The panel's files.
 pub const PANEL: [&str; 2] = ["panel.svg", "panel.png"];
-/// All files that stand in a run's directory.
-pub const RESULTS: [&str; 4] = [SIGNALS, SUMMARY, PANEL[0], PANEL[1]];
+/// All files that stand in a run's directory, the summary first.
+pub const RESULTS: [&str; 4] = [SUMMARY, SIGNALS, PANEL[0], PANEL[1]];
 
-/// What a run writes.
+/// Results that a run writes.
 pub struct Results<'r> {
-    /// What was simulated, as the user asked for it.
+    /// Simulated scenario, as the user asked for it.
     pub scenario: &'r Scenario,
     /// Its results.
     pub simulation: &'r Simulation,
@@ -49,7 +49,15 @@ impl Results<'_> {
     /// removed where this run draws none: it would show something else.
     pub fn write(&self, directory: &Path) -> Result<(), Failure> {
         let (panel, signals) = thread::scope(|scope| {
-            let panel = scope.spawn(|| self.with_panel.then(|| self.stage_panel(directory)).transpose());
+            let panel = scope.spawn(|| match self.with_panel {
+                true => stage_panel(
+                    directory,
+                    self.summary.run,
+                    &self.simulation.stages,
+                    &self.simulation.channels,
+                ),
+                false => Ok(Vec::new()),
+            });
             let signals = StagedFile::write(&directory.join(SIGNALS), |file| {
                 write_signals(file, self.scenario, &self.simulation.channels)
             });
@@ -67,18 +75,17 @@ impl Results<'_> {
             file.flush()
         })?;
         // What has been computed is kept even where the picture of it fails.
-        let (panel, failure) = match panel {
-            Ok(panel) => (panel, None),
-            Err(failure) => (None, Some(failure.with_help("the other results are written; see --no-panel"))),
+        let (mut staged, drawn) = match panel {
+            Ok(panel) => (panel, Ok(())),
+            Err(failure) => {
+                (Vec::new(), Err(failure.with_help("the other results are written; see --no-panel")))
+            }
         };
+        staged.push(signals);
         // The trace may lie elsewhere; it carries the run's identity, as every file does.
         trace.map(StagedFile::commit).transpose()?;
-        undisturbed(|| replace(directory, signals, panel, summary))?;
-        failure.map_or(Ok(()), Err)
-    }
-
-    fn stage_panel(&self, directory: &Path) -> Result<[StagedFile; 2], Failure> {
-        stage_panel(directory, self.summary.run, &self.simulation.stages, &self.simulation.channels)
+        undisturbed(|| replace_earlier(directory, staged, summary))?;
+        drawn
     }
 }
 
@@ -88,39 +95,21 @@ pub fn stage_panel(
     run: RunIdentity,
     stages: &Stages,
     channels: &Channels,
-) -> Result<[StagedFile; 2], Failure> {
-    let cannot = |error| Failure::failed(format!("cannot draw the panel: {error}"));
-    let figure = panel::draw(stages, channels).map_err(cannot)?.of_run(&run.to_string());
-    let [svg_path, png_path] = PANEL.map(|name| directory.join(name));
-    thread::scope(|scope| {
-        // Until it lies on the disk the other file can be drawn.
-        let svg =
-            scope.spawn(|| StagedFile::write(&svg_path, |file| file.write_all(figure.svg().as_bytes())));
-        let png = figure.png().map_err(cannot)?;
-        let png = StagedFile::write(&png_path, |file| file.write_all(&png))?;
-        let svg = svg.join().map_err(|_| Failure::failed("cannot write the panel"))??;
-        Ok([svg, png])
-    })
+) -> Result<Vec<StagedFile>, Failure> {
+    let figure = panel::draw(stages, channels).map_err(cannot_draw);
+    let staged = figure.and_then(|figure| stage_figure(directory, PANEL, &figure.of_run(&run.to_string())));
+    // The panel has no option --no-figure.
+    staged.map_err(|failure| Failure { help: None, ..failure })
 }
 
-/// Gives the files their names, in the place of an earlier run's.
-///
-/// The summary of the earlier run is removed first and this run's named last, so that a directory without a summary is
-/// one in which a run was interrupted; [`earlier_results`] then knows what was there before.
-fn replace(
+/// Gives the files their names; where that fails, the results of the earlier run are put back.
+fn replace_earlier(
     directory: &Path,
-    signals: StagedFile,
-    panel: Option<[StagedFile; 2]>,
+    staged: Vec<StagedFile>,
     summary: StagedFile,
 ) -> Result<(), WriteFileError> {
     earlier_results::keep(directory);
-    let named = remove(directory, &[SUMMARY])
-        .and_then(|()| signals.commit())
-        .and_then(|()| match panel {
-            Some(files) => files.into_iter().try_for_each(StagedFile::commit),
-            None => remove(directory, &PANEL),
-        })
-        .and_then(|()| summary.commit());
+    let named = replace(directory, &RESULTS, staged, summary);
     match named {
         Ok(()) => earlier_results::forget(directory),
         Err(_) => {
@@ -128,11 +117,4 @@ fn replace(
         }
     }
     named
-}
-
-fn remove(directory: &Path, names: &[&str]) -> Result<(), WriteFileError> {
-    names.iter().map(|name| directory.join(name)).try_for_each(|path| match fs::remove_file(&path) {
-        Err(source) if source.kind() != ErrorKind::NotFound => Err(WriteFileError { path, source }),
-        _ => Ok(()),
-    })
 }

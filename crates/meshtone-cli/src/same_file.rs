@@ -1,8 +1,8 @@
-//! Whether two names are one file's.
+//! A test whether two names are one file's.
 
 use std::path::{Path, PathBuf};
 
-/// Whether two names are one file's, which need not exist yet. Where it cannot be found out they are taken for two.
+/// Returns whether two names are one file's, which need not exist yet. Where it cannot be found out they are taken for two.
 pub fn is_same_file(a: &Path, b: &Path) -> bool {
     let same = |a: Option<PathBuf>, b: Option<PathBuf>| a.is_some() && a == b;
     same(place(a), place(b)) || same(a.canonicalize().ok(), b.canonicalize().ok())

@@ -1,60 +1,37 @@
 //! The main numbers of a run, for reading.
 
-use std::fmt::Write;
-
 use meshtone_io::summary::{ChannelSummary, FaultSummary, MeshForce, Summary};
 
 /// The table of one run.
 pub fn table(summary: &Summary) -> String {
-    let mut text = String::new();
-    for (name, value) in rows(summary) {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "  {name:<24}{value}");
-    }
-    let _ = writeln!(text, "\n  {:<28}{:>12}{:>12}{:>12}", "signal", "rms", "peak", "kurtosis");
-    for channel in &summary.channels {
+    let rows = rows(summary).map(|(name, value)| format!("  {name:<24}{value}\n"));
+    let heads = format!("\n  {:<28}{:>12}{:>12}{:>12}\n", "signal", "rms", "peak", "kurtosis");
+    let channels = summary.channels.iter().map(|channel| {
         let kurtosis = channel.kurtosis.map_or_else(|| "-".to_string(), short);
         let (rms, peak) = (short(channel.rms), short(channel.peak));
-        let _ = writeln!(text, "  {:<28}{rms:>12}{peak:>12}{kurtosis:>12}", label(channel));
-    }
-    text
+        format!("  {:<28}{rms:>12}{peak:>12}{kurtosis:>12}\n", label(channel))
+    });
+    rows.into_iter().chain([heads]).chain(channels).collect()
 }
 
 fn rows(summary: &Summary) -> [(&'static str, String); 8] {
     let (stiffness, force) = (&summary.mesh_stiffness, &summary.mesh_force);
     let frequencies: Vec<_> = summary.natural_frequencies_hz.iter().map(|f| frequency(*f)).collect();
     let duration_s = summary.samples as f64 / summary.sampling_rate_hz;
+    let rate = short(summary.sampling_rate_hz);
+    let range = |values: [f64; 3]| {
+        let [min, mean, max] = values.map(short);
+        format!("min {min}, mean {mean}, max {max}")
+    };
+    let stiffness = range([stiffness.min_n_per_mm, stiffness.mean_n_per_mm, stiffness.max_n_per_mm]);
+    let forces = range([force.min_n, force.mean_n, force.max_n]);
     [
         ("model", format!("{}, seed {}", summary.model, summary.seed)),
         ("fault", faults(&summary.faults)),
-        (
-            "sampling",
-            format!(
-                "{} samples, {duration_s:.3} s at {} S/s",
-                summary.samples,
-                short(summary.sampling_rate_hz)
-            ),
-        ),
+        ("sampling", format!("{} samples, {duration_s:.3} s at {rate} S/s", summary.samples)),
         ("contact ratio", format!("{:.4}{}", summary.contact_ratio, along_the_face(summary))),
-        (
-            "mesh stiffness, N/mm",
-            format!(
-                "min {}, mean {}, max {}",
-                short(stiffness.min_n_per_mm),
-                short(stiffness.mean_n_per_mm),
-                short(stiffness.max_n_per_mm)
-            ),
-        ),
-        (
-            "mesh force, N",
-            format!(
-                "min {}, mean {}, max {}{}",
-                short(force.min_n),
-                short(force.mean_n),
-                short(force.max_n),
-                touching(force)
-            ),
-        ),
+        ("mesh stiffness, N/mm", stiffness),
+        ("mesh force, N", forces + &touching(force)),
         ("natural frequencies, Hz", frequencies.join(" ")),
         ("computing time", format!("{} ms", short(summary.total_time().as_secs_f64() * 1e3))),
     ]
@@ -69,20 +46,17 @@ fn along_the_face(summary: &Summary) -> String {
 /// For how long the mesh pulls, or its teeth do not touch or touch with their backs.
 fn touching(force: &MeshForce) -> String {
     let percent = |fraction: f64| format!("{:.1} %", 100.0 * fraction);
-    match (&force.contact, force.tension_fraction) {
-        (Some(contact), _) => {
-            let back = match contact.back_flank_hits {
-                0 => "no back flank hits".to_string(),
-                hits => {
-                    let hits = if hits == 1 { "1 hit".to_string() } else { format!("{hits} hits") };
-                    format!("{hits} of back flanks, {} of the time", percent(contact.back_flank_fraction))
-                }
-            };
-            format!("; apart {} of the time, {back}", percent(contact.apart_fraction))
-        }
-        (None, Some(fraction)) => format!("; in tension {} of the time", percent(fraction)),
-        (None, None) => String::new(),
-    }
+    let Some(contact) = &force.contact else {
+        let tension =
+            force.tension_fraction.map(|part| format!("; in tension {} of the time", percent(part)));
+        return tension.unwrap_or_default();
+    };
+    let hits = match contact.back_flank_hits {
+        0 => "no back flank hits".to_string(),
+        1 => format!("1 hit of back flanks, {} of the time", percent(contact.back_flank_fraction)),
+        hits => format!("{hits} hits of back flanks, {} of the time", percent(contact.back_flank_fraction)),
+    };
+    format!("; apart {} of the time, {hits}", percent(contact.apart_fraction))
 }
 
 /// `root-crack (severity 0.400) on tooth 1 of the gear`, one after the other.

@@ -21,8 +21,13 @@ pub fn print_error_line(text: impl Display) {
     let _ = writeln!(io::stderr().lock(), "{text}");
 }
 
-/// Whether standard error is a terminal that shows lines and colours.
-pub fn is_fancy() -> bool {
+/// Prints a warning.
+pub fn warn(text: impl Display) {
+    print_error_line(format_args!("warning: {text}"));
+}
+
+/// Returns whether standard error is a terminal that shows lines and colours.
+pub fn shows_colours() -> bool {
     let no_color = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     let dumb = std::env::var_os("TERM").is_some_and(|value| value == "dumb");
     io::stderr().is_terminal() && !no_color && !dumb

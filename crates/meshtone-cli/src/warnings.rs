@@ -1,12 +1,30 @@
-//! Printing what can be simulated but deserves the user's attention.
+//! What can be simulated or processed but deserves the user's attention.
+
+use std::fmt::Display;
+use std::path::Path;
 
 use meshtone::scenario::{ScenarioWarning, line_of_key};
+use meshtone_io::indicators::WarningEntry;
 use meshtone_io::scenario_file::ScenarioFile;
 
-use crate::terminal::print_error_line;
+use crate::terminal::warn;
 
-/// Prints a warning with its file and line.
-pub fn print(file: &ScenarioFile, warning: &ScenarioWarning) {
-    let line = line_of_key(&file.text, &warning.key).map(|line| format!("line {line}: ")).unwrap_or_default();
-    print_error_line(format!("warning: {}: {line}{warning}", file.path.display()));
+/// Prints warnings about a scenario with its file and line.
+pub fn print(file: &ScenarioFile, warnings: &[ScenarioWarning]) {
+    for warning in warnings {
+        let line = line_of_key(&file.text, &warning.key);
+        let line = line.map(|line| format!("line {line}: ")).unwrap_or_default();
+        warn(format_args!("{}: {line}{warning}", file.path.display()));
+    }
+}
+
+/// A warning about a recording.
+pub fn about(source: &Path, message: impl Display) -> WarningEntry {
+    WarningEntry { source: Some(source.to_path_buf()), message: message.to_string() }
+}
+
+/// A warning with the recording that it is about.
+pub fn in_words(warning: &WarningEntry) -> String {
+    let source = warning.source.as_ref().map(|source| format!("{}: ", source.display())).unwrap_or_default();
+    format!("{source}{}", warning.message)
 }

@@ -1,68 +1,54 @@
 //! The data card: README.md.
 
-use std::collections::BTreeMap;
-use std::fmt::Write;
+use std::fmt::{Result, Write};
 
 use meshtone::scenario::WarningKind;
 
-use crate::contents::Contents;
+use crate::finish::Finished;
 use crate::manifest::PREVIEW;
-use crate::plan::{Class, Growth, Plan, PlanFile, Severity, SplitBy, kinds};
-use crate::shard::{Column, ColumnKind, Shards, WARNINGS};
+use crate::plan::{Class, Growth, PlanFile, Severity, SplitBy, kinds};
+use crate::sampling::Design;
+use crate::shard::{Column, Topic, WARNINGS, column_name, varied_keys};
 use crate::words::counted;
 
 /// The data card's text.
-pub(crate) fn card(
-    plan: &Plan,
-    shards: Shards,
-    contents: &Contents,
-    units_of_split: &BTreeMap<String, u64>,
-    columns: &[Column],
-) -> String {
+pub(crate) fn card(set: &Finished) -> String {
     let mut text = String::new();
-    // Writing to a text cannot fail.
-    let _ = head(&mut text, plan, contents);
-    let _ = counts(&mut text, plan, contents, units_of_split);
-    let _ = warnings(&mut text, plan, contents);
-    let _ = classes(&mut text, plan, contents);
-    let _ = questions(&mut text, plan);
-    let _ = columns_table(&mut text, plan.content.keep.wheel.name(), columns, contents);
-    let _ = files(&mut text, shards, contents);
-    let _ = loading(&mut text, shards, columns);
-    text
+    for section in [head, counts, warnings, classes, draws, questions, columns, files] {
+        // Writing to a text cannot fail.
+        let _ = section(&mut text, set);
+    }
+    text + &loading(set)
 }
 
-fn head(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Result {
-    let about = &plan.about;
+fn head(text: &mut String, set: &Finished) -> Result {
+    let (about, keep) = (&set.plan.about, &set.plan.content.keep);
     writeln!(text, "# {}\n", about.title)?;
     if !about.description.is_empty() {
         writeln!(text, "{}\n", about.description.trim())?;
     }
-    let rows = plan.records() - contents.failures.len() as u64;
-    let keep = &plan.content.keep;
+    let rate = format!("{} S/s", keep.sampling_rate_hz);
     let channels = match (keep.over_angle, keep.duration_s) {
         (Some(angle), _) => format!(
-            "raw channels over {} of the {} at {} points each, of a sampling rate of {} S/s",
+            "raw channels over {} of the {} at {} points each, of a sampling rate of {rate}",
             counted(angle.revolutions as u64, "revolution"),
             keep.wheel.name(),
             angle.points_per_revolution,
-            keep.sampling_rate_hz
         ),
-        (None, Some(seconds)) => format!("raw channels at {} S/s over {seconds} s", keep.sampling_rate_hz),
-        (None, None) => format!(
-            "raw channels at {} S/s over one hunting period, after which the same teeth meet again",
-            keep.sampling_rate_hz
-        ),
+        (None, Some(seconds)) => format!("raw channels at {rate} over {seconds} s"),
+        (None, None) => {
+            format!("raw channels at {rate} over one hunting period, after which the same teeth meet again")
+        }
     };
-    let mountings = plan.content.mountings;
+    let mountings = set.plan.content.mountings;
     let mounted = if mountings > 1 { format!(", each mounted {mountings} times") } else { String::new() };
     writeln!(
         text,
         "{} of spur gear vibration from {} (pairs of wheels){mounted}, {channels}. \
          Made with Meshtone {} from `{}`, which makes the same bytes again; the base scenario \
          is `{}`.\n",
-        counted(rows, "simulated record"),
-        counted(plan.content.units, "unit"),
+        counted(set.records(), "simulated record"),
+        counted(set.plan.content.units, "unit"),
         env!("CARGO_PKG_VERSION"),
         PlanFile::NAMES[0],
         PlanFile::NAMES[1]
@@ -75,18 +61,15 @@ fn head(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Result
     )
 }
 
-fn counts(
-    text: &mut String,
-    plan: &Plan,
-    contents: &Contents,
-    units_of_split: &BTreeMap<String, u64>,
-) -> std::fmt::Result {
+fn counts(text: &mut String, set: &Finished) -> Result {
+    let (plan, contents) = (set.plan, set.contents);
     writeln!(text, "## What is in it\n")?;
-    let splits = plan.content.splits.names_in(units_of_split);
+    let units_of_split = plan.content.units_of_split();
+    let splits = plan.content.splits.names_in(&units_of_split);
     writeln!(text, "| class | {} | all |", splits.join(" | "))?;
     writeln!(text, "|---|{}---:|", "---:|".repeat(splits.len()))?;
     let count = |split: &str, label: &str| {
-        contents.counts.get(&(split.to_owned(), label.to_owned())).copied().unwrap_or(0)
+        contents.counts.get(split).and_then(|labels| labels.get(label)).copied().unwrap_or(0)
     };
     let row = |name: &str, numbers: Vec<u64>| {
         let all: u64 = numbers.iter().sum();
@@ -135,63 +118,61 @@ fn counts(
 }
 
 /// What is doubtful, and of how many records.
-fn warnings(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Result {
-    if contents.warnings.is_empty() {
+fn warnings(text: &mut String, set: &Finished) -> Result {
+    let warnings = &set.contents.warnings;
+    if warnings.is_empty() {
         return Ok(());
     }
-    let rows = plan.records() - contents.failures.len() as u64;
     writeln!(
         text,
         "## Warnings\n\nWhat is doubtful about the simulations, by its code in the column `{WARNINGS}`, of {}.\n",
-        counted(rows, "record")
+        counted(set.records(), "record")
     )?;
     writeln!(text, "| code | records | meaning |\n|---|---:|---|")?;
-    for (code, count) in &contents.warnings {
+    for (code, count) in warnings {
         let meaning = WarningKind::of_code(code).map_or("", WarningKind::meaning);
         writeln!(text, "| `{code}` | {count} | {meaning} |")?;
     }
     writeln!(text)
 }
 
-fn classes(text: &mut String, plan: &Plan, contents: &Contents) -> std::fmt::Result {
+fn classes(text: &mut String, set: &Finished) -> Result {
     writeln!(text, "## Classes\n\n| label | fault | severity |\n|---|---|---|")?;
-    for class in &plan.content.classes {
+    for class in &set.plan.content.classes {
         let fault = kinds(&class.faults).unwrap_or_else(|| "none".to_owned());
         let grows = class.growth.as_ref().map(grows).unwrap_or_default();
         writeln!(text, "| {} | {fault}{grows} | {} |", class.label, severity(class))?;
     }
-    writeln!(text, "\n## How it was drawn\n\nDesign: {}. \n", design(plan))?;
+    writeln!(text)
+}
+
+fn draws(text: &mut String, set: &Finished) -> Result {
+    let design = match set.plan.content.design {
+        Design::Independent => "independent draws",
+        Design::LatinHypercube => "Latin hypercube",
+        Design::Sobol => "scrambled Sobol sequence",
+    };
+    writeln!(text, "## How it was drawn\n\nDesign: {design}. \n")?;
     writeln!(text, "| column | key | for each | least | largest |\n|---|---|---|---:|---:|")?;
-    let rules = plan.content.rules.iter().chain(plan.content.classes.iter().flat_map(|class| &class.rules));
-    let mut seen = Vec::new();
-    for rule in rules {
-        for key in &rule.keys {
-            let name = crate::shard::column_name(key);
-            if seen.contains(&name) {
-                continue;
-            }
-            let [least, largest] = contents.seen.ranges.get(&name).copied().unwrap_or([f64::NAN; 2]);
-            writeln!(
-                text,
-                "| `{name}` | `{key}` | {} | {} | {} |",
-                rule.level.name(),
-                short(least),
-                short(largest)
-            )?;
-            seen.push(name);
-        }
+    for (rule, key) in varied_keys(&set.plan.content) {
+        let name = column_name(key);
+        let [least, largest] = set.contents.summary.ranges.get(&name).copied().unwrap_or([f64::NAN; 2]);
+        let (level, least, largest) = (rule.level.name(), short(least), short(largest));
+        writeln!(text, "| `{name}` | `{key}` | {level} | {least} | {largest} |")?;
     }
     writeln!(text)
 }
 
 /// What the data set asks, and how answers are scored.
-fn questions(text: &mut String, plan: &Plan) -> std::fmt::Result {
-    if plan.about.questions.is_empty() {
+fn questions(text: &mut String, set: &Finished) -> Result {
+    let questions = &set.plan.about.questions;
+    if questions.is_empty() {
         return Ok(());
     }
     writeln!(text, "## Questions\n\n| question | to be told | score |\n|---|---|---|")?;
-    for question in &plan.about.questions {
-        writeln!(text, "| {} | {} | {} |", question.name(), question.target(), question.score())?;
+    for question in questions {
+        let [target, score] = question.target_and_score();
+        writeln!(text, "| {} | {target} | {score} |", question.name())?;
     }
     writeln!(
         text,
@@ -223,126 +204,49 @@ fn severity(class: &Class) -> String {
     }
 }
 
-fn design(plan: &Plan) -> &'static str {
-    use crate::sampling::Design;
-    match plan.content.design {
-        Design::Independent => "independent draws",
-        Design::LatinHypercube => "Latin hypercube",
-        Design::Sobol => "scrambled Sobol sequence",
-    }
-}
-
-fn columns_table(
-    text: &mut String,
-    wheel: &str,
-    columns: &[Column],
-    contents: &Contents,
-) -> std::fmt::Result {
+fn columns(text: &mut String, set: &Finished) -> Result {
+    let is_indicator = |column: &Column| matches!(column.topic, Topic::Indicator(_));
     writeln!(text, "## Columns\n\nOne row a record. Units and meanings stand in the files' metadata too.\n")?;
     writeln!(text, "| column | unit | meaning |\n|---|---|---|")?;
-    for column in columns.iter().filter(|column| !matches!(column.kind, ColumnKind::Indicator(_))) {
-        let constant = contents.seen.ranges.get(&column.name).filter(|[least, largest]| least == largest);
+    for column in set.columns.iter().filter(|column| !is_indicator(column)) {
+        let constant =
+            set.contents.summary.ranges.get(&column.name).filter(|[least, largest]| least == largest);
         let value = constant.map_or(String::new(), |[value, _]| format!(" (always {})", short(*value)));
-        let kind = if column.kind.is_signal() { "; list of 32-bit numbers" } else { "" };
+        let kind = if column.is_signal() { "; list of 32-bit numbers" } else { "" };
         writeln!(text, "| `{}` | {} | {}{kind}{value} |", column.name, column.unit, column.description)?;
     }
-    let indicators: Vec<String> = columns
-        .iter()
-        .filter(|column| matches!(column.kind, ColumnKind::Indicator(_)))
-        .map(|column| format!("`{}`", column.name))
-        .collect();
+    let indicators = set.columns.iter().filter(|column| is_indicator(column));
+    let indicators: Vec<String> = indicators.map(|column| format!("`{}`", column.name)).collect();
     if !indicators.is_empty() {
         writeln!(
             text,
-            "\nIndicators of the analysed channel over the {wheel}'s revolutions: {}.",
+            "\nIndicators of the analysed channel over the {}'s revolutions: {}.",
+            set.plan.content.keep.wheel.name(),
             indicators.join(", ")
         )?;
     }
     writeln!(text)
 }
 
-fn files(text: &mut String, shards: Shards, contents: &Contents) -> std::fmt::Result {
-    let bytes: u64 = contents.files.values().map(|file| file.digest.bytes).sum();
+fn files(text: &mut String, set: &Finished) -> Result {
+    let bytes: u64 = set.contents.files.values().map(|file| file.digest.bytes).sum();
     writeln!(
         text,
         "## Files\n\n{} in `data/`, {} each, {:.1} MB together. Records are in random order, so that every file \
          is a mixture of all classes. `manifest.json` has counts, failures and the SHA-256 of every file.\n",
-        counted(contents.files.len() as u64, "Parquet file"),
-        counted(shards.records_per_shard, "record"),
+        counted(set.contents.files.len() as u64, "Parquet file"),
+        counted(set.shards.records_per_shard, "record"),
         bytes as f64 / 1e6
     )
 }
 
-fn loading(text: &mut String, shards: Shards, columns: &[Column]) -> std::fmt::Result {
-    let signal = columns.iter().find(|column| column.kind.is_signal()).map_or("label", |column| &column.name);
-    let all = shards.pattern();
-    let first = shards.name(0);
-    writeln!(
-        text,
-        "## Loading
-
-In this folder. With Meshtone's Python package, which reads only what is asked for:
-
-```python
-from meshtone import load_dataset
-
-train = load_dataset(\".\").split(\"train\")
-table, first = train.to_pandas(), train.signals(\"{signal}\")[0]
-```
-
-With pandas and pyarrow:
-
-```python
-import numpy as np
-import pandas as pd
-
-train = pd.read_parquet(\"data\", filters=[(\"split\", \"==\", \"train\")], columns=[\"label\", \"{signal}\"])
-first = np.asarray(train[\"{signal}\"].iloc[0])
-```
-
-With polars:
-
-```python
-import polars as pl
-
-lazy = pl.scan_parquet(\"{all}\")
-train = lazy.filter(pl.col(\"split\") == \"train\").select(\"label\", \"severity\", \"{signal}\").collect()
-```
-
-With Dask:
-
-```python
-import dask.dataframe as dd
-
-lazy = dd.read_parquet(\"{all}\", columns=[\"label\", \"split\", \"severity\", \"{signal}\"])
-train = lazy[lazy[\"split\"] == \"train\"].compute()
-```
-
-MATLAB:
-
-```matlab
-records = parquetread(\"{first}\");
-train = records(records.split == \"train\", :);
-first = train.{signal}{{1}};
-```
-
-Rust, with the crates `parquet` and `arrow`:
-
-```rust
-use std::fs::File;
-use arrow::array::AsArray;
-use arrow::datatypes::Float32Type;
-use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
-
-let file = File::open(\"{first}\")?;
-for batch in ParquetRecordBatchReaderBuilder::try_new(file)?.build()? {{
-    let batch = batch?;
-    let signals = batch.column_by_name(\"{signal}\").unwrap().as_list::<i32>();
-    let first = signals.value(0);
-    let first = first.as_primitive::<Float32Type>().values();
-}}
-```"
-    )
+/// How programs load the data set.
+fn loading(set: &Finished) -> String {
+    let signal = set.columns.iter().find(|column| column.is_signal()).map_or("label", |column| &column.name);
+    include_str!("loading.md")
+        .replace("{signal}", signal)
+        .replace("{all}", set.shards.pattern())
+        .replace("{first}", &set.shards.name(0))
 }
 
 /// Four digits.

@@ -1,14 +1,11 @@
 //! Croissant 1.0 metadata, <https://docs.mlcommons.org/croissant/docs/croissant-spec.html>: croissant.json.
 
-use std::collections::BTreeMap;
+use meshtone_io::table::CellType;
+use serde_json::{Value, json};
 
-use meshtone_io::table::{CellType, TableColumn};
-use serde_json::{Map, Value, json};
-
-use crate::digest::Digest;
-use crate::manifest::MANIFEST;
-use crate::plan::Plan;
-use crate::shard::{Column, ColumnKind, Shards};
+use crate::finish::Finished;
+use crate::manifest::{Document, MANIFEST};
+use crate::shard::{Column, Shards};
 
 const CONFORMS_TO: &str = "http://mlcommons.org/croissant/1.0";
 /// Identifiers of the files of records, of their rows, and of the list of splits.
@@ -19,15 +16,9 @@ const SPLITS: &str = "splits";
 /// The metadata's text.
 ///
 /// # Arguments
-/// * `units_of_split` - by the splits' names
 /// * `documents` - all files but the shards, the manifest and the metadata themselves; the manifest has their digest
-pub(crate) fn metadata(
-    plan: &Plan,
-    shards: Shards,
-    units_of_split: &BTreeMap<String, u64>,
-    columns: &[Column],
-    documents: &BTreeMap<&str, Digest>,
-) -> String {
+pub(crate) fn metadata(set: &Finished, documents: &[Document]) -> String {
+    let Finished { plan, shards, columns, .. } = *set;
     let about = &plan.about;
     let simulated = format!("simulated with Meshtone {}", env!("CARGO_PKG_VERSION"));
     let citation = about.citation.clone();
@@ -37,9 +28,10 @@ pub(crate) fn metadata(
         "" => format!("{}, {simulated}", about.title),
         description => description.to_owned(),
     };
-    let splits = plan.content.splits.names_in(units_of_split);
+    let units_of_split = plan.content.units_of_split();
+    let splits = plan.content.splits.names_in(&units_of_split);
     let mut metadata = json!({
-        "@context": context(),
+        "@context": serde_json::from_str::<Value>(CONTEXT).unwrap_or_default(),
         "@type": "sc:Dataset",
         "conformsTo": CONFORMS_TO,
         "name": about.title,
@@ -56,56 +48,12 @@ pub(crate) fn metadata(
     format!("{metadata:#}\n")
 }
 
-/// What the words in it stand for: the context that the specification prescribes, and those words of the vocabulary on responsible use and
-/// of samples' rates that the standard's own library misses otherwise.
-fn context() -> Value {
-    let mut context = Map::new();
-    let mut define = |word: &str, meaning: Value| context.insert(word.to_owned(), meaning);
-    define("@language", json!("en"));
-    define("@vocab", json!("https://schema.org/"));
-    define("cr", json!("http://mlcommons.org/croissant/"));
-    define("rai", json!("http://mlcommons.org/croissant/RAI/"));
-    define("dct", json!("http://purl.org/dc/terms/"));
-    define("sc", json!("https://schema.org/"));
-    define("conformsTo", json!("dct:conformsTo"));
-    define("data", json!({ "@id": "cr:data", "@type": "@json" }));
-    define("dataType", json!({ "@id": "cr:dataType", "@type": "@vocab" }));
-    define("examples", json!({ "@id": "cr:examples", "@type": "@json" }));
-    for word in [
-        "citeAs",
-        "column",
-        "equivalentProperty",
-        "extract",
-        "field",
-        "fileObject",
-        "fileProperty",
-        "fileSet",
-        "format",
-        "includes",
-        "isLiveDataset",
-        "jsonPath",
-        "key",
-        "md5",
-        "parentField",
-        "path",
-        "recordSet",
-        "references",
-        "regex",
-        "repeated",
-        "replace",
-        "samplingRate",
-        "separator",
-        "source",
-        "subField",
-        "transform",
-    ] {
-        define(word, json!(format!("cr:{word}")));
-    }
-    Value::Object(context)
-}
+/// The meanings of the words in the metadata: the context that the specification prescribes, and those words of the vocabularies on
+/// responsible use and on sampling rates without which the standard's own library gives warnings.
+const CONTEXT: &str = include_str!("croissant_context.json");
 
 /// The files. That of all hashes cannot stand here with its own, as it has this file's; nor do a million shards.
-fn distribution(shards: Shards, documents: &BTreeMap<&str, Digest>) -> Value {
+fn distribution(shards: Shards, documents: &[Document]) -> Value {
     let file_set = |id: &str, includes: &str, format: &str, description: &str| {
         json!({
             "@type": "cr:FileSet",
@@ -121,7 +69,7 @@ fn distribution(shards: Shards, documents: &BTreeMap<&str, Digest>) -> Value {
         file_set(SHARDS, shards.pattern(), "application/x-parquet", "the records, in random order"),
         file_set("manifest", MANIFEST, "application/json", manifest),
     ];
-    files.extend(documents.iter().map(|(name, digest)| {
+    files.extend(documents.iter().map(|Document { name, digest }| {
         json!({
             "@type": "cr:FileObject",
             "@id": name,
@@ -195,20 +143,20 @@ fn field(column: &Column) -> Value {
         "dataType": data_type(column),
         "source": { "fileSet": { "@id": SHARDS }, "extract": { "column": column.name } },
     });
-    if column.kind.is_signal() {
+    if column.is_signal() {
         field["repeated"] = json!(true);
     }
-    if column.kind == ColumnKind::Split {
+    if column.name == "split" {
         field["references"] = json!({ "field": { "@id": format!("{SPLITS}/name") } });
     }
     field
 }
 
 fn data_type(column: &Column) -> Value {
-    let cells = match TableColumn::from(column).cells {
-        CellType::Int32 | CellType::Int64 | CellType::UInt32 | CellType::UInt64 => "sc:Integer",
-        CellType::Float64 | CellType::Float32List { .. } => "sc:Float",
+    let cells = match column.cell_type() {
+        CellType::Int32 | CellType::Int64 => "sc:Integer",
+        CellType::Float64 | CellType::Float32List => "sc:Float",
         CellType::Text => "sc:Text",
     };
-    if column.kind == ColumnKind::Label { json!([cells, "cr:Label"]) } else { json!(cells) }
+    if column.name == "label" { json!([cells, "cr:Label"]) } else { json!(cells) }
 }

@@ -1,12 +1,13 @@
-//! What proves a file's bytes: their number and SHA-256.
+//! The length and the SHA-256 of a file, which prove that its bytes are unchanged.
 
 use std::fmt;
 use std::io::{self, Write};
 
+use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
 /// Length and SHA-256 of some bytes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Digest {
     /// (bytes) Length.
     pub bytes: u64,
@@ -14,24 +15,30 @@ pub struct Digest {
     pub sha256: Hash,
 }
 
-/// SHA-256; it shows itself as hexadecimal digits.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// SHA-256. It is shown and stored as 64 hexadecimal digits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
 pub struct Hash([u8; 32]);
 
-impl Hash {
-    /// Reads 64 hexadecimal digits; none where it is something else.
-    ///
-    /// # Arguments
-    /// * `text` - the digits
-    pub(crate) fn parse(text: &str) -> Option<Self> {
+impl From<Hash> for String {
+    fn from(hash: Hash) -> Self {
+        hash.to_string()
+    }
+}
+
+impl TryFrom<String> for Hash {
+    type Error = &'static str;
+
+    fn try_from(text: String) -> Result<Self, Self::Error> {
+        const PROBLEM: &str = "a SHA-256 has 64 hexadecimal digits";
         let mut bytes = [0; 32];
         if text.len() != 2 * bytes.len() || !text.bytes().all(|digit| digit.is_ascii_hexdigit()) {
-            return None;
+            return Err(PROBLEM);
         }
         for (byte, place) in bytes.iter_mut().zip((0..).step_by(2)) {
-            *byte = u8::from_str_radix(&text[place..place + 2], 16).ok()?;
+            *byte = u8::from_str_radix(&text[place..place + 2], 16).map_err(|_| PROBLEM)?;
         }
-        Some(Self(bytes))
+        Ok(Self(bytes))
     }
 }
 
@@ -42,16 +49,13 @@ impl fmt::Display for Hash {
 }
 
 impl Digest {
-    /// Of bytes in memory.
-    ///
-    /// # Arguments
-    /// * `bytes` - the bytes
+    /// The digest of bytes in memory.
     pub(crate) fn of(bytes: &[u8]) -> Self {
         Self { bytes: bytes.len() as u64, sha256: Hash(Sha256::digest(bytes).into()) }
     }
 }
 
-/// Hands on what is written and takes its digest on the way.
+/// A writer that passes on what is written to it and computes its digest.
 pub(crate) struct Hashing<W> {
     to: W,
     hash: Sha256,
@@ -59,12 +63,12 @@ pub(crate) struct Hashing<W> {
 }
 
 impl<W: Write> Hashing<W> {
-    /// Begins with nothing written.
+    /// Creates a writer to which nothing has been written yet.
     pub fn new(to: W) -> Self {
         Self { to, hash: Sha256::new(), bytes: 0 }
     }
 
-    /// Of all that has been written.
+    /// The digest of everything that has been written.
     pub fn digest(&self) -> Digest {
         Digest { bytes: self.bytes, sha256: Hash(self.hash.clone().finalize().into()) }
     }
@@ -100,7 +104,7 @@ mod tests {
         assert_eq!(hashing.digest(), Digest::of(b"abc"));
         assert_eq!((hashing.to.as_slice(), hashing.digest().bytes), (&b"abc"[..], 3));
         assert_eq!(hashing.digest().sha256.to_string(), ABC);
-        assert_eq!(Hash::parse(ABC), Some(hashing.digest().sha256));
-        assert_eq!([Hash::parse("ba78"), Hash::parse(&"é".repeat(32))], [None; 2]);
+        assert_eq!(Hash::try_from(ABC.to_owned()), Ok(hashing.digest().sha256));
+        assert!(["ba78".to_owned(), "é".repeat(32)].into_iter().all(|text| Hash::try_from(text).is_err()));
     }
 }

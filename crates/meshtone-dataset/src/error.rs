@@ -1,4 +1,4 @@
-//! What can go wrong.
+//! Errors of data sets.
 
 use std::io;
 
@@ -6,50 +6,50 @@ use meshtone_io::scenario_file::ReadScenarioError;
 
 use crate::shard::FailedRecord;
 
-/// A data set that could not be made, or not to its end.
+/// Why a data set could not be made or read.
 #[derive(Debug, thiserror::Error)]
 pub enum DatasetError {
     /// The plan is wrong.
     #[error(transparent)]
     Plan(#[from] ReadScenarioError),
-    /// Something about the place to write to, or about what was asked for, stands in the way.
+    /// The place to write to, or what was asked for, is not acceptable.
     #[error("{problem}")]
     Refused {
-        /// What.
+        /// The problem.
         problem: String,
         /// What to do about it.
         help: String,
     },
-    /// Something cannot be read or written.
+    /// A file cannot be read or written.
     #[error("cannot {doing} {name}: {source}")]
     File {
         /// `read` or `write`.
         doing: &'static str,
-        /// What.
+        /// Name of the file.
         name: String,
-        /// Why.
+        /// The system's error.
         source: io::Error,
     },
-    /// Another program does the same in the same place.
+    /// Another program is doing the same in the same place.
     #[error("another program {doing} {place}")]
     Busy {
-        /// What it does.
+        /// What the other program is doing.
         doing: String,
-        /// Where.
+        /// The place.
         place: String,
     },
     /// No record of the plan could be simulated.
     #[error("none of the plan's {records} records could be simulated; record {}: {}", first.record, first.reason)]
     NoRecord {
-        /// Number of the records.
+        /// Number of records of the plan.
         records: u64,
-        /// One of those that failed.
+        /// The first record that failed.
         first: FailedRecord,
     },
     /// The preview cannot be drawn.
     #[error("cannot draw the preview: {0}")]
     Preview(#[from] meshtone_plot::PlotError),
-    /// It was stopped.
+    /// The user stopped the run.
     #[error("stopped")]
     Stopped,
 }

@@ -1,22 +1,36 @@
-//! The end of a data set: its data card, preview, Croissant metadata and manifest.
-
-use std::collections::BTreeMap;
+//! Finishing a data set: its data card, preview, Croissant metadata and manifest.
 
 use meshtone_plot::dataset::{DatasetPreview, Example, Indicator, Key, dataset_figure};
 
 use crate::card;
-use crate::contents::{Contents, INDICATORS, Looked, SampledRecord, is_drawn};
+use crate::contents::{Contents, SampledRecord, SummaryColumns};
 use crate::croissant;
 use crate::digest::Digest;
 use crate::error::DatasetError;
-use crate::manifest::{self, CARD, CROISSANT, MANIFEST, PREVIEW, ReadManifest};
+use crate::manifest::{self, CARD, CROISSANT, Document, MANIFEST, PREVIEW, ReadManifest};
 use crate::part_list::{self, PartList};
-use crate::plan::{Content, Plan, SplitBy};
-use crate::shard::{self, Column, ColumnKind, FailedRecord, Shards, Wanted};
+use crate::plan::Plan;
+use crate::shard::{self, Column, Shards, Topic, Wanted};
 use crate::store::Destination;
 use crate::words::{counted, words_of};
 
-/// Finishes a data set where all shards are there. Returns whether it is complete.
+/// A data set whose shards are all there and known.
+#[derive(Clone, Copy)]
+pub(crate) struct Finished<'a> {
+    pub plan: &'a Plan,
+    pub shards: Shards,
+    pub contents: &'a Contents,
+    pub columns: &'a [Column],
+}
+
+impl Finished<'_> {
+    /// Number of records, without those that failed.
+    pub fn records(&self) -> u64 {
+        self.plan.records() - self.contents.failures.len() as u64
+    }
+}
+
+/// Finishes a data set whose shards are all there. Returns whether it is complete.
 pub(crate) fn finish_if_complete(
     plan: &Plan,
     shards: Shards,
@@ -30,10 +44,10 @@ pub(crate) fn finish_if_complete(
     let is_there =
         |shard: u64| files.contains_key(&shards.name(shard)) && contents.files.contains_key(&shard);
     if !(0..shards.count()).all(is_there) {
-        // Another part may have completed it meanwhile and taken the lists away.
+        // Another part may have completed the data set meanwhile and removed the lists.
         return Ok(!was_complete && manifest::read(to)?.is_some_and(|manifest| manifest.complete));
     }
-    contents.settle(to, shards)?;
+    contents.resolve_conflicts(to, shards)?;
     let has_size = |shard: u64| files.get(&shards.name(shard)) == Some(&contents.files[&shard].digest.bytes);
     if !(0..shards.count()).all(has_size) {
         return Ok(false);
@@ -50,111 +64,83 @@ pub(crate) fn finish(
     mut contents: Contents,
 ) -> Result<(), DatasetError> {
     let columns = shard::columns(plan);
-    let looked = Looked::new(&columns, shards);
-    contents.count_all(&looked, shards, to)?;
+    let summary_columns = SummaryColumns::new(&columns, shards);
+    contents.count_all(&summary_columns, shards, to)?;
     if contents.rows() == 0
-        && let Some((&record, reason)) = contents.failures.first_key_value()
+        && let Some(first) = contents.failures.values().next()
     {
-        let first = FailedRecord { record, reason: reason.clone() };
-        return Err(DatasetError::NoRecord { records: plan.records(), first });
+        return Err(DatasetError::NoRecord { records: plan.records(), first: first.clone() });
     }
-    let figure = dataset_figure(&preview(plan, shards, &contents, &looked, to, &columns));
-    let units_of_split = units_of_split(plan);
-    let card = card::card(plan, shards, &contents, &units_of_split, &columns);
-    let written = [
-        (PREVIEW[0], figure.svg().as_bytes().to_vec()),
-        (PREVIEW[1], figure.png()?),
-        (CARD, card.into_bytes()),
-    ];
-    let mut documents: BTreeMap<&str, Digest> = BTreeMap::new();
-    for (name, bytes) in &written {
-        to.write_bytes(name, bytes)?;
-        documents.insert(name, Digest::of(bytes));
-    }
-    manifest::write_plan(plan, to)?;
-    documents.extend(plan.files.iter().map(|file| (file.name, Digest::of(file.text.as_bytes()))));
-    let metadata = croissant::metadata(plan, shards, &units_of_split, &columns, &documents);
+    let set = Finished { plan, shards, contents: &contents, columns: &columns };
+    let figure = dataset_figure(&preview(&set, &summary_columns, to));
+    let mut documents = Vec::new();
+    let mut write = |name: &str, bytes: &[u8]| {
+        documents.push(Document { name: name.to_owned(), digest: Digest::of(bytes) });
+        to.write_bytes(name, bytes)
+    };
+    write(PREVIEW[0], figure.svg().as_bytes())?;
+    write(PREVIEW[1], &figure.png()?)?;
+    write(CARD, card::card(&set).as_bytes())?;
+    plan.files.iter().try_for_each(|file| write(file.name, file.text.as_bytes()))?;
+    documents.sort_by(|a, b| a.name.cmp(&b.name));
+    let metadata = croissant::metadata(&set, &documents);
     to.write_bytes(CROISSANT, metadata.as_bytes())?;
-    documents.insert(CROISSANT, Digest::of(metadata.as_bytes()));
-    // A data set with this manifest has everything.
-    to.write(MANIFEST, |file| {
-        manifest::write_complete(file, plan, shards, &contents, &units_of_split, &documents)
-    })?;
-    // It has what the lists had.
+    documents.push(Document { name: CROISSANT.to_owned(), digest: Digest::of(metadata.as_bytes()) });
+    documents.sort_by(|a, b| a.name.cmp(&b.name));
+    // The manifest is written last: a data set with it has everything.
+    to.write(MANIFEST, |file| manifest::write_complete(file, &set, &documents))?;
+    // The manifest has what the lists had.
     PartList::names(&to.files_in(part_list::FOLDER)?).try_for_each(|name| to.remove(name))
 }
 
-/// The units, or mountings, of each split that has any.
-fn units_of_split(plan: &Plan) -> BTreeMap<String, u64> {
-    let Content { splits, units, mountings, .. } = &plan.content;
-    let counts = splits.counts(match splits.by {
-        SplitBy::Unit => *units,
-        SplitBy::Mounting => units * mountings,
-    });
-    let names = plan.content.splits.names().into_iter().map(str::to_owned);
-    names.zip(counts).filter(|(_, units)| *units > 0).collect()
-}
-
-fn preview(
-    plan: &Plan,
-    shards: Shards,
-    contents: &Contents,
-    looked: &Looked<'_>,
-    to: &Destination,
-    columns: &[Column],
-) -> DatasetPreview {
-    let sampled: Vec<&SampledRecord> = contents.seen.sampled.values().collect();
-    let values_of = |name: &str| {
-        let place = looked.sampled.iter().position(|sampled| *sampled == name);
+fn preview(set: &Finished, summary_columns: &SummaryColumns<'_>, to: &Destination) -> DatasetPreview {
+    let Finished { plan, shards, contents, columns } = *set;
+    let sampled: Vec<&SampledRecord> = contents.summary.sampled.values().collect();
+    let values_of = |column: &Column| {
+        let place = summary_columns.sampled.iter().position(|sampled| *sampled == column.name);
         place.map_or_else(Vec::new, |place| sampled.iter().map(|record| record.values[place]).collect())
     };
     let classes: Vec<String> = plan.content.classes.iter().map(|class| class.label.clone()).collect();
-    let shown = [ColumnKind::Difference, ColumnKind::Average]
-        .iter()
-        .find_map(|kind| columns.iter().find(|column| column.kind == *kind))
-        .or_else(|| columns.iter().find(|column| column.kind.is_signal()));
+    let of_revolution = |name: &&str| {
+        columns.iter().find(|column| column.topic == Topic::Revolution && column.name == **name)
+    };
+    let shown = ["difference_g", "average_g"].iter().find_map(of_revolution);
+    let shown = shown.or_else(|| columns.iter().find(|column| column.is_signal()));
     let examples = classes.iter().filter_map(|label| {
-        let &(shard, row) = contents.seen.first.get(label)?;
+        let &(shard, row) = contents.summary.first.get(label)?;
         let file = shards.name(shard);
         let signal = shown.map_or_else(Vec::new, |column| signal(to, &file, row, &column.name));
         Some(Example { label: label.clone(), conditions: conditions(to, &file, row), signal })
     });
     let place = |names: &[String], name: &str| names.iter().position(|other| other == name).unwrap_or(0);
     let splits: Vec<String> = plan.content.splits.names().into_iter().map(str::to_owned).collect();
-    let keys = columns
-        .iter()
-        .filter(|column| is_varied(column, contents))
-        .map(|column| Key { name: words_of(&column.name), values: values_of(&column.name) });
-    let indicators = INDICATORS.iter().filter_map(|name| {
-        let column =
-            columns.iter().find(|column| column.kind == ColumnKind::Indicator((*name).to_owned()))?;
-        Some(Indicator { name: words_of(&column.name), values: values_of(&column.name) })
-    });
-    let failures = contents.failures.len() as u64;
+    let varies = |column: &&Column| {
+        let range = contents.summary.ranges.get(&column.name);
+        column.is_drawn() && range.is_some_and(|[least, largest]| least < largest)
+    };
+    let keys = columns.iter().filter(varies);
+    let indicators = columns.iter().filter(|column| column.is_previewed_indicator());
     DatasetPreview {
         title: plan.about.title.clone(),
         facts: format!(
             "{} of {}, {}",
-            counted(plan.records() - failures, "record"),
+            counted(set.records(), "record"),
             counted(plan.content.units, "unit"),
             counted(contents.files.len() as u64, "shard")
         ),
         signal_name: shown.map_or_else(String::new, |column| words_of(&column.name)),
         over_angle: plan.content.keep.over_angle.is_some()
-            || shown.is_some_and(|column| !matches!(column.kind, ColumnKind::Channel(_))),
+            || shown.is_some_and(|column| column.topic != Topic::Channel),
         examples: examples.collect(),
         class_of: sampled.iter().map(|record| place(&classes, &record.label)).collect(),
         split_of: sampled.iter().map(|record| place(&splits, &record.split)).collect(),
         classes,
         splits,
-        keys: keys.collect(),
-        indicators: indicators.collect(),
+        keys: keys.map(|column| Key { name: words_of(&column.name), values: values_of(column) }).collect(),
+        indicators: indicators
+            .map(|column| Indicator { name: words_of(&column.name), values: values_of(column) })
+            .collect(),
     }
-}
-
-/// Whether a column is one of what a record is drawn with, and not the same everywhere.
-fn is_varied(column: &Column, contents: &Contents) -> bool {
-    is_drawn(column) && contents.seen.ranges.get(&column.name).is_some_and(|[least, largest]| least < largest)
 }
 
 /// One signal of one record.

@@ -1,64 +1,63 @@
-//! Generating a data set, from the start or from where it was stopped.
+//! Generating a data set, from its start or from the point where it was stopped.
 
-use std::collections::{BTreeMap, HashMap, VecDeque};
+use std::collections::HashMap;
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom};
-use std::ops::Range;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 use meshtone::batch::{Control, simulate_many};
 use meshtone::scenario::Scenario;
 use rayon::prelude::*;
 
-use crate::contents::{Contents, Looked, WRONG_BYTES};
-use crate::digest::{Digest, Hashing};
-use crate::draw::{DrawnRecord, Sampler};
+use crate::contents::{Contents, SummaryColumns, WRONG_BYTES};
+use crate::digest::Hashing;
+use crate::draw::Sampler;
 use crate::error::DatasetError;
 use crate::finish;
-use crate::manifest::{self, Begun, CARD, MANIFEST, PREVIEW, ReadManifest};
+use crate::manifest::{self, CARD, Document, MANIFEST, PREVIEW, ReadManifest};
 use crate::part_list::Listing;
-use crate::plan::{Plan, PlanFile};
+use crate::plan::Plan;
 use crate::record::{KeepRecords, Role};
 use crate::shard::{self, Column, FailedRecord, Item, ShardMetadata, Shards};
 use crate::store::Destination;
 
-/// Records that may wait to be written.
+/// Largest number of records that wait to be written.
 const WAITING: usize = 32;
 
 /// A part of a data set: some of its shards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Part {
-    /// Which, from 1.
+    /// Number of the part, from 1.
     pub number: u64,
-    /// Of how many.
+    /// Number of parts.
     pub of: u64,
 }
 
 impl Part {
-    /// Everything.
+    /// The whole data set.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
-    /// Whether a shard belongs to it: every so many.
+    /// Whether a shard belongs to the part. Shards are dealt to the parts in turn.
     ///
     /// # Arguments
-    /// * `shard` - its number
+    /// * `shard` - number of the shard
     pub fn has(&self, shard: u64) -> bool {
         shard % self.of == self.number - 1
     }
 }
 
-/// What a caller wants to know, and to say, while a data set is generated.
+/// Progress and cancellation of a run.
 pub struct GenerateControl<'a> {
-    /// Called with the number of records that are done, and of all that this run is to do.
+    /// Called with the number of records that are done, and the number of all records of this run.
     pub progress: &'a (dyn Fn(u64, u64) + Sync),
-    /// Set by the caller to stop: shards that are complete stay.
+    /// The caller sets it to stop the run. Complete shards are kept.
     pub cancelled: &'a AtomicBool,
 }
 
 /// What a run has done.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Generated {
     /// Shards that were there already.
     pub kept_shards: u64,
@@ -66,27 +65,27 @@ pub struct Generated {
     pub written_shards: u64,
     /// Records of the written shards.
     pub written_records: u64,
-    /// Of those, the ones that failed.
+    /// Records of the written shards that failed.
     pub failures: Vec<FailedRecord>,
-    /// Records that failed before, of the shards that were there already.
+    /// Records that failed earlier, in the shards that were there already.
     pub earlier_failures: Vec<FailedRecord>,
-    /// Files that were there, but not as they were written, and have been made again.
+    /// Files that were there but had been changed since they were written, and have been made again.
     pub remade: Vec<Remade>,
     /// Whether the data set is complete, with manifest, data card and preview.
     pub complete: bool,
 }
 
-/// A file that was not as it was written.
+/// A file that had been changed since it was written.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Remade {
-    /// Its file, from the data set's directory.
+    /// Name of the file from the data set's directory.
     pub file: String,
-    /// What was wrong with it.
+    /// What was wrong with the file.
     pub reason: String,
 }
 
 impl Generated {
-    /// All records that failed, of the written shards and of those that were there, in their order.
+    /// All records that failed, in this run and earlier, in their order.
     pub fn missing(&self) -> Vec<&FailedRecord> {
         let mut missing: Vec<_> = self.earlier_failures.iter().chain(&self.failures).collect();
         missing.sort_by_key(|failed| failed.record);
@@ -94,21 +93,21 @@ impl Generated {
     }
 }
 
-/// Generates a data set, or goes on with it, in the threads of the current rayon pool.
+/// Generates a data set, or resumes it, in the threads of the current rayon pool.
 ///
 /// # Arguments
-/// * `plan` - what it consists of
-/// * `to` - where it is written to
-/// * `part` - which shards
+/// * `plan` - the plan of the data set
+/// * `to` - the place to write to
+/// * `part` - the part to generate
 /// * `control` - progress and cancellation
 ///
-/// Every file that is there and has the SHA-256 that was taken while it was written is kept; others are made again. Where all shards
-/// are there, the manifest is completed, and data card and preview are written.
+/// A file that is there is kept if it has the SHA-256 that was computed while it was written; otherwise it is made again. When all
+/// shards are there, the data card, the preview and the complete manifest are written.
 ///
 /// # Errors
-/// A place with other files, or with a data set of another plan; another program that makes the same part there; what cannot be
-/// written, as to a full disk: what is complete stays, and the next run goes on from there; a plan of which no record can be
-/// simulated.
+/// The place has other files, or a data set of another plan; another program is making the same part there; a file cannot be
+/// written, for example because the disk is full (complete shards are kept, and the next run resumes from them); or no record of the
+/// plan can be simulated.
 ///
 /// ```
 /// use std::path::Path;
@@ -157,16 +156,16 @@ pub fn generate(
     }
     let sampler = Sampler::new(&plan.content).map_err(|error| manifest::plan_error(plan, error))?;
     let shards = Shards::new(plan, &sampler);
-    let complete = manifest::look(plan, shards, to)? == Begun::Complete;
-    // What is called complete is looked at all the same: somebody may have lost or damaged a file since.
-    let there = if complete { Some(There::look(plan, shards, to, part)?) } else { None };
+    let was_complete = manifest::check_place(plan, shards, to, &to.files()?, manifest::read(to)?.as_ref())?;
+    // A data set that is called complete is examined all the same: a file may have been lost or damaged since.
+    let there = if was_complete { Some(PartContents::look(plan, shards, to, part)?) } else { None };
     if let Some(there) = &there
         && there.missing.is_empty()
         && there.has_documents
     {
-        return Ok(there.generated());
+        return Ok(there.generated.clone());
     }
-    if !complete {
+    if !was_complete {
         manifest::begin(plan, to)?;
     }
     let (number, of) = (part.number, part.of);
@@ -179,105 +178,79 @@ pub fn generate(
         },
     )?;
     to.remove_leftovers();
-    let there = there.map_or_else(|| There::look(plan, shards, to, part), Ok)?;
-    let mut generated = there.generated();
+    let PartContents { missing, mut generated, .. } =
+        there.map_or_else(|| PartContents::look(plan, shards, to, part), Ok)?;
     let run = Run { plan, sampler: &sampler, shards, to, part, control };
-    run.generate(&there.missing, &mut generated)?;
+    run.generate(&missing, &mut generated)?;
     generated.complete = finish::finish_if_complete(plan, shards, to)?;
     Ok(generated)
 }
 
-/// What is there of a part.
-struct There {
-    kept: u64,
+/// What is there of a part when a run begins.
+struct PartContents {
+    /// The part's shards that are missing.
     missing: Vec<u64>,
-    remade: Vec<Remade>,
-    failures: Vec<FailedRecord>,
-    /// Whether all files beside the shards and the manifest are there, as they were written.
+    /// Whether all files other than shards are there as they were written.
     has_documents: bool,
+    /// The result of a run that has nothing to do.
+    generated: Generated,
 }
 
-impl There {
-    /// Reads all shards of a part that are there, and what is written beside them, and compares them with what is known of them.
+impl PartContents {
+    /// Reads all files of a part that are there, and compares them with what the manifest and the lists say about them.
     fn look(plan: &Plan, shards: Shards, to: &Destination, part: Part) -> Result<Self, DatasetError> {
         let files = to.files()?;
         let manifest = manifest::read(to)?;
         let documents = manifest.as_ref().map(|manifest| manifest.documents.clone()).unwrap_or_default();
-        let mut contents = Contents::default();
         let columns = manifest.as_ref().map_or(Ok(()), |manifest| manifest.check_columns(to));
         let is_whole = manifest.as_ref().is_none_or(|manifest| manifest.is_whole);
+        let mut contents = Contents::default();
         contents.add_place(plan, to, &files, manifest.filter(ReadManifest::can_be_relied_on))?;
         let own = (0..shards.count()).into_par_iter().filter(|&shard| part.has(shard));
-        let looked = own.map(|shard| {
+        let objections = own.map(|shard| {
             let name = shards.name(shard);
-            let objection = files.get(&name).map(|&size| {
-                contents.objection(shard, size, || {
-                    to.digest(&name).map_err(|error| io::Error::other(error.to_string()))
-                })
-            });
-            (shard, objection)
+            let size = files.get(&name);
+            (shard, size.map(|&size| contents.objection(shard, size, || to.digest(&name))))
         });
-        let (mut changed, has_all) = look_at_documents(plan, to, &files, &documents)?;
-        if !is_whole {
-            changed.push(Remade { file: MANIFEST.to_owned(), reason: WRONG_BYTES.to_owned() });
+        let objections: Vec<_> = objections.collect();
+        let mut generated = Generated { complete: true, ..Generated::default() };
+        let wrong = |file: &str| Remade { file: file.to_owned(), reason: WRONG_BYTES.to_owned() };
+        for Document { name, digest } in
+            documents.iter().filter(|document| files.contains_key(&document.name))
+        {
+            if to.digest(name)? != *digest {
+                generated.remade.push(wrong(name));
+            }
         }
-        let has_documents = has_all && is_whole;
-        let mut there =
-            Self { kept: 0, missing: Vec::new(), remade: changed, failures: Vec::new(), has_documents };
-        for (shard, objection) in looked.collect::<Vec<_>>() {
+        if !is_whole {
+            generated.remade.push(wrong(MANIFEST));
+        }
+        // A data set that was finished by an earlier version has no other documents than those that its manifest lists.
+        let copies = plan.files.iter().map(|file| file.name);
+        let listed = documents.iter().map(|document| document.name.as_str());
+        let mut wanted = [CARD].into_iter().chain(PREVIEW).chain(copies).chain(listed);
+        let has_documents = wanted.all(|name| files.contains_key(name)) && generated.remade.is_empty();
+        let mut missing = Vec::new();
+        for (shard, objection) in objections {
             if let Some(None) = objection {
-                there.kept += 1;
+                generated.kept_shards += 1;
                 let failures = contents.failures.range(shards.range(shard));
-                there.failures.extend(
-                    failures.map(|(&record, reason)| FailedRecord { record, reason: reason.clone() }),
-                );
+                generated.earlier_failures.extend(failures.map(|(_, failed)| failed.clone()));
                 continue;
             }
-            there.missing.push(shard);
+            missing.push(shard);
             let remade = objection.flatten().map(|reason| Remade { file: shards.name(shard), reason });
-            there.remade.extend(remade);
+            generated.remade.extend(remade);
         }
-        // To what is whole nothing is added.
-        if there.missing.is_empty() && has_documents { Ok(there) } else { columns.map(|()| there) }
-    }
-
-    /// What a run has done that has nothing to do.
-    fn generated(&self) -> Generated {
-        Generated {
-            kept_shards: self.kept,
-            written_shards: 0,
-            written_records: 0,
-            failures: Vec::new(),
-            earlier_failures: self.failures.clone(),
-            remade: self.remade.clone(),
-            complete: true,
+        // Records are added only to a data set whose records have the same columns.
+        if !missing.is_empty() || !has_documents {
+            columns?;
         }
+        Ok(Self { missing, has_documents, generated })
     }
 }
 
-/// The files beside the shards and the manifest that are there and not as they were written; and whether all are there as they were.
-fn look_at_documents(
-    plan: &Plan,
-    to: &Destination,
-    files: &BTreeMap<String, u64>,
-    documents: &BTreeMap<String, Digest>,
-) -> Result<(Vec<Remade>, bool), DatasetError> {
-    let mut changed = Vec::new();
-    for (name, digest) in documents.iter().filter(|(name, _)| files.contains_key(*name)) {
-        if to.digest(name)? != *digest {
-            changed.push(Remade { file: name.clone(), reason: WRONG_BYTES.to_owned() });
-        }
-    }
-    let copies = plan.files.iter().map(|file: &PlanFile| file.name);
-    // Of a data set that was finished before there was other metadata, its own list says what it has.
-    let listed = documents.keys().map(String::as_str);
-    let are_there =
-        [CARD].into_iter().chain(PREVIEW).chain(copies).chain(listed).all(|name| files.contains_key(name));
-    let has_all = are_there && changed.is_empty();
-    Ok((changed, has_all))
-}
-
-/// One run.
+/// A run that generates the missing shards of a part.
 struct Run<'a> {
     plan: &'a Plan,
     sampler: &'a Sampler<'a>,
@@ -287,15 +260,23 @@ struct Run<'a> {
     control: &'a GenerateControl<'a>,
 }
 
-/// Simulations that were asked for and not yet handed out.
+/// Simulations that were asked for and have not returned yet.
 #[derive(Default)]
-struct Asked {
-    /// By the number of the simulation: what it is for, and the failures that come before it.
+struct PendingSimulations {
+    /// What each simulation is for, and the failures that come before it, by the number of the simulation.
     roles: HashMap<usize, (Role, Vec<FailedRecord>)>,
     /// Number of the next simulation.
     next: usize,
-    /// Failures of records that are not simulated at all, after the last simulation.
+    /// Records after the last simulation that cannot be simulated at all.
     failed: Vec<FailedRecord>,
+}
+
+impl PendingSimulations {
+    /// Asks for the next simulation.
+    fn add(&mut self, role: Role) {
+        self.roles.insert(self.next, (role, std::mem::take(&mut self.failed)));
+        self.next += 1;
+    }
 }
 
 impl Run<'_> {
@@ -317,25 +298,20 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Simulates all records of some shards and sends them on, in their order.
+    /// Simulates all records of some shards and sends them to the writer in their order.
     fn simulate(&self, missing: &[u64], sender: SyncSender<Item>, stop: &AtomicBool) {
-        let asked = Arc::new(Mutex::new(Asked::default()));
-        let source = Source {
-            run: self,
-            shards: missing.iter(),
-            records: 0..0,
-            ready: VecDeque::new(),
-            asked: asked.clone(),
-            stop,
-        };
+        let asked = Mutex::new(PendingSimulations::default());
+        let records = missing.iter().flat_map(|&shard| self.shards.range(shard));
+        let records = records.take_while(|_| !stop.load(Ordering::Relaxed));
+        let scenarios = records.flat_map(|index| self.ask(index, &asked));
         let role = |number: usize| lock(&asked).roles.get(&number).map(|(role, _)| role.clone());
         let keep = KeepRecords { content: &self.plan.content, role };
-        // Nobody listens any more where writing has failed.
+        // If writing has failed, nobody receives any more.
         let send = |item: Item| {
             stop.store(sender.send(item).is_err() | stop.load(Ordering::Relaxed), Ordering::Relaxed)
         };
         let control = Control { cancelled: stop, ..Control::default() };
-        simulate_many(source, &keep, &control, |number, result| {
+        simulate_many(scenarios, &keep, &control, |number, result| {
             let Some((role, failed)) = lock(&asked).roles.remove(&number) else { return };
             failed.into_iter().for_each(|failed| send(Item::Failed(failed)));
             let reason = match result {
@@ -348,13 +324,39 @@ impl Run<'_> {
                 Ok(Err(reason)) => reason,
                 Err(error) => error.to_string(),
             };
-            // A twin's failure is told of its record, which misses it.
+            // The failure of a twin is reported with its record, which needs the twin.
             if let Role::Record(drawn) = role {
                 send(Item::Failed(FailedRecord { record: drawn.index, reason }));
             }
         });
         let rest = std::mem::take(&mut lock(&asked).failed);
         rest.into_iter().for_each(|failed| send(Item::Failed(failed)));
+    }
+
+    /// Draws a record and asks for its simulations: a faulty record that is enhanced has its healthy twin before it.
+    fn ask(&self, index: u64, asked: &Mutex<PendingSimulations>) -> Vec<Scenario> {
+        let record = self.sampler.record(index).map_err(|error| error.problem);
+        let drawn = record.and_then(|record| match self.sampler.scenario(&record) {
+            Ok(scenario) => Ok((record, scenario)),
+            Err(error) => Err(error.to_string()),
+        });
+        // The lock is taken after drawing: other threads wait for it.
+        let mut asked = lock(asked);
+        let (record, scenario) = match drawn {
+            Ok(drawn) => drawn,
+            Err(reason) => {
+                asked.failed.push(FailedRecord { record: index, reason });
+                return Vec::new();
+            }
+        };
+        let mut scenarios = Vec::new();
+        if self.plan.content.tuned.is_some() && !scenario.faults.is_empty() {
+            asked.add(Role::HealthyTwin(record.clone(), scenario.faults.clone()));
+            scenarios.push(scenario.clone().with_faults(Vec::new()));
+        }
+        asked.add(Role::Record(record));
+        scenarios.push(scenario);
+        scenarios
     }
 
     /// Writes shards as their records arrive. Returns the records that failed.
@@ -365,42 +367,28 @@ impl Run<'_> {
         items: Receiver<Item>,
         stop: &AtomicBool,
     ) -> Result<Vec<FailedRecord>, DatasetError> {
-        // The receiver ends with this function, so that nobody waits to send.
-        let items = items;
         let columns = shard::columns(self.plan);
-        let looked = Looked::new(&columns, self.shards);
-        let mut listing = Listing::new(self.to, self.plan.hash().to_string(), self.part);
-        let done = AtomicU64::new(0);
+        let summary_columns = SummaryColumns::new(&columns, self.shards);
+        let mut listing = Listing::new(self.to, self.plan.hash(), self.part);
+        let mut done = 0;
+        let mut next = || {
+            if self.control.cancelled.load(Ordering::Relaxed) {
+                stop.store(true, Ordering::Relaxed);
+                return None;
+            }
+            let item = items.recv().ok()?;
+            if !matches!(item, Item::HealthyTwin(_)) {
+                done += 1;
+                (self.control.progress)(done, records);
+            }
+            Some(item)
+        };
         let mut failures = Vec::new();
         for &shard in missing {
-            let next = || self.next(&items, (&done, records), stop);
-            match self.write_shard(shard, &columns, &looked, &mut listing, next) {
-                Ok(of_shard) => failures.extend(of_shard),
-                Err(error) => {
-                    stop.store(true, Ordering::Relaxed);
-                    return Err(error);
-                }
-            }
+            let written = self.write_shard(shard, &columns, &summary_columns, &mut listing, &mut next);
+            failures.extend(written.inspect_err(|_| stop.store(true, Ordering::Relaxed))?);
         }
         Ok(failures)
-    }
-
-    /// The next item; none where generating has stopped.
-    fn next(
-        &self,
-        items: &Receiver<Item>,
-        (done, records): (&AtomicU64, u64),
-        stop: &AtomicBool,
-    ) -> Option<Item> {
-        if self.control.cancelled.load(Ordering::Relaxed) {
-            stop.store(true, Ordering::Relaxed);
-            return None;
-        }
-        let item = items.recv().ok()?;
-        if !matches!(item, Item::HealthyTwin(_)) {
-            (self.control.progress)(done.fetch_add(1, Ordering::Relaxed) + 1, records);
-        }
-        Some(item)
     }
 
     /// Writes and lists a shard. Returns its records that failed.
@@ -408,27 +396,24 @@ impl Run<'_> {
         &self,
         shard: u64,
         columns: &[Column],
-        looked: &Looked<'_>,
+        summary_columns: &SummaryColumns<'_>,
         listing: &mut Listing<'_>,
         next: impl FnMut() -> Option<Item>,
     ) -> Result<Vec<FailedRecord>, DatasetError> {
-        let metadata = ShardMetadata {
-            plan: self.plan.hash().to_string(),
-            records: self.shards.range(shard),
-            failures: Vec::new(),
-        };
+        let metadata =
+            ShardMetadata { plan: self.plan.hash(), records: self.shards.range(shard), failures: Vec::new() };
         let content = &self.plan.content;
         let written = self.to.write(&self.shards.name(shard), |file: &mut File| {
             let mut hashing = Hashing::new(&mut *file);
             shard::write(&mut hashing, content, columns, metadata, next)?;
             let digest = hashing.digest();
-            let (of_shard, seen) =
-                looked.shard(shard, shard::read(file.try_clone()?, looked.wanted())?, digest);
-            // Reading has moved the place where the file would be written on.
+            let read = shard::read(file.try_clone()?, summary_columns.wanted())?;
+            let (contents, summary) = summary_columns.summarize(shard, read, digest);
+            // Reading has moved the position at which the file would be written on.
             file.seek(SeekFrom::End(0))?;
-            let failures = of_shard.failures.clone();
-            // Before the shard has its name, so that none is there that is not listed.
-            Ok(listing.add(shard, of_shard, seen).map(|()| failures))
+            let failures = contents.failures.clone();
+            // The shard is listed before its file gets its name, so that no file is there that is not listed.
+            Ok(listing.add(shard, contents, summary).map(|()| failures))
         });
         written.map_err(|error| match error {
             DatasetError::File { source, .. } if source.kind() == io::ErrorKind::Interrupted => {
@@ -439,63 +424,7 @@ impl Run<'_> {
     }
 }
 
-fn lock(asked: &Mutex<Asked>) -> std::sync::MutexGuard<'_, Asked> {
+fn lock(asked: &Mutex<PendingSimulations>) -> std::sync::MutexGuard<'_, PendingSimulations> {
     // A panic in another thread is passed on when its scope ends.
     asked.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Scenarios of records, one after the other; a faulty record that is enhanced has its healthy twin before it.
-struct Source<'a> {
-    run: &'a Run<'a>,
-    /// Those still to be begun.
-    shards: std::slice::Iter<'a, u64>,
-    /// Of the shard that was begun last, those still to be drawn.
-    records: Range<u64>,
-    ready: VecDeque<Scenario>,
-    asked: Arc<Mutex<Asked>>,
-    stop: &'a AtomicBool,
-}
-
-impl Iterator for Source<'_> {
-    type Item = Scenario;
-
-    fn next(&mut self) -> Option<Scenario> {
-        while self.ready.is_empty() && !self.stop.load(Ordering::Relaxed) {
-            let Some(index) = self.records.next() else {
-                self.records = self.run.shards.range(*self.shards.next()?);
-                continue;
-            };
-            match self.draw(index) {
-                Ok((record, scenario)) => self.ask(record, scenario),
-                Err(reason) => lock(&self.asked).failed.push(FailedRecord { record: index, reason }),
-            }
-        }
-        self.ready.pop_front()
-    }
-}
-
-impl Source<'_> {
-    fn draw(&self, index: u64) -> Result<(DrawnRecord, Scenario), String> {
-        let sampler = self.run.sampler;
-        let record = sampler.record(index).map_err(|error| error.problem)?;
-        let scenario = sampler.scenario(&record).map_err(|error| error.to_string())?;
-        Ok((record, scenario))
-    }
-
-    fn ask(&mut self, record: DrawnRecord, scenario: Scenario) {
-        let twin = self.run.plan.content.tuned.is_some() && !scenario.faults.is_empty();
-        let mut asked = lock(&self.asked);
-        let mut add = |role: Role, scenario: Scenario| {
-            let failed = std::mem::take(&mut asked.failed);
-            let number = asked.next;
-            asked.next += 1;
-            asked.roles.insert(number, (role, failed));
-            self.ready.push_back(scenario);
-        };
-        if twin {
-            let twin = Role::HealthyTwin(record.clone(), scenario.faults.clone());
-            add(twin, scenario.clone().with_faults(Vec::new()));
-        }
-        add(Role::Record(record), scenario);
-    }
 }

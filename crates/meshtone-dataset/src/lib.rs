@@ -1,8 +1,8 @@
 //! Labelled data sets of spur gear vibration.
 //!
-//! A [`plan::Plan`] says what a data set consists of; [`draw::Sampler`] draws any of its records by its number alone;
-//! [`generate`](generate::generate) simulates them and writes shards of Parquet, which can be stopped at any moment and gone on with;
-//! [`merge`](merge::merge) puts parts together that were made apart; [`verify`](verify::verify) says whether a data set is what was written.
+//! A [`plan::Plan`] says what a data set consists of. [`draw::Sampler`] draws any record from its number alone.
+//! [`generate`](generate::generate) simulates the records and writes them as Parquet shards; it can be stopped at any moment and resumed.
+//! [`merge`](merge::merge) joins parts that were made separately. [`verify`](verify::verify) checks a data set against its hashes.
 #![deny(missing_docs)]
 
 mod card;

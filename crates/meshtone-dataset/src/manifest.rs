@@ -1,16 +1,17 @@
-//! The manifest: what a data set is, and whether it is complete.
+//! The manifest: it says what a data set is and whether it is complete.
 
 use std::collections::BTreeMap;
-use std::fmt;
 use std::io::{self, BufWriter, Write};
 
 use meshtone_io::scenario_file::ReadScenarioError;
-use serde::de::{Deserialize, Deserializer, Error as _, MapAccess, Visitor};
-use serde_json::{Map, Value, json};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::{Value, json};
 
-use crate::contents::{Contents, Counts, ShardFile};
-use crate::digest::{Digest, Hash};
+use crate::contents::{Counts, ShardFile};
+use crate::digest::Digest;
 use crate::error::DatasetError;
+use crate::finish::Finished;
 use crate::part_list;
 use crate::plan::{Plan, PlanFile};
 use crate::sealed;
@@ -21,48 +22,33 @@ pub(crate) const MANIFEST: &str = "manifest.json";
 pub(crate) const CARD: &str = "README.md";
 pub(crate) const CROISSANT: &str = "croissant.json";
 pub(crate) const PREVIEW: [&str; 2] = ["preview.svg", "preview.png"];
-/// Since 2 a shard's SHA-256 is that of the bytes that were to be written; of a data set of format 1 it was taken from the disk.
-/// Since 3 records have the columns of [`crate::shard::WARNINGS`] and of the time in which the teeth do not push.
+/// Since format 2, a shard's SHA-256 is computed from the bytes that were to be written; in format 1 it was computed from the disk.
+/// Since format 3, records have the column [`crate::shard::WARNINGS`] and the one of the time in which the teeth do not push.
 pub(crate) const FORMAT_VERSION: u64 = 3;
-
-/// What was there when a run began.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Begun {
-    /// Nothing, or a part of this data set.
-    Incomplete,
-    /// All of it.
-    Complete,
-}
 
 /// Begins a data set or goes on with one.
 pub(crate) fn begin(plan: &Plan, to: &Destination) -> Result<(), DatasetError> {
     to.check_writable()?;
-    write_plan(plan, to)?;
+    plan.files.iter().try_for_each(|file| to.write_unless_there(file.name, file.text.as_bytes()))?;
     let mut manifest = Vec::new();
     let written = sealed::write(&mut manifest, &head(plan, false), |_| Ok(()));
     written.map_err(DatasetError::write(MANIFEST))?;
-    // Last: what has a manifest is a data set that was begun.
-    write_new(to, MANIFEST, &String::from_utf8_lossy(&manifest))
+    // The manifest is written last: it marks a data set that was begun.
+    to.write_unless_there(MANIFEST, &manifest)
 }
 
-/// Copies a plan and what it was read with, unless that is there.
-pub(crate) fn write_plan(plan: &Plan, to: &Destination) -> Result<(), DatasetError> {
-    plan.files.iter().try_for_each(|file| write_new(to, file.name, &file.text))
-}
-
-/// Whether this plan's data set may be written there; nothing is written.
-pub(crate) fn look(plan: &Plan, shards: Shards, to: &Destination) -> Result<Begun, DatasetError> {
-    look_at(plan, shards, to, &to.files()?, read(to)?.as_ref())
-}
-
-/// As [`look`], where what is there is known.
-pub(crate) fn look_at(
+/// Checks that the data set of a plan may be written to a place. Returns whether all of it is there already. Nothing is written.
+///
+/// # Arguments
+/// * `there` - the files of the place
+/// * `manifest` - the manifest of the place
+pub(crate) fn check_place(
     plan: &Plan,
     shards: Shards,
     to: &Destination,
     there: &BTreeMap<String, u64>,
     manifest: Option<&ReadManifest>,
-) -> Result<Begun, DatasetError> {
+) -> Result<bool, DatasetError> {
     if let Some(name) = there.keys().find(|name| !is_of_a_data_set(name)) {
         let help = match manifest {
             Some(_) => "move that file elsewhere: in the data set's folders, programs read whatever there is",
@@ -71,10 +57,10 @@ pub(crate) fn look_at(
         return Err(DatasetError::refused(format!("{to} has another file in it: {name}"), help));
     }
     let Some(manifest) = manifest else {
-        // Killed between its first file and its manifest, a run has left nothing but what it would write again.
+        // A run that was killed between its first file and its manifest has left only files that it would write again.
         let data = there.keys().find(|name| name.starts_with(FOLDER));
         return match data {
-            None => Ok(Begun::Incomplete),
+            None => Ok(false),
             Some(name) => Err(DatasetError::refused(
                 format!("{to} has {name}, but no {MANIFEST}"),
                 "put it back from a copy, or name another directory with -o",
@@ -89,7 +75,7 @@ pub(crate) fn look_at(
             "move it elsewhere, or name another directory with -o",
         ));
     }
-    Ok(if manifest.complete { Begun::Complete } else { Begun::Incomplete })
+    Ok(manifest.complete)
 }
 
 fn check_same(plan: &Plan, to: &Destination, manifest: &ReadManifest) -> Result<(), DatasetError> {
@@ -107,7 +93,7 @@ fn check_same(plan: &Plan, to: &Destination, manifest: &ReadManifest) -> Result<
     if !manifest.complete {
         manifest.check_columns(to)?;
     }
-    if manifest.plan != plan.hash().to_string() {
+    if manifest.plan != plan.hash() {
         let problem = format!("the data set in {to} was begun with another plan");
         let help =
             format!("{} there is that plan; name another directory for this one with -o", PlanFile::NAMES[0]);
@@ -116,39 +102,46 @@ fn check_same(plan: &Plan, to: &Destination, manifest: &ReadManifest) -> Result<
     Ok(())
 }
 
-/// Whether a data set may have a file of a name.
+/// Whether a name is that of a file of a data set.
 pub(crate) fn is_of_a_data_set(name: &str) -> bool {
     let known = [MANIFEST, CARD, CROISSANT].into_iter().chain(PREVIEW).chain(PlanFile::NAMES);
     known.into_iter().any(|known| known == name) || Shards::is_name(name) || part_list::is_list(name)
 }
 
-/// Writes a file unless one with the same content is there.
-fn write_new(to: &Destination, name: &str, text: &str) -> Result<(), DatasetError> {
-    if to.text(name)?.as_deref() == Some(text) { Ok(()) } else { to.write_bytes(name, text.as_bytes()) }
-}
-
 /// What a manifest says.
-#[derive(Debug)]
+#[derive(Debug, Deserialize)]
 pub(crate) struct ReadManifest {
+    #[serde(rename = "format_version")]
     pub format: u64,
+    #[serde(rename = "plan_sha256")]
     pub plan: String,
+    #[serde(rename = "meshtone_version", default = "unknown")]
     pub version: String,
     pub complete: bool,
-    /// Records of the plan.
+    /// Number of records of the plan.
     pub records: u64,
+    #[serde(default)]
     pub counts: Counts,
+    #[serde(default)]
     pub failures: Vec<FailedRecord>,
-    /// All shards, in their order.
+    /// All shards in their order.
+    #[serde(default)]
     pub files: Vec<NamedShard>,
-    /// The other files, by their names.
-    pub documents: BTreeMap<String, Digest>,
+    /// The other files.
+    #[serde(default)]
+    pub documents: Vec<Document>,
     /// Whether the manifest itself is as it was written.
+    #[serde(skip)]
     pub is_whole: bool,
 }
 
+fn unknown() -> String {
+    "unknown".to_owned()
+}
+
 impl ReadManifest {
-    /// Whether what it says of shards can be relied on: it is as it was written, or its shards' own hashes are all that is taken from
-    /// it. Nothing else proves which records failed and why.
+    /// Whether what the manifest says about shards can be relied on. It can if the manifest is as it was written, or if only the hashes of
+    /// the shards are taken from it: nothing else proves which records failed and why.
     pub fn can_be_relied_on(&self) -> bool {
         self.is_whole || self.failures.is_empty()
     }
@@ -166,181 +159,115 @@ impl ReadManifest {
     }
 }
 
-/// A shard of a manifest.
+/// A shard that a manifest lists.
 #[derive(Debug)]
 pub(crate) struct NamedShard {
     pub name: String,
     pub shard: ShardFile,
 }
 
+impl<'de> Deserialize<'de> for NamedShard {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let entry = Value::deserialize(deserializer)?;
+        let read = || Some((entry["name"].as_str()?.to_owned(), ShardFile::deserialize(&entry).ok()?));
+        let (name, shard) =
+            read().ok_or_else(|| D::Error::custom("a file lacks its name, bytes, sha256 or rows"))?;
+        Ok(Self { name, shard })
+    }
+}
+
+/// A file of a data set that is neither a shard nor the manifest.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct Document {
+    pub name: String,
+    #[serde(flatten)]
+    pub digest: Digest,
+}
+
 /// Reads the manifest of a place; none where there is none.
 ///
 /// # Errors
-/// What cannot be read; a manifest that is none of Meshtone, or of a format that this version does not know.
+/// The manifest cannot be read, is not one of Meshtone, or has a format that this version does not know.
 pub(crate) fn read(place: &Destination) -> Result<Option<ReadManifest>, DatasetError> {
     place.text(MANIFEST)?.map(|text| parse(&text, place)).transpose()
 }
 
+/// Reads the manifest of a place that has one.
+///
+/// # Errors
+/// The place has no manifest, or the errors of [`read`].
+pub(crate) fn read_begun(place: &Destination) -> Result<ReadManifest, DatasetError> {
+    read(place)?.ok_or_else(|| no_data_set(place, MANIFEST))
+}
+
+/// The error of a place that lacks a file of a data set.
+pub(crate) fn no_data_set(place: &Destination, file: &str) -> DatasetError {
+    DatasetError::refused(
+        format!("{place} is no data set: it has no {file}"),
+        "name a directory that `meshtone dataset` has written to",
+    )
+}
+
 fn parse(text: &str, place: &Destination) -> Result<ReadManifest, DatasetError> {
-    const HELP: &str = "put it back from a copy, or name another directory";
-    let Entries { files, rest } = serde_json::from_str(text).map_err(|error| {
-        DatasetError::refused(format!("{place}/{MANIFEST} is damaged, or not one of Meshtone: {error}"), HELP)
-    })?;
-    let format = rest.get("format_version").and_then(Value::as_u64);
-    let version = rest.get("meshtone_version").and_then(Value::as_str).unwrap_or("unknown").to_owned();
-    match format {
+    /// What manifests of all formats have.
+    #[derive(Deserialize)]
+    struct AnyFormat {
+        format_version: Option<u64>,
+        #[serde(default = "unknown")]
+        meshtone_version: String,
+    }
+    let damaged = |what: String| {
+        DatasetError::refused(
+            format!("{place}/{MANIFEST} is damaged, or not one of Meshtone: {what}"),
+            "put it back from a copy, or name another directory",
+        )
+    };
+    let any: AnyFormat = serde_json::from_str(text).map_err(|error| damaged(error.to_string()))?;
+    match any.format_version {
         Some(1..=FORMAT_VERSION) => {}
         Some(other) => {
             let problem = format!(
                 "{place}/{MANIFEST} has the format {other}; this version of Meshtone knows those up to {FORMAT_VERSION}"
             );
-            return Err(DatasetError::refused(problem, format!("use version {version} of Meshtone for it")));
+            let help = format!("use version {} of Meshtone for it", any.meshtone_version);
+            return Err(DatasetError::refused(problem, help));
         }
-        None => {
-            let problem =
-                format!("{place}/{MANIFEST} is damaged, or not one of Meshtone: it has no format_version");
-            return Err(DatasetError::refused(problem, HELP));
-        }
+        None => return Err(damaged("it has no format_version".to_owned())),
     }
-    let read = || {
-        let failures = rest.get("failures").and_then(Value::as_array).into_iter().flatten();
-        let documents = rest.get("documents").and_then(Value::as_array).into_iter().flatten();
-        let document = |value: &Value| {
-            let sha256 = Hash::parse(value["sha256"].as_str()?)?;
-            Some((value["name"].as_str()?.to_owned(), Digest { bytes: value["bytes"].as_u64()?, sha256 }))
-        };
-        Some(ReadManifest {
-            format: format?,
-            plan: rest.get("plan_sha256")?.as_str()?.to_owned(),
-            version,
-            complete: rest.get("complete")?.as_bool()?,
-            records: rest.get("records")?.as_u64()?,
-            counts: rest.get("counts").map_or_else(|| Some(Counts::new()), read_counts)?,
-            failures: failures.map(FailedRecord::from_json).collect::<Option<_>>()?,
-            files,
-            documents: documents.map(document).collect::<Option<_>>()?,
-            is_whole: format == Some(1) || sealed::is_whole(text),
-        })
-    };
-    read().ok_or_else(|| {
-        DatasetError::refused(
-            format!("{place}/{MANIFEST} is damaged, or not one of Meshtone: it lacks what each of them has"),
-            HELP,
-        )
-    })
+    let manifest: ReadManifest = serde_json::from_str(text).map_err(|error| damaged(error.to_string()))?;
+    Ok(ReadManifest { is_whole: manifest.format == 1 || sealed::is_whole(text), ..manifest })
 }
 
-fn read_counts(value: &Value) -> Option<Counts> {
-    let mut counts = Counts::new();
-    for (split, labels) in value.as_object()? {
-        for (label, count) in labels.as_object()? {
-            counts.insert((split.clone(), label.clone()), count.as_u64()?);
-        }
-    }
-    Some(counts)
-}
-
-/// A manifest's entries. There may be a million shards, so those are never held as what JSON makes of them.
-struct Entries {
-    files: Vec<NamedShard>,
-    rest: Map<String, Value>,
-}
-
-impl<'de> Deserialize<'de> for Entries {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct OfManifest;
-
-        impl<'de> Visitor<'de> for OfManifest {
-            type Value = Entries;
-
-            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-                formatter.write_str("an object")
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Entries, A::Error> {
-                let (mut files, mut rest) = (Vec::new(), Map::new());
-                while let Some(key) = map.next_key::<String>()? {
-                    if key == "files" {
-                        files = map.next_value()?;
-                    } else {
-                        rest.insert(key, map.next_value()?);
-                    }
-                }
-                Ok(Entries { files, rest })
-            }
-        }
-
-        deserializer.deserialize_map(OfManifest)
-    }
-}
-
-impl<'de> Deserialize<'de> for NamedShard {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let entry = Map::deserialize(deserializer)?;
-        let read = || {
-            let sha256 = Hash::parse(entry.get("sha256")?.as_str()?)?;
-            let digest = Digest { bytes: entry.get("bytes")?.as_u64()?, sha256 };
-            let shard = ShardFile { digest, rows: entry.get("rows")?.as_u64()? };
-            Some(Self { name: entry.get("name")?.as_str()?.to_owned(), shard })
-        };
-        read().ok_or_else(|| D::Error::custom("a file lacks its name, bytes, sha256 or rows"))
-    }
-}
-
-fn head(plan: &Plan, complete: bool) -> Map<String, Value> {
-    let head = json!({
+/// The entries that manifests of complete and of incomplete data sets have in common.
+fn head(plan: &Plan, complete: bool) -> Value {
+    json!({
         "format_version": FORMAT_VERSION,
         "meshtone_version": env!("CARGO_PKG_VERSION"),
         "title": plan.about.title,
         "licence": plan.about.licence,
-        "plan_sha256": plan.hash().to_string(),
+        "plan_sha256": plan.hash(),
         "seed": plan.content.seed,
         "records": plan.records(),
         "units": plan.content.units,
         "complete": complete,
-    });
-    head.as_object().cloned().unwrap_or_default()
-}
-
-/// Counts by split, and in each of them by label.
-pub(crate) fn counts_table(counts: &Counts) -> Value {
-    let mut splits: Map<String, Value> = Map::new();
-    for ((split, label), count) in counts {
-        let entry = splits.entry(split.clone()).or_insert_with(|| Value::Object(Map::new()));
-        if let Value::Object(labels) = entry {
-            labels.insert(label.clone(), json!(count));
-        }
-    }
-    Value::Object(splits)
+    })
 }
 
 /// Writes the manifest of a complete data set.
 ///
 /// # Arguments
 /// * `to` - where it is written to; it needs no buffer
-/// * `units_of_split` - by the splits' names
 /// * `documents` - all files but the shards and the manifest
-pub(crate) fn write_complete(
-    to: impl Write,
-    plan: &Plan,
-    shards: Shards,
-    contents: &Contents,
-    units_of_split: &BTreeMap<String, u64>,
-    documents: &BTreeMap<&str, Digest>,
-) -> io::Result<()> {
+pub(crate) fn write_complete(to: impl Write, set: &Finished, documents: &[Document]) -> io::Result<()> {
+    let Finished { plan, shards, contents, .. } = *set;
     let mut manifest = head(plan, true);
-    manifest.insert("records_per_shard".into(), json!(shards.records_per_shard));
-    manifest.insert("split_by".into(), json!(plan.content.splits.by.name()));
-    manifest.insert("units_of_split".into(), json!(units_of_split));
-    manifest.insert("counts".into(), counts_table(&contents.counts));
-    manifest.insert("warnings".into(), json!(contents.warnings));
-    let failures =
-        contents.failures.iter().map(|(record, reason)| json!({ "record": record, "reason": reason }));
-    manifest.insert("failures".into(), failures.collect());
-    let documents = documents.iter().map(
-        |(name, digest)| json!({ "name": name, "bytes": digest.bytes, "sha256": digest.sha256.to_string() }),
-    );
-    manifest.insert("documents".into(), documents.collect());
+    manifest["records_per_shard"] = json!(shards.records_per_shard);
+    manifest["split_by"] = json!(plan.content.splits.by.name());
+    manifest["units_of_split"] = json!(plan.content.units_of_split());
+    manifest["counts"] = json!(contents.counts);
+    manifest["warnings"] = json!(contents.warnings);
+    manifest["failures"] = contents.failures.values().map(|failed| json!(failed)).collect();
+    manifest["documents"] = json!(documents);
     sealed::write(BufWriter::new(to), &manifest, |to| {
         write!(to, ",\n  \"files\": [")?;
         for (&shard, file) in &contents.files {
@@ -357,7 +284,7 @@ pub(crate) fn write_complete(
     })
 }
 
-/// An error of a plan that was found after reading it.
+/// The error of a plan that was found after the plan had been read.
 pub(crate) fn plan_error(plan: &Plan, error: impl Into<meshtone_toml::TomlError>) -> DatasetError {
     let path = plan.sources.first().cloned().unwrap_or_default();
     let text = plan.files.first().map(|file| file.text.clone()).unwrap_or_default();

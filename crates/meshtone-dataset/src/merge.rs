@@ -1,4 +1,4 @@
-//! Putting parts together that were made apart.
+//! Merging the parts of a data set that were made separately.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -10,25 +10,25 @@ use crate::draw::Sampler;
 use crate::error::DatasetError;
 use crate::finish;
 use crate::generate::Generated;
-use crate::manifest::{self, Begun, MANIFEST, ReadManifest};
+use crate::manifest::{self, MANIFEST, ReadManifest};
 use crate::plan::{Plan, PlanFile};
-use crate::shard::{FailedRecord, Shards};
+use crate::shard::Shards;
 use crate::store::{Claimed, Destination};
 use crate::verify::Check;
 
 /// Merges the parts of a data set.
 ///
 /// # Arguments
-/// * `parts` - where they are; all of the same plan
-/// * `to` - where the whole is written to; it may be one of them
-/// * `check` - how what was made there is looked at
+/// * `parts` - the places of the parts, which have the same plan
+/// * `to` - the place of the whole data set, which may be that of a part
+/// * `check` - how the shards that are already in `to` are checked
 ///
-/// What is copied is compared with the SHA-256 that was taken while it was made. All else is known from the manifests and lists of
-/// the parts: of shards that were made in the whole's own place, only the sizes are looked at unless their bytes are asked for.
+/// A shard that is copied is compared with the SHA-256 that was computed while it was made. Everything else is taken from the manifests
+/// and lists of the parts. Of shards that are already in `to`, only the sizes are checked, unless `check` asks for their bytes.
 ///
 /// # Errors
-/// A place without a data set; parts of different plans or versions; shards that no part has, or none as it was written; another
-/// program that merges there; what cannot be read or written.
+/// A place has no data set; the parts have different plans or versions; no part has an undamaged copy of some shard; another program is
+/// merging there; or a file cannot be read or written.
 pub fn merge(parts: &[Destination], to: &Destination, check: Check) -> Result<Generated, DatasetError> {
     let Some(first) = parts.first() else {
         return Err(DatasetError::refused(
@@ -39,14 +39,15 @@ pub fn merge(parts: &[Destination], to: &Destination, check: Check) -> Result<Ge
     let plan = plan_of(first)?;
     let sampler = Sampler::new(&plan.content).map_err(|error| manifest::plan_error(&plan, error))?;
     let shards = Shards::new(&plan, &sampler);
-    // Before anything is looked at, so that it is looked at once.
+    // The place is claimed before it is examined, so that it has to be examined only once.
     let claimed = if to.has(MANIFEST)? { Some(claim(to)?) } else { None };
     let mut contents = Contents::default();
     let mut places = Vec::with_capacity(parts.len());
     for part in parts {
-        let mut place = Place::read(part, &plan, shards, &mut contents)?;
+        let manifest = manifest::read_begun(part)?;
+        let mut place = MergeSource::look(part, Some(manifest), &plan, shards, &mut contents)?;
         if !is_same(part, to) {
-            // A million names take a hundred megabytes.
+            // The names are not needed any more; a million of them take a hundred megabytes.
             place.files.clear();
         }
         places.push(place);
@@ -56,28 +57,22 @@ pub fn merge(parts: &[Destination], to: &Destination, check: Check) -> Result<Ge
     if let Some(&shard) = missing.first() {
         return Err(no_part_has(shard, missing.len(), shards, &places));
     }
-    let failures = contents.failures.iter();
-    let failures = failures.map(|(&record, reason)| FailedRecord { record, reason: reason.clone() });
     let mut merged = Generated {
-        kept_shards: 0,
-        written_shards: 0,
-        written_records: 0,
-        failures: Vec::new(),
-        earlier_failures: failures.collect(),
-        remade: Vec::new(),
+        earlier_failures: contents.failures.values().cloned().collect(),
         complete: true,
+        ..Generated::default()
     };
     let elsewhere;
     let target = match places.iter().find(|place| is_same(place.at, to)) {
         Some(part) => part,
         None => {
             let manifest = manifest::read(to)?;
-            elsewhere = Place::look(to, manifest, &plan, shards, &mut Contents::default())?;
+            elsewhere = MergeSource::look(to, manifest, &plan, shards, &mut Contents::default())?;
             &elsewhere
         }
     };
-    let begun = target.begun;
-    if begun == Begun::Incomplete {
+    let was_complete = target.is_complete;
+    if !was_complete {
         manifest::begin(&plan, to)?;
     }
     let _claimed = claimed.map_or_else(|| claim(to), Ok)?;
@@ -99,13 +94,13 @@ pub fn merge(parts: &[Destination], to: &Destination, check: Check) -> Result<Ge
         };
         contents.choose(shard, file);
     }
-    if begun == Begun::Incomplete || merged.written_shards > 0 {
+    if !was_complete || merged.written_shards > 0 {
         finish::finish(&plan, shards, to, contents)?;
     }
     Ok(merged)
 }
 
-/// The place of the whole, for this program alone.
+/// Claims the place of the whole data set for this program alone.
 fn claim(to: &Destination) -> Result<Claimed, DatasetError> {
     to.claim("merge", "is merging parts in")
 }
@@ -114,14 +109,14 @@ fn is_same(place: &Destination, other: &Destination) -> bool {
     place.to_string() == other.to_string()
 }
 
-/// Copies a shard from the first part in which it is as it was written.
+/// Copies a shard from the first part that has an undamaged copy.
 fn take_over(
     name: &str,
     of_parts: &[(&Destination, ShardFile)],
     to: &Destination,
 ) -> Result<ShardFile, DatasetError> {
     for (at, file) in of_parts {
-        // In the same place it has been looked at.
+        // The copy in `to` has already been found missing or damaged.
         if !is_same(at, to) && to.take_over(at, name, &file.digest)? {
             return Ok(*file);
         }
@@ -136,37 +131,24 @@ fn take_over(
     ))
 }
 
-/// Where a part is, or the whole, and what is there.
-struct Place<'p> {
+/// The place of a part, or of the whole data set, and the files that are there.
+struct MergeSource<'p> {
     at: &'p Destination,
-    begun: Begun,
+    /// Whether the whole data set is there.
+    is_complete: bool,
     /// All files, with their sizes.
     files: BTreeMap<String, u64>,
-    /// Shards that were made there, and are there with the sizes that are listed.
+    /// Shards that were made there and have the sizes that are listed.
     shards: BTreeMap<u64, ShardFile>,
-    /// Others that are there.
+    /// Other shards that are there.
     doubtful: Vec<u64>,
 }
 
-impl<'p> Place<'p> {
-    /// Looks at a part.
-    fn read(
-        at: &'p Destination,
-        plan: &Plan,
-        shards: Shards,
-        contents: &mut Contents,
-    ) -> Result<Self, DatasetError> {
-        let Some(manifest) = manifest::read(at)? else {
-            let help = "name the directories that `meshtone dataset` has written to";
-            return Err(DatasetError::refused(format!("{at} is no data set: it has no {MANIFEST}"), help));
-        };
-        Self::look(at, Some(manifest), plan, shards, contents)
-    }
-
-    /// Looks at a place once: very many names take seconds to be listed.
+impl<'p> MergeSource<'p> {
+    /// Examines a place. This is done only once for each place, since listing very many names takes seconds.
     ///
     /// # Arguments
-    /// * `contents` - gets what its manifest and lists say
+    /// * `contents` - receives what the place's manifest and lists say
     fn look(
         at: &'p Destination,
         manifest: Option<ReadManifest>,
@@ -177,16 +159,16 @@ impl<'p> Place<'p> {
         // What is written in the end says that all shards have this version's columns.
         manifest.as_ref().map_or(Ok(()), |manifest| manifest.check_columns(at))?;
         let files = at.files()?;
-        let begun = manifest::look_at(plan, shards, at, &files, manifest.as_ref())?;
+        let is_complete = manifest::check_place(plan, shards, at, &files, manifest.as_ref())?;
         let mut listed = contents.add_place(plan, at, &files, manifest)?;
         let there: BTreeMap<u64, u64> =
             files.iter().filter_map(|(name, &bytes)| Some((shards.number(name)?, bytes))).collect();
         listed.retain(|shard, file| there.get(shard) == Some(&file.digest.bytes));
         let doubtful = there.into_keys().filter(|shard| !listed.contains_key(shard)).collect();
-        Ok(Self { at, begun, files, shards: listed, doubtful })
+        Ok(Self { at, is_complete, files, shards: listed, doubtful })
     }
 
-    /// The shard that is there already, as it was written; what is not listed there may be of a merge that was stopped.
+    /// The shard if it is there already and undamaged. A shard that is not listed there may come from a merge that was stopped.
     fn has(
         &self,
         shard: u64,
@@ -207,7 +189,7 @@ impl<'p> Place<'p> {
     }
 }
 
-fn no_part_has(shard: u64, count: usize, shards: Shards, places: &[Place<'_>]) -> DatasetError {
+fn no_part_has(shard: u64, count: usize, shards: Shards, places: &[MergeSource<'_>]) -> DatasetError {
     let (all, name) = (shards.count(), shards.name(shard));
     let mut problem = format!("{count} of {all} shards are in none of the parts; the first is {name}");
     if let Some(place) = places.iter().find(|place| place.doubtful.contains(&shard)) {
@@ -216,7 +198,7 @@ fn no_part_has(shard: u64, count: usize, shards: Shards, places: &[Place<'_>]) -
     DatasetError::refused(problem, "make them: run `meshtone dataset PLAN.toml -o DIR --part I/N` again")
 }
 
-/// The plan that a data set was made by, read from the copies beside its data.
+/// Reads the plan that a data set was made by from the copies beside its data.
 fn plan_of(place: &Destination) -> Result<Plan, DatasetError> {
     let directory = tempfile::tempdir().map_err(DatasetError::write("a temporary directory"))?;
     for name in PlanFile::NAMES {
@@ -227,13 +209,9 @@ fn plan_of(place: &Destination) -> Result<Plan, DatasetError> {
     }
     let path = directory.path().join(PlanFile::NAMES[0]);
     if !path.exists() {
-        let help = "name the directories that `meshtone dataset` has written to";
-        return Err(DatasetError::refused(
-            format!("{place} is no data set: it has no {}", PlanFile::NAMES[0]),
-            help,
-        ));
+        return Err(manifest::no_data_set(place, PlanFile::NAMES[0]));
     }
-    // The copies of the copies are gone when somebody reads of them.
+    // Messages name the files of the data set: the temporary directory is gone when the user reads them.
     let named = |path: &Path| {
         let name = path.file_name().map(|name| name.to_string_lossy());
         PathBuf::from(name.map_or_else(|| place.to_string(), |name| place.name_of(&name)))
@@ -243,7 +221,7 @@ fn plan_of(place: &Destination) -> Result<Plan, DatasetError> {
     Ok(plan)
 }
 
-/// The same error about a file of another name.
+/// Changes the name of the file that an error is about.
 fn with_path(error: ReadScenarioError, named: impl Fn(&Path) -> PathBuf) -> ReadScenarioError {
     use ReadScenarioError::{Invalid, NotText, Unreadable};
 
@@ -336,14 +314,14 @@ mod tests {
         let start = processor_s();
         for number in 1..=64 {
             let part = Part { number, of: 64 };
-            let mut listing = Listing::new(&to, plan.hash().to_string(), part);
+            let mut listing = Listing::new(&to, plan.hash(), part);
             let made = (0..shards).filter(|&shard| part.has(shard)).map(|shard| {
                 let name = all.name(shard);
                 let digest = Digest { bytes: 1000 + shard % 7, ..Digest::of(name.as_bytes()) };
                 let path = directory.path().join(&name);
                 fs::create_dir_all(path.parent().unwrap()).unwrap();
                 File::create(path).unwrap().set_len(digest.bytes).unwrap();
-                let counts = Counts::from([(("train".to_owned(), "healthy".to_owned()), 100)]);
+                let counts = Counts::from([("train".to_owned(), [("healthy".to_owned(), 100)].into())]);
                 let file = ShardFile { digest, rows: 100 };
                 let (warnings, failures) = (WarningCounts::new(), Vec::new());
                 (shard, ShardContents { file, counts, warnings, failures })

@@ -1,67 +1,91 @@
-//! What a part has made, written down shard by shard until the manifest of the whole data set takes it over.
+//! Lists of the shards that a part has written. They stand until the manifest of the whole data set takes over what they say.
 //!
-//! A shard is listed before its file gets its name: every file that is there is in a list, also where the program is killed.
-//! A list has a bounded number of shards, so that writing it anew with every shard takes little time.
+//! A shard is listed before its file gets its name. Therefore every file that is there is in a list, even if the program is killed.
+//! A list has a bounded number of shards, so that rewriting it with every shard takes little time.
 
 use std::collections::BTreeMap;
 use std::io::{self, BufWriter, Write};
 
-use serde_json::{Map, Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, json};
 
-use crate::contents::{Counts, SampledRecord, Seen, ShardContents, ShardFile};
-use crate::digest::{Digest, Hash};
+use crate::contents::{SampledRecord, ShardContents, Summary};
 use crate::error::DatasetError;
 use crate::generate::Part;
-use crate::manifest::{FORMAT_VERSION, counts_table};
+use crate::manifest::FORMAT_VERSION;
 use crate::sealed;
-use crate::shard::FailedRecord;
 use crate::store::Destination;
 
 /// Folder of the lists.
 pub(crate) const FOLDER: &str = "parts";
-/// Shards in a list at most.
+/// Largest number of shards in a list.
 const SHARDS: u64 = 256;
 
-/// What some shards of a part hold.
+/// The contents of some shards of a part.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct PartList {
-    /// By their numbers.
+    /// The shards by their numbers.
     pub shards: BTreeMap<u64, ShardContents>,
-    /// Of all of them.
-    pub seen: Seen,
+    /// Summary of all of them.
+    pub summary: Summary,
+}
+
+/// A list as its file has it. Numbers are texts of exactly as many digits as are needed to read the same number back: JSON has no NaN.
+#[derive(Deserialize)]
+struct ListFile {
+    plan_sha256: String,
+    ranges: BTreeMap<String, [String; 2]>,
+    first: BTreeMap<String, (u64, usize)>,
+    /// Number, label, split and values of each record.
+    sampled: Vec<(u64, String, String, String)>,
+    shards: Vec<ListedShard>,
+}
+
+/// A shard as a list's file has it.
+#[derive(Serialize, Deserialize)]
+struct ListedShard<C = ShardContents> {
+    shard: u64,
+    #[serde(flatten)]
+    contents: C,
 }
 
 impl PartList {
-    /// The names of lists among those of files.
+    /// The names of the lists among the names of files.
     pub fn names(files: &BTreeMap<String, u64>) -> impl Iterator<Item = &String> {
         files.keys().filter(|name| is_list(name))
     }
 
-    /// Reads a list; none where it is damaged, or of another plan.
+    /// Reads a list of a place; none where there is none, or where it is damaged or of another plan.
     ///
     /// # Arguments
-    /// * `text` - of the list
+    /// * `place` - where the list is
+    /// * `name` - name of the list
     /// * `plan` - hash of the plan
-    pub fn parse(text: &str, plan: &str) -> Option<Self> {
-        let list: Value = sealed::is_whole(text).then(|| serde_json::from_str(text).ok()).flatten()?;
-        if list["plan_sha256"].as_str() != Some(plan) {
+    pub fn read(place: &Destination, name: &str, plan: &str) -> Result<Option<Self>, DatasetError> {
+        Ok(place.text(name)?.and_then(|text| Self::parse(&text, plan)))
+    }
+
+    fn parse(text: &str, plan: &str) -> Option<Self> {
+        let list: ListFile = sealed::is_whole(text).then(|| serde_json::from_str(text).ok()).flatten()?;
+        if list.plan_sha256 != plan {
             return None;
         }
-        let shards = list["shards"].as_array()?.iter().map(read_shard).collect::<Option<_>>()?;
-        let ranges = list["ranges"]
-            .as_object()?
-            .iter()
-            .map(|(name, range)| Some((name.clone(), [number(&range[0])?, number(&range[1])?])));
-        let first = list["first"].as_object()?.iter().map(|(label, place)| {
-            Some((label.clone(), (place[0].as_u64()?, usize::try_from(place[1].as_u64()?).ok()?)))
+        let number = |text: &str| text.parse::<f64>().ok();
+        let ranges = list
+            .ranges
+            .into_iter()
+            .map(|(name, [least, largest])| Some((name, [number(&least)?, number(&largest)?])));
+        let sampled = list.sampled.into_iter().map(|(record, label, split, values)| {
+            let values = values.split_ascii_whitespace().map(number).collect::<Option<_>>()?;
+            Some((record, SampledRecord { label, split, values }))
         });
-        let sampled = list["sampled"].as_array()?.iter().map(read_sampled);
-        let seen = Seen {
+        let summary = Summary {
             ranges: ranges.collect::<Option<_>>()?,
-            first: first.collect::<Option<_>>()?,
+            first: list.first,
             sampled: sampled.collect::<Option<_>>()?,
         };
-        Some(Self { shards, seen })
+        let shards = list.shards.into_iter().map(|listed| (listed.shard, listed.contents));
+        Some(Self { shards: shards.collect(), summary })
     }
 
     /// Writes the list.
@@ -70,135 +94,93 @@ impl PartList {
     /// * `to` - where it is written to; it needs a buffer
     /// * `plan` - hash of the plan
     pub fn write(&self, to: impl Write, plan: &str) -> io::Result<()> {
-        let ranges = self.seen.ranges.iter().map(|(name, range)| (name.clone(), json!(range.map(exact))));
-        let first = self.seen.first.iter().map(|(label, place)| (label.clone(), json!([place.0, place.1])));
-        let sampled = self.seen.sampled.iter().map(|(record, sampled)| {
-            let values: Vec<String> = sampled.values.iter().map(|&value| exact(value)).collect();
-            json!([record, sampled.label, sampled.split, values.join(" ")])
-        });
+        let Summary { ranges, first, sampled } = &self.summary;
+        let ranges =
+            ranges.iter().map(|(name, range)| (name.clone(), json!(range.map(|end| end.to_string()))));
         let head = json!({
             "format_version": FORMAT_VERSION,
             "meshtone_version": env!("CARGO_PKG_VERSION"),
             "plan_sha256": plan,
             "ranges": ranges.collect::<Map<_, _>>(),
-            "first": first.collect::<Map<_, _>>(),
+            "first": first,
         });
-        let sampled: Vec<Value> = sampled.collect();
-        let shards: Vec<Value> = self.shards.iter().map(shard_value).collect();
-        sealed::write(to, head.as_object().unwrap_or(&Map::new()), |to| {
-            write_lines(to, "sampled", &sampled)?;
-            write_lines(to, "shards", &shards)
+        sealed::write(to, &head, |to| {
+            write_lines(
+                to,
+                "sampled",
+                sampled.iter().map(|(record, SampledRecord { label, split, values })| {
+                    let values: Vec<String> = values.iter().map(f64::to_string).collect();
+                    (record, label, split, values.join(" "))
+                }),
+            )?;
+            write_lines(
+                to,
+                "shards",
+                self.shards.iter().map(|(&shard, contents)| ListedShard { shard, contents }),
+            )
         })
     }
 }
 
-/// An array, an element a line.
-fn write_lines(to: &mut impl Write, name: &str, values: &[Value]) -> io::Result<()> {
+/// Writes an array, one element a line.
+fn write_lines(
+    to: &mut impl Write,
+    name: &str,
+    values: impl Iterator<Item = impl Serialize>,
+) -> io::Result<()> {
     write!(to, ",\n  \"{name}\": [")?;
-    for (number, value) in values.iter().enumerate() {
-        write!(to, "{}\n    {value}", if number == 0 { "" } else { "," })?;
+    for (number, value) in values.enumerate() {
+        write!(to, "{}\n    ", if number == 0 { "" } else { "," })?;
+        serde_json::to_writer(&mut *to, &value)?;
     }
     write!(to, "\n  ]")
 }
 
-/// Whether a name is one of a list.
+/// Whether a file name is that of a list.
 pub(crate) fn is_list(name: &str) -> bool {
     let number = || name.strip_prefix(FOLDER)?.strip_prefix('/')?.strip_suffix(".json");
     number().is_some_and(|number| number.split('-').count() == 4)
 }
 
-fn shard_value((shard, of_shard): (&u64, &ShardContents)) -> Value {
-    let ShardContents { file, counts, warnings, failures } = of_shard;
-    let failures = failures.iter().map(|f| json!({ "record": f.record, "reason": f.reason }));
-    json!({
-        "shard": shard,
-        "bytes": file.digest.bytes,
-        "sha256": file.digest.sha256.to_string(),
-        "rows": file.rows,
-        "counts": counts_table(counts),
-        "warnings": warnings,
-        "failures": failures.collect::<Vec<_>>(),
-    })
-}
-
-fn read_shard(value: &Value) -> Option<(u64, ShardContents)> {
-    let digest = Digest { bytes: value["bytes"].as_u64()?, sha256: Hash::parse(value["sha256"].as_str()?)? };
-    let mut counts = Counts::new();
-    for (split, labels) in value["counts"].as_object()? {
-        for (label, count) in labels.as_object()? {
-            counts.insert((split.clone(), label.clone()), count.as_u64()?);
-        }
-    }
-    let failures =
-        value["failures"].as_array()?.iter().map(FailedRecord::from_json).collect::<Option<_>>()?;
-    let file = ShardFile { digest, rows: value["rows"].as_u64()? };
-    // Lists of manifests before format 3 have none.
-    let warnings = match value.get("warnings") {
-        None => BTreeMap::new(),
-        Some(codes) => {
-            let codes = codes.as_object()?.iter();
-            codes.map(|(code, count)| Some((code.clone(), count.as_u64()?))).collect::<Option<_>>()?
-        }
-    };
-    Some((value["shard"].as_u64()?, ShardContents { file, counts, warnings, failures }))
-}
-
-fn read_sampled(value: &Value) -> Option<(u64, SampledRecord)> {
-    let text = |place: usize| value[place].as_str().map(str::to_owned);
-    let values = value[3].as_str()?.split_ascii_whitespace().map(|word| word.parse().ok());
-    let (label, split, values) = (text(1)?, text(2)?, values.collect::<Option<_>>()?);
-    Some((value[0].as_u64()?, SampledRecord { label, split, values }))
-}
-
-/// The digits by which the very same number is read back; JSON has no NaN.
-fn exact(value: f64) -> String {
-    value.to_string()
-}
-
-fn number(value: &Value) -> Option<f64> {
-    value.as_str()?.parse().ok()
-}
-
-/// The list that a part is writing.
+/// Writes the lists of a part.
 pub(crate) struct Listing<'a> {
     to: &'a Destination,
     plan: String,
     part: Part,
-    /// Which of the part's lists.
+    /// Number of the list among the part's lists.
     number: Option<u64>,
     list: PartList,
 }
 
 impl<'a> Listing<'a> {
-    /// Begins with no list.
+    /// Creates a writer that has no list yet.
     ///
     /// # Arguments
     /// * `to` - where the part is written to
     /// * `plan` - hash of the plan
-    /// * `part` - which part
+    /// * `part` - the part
     pub fn new(to: &'a Destination, plan: String, part: Part) -> Self {
         Self { to, plan, part, number: None, list: PartList::default() }
     }
 
-    /// Lists a shard, in the place of what was listed of it.
+    /// Lists a shard. It replaces what was listed of the same shard before.
     ///
     /// # Arguments
-    /// * `shard` - its number
-    /// * `of_shard`, `seen` - what it holds
-    pub fn add(&mut self, shard: u64, of_shard: ShardContents, seen: Seen) -> Result<(), DatasetError> {
+    /// * `shard` - number of the shard
+    /// * `contents`, `summary` - what it holds
+    pub fn add(&mut self, shard: u64, contents: ShardContents, summary: Summary) -> Result<(), DatasetError> {
         let number = self.number_of(shard);
         if self.number != Some(number) {
-            let earlier =
-                self.to.text(&self.name(number))?.and_then(|text| PartList::parse(&text, &self.plan));
+            let earlier = PartList::read(self.to, &self.name(number), &self.plan)?;
             self.list = earlier.unwrap_or_default();
             self.number = Some(number);
         }
-        self.list.shards.insert(shard, of_shard);
-        self.list.seen.add(seen);
+        self.list.shards.insert(shard, contents);
+        self.list.summary.add(summary);
         self.write(number)
     }
 
-    /// Which of the part's lists has a shard.
+    /// The number of the list that has a shard.
     fn number_of(&self, shard: u64) -> u64 {
         shard / self.part.of / SHARDS
     }
@@ -217,7 +199,9 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
-    use crate::contents::WarningCounts;
+    use crate::contents::{Counts, ShardFile, WarningCounts};
+    use crate::digest::Digest;
+    use crate::shard::FailedRecord;
 
     impl Listing<'_> {
         /// Lists many shards, each list being written once.
@@ -241,14 +225,14 @@ mod tests {
     fn a_list_is_read_as_it_was_written() {
         let mut list = PartList::default();
         let file = ShardFile { digest: Digest::of(b"abc"), rows: 7 };
-        let counts = Counts::from([(("train".to_owned(), "a \"label\"".to_owned()), 7)]);
+        let counts = Counts::from([("train".to_owned(), [("a \"label\"".to_owned(), 7)].into())]);
         let failures = vec![FailedRecord { record: 18, reason: "why".to_owned() }];
         let warnings = WarningCounts::from([("step-error".to_owned(), 3)]);
         list.shards.insert(2, ShardContents { file, counts, warnings, failures });
-        list.seen.ranges.insert("speed_hz".to_owned(), [0.1 + 0.2, 1e300]);
-        list.seen.first.insert("label".to_owned(), (2, 3));
+        list.summary.ranges.insert("speed_hz".to_owned(), [0.1 + 0.2, 1e300]);
+        list.summary.first.insert("label".to_owned(), (2, 3));
         let values = vec![1.0 / 3.0, f64::NAN, -0.0];
-        list.seen.sampled.insert(17, SampledRecord { label: "l".into(), split: "s".into(), values });
+        list.summary.sampled.insert(17, SampledRecord { label: "l".into(), split: "s".into(), values });
         let mut text = Vec::new();
         list.write(&mut text, "plan").unwrap();
         let text = String::from_utf8(text).unwrap();

@@ -1,20 +1,20 @@
-//! Texts that show by themselves whether they are whole: JSON whose last entry is the SHA-256 of what stands before it.
+//! JSON files that prove themselves complete: their last entry is the SHA-256 of the text before it.
 
 use std::io::{self, Write};
 
-use serde_json::{Map, Value};
+use serde_json::Value;
 
 use crate::digest::{Digest, Hashing};
 
-/// Writes an object, its entries one after the other, and its seal.
+/// Writes an object and its seal.
 ///
 /// # Arguments
 /// * `to` - where it is written to; it needs a buffer
-/// * `head` - the first entries, at least one
-/// * `rest` - writes further ones, each after a comma
+/// * `head` - an object of the first entries, at least one
+/// * `rest` - writes further entries, each after a comma
 pub(crate) fn write<W: Write>(
     to: W,
-    head: &Map<String, Value>,
+    head: &Value,
     rest: impl FnOnce(&mut Hashing<W>) -> io::Result<()>,
 ) -> io::Result<()> {
     let mut to = Hashing::new(to);
@@ -49,7 +49,7 @@ mod tests {
     fn every_flipped_bit_shows() {
         let head = json!({ "complete": false, "files": {"a": [1, 2]} });
         let mut text = Vec::new();
-        write(&mut text, head.as_object().unwrap(), |to| to.write_all(b",\n  \"more\": []")).unwrap();
+        write(&mut text, &head, |to| to.write_all(b",\n  \"more\": []")).unwrap();
         let value: Value = serde_json::from_slice(&text).unwrap();
         assert_eq!((&value["files"]["a"][1], &value["more"]), (&json!(2), &json!([])));
         assert!(is_whole(std::str::from_utf8(&text).unwrap()));

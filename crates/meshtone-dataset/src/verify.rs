@@ -1,4 +1,4 @@
-//! Whether a data set is what was written.
+//! Verifying that the files of a data set are as they were written.
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
@@ -6,61 +6,52 @@ use std::fmt::Display;
 use meshtone_io::table::FoundColumn;
 use rayon::prelude::*;
 
-use crate::contents::{Counts, ShardFile, WRONG_BYTES, count, wrong_size};
+use crate::contents::{Counts, SHARDS_AT_A_TIME, ShardFile, WRONG_BYTES, add_counts, count, wrong_size};
 use crate::error::DatasetError;
-use crate::manifest::{self, CARD, MANIFEST, PREVIEW, ReadManifest};
+use crate::manifest::{self, CARD, Document, MANIFEST, PREVIEW, ReadManifest};
 use crate::part_list::PartList;
 use crate::shard::{FOLDER, Shards, Wanted};
 use crate::store::Destination;
 use crate::words::counted;
 
-/// Shards that are looked at before what was found is added up.
-const AT_A_TIME: usize = 1024;
-
-/// How thoroughly files are looked at.
+/// How thoroughly files are checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Check {
-    /// Names, sizes and counts.
+    /// Names, sizes and counts are compared.
     Sizes,
-    /// Every byte.
+    /// Every byte is compared, by the SHA-256 of each file.
     Bytes,
 }
 
-/// What was found.
+/// The result of verifying a data set.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Verified {
     /// Whether the manifest calls the data set complete.
     pub complete: bool,
-    /// Format of the manifest. Of format 1 the hashes are of what was on the disk in the end, not of what was written.
+    /// Format of the manifest. In format 1, the hashes were computed from the finished files on the disk, not while they were written.
     pub format: u64,
-    /// Shards that are listed and there, by their names.
+    /// Names of the shards that are listed and there.
     pub shards: Vec<String>,
-    /// Records in those.
+    /// Number of records in the shards that are there.
     pub rows: u64,
-    /// (bytes) Of those.
+    /// (bytes) Total size of the shards that are there.
     pub bytes: u64,
-    /// Shards that are listed and not there, by their names.
+    /// Names of the shards that are listed but missing.
     pub missing: Vec<String>,
-    /// What is wrong, by the files that it is wrong with.
+    /// Problems by the names of the files.
     pub problems: BTreeMap<String, String>,
 }
 
-/// Looks at all files of a data set, or of a part of one, in the threads of the current rayon pool. Nothing is written.
+/// Checks all files of a data set, or of a part of one, in the threads of the current rayon pool. Nothing is written.
 ///
 /// # Arguments
-/// * `place` - where it is
-/// * `check` - how
+/// * `place` - the place of the data set
+/// * `check` - how thoroughly files are checked
 ///
 /// # Errors
-/// A place without a data set; a manifest that cannot be read, or of a later format.
+/// The place has no data set, or its manifest cannot be read or has a later format.
 pub fn verify(place: &Destination, check: Check) -> Result<Verified, DatasetError> {
-    let Some(manifest) = manifest::read(place)? else {
-        let problem = format!("{place} is no data set: it has no {MANIFEST}");
-        return Err(DatasetError::refused(
-            problem,
-            "name a directory that `meshtone dataset` has written to",
-        ));
-    };
+    let manifest = manifest::read_begun(place)?;
     let files = place.files()?;
     let mut verified =
         Verified { complete: manifest.complete, format: manifest.format, ..Verified::default() };
@@ -76,7 +67,9 @@ pub fn verify(place: &Destination, check: Check) -> Result<Verified, DatasetErro
     verified.check_names(&files, &listed);
     let shards = verified.check_sizes(&files, &listed, &manifest);
     if check == Check::Bytes {
-        for (name, digest) in manifest.documents.iter().filter(|(name, _)| files.contains_key(*name)) {
+        for Document { name, digest } in
+            manifest.documents.iter().filter(|file| files.contains_key(&file.name))
+        {
             if place.digest(name)? != *digest {
                 verified.object(name, WRONG_BYTES);
             }
@@ -87,20 +80,20 @@ pub fn verify(place: &Destination, check: Check) -> Result<Verified, DatasetErro
 }
 
 impl Verified {
-    /// Whether all is there as it was written.
+    /// Whether all files are there as they were written.
     pub fn is_good(&self) -> bool {
         self.missing.is_empty() && self.problems.is_empty()
     }
 
-    /// The first objection to a file is the plainest.
+    /// Records a problem with a file. Only the first problem of a file is kept: it explains the others.
     fn object(&mut self, name: &str, problem: impl Into<String>) {
         self.problems.entry(name.to_owned()).or_insert_with(|| problem.into());
     }
 
-    /// The manifest agrees with itself.
+    /// Checks that the counts in the manifest agree with each other.
     fn check_counts(&mut self, manifest: &ReadManifest) {
         let of_files: u64 = manifest.files.iter().map(|file| file.shard.rows).sum();
-        let of_labels: u64 = manifest.counts.values().sum();
+        let of_labels: u64 = manifest.counts.values().flat_map(BTreeMap::values).sum();
         let of_plan = manifest.records.saturating_sub(manifest.failures.len() as u64);
         if of_labels != of_files || of_plan != of_files {
             let problem = format!(
@@ -112,8 +105,8 @@ impl Verified {
         }
     }
 
-    /// The shards that the lists of parts name. How many shards there are to be is not known from those, nor how many digits
-    /// their names have: only what is there is found.
+    /// The shards that the lists of parts name, as far as they are there. Missing ones are not found: the lists do not say how many
+    /// shards the data set will have, and so how many digits their names have.
     fn read_lists(
         &mut self,
         place: &Destination,
@@ -122,8 +115,10 @@ impl Verified {
     ) -> Result<BTreeMap<String, ShardFile>, DatasetError> {
         let mut shards = BTreeMap::new();
         for name in PartList::names(files) {
-            match place.text(name)?.and_then(|text| PartList::parse(&text, plan)) {
-                Some(list) => shards.extend(list.shards.into_iter().map(|(shard, of)| (shard, of.file))),
+            match PartList::read(place, name, plan)? {
+                Some(list) => {
+                    shards.extend(list.shards.into_iter().map(|(shard, contents)| (shard, contents.file)));
+                }
                 None => self.object(name, "it is not as it was written, or of another plan"),
             }
         }
@@ -132,9 +127,9 @@ impl Verified {
         Ok(listed.collect())
     }
 
-    /// No shard is there that is not listed, and all that belongs to a complete data set.
+    /// Checks that every shard is listed, and that a complete data set has its documents.
     fn check_names(&mut self, files: &BTreeMap<String, u64>, listed: &BTreeMap<String, ShardFile>) {
-        // Other files beside the folders are the user's own, but in the folders programs read whatever there is.
+        // Files beside the folders may be the user's own. In the folders, programs read every file that is there.
         let in_folder = |name: &&String| name.starts_with(FOLDER) && !listed.contains_key(*name);
         for name in files.keys().filter(in_folder) {
             self.object(name, "no manifest or list of a part names it");
@@ -145,14 +140,14 @@ impl Verified {
         }
     }
 
-    /// Returns the shards that have their sizes.
+    /// Checks the sizes of all files. Returns the shards that have the listed size.
     fn check_sizes<'l>(
         &mut self,
         files: &BTreeMap<String, u64>,
         listed: &'l BTreeMap<String, ShardFile>,
         manifest: &ReadManifest,
     ) -> Vec<(&'l String, ShardFile)> {
-        for (name, digest) in &manifest.documents {
+        for Document { name, digest } in &manifest.documents {
             match files.get(name) {
                 None => self.object(name, "it is missing"),
                 Some(&size) if size != digest.bytes => self.object(name, wrong_size(size, digest.bytes)),
@@ -177,25 +172,23 @@ impl Verified {
         of_size
     }
 
-    /// Bytes, rows, columns and counts.
+    /// Checks the bytes, rows, columns and counts of shards.
     fn check_shards(
         &mut self,
         place: &Destination,
         shards: &[(&String, ShardFile)],
         manifest: &ReadManifest,
     ) {
-        let read = |(name, _): &(&String, ShardFile)| place.read_shard(name, Wanted::Nothing).ok();
+        let read = |(name, _): &(&String, ShardFile)| place.read_shard(name, Wanted::Columns(&[])).ok();
         let schema = shards.iter().find_map(read).map(|read| read.schema).unwrap_or_default();
         let mut counts = Counts::new();
-        for some in shards.chunks(AT_A_TIME) {
-            let looked = some
+        for some in shards.chunks(SHARDS_AT_A_TIME) {
+            let checked = some
                 .par_iter()
-                .map(|(name, file)| (name, look_at(place, name, file, &schema, &manifest.plan)));
-            for (name, looked) in looked.collect::<Vec<_>>() {
-                match looked {
-                    Ok(of_shard) => {
-                        of_shard.into_iter().for_each(|(key, n)| *counts.entry(key).or_default() += n);
-                    }
+                .map(|(name, file)| (name, check_shard(place, name, file, &schema, &manifest.plan)));
+            for (name, counts_of_shard) in checked.collect::<Vec<_>>() {
+                match counts_of_shard {
+                    Ok(of_shard) => add_counts(&mut counts, of_shard),
                     Err(problem) => self.object(name, problem),
                 }
             }
@@ -207,7 +200,7 @@ impl Verified {
 }
 
 /// The records of a shard by split and label, or what is wrong with it.
-fn look_at(
+fn check_shard(
     place: &Destination,
     name: &str,
     file: &ShardFile,

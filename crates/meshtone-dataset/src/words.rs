@@ -1,10 +1,10 @@
-//! Numbers in sentences.
+//! Words for numbers, units and columns.
 
-/// `1 shard`, `2 shards`.
+/// Writes a count with its noun: `1 shard`, `2 shards`.
 ///
 /// # Arguments
-/// * `count` - how many
-/// * `name` - of one of them
+/// * `count` - the count
+/// * `name` - the noun in the singular
 ///
 /// ```
 /// assert_eq!(meshtone_dataset::counted(1, "shard"), "1 shard");
@@ -13,7 +13,7 @@ pub fn counted(count: u64, name: &str) -> String {
     format!("{count} {name}{}", if count == 1 { "" } else { "s" })
 }
 
-/// The ends of names that are units.
+/// Endings of names that state a unit, and the unit.
 const UNITS: [(&str, &str); 14] = [
     ("_n_per_m", "N/m"),
     ("_nm_per_rad", "N m/rad"),
@@ -31,7 +31,7 @@ const UNITS: [(&str, &str); 14] = [
     ("_s", "s"),
 ];
 
-/// The unit that a name ends in.
+/// The unit that the ending of a name states.
 pub(crate) fn unit_of(name: &str) -> &'static str {
     UNITS.iter().find(|(end, _)| name.ends_with(end)).map_or("-", |(_, unit)| unit)
 }

@@ -1,4 +1,4 @@
-//! What a diagnosis says.
+//! The answer of a diagnosis.
 
 use meshtone::signal::AngleZero;
 use meshtone::wheel::WheelName;
@@ -8,7 +8,7 @@ use crate::observation::SignalKind;
 /// A number with its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
-    /// As likely to be larger as to be smaller.
+    /// Median: the value is as likely larger as smaller.
     pub median: f64,
     /// It is within with a probability of 0.5.
     pub within_50: [f64; 2],
@@ -21,11 +21,11 @@ pub struct Interval {
 pub struct SizeAnswer {
     /// Key of the scenario file, with the unit at its end.
     pub key: &'static str,
-    /// What it may be.
+    /// Interval of its likely values.
     pub interval: Interval,
 }
 
-/// Where a damage is.
+/// Place of a damage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlaceAnswer {
     /// The damaged wheel.
@@ -42,7 +42,7 @@ pub struct PlaceAnswer {
     pub tooth_probability: Option<f64>,
 }
 
-/// What is said about a damage, whatever its kind: over all kinds, each as probable as it is said to be.
+/// Answer about a damage, whatever its kind: over all kinds, each as probable as it is said to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AnyDamage {
     /// (-) How severe it is, from 0 to 1.
@@ -61,7 +61,7 @@ pub struct AnyDamage {
     pub tooth_probability: Option<f64>,
 }
 
-/// What is said about one kind.
+/// Answer about one kind of damage.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KindAnswer {
     /// `healthy`, or the name of a kind of damage.
@@ -72,7 +72,7 @@ pub struct KindAnswer {
     pub severity: Option<Interval>,
     /// Its sizes, likewise; none where they are lists.
     pub sizes: Vec<SizeAnswer>,
-    /// Where it is, likewise.
+    /// Its place, likewise.
     pub place: Option<PlaceAnswer>,
 }
 
@@ -89,21 +89,21 @@ pub struct Explanation {
     pub difference_g: Vec<f64>,
 }
 
-/// What a diagnosis says.
+/// Answer of a diagnosis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
-    /// What was asked about.
+    /// Kind of the signal in question.
     pub signal: SignalKind,
     /// Whether it was compared with a healthy recording of the same rig.
     pub has_healthy: bool,
     /// Recordings that were asked about.
     pub recordings: usize,
-    /// Where tooth 1 of the pinion and of the gear meshes; none where teeth cannot be counted: after a mesh tone, or in several
+    /// Meaning of tooth 1 of the pinion and of the gear; none where teeth cannot be counted: after a mesh tone, or in several
     /// recordings without a mark in common.
     pub counted_from: [Option<AngleZero>; 2],
-    /// What it comes to, in a sentence.
+    /// Summary, in a sentence.
     pub summary: String,
-    /// What is said about a damage, whatever its kind, given that there is one.
+    /// Answer about a damage, whatever its kind, given that there is one.
     pub any_damage: Option<AnyDamage>,
     /// Simulations of the reference set.
     pub simulated_records: usize,
@@ -115,9 +115,9 @@ pub struct Answer {
     pub kinds: Vec<KindAnswer>,
     /// (-) p-value: the part of the simulated records that are as far as the recording, or farther, from the others.
     pub outside_model: f64,
-    /// The same of the healthy recording, held against healthy simulations alone; none where there is no healthy recording.
+    /// p-value of the healthy recording among healthy simulations alone; none where there is no healthy recording.
     pub healthy_outside_model: Option<f64>,
-    /// What deserves attention.
+    /// Warnings.
     pub warnings: Vec<String>,
     /// (g) The recording's difference signal over a revolution of the gear, at equal angles.
     pub difference_g: Vec<f64>,

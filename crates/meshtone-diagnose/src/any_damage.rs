@@ -1,4 +1,4 @@
-//! What can be said of a damage whatever its kind.
+//! The answer about a damage whatever its kind.
 
 use meshtone::wheel::WheelName;
 
@@ -75,7 +75,7 @@ impl AnyDamage {
         })
     }
 
-    /// How severe it is, and where, in words.
+    /// Its severity and place, in words.
     fn in_words(&self) -> String {
         let severity = self.severity;
         let degree = match severity.median {
@@ -105,7 +105,7 @@ impl AnyDamage {
     }
 }
 
-/// What an answer comes to, in a sentence.
+/// Summary of an answer, in a sentence.
 ///
 /// # Arguments
 /// * `damaged` - (-) probability that anything is damaged

@@ -7,7 +7,7 @@ use crate::DiagnoseError;
 use crate::answer::{Answer, AnyDamage, Explanation, HEALTHY, KindAnswer, PlaceAnswer, SizeAnswer};
 use crate::any_damage::sentence;
 use crate::features::burst_rev;
-use crate::learn::{Layout, Learned, Question, Row};
+use crate::learn::{FeatureRow, Layout, Learned, Question};
 use crate::observation::{Observation, WheelLines, revolution};
 use crate::quantile::{interval, quantile};
 use crate::refine::Refined;
@@ -137,7 +137,7 @@ pub fn diagnose(
     let any_damage = AnyDamage::over(&kinds, &draws_of);
     let likeliest = kinds.iter().find(|kind| kind.label != HEALTHY).map(|kind| kind.label);
     let severity_draws = draws_of.into_iter().find(|(label, _)| Some(*label) == likeliest);
-    let shown = Shown::of(learned, question);
+    let shown = GearView::of(learned, question);
     let mut answer = Answer {
         signal: learned.layout.signal,
         has_healthy: learned.layout.has_healthy,
@@ -171,11 +171,11 @@ fn spread(draws: &[(f64, f64)]) -> Vec<f64> {
     (0..COUNT).map(|at| quantile(&sorted, (at as f64 + 0.5) / COUNT as f64)).collect()
 }
 
-/// Where a damage of a class is: where its burst is, less how far behind the tooth's first contact that of the simulations is.
+/// Place of a damage of a class: the angle of its burst, less the distance of the simulations' bursts behind the tooth's first contact.
 fn place(
     learned: &Learned,
     question: &Question,
-    row: &Row,
+    row: &FeatureRow,
     class: usize,
     wheel: WheelName,
     of_wheel: f64,
@@ -232,8 +232,8 @@ fn counted_from(question: &Question, wheel: WheelName) -> Option<AngleZero> {
     counts.then_some(first)
 }
 
-/// What is drawn of the gear.
-struct Shown {
+/// Part of the figure that shows the gear.
+struct GearView {
     /// (g) The difference signal of the first recording.
     difference_g: Vec<f64>,
     /// (rev) Where its burst is.
@@ -244,7 +244,7 @@ struct Shown {
     points: usize,
 }
 
-impl Shown {
+impl GearView {
     fn of(learned: &Learned, question: &Question) -> Self {
         let last = learned.layout.last[1];
         let points = (2 * last + 1).next_power_of_two();
@@ -277,8 +277,8 @@ impl Shown {
     }
 
     /// Between which values nine in ten of the simulated signals are that resemble the recording.
-    fn band(&self, learned: &Learned, row: &Row, of_class: &[f64]) -> [Vec<f64>; 2] {
-        let near = resembling(learned, row, of_class, IN_BAND);
+    fn band(&self, learned: &Learned, row: &FeatureRow, of_class: &[f64]) -> [Vec<f64>; 2] {
+        let near = similar_simulations(learned, row, of_class, IN_BAND);
         let signals: Vec<Vec<f64>> =
             near.iter().map(|&(_, record)| self.of_record(learned, record)).collect();
         let bounds = |point: usize| {
@@ -291,7 +291,7 @@ impl Shown {
     }
 
     /// The nearest simulation of each of the likeliest kinds, of either wheel.
-    fn explanations(&self, learned: &Learned, row: &Row, of_class: &[f64]) -> Vec<Explanation> {
+    fn explanations(&self, learned: &Learned, row: &FeatureRow, of_class: &[f64]) -> Vec<Explanation> {
         let mut order: Vec<usize> = (0..of_class.len()).collect();
         order.sort_by(|&a, &b| of_class[b].total_cmp(&of_class[a]));
         let point = learned.outside.point(&row.values);
@@ -321,7 +321,12 @@ fn rms_g(gear: &WheelLines, last: usize) -> f64 {
 }
 
 /// The simulations that resemble the recording most: of each class as many as it is probable.
-fn resembling(learned: &Learned, row: &Row, of_class: &[f64], count: usize) -> Vec<(f64, usize)> {
+fn similar_simulations(
+    learned: &Learned,
+    row: &FeatureRow,
+    of_class: &[f64],
+    count: usize,
+) -> Vec<(f64, usize)> {
     let point = learned.outside.point(&row.values);
     let mut near = Vec::new();
     for (class, probability) in of_class.iter().enumerate() {

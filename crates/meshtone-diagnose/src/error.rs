@@ -1,4 +1,4 @@
-//! What a diagnosis fails on.
+//! Errors of a diagnosis.
 
 /// A diagnosis that cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -25,7 +25,7 @@ pub enum DiagnoseError {
         "the {of}, or the simulations, show orders up to {last} of the gear's shaft; at least 2 mesh orders, {needed}, are needed"
     )]
     TooFewOrders {
-        /// Which signal.
+        /// Name of the signal.
         of: &'static str,
         /// The last whole order.
         last: usize,
@@ -35,7 +35,7 @@ pub enum DiagnoseError {
     /// No recording.
     #[error("there is no recording to ask about")]
     NoRecording,
-    /// What is asked about and what it is compared with are not alike.
+    /// The recordings in question and the healthy ones differ in kind.
     #[error(
         "one recording is given as `{healthy}`, another as `{asked}` (whole recording, average or difference signal); all must be the same"
     )]
@@ -59,17 +59,17 @@ pub enum DiagnoseError {
         speed_hz: f64,
         /// (Hz) Of the scenario.
         nominal_hz: f64,
-        /// What may be the reason, in words.
+        /// A possible reason, in words.
         reason: String,
     },
     /// A speed or lines that are not finite.
     #[error("a recording's {what} is {value}; must be finite{beside}")]
     NotFinite {
-        /// What is wrong.
+        /// The problem.
         what: &'static str,
         /// Its value.
         value: f64,
-        /// What else it must be.
+        /// A second requirement.
         beside: &'static str,
     },
 }

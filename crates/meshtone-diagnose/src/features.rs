@@ -25,7 +25,7 @@ const LOCAL_BANDS: [f64; 7] = [0.0, 1.5, 2.5, 4.5, 7.5, 11.5, 16.5];
 /// Mesh orders that divide the difference signal into parts whose shape is looked at.
 const PARTS: [f64; 4] = [0.0, 3.5, 7.5, 16.5];
 
-/// What a wheel's average shows.
+/// Features of a wheel's average.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct WheelFeatures {
     /// (log10 g) Levels.
@@ -36,7 +36,7 @@ pub(crate) struct WheelFeatures {
     pub burst_rev: f64,
 }
 
-/// What the lines of an average show.
+/// Features of the lines of an average.
 ///
 /// # Arguments
 /// * `view` - the lines
@@ -148,7 +148,7 @@ pub(crate) fn burst_rev(view: &WheelLines, last: usize) -> f64 {
     largest_at(&smooth) as f64 / points as f64
 }
 
-/// Where a sequence is largest.
+/// Index at which a sequence is largest.
 fn largest_at(values: &[f64]) -> usize {
     (0..values.len()).max_by(|&a, &b| values[a].total_cmp(&values[b])).unwrap_or(0)
 }

@@ -1,4 +1,4 @@
-//! What a wheel shows beyond what it showed when it was healthy.
+//! The change of a wheel since it was healthy.
 
 use meshtone_fourier::Complex64;
 

@@ -1,4 +1,4 @@
-//! What a diagnosis says, as JSON.
+//! The answer of a diagnosis, as JSON.
 
 use meshtone::signal::AngleZero;
 use serde_json::{Map, Value, json};
@@ -9,7 +9,7 @@ use crate::answer::{Answer, AnyDamage, Explanation, Interval, KindAnswer};
 const FORMAT_VERSION: u32 = 1;
 
 impl Answer {
-    /// As JSON: what is probable, how severe and where, the likeliest kinds first. The signals are not in it.
+    /// Writes the answer as JSON: probabilities, severities and places, the likeliest kinds first. The signals are not in it.
     pub fn to_json(&self) -> Value {
         let kinds: Map<String, Value> =
             self.kinds.iter().map(|kind| (kind.label.to_owned(), kind_json(kind))).collect();

@@ -1,4 +1,4 @@
-//! What is learnt from a reference set for one question.
+//! The model that is learnt from a reference set for one question.
 
 use std::sync::OnceLock;
 
@@ -12,9 +12,9 @@ use rayon::prelude::*;
 use crate::DiagnoseError;
 use crate::features::{WheelFeatures, wheel_features};
 use crate::healthy::beyond_healthy;
-use crate::matrix::{FOLDS, RandomFeatures, Standard, ridge};
+use crate::matrix::{FOLDS, RandomFeatures, Standardisation, ridge};
 use crate::observation::{Observation, SignalKind, WheelLines};
-use crate::outside::Outside;
+use crate::outlier_test::OutlierTest;
 use crate::prior::{DrawnFault, RECORDS_PER_UNIT};
 use crate::reference::{ReferenceRecord, ReferenceSet};
 use crate::severity::SizeModel;
@@ -33,45 +33,45 @@ const FEWEST_RECORDS: usize = 200;
 /// Fewest mesh orders that a signal must show.
 const FEWEST_MESH_ORDERS: usize = 2;
 
-/// What is asked: recordings of a gear pair in one state, and what it was like when it was healthy.
+/// A question: recordings of a gear pair in one state, and of the same pair when it was healthy.
 #[derive(Debug, Clone, Copy)]
 pub struct Question<'a> {
-    /// What is asked about: recordings of one state, at least one.
+    /// Recordings of the state in question, at least one.
     pub now: &'a [Observation],
-    /// The same rig when it was healthy; may be empty.
+    /// Recordings of the same rig when it was healthy; may be empty.
     pub healthy: &'a [Observation],
 }
 
 /// A class: what is damaged; none where nothing is.
 pub(crate) type Class = Option<(usize, WheelName)>;
 
-/// What is learnt from a reference set for one question.
+/// A model that is learnt from a reference set for one question.
 pub struct Learned<'a> {
     pub(crate) reference: &'a ReferenceSet,
     pub(crate) kinds: Vec<DamageKind>,
     pub(crate) layout: Layout,
-    appearance: Appearance,
+    appearance: SimulatedAppearance,
     /// The records that it was learnt from.
     pub(crate) records: Vec<&'a ReferenceRecord>,
-    pub(crate) rows: Vec<Row>,
+    pub(crate) rows: Vec<FeatureRow>,
     pub(crate) classes: Vec<Class>,
     pub(crate) class_of: Vec<usize>,
     folds: Vec<usize>,
-    standard: Standard,
+    standard: Standardisation,
     random: RandomFeatures,
     features: DMatrix<f64>,
     coefficients: DMatrix<f64>,
     softmax: Softmax,
     size_models: Vec<OnceLock<SizeModels>>,
-    pub(crate) outside: Outside,
+    pub(crate) outside: OutlierTest,
     /// Healthy records as they are, without a healthy one before them.
-    pub(crate) healthy_outside: Option<Outside>,
+    pub(crate) healthy_outside: Option<OutlierTest>,
 }
 
 /// Severity and sizes of a class's damages, by their places among the sizes; none of the severity.
 pub(crate) type SizeModels = Result<Vec<(Option<usize>, SizeModel)>, DiagnoseError>;
 
-/// What is compared.
+/// The features that are compared.
 #[derive(Debug, Clone)]
 pub(crate) struct Layout {
     pub signal: SignalKind,
@@ -80,8 +80,8 @@ pub(crate) struct Layout {
     pub last: [usize; 2],
 }
 
-/// How a simulation looks in recordings like those of the question.
-struct Appearance {
+/// Features of a simulation in recordings like those of the question.
+struct SimulatedAppearance {
     layout: Layout,
     /// (g) Noise in the lines of the recordings that are asked about, and of the healthy ones.
     noises: [[Vec<f64>; 2]; 2],
@@ -91,7 +91,7 @@ struct Appearance {
     knows_speed: bool,
 }
 
-impl Appearance {
+impl SimulatedAppearance {
     /// Of the healthy recordings alone.
     fn of_healthy(&self) -> Self {
         let layout = Layout { has_healthy: false, ..self.layout.clone() };
@@ -99,13 +99,13 @@ impl Appearance {
         Self { layout, noises, nominal_hz: self.nominal_hz, knows_speed: self.knows_speed }
     }
 
-    /// What a simulation shows.
+    /// Features of a simulation.
     ///
     /// # Arguments
     /// * `record` - the simulation
     /// * `healthy` - of the same pair of wheels, where it is compared with one
     /// * `seed` - of the noise
-    fn row(&self, record: &ReferenceRecord, healthy: Option<&ReferenceRecord>, seed: u64) -> Row {
+    fn row(&self, record: &ReferenceRecord, healthy: Option<&ReferenceRecord>, seed: u64) -> FeatureRow {
         let [now, before] = &self.noises;
         let noisy = |record, noise| with_noise(record, &self.layout, noise, seed);
         let (now, before) = (noisy(record, now), healthy.map(|healthy| noisy(healthy, before)));
@@ -121,9 +121,9 @@ fn shown(signal: SignalKind, wheels: &[WheelLines; 2]) -> [Option<&WheelLines>; 
     [(signal == SignalKind::Recording).then_some(&wheels[0]), Some(&wheels[1])]
 }
 
-/// What one record shows.
+/// Features of one record.
 #[derive(Debug, Clone)]
-pub(crate) struct Row {
+pub(crate) struct FeatureRow {
     pub values: Vec<f64>,
     /// (rev) Where the burst is, of the pinion and of the gear.
     pub burst_rev: [f64; 2],
@@ -173,13 +173,18 @@ impl Layout {
         Ok(Self { signal: first.signal, has_healthy: !question.healthy.is_empty(), last })
     }
 
-    /// What two states of one rig, or one alone, show.
+    /// Features of two states of one rig, or of one alone.
     ///
     /// # Arguments
     /// * `now`, `healthy` - lines of the pinion, of a recording, and of the gear
     /// * `speed` - (-) logarithm of the speed over the rig's; 0 where it is not known
-    fn row(&self, now: [Option<&WheelLines>; 2], healthy: [Option<&WheelLines>; 2], speed: f64) -> Row {
-        let mut row = Row { values: vec![speed], burst_rev: [0.0; 2] };
+    fn row(
+        &self,
+        now: [Option<&WheelLines>; 2],
+        healthy: [Option<&WheelLines>; 2],
+        speed: f64,
+    ) -> FeatureRow {
+        let mut row = FeatureRow { values: vec![speed], burst_rev: [0.0; 2] };
         let regular = self.signal.has_regular_part();
         for wheel in [0, 1] {
             let (Some(now), last) = (now[wheel], self.last[wheel]) else { continue };
@@ -201,8 +206,8 @@ impl Layout {
         row
     }
 
-    /// What the question shows: the mean over its recordings.
-    fn question(&self, question: &Question, reference: &ReferenceSet) -> Row {
+    /// Features of the question: the mean over its recordings.
+    fn question(&self, question: &Question, reference: &ReferenceSet) -> FeatureRow {
         let nominal = reference.prior.base.operation.pinion_speed_hz;
         let lines = |of: &Observation| [of.pinion.clone(), Some(of.gear.clone())];
         let healthy: Vec<[Option<WheelLines>; 2]> = match question.healthy {
@@ -258,7 +263,7 @@ impl<'a> Learned<'a> {
         if records.len() < FEWEST_RECORDS {
             return Err(DiagnoseError::NoReference);
         }
-        let appearance = Appearance {
+        let appearance = SimulatedAppearance {
             layout: layout.clone(),
             noises,
             nominal_hz: reference.prior.base.operation.pinion_speed_hz,
@@ -268,7 +273,7 @@ impl<'a> Learned<'a> {
             let before = reference.healthy_of(record).filter(|_| layout.has_healthy);
             appearance.row(record, before, reference.prior.seed)
         };
-        let rows: Vec<Row> = records.par_iter().map(row_of).collect();
+        let rows: Vec<FeatureRow> = records.par_iter().map(row_of).collect();
         let mut classes: Vec<Class> = records.iter().map(|record| class_of(record)).collect();
         classes.sort_unstable_by_key(|class| class.map(|(kind, wheel)| (kind, wheel as usize)));
         classes.dedup();
@@ -278,7 +283,7 @@ impl<'a> Learned<'a> {
         let folds: Vec<usize> = records.iter().map(|record| fold_of(record)).collect();
         let weights = weights(&class_of, &classes);
         let values: Vec<Vec<f64>> = rows.iter().map(|row| row.values.clone()).collect();
-        let standard = Standard::of(&values);
+        let standard = Standardisation::of(&values);
         let standardised: Vec<Vec<f64>> = values.iter().map(|row| standard.apply(row)).collect();
         let width = values.first().map_or(0, Vec::len);
         let random = RandomFeatures::new(width, RANDOM_FEATURES, reference.prior.seed);
@@ -287,7 +292,7 @@ impl<'a> Learned<'a> {
         let targets = DMatrix::from_fn(classes.len(), records.len(), is_class);
         let regression = ridge(&features, &targets, &weights, &folds, PENALTY)?;
         let softmax = Softmax::fit(&regression.out_of_fold, &class_of, &weights)?;
-        let outside = Outside::new(&values, &units, &weights);
+        let outside = OutlierTest::new(&values, &units, &weights);
         let healthy_outside = layout.has_healthy.then(|| {
             let alone = appearance.of_healthy();
             let healthy: Vec<&ReferenceRecord> =
@@ -295,7 +300,7 @@ impl<'a> Learned<'a> {
             let row_of = |record: &&ReferenceRecord| alone.row(record, None, reference.prior.seed).values;
             let rows: Vec<Vec<f64>> = healthy.par_iter().map(row_of).collect();
             let units: Vec<u64> = healthy.iter().map(|record| record.number / RECORDS_PER_UNIT).collect();
-            Outside::new(&rows, &units, &vec![1.0; rows.len()])
+            OutlierTest::new(&rows, &units, &vec![1.0; rows.len()])
         });
         let size_models = classes.iter().map(|_| OnceLock::new()).collect();
         Ok(Self {
@@ -319,19 +324,19 @@ impl<'a> Learned<'a> {
         })
     }
 
-    /// What the question shows.
-    pub(crate) fn row(&self, question: &Question) -> Row {
+    /// Features of the question.
+    pub(crate) fn row(&self, question: &Question) -> FeatureRow {
         self.layout.question(question, self.reference)
     }
 
-    /// What the healthy recordings show alone.
-    pub(crate) fn healthy_row(&self, question: &Question) -> Row {
+    /// Features of the healthy recordings alone.
+    pub(crate) fn healthy_row(&self, question: &Question) -> FeatureRow {
         let alone = Layout { has_healthy: false, ..self.layout.clone() };
         alone.question(&Question { now: question.healthy, healthy: &[] }, self.reference)
     }
 
-    /// What regressions take of a row.
-    pub(crate) fn features(&self, row: &Row) -> Vec<f64> {
+    /// Features of a row as regressions use them.
+    pub(crate) fn features(&self, row: &FeatureRow) -> Vec<f64> {
         self.random.of(&[self.standard.apply(&row.values)]).column(0).iter().copied().collect()
     }
 
@@ -350,7 +355,7 @@ impl<'a> Learned<'a> {
         (0..self.class_of.len()).filter(|&row| self.class_of[row] == class).collect()
     }
 
-    /// What is learnt about the numbers of the damages of a class: the severity, then the sizes that vary, by their places.
+    /// Model of the numbers of the damages of a class: the severity, then the sizes that vary, by their places.
     ///
     /// # Arguments
     /// * `class` - a damaged one, by its place
@@ -362,7 +367,7 @@ impl<'a> Learned<'a> {
         known.as_deref().map_err(Clone::clone)
     }
 
-    /// As [`Self::sizes`], by the simulations within a range of severities.
+    /// Does what [`Self::sizes`] does, by the simulations within a range of severities.
     ///
     /// # Arguments
     /// * `refined` - the range, with more simulations in it; none: all severities, without more
@@ -406,7 +411,7 @@ impl<'a> Learned<'a> {
     }
 
     /// The damaged records of a refined round that can be compared with the question, with what they show.
-    fn refined_rows<'r>(&self, refined: &'r ReferenceSet) -> Vec<(&'r ReferenceRecord, Row)> {
+    fn refined_rows<'r>(&self, refined: &'r ReferenceSet) -> Vec<(&'r ReferenceRecord, FeatureRow)> {
         let is_whole = |record: &ReferenceRecord| {
             record.wheels.iter().zip(self.layout.last).all(|(wheel, last)| wheel.last() >= last)
         };
@@ -423,7 +428,7 @@ impl<'a> Learned<'a> {
     }
 }
 
-/// Which part of the simulations a record is in: pairs of wheels are not divided.
+/// Part of the simulations to which a record belongs: pairs of wheels are not divided.
 fn fold_of(record: &ReferenceRecord) -> usize {
     (record.number / RECORDS_PER_UNIT % FOLDS as u64) as usize
 }

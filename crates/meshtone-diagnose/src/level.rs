@@ -1,4 +1,4 @@
-//! Whether a recording is as loud as simulations of the rig are.
+//! A check that a recording is as loud as simulations of the rig.
 
 use crate::learn::{Learned, Question};
 use crate::observation::{Observation, WheelLines};
@@ -7,7 +7,7 @@ use crate::quantile::quantile;
 /// (dB) How far beyond nine in ten of the simulations a level must be: the sensor's path is among what was drawn for them.
 const BEYOND_DB: f64 = 10.0;
 
-/// What is to be said of recordings that are far louder or quieter than all simulations.
+/// A warning about recordings that are far louder or quieter than all simulations.
 ///
 /// # Arguments
 /// * `learned`, `question` - the simulations, and the recordings

@@ -1,13 +1,13 @@
-//! What is wrong with a gear, told from its vibration by simulations.
+//! Diagnosis of a gear from its vibration, by simulations.
 //!
 //! A [`Prior`] says what may be: kinds of damage and their sizes, and everything that differs from rig to rig. A
 //! [`ReferenceSet`] holds simulations of it, as averages over the revolutions of both wheels. An [`Observation`] is what a recording
 //! shows; [`diagnose`] says what it may be, by what it learns from the reference set.
 #![deny(missing_docs)]
 
-mod alike;
 mod answer;
 mod any_damage;
+mod consistency;
 mod diagnose;
 mod error;
 mod features;
@@ -17,7 +17,7 @@ mod learn;
 mod level;
 mod matrix;
 mod observation;
-mod outside;
+mod outlier_test;
 mod prior;
 mod quantile;
 mod reference;

@@ -14,12 +14,12 @@ const LEAST_DEVIATION: f64 = 1e-3;
 
 /// Each feature less its mean, over its standard deviation, and within ± [`Self::MOST`].
 #[derive(Debug, Clone)]
-pub(crate) struct Standard {
+pub(crate) struct Standardisation {
     mean: Vec<f64>,
     deviation: Vec<f64>,
 }
 
-impl Standard {
+impl Standardisation {
     /// Standard deviations beyond which a feature is no farther away.
     const MOST: f64 = 5.0;
 
@@ -42,7 +42,7 @@ impl Standard {
         self.within(row, Self::MOST)
     }
 
-    /// The same within ± other bounds.
+    /// Standardises a row within ± other bounds.
     pub fn within(&self, row: &[f64], most: f64) -> Vec<f64> {
         let of = |((value, mean), deviation): ((&f64, &f64), &f64)| {
             ((value - mean) / deviation).clamp(-most, most)
@@ -174,10 +174,10 @@ pub(crate) fn ridge(
     Ok(Ridge { coefficients, out_of_fold })
 }
 
-/// As [`ridge`] without weights, of fewer rows than features: by the products of rows.
+/// Does what [`ridge`] does without weights, for fewer rows than features: by the products of rows.
 ///
 /// # Errors
-/// As [`ridge`].
+/// Those of [`ridge`].
 pub(crate) fn dual_ridge(
     features: &DMatrix<f64>,
     targets: &DMatrix<f64>,

@@ -1,4 +1,4 @@
-//! What a recording, or a simulation, shows of the two wheels.
+//! Features of the two wheels in a recording or a simulation.
 
 use meshtone::signal::{
     Alternative, AngleZero, AngularSettings, AngularSignal, Mismatch, SeparationSettings, ShaftPhase,
@@ -12,7 +12,7 @@ pub(crate) const MESH_ORDERS: usize = 16;
 /// (-) Part of a recording's Nyquist order up to which its lines are whole.
 const PASSED: f64 = 0.8;
 
-/// What a signal is.
+/// Kind of a signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SignalKind {
     /// A recording: any number of revolutions, from which both wheels' averages are taken.
@@ -33,7 +33,7 @@ impl SignalKind {
         Self::NAMES[self as usize].0
     }
 
-    /// Whether the mesh harmonics are in it.
+    /// Returns whether the mesh harmonics are in it.
     pub(crate) fn has_regular_part(self) -> bool {
         self != Self::Difference
     }
@@ -83,7 +83,7 @@ impl WheelLines {
         self.lines.len().saturating_sub(1)
     }
 
-    /// Whether an order belongs to the regular part: the shaft's low orders, mesh harmonics and their sidebands.
+    /// Returns whether an order belongs to the regular part: the shaft's low orders, mesh harmonics and their sidebands.
     fn is_regular(order: usize, teeth: u32, settings: &SeparationSettings) -> bool {
         let (mesh, beside) = (order / teeth.max(1) as usize, order % teeth.max(1) as usize);
         let near =
@@ -113,14 +113,14 @@ pub(crate) fn revolution(lines: &[Complex64], points: usize) -> Vec<f64> {
     from_real_spectrum(spectrum, points)
 }
 
-/// What a recording shows.
+/// Features of a recording.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observation {
-    /// What the signal was.
+    /// Kind of the signal.
     pub signal: SignalKind,
     /// (Hz) Speed of the pinion's shaft, where it is known.
     pub pinion_speed_hz: Option<f64>,
-    /// What angle 0 of the pinion and of the gear is, from which their teeth are counted.
+    /// Meaning of angle 0 of the pinion and of the gear, from which their teeth are counted.
     pub zero: [AngleZero; 2],
     /// The gear's average, or its difference signal.
     pub gear: WheelLines,
@@ -131,12 +131,12 @@ pub struct Observation {
     pub noise: [Vec<f64>; 2],
     /// Why the recording is not what it is stated to be, where that is seen without a simulation.
     pub mismatch: Option<String>,
-    /// What else is doubtful about it.
+    /// Other warnings about it.
     pub doubts: Vec<String>,
 }
 
 impl Observation {
-    /// What a recording shows, over the angles of both shafts.
+    /// Observes a recording over the angles of both shafts.
     ///
     /// # Arguments
     /// * `pinion`, `gear` - the same channel over the angle of either shaft ([`meshtone::signal::angular_resample`]), in g
@@ -157,7 +157,7 @@ impl Observation {
         }
         let [of_pinion, of_gear] = [synchronous_average(pinion)?, synchronous_average(gear)?];
         let ratio = f64::from(teeth[1]) / f64::from(teeth[0]);
-        let mismatch = beside_the_shafts(gear, teeth[1], ratio);
+        let mismatch = energy_off_both_shafts(gear, teeth[1], ratio);
         Ok(Self {
             signal: SignalKind::Recording,
             pinion_speed_hz: Some(pinion_speed_hz),
@@ -170,7 +170,7 @@ impl Observation {
         })
     }
 
-    /// The same with what angle 0 is.
+    /// Returns the observation with the meaning of angle 0.
     ///
     /// # Arguments
     /// * `zero` - of the pinion and of the gear
@@ -180,7 +180,7 @@ impl Observation {
         self
     }
 
-    /// The same with something else that speaks against the recording.
+    /// Returns the observation with a further mismatch of the recording.
     ///
     /// # Arguments
     /// * `against` - in words; said before what is known already
@@ -190,7 +190,7 @@ impl Observation {
         self
     }
 
-    /// What one revolution of the gear shows.
+    /// Observes one revolution of the gear.
     ///
     /// # Arguments
     /// * `values_g` - (g) at equal angles, a whole revolution
@@ -223,7 +223,7 @@ impl Observation {
     }
 }
 
-/// Which tooth counts a recording has rather than those that are stated, seen at a stated speed: the phase of another tone than the
+/// Looks for tooth counts that fit a recording better than those that are stated, at a stated speed: the phase of another tone than the
 /// mesh's hides them.
 ///
 /// # Arguments
@@ -232,7 +232,7 @@ impl Observation {
 /// * `speed_hz` - (Hz) about the speed of that wheel
 ///
 /// # Errors
-/// What [`angular_resample`] refuses.
+/// Those of [`angular_resample`].
 pub fn other_teeth(
     signal: &[f64],
     sampling_rate_hz: f64,
@@ -252,7 +252,7 @@ pub fn other_teeth(
 /// (-) Part of the energy beyond the orders that are looked at, from which on values are hardly one revolution.
 const BEYOND: f64 = 0.7;
 
-/// What is doubtful about values that are stated to be one revolution: those of many have their mesh orders as many times as high.
+/// Warning about values that are stated to be one revolution: those of many have their mesh orders as many times as high.
 fn beyond_a_revolution(values_g: &[f64], gear_teeth: u32) -> Option<String> {
     let squares: Vec<f64> = real_spectrum(values_g).iter().skip(1).map(Complex64::norm_sqr).collect();
     let (inside, all) =
@@ -267,7 +267,7 @@ fn beyond_a_revolution(values_g: &[f64], gear_teeth: u32) -> Option<String> {
     })
 }
 
-/// What is doubtful about averages over so few revolutions that each wheel's is not free of its mate's, or that noise is not
+/// Warning about averages over so few revolutions that each wheel's is not free of its mate's, or that noise is not
 /// separated from what repeats.
 ///
 /// # Arguments
@@ -318,7 +318,7 @@ const MIDDLE_SQUARE: f64 = 0.375 + std::f64::consts::FRAC_1_PI;
 
 /// The spectrum of a signal over whole revolutions, behind Hann's window: the mate's orders lie between lines and must not leak.
 /// And for each line whether it lies beside the orders of both shafts.
-fn lines_beside(angular: &AngularSignal, ratio: f64) -> (Vec<Complex64>, Vec<bool>) {
+fn lines_off_both_shafts(angular: &AngularSignal, ratio: f64) -> (Vec<Complex64>, Vec<bool>) {
     let revolutions = angular.revolutions();
     let whole = revolutions * angular.points_per_revolution;
     let window = |at: usize| 0.5 - 0.5 * (std::f64::consts::TAU * at as f64 / whole as f64).cos();
@@ -346,7 +346,7 @@ fn noise(angular: &AngularSignal, teeth: u32, ratio: f64) -> Vec<f64> {
     if revolutions < FEWEST_REVOLUTIONS {
         return Vec::new();
     }
-    let (spectrum, beside) = lines_beside(angular, ratio);
+    let (spectrum, beside) = lines_off_both_shafts(angular, ratio);
     let per_mesh_order = teeth as usize * revolutions;
     let count = (revolutions * angular.points_per_revolution) as f64;
     let last = (PASSED * angular.nyquist_order) as usize * revolutions;
@@ -374,14 +374,14 @@ const TONE: f64 = 30.0;
 /// (-) Part of the energy in tones of neither shaft from which on they count, likewise.
 const TONES_COUNT: f64 = 0.2;
 
-/// What speaks against the recording where the orders of the two shafts do not explain it: impulses, or tones, that repeat with
+/// Evidence against the recording where the orders of the two shafts do not explain it: impulses, or tones, that repeat with
 /// neither.
-fn beside_the_shafts(gear: &AngularSignal, teeth: u32, ratio: f64) -> Option<String> {
+fn energy_off_both_shafts(gear: &AngularSignal, teeth: u32, ratio: f64) -> Option<String> {
     if gear.revolutions() < FEWEST_REVOLUTIONS {
         return None;
     }
     let whole = gear.revolutions() * gear.points_per_revolution;
-    let (mut spectrum, beside) = lines_beside(gear, ratio);
+    let (mut spectrum, beside) = lines_off_both_shafts(gear, ratio);
     let passed = (PASSED * gear.nyquist_order) as usize * gear.revolutions();
     let energy: f64 = spectrum.iter().take(passed).skip(3).map(Complex64::norm_sqr).sum();
     let lines: Vec<(usize, f64)> = (0..passed.min(spectrum.len()))

@@ -1,4 +1,4 @@
-//! What may be: damage, and everything that differs from rig to rig.
+//! The prior: damage, and everything that differs from rig to rig.
 
 use meshtone::damage::{Fault, FaultyTeeth, damage_kinds};
 use meshtone::random::{Draws, Purpose};
@@ -20,7 +20,7 @@ const KNOWN_SPEED_SPREAD: f64 = 0.002;
 /// Draws of a damage before a record of a [`Focus`] is given up: a range of severities is a tenth of all at least.
 const MOST_FOCUSED_ATTEMPTS: usize = 100;
 
-/// How uncertain a number of the scenario is: it is multiplied by e to the power of a normal number.
+/// Uncertainty of a number of the scenario: it is multiplied by e to the power of a normal number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spread {
     /// Dotted key, as in the scenario file.
@@ -29,7 +29,7 @@ pub struct Spread {
     pub deviation: f64,
 }
 
-/// What damage a refined round draws: one kind on one wheel, within a range of severities.
+/// Damage that a refined round draws: one kind on one wheel, within a range of severities.
 ///
 /// Within the range its density is that of the prior, so that what is left out is all that is lost: Deistler, Goncalves, Macke,
 /// "Truncated proposals for scalable and hassle-free simulation-based inference", NeurIPS 2022.
@@ -43,7 +43,7 @@ pub struct Focus {
     pub severity: [f64; 2],
 }
 
-/// What may be.
+/// The prior of damage and rig.
 ///
 /// Drawn for a pair of wheels (eight records): its wheels' deviations, its structure, its path to the sensor. Drawn
 /// for a record: speed, load, damage.
@@ -90,9 +90,9 @@ pub struct DrawnFault {
 /// A record that was drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawn {
-    /// What is simulated.
+    /// Colour of simulations.
     pub scenario: Scenario,
-    /// What is damaged; none of a healthy one.
+    /// The damage; none of a healthy record.
     pub fault: Option<DrawnFault>,
     /// Seed of the path from the simulated sensor to the rig's.
     pub path_seed: u64,
@@ -101,7 +101,7 @@ pub struct Drawn {
 }
 
 impl Prior {
-    /// What may be about a rig by default.
+    /// The default prior of a rig.
     ///
     /// # Arguments
     /// * `rig` - the rig's scenario; its faults are left out
@@ -173,7 +173,7 @@ impl Prior {
         self.draw_among(&self.kinds(), number)
     }
 
-    /// As [`Self::draw`], where the kinds are known already: to find them is to check a scenario of each.
+    /// Does what [`Self::draw`] does, where the kinds are known already: finding them takes a check of a scenario of each.
     pub(crate) fn draw_among(&self, kinds: &[DamageKind], number: u64) -> Result<Drawn, ScenarioError> {
         let (unit, place) = (number / RECORDS_PER_UNIT, number % RECORDS_PER_UNIT);
         let mut common = Draws::new(self.seed, Purpose::DiagnosisUnit, unit);

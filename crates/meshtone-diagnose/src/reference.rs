@@ -17,7 +17,7 @@ use crate::prior::{Drawn, DrawnFault, Prior, RECORDS_PER_UNIT};
 pub struct ReferenceRecord {
     /// Its number in the prior.
     pub number: u64,
-    /// What is damaged; none of a healthy one.
+    /// The damage; none of a healthy record.
     pub fault: Option<DrawnFault>,
     /// (Hz) Speed of the pinion's shaft.
     pub pinion_speed_hz: f64,
@@ -28,7 +28,7 @@ pub struct ReferenceRecord {
 /// Simulations of what may be.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReferenceSet {
-    /// What they were drawn from.
+    /// Prior from which they were drawn.
     pub prior: Prior,
     /// Those that could be simulated, in the order of their numbers.
     pub records: Vec<ReferenceRecord>,
@@ -46,7 +46,7 @@ impl ReferenceSet {
     }
 }
 
-/// What a caller wants to know, and to say, while a reference set is made.
+/// Progress and cancellation while a reference set is made.
 pub struct ReferenceControl<'a> {
     /// Called with the number of finished simulations, from any thread.
     pub progress: &'a (dyn Fn(usize) + Sync),

@@ -57,7 +57,7 @@ pub fn refine(
     }
 }
 
-/// What is learnt from a refined round about one kind of damage on one wheel.
+/// Model that is learnt from a refined round about one kind of damage on one wheel.
 pub struct Refined {
     class: usize,
     models: Vec<(Option<usize>, SizeModel)>,
@@ -66,7 +66,7 @@ pub struct Refined {
 }
 
 impl Learned<'_> {
-    /// What a refined round for a question draws; none where the first answer is not sure enough of anything.
+    /// Damage that a refined round for a question draws; none where the first answer is not sure enough of anything.
     ///
     /// # Arguments
     /// * `question` - the recordings
@@ -99,7 +99,7 @@ impl Learned<'_> {
         Ok(Some(self.reference.prior.narrowed(Focus { kind, wheel, severity }, speed_hz)))
     }
 
-    /// What a refined round adds.
+    /// Learns from a refined round.
     ///
     /// # Arguments
     /// * `refined` - simulations of what [`Self::narrowed`] says
@@ -119,7 +119,7 @@ impl Learned<'_> {
 }
 
 impl Refined {
-    /// What is known of the numbers of a class, where it is the one that was looked at.
+    /// Numbers of a class as the refined round shows them, where it is the one that was looked at.
     pub(crate) fn of_class(&self, class: usize) -> Option<&[(Option<usize>, SizeModel)]> {
         (class == self.class).then_some(&self.models)
     }

@@ -1,4 +1,4 @@
-//! How large a damage is, if it is of a kind: approximate Bayesian computation on a summary that was learnt.
+//! The size of a damage, given its kind: approximate Bayesian computation on a summary that was learnt.
 //!
 //! The summary of a signal is what a ridge regression predicts of the size (Fearnhead and Prangle 2012). Of every simulation it is
 //! the prediction by those of other wheels, so that it errs as much as that of the recording. The sizes of the simulations whose
@@ -21,11 +21,11 @@ const FEWEST: usize = 40;
 /// Fewest simulations of a class that can be learnt from.
 const FEWEST_TO_LEARN: usize = 20;
 
-/// What is learnt about one number of a damage.
+/// Model of one number of a damage.
 pub(crate) struct SizeModel {
     /// The number of each simulation.
     values: Vec<f64>,
-    /// What is predicted of each by those of other wheels.
+    /// Prediction for each record by those of other wheels.
     predicted: Vec<f64>,
     /// Of the regression on the features.
     coefficients: Vec<f64>,
@@ -77,7 +77,7 @@ impl SizeModel {
         Ok(best.into_iter().flatten().map(|(_, model)| model).collect())
     }
 
-    /// What the number may be: values with their weights.
+    /// Posterior of the number: values with their weights.
     ///
     /// # Arguments
     /// * `features` - of the recording

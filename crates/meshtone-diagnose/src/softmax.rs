@@ -8,9 +8,9 @@ use rayon::prelude::*;
 
 use crate::DiagnoseError;
 
-/// What the squares of the slopes cost.
+/// Penalty of the squares of the slopes.
 const PENALTY: f64 = 1.0;
-/// What the scores are multiplied by: those of a regression on 0 and 1 differ by less than 1.
+/// Factor of the scores: those of a regression on 0 and 1 differ by less than 1.
 const SCALE: f64 = 5.0;
 const MOST_ITERATIONS: u64 = 200;
 const MEMORY: usize = 10;

@@ -1,4 +1,4 @@
-//! Whether a recording's speed is one that simulations of the rig can say something about.
+//! A check that simulations of the rig cover a recording's speed.
 
 use crate::DiagnoseError;
 use crate::learn::Question;
@@ -12,7 +12,7 @@ const NEAR: f64 = 0.03;
 const SIXTY: f64 = 60.0;
 
 impl Question<'_> {
-    /// Whether simulations of a rig can be asked at all; to be known before they are made.
+    /// Checks whether simulations of a rig can answer at all, before they are made.
     ///
     /// # Arguments
     /// * `prior` - what may be about the rig
@@ -38,7 +38,7 @@ fn simulated_hz(prior: &Prior) -> [f64; 2] {
     [-1.0, 1.0].map(|sign: f64| nominal_hz * (sign * prior.speed_spread).exp())
 }
 
-/// What explains that a recording is so many times as quick as the rig.
+/// Explanation why a recording is so many times as quick as the rig.
 fn reason(ratio: f64, prior: &Prior) -> String {
     let [pinion, gear] = [prior.base.gears.pinion_teeth, prior.base.gears.gear_teeth].map(f64::from);
     let is = |other: f64| (ratio / other - 1.0).abs() < NEAR;
@@ -59,7 +59,7 @@ fn reason(ratio: f64, prior: &Prior) -> String {
     }
 }
 
-/// What is to be said of recordings beside the speeds of the simulations, though near them.
+/// Warning about recordings beside the speeds of the simulations, though near them.
 ///
 /// # Arguments
 /// * `question` - the recordings

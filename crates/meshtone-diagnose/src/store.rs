@@ -31,7 +31,7 @@ pub enum StoreError {
     /// A file or folder that could not be made.
     #[error("cannot keep the reference set in {}: {source}", path.display())]
     Folder {
-        /// Which.
+        /// Name of the file or folder.
         path: PathBuf,
         /// Why.
         source: io::Error,
@@ -46,7 +46,7 @@ pub enum StoreError {
     Cancelled,
 }
 
-/// Where reference sets are kept: a folder for each prior, named after what it says and the program's version.
+/// Store of reference sets: a folder for each prior, named after what it says and the program's version.
 #[derive(Debug, Clone)]
 pub struct ReferenceStore {
     folder: PathBuf,
@@ -62,7 +62,7 @@ impl ReferenceStore {
         Self { folder: folder.into() }
     }
 
-    /// Where sets are kept unless a user says otherwise: in the user's folder for what can be made again. None where the
+    /// Default folder of the sets, in the user's folder for what can be made again. None where the
     /// environment names no home directory.
     pub fn default_folder() -> Option<PathBuf> {
         let given = |name: &str| var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);

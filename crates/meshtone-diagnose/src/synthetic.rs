@@ -15,7 +15,7 @@ const RIG: &str = "[gears]\nmodule_mm = 3\npinion_teeth = 17\ngear_teeth = 38\nf
 /// Mesh orders of the lines.
 const LAST_MESH: u32 = 6;
 
-/// What may be about a rig.
+/// The prior of a rig.
 pub fn prior() -> Prior {
     Prior::new(&Scenario::from_toml(RIG).unwrap())
 }

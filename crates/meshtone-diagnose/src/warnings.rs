@@ -1,16 +1,16 @@
-//! What deserves attention about an answer.
+//! Warnings about an answer.
 
 use meshtone::damage::damage_kinds;
 
 use crate::answer::{Answer, p_in_words};
 use crate::diagnose::{OUTSIDE, diagnose};
 use crate::learn::{Learned, Question};
-use crate::{alike, level, speed};
+use crate::{consistency, level, speed};
 
 /// (-) Probability of damage from which on a recording that is given as healthy is hardly of a healthy pair.
 const SURELY: f64 = 0.9;
 
-/// What deserves attention about an answer, in words.
+/// Warnings about an answer, in words.
 ///
 /// # Arguments
 /// * `answer` - all but its warnings
@@ -47,7 +47,7 @@ pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) 
         );
     }
     warnings.extend(level::doubt(learned, question));
-    warnings.extend(alike::doubts(learned, question));
+    warnings.extend(consistency::doubts(learned, question));
     warnings.extend(speed::doubts(question, &learned.reference.prior));
     warnings.extend(not_simulated(answer));
     warnings

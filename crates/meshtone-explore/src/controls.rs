@@ -1,4 +1,4 @@
-//! What the page's controls are made from: the same rows as the guide's tables, the commented files and Python's signatures.
+//! The source of the page's controls: the same rows as the guide's tables, the commented files and Python's signatures.
 
 use meshtone::damage::{DamageKind, damage_kinds};
 use meshtone::scenario::{Fault, KeyDescription, KeyKind, Scenario, sections};

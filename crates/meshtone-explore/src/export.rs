@@ -1,4 +1,4 @@
-//! What the page hands out: the scenario as TOML and as Python, the picture as SVG, the signals as Parquet.
+//! Files that the page offers for download: the scenario as TOML and as Python, the picture as SVG, the signals as Parquet.
 
 use meshtone::damage::damage_kinds;
 use meshtone::scenario::{GearPair, KeyDescription, Scenario, SectionDescription};
@@ -13,7 +13,7 @@ use crate::refusal::Refusal;
 pub struct Exported {
     /// Its ending.
     pub ending: &'static str,
-    /// What kind of file a browser is told that it is.
+    /// Media type that a browser receives.
     pub media_type: &'static str,
     /// Its bytes.
     pub bytes: Vec<u8>,
@@ -80,7 +80,7 @@ pub fn without_defaults(scenario: &Scenario) -> Map<String, Value> {
     kept.collect()
 }
 
-/// The same gears, speed and load, with every other key at its default.
+/// A scenario of the same gears, speed and load, with every other key at its default.
 fn with_defaults(scenario: &Scenario) -> Scenario {
     Scenario::new(GearPair {
         module_mm: scenario.gears.module_mm,

@@ -5,7 +5,7 @@
 pub struct Preset {
     /// Name of its file, without the ending.
     pub name: &'static str,
-    /// What it is, in a few words.
+    /// Description, in a few words.
     pub title: &'static str,
     /// The scenario file.
     pub toml: &'static str,

@@ -11,7 +11,7 @@ use crate::refusal::Refusal;
 /// (bytes) What one simulation of the page may take, so that several fit beside each other.
 const MOST_BYTES: u64 = 1 << 30;
 
-/// How much memory a simulation for the page may take: what any may, and at most 1 GiB.
+/// Limit of the memory of a simulation for the page: that of any simulation, and at most 1 GiB.
 pub fn memory_limit() -> MemoryLimit {
     match memory::limit() {
         limit if limit.bytes() <= MOST_BYTES => limit,

@@ -9,13 +9,13 @@ use serde_json::{Value, json};
 /// Why there is no answer.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Refusal {
-    /// What is asked for is wrong; a key of a scenario, where one is named.
+    /// The request is wrong; a key of a scenario, where one is named.
     Wrong(ScenarioError),
-    /// What is asked for is wrong, and no key says so.
+    /// The request is wrong, but no key is to blame.
     Unfit {
-        /// What is wrong.
+        /// The problem.
         problem: String,
-        /// What to do about it.
+        /// Advice.
         help: Option<String>,
     },
     /// A later request has taken its place, or nobody waits for it any more.
@@ -31,7 +31,7 @@ impl Refusal {
         Self::Unfit { problem: problem.into(), help: None }
     }
 
-    /// The same refusal with advice.
+    /// Returns the refusal with advice.
     ///
     /// # Arguments
     /// * `advice` - what the user can do

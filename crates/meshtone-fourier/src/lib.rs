@@ -138,7 +138,7 @@ pub fn convenient_count(count: usize) -> usize {
     (1..=count).rev().find(|count| is_smooth(*count)).unwrap_or(0)
 }
 
-/// Whether a number of at least 1 has no prime factors but 2, 3 and 5.
+/// Returns whether a number of at least 1 has no prime factors but 2, 3 and 5.
 fn is_smooth(number: usize) -> bool {
     let without = |mut rest: usize, prime: usize| {
         while rest.is_multiple_of(prime) {

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::own_file::{self, Unnamed};
+use crate::own_file::{self, TemporaryFile};
 
 /// A file that could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -54,7 +54,7 @@ pub fn write_atomically(
 #[derive(Debug)]
 #[must_use = "a staged file disappears unless it is committed"]
 pub struct StagedFile {
-    temporary: Unnamed,
+    temporary: TemporaryFile,
     path: PathBuf,
 }
 
@@ -72,10 +72,21 @@ impl StagedFile {
         write: impl FnOnce(&mut File) -> io::Result<()>,
     ) -> Result<Self, WriteFileError> {
         let path = path.to_path_buf();
-        match write_beside(&path, write) {
+        let written = temporary_beside(&path).and_then(|mut temporary| {
+            write(temporary.file())?;
+            // Without this a power failure after the rename could leave an empty file under the name.
+            temporary.file().sync_all()?;
+            Ok(temporary)
+        });
+        match written {
             Ok(temporary) => Ok(Self { temporary, path }),
             Err(source) => Err(WriteFileError { path, source }),
         }
+    }
+
+    /// The name that it is to take.
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
     /// Gives the file its name, in place of the file that had it.
@@ -83,8 +94,7 @@ impl StagedFile {
     /// # Errors
     /// The file cannot be renamed; the one that had the name is then still there.
     pub fn commit(self) -> Result<(), WriteFileError> {
-        let Self { temporary, path } = self;
-        temporary.name(&path).map_err(|source| WriteFileError { path, source })
+        self.persist(|file, path| file.persist(path))
     }
 
     /// Gives the file its name, unless another file has it.
@@ -92,8 +102,12 @@ impl StagedFile {
     /// # Errors
     /// There is a file of that name (`AlreadyExists`), or the file cannot be renamed.
     pub fn commit_new(self) -> Result<(), WriteFileError> {
+        self.persist(|file, path| file.persist_noclobber(path))
+    }
+
+    fn persist(self, persist: own_file::Persist) -> Result<(), WriteFileError> {
         let Self { temporary, path } = self;
-        temporary.name_new(&path).map_err(|source| WriteFileError { path, source })
+        temporary.persist(&path, persist).map_err(|source| WriteFileError { path, source })
     }
 }
 
@@ -116,10 +130,7 @@ impl StagedFile {
 /// # Ok::<(), std::io::Error>(())
 /// ```
 pub fn check_target(path: &Path) -> Result<(), WriteFileError> {
-    match temporary_beside(path) {
-        Ok(_) => Ok(()),
-        Err(source) => Err(WriteFileError { path: path.to_path_buf(), source }),
-    }
+    temporary_beside(path).map(drop).map_err(|source| WriteFileError { path: path.to_path_buf(), source })
 }
 
 /// Whether files can be written into a directory, tried with an empty one that disappears at once.
@@ -130,22 +141,12 @@ pub fn check_target(path: &Path) -> Result<(), WriteFileError> {
 /// # Errors
 /// Why files cannot be written.
 pub fn check_writable(directory: &Path) -> Result<(), WriteFileError> {
-    match temporary_in(directory) {
-        Ok(_) => Ok(()),
-        Err(source) => Err(WriteFileError { path: directory.to_path_buf(), source }),
-    }
-}
-
-fn write_beside(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<Unnamed> {
-    let mut temporary = temporary_beside(path)?;
-    write(temporary.file())?;
-    // Without this a power failure after the rename could leave an empty file under the name.
-    temporary.file().sync_all()?;
-    Ok(temporary)
+    let tried = temporary_in(directory).map(drop);
+    tried.map_err(|source| WriteFileError { path: directory.to_path_buf(), source })
 }
 
 /// A temporary file that can take the name `path`.
-fn temporary_beside(path: &Path) -> io::Result<Unnamed> {
+fn temporary_beside(path: &Path) -> io::Result<TemporaryFile> {
     use io::ErrorKind::{InvalidInput, IsADirectory};
 
     match path.metadata() {
@@ -161,10 +162,10 @@ fn temporary_beside(path: &Path) -> io::Result<Unnamed> {
     temporary_in(path.parent().unwrap_or(Path::new("")))
 }
 
-fn temporary_in(directory: &Path) -> io::Result<Unnamed> {
+fn temporary_in(directory: &Path) -> io::Result<TemporaryFile> {
     // The current directory is an empty path as a file's parent.
     let directory = if directory.as_os_str().is_empty() { Path::new(".") } else { directory };
-    Unnamed::begin(directory).map_err(|error| match directory.is_dir() {
+    TemporaryFile::begin(directory).map_err(|error| match directory.is_dir() {
         true => io::Error::new(own_file::refusal(&error), without_temporary_name(&error)),
         false => {
             let problem = format!("there is no directory {}", directory.display());
@@ -173,7 +174,7 @@ fn temporary_in(directory: &Path) -> io::Result<Unnamed> {
     })
 }
 
-/// The temporary file's name, which comes with its error, tells a user nothing.
+/// The error without the name of the temporary file, which means nothing to a user.
 fn without_temporary_name(error: &io::Error) -> String {
     let cause = error.get_ref().and_then(|wrapped| wrapped.source());
     cause.map_or_else(|| error.to_string(), ToString::to_string)

@@ -35,9 +35,9 @@ pub(crate) fn open_ordinary(path: &Path) -> io::Result<File> {
 /// * `memory_per_byte` - (bytes) of memory that a byte of the file may take once it is read
 ///
 /// # Errors
-/// It cannot be opened; a pipe with a name, which may have nobody that writes to it; more than the memory that is allowed.
+/// It cannot be opened; a pipe with a name, to which perhaps no program writes; more than the memory that is allowed.
 /// A file that turns out to be too large is an error while it is read.
-pub(crate) fn open_stream(path: &Path, memory_per_byte: u64) -> io::Result<AtMost<File>> {
+pub(crate) fn open_stream(path: &Path, memory_per_byte: u64) -> io::Result<LimitedFile<File>> {
     let metadata = path.metadata()?;
     let limit = memory::limit();
     let of_memory = limit.bytes() / memory_per_byte;
@@ -48,7 +48,7 @@ pub(crate) fn open_stream(path: &Path, memory_per_byte: u64) -> io::Result<AtMos
         }
         let problem =
             format!("it has more than {of_memory} bytes, which is all that the memory limit allows");
-        return Ok(AtMost { from: File::open(path)?, left: of_memory, problem });
+        return Ok(LimitedFile { from: File::open(path)?, left: of_memory, problem });
     };
     if is_named_pipe(path, metadata.file_type()) {
         let problem = "it is a pipe with a name, to which perhaps nobody writes; write its content into an ordinary file first";
@@ -56,7 +56,7 @@ pub(crate) fn open_stream(path: &Path, memory_per_byte: u64) -> io::Result<AtMos
     }
     let left = MOST_STREAMED_BYTES.min(of_memory);
     let problem = format!("it is {what} and brings more than {left} bytes, as an ordinary file may");
-    Ok(AtMost { from: File::open(path)?, left, problem })
+    Ok(LimitedFile { from: File::open(path)?, left, problem })
 }
 
 /// Reads a whole file of TOML or JSON.
@@ -73,13 +73,13 @@ fn too_large(problem: String) -> io::Error {
 
 /// A file that is read up to a length; more is an error, unlike the end that [`Read::take`] makes of it.
 #[derive(Debug)]
-pub(crate) struct AtMost<R> {
+pub(crate) struct LimitedFile<R> {
     from: R,
     left: u64,
     problem: String,
 }
 
-impl<R: Read> Read for AtMost<R> {
+impl<R: Read> Read for LimitedFile<R> {
     fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
         if self.left == 0 {
             return match self.from.read(&mut [0])? {
@@ -94,7 +94,7 @@ impl<R: Read> Read for AtMost<R> {
     }
 }
 
-/// What a file is that is no ordinary one. Opening a directory tells of itself.
+/// What a file is that is no ordinary one. A directory is left to the error of opening it.
 fn special(kind: FileType) -> Option<&'static str> {
     if kind.is_file() || kind.is_dir() { None } else { Some(name_of(kind)) }
 }
@@ -117,7 +117,7 @@ fn name_of(_: FileType) -> &'static str {
     "a device"
 }
 
-/// Whether opening it would wait until somebody writes to it.
+/// Whether opening the file would wait until a program writes to it.
 #[cfg(unix)]
 fn is_named_pipe(path: &Path, kind: FileType) -> bool {
     use std::os::unix::fs::FileTypeExt;

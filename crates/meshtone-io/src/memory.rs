@@ -15,7 +15,7 @@ pub fn limit() -> MemoryLimit {
 /// (bytes) Memory that can be used now without swapping, where the system says so (Linux does).
 fn available_bytes() -> Option<u64> {
     let machine = fs::read_to_string("/proc/meminfo").ok().and_then(|text| available_in(&text));
-    machine.into_iter().chain(left_to_container()).min()
+    machine.into_iter().chain(available_to_container()).min()
 }
 
 fn available_in(meminfo: &str) -> Option<u64> {
@@ -24,7 +24,7 @@ fn available_in(meminfo: &str) -> Option<u64> {
     kibibytes.checked_mul(1024)
 }
 
-fn left_to_container() -> Option<u64> {
+fn available_to_container() -> Option<u64> {
     let number = |file: &str| fs::read_to_string(file).ok()?.trim().parse::<u64>().ok();
     let limit = number("/sys/fs/cgroup/memory.max")?;
     let current = number("/sys/fs/cgroup/memory.current")?;

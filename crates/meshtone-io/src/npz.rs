@@ -10,7 +10,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 use crate::recording::array::read_records;
-use crate::recording::number::{NumberKind, append_strided};
+use crate::recording::number::NumberKind;
 use crate::recording::numpy::header::{Field, NpyHeader};
 
 /// What an array's file is called after its name.
@@ -22,19 +22,19 @@ const MARK: [u8; 8] = *b"\x93NUMPY\x01\x00";
 
 /// An archive that is written.
 pub struct NpzWriter<W: Write + Seek> {
-    archive: ZipWriter<Resigned<W>>,
+    archive: ZipWriter<SilentAfterError<W>>,
     method: CompressionMethod,
 }
 
 impl<W: Write + Seek> NpzWriter<W> {
     /// Numbers as they are: those of computed signals hardly become smaller.
     pub fn stored(to: W) -> Self {
-        Self { archive: ZipWriter::new(Resigned::new(to)), method: CompressionMethod::Stored }
+        Self { archive: ZipWriter::new(SilentAfterError::new(to)), method: CompressionMethod::Stored }
     }
 
     /// Compressed numbers.
     pub fn compressed(to: W) -> Self {
-        Self { archive: ZipWriter::new(Resigned::new(to)), method: CompressionMethod::Deflated }
+        Self { archive: ZipWriter::new(SilentAfterError::new(to)), method: CompressionMethod::Deflated }
     }
 
     /// Adds an array of numbers.
@@ -77,27 +77,27 @@ impl<W: Write + Seek> NpzWriter<W> {
 
     /// Ends the archive.
     pub fn finish(self) -> io::Result<W> {
-        let Resigned { to, has_failed, .. } = self.archive.finish()?;
+        let SilentAfterError { to, has_failed, .. } = self.archive.finish()?;
         if has_failed { Err(io::Error::other("a part of it was not written")) } else { Ok(to) }
     }
 }
 
-/// A writer that takes everything once something has failed. What failed is told by the error; the crate `zip` would try to end the
-/// archive all the same where it is dropped, and print on standard error that it cannot.
-struct Resigned<W> {
+/// A writer that accepts everything after its first error, which has been returned by then. Where it is dropped, the crate `zip`
+/// tries to end the archive all the same, and would print on standard error that it cannot.
+struct SilentAfterError<W> {
     to: W,
     /// Where it writes, or would.
     at: u64,
     has_failed: bool,
 }
 
-impl<W> Resigned<W> {
+impl<W> SilentAfterError<W> {
     fn new(to: W) -> Self {
         Self { to, at: 0, has_failed: false }
     }
 }
 
-impl<W: Write> Write for Resigned<W> {
+impl<W: Write> Write for SilentAfterError<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let done = if self.has_failed { Ok(bytes.len()) } else { self.to.write(bytes) };
         self.has_failed |= is_failure(&done);
@@ -115,7 +115,7 @@ impl<W: Write> Write for Resigned<W> {
     }
 }
 
-impl<W: Seek> Seek for Resigned<W> {
+impl<W: Seek> Seek for SilentAfterError<W> {
     fn seek(&mut self, place: SeekFrom) -> io::Result<u64> {
         if self.has_failed {
             self.at = match place {
@@ -185,28 +185,22 @@ impl NpzReader {
         let mut file = self.archive.by_name(&format!("{name}{NPY}"))?;
         let there = file.size();
         let header = NpyHeader::read(&mut file)?;
-        let (kind, big_endian) = match &header.fields[..] {
-            [Field { name, numbers: Ok(numbers), .. }] if name.is_empty() => {
-                (numbers.kind, numbers.big_endian)
-            }
+        let stored = match &header.fields[..] {
+            [Field { name, numbers: Ok(stored), .. }] if name.is_empty() => *stored,
             _ => return Err(io::Error::other("it holds no numbers")),
         };
-        if !matches!(kind, NumberKind::F32 | NumberKind::F64) {
-            let problem = format!("it holds {}; must be float64 or float32", kind.name());
+        if !matches!(stored.kind, NumberKind::F32 | NumberKind::F64) {
+            let problem = format!("it holds {}; must be float64 or float32", stored.kind.name());
             return Err(io::Error::other(problem));
         }
-        let elements = header.elements().filter(|elements| {
-            elements
-                .checked_mul(header.record)
-                .is_some_and(|bytes| bytes <= there.saturating_sub(header.length))
-        });
+        let elements = header.elements().filter(|_| header.file_bytes().is_some_and(|bytes| bytes <= there));
         let elements = elements.ok_or_else(|| io::Error::other("it ends too early"))?;
         if elements > most {
             return Err(io::Error::other(format!("it holds {elements} numbers; must be at most {most}")));
         }
         let mut numbers = Vec::new();
-        read_records(&mut file, kind.size(), elements, |block| {
-            append_strided(block, kind.size(), 0, kind, big_endian, &mut numbers);
+        read_records(&mut file, stored.element_bytes(), elements, |block| {
+            stored.append(block, 1, 0, &mut numbers);
         })?;
         // The checksum is compared at the end of the array.
         io::copy(&mut file.by_ref(), &mut io::sink())?;

@@ -1,7 +1,8 @@
 //! Files that belong to a running program, under names that begin with `.meshtone-`.
 //!
 //! Each is locked as long as its program runs; however a program ends, the system takes its locks away. So what another program
-//! is writing can be told from what a killed one has left behind. On file systems without locks nothing is taken for left behind.
+//! is writing can be distinguished from what a killed one has left behind. On file systems without locks nothing counts as left
+//! behind.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File, TryLockError};
@@ -11,7 +12,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError, RwLock};
 use std::thread::sleep;
 use std::time::Duration;
 
-use tempfile::NamedTempFile;
+use tempfile::{NamedTempFile, PersistError};
 
 /// What the names begin with.
 pub const PREFIX: &str = ".meshtone-";
@@ -21,7 +22,7 @@ const TRIES: usize = 16;
 /// How long a program that clears up has a file locked at most, and more.
 const CLEARING: Duration = Duration::from_millis(10);
 
-/// All of this program's, to be removed where it is told to end.
+/// All of this program's own paths, which are removed where it receives a signal to end.
 static OWN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 fn own() -> MutexGuard<'static, BTreeSet<PathBuf>> {
@@ -29,39 +30,42 @@ fn own() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     OWN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Among this program's own files until it is dropped.
+/// A path that is among this program's own until it is dropped.
 #[derive(Debug)]
-struct Listed(PathBuf);
+struct OwnPath(PathBuf);
 
-impl Drop for Listed {
+impl Drop for OwnPath {
     fn drop(&mut self) {
         own().remove(&self.0);
     }
 }
 
-/// A file without a name of its own yet; dropped, it disappears.
+/// A way to give a temporary file its name.
+pub(crate) type Persist = fn(NamedTempFile, &Path) -> Result<File, PersistError>;
+
+/// A file under a temporary name. It disappears where it is dropped.
 #[derive(Debug)]
-pub(crate) struct Unnamed {
+pub(crate) struct TemporaryFile {
     // Gone before it is taken from the list.
     file: NamedTempFile,
-    listed: Listed,
+    own_path: OwnPath,
 }
 
-impl Unnamed {
-    /// Begins one.
+impl TemporaryFile {
+    /// Begins a file.
     ///
     /// # Arguments
-    /// * `directory` - where
+    /// * `directory` - the directory of the file
     pub fn begin(directory: &Path) -> io::Result<Self> {
         clear_up_once(directory);
         for _ in 0..TRIES {
-            // Not between the two, when the program is told to end.
+            // A signal to end the program is not to come between the two.
             let mut own = own();
             let file = builder().tempfile_in(directory)?;
             own.insert(file.path().to_path_buf());
             drop(own);
-            let listed = Listed(file.path().to_path_buf());
-            let begun = Self { file, listed };
+            let own_path = OwnPath(file.path().to_path_buf());
+            let begun = Self { file, own_path };
             if lock(begun.file.as_file()) != Lock::Taken && begun.file.path().exists() {
                 return Ok(begun);
             }
@@ -74,23 +78,17 @@ impl Unnamed {
         self.file.as_file_mut()
     }
 
-    /// Gives it a name, in place of the file that had it.
-    pub fn name(self, path: &Path) -> io::Result<()> {
-        let Self { file, listed } = self;
+    /// Gives the file a name.
+    ///
+    /// # Arguments
+    /// * `path` - the name
+    /// * `persist` - whether a file that has the name is replaced, or refused
+    pub fn persist(self, path: &Path, persist: Persist) -> io::Result<()> {
+        let Self { file, own_path } = self;
         let held = own();
-        let named = file.persist(path).map(drop).map_err(|error| error.error);
+        let named = persist(file, path).map(drop).map_err(|error| error.error);
         drop(held);
-        drop(listed);
-        named
-    }
-
-    /// Gives it a name that no file has.
-    pub fn name_new(self, path: &Path) -> io::Result<()> {
-        let Self { file, listed } = self;
-        let held = own();
-        let named = file.persist_noclobber(path).map(drop).map_err(|error| error.error);
-        drop(held);
-        drop(listed);
+        drop(own_path);
         named
     }
 }
@@ -99,7 +97,7 @@ impl Unnamed {
 #[derive(Debug)]
 #[must_use = "dropped, the place is anybody's"]
 pub struct Claim {
-    listed: Listed,
+    own_path: OwnPath,
     // Unlocked after it has been removed.
     _file: File,
 }
@@ -136,7 +134,7 @@ impl Claim {
             if locked != Lock::Taken && is_at(&file, &path) {
                 let mut held = held;
                 held.insert(path.clone());
-                return Ok(Some(Self { listed: Listed(path), _file: file }));
+                return Ok(Some(Self { own_path: OwnPath(path), _file: file }));
             }
             drop(held);
             // Who clears up has it for a moment only.
@@ -149,14 +147,14 @@ impl Claim {
 impl Drop for Claim {
     fn drop(&mut self) {
         // What cannot be removed is left behind, unlocked, and cleared away by the next program.
-        let _ = fs::remove_file(&self.listed.0);
+        let _ = fs::remove_file(&self.own_path.0);
     }
 }
 
 /// A directory that disappears again, dropped, if it is empty.
 #[derive(Debug)]
 #[must_use = "dropped, an empty directory disappears"]
-pub struct NewDirectory(Listed);
+pub struct NewDirectory(OwnPath);
 
 impl NewDirectory {
     /// Creates a directory and those that it is in, as far as there are none.
@@ -171,8 +169,8 @@ impl NewDirectory {
     pub fn create_all(path: &Path) -> io::Result<Vec<Self>> {
         let missing = path.ancestors().filter(|part| !part.as_os_str().is_empty());
         let missing: Vec<&Path> = missing.take_while(|part| !part.exists()).collect();
-        let new = missing.iter().map(|part| Self(Listed(part.to_path_buf()))).collect();
-        // Not between the two, when the program is told to end.
+        let new = missing.iter().map(|part| Self(OwnPath(part.to_path_buf()))).collect();
+        // A signal to end the program is not to come between the two.
         let mut held = own();
         held.extend(missing.iter().map(|part| part.to_path_buf()));
         let created = create_directories(path);
@@ -192,7 +190,7 @@ pub fn create_directories(path: &Path) -> io::Result<()> {
     fs::create_dir_all(path).map_err(|error| io::Error::new(refusal(&error), error.to_string()))
 }
 
-/// Why something cannot be created in a directory that there is: where the system finds nothing, as in `/proc`, it lets nobody write.
+/// Why something cannot be created in a directory that exists: where the system finds nothing, as in `/proc`, writing is not allowed.
 pub(crate) fn refusal(error: &io::Error) -> io::ErrorKind {
     match error.kind() {
         io::ErrorKind::NotFound => io::ErrorKind::PermissionDenied,
@@ -230,15 +228,15 @@ fn clear_up_once(directory: &Path) {
 }
 
 fn remove_left(path: &Path) -> io::Result<()> {
-    // Under its lock, so that nobody takes it meanwhile. Some network file systems lock only what may be written to.
+    // Under its lock, so that no other program takes it meanwhile. Some network file systems lock only what may be written to.
     let file = File::options().write(true).open(path)?;
     if lock(&file) == Lock::Ours { fs::remove_file(path) } else { Ok(()) }
 }
 
 /// Removes all files of this program that have no name yet, and the new directories that are empty, and lets it neither begin nor
-/// name any more: for a program that is told to end.
+/// name any more. It is for a program that receives a signal to end.
 ///
-/// The calling thread is to end the program; another one that begins or names a file waits for that for ever.
+/// The calling thread must end the program; any other thread that begins or names a file waits for ever.
 pub fn remove_own() {
     std::mem::forget(UNDISTURBED.write().unwrap_or_else(PoisonError::into_inner));
     let own = own();
@@ -251,7 +249,7 @@ pub fn remove_own() {
 /// Held while something is done that is not to be left halfway.
 static UNDISTURBED: RwLock<()> = RwLock::new(());
 
-/// Does what takes a moment and is not to be left halfway where the program is told to end, such as to name files that belong
+/// Does what takes a moment and is not to be left halfway where the program receives a signal to end, such as to name files that belong
 /// together.
 ///
 /// # Arguments

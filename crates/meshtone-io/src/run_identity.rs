@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use meshtone::scenario::Scenario;
 
-/// What every file of a run carries, so that files of different runs can be told apart.
+/// What every file of a run carries, so that files of different runs can be distinguished.
 ///
 /// A fingerprint of all that the results depend on: the scenario, with its model, its seed and everything that it
 /// takes from other files, and the version of Meshtone. The same scenario simulated again with the same version has
@@ -65,10 +65,10 @@ impl FromStr for RunIdentity {
     }
 }
 
-/// The hash FNV-1a of 64 bits: two runs are confused by chance once in 2⁶⁴, and nobody gains by forging one.
+/// The hash FNV-1a of 64 bits: two runs are confused by chance once in 2⁶⁴, and a forged one is of no use.
 ///
 /// Source: G. Fowler, L. Noll, K.-P. Vo, D. Eastlake, "The FNV Non-Cryptographic Hash Algorithm", RFC 9923.
-fn fnv_1a(bytes: &[u8]) -> u64 {
+pub(crate) fn fnv_1a(bytes: &[u8]) -> u64 {
     const OFFSET_BASIS: u64 = 0xcbf2_9ce4_8422_2325;
     const PRIME: u64 = 0x0000_0100_0000_01b3;
     bytes.iter().fold(OFFSET_BASIS, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(PRIME))

@@ -1,12 +1,9 @@
 //! The turns of the damaged teeth within a revolution of their wheel.
 
-use meshtone::damage::{Damage, Fault};
+use meshtone::damage::{Fault, ToothPart};
 use meshtone::wheel::WheelName;
 
-use crate::axes::Axes;
-use crate::canvas::Canvas;
-use crate::legend::{Entry, Sample};
-use crate::style::{Fill, colour};
+use crate::drawing::{Axes, Canvas, Entry, Fill, Sample, colour};
 
 const TINT: Fill = Fill::tint(colour::VERMILLION, 0.22);
 /// Teeth of a wheel that a legend names one by one; of more it says how many they are.
@@ -43,7 +40,7 @@ impl DamagedTooth {
     /// ```
     pub fn of_wheel(faults: &[Fault], wheel: WheelName, teeth: u32, contact_pitches: f64) -> Vec<Self> {
         let of_fault = |fault: &Fault| {
-            let is_missing = matches!(fault.damage, Damage::MissingTooth(_));
+            let is_missing = fault.damage.part() == ToothPart::Whole;
             let numbers = fault.tooth.numbers(teeth).into_iter();
             numbers.map(move |tooth| Self { tooth, contact_pitches, is_missing })
         };
@@ -64,13 +61,15 @@ impl DamagedTooth {
 /// * `pitch` - one pitch in the unit of the horizontal axis
 pub(crate) fn tint(canvas: &mut Canvas, axes: &Axes, damaged: &[DamagedTooth], teeth: u32, pitch: f64) {
     let contact = damaged.first().map_or(0.0, |tooth| tooth.contact_pitches);
-    let is_damaged = |pair: i64| {
-        let tooth = pair.rem_euclid(i64::from(teeth.max(1)));
-        damaged.iter().any(|damaged| i64::from(damaged.tooth) == tooth + 1)
-    };
-    for turn in turns([0.0, f64::from(teeth)], contact, is_damaged) {
+    let is_of_pair = |pair| is_of_pair(damaged, i64::from(teeth.max(1)), pair);
+    for turn in turns([0.0, f64::from(teeth)], contact, is_of_pair) {
         tint_turn(canvas, axes, turn.map(|pitches| pitches * pitch));
     }
+}
+
+/// Whether a damaged tooth of a wheel with so many teeth is of the pair that enters contact at a pitch.
+pub(crate) fn is_of_pair(damaged: &[DamagedTooth], teeth: i64, pair: i64) -> bool {
+    damaged.iter().any(|damaged| i64::from(damaged.tooth) == pair.rem_euclid(teeth) + 1)
 }
 
 /// Tints one part of a revolution, in the unit of the horizontal axis.
@@ -97,12 +96,12 @@ pub(crate) fn turns([from, to]: [f64; 2], contact: f64, is_damaged: impl Fn(i64)
     turns
 }
 
-/// What the tint means, in the words of [`in_words`].
+/// Legend of the tint, in the words of [`in_words`].
 pub(crate) fn legend_entry(text: &str) -> Entry<'_> {
-    Entry { sample: Sample::Area(TINT), text }
+    (Sample::Area(TINT), text)
 }
 
-/// What the tint means; nothing where no tooth is damaged.
+/// Meaning of the tint; empty where no tooth is damaged.
 ///
 /// # Arguments
 /// * `wheels` - names of the wheels, each with its damaged teeth

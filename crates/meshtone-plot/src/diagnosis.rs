@@ -1,12 +1,10 @@
 //! A diagnosis on one page: the recording within what was simulated, probabilities, severity, and what explains it best.
 
 use crate::Figure;
-use crate::axes::{self, Area, Axes};
-use crate::canvas::Canvas;
-use crate::legend::{self, Entry, Sample};
-use crate::style::{Anchor, Fill, Stroke, TextStyle, colour};
-use crate::text::fitted;
-use crate::ticks::Ticks;
+use crate::drawing::{
+    Anchor, Area, Axes, BETWEEN_FACTS, Canvas, Entry, Fill, Sample, Stroke, TextStyle, Ticks, axes, colour,
+    legend, over,
+};
 
 /// (px) Size of the figure.
 pub const WIDTH: u32 = 1600;
@@ -16,8 +14,7 @@ pub const HEIGHT: u32 = 1000;
 const EDGE: f64 = 17.0;
 const NAME_LEFT: f64 = 56.0;
 const SIGNALS: Area = Area::new(84.0, 118.0, 900.0, 330.0);
-const EXPLANATIONS_TOP: f64 = 532.0;
-const EXPLANATIONS_BOTTOM: f64 = 950.0;
+const EXPLANATIONS: Area = Area::new(84.0, 532.0, 900.0, 418.0);
 const EXPLANATIONS_GAP: f64 = 30.0;
 const MOST_EXPLANATIONS: usize = 3;
 const BARS: Area = Area::new(1200.0, 118.0, 330.0, 330.0);
@@ -28,10 +25,12 @@ const BINS: usize = 40;
 const MARGIN: f64 = 0.08;
 const RECORDED: Stroke = Stroke::solid(colour::INK, 1.2);
 const EXPLAINED: Stroke = Stroke::solid(colour::BLUE, 1.4);
+/// The recording behind a simulation.
+const BEHIND: Stroke = Stroke::solid(colour::FRAME, 0.9);
 const BAND: Fill = Fill::tint(colour::BLUE, 0.22);
 const DAMAGE: Fill = Fill::tint(colour::VERMILLION, 0.22);
 
-/// What the figure shows.
+/// Content of the figure.
 #[derive(Debug, Clone, Copy)]
 pub struct DiagnosisFigure<'a> {
     /// Title: what was recorded.
@@ -48,13 +47,13 @@ pub struct DiagnosisFigure<'a> {
     pub band_g: [&'a [f64]; 2],
     /// Names of the kinds with their probabilities, the likeliest first.
     pub kinds: &'a [(&'a str, f64)],
-    /// How severe the likeliest damage is.
+    /// Severity of the likeliest damage.
     pub severity: Option<SeverityView<'a>>,
-    /// What explains the recording best: words, and its difference signal in g.
+    /// The best explanations of the recording: words, and its difference signal in g.
     pub explanations: &'a [(String, &'a [f64])],
 }
 
-/// How severe a damage is.
+/// Severity of a damage.
 #[derive(Debug, Clone, Copy)]
 pub struct SeverityView<'a> {
     /// The kind.
@@ -95,9 +94,7 @@ pub struct SeverityView<'a> {
 pub fn draw(figure: &DiagnosisFigure) -> Figure {
     let mut canvas = Canvas::new(WIDTH, HEIGHT);
     let width = f64::from(WIDTH) - 2.0 * EDGE;
-    canvas.text((EDGE, 36.0), &fitted(figure.title, TextStyle::TITLE, width), TextStyle::TITLE);
-    let facts = figure.facts.join("  ·  ");
-    canvas.text((EDGE, 61.0), &fitted(&facts, TextStyle::FACTS, width), TextStyle::FACTS);
+    canvas.heading(EDGE, width, (36.0, figure.title), (61.0, &figure.facts.join(BETWEEN_FACTS)));
     recording(&mut canvas, figure);
     probabilities(&mut canvas, figure.kinds);
     severity(&mut canvas, figure.severity.as_ref());
@@ -105,14 +102,10 @@ pub fn draw(figure: &DiagnosisFigure) -> Figure {
     canvas.finish(figure.title, &format!("What may be wrong with a gear. {}.", figure.facts.join(", ")))
 }
 
-/// The values of a revolution over the teeth: tooth k is from k − 1 to k.
-fn over(values: &[f64], teeth: u32) -> impl DoubleEndedIterator<Item = (f64, f64)> + '_ {
-    let per_value = f64::from(teeth) / values.len().max(1) as f64;
-    values.iter().enumerate().map(move |(k, &value)| (k as f64 * per_value, value))
-}
-
-fn teeth_ticks(teeth: u32) -> Ticks {
-    Ticks::whole(0.0, f64::from(teeth), 20)
+/// Axes over a revolution of the gear: tooth k is from k − 1 to k.
+fn revolution(area: Area, figure: &DiagnosisFigure, y: [f64; 2]) -> (Axes, Ticks) {
+    let axes = Axes::new(area, [0.0, f64::from(figure.gear_teeth)], y);
+    (axes, Ticks::whole(0.0, axes.x[1], 20))
 }
 
 fn tooth(canvas: &mut Canvas, axes: &Axes, figure: &DiagnosisFigure) {
@@ -123,27 +116,23 @@ fn tooth(canvas: &mut Canvas, axes: &Axes, figure: &DiagnosisFigure) {
 
 fn recording(canvas: &mut Canvas, figure: &DiagnosisFigure) {
     let values = figure.difference_g.iter().chain(figure.band_g[0]).chain(figure.band_g[1]).copied();
-    let axes = Axes::new(SIGNALS, [0.0, f64::from(figure.gear_teeth)], axes::range(values, MARGIN));
+    let (axes, teeth) = revolution(SIGNALS, figure, axes::range(values, MARGIN));
     axes.title(canvas, "Difference signal of the recording");
     let tooth_in_words = figure.damaged_tooth.map(|tooth| format!("tooth {tooth}"));
-    let marked = tooth_in_words.as_deref().map(|text| Entry { sample: Sample::Area(DAMAGE), text });
+    let marked = tooth_in_words.as_deref().map(|text| (Sample::Area(DAMAGE), text));
     let others = [
-        Entry { sample: Sample::Area(BAND), text: "nine in ten of the simulations that resemble it" },
-        Entry { sample: Sample::Line(RECORDED), text: "recording" },
+        (Sample::Area(BAND), "nine in ten of the simulations that resemble it"),
+        (Sample::Line(RECORDED), "recording"),
     ];
     let entries: Vec<Entry> = marked.into_iter().chain(others).collect();
-    legend::row(canvas, (axes.area.right(), axes.area.top - axes::TITLE_ABOVE), &entries);
-    axes.x_axis(
-        canvas,
-        &teeth_ticks(figure.gear_teeth),
-        "Pitches that the gear has turned (tooth k: from k – 1 to k)",
-    );
+    axes.legend(canvas, &entries);
+    axes.x_axis(canvas, &teeth, "Pitches that the gear has turned (tooth k: from k – 1 to k)");
     axes.y_axis(canvas, &Ticks::nice(axes.y[0], axes.y[1], 6), "Acceleration (g)", NAME_LEFT);
     tooth(canvas, &axes, figure);
-    let [low, high] = figure.band_g.map(|end| axes.along_x(over(end, figure.gear_teeth)));
+    let [low, high] = figure.band_g.map(|end| axes.along_x(over(axes.x, end)));
     let around: Vec<_> = low.into_iter().chain(high.into_iter().rev()).collect();
     canvas.polygon(&around, BAND);
-    axes.line(canvas, over(figure.difference_g, figure.gear_teeth), RECORDED);
+    axes.line(canvas, over(axes.x, figure.difference_g), RECORDED);
     axes.frame(canvas);
 }
 
@@ -200,20 +189,20 @@ fn severity(canvas: &mut Canvas, severity: Option<&SeverityView>) {
     axes.title(canvas, &title);
     axes.x_axis(canvas, &Ticks::nice(0.0, 1.0, 6), "Severity (–)");
     axes.y_axis(canvas, &Ticks::nice(0.0, axes.y[1], 5), "Part of the draws (%)", 48.0);
-    let Some(severity) = severity else {
-        axes.note(canvas, "no damage is known to the scenario's model");
-        axes.frame(canvas);
-        return;
+    let severity = match severity {
+        None => {
+            axes.note(canvas, "no damage is known to the scenario's model");
+            return axes.frame(canvas);
+        }
+        Some(severity) if severity.within_90[0] == severity.within_90[1] => {
+            axes.note(canvas, "damage of this kind has one severity alone");
+            return axes.frame(canvas);
+        }
+        Some(severity) => severity,
     };
-    if severity.within_90[0] == severity.within_90[1] {
-        axes.note(canvas, "damage of this kind has one severity alone");
-        axes.frame(canvas);
-        return;
-    }
-    let bands = [(severity.within_90, 0.14), (severity.within_50, 0.2)];
-    let [ninety, fifty] = bands.map(|(ends, opacity)| (ends, Fill::tint(colour::VERMILLION, opacity)));
-    for ([from, to], fill) in [ninety, fifty] {
-        axes.band(canvas, from, to, fill);
+    let damage = |opacity: f64| Fill::tint(colour::VERMILLION, opacity);
+    for ([from, to], opacity) in [(severity.within_90, 0.14), (severity.within_50, 0.2)] {
+        axes.band(canvas, from, to, damage(opacity));
     }
     let bars: Vec<_> = counts
         .iter()
@@ -224,14 +213,14 @@ fn severity(canvas: &mut Canvas, severity: Option<&SeverityView>) {
             [axes.at(from, *count), axes.at(to, 0.0)]
         })
         .collect();
-    canvas.rectangles(&bars, Fill::tint(colour::VERMILLION, 0.75));
+    canvas.rectangles(&bars, damage(0.75));
     let median = Stroke::solid(colour::INK, 1.6);
     canvas.line(axes.at(severity.median, 0.0), axes.at(severity.median, axes.y[1]), median);
     let text = format!("median {:.2}", severity.median);
     let entries = [
-        Entry { sample: Sample::Area(ninety.1), text: "90 %" },
-        Entry { sample: Sample::Area(Fill::tint(colour::VERMILLION, 0.34)), text: "50 %" },
-        Entry { sample: Sample::Line(median), text: &text },
+        (Sample::Area(damage(0.14)), "90 %"),
+        (Sample::Area(damage(0.34)), "50 %"),
+        (Sample::Line(median), &text),
     ];
     // Where there is more room.
     let x = if severity.median > 0.5 { axes.px(0.0) + 12.0 } else { axes.px(1.0) - 132.0 };
@@ -243,29 +232,23 @@ fn explanations(canvas: &mut Canvas, figure: &DiagnosisFigure) {
     let shown = &figure.explanations[..figure.explanations.len().min(MOST_EXPLANATIONS)];
     let values = shown.iter().flat_map(|(_, signal)| signal.iter()).chain(figure.difference_g).copied();
     let y = axes::range(values, MARGIN);
-    let pitch = (EXPLANATIONS_BOTTOM - EXPLANATIONS_TOP + EXPLANATIONS_GAP) / shown.len().max(1) as f64;
-    for (row, (words, signal)) in shown.iter().enumerate() {
-        let top = EXPLANATIONS_TOP + row as f64 * pitch;
-        let area = Area::new(SIGNALS.left, top, SIGNALS.width, pitch - EXPLANATIONS_GAP);
-        let axes = Axes::new(area, [0.0, f64::from(figure.gear_teeth)], y);
+    let areas = EXPLANATIONS.grid([1, shown.len()], [0.0, EXPLANATIONS_GAP], f64::INFINITY);
+    for (row, ((words, signal), area)) in shown.iter().zip(areas).enumerate() {
+        let (axes, teeth) = revolution(area, figure, y);
         let title = format!("Simulation that resembles it: {words}");
-        axes.title(canvas, &fitted(&title, TextStyle::AXES_TITLE, 0.75 * area.width));
-        let ticks = teeth_ticks(figure.gear_teeth);
+        axes.title(canvas, &TextStyle::AXES_TITLE.fitted(&title, 0.75 * area.width));
         if row + 1 == shown.len() {
-            axes.x_axis(canvas, &ticks, "Pitches that the gear has turned");
+            axes.x_axis(canvas, &teeth, "Pitches that the gear has turned");
         } else {
-            axes.x_grid(canvas, &ticks);
+            axes.x_grid(canvas, &teeth);
         }
         axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 3), "(g)", NAME_LEFT);
         tooth(canvas, &axes, figure);
-        axes.line(canvas, over(figure.difference_g, figure.gear_teeth), Stroke::solid(colour::FRAME, 0.9));
-        axes.line(canvas, over(signal, figure.gear_teeth), EXPLAINED);
+        axes.line(canvas, over(axes.x, figure.difference_g), BEHIND);
+        axes.line(canvas, over(axes.x, signal), EXPLAINED);
         if row == 0 {
-            let entries = [
-                Entry { sample: Sample::Line(EXPLAINED), text: "simulation" },
-                Entry { sample: Sample::Line(Stroke::solid(colour::FRAME, 0.9)), text: "recording" },
-            ];
-            legend::row(canvas, (area.right(), area.top - axes::TITLE_ABOVE), &entries);
+            let entries = [(Sample::Line(EXPLAINED), "simulation"), (Sample::Line(BEHIND), "recording")];
+            axes.legend(canvas, &entries);
         }
         axes.frame(canvas);
     }

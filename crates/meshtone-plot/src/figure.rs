@@ -5,7 +5,7 @@ use crate::{PlotError, palette_png, raster, svg};
 
 /// Name of the run's identity in the files.
 const RUN_KEY: &str = "meshtone.run";
-/// What metadata stand before in the SVG.
+/// Element of the SVG before which metadata stand.
 const METADATA_BEFORE: &str = "<defs>";
 
 /// A finished figure.
@@ -33,7 +33,7 @@ pub struct Label {
 }
 
 impl Label {
-    /// Whether the boxes of two texts share more than an edge.
+    /// Returns whether the boxes of two texts share more than an edge.
     pub fn overlaps(&self, other: &Self) -> bool {
         self.left < other.right
             && other.left < self.right
@@ -48,7 +48,7 @@ impl Figure {
         Self { scene, svg, labels, run: None }
     }
 
-    /// The same figure with the identity of the run that it shows in its files: in the SVG's element `metadata`,
+    /// Returns the figure with the identity of the run that it shows in its files: in the SVG's element `metadata`,
     /// and in the PNG's text `meshtone.run`.
     ///
     /// # Arguments

@@ -5,7 +5,7 @@
 
 use std::sync::LazyLock;
 
-use tiny_skia_path::{Path, PathBuilder};
+use tiny_skia_path::{Path, PathBuilder, Transform};
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
 use unicode_normalization::UnicodeNormalization;
 
@@ -61,90 +61,42 @@ pub(crate) fn text_width(text: &str, size_px: f64, bold: bool) -> f64 {
 /// * `bold` - whether it is semibold
 pub(crate) fn outline(text: &str, size_px: f64, bold: bool) -> Option<Path> {
     let face = face(bold)?;
-    let mut pen = Pen { path: PathBuilder::new(), scale: scale(face, size_px) as f32, left: 0.0 };
+    let mut pen = Pen { path: PathBuilder::new(), left: 0.0 };
     for Glyph { id, advance } in glyphs(face, text) {
         face.outline_glyph(id, &mut pen);
         pen.left += f32::from(advance);
     }
-    pen.path.finish()
+    let scale = scale(face, size_px) as f32;
+    pen.path.finish()?.transform(Transform::from_scale(scale, -scale))
 }
 
-/// Draws glyphs beside each other.
+/// Draws glyphs beside each other, in units of the font, y upwards.
 struct Pen {
     path: PathBuilder,
-    /// (px) Of a unit of the font.
-    scale: f32,
-    /// Where the glyph begins, in units of the font.
+    /// Left end of the glyph.
     left: f32,
-}
-
-impl Pen {
-    fn at(&self, x: f32, y: f32) -> (f32, f32) {
-        (self.scale * (self.left + x), -self.scale * y)
-    }
 }
 
 impl OutlineBuilder for Pen {
     fn move_to(&mut self, x: f32, y: f32) {
-        let (x, y) = self.at(x, y);
-        self.path.move_to(x, y);
+        self.path.move_to(self.left + x, y);
     }
 
     fn line_to(&mut self, x: f32, y: f32) {
-        let (x, y) = self.at(x, y);
-        self.path.line_to(x, y);
+        self.path.line_to(self.left + x, y);
     }
 
     fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
-        let ((x1, y1), (x, y)) = (self.at(x1, y1), self.at(x, y));
-        self.path.quad_to(x1, y1, x, y);
+        self.path.quad_to(self.left + x1, y1, self.left + x, y);
     }
 
     fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
-        let ((x1, y1), (x2, y2), (x, y)) = (self.at(x1, y1), self.at(x2, y2), self.at(x, y));
-        self.path.cubic_to(x1, y1, x2, y2, x, y);
+        self.path.cubic_to(self.left + x1, y1, self.left + x2, y2, self.left + x, y);
     }
 
     fn close(&mut self) {
         self.path.close();
     }
-}
-
-/// `text` on lines that are no wider than `width_px`; what does not fit on the last of them is left out.
-pub(crate) fn wrapped(text: &str, width_px: f64, most_lines: usize, size_px: f64, bold: bool) -> Vec<String> {
-    let fits = |line: &str| text_width(line, size_px, bold) <= width_px;
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
-        let mut rest = word.to_owned();
-        if let Some(line) = lines.last_mut() {
-            let longer = format!("{line} {word}");
-            if fits(&longer) {
-                *line = longer;
-                continue;
-            }
-        }
-        // A word that is wider than a line is cut.
-        while !fits(&rest) && rest.chars().count() > 1 {
-            let mut part = rest.clone();
-            while !fits(&part) && part.chars().count() > 1 {
-                part.pop();
-            }
-            // Rather where it has a joint.
-            if let Some(joint) = part.rfind(['_', '-', '/']).filter(|&joint| 2 * joint > part.len()) {
-                part.truncate(joint + 1);
-            }
-            rest = rest.split_off(part.len());
-            lines.push(part);
-        }
-        lines.push(rest);
-    }
-    let cut = lines.len() > most_lines;
-    lines.truncate(most_lines);
-    if let Some(line) = lines.last_mut().filter(|_| cut) {
-        while !fits(&format!("{line}…")) && line.pop().is_some() {}
-        *line = format!("{}…", line.trim_end());
-    }
-    lines
 }
 
 #[cfg(test)]
@@ -189,22 +141,5 @@ mod tests {
     #[test]
     fn characters_that_the_font_lacks_are_boxes() {
         assert!(outline("歯", 12.0, false).is_some() && text_width("歯", 12.0, false) > 0.0);
-    }
-
-    #[test]
-    fn long_texts_are_wrapped_and_cut() {
-        let lines = |text, most| wrapped(text, 100.0, most, 12.5, false);
-        assert_eq!(lines("tip loss 3 mm", 3), ["tip loss 3 mm"]);
-        assert_eq!(lines("chip with a tip loss of 3 mm", 3), ["chip with a tip", "loss of 3 mm"]);
-        for text in
-            ["chip with a tip loss of 3 mm and more", "chip_with_a_tip_loss_of_3_mm_and_more", "", "a"]
-        {
-            for most in 1..4 {
-                let lines = lines(text, most);
-                assert!(lines.len() <= most);
-                assert!(lines.iter().all(|line| text_width(line, 12.5, false) <= 100.0), "{lines:?}");
-            }
-        }
-        assert!(lines("chip with a tip loss of 3 mm and more", 1)[0].ends_with('…'));
     }
 }

@@ -1,7 +1,7 @@
 //! Figures of a simulation, and of a simulation tuned to measurements, as SVG and PNG.
 //!
 //! One file or folder per figure; what they share (axes, ticks, legends, text that knows its own width) is
-//! `axes`, `canvas`, `legend`, `curve` and `style`. A figure is drawn once, as a `scene`, which `svg` writes out and `raster`
+//! `drawing`. A figure is drawn once, as a `scene`, which `svg` writes out and `raster`
 //! fills in with the font that this crate brings along, so that both look alike on every machine.
 //!
 //! * [`panel`]: teeth, damage, profile errors, averages and mesh stiffness of one simulation
@@ -12,26 +12,19 @@
 //! * [`tuning_figure`]: an experiment of the hybrid stage, measured, simulated and enhanced
 #![deny(missing_docs)]
 
-mod axes;
-mod canvas;
-mod curve;
 mod damaged_tooth;
 pub mod dataset;
 pub mod diagnosis;
+mod drawing;
 mod error;
 mod figure;
 mod font;
-mod legend;
-mod marker;
 mod palette_png;
 pub mod panel;
 mod raster;
 pub mod record;
 mod scene;
-mod style;
 mod svg;
-mod text;
-mod ticks;
 pub mod trend;
 mod tuning;
 

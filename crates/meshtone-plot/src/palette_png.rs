@@ -1,8 +1,8 @@
 //! Pictures of few colours as PNG.
 
 use crate::PlotError;
+use crate::drawing::Colour;
 use crate::raster::Picture;
-use crate::style::Colour;
 
 /// Encodes pixels with a palette.
 ///
@@ -56,13 +56,14 @@ impl Indexed {
     /// Keeps the 256 most frequent cells; the rare shades of smoothed edges go to the nearest of them.
     fn new(picture: &[Colour]) -> Self {
         let mut cells = vec![Cell::default(); CELLS];
-        for_each_run(picture, |colour, length| {
-            let cell = &mut cells[cell_of(colour)];
-            cell.count += length as u64;
-            for (sum, value) in cell.sum.iter_mut().zip(colour.rgb()) {
-                *sum += length as u64 * u64::from(value);
+        // Run by run: most pixels are like the one before.
+        for run in picture.chunk_by(PartialEq::eq) {
+            let (cell, length) = (&mut cells[cell_of(run[0])], run.len() as u64);
+            cell.count += length;
+            for (sum, value) in cell.sum.iter_mut().zip(run[0].rgb()) {
+                *sum += length * u64::from(value);
             }
-        });
+        }
         let mut used: Vec<usize> = (0..CELLS).filter(|&cell| cells[cell].count > 0).collect();
         used.sort_by_key(|&cell| std::cmp::Reverse(cells[cell].count));
         let colours: Vec<[u8; 3]> = used.iter().take(MOST_COLOURS).map(|&cell| cells[cell].mean()).collect();
@@ -72,33 +73,11 @@ impl Indexed {
             index_of[cell] = index as u8;
         }
         let mut pixels = Vec::with_capacity(picture.len());
-        for_each_run(picture, |colour, length| {
-            pixels.resize(pixels.len() + length, index_of[cell_of(colour)]);
-        });
+        for run in picture.chunk_by(PartialEq::eq) {
+            pixels.resize(pixels.len() + run.len(), index_of[cell_of(run[0])]);
+        }
         Self { palette: colours.into_flattened(), pixels }
     }
-}
-
-/// Calls `f` with the colour and the length of each run of pixels of one colour.
-fn for_each_run(picture: &[Colour], mut f: impl FnMut(Colour, usize)) {
-    /// Pixels that are compared at once: most are background.
-    const BLOCK: usize = 16;
-    let Some(&first) = picture.first() else { return };
-    let (mut colour, mut length) = (first, 0);
-    for block in picture.chunks(BLOCK) {
-        if block.iter().fold(true, |same, pixel| same & (*pixel == colour)) {
-            length += block.len();
-            continue;
-        }
-        for &pixel in block {
-            if pixel != colour {
-                f(colour, length);
-                (colour, length) = (pixel, 0);
-            }
-            length += 1;
-        }
-    }
-    f(colour, length);
 }
 
 fn cell_of(colour: Colour) -> usize {

@@ -6,11 +6,11 @@
 use ab_glyph_rasterizer::{Point, Rasterizer, point};
 use tiny_skia_path::{LineJoin, Path, PathBuilder, PathSegment, Rect, StrokeDash, Transform};
 
-use crate::font;
-use crate::scene::{Element, Place, Scene};
-use crate::style::{
+use crate::drawing::{
     Colour, Fill, HALO_WIDTH, HATCH_ANGLE_DEG, HATCH_PITCH, HATCH_WIDTH, Stroke, TextStyle, colour,
 };
+use crate::font;
+use crate::scene::{Element, Scene, ScenePoint};
 
 /// Less of a pixel than this is rounding.
 const LEAST_COVERED: f32 = 1.0 / 1024.0;
@@ -77,7 +77,7 @@ impl Raster {
         }
     }
 
-    fn rectangles(&mut self, corners: &[[Place; 2]], fill: Fill) {
+    fn rectangles(&mut self, corners: &[[ScenePoint; 2]], fill: Fill) {
         let mut path = PathBuilder::new();
         for [from, to] in corners {
             let rectangle = Rect::from_ltrb(from.x.px(), from.y.px(), to.x.px(), to.y.px());
@@ -88,7 +88,7 @@ impl Raster {
         }
     }
 
-    fn dots(&mut self, centres: &[Place], radius: f64, fill: Fill) {
+    fn dots(&mut self, centres: &[ScenePoint], radius: f64, fill: Fill) {
         for centre in centres {
             if let Some(disc) = PathBuilder::from_circle(centre.x.px(), centre.y.px(), radius as f32) {
                 self.fill(&disc, fill);
@@ -96,7 +96,7 @@ impl Raster {
         }
     }
 
-    fn text(&mut self, at: Place, text: &str, style: TextStyle) {
+    fn text(&mut self, at: ScenePoint, text: &str, style: TextStyle) {
         let before = style.anchor.before(font::text_width(text, style.size, style.bold)) as f32;
         let turned = if style.upwards { Transform::from_rotate(-90.0) } else { Transform::identity() };
         let moved = turned.pre_translate(-before, 0.0).post_translate(at.x.px(), at.y.px());
@@ -135,7 +135,7 @@ fn stripe(x: usize, y: usize) -> f32 {
 }
 
 /// Straight lines from point to point.
-fn through(points: &[Place], closed: bool) -> Option<Path> {
+fn through(points: &[ScenePoint], closed: bool) -> Option<Path> {
     let mut path = PathBuilder::with_capacity(points.len() + 1, points.len());
     for (index, point) in points.iter().enumerate() {
         let (x, y) = (point.x.px(), point.y.px());
@@ -168,7 +168,7 @@ impl Window {
     }
 }
 
-/// What part of each pixel of a window a shape covers.
+/// Part of each pixel of a window that a shape covers.
 struct Coverage {
     rasterizer: Rasterizer,
     /// (px) Right edge of the window, its left one being 0.
@@ -269,7 +269,7 @@ mod tests {
     }
 
     fn polygon(points: &[(f64, f64)], fill: Fill) -> Element {
-        let points = points.iter().copied().map(Place::from).collect();
+        let points = points.iter().copied().map(ScenePoint::from).collect();
         Element::Path { points, closed: true, stroke: None, fill: Some(fill) }
     }
 

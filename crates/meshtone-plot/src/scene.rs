@@ -1,21 +1,21 @@
-//! What a figure consists of, before it is SVG or pixels.
+//! Elements of a figure, before it is SVG or pixels.
 //!
 //! One description for both, so that they show the same: the same numbers, rounded here and nowhere else, in the
 //! same order.
 
-use crate::style::{Fill, Stroke, TextStyle};
+use crate::drawing::{Fill, Stroke, TextStyle};
 
 /// A point in pixels, y downwards.
 pub(crate) type Pixel = (f64, f64);
 
 /// A point in hundredths of pixels: finer than eyes, and short in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Place {
+pub(crate) struct ScenePoint {
     pub(crate) x: Hundredths,
     pub(crate) y: Hundredths,
 }
 
-impl From<Pixel> for Place {
+impl From<Pixel> for ScenePoint {
     fn from((x, y): Pixel) -> Self {
         Self { x: x.into(), y: y.into() }
     }
@@ -50,11 +50,11 @@ pub(crate) struct Scene {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Element {
     /// Straight lines from point to point, filled and then stroked.
-    Path { points: Vec<Place>, closed: bool, stroke: Option<Stroke>, fill: Option<Fill> },
+    Path { points: Vec<ScenePoint>, closed: bool, stroke: Option<Stroke>, fill: Option<Fill> },
     /// Rectangles with the corners `[upper left, lower right]`, filled as one shape.
-    Rectangles { corners: Vec<[Place; 2]>, fill: Fill },
+    Rectangles { corners: Vec<[ScenePoint; 2]>, fill: Fill },
     /// Discs; where they overlap the fill adds up.
-    Dots { centres: Vec<Place>, radius: f64, fill: Fill },
+    Dots { centres: Vec<ScenePoint>, radius: f64, fill: Fill },
     /// Text whose baseline starts, has its middle or ends at a point.
-    Text { at: Place, text: String, style: TextStyle },
+    Text { at: ScenePoint, text: String, style: TextStyle },
 }

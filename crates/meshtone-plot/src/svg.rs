@@ -4,11 +4,11 @@
 
 use std::fmt::{self, Display, Formatter, Write};
 
-use crate::font;
-use crate::scene::{Element, Hundredths, Place, Scene};
-use crate::style::{
+use crate::drawing::{
     Anchor, Fill, HALO_WIDTH, HATCH_ANGLE_DEG, HATCH_PITCH, HATCH_WIDTH, Stroke, TextStyle, colour,
 };
+use crate::font;
+use crate::scene::{Element, Hundredths, Scene, ScenePoint};
 
 /// The document.
 ///
@@ -26,8 +26,8 @@ pub(crate) fn document(scene: &Scene, title: &str, description: &str) -> String 
          <title>{}</title>\n<desc>{}</desc>\n<defs>{hatches}</defs>\n\
          <rect width=\"{width}\" height=\"{height}\" fill=\"{}\"/>\n{}</svg>\n",
         font::FAMILY,
-        Escaped(title),
-        Escaped(description),
+        escaped(title),
+        escaped(description),
         colour::WHITE,
         body.text
     )
@@ -49,7 +49,7 @@ impl Body {
         }
     }
 
-    fn path(&mut self, points: &[Place], closed: bool, stroke: Option<Stroke>, fill: Option<Fill>) {
+    fn path(&mut self, points: &[ScenePoint], closed: bool, stroke: Option<Stroke>, fill: Option<Fill>) {
         self.text.push_str("<path d=\"");
         for (index, point) in points.iter().enumerate() {
             self.text.push(if index == 0 { 'M' } else { 'L' });
@@ -59,7 +59,9 @@ impl Body {
         if let Some(Stroke { colour, width, dash }) = stroke {
             self.write(format_args!(" stroke=\"{colour}\" stroke-width=\"{}\"", Hundredths::from(width)));
             if !dash.is_empty() {
-                self.write(format_args!(" stroke-dasharray=\"{}\"", Dashes(dash)));
+                let lengths: Vec<String> =
+                    dash.iter().map(|&length| Hundredths::from(length).to_string()).collect();
+                self.write(format_args!(" stroke-dasharray=\"{}\"", lengths.join(" ")));
             }
         }
         match fill {
@@ -74,7 +76,7 @@ impl Body {
         self.text.push_str("/>\n");
     }
 
-    fn rectangles(&mut self, corners: &[[Place; 2]], fill: Fill) {
+    fn rectangles(&mut self, corners: &[[ScenePoint; 2]], fill: Fill) {
         self.text.push_str("<path d=\"");
         for [from, to] in corners {
             let width = to.x.0.saturating_sub(from.x.0);
@@ -87,19 +89,19 @@ impl Body {
         self.text.push_str("/>\n");
     }
 
-    fn dots(&mut self, centres: &[Place], radius: Hundredths, fill: Fill) {
+    fn dots(&mut self, centres: &[ScenePoint], radius: Hundredths, fill: Fill) {
         self.text.push_str("<g");
         self.translucent(fill);
         self.text.push_str(">\n");
         for centre in centres {
-            let Place { x, y } = centre;
+            let ScenePoint { x, y } = centre;
             self.write(format_args!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"/>\n"));
         }
         self.text.push_str("</g>\n");
     }
 
-    fn text(&mut self, at: Place, text: &str, style: TextStyle) {
-        let Place { x, y } = at;
+    fn text(&mut self, at: ScenePoint, text: &str, style: TextStyle) {
+        let ScenePoint { x, y } = at;
         self.text.push_str("<text ");
         if style.upwards {
             self.write(format_args!("transform=\"translate({x} {y}) rotate(-90)\""));
@@ -122,7 +124,7 @@ impl Body {
                 " stroke=\"{white}\" stroke-width=\"{width}\" stroke-linejoin=\"round\" paint-order=\"stroke\""
             ));
         }
-        self.write(format_args!(">{}</text>\n", Escaped(text)));
+        self.write(format_args!(">{}</text>\n", escaped(text)));
     }
 
     fn translucent(&mut self, Fill { colour, opacity, .. }: Fill) {
@@ -149,64 +151,19 @@ impl Body {
 impl Display for Hundredths {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
         let size = self.0.unsigned_abs();
-        let (mut whole, rest) = (size / 100, size % 100);
-        // From the last digit on: a figure is tens of thousands of numbers.
-        let mut text = [0; 16];
-        let mut first = text.len();
-        let mut put = |character: u8| {
-            first -= 1;
-            text[first] = character;
-        };
-        if rest % 10 != 0 {
-            put(b'0' + (rest % 10) as u8);
+        let (sign, whole) = (if self.0 < 0 { "-" } else { "" }, size / 100);
+        // Whole numbers are written faster than fractions, and a figure is tens of thousands of numbers.
+        match (size % 100, size % 10) {
+            (0, _) => write!(f, "{sign}{whole}"),
+            (rest, 0) => write!(f, "{sign}{whole}.{}", rest / 10),
+            (rest, _) => write!(f, "{sign}{whole}.{rest:02}"),
         }
-        if rest != 0 {
-            put(b'0' + (rest / 10) as u8);
-            put(b'.');
-        }
-        loop {
-            put(b'0' + (whole % 10) as u8);
-            whole /= 10;
-            if whole == 0 {
-                break;
-            }
-        }
-        if self.0 < 0 {
-            put(b'-');
-        }
-        f.write_str(str::from_utf8(&text[first..]).unwrap_or_default())
-    }
-}
-
-/// Lengths with spaces between.
-struct Dashes(&'static [f64]);
-
-impl Display for Dashes {
-    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
-        for (index, &length) in self.0.iter().enumerate() {
-            let space = if index == 0 { "" } else { " " };
-            write!(f, "{space}{}", Hundredths::from(length))?;
-        }
-        Ok(())
     }
 }
 
 /// Text with the characters that mean something to XML escaped.
-struct Escaped<'a>(&'a str);
-
-impl Display for Escaped<'_> {
-    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
-        for character in self.0.chars() {
-            match character {
-                '<' => f.write_str("&lt;")?,
-                '>' => f.write_str("&gt;")?,
-                '&' => f.write_str("&amp;")?,
-                '"' => f.write_str("&quot;")?,
-                other => f.write_char(other)?,
-            }
-        }
-        Ok(())
-    }
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 fn pattern(name: usize, fill: &Fill) -> String {
@@ -238,6 +195,6 @@ mod tests {
 
     #[test]
     fn markup_is_escaped() {
-        assert_eq!(Escaped("a < b & \"c\"").to_string(), "a &lt; b &amp; &quot;c&quot;");
+        assert_eq!(escaped("a < b & \"c\""), "a &lt; b &amp; &quot;c&quot;");
     }
 }

@@ -1,38 +1,37 @@
 //! Indicators over a series of records.
 
 use crate::Figure;
-use crate::axes::{self, Area, Axes};
-use crate::canvas::{Canvas, Pixel};
-use crate::legend::{self, Entry, Sample};
-use crate::style::{Colour, Fill, Stroke, TextStyle, colour};
-use crate::text::fitted;
-use crate::ticks::Ticks;
+use crate::drawing::{
+    Area, Axes, BETWEEN_FACTS, Canvas, Entry, Fill, Sample, Stroke, TextStyle, Ticks, axes, colour, legend,
+};
 
 /// (px) Size of the figure.
 pub const WIDTH: u32 = 1600;
 /// (px) Size of the figure.
 pub const HEIGHT: u32 = 1000;
 
-const COLUMNS: usize = 3;
-const LEFT: f64 = 84.0;
-const TOP: f64 = 118.0;
-const PLOT: [f64; 2] = [430.0, 208.0];
-const STEP: [f64; 2] = [531.0, 298.0];
+const PLOTS: Area = Area::new(84.0, 118.0, 1492.0, 804.0);
+/// (px) Between columns and between rows of plots.
+const GAP: [f64; 2] = [101.0, 90.0];
+/// (px) For the legend beside the title.
+const LEGEND_WIDTH: f64 = 420.0;
 const NAME_LEFT: f64 = 56.0;
 const MARGIN: f64 = 0.08;
-const EDGE: f64 = LEFT - NAME_LEFT - 11.0;
+const EDGE: f64 = 17.0;
 /// Beyond this many records every marker would touch the next.
 const MARKED: usize = 60;
+/// (px) Half of a marker's size.
+const HALF_MARKER: f64 = 3.0;
 const STROKES: [Stroke; 2] = [Stroke::solid(colour::BLUE, 1.5), Stroke::solid(colour::PURPLE, 1.5)];
 
-/// What the figure shows.
+/// Content of the figure.
 #[derive(Debug, Clone)]
 pub struct TrendFigure<'a> {
     /// Title: what was recorded, and which channel.
     pub title: &'a str,
     /// Facts in the line below it.
     pub facts: &'a [String],
-    /// What the horizontal axis is.
+    /// Quantity of the horizontal axis.
     pub along: Along,
     /// Names of the wheels: one, or both of a pair.
     pub wheels: &'a [String],
@@ -42,12 +41,12 @@ pub struct TrendFigure<'a> {
     pub indicators: Vec<Trend>,
 }
 
-/// What records lie along.
+/// Quantity along which records lie.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Along {
     /// Recordings by their numbers from 1; what is cut from one lies within half a number of it.
     Recordings {
-        /// How many.
+        /// The number.
         count: usize,
     },
     /// The time of one recording.
@@ -60,25 +59,14 @@ pub enum Along {
 }
 
 impl Along {
-    fn range(self) -> [f64; 2] {
+    /// Range, ticks and name of the horizontal axis.
+    fn axis(self) -> ([f64; 2], Ticks, &'static str) {
         match self {
-            Self::Recordings { count } => [0.5, count.max(1) as f64 + 0.5],
-            Self::Time { start_s, end_s } => [start_s, end_s],
-        }
-    }
-
-    fn ticks(self) -> Ticks {
-        let [from, to] = self.range();
-        match self {
-            Self::Recordings { .. } => Ticks::whole(from, to, 12),
-            Self::Time { .. } => Ticks::nice(from, to, 8),
-        }
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Recordings { .. } => "Recording",
-            Self::Time { .. } => "Time (s)",
+            Self::Recordings { count } => {
+                let [from, to] = [0.5, count.max(1) as f64 + 0.5];
+                ([from, to], Ticks::whole(from, to, 12), "Recording")
+            }
+            Self::Time { start_s, end_s } => ([start_s, end_s], Ticks::nice(start_s, end_s, 8), "Time (s)"),
         }
     }
 }
@@ -116,21 +104,12 @@ pub struct Trend {
 pub fn draw(figure: &TrendFigure) -> Figure {
     let mut canvas = Canvas::new(WIDTH, HEIGHT);
     let width = f64::from(WIDTH) - 2.0 * EDGE;
-    let title = fitted(figure.title, TextStyle::TITLE, width - 420.0);
-    canvas.text((EDGE, 36.0), &title, TextStyle::TITLE);
-    let facts = figure.facts.join("  ·  ");
-    canvas.text((EDGE, 61.0), &fitted(&facts, TextStyle::FACTS, width), TextStyle::FACTS);
-    let right = LEFT + STEP[0] * (COLUMNS as f64 - 1.0) + PLOT[0];
-    let entries: Vec<Entry> = figure
-        .wheels
-        .iter()
-        .zip(STROKES)
-        .map(|(name, stroke)| Entry { sample: Sample::Line(stroke), text: name })
-        .collect();
-    legend::row(&mut canvas, (right, 34.0), &entries);
-    for (place, trend) in figure.indicators.iter().take(COLUMNS * COLUMNS).enumerate() {
-        let (row, column) = ((place / COLUMNS) as f64, (place % COLUMNS) as f64);
-        let area = Area::new(LEFT + column * STEP[0], TOP + row * STEP[1], PLOT[0], PLOT[1]);
+    let title = TextStyle::TITLE.fitted(figure.title, width - LEGEND_WIDTH);
+    canvas.heading(EDGE, width, (36.0, &title), (61.0, &figure.facts.join(BETWEEN_FACTS)));
+    let named = figure.wheels.iter().zip(STROKES);
+    let entries: Vec<Entry> = named.map(|(name, stroke)| (Sample::Line(stroke), name.as_str())).collect();
+    legend::row(&mut canvas, (PLOTS.right(), 34.0), &entries);
+    for (trend, area) in figure.indicators.iter().zip(PLOTS.grid([3, 3], GAP, f64::INFINITY)) {
         indicator(&mut canvas, area, trend, figure);
     }
     canvas.finish(figure.title, &format!("Indicators over a series of records. {}.", figure.facts.join(", ")))
@@ -138,9 +117,10 @@ pub fn draw(figure: &TrendFigure) -> Figure {
 
 fn indicator(canvas: &mut Canvas, area: Area, trend: &Trend, figure: &TrendFigure) {
     let y = axes::range(trend.values.iter().flatten().filter_map(|value| *value), MARGIN);
-    let axes = Axes::new(area, figure.along.range(), y);
+    let (x, ticks, along) = figure.along.axis();
+    let axes = Axes::new(area, x, y);
     axes.title(canvas, &trend.name);
-    axes.x_axis(canvas, &figure.along.ticks(), figure.along.name());
+    axes.x_axis(canvas, &ticks, along);
     let name = if trend.unit.is_empty() { "(–)".to_owned() } else { format!("({})", trend.unit) };
     axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), &name, NAME_LEFT);
     if trend.values.iter().flatten().all(Option::is_none) {
@@ -154,13 +134,10 @@ fn indicator(canvas: &mut Canvas, area: Area, trend: &Trend, figure: &TrendFigur
         }
         let defined = records.iter().filter_map(|(x, value)| Some((*x, (*value)?)));
         for (x, value) in defined.filter(|_| is_marked) {
-            marker(canvas, axes.at(x, value), stroke.colour);
+            let (x, y) = axes.at(x, value);
+            let corners = [(x - HALF_MARKER, y - HALF_MARKER), (x + HALF_MARKER, y + HALF_MARKER)];
+            canvas.rectangle(corners[0], corners[1], Fill::solid(stroke.colour));
         }
     }
     axes.frame(canvas);
-}
-
-fn marker(canvas: &mut Canvas, (x, y): Pixel, colour: Colour) {
-    const HALF: f64 = 3.0;
-    canvas.rectangle((x - HALF, y - HALF), (x + HALF, y + HALF), Fill::solid(colour));
 }

@@ -29,7 +29,7 @@ pub fn check_plan(py: Python<'_>, plan: PathBuf) -> PyResult<()> {
     py.detach(|| Plan::read(&plan)).map(drop).map_err(|error| read_error(&plan, &error))
 }
 
-/// What was made again, and why; what is doubtful about the plan.
+/// Files that were made again, and why; warnings about the plan.
 type Made = (Vec<(String, String)>, Vec<String>);
 
 /// Makes a data set, or a part of it, or goes on with one.

@@ -1,4 +1,4 @@
-//! What may be wrong with a gear.
+//! Diagnosis of a gear.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -23,7 +23,7 @@ use crate::interrupt::interruptible;
 use crate::phase::ShaftPhase;
 use crate::scenario::Scenario;
 
-/// What a recording shows.
+/// Features of a recording.
 #[pyclass(frozen, module = "meshtone._core")]
 pub struct Observation(Observed);
 

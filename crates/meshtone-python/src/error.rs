@@ -60,7 +60,7 @@ pub fn file_error(path: &Path, source: Option<&io::Error>, error: impl Display) 
     }
 }
 
-/// What the system refused, as the subclass of `OSError` that Python has for it, with `errno` and `filename`.
+/// An error of the system, as the subclass of `OSError` that Python has for it, with `errno` and `filename`.
 ///
 /// # Arguments
 /// * `doing` - what could not be done: `read` or `write`

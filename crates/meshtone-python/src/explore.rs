@@ -14,7 +14,7 @@ pub struct ExploreServer {
     served: Mutex<Served>,
 }
 
-/// What is served, or was at last.
+/// The server, or the last scenario of one that was closed.
 enum Served {
     Now(Server),
     Before(Box<meshtone::scenario::Scenario>),
@@ -42,7 +42,7 @@ impl ExploreServer {
         }
     }
 
-    /// What is set on the page, or was at last.
+    /// The scenario on the page, or the last one.
     #[getter]
     fn scenario(&self) -> Scenario {
         match &*self.served.lock().unwrap_or_else(PoisonError::into_inner) {

@@ -7,7 +7,7 @@ use std::time::Duration;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
-/// How often Python is asked whether Ctrl-C was pressed.
+/// Interval at which Python is asked whether Ctrl-C was pressed.
 const INTERVAL: Duration = Duration::from_millis(50);
 
 /// Does long work in a thread of its own, without the interpreter's lock, and stops it when Python is interrupted.
@@ -17,7 +17,7 @@ const INTERVAL: Duration = Duration::from_millis(50);
 /// * `while_waiting` - called some times a second, with the lock, and once at the end: for progress
 ///
 /// # Errors
-/// What interrupted Python, or what `while_waiting` raised: the work has then been stopped.
+/// The exception that interrupted Python, or that `while_waiting` raised: the work has then been stopped.
 pub fn interruptible<T: Send>(
     py: Python<'_>,
     work: impl FnOnce(&AtomicBool) -> T + Send,

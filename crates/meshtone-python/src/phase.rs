@@ -1,4 +1,4 @@
-//! How far a shaft has turned.
+//! The angle of a shaft.
 
 use meshtone::signal::{self, AngleZero, MeshTone, PulseEdge, Tachometer};
 use numpy::PyArray1;
@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use crate::array::{Signal, array, samples};
 use crate::error::value_error;
 
-/// How far a shaft has turned at each sample.
+/// Angle of a shaft at each sample.
 #[pyclass(frozen, module = "meshtone._core")]
 #[derive(Clone)]
 pub struct ShaftPhase(pub signal::ShaftPhase);
@@ -96,7 +96,7 @@ impl ShaftPhase {
         self.0.of_mate(teeth, mate_teeth).map(Self).map_err(value_error)
     }
 
-    /// What angle 0 is.
+    /// Meaning of angle 0.
     #[getter]
     fn zero(&self) -> &'static str {
         self.0.zero.name()
@@ -114,7 +114,7 @@ impl ShaftPhase {
         array(py, self.0.revolutions.clone())
     }
 
-    /// What is doubtful.
+    /// Warnings.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.0.warnings.iter().map(ToString::to_string).collect()

@@ -11,7 +11,7 @@ use crate::array::{Signal, array, samples};
 use crate::error::value_error;
 use crate::phase::ShaftPhase;
 
-/// What of the chain is not at its default.
+/// Settings of the chain that are not at their defaults.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Settings {
@@ -21,7 +21,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// As the library has it.
+    /// The settings as the library has them.
     pub fn chain(&self) -> PyResult<ChainSettings> {
         let mut separation = SeparationSettings::new(self.teeth);
         if let Some(sidebands) = self.sidebands {
@@ -34,7 +34,7 @@ impl Settings {
     }
 }
 
-/// What one channel shows about one wheel.
+/// Results of one channel for one wheel.
 #[pyclass(frozen, module = "meshtone._core")]
 pub struct Record(pub signal::Record);
 
@@ -64,13 +64,13 @@ impl Record {
         array(py, self.0.parts.regular.clone())
     }
 
-    /// What is left without the mesh harmonics.
+    /// The average without the mesh harmonics.
     #[getter]
     fn residual<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, self.0.parts.residual.clone())
     }
 
-    /// What is left without the mesh harmonics and their sidebands.
+    /// The average without the mesh harmonics and their sidebands.
     #[getter]
     fn difference<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, self.0.parts.difference.clone())
@@ -104,7 +104,7 @@ impl Record {
         Ok(all)
     }
 
-    /// What is doubtful.
+    /// Warnings.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.0.warnings.iter().map(ToString::to_string).collect()

@@ -1,4 +1,4 @@
-//! What is simulated.
+//! Scenarios.
 
 use std::path::PathBuf;
 
@@ -64,7 +64,7 @@ impl Scenario {
         read_scenario(&path).map(Self).map_err(|error| read_error(&path, &error))
     }
 
-    /// As the text of a scenario file.
+    /// The text of a scenario file.
     fn to_toml(&self) -> String {
         self.0.to_toml()
     }
@@ -87,17 +87,17 @@ impl Scenario {
         self.0.quality.profile_errors.as_ref().map(|errors| both_wheels(py, errors)).transpose()
     }
 
-    /// How severe each fault is, from 0 to 1.
+    /// Severity of each fault, from 0 to 1.
     fn fault_severities(&self) -> PyResult<Vec<f64>> {
         self.0.fault_severities().map_err(|error| scenario_error(&error))
     }
 
-    /// The same with the sizes of every fault that was given by its severity.
+    /// Returns the scenario with the sizes of every fault that was given by its severity.
     fn with_own_sizes(&self) -> PyResult<Self> {
         self.0.with_own_sizes().map(Self).map_err(|error| scenario_error(&error))
     }
 
-    /// What is doubtful about it, as far as that can be known before the time loop.
+    /// Warnings about it, as far as they can be known before the time loop.
     fn warnings(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         let checked = py.detach(|| meshtone::stages_and_warnings(&self.0, memory::limit()));
         let (_, warnings) = checked.map_err(|error| scenario_error(&error))?;

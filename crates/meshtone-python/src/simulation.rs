@@ -2,7 +2,7 @@
 
 use std::num::NonZeroUsize;
 
-use meshtone::damage::DamagedTooth;
+use meshtone::damage::{DamageDescription, DamagedTooth, ToothPart};
 use meshtone::scenario::ScenarioWarning;
 use meshtone::sensor::ContactFigures;
 use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
@@ -20,9 +20,6 @@ use crate::scenario::{BothWheels, Scenario, both_wheels};
 
 /// Deflection, number of the first pair and the forces of the pairs.
 type StaticMesh<'py> = (Bound<'py, PyArray1<f64>>, i64, Bound<'py, PyArray2<f64>>);
-
-/// Wheel and number of a tooth, x and y of two points.
-type CrackOfTooth<'py> = (&'static str, usize, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
 
 /// A simulation: every stage's results and the signals.
 #[pyclass(frozen, module = "meshtone._core")]
@@ -51,14 +48,14 @@ pub struct Simulation {
     /// (-) Part of the kept time in which the mesh force is negative.
     #[pyo3(get)]
     tension_fraction: f64,
-    /// How the teeth touched, under `contact`: (-) part of the time apart, (-) part of it with back flanks in touch, how often
+    /// Contact of the teeth, under `contact`: (-) part of the time apart, (-) part of it with back flanks in touch, how often
     /// these hit, (N) largest force.
     #[pyo3(get)]
     contact_figures: Option<(f64, f64, usize, f64)>,
-    /// What is doubtful about it.
+    /// Its warnings.
     #[pyo3(get)]
     warnings: Vec<String>,
-    /// What each of these is about.
+    /// Subject of each warning.
     #[pyo3(get)]
     warning_codes: Vec<&'static str>,
     /// (s) Of the stages, by name.
@@ -142,7 +139,7 @@ impl Simulation {
 
 #[pymethods]
 impl Simulation {
-    /// What was simulated.
+    /// The simulated scenario.
     #[getter]
     fn scenario(&self) -> Scenario {
         Scenario(self.stages.scenario.clone())
@@ -163,40 +160,25 @@ impl Simulation {
     #[getter]
     fn mode_shapes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let shapes = self.stages.mode_shapes();
-        let values: Vec<f64> =
-            shapes.row_iter().flat_map(|row| row.iter().copied().collect::<Vec<_>>()).collect();
-        array(py, values).reshape([shapes.nrows(), shapes.ncols()]).map_err(value_error)
+        let coordinates = shapes.first().map_or(0, Vec::len);
+        let rows = (0..coordinates).flat_map(|coordinate| shapes.iter().map(move |shape| shape[coordinate]));
+        array(py, rows.collect()).reshape([coordinates, shapes.len()]).map_err(value_error)
     }
 
     /// (N/mm) Mesh stiffness at every point of some pitches, on the grid of the published code under every model.
     fn mesh_stiffness_n_per_mm<'py>(
         &self,
         py: Python<'py>,
-        first_pitch: usize,
-        pitches: usize,
+        first_pitch: i64,
+        pitches: i64,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let points_per_pitch = self.stages.cycle.points_per_pitch;
-        let stiffness = match self.stages.mesh.published() {
-            Some(mesh) => {
-                let cycle = mesh.stiffness.mesh_n_per_mm.iter().cycle();
-                cycle.skip(first_pitch * points_per_pitch).take(pitches * points_per_pitch).copied().collect()
-            }
-            None => {
-                let points = NonZeroUsize::new(points_per_pitch).unwrap_or(NonZeroUsize::MIN);
-                let shown = first_pitch..first_pitch + pitches;
-                match self.stages.contact_mesh(points).map_err(|error| scenario_error(&error))? {
-                    Some(mesh) => mesh.stiffness_n_per_mm(shown),
-                    None => {
-                        let mesh = self.stages.pair_mesh(points).map_err(|error| scenario_error(&error))?;
-                        mesh.stiffness_n_per_mm(shown)
-                    }
-                }
-            }
-        };
-        Ok(array(py, stiffness))
+        let shown = first_pitch..first_pitch + pitches;
+        let curves =
+            self.stages.mesh_curves_on_coarse_grid(Some(shown)).map_err(|error| scenario_error(&error))?;
+        Ok(array(py, curves.into_iter().next().map_or_else(Vec::new, |curve| curve.stiffness_n_per_mm)))
     }
 
-    /// The mesh at rest under a force: (m) deflection, number of the first pair, (N) each pair's force; only under `contact`.
+    /// The mesh at rest under a force: (m) deflection, number of the first pair, (N) each pair's force; not under `published`.
     fn static_mesh<'py>(
         &self,
         py: Python<'py>,
@@ -204,9 +186,11 @@ impl Simulation {
         pitches: (usize, usize),
         points_per_pitch: NonZeroUsize,
     ) -> PyResult<StaticMesh<'py>> {
-        let mesh = self.stages.contact_mesh(points_per_pitch).map_err(|error| scenario_error(&error))?;
-        let Some(mesh) = mesh else {
-            return Err(value_error("only teeth that can part share a force: set model = 'contact'"));
+        let meshes = self.stages.meshes_at(points_per_pitch).map_err(|error| scenario_error(&error))?;
+        let Some(mesh) = meshes.first() else {
+            return Err(value_error(
+                "the published model has no pairs that share a force: set model = 'contact'",
+            ));
         };
         let force_n = force_n.unwrap_or_else(|| self.stages.static_force_n());
         let at_rest = py.detach(|| mesh.at_rest(force_n, pitches.0..pitches.1));
@@ -240,18 +224,37 @@ impl Simulation {
         self.stages.damaged.iter().flat_map(of_alike).collect()
     }
 
-    /// (mm) The cracked teeth: wheel, number from 1, x and y of the crack's start and tip.
-    fn cracks_mm<'py>(&self, py: Python<'py>) -> Vec<CrackOfTooth<'py>> {
-        let cracks = self.stages.damaged.iter().filter_map(|tooth| Some((tooth, tooth.crack?)));
-        cracks
-            .flat_map(|(alike, crack)| {
+    /// What each damaged tooth has lost, damage by damage: wheel, number from 1, kind, what it takes of the tooth, first and last
+    /// profile index, whether a part of the face is sound there, its sizes and a caption in words, (mm) outlines on the face as z and x, (mm) x and
+    /// y of a crack's start and tip.
+    fn damages<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let damages = self.stages.damaged.iter().flat_map(|alike| {
+            let each = alike
+                .teeth
+                .iter()
+                .flat_map(|tooth| alike.descriptions.iter().map(move |damage| (tooth, damage)));
+            each.map(move |(tooth, damage)| (alike, tooth + 1, damage))
+        });
+        let entry = |(alike, tooth, damage): (&DamagedTooth, usize, &DamageDescription)| {
+            let outlines = damage.face.iter().map(|patch| patch.outline_mm.clone());
+            let crack = alike.crack.filter(|_| damage.part == ToothPart::Root).map(|crack| {
                 let (tip_x_mm, tip_y_mm) = crack.tip_mm();
-                let x_mm = array(py, vec![crack.start_x_mm, tip_x_mm]);
-                let y_mm = array(py, vec![crack.start_y_mm, tip_y_mm]);
-                let of_tooth = |tooth: &usize| (alike.wheel.name(), tooth + 1, x_mm.clone(), y_mm.clone());
-                alike.teeth.iter().map(of_tooth).collect::<Vec<_>>()
-            })
-            .collect()
+                [[crack.start_x_mm, tip_x_mm], [crack.start_y_mm, tip_y_mm]]
+            });
+            let entry = PyDict::new(py);
+            entry.set_item("wheel", alike.wheel.name())?;
+            entry.set_item("tooth", tooth)?;
+            entry.set_item("kind", damage.kind)?;
+            entry.set_item("part", damage.part.name())?;
+            entry.set_item("range", damage.range)?;
+            entry.set_item("is_partial", damage.is_partial)?;
+            entry.set_item("sizes", &damage.sizes)?;
+            entry.set_item("caption", &damage.caption)?;
+            entry.set_item("face_mm", outlines.collect::<Vec<_>>())?;
+            entry.set_item("crack_mm", crack)?;
+            Ok(entry)
+        };
+        damages.map(entry).collect()
     }
 
     /// (mm) Profile errors of both wheels, a column a tooth; none for ideal teeth.

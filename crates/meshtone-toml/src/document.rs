@@ -53,7 +53,7 @@ impl<'i> TomlDocument<'i> {
         Some(written(self.text, value)).filter(|written| !written.is_empty())
     }
 
-    /// The same error, about a key of this text, with the key's line and its value as written.
+    /// Returns the error about a key of this text, with the key's line and its value as written.
     ///
     /// # Arguments
     /// * `error` - found after reading
@@ -81,7 +81,7 @@ fn syntax_error(text: &str, error: &toml::de::Error) -> TomlError {
         .at_line(Some(line))
 }
 
-/// What to write instead of a line.
+/// Advice on what to write instead of a line.
 ///
 /// # Arguments
 /// * `written` - the line

@@ -1,8 +1,8 @@
-//! What is wrong with a text.
+//! Errors about a text.
 
 use std::fmt;
 
-/// What kind of thing is wrong, for programs; people read [`TomlError::problem`].
+/// Kind of a mistake, for programs; people read [`TomlError::problem`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ErrorKind {
@@ -33,16 +33,16 @@ pub enum ErrorKind {
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct TomlError {
-    /// What kind of thing is wrong.
+    /// Kind of the mistake.
     pub kind: ErrorKind,
     /// Dotted key, for example `motor.speed_hz`, or `motor.weights[2]` for the third entry of an array. Empty where
     /// the text is not TOML.
     pub key: String,
     /// The offending value as it was given; empty where a key is missing.
     pub value: String,
-    /// What is wrong with it and what is allowed.
+    /// The problem, and what is allowed.
     pub problem: String,
-    /// What to do about it, where that is not plain from `problem`.
+    /// Advice, where `problem` does not make it plain.
     pub help: Option<String>,
     /// 1-based line in the text.
     pub line: Option<usize>,
@@ -78,7 +78,7 @@ impl TomlError {
         Self { kind: ErrorKind::NotAllowed, key, value, problem, help: None, line: None }
     }
 
-    /// Which tables of lists the key is in, as people count: `the 2nd fault` for `fault[1].tooth`, `the 1st vary of the 3rd class`
+    /// Tables of lists that hold the key, as people count: `the 2nd fault` for `fault[1].tooth`, `the 1st vary of the 3rd class`
     /// for `class[2].vary[0].key`. None where it is in no list.
     fn place_in_words(&self) -> Option<String> {
         let segments: Vec<&str> = self.key.split('.').collect();
@@ -89,7 +89,7 @@ impl TomlError {
         (!words.is_empty()).then(|| words.join(" of "))
     }
 
-    /// The same error, of another kind.
+    /// Returns the error with another kind.
     ///
     /// # Arguments
     /// * `kind` - what kind of thing is wrong
@@ -98,7 +98,7 @@ impl TomlError {
         self
     }
 
-    /// The same error with advice.
+    /// Returns the error with advice.
     ///
     /// # Arguments
     /// * `help` - what the user can do
@@ -107,7 +107,7 @@ impl TomlError {
         self
     }
 
-    /// The same error at a line of the text.
+    /// Returns the error at a line of the text.
     ///
     /// # Arguments
     /// * `line` - 1-based line, where known
@@ -116,7 +116,7 @@ impl TomlError {
         self
     }
 
-    /// The same error under another key, as of a table that stands within another text.
+    /// Returns the error under another key, as of a table that stands within another text.
     ///
     /// # Arguments
     /// * `key` - dotted key

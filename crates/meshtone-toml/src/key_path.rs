@@ -3,7 +3,7 @@
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Where a key, or the nearest table or array around it, stands.
+/// Location of a key, or of the nearest table or array around it.
 pub(crate) struct Found<'t> {
     /// Byte position.
     pub start: usize,

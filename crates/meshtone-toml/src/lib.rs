@@ -28,5 +28,5 @@ pub use nearest::nearest_name;
 pub use table::TomlTable;
 pub use value::TomlValue;
 
-/// What every reader returns: the value, or what is wrong with the file.
+/// Result of a reader: the value, or a problem of the file.
 pub type ReadResult<T> = Result<T, TomlError>;

@@ -29,7 +29,7 @@ pub(crate) fn is_misspelling(written: &str, name: &str) -> bool {
     name.len() >= 4 && (strsim::damerau_levenshtein(written, name) <= 2 || has_another_unit(written, name))
 }
 
-/// Whether the two names are of the same quantity in two units, which stand behind the last underscore: `speed_rpm` and
+/// Returns whether the two names are of the same quantity in two units, which stand behind the last underscore: `speed_rpm` and
 /// `speed_hz`, not `gear_teeth` and `gear_width`.
 pub(crate) fn has_another_unit(written: &str, name: &str) -> bool {
     const LONGEST_UNIT: usize = 3;
@@ -41,7 +41,7 @@ pub(crate) fn has_another_unit(written: &str, name: &str) -> bool {
     }
 }
 
-/// Whether a name is of revolutions per minute and the other of the same per second: `rpm`, `speed_rpm` or `pinion_rpm` for
+/// Returns whether a name is of revolutions per minute and the other of the same per second: `rpm`, `speed_rpm` or `pinion_rpm` for
 /// `pinion_speed_hz`, not `gear_speed_rpm`.
 pub(crate) fn is_rpm_of(written: &str, name: &str) -> bool {
     match (written.strip_suffix("rpm"), name.strip_suffix("_hz")) {

@@ -86,7 +86,23 @@ impl<'a> TomlTable<'a> {
     /// # Errors
     /// The value is not a finite number.
     pub fn number(&self, key: &'static str) -> ReadResult<Option<f64>> {
-        self.optional(key).map(|value| value.number()).transpose()
+        self.read_optional(key, TomlValue::number)
+    }
+
+    /// The value of a key as something else, if it is there.
+    ///
+    /// # Arguments
+    /// * `key` - its name in this table
+    /// * `read` - what the value is read as
+    ///
+    /// # Errors
+    /// Those of `read`.
+    pub fn read_optional<T>(
+        &self,
+        key: &'static str,
+        read: impl FnOnce(&TomlValue<'a>) -> ReadResult<T>,
+    ) -> ReadResult<Option<T>> {
+        self.optional(key).as_ref().map(read).transpose()
     }
 
     /// A finite number, or its default.
@@ -179,7 +195,7 @@ impl<'a> TomlTable<'a> {
     /// * `later` - keys that may be here and have not been asked for yet
     ///
     /// # Errors
-    /// As [`Self::finish`].
+    /// Those of [`Self::finish`].
     pub fn refuse_unknown(&self, later: &[&'static str]) -> ReadResult<()> {
         let mut allowed = self.asked.borrow().clone();
         allowed.extend(later.iter().filter(|key| !allowed.contains(key)).copied().collect::<Vec<_>>());
@@ -230,7 +246,7 @@ impl<'a> TomlTable<'a> {
         self.refuse_misspelling(key, None)
     }
 
-    /// As [`Self::refuse_misspelling_of`]; who writes another unit is told the right one.
+    /// Does what [`Self::refuse_misspelling_of`] does, and names the right unit to a user who wrote another one.
     fn refuse_misspelling(&self, key: &'static str, meaning: Option<&str>) -> ReadResult<()> {
         let Some((_, name)) =
             self.unasked().find(|(_, name)| is_misspelling(name, key) || is_rpm_of(name, key))

@@ -46,22 +46,22 @@ impl<'a> TomlValue<'a> {
         TomlError::new(&self.path, self.as_written(), problem).at_line(Some(self.line()))
     }
 
-    /// Whether the value is a table.
+    /// Returns whether the value is a table.
     pub fn is_table(&self) -> bool {
         self.value.get_ref().is_table()
     }
 
-    /// Whether the value is a whole number.
+    /// Returns whether the value is a whole number.
     pub fn is_whole(&self) -> bool {
         self.value.get_ref().is_integer()
     }
 
-    /// Whether the value is a text.
+    /// Returns whether the value is a text.
     pub fn is_text(&self) -> bool {
         self.value.get_ref().is_str()
     }
 
-    /// Whether the value is an array.
+    /// Returns whether the value is an array.
     pub fn is_array(&self) -> bool {
         self.value.get_ref().is_array()
     }
@@ -168,7 +168,7 @@ impl<'a> TomlValue<'a> {
     /// An array of exactly `N` finite numbers.
     ///
     /// # Errors
-    /// As for [`Self::numbers`], or there are more or fewer of them.
+    /// Those of [`Self::numbers`], or there are more or fewer of them.
     pub fn exactly<const N: usize>(&self) -> ReadResult<[f64; N]> {
         <[f64; N]>::try_from(self.numbers()?)
             .map_err(|numbers| self.error(format!("has {} numbers; must have exactly {N}", numbers.len())))

@@ -1,4 +1,4 @@
-//! What is wrong, or doubtful, about a scenario.
+//! Errors and warnings about a scenario.
 
 use std::fmt;
 
@@ -19,16 +19,16 @@ use meshtone_toml::{ErrorKind, TomlError};
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ScenarioError {
-    /// What kind of thing is wrong.
+    /// Kind of the mistake.
     pub kind: ErrorKind,
     /// Dotted key in the scenario file, for example `gears.module_mm`, or
     /// `rig.damping_ratio[2]` for the third entry of an array. Empty where the text is not TOML.
     pub key: String,
     /// The offending value as it was given; empty where a key is missing.
     pub value: String,
-    /// What is wrong with it and what is allowed.
+    /// The problem, and what is allowed.
     pub problem: String,
-    /// What to do about it, where that is not plain from `problem`.
+    /// Advice, where `problem` does not make it plain.
     pub help: Option<String>,
     /// 1-based line in the TOML text, where the scenario came from one.
     pub line: Option<usize>,
@@ -71,7 +71,7 @@ impl ScenarioError {
         TomlError::new(key, value, problem).into()
     }
 
-    /// The same error with advice.
+    /// Returns the error with advice.
     ///
     /// # Arguments
     /// * `help` - what the user can do
@@ -110,7 +110,7 @@ impl ScenarioError {
         Self::new("fault", "", problem).with_help("remove some of the faults")
     }
 
-    /// The same error under another key, as of a scenario that stands within another file.
+    /// Returns the error under another key, as of a scenario that stands within another file.
     ///
     /// # Arguments
     /// * `key` - dotted key
@@ -134,7 +134,7 @@ impl ScenarioError {
         self
     }
 
-    /// The same error at a line of the file.
+    /// Returns the error at a line of the file.
     ///
     /// # Arguments
     /// * `line` - 1-based line, where known
@@ -195,7 +195,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// What to do about it, where that is not plain from the message.
+    /// Advice, where the message does not make it plain.
     pub fn help(&self) -> Option<&str> {
         match self {
             Self::Scenario(error) => error.help.as_deref(),
@@ -217,7 +217,7 @@ fn in_short(ratios: &[f64]) -> String {
 /// One row a kind of doubt: its name, the code that programs read, what it means.
 macro_rules! warning_kinds {
     ($($kind:ident $code:literal $meaning:literal;)+) => {
-        /// What a [`ScenarioWarning`] is about, for programs to tell apart.
+        /// Subject of a [`ScenarioWarning`], by which programs distinguish warnings.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[non_exhaustive]
         pub enum WarningKind {
@@ -225,7 +225,7 @@ macro_rules! warning_kinds {
         }
 
         impl WarningKind {
-            /// All of them.
+            /// All of its values.
             pub const ALL: [Self; [$($code),+].len()] = [$(Self::$kind),+];
 
             /// The code, which stays the same whatever the words are.
@@ -241,7 +241,7 @@ macro_rules! warning_kinds {
                 Self::ALL.into_iter().find(|kind| kind.code() == code)
             }
 
-            /// What it means, in a few words.
+            /// Its meaning, in a few words.
             pub fn meaning(self) -> &'static str {
                 match self { $(Self::$kind => $meaning,)+ }
             }
@@ -270,11 +270,11 @@ warning_kinds! {
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ScenarioWarning {
-    /// What it is about.
+    /// Subject of the warning.
     pub kind: WarningKind,
     /// Dotted key in the scenario file.
     pub key: String,
-    /// What is doubtful, and what could be done.
+    /// The doubt, and what could be done.
     pub message: String,
 }
 

@@ -32,7 +32,7 @@ impl ErrorTable {
         Self { points, teeth, numbers: numbers.map(|(point, tooth)| number(point, tooth)).collect() }
     }
 
-    /// The same number everywhere.
+    /// A table of one number.
     ///
     /// # Arguments
     /// * `points` - number of points of a tooth

@@ -29,11 +29,7 @@ pub mod batch;
 pub mod damage;
 mod error;
 mod error_table;
-#[doc(hidden)]
-pub mod interpolation;
 mod keys;
-#[doc(hidden)]
-pub mod machine;
 pub mod mesh;
 mod model;
 pub mod operation;
@@ -43,19 +39,29 @@ pub mod sensor;
 pub mod signal;
 mod simd;
 mod simulate;
-#[doc(hidden)]
-pub mod solver;
-#[doc(hidden)]
-pub mod stiffness;
 mod threads;
 mod trace;
+mod trace_fields;
 pub mod tuning;
 mod warnings;
 pub mod wheel;
 
+/// Declares modules that are public only for the project's own tests and benchmarks.
+macro_rules! internals {
+    ($($name:ident)+) => {$(
+        #[cfg(feature = "internals")]
+        pub mod $name;
+        #[cfg(not(feature = "internals"))]
+        mod $name;
+    )+};
+}
+
+internals! { interpolation machine published solver stiffness }
+
 pub use error::Error;
-pub use machine::Excitation;
 pub use simd::InstructionSet;
+#[cfg(feature = "internals")]
+pub use simulate::Equations;
 pub use simulate::{Simulation, StageTime, Stages, simulate, stages, stages_within};
 pub use trace::{Trace, TraceField, stage_trace, trace, trace_at};
 pub use warnings::{Observer, StepJudgement, stages_and_warnings};

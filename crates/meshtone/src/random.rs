@@ -7,7 +7,7 @@
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// What a random number is used for; draws for different purposes are independent.
+/// Purpose of a random number; draws for different purposes are independent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u64)]
 #[non_exhaustive]
@@ -24,11 +24,11 @@ pub enum Purpose {
     TorqueFluctuation = 5,
     /// Noise of an enhanced difference signal, value by value; index: draw.
     EnhancementNoise = 6,
-    /// Which records a bootstrap sample takes; index: sample.
+    /// Records of a bootstrap sample; index: sample.
     Bootstrap = 7,
     /// Values of scenario keys that are tried; index: candidate.
     Candidate = 8,
-    /// Which wheels a unit of a data set has; index: unit.
+    /// Wheels of a unit of a data set; index: unit.
     DatasetWheels = 9,
     /// Seed of a record of a data set; index: record.
     DatasetSeed = 10,
@@ -38,13 +38,13 @@ pub enum Purpose {
     DatasetUnit = 12,
     /// Values that a record of a data set is drawn with; index: its number in its class.
     DatasetRecord = 13,
-    /// Where a unit's mark is and in which revolution a record begins; index: 0.
+    /// Angle of a unit's mark, and revolution in which a record begins; index: 0.
     DatasetStart = 14,
     /// Noise of a recorded channel, value by value; index: channel.
     RecordNoise = 15,
     /// Deviations of the pinion under `contact`; index: common, run-out, pitches, then the teeth.
     PinionDeviations = 16,
-    /// Likewise of the gear.
+    /// Deviations of the gear.
     GearDeviations = 17,
     /// Noise of a sensor, sample by sample; index: the sensor's place in the scenario's list.
     SensorNoise = 18,
@@ -56,15 +56,15 @@ pub enum Purpose {
     PathRipple = 21,
     /// Seed of a unit's run to failure; index: unit. Under it its life and its end; index: 0.
     DatasetRun = 22,
-    /// When the pits of a run come; index: 0.
+    /// Times at which the pits of a run appear; index: 0.
     DatasetPits = 23,
-    /// When a run is looked at; index: record of the run.
+    /// Times at which a run is recorded; index: record of the run.
     DatasetInspection = 24,
     /// The mounting that a unit's first record of a class is of; index: unit.
     DatasetTurn = 25,
-    /// What the pairs of a reference set have in common with their records; index: unit.
+    /// Properties that a pair of a reference set shares with its records; index: unit.
     DiagnosisUnit = 26,
-    /// What a record of a reference set is; index: record.
+    /// Properties of a record of a reference set; index: record.
     DiagnosisRecord = 27,
     /// Noise that is added to the averages of a reference set; index: record.
     DiagnosisNoise = 28,

@@ -1,30 +1,30 @@
 //! The eight stages, in order.
 
+mod curves;
 mod measured;
+mod severities;
 
+use std::f64::consts::TAU;
 use std::fmt::{self, Debug, Formatter};
 use std::num::NonZeroUsize;
 use std::time::Duration;
 
-use nalgebra::DMatrix;
 use web_time::Instant;
 
-use crate::damage::{Damage, DamagedTooth, Fault, damaged_teeth};
+use crate::damage::{DamagedTooth, ToothPart, damaged_teeth};
 use crate::error::{Error, ScenarioError, ScenarioWarning};
-use crate::machine::coordinates::CoordinateVector;
-use crate::machine::{ClosedMesh, DecayingMode, Excitation, Structure, System};
-use crate::mesh::forcing::{Forcing, ForcingBlock, ForcingSource};
-use crate::mesh::published::PublishedForcing;
+use crate::machine::{ClosedMesh, DecayingMode, Modes, Supports, Train, WheelBody};
 use crate::mesh::{
-    ALL_DIRECTIONS, ContactForcing, ContactMesh, ContactParameters, ContactTable, DirectionVector, FaceSlope,
-    Mesh, PairDeviations, PairForcing, PairMesh, PairSequence, Pairs, PublishedMesh, TipShape,
+    Contact, FaceSlope, Forcing, Mesh, MeshParameters, PairDeviations, PairSequence, PairTable, Pairs,
+    TipShape, Turning,
 };
 use crate::model::Model;
 use crate::operation::{CycleGrid, Solver, TimeGrid};
+use crate::published::{self, Published};
 use crate::scenario::{MemoryLimit, Scenario};
 use crate::sensor::{Channels, ContactFigures};
 use crate::simd::InstructionSet;
-use crate::solver::{Block, Diverged, Output, Problem, Recorder, ReducedModel, integrate};
+use crate::solver::{Block, Diverged, InitialMotion, ModalMachine, Output, Problem, Recorder, integrate};
 use crate::wheel::quality::{deviations, profile_errors};
 use crate::wheel::{Deviations, ProfileErrors, RunOut, Teeth, WheelDeviations, WheelName, teeth};
 
@@ -32,8 +32,8 @@ use crate::wheel::{Deviations, ProfileErrors, RunOut, Teeth, WheelDeviations, Wh
 #[derive(Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Stages {
-    /// Stage 1: what is simulated. Under the published model the keys that the published code ignores are
-    /// at their defaults; faults that were given by their severity have its sizes beside it.
+    /// Stage 1: what is simulated. Keys that the model ignores are at their defaults; faults that were given by their severity
+    /// have its sizes beside it.
     pub scenario: Scenario,
     /// Division of time.
     pub time: TimeGrid,
@@ -43,27 +43,35 @@ pub struct Stages {
     pub teeth: Teeth,
     /// Stage 3: profile errors; none for ideal teeth.
     pub profile_errors: Option<ProfileErrors>,
-    /// Stage 3 under `contact`: run-out of the pinion and of the gear.
+    /// Stage 3: run-out of the pinion and of the gear.
     pub run_out: [RunOut; 2],
-    /// (µm) Stage 3 under `contact`: helix slope deviation of the pinion and of the gear over the face width.
+    /// (µm) Stage 3: helix slope deviation of the pinion and of the gear over the face width.
     pub helix_slope_um: [f64; 2],
     /// Stage 4: the damaged teeth; none of a healthy pair.
     pub damaged: Vec<DamagedTooth>,
     /// (-) Stage 4: how severe each of the scenario's faults is, from 0 to 1.
     pub fault_severities: Vec<f64>,
-    /// Stage 5: the mesh, pair by pair.
-    pub mesh: Mesh,
-    /// Stage 6: the equations of motion of the wheels on rigid supports.
+    /// Stage 5: the meshes; none under the published model, which has one of its own.
+    pub meshes: Vec<Mesh>,
+    /// Stage 6: the equations of motion; for the project's own tests.
     #[doc(hidden)]
-    pub system: System,
-    /// Stage 6 under `contact`: those of wheels, shafts and supports, in place of [`Self::system`].
-    pub structure: Option<Structure>,
+    pub equations: Equations,
     /// Time that each stage took.
     pub timings: Vec<StageTime>,
     /// Stage 1: what is doubtful by the scenario alone.
     pub(crate) warnings_of_scenario: Vec<ScenarioWarning>,
     /// Most memory that the simulation may need, and one that repeats it.
     pub(crate) memory_limit: MemoryLimit,
+}
+
+/// The equations of motion.
+#[doc(hidden)]
+#[derive(Clone, PartialEq)]
+pub enum Equations {
+    /// A machine around meshes, and its modes without these.
+    Machine(Box<Train>, Modes),
+    /// Those of the published model, with its mesh.
+    Published(Box<Published>),
 }
 
 /// Time that a stage took.
@@ -139,86 +147,48 @@ pub fn stages(scenario: &Scenario) -> Result<Stages, ScenarioError> {
 /// assert!(meshtone::stages_within(&scenario, MemoryLimit::Given { bytes: needed - 1 }).is_err());
 /// ```
 pub fn stages_within(scenario: &Scenario, limit: MemoryLimit) -> Result<Stages, ScenarioError> {
-    let mut clock = Clock::default();
-    let mut warnings_of_scenario = scenario.validate_within(limit)?;
-    warnings_of_scenario.extend(scenario.ignored_by_model());
-    let mut scenario = scenario.as_honoured();
-    let (gears, rig, model) = (&scenario.gears, &scenario.rig, scenario.model);
+    let clock = Clock::default();
+    let mut warnings = scenario.validate_within(limit)?;
+    warnings.extend(scenario.ignored_by_model());
+    let honoured = scenario.without_ignored_keys();
+    let mut stages = match scenario.model {
+        Model::Published => published_stages(honoured, clock)?,
+        Model::Linear | Model::Contact => machine_stages(honoured, clock)?,
+    };
+    stages.warnings_of_scenario = warnings;
+    stages.memory_limit = limit;
+    let Stages { scenario: Scenario { faults, .. }, teeth, .. } = &mut stages;
+    let severities = faults.iter().map(|fault| fault.severity_on(teeth)).collect();
+    *faults = faults.iter().map(|fault| fault.with_sizes(teeth)).collect();
+    stages.fault_severities = severities;
+    stages.time.first_simulated_sample = stages.start_of_settling();
+    Ok(stages)
+}
+
+/// Stages 1 to 6 of a machine around one mesh.
+///
+/// A linear mesh may pull, and its supports are held: so it has neither backlash nor sensors on supports, and its damping is one ratio
+/// for all modes. All else is as in contact.
+fn machine_stages(scenario: Scenario, mut clock: Clock) -> Result<Stages, ScenarioError> {
+    let (gears, rig) = (&scenario.gears, &scenario.rig);
+    let contact = contact_of(scenario.model);
     let time = scenario.time_grid();
-    let mut cycle = CycleGrid::new(gears.pinion_teeth, gears.gear_teeth, time.sampling_rate_hz);
+    let cycle = CycleGrid::new(gears.pinion_teeth, gears.gear_teeth, time.sampling_rate_hz);
     clock.lap("scenario");
-
-    let teeth = teeth(gears, [rig.pinion_shaft.radius_mm, rig.gear_shaft.radius_mm], model);
+    let teeth = healthy_teeth(&scenario);
     clock.lap("tooth profiles");
-
-    let Deviations { flanks: profile_errors, run_out, helix_slope_um } = match model {
-        Model::Published | Model::Linear => Deviations {
-            flanks: profile_errors(&scenario.quality, &teeth, scenario.seed),
-            ..Deviations::default()
-        },
-        Model::Contact => deviations(&scenario.quality, &teeth, scenario.seed),
-    };
+    let Deviations { flanks: profile_errors, run_out, helix_slope_um } =
+        deviations(&scenario.quality, &teeth, scenario.seed);
     clock.lap("profile errors");
-
-    let mut structure = None;
-    let (damaged, mesh) = match model {
-        Model::Published => {
-            cycle = cycle.as_published(gears.pinion_teeth, gears.gear_teeth);
-            let damage = scenario.faults.first().and_then(|fault| fault.sized(&teeth));
-            let fault = damage.map(|damage| damage.published_geometry(&teeth, scenario.seed)).transpose()?;
-            let damaged = fault.iter().map(|fault| fault.damaged_tooth(&teeth)).collect();
-            clock.lap("fault");
-            let mesh = PublishedMesh::new(gears, &teeth, fault, cycle)?;
-            (damaged, Mesh::Published(Box::new(mesh)))
-        }
-        Model::Linear => {
-            let damaged = damaged_teeth(&scenario.faults, &teeth, scenario.seed)?;
-            clock.lap("fault");
-            let points_per_pitch = points_per_pitch(&scenario, &time, &cycle);
-            let sequence = PairSequence::new(gears.pinion_teeth, gears.gear_teeth, &damaged)?;
-            let mesh = pair_mesh(&scenario, &teeth, &damaged, sequence, points_per_pitch);
-            if mesh.classes[0].stiffness_n_per_m.contains(&0.0) {
-                return Err(ScenarioError::not_stiff());
-            }
-            if mesh.mean_whole_stiffness_n_per_m() == 0.0 {
-                return Err(ScenarioError::nothing_left());
-            }
-            (damaged, Mesh::Pairs(Box::new(mesh)))
-        }
-        Model::Contact => {
-            let damaged = damaged_teeth(&scenario.faults, &teeth, scenario.seed)?;
-            clock.lap("fault");
-            let built = Structure::new(gears, rig, &teeth);
-            let points_per_pitch = points_per_pitch(&scenario, &time, &cycle);
-            let sequence = PairSequence::new(gears.pinion_teeth, gears.gear_teeth, &damaged)?;
-            let pairs = pairs(&scenario, &teeth, &damaged);
-            let parameters = contact_parameters(&scenario, &teeth, &built, helix_slope_um);
-            if parameters.face.is_some() && parameters.static_force_n <= 0.0 {
-                return Err(ScenarioError::no_load_along_the_face());
-            }
-            let mesh = ContactMesh::new(&pairs, tip_shape(&scenario), sequence, points_per_pitch, parameters);
-            if mesh.mean_stiffness_n_per_m.is_nan() || mesh.mean_stiffness_n_per_m <= 0.0 {
-                return Err(ScenarioError::not_stiff());
-            }
-            if mesh.contact_ratio > ContactMesh::MOST_CONTACT_RATIO {
-                return Err(ScenarioError::too_many_pairs(
-                    mesh.contact_ratio,
-                    ContactMesh::MOST_CONTACT_RATIO,
-                ));
-            }
-            let meets = |table: &ContactTable| table.kind.pairs_per_cycle > 0 && table.can_touch();
-            if !mesh.classes.iter().any(meets) {
-                return Err(ScenarioError::nothing_left());
-            }
-            structure = Some(built);
-            (damaged, Mesh::Contact(Box::new(mesh)))
-        }
+    let damaged = damaged_teeth(&scenario.faults, &teeth, scenario.seed)?;
+    clock.lap("fault");
+    let supports = if contact == Contact::Unilateral { Supports::Moving } else { Supports::Held };
+    let train = Train::new(gears, rig, &teeth, supports);
+    let modes = match contact {
+        Contact::Unilateral => Modes::damped_by_springs(&train.machine),
+        Contact::Bilateral => Modes::damped_alike(&train.machine, rig.damping_ratio.of_all_modes()),
     };
-    clock.lap("mesh stiffness");
-
-    let system = System::new(gears, rig, &teeth, &mesh, model);
-    let fault_severities = scenario.faults.iter().map(|fault| fault.severity_on(&teeth)).collect();
-    scenario.faults = scenario.faults.iter().map(|fault| fault.with_sizes(&teeth)).collect();
+    let points_per_pitch = points_per_pitch(&scenario, &time, &cycle);
     let mut stages = Stages {
         time,
         cycle,
@@ -227,19 +197,75 @@ pub fn stages_within(scenario: &Scenario, limit: MemoryLimit) -> Result<Stages, 
         run_out,
         helix_slope_um,
         damaged,
-        fault_severities,
-        mesh,
-        system,
-        structure,
+        fault_severities: Vec::new(),
+        meshes: Vec::new(),
+        equations: Equations::Machine(Box::new(train), modes),
         timings: Vec::new(),
-        warnings_of_scenario,
-        memory_limit: limit,
+        warnings_of_scenario: Vec::new(),
+        memory_limit: MemoryLimit::default(),
         scenario,
     };
-    stages.time.first_simulated_sample = stages.start_of_settling();
     clock.lap("equations of motion");
+    stages.meshes = stages.meshes_at(points_per_pitch)?;
+    stages.meshes.iter().try_for_each(check_mesh)?;
+    clock.lap("mesh stiffness");
     stages.timings = clock.laps;
     Ok(stages)
+}
+
+/// The same of the published model, which has a mesh and equations of motion of its own.
+fn published_stages(scenario: Scenario, mut clock: Clock) -> Result<Stages, ScenarioError> {
+    let time = scenario.time_grid();
+    clock.lap("scenario");
+    let teeth = healthy_teeth(&scenario);
+    clock.lap("tooth profiles");
+    let profile_errors = profile_errors(&scenario.quality, &teeth, scenario.seed);
+    clock.lap("profile errors");
+    let published = Published::new(&scenario, &time, &teeth, profile_errors.as_ref())?;
+    clock.lap("mesh stiffness");
+    Ok(Stages {
+        cycle: published.cycle(),
+        damaged: published.damaged_tooth(&teeth).into_iter().collect(),
+        time,
+        teeth,
+        profile_errors,
+        run_out: Default::default(),
+        helix_slope_um: [0.0; 2],
+        fault_severities: Vec::new(),
+        meshes: Vec::new(),
+        equations: Equations::Published(Box::new(published)),
+        timings: clock.laps,
+        warnings_of_scenario: Vec::new(),
+        memory_limit: MemoryLimit::default(),
+        scenario,
+    })
+}
+
+/// The healthy teeth of a scenario's wheels.
+///
+/// # Arguments
+/// * `scenario` - with the keys that its model ignores at their defaults
+fn healthy_teeth(scenario: &Scenario) -> Teeth {
+    let Scenario { gears, rig, model, .. } = scenario;
+    let bore_radii_mm = [rig.pinion_shaft.radius_mm, rig.gear_shaft.radius_mm];
+    if model.has_meshes() { teeth(gears, bore_radii_mm) } else { published::teeth(gears, bore_radii_mm) }
+}
+
+/// How the flanks of a model's meshes touch.
+fn contact_of(model: Model) -> Contact {
+    if model == Model::Linear { Contact::Bilateral } else { Contact::Unilateral }
+}
+
+/// Refuses a mesh that carries nothing, and one of more pairs at once than a step looks at.
+fn check_mesh(mesh: &Mesh) -> Result<(), ScenarioError> {
+    if mesh.mean_stiffness_n_per_m.is_nan() || mesh.mean_stiffness_n_per_m <= 0.0 {
+        return Err(ScenarioError::not_stiff());
+    }
+    if mesh.contact_ratio > Mesh::MOST_CONTACT_RATIO {
+        return Err(ScenarioError::too_many_pairs(mesh.contact_ratio, Mesh::MOST_CONTACT_RATIO));
+    }
+    let meets = |table: &PairTable| table.kind.pairs_per_cycle > 0 && table.can_touch();
+    if mesh.classes.iter().any(meets) { Ok(()) } else { Err(ScenarioError::nothing_left()) }
 }
 
 /// Points from one pair to the next: while motor and brake are steady every sample is one, else the coarse points of the cycle.
@@ -253,148 +279,136 @@ fn points_per_pitch(scenario: &Scenario, time: &TimeGrid, cycle: &CycleGrid) -> 
     NonZeroUsize::new(points).unwrap_or(NonZeroUsize::MIN)
 }
 
-/// The tooth pairs of a scenario.
-fn pairs<'a>(scenario: &Scenario, teeth: &'a Teeth, damaged: &'a [DamagedTooth]) -> Pairs<'a> {
-    Pairs::new(teeth, damaged, scenario.gears.material, &scenario.gears.foundation)
-}
-
-/// The mesh as a sequence of tooth pairs.
-fn pair_mesh(
-    scenario: &Scenario,
-    teeth: &Teeth,
-    damaged: &[DamagedTooth],
-    sequence: PairSequence,
-    points_per_pitch: NonZeroUsize,
-) -> PairMesh {
-    let pairs = pairs(scenario, teeth, damaged);
-    PairMesh::new(&pairs, sequence, teeth.path.contact_ratio, points_per_pitch)
-}
-
-/// What shapes the tips and flanks of all teeth under `contact`.
-fn tip_shape(scenario: &Scenario) -> TipShape {
-    TipShape { chamfer_mm: scenario.gears.chamfer_mm(), relief: scenario.gears.flank_relief }
-}
-
-/// What the mesh under `contact` needs beside the pairs.
-fn contact_parameters(
-    scenario: &Scenario,
-    teeth: &Teeth,
-    structure: &Structure,
-    helix_slope_um: [f64; 2],
-) -> ContactParameters {
-    let closer_um = scenario.rig.misalignment_um + helix_slope_um[0] + helix_slope_um[1];
-    let (width_m, static_force_n) = (teeth.gear.face_width_mm * 1e-3, static_force_n(scenario, teeth));
-    let face = FaceSlope {
-        slope: closer_um * 1e-6 / width_m,
-        width_m,
-        tilt_rad_per_m: structure.tilt_rad_per_nm() * static_force_n,
-    };
-    ContactParameters {
-        damping_ratio: scenario.rig.mesh_damping_ratio,
-        mesh_mass_kg: structure.mesh_mass_kg,
-        backlash_m: scenario.gears.normal_backlash_mm() * 1e-3,
-        static_force_n,
-        face: (closer_um != 0.0).then_some(face),
-    }
-}
-
-/// (N) Force along the line of action that balances the brake's nominal torque.
-fn static_force_n(scenario: &Scenario, teeth: &Teeth) -> f64 {
-    force_of_torque_n(scenario.operation.brake_torque_nm, teeth)
-}
-
-/// (N) Force along the line of action that balances a torque on the gear.
-fn force_of_torque_n(torque_nm: f64, teeth: &Teeth) -> f64 {
-    torque_nm / (teeth.gear.base_radius_mm * 1e-3)
-}
-
 impl Simulation {
-    /// How the teeth touched; none under the models whose mesh is closed always.
+    /// How the teeth touched; none where the flanks may pull.
     pub fn contact_figures(&self) -> Option<ContactFigures> {
-        self.stages.mesh.contact().map(|_| ContactFigures::of(&self.channels))
+        self.stages.teeth_part().then(|| ContactFigures::of(&self.channels))
     }
 }
 
 impl Stages {
-    /// (Hz) Natural frequencies, rising: of the mean mesh, closed.
+    /// Whether flanks that are pulled part, as real ones do.
+    pub(crate) fn teeth_part(&self) -> bool {
+        self.meshes.iter().any(|mesh| mesh.contact == Contact::Unilateral)
+    }
+
+    /// Number of the coordinates in which the equations of motion are written.
+    pub(crate) fn coordinates(&self) -> usize {
+        match &self.equations {
+            Equations::Machine(train, _) => train.machine.coordinates(),
+            Equations::Published(published) => published.coordinates(),
+        }
+    }
+
+    /// Mass and inertias of the pinion and of the gear.
+    pub(crate) fn wheel_bodies(&self) -> [WheelBody; 2] {
+        match &self.equations {
+            Equations::Machine(train, _) => train.wheels,
+            Equations::Published(published) => [published.machine.pinion, published.machine.gear],
+        }
+    }
+
+    /// (N m/rad) Torsional stiffness of the pinion's and of the gear's shaft.
+    pub(crate) fn shaft_stiffness_nm_per_rad(&self) -> [f64; 2] {
+        match &self.equations {
+            Equations::Machine(train, _) => train.shaft_stiffness_nm_per_rad,
+            Equations::Published(published) => published.machine.shaft_stiffness_nm_per_rad,
+        }
+    }
+
+    /// (Hz) Natural frequencies, rising: of the mean meshes, closed.
     pub fn natural_frequencies_hz(&self) -> Vec<f64> {
-        match &self.structure {
-            None => self.system.natural_frequencies_hz().to_vec(),
-            Some(structure) => structure.closed_modes(self.mesh.mean_stiffness_n_per_mm() * 1e3).0,
+        match &self.equations {
+            Equations::Machine(train, _) => train.machine.closed_modes(&self.mean_stiffness_n_per_m()).0,
+            Equations::Published(published) => published.natural_frequencies_hz(),
         }
     }
 
-    /// Mode shapes in the order of [`Self::natural_frequencies_hz`], a column each, of unit modal mass: in the wheels' and the
-    /// brake's 13 coordinates, and under `contact` in those of the supports.
-    pub fn mode_shapes(&self) -> DMatrix<f64> {
-        match &self.structure {
-            None => {
-                let shapes = self.system.mode_shapes();
-                DMatrix::from_fn(shapes.nrows(), shapes.ncols(), |row, column| shapes[(row, column)])
+    /// Mode shapes in the order of [`Self::natural_frequencies_hz`], of unit modal mass: for each mode a number for each coordinate.
+    pub fn mode_shapes(&self) -> Vec<Vec<f64>> {
+        match &self.equations {
+            Equations::Machine(train, _) => {
+                let (_, shapes) = train.machine.closed_modes(&self.mean_stiffness_n_per_m());
+                shapes.column_iter().map(|shape| shape.iter().copied().collect()).collect()
             }
-            Some(structure) => structure.closed_modes(self.mesh.mean_stiffness_n_per_mm() * 1e3).1,
+            Equations::Published(published) => published.mode_shapes(),
         }
     }
 
-    /// The tooth pairs, at any position of their path; not under `published`, whose flanks are not conjugate.
+    /// (N/m) Mean stiffness of each mesh.
+    pub(crate) fn mean_stiffness_n_per_m(&self) -> Vec<f64> {
+        match &self.equations {
+            Equations::Machine(..) => self.meshes.iter().map(|mesh| mesh.mean_stiffness_n_per_m).collect(),
+            Equations::Published(published) => vec![published.mean_stiffness_n_per_m()],
+        }
+    }
+
+    /// The tooth pairs, at any position of their path; not under the published model, whose flanks are not conjugate.
     pub fn pairs(&self) -> Pairs<'_> {
-        pairs(&self.scenario, &self.teeth, &self.damaged)
+        Pairs::new(&self.teeth, &self.damaged, self.scenario.gears.material, &self.scenario.gears.foundation)
     }
 
-    /// The mesh as a sequence of tooth pairs, with another number of points from one pair to the next than the time loop has.
+    /// The meshes, with another number of points from one pair to the next than the time loop has; none under the published model.
     ///
     /// # Arguments
     /// * `points_per_pitch` - how many
     ///
     /// # Errors
-    /// Damaged teeth that were put beyond a wheel's last one.
-    pub fn pair_mesh(&self, points_per_pitch: NonZeroUsize) -> Result<PairMesh, ScenarioError> {
-        let [pinion, gear] = [self.teeth.pinion.teeth, self.teeth.gear.teeth];
-        let sequence = PairSequence::new(pinion, gear, &self.damaged)?;
-        Ok(pair_mesh(&self.scenario, &self.teeth, &self.damaged, sequence, points_per_pitch))
-    }
-
-    /// The mesh under `contact`, with another number of points from one pair to the next than the time loop has; none under the
-    /// other models.
-    ///
-    /// # Arguments
-    /// * `points_per_pitch` - how many
-    ///
-    /// # Errors
-    /// Damaged teeth that were put beyond a wheel's last one.
-    pub fn contact_mesh(&self, points_per_pitch: NonZeroUsize) -> Result<Option<ContactMesh>, ScenarioError> {
-        let Some(structure) = &self.structure else { return Ok(None) };
-        let [pinion, gear] = [self.teeth.pinion.teeth, self.teeth.gear.teeth];
-        let sequence = PairSequence::new(pinion, gear, &self.damaged)?;
-        let parameters = contact_parameters(&self.scenario, &self.teeth, structure, self.helix_slope_um);
-        let shape = tip_shape(&self.scenario);
-        Ok(Some(ContactMesh::new(&self.pairs(), shape, sequence, points_per_pitch, parameters)))
-    }
-
-    /// What the pinion and the gear have beside their profile errors: under `contact` run-out and helix slope, none under the other
-    /// models. With the profile errors, of which the pitches are a part, these are all their deviations: given to a scenario, they
-    /// make the same signals.
-    pub fn wheel_deviations(&self) -> [WheelDeviations; 2] {
-        let of_wheel = |wheel: usize| match self.scenario.model {
-            Model::Contact => WheelDeviations {
-                cumulative_pitch_um: None,
-                run_out_um: Some(self.run_out[wheel].run_out_um),
-                run_out_phase_rad: Some(self.run_out[wheel].phase_rad),
-                helix_slope_um: Some(self.helix_slope_um[wheel]),
-            },
-            Model::Linear | Model::Published => WheelDeviations::default(),
+    /// Damaged teeth that were put beyond a wheel's last one, misaligned shafts without a load.
+    pub fn meshes_at(&self, points_per_pitch: NonZeroUsize) -> Result<Vec<Mesh>, ScenarioError> {
+        let Equations::Machine(train, modes) = &self.equations else { return Ok(Vec::new()) };
+        let Scenario { gears, rig, .. } = &self.scenario;
+        let sequence = PairSequence::new(gears.pinion_teeth, gears.gear_teeth, &self.damaged)?;
+        let contact = contact_of(self.scenario.model);
+        let static_force_n = self.static_force_n();
+        // Flanks that may pull bear on the whole face.
+        let closer_um = match contact {
+            Contact::Unilateral => rig.misalignment_um + self.helix_slope_um.iter().sum::<f64>(),
+            Contact::Bilateral => 0.0,
         };
-        [of_wheel(0), of_wheel(1)]
+        if closer_um != 0.0 && static_force_n <= 0.0 {
+            return Err(ScenarioError::no_load_along_the_face());
+        }
+        let width_m = self.teeth.gear.face_width_mm * 1e-3;
+        let face = FaceSlope {
+            slope: closer_um * 1e-6 / width_m,
+            width_m,
+            tilt_rad_per_m: modes.tilt_rad_per_nm(&train.machine, 0) * static_force_n,
+        };
+        let parameters = MeshParameters {
+            contact,
+            turning: Turning { pitches_per_revolution: f64::from(gears.pinion_teeth), first_pitch: 0.0 },
+            damping_ratio: rig.mesh_damping_ratio,
+            mesh_mass_kg: train.mesh_mass_kg,
+            backlash_m: gears.normal_backlash_mm() * 1e-3,
+            static_force_n,
+            face: (closer_um != 0.0).then_some(face),
+        };
+        let shape = TipShape { chamfer_mm: gears.chamfer_mm(), relief: gears.flank_relief };
+        Ok(vec![Mesh::new(&self.pairs(), shape, sequence, points_per_pitch, parameters)])
+    }
+
+    /// The deviations of the pinion and of the gear beside their profile errors: run-out and helix slope. With the profile errors, of
+    /// which the pitches are a part, these are all their deviations: given to a scenario, they make the same signals.
+    pub fn wheel_deviations(&self) -> [WheelDeviations; 2] {
+        let of_wheel = |wheel: usize| WheelDeviations {
+            cumulative_pitch_um: None,
+            run_out_um: Some(self.run_out[wheel].run_out_um),
+            run_out_phase_rad: Some(self.run_out[wheel].phase_rad),
+            helix_slope_um: Some(self.helix_slope_um[wheel]),
+        };
+        let none = [WheelDeviations::default(), WheelDeviations::default()];
+        if self.scenario.model.has_meshes() { [of_wheel(0), of_wheel(1)] } else { none }
     }
 
     /// (N) Force along the line of action that balances the brake's nominal torque.
     pub fn static_force_n(&self) -> f64 {
-        static_force_n(&self.scenario, &self.teeth)
+        self.force_of_torque_n(self.scenario.operation.brake_torque_nm)
     }
 
     /// (N) Force along the line of action that balances a torque on the gear.
     pub(crate) fn force_of_torque_n(&self, torque_nm: f64) -> f64 {
-        force_of_torque_n(torque_nm, &self.teeth)
+        torque_nm / (self.teeth.gear.base_radius_mm * 1e-3)
     }
 
     /// Whether motor speed and brake torque are constant.
@@ -403,19 +417,17 @@ impl Stages {
         motion.is_steady() && motion.has_constant_torque()
     }
 
-    /// (1/s) Rate at which the slowest mode in motion decays; under `contact` with the mean mesh, closed.
-    pub(crate) fn slowest_decay_per_s(&self) -> f64 {
-        let of_system = || self.reduced_model().slowest_decay_per_s();
-        self.slowest_closed_mode().map_or_else(of_system, |mode| mode.decay_per_s)
+    /// The slowest mode in motion, with the mean meshes closed.
+    pub(crate) fn slowest_mode(&self) -> DecayingMode {
+        match &self.equations {
+            Equations::Machine(train, modes) => modes.slowest_closed(&train.machine, &self.closed_meshes()),
+            Equations::Published(published) => published.slowest_mode(),
+        }
     }
 
-    /// The slowest mode in motion under `contact`, with the mean mesh closed.
-    pub(crate) fn slowest_closed_mode(&self) -> Option<DecayingMode> {
-        let (structure, mesh) = (self.structure.as_ref()?, self.mesh.contact()?);
-        Some(structure.slowest_mode(&ClosedMesh {
-            stiffness_n_per_m: mesh.mean_stiffness_n_per_m,
-            damping_time_s: mesh.damping_time_s,
-        }))
+    /// The meshes as if they were closed always.
+    pub(crate) fn closed_meshes(&self) -> Vec<ClosedMesh> {
+        self.meshes.iter().map(Mesh::closed).collect()
     }
 
     /// First sample that must be simulated, so that the slowest mode's transient has decayed to the settling tolerance where
@@ -423,13 +435,12 @@ impl Stages {
     ///
     /// Only for a steady motion that starts in equilibrium: what is left out is then a motion like the one that follows.
     fn start_of_settling(&self) -> usize {
-        let Solver { settle_tolerance, initial_displacement, initial_velocity, .. } = &self.scenario.solver;
-        let starts_in_equilibrium = initial_displacement.is_none() && initial_velocity.is_none();
-        let published = self.scenario.model == Model::Published;
-        if published || !starts_in_equilibrium || *settle_tolerance == 0.0 || !self.is_steady() {
+        let Solver { settle_tolerance, initial_velocity, .. } = &self.scenario.solver;
+        let starts_in_equilibrium = self.scenario.model.has_meshes() && initial_velocity.is_none();
+        if !starts_in_equilibrium || *settle_tolerance == 0.0 || !self.is_steady() {
             return 0;
         }
-        let decay_s = -settle_tolerance.ln() / self.slowest_decay_per_s();
+        let decay_s = -settle_tolerance.ln() / self.slowest_mode().decay_per_s;
         let settling = (decay_s * self.time.sampling_rate_hz).ceil();
         // As a float: a decay that takes forever saturates.
         self.time.first_kept_sample.saturating_sub(settling as usize)
@@ -487,8 +498,7 @@ impl Stages {
 
     /// Stage 7, with what the channels take of it.
     fn integrate_into(&self, recorder: &mut dyn Recorder) -> Result<(), Error> {
-        let model = self.reduced_model();
-        self.integrate(&model, &self.channel_outputs(), self.time.first_kept_sample, recorder)
+        self.integrate(&self.channel_outputs(), self.time.first_kept_sample, recorder)
     }
 
     /// Stage 8, and everything together.
@@ -507,122 +517,94 @@ impl Stages {
         self.time.samples as f64 / self.time.samples_per_pinion_revolution as f64
     }
 
-    /// Stage 6, the right-hand side: motor, brake and the deviations' force, sample by sample from the start.
-    pub fn excitation(&self) -> impl Iterator<Item = Excitation> {
-        let mut forcing = self.forcing_from(0, &ALL_DIRECTIONS);
-        let mut block = ForcingBlock::default();
-        self.scenario.motion(&self.time).map(move |motion| {
-            forcing.next_block(1, &mut block);
-            Excitation {
-                motor_angle_rad: std::f64::consts::TAU * motion.revolutions,
-                motor_speed_rad_per_s: std::f64::consts::TAU * motion.speed_hz,
-                brake_torque_nm: motion.torque_nm,
-                deviation_force_n: DirectionVector::from_fn(|direction, _| block.errors[direction][0]),
-            }
-        })
-    }
-
-    fn forcing_from(&self, first_sample: usize, directions: &[usize]) -> Box<dyn Forcing + '_> {
-        let operation = &self.scenario.operation;
-        let motion = self.scenario.motion(&self.time);
-        let nominal = [operation.pinion_speed_hz, operation.brake_torque_nm];
-        let errors = self.profile_errors.as_ref();
-        let deviations = PairDeviations {
-            teeth: &self.teeth,
-            errors,
-            eccentricity_m: self.scenario.rig.eccentricity_mm * 1e-3,
-            run_out: self.run_out,
-        };
-        let time = &self.time;
-        match &self.mesh {
-            Mesh::Published(mesh) => {
-                Box::new(PublishedForcing::new(mesh, errors, motion, time, nominal, directions))
-            }
-            Mesh::Contact(mesh) => {
-                let count = directions.len();
-                Box::new(ContactForcing::new(mesh, &deviations, motion, time, nominal, count, first_sample))
-            }
-            Mesh::Pairs(mesh) => {
-                Box::new(PairForcing::new(mesh, &deviations, motion, time, nominal, directions, first_sample))
-            }
-        }
-    }
-
-    /// The simulation as the solver sees it.
-    pub(crate) fn problem<'a>(&'a self, model: &'a ReducedModel, outputs: &'a [Output]) -> Problem<'a> {
-        Problem {
-            time: &self.time,
-            model,
-            mesh: &self.mesh,
-            points_per_revolution: match &self.mesh {
-                Mesh::Published(_) => self.cycle.points_per_pinion_revolution as f64,
-                Mesh::Pairs(_) | Mesh::Contact(_) => {
-                    (self.mesh.points_per_pitch() * self.teeth.pinion.teeth as usize) as f64
-                }
-            },
-            source: self,
-            brake_torque_nm: self.scenario.operation.brake_torque_nm,
-            steady: self.is_steady(),
-            outputs,
-            first_sample: self.time.first_kept_sample,
-        }
-    }
-
-    /// The equations of motion in the modes that take part in the motion.
-    #[doc(hidden)]
-    pub fn reduced_model(&self) -> ReducedModel {
-        let solver = &self.scenario.solver;
-        let operation = &self.scenario.operation;
-        let nominal_speed = std::f64::consts::TAU * operation.pinion_speed_hz;
-        let displacement = match (solver.initial_displacement, self.scenario.model) {
-            (Some(given), _) => Some(given.into()),
-            (None, Model::Published) => Some(CoordinateVector::zeros()),
-            (None, Model::Linear | Model::Contact) => None,
-        };
-        let speed = self.initial_motor_speed_rad_per_s();
-        let velocity = match solver.initial_velocity {
-            Some(given) => given.into(),
-            None => self.system.rigid_rotation() * speed,
-        };
-        let displacement = displacement.as_ref();
-        match (&self.structure, &self.mesh) {
-            (Some(structure), Mesh::Contact(mesh)) => {
-                let torque = operation.brake_torque_nm;
-                let tilts = mesh.tilts();
-                ReducedModel::of_structure(structure, tilts, nominal_speed, torque, displacement, &velocity)
-            }
-            _ => ReducedModel::new(&self.system, nominal_speed, displacement, &velocity),
-        }
-    }
-
-    fn initial_motor_speed_rad_per_s(&self) -> f64 {
-        let operation = &self.scenario.operation;
-        let speed_hz =
-            operation.speed_profile_hz.as_ref().map_or(operation.pinion_speed_hz, |profile| profile.value[0]);
-        std::f64::consts::TAU * speed_hz
-    }
-
     /// Stage 7: solves the equations of motion and hands the outputs of every sample to `recorder`.
     ///
     /// # Arguments
-    /// * `model` - from [`Self::reduced_model`]
     /// * `outputs` - what is read off the solution
     /// * `first_sample` - first sample that is recorded; those before are computed all the same
     /// * `recorder` - takes the outputs, in the same order
     ///
     /// # Errors
     /// A motion that grows without bound, as with too little damping the varying mesh stiffness can make it.
-    #[doc(hidden)]
     pub fn integrate(
         &self,
-        model: &ReducedModel,
         outputs: &[Output],
         first_sample: usize,
         recorder: &mut dyn Recorder,
     ) -> Result<(), Error> {
-        let problem = Problem { first_sample, ..self.problem(model, outputs) };
-        let result = integrate(&problem, InstructionSet::fastest(), recorder);
+        self.integrate_with(InstructionSet::fastest(), outputs, first_sample, recorder)
+    }
+
+    /// As [`Self::integrate`], with given vector instructions.
+    pub(crate) fn integrate_with(
+        &self,
+        instructions: InstructionSet,
+        outputs: &[Output],
+        first_sample: usize,
+        recorder: &mut dyn Recorder,
+    ) -> Result<(), Error> {
+        let result = match &self.equations {
+            Equations::Machine(train, modes) => {
+                integrate(self.problem(train, modes, outputs, first_sample), instructions, recorder)
+            }
+            Equations::Published(published) => published.integrate(outputs, first_sample, recorder),
+        };
         result.map_err(|diverged| self.divergence(diverged))
+    }
+
+    /// The simulation as it is solved side by side with others; none under the published model, which is solved alone.
+    ///
+    /// # Arguments
+    /// * `outputs` - what is read off the solution, of the kept samples
+    pub(crate) fn lane<'a>(&'a self, outputs: &'a [Output]) -> Option<Problem<'a>> {
+        let Equations::Machine(train, modes) = &self.equations else { return None };
+        Some(self.problem(train, modes, outputs, self.time.first_kept_sample))
+    }
+
+    /// The simulation as the solver sees it.
+    fn problem<'a>(
+        &'a self,
+        train: &Train,
+        modes: &Modes,
+        outputs: &'a [Output],
+        first_sample: usize,
+    ) -> Problem<'a> {
+        let operation = &self.scenario.operation;
+        let deviations = || PairDeviations {
+            teeth: &self.teeth,
+            errors: self.profile_errors.as_ref(),
+            eccentricity_m: self.scenario.rig.eccentricity_mm * 1e-3,
+            run_out: self.run_out,
+        };
+        Problem {
+            time: &self.time,
+            machine: self.modal_machine(train, modes),
+            laws: self.meshes.iter().map(Mesh::law).collect(),
+            forcing: Forcing::new(
+                self.scenario.motion(&self.time),
+                &self.time,
+                [operation.pinion_speed_hz, operation.brake_torque_nm],
+                self.time.first_simulated_sample,
+                self.meshes.iter().map(|mesh| (mesh, deviations())),
+            ),
+            is_steady: self.is_steady(),
+            outputs,
+            first_sample,
+        }
+    }
+
+    /// The machine in the modes that take part in the motion.
+    pub(crate) fn modal_machine(&self, train: &Train, modes: &Modes) -> ModalMachine {
+        let operation = &self.scenario.operation;
+        let first_speed = operation.speed_profile_hz.as_ref().map(|profile| profile.value[0]);
+        let tilts: Vec<bool> = self.meshes.iter().map(Mesh::tilts).collect();
+        let start = InitialMotion {
+            nominal_rad_per_s: TAU * operation.pinion_speed_hz,
+            brake_torque_nm: operation.brake_torque_nm,
+            motor_rad_per_s: TAU * first_speed.unwrap_or(operation.pinion_speed_hz),
+            velocity: self.scenario.solver.initial_velocity.as_ref().map(|given| given.as_slice()),
+        };
+        ModalMachine::new(&train.machine, modes, &tilts, start)
     }
 
     /// The error that a solution without bound is.
@@ -631,10 +613,13 @@ impl Stages {
         if let Some(error) = WheelName::BOTH.into_iter().find_map(|wheel| self.gap(wheel, time_s)) {
             return error.into();
         }
-        let (key, damping_ratios) = match &self.structure {
-            None => ("rig.damping_ratio", self.scenario.rig.damping_ratio.per_mode().to_vec()),
+        let rig = &self.scenario.rig;
+        let (key, damping_ratios) = match &self.equations {
             // The shafts' as well.
-            Some(structure) => ("rig.support.damping_ratio", structure.damping_ratio.clone()),
+            Equations::Machine(_, modes) if self.teeth_part() => {
+                ("rig.support.damping_ratio", modes.damping_ratio.clone())
+            }
+            _ => ("rig.damping_ratio", rig.damping_ratio.per_mode().to_vec()),
         };
         Error::Diverged { time_s, key, damping_ratios }
     }
@@ -646,12 +631,10 @@ impl Stages {
         if missing as f64 <= ratio {
             return None;
         }
-        let faults = &self.scenario.faults;
-        let takes_teeth = |(_, fault): &(usize, &Fault)| {
-            fault.wheel == wheel && matches!(fault.damage, Damage::MissingTooth(_))
-        };
-        let named: Vec<String> =
-            faults.iter().enumerate().filter(takes_teeth).map(|(n, _)| format!("fault[{n}]")).collect();
+        let faults = self.scenario.faults.iter().enumerate();
+        let of_wheel =
+            faults.filter(|(_, fault)| fault.wheel == wheel && fault.damage.part() == ToothPart::Whole);
+        let named: Vec<String> = of_wheel.map(|(n, _)| format!("fault[{n}]")).collect();
         let (named, wheel) = (named.join(", "), wheel.name());
         let problem = format!(
             "{missing} neighbouring teeth of the {wheel} are missing ({named}), more than the {ratio:.2} pairs in contact at once: \
@@ -668,12 +651,6 @@ fn most_neighbours(damaged: &[DamagedTooth], wheel: WheelName, teeth: usize) -> 
     let missing: Vec<usize> = of_wheel.flat_map(|tooth| tooth.teeth.iter().copied()).collect();
     let run = |&first: &usize| (0..teeth).take_while(|n| missing.contains(&((first + n) % teeth))).count();
     missing.iter().map(run).max().unwrap_or(0)
-}
-
-impl ForcingSource for Stages {
-    fn forcing(&self, directions: &[usize]) -> Box<dyn Forcing + '_> {
-        self.forcing_from(self.time.first_simulated_sample, directions)
-    }
 }
 
 /// Channels that somebody waits for, as long as they do.

@@ -3,7 +3,7 @@
 #[cfg(feature = "threads")]
 use rayon::prelude::*;
 
-/// How many there are.
+/// The number of them.
 pub(crate) fn count() -> usize {
     #[cfg(feature = "threads")]
     return rayon::current_num_threads();
@@ -23,7 +23,7 @@ pub(crate) fn each(work: impl Fn() + Sync) {
     work();
 }
 
-/// What `work` makes of each item, in the items' order.
+/// Results of `work` for each item, in the items' order.
 pub(crate) fn map<T: Send, R: Send>(
     items: impl IntoIterator<Item = T>,
     work: impl Fn(T) -> R + Sync + Send,
@@ -34,7 +34,7 @@ pub(crate) fn map<T: Send, R: Send>(
     items.into_iter().map(work).collect()
 }
 
-/// As [`map`], but once `work` has failed for an item, it is done for none that has not begun.
+/// Does what [`map`] does, but once `work` has failed for an item, it is done for none that has not begun.
 ///
 /// # Errors
 /// One of those that `work` gave.

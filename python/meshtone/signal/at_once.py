@@ -66,7 +66,7 @@ def tsa(
 
 
 def _no_times(given: object, sampling_rate_hz: float, samples: int) -> str:
-    """What is told of a number where times of pulses belong: it is rather a speed."""
+    """The error message for a number where times of pulses belong: it is rather a speed."""
     times = "times of the shaft's pulses in s, an array"
     if not isinstance(given, (int, float)):
         return f"pulses_s = {given!r}: must be {times}"

@@ -46,7 +46,7 @@ class ShaftPhase:
         return phase
 
     @classmethod
-    def _told(cls, native: _core.ShaftPhase) -> ShaftPhase:
+    def _wrap_and_warn(cls, native: _core.ShaftPhase) -> ShaftPhase:
         warn(native.warnings)
         return cls._wrap(native)
 
@@ -112,7 +112,7 @@ class ShaftPhase:
             whole("samples", samples),
             stated_speed_hz,
         )
-        return cls._told(native)
+        return cls._wrap_and_warn(native)
 
     @classmethod
     def from_speed_profile(
@@ -137,7 +137,7 @@ class ShaftPhase:
             NaN; another number of speeds than of times; times that do not rise; a speed that is not above 0.
         """
         times, speeds = signal_array(time_s), signal_array(speed_hz)
-        return cls._told(
+        return cls._wrap_and_warn(
             _core.ShaftPhase.from_speed_profile(times, speeds, sampling_rate_hz, whole("samples", samples))
         )
 
@@ -200,7 +200,7 @@ class ShaftPhase:
         native = _core.ShaftPhase.from_mesh_tone(
             signal_array(signal), sampling_rate_hz, teeth_number(teeth), shaft_hz, whole("harmonic", harmonic, 1), half_band_hz
         )
-        return cls._told(native)
+        return cls._wrap_and_warn(native)
 
     def of_mate(self, teeth: int, mate_teeth: int) -> ShaftPhase:
         """Phase of the other shaft: this one times ``teeth / mate_teeth``.

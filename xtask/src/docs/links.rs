@@ -9,7 +9,7 @@ use super::{Problem, markdown, read};
 struct Link {
     /// 1-based line.
     line: usize,
-    /// Where it leads, as written.
+    /// Its target, as written.
     target: String,
 }
 
@@ -52,7 +52,7 @@ pub fn check(page: &Path, text: &str, book: Option<&Path>) -> io::Result<Vec<Pro
     Ok(problems)
 }
 
-/// What is wrong with a link of `page`, if anything.
+/// Problem of a link of `page`, if it has one.
 fn fault_of(target: &str, page: &Path, text: &str, book: Option<&Path>) -> io::Result<Option<String>> {
     if ["http://", "https://", "mailto:"].iter().any(|scheme| target.starts_with(scheme)) {
         return Ok(None);

@@ -1,4 +1,4 @@
-//! As much of Markdown as the checks need.
+//! A reader of as much Markdown as the checks need.
 
 /// `text` with everything inside code (fenced blocks and `spans`) blanked out, line by line, so
 /// that lines and columns stay what they were.
@@ -56,7 +56,7 @@ pub fn anchors(text: &str) -> Vec<String> {
     anchors
 }
 
-/// Whether `anchor` is `name` with a number behind it.
+/// Returns whether `anchor` is `name` with a number behind it.
 fn is_numbered(anchor: &str, name: &str) -> bool {
     anchor
         .strip_prefix(name)
@@ -64,7 +64,7 @@ fn is_numbered(anchor: &str, name: &str) -> bool {
         .is_some_and(|number| !number.is_empty() && number.chars().all(|c| c.is_ascii_digit()))
 }
 
-/// What a character of a heading becomes in its anchor.
+/// Character of an anchor for a character of its heading.
 fn anchor_character(c: char) -> Option<char> {
     match c {
         _ if c.is_alphanumeric() => Some(c.to_ascii_lowercase()),

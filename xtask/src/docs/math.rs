@@ -9,7 +9,7 @@ use std::path::Path;
 
 use super::{Problem, markdown};
 
-/// What Markdown would spoil in a page's formulas.
+/// Problems that Markdown would make in a page's formulas.
 pub fn check(page: &Path, text: &str) -> Vec<Problem> {
     let mut problems = Vec::new();
     let mut problem = |line: usize, message: String| {
@@ -49,7 +49,7 @@ pub fn check(page: &Path, text: &str) -> Vec<Problem> {
     problems
 }
 
-/// What Markdown would spoil in one formula.
+/// Problems that Markdown would make in one formula.
 fn spoilt(formula: &str) -> Vec<String> {
     let mut messages = Vec::new();
     let mut previous = ' ';

@@ -19,7 +19,7 @@ pub struct Problem {
     pub file: PathBuf,
     /// 1-based line.
     pub line: usize,
-    /// What is wrong.
+    /// The problem.
     pub message: String,
 }
 

@@ -1,5 +1,6 @@
 //! `meshtone completions`
 
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, CommandFactory, ValueEnum};
 use clap_complete::Shell;
 use clap_mangen::Man;
@@ -13,7 +14,8 @@ use crate::terminal;
 #[command(after_help = EXAMPLES)]
 pub struct Completions {
     /// For which shell; `man`: the manual page
-    kind: Kind,
+    #[arg(value_parser = kinds())]
+    kind: String,
 }
 
 const EXAMPLES: &str = "\
@@ -23,38 +25,21 @@ Examples:
   meshtone completions fish > ~/.config/fish/completions/meshtone.fish
   meshtone completions man > ~/.local/share/man/man1/meshtone.1";
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Kind {
-    Bash,
-    Elvish,
-    Fish,
-    #[value(name = "powershell")]
-    PowerShell,
-    Zsh,
-    Man,
-}
+const MANUAL: &str = "man";
 
-impl Kind {
-    /// The shell; none for the manual page.
-    fn shell(self) -> Option<Shell> {
-        match self {
-            Self::Bash => Some(Shell::Bash),
-            Self::Elvish => Some(Shell::Elvish),
-            Self::Fish => Some(Shell::Fish),
-            Self::PowerShell => Some(Shell::PowerShell),
-            Self::Zsh => Some(Shell::Zsh),
-            Self::Man => None,
-        }
-    }
+/// Names of the shells, and of the manual page.
+fn kinds() -> PossibleValuesParser {
+    let shells = Shell::value_variants().iter().filter_map(Shell::to_possible_value);
+    PossibleValuesParser::new(shells.chain([PossibleValue::new(MANUAL)]))
 }
 
 impl Completions {
     pub fn run(&self) -> Result<(), Failure> {
         let mut program = Arguments::command();
         let mut text = Vec::new();
-        match self.kind.shell() {
-            Some(shell) => clap_complete::generate(shell, &mut program, "meshtone", &mut text),
-            None => manual(program, &mut text).map_err(|error| Failure::failed(error.to_string()))?,
+        match Shell::from_str(&self.kind, false) {
+            Ok(shell) => clap_complete::generate(shell, &mut program, "meshtone", &mut text),
+            Err(_) => manual(program, &mut text).map_err(|error| Failure::failed(error.to_string()))?,
         }
         terminal::print(&String::from_utf8_lossy(&text))
     }

@@ -1,12 +1,10 @@
 //! `meshtone dataset`
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::atomic::AtomicBool;
 
 use clap::{Args, Subcommand};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use meshtone_dataset::draw::Sampler;
 use meshtone_dataset::generate::{GenerateControl, Generated, Part, generate};
 use meshtone_dataset::merge::merge;
@@ -14,12 +12,13 @@ use meshtone_dataset::plan::Plan;
 use meshtone_dataset::store::Destination;
 use meshtone_dataset::verify::{Check, Verified, verify};
 use meshtone_dataset::{DatasetError, counted};
-use meshtone_io::scenario_file::ReadScenarioError;
+use meshtone_io::scenario_file::FileKind;
 
 use crate::failure::Failure;
 use crate::other_kind::{MANIFEST, or_other_kind};
 use crate::output_directory::named_after;
-use crate::terminal::{print, print_error_line};
+use crate::progress::bar;
+use crate::terminal::{print, print_error_line, warn};
 
 /// Failed records that are reported one by one.
 const TOLD: usize = 3;
@@ -150,13 +149,13 @@ impl Dataset {
 impl Make {
     fn run(&self) -> Result<(), Failure> {
         let plan = read_plan(&self.plan)?;
-        foretell(&self.plan.display().to_string(), &plan);
+        warn_before_generating(&self.plan.display().to_string(), &plan);
         let to = self.destination()?;
         let part = self.part.map_or(Part::WHOLE, |part| part.0);
         let threads = usize::from(self.jobs.unwrap_or(0));
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|error| Failure::failed(format!("cannot start threads: {error}")))?;
-        let bar = self.progress_bar();
+        let bar = bar("records", !self.quiet);
         let progress = |done: u64, all: u64| {
             bar.set_length(all);
             bar.set_position(done);
@@ -165,33 +164,18 @@ impl Make {
         let generated = pool.install(|| generate(&plan, &to, part, &control));
         bar.finish_and_clear();
         let generated = generated?;
-        warn(&generated);
+        warn_after_generating(&generated);
         if !self.quiet {
-            print(&summary(&plan, &generated, &to, part))?;
+            print(&summary(&plan, &generated, &to))?;
         }
         refuse_missing(&self.plan.display().to_string(), &generated)
     }
 
     fn destination(&self) -> Result<Destination, Failure> {
-        if let Some(output) = &self.output {
-            return Ok(Destination::parse(output)?);
+        match &self.output {
+            Some(output) => Ok(Destination::parse(output)?),
+            None => Ok(Destination::directory(named_after(&self.plan, "dataset"))),
         }
-        let name = named_after(&self.plan, "_dataset");
-        let name = name.ok_or_else(|| Failure::bad_input(format!("{} is no plan", self.plan.display())))?;
-        Ok(Destination::directory(name))
-    }
-
-    fn progress_bar(&self) -> ProgressBar {
-        if self.quiet {
-            return ProgressBar::hidden();
-        }
-        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-        if let Ok(style) =
-            ProgressStyle::with_template("{bar:30} {pos} of {len} records, {per_sec}, {eta} left")
-        {
-            bar.set_style(style);
-        }
-        bar
     }
 }
 
@@ -218,13 +202,10 @@ impl Verify {
         if let Some(problem) = found.problems.get(MANIFEST) {
             print_error_line(format!("{MANIFEST}: {problem}"));
         }
-        for name in found.missing.iter().take(NAMED) {
-            print_error_line(format!("{name}: it is missing"));
-        }
+        let missing = found.missing.iter().map(|name| format!("{name}: it is missing"));
+        missing.take(NAMED).for_each(print_error_line);
         let others = found.problems.iter().filter(|(name, _)| *name != MANIFEST);
-        for (name, problem) in others.take(NAMED) {
-            print_error_line(format!("{name}: {problem}"));
-        }
+        others.take(NAMED).for_each(|(name, problem)| print_error_line(format!("{name}: {problem}")));
         let wrong = (found.missing.len() + found.problems.len()) as u64;
         if wrong > 0 {
             let files = counted(wrong, "file");
@@ -236,17 +217,12 @@ impl Verify {
         }
         if self.quiet { Ok(()) } else { print(&report(&found, &place, self.sizes_only)) }
     }
-}
 
-impl Verify {
     /// Of a path that is no data set, which command reads it.
     fn refuse(&self, error: DatasetError) -> Failure {
         let failure = error.into();
         let path = Path::new(&self.place);
-        match path.join(MANIFEST).is_file() {
-            true => failure,
-            false => or_other_kind(path, "a data set", failure),
-        }
+        if path.join(MANIFEST).is_file() { failure } else { or_other_kind(path, "a data set", failure) }
     }
 }
 
@@ -293,43 +269,38 @@ impl Scenario {
 }
 
 fn read_plan(path: &Path) -> Result<Plan, Failure> {
-    Plan::read(path).map_err(|error| {
-        // The error about a text says already what kind it is.
-        let is_text = matches!(error, ReadScenarioError::Invalid { .. });
-        let failure = DatasetError::from(error).into();
-        if is_text { failure } else { or_other_kind(path, "the plan of a data set", failure) }
-    })
+    Plan::read(path).map_err(|error| Failure::of_file(FileKind::Plan, error))
 }
 
-/// What is doubtful about the plan, and what it shows to be missing in the end, before anything is computed.
-fn foretell(name: &str, plan: &Plan) {
+/// Prints warnings about the plan, and what it shows to be missing in the end, before anything is computed.
+fn warn_before_generating(name: &str, plan: &Plan) {
     for warning in plan.warnings() {
-        print_error_line(format!("warning: {name}: {warning}"));
+        warn(format_args!("{name}: {warning}"));
     }
     let foreseen = plan.foreseen_failures();
     if let Some(first) = foreseen.first() {
         let count = counted(foreseen.len() as u64, "record");
-        print_error_line(format!(
-            "warning: {name}: {count} that cannot be simulated will be missing; record {}: {}",
+        warn(format_args!(
+            "{name}: {count} that cannot be simulated will be missing; record {}: {}",
             first.record, first.reason
         ));
     }
 }
 
-fn warn(generated: &Generated) {
-    for remade in generated.remade.iter().take(TOLD) {
-        print_error_line(format!("warning: {} was made again: {}", remade.file, remade.reason));
-    }
-    if generated.remade.len() > TOLD {
-        let rest = counted((generated.remade.len() - TOLD) as u64, "more file");
-        print_error_line(format!("warning: {rest} made again for such reasons"));
-    }
-    for failed in generated.failures.iter().take(TOLD) {
-        print_error_line(format!("warning: record {} failed: {}", failed.record, failed.reason));
-    }
-    if generated.failures.len() > TOLD {
-        let rest = counted((generated.failures.len() - TOLD) as u64, "more record");
-        print_error_line(format!("warning: {rest} failed; manifest.json lists them"));
+fn warn_after_generating(generated: &Generated) {
+    let remade = generated.remade.iter().map(|file| format!("{} was made again: {}", file.file, file.reason));
+    warn_of_first(remade, "more file", "made again for such reasons");
+    let failures = &generated.failures;
+    let failed = failures.iter().map(|failed| format!("record {} failed: {}", failed.record, failed.reason));
+    warn_of_first(failed, "more record", "failed; manifest.json lists them");
+}
+
+/// Prints the first warnings, and how many more there are.
+fn warn_of_first(warnings: impl ExactSizeIterator<Item = String>, more: &str, what: &str) {
+    let rest = warnings.len().saturating_sub(TOLD);
+    warnings.take(TOLD).for_each(warn);
+    if rest > 0 {
+        warn(format_args!("{} {what}", counted(rest as u64, more)));
     }
 }
 
@@ -361,31 +332,21 @@ fn refuse_missing(of: &str, generated: &Generated) -> Result<(), Failure> {
     ))
 }
 
-fn summary(plan: &Plan, generated: &Generated, to: &Destination, part: Part) -> String {
-    let mut text = String::new();
-    // Writing to a text cannot fail.
-    let _ = writeln!(
-        text,
-        "  {} in {} written, {} {} there already",
+fn summary(plan: &Plan, generated: &Generated, to: &Destination) -> String {
+    let written = format!(
+        "  {} in {} written, {} {} there already\n",
         counted(generated.written_records - generated.failures.len() as u64, "record"),
         counted(generated.written_shards, "shard"),
         counted(generated.kept_shards, "shard"),
         if generated.kept_shards == 1 { "was" } else { "were" }
     );
+    if !generated.complete {
+        let rest = "not complete: other parts are missing; `meshtone dataset merge` puts parts together";
+        return format!("{written}  {rest}\n\n{to}\n");
+    }
     let missing = generated.missing().len() as u64;
     let of_plan = if missing == 0 { String::new() } else { format!(" of the plan's {}", plan.records()) };
-    let _ = match (generated.complete, part == Part::WHOLE) {
-        (true, _) => writeln!(
-            text,
-            "  complete: {}{of_plan} of {}, see README.md there",
-            counted(plan.records() - missing, "record"),
-            counted(plan.content.units, "unit")
-        ),
-        (false, _) => writeln!(
-            text,
-            "  not complete: other parts are missing; `meshtone dataset merge` puts parts together"
-        ),
-    };
-    let _ = writeln!(text, "\n{to}");
-    text
+    let records = counted(plan.records() - missing, "record");
+    let units = counted(plan.content.units, "unit");
+    format!("{written}  complete: {records}{of_plan} of {units}, see README.md there\n\n{to}\n")
 }

@@ -14,7 +14,8 @@ use meshtone_io::scenario_file::{FileKind, ScenarioFile};
 use crate::check::check;
 use crate::failure::Failure;
 use crate::output_directory::{OutputDirectory, named_after};
-use crate::terminal::{print, print_error_line};
+use crate::terminal::{print, warn};
+use crate::warnings;
 
 const ENHANCED: &str = "enhanced.parquet";
 /// All are held in memory: some 50 kB each.
@@ -30,10 +31,10 @@ pub struct Enhance {
     /// The scenario
     #[arg(value_name = "SCENARIO.toml")]
     scenario: PathBuf,
-    /// What `meshtone tune` found; numbers of the scenario that were tuned as well are put into it
+    /// Result of `meshtone tune`; numbers of the scenario that were tuned as well are put into it
     #[arg(long, value_name = "tuned.toml")]
     tuned: PathBuf,
-    /// How many draws of the noise
+    /// Number of draws of the noise
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=MOST_DRAWS))]
     draws: u64,
     /// Seed of the noise
@@ -60,22 +61,13 @@ impl Enhance {
             .map_err(|error| Failure::bad_input(format!("{}: {error}", self.tuned.display())))?;
         let (warnings, _) = check(&scenario).map_err(|error| file.refuse(error))?;
         if let Some(warning) = tuned.warning_for(&scenario) {
-            print_error_line(format!("warning: {}: {warning}", self.tuned.display()));
+            warn(format_args!("{}: {warning}", self.tuned.display()));
         }
-        for warning in warnings {
-            print_error_line(format!("warning: {}: {warning}", self.scenario.display()));
-        }
-        let directory = OutputDirectory::for_files(&self.directory()?, &[ENHANCED])?;
-        self.write(&scenario, &tuned, &directory.path().join(ENHANCED))?;
-        Ok(())
-    }
-
-    fn directory(&self) -> Result<PathBuf, Failure> {
-        let default = || named_after(&self.scenario, "_enhanced");
-        self.output
-            .clone()
-            .or_else(default)
-            .ok_or_else(|| Failure::bad_input(format!("{} is no scenario file", self.scenario.display())))
+        warnings::print(&file, &warnings);
+        let directory = self.output.clone().unwrap_or_else(|| named_after(&self.scenario, "enhanced"));
+        let read: Vec<&Path> = file.sources().chain([self.tuned.as_path()]).collect();
+        let output = OutputDirectory::for_files(&directory, &[ENHANCED], &read)?;
+        self.write(&scenario, &tuned, &output.path().join(ENHANCED))
     }
 
     fn write(&self, scenario: &Scenario, tuned: &Tuned, path: &Path) -> Result<(), Failure> {

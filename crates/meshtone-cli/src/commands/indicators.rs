@@ -11,10 +11,10 @@ use crate::indicators::process::process;
 use crate::indicators::reading::Input;
 use crate::indicators::results::{Series, settings};
 use crate::indicators::{figures, files, table};
-use crate::output_directory::OutputDirectory;
+use crate::output_directory::{OutputDirectory, named_after};
 use crate::progress::Progress;
-use crate::targets::{check_not_read, named_after};
-use crate::terminal;
+use crate::terminal::{print, warn};
+use crate::warnings::in_words;
 
 /// Warnings of one recording that are printed; the others are counted.
 const PRINTED: usize = 5;
@@ -65,11 +65,9 @@ impl Indicators {
             let of = format!("({} of {})", number + 1, self.recordings.len());
             let _progress = Progress::start(format!("{} {of}", path.display()), !self.quiet);
             let input = Input::read(path, &self.reading, self.phase.channel())?;
-            let processed = process(&input, &self.phase, &self.processing).map_err(|failure| {
-                match self.reading.in_kilohertz() {
-                    Some(help) => failure.with_help(help),
-                    None => failure,
-                }
+            let processed = process(&input, &self.phase, &self.processing).map_err(|failure| Failure {
+                help: self.reading.in_kilohertz().or(failure.help),
+                ..failure
             })?;
             series.add(input, processed, self.processing.revolutions.is_some())?;
         }
@@ -78,8 +76,9 @@ impl Indicators {
         if let Some(message) = order_of_names(&self.recordings) {
             series.results.warnings.push(WarningEntry { source: None, message });
         }
-        self.check_targets(&directory)?;
-        let output = OutputDirectory::for_files(&directory, &files::FILES)?;
+        let read: Vec<&Path> =
+            self.recordings.iter().map(PathBuf::as_path).chain(self.phase.files()).collect();
+        let output = OutputDirectory::for_files(&directory, &files::FILES, &read)?;
         self.write(output.path(), &series)?;
         print_warnings(&series.results.warnings);
         if self.quiet {
@@ -89,7 +88,7 @@ impl Indicators {
             [only] => only.display().to_string(),
             several => format!("{} recordings", several.len()),
         };
-        terminal::print(&format!("{from} -> {}\n{}", directory.display(), table::table(&series)))
+        print(&format!("{from} -> {}\n{}", directory.display(), table::table(&series)))
     }
 
     fn directory(&self) -> PathBuf {
@@ -98,12 +97,6 @@ impl Indicators {
             (None, [only]) => named_after(only, "indicators"),
             (None, _) => PathBuf::from("series_indicators"),
         }
-    }
-
-    /// Refuses to replace a file that is read.
-    fn check_targets(&self, directory: &Path) -> Result<(), Failure> {
-        let read = self.recordings.iter().chain(&self.phase.pulse_times).chain(&self.phase.speed_profile);
-        check_not_read(&files::FILES.map(|name| directory.join(name)), read)
     }
 
     fn write(&self, directory: &Path, series: &Series) -> Result<(), Failure> {
@@ -116,15 +109,10 @@ impl Indicators {
 }
 
 fn print_warnings(warnings: &[WarningEntry]) {
-    let print = |warning: &WarningEntry| {
-        let source =
-            warning.source.as_ref().map(|source| format!("{}: ", source.display())).unwrap_or_default();
-        terminal::print_error_line(format!("warning: {source}{}", warning.message));
-    };
     for of_one in warnings.chunk_by(|a, b| a.source == b.source) {
-        of_one.iter().take(PRINTED).for_each(print);
+        of_one.iter().take(PRINTED).map(in_words).for_each(warn);
         if let Some(more) = of_one.len().checked_sub(PRINTED).filter(|more| *more > 0) {
-            terminal::print_error_line(format!("warning: … and {more} more, in indicators.json"));
+            warn(format_args!("… and {more} more, in indicators.json"));
         }
     }
 }

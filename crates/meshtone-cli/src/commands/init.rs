@@ -1,16 +1,16 @@
 //! `meshtone init`
 
-use std::io::{ErrorKind, Write};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use meshtone::scenario::{template, template_kinds};
 use meshtone_dataset::plan;
-use meshtone_io::atomic_file::StagedFile;
 use meshtone_io::experiment;
 
 use crate::failure::Failure;
+use crate::replacement::stage_text;
 use crate::terminal;
 
 /// The kind that is a data set's plan and no scenario.
@@ -55,7 +55,7 @@ impl Init {
     }
 
     fn write(&self, path: &Path, text: &str) -> Result<(), Failure> {
-        let file = StagedFile::write(path, |file| file.write_all(text.as_bytes()))?;
+        let file = stage_text(path, text)?;
         if self.force {
             return Ok(file.commit()?);
         }

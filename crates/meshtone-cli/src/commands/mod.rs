@@ -4,6 +4,7 @@ mod completions;
 mod dataset;
 mod diagnose;
 mod enhance;
+#[cfg(feature = "explore")]
 mod explore;
 mod indicators;
 mod init;
@@ -23,6 +24,7 @@ pub enum Command {
     // These two have many more options than the others.
     Indicators(Box<indicators::Indicators>),
     Diagnose(Box<diagnose::Diagnose>),
+    #[cfg(feature = "explore")]
     Explore(explore::Explore),
     Init(init::Init),
     Wheels(wheels::Wheels),
@@ -40,6 +42,7 @@ impl Command {
             Self::Simulate(arguments) => arguments.run(),
             Self::Indicators(arguments) => arguments.run(),
             Self::Diagnose(arguments) => arguments.run(),
+            #[cfg(feature = "explore")]
             Self::Explore(arguments) => arguments.run(),
             Self::Init(arguments) => arguments.run(),
             Self::Wheels(arguments) => arguments.run(),

@@ -16,9 +16,9 @@ use crate::failure::Failure;
 use crate::other_kind::or_other_kind;
 use crate::output_directory::claim;
 use crate::results::{PANEL, SIGNALS, SUMMARY, stage_panel};
-use crate::terminal::{print, print_error_line};
+use crate::terminal::{print, warn};
 
-/// What the panel is drawn of.
+/// Description of the input of the panel.
 const WRITTEN: &str = "a directory that `meshtone simulate` wrote";
 
 /// Draw the panel of a simulation's results again
@@ -41,8 +41,8 @@ impl Panel {
         // Nothing is put back while another program replaces it.
         let _claim = self.directory.is_dir().then(|| claim(&self.directory)).transpose()?;
         if earlier_results::put_back(&self.directory)? {
-            print_error_line(format!(
-                "warning: the last run into {} was interrupted while it replaced the results of the run before it, which \
+            warn(format_args!(
+                "the last run into {} was interrupted while it replaced the results of the run before it, which \
                  have been put back",
                 self.directory.display()
             ));
@@ -84,8 +84,8 @@ impl Panel {
                 Err(Failure::bad_input(problem).with_help(HELP))
             }
             Err(ReadResultsError::Unreadable { source, .. }) if source.kind() == ErrorKind::NotFound => {
-                print_error_line(format!(
-                    "warning: there is no {}, so the results are not complete: the run may have been interrupted, and \
+                warn(format_args!(
+                    "there is no {}, so the results are not complete: the run may have been interrupted, and \
                      what stands beside {SIGNALS} may be of another run; {HELP}",
                     path.display()
                 ));
@@ -99,8 +99,8 @@ impl Panel {
     fn warn_of_version(&self, recorded: &Recorded) {
         const THIS: &str = env!("CARGO_PKG_VERSION");
         if recorded.version != THIS {
-            print_error_line(format!(
-                "warning: {} was written by version {}; what the panel shows beside the signals is computed \
+            warn(format_args!(
+                "{} was written by version {}; what the panel shows beside the signals is computed \
                  by version {THIS}",
                 self.directory.join(SIGNALS).display(),
                 recorded.version,

@@ -3,24 +3,26 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use meshtone::scenario::{Model, Quality, Scenario, ScenarioError, ScenarioFiles, ScenarioWarning};
 use meshtone::{Simulation, StageTime, Stages, Trace};
+use meshtone_io::atomic_file::check_target;
 use meshtone_io::experiment::{Tuned, read_tuned};
 use meshtone_io::memory;
 use meshtone_io::run_identity::RunIdentity;
-use meshtone_io::scenario_file::{FileKind, FilesBeside, ReadScenarioError, ScenarioFile};
+use meshtone_io::scenario_file::{FileKind, FilesBeside, ScenarioFile};
 use meshtone_io::summary::Summary;
 
 use crate::check::check;
+use crate::choice::{Choice, one_of};
 use crate::failure::Failure;
-use crate::other_kind::or_other_kind;
-use crate::output_directory::OutputDirectory;
+use crate::output_directory::{OutputDirectory, named_after};
 use crate::progress::Progress;
-use crate::results::Results;
+use crate::results::{RESULTS, Results};
+use crate::same_file::is_same_file;
 use crate::table::table;
-use crate::targets::Targets;
-use crate::{terminal, warnings};
+use crate::terminal::{print, warn};
+use crate::warnings;
 
 /// Simulate scenarios: signals, summary and results panel
 ///
@@ -37,13 +39,13 @@ pub struct Simulate {
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Model of the mesh, instead of the scenario's own
-    #[arg(long)]
-    model: Option<ModelArgument>,
+    #[arg(long, value_parser = one_of(&MODELS))]
+    model: Option<Model>,
     /// Profile errors, as `meshtone wheels` writes them, in place of all that the scenario says of quality; the name is relative to
     /// the current directory
     #[arg(long, value_name = "WHEELS.npz")]
     errors_file: Option<PathBuf>,
-    /// What `meshtone tune` found: its numbers of the scenario are put into every scenario that has them
+    /// Result of `meshtone tune`: its numbers of the scenario are put into every scenario that has them
     #[arg(long, value_name = "tuned.toml")]
     tuned: Option<PathBuf>,
     /// Write every stage's output too (one scenario only)
@@ -64,25 +66,17 @@ Examples:
   meshtone simulate healthy.toml broken.toml -o out     into out/healthy and out/broken
   meshtone simulate pit.toml chip.toml --errors-file wheels.npz -o out   both on the same wheels";
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum ModelArgument {
-    /// Teeth that touch and part, on shafts that bend, in supports that a sensor sits on
-    Contact,
-    /// What the theory of a linear mesh says
-    Linear,
-    /// The published code, its known errors included
-    Published,
-}
+const TRACE_HELP: &str = "name another file with --trace, in a directory that exists";
 
-impl From<ModelArgument> for Model {
-    fn from(argument: ModelArgument) -> Self {
-        match argument {
-            ModelArgument::Contact => Self::Contact,
-            ModelArgument::Linear => Self::Linear,
-            ModelArgument::Published => Self::Published,
-        }
-    }
-}
+const MODELS: [Choice<Model>; 3] = [
+    (
+        "contact",
+        "Teeth that touch and part, on shafts that bend, in supports that a sensor sits on",
+        Model::Contact,
+    ),
+    ("linear", "What the theory of a linear mesh says", Model::Linear),
+    ("published", "The published code, its known errors included", Model::Published),
+];
 
 /// A scenario that can be simulated, and where its results go.
 struct Run {
@@ -110,15 +104,14 @@ impl Simulate {
         let runs =
             runs.map(|(path, directory)| self.prepare(path, directory, errors.as_ref(), tuned.as_ref()));
         let runs = runs.collect::<Result<Vec<_>, _>>()?;
-        let directories = runs.iter().map(|run| OutputDirectory::prepare(&run.directory));
-        let directories = directories.collect::<Result<Vec<_>, _>>()?;
-        let targets = Targets {
-            directories: runs.iter().map(|run| run.directory.as_path()).collect(),
-            trace: self.trace.as_deref(),
-        };
         let read = runs.iter().flat_map(|run| run.file.sources());
         let named = self.errors_file.as_deref().into_iter().chain(self.tuned.as_deref());
-        targets.check(&read.chain(named).collect::<Vec<_>>())?;
+        let read: Vec<&Path> = read.chain(named).collect();
+        let directories = runs.iter().map(|run| OutputDirectory::prepare(&run.directory, &read));
+        let directories = directories.collect::<Result<Vec<_>, _>>()?;
+        if let Some(trace) = &self.trace {
+            check_trace(trace, &runs[0].directory, &read)?;
+        }
         for (number, (run, directory)) in runs.into_iter().zip(directories).enumerate() {
             self.simulate(run, &directory, number)?;
         }
@@ -133,11 +126,7 @@ impl Simulate {
                 return Err(Failure::bad_input(format!("{} is no scenario file", path.display())));
             };
             let directory = match &self.output {
-                None => {
-                    let mut name = stem.to_os_string();
-                    name.push("_results");
-                    PathBuf::from(name)
-                }
+                None => named_after(path, "results"),
                 Some(output) if self.scenarios.len() == 1 => output.clone(),
                 Some(output) => output.join(stem),
             };
@@ -164,15 +153,11 @@ impl Simulate {
         errors: Option<&Quality>,
         tuned: Option<&Tuned>,
     ) -> Result<Run, Failure> {
-        let file = ScenarioFile::read_within(path, memory::limit()).map_err(|error| {
-            // The error about a text says already what kind it is.
-            let is_text = matches!(error, ReadScenarioError::Invalid { .. });
-            if is_text { error.into() } else { or_other_kind(path, "a scenario", error.into()) }
-        })?;
+        let file = ScenarioFile::read_within(path, memory::limit())?;
         let mut scenario = file.scenario.clone();
         if let (Some(tuned), Some(tuned_path)) = (tuned, &self.tuned) {
             if let Some(warning) = tuned.warning_for(&scenario) {
-                terminal::print_error_line(format!("warning: {}: {warning}", tuned_path.display()));
+                warn(format_args!("{}: {warning}", tuned_path.display()));
             }
             scenario = tuned.apply(&scenario).map_err(|error| {
                 let (tuned, path) = (tuned_path.display(), path.display());
@@ -180,7 +165,7 @@ impl Simulate {
             })?;
         }
         if let Some(model) = self.model {
-            scenario.model = model.into();
+            scenario.model = model;
         }
         if let Some(errors) = errors {
             scenario.quality = errors.clone();
@@ -196,20 +181,15 @@ impl Simulate {
             (Some(errors_file), Some(entry)) => {
                 let (errors_file, scenario) = (errors_file.display(), file.path.display());
                 let problem = error.problem;
-                let failure = Failure::bad_input(format!(
-                    "--errors-file {errors_file}: {entry}: {problem} ({scenario})"
-                ));
-                match error.help {
-                    Some(help) => failure.with_help(help),
-                    None => failure,
-                }
+                let message = format!("--errors-file {errors_file}: {entry}: {problem} ({scenario})");
+                Failure { help: error.help, ..Failure::bad_input(message) }
             }
             _ => file.refuse(error).into(),
         }
     }
 
     fn simulate(&self, run: Run, directory: &OutputDirectory, number: usize) -> Result<(), Failure> {
-        run.warnings.iter().for_each(|warning| warnings::print(&run.file, warning));
+        warnings::print(&run.file, &run.warnings);
         let of = format!("({} of {})", number + 1, self.scenarios.len());
         let progress = Progress::start(format!("{} {of}", run.file.path.display()), !self.quiet);
         let (simulation, trace) = simulate(&run.scenario, run.stages, self.trace.is_some())
@@ -226,14 +206,37 @@ impl Simulate {
         };
         let written = results.write(directory.path());
         drop(progress);
-        by_signals.iter().for_each(|warning| warnings::print(&run.file, warning));
+        warnings::print(&run.file, &by_signals);
         written?;
         if self.quiet {
             return Ok(());
         }
         let (from, to) = (run.file.path.display(), directory.path().display());
-        terminal::print(&format!("{from} -> {to}\n{}\n", table(&summary)))
+        print(&format!("{from} -> {to}\n{}\n", table(&summary)))
     }
+}
+
+/// Refuses a trace that cannot be written, or would replace a result or a file that is read.
+///
+/// # Arguments
+/// * `trace` - its file
+/// * `directory` - of the results, which exists
+/// * `read` - files that are read
+fn check_trace(trace: &Path, directory: &Path, read: &[&Path]) -> Result<(), Failure> {
+    let refuse = |problem: &str| {
+        let problem = format!("--trace {}: {problem}; must be a file of its own", trace.display());
+        Err(Failure::bad_input(problem).with_help(TRACE_HELP))
+    };
+    if RESULTS.iter().any(|name| is_same_file(trace, &directory.join(name))) {
+        return refuse("is where the run writes another of its results");
+    }
+    if read.iter().any(|file| is_same_file(trace, file)) {
+        return refuse("is a file that the run reads");
+    }
+    check_target(trace).map_err(|error| {
+        let message = format!("--trace {}: cannot be written: {}", trace.display(), error.source);
+        Failure::of_writing(error.source.kind(), message).with_help(TRACE_HELP)
+    })
 }
 
 /// Wheels with the deviations of a file.
@@ -258,8 +261,8 @@ fn not_simulated(file: &ScenarioFile, error: meshtone::Error) -> Failure {
     match error {
         meshtone::Error::Scenario(error) => file.refuse(error).into(),
         error => {
-            let failure = Failure::bad_input(format!("{}: {error}", file.path.display()));
-            help.into_iter().fold(failure, Failure::with_help)
+            let message = format!("{}: {error}", file.path.display());
+            Failure { help, ..Failure::bad_input(message) }
         }
     }
 }

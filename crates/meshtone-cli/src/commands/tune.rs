@@ -1,15 +1,10 @@
 //! `meshtone tune`
 
-use std::fmt::Write as _;
-use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use meshtone::tuning::{Experiment, ExperimentControl, ExperimentResult, Tuning, run_experiment};
-use meshtone_io::atomic_file::StagedFile;
 use meshtone_io::experiment::{ExperimentFile, Tuned, read_experiment, tuning_json, warnings, write_tuned};
 use meshtone_io::own_file::undisturbed;
 use meshtone_io::scenario_file::FileKind;
@@ -18,8 +13,9 @@ use meshtone_plot::tuning_figure;
 use crate::failure::Failure;
 use crate::other_kind::TUNED;
 use crate::output_directory::{OutputDirectory, named_after};
-use crate::same_file::is_same_file;
-use crate::terminal::{print, print_error_line};
+use crate::progress::bar;
+use crate::replacement::{cannot_draw, replace, stage_figure, stage_text};
+use crate::terminal::{print, warn};
 
 const TUNING: &str = "tuning.json";
 const FIGURE: [&str; 2] = ["tuning.svg", "tuning.png"];
@@ -55,62 +51,21 @@ impl Tune {
     pub fn run(&self) -> Result<(), Failure> {
         let file = read_experiment(&self.experiment)
             .map_err(|error| Failure::of_file(FileKind::Experiment, error))?;
-        let directory = self.directory()?;
-        for name in FILES {
-            let target = directory.join(name);
-            if let Some(source) = file.sources.iter().find(|source| is_same_file(source, &target)) {
-                let problem = format!("{} would be replaced, but is read", source.display());
-                return Err(Failure::bad_input(problem).with_help("name another directory with -o"));
-            }
-        }
-        let directory = OutputDirectory::for_files(&directory, &FILES)?;
-        self.tune(&file, directory.path())?;
-        Ok(())
-    }
-
-    fn directory(&self) -> Result<PathBuf, Failure> {
-        let default = || named_after(&self.experiment, "_tuning");
-        self.output
-            .clone()
-            .or_else(default)
-            .ok_or_else(|| Failure::bad_input(format!("{} is no experiment file", self.experiment.display())))
-    }
-
-    fn tune(&self, file: &ExperimentFile, directory: &Path) -> Result<(), Failure> {
-        let experiment = &file.experiment;
-        let bar = Mutex::new(self.progress_bar());
+        let directory = self.output.clone().unwrap_or_else(|| named_after(&self.experiment, "tuning"));
+        let read: Vec<&Path> = file.sources.iter().map(PathBuf::as_path).collect();
+        let output = OutputDirectory::for_files(&directory, &FILES, &read)?;
+        let bar = bar("simulations", !self.quiet);
         let progress = |finished: usize, all: usize| {
-            // A poisoned lock means another thread's end, which is told elsewhere.
-            if let Ok(bar) = bar.lock() {
-                bar.set_length(all as u64);
-                bar.set_position(finished as u64);
-            }
+            bar.set_length(all as u64);
+            bar.set_position(finished as u64);
         };
-        let cancelled = AtomicBool::new(false);
-        let control = ExperimentControl { progress: &progress, cancelled: &cancelled };
-        let result = run_experiment(experiment, &control)
+        let control = ExperimentControl { progress: &progress, cancelled: &AtomicBool::new(false) };
+        let result = run_experiment(&file.experiment, &control)
             .map_err(|error| Failure::bad_input(format!("{}: {error}", self.experiment.display())))?;
-        if let Ok(bar) = bar.lock() {
-            bar.finish_and_clear();
-        }
-        self.write(file, &result, directory)?;
-        for warning in warnings(file, &result) {
-            print_error_line(format!("warning: {warning}"));
-        }
-        if self.quiet { Ok(()) } else { print(&table(experiment, &result, directory)) }
-    }
-
-    fn progress_bar(&self) -> ProgressBar {
-        if self.quiet {
-            return ProgressBar::hidden();
-        }
-        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-        if let Ok(style) =
-            ProgressStyle::with_template("{bar:30} {pos} of {len} simulations, {per_sec}, {eta} left")
-        {
-            bar.set_style(style);
-        }
-        bar
+        bar.finish_and_clear();
+        self.write(&file, &result, output.path())?;
+        warnings(&file, &result).into_iter().for_each(warn);
+        if self.quiet { Ok(()) } else { print(&table(&file.experiment, &result, &directory)) }
     }
 
     fn write(
@@ -120,106 +75,59 @@ impl Tune {
         directory: &Path,
     ) -> Result<(), Failure> {
         let experiment = &file.experiment;
-        let json = tuning_json(file, result);
         let name = self.experiment.file_name().unwrap_or_default().to_string_lossy();
+        let mut staged = Vec::new();
+        if !self.no_figure {
+            let title = format!("Simulations tuned to measurements: {name}");
+            let figure = tuning_figure(experiment, result, &title).map_err(cannot_draw)?;
+            staged = stage_figure(directory, FIGURE, &figure)?;
+        }
         let toml = write_tuned(&Tuned::of(experiment, result), &name);
-        let mut staged =
-            if self.no_figure { Vec::new() } else { figure(experiment, result, directory, &name)? };
-        for (name, text) in [(TUNING, json), (TUNED, toml)] {
-            staged.push(StagedFile::write(&directory.join(name), |file| file.write_all(text.as_bytes()))?);
-        }
-        undisturbed(|| staged.into_iter().try_for_each(StagedFile::commit))?;
-        if self.no_figure {
-            // An earlier tuning's would show something else.
-            for name in FIGURE {
-                remove(&directory.join(name))?;
-            }
-        }
-        Ok(())
-    }
-}
-
-fn figure(
-    experiment: &Experiment,
-    result: &ExperimentResult,
-    directory: &Path,
-    name: &str,
-) -> Result<Vec<StagedFile>, Failure> {
-    let cannot = |error| {
-        Failure::failed(format!("cannot draw the figure: {error}"))
-            .with_help("--no-figure writes the other results without it")
-    };
-    let title = format!("Simulations tuned to measurements: {name}");
-    let figure = tuning_figure(experiment, result, &title).map_err(cannot)?;
-    let png = figure.png().map_err(cannot)?;
-    let [svg_path, png_path] = FIGURE.map(|name| directory.join(name));
-    Ok(vec![
-        StagedFile::write(&svg_path, |file| file.write_all(figure.svg().as_bytes()))?,
-        StagedFile::write(&png_path, |file| file.write_all(&png))?,
-    ])
-}
-
-fn remove(path: &Path) -> Result<(), Failure> {
-    match std::fs::remove_file(path) {
-        Err(error) if error.kind() != ErrorKind::NotFound => {
-            Err(Failure::of_writing(error.kind(), format!("cannot remove {}: {error}", path.display())))
-        }
-        _ => Ok(()),
+        staged.push(stage_text(&directory.join(TUNED), &toml)?);
+        let json = stage_text(&directory.join(TUNING), &tuning_json(file, result))?;
+        Ok(undisturbed(|| replace(directory, &FILES, staged, json))?)
     }
 }
 
 fn table(experiment: &Experiment, result: &ExperimentResult, directory: &Path) -> String {
-    let mut text = String::new();
     let tuning = result.tuning();
-    // Writing to a text cannot fail.
-    let _ = writeln!(text, "  {:<28}{:>10}  95 % interval", "parameter", "value");
-    let intervals = tuning.intervals;
-    for (name, value, [least, largest]) in [
-        ("width ratio", tuning.enhancement.width_ratio, intervals.width_ratio),
-        (
-            "fault-to-harmonics ratio",
-            tuning.enhancement.fault_to_harmonics_ratio,
-            intervals.fault_to_harmonics_ratio,
-        ),
-        ("noise level", tuning.enhancement.noise_level, intervals.noise_level),
-    ] {
-        let _ = writeln!(text, "  {name:<28}{value:>10.3}  {least:.3} to {largest:.3}");
-    }
+    let (enhancement, intervals) = (&tuning.enhancement, &tuning.intervals);
+    let mut text = format!("  {:<28}{:>10}  95 % interval\n", "parameter", "value");
+    let mut parameter = |name: &str, value: f64, [least, largest]: [f64; 2]| {
+        text += &format!("  {name:<28}{value:>10.3}  {least:.3} to {largest:.3}\n");
+    };
+    parameter("width ratio", enhancement.width_ratio, intervals.width_ratio);
+    let ratio = enhancement.fault_to_harmonics_ratio;
+    parameter("fault-to-harmonics ratio", ratio, intervals.fault_to_harmonics_ratio);
+    parameter("noise level", enhancement.noise_level, intervals.noise_level);
     if let Some(keys) = &result.with_keys {
         for (key, value) in experiment.keys.iter().zip(&keys.values) {
-            let _ = writeln!(text, "  {:<28}{:>10}", key.key, short(*value));
+            text += &format!("  {:<28}{:>10}\n", key.key, short(*value));
         }
     }
-    let _ =
-        writeln!(text, "\n  {:<40}{:>10}{:>10}{:>15}", "mean error", "original", "enhanced", "leave one out");
-    let mut row = |name: &str, tuning: &Tuning| {
-        let _ = writeln!(
-            text,
-            "  {name:<40}{:>10.3}{:>10.3}{:>15.3}",
-            tuning.original_error,
-            tuning.enhanced_error,
-            tuning.mean_leave_one_out_error()
-        );
-    };
-    row("the three parameters alone", &result.enhancement_alone);
+    text += &heads("mean error");
+    let mean =
+        |tuning: &Tuning| [tuning.original_error, tuning.enhanced_error, tuning.mean_leave_one_out_error()];
+    text += &errors("the three parameters alone", mean(&result.enhancement_alone));
     if let Some(keys) = &result.with_keys {
-        row("with the scenario's numbers", &keys.tuning);
+        text += &errors("with the scenario's numbers", mean(&keys.tuning));
     }
-    let _ = writeln!(text, "  {:<40}{:>20.3}", "the measurements' own scatter", tuning.scatter);
-    let _ = writeln!(text, "\n  {:<40}{:>10}{:>10}{:>15}", "case", "original", "enhanced", "leave one out");
+    text += &format!("  {:<40}{:>20.3}\n", "the measurements' own scatter", tuning.scatter);
+    text += &heads("case");
     for (number, case) in experiment.cases.iter().enumerate() {
-        let measured = &experiment.measured;
-        let _ = writeln!(
-            text,
-            "  {:<40}{:>10.3}{:>10.3}{:>15.3}",
-            case.label,
-            measured.case_error(number, &tuning.original[number]),
-            measured.case_error(number, &tuning.enhanced[number]),
-            tuning.leave_one_out_error[number]
-        );
+        let error = |simulated| experiment.measured.case_error(number, simulated);
+        let [original, enhanced] = [&tuning.original, &tuning.enhanced].map(|of| error(&of[number]));
+        text += &errors(&case.label, [original, enhanced, tuning.leave_one_out_error[number]]);
     }
-    let _ = writeln!(text, "\n{}", directory.display());
-    text
+    text + &format!("\n{}\n", directory.display())
+}
+
+fn heads(name: &str) -> String {
+    format!("\n  {name:<40}{:>10}{:>10}{:>15}\n", "original", "enhanced", "leave one out")
+}
+
+fn errors(name: &str, [original, enhanced, left_out]: [f64; 3]) -> String {
+    format!("  {name:<40}{original:>10.3}{enhanced:>10.3}{left_out:>15.3}\n")
 }
 
 fn short(value: f64) -> String {

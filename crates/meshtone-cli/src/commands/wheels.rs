@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use meshtone::scenario::{ProfileErrors, Scenario, ScenarioError};
+use meshtone::scenario::{ProfileErrors, ScenarioError};
 use meshtone::wheel::{ERROR_POINTS, ErrorTable};
 use meshtone_io::scenario_file::{ScenarioFile, write_wheels_npz};
 
@@ -49,23 +49,16 @@ impl Wheels {
         let is_off = |given: Option<f64>| given.is_some_and(|value| value != 0.0);
         let has_others =
             deviations.iter().any(|wheel| is_off(wheel.run_out_um) || is_off(wheel.helix_slope_um));
-        let errors = stages.profile_errors.or_else(|| has_others.then(|| without_errors(&scenario)));
-        let errors = errors.ok_or_else(|| file.refuse(ideal_teeth()))?;
+        let ideal = |teeth: u32| ErrorTable::filled(ERROR_POINTS, teeth as usize, 0.0);
+        let ideal_profiles = || ProfileErrors {
+            pinion_profile_errors_mm: ideal(scenario.gears.pinion_teeth),
+            gear_profile_errors_mm: ideal(scenario.gears.gear_teeth),
+        };
+        let errors = stages.profile_errors.or_else(|| has_others.then(ideal_profiles)).ok_or_else(|| {
+            let problem = "must be a grade of DIN 3962, from 1 (best) to 12: the teeth of grade 0 are ideal and have no \
+                           errors to write";
+            file.refuse(ScenarioError::new("quality.din_grade", 0, problem))
+        })?;
         Ok(write_wheels_npz(&self.output, &errors, &deviations)?)
     }
-}
-
-/// Ideal profiles.
-fn without_errors(scenario: &Scenario) -> ProfileErrors {
-    let of = |teeth: u32| ErrorTable::filled(ERROR_POINTS, teeth as usize, 0.0);
-    ProfileErrors {
-        pinion_profile_errors_mm: of(scenario.gears.pinion_teeth),
-        gear_profile_errors_mm: of(scenario.gears.gear_teeth),
-    }
-}
-
-fn ideal_teeth() -> ScenarioError {
-    let problem = "must be a grade of DIN 3962, from 1 (best) to 12: the teeth of grade 0 are ideal and have no \
-                   errors to write";
-    ScenarioError::new("quality.din_grade", 0, problem)
 }

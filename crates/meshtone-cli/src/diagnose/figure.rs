@@ -42,17 +42,10 @@ pub fn draw(answer: &Answer, title: &str, gear_teeth: u32) -> Figure {
         .explanations
         .iter()
         .map(|explanation| {
-            let words = match explanation.wheel {
-                None => explanation.label.to_owned(),
-                Some(wheel) => {
-                    format!(
-                        "{} of the {}, severity {:.2}",
-                        explanation.label,
-                        wheel.name(),
-                        explanation.severity
-                    )
-                }
-            };
+            let wheel = explanation
+                .wheel
+                .map(|wheel| format!(" of the {}, severity {:.2}", wheel.name(), explanation.severity));
+            let words = format!("{}{}", explanation.label, wheel.unwrap_or_default());
             (words, &explanation.difference_g[..])
         })
         .collect();

@@ -1,4 +1,4 @@
-//! What a recording shows of the scenario's wheels.
+//! Observation of the scenario's wheels in a recording.
 
 use std::path::Path;
 
@@ -16,18 +16,19 @@ use crate::failure::Failure;
 use crate::indicators::options::{PhaseOptions, ReadingOptions};
 use crate::indicators::phase::simulated;
 use crate::indicators::reading::{Input, own_rate_hz, read_revolution};
-use crate::indicators::refuse::{Subject, refuse};
+use crate::indicators::refuse::{RefusedInput, refuse};
+use crate::warnings::about;
 
 /// (rev) Most revolutions in the times of a file that is one revolution of a gear at about the scenario's speed.
 const MOST_OF_OWN: f64 = 1.5;
 /// (rev) The same by the stated rate of what was recorded: an average may have more values than a revolution had samples.
 const MOST_OF_STATED: f64 = 10.0;
 
-/// What one file shows, and what is doubtful about the file.
+/// Features of one file, and warnings about it.
 pub struct Observed {
-    /// What it shows.
+    /// Its features.
     pub observation: Observation,
-    /// What is doubtful.
+    /// Warnings.
     pub warnings: Vec<WarningEntry>,
 }
 
@@ -37,7 +38,7 @@ pub struct Observer<'a> {
     signal: SignalKind,
     reading: &'a ReadingOptions,
     stated: &'a PhaseOptions,
-    /// What the options state, and where that is not enough what the scenario says.
+    /// Facts that the options state, completed by the scenario.
     phase: PhaseOptions,
 }
 
@@ -62,7 +63,7 @@ impl<'a> Observer<'a> {
         Ok(Self { scenario, signal, reading, stated, phase: with_scenario(stated, scenario)? })
     }
 
-    /// What a file shows.
+    /// Observes a file.
     pub fn observe(&self, path: &Path) -> Result<Observed, Failure> {
         match self.signal {
             SignalKind::Recording => self.recording(path),
@@ -78,7 +79,7 @@ impl<'a> Observer<'a> {
         let gear_teeth = self.scenario.gears.gear_teeth;
         let observation = Observation::of_revolution(&channel.samples, gear_teeth, self.signal, last_order);
         let what = format!("channel {}", channel.name);
-        let observation = observation.map_err(|error| refuse(path, &what, Subject::Phase, &error))?;
+        let observation = observation.map_err(|error| refuse(path, &what, RefusedInput::Phase, &error))?;
         Ok(Observed { observation, warnings })
     }
 
@@ -103,7 +104,7 @@ impl<'a> Observer<'a> {
         let mut input = Input::read(path, self.reading, self.stated.channel())?;
         to_g(&mut input.channel, path, self.reading.sensitivity_mv_per_unit.is_some())?;
         match &input.scenario_toml {
-            Some(toml) if !self.stated.says_turning() => self.simulated(&input, toml),
+            Some(toml) if !self.stated.states_shaft_angle() => self.simulated(&input, toml),
             _ => self.measured(&input),
         }
     }
@@ -111,15 +112,12 @@ impl<'a> Observer<'a> {
     fn simulated(&self, input: &Input, scenario_toml: &str) -> Result<Observed, Failure> {
         let (_, shafts) = simulated(input, scenario_toml)?;
         let teeth = Shaft::BOTH.map(|shaft| shafts.teeth(shaft));
-        let expected = teeth_of(self.scenario);
-        if teeth != expected {
+        let [pinion, gear] = teeth_of(self.scenario);
+        if teeth != [pinion, gear] {
+            let [here, mate] = teeth;
             let problem = format!(
-                "{}: is of wheels with {} and {} teeth, but the scenario has {} and {}",
-                input.source.display(),
-                teeth[0],
-                teeth[1],
-                expected[0],
-                expected[1]
+                "{}: is of wheels with {here} and {mate} teeth, but the scenario has {pinion} and {gear}",
+                input.source.display()
             );
             return Err(
                 Failure::bad_input(problem).with_help("name the scenario of its own rig with --scenario")
@@ -131,21 +129,18 @@ impl<'a> Observer<'a> {
         let observe = || self.of_angles([over(Shaft::Pinion)?, over(Shaft::Gear)?], zero, pinion_hz);
         let what = format!("channel {}", input.channel.name);
         let observation =
-            observe().map_err(|error| refuse(&input.source, &what, Subject::Simulated, &error))?;
+            observe().map_err(|error| refuse(&input.source, &what, RefusedInput::Simulated, &error))?;
         Ok(Observed { observation, warnings: input.warnings.clone() })
     }
 
     fn measured(&self, input: &Input) -> Result<Observed, Failure> {
         let (shaft, of_phase) = self.phase.measured(input)?;
         let speed_hz = shaft.mean_speed_hz(input.sampling_rate_hz);
-        let subject = Subject::Measured { speed_hz, by: self.phase.source() };
+        let subject = RefusedInput::Measured { speed_hz, by: self.phase.source() };
         let observe = || self.of_phase(input, &shaft, speed_hz);
         let what = format!("channel {}", input.channel.name);
         let observation = observe().map_err(|error| refuse(&input.source, &what, subject, &error))?;
-        let doubtful = shaft
-            .warnings
-            .iter()
-            .map(|warning| WarningEntry { source: Some(input.source.clone()), message: warning.to_string() });
+        let doubtful = shaft.warnings.iter().map(|warning| about(&input.source, warning));
         let warnings = input.warnings.iter().cloned().chain(of_phase).chain(doubtful).collect();
         Ok(Observed { observation, warnings })
     }
@@ -200,7 +195,7 @@ fn gear_hz(scenario: &Scenario) -> f64 {
     scenario.operation.pinion_speed_hz * pinion / gear
 }
 
-/// What the options state, completed by the scenario: its teeth, and where nothing says how the shaft turns, its speed, which the mesh tone
+/// Completes the facts that the options state by the scenario: its teeth, and where nothing says how the shaft turns, its speed, which the mesh tone
 /// makes exact.
 fn with_scenario(stated: &PhaseOptions, scenario: &Scenario) -> Result<PhaseOptions, Failure> {
     let [pinion, gear] = teeth_of(scenario);
@@ -219,7 +214,7 @@ fn with_scenario(stated: &PhaseOptions, scenario: &Scenario) -> Result<PhaseOpti
         return refuse("--mate-teeth", given, mate.to_string());
     }
     (phase.teeth, phase.mate_teeth) = (Some(teeth), Some(mate));
-    if !stated.says_turning() {
+    if !stated.states_shaft_angle() {
         let speed_hz = scenario.operation.pinion_speed_hz * f64::from(pinion) / f64::from(teeth);
         (phase.shaft_hz, phase.from_mesh_tone) = (Some(speed_hz), true);
     }

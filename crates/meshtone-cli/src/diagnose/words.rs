@@ -4,7 +4,7 @@ use meshtone::signal::AngleZero;
 use meshtone::wheel::WheelName;
 use meshtone_diagnose::{Answer, OUTSIDE, PlaceAnswer, SignalKind, p_in_words};
 
-/// What "probability" is, in few words.
+/// Explanation of "probability", in few words.
 pub const PROBABILITY: &str =
     "probabilities are given the scenario; before the recording: healthy one half, all kinds of damage alike";
 
@@ -17,7 +17,7 @@ pub fn percent(probability: f64) -> String {
     }
 }
 
-/// What the p-value means.
+/// Meaning of the p-value.
 pub fn outside(answer: &Answer) -> String {
     let means = match answer.outside_model < OUTSIDE {
         true => "the recording is unlike all that was simulated",
@@ -26,7 +26,7 @@ pub fn outside(answer: &Answer) -> String {
     format!("{means} ({})", p_in_words(answer.outside_model))
 }
 
-/// Where tooth 1 of the wheel that is named is.
+/// Meaning of tooth 1 of the wheel that is named.
 pub fn counted_from(answer: &Answer) -> Option<String> {
     let place = answer.likeliest_damage()?.place.filter(|place| place.is_on_one_tooth)?;
     let zero = answer.counted_from[usize::from(place.wheel == WheelName::Gear)];
@@ -40,7 +40,7 @@ pub fn counted_from(answer: &Answer) -> Option<String> {
     })
 }
 
-/// How many simulations the answer was learnt from, and why not from all.
+/// Number of simulations from which the answer was learnt, and why not from all.
 pub fn learnt(answer: &Answer) -> String {
     let (used, made) = (answer.reference_records, answer.simulated_records);
     if used == made {

@@ -8,7 +8,9 @@ use meshtone_plot::record::{self, RecordFigure, SignalView, WheelView};
 use meshtone_plot::trend::{self, Along, Trend, TrendFigure};
 
 use super::options::{PhaseOptions, ProcessingOptions};
-use super::results::{Latest, Series};
+use super::results::{LatestRecords, Series};
+
+const MESHTONE: &str = concat!("Meshtone ", env!("CARGO_PKG_VERSION"));
 
 /// The last part of a path.
 pub fn name(path: &Path) -> String {
@@ -19,7 +21,7 @@ pub fn name(path: &Path) -> String {
 /// The figure of the last record.
 pub fn of_record(
     series: &Series,
-    latest: &Latest,
+    latest: &LatestRecords,
     phase: &PhaseOptions,
     processing: &ProcessingOptions,
 ) -> Figure {
@@ -37,7 +39,7 @@ pub fn of_record(
         removed.push(format!("shaft orders 1 to {}", processing.low_orders));
     }
     facts.push(format!("difference without {}", removed.join(", ")));
-    facts.push(format!("Meshtone {}", env!("CARGO_PKG_VERSION")));
+    facts.push(MESHTONE.to_owned());
     let first_teeth: Vec<String> = latest.wheels.iter().map(|(wheel, ..)| phase.first_tooth(wheel)).collect();
     let wheels: Vec<WheelView> = latest
         .wheels
@@ -73,8 +75,7 @@ pub fn of_trend(series: &Series, phase: &PhaseOptions, processing: &ProcessingOp
         None => format!("{} recordings", counted(series)),
         Some(revolutions) => format!("{} segments of {revolutions} revolutions", counted(series)),
     };
-    let mut facts = vec![counted_records, format!("phase from the {}", phase.source())];
-    facts.push(format!("Meshtone {}", env!("CARGO_PKG_VERSION")));
+    let facts = [counted_records, format!("phase from the {}", phase.source()), MESHTONE.to_owned()];
     let wheels: Vec<String> =
         series.wheels.iter().map(|wheel| format!("{}, {} teeth", wheel.name, wheel.teeth)).collect();
     let (along, places) = places(series, processing.revolutions.is_some());
@@ -89,9 +90,10 @@ pub fn of_trend(series: &Series, phase: &PhaseOptions, processing: &ProcessingOp
     trend::draw(&figure)
 }
 
-/// Where the records of each wheel lie: at the number of their recording, or at their time in it.
+/// Abscissas of the records of each wheel: at the number of their recording, or at their time in it.
 fn places(series: &Series, in_segments: bool) -> (Along, Vec<Vec<f64>>) {
     let recordings = &series.results.recordings;
+    let along = Along::Recordings { count: recordings.len() };
     let at = |place: &dyn Fn(f64) -> f64| -> Vec<Vec<f64>> {
         series.middles.iter().map(|middles| middles.iter().map(|middle| place(*middle)).collect()).collect()
     };
@@ -101,8 +103,8 @@ fn places(series: &Series, in_segments: bool) -> (Along, Vec<Vec<f64>>) {
             let along = Along::Time { start_s: only.start_s, end_s: only.start_s + length_s };
             (along, at(&|middle| only.start_s + length_s * middle))
         }
-        _ if in_segments => (Along::Recordings { count: recordings.len() }, at(&|middle| middle + 0.5)),
-        _ => (Along::Recordings { count: recordings.len() }, at(&|middle| middle.floor() + 1.0)),
+        _ if in_segments => (along, at(&|middle| middle + 0.5)),
+        _ => (along, at(&|middle| middle.floor() + 1.0)),
     }
 }
 

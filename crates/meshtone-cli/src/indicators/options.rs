@@ -2,11 +2,13 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use meshtone::signal::{Interpolation, PulseEdge};
 use meshtone_io::recording::{DecimalSign, Separator};
 
-/// What of the files is read, and what they do not say themselves.
+use crate::choice::{Choice, one_of};
+
+/// Options that select parts of the files, and state what the files do not say themselves.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Recording")]
 pub struct ReadingOptions {
@@ -29,19 +31,19 @@ pub struct ReadingOptions {
     /// Unit of the channel (after the division), such as g or m/s²
     #[arg(long, value_name = "UNIT")]
     pub unit: Option<String>,
-    /// What stands between two cells of a text file. [default: found out]
-    #[arg(long)]
-    pub separator: Option<SeparatorArgument>,
+    /// Separator of the cells of a text file. [default: found out]
+    #[arg(long, value_parser = one_of(&SEPARATORS))]
+    pub separator: Option<Separator>,
     /// Decimal sign of a text file. [default: found out]
-    #[arg(long)]
-    pub decimal_sign: Option<DecimalSignArgument>,
+    #[arg(long, value_parser = one_of(&DECIMAL_SIGNS))]
+    pub decimal_sign: Option<DecimalSign>,
     /// Lines at the start of a text file that are no table
     #[arg(long, value_name = "LINES", default_value_t = 0)]
     pub skip_lines: usize,
 }
 
 impl ReadingOptions {
-    /// What to write where the sampling rate is so low that it is rather meant in kHz.
+    /// Advice where the sampling rate is so low that it is rather meant in kHz.
     pub fn in_kilohertz(&self) -> Option<String> {
         const MOST_KILOHERTZ: f64 = 200.0;
         let rate = self.sampling_rate_hz.filter(|rate| *rate <= MOST_KILOHERTZ)?;
@@ -90,11 +92,11 @@ pub struct PhaseOptions {
     #[arg(long, value_name = "LEVEL", requires = "tach", value_parser = positive, allow_negative_numbers = true)]
     pub hysteresis: Option<f64>,
     /// Side of a pulse that counts
-    #[arg(long, requires = "tach", default_value = "rising")]
-    pub edge: EdgeArgument,
+    #[arg(long, requires = "tach", default_value = "rising", value_parser = one_of(&EDGES))]
+    pub edge: PulseEdge,
 }
 
-/// How the channel is processed.
+/// Settings by which the channel is processed.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Processing")]
 pub struct ProcessingOptions {
@@ -106,86 +108,35 @@ pub struct ProcessingOptions {
     pub low_orders: u32,
     /// Cut each recording into segments of M revolutions (of each wheel), at least 2, and make a series of them
     #[arg(long, value_name = "M", value_parser = several)]
-    pub revolutions: Option<u64>,
-    /// How the signal is read between its samples
-    #[arg(long, default_value = "band-limited")]
-    pub interpolation: InterpolationArgument,
+    pub revolutions: Option<u32>,
+    /// Interpolation of the signal between its samples
+    #[arg(long, default_value = "band-limited", value_parser = one_of(&INTERPOLATIONS))]
+    pub interpolation: Interpolation,
 }
 
-/// [`Separator`] on the command line.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum SeparatorArgument {
-    Comma,
-    Semicolon,
-    Tab,
-    Bar,
-    Whitespace,
-}
+const SEPARATORS: [Choice<Separator>; 5] = [
+    ("comma", "", Separator::Comma),
+    ("semicolon", "", Separator::Semicolon),
+    ("tab", "", Separator::Tab),
+    ("bar", "", Separator::Bar),
+    ("whitespace", "", Separator::Whitespace),
+];
 
-impl From<SeparatorArgument> for Separator {
-    fn from(argument: SeparatorArgument) -> Self {
-        match argument {
-            SeparatorArgument::Comma => Self::Comma,
-            SeparatorArgument::Semicolon => Self::Semicolon,
-            SeparatorArgument::Tab => Self::Tab,
-            SeparatorArgument::Bar => Self::Bar,
-            SeparatorArgument::Whitespace => Self::Whitespace,
-        }
-    }
-}
+const DECIMAL_SIGNS: [Choice<DecimalSign>; 2] =
+    [("point", "", DecimalSign::Point), ("comma", "", DecimalSign::Comma)];
 
-/// [`DecimalSign`] on the command line.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum DecimalSignArgument {
-    Point,
-    Comma,
-}
+/// Sides of a pulse.
+pub const EDGES: [Choice<PulseEdge>; 2] =
+    [("rising", "", PulseEdge::Rising), ("falling", "", PulseEdge::Falling)];
 
-impl From<DecimalSignArgument> for DecimalSign {
-    fn from(argument: DecimalSignArgument) -> Self {
-        match argument {
-            DecimalSignArgument::Point => Self::Point,
-            DecimalSignArgument::Comma => Self::Comma,
-        }
-    }
-}
+/// Ways to interpolate.
+pub const INTERPOLATIONS: [Choice<Interpolation>; 2] = [
+    ("band-limited", "Exact up to 0.8 of half the sampling rate", Interpolation::BandLimited),
+    ("pchip", "Interpolation of the published code, which flattens peaks", Interpolation::Pchip),
+];
 
-/// [`PulseEdge`] on the command line.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum EdgeArgument {
-    Rising,
-    Falling,
-}
-
-impl From<EdgeArgument> for PulseEdge {
-    fn from(argument: EdgeArgument) -> Self {
-        match argument {
-            EdgeArgument::Rising => Self::Rising,
-            EdgeArgument::Falling => Self::Falling,
-        }
-    }
-}
-
-/// [`Interpolation`] on the command line.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum InterpolationArgument {
-    /// Exact up to 0.8 of half the sampling rate
-    BandLimited,
-    /// As the published code, flattens peaks
-    Pchip,
-}
-
-impl From<InterpolationArgument> for Interpolation {
-    fn from(argument: InterpolationArgument) -> Self {
-        match argument {
-            InterpolationArgument::BandLimited => Self::BandLimited,
-            InterpolationArgument::Pchip => Self::Pchip,
-        }
-    }
-}
-
-fn several(text: &str) -> Result<u64, String> {
-    let number = text.parse().ok().filter(|number: &u64| *number >= 2);
+fn several(text: &str) -> Result<u32, String> {
+    let number = text.parse().ok().filter(|number: &u32| *number >= 2);
     number.ok_or_else(|| {
         "must be a whole number, at least 2: of one revolution there is nothing to average".to_string()
     })

@@ -1,4 +1,6 @@
-//! How far the shaft has turned at each sample.
+//! The angle of the shaft at each sample.
+
+use std::path::{Path, PathBuf};
 
 use meshtone::scenario::Scenario;
 use meshtone::signal::{
@@ -10,14 +12,14 @@ use super::options::PhaseOptions;
 use super::phase_files::{hertz, one_column, profile, times_s};
 use super::process::Wheel;
 use super::reading::Input;
-use super::refuse::{Subject, refuse};
+use super::refuse::{RefusedInput, refuse};
 use crate::failure::Failure;
 
 /// Relative deviation of two sampling rates that is rounding.
 const RATE_ROUNDING: f64 = 1e-9;
 
-/// How far the shafts have turned.
-pub enum Turning {
+/// Angles of the shafts.
+pub enum ShaftAngle {
     /// By measurement: the shaft of the wheel with so many teeth.
     Measured(ShaftPhase),
     /// By the scenario.
@@ -25,11 +27,14 @@ pub enum Turning {
 }
 
 impl PhaseOptions {
-    /// Whether none is given, so that only a simulation can be processed.
+    /// Returns whether none is given, so that only a simulation can be processed.
     pub fn is_empty(&self) -> bool {
-        let sources = [self.tach.is_some(), self.pulse_times.is_some(), self.speed_channel.is_some()];
-        let others = [self.speed_profile.is_some(), self.shaft_hz.is_some(), self.teeth.is_some()];
-        !sources.into_iter().chain(others).any(|given| given)
+        self.teeth.is_none() && !self.states_shaft_angle()
+    }
+
+    /// The files that are read for the phase.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        self.pulse_times.iter().chain(&self.speed_profile).map(PathBuf::as_path)
     }
 
     /// The channel that is read for the phase, behind the option that names it.
@@ -38,14 +43,12 @@ impl PhaseOptions {
         tach.or(self.speed_channel.as_deref().map(|name| ("--speed-channel", name)))
     }
 
-    /// Whether it is said how far the shaft has turned.
-    pub fn says_turning(&self) -> bool {
-        let has_source =
-            self.channel().is_some() || self.pulse_times.is_some() || self.speed_profile.is_some();
-        has_source || self.shaft_hz.is_some()
+    /// Returns whether it is said how far the shaft has turned.
+    pub fn states_shaft_angle(&self) -> bool {
+        self.channel().is_some() || self.files().next().is_some() || self.shaft_hz.is_some()
     }
 
-    /// What is missing on the command line for a measured recording.
+    /// Refuses a measured recording for which an option is missing on the command line.
     pub fn check(&self, input: &Input) -> Result<(), Failure> {
         let path = input.source.display();
         if self.teeth.is_none() {
@@ -54,7 +57,7 @@ impl PhaseOptions {
                     "state them with --teeth; only what `meshtone simulate` wrote tells them itself",
                 ));
         }
-        if !self.says_turning() {
+        if !self.states_shaft_angle() {
             let help = if input.scenario_toml.is_some() {
                 "leave out --teeth: what `meshtone simulate` wrote needs no options; or state the speed too, with --shaft-hz"
             } else {
@@ -67,7 +70,7 @@ impl PhaseOptions {
         Ok(())
     }
 
-    /// What tells the phase, in words.
+    /// Source of the phase, in words.
     pub fn source(&self) -> &'static str {
         match self {
             Self { tach: Some(_), .. } => "tachometer",
@@ -80,7 +83,7 @@ impl PhaseOptions {
         }
     }
 
-    /// What the options state about a measured recording.
+    /// Facts that the options state about a measured recording.
     pub fn stated_facts(&self, teeth: u32) -> StatedFacts {
         let turning = match (self.source(), self.shaft_hz) {
             ("tachometer" | "pulse times", _) => {
@@ -92,7 +95,7 @@ impl PhaseOptions {
         StatedFacts { teeth, mate_teeth: self.mate_teeth, turning }
     }
 
-    /// What tooth 1 of a wheel is.
+    /// Meaning of tooth 1 of a wheel.
     pub fn first_tooth(&self, wheel: &Wheel) -> String {
         let words = match self.source() {
             "scenario" => {
@@ -124,7 +127,7 @@ impl PhaseOptions {
         if let Some(path) = &self.pulse_times {
             let (times, warnings) = one_column(path)?;
             let what = format!("--pulse-times {}", path.display());
-            let phase = pulses(&times_s(times, input.start_s)).map_err(of(what, Subject::PulseTimes))?;
+            let phase = pulses(&times_s(times, input.start_s)).map_err(of(what, RefusedInput::PulseTimes))?;
             return Ok((phase, warnings));
         }
         if let Some(path) = &self.speed_profile {
@@ -132,23 +135,20 @@ impl PhaseOptions {
             let times = times_s(times, input.start_s);
             let phase = ShaftPhase::from_speed_profile(&times, &hertz(path, speeds)?, rate_hz, samples);
             let what = format!("--speed-profile {}", path.display());
-            return Ok((phase.map_err(of(what, Subject::Phase))?, warnings));
+            return Ok((phase.map_err(of(what, RefusedInput::Phase))?, warnings));
         }
         let phase = match &input.turning {
             Some(channel) if self.tach.is_some() => {
                 let what = || format!("--tach {}", channel.name);
-                let tachometer = Tachometer {
-                    threshold: self.threshold,
-                    hysteresis: self.hysteresis,
-                    edge: self.edge.into(),
-                };
+                let tachometer =
+                    Tachometer { threshold: self.threshold, hysteresis: self.hysteresis, edge: self.edge };
                 let times = tachometer_pulses(&channel.samples, rate_hz, &tachometer);
-                times.and_then(|times| pulses(&times)).map_err(of(what(), Subject::Tachometer))
+                times.and_then(|times| pulses(&times)).map_err(of(what(), RefusedInput::Tachometer))
             }
             Some(channel) => {
                 let speeds = hertz(&input.source, channel.clone())?;
                 let what = format!("--speed-channel {}", channel.name);
-                ShaftPhase::from_speed_samples(&speeds, rate_hz).map_err(of(what, Subject::Phase))
+                ShaftPhase::from_speed_samples(&speeds, rate_hz).map_err(of(what, RefusedInput::Phase))
             }
             None => {
                 let (teeth, shaft_hz) = (self.teeth.unwrap_or(0), self.shaft_hz.unwrap_or(0.0));
@@ -158,7 +158,7 @@ impl PhaseOptions {
                 } else {
                     ShaftPhase::constant(shaft_hz, rate_hz, samples)
                 };
-                phase.map_err(of(format!("channel {}", input.channel.name), Subject::Phase))
+                phase.map_err(of(format!("channel {}", input.channel.name), RefusedInput::Phase))
             }
         };
         Ok((phase?, Vec::new()))
@@ -187,11 +187,9 @@ pub fn simulated(input: &Input, scenario_toml: &str) -> Result<(Scenario, Simula
         return Err(Failure::bad_input(problem)
             .with_help("leave them out, or state --teeth and the phase too, as of a measured recording"));
     }
-    let scenario = Scenario::from_toml(scenario_toml).and_then(|scenario| {
-        scenario.validate()?;
-        Ok(scenario)
-    });
-    let scenario = scenario.map_err(|error| {
+    let scenario = Scenario::from_toml(scenario_toml);
+    let valid = scenario.and_then(|scenario| scenario.validate().map(|_| scenario));
+    let scenario = valid.map_err(|error| {
         Failure::bad_input(format!("{path}: the scenario in the file is not valid: {error}")).with_help(HELP)
     })?;
     let shafts = SimulatedShafts::new(&scenario, input.start_s, input.channel.samples.len());

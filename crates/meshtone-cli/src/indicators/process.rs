@@ -4,17 +4,18 @@ use std::borrow::Cow;
 
 use meshtone::scenario::{Scenario, WheelName};
 use meshtone::signal::{
-    AngularSettings, AngularSignal, ChainSettings, Record, SeparationSettings, Shaft, SignalError,
-    SignalWarning, angular_resample, check_channel, find_mismatch, process_angular, process_angular_segments,
+    AngularSettings, ChainSettings, Record, SeparationSettings, Shaft, SignalError, SignalWarning,
+    angular_resample, check_channel, find_mismatch, process_angular, process_angular_segments,
 };
 use meshtone_io::indicators::WarningEntry;
 use meshtone_plot::DamagedTooth;
 
 use super::options::{PhaseOptions, ProcessingOptions};
-use super::phase::{Turning, simulated};
+use super::phase::{ShaftAngle, simulated};
 use super::reading::Input;
-use super::refuse::{Subject, refuse};
+use super::refuse::{RefusedInput, refuse};
 use crate::failure::Failure;
+use crate::warnings::about;
 
 /// A wheel whose average is taken.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,7 +30,7 @@ pub struct Wheel {
     pub damaged_teeth: Vec<DamagedTooth>,
 }
 
-/// What one recording shows about one wheel.
+/// Results of one recording for one wheel.
 pub struct WheelRecords {
     /// The wheel.
     pub wheel: Wheel,
@@ -41,11 +42,11 @@ pub struct WheelRecords {
     pub middles_s: Vec<f64>,
 }
 
-/// What one recording shows.
+/// Results of one recording.
 pub struct Processed {
     /// Of one wheel, or of both of a pair.
     pub wheels: Vec<WheelRecords>,
-    /// What is doubtful.
+    /// Warnings.
     pub warnings: Vec<WarningEntry>,
 }
 
@@ -57,18 +58,15 @@ pub fn process(
 ) -> Result<Processed, Failure> {
     let of_channel = format!("channel {}", input.channel.name);
     let (turning, wheels, mut warnings) = turning(input, phase)?;
-    let subject = match &turning {
-        Turning::Measured(shaft) => {
-            Subject::Measured { speed_hz: shaft.mean_speed_hz(input.sampling_rate_hz), by: phase.source() }
+    let (subject, mut doubtful) = match &turning {
+        ShaftAngle::Measured(shaft) => {
+            let speed_hz = shaft.mean_speed_hz(input.sampling_rate_hz);
+            (RefusedInput::Measured { speed_hz, by: phase.source() }, shaft.warnings.clone())
         }
-        Turning::Simulated(_) => Subject::Simulated,
+        ShaftAngle::Simulated(_) => (RefusedInput::Simulated, Vec::new()),
     };
     check_channel(&input.channel.samples)
         .map_err(|error| refuse(&input.source, &of_channel, subject, &error))?;
-    let mut doubtful = match &turning {
-        Turning::Measured(phase) => phase.warnings.clone(),
-        Turning::Simulated(_) => Vec::new(),
-    };
     let mut processed = Vec::new();
     for (shaft, wheel) in Shaft::BOTH.into_iter().zip(&wheels) {
         let of_wheel = format!("{of_channel}, {} of {} teeth", wheel.name, wheel.teeth);
@@ -83,18 +81,14 @@ pub fn process(
         }
         processed.push(of_wheel);
     }
-    let entry = |warning: &SignalWarning| WarningEntry {
-        source: Some(input.source.clone()),
-        message: warning.to_string(),
-    };
-    warnings.extend(doubtful.iter().map(entry));
+    warnings.extend(doubtful.iter().map(|warning| about(&input.source, warning)));
     Ok(Processed { wheels: processed, warnings })
 }
 
 /// The records of the wheel on a shaft, the first of `wheels` on the pinion's, and what does not fit.
 fn wheel_records(
     input: &Input,
-    turning: &Turning,
+    turning: &ShaftAngle,
     shaft: Shaft,
     wheels: &[Wheel],
     options: &PhaseOptions,
@@ -105,7 +99,7 @@ fn wheel_records(
     let mut doubt = None;
     let rate_hz = input.sampling_rate_hz;
     let (mean_speed_hz, records, middles_s) = match turning {
-        Turning::Measured(phase) => {
+        ShaftAngle::Measured(phase) => {
             let phase = match shaft {
                 Shaft::Pinion => Cow::Borrowed(phase),
                 Shaft::Gear => Cow::Owned(phase.of_mate(wheels[0].teeth, wheel.teeth)?),
@@ -115,12 +109,15 @@ fn wheel_records(
                 doubt = find_mismatch(&angular, &options.stated_facts(wheel.teeth))
                     .map(SignalWarning::DoesNotFit);
             }
-            let records = of_angular(&angular, wheel.teeth, &settings, processing.revolutions)?;
+            let records = match processing.revolutions {
+                None => vec![process_angular(&angular, wheel.teeth, &settings)?],
+                Some(count) => process_angular_segments(&angular, wheel.teeth, &settings, count as usize)?,
+            };
             let time_s = |angle_rev: f64| phase.sample_at(angle_rev) / rate_hz;
             let middles_s = middles(&records, angular.start_rev).map(time_s).collect();
             (phase.mean_speed_hz(rate_hz), records, middles_s)
         }
-        Turning::Simulated(shafts) => {
+        ShaftAngle::Simulated(shafts) => {
             let signal = &input.channel.samples;
             let records = match processing.revolutions {
                 None => vec![shafts.process(signal, shaft, &settings)?],
@@ -135,8 +132,11 @@ fn wheel_records(
     Ok((WheelRecords { wheel: wheel.clone(), mean_speed_hz, records, middles_s }, doubt))
 }
 
-/// How far the shafts have turned, the wheels on them, and what is doubtful about the files that say so.
-fn turning(input: &Input, phase: &PhaseOptions) -> Result<(Turning, Vec<Wheel>, Vec<WarningEntry>), Failure> {
+/// Angles of the shafts, the wheels on them, and what is doubtful about the files that say so.
+fn turning(
+    input: &Input,
+    phase: &PhaseOptions,
+) -> Result<(ShaftAngle, Vec<Wheel>, Vec<WarningEntry>), Failure> {
     match &input.scenario_toml {
         Some(toml) if phase.is_empty() => {
             let (scenario, shafts) = simulated(input, toml)?;
@@ -146,20 +146,16 @@ fn turning(input: &Input, phase: &PhaseOptions) -> Result<(Turning, Vec<Wheel>, 
                 is_on_shaft: shaft == Shaft::Pinion,
                 damaged_teeth: damaged_teeth(&scenario, shaft),
             });
-            Ok((Turning::Simulated(shafts), wheels.to_vec(), input.warnings.clone()))
+            Ok((ShaftAngle::Simulated(shafts), wheels.to_vec(), input.warnings.clone()))
         }
         _ => {
             phase.check(input)?;
-            let wheel = |(name, teeth)| Wheel {
-                name,
-                teeth,
-                is_on_shaft: name == "wheel",
-                damaged_teeth: Vec::new(),
-            };
-            let teeth = [("wheel", phase.teeth), ("mate", phase.mate_teeth)];
-            let wheels = teeth.into_iter().filter_map(|(name, teeth)| Some(wheel((name, teeth?))));
+            let wheels = [("wheel", true, phase.teeth), ("mate", false, phase.mate_teeth)].into_iter();
+            let wheels = wheels.filter_map(|(name, is_on_shaft, teeth)| {
+                Some(Wheel { name, teeth: teeth?, is_on_shaft, damaged_teeth: Vec::new() })
+            });
             let (shaft, of_phase) = phase.measured(input)?;
-            Ok((Turning::Measured(shaft), wheels.collect(), [input.warnings.clone(), of_phase].concat()))
+            Ok((ShaftAngle::Measured(shaft), wheels.collect(), [input.warnings.clone(), of_phase].concat()))
         }
     }
 }
@@ -184,25 +180,12 @@ fn middles(records: &[Record], start_rev: f64) -> impl Iterator<Item = f64> {
     })
 }
 
-fn of_angular(
-    angular: &AngularSignal,
-    teeth: u32,
-    settings: &ChainSettings,
-    revolutions: Option<u64>,
-) -> Result<Vec<Record>, SignalError> {
-    match revolutions {
-        None => Ok(vec![process_angular(angular, teeth, settings)?]),
-        Some(count) => process_angular_segments(angular, teeth, settings, count as usize),
-    }
-}
-
 fn settings(processing: &ProcessingOptions, teeth: u32) -> ChainSettings {
     let separation = SeparationSettings {
         sidebands: processing.sidebands as usize,
         shaft_orders: (1..=processing.low_orders as usize).collect(),
         ..SeparationSettings::new(teeth as usize)
     };
-    let angular =
-        AngularSettings { interpolation: processing.interpolation.into(), ..AngularSettings::default() };
+    let angular = AngularSettings { interpolation: processing.interpolation, ..AngularSettings::default() };
     ChainSettings { angular, separation: Some(separation) }
 }

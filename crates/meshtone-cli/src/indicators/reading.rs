@@ -6,13 +6,13 @@ use meshtone::scenario::Scenario;
 use meshtone::sensor::Channel as SimulatedChannel;
 use meshtone_io::indicators::WarningEntry;
 use meshtone_io::recording::{
-    Channel, ColumnChoice, Recording, RecordingOptions, RecordingWarning, TextOptions, TimeColumn,
-    read_recording,
+    Channel, ColumnChoice, Recording, RecordingOptions, TextOptions, TimeColumn, read_recording,
 };
 
 use super::options::ReadingOptions;
 use super::refuse::unreadable;
 use crate::failure::Failure;
+use crate::warnings::about;
 
 /// Numbers that processing holds for each sample at most, beside the recording: its phase, what is resampled, averages, spectra.
 const NUMBERS_BESIDE_EACH_SAMPLE: u64 = 8;
@@ -39,9 +39,9 @@ pub struct Input {
     pub turning: Option<Channel>,
     /// Whether the file itself says when its samples were taken.
     pub has_own_time: bool,
-    /// What was simulated, where it was, as TOML.
+    /// Scenario of a simulation, as TOML; none of a measurement.
     pub scenario_toml: Option<String>,
-    /// What is doubtful about the file.
+    /// Warnings about the file.
     pub warnings: Vec<WarningEntry>,
 }
 
@@ -57,17 +57,12 @@ impl Input {
         options: &ReadingOptions,
         turning: Option<(&str, &str)>,
     ) -> Result<Self, Failure> {
-        let chosen = RecordingOptions {
-            channels: options.channel.iter().map(|choice| ColumnChoice::parse(choice)).collect(),
-            ..plain(options)
-        };
         // The tachometer comes by itself: only so is it known which of the columns it is.
         let turning = turning.map(|(option, choice)| read_one(path, options, option, choice)).transpose()?;
         let (turning, mut warnings) =
             turning.map_or((None, Vec::new()), |(channel, warnings)| (Some(channel), warnings));
-        let source = Some(path.to_path_buf());
-        warnings.extend(options.in_kilohertz().map(|message| WarningEntry { source, message }));
-        let mut recording = read_recording(path, &chosen)?;
+        warnings.extend(options.in_kilohertz().map(|message| about(path, message)));
+        let mut recording = read_recording(path, &columns(options, options.channel.as_deref()))?;
         warnings.extend(warnings_of(&recording));
         warnings.dedup();
         let simulated = recording.scenario_toml.as_deref().map(leading_of);
@@ -77,26 +72,13 @@ impl Input {
                 !is_turning && simulated.as_ref().is_none_or(|name| channel.name == *name)
             };
             recording.channels.retain(keep);
-            let (live, warned) = without_dead(recording.channels, path);
+            let (live, warned) = without_silent_channels(recording.channels, path);
             recording.channels = live;
             warnings.extend(warned);
         }
         let mut channel = one(path, recording.channels, options.channel.as_deref())?;
-        if let (Some(turning), Some(choice)) = (&turning, options.channel.as_deref()) {
-            check_different(path, options, turning, &channel, choice)?;
-        }
-        if let Some(turning) =
-            turning.as_ref().filter(|turning| turning.samples.len() != channel.samples.len())
-        {
-            let problem = format!(
-                "{}: channel {} has {} samples, but {} has {}; must be equally many",
-                path.display(),
-                turning.name,
-                turning.samples.len(),
-                channel.name,
-                channel.samples.len()
-            );
-            return Err(Failure::bad_input(problem));
+        if let Some(turning) = &turning {
+            check_turning(path, options, turning, &channel)?;
         }
         calibrate(&mut channel, options)?;
         Ok(Self {
@@ -125,21 +107,18 @@ pub fn read_revolution(
     options: &ReadingOptions,
 ) -> Result<(Channel, Vec<WarningEntry>), Failure> {
     let chosen = RecordingOptions {
-        channels: options.channel.iter().map(|choice| ColumnChoice::parse(choice)).collect(),
         // Whatever it is, no sample is asked when it was taken.
         sampling_rate_hz: Some(options.sampling_rate_hz.unwrap_or(1.0)),
-        ..plain(options)
+        ..columns(options, options.channel.as_deref())
     };
     let mut recording = read_recording(path, &chosen)?;
     let warnings = warnings_of(&recording);
     if options.channel.is_none() && recording.channels.len() > 1 {
-        let is_place = |name: &str| {
-            let word = name.to_lowercase();
-            PLACES
-                .iter()
-                .any(|place| word.split(|letter: char| !letter.is_alphabetic()).next() == Some(place))
-        };
-        recording.channels.retain(|channel| !is_place(&channel.name));
+        recording.channels.retain(|channel| {
+            let name = channel.name.to_lowercase();
+            let word = name.split(|letter: char| !letter.is_alphabetic()).next();
+            !word.is_some_and(|word| PLACES.contains(&word))
+        });
     }
     let mut channel = one(path, recording.channels, options.channel.as_deref())?;
     calibrate(&mut channel, options)?;
@@ -152,15 +131,12 @@ pub fn read_revolution(
 /// * `path` - the file
 /// * `options` - what is read
 pub fn own_rate_hz(path: &Path, options: &ReadingOptions) -> Option<f64> {
-    read_recording(path, &plain(options)).ok().map(|recording| recording.sampling_rate_hz)
+    read_recording(path, &columns(options, None)).ok().map(|recording| recording.sampling_rate_hz)
 }
 
-/// What is doubtful about a file that was read.
+/// Warnings about a file that was read.
 pub fn warnings_of(recording: &Recording) -> Vec<WarningEntry> {
-    let source = Some(recording.source.clone());
-    let entry =
-        |warning: &RecordingWarning| WarningEntry { source: source.clone(), message: warning.to_string() };
-    recording.warnings.iter().map(entry).collect()
+    recording.warnings.iter().map(|warning| about(&recording.source, warning)).collect()
 }
 
 fn read_one(
@@ -169,76 +145,79 @@ fn read_one(
     option: &str,
     choice: &str,
 ) -> Result<(Channel, Vec<WarningEntry>), Failure> {
-    let channels = vec![ColumnChoice::parse(choice)];
-    let recording = read_recording(path, &RecordingOptions { channels, ..plain(options) });
+    let recording = read_recording(path, &columns(options, Some(choice)));
     let recording = recording.map_err(|error| unreadable(error, option))?;
     let warnings = warnings_of(&recording);
     Ok((one(path, recording.channels, Some(choice))?, warnings))
 }
 
-/// Refuses what tells the phase as the vibration.
-fn check_different(
+/// Refuses a channel that tells the phase and is the vibration too, or has another number of samples.
+fn check_turning(
     path: &Path,
     options: &ReadingOptions,
     turning: &Channel,
     channel: &Channel,
-    choice: &str,
 ) -> Result<(), Failure> {
+    let (name, shown) = (&channel.name, path.display());
     // Two columns may have one name; without a sensitivity the same one has the same samples.
-    if turning.name != channel.name
-        || read_one(path, options, "--channel", choice)?.0.samples != turning.samples
+    if let Some(choice) = options.channel.as_deref()
+        && turning.name == *name
+        && read_one(path, options, "--channel", choice)?.0.samples == turning.samples
     {
-        return Ok(());
+        let problem = format!("{shown}: channel {name} is both processed and what tells the phase");
+        return Err(Failure::bad_input(problem).with_help(
+            "name the vibration with --channel, and tachometer or speed with --tach or --speed-channel",
+        ));
     }
-    let path = path.display();
-    let problem = format!("{path}: channel {} is both processed and what tells the phase", channel.name);
-    Err(Failure::bad_input(problem).with_help(
-        "name the vibration with --channel, and tachometer or speed with --tach or --speed-channel",
-    ))
+    let [of_turning, of_channel] = [turning, channel].map(|channel| channel.samples.len());
+    if of_turning != of_channel {
+        return Err(Failure::bad_input(format!(
+            "{shown}: channel {} has {of_turning} samples, but {name} has {of_channel}; must be equally many",
+            turning.name
+        )));
+    }
+    Ok(())
 }
 
 /// The only channel there is.
 fn one(path: &Path, mut channels: Vec<Channel>, choice: Option<&str>) -> Result<Channel, Failure> {
     const SHOWN: usize = 30;
-    let names: Vec<&str> = channels.iter().map(|channel| channel.name.as_str()).collect();
-    let more = names.len().saturating_sub(SHOWN);
-    let mut list = names[..names.len() - more].join(", ");
-    if more > 0 {
-        list += &format!(" and {more} more");
-    }
     let path = path.display();
-    match (channels.len(), choice) {
-        (1, _) => {}
-        (0, _) => {
-            let problem = format!("{path}: has no channel besides the one that tells the phase");
-            return Err(Failure::bad_input(problem));
-        }
-        (count, Some(choice)) => {
-            let problem = format!("{path}: channel `{choice}` is {count} columns: {list}");
-            return Err(Failure::bad_input(problem).with_help("choose one of them"));
-        }
-        (count, None) => {
-            let problem = format!("{path}: has {count} channels: {list}");
-            return Err(Failure::bad_input(problem).with_help("choose one with --channel NAME"));
-        }
+    let count = channels.len();
+    if count == 0 {
+        let problem = format!("{path}: has no channel besides the one that tells the phase");
+        return Err(Failure::bad_input(problem));
     }
-    Ok(channels.swap_remove(0))
+    if count == 1 {
+        return Ok(channels.swap_remove(0));
+    }
+    let names: Vec<&str> = channels.iter().take(SHOWN).map(|channel| channel.name.as_str()).collect();
+    let mut list = names.join(", ");
+    if count > SHOWN {
+        list += &format!(" and {} more", count - SHOWN);
+    }
+    let (problem, help) = match choice {
+        Some(choice) => (format!("channel `{choice}` is {count} columns"), "choose one of them"),
+        None => (format!("has {count} channels"), "choose one with --channel NAME"),
+    };
+    Err(Failure::bad_input(format!("{path}: {problem}: {list}")).with_help(help))
 }
 
-/// What applies to every column.
-fn plain(options: &ReadingOptions) -> RecordingOptions {
+/// Options by which a column is read, or all columns.
+fn columns(options: &ReadingOptions, choice: Option<&str>) -> RecordingOptions {
     let time = match options.time_column.as_deref() {
         None => TimeColumn::ByName,
         Some("none") => TimeColumn::Absent,
         Some(choice) => TimeColumn::Chosen(ColumnChoice::parse(choice)),
     };
     RecordingOptions {
+        channels: choice.map(ColumnChoice::parse).into_iter().collect(),
         time,
         sampling_rate_hz: options.sampling_rate_hz,
         variable: options.variable.clone(),
         text: TextOptions {
-            separator: options.separator.map(Into::into),
-            decimal_sign: options.decimal_sign.map(Into::into),
+            separator: options.separator,
+            decimal_sign: options.decimal_sign,
             skip_lines: options.skip_lines,
         },
         numbers_beside_each_sample: NUMBERS_BESIDE_EACH_SAMPLE,
@@ -246,7 +225,7 @@ fn plain(options: &ReadingOptions) -> RecordingOptions {
     }
 }
 
-/// What the samples of the channel mean, where the options say it: whether or not they name the channel.
+/// Sets the meaning of the samples of the channel, where the options state it: whether or not they name the channel.
 fn calibrate(channel: &mut Channel, options: &ReadingOptions) -> Result<(), Failure> {
     let sensitivity = options.sensitivity_mv_per_unit;
     if let Some(wrong) = sensitivity.filter(|sensitivity| !sensitivity.is_finite() || *sensitivity == 0.0) {
@@ -257,14 +236,14 @@ fn calibrate(channel: &mut Channel, options: &ReadingOptions) -> Result<(), Fail
 }
 
 /// Leaves out what is 0 throughout beside channels that are not, as of inputs that nothing was connected to. A warning names it.
-fn without_dead(channels: Vec<Channel>, source: &Path) -> (Vec<Channel>, Option<WarningEntry>) {
+fn without_silent_channels(channels: Vec<Channel>, source: &Path) -> (Vec<Channel>, Option<WarningEntry>) {
     let is_dead = |channel: &Channel| channel.samples.iter().all(|sample| *sample == 0.0);
-    let (dead, live): (Vec<Channel>, Vec<Channel>) = channels.into_iter().partition(is_dead);
-    if live.is_empty() || dead.is_empty() {
-        return (if live.is_empty() { dead } else { live }, None);
+    if channels.iter().all(is_dead) || !channels.iter().any(is_dead) {
+        return (channels, None);
     }
+    let (dead, live): (Vec<Channel>, Vec<Channel>) = channels.into_iter().partition(is_dead);
     let names: Vec<&str> = dead.iter().map(|channel| channel.name.as_str()).collect();
     let (names, is) = (names.join(", "), if dead.len() == 1 { "is" } else { "are" });
     let message = format!("{names} {is} 0 throughout and left out; --channel NAME reads it all the same");
-    (live, Some(WarningEntry { source: Some(source.to_path_buf()), message }))
+    (live, Some(about(source, message)))
 }

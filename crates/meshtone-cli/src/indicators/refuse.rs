@@ -1,4 +1,4 @@
-//! What is wrong with a recording, in the words of the command line.
+//! Errors about a recording, in the words of the command line.
 
 use std::io::ErrorKind;
 use std::path::Path;
@@ -9,12 +9,12 @@ use meshtone_io::recording::ReadRecordingError;
 use crate::failure::Failure;
 use crate::other_kind::{or_other_kind, recording_within};
 
-/// What is read here.
+/// Name of the input.
 const RECORDING: &str = "a recording";
 
 /// The option that names the column which is processed.
 const CHANNEL: &str = "--channel";
-/// What the library calls options, and what the command line does.
+/// Names of options in the library and on the command line.
 const OPTIONS: [(&str, &str); 9] = [
     ("option channels, or variable", "--channel or --variable"),
     ("option channels", CHANNEL),
@@ -64,14 +64,14 @@ pub fn unreadable(error: ReadRecordingError, option: &str) -> Failure {
     Failure::bad_input(message.replace(CHANNEL, option))
 }
 
-/// What of a recording is refused, on which depends what its user can do.
+/// The input that is refused, on which the advice to the user depends.
 #[derive(Debug, Clone, Copy)]
-pub enum Subject {
+pub enum RefusedInput {
     /// The channel of a measurement.
     Measured {
         /// (Hz) Mean speed of the shaft.
         speed_hz: f64,
-        /// What tells the phase, in words.
+        /// Source of the phase, in words.
         by: &'static str,
     },
     /// The channel of a simulation.
@@ -80,7 +80,7 @@ pub enum Subject {
     Tachometer,
     /// The times of its pulses.
     PulseTimes,
-    /// Whatever else tells the phase.
+    /// Any other source of the phase.
     Phase,
 }
 
@@ -91,17 +91,14 @@ pub enum Subject {
 /// * `what` - the channel, or the option that names it
 /// * `subject` - what that is
 /// * `error` - what is wrong with it
-pub fn refuse(path: &Path, what: &str, subject: Subject, error: &SignalError) -> Failure {
-    let failure = Failure::bad_input(format!("{}: {what}: {error}", path.display()));
-    match help(subject, error) {
-        Some(help) => failure.with_help(help),
-        None => failure,
-    }
+pub fn refuse(path: &Path, what: &str, subject: RefusedInput, error: &SignalError) -> Failure {
+    let message = format!("{}: {what}: {error}", path.display());
+    Failure { help: help(subject, error), ..Failure::bad_input(message) }
 }
 
-fn help(subject: Subject, error: &SignalError) -> Option<String> {
+fn help(subject: RefusedInput, error: &SignalError) -> Option<String> {
+    use RefusedInput::{Measured, PulseTimes, Simulated, Tachometer};
     use SignalError::{Constant, MeshOrderBeyondNyquist, PulseGap, SpeedMismatch, TooFew, TooFewRevolutions};
-    use Subject::{Measured, PulseTimes, Simulated, Tachometer};
 
     let help = match (error, subject) {
         (Constant { .. }, Tachometer) => {

@@ -1,17 +1,18 @@
 //! The records of a whole series, as they come.
 
-use std::path::Path;
+use std::path::PathBuf;
 
 use meshtone::signal::{Record, na4};
 use meshtone_io::indicators::{IndicatorResults, RecordEntry, RecordingEntry, Setting};
 
-use super::options::{PhaseOptions, ProcessingOptions};
+use super::options::{EDGES, INTERPOLATIONS, PhaseOptions, ProcessingOptions};
 use super::process::{Processed, Wheel};
 use super::reading::Input;
+use crate::choice::name_of;
 use crate::failure::Failure;
 
 /// The last record of each wheel, which the figure shows.
-pub struct Latest {
+pub struct LatestRecords {
     /// The recording.
     pub input: Input,
     /// Each wheel with the mean speed of its shaft and its record.
@@ -24,7 +25,7 @@ pub struct Series {
     /// The results.
     pub results: IndicatorResults,
     /// The last record.
-    pub latest: Option<Latest>,
+    pub latest: Option<LatestRecords>,
     /// The wheels, which are the same in all recordings.
     pub wheels: Vec<Wheel>,
     /// For each wheel the middles of its records as parts of their recordings, counted on from recording to recording: 1.25 is
@@ -47,11 +48,11 @@ impl Series {
         self.results.warnings.extend(processed.warnings);
         let mut last = Vec::new();
         for (place, of_wheel) in processed.wheels.into_iter().enumerate() {
-            let count = of_wheel.records.len();
             let length_s = input.channel.samples.len() as f64 / input.sampling_rate_hz;
             let before = (self.results.recordings.len() - 1) as f64;
             self.middles[place]
                 .extend(of_wheel.middles_s.iter().map(|middle_s| before + middle_s / length_s));
+            let mut latest = None;
             for (number, mut record) in of_wheel.records.into_iter().enumerate() {
                 self.results.records.push(RecordEntry {
                     recording: self.results.recordings.len(),
@@ -65,16 +66,15 @@ impl Series {
                     indicators: record.indicators,
                 });
                 self.residuals[place].push(std::mem::take(&mut record.parts.residual));
-                if number + 1 == count {
-                    last.push((of_wheel.wheel.clone(), of_wheel.mean_speed_hz, record));
-                }
+                latest = Some(record);
             }
+            last.extend(latest.map(|record| (of_wheel.wheel, of_wheel.mean_speed_hz, record)));
         }
-        self.latest = Some(Latest { input, wheels: last });
+        self.latest = Some(LatestRecords { input, wheels: last });
         Ok(())
     }
 
-    /// What must be the same in all recordings of a series.
+    /// Refuses a recording that differs from others of its series where it must not.
     fn check(&mut self, input: &Input, processed: &Processed) -> Result<(), Failure> {
         let wheels: Vec<Wheel> = processed.wheels.iter().map(|of_wheel| of_wheel.wheel.clone()).collect();
         let Some(first) = self.results.recordings.first() else {
@@ -131,45 +131,38 @@ impl Series {
         self.results.records.iter().filter(|record| record.wheel == wheel.name)
     }
 
-    /// Whether there are several records, so that there is a trend.
+    /// Returns whether there are several records, so that there is a trend.
     pub fn is_series(&self) -> bool {
         self.results.records.len() > self.wheels.len()
     }
 }
 
-/// What the command line says, with its defaults.
+/// Settings of the command line, with its defaults.
 pub fn settings(phase: &PhaseOptions, processing: &ProcessingOptions) -> Vec<(&'static str, Setting)> {
     let number = |value: Option<f64>| value.map_or(Setting::Absent, Setting::Number);
-    let text = |value: Option<String>| value.map_or(Setting::Absent, Setting::Text);
+    let text = |value: Option<&str>| value.map_or(Setting::Absent, |value| Setting::Text(value.to_owned()));
     let count = |value: Option<u32>| value.map_or(Setting::Absent, |value| Setting::Count(value as usize));
-    let file =
-        |path: &Option<std::path::PathBuf>| path.as_deref().map(|path: &Path| path.display().to_string());
-    let has_pulses = phase.tach.is_some() || phase.pulse_times.is_some();
-    let edge = phase.tach.as_ref().map(|_| format!("{:?}", phase.edge).to_lowercase());
-    let interpolation = meshtone::signal::Interpolation::from(processing.interpolation);
-    let interpolation = match interpolation {
-        meshtone::signal::Interpolation::Pchip => "pchip",
-        meshtone::signal::Interpolation::BandLimited => "band-limited",
+    let file = |path: &Option<PathBuf>| {
+        path.as_ref().map_or(Setting::Absent, |path| Setting::Text(path.display().to_string()))
     };
+    let has_pulses = phase.tach.is_some() || phase.pulse_times.is_some();
+    let edge = phase.tach.as_ref().and_then(|_| name_of(&EDGES, phase.edge));
     vec![
-        ("phase", Setting::Text(phase.source().to_string())),
+        ("phase", text(Some(phase.source()))),
         ("teeth", count(phase.teeth)),
         ("mate_teeth", count(phase.mate_teeth)),
         ("shaft_hz", number(phase.shaft_hz)),
-        ("tach", text(phase.tach.clone())),
-        ("pulse_times", text(file(&phase.pulse_times))),
-        ("speed_channel", text(phase.speed_channel.clone())),
-        ("speed_profile", text(file(&phase.speed_profile))),
+        ("tach", text(phase.tach.as_deref())),
+        ("pulse_times", file(&phase.pulse_times)),
+        ("speed_channel", text(phase.speed_channel.as_deref())),
+        ("speed_profile", file(&phase.speed_profile)),
         ("pulses_per_rev", count(has_pulses.then_some(phase.pulses_per_rev))),
         ("threshold", number(phase.threshold)),
         ("hysteresis", number(phase.hysteresis)),
         ("edge", text(edge)),
-        ("sidebands", Setting::Count(processing.sidebands as usize)),
-        ("low_orders", Setting::Count(processing.low_orders as usize)),
-        (
-            "revolutions_of_a_segment",
-            processing.revolutions.map_or(Setting::Absent, |m| Setting::Count(m as usize)),
-        ),
-        ("interpolation", Setting::Text(interpolation.to_string())),
+        ("sidebands", count(Some(processing.sidebands))),
+        ("low_orders", count(Some(processing.low_orders))),
+        ("revolutions_of_a_segment", count(processing.revolutions)),
+        ("interpolation", text(name_of(&INTERPOLATIONS, processing.interpolation))),
     ]
 }

@@ -1,6 +1,6 @@
 //! The indicators, for reading.
 
-use std::fmt::Write;
+use std::fmt::Display;
 
 use meshtone::signal::ShapeIndicators;
 use meshtone_io::indicators::RecordEntry;
@@ -9,75 +9,57 @@ use super::process::Wheel;
 use super::results::Series;
 use crate::table::short;
 
+const OF_GEARS: [&str; 7] = ["FM0", "FM4", "M6A", "M8A", "NA4", "energy ratio", "sidebands"];
+
 /// The table of one record or of a series.
 pub fn table(series: &Series) -> String {
-    let mut text = String::new();
     let unit = series.results.unit.as_deref().unwrap_or("unit not stated");
-    // Writing to a string cannot fail.
-    let _ = writeln!(text, "  channel {}, {unit}", series.results.channel);
-    for wheel in &series.wheels {
-        let _ = if series.is_series() {
-            of_series(&mut text, series, wheel)
-        } else {
-            of_record(&mut text, series, wheel)
-        };
-    }
+    let mut text = format!("  channel {}, {unit}\n", series.results.channel);
+    let of_wheel = if series.is_series() { of_series } else { of_record };
+    series.wheels.iter().for_each(|wheel| text += &of_wheel(series, wheel));
     text
 }
 
-fn of_record(text: &mut String, series: &Series, wheel: &Wheel) -> std::fmt::Result {
-    let Some(record) = series.of(wheel).next() else { return Ok(()) };
-    writeln!(
-        text,
-        "\n  {}, {} teeth: average of {} revolutions at {} Hz",
+/// A line of a table: `label`, and each of `cells` in `width` characters.
+fn line<T: Display>(label: impl Display, cells: impl IntoIterator<Item = T>, width: usize) -> String {
+    let cells: String = cells.into_iter().map(|cell| format!("{cell:>width$}")).collect();
+    format!("  {label}{cells}\n")
+}
+
+fn of_record(series: &Series, wheel: &Wheel) -> String {
+    let Some(record) = series.of(wheel).next() else { return String::new() };
+    let mut text = format!(
+        "\n  {}, {} teeth: average of {} revolutions at {} Hz\n",
         wheel.name,
         wheel.teeth,
         record.revolutions,
         short(record.mean_speed_hz)
-    )?;
-    let heads = ["rms", "peak to peak", "crest", "skewness", "kurtosis"];
-    writeln!(text, "  {:<12}{}", "", heads.map(|head| format!("{head:>14}")).concat())?;
+    );
+    let mut add = |label: &str, cells: &[String]| text += &line(format_args!("{label:<12}"), cells, 14);
+    add("", &["rms", "peak to peak", "crest", "skewness", "kurtosis"].map(str::to_owned));
     let indicators = &record.indicators;
-    for (name, part) in [
-        ("average", &indicators.average),
-        ("regular", &indicators.regular),
-        ("residual", &indicators.residual),
-        ("difference", &indicators.difference),
-        ("envelope", &indicators.envelope),
-    ] {
-        writeln!(text, "  {name:<12}{}", shape(part).map(|value| format!("{value:>14}")).concat())?;
-    }
-    let names = ["FM0", "FM4", "M6A", "M8A", "NA4", "energy ratio", "sidebands"];
-    writeln!(text, "  {:<12}{}", "", names.map(|name| format!("{name:>14}")).concat())?;
-    writeln!(text, "  {:<12}{}", "gear metrics", gear(record).map(|value| format!("{value:>14}")).concat())
+    add("average", &shape(&indicators.average));
+    add("regular", &shape(&indicators.regular));
+    add("residual", &shape(&indicators.residual));
+    add("difference", &shape(&indicators.difference));
+    add("envelope", &shape(&indicators.envelope));
+    add("", &OF_GEARS.map(str::to_owned));
+    add("gear metrics", &gear(record));
+    text
 }
 
-fn of_series(text: &mut String, series: &Series, wheel: &Wheel) -> std::fmt::Result {
-    writeln!(text, "\n  {}, {} teeth", wheel.name, wheel.teeth)?;
+fn of_series(series: &Series, wheel: &Wheel) -> String {
     let labels: Vec<String> = series.of(wheel).map(|record| label(series, record)).collect();
     let width = labels.iter().map(|label| label.chars().count()).max().unwrap_or(0).max(6);
-    let heads = [
-        "revolutions",
-        "average rms",
-        "diff. rms",
-        "FM0",
-        "FM4",
-        "M6A",
-        "M8A",
-        "NA4",
-        "energy ratio",
-        "sidebands",
-    ];
-    writeln!(text, "  {:<width$}{}", "record", heads.map(|head| format!("{head:>13}")).concat())?;
+    let heads = ["revolutions", "average rms", "diff. rms"].into_iter().chain(OF_GEARS);
+    let mut text = format!("\n  {}, {} teeth\n", wheel.name, wheel.teeth);
+    text += &line(format_args!("{:<width$}", "record"), heads, 13);
     for (label, record) in labels.iter().zip(series.of(wheel)) {
-        let indicators = &record.indicators;
-        let first =
-            [record.revolutions.to_string(), short(indicators.average.rms), short(indicators.difference.rms)];
-        let values: String =
-            first.into_iter().chain(gear(record)).map(|value| format!("{value:>13}")).collect();
-        writeln!(text, "  {label:<width$}{values}")?;
+        let [average, difference] = [&record.indicators.average, &record.indicators.difference];
+        let first = [record.revolutions.to_string(), short(average.rms), short(difference.rms)];
+        text += &line(format_args!("{label:<width$}"), first.into_iter().chain(gear(record)), 13);
     }
-    Ok(())
+    text
 }
 
 /// `run03.csv`, or `run03.csv 12` for a segment.
@@ -99,11 +81,10 @@ fn shape(shape: &ShapeIndicators) -> [String; 5] {
     values.map(or_dash)
 }
 
+/// The values of [`OF_GEARS`].
 fn gear(record: &RecordEntry) -> [String; 7] {
-    let indicators = &record.indicators;
-    let shown = [indicators.fm0, indicators.fm4, indicators.m6a, indicators.m8a, indicators.na4];
-    let [a, b, c, d, e] = shown.map(or_dash);
-    [a, b, c, d, e, or_dash(indicators.energy_ratio), or_dash(indicators.sideband_level_factor)]
+    let of = &record.indicators;
+    [of.fm0, of.fm4, of.m6a, of.m8a, of.na4, of.energy_ratio, of.sideband_level_factor].map(or_dash)
 }
 
 fn or_dash(value: Option<f64>) -> String {

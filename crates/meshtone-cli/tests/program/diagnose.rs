@@ -162,13 +162,22 @@ fn what_is_refused() {
                  [signal]\nsampling_rate_hz = 25000.0\n";
     workplace.write("tuned.toml", tuned);
     as_measured(&workplace, "other");
+    // Noise alone, as of a rig that stands still: a sequence that is as good as random.
+    let mut state = 1_u32;
+    let noise: Vec<f64> = (0..16_000)
+        .map(|_| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state >> 8) / f64::from(1 << 24) - 0.5
+        })
+        .collect();
+    workplace.write("noise.csv", csv(8000.0, &noise, |_| 0.0));
     let here = workplace.path("").display().to_string();
     for (arguments, words) in [
         (&["absent.csv"][..], &["there is no recording absent.csv"][..]),
         (&["."], &["a recording is expected here"]),
         (&["volts.csv"], &["channel bearing is in V", "must be g or m/s²", "--sensitivity-mv-per-unit"]),
         // With nothing said the speed is the scenario's, about which the mesh tone is looked for.
-        (&["other.csv", "-c", "bearing"], &["no mesh tone at 800.00 Hz"]),
+        (&["noise.csv", "-c", "bearing"], &["no mesh tone at 800.00 Hz"]),
         (&["plain.csv"], &["has no stated unit", "--unit g"]),
         (&["plain.csv", "--teeth", "19"], &["--teeth 19", "20, the pinion's, or 40, the gear's"]),
         (&["plain.csv", "--teeth", "20", "--mate-teeth", "41"], &["--mate-teeth 41", "must be 40"]),

@@ -77,7 +77,7 @@ fn a_simulation_and_the_same_signal_from_other_files() {
         + "[quality]\ndin_grade = 7\n[fault]\nkind = \"missing-tooth\"\n";
     workplace.write("gone.toml", faulty);
     // Teeth that part do not move alike in every revolution.
-    let simulate = ["simulate", "gone.toml", "--model", "linear", "-o", "gone", "--no-panel", "-q"];
+    let simulate = ["simulate", "gone.toml", "--model", "published", "-o", "gone", "--no-panel", "-q"];
     workplace.succeeds(&simulate);
     // A channel's name without its unit is answered with those that there are.
     let words = ["has no column `vertical`", "did you mean `vertical_g`?", "pinion_shaft_speed_hz"];

@@ -71,6 +71,7 @@ fn what_is_no_scenario_is_told_what_reads_it() {
         (&["dataset", "days"], "days is a directory; must be a file"),
         (&["indicators", "days"], "as `meshtone indicators days/monday/run.csv"),
         (&["simulate", "fast.toml", "--seed", "4"], "write seed = 4 there"),
+        #[cfg(feature = "explore")]
         (&["explore", "fast.toml", "--rpm=1200"], "write pinion_speed_hz = 20 below its [operation]"),
         (&["indicators", "run.csv", "--rpm", "1200"], "write --shaft-hz 20"),
     ] {

@@ -5,6 +5,7 @@ mod bad_input;
 mod dataset;
 mod diagnose;
 mod examples;
+#[cfg(feature = "explore")]
 mod explore;
 mod indicators;
 mod indicators_refused;

@@ -108,9 +108,12 @@ fn a_rig_is_tuned_and_signals_are_enhanced() {
     let simulate = ["simulate", "broken.toml", "--tuned", "out/tuned.toml", "--no-panel", "-o", "simulated"];
     workplace.succeeds(&simulate);
     // As if the number had been in the scenario.
-    let damping = number("/scenario_keys/rig.damping_ratio");
+    // By its digits: the JSON reader of this test may round the last one.
+    let tuned = String::from_utf8(workplace.read("out/tuned.toml")).unwrap();
+    let (_, after_key) = tuned.split_once("key = \"rig.damping_ratio\"\nvalue = ").unwrap();
+    let damping = after_key.lines().next().unwrap();
     let broken = String::from_utf8(workplace.read("broken.toml")).unwrap();
-    workplace.write("damped.toml", format!("{broken}[rig]\ndamping_ratio = {damping:?}\n"));
+    workplace.write("damped.toml", format!("{broken}[rig]\ndamping_ratio = {damping}\n"));
     workplace.succeeds(&["simulate", "damped.toml", "--no-panel", "-o", "damped"]);
     let run = |name: &str| json(&workplace, name)["run"].clone();
     assert!(run("simulated/summary.json").is_string());
@@ -332,7 +335,7 @@ fn rig(fault: &str, seed: u64) -> Scenario {
     // Finer than the base scenario of the experiment.
     let fine = FAST.replace("sampling_rate_hz = 1000.0", "sampling_rate_hz = 40e3");
     Scenario::from_toml(&format!(
-        "model = \"linear\"\nseed = {seed}\n{fine}[quality]\ndin_grade = 8\n{fault}"
+        "model = \"contact\"\nseed = {seed}\n{fine}[quality]\ndin_grade = 8\n{fault}"
     ))
     .unwrap()
 }
@@ -363,8 +366,10 @@ fn severity_is_tuned_as_other_keys_are() {
         value(&difference_signals(vec![scenario.unwrap()], &chain).unwrap()[0]).log10()
     };
     let rms = |signal: &[f64]| (signal.iter().map(|x| x * x).sum::<f64>() / signal.len() as f64).sqrt();
-    let measured =
-        [String::new(), broken(0.6)].map(|faults| [of(&faults, rms), of(&faults, |x| kurtosis(x).unwrap())]);
+    // As in every table: the rms is over that of the healthy state.
+    let healthy_rms = of("", rms);
+    let measured = [String::new(), broken(0.6)]
+        .map(|faults| [of(&faults, rms) - healthy_rms, of(&faults, |x| kurtosis(x).unwrap())]);
     let mut table = String::from("experiment,indicator,series,severity,log10_value\n");
     for (case, [rms, kurtosis]) in measured.iter().enumerate() {
         for spread in [-0.005, 0.0, 0.005] {
@@ -403,6 +408,7 @@ fn recordings_of_a_damaged_pinion_are_averaged_over_its_revolutions() {
 
 fn recordings_are_as_simulated(wheel: WheelName) {
     let workplace = workplace();
+    workplace.write("fast.toml", format!("model = \"contact\"\n{FAST}[quality]\ndin_grade = 8\n"));
     let on = |fault: &str, between: &str| match wheel {
         WheelName::Pinion => {
             fault.replace("kind", &format!("wheel = \"pinion\"{between}tooth = 7{between}kind"))
@@ -448,8 +454,7 @@ fn recordings_are_as_simulated(wheel: WheelName) {
         for (case, expected) in expected.iter().enumerate() {
             let path = format!("/cases/{case}/indicators/kurtosis/measured_median");
             let median = tuning.pointer(&path).and_then(Value::as_f64).unwrap();
-            // The few points of a burst do not lie at the same places.
-            assert!((median - expected).abs() < 0.08, "{name}, case {case}: {median} instead of {expected}");
+            assert!((median - expected).abs() < 0.02, "{name}, case {case}: {median} instead of {expected}");
         }
         // Simulated as well: nothing needs to be changed.
         let error = tuning.pointer("/error/original").and_then(Value::as_f64).unwrap();
@@ -471,7 +476,7 @@ fn enhance_finds_the_place_of_a_fault_itself() {
     let mean = |scenario: &str, centre: f64| {
         workplace.write(
             "tuned.toml",
-            format!("[enhancement]\nwidth_ratio = 0.2\nfault_to_harmonics_ratio = 1.0\nnoise_level = 0.1\ncentre_rev = {centre}\n[signal]\nsampling_rate_hz = 10e3\n"),
+            format!("model = \"linear\"\n[enhancement]\nwidth_ratio = 0.2\nfault_to_harmonics_ratio = 1.0\nnoise_level = 0.1\ncentre_rev = {centre}\n[signal]\nsampling_rate_hz = 10e3\n"),
         );
         stdout(&workplace.succeeds(&["enhance", scenario, "--tuned", "tuned.toml", "-o", "out"]))
     };
@@ -483,7 +488,7 @@ fn enhance_finds_the_place_of_a_fault_itself() {
 #[test]
 fn what_enhance_refuses() {
     let workplace = workplace();
-    workplace.write("tuned.toml", "[enhancement]\nwidth_ratio = 0.2\nfault_to_harmonics_ratio = 2.0\nnoise_level = 1.0\n[signal]\nsampling_rate_hz = 10e3\n");
+    workplace.write("tuned.toml", "model = \"linear\"\n[enhancement]\nwidth_ratio = 0.2\nfault_to_harmonics_ratio = 2.0\nnoise_level = 1.0\n[signal]\nsampling_rate_hz = 10e3\n");
     let enhance = |tuned: &'static str, draws: &'static str| {
         ["enhance", "fast.toml", "--tuned", tuned, "--draws", draws, "-o", "out"]
     };
@@ -495,7 +500,7 @@ fn what_enhance_refuses() {
         &enhance("wrong.toml", "1"),
         &["wrong.toml", "line 3", "enhancement.width_ratio", "more than 0"],
     );
-    let other = ["other.toml", "line 7", "signal.wheel", "\"pinion\", \"gear\""];
+    let other = ["other.toml", "line 8", "signal.wheel", "\"pinion\", \"gear\""];
     let with_wheel = [workplace.read("tuned.toml"), b"wheel = \"rack\"\n".to_vec()].concat();
     workplace.write("other.toml", with_wheel);
     workplace.fails(2, &enhance("other.toml", "1"), &other);

@@ -1,96 +1,96 @@
-//! A plan's rules, checked against each other and against the scenario.
+//! Checks the rules of a plan against each other and against the scenario, and puts them in the order in which they are drawn.
 
 use std::collections::HashMap;
 
-use meshtone::scenario::Scenario;
+use meshtone::scenario::{Scenario, ScenarioNumber};
 use meshtone_toml::{ReadResult, TomlError, nearest_name};
 
 use super::values::{SEVERITY, fault_of_severity};
-use super::{FAULT_SEVERITY, NOISE_KEYS, PATH_KEYS, Sampler, is_of_plan};
+use super::{FAULT_SEVERITY, NOISE_KEYS, PATH_KEYS, Sampler, is_of_plan, shift_key};
 use crate::expression::{Condition, derived_names, underlying};
-use crate::plan::{Content, Distribution, Level, Rule, SplitBy, kinds};
+use crate::plan::{Content, Level, Rule, Severity, SplitBy, kinds};
 
-/// Keys that every record or unit has its own of.
+/// Keys that cannot be varied, and why.
 const OWN: [(&str, &str); 2] =
     [("seed", "every record has a seed of its own"), ("quality.seed", "every unit has wheels of its own")];
 
-/// What a class's records are drawn by.
+/// What the records of a class are drawn by.
 #[derive(Debug, Clone)]
 pub(super) struct ClassRules<'a> {
-    /// With the class's faults.
+    /// The base scenario with the class's faults.
     pub base: Scenario,
-    /// All its numbers, by their keys.
+    /// All numbers of that scenario by their keys.
     pub numbers: HashMap<String, f64>,
-    /// Rules for records, those that others depend on first.
+    /// Rules for records. Rules that others depend on come first.
     pub rules: Vec<&'a Rule>,
-    /// Constraints that records must meet.
-    pub constraints: Vec<&'a Condition>,
 }
 
 impl ClassRules<'_> {
-    /// Whether there is a number at a key of its records' scenarios, given or found from others.
+    /// Whether the scenarios of the class's records have a number at a key, or one that is computed from others.
     fn knows(&self, key: &str) -> bool {
-        self.numbers.contains_key(key) || fault_of_severity(key, &self.base.faults).is_some()
+        self.numbers.contains_key(key) || self.computes_severity(key)
+    }
+
+    /// Whether a key is the severity of a fault that is given by its sizes or otherwise.
+    fn computes_severity(&self, key: &str) -> bool {
+        fault_of_severity(key, &self.base.faults).is_some()
     }
 }
 
 /// A rule and its key in the plan.
 type Placed<'a> = (&'a Rule, String);
 
+/// Checks the rules, constraints, shifts and severities of a plan, and prepares what its records are drawn by.
 pub(super) fn sampler(content: &Content) -> ReadResult<Sampler<'_>> {
-    let top: Vec<Placed> =
-        content.rules.iter().enumerate().map(|(i, rule)| (rule, format!("vary[{i}]"))).collect();
-    let mut classes = Vec::with_capacity(content.classes.len());
-    for (c, class) in content.classes.iter().enumerate() {
-        let base = content.base.clone().with_faults(class.faults.clone());
-        let known: Vec<_> = base.numbers();
-        let own: Vec<Placed> =
-            class.rules.iter().enumerate().map(|(i, rule)| (rule, format!("class[{c}].vary[{i}]"))).collect();
-        for (rule, place) in &own {
-            if rule.level != Level::Record {
-                let problem = format!("varies by {}; a rule of a class varies by record", rule.level.name());
-                return Err(TomlError::new(place, "", problem)
-                    .with_help("move it to the top as [[vary]], or write per = \"record\""));
-            }
-        }
-        let has = |key: &str| is_of_plan(key) || known.iter().any(|number| number.key == key);
-        // A rule at the top concerns the classes whose faults have its keys.
-        let concerned = top.iter().filter(|(rule, _)| rule.keys.iter().all(|key| has(key)));
-        let all: Vec<Placed> = concerned.cloned().chain(own).collect();
-        check_keys(&all, &known, &base)?;
-        check_growth(content, c, &all, &known)?;
-        let ordered = in_order(&all, &known)?;
-        let rules = ordered.into_iter().filter(|rule| rule.level == Level::Record).collect();
-        let numbers = known.iter().map(|number| (number.key.clone(), number.value)).collect();
-        classes.push(ClassRules { base, numbers, rules, constraints: Vec::new() });
-    }
-    check_top(content, &top, &classes)?;
-    let base_numbers = content.base.numbers();
+    let classes = (0..content.classes.len()).map(|class| class_rules(content, class));
+    let classes = classes.collect::<ReadResult<Vec<_>>>()?;
+    check_top(content, &classes)?;
     let of_groups: Vec<Placed> =
-        top.iter().filter(|(rule, _)| rule.level != Level::Record).cloned().collect();
-    let ordered = in_order(&of_groups, &base_numbers)?;
-    let of_level = |level: Level| ordered.iter().copied().filter(|rule| rule.level == level).collect();
-    let (unit_rules, mounting_rules) = (of_level(Level::Unit), of_level(Level::Mounting));
-    let decides = |condition: &Condition| level_of(condition, content);
-    let constraints: Vec<(Level, &Condition)> =
-        content.constraints.iter().map(|condition| (decides(condition), condition)).collect();
-    let (by_record, group_constraints): (Vec<_>, Vec<_>) =
-        constraints.into_iter().partition(|(level, _)| *level == Level::Record);
-    for class in &mut classes {
-        class.constraints = by_record.iter().map(|(_, condition)| *condition).collect();
-    }
+        content.top_rules().filter(|(rule, _)| rule.level != Level::Record).collect();
+    let group_rules = in_order(&of_groups, &content.base.numbers())?;
+    let level = |condition| level_of(condition, content);
+    let constraints = content.constraints.iter().map(|condition| (level(condition), condition)).collect();
     let shift_levels: Vec<Vec<Level>> =
-        content.splits.shifts.iter().map(|shift| shift.when.iter().map(decides).collect()).collect();
+        content.splits.shifts.iter().map(|shift| shift.when.iter().map(level).collect()).collect();
     refuse_unit_shifts(content, &shift_levels)?;
     check_conditions(content, &classes)?;
     check_severities(content, &classes)?;
-    let mut end = 0;
-    let ends = content.classes.iter().map(|class| {
-        end += class.count;
-        end
+    let ends = content.classes.iter().scan(0, |end, class| {
+        *end += class.count;
+        Some(*end)
     });
     let ends = ends.collect();
-    Ok(Sampler { content, unit_rules, mounting_rules, classes, ends, group_constraints, shift_levels })
+    Ok(Sampler { content, group_rules, classes, ends, constraints, shift_levels })
+}
+
+/// Checks the rules that concern a class, and puts those for its records in order.
+fn class_rules(content: &Content, class: usize) -> ReadResult<ClassRules<'_>> {
+    let base = content.base.clone().with_faults(content.classes[class].faults.clone());
+    let known = base.numbers();
+    let mut own = content.class_rules(class);
+    if let Some((rule, place)) = own.find(|(rule, _)| rule.level != Level::Record) {
+        let problem = format!("varies by {}; a rule of a class varies by record", rule.level.name());
+        return Err(TomlError::new(place, "", problem)
+            .with_help("move it to the top as [[vary]], or write per = \"record\""));
+    }
+    // A rule at the top concerns the classes whose faults have its keys.
+    let has = |key: &String| is_of_plan(key) || find(&known, key).is_some();
+    let concerned = content.top_rules().filter(|(rule, _)| rule.keys.iter().all(has));
+    let rules: Vec<Placed> = concerned.chain(content.class_rules(class)).collect();
+    check_keys(&rules, &known, &base)?;
+    check_growth(content, class, &rules, &known)?;
+    let mut rules = in_order(&rules, &known)?;
+    rules.retain(|rule| rule.level == Level::Record);
+    let numbers = known.into_iter().map(|number| (number.key, number.value)).collect();
+    Ok(ClassRules { base, numbers, rules })
+}
+
+fn find<'n>(known: &'n [ScenarioNumber], key: &str) -> Option<&'n ScenarioNumber> {
+    known.iter().find(|number| number.key == key)
+}
+
+fn keys(known: &[ScenarioNumber]) -> impl Iterator<Item = &str> {
+    known.iter().map(|number| number.key.as_str())
 }
 
 /// Whether a key is a fault's: `fault.…`, or of several `fault[1].…`.
@@ -98,18 +98,19 @@ fn is_of_fault(key: &str) -> bool {
     key.starts_with("fault.") || key.starts_with("fault[")
 }
 
-/// Keys that exist, once each, of the right kind.
-fn check_keys(
-    rules: &[Placed],
-    known: &[meshtone::scenario::ScenarioNumber],
-    base: &Scenario,
-) -> ReadResult<()> {
+/// An error about a key that a rule varies.
+fn refuse_key((rule, place): &Placed, key: &str, problem: impl Into<String>) -> TomlError {
+    let named = if rule.keys.len() == 1 { "key" } else { "keys" };
+    TomlError::new(format!("{place}.{named}"), format!("{key:?}"), problem)
+}
+
+/// All keys exist, are varied once each, and suit their level.
+fn check_keys(rules: &[Placed], known: &[ScenarioNumber], base: &Scenario) -> ReadResult<()> {
     let mut seen: Vec<(&str, &str)> = Vec::new();
-    for (rule, place) in rules {
-        let named = if rule.keys.len() == 1 { "key" } else { "keys" };
-        let refuse = |key: &str, problem: String| {
-            TomlError::new(format!("{place}.{named}"), format!("{key:?}"), problem)
-        };
+    for placed in rules {
+        let (rule, place) = placed;
+        let refuse = |key: &str, problem: String| refuse_key(placed, key, problem);
+        let level = rule.level.name();
         for (column, key) in rule.keys.iter().enumerate() {
             if let Some((_, why)) = OWN.iter().find(|(own, _)| own == key) {
                 return Err(refuse(key, format!("cannot be varied: {why}")));
@@ -119,35 +120,30 @@ fn check_keys(
             }
             seen.push((key, place));
             if is_of_plan(key) {
-                if NOISE_KEYS.contains(&key.as_str())
-                    && seen.iter().filter(|(seen, _)| NOISE_KEYS.contains(seen)).count() > 1
-                {
-                    return Err(refuse(
-                        key,
-                        "noise is given both relative and in g; give one of the two".to_owned(),
-                    ));
+                let is_noise = |key: &str| NOISE_KEYS.contains(&key);
+                if is_noise(key) && seen.iter().filter(|(seen, _)| is_noise(seen)).count() > 1 {
+                    let problem = "noise is given both relative and in g; give one of the two";
+                    return Err(refuse(key, problem.to_owned()));
                 }
                 continue;
             }
-            let Some(number) = known.iter().find(|number| number.key == *key) else {
-                return Err(unknown(place, named, key, known, base));
+            let Some(number) = find(known, key) else {
+                return Err(unknown(placed, key, known, base));
             };
-            if number.whole && !is_whole(rule, column) {
+            if number.whole && !draws_whole_numbers(rule, column) {
                 let problem = format!("`{key}` is a whole number, but what is drawn for it is not");
                 return Err(refuse(key, problem).with_help("use choice or grid with whole numbers"));
             }
             let fixed_wheels = key.starts_with("gears.") || key.starts_with("quality.");
             if fixed_wheels && rule.level != Level::Unit {
-                let problem = format!(
-                    "`{key}` would differ between {}s of one unit, which share their wheels",
-                    rule.level.name()
-                );
+                let problem =
+                    format!("`{key}` would differ between {level}s of one unit, which share their wheels");
                 return Err(
                     refuse(key, problem).with_help("leave out per: it is \"unit\" for gears and quality")
                 );
             }
             if is_of_fault(key) && rule.level != Level::Record {
-                let problem = format!("`{key}` varies by {}; faults vary by record", rule.level.name());
+                let problem = format!("`{key}` varies by {level}; faults vary by record");
                 return Err(refuse(key, problem).with_help("leave out per"));
             }
         }
@@ -155,88 +151,65 @@ fn check_keys(
     Ok(())
 }
 
-fn is_whole(rule: &Rule, column: usize) -> bool {
-    if rule.times.is_some() || rule.plus.is_some() {
-        return false;
-    }
-    match &rule.distribution {
-        Distribution::Fixed(value) => value.fract() == 0.0,
-        Distribution::Grid(rows) | Distribution::Choice { rows, .. } => {
-            rows.iter().all(|row| row[column].fract() == 0.0)
-        }
-        _ => false,
-    }
+fn draws_whole_numbers(rule: &Rule, column: usize) -> bool {
+    let rows = rule.distribution.rows();
+    rule.times.is_none()
+        && rule.plus.is_none()
+        && !rows.is_empty()
+        && rows.iter().all(|row| row[column].fract() == 0.0)
 }
 
-fn unknown(
-    place: &str,
-    named: &str,
-    key: &str,
-    known: &[meshtone::scenario::ScenarioNumber],
-    base: &Scenario,
-) -> TomlError {
+/// The error of a key that is no number of the scenario.
+fn unknown(placed: &Placed, key: &str, known: &[ScenarioNumber], base: &Scenario) -> TomlError {
     let fault = kinds(&base.faults).unwrap_or_else(|| "a healthy pair".to_owned());
     let problem = format!("`{key}` is no number of the scenario ({fault}), so it cannot be varied");
-    let error = TomlError::new(format!("{place}.{named}"), format!("{key:?}"), problem);
+    let error = refuse_key(placed, key, problem);
     if fault_of_severity(key, &base.faults).is_some() {
         return error.with_help("write the fault with severity = … in place of its sizes");
     }
-    error.with_help(
-        match nearest_name(
-            key,
-            known.iter().map(|number| number.key.as_str()).chain(NOISE_KEYS).chain(PATH_KEYS),
-        ) {
-            Some(nearest) => meant(key, nearest),
-            None => {
-                "`meshtone init KIND` prints every key of a kind of fault; sections are part of a key, as in \
-                 `operation.pinion_speed_hz`"
-                    .to_owned()
-            }
-        },
-    )
+    error.with_help(match nearest_name(key, keys(known).chain(NOISE_KEYS).chain(PATH_KEYS)) {
+        Some(nearest) => meant(key, nearest),
+        None => {
+            "`meshtone init KIND` prints every key of a kind of fault; sections are part of a key, as in \
+             `operation.pinion_speed_hz`"
+                .to_owned()
+        }
+    })
 }
 
 /// Every rule at the top concerns some class.
-fn check_top(content: &Content, top: &[Placed], classes: &[ClassRules]) -> ReadResult<()> {
-    for (rule, place) in top {
+fn check_top(content: &Content, classes: &[ClassRules]) -> ReadResult<()> {
+    for placed in content.top_rules() {
+        let rule_keys = &placed.0.keys;
         let has = |class: &ClassRules, key: &String| is_of_plan(key) || class.numbers.contains_key(key);
-        if classes.iter().any(|class| rule.keys.iter().all(|key| has(class, key))) {
+        if classes.iter().any(|class| rule_keys.iter().all(|key| has(class, key))) {
             continue;
         }
-        let key = rule
-            .keys
-            .iter()
-            .find(|key| !classes.iter().any(|class| has(class, key)))
-            .unwrap_or(&rule.keys[0]);
-        let named = if rule.keys.len() == 1 { "key" } else { "keys" };
+        let is_nowhere = |key: &&String| !classes.iter().any(|class| has(class, key));
+        let key = rule_keys.iter().find(is_nowhere).unwrap_or(&rule_keys[0]);
         let mut known = content.base.numbers();
-        for class in classes {
-            known.extend(class.base.numbers());
-        }
-        return Err(unknown(place, named, key, &known, &content.base));
+        known.extend(classes.iter().flat_map(|class| class.base.numbers()));
+        return Err(unknown(&placed, key, &known, &content.base));
     }
     Ok(())
 }
 
-/// The rules, each after those that it depends on.
-fn in_order<'a>(
-    rules: &[Placed<'a>],
-    known: &[meshtone::scenario::ScenarioNumber],
-) -> ReadResult<Vec<&'a Rule>> {
-    let mut waiting: Vec<&Placed> = rules.iter().collect();
+/// Puts the rules in an order in which each comes after those that it depends on.
+fn in_order<'a>(rules: &[Placed<'a>], known: &[ScenarioNumber]) -> ReadResult<Vec<&'a Rule>> {
     for (rule, place) in rules {
         for (name, term) in [("times", &rule.times), ("plus", &rule.plus)] {
-            let Some(expression) = term else { continue };
-            for key in underlying(expression.keys()) {
+            for key in underlying(term.iter().flat_map(|expression| expression.keys())) {
                 check_dependency(rule, &format!("{place}.{name}"), key, rules, known)?;
             }
         }
     }
+    let mut waiting: Vec<&Placed> = rules.iter().collect();
     let mut ordered: Vec<&'a Rule> = Vec::with_capacity(rules.len());
     while !waiting.is_empty() {
-        let sets = |rule: &Rule, key: &str| rule.keys.iter().any(|own| own == key);
         let is_ready = |(rule, _): &&Placed| {
-            !dependencies(rule).iter().any(|key| waiting.iter().any(|(other, _)| sets(other, key)))
+            let terms = [&rule.times, &rule.plus].into_iter().flatten();
+            let depends_on = underlying(terms.flat_map(|expression| expression.keys()));
+            !depends_on.iter().any(|key| waiting.iter().any(|(other, _)| other.varies(key)))
         };
         let Some(next) = waiting.iter().position(is_ready) else {
             let (rule, place) = waiting[0];
@@ -249,21 +222,17 @@ fn in_order<'a>(
     Ok(ordered)
 }
 
-fn dependencies(rule: &Rule) -> Vec<&str> {
-    let terms = [&rule.times, &rule.plus];
-    underlying(terms.into_iter().flatten().flat_map(|expression| expression.keys()))
-}
-
+/// A rule depends only on numbers that exist, and that are the same for all that it draws for.
 fn check_dependency(
     rule: &Rule,
     place: &str,
     key: &str,
     rules: &[Placed],
-    known: &[meshtone::scenario::ScenarioNumber],
+    known: &[ScenarioNumber],
 ) -> ReadResult<()> {
-    let varied = rules.iter().find(|(other, _)| other.keys.iter().any(|own| own == key));
-    if varied.is_none() && !known.iter().any(|number| number.key == key) {
-        return Err(no_such_number(place, key, known.iter().map(|number| number.key.as_str())));
+    let varied = rules.iter().find(|(other, _)| other.varies(key));
+    if varied.is_none() && find(known, key).is_none() {
+        return Err(no_such_number(place, key, keys(known)));
     }
     if let Some((varied, other)) = varied.filter(|(other, _)| rule.level < other.level) {
         let (by, own) = (varied.level.name(), rule.level.name());
@@ -273,7 +242,7 @@ fn check_dependency(
     Ok(())
 }
 
-/// The key that is meant; who writes revolutions per minute is told what becomes of the values.
+/// Proposes the key that is meant. A user who writes revolutions per minute is told how to convert the values.
 fn meant(key: &str, nearest: &str) -> String {
     let by_minute = key.ends_with("rpm") && nearest.ends_with("_hz");
     let unit =
@@ -290,21 +259,24 @@ fn no_such_number<'n>(place: &str, key: &str, known: impl Iterator<Item = &'n st
     }
 }
 
-/// What decides a condition: a unit, where all that it is about is the same for all records of one, a mounting likewise, or a record.
+/// The level whose values decide a condition: a unit or a mounting, if all numbers in the condition are the same for all records of
+/// one, otherwise a record.
 fn level_of(condition: &Condition, content: &Content) -> Level {
-    let class_rules = content.classes.iter().flat_map(|class| &class.rules);
-    let rules: Vec<&Rule> = content.rules.iter().chain(class_rules).collect();
     let level = |key: &str| {
         if key == SEVERITY || is_of_fault(key) {
             return Level::Record;
         }
-        let of_key = rules.iter().filter(|rule| rule.keys.iter().any(|own| own == key));
-        of_key.map(|rule| rule.level).max().unwrap_or(Level::Unit)
+        content
+            .all_rules()
+            .filter(|rule| rule.varies(key))
+            .map(|rule| rule.level)
+            .max()
+            .unwrap_or(Level::Unit)
     };
     underlying(condition.keys()).into_iter().map(level).max().unwrap_or(Level::Unit)
 }
 
-/// Where mountings are divided a unit may be in several splits: what it has belongs to none of them alone.
+/// Refuses shifts by what a unit has, if mountings are divided: the mountings of a unit may be in several splits.
 fn refuse_unit_shifts(content: &Content, shift_levels: &[Vec<Level>]) -> ReadResult<()> {
     if content.splits.by == SplitBy::Unit {
         return Ok(());
@@ -315,7 +287,7 @@ fn refuse_unit_shifts(content: &Content, shift_levels: &[Vec<Level>]) -> ReadRes
                 "`{}` is the same for all mountings of a unit, which are in several splits where split.by is \"mounting\"",
                 shift.when[of_unit]
             );
-            return Err(TomlError::new(super::shift_key(s), "", problem)
+            return Err(TomlError::new(shift_key(s), "", problem)
                 .with_help("leave out split.by, or vary its keys per mounting or record"));
         }
     }
@@ -327,16 +299,16 @@ fn check_growth(
     content: &Content,
     class: usize,
     rules: &[Placed],
-    known: &[meshtone::scenario::ScenarioNumber],
+    known: &[ScenarioNumber],
 ) -> ReadResult<()> {
     if content.classes[class].growth.is_none() {
         return Ok(());
     }
-    let place = format!("class[{class}].growth");
-    if !known.iter().any(|number| number.key == FAULT_SEVERITY) {
+    let refuse = |problem: &str| TomlError::new(format!("class[{class}].growth"), "", problem);
+    if find(known, FAULT_SEVERITY).is_none() {
         let problem =
             "is of a fault without a severity that can be set; must be given by its severity, which grows";
-        return Err(TomlError::new(place, "", problem).with_help(
+        return Err(refuse(problem).with_help(
             "write the class's fault as { kind = \"…\", severity = 0.5 }; a missing tooth cannot grow",
         ));
     }
@@ -356,61 +328,52 @@ fn check_growth(
     if let Some(condition) = content.constraints.iter().chain(shifts).find(of_severity) {
         let problem =
             format!("has severities that `{condition}` would leave out; a run passes through all of them");
-        return Err(TomlError::new(place, "", problem).with_help("leave out the condition, or the growth"));
+        return Err(refuse(&problem).with_help("leave out the condition, or the growth"));
     }
-    match rules.iter().find(|(rule, _)| rule.keys.iter().any(|key| key == FAULT_SEVERITY)) {
-        Some((_, other)) => {
-            Err(TomlError::new(place, "", format!("sets `{FAULT_SEVERITY}`, which {other} varies too"))
-                .with_help("remove one of the two"))
-        }
-        None => Ok(()),
-    }
-}
-
-/// Constraints and conditions of shifts are about numbers that some class has.
-fn check_conditions(content: &Content, classes: &[ClassRules]) -> ReadResult<()> {
-    let varied = |key: &str| {
-        let class_rules = content.classes.iter().flat_map(|class| &class.rules);
-        content.rules.iter().chain(class_rules).any(|rule| rule.keys.iter().any(|own| own == key))
-    };
-    let check = |place: String, condition: &Condition| {
-        for key in underlying(condition.keys()) {
-            let known = || classes.iter().flat_map(|class| class.numbers.keys().map(String::as_str));
-            if key != SEVERITY
-                && !classes.iter().any(|class| class.knows(key))
-                && !(is_of_plan(key) && varied(key))
-            {
-                return Err(no_such_number(&place, key, known()));
-            }
-        }
-        let found =
-            |key: &str| classes.iter().any(|class| fault_of_severity(key, &class.base.faults).is_some());
-        let unvaried =
-            !underlying(condition.keys()).iter().any(|key| *key == SEVERITY || varied(key) || found(key));
-        if unvaried {
-            let problem = format!("`{condition}` is about nothing that varies");
-            return Err(TomlError::new(place, "", problem).with_help("vary one of its keys, or remove it"));
-        }
-        Ok(())
-    };
-    for (i, constraint) in content.constraints.iter().enumerate() {
-        check(format!("constraints[{i}]"), constraint)?;
-    }
-    for (s, shift) in content.splits.shifts.iter().enumerate() {
-        shift.when.iter().try_for_each(|condition| check(super::shift_key(s), condition))?;
+    if let Some((_, other)) = rules.iter().find(|(rule, _)| rule.varies(FAULT_SEVERITY)) {
+        let problem = format!("sets `{FAULT_SEVERITY}`, which {other} varies too");
+        return Err(refuse(&problem).with_help("remove one of the two"));
     }
     Ok(())
 }
 
-/// Every measure of a severity is of numbers that its class has.
+/// Constraints and conditions of shifts are about numbers that some class has, and that vary.
+fn check_conditions(content: &Content, classes: &[ClassRules]) -> ReadResult<()> {
+    let is_varied = |key: &str| content.all_rules().any(|rule| rule.varies(key));
+    let constraints = content.constraints.iter().enumerate();
+    let constraints = constraints.map(|(i, condition)| (format!("constraints[{i}]"), condition));
+    let shifts = content.splits.shifts.iter().enumerate();
+    let shifts =
+        shifts.flat_map(|(s, shift)| shift.when.iter().map(move |condition| (shift_key(s), condition)));
+    for (place, condition) in constraints.chain(shifts) {
+        let keys = underlying(condition.keys());
+        let is_known = |key: &str| {
+            key == SEVERITY
+                || classes.iter().any(|class| class.knows(key))
+                || (is_of_plan(key) && is_varied(key))
+        };
+        if let Some(key) = keys.iter().find(|key| !is_known(key)) {
+            let known = classes.iter().flat_map(|class| class.numbers.keys().map(String::as_str));
+            return Err(no_such_number(&place, key, known));
+        }
+        let varies = |key: &str| {
+            key == SEVERITY || is_varied(key) || classes.iter().any(|class| class.computes_severity(key))
+        };
+        if !keys.iter().any(|key| varies(key)) {
+            let problem = format!("`{condition}` is about nothing that varies");
+            return Err(TomlError::new(place, "", problem).with_help("vary one of its keys, or remove it"));
+        }
+    }
+    Ok(())
+}
+
+/// Every severity is measured by numbers that its class has.
 fn check_severities(content: &Content, classes: &[ClassRules]) -> ReadResult<()> {
     for (c, (class, rules)) in content.classes.iter().zip(classes).enumerate() {
-        let crate::plan::Severity::Measured { measure, .. } = &class.severity else { continue };
-        for key in underlying(measure.keys()) {
-            if !rules.knows(key) {
-                let place = format!("class[{c}].severity.measure");
-                return Err(no_such_number(&place, key, rules.numbers.keys().map(String::as_str)));
-            }
+        let Severity::Measured { measure, .. } = &class.severity else { continue };
+        if let Some(key) = underlying(measure.keys()).iter().find(|key| !rules.knows(key)) {
+            let place = format!("class[{c}].severity.measure");
+            return Err(no_such_number(&place, key, rules.numbers.keys().map(String::as_str)));
         }
     }
     Ok(())

@@ -1,6 +1,6 @@
-//! What a plan's records are.
+//! Drawing the records of a plan.
 //!
-//! [`Sampler::record`] gives any record by its number alone: its class, its unit, its split, its values, its scenario.
+//! [`Sampler::record`] draws any record from its number alone: class, unit, split and values. [`Sampler::scenario`] makes its scenario.
 
 mod compile;
 mod values;
@@ -9,27 +9,27 @@ use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::{Scenario, ScenarioError};
 use meshtone_toml::ReadResult;
 
-use crate::expression::Condition;
-use crate::plan::{Age, Content, Distribution, Level, Rule, SplitBy};
+use crate::expression::{Condition, Expression};
+use crate::plan::{Content, Distribution, Level, Rule, RunPosition, SplitBy};
 use crate::sampling::{Points, permuted};
 use compile::ClassRules;
 use values::{Values, of_scenario};
 
-/// How often values are drawn anew until all constraints are met.
+/// Largest number of attempts to draw values that meet all constraints.
 const MOST_ATTEMPTS: u32 = 10_000;
-/// What a growing damage is given by.
+/// Key of the severity by which a growing damage is given.
 const FAULT_SEVERITY: &str = "fault.severity";
-/// Seeds are exact in double precision, so that every program can read them.
+/// Number of bits of a seed. It is exact in double precision, so that every program can read it.
 const SEED_BITS: u32 = 53;
 
 /// Keys of the noise that is added to the raw channels.
 pub const NOISE_KEYS: [&str; 2] = ["noise.snr_db", "noise.level_g"];
 /// Keys of the path from the simulated sensor's place to where a rig's is.
 pub const PATH_KEYS: [&str; 2] = ["path.gain_db", "path.ripple_db"];
-/// What names of one's own begin with: numbers that stand in terms and columns alone.
+/// Beginning of the names of latent values, which occur only in terms and columns.
 const LATENT: &str = "latent.";
 
-/// Whether a key is of the plan alone: noise, path, or a name of one's own as `latent.load`. No scenario has it.
+/// Whether a key belongs to the plan alone and not to the scenario: noise, path, or a latent value such as `latent.load`.
 ///
 /// # Arguments
 /// * `key` - as a rule names it
@@ -37,35 +37,32 @@ pub fn is_of_plan(key: &str) -> bool {
     NOISE_KEYS.contains(&key) || PATH_KEYS.contains(&key) || key.strip_prefix(LATENT).is_some_and(is_name)
 }
 
-/// Letters, digits and `_`, the first no digit: what a column may be called.
+/// Whether a text may be the name of a column: letters, digits and `_`, not starting with a digit.
 fn is_name(text: &str) -> bool {
     let allowed = |c: char| c.is_ascii_alphanumeric() || c == '_';
     !text.is_empty() && text.chars().all(allowed) && !text.starts_with(|c: char| c.is_ascii_digit())
 }
 
-/// What the seeds of a plan's orders and designs are for; the number is the index of their draw.
-#[derive(Clone, Copy)]
-enum SeedOf {
-    Order = 0,
-    Splits = 1,
-    Units = 2,
-    Mountings = 3,
-    /// And those after it, two for each class.
-    Classes = 16,
-}
+/// Indices of the seeds of a plan's orders and designs.
+const ORDER: u64 = 0;
+const SPLITS: u64 = 1;
+const UNITS: u64 = 2;
+const MOUNTINGS: u64 = 3;
+/// From this index on there are two seeds for each class.
+const CLASSES: u64 = 16;
 
 /// Draws a plan's records.
 #[derive(Debug, Clone)]
 pub struct Sampler<'a> {
     content: &'a Content,
-    unit_rules: Vec<&'a Rule>,
-    mounting_rules: Vec<&'a Rule>,
+    /// Rules for units and mountings. Rules that others depend on come first.
+    group_rules: Vec<&'a Rule>,
     classes: Vec<ClassRules<'a>>,
     /// Number of the record after the last of each class, in the order before it is shuffled.
     ends: Vec<u64>,
-    /// Constraints that a unit alone decides, or a mounting.
-    group_constraints: Vec<(Level, &'a Condition)>,
-    /// What decides each of the shifts' conditions.
+    /// Constraints, each with the level whose values decide it.
+    constraints: Vec<(Level, &'a Condition)>,
+    /// The levels whose values decide each condition of each shift.
     shift_levels: Vec<Vec<Level>>,
 }
 
@@ -80,19 +77,19 @@ pub struct DrawnRecord {
     pub unit: u64,
     /// Number of its mounting, of those of all units.
     pub mounting: u64,
-    /// Where it is in its unit's run to failure, where its class has one.
-    pub age: Option<Age>,
+    /// Its position in its unit's run to failure, if its class has runs.
+    pub age: Option<RunPosition>,
     /// Number of its split.
     pub split: usize,
     /// Seed of its noise and fluctuations.
     pub seed: u64,
     /// Seed of its unit's profile errors.
     pub wheels_seed: u64,
-    /// Seed of what its mounting has of its own.
+    /// Seed of the values that belong to its mounting alone.
     pub mounting_seed: u64,
     /// Grade of its fault, 0 for healthy.
     pub severity: u8,
-    /// What the grade was taken from.
+    /// The number that the grade was taken from.
     pub severity_measure: Option<f64>,
     /// Values of the varied keys.
     pub values: Vec<(String, f64)>,
@@ -108,29 +105,37 @@ impl DrawnRecord {
 /// A record whose values could not be drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrawError {
-    /// Key of the plan that stands in the way.
+    /// Key in the plan of the condition that was broken most often.
     pub key: String,
     /// What could not be met.
     pub problem: String,
 }
 
-/// What a record has in common with others.
-struct Group {
-    split: usize,
-    values: Vec<(String, f64)>,
-}
-
-/// Where a record is among its class's.
-struct Place {
+/// Position of a record among the records of its class.
+struct UnitPosition {
     unit: u64,
     mounting: u64,
-    /// Of the class's records of this unit, from 0.
+    /// Position among the class's records of this unit, from 0.
     of_unit: u64,
     records_of_unit: u64,
 }
 
-/// Values of a record that suit its split.
-struct Suitable {
+/// What values are drawn for: a unit, a mounting or a record.
+struct Drawn {
+    level: Level,
+    /// The class whose scenario has the values that are not drawn. All classes have those of a unit or a mounting.
+    class: usize,
+    points: Points,
+    /// Number of the point.
+    number: u64,
+    /// The split that the values must suit; none for a unit whose mountings are in several splits.
+    split: Option<usize>,
+    /// Values that are known before.
+    before: Vec<(String, f64)>,
+}
+
+/// Values that meet all constraints and suit their split.
+struct SplitValues {
     values: Vec<(String, f64)>,
     severity: u8,
     severity_measure: Option<f64>,
@@ -159,30 +164,32 @@ impl<'a> Sampler<'a> {
     /// * `index` - its number, below [`Self::records`]
     ///
     /// # Errors
-    /// Constraints that were not met.
+    /// No values were found that meet the constraints.
     pub fn record(&self, index: u64) -> Result<DrawnRecord, DrawError> {
-        let place = permuted(index, self.records(), self.seed(SeedOf::Order as u64));
+        let place = permuted(index, self.records(), self.seed(ORDER));
         let class = self.ends.iter().position(|&end| place < end).unwrap_or(0);
         let start = class.checked_sub(1).map_or(0, |before| self.ends[before]);
         let number = place - start;
-        let [design_seed, unit_seed] =
-            [0, 1].map(|which| self.seed(SeedOf::Classes as u64 + 2 * class as u64 + which));
+        let [design_seed, unit_seed] = [0, 1].map(|which| self.seed(CLASSES + 2 * class as u64 + which));
         let place = self.place(class, number, unit_seed);
-        let group = self.group(place.unit, place.mounting)?;
-        let seed = keyed(self.content.seed, Purpose::DatasetSeed, index);
+        let split = self.split_of(place.unit, place.mounting);
+        let mut before = self.mounting_values(&place, split)?;
         let growth = self.content.classes[class].growth.as_ref();
         let run_seed = keyed(unit_seed, Purpose::DatasetRun, place.unit);
         let age = growth.map(|growth| growth.age(run_seed, place.of_unit, place.records_of_unit));
-        let Suitable { values, severity, severity_measure } =
-            self.record_values(class, number, design_seed, &group, age)?;
+        before.extend(age.map(|age| (FAULT_SEVERITY.to_owned(), age.severity)));
+        let (design, count) = (self.content.design, self.content.classes[class].count);
+        let points = Points { design, seed: design_seed, purpose: Purpose::DatasetRecord, count };
+        let drawn = Drawn { level: Level::Record, class, points, number, split: Some(split), before };
+        let SplitValues { values, severity, severity_measure } = self.suitable(drawn)?;
         Ok(DrawnRecord {
             index,
             class,
             unit: place.unit,
             mounting: place.mounting,
             age,
-            split: group.split,
-            seed,
+            split,
+            seed: keyed(self.content.seed, Purpose::DatasetSeed, index),
             wheels_seed: keyed(self.content.seed, Purpose::DatasetWheels, place.unit),
             mounting_seed: keyed(self.content.seed, Purpose::DatasetMounting, place.mounting),
             severity,
@@ -191,28 +198,28 @@ impl<'a> Sampler<'a> {
         })
     }
 
-    /// Where a record is among its class's.
+    /// The position of a record among the records of its class.
     ///
     /// # Arguments
     /// * `class` - its class
     /// * `number` - its number in the class
     /// * `seed` - of the class's units
-    fn place(&self, class: usize, number: u64, seed: u64) -> Place {
+    fn place(&self, class: usize, number: u64, seed: u64) -> UnitPosition {
         let Content { units, mountings, .. } = *self.content;
         let count = self.content.classes[class].count;
-        // Units are shuffled against the design, whose points of equal distance lie near each other.
+        // Units are shuffled: points of the design at equal distances in its order lie near each other.
         let first = seed % units;
         let shuffled = first + permuted(number, count, seed);
         let unit = shuffled % units;
-        // Those before the class's first one have their first record a turn later.
+        // Units before the first one of the class get their first record one turn later.
         let begun = u64::from(unit < first);
         let of_unit = shuffled / units - begun;
         let records_of_unit = (first + count - 1 - unit) / units + 1 - begun;
-        // A run is not taken apart.
+        // A run stays in one mounting.
         let turns = if self.content.classes[class].growth.is_some() { 0 } else { of_unit };
         let turned = keyed(seed, Purpose::DatasetTurn, unit);
         let mounting = unit * mountings + (turned % mountings + turns) % mountings;
-        Place { unit, mounting, of_unit, records_of_unit }
+        UnitPosition { unit, mounting, of_unit, records_of_unit }
     }
 
     /// The scenario of a record.
@@ -235,147 +242,103 @@ impl<'a> Sampler<'a> {
     /// * `unit` - its unit's number
     /// * `mounting` - its mounting's number, of those of all units
     pub fn split_of(&self, unit: u64, mounting: u64) -> usize {
-        let Content { splits, units, mountings, .. } = self.content;
-        let seed = self.seed(SeedOf::Splits as u64);
-        match splits.by {
-            SplitBy::Unit => splits.split_of(unit, *units, seed),
-            SplitBy::Mounting => splits.split_of(mounting, units * mountings, seed),
-        }
+        let splits = &self.content.splits;
+        let number = match splits.by {
+            SplitBy::Unit => unit,
+            SplitBy::Mounting => mounting,
+        };
+        splits.split_of(number, self.content.divided(), self.seed(SPLITS))
     }
 
     fn seed(&self, index: u64) -> u64 {
         Draws::new(self.content.seed, Purpose::DatasetDesign, index).bits()
     }
 
-    /// What the records of a mounting have in common.
-    fn group(&self, unit: u64, mounting: u64) -> Result<Group, DrawError> {
-        let Content { design, units, mountings, ref splits, .. } = *self.content;
-        let split = self.split_of(unit, mounting);
-        let of_unit = match splits.by {
-            SplitBy::Unit => Some(split),
-            SplitBy::Mounting => None,
-        };
-        let seed = self.seed(SeedOf::Units as u64);
-        let points = Points { design, seed, purpose: Purpose::DatasetUnit, count: units };
-        let values = self.group_values(Level::Unit, points, unit, Vec::new(), of_unit)?;
-        let seed = self.seed(SeedOf::Mountings as u64);
-        let count = units * mountings;
-        let points = Points { design, seed, purpose: Purpose::DatasetMounting, count };
-        let values = self.group_values(Level::Mounting, points, mounting, values, Some(split))?;
-        Ok(Group { split, values })
+    /// The values that the records of a mounting have in common: those of its unit, then its own.
+    fn mounting_values(&self, place: &UnitPosition, split: usize) -> Result<Vec<(String, f64)>, DrawError> {
+        let Content { design, units, ref splits, .. } = *self.content;
+        let points = |seed, purpose, count| Points { design, seed: self.seed(seed), purpose, count };
+        let of_unit = self.suitable(Drawn {
+            level: Level::Unit,
+            class: 0,
+            points: points(UNITS, Purpose::DatasetUnit, units),
+            number: place.unit,
+            split: (splits.by == SplitBy::Unit).then_some(split),
+            before: Vec::new(),
+        })?;
+        let of_mounting = self.suitable(Drawn {
+            level: Level::Mounting,
+            class: 0,
+            points: points(MOUNTINGS, Purpose::DatasetMounting, self.content.all_mountings()),
+            number: place.mounting,
+            split: Some(split),
+            before: of_unit.values,
+        })?;
+        Ok(of_mounting.values)
     }
 
-    /// The values of a unit or a mounting, after those of what it belongs to.
-    ///
-    /// # Arguments
-    /// * `split` - its own; none where its records are in several
-    fn group_values(
-        &self,
-        level: Level,
-        points: Points,
-        number: u64,
-        before: Vec<(String, f64)>,
-        split: Option<usize>,
-    ) -> Result<Vec<(String, f64)>, DrawError> {
-        let rules = if level == Level::Unit { &self.unit_rules } else { &self.mounting_rules };
-        let constraints: Vec<&Condition> = self
-            .group_constraints
-            .iter()
-            .filter(|(decided, _)| *decided == level)
-            .map(|(_, condition)| *condition)
-            .collect();
-        let any = &self.classes[0];
+    /// Draws values until they meet the constraints and suit the split.
+    fn suitable(&self, drawn: Drawn) -> Result<SplitValues, DrawError> {
+        let Drawn { level, class, points, number, split, before } = drawn;
+        let ClassRules { base, numbers, rules, .. } = &self.classes[class];
+        let of_level = self.group_rules.iter().filter(|rule| rule.level == level).copied().collect();
+        let rules = if level == Level::Record { rules } else { &of_level };
+        let class = &self.content.classes[class];
         let mut obstacles = Obstacles::default();
         for attempt in 0..MOST_ATTEMPTS {
-            let mut values = Values::new(&any.base, &any.numbers);
+            let mut values = Values::new(base, numbers);
             before.iter().for_each(|(key, value)| values.set(key, *value));
             draw(rules, points, number, attempt, &mut values);
-            let met = self.meets(&constraints, &values, &mut obstacles)
-                && split.is_none_or(|split| self.group_suits(level, split, &values, &mut obstacles));
-            if met {
-                return Ok(values.drawn());
+            let (mut severity, mut severity_measure) = (u8::from(!class.faults.is_empty()), None);
+            if level == Level::Record {
+                let drawn = class.severity.of(&|key| values.number(key));
+                (severity, severity_measure) = drawn.unwrap_or((severity, None));
+                // A grade that is the same for a whole class can be held out by the class alone.
+                if severity_measure.is_some() {
+                    values.set_severity(severity);
+                }
+            }
+            if self.meets_constraints(level, &values, &mut obstacles)
+                && split.is_none_or(|split| self.suits(level, split, &values, &mut obstacles))
+            {
+                return Ok(SplitValues { values: values.drawn(), severity, severity_measure });
             }
         }
-        let names = self.content.splits.names();
-        let of_split = split.map(|split| format!(" of the split {}", names[split])).unwrap_or_default();
-        Err(obstacles.error(&format!("{} {number}{of_split}", level.name())))
+        let split = split.map(|split| self.content.splits.names()[split]);
+        let of_split =
+            |word: &str| split.map(|split| format!(" {word} the split {split}")).unwrap_or_default();
+        Err(obstacles.error(&match level {
+            Level::Record => format!("a record of the class \"{}\"{}", class.label, of_split("in")),
+            Level::Unit | Level::Mounting => format!("{} {number}{}", level.name(), of_split("of")),
+        }))
     }
 
-    /// Whether a unit or a mounting of a split, which is a shift or not, may have these values.
-    fn group_suits(&self, level: Level, split: usize, values: &Values, obstacles: &mut Obstacles) -> bool {
-        let number = |key: &str| values.number(key);
-        let own = self.content.splits.shift(split);
-        self.content.splits.shifts.iter().zip(&self.shift_levels).enumerate().all(|(s, (shift, levels))| {
-            let mut decided = shift.when.iter().zip(levels).filter(|(_, decided)| **decided <= level);
-            if own == Some(s) {
-                decided.all(|(condition, _)| {
-                    let holds = condition.holds(&number) != Some(false);
-                    holds || obstacles.note(shift_key(s), format!("`{condition}`"))
-                })
-            } else {
-                let by_group_alone = levels.iter().all(|decided| *decided <= level);
-                let fulfilled =
-                    by_group_alone && decided.all(|(condition, _)| condition.holds(&number) == Some(true));
-                !fulfilled
-                    || obstacles.note(shift_key(s), format!("not what belongs to the split {}", shift.name))
-            }
-        })
-    }
-
-    fn record_values(
-        &self,
-        class: usize,
-        number: u64,
-        seed: u64,
-        group: &Group,
-        age: Option<Age>,
-    ) -> Result<Suitable, DrawError> {
-        let rules = &self.classes[class];
-        let plan = &self.content.classes[class];
-        let points =
-            Points { design: self.content.design, seed, purpose: Purpose::DatasetRecord, count: plan.count };
-        let mut obstacles = Obstacles::default();
-        for attempt in 0..MOST_ATTEMPTS {
-            let mut values = Values::new(&rules.base, &rules.numbers);
-            group.values.iter().for_each(|(key, value)| values.set(key, *value));
-            if let Some(age) = age {
-                values.set(FAULT_SEVERITY, age.severity);
-            }
-            draw(&rules.rules, points, number, attempt, &mut values);
-            let severity = plan.severity.of(&|key| values.number(key));
-            let (grade, measure) = severity.unwrap_or((u8::from(!plan.faults.is_empty()), None));
-            // What is the same for a whole class can be held out by its class alone.
-            if measure.is_some() {
-                values.set_severity(grade);
-            }
-            let met = self.meets(&rules.constraints, &values, &mut obstacles)
-                && self.record_suits(self.content.splits.shift(group.split), &values, &mut obstacles);
-            if met {
-                return Ok(Suitable { values: values.drawn(), severity: grade, severity_measure: measure });
-            }
-        }
-        let split = self.content.splits.names()[group.split];
-        Err(obstacles.error(&format!("a record of the class \"{}\" in the split {split}", plan.label)))
-    }
-
-    fn meets(&self, constraints: &[&Condition], values: &Values, obstacles: &mut Obstacles) -> bool {
-        constraints.iter().all(|constraint| {
+    /// Whether values meet the constraints that they decide.
+    fn meets_constraints(&self, level: Level, values: &Values, obstacles: &mut Obstacles) -> bool {
+        let mut decided = self.constraints.iter().filter(|(decided, _)| *decided == level);
+        decided.all(|(_, constraint)| {
             // A constraint on a key that the class lacks does not concern it.
             let holds = constraint.holds(&|key| values.number(key)) != Some(false);
             holds || obstacles.note("constraints".to_owned(), format!("`{constraint}`"))
         })
     }
 
-    fn record_suits(&self, own: Option<usize>, values: &Values, obstacles: &mut Obstacles) -> bool {
+    /// Whether values suit a split: they fulfil the conditions of the split, and not all conditions of another one, as far as they
+    /// decide them.
+    fn suits(&self, level: Level, split: usize, values: &Values, obstacles: &mut Obstacles) -> bool {
         let number = |key: &str| values.number(key);
-        self.content.splits.shifts.iter().enumerate().all(|(s, shift)| {
+        let own = self.content.splits.shift(split);
+        self.content.splits.shifts.iter().zip(&self.shift_levels).enumerate().all(|(s, (shift, levels))| {
+            let decided = shift.when.iter().zip(levels).filter(|(_, decided)| **decided <= level);
+            let mut decided = decided.map(|(condition, _)| condition);
             if own == Some(s) {
-                shift.when.iter().all(|condition| {
+                decided.all(|condition| {
                     let holds = condition.holds(&number) != Some(false);
                     holds || obstacles.note(shift_key(s), format!("`{condition}`"))
                 })
             } else {
-                let fulfilled = shift.when.iter().all(|condition| condition.holds(&number) == Some(true));
+                let fulfilled = levels.iter().all(|decided| *decided <= level)
+                    && decided.all(|condition| condition.holds(&number) == Some(true));
                 !fulfilled
                     || obstacles.note(shift_key(s), format!("not what belongs to the split {}", shift.name))
             }
@@ -396,18 +359,19 @@ fn keyed(seed: u64, purpose: Purpose, index: u64) -> u64 {
 fn draw(rules: &[&Rule], points: Points, index: u64, attempt: u32, values: &mut Values) {
     let drawn = rules.iter().filter(|rule| rule.distribution.is_drawn()).count();
     let mut coordinates = points.point(index, attempt, drawn).into_iter();
-    let mut combination = combination(rules, points, index, attempt);
+    let mut combination = combination(points, index, attempt);
     for rule in rules {
-        let (uniform, mut place) = (if rule.distribution.is_drawn() { coordinates.next() } else { None }, 0);
+        let (mut uniform, mut place) = (0.0, 0);
         if let Distribution::Grid(rows) = &rule.distribution {
             place = (combination % rows.len() as u64) as usize;
             combination /= rows.len() as u64;
+        } else if rule.distribution.is_drawn() {
+            uniform = coordinates.next().unwrap_or(0.0);
         }
-        for (key, value) in rule.keys.iter().zip(rule.distribution.at(uniform.unwrap_or(0.0), place)) {
-            let term = |expression: &Option<crate::expression::Expression>, default: f64| {
-                expression
-                    .as_ref()
-                    .map_or(default, |e| e.value(&|key| values.number(key)).unwrap_or(f64::NAN))
+        for (key, value) in rule.keys.iter().zip(rule.distribution.at(uniform, place)) {
+            let term = |expression: &Option<Expression>, default: f64| {
+                let value = |expression: &Expression| expression.value(&|key| values.number(key));
+                expression.as_ref().map_or(default, |expression| value(expression).unwrap_or(f64::NAN))
             };
             let value = term(&rule.plus, 0.0) + value * term(&rule.times, 1.0);
             values.set(key, value);
@@ -415,20 +379,17 @@ fn draw(rules: &[&Rule], points: Points, index: u64, attempt: u32, values: &mut 
     }
 }
 
-/// Which combination of all grids' values: one after the other, and where that one broke a constraint any other.
-fn combination(rules: &[&Rule], points: Points, index: u64, attempt: u32) -> u64 {
+/// The number of a combination of all grids' values. The first attempts take one combination after the other; later attempts, whose
+/// earlier ones broke a constraint, take any.
+fn combination(points: Points, index: u64, attempt: u32) -> u64 {
     if attempt == 0 {
         return index;
-    }
-    let grids = rules.iter().any(|rule| matches!(rule.distribution, Distribution::Grid(_)));
-    if !grids {
-        return 0;
     }
     let seed = Draws::new(points.seed, points.purpose, index).bits();
     Draws::new(seed, points.purpose, u64::from(attempt)).bits() >> 1
 }
 
-/// What stood in the way, and how often.
+/// The conditions that were not met, and how often.
 #[derive(Default)]
 struct Obstacles {
     counted: Vec<(String, String, u32)>,

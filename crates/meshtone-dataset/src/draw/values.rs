@@ -1,4 +1,4 @@
-//! Values at keys: those drawn, over those of the base scenario.
+//! The values of keys while a record is drawn: drawn values take precedence over those of the base scenario.
 
 use std::cell::OnceCell;
 use std::collections::HashMap;
@@ -17,12 +17,12 @@ pub(super) struct Values<'a> {
     numbers: &'a HashMap<String, f64>,
     drawn: Vec<(String, f64)>,
     severity: Option<f64>,
-    /// Severities of the faults by their sizes, with what is drawn so far, once they were asked for.
+    /// Severities that follow from the faults' sizes as drawn so far, computed when they are needed.
     severities_by_sizes: OnceCell<Option<Vec<f64>>>,
 }
 
 impl<'a> Values<'a> {
-    /// Nothing drawn yet.
+    /// Creates the values of a scenario of which nothing has been drawn yet.
     ///
     /// # Arguments
     /// * `base` - the scenario

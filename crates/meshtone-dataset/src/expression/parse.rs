@@ -2,10 +2,15 @@
 
 use super::{Comparison, Node, Operation};
 
-/// Longer texts are no expressions, and would nest too deep.
+/// (characters) Length above which a text is refused, because it could be nested too deep.
 const LONGEST: usize = 1000;
 const MOST_NESTED: usize = 50;
 
+/// Operators by their precedence: those that bind least come first.
+const OPERATORS: [[(&str, Operation); 2]; 2] =
+    [[("+", Operation::Plus), ("-", Operation::Minus)], [("*", Operation::Times), ("/", Operation::Over)]];
+
+/// Symbols that others begin with come after those.
 const COMPARISONS: [(&str, Comparison); 6] = [
     ("<=", Comparison::AtMost),
     (">=", Comparison::AtLeast),
@@ -17,16 +22,16 @@ const COMPARISONS: [(&str, Comparison); 6] = [
 
 pub(super) fn expression(text: &str) -> Result<Node, String> {
     let mut reader = Reader::new(text)?;
-    let node = reader.sum()?;
+    let node = reader.operation(0)?;
     reader.end()?;
     Ok(node)
 }
 
 pub(super) fn condition(text: &str) -> Result<(Node, Comparison, Node), String> {
     let mut reader = Reader::new(text)?;
-    let left = reader.sum()?;
+    let left = reader.operation(0)?;
     let comparison = reader.comparison()?;
-    let right = reader.sum()?;
+    let right = reader.operation(0)?;
     reader.end()?;
     Ok((left, comparison, right))
 }
@@ -48,10 +53,10 @@ impl<'a> Reader<'a> {
         self.rest = self.rest[bytes..].trim_start();
     }
 
-    fn take(&mut self, symbol: char) -> bool {
+    fn take(&mut self, symbol: &str) -> bool {
         let found = self.rest.starts_with(symbol);
         if found {
-            self.skip(symbol.len_utf8());
+            self.skip(symbol.len());
         }
         found
     }
@@ -69,37 +74,18 @@ impl<'a> Reader<'a> {
     }
 
     fn comparison(&mut self) -> Result<Comparison, String> {
-        for (symbol, comparison) in COMPARISONS {
-            if self.rest.starts_with(symbol) {
-                self.skip(symbol.len());
-                return Ok(comparison);
-            }
-        }
-        Err(self.unexpected("<, <=, >, >=, == or !="))
+        let found = COMPARISONS.into_iter().find(|(symbol, _)| self.take(symbol));
+        found.map(|(_, comparison)| comparison).ok_or_else(|| self.unexpected("<, <=, >, >=, == or !="))
     }
 
-    fn sum(&mut self) -> Result<Node, String> {
-        let mut left = self.product()?;
-        loop {
-            let operation = match () {
-                () if self.take('+') => Operation::Plus,
-                () if self.take('-') => Operation::Minus,
-                () => return Ok(left),
-            };
-            left = Node::Of(operation, Box::new([left, self.product()?]));
+    /// Reads operations of a precedence and of all that bind more.
+    fn operation(&mut self, precedence: usize) -> Result<Node, String> {
+        let Some(operators) = OPERATORS.get(precedence) else { return self.factor() };
+        let mut left = self.operation(precedence + 1)?;
+        while let Some((_, operation)) = operators.iter().find(|(symbol, _)| self.take(symbol)) {
+            left = Node::Of(*operation, Box::new([left, self.operation(precedence + 1)?]));
         }
-    }
-
-    fn product(&mut self) -> Result<Node, String> {
-        let mut left = self.factor()?;
-        loop {
-            let operation = match () {
-                () if self.take('*') => Operation::Times,
-                () if self.take('/') => Operation::Over,
-                () => return Ok(left),
-            };
-            left = Node::Of(operation, Box::new([left, self.factor()?]));
-        }
+        Ok(left)
     }
 
     fn factor(&mut self) -> Result<Node, String> {
@@ -113,12 +99,12 @@ impl<'a> Reader<'a> {
     }
 
     fn factor_at_depth(&mut self) -> Result<Node, String> {
-        if self.take('-') {
+        if self.take("-") {
             return Ok(Node::Negative(Box::new(self.factor()?)));
         }
-        if self.take('(') {
-            let inside = self.sum()?;
-            return if self.take(')') { Ok(inside) } else { Err(self.unexpected("`)`")) };
+        if self.take("(") {
+            let inside = self.operation(0)?;
+            return if self.take(")") { Ok(inside) } else { Err(self.unexpected("`)`")) };
         }
         match self.rest.chars().next() {
             Some(first) if first.is_ascii_digit() || first == '.' => self.number(),

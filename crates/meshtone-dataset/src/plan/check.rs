@@ -1,146 +1,139 @@
-//! What must hold of a plan as a whole.
+//! Checks of a plan as a whole.
 
 use std::collections::HashSet;
 
-use meshtone::scenario::{ScenarioError, WheelName};
+use meshtone::scenario::{Scenario, ScenarioError, WheelName};
 use meshtone_toml::{ReadResult, TomlError, TomlTable};
 
 use super::{Class, Content, Distribution, Level, OverAngle, Plan, Rule, SplitBy, Splits};
 use crate::draw::{DrawError, DrawnRecord, Sampler, is_of_plan};
-use crate::shard::FailedRecord;
+use crate::shard::{Column, FailedRecord};
 
-/// Records whose values are drawn before anything is written.
+/// Largest number of records that are drawn to check a plan.
 const DRAWN: u64 = 5_000;
-/// Records of each class whose scenarios are made.
+/// Largest number of records of each class whose scenarios are made.
 const MADE: usize = 8;
-/// Records of each class beside whose other values a value of a choice is tried, until one can be.
+/// Largest number of records of each class with which a value of a choice is tried until one is allowed.
 const TRIED: usize = 24;
-/// Fewest records of a run in which a damage is seen to grow.
+/// Smallest number of records of a run that show a damage grow.
 const FEWEST_OF_A_RUN: u64 = 3;
-/// Values of choices and grids that are tried.
+/// Largest number of values of choices and grids that are tried.
 const MOST_VALUES: usize = 2_000;
 
-/// Rules, units and splits agree.
+/// Checks that rules, units and splits agree.
 pub(super) fn check(content: &Content, root: &TomlTable<'_>) -> ReadResult<()> {
     let records: u64 = content.classes.iter().map(|class| class.count).sum();
     if content.units > records {
         return Err(root.error("units", format!("is more than the {records} records")));
     }
-    let mounted = content.units.saturating_mul(content.mountings);
+    let mounted = content.all_mountings();
     if mounted > records {
         let problem = format!("gives {mounted} mountings of all units, more than the {records} records");
         return Err(root.error("mountings", problem).with_help("lower it, or units"));
     }
     let needed = content.splits.all_parts().iter().filter(|&&part| part > 0.0).count() as u64;
-    let (key, divided) = match content.splits.by {
-        SplitBy::Unit => ("units", content.units),
-        SplitBy::Mounting => ("mountings", mounted),
-    };
+    let divided = content.divided();
     if divided < needed {
         let problem =
             format!("are {divided}, fewer than the {needed} splits, each of which must have one of its own");
+        let key = if content.splits.by == SplitBy::Unit { "units" } else { "mountings" };
         return Err(root.error(key, problem).with_help("raise it, or write [split] with train = 1.0"));
     }
-    for (given, key, why) in [
-        (
-            content.base.quality.profile_errors.is_some(),
-            "errors_file",
-            "units draw their wheels by din_grade",
-        ),
-        (content.base.quality.seed.is_some(), "seed", "every unit has wheels of its own"),
+    let quality = &content.base.quality;
+    for (is_given, key, why) in [
+        (quality.profile_errors.is_some(), "errors_file", "units draw their wheels by din_grade"),
+        (quality.seed.is_some(), "seed", "every unit has wheels of its own"),
     ] {
-        if given {
-            return Err(TomlError::new(
-                format!("scenario.quality.{key}"),
-                "",
-                format!("cannot be given: {why}"),
-            )
-            .with_help("remove it from the base scenario"));
+        if is_given {
+            let problem = format!("cannot be given: {why}");
+            return Err(TomlError::new(format!("scenario.quality.{key}"), "", problem)
+                .with_help("remove it from the base scenario"));
         }
     }
-    if let Some(tuned) = &content.tuned {
-        let rules = content.rules.iter().chain(content.classes.iter().flat_map(|class| &class.rules));
-        let varied: Vec<&String> = rules.flat_map(|rule| &rule.keys).collect();
-        if let Some((key, _)) = tuned.keys.iter().find(|(key, _)| varied.contains(&key)) {
-            return Err(root.error(
-                "tuned",
-                format!("has the key `{key}`, which a rule varies; must be one of the two"),
-            ));
-        }
+    let mut tuned = content.tuned.iter().flat_map(|tuned| &tuned.keys);
+    if let Some((key, _)) = tuned.find(|(key, _)| content.all_rules().any(|rule| rule.varies(key))) {
+        let problem = format!("has the key `{key}`, which a rule varies; must be one of the two");
+        return Err(root.error("tuned", problem));
     }
     Sampler::new(content).map(|_| ())
 }
 
-/// No two columns of the data set have the same name.
+/// Checks that no two columns of the data set have the same name.
 pub(super) fn unique_columns(plan: &Plan) -> ReadResult<()> {
     let columns = crate::shard::columns(plan);
     let mut names = HashSet::new();
     match columns.iter().find(|column| !names.insert(&column.name)) {
         None => Ok(()),
-        Some(twice) => Err(TomlError::new(
-            "keep",
-            "",
-            format!("two columns of the data set would be called `{}`", twice.name),
-        )
-        .with_help("keep or vary one of the two")),
+        Some(Column { name, .. }) => {
+            let problem = format!("two columns of the data set would be called `{name}`");
+            Err(TomlError::new("keep", "", problem).with_help("keep or vary one of the two"))
+        }
     }
 }
 
-/// The first records can be drawn, of each class one can be simulated, and every value of a choice is allowed.
+/// What has been tried of a class.
+#[derive(Default)]
+struct Tried {
+    /// The first records.
+    records: Vec<DrawnRecord>,
+    /// How many of them were made.
+    made: usize,
+    /// Whether one of them can be simulated.
+    can_be_simulated: bool,
+    /// Why the first one cannot be simulated.
+    error: Option<ScenarioError>,
+}
+
+/// Checks that the first records can be drawn, that one of each class can be simulated, and that every value of a choice is allowed.
 pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
-    let sampler = Sampler::new(&plan.content)?;
-    let mut made = vec![Vec::new(); plan.content.classes.len()];
-    let mut first = vec![Vec::new(); plan.content.classes.len()];
+    let content = &plan.content;
+    let sampler = Sampler::new(content)?;
+    let mut tried: Vec<Tried> = content.classes.iter().map(|_| Tried::default()).collect();
     for index in 0..plan.records().min(DRAWN) {
         let record = sampler.record(index).map_err(|DrawError { key, problem }| {
             TomlError::new(key, "", problem)
                 .with_help("widen the ranges of the keys that it is about, or the condition")
         })?;
-        refuse_severity(&plan.content, &record)?;
-        let of_class: &mut Vec<_> = &mut made[record.class];
-        let tried_enough = of_class.len() >= MADE || of_class.last().is_some_and(Option::is_none);
-        if !tried_enough {
+        refuse_severity(content, &record)?;
+        let class = &mut tried[record.class];
+        if class.made < MADE && !class.can_be_simulated {
+            class.made += 1;
             let result = sampler.scenario(&record).and_then(|scenario| {
                 refuse_ignored(&scenario, &record.values)?;
-                refuse_short(&plan.content, &scenario)?;
+                refuse_short(content, &scenario)?;
                 meshtone::stages(&scenario).map(drop)
             });
-            of_class.push(result.err());
+            class.can_be_simulated = result.is_ok();
+            class.error = class.error.take().or(result.err());
         }
-        let first_of_class: &mut Vec<DrawnRecord> = &mut first[record.class];
-        if first_of_class.len() < TRIED {
-            first_of_class.push(record);
+        if class.records.len() < TRIED {
+            class.records.push(record);
         }
     }
-    for (c, errors) in made.into_iter().enumerate() {
-        // None stands for a record that can be simulated.
-        let tried = errors.len();
-        let errors: Vec<TomlError> = errors.into_iter().flatten().map(TomlError::from).collect();
-        if tried > 0
-            && errors.len() == tried
-            && let Some(error) = errors.into_iter().next()
-        {
-            let label = &plan.content.classes[c].label;
+    for (c, class) in tried.iter_mut().enumerate().filter(|(_, class)| !class.can_be_simulated) {
+        if let Some(error) = class.error.take().map(TomlError::from) {
+            let label = &content.classes[c].label;
             let problem = format!("no record of the class \"{label}\" can be simulated; the first: {error}");
-            let mut told = TomlError::new(format!("class[{c}]"), "", problem);
-            told.help = error.help;
-            return Err(told);
+            return Err(with_help_of(TomlError::new(format!("class[{c}]"), "", problem), error));
         }
     }
-    every_choice(&plan.content, &sampler, &first)
+    every_choice(content, &sampler, &tried)
 }
 
-/// A severity that is no part of the worst damage would lose its records one by one.
+/// An error with the help of the error that it is about.
+fn with_help_of(mut error: TomlError, of: TomlError) -> TomlError {
+    error.help = of.help;
+    error
+}
+
+/// Refuses a severity outside 0 to 1: its records would fail one by one.
 fn refuse_severity(content: &Content, record: &DrawnRecord) -> ReadResult<()> {
     let is_wrong = |(key, value): &&(String, f64)| is_severity(key) && !(0.0..=1.0).contains(value);
     let Some((key, value)) = record.values.iter().find(is_wrong) else { return Ok(()) };
     let class = &content.classes[record.class];
-    let of = |rules: &[Rule], before: String| {
-        let place = rules.iter().position(|rule| rule.keys.contains(key))?;
-        Some(format!("{before}vary[{place}].{}", rules[place].distribution.name()))
-    };
-    let place =
-        of(&class.rules, format!("class[{}].", record.class)).or_else(|| of(&content.rules, String::new()));
+    let mut rules = content.class_rules(record.class).chain(content.top_rules());
+    let rule = rules.find(|(rule, _)| rule.varies(key));
+    let place = rule.map(|(rule, place)| format!("{place}.{}", rule.distribution.name()));
     let problem = format!(
         "gives {key} = {value:.4} to record {} of the class \"{}\"; a severity must be from 0 to 1",
         record.index, class.label
@@ -154,7 +147,7 @@ fn is_severity(key: &str) -> bool {
     key.strip_suffix(".severity").is_some_and(|section| section.starts_with("fault"))
 }
 
-/// Those of the first records whose scenarios show that they cannot be simulated, without a profile of them being computed.
+/// Those of the first records whose scenarios show that they cannot be simulated, before any profile is computed.
 pub(super) fn foreseen(plan: &Plan) -> ReadResult<Vec<FailedRecord>> {
     let sampler = Sampler::new(&plan.content)?;
     let cannot = |index: u64| {
@@ -166,14 +159,14 @@ pub(super) fn foreseen(plan: &Plan) -> ReadResult<Vec<FailedRecord>> {
     Ok((0..plan.records().min(DRAWN)).filter_map(cannot).collect())
 }
 
-/// What is doubtful about a plan whose records can be made.
+/// Warnings about a plan whose records can be made.
 pub(super) fn doubts(plan: &Plan) -> ReadResult<Vec<String>> {
     let units = plan.content.units;
     let short = plan.content.classes.iter().filter_map(|class| short_runs(class, units));
     Ok(short.chain(unlearned(plan)?).collect())
 }
 
-/// Runs to failure in which nothing is seen to grow.
+/// A warning about runs to failure that are too short to show a damage grow.
 fn short_runs(class: &Class, units: u64) -> Option<String> {
     class.growth.as_ref()?;
     let (least, most) = (class.count / units, class.count.div_ceil(units));
@@ -187,15 +180,14 @@ fn short_runs(class: &Class, units: u64) -> Option<String> {
     })
 }
 
-/// Values that units or mountings choose, and that validation or test have and the training has not.
+/// A warning about values of units or mountings that occur in validation or test but not in the training.
 fn unlearned(plan: &Plan) -> ReadResult<Vec<String>> {
     let content = &plan.content;
     let is_chosen = |rule: &&Rule| {
         let listed = matches!(rule.distribution, Distribution::Choice { .. } | Distribution::Grid(_));
         listed && rule.level != Level::Record && rule.times.is_none() && rule.plus.is_none()
     };
-    let of_classes = content.classes.iter().flat_map(|class| &class.rules);
-    let rules: Vec<&Rule> = content.rules.iter().chain(of_classes).filter(is_chosen).collect();
+    let rules: Vec<&Rule> = content.all_rules().filter(is_chosen).collect();
     if rules.is_empty() || content.splits.parts[0] == 0.0 {
         return Ok(Vec::new());
     }
@@ -211,18 +203,18 @@ fn unlearned(plan: &Plan) -> ReadResult<Vec<String>> {
             }
         }
     }
-    // Of what has not been drawn nothing is known.
-    if plan.records() > DRAWN && (groups.len() as u64) < content.units.saturating_mul(content.mountings) {
+    // Nothing is known about units that have not been drawn.
+    if plan.records() > DRAWN && (groups.len() as u64) < content.all_mountings() {
         return Ok(Vec::new());
     }
     let unlearned = |(number, rule): (usize, &&Rule)| {
         let is_in = |split: usize, row: &[f64]| seen.contains(&(number, split, bits(row)));
         let rows = values_of(&rule.distribution).into_iter().map(|(_, row)| row);
-        let missing: Vec<Vec<f64>> = rows
+        let missing: Vec<&[f64]> = rows
             .filter(|row| !is_in(0, row) && (1..Splits::ALIKE.len()).any(|split| is_in(split, row)))
             .collect();
         (!missing.is_empty()).then(|| {
-            let row = |row: &Vec<f64>| row.iter().map(f64::to_string).collect::<Vec<_>>().join("/");
+            let row = |row: &&[f64]| row.iter().map(f64::to_string).collect::<Vec<_>>().join("/");
             format!(
                 "{} = {}: chosen once for a {group}, and in validation or test alone: nothing is learned of it in train; have more \
                  {group}s, or fewer values",
@@ -239,29 +231,26 @@ fn bits(row: &[f64]) -> Vec<u64> {
     row.iter().map(|value| value.to_bits()).collect()
 }
 
-/// Every value of a choice or a grid is allowed beside the other values of some record, as far as no profile is needed.
+/// Checks that every value of a choice or a grid is allowed together with the other values of some record, as far as no profile is
+/// needed.
 ///
 /// # Arguments
-/// * `first` - the first records of each class
-fn every_choice(content: &Content, sampler: &Sampler, first: &[Vec<DrawnRecord>]) -> ReadResult<()> {
+/// * `tried` - the first records of each class
+fn every_choice(content: &Content, sampler: &Sampler, tried: &[Tried]) -> ReadResult<()> {
     let mut left = MOST_VALUES;
-    for (c, (class, records)) in content.classes.iter().zip(first).enumerate() {
-        let top = content.rules.iter().enumerate().map(|(i, rule)| (rule, format!("vary[{i}]")));
-        let own = class.rules.iter().enumerate().map(|(i, rule)| (rule, format!("class[{c}].vary[{i}]")));
-        for (rule, place) in top.chain(own).filter(|(rule, _)| rule.times.is_none() && rule.plus.is_none()) {
+    for (c, (class, tried)) in content.classes.iter().zip(tried).enumerate() {
+        let rules = content.top_rules().chain(content.class_rules(c));
+        for (rule, place) in rules.filter(|(rule, _)| rule.times.is_none() && rule.plus.is_none()) {
             for (key, row) in values_of(&rule.distribution).into_iter().take(left) {
                 left -= 1;
-                refuse_value(sampler, records, rule, &row).map_err(|error| {
-                    let listed: Vec<String> = row.iter().map(f64::to_string).collect();
+                refuse_value(sampler, &tried.records, rule, row).map_err(|error| {
+                    let listed = row.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
                     let problem = format!(
-                        "no record of the class \"{}\" can have {} = {}: {error}",
+                        "no record of the class \"{}\" can have {} = {listed}: {error}",
                         class.label,
                         rule.keys.join(", "),
-                        listed.join(", ")
                     );
-                    let mut told = TomlError::new(format!("{place}.{key}"), listed.join(", "), problem);
-                    told.help = error.help;
-                    told
+                    with_help_of(TomlError::new(format!("{place}.{key}"), listed, problem), error.into())
                 })?;
             }
         }
@@ -269,22 +258,18 @@ fn every_choice(content: &Content, sampler: &Sampler, first: &[Vec<DrawnRecord>]
     Ok(())
 }
 
-/// The rows of a choice or a grid that may come, each with its key beside the rule's.
-fn values_of(distribution: &Distribution) -> Vec<(String, Vec<f64>)> {
-    let keyed = |name: &str, (i, row): (usize, &Vec<f64>)| (format!("{name}[{i}]"), row.clone());
-    match distribution {
-        Distribution::Fixed(value) => vec![("fixed".to_owned(), vec![*value])],
-        Distribution::Grid(rows) => rows.iter().enumerate().map(|row| keyed("grid", row)).collect(),
-        Distribution::Choice { rows, weights } => {
-            let chosen = rows.iter().enumerate().filter(|(i, _)| weights[*i] > 0.0);
-            chosen.map(|row| keyed("choice", row)).collect()
-        }
-        _ => Vec::new(),
-    }
+/// The listed values that may be drawn, each with its key beside the rule's.
+fn values_of(distribution: &Distribution) -> Vec<(String, &[f64])> {
+    let name = distribution.name();
+    let keyed = |(i, row)| match distribution {
+        Distribution::Fixed(_) => Some((name.to_owned(), row)),
+        Distribution::Choice { weights, .. } if weights[i] <= 0.0 => None,
+        _ => Some((format!("{name}[{i}]"), row)),
+    };
+    distribution.rows().into_iter().enumerate().filter_map(keyed).collect()
 }
 
-/// The error that a rule's values make with the other values of every one of some records; none where one of them may have
-/// them, or the rule does not concern them.
+/// Refuses values of a rule that are not allowed in any of some records, unless the rule does not concern them.
 fn refuse_value(
     sampler: &Sampler,
     records: &[DrawnRecord],
@@ -311,8 +296,8 @@ fn refuse_value(
     refused
 }
 
-/// A record is a hunting period long, and cannot be cut to more.
-fn refuse_short(content: &Content, scenario: &meshtone::scenario::Scenario) -> ReadResult<()> {
+/// Refuses a record length that exceeds the simulated hunting period.
+fn refuse_short(content: &Content, scenario: &Scenario) -> ReadResult<()> {
     if let Some(angle) = content.keep.over_angle {
         refuse_turns(content, scenario, angle)?;
     }
@@ -329,12 +314,8 @@ fn refuse_short(content: &Content, scenario: &meshtone::scenario::Scenario) -> R
         .with_help("shorten it, or leave it out: a record is then a whole hunting period long"))
 }
 
-/// Channels over the angle are of a steady motion, and no longer than it is simulated.
-fn refuse_turns(
-    content: &Content,
-    scenario: &meshtone::scenario::Scenario,
-    angle: OverAngle,
-) -> ReadResult<()> {
+/// Refuses channels over the angle of an unsteady motion, or of more revolutions than are simulated.
+fn refuse_turns(content: &Content, scenario: &Scenario, angle: OverAngle) -> ReadResult<()> {
     let operation = &scenario.operation;
     let is_steady = operation.speed_profile_hz.is_none()
         && operation.torque_profile_nm.is_none()
@@ -364,8 +345,8 @@ fn refuse_turns(
     Err(TomlError::new("keep.revolutions", angle.revolutions.to_string(), problem).with_help("lower it"))
 }
 
-/// A varied key that the model ignores would be a label without effect.
-fn refuse_ignored(scenario: &meshtone::scenario::Scenario, values: &[(String, f64)]) -> ReadResult<()> {
+/// Refuses a varied key that the model ignores: it would be a label without effect.
+fn refuse_ignored(scenario: &Scenario, values: &[(String, f64)]) -> ReadResult<()> {
     let ignored = scenario.ignored_by_model();
     match ignored.iter().find(|warning| values.iter().any(|(key, _)| key.starts_with(&warning.key))) {
         Some(warning) => Err(TomlError::new(&warning.key, "", warning.message.clone())),

@@ -10,7 +10,7 @@ use crate::expression::Expression;
 pub struct Class {
     /// The label.
     pub label: String,
-    /// The faults, before their varied keys are drawn; none of healthy records.
+    /// The faults, before their varied keys are drawn; empty for healthy records.
     pub faults: Vec<Fault>,
     /// How many records.
     pub count: u64,
@@ -18,7 +18,7 @@ pub struct Class {
     pub severity: Severity,
     /// Rules for this class alone.
     pub rules: Vec<Rule>,
-    /// How the damage of its units grows to failure, record by record; none where records do not follow one another.
+    /// How the damage of each unit grows to failure, record by record; none if the records of a unit do not follow one another.
     pub growth: Option<Growth>,
 }
 

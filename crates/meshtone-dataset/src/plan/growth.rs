@@ -14,9 +14,9 @@ pub enum Law {
     },
     /// Wear, by Archard: as the distance that the flanks slide under their load.
     Archard,
-    /// Pits, by their count: the severity rises by as much with each of them, the chance of the next one growing as a power of the age.
+    /// Pits, by their count: each pit raises the severity by the same amount. The rate at which pits appear grows as a power of the age.
     Pits {
-        /// How many there are at failure.
+        /// Number of pits at failure.
         count: u32,
         /// (-) Of the expected count over the age: 1 for pits that come at random, more where they come ever faster.
         exponent: f64,
@@ -26,11 +26,11 @@ pub enum Law {
 /// How the damage of a class's units grows to failure. All records of a unit in such a class are of one run, in one mounting.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Growth {
-    /// How.
+    /// The law of growth.
     pub law: Law,
     /// (-) Severity at the start of a run.
     pub start: f64,
-    /// (-) Severity at which it has failed.
+    /// (-) Severity at failure.
     pub failure: f64,
     /// (rev) Turns of the damaged wheel from start to failure.
     pub life_rev: Distribution,
@@ -38,12 +38,12 @@ pub struct Growth {
     pub censored: f64,
 }
 
-/// Where a record is in the run of its unit.
+/// The position of a record in the run to failure of its unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Age {
+pub struct RunPosition {
     /// (rev) Turns since the run began.
     pub age_rev: f64,
-    /// (rev) Turns to failure, or of a run that was stopped before to where it was stopped: at least so many were left.
+    /// (rev) Turns to failure. If the run was stopped before failure: turns to the stop, so that at least so many were left.
     pub remaining_rev: f64,
     /// Whether the run was stopped before failure.
     pub is_censored: bool,
@@ -51,7 +51,7 @@ pub struct Age {
     pub severity: f64,
 }
 
-/// (-) Part of its life after which a run may be stopped.
+/// (-) Part of the life after which a run may be stopped.
 const EARLIEST_END: f64 = 0.2;
 
 impl Law {
@@ -100,7 +100,7 @@ impl Growth {
             Law::Archard => start + part * (failure - start),
             Law::Pits { count, exponent } => {
                 let mut draws = Draws::new(seed, Purpose::DatasetPits, 0);
-                // The last of them is the failure.
+                // The last pit is the failure.
                 let came =
                     (1..count).filter(|_| libm::pow(draws.uniform(0.5, 0.5), 1.0 / exponent) <= part).count();
                 let came = came + usize::from(part >= 1.0);
@@ -116,7 +116,7 @@ impl Growth {
     /// * `seed` - of the run
     /// * `place` - of the record, from 0
     /// * `records` - of the run
-    pub fn age(&self, seed: u64, place: u64, records: u64) -> Age {
+    pub fn age(&self, seed: u64, place: u64, records: u64) -> RunPosition {
         let mut draws = Draws::new(seed, Purpose::DatasetRun, 0);
         let [life, stopped, end] = [(); 3].map(|()| draws.uniform(0.5, 0.5));
         let life_rev = self.life_rev.at(life, 0)[0];
@@ -124,7 +124,7 @@ impl Growth {
         let observed = if is_censored { EARLIEST_END + (1.0 - EARLIEST_END) * end } else { 1.0 };
         let within = Draws::new(seed, Purpose::DatasetInspection, place).uniform(0.5, 0.5);
         let part = observed * (place as f64 + within) / records.max(1) as f64;
-        Age {
+        RunPosition {
             age_rev: part * life_rev,
             remaining_rev: (observed - part) * life_rev,
             is_censored,
@@ -181,9 +181,9 @@ mod tests {
         let wear = growth(Law::Archard);
         let mut censored = 0;
         for seed in 0..1000 {
-            let ages: Vec<Age> = (0..10).map(|place| wear.age(seed, place, 10)).collect();
+            let ages: Vec<RunPosition> = (0..10).map(|place| wear.age(seed, place, 10)).collect();
             assert!(ages.windows(2).all(|pair| pair[1].age_rev > pair[0].age_rev));
-            let end = |age: &Age| age.age_rev + age.remaining_rev;
+            let end = |age: &RunPosition| age.age_rev + age.remaining_rev;
             assert!(ages.iter().all(|age| (end(age) / end(&ages[0]) - 1.0).abs() < 1e-12));
             assert!(ages.iter().all(|age| age.is_censored == ages[0].is_censored));
             assert!((1e5 * EARLIEST_END..1e7).contains(&end(&ages[0])));

@@ -1,4 +1,4 @@
-//! What is kept of each record.
+//! The signals and values that a data set keeps of each record.
 
 use meshtone::scenario::WheelName;
 use meshtone::sensor::Channel;

@@ -1,6 +1,6 @@
 //! The plan: what a data set consists of.
 //!
-//! A plan is read from TOML with [`Plan::read`]; [`crate::draw`] says what its records are.
+//! A plan is read from TOML with [`Plan::read`]. [`crate::draw`] draws its records.
 
 mod check;
 mod class;
@@ -13,23 +13,23 @@ mod rule;
 mod split;
 mod template;
 
-use std::fmt;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use meshtone::scenario::Scenario;
 use meshtone_io::experiment::Tuned;
-use sha2::{Digest, Sha256};
 
 pub(crate) use class::kinds;
 pub use class::{Class, Severity};
 pub use files::PlanFile;
-pub use growth::{Age, Growth, Law};
+pub use growth::{Growth, Law, RunPosition};
 pub use keep::{Keep, MOST_SHARD_RECORDS, OverAngle};
 pub use question::Question;
 pub use rule::{Distribution, Level, Rule};
 pub use split::{Shift, SplitBy, Splits};
 pub use template::template;
 
+use crate::digest::Digest;
 use crate::expression::Condition;
 use crate::sampling::Design;
 use crate::shard::FailedRecord;
@@ -47,7 +47,7 @@ pub struct Plan {
     pub sources: Vec<PathBuf>,
 }
 
-/// What the data card says.
+/// What the data card says about a data set.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct About {
     /// Title.
@@ -60,9 +60,9 @@ pub struct About {
     pub version: String,
     /// The day on which it is published, as `2026-11-22`.
     pub published: Option<String>,
-    /// How it is to be cited; by its title where that is left out.
+    /// How it is to be cited; none to cite it by its title.
     pub citation: Option<String>,
-    /// What it asks of a record.
+    /// The questions that it asks about a record.
     pub questions: Vec<Question>,
 }
 
@@ -71,7 +71,7 @@ pub struct About {
 pub struct Content {
     /// Seed of all draws.
     pub seed: u64,
-    /// What all records have in common, healthy.
+    /// The healthy scenario that all records have in common.
     pub base: Scenario,
     /// How many units there are: pairs of wheels.
     pub units: u64,
@@ -85,21 +85,49 @@ pub struct Content {
     pub constraints: Vec<Condition>,
     /// The classes.
     pub classes: Vec<Class>,
-    /// How units are divided.
+    /// How units are divided into splits.
     pub splits: Splits,
     /// What is kept of each record.
     pub keep: Keep,
-    /// How difference signals are enhanced, if they are.
+    /// How difference signals are enhanced; none if they are not.
     pub tuned: Option<Tuned>,
 }
 
-/// Stands for a plan's content and the version of the program: SHA-256.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct PlanHash(String);
+impl Content {
+    /// The rules for all classes, then the rules of each class.
+    pub(crate) fn all_rules(&self) -> impl Iterator<Item = &Rule> {
+        self.rules.iter().chain(self.classes.iter().flat_map(|class| &class.rules))
+    }
 
-impl fmt::Display for PlanHash {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(&self.0)
+    /// The rules of one class, each with its key in the plan.
+    pub(crate) fn class_rules(&self, class: usize) -> impl Iterator<Item = (&Rule, String)> {
+        let rules = self.classes[class].rules.iter().enumerate();
+        rules.map(move |(i, rule)| (rule, format!("class[{class}].vary[{i}]")))
+    }
+
+    /// The rules for all classes, each with its key in the plan.
+    pub(crate) fn top_rules(&self) -> impl Iterator<Item = (&Rule, String)> {
+        self.rules.iter().enumerate().map(|(i, rule)| (rule, format!("vary[{i}]")))
+    }
+
+    /// Number of mountings of all units.
+    pub(crate) fn all_mountings(&self) -> u64 {
+        self.units.saturating_mul(self.mountings)
+    }
+
+    /// Number of units, or mountings, in each split that has any.
+    pub(crate) fn units_of_split(&self) -> BTreeMap<String, u64> {
+        let counts = self.splits.counts(self.divided());
+        let names = self.splits.names().into_iter().map(str::to_owned);
+        names.zip(counts).filter(|(_, units)| *units > 0).collect()
+    }
+
+    /// Number of what is divided into splits: units, or mountings.
+    pub(crate) fn divided(&self) -> u64 {
+        match self.splits.by {
+            SplitBy::Unit => self.units,
+            SplitBy::Mounting => self.all_mountings(),
+        }
     }
 }
 
@@ -109,32 +137,26 @@ impl Plan {
         self.content.classes.iter().map(|class| class.count).sum()
     }
 
-    /// Those of the first 5000 records that cannot be simulated, as far as their scenarios show it before anything is computed: draws
-    /// outside a fault's limits, hunting periods that are shorter than `keep.duration_s`. They will be missing.
+    /// Those of the first 5000 records whose scenarios show that they cannot be simulated, for example because a draw is outside a
+    /// fault's limits or the hunting period is shorter than `keep.duration_s`. The data set will lack these records.
     pub fn foreseen_failures(&self) -> Vec<FailedRecord> {
-        // A plan that was read has been checked for what stands in the way of drawing.
+        // A plan that was read has been checked, so that its records can be drawn.
         check::foreseen(self).unwrap_or_default()
     }
 
-    /// What is doubtful about what the plan asks for: runs to failure of one or two records, and values that its units or mountings
-    /// choose of which none is in the training.
+    /// Warnings about what the plan asks for: runs to failure of only one or two records, and values of units or mountings that no
+    /// record of the training has.
     pub fn warnings(&self) -> Vec<String> {
         check::doubts(self).unwrap_or_default()
     }
 
-    /// What stands for the plan: the same for plans that say the same, whatever their layout, comments and description.
+    /// The SHA-256 of the plan's content and the program's version, in hexadecimal digits. Plans that say the same have the same hash,
+    /// whatever their layout, comments and description.
     ///
-    /// Another version of the program may compute other numbers, and gives another hash.
-    pub fn hash(&self) -> PlanHash {
-        let mut hash = Sha256::new();
-        hash.update(env!("CARGO_PKG_VERSION"));
+    /// Another version of the program may compute other numbers, and therefore gives another hash.
+    pub fn hash(&self) -> String {
         // Every field is plain data, and numbers are written so that they are read back exactly.
-        hash.update(format!("{:?}", self.content));
-        PlanHash(hex(&hash.finalize()))
+        let text = format!("{}{:?}", env!("CARGO_PKG_VERSION"), self.content);
+        Digest::of(text.as_bytes()).sha256.to_string()
     }
-}
-
-/// Bytes as hexadecimal digits.
-pub(crate) fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

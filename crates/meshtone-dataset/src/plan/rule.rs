@@ -1,21 +1,21 @@
-//! How keys vary.
+//! Rules that say how keys vary.
 
 use crate::expression::Expression;
 use crate::sampling::{normal_distribution, normal_quantile};
 
-/// What a value is drawn for.
+/// What a value is drawn for: a unit, a mounting or a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
     /// Once for all records of a unit.
     Unit,
-    /// Once for all records of a mounting: a unit that was taken apart and put together again has another one.
+    /// Once for all records of a mounting. A unit that is taken apart and put together again has a new mounting.
     Mounting,
     /// For each record.
     Record,
 }
 
 impl Level {
-    /// All with their names, the one that holds most records first.
+    /// All levels with their names. The level that comprises most records comes first.
     pub const NAMES: [(&'static str, Self); 3] =
         [("unit", Self::Unit), ("mounting", Self::Mounting), ("record", Self::Record)];
 
@@ -30,17 +30,24 @@ impl Level {
 pub struct Rule {
     /// Dotted keys of the scenario file, or of the plan alone: [`crate::draw::is_of_plan`].
     pub keys: Vec<String>,
-    /// What is drawn for.
+    /// What a value is drawn for.
     pub level: Level,
     /// What is drawn.
     pub distribution: Distribution,
     /// The drawn number is multiplied by this.
     pub times: Option<Expression>,
-    /// And this is added.
+    /// This is added after the multiplication.
     pub plus: Option<Expression>,
 }
 
-/// What is drawn. Rows hold one number for each of the rule's keys.
+impl Rule {
+    /// Whether the rule varies a key.
+    pub(crate) fn varies(&self, key: &str) -> bool {
+        self.keys.iter().any(|own| own == key)
+    }
+}
+
+/// How a value is drawn. Rows hold one number for each of the rule's keys.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Distribution {
     /// One value.
@@ -54,15 +61,15 @@ pub enum Distribution {
         /// Their weights, all the same by default; none of them negative.
         weights: Vec<f64>,
     },
-    /// Between two numbers.
+    /// Uniform between two numbers.
     Uniform([f64; 2]),
     /// Its logarithm is uniform between those of two numbers.
     LogUniform([f64; 2]),
-    /// Normal, between two numbers.
+    /// Normal, truncated to the range between two numbers.
     Normal {
         /// Mean, before it was truncated.
         mean: f64,
-        /// Standard deviation, likewise.
+        /// Standard deviation, before it was truncated.
         standard_deviation: f64,
         /// The least and the largest value.
         within: [f64; 2],
@@ -70,7 +77,7 @@ pub enum Distribution {
 }
 
 impl Distribution {
-    /// The key of a rule that says so.
+    /// The name of the distribution in a plan.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Fixed(_) => "fixed",
@@ -79,6 +86,26 @@ impl Distribution {
             Self::Uniform(_) => "uniform",
             Self::LogUniform(_) => "log_uniform",
             Self::Normal { .. } => "normal",
+        }
+    }
+
+    /// The rows of values that are listed; none of a range.
+    pub(crate) fn rows(&self) -> Vec<&[f64]> {
+        match self {
+            Self::Fixed(value) => vec![std::slice::from_ref(value)],
+            Self::Grid(rows) | Self::Choice { rows, .. } => rows.iter().map(Vec::as_slice).collect(),
+            Self::Uniform(_) | Self::LogUniform(_) | Self::Normal { .. } => Vec::new(),
+        }
+    }
+
+    /// The least and the largest value for the first key.
+    pub(crate) fn range(&self) -> [f64; 2] {
+        match self {
+            Self::Uniform(range) | Self::LogUniform(range) | Self::Normal { within: range, .. } => *range,
+            Self::Fixed(_) | Self::Grid(_) | Self::Choice { .. } => self
+                .rows()
+                .iter()
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], row| [a.min(row[0]), b.max(row[0])]),
         }
     }
 
@@ -112,7 +139,7 @@ impl Distribution {
                     left -= weight;
                     left < 0.0
                 });
-                // Rounding may leave a rest behind the last.
+                // Rounding may leave a remainder after the last value.
                 let last = weights.iter().rposition(|weight| *weight > 0.0).unwrap_or(0);
                 rows[chosen.unwrap_or(last)].clone()
             }
@@ -122,7 +149,7 @@ impl Distribution {
                 vec![libm::exp(from + uniform * (to - from)).clamp(*least, *largest)]
             }
             Self::Normal { mean, standard_deviation, within: [least, largest] } => {
-                // From the nearer tail, where the distribution keeps its digits.
+                // Computed from the nearer tail, where the distribution is accurate.
                 let sign = if least > mean { -1.0 } else { 1.0 };
                 let part = |value: f64| normal_distribution(sign * (value - mean) / standard_deviation);
                 let (from, to) = (part(*least), part(*largest));

@@ -1,4 +1,4 @@
-//! How units are divided into splits.
+//! Splits: how units are divided for training, validation and test.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ pub enum SplitBy {
 }
 
 impl SplitBy {
-    /// All with their names in a plan.
+    /// All values with their names in a plan.
     pub const NAMES: [(&'static str, Self); 2] = [("unit", Self::Unit), ("mounting", Self::Mounting)];
 
     /// Its name in a plan.
@@ -43,7 +43,7 @@ pub struct Shift {
     pub name: String,
     /// (-) Part of the units, or mountings.
     pub part: f64,
-    /// What holds for all of its records, together, and for no other record.
+    /// Conditions that all hold for every record of the split, and do not all hold for any other record.
     pub when: Vec<Condition>,
 }
 
@@ -85,7 +85,7 @@ impl Splits {
     /// enough.
     ///
     /// # Arguments
-    /// * `units` - of all splits
+    /// * `units` - number of units of all splits
     ///
     /// ```
     /// use meshtone_dataset::plan::Splits;

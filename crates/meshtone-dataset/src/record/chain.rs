@@ -1,40 +1,43 @@
-//! Rate, noise, average, difference, indicators.
+//! The signal chain from simulated channels to a record: sampling rate, path, noise, average, difference signal, indicators.
 //!
-//! What is computed from a raw channel is computed from its samples as they are kept, noise and rounding to single precision
-//! included: who reads the raw channel back finds the same average, unless `keep.duration_s` has cut it afterwards.
+//! Average, difference and indicators are computed from the samples of a raw channel as they are kept, with noise and rounding to
+//! single precision. A user who reads the raw channel finds the same average, unless `keep.duration_s` has shortened the channel.
+
+use std::error::Error;
 
 use meshtone::Stages;
 use meshtone::batch::ObservedSignals;
-use meshtone::damage::pitted_teeth;
+use meshtone::damage::damages_of_fault;
 use meshtone::scenario::{Fault, Model, Scenario, ScenarioWarning, WarningKind, WheelName};
 use meshtone::sensor::Channel;
 use meshtone::signal::{
     AngularSettings, AntiAliasing, ChainSettings, Edge, MeanPart, Record as Analysis, SeparationSettings,
     ShaftPhase, SignalError, angular_resample, octave_bands, process_channel,
 };
-
 use meshtone::tuning::DifferenceChain;
 
 use super::{Record, RecordFault, Start, noise, path};
 use crate::draw::DrawnRecord;
 use crate::plan::{Content, Keep, OverAngle};
 
-/// What is kept of a record's simulation.
+/// Makes a record of its simulation.
+///
+/// The channels are resampled, passed along the path to the sensor, and given noise, in this order. The enhanced signal starts from
+/// the difference before the noise; everything else is computed with it.
 pub(super) fn record(
     content: &Content,
     drawn: DrawnRecord,
     stages: &Stages,
     observed: ObservedSignals,
-) -> Result<Record, String> {
+) -> Result<Record, Box<dyn Error>> {
     let samples = &observed.signals.channels;
-    let signals = |error: SignalError| error.to_string();
     let keep = &content.keep;
     let view = View::new(content, &drawn, &stages.scenario.faults, stages);
     let simulated = keep.simulated();
     if view.offset.is_some() {
         refuse_growth(&simulated, samples)?;
     }
-    let mut channels = view.at_rate(samples).map_err(signals)?;
+    let mut channels = view.at_rate(samples)?;
     let analysed = simulated.iter().position(|channel| *channel == keep.analysed);
     let enhanced = content.tuned.is_some();
     let mut record = view.empty(drawn);
@@ -47,7 +50,7 @@ pub(super) fn record(
         }
     }
     if let (Some(analysed), true) = (analysed, enhanced) {
-        record.clean_difference = view.clean_difference(&channels[analysed], content).map_err(signals)?;
+        record.clean_difference = view.clean_difference(&channels[analysed], content)?;
     }
     for (number, (kind, channel)) in simulated.iter().zip(&mut channels).enumerate() {
         if kind.is_acceleration() {
@@ -55,38 +58,35 @@ pub(super) fn record(
         }
     }
     if let (Some(analysed), true) = (analysed, keep.is_analysed()) {
-        let analysis = view
-            .analyse(&channels[analysed], AngularSettings::default(), MeanPart::default())
-            .map_err(signals)?;
+        let analysis = view.analyse(&channels[analysed], AngularSettings::default(), MeanPart::default())?;
         if keep.average {
-            record.average = view.of_revolution(&analysis.average.values).map_err(signals)?;
+            record.average = view.of_revolution(&analysis.average.values)?;
         }
         if keep.difference {
-            record.difference = view.of_revolution(&analysis.parts.difference).map_err(signals)?;
+            record.difference = view.of_revolution(&analysis.parts.difference)?;
         }
         if keep.indicators {
             record.indicators = analysis.indicators.table("g");
-            // Beyond, the filter takes from what is there.
+            // At higher orders the filter attenuates the signal.
             let passed = PASSED * analysis.average.nyquist_order;
-            record.octaves =
-                octave_bands(&analysis.parts.difference, view.teeth(), passed).map_err(signals)?;
+            record.octaves = octave_bands(&analysis.parts.difference, view.teeth(), passed)?;
         }
     }
     channels.truncate(keep.channels.len());
     if let Some(seconds) = keep.duration_s {
-        view.cut(&mut channels, seconds).map_err(signals)?;
+        view.cut(&mut channels, seconds)?;
     }
     if let Some(angle) = keep.over_angle {
         record.sampling_rate_hz = angle.points_per_revolution as f64 * view.shaft_hz();
         for channel in &mut channels {
-            *channel = view.over_angle(channel, angle).map_err(signals)?;
+            *channel = view.over_angle(channel, angle)?;
         }
     }
     record.channels = channels;
     Ok(record)
 }
 
-/// Each kind once, in the order in which they come.
+/// The kinds of some warnings, each once, in their order.
 fn kinds(warnings: &[ScenarioWarning]) -> Vec<WarningKind> {
     let mut kinds = Vec::new();
     for kind in warnings.iter().map(|warning| warning.kind) {
@@ -97,35 +97,34 @@ fn kinds(warnings: &[ScenarioWarning]) -> Vec<WarningKind> {
     kinds
 }
 
-/// What is kept of its healthy twin: the difference signal.
+/// Makes the record of a healthy twin, which has only the difference signal.
 pub(super) fn twin(
     content: &Content,
     drawn: DrawnRecord,
     faults: &[Fault],
     stages: &Stages,
     samples: &[Vec<f32>],
-) -> Result<Record, String> {
-    let signals = |error: SignalError| error.to_string();
+) -> Result<Record, SignalError> {
     let view = View::new(content, &drawn, faults, stages);
     let analysed = content.keep.simulated().iter().position(|channel| *channel == content.keep.analysed);
     let mut record = view.empty(drawn);
     if let Some(analysed) = analysed {
-        let mut channels = view.at_rate(&samples[analysed..=analysed]).map_err(signals)?;
+        let mut channels = view.at_rate(&samples[analysed..=analysed])?;
         let name = content.keep.analysed.name();
         path::pass(&record.drawn, &name, content.keep.sampling_rate_hz, &mut channels[0]);
-        record.clean_difference = view.clean_difference(&channels[0], content).map_err(signals)?;
+        record.clean_difference = view.clean_difference(&channels[0], content)?;
     }
     Ok(record)
 }
 
-/// (-) Part of half the sampling rate up to which signals are whole.
+/// (-) Part of half the sampling rate up to which the filter does not attenuate.
 const PASSED: f64 = 0.8;
-/// Part of the record at either end by which it is seen to grow.
+/// Growth is judged by the first and the last part of a record, one of so many.
 const END: usize = 10;
-/// Growth from the first to the last of those parts that no steady motion shows.
+/// Growth from the first to the last part above which a motion is not steady.
 const MOST_GROWTH: f64 = 10.0;
 
-/// Refuses a steady motion that grows all the time, though it has not yet grown without bound.
+/// Refuses a motion that should be steady but grows throughout the record.
 fn refuse_growth(channels: &[Channel], samples: &[Vec<f32>]) -> Result<(), String> {
     let square = |part: &[f32]| part.iter().map(|&x| f64::from(x) * f64::from(x)).sum::<f64>();
     let (mut first, mut last) = (0.0, 0.0);
@@ -158,7 +157,7 @@ fn at_points(
     Ok(read.into_iter().map(|value| value as f32).collect())
 }
 
-/// A simulation as a recording: from the mark on, at the rate of the data set.
+/// A simulation that is read like a recording: from the mark on, at the sampling rate of the data set.
 struct View<'a> {
     keep: &'a Keep,
     stages: &'a Stages,
@@ -181,14 +180,14 @@ impl<'a> View<'a> {
         } else {
             Start::new(drawn, gears, revolutions as u32)
         };
-        // Only a steady motion over whole revolutions can be turned.
+        // Only a steady motion over whole revolutions can start at another revolution.
         let periodic = stages.is_steady() && kept > 0 && kept.is_multiple_of(per_revolution);
         let offset = periodic.then(|| {
             let mark = start.mark_teeth as usize * per_tooth;
             let wanted = mark + start.revolution as usize * per_revolution;
             (wanted + kept - time.first_kept_sample % kept) % kept
         });
-        // What cannot be turned is counted from the first time that the mark passes.
+        // Any other motion is counted from the first time that the mark passes.
         let revolution = if periodic { start.revolution } else { 0 };
         Self { keep, stages, start: Start { revolution, ..start }, offset }
     }
@@ -204,9 +203,9 @@ impl<'a> View<'a> {
             wheel: fault.wheel,
             tooth: self.start.tooth(fault, &scenario.gears),
             severity: *severity,
-            area_percent: pitted_teeth(&scenario.faults, &self.stages.damaged, number)
+            area_percent: damages_of_fault(&self.stages.damaged, number)
                 .into_iter()
-                .map(|pitted| pitted.area_percent)
+                .flat_map(|(_, damage)| damage.numbers("area_percent"))
                 .reduce(f64::max),
         };
         let faults = scenario.faults.iter().zip(&self.stages.fault_severities).enumerate();
@@ -227,6 +226,7 @@ impl<'a> View<'a> {
             indicators: Vec::new(),
             octaves: Vec::new(),
             clean_difference: Vec::new(),
+            enhanced: Vec::new(),
         }
     }
 
@@ -245,7 +245,7 @@ impl<'a> View<'a> {
     fn at_rate(&self, samples: &[Vec<f32>]) -> Result<Vec<Vec<f32>>, SignalError> {
         let from_hz = self.stages.time.sampling_rate_hz;
         let step = from_hz / self.keep.sampling_rate_hz;
-        // Records begin at any moment: what the filter folded back would differ between them.
+        // The filter is steep because records begin at any moment: frequencies that fold back would differ between them.
         let filter = AntiAliasing::steep(from_hz, self.keep.sampling_rate_hz)?;
         let kept = self.stages.time.kept_samples();
         let (offset, edge) = match self.offset {
@@ -311,7 +311,7 @@ impl<'a> View<'a> {
         if content.tuned.is_none() {
             return Ok(Vec::new());
         }
-        // As the signals were taken that the enhancement was tuned with.
+        // The same settings as those of the signals that the enhancement was tuned with.
         let angular = DifferenceChain::angular_settings(self.scenario().model);
         Ok(self.analyse(signal, angular, MeanPart::Removed)?.parts.difference)
     }
@@ -347,7 +347,7 @@ impl<'a> View<'a> {
 
     /// A channel over whole revolutions, from the mark on.
     fn over_angle(&self, signal: &[f32], angle: OverAngle) -> Result<Vec<f32>, SignalError> {
-        // A channel in which nothing happens is none to the chain.
+        // The chain refuses a constant channel.
         if let Some(&first) = signal.first()
             && signal.iter().all(|&x| x == first)
         {

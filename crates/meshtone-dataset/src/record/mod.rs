@@ -1,4 +1,4 @@
-//! From a simulation to what is kept of it.
+//! Records: what a data set keeps of each simulation.
 
 mod chain;
 mod noise;
@@ -19,9 +19,9 @@ use crate::plan::Content;
 /// What is kept of one record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
-    /// What it is.
+    /// The values and numbers that it was drawn with.
     pub drawn: DrawnRecord,
-    /// Its faults; none of a healthy one.
+    /// The faults; empty for a healthy record.
     pub faults: Vec<RecordFault>,
     /// (rev) Angle of the gear at the first sample, from where tooth 1 comes into contact. 0 at constant speed.
     pub gear_angle_rev: f64,
@@ -31,26 +31,37 @@ pub struct Record {
     pub pinion_speed_hz: f64,
     /// (N m) Brake torque.
     pub brake_torque_nm: f64,
-    /// What is doubtful about its simulation, each once.
+    /// Kinds of warnings about the simulation, each once.
     pub warnings: Vec<WarningKind>,
-    /// (-) Part of the simulated time in which the teeth do not push: under `contact` in which none touch, else in which the mesh pulls.
+    /// (-) Part of the simulated time in which the teeth do not push: with the model `contact`, in which no teeth touch; with the others,
+    /// in which the mesh pulls.
     pub slack_fraction: f64,
-    /// Raw channels, those of the plan.
+    /// The raw channels that the plan keeps.
     pub channels: Vec<Vec<f32>>,
     /// Synchronous average of the analysed channel over the revolutions of the plan's wheel.
     pub average: Vec<f32>,
-    /// Its difference signal.
+    /// Difference signal of the average.
     pub difference: Vec<f32>,
-    /// Its indicators.
+    /// Indicators of the average.
     pub indicators: Vec<IndicatorValue>,
-    /// Octaves of mesh orders of its difference signal.
+    /// The difference signal in octaves of mesh orders.
     pub octaves: Vec<OctaveBand>,
-    /// (S/s) Sampling rate of the raw channels; over the angle their mean one.
+    /// (S/s) Sampling rate of the raw channels; the mean rate, if they are over the angle.
     pub sampling_rate_hz: f64,
-    /// (s) Simulated time that it was made of.
+    /// (s) Simulated time that the average is computed from.
     pub simulated_s: f64,
-    /// Difference signal without the added noise, to be enhanced; empty where nothing is.
+    /// Difference signal without the added noise, which is enhanced; empty if nothing is enhanced.
     pub clean_difference: Vec<f64>,
+    /// Enhanced difference signal; empty where nothing is enhanced.
+    pub enhanced: Vec<f32>,
+}
+
+impl Record {
+    /// (bytes) Size of the signals that are kept.
+    pub(crate) fn signal_bytes(&self) -> usize {
+        let channels = self.channels.iter().map(Vec::len).sum::<usize>();
+        4 * (channels + self.average.len() + self.difference.len() + self.enhanced.len())
+    }
 }
 
 /// A fault of a record.
@@ -65,23 +76,23 @@ pub struct RecordFault {
     pub tooth: Option<u32>,
     /// (-) How severe it is, from 0, none, to 1, the largest that the tooth allows.
     pub severity: f64,
-    /// (%) Part of the flank that its pits take, of the worst tooth; none of other kinds.
+    /// (%) Part of the worst tooth's flank that pits cover; none for other kinds of damage.
     pub area_percent: Option<f64>,
 }
 
-/// What a simulation is for.
+/// The purpose of a simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Role {
-    /// It is the record.
+    /// It simulates the record itself.
     Record(DrawnRecord),
-    /// It shows what the record's pair would be like without its faults, which say where it begins.
+    /// It simulates the record's gears without the faults. The faults are given because they decide where the record begins.
     HealthyTwin(DrawnRecord, Vec<Fault>),
 }
 
-/// What is kept of each of many simulations.
+/// Makes a record of each of many simulations.
 pub(crate) struct KeepRecords<'a, F> {
     pub content: &'a Content,
-    /// What a simulation is for, by its number.
+    /// The purpose of a simulation, by its number.
     pub role: F,
 }
 
@@ -111,13 +122,14 @@ impl<F: Fn(usize) -> Option<Role> + Sync> BatchKeep for KeepRecords<'_, F> {
     fn keep(&self, index: usize, stages: Stages, recorder: ObservedRecorder) -> Self::Kept {
         match (self.role)(index) {
             Some(Role::Record(drawn)) => {
-                // A second simulation of every record in doubt would make three times the work.
+                // The error is only estimated: simulating doubtful records again would triple the work.
                 let observed = recorder.finish(&stages, StepJudgement::Estimated);
-                chain::record(self.content, drawn, &stages, observed)
+                chain::record(self.content, drawn, &stages, observed).map_err(|error| error.to_string())
             }
             Some(Role::HealthyTwin(drawn, faults)) => {
                 let samples = recorder.signals(&stages).channels;
                 chain::twin(self.content, drawn, &faults, &stages, &samples)
+                    .map_err(|error| error.to_string())
             }
             None => Err("it was not asked for".to_owned()),
         }
@@ -125,7 +137,7 @@ impl<F: Fn(usize) -> Option<Role> + Sync> BatchKeep for KeepRecords<'_, F> {
     }
 }
 
-/// (bytes) About how large a record is.
+/// (bytes) Approximate size of a record.
 pub(crate) fn kept_bytes(content: &Content, time: &TimeGrid) -> usize {
     let keep = &content.keep;
     let rate = (keep.sampling_rate_hz / time.sampling_rate_hz).min(1.0);

@@ -1,4 +1,4 @@
-//! Where a record begins.
+//! The start of a record within the hunting period.
 
 use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::{Fault, Gears, WheelName};

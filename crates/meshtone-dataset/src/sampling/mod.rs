@@ -1,6 +1,6 @@
 //! Points in the unit cube that values are drawn at.
 //!
-//! Any point can be computed without the ones before it, so that a record depends on its number alone.
+//! Any point can be computed without the points before it, so that a record depends on its number alone.
 
 mod normal;
 mod permutation;
@@ -15,11 +15,11 @@ use meshtone::random::{Draws, Purpose};
 pub enum Design {
     /// Each point by itself.
     Independent,
-    /// As many layers along every axis as there are points, and one point in each.
+    /// Every axis has as many layers as there are points, and each layer has one point.
     ///
     /// Source: M. D. McKay, R. J. Beckman, W. J. Conover, Technometrics 21 (1979) 239–245.
     LatinHypercube,
-    /// Sobol's sequence, scrambled; each 65 536 points another scrambling.
+    /// Sobol's sequence, scrambled anew after every 65 536 points.
     ///
     /// Sources: I. M. Sobol', USSR Comput. Math. Math. Phys. 7 (1967) 86–112; B. Burley, "Practical hash-based Owen
     /// scrambling", J. Comput. Graph. Tech. 9(4) (2020).
@@ -28,7 +28,7 @@ pub enum Design {
 }
 
 impl Design {
-    /// All of them, by their names in a plan.
+    /// All designs with their names in a plan.
     pub const NAMES: [(&'static str, Self); 3] = [
         ("independent", Self::Independent),
         ("latin-hypercube", Self::LatinHypercube),
@@ -49,7 +49,7 @@ pub struct Points {
     pub design: Design,
     /// Seed of the design.
     pub seed: u64,
-    /// What the values are for.
+    /// Purpose of the draws.
     pub purpose: Purpose,
     /// How many points there are.
     pub count: u64,
@@ -78,7 +78,7 @@ impl Points {
             _ => Draws::new(self.seed, Purpose::DatasetDesign, u64::from(attempt)).bits(),
         };
         let mut draws = Draws::new(seed, self.purpose, index);
-        // Never 1, which rounding could make of the last number below.
+        // Rounding must not give 1.
         let mut uniform = || draws.uniform(0.5, 0.5).min(1.0 - f64::EPSILON);
         match self.design {
             Design::Independent => (0..dimensions).map(|_| uniform()).collect(),

@@ -1,150 +1,162 @@
-//! Columns of a data set.
+//! The columns of a data set: names, units, meanings, and the cells of each record.
 
 use meshtone::damage::Damage;
-use meshtone::scenario::Model;
-use meshtone::sensor::Channel;
+use meshtone::scenario::{Fault, Model};
 use meshtone::signal::OCTAVES;
-use meshtone_io::table::{CellType, TableColumn};
+use meshtone_io::table::{CellType, Cells, TableColumn};
 
 use crate::draw::{NOISE_KEYS, PATH_KEYS, is_of_plan};
-use crate::plan::Plan;
+use crate::plan::{Content, OverAngle, Plan, Rule};
+use crate::record::Record;
 use crate::words::unit_of;
 
-/// Name of the column of codes.
+/// Name of the column of warnings' codes.
 pub(crate) const WARNINGS: &str = "warnings";
-/// What stands between two codes in it.
+/// Separator of two codes in that column.
 pub(crate) const BETWEEN_CODES: &str = ";";
+/// Indicators that a preview shows.
+const PREVIEWED_INDICATORS: [&str; 4] = ["average_rms", "difference_rms", "fm4", "energy_ratio"];
 
 /// A column.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Column {
-    /// Name, with its unit at the end where it has one.
+pub(crate) struct Column {
+    /// Name, which ends in the unit where the column has one.
     pub name: String,
     /// Unit; `-` for plain numbers, empty for text.
     pub unit: String,
     /// Meaning.
     pub description: String,
-    /// What it holds.
-    pub kind: ColumnKind,
+    /// What the column tells about a record.
+    pub topic: Topic,
+    /// Whether cells may be empty.
+    nullable: bool,
+    values: Values,
 }
 
-/// What a column holds.
+/// What a column tells about a record.
 #[derive(Debug, Clone, PartialEq)]
-pub enum ColumnKind {
-    /// Number of the record.
-    Record,
-    /// Number of the unit.
-    Unit,
-    /// Number of the mounting.
-    Mounting,
-    /// How far its run has come.
-    Age,
-    /// What is left of its run.
-    Remaining,
-    /// Whether its run was stopped before failure.
-    Censored,
-    /// Simulated time.
-    SimulatedTime,
-    /// Values in a revolution of the raw channels.
-    PointsPerRevolution,
-    /// Rms of an octave of mesh orders, by its number in the list of octaves.
-    OctaveRms(usize),
-    /// Kurtosis of an octave, likewise.
-    OctaveKurtosis(usize),
-    /// Name of the split.
-    Split,
-    /// The label.
-    Label,
-    /// Grade of the fault.
-    Severity,
-    /// What the grade was taken from.
-    SeverityMeasure,
-    /// Kind of a fault, by the fault's number.
-    FaultKind(usize),
-    /// Wheel that a fault is on, by the fault's number.
-    FaultWheel(usize),
-    /// Number of the damaged tooth, by the fault's number.
-    FaultTooth(usize),
-    /// How severe a fault is, by the fault's number.
-    FaultSeverity(usize),
-    /// Part of the flank that pits take, by the fault's number.
-    FaultArea(usize),
-    /// Seed of the record.
-    Seed,
-    /// Seed of the unit's profile errors.
-    WheelsSeed,
-    /// Sampling rate of the raw channels.
-    SamplingRate,
-    /// Angle of the gear at the first sample.
-    GearAngle,
-    /// Teeth of the pinion.
-    PinionTeeth,
-    /// Teeth of the gear.
-    GearTeeth,
-    /// Speed of the pinion's shaft.
-    PinionSpeed,
-    /// Speed of the gear's shaft.
-    GearSpeed,
-    /// Brake torque.
-    BrakeTorque,
-    /// Codes of what is doubtful.
-    Warnings,
-    /// Part of the time in which the teeth do not push.
-    SlackFraction,
-    /// A varied key of the scenario file.
+pub(crate) enum Topic {
+    /// A value that the record was drawn with.
+    Drawn,
+    /// The value of a key that a rule varies.
     Key(String),
     /// An indicator, by its name.
     Indicator(String),
-    /// A raw channel, by its number.
-    Channel(usize),
-    /// Synchronous average.
-    Average,
-    /// Difference signal.
-    Difference,
-    /// Enhanced difference signal.
-    EnhancedDifference,
+    /// A raw channel.
+    Channel,
+    /// A signal over one revolution.
+    Revolution,
+    /// Anything else.
+    Other,
 }
 
-impl ColumnKind {
-    /// Whether the column holds a signal.
-    pub fn is_signal(&self) -> bool {
-        matches!(self, Self::Channel(_) | Self::Average | Self::Difference | Self::EnhancedDifference)
+/// How the cells of a column follow from records.
+enum Values {
+    Int32(ValueOf<Option<u32>>),
+    Int64(ValueOf<u64>),
+    Float64(ValueOf<Option<f64>>),
+    Text(ValueOf<Option<String>>),
+    Signal(SignalOf),
+}
+
+type ValueOf<T> = Box<dyn Fn(&Record) -> T>;
+type SignalOf = Box<dyn Fn(&Record) -> &[f32]>;
+
+impl Column {
+    fn new(name: &str, unit: &str, values: Values) -> Self {
+        let (name, unit, description) = (name.to_owned(), unit.to_owned(), String::new());
+        Self { name, unit, description, topic: Topic::Other, nullable: false, values }
     }
 
-    fn cells(&self) -> CellType {
-        match self {
-            Self::Record | Self::Unit | Self::Mounting | Self::Seed | Self::WheelsSeed => CellType::Int64,
-            Self::Split | Self::Label | Self::FaultKind(_) | Self::FaultWheel(_) | Self::Warnings => {
-                CellType::Text
-            }
-            Self::Severity
-            | Self::FaultTooth(_)
-            | Self::PinionTeeth
-            | Self::GearTeeth
-            | Self::Censored
-            | Self::PointsPerRevolution => CellType::Int32,
-            kind if kind.is_signal() => CellType::Float32List { nullable_items: false },
-            _ => CellType::Float64,
+    fn int32(name: &str, value: impl Fn(&Record) -> Option<u32> + 'static) -> Self {
+        Self::new(name, "", Values::Int32(Box::new(value)))
+    }
+
+    fn int64(name: &str, value: impl Fn(&Record) -> u64 + 'static) -> Self {
+        Self::new(name, "", Values::Int64(Box::new(value)))
+    }
+
+    fn float64(name: &str, unit: &str, value: impl Fn(&Record) -> Option<f64> + 'static) -> Self {
+        Self::new(name, unit, Values::Float64(Box::new(value)))
+    }
+
+    fn text(name: &str, value: impl Fn(&Record) -> Option<String> + 'static) -> Self {
+        Self::new(name, "", Values::Text(Box::new(value)))
+    }
+
+    fn signal(name: &str, unit: &str, value: impl Fn(&Record) -> &[f32] + 'static) -> Self {
+        Self::new(name, unit, Values::Signal(Box::new(value))).about(Topic::Revolution)
+    }
+
+    fn meaning(self, description: impl Into<String>) -> Self {
+        Self { description: description.into(), ..self }
+    }
+
+    fn about(self, topic: Topic) -> Self {
+        Self { topic, ..self }
+    }
+
+    fn nullable(self) -> Self {
+        Self { nullable: true, ..self }
+    }
+
+    /// Whether the column holds a signal.
+    pub fn is_signal(&self) -> bool {
+        matches!(self.values, Values::Signal(_))
+    }
+
+    /// Whether the column is one of what a record is drawn with.
+    pub fn is_drawn(&self) -> bool {
+        matches!(self.topic, Topic::Drawn | Topic::Key(_))
+    }
+
+    /// Whether the column holds one of the indicators that a preview shows.
+    pub fn is_previewed_indicator(&self) -> bool {
+        matches!(&self.topic, Topic::Indicator(name) if PREVIEWED_INDICATORS.contains(&name.as_str()))
+    }
+
+    /// Whether a preview shows the column, unless all records have the same value.
+    pub fn is_previewed(&self) -> bool {
+        self.is_drawn() || self.is_previewed_indicator()
+    }
+
+    /// The type of the column's cells.
+    pub fn cell_type(&self) -> CellType {
+        match self.values {
+            Values::Int32(_) => CellType::Int32,
+            Values::Int64(_) => CellType::Int64,
+            Values::Float64(_) => CellType::Float64,
+            Values::Text(_) => CellType::Text,
+            Values::Signal(_) => CellType::Float32List,
         }
     }
 
-    fn is_nullable(&self) -> bool {
-        matches!(
-            self,
-            Self::SeverityMeasure
-                | Self::FaultKind(_)
-                | Self::FaultWheel(_)
-                | Self::FaultTooth(_)
-                | Self::FaultSeverity(_)
-                | Self::FaultArea(_)
-                | Self::Key(_)
-                | Self::Indicator(_)
-                | Self::OctaveRms(_)
-                | Self::OctaveKurtosis(_)
-                | Self::Age
-                | Self::Remaining
-                | Self::Censored
-        )
+    /// The column's cells of some records.
+    pub fn cells<'r>(&self, records: &'r [Record]) -> Cells<'r> {
+        let records = records.iter();
+        match &self.values {
+            Values::Int32(value) => {
+                Cells::Int32(records.map(|record| value(record).map(|value| value as i32)).collect())
+            }
+            Values::Int64(value) => Cells::Int64(records.map(|record| Some(value(record) as i64)).collect()),
+            Values::Float64(value) => Cells::Float64(records.map(value).collect()),
+            Values::Text(value) => Cells::Text(records.map(value).collect()),
+            Values::Signal(value) => Cells::Float32List(records.map(value).collect()),
+        }
+    }
+}
+
+impl From<&Column> for TableColumn {
+    fn from(column: &Column) -> Self {
+        let mut metadata = vec![("unit", &column.unit), ("description", &column.description)];
+        if let Topic::Key(key) = &column.topic {
+            metadata.push(("key", key));
+        }
+        Self {
+            name: column.name.clone(),
+            cells: column.cell_type(),
+            nullable: column.nullable,
+            metadata: metadata.into_iter().map(|(key, value)| (key.to_owned(), value.clone())).collect(),
+        }
     }
 }
 
@@ -152,135 +164,116 @@ impl ColumnKind {
 ///
 /// # Arguments
 /// * `plan` - the plan
-pub fn columns(plan: &Plan) -> Vec<Column> {
-    let classes = &plan.content.classes;
-    let keep = &plan.content.keep;
+pub(crate) fn columns(plan: &Plan) -> Vec<Column> {
+    let Content { classes, keep, .. } = &plan.content;
     let wheel = keep.wheel.name();
-    let most_faults = classes.iter().map(|class| class.faults.len()).max().unwrap_or(0);
-    let is_pits = |number: usize| {
-        classes.iter().any(|class| {
-            class.faults.get(number).is_some_and(|fault| matches!(fault.damage, Damage::Pits(_)))
-        })
-    };
-    let mut columns = of_record(most_faults, is_pits);
+    let mut columns = of_record(&plan.content);
     if classes.iter().any(|class| class.growth.is_some()) {
         columns.extend(of_run());
     }
-    if keep.over_angle.is_some() {
+    if let Some(points) = keep.over_angle.map(|angle| angle.points_per_revolution as u32) {
         let meaning = format!("values in a revolution of the {wheel}, of channels, average and difference");
-        columns.push(column("points_per_revolution", "", &meaning, ColumnKind::PointsPerRevolution));
+        columns.push(Column::int32("points_per_revolution", move |_| Some(points)).meaning(meaning));
     }
     columns.extend(of_simulation(plan.content.base.model));
-    let taken: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
-    columns
-        .extend(varied_keys(plan).into_iter().map(key_column).filter(|column| !taken.contains(&column.name)));
+    let keys = varied_keys(&plan.content).into_iter().map(|(_, key)| of_key(key));
+    let keys: Vec<Column> = keys.filter(|key| columns.iter().all(|column| column.name != key.name)).collect();
+    columns.extend(keys);
     if keep.indicators {
-        columns.extend(indicator_names().into_iter().map(|(name, unit)| Column {
-            name: if unit == "g" { format!("{name}_g") } else { name.clone() },
-            description: format!("indicator {name} of the analysed channel over the {wheel}'s revolutions"),
-            unit,
-            kind: ColumnKind::Indicator(name),
-        }));
+        columns.extend(indicator_names().into_iter().map(|(name, unit)| of_indicator(&name, &unit, wheel)));
         columns.extend(OCTAVES.iter().enumerate().flat_map(|(number, (name, _))| of_octave(number, name)));
     }
-    let channel = |(number, kind): (usize, &Channel)| Column {
-        name: kind.name().into_owned(),
-        unit: kind.unit().to_owned(),
-        description: match keep.over_angle {
-            None => format!("raw channel, its samples one after the other: {}", kind.meaning()),
-            Some(angle) => format!(
-                "raw channel over {} revolutions of the {wheel}, at equal angles: {}",
-                angle.revolutions,
-                kind.meaning()
-            ),
-        },
-        kind: ColumnKind::Channel(number),
-    };
-    columns.extend(keep.channels.iter().enumerate().map(channel));
-    let mut signal = |wanted: bool, name: &str, unit: &str, description: &str, kind: ColumnKind| {
-        if wanted {
-            columns.push(column(name, unit, description, kind));
-        }
-    };
+    for (number, channel) in keep.channels.iter().enumerate() {
+        let samples = match keep.over_angle {
+            None => "raw channel, its samples one after the other".to_owned(),
+            Some(OverAngle { revolutions, .. }) => {
+                format!("raw channel over {revolutions} revolutions of the {wheel}, at equal angles")
+            }
+        };
+        let column = Column::signal(&channel.name(), channel.unit(), move |r| &r.channels[number]);
+        columns.push(column.about(Topic::Channel).meaning(format!("{samples}: {}", channel.meaning())));
+    }
     let turn = format!(
         "over one revolution of the {wheel}, at equal angles from where its tooth 1 comes into contact"
     );
-    signal(keep.average, "average_g", "g", &format!("synchronous average {turn}"), ColumnKind::Average);
-    signal(
-        keep.difference,
-        "difference_g",
-        "g",
-        &format!("difference signal {turn}"),
-        ColumnKind::Difference,
-    );
-    let enhanced = "enhanced difference signal over one revolution of the gear, the fault's response in the middle, \
-                    over the rms of the enhanced healthy signal";
-    let wanted = plan.content.tuned.is_some();
-    signal(wanted, "enhanced_relative_difference", "-", enhanced, ColumnKind::EnhancedDifference);
+    if keep.average {
+        let average = Column::signal("average_g", "g", |r| &r.average);
+        columns.push(average.meaning(format!("synchronous average {turn}")));
+    }
+    if keep.difference {
+        let difference = Column::signal("difference_g", "g", |r| &r.difference);
+        columns.push(difference.meaning(format!("difference signal {turn}")));
+    }
+    if plan.content.tuned.is_some() {
+        columns.push(Column::signal("enhanced_relative_difference", "-", |r| &r.enhanced).meaning(
+            "enhanced difference signal over one revolution of the gear, the fault's response in the middle, \
+             over the rms of the enhanced healthy signal",
+        ));
+    }
     columns
 }
 
-impl From<&Column> for TableColumn {
-    fn from(column: &Column) -> Self {
-        let mut metadata = vec![("unit", &column.unit), ("description", &column.description)];
-        if let ColumnKind::Key(key) = &column.kind {
-            metadata.push(("key", key));
-        }
-        Self {
-            name: column.name.clone(),
-            cells: column.kind.cells(),
-            nullable: column.kind.is_nullable(),
-            metadata: metadata.into_iter().map(|(key, value)| (key.to_owned(), value.clone())).collect(),
-        }
-    }
-}
-
-fn column(name: &str, unit: &str, description: &str, kind: ColumnKind) -> Column {
-    Column { name: name.to_owned(), unit: unit.to_owned(), description: description.to_owned(), kind }
-}
-
-fn of_record(most_faults: usize, is_pits: impl Fn(usize) -> bool) -> Vec<Column> {
-    use ColumnKind::*;
+/// What a record is, its faults and its machine.
+fn of_record(content: &Content) -> Vec<Column> {
+    let splits: Vec<String> = content.splits.names().into_iter().map(str::to_owned).collect();
+    let labels: Vec<String> = content.classes.iter().map(|class| class.label.clone()).collect();
     let mut columns = vec![
-        column("record", "", "number of the record; with the plan it determines everything else", Record),
-        column("unit", "", "number of the unit: the pair of wheels, shared by several records", Unit),
-        column("mounting", "", "number of the mounting: a unit as it was put together once", Mounting),
-        column("split", "", "the split that the unit, or its mounting, belongs to", Split),
-        column("label", "", "the class", Label),
-        column("severity", "", "grade of the fault, from 1; 0 for healthy", Severity),
-        column("severity_measure", "-", "the number that the grade was taken from", SeverityMeasure),
+        Column::int64("record", |r| r.drawn.index)
+            .meaning("number of the record; with the plan it determines everything else"),
+        Column::int64("unit", |r| r.drawn.unit)
+            .meaning("number of the unit: the pair of wheels, shared by several records"),
+        Column::int64("mounting", |r| r.drawn.mounting)
+            .meaning("number of the mounting: a unit as it was put together once"),
+        Column::text("split", move |r| Some(splits[r.drawn.split].clone()))
+            .meaning("the split that the unit, or its mounting, belongs to"),
+        Column::text("label", move |r| Some(labels[r.drawn.class].clone())).meaning("the class"),
+        Column::int32("severity", |r| Some(r.drawn.severity.into()))
+            .about(Topic::Drawn)
+            .meaning("grade of the fault, from 1; 0 for healthy"),
+        Column::float64("severity_measure", "-", |r| r.drawn.severity_measure)
+            .nullable()
+            .meaning("the number that the grade was taken from"),
     ];
-    // Also where every class is healthy: all data sets have the columns of one fault.
+    // All data sets have the columns of one fault, even if every class is healthy.
+    let most_faults = content.classes.iter().map(|class| class.faults.len()).max().unwrap_or(0);
     for number in 0..most_faults.max(1) {
         columns.extend(of_fault(number));
-        if is_pits(number) {
+        let is_pits = |fault: &Fault| matches!(fault.damage, Damage::Pits(_));
+        if content.classes.iter().any(|class| class.faults.get(number).is_some_and(is_pits)) {
             let name = format!("{}_area_percent", name_in_list("fault", number));
+            let column = Column::float64(&name, "%", move |r| r.faults.get(number)?.area_percent);
             let meaning = "part of the flank's contact part that the pits take, of the worst tooth";
-            columns.push(column(&name, "%", meaning, FaultArea(number)));
+            columns.push(column.nullable().meaning(meaning));
         }
     }
+    let gear_speed_hz = |r: &Record| r.pinion_speed_hz * f64::from(r.teeth[0]) / f64::from(r.teeth[1]);
     columns.extend([
-        column("seed", "", "seed of the record's noise and fluctuations", Seed),
-        column("wheels_seed", "", "seed of the unit's profile errors", WheelsSeed),
-        column("sampling_rate_hz", "Hz", "sampling rate of the raw channels", SamplingRate),
-        column(
-            "gear_angle_rev",
-            "rev",
-            "angle of the gear at the first sample, from where its tooth 1 comes into contact",
-            GearAngle,
-        ),
-        column("pinion_teeth", "", "teeth of the pinion, the driving wheel", PinionTeeth),
-        column("gear_teeth", "", "teeth of the gear, the driven wheel", GearTeeth),
-        column("pinion_speed_hz", "Hz", "speed of the pinion's shaft", PinionSpeed),
-        column("gear_speed_hz", "Hz", "speed of the gear's shaft", GearSpeed),
-        column("brake_torque_nm", "N m", "brake torque on the gear's shaft", BrakeTorque),
+        Column::int64("seed", |r| r.drawn.seed).meaning("seed of the record's noise and fluctuations"),
+        Column::int64("wheels_seed", |r| r.drawn.wheels_seed).meaning("seed of the unit's profile errors"),
+        Column::float64("sampling_rate_hz", "Hz", |r| Some(r.sampling_rate_hz))
+            .meaning("sampling rate of the raw channels"),
+        Column::float64("gear_angle_rev", "rev", |r| Some(r.gear_angle_rev))
+            .meaning("angle of the gear at the first sample, from where its tooth 1 comes into contact"),
+        Column::int32("pinion_teeth", |r| Some(r.teeth[0]))
+            .about(Topic::Drawn)
+            .meaning("teeth of the pinion, the driving wheel"),
+        Column::int32("gear_teeth", |r| Some(r.teeth[1]))
+            .about(Topic::Drawn)
+            .meaning("teeth of the gear, the driven wheel"),
+        Column::float64("pinion_speed_hz", "Hz", |r| Some(r.pinion_speed_hz))
+            .about(Topic::Drawn)
+            .meaning("speed of the pinion's shaft"),
+        Column::float64("gear_speed_hz", "Hz", move |r| Some(gear_speed_hz(r)))
+            .meaning("speed of the gear's shaft"),
+        Column::float64("brake_torque_nm", "N m", |r| Some(r.brake_torque_nm))
+            .about(Topic::Drawn)
+            .meaning("brake torque on the gear's shaft"),
     ]);
     columns
 }
 
-/// What its simulation says of itself.
+/// What the simulation of a record says about itself.
 fn of_simulation(model: Model) -> [Column; 3] {
-    let codes = "codes of what is doubtful about the simulation, with `;` between; empty where nothing is";
     let (name, slack) = if model == Model::Contact {
         ("apart_fraction", "part of the simulated time in which no teeth touch")
     } else {
@@ -289,15 +282,15 @@ fn of_simulation(model: Model) -> [Column; 3] {
             "part of the simulated time in which the linear mesh pulls where real teeth would part",
         )
     };
+    let codes =
+        |r: &Record| r.warnings.iter().map(|kind| kind.code()).collect::<Vec<_>>().join(BETWEEN_CODES);
     [
-        column(WARNINGS, "", codes, ColumnKind::Warnings),
-        column(name, "-", slack, ColumnKind::SlackFraction),
-        column(
-            "simulated_s",
-            "s",
-            "simulated time that average and indicators are of",
-            ColumnKind::SimulatedTime,
+        Column::text(WARNINGS, move |r| Some(codes(r))).meaning(
+            "codes of what is doubtful about the simulation, with `;` between; empty where nothing is",
         ),
+        Column::float64(name, "-", |r| Some(r.slack_fraction)).meaning(slack),
+        Column::float64("simulated_s", "s", |r| Some(r.simulated_s))
+            .meaning("simulated time that average and indicators are of"),
     ]
 }
 
@@ -305,54 +298,60 @@ fn of_simulation(model: Model) -> [Column; 3] {
 fn of_run() -> [Column; 3] {
     let left = "turns of the damaged wheel to failure; where `censored` is 1 to the end of the run, at least so many were left";
     [
-        column("age_rev", "rev", "turns of the damaged wheel since its run began", ColumnKind::Age),
-        column("remaining_rev", "rev", left, ColumnKind::Remaining),
-        column("censored", "", "1 where the run was stopped before failure, else 0", ColumnKind::Censored),
+        Column::float64("age_rev", "rev", |r| Some(r.drawn.age?.age_rev))
+            .about(Topic::Drawn)
+            .meaning("turns of the damaged wheel since its run began"),
+        Column::float64("remaining_rev", "rev", |r| Some(r.drawn.age?.remaining_rev)).meaning(left),
+        Column::int32("censored", |r| Some(r.drawn.age?.is_censored.into()))
+            .meaning("1 where the run was stopped before failure, else 0"),
     ]
+    .map(Column::nullable)
 }
 
-/// What the difference signal has in an octave.
+/// An indicator of the analysed channel.
+fn of_indicator(name: &str, unit: &str, wheel: &str) -> Column {
+    let column = if unit == "g" { format!("{name}_g") } else { name.to_owned() };
+    let of_name = name.to_owned();
+    let value = move |r: &Record| r.indicators.iter().find(|value| value.name == of_name)?.value;
+    Column::float64(&column, unit, value)
+        .about(Topic::Indicator(name.to_owned()))
+        .nullable()
+        .meaning(format!("indicator {name} of the analysed channel over the {wheel}'s revolutions"))
+}
+
+/// Rms and kurtosis of the difference signal in an octave.
 fn of_octave(number: usize, name: &str) -> [Column; 2] {
-    let octave = format!(
-        "of the difference signal in the octave around {name} mesh order{}",
-        if number > 1 { "s" } else { "" }
-    );
+    let orders = if number > 1 { "orders" } else { "order" };
+    let octave = format!("of the difference signal in the octave around {name} mesh {orders}");
+    let column = format!("difference_octave_{name}");
     [
-        column(
-            &format!("difference_octave_{name}_rms_g"),
-            "g",
-            &format!("rms {octave}; null beyond 0.8 of half the sampling rate"),
-            ColumnKind::OctaveRms(number),
-        ),
-        column(
-            &format!("difference_octave_{name}_kurtosis"),
-            "-",
-            &format!("kurtosis {octave}; likewise"),
-            ColumnKind::OctaveKurtosis(number),
-        ),
+        Column::float64(&format!("{column}_rms_g"), "g", move |r| Some(r.octaves.get(number)?.rms))
+            .meaning(format!("rms {octave}; null beyond 0.8 of half the sampling rate")),
+        Column::float64(&format!("{column}_kurtosis"), "-", move |r| r.octaves.get(number)?.kurtosis)
+            .meaning(format!("kurtosis {octave}; likewise")),
     ]
+    .map(Column::nullable)
 }
 
 /// Kind, place and severity of a fault.
 fn of_fault(number: usize) -> [Column; 4] {
-    let fault = name_in_list("fault", number);
-    let named = |last: &str, description: &str, kind: ColumnKind| {
-        let unit = if last == "severity" { "-" } else { "" };
-        column(&format!("{fault}_{last}"), unit, description, kind)
-    };
-    let tooth = "number of the damaged tooth, from 1, in the order in which its wheel's teeth come into contact from the \
-                 start of the record on, null where it is several; in the plan and the scenario teeth are counted from where the \
-                 first two meet";
+    let named = |last: &str| format!("{}_{last}", name_in_list("fault", number));
+    let fault = move |r: &Record| r.faults.get(number).copied();
     [
-        named("kind", "kind of damage", ColumnKind::FaultKind(number)),
-        named("wheel", "the damaged wheel: pinion or gear", ColumnKind::FaultWheel(number)),
-        named("tooth", tooth, ColumnKind::FaultTooth(number)),
-        named(
-            "severity",
-            "how severe the damage is, from 0, none, to 1, the largest that the tooth allows; each kind's scale is in the guide",
-            ColumnKind::FaultSeverity(number),
+        Column::text(&named("kind"), move |r| Some(fault(r)?.kind.to_owned())).meaning("kind of damage"),
+        Column::text(&named("wheel"), move |r| Some(fault(r)?.wheel.name().to_owned()))
+            .meaning("the damaged wheel: pinion or gear"),
+        Column::int32(&named("tooth"), move |r| fault(r)?.tooth).meaning(
+            "number of the damaged tooth, from 1, in the order in which its wheel's teeth come into contact from the \
+             start of the record on, null where it is several; in the plan and the scenario teeth are counted from where \
+             the first two meet",
+        ),
+        Column::float64(&named("severity"), "-", move |r| Some(fault(r)?.severity)).meaning(
+            "how severe the damage is, from 0, none, to 1, the largest that the tooth allows; each kind's scale is in \
+             the guide",
         ),
     ]
+    .map(Column::nullable)
 }
 
 /// What the columns of an entry of a list begin with: `fault`, and of further ones `fault_2` and so on.
@@ -360,21 +359,22 @@ fn name_in_list(list: &str, number: usize) -> String {
     if number == 0 { list.to_owned() } else { format!("{list}_{}", number + 1) }
 }
 
-/// The varied keys, in the plan's order; one of those that are in the same column.
-fn varied_keys(plan: &Plan) -> Vec<&str> {
-    let rules = plan.content.rules.iter().chain(plan.content.classes.iter().flat_map(|class| &class.rules));
-    let mut keys: Vec<&str> = Vec::new();
-    for key in rules.flat_map(|rule| &rule.keys) {
-        if !keys.iter().any(|other| column_name(other) == column_name(key)) {
-            keys.push(key);
+/// The varied keys in the plan's order. Of several keys that share a column, only the first is given.
+pub(crate) fn varied_keys(content: &Content) -> Vec<(&Rule, &str)> {
+    let mut keys: Vec<(&Rule, &str)> = Vec::new();
+    for rule in content.all_rules() {
+        for key in &rule.keys {
+            if !keys.iter().any(|(_, other)| column_name(other) == column_name(key)) {
+                keys.push((rule, key));
+            }
         }
     }
     keys
 }
 
-fn key_column(key: &str) -> Column {
+/// The value of a varied key.
+fn of_key(key: &str) -> Column {
     let name = column_name(key);
-    let unit = unit_of(&name).to_owned();
     let of_plan = NOISE_KEYS.iter().chain(&PATH_KEYS).position(|other| *other == key);
     let description = match of_plan {
         Some(0) => "signal-to-noise ratio of the added noise".to_owned(),
@@ -391,7 +391,15 @@ fn key_column(key: &str) -> Column {
         ),
         None => format!("{key} of the scenario"),
     };
-    Column { name, unit, description, kind: ColumnKind::Key(key.to_owned()) }
+    let own_key = key.to_owned();
+    let own_name = name.clone();
+    let value = move |record: &Record| {
+        let values = &record.drawn.values;
+        let is_in_column = |other: &str| other == own_key || column_name(other) == own_name;
+        values.iter().find(|(other, _)| is_in_column(other)).map(|(_, value)| *value)
+    };
+    let column = Column::float64(&name, unit_of(&name), value).meaning(description);
+    column.about(Topic::Key(key.to_owned())).nullable()
 }
 
 /// Name of a varied key's column: without its section, unless that is a fault, a sensor or one of the plan's own.

@@ -1,4 +1,4 @@
-//! What a shard says about itself.
+//! Reading a shard: its metadata and some of its values.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -6,7 +6,7 @@ use std::io;
 use meshtone_io::table::{FoundColumn, FoundType, TableReader, into_io};
 use parquet::file::metadata::KeyValue;
 use parquet::file::reader::ChunkReader;
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
 
 const PLAN: &str = "meshtone.plan_sha256";
 const VERSION: &str = "meshtone.version";
@@ -15,59 +15,44 @@ const RECORDS: &str = "meshtone.records";
 const FAILURES: &str = "meshtone.failures";
 
 /// A record that could not be made.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FailedRecord {
-    /// Its number.
+    /// Number of the record.
     pub record: u64,
-    /// Why.
+    /// Why it could not be made.
     pub reason: String,
 }
 
-impl FailedRecord {
-    /// Reads one as manifests and shards have it.
-    pub(crate) fn from_json(value: &Value) -> Option<Self> {
-        Some(Self { record: value["record"].as_u64()?, reason: value["reason"].as_str()?.to_owned() })
-    }
-}
-
-/// What a shard says about itself.
+/// The metadata that a shard's file holds.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ShardMetadata {
     /// Hash of the plan.
     pub plan: String,
-    /// Its records, those that failed included.
+    /// The shard's records, including those that failed.
     pub records: std::ops::Range<u64>,
-    /// Those that failed.
+    /// The records that failed.
     pub failures: Vec<FailedRecord>,
 }
 
 impl ShardMetadata {
-    pub(super) fn key_values(&self) -> Vec<(String, String)> {
-        let failures: Vec<Value> = self
-            .failures
-            .iter()
-            .map(|failed| json!({ "record": failed.record, "reason": failed.reason }))
-            .collect();
-        [
+    pub(super) fn key_values(&self) -> io::Result<Vec<(String, String)>> {
+        let values = [
             (PLAN, self.plan.clone()),
             (VERSION, env!("CARGO_PKG_VERSION").to_owned()),
             (FIRST, self.records.start.to_string()),
             (RECORDS, (self.records.end - self.records.start).to_string()),
-            (FAILURES, Value::from(failures).to_string()),
-        ]
-        .map(|(key, value)| (key.to_owned(), value))
-        .to_vec()
+            (FAILURES, serde_json::to_string(&self.failures)?),
+        ];
+        Ok(values.map(|(key, value)| (key.to_owned(), value)).to_vec())
     }
 
     fn from_key_values(values: &[KeyValue]) -> Option<Self> {
-        let text = |key: &str| values.iter().find(|value| value.key == key)?.value.clone();
+        let text = |key: &str| values.iter().find(|value| value.key == key)?.value.as_deref();
         let first: u64 = text(FIRST)?.parse().ok()?;
-        let count: u64 = text(RECORDS)?.parse().ok()?;
-        let failures: Value = serde_json::from_str(&text(FAILURES)?).ok()?;
         Some(Self {
-            plan: text(PLAN)?,
-            records: first..first.checked_add(count)?,
-            failures: failures.as_array()?.iter().map(FailedRecord::from_json).collect::<Option<_>>()?,
+            plan: text(PLAN)?.to_owned(),
+            records: first..first.checked_add(text(RECORDS)?.parse().ok()?)?,
+            failures: serde_json::from_str(text(FAILURES)?).ok()?,
         })
     }
 }
@@ -76,7 +61,7 @@ impl ShardMetadata {
 pub(crate) struct ReadShard {
     pub metadata: ShardMetadata,
     pub rows: u64,
-    /// Its columns.
+    /// Names and types of the shard's columns.
     pub schema: Vec<FoundColumn>,
     numbers: BTreeMap<String, Vec<f64>>,
     texts: BTreeMap<String, Vec<String>>,
@@ -85,25 +70,23 @@ pub(crate) struct ReadShard {
 }
 
 impl ReadShard {
-    /// A column of numbers, NaN where a cell is empty; nothing where no such column was read.
+    /// A column of numbers. An empty cell is NaN; a column that was not read has no values.
     pub fn numbers(&self, name: &str) -> &[f64] {
         self.numbers.get(name).map_or(&[], Vec::as_slice)
     }
 
-    /// A column of text; nothing where no such column was read.
+    /// A column of text. A column that was not read has no values.
     pub fn texts(&self, name: &str) -> &[String] {
         self.texts.get(name).map_or(&[], Vec::as_slice)
     }
 }
 
-/// What is read of a shard besides what it says about itself.
+/// The values of a shard that are read in addition to its metadata.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Wanted<'n> {
-    /// No values.
-    Nothing,
-    /// Columns of numbers and text, those of them that there are.
+    /// Columns of numbers and text. A column that the shard lacks is skipped.
     Columns(&'n [&'n str]),
-    /// The signal of one row; those of a whole shard may be large.
+    /// The signal of one row: the signals of a whole shard may be large.
     Signal {
         /// Name of the column.
         column: &'n str,
@@ -112,7 +95,7 @@ pub(crate) enum Wanted<'n> {
     },
 }
 
-/// Reads what a shard says about itself, and some of its values.
+/// Reads the metadata of a shard and some of its values.
 ///
 /// # Arguments
 /// * `file` - the shard
@@ -132,7 +115,6 @@ pub(crate) fn read(file: impl ChunkReader + 'static, wanted: Wanted) -> io::Resu
     let schema = table.columns().to_vec();
     let mut read = ReadShard { metadata, rows, schema, numbers, texts, signal: Vec::new() };
     match wanted {
-        Wanted::Nothing => {}
         Wanted::Columns(names) => {
             for column in names.iter().filter_map(|name| table.column(name)) {
                 let name = column.name.clone();

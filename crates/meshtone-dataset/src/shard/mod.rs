@@ -1,15 +1,13 @@
 //! Shards: Parquet files of so many records each.
 //!
-//! One row a record. What belongs to the shard stands in the file's key-value metadata: the plan's hash, the range of
-//! records, and those that failed, with their reasons. A shard depends on the plan and its number alone, byte by byte.
+//! Each row is a record. The key-value metadata of the file hold the plan's hash, the range of records, and the records that failed
+//! with the reasons. All bytes of a shard depend only on the plan and the shard's number.
 
 mod columns;
 mod metadata;
-mod rows;
 mod write;
 
-pub(crate) use columns::{BETWEEN_CODES, WARNINGS, column_name};
-pub use columns::{Column, ColumnKind, columns};
+pub(crate) use columns::{BETWEEN_CODES, Column, Topic, WARNINGS, column_name, columns, varied_keys};
 pub use metadata::{FailedRecord, ShardMetadata};
 pub(crate) use metadata::{ReadShard, Wanted, read};
 pub(crate) use write::{Item, write};
@@ -18,9 +16,9 @@ use crate::draw::Sampler;
 use crate::plan::{MOST_SHARD_RECORDS, Plan};
 use crate::record::kept_bytes;
 
-/// (bytes) About how large a shard is, unless the plan says how many records it has.
+/// (bytes) Approximate size of a shard, unless the plan says how many records it has.
 const SHARD_BYTES: usize = 32 << 20;
-/// Records by which the size is estimated.
+/// Number of records from which the size is estimated.
 const ESTIMATED_BY: u64 = 32;
 
 /// How a plan's records are divided into shards.
@@ -47,7 +45,7 @@ impl Shards {
                 .collect();
             let mean = bytes.iter().sum::<usize>() / bytes.len().max(1);
             let fitting = (SHARD_BYTES / mean.max(1)).max(1) as u64;
-            // A power of two: round numbers of records are easier to think of.
+            // A power of two is a rounder number of records.
             (1 << fitting.ilog2()).clamp(1, MOST_SHARD_RECORDS)
         });
         Self { records, records_per_shard }
@@ -103,7 +101,7 @@ impl Shards {
         self.count() <= FOLDER_SHARDS
     }
 
-    /// What matches the names of all shards, and nothing else.
+    /// A pattern that matches the names of all shards and nothing else.
     pub fn pattern(&self) -> &'static str {
         if self.is_flat() { "data/*.parquet" } else { "data/*/*.parquet" }
     }

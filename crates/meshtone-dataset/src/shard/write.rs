@@ -9,23 +9,22 @@ use parquet::basic::{Compression, Encoding, ZstdLevel};
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::schema::types::ColumnPath;
 
-use super::rows::{Row, cells};
 use super::{Column, FailedRecord, ShardMetadata};
 use crate::plan::Content;
 use crate::record::Record;
 
-/// Higher levels hardly make the noise-like digits of a vibration smaller.
+/// Higher levels hardly compress the noise-like digits of a vibration better.
 const COMPRESSION_LEVEL: i32 = 1;
-/// (bytes) Of signals, that are gathered before they are compressed.
+/// (bytes) Size of the signals that are gathered before they are compressed.
 const GROUP_BYTES: usize = 8 << 20;
-/// Of the values in a page; pages of signals would be too small by default.
+/// (bytes) Size of a page; the default would make pages of signals too small.
 const PAGE_BYTES: usize = 1 << 20;
 
-/// What comes out of generating, in the order of the records.
+/// What the simulations give to the writer, in the order of the records.
 pub(crate) enum Item {
     /// A record.
     Record(Box<Record>),
-    /// What the next record would be like without its fault.
+    /// The next record's gears without the fault.
     HealthyTwin(Box<Record>),
     /// A record that could not be made.
     Failed(FailedRecord),
@@ -48,7 +47,7 @@ pub(crate) fn write(
 ) -> io::Result<ShardMetadata> {
     let properties = properties(columns).map_err(io::Error::other)?;
     let mut table = TableWriter::new(to, columns.iter().map(TableColumn::from).collect(), properties)?;
-    let mut rows = Vec::new();
+    let mut records = Vec::new();
     let mut bytes = 0;
     let mut twin: Option<Box<Record>> = None;
     let mut finished = metadata.records.start;
@@ -60,43 +59,43 @@ pub(crate) fn write(
                 continue;
             }
             Item::Failed(failed) => metadata.failures.push(failed),
-            Item::Record(record) => {
+            Item::Record(mut record) => {
                 let healthy = twin.take().filter(|twin| twin.drawn.index == record.drawn.index);
-                let index = record.drawn.index;
                 let is_faulty = !content.classes[record.drawn.class].faults.is_empty();
                 match enhanced(content.tuned.as_ref(), &record, healthy.as_deref(), is_faulty) {
                     Ok(enhanced) => {
-                        let row = Row { record, enhanced };
-                        bytes += row.bytes();
-                        rows.push(row);
+                        record.enhanced = enhanced;
+                        bytes += record.signal_bytes();
+                        records.push(*record);
                     }
-                    Err(reason) => metadata.failures.push(FailedRecord { record: index, reason }),
+                    Err(reason) => {
+                        metadata.failures.push(FailedRecord { record: record.drawn.index, reason });
+                    }
                 }
             }
         }
         finished += 1;
         if bytes >= GROUP_BYTES {
-            write_group(&mut table, content, columns, &mut rows)?;
+            write_group(&mut table, columns, &mut records)?;
             bytes = 0;
         }
     }
-    write_group(&mut table, content, columns, &mut rows)?;
-    table.add_metadata(metadata.key_values());
+    write_group(&mut table, columns, &mut records)?;
+    table.add_metadata(metadata.key_values()?);
     table.close()?;
     Ok(metadata)
 }
 
 fn write_group(
     table: &mut TableWriter<impl Write + Send>,
-    content: &Content,
     columns: &[Column],
-    rows: &mut Vec<Row>,
+    records: &mut Vec<Record>,
 ) -> io::Result<()> {
-    if rows.is_empty() {
+    if records.is_empty() {
         return Ok(());
     }
-    table.write_rows(columns.iter().map(|column| cells(column, rows, content)).collect())?;
-    rows.clear();
+    table.write_rows(columns.iter().map(|column| column.cells(records)).collect())?;
+    records.clear();
     Ok(())
 }
 
@@ -105,8 +104,8 @@ fn properties(columns: &[Column]) -> Result<WriterProperties, parquet::errors::P
         .set_compression(Compression::ZSTD(ZstdLevel::try_new(COMPRESSION_LEVEL)?))
         .set_statistics_enabled(EnabledStatistics::Chunk)
         .set_data_page_size_limit(PAGE_BYTES);
-    for column in columns.iter().filter(|column| column.kind.is_signal()) {
-        // Hardly a number occurs twice, but signs and exponents resemble each other.
+    for column in columns.iter().filter(|column| column.is_signal()) {
+        // Hardly any number occurs twice, but signs and exponents are similar.
         let path = ColumnPath::new(TableColumn::list_path(&column.name));
         builder = builder
             .set_column_dictionary_enabled(path.clone(), false)

@@ -7,39 +7,26 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use meshtone_io::atomic_file;
-use meshtone_io::own_file::{self, Claim, PREFIX};
+use meshtone_io::own_file::{self, PREFIX};
 
-use super::{Claimed, Place};
+use super::Place;
 use crate::part_list;
 use crate::shard::{self, ReadShard, Wanted};
 
 /// A directory, which need not exist.
 #[derive(Debug)]
 pub(super) struct Directory {
-    path: PathBuf,
-}
-
-impl Directory {
-    pub fn new(path: PathBuf) -> Self {
-        Self { path }
-    }
+    pub path: PathBuf,
 }
 
 impl Place for Directory {
     /// Unfinished files are left out.
-    fn files(&self) -> io::Result<BTreeMap<String, u64>> {
-        let mut files = BTreeMap::new();
-        if self.path.exists() {
-            collect(&self.path, "", &mut files)?;
-        }
-        Ok(files)
-    }
-
-    fn files_in(&self, folder: &str) -> io::Result<BTreeMap<String, u64>> {
+    fn files(&self, folder: &str) -> io::Result<BTreeMap<String, u64>> {
         let mut files = BTreeMap::new();
         let path = self.path.join(folder);
         if path.exists() {
-            collect(&path, &format!("{folder}/"), &mut files)?;
+            let before = if folder.is_empty() { String::new() } else { format!("{folder}/") };
+            collect(&path, &before, &mut files)?;
         }
         Ok(files)
     }
@@ -60,7 +47,7 @@ impl Place for Directory {
         atomic_file::write_atomically(&path, content).map_err(|error| error.source)
     }
 
-    /// A folder of the data set that it leaves empty goes with it.
+    /// Removes the file, and its folder of the data set if that is then empty.
     fn remove(&self, name: &str) -> io::Result<()> {
         let path = self.path.join(name);
         fs::remove_file(&path)?;
@@ -72,26 +59,6 @@ impl Place for Directory {
 
     fn name_of(&self, name: &str) -> String {
         self.path.join(name).display().to_string()
-    }
-
-    fn claim(&self, what: &str) -> io::Result<Option<Claimed>> {
-        Ok(Claim::take(&self.path, what)?.map(|claim| Claimed { _claim: Some(claim) }))
-    }
-
-    fn remove_leftovers(&self) {
-        remove_leftovers(&self.path, "");
-    }
-
-    fn check_writable(&self) -> io::Result<()> {
-        if self.path.exists() && !self.path.is_dir() {
-            return Err(io::Error::new(io::ErrorKind::NotADirectory, "it is a file"));
-        }
-        own_file::create_directories(&self.path)?;
-        atomic_file::check_writable(&self.path).map_err(|error| error.source)
-    }
-
-    fn path(&self) -> Option<&Path> {
-        Some(&self.path)
     }
 }
 
@@ -121,12 +88,12 @@ fn collect(directory: &Path, before: &str, files: &mut BTreeMap<String, u64>) ->
         if is_own_folder(before, &name) && entry.file_type()?.is_dir() {
             collect(&entry.path(), &format!("{before}{name}/"), files)?;
         } else if !name.starts_with(PREFIX) {
-            // Of the entry itself, as a look by the whole path takes longer; only a link leads elsewhere.
+            // The entry's own metadata is faster to get than that of its path; only a link needs the latter.
             let is_link = entry.file_type()?.is_symlink();
             let metadata = if is_link { fs::metadata(entry.path()) } else { entry.metadata() };
             match metadata {
                 Ok(metadata) => drop(files.insert(format!("{before}{name}"), metadata.len())),
-                // Another part has just removed it.
+                // Another part has just removed the file.
                 Err(error) if error.kind() == io::ErrorKind::NotFound => {}
                 Err(error) => return Err(error),
             }
@@ -135,10 +102,23 @@ fn collect(directory: &Path, before: &str, files: &mut BTreeMap<String, u64>) ->
     Ok(())
 }
 
-/// In all folders of a data set.
-fn remove_leftovers(directory: &Path, before: &str) {
+/// Creates a directory, unless it exists, and checks that files can be written to it.
+pub(super) fn check_writable(path: &Path) -> io::Result<()> {
+    if path.exists() && !path.is_dir() {
+        return Err(io::Error::new(io::ErrorKind::NotADirectory, "it is a file"));
+    }
+    own_file::create_directories(path)?;
+    atomic_file::check_writable(path).map_err(|error| error.source)
+}
+
+/// Removes unfinished files from all folders of a data set.
+///
+/// # Arguments
+/// * `directory` - the folder
+/// * `before` - its name from the data set's directory, with a `/` at its end; empty for that directory
+pub(super) fn remove_leftovers(directory: &Path, before: &str) {
     own_file::remove_leftovers(directory);
-    // Only these have folders in them; the others may hold a thousand files each.
+    // Only these folders have folders in them; the others may hold a thousand files each.
     if !before.is_empty() && before.strip_suffix('/') != Some(shard::FOLDER) {
         return;
     }

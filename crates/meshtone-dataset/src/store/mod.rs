@@ -1,7 +1,7 @@
 //! Where a data set is written to: a directory, or an object store (feature `objects`).
 //!
-//! Everything appears whole or not at all. In a directory a file is written under another name beside its place and renamed; an
-//! object store shows an object once it is complete.
+//! Every file appears whole or not at all. In a directory, a file is written under a temporary name and then renamed. An object store
+//! shows an object once it is complete.
 
 mod directory;
 mod file_url;
@@ -23,67 +23,49 @@ use crate::digest::{Digest, Hashing};
 use crate::error::DatasetError;
 use crate::shard::{ReadShard, Wanted};
 use directory::Directory;
+#[cfg(feature = "objects")]
+use object::Objects;
 
 /// Where a data set is written to.
 #[derive(Debug, Clone)]
 pub struct Destination {
     place: Arc<dyn Place>,
+    /// The directory, if the place is one.
+    directory: Option<PathBuf>,
 }
 
-/// Holds files by their names, with `/` between folders. It shows itself as users name it.
+/// Files by their names, with `/` between folders. A place is displayed as users name it.
 trait Place: fmt::Debug + fmt::Display + Send + Sync {
-    /// The names of all files with their sizes in bytes; none where the place does not exist.
-    fn files(&self) -> io::Result<BTreeMap<String, u64>>;
-
-    /// Those of one of the data set's folders.
-    fn files_in(&self, folder: &str) -> io::Result<BTreeMap<String, u64>> {
-        let mut files = self.files()?;
-        files.retain(|name, _| name.strip_prefix(folder).is_some_and(|rest| rest.starts_with('/')));
-        Ok(files)
-    }
+    /// The names of all files in a folder with their sizes in bytes; none where the folder does not exist.
+    ///
+    /// # Arguments
+    /// * `folder` - a folder of the data set; empty for the data set's own directory, with all folders
+    fn files(&self, folder: &str) -> io::Result<BTreeMap<String, u64>>;
 
     /// Reads a file from its start.
     fn open(&self, name: &str) -> io::Result<Box<dyn Read + '_>>;
 
-    /// Reads some of a shard.
+    /// Reads some values of a shard.
     fn shard(&self, name: &str, wanted: Wanted) -> io::Result<ReadShard>;
 
-    /// Writes a file that appears whole or not at all; its content is written once.
+    /// Writes a file that appears whole or not at all. `content` is called once.
     fn write(&self, name: &str, content: &mut dyn FnMut(&mut File) -> io::Result<()>) -> io::Result<()>;
 
     /// Removes a file.
     fn remove(&self, name: &str) -> io::Result<()>;
 
-    /// A file's name for messages.
+    /// The name of a file for messages.
     fn name_of(&self, name: &str) -> String;
-
-    /// Has something of the place for this program alone; none where another program has it. An object store knows no such thing.
-    fn claim(&self, _what: &str) -> io::Result<Option<Claimed>> {
-        Ok(Some(Claimed { _claim: None }))
-    }
-
-    /// Removes what killed runs have left behind.
-    fn remove_leftovers(&self) {}
-
-    /// Whether files can be written.
-    fn check_writable(&self) -> io::Result<()> {
-        Ok(())
-    }
-
-    /// The directory, where it is one.
-    fn path(&self) -> Option<&Path> {
-        None
-    }
 }
 
-/// Something of a place that this program has for itself, as far as the place knows of such.
+/// Something of a place that this program has for itself until it is dropped. An object store has no claims.
 #[derive(Debug)]
-#[must_use = "dropped, it is anybody's"]
+#[must_use = "a claim ends when it is dropped"]
 pub(crate) struct Claimed {
     _claim: Option<Claim>,
 }
 
-/// (bytes) What is read at once of a file that is hashed.
+/// (bytes) Size of the blocks in which a file is read to be hashed.
 const READ_BYTES: usize = 1 << 20;
 
 const HELP: &str = "name a directory or a URL such as file:///data/gears or s3://bucket/gears";
@@ -94,7 +76,8 @@ impl Destination {
     /// # Arguments
     /// * `path` - the directory
     pub fn directory(path: impl Into<PathBuf>) -> Self {
-        Self { place: Arc::new(Directory::new(path.into())) }
+        let path = path.into();
+        Self { place: Arc::new(Directory { path: path.clone() }), directory: Some(path) }
     }
 
     /// A place in an object store.
@@ -104,7 +87,8 @@ impl Destination {
     /// * `prefix` - what the names of all objects begin with; empty for none
     #[cfg(feature = "objects")]
     pub fn objects(store: Arc<dyn object_store::ObjectStore>, prefix: &str) -> Self {
-        Self { place: Arc::new(object::Objects::new(store, prefix.into())) }
+        let prefix = prefix.into();
+        Self { place: Arc::new(Objects { store, prefix }), directory: None }
     }
 
     /// A directory's name or a URL: `file:`, and with the feature `cloud` `s3:`, `gs:`, `az:` and `https:`.
@@ -116,7 +100,7 @@ impl Destination {
     /// such as `AWS_ACCESS_KEY_ID` and `AWS_ENDPOINT`.
     ///
     /// # Errors
-    /// A URL that is none, or of a kind that this build does not know.
+    /// The text is not a URL, or one of a kind that this build does not know.
     ///
     /// ```
     /// use meshtone_dataset::store::Destination;
@@ -145,7 +129,9 @@ impl Destination {
         let parsed = url::Url::parse(url)
             .map_err(|error| DatasetError::refused(format!("{url} is no URL: {error}"), HELP))?;
         match object_store::parse_url_opts(&parsed, std::env::vars()) {
-            Ok((store, prefix)) => Ok(Self { place: Arc::new(object::Objects::new(store.into(), prefix)) }),
+            Ok((store, prefix)) => {
+                Ok(Self { place: Arc::new(Objects { store: store.into(), prefix }), directory: None })
+            }
             Err(error) if cfg!(feature = "cloud") => {
                 Err(DatasetError::refused(format!("cannot write to {url}: {error}"), HELP))
             }
@@ -158,18 +144,18 @@ impl Destination {
         Err(without_cloud(url))
     }
 
-    /// All that is there: names from the data set's own directory, with `/` between folders, and sizes in bytes; nothing where the
-    /// place does not exist.
+    /// All files that are there: names from the data set's own directory, with `/` between folders, and sizes in bytes. There are none
+    /// where the place does not exist.
     pub(crate) fn files(&self) -> Result<BTreeMap<String, u64>, DatasetError> {
-        self.place.files().map_err(DatasetError::read(self.to_string()))
+        self.files_in("")
     }
 
-    /// As [`Self::files`], of one of the data set's folders.
+    /// The files of one of the data set's folders, as [`Self::files`] gives them.
     pub(crate) fn files_in(&self, folder: &str) -> Result<BTreeMap<String, u64>, DatasetError> {
-        self.place.files_in(folder).map_err(DatasetError::read(self.to_string()))
+        self.place.files(folder).map_err(DatasetError::read(self.to_string()))
     }
 
-    /// Whether there is a file of a name.
+    /// Whether there is a file with a name.
     pub(crate) fn has(&self, name: &str) -> Result<bool, DatasetError> {
         match self.place.open(name) {
             Ok(_) => Ok(true),
@@ -180,17 +166,22 @@ impl Destination {
         }
     }
 
-    /// The content of a small file; none where there is none. What is no text any more is replaced, and fails its seal.
-    pub(crate) fn text(&self, name: &str) -> Result<Option<String>, DatasetError> {
+    /// The content of a small file; none where there is no such file.
+    fn bytes(&self, name: &str) -> Result<Option<Vec<u8>>, DatasetError> {
         let mut content = Vec::new();
         match self.place.open(name).and_then(|mut file| file.read_to_end(&mut content)) {
-            Ok(_) => Ok(Some(String::from_utf8_lossy(&content).into_owned())),
+            Ok(_) => Ok(Some(content)),
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
             Err(error) => Err(DatasetError::read(self.place.name_of(name))(error)),
         }
     }
 
-    /// What a shard says about itself and some of its values, or why it cannot be read.
+    /// The content of a small file as text; none where there is no such file. Damaged text is replaced, and its seal does not fit.
+    pub(crate) fn text(&self, name: &str) -> Result<Option<String>, DatasetError> {
+        Ok(self.bytes(name)?.map(|content| String::from_utf8_lossy(&content).into_owned()))
+    }
+
+    /// Reads the metadata of a shard and some of its values.
     pub(crate) fn read_shard(&self, name: &str, wanted: Wanted) -> io::Result<ReadShard> {
         self.place.shard(name, wanted)
     }
@@ -221,12 +212,17 @@ impl Destination {
             .map_err(DatasetError::write(self.place.name_of(name)))
     }
 
+    /// Writes a small file, unless a file with the same content is there.
+    pub(crate) fn write_unless_there(&self, name: &str, bytes: &[u8]) -> Result<(), DatasetError> {
+        if self.bytes(name)?.as_deref() == Some(bytes) { Ok(()) } else { self.write_bytes(name, bytes) }
+    }
+
     /// Writes a small file.
     pub(crate) fn write_bytes(&self, name: &str, bytes: &[u8]) -> Result<(), DatasetError> {
         self.write(name, |file| file.write_all(bytes))
     }
 
-    /// Takes over a file of another place, if it has the digest that it should have. Returns whether it has.
+    /// Copies a file from another place if it has the expected digest. Returns whether it has.
     pub(crate) fn take_over(&self, other: &Self, name: &str, digest: &Digest) -> Result<bool, DatasetError> {
         let mut reader = other.place.open(name).map_err(DatasetError::read(other.place.name_of(name)))?;
         let mut differs = false;
@@ -234,18 +230,18 @@ impl Destination {
             let mut hashing = Hashing::new(file);
             io::copy(&mut BufReader::with_capacity(READ_BYTES, &mut reader), &mut hashing)?;
             differs = hashing.digest() != *digest;
-            // An error keeps the file from being named.
+            // After an error, the file does not get its name.
             if differs { Err(io::Error::other("it is damaged")) } else { Ok(()) }
         });
         if differs { Ok(false) } else { written.map(|()| true) }
     }
 
-    /// A file's name for messages.
+    /// The name of a file for messages.
     pub(crate) fn name_of(&self, name: &str) -> String {
         self.place.name_of(name)
     }
 
-    /// Removes a file; none is there afterwards.
+    /// Removes a file if it is there.
     pub(crate) fn remove(&self, name: &str) -> Result<(), DatasetError> {
         match self.place.remove(name) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => {
@@ -255,29 +251,34 @@ impl Destination {
         }
     }
 
-    /// Has something of the place for this program alone.
+    /// Claims something of the place for this program alone.
     ///
     /// # Arguments
     /// * `what` - a word for it
-    /// * `in_words` - what another program does that has it
+    /// * `in_words` - what another program does that has claimed it
     pub(crate) fn claim(&self, what: &str, in_words: &str) -> Result<Claimed, DatasetError> {
-        let claimed = self.place.claim(what).map_err(DatasetError::write(self.to_string()))?;
-        claimed.ok_or_else(|| DatasetError::Busy { place: self.to_string(), doing: in_words.to_owned() })
+        let Some(path) = self.path() else { return Ok(Claimed { _claim: None }) };
+        let claim = Claim::take(path, what).map_err(DatasetError::write(self.to_string()))?;
+        let busy = || DatasetError::Busy { place: self.to_string(), doing: in_words.to_owned() };
+        Ok(Claimed { _claim: Some(claim.ok_or_else(busy)?) })
     }
 
     /// Removes what killed runs have left behind.
     pub(crate) fn remove_leftovers(&self) {
-        self.place.remove_leftovers();
+        if let Some(path) = self.path() {
+            directory::remove_leftovers(path, "");
+        }
     }
 
-    /// Whether files can be written there. A directory that does not exist is created for it.
+    /// Checks that files can be written. A directory that does not exist is created.
     pub(crate) fn check_writable(&self) -> Result<(), DatasetError> {
-        self.place.check_writable().map_err(DatasetError::write(self.to_string()))
+        let checked = self.path().map_or(Ok(()), directory::check_writable);
+        checked.map_err(DatasetError::write(self.to_string()))
     }
 
-    /// The directory, where it is one.
+    /// The directory, if the place is one.
     pub fn path(&self) -> Option<&Path> {
-        self.place.path()
+        self.directory.as_deref()
     }
 }
 

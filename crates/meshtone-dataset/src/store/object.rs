@@ -15,29 +15,26 @@ use super::Place;
 use super::remote_file::RemoteFile;
 use crate::shard::{self, ReadShard, Wanted};
 
-/// (bytes) Larger objects are uploaded in parts of this size.
+/// (bytes) Objects that are larger are uploaded in parts of this size.
 const PART_BYTES: u64 = 8 << 20;
 
-/// Objects whose names begin alike.
+/// The objects of a store whose names begin with a prefix.
 #[derive(Debug)]
 pub(super) struct Objects {
-    store: Arc<dyn ObjectStore>,
-    prefix: Path,
+    pub store: Arc<dyn ObjectStore>,
+    pub prefix: Path,
 }
 
 impl Objects {
-    pub fn new(store: Arc<dyn ObjectStore>, prefix: Path) -> Self {
-        Self { store, prefix }
-    }
-
     fn location(&self, name: &str) -> Path {
-        name.split('/').fold(self.prefix.clone(), |path, part| path.join(part))
+        let parts = name.split('/').filter(|part| !part.is_empty());
+        parts.fold(self.prefix.clone(), |path, part| path.join(part))
     }
 
     fn file(&self, name: &str) -> io::Result<RemoteFile> {
         let path = self.location(name);
         let length = wait(async { Ok(self.store.head(&path).await?.size) })?;
-        Ok(RemoteFile { store: self.store.clone(), path, length })
+        Ok(RemoteFile { store: self.store.clone(), path, length, position: 0 })
     }
 
     fn upload_parts(&self, path: &Path, file: File) -> io::Result<()> {
@@ -53,7 +50,7 @@ impl Objects {
             }
         })();
         if sent.is_err() {
-            // Parts that stay behind cost money; where even this fails, the store removes them in time.
+            // Parts that stay behind cost money. If aborting fails too, the store removes them after some time.
             let _ = wait(upload.abort());
         }
         sent
@@ -61,9 +58,10 @@ impl Objects {
 }
 
 impl Place for Objects {
-    fn files(&self) -> io::Result<BTreeMap<String, u64>> {
+    fn files(&self, folder: &str) -> io::Result<BTreeMap<String, u64>> {
+        let folder = self.location(folder);
         wait(async {
-            let mut listed = self.store.list(Some(&self.prefix));
+            let mut listed = self.store.list(Some(&folder));
             let mut files = BTreeMap::new();
             while let Some(object) = listed.next().await {
                 let object = object?;
@@ -77,15 +75,14 @@ impl Place for Objects {
     }
 
     fn open(&self, name: &str) -> io::Result<Box<dyn Read + '_>> {
-        Ok(Box::new(self.file(name)?.reader(0)))
+        Ok(Box::new(self.file(name)?))
     }
 
     fn shard(&self, name: &str, wanted: Wanted) -> io::Result<ReadShard> {
         shard::read(self.file(name)?, wanted)
     }
 
-    /// Writes to a file without a name on this machine first, so that an object is as large as it wants without being held in
-    /// memory, and then uploads it.
+    /// Writes to a temporary file on this machine first and then uploads it, so that large objects need not be held in memory.
     fn write(&self, name: &str, content: &mut dyn FnMut(&mut File) -> io::Result<()>) -> io::Result<()> {
         let mut file = tempfile::tempfile()?;
         content(&mut file)?;

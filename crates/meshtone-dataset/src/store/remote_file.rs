@@ -9,24 +9,22 @@ use parquet::file::reader::{ChunkReader, Length};
 
 use super::object::wait;
 
-/// (bytes) What is fetched at once.
+/// (bytes) Largest size of a request.
 const FETCHED: u64 = 1 << 20;
 
-/// An object of known length.
+/// An object of known length, which is read from its start or from another position to its end.
+#[derive(Clone)]
 pub(super) struct RemoteFile {
     pub store: Arc<dyn ObjectStore>,
     pub path: Path,
     pub length: u64,
+    /// (bytes) Position from which the object is read.
+    pub position: u64,
 }
 
 impl RemoteFile {
-    /// Reads from a place to the end.
-    pub fn reader(&self, start: u64) -> RemoteReader {
-        RemoteReader { store: self.store.clone(), path: self.path.clone(), length: self.length, place: start }
-    }
-
-    fn bytes(&self, start: u64, length: usize) -> io::Result<bytes::Bytes> {
-        let end = start.saturating_add(length as u64).min(self.length);
+    fn fetch(&self, start: u64, length: u64) -> io::Result<bytes::Bytes> {
+        let end = start.saturating_add(length).min(self.length);
         wait(self.store.get_range(&self.path, start..end))
     }
 }
@@ -38,34 +36,25 @@ impl Length for RemoteFile {
 }
 
 impl ChunkReader for RemoteFile {
-    type T = BufReader<RemoteReader>;
+    type T = BufReader<Self>;
 
     fn get_read(&self, start: u64) -> parquet::errors::Result<Self::T> {
-        Ok(BufReader::with_capacity(FETCHED as usize, self.reader(start)))
+        Ok(BufReader::with_capacity(FETCHED as usize, Self { position: start, ..self.clone() }))
     }
 
     fn get_bytes(&self, start: u64, length: usize) -> parquet::errors::Result<bytes::Bytes> {
-        Ok(self.bytes(start, length)?)
+        Ok(self.fetch(start, length as u64)?)
     }
 }
 
-/// Reads an object from its start to its end.
-pub(super) struct RemoteReader {
-    store: Arc<dyn ObjectStore>,
-    path: Path,
-    length: u64,
-    place: u64,
-}
-
-impl Read for RemoteReader {
+impl Read for RemoteFile {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let end = (self.place + (buffer.len() as u64).min(FETCHED)).min(self.length);
-        if end <= self.place {
+        if self.position >= self.length || buffer.is_empty() {
             return Ok(0);
         }
-        let bytes = wait(self.store.get_range(&self.path, self.place..end))?;
+        let bytes = self.fetch(self.position, (buffer.len() as u64).min(FETCHED))?;
         buffer[..bytes.len()].copy_from_slice(&bytes);
-        self.place += bytes.len() as u64;
+        self.position += bytes.len() as u64;
         Ok(bytes.len())
     }
 }

@@ -458,7 +458,7 @@ fn a_fluctuating_speed_is_followed() {
 
 #[test]
 fn only_what_is_wanted_is_kept() {
-    let keep = "[keep]\nchannels = [\"axial\"]\nduration_s = 0.25\naverage = false\nindicators = false";
+    let keep = "[keep]\nchannels = [\"axial_g\"]\nduration_s = 0.25\naverage = false\nindicators = false";
     let made = made(&plan(&FAST.replace("[keep]", keep)));
     let names: Vec<String> = made.rows[0].get_column_iter().map(|(name, _)| name.clone()).collect();
     assert!(names.contains(&"difference_g".to_owned()) && names.contains(&"axial_g".to_owned()));
@@ -764,7 +764,7 @@ fn runs_to_failure_and_ripples_of_paths_are_written() {
         run.sort_by(|a, b| a[0].total_cmp(&b[0]));
         assert_eq!(run.len(), 3);
         assert!(run.windows(2).all(|pair| pair[0][1] > pair[1][1] && pair[0][3] < pair[1][3]), "{run:?}");
-        // Age and what is left are the run's observed life, the same of all its records: all of the life, or less where it was stopped.
+        // The age and what is left are the run's observed life, the same of all its records: all of the life, or less where it was stopped.
         let life = run[0][0] + run[0][1];
         assert!(run.iter().all(|[age, left, censored, _]| {
             (age + left - life).abs() < 1e-6 * life && *censored == run[0][2]

@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use meshtone::Stages;
-use meshtone::mesh::Mesh;
 use serde_json::{Value, json};
 
 use crate::packet::Packet;
@@ -33,25 +32,29 @@ pub struct MeshCycle {
 }
 
 impl MeshCycle {
-    /// The mesh of a simulation.
+    /// The first mesh of a simulation.
     ///
     /// # Arguments
     /// * `stages` - what is simulated
     pub fn new(stages: &Stages) -> Self {
-        let per_pitch = stages.mesh.points_per_pitch().max(1);
+        let curve = stages.mesh_curves().into_iter().next();
+        let per_pitch = curve.as_ref().map_or(1, |curve| curve.points_per_pitch.max(1));
+        let (mesh, healthy) = curve.map_or_else(Default::default, |curve| {
+            (curve.stiffness_n_per_mm, curve.healthy_stiffness_n_per_mm)
+        });
         let stride = per_pitch.div_ceil(STIFFNESS_POINTS);
         let every = |values: Vec<f64>| values.into_iter().step_by(stride).collect();
         let shown = shown(stages);
         let stride_of_forces = per_pitch.div_ceil(FORCE_POINTS);
+        let pairs = stages.pair_forces_n(shown.clone()).into_iter();
         Self {
             stiffness_step: stride as f64 / per_pitch as f64,
-            stiffness_n_per_mm: every(stages.mesh.stiffness_n_per_mm()),
-            healthy_n_per_mm: every(stages.mesh.healthy_stiffness_n_per_mm()),
+            stiffness_n_per_mm: every(mesh),
+            healthy_n_per_mm: every(healthy),
             forces_from: shown.start as f64,
             forces_step: stride_of_forces as f64 / per_pitch as f64,
-            pairs: pair_forces(stages, &shown)
-                .into_iter()
-                .map(|(pair, force)| (pair, force.into_iter().step_by(stride_of_forces).collect()))
+            pairs: pairs
+                .map(|(pair, force_n)| (pair, force_n.into_iter().step_by(stride_of_forces).collect()))
                 .collect(),
         }
     }
@@ -76,48 +79,6 @@ impl MeshCycle {
 fn shown(stages: &Stages) -> Range<i64> {
     let first = stages.damaged.iter().map(|tooth| tooth.first_tooth() as i64).min().unwrap_or(0);
     first + SHOWN.start..first + SHOWN.end
-}
-
-/// (N) Forces of the pairs in contact, at every point of some pitches.
-fn pair_forces(stages: &Stages, pitches: &Range<i64>) -> Vec<(i64, Vec<f64>)> {
-    match &stages.mesh {
-        Mesh::Contact(mesh) => {
-            // What comes before the first pair is the end of the cycle.
-            let cycle = mesh.sequence.cycle() as i64;
-            let at_rest = mesh.at_rest(
-                stages.static_force_n(),
-                (pitches.start + cycle) as usize..(pitches.end + cycle) as usize,
-            );
-            let numbered = at_rest.pair_force_n.into_iter().enumerate();
-            let pair = |(row, force)| (at_rest.first_pair + row as i64 - cycle, force);
-            numbered
-                .map(pair)
-                .filter(|(_, force): &(i64, Vec<f64>)| force.iter().any(|&force| force > 0.0))
-                .collect()
-        }
-        Mesh::Pairs(mesh) => {
-            let per_pitch = mesh.points_per_pitch as i64;
-            let points = pitches.start * per_pitch..pitches.end * per_pitch;
-            let stiffness = |pair: i64, point: i64| {
-                let since = usize::try_from(point - pair * per_pitch).ok();
-                let table = &mesh.classes[mesh.sequence.class(pair)].stiffness_n_per_m;
-                since.and_then(|since| table.get(since)).copied().unwrap_or(0.0)
-            };
-            let oldest = pitches.start - (mesh.contact_points() as i64).div_euclid(per_pitch);
-            let pairs = oldest..pitches.end;
-            let whole: Vec<f64> =
-                points.clone().map(|point| pairs.clone().map(|pair| stiffness(pair, point)).sum()).collect();
-            let force_n = stages.static_force_n();
-            let share = |pair: i64| {
-                let of_point = |(point, whole): (i64, &f64)| {
-                    if *whole > 0.0 { force_n * stiffness(pair, point) / whole } else { 0.0 }
-                };
-                points.clone().zip(&whole).map(of_point).collect()
-            };
-            pairs.clone().map(|pair| (pair, share(pair))).collect()
-        }
-        _ => Vec::new(),
-    }
 }
 
 #[cfg(test)]

@@ -208,13 +208,12 @@ fn figures(simulation: &Simulation) -> Vec<(&'static str, f64, &'static str)> {
     // Rigid rotation has none.
     let lowest = frequencies.into_iter().find(|&frequency| frequency > 1.0);
     let largest = channels.mesh_force_n.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let mut figures = vec![
-        ("contact ratio", stages.teeth.path.contact_ratio, ""),
-        ("mesh frequency", mesh_hz, "Hz"),
-        ("mean mesh stiffness", stages.mesh.mean_stiffness_n_per_mm(), "N/mm"),
-        ("static mesh force", stages.static_force_n(), "N"),
-        ("largest mesh force", largest, "N"),
-    ];
+    let mut figures =
+        vec![("contact ratio", stages.teeth.path.contact_ratio, ""), ("mesh frequency", mesh_hz, "Hz")];
+    let curves = stages.mesh_curves().into_iter();
+    figures.extend(curves.map(|curve| ("mean mesh stiffness", curve.mean_stiffness_n_per_mm, "N/mm")));
+    figures
+        .extend([("static mesh force", stages.static_force_n(), "N"), ("largest mesh force", largest, "N")]);
     figures.extend(
         simulation
             .contact_figures()

@@ -1,7 +1,7 @@
 //! The teeth of both wheels in their plane, and where they touch.
 
 use meshtone::Stages;
-use meshtone::damage::{DamageDescription, DamagedTooth};
+use meshtone::damage::{DamagedTooth, ToothPart};
 use meshtone::wheel::{ToothProfile, Wheel, WheelName};
 use serde_json::{Value, json};
 
@@ -140,10 +140,8 @@ impl DamagedInPlane {
     fn new(tooth: &DamagedTooth, profile: &ToothProfile, points: &[usize]) -> Self {
         let last = profile.len() - 1;
         let x_mm = |index: usize| profile.x_mm[index.min(last)];
-        let chip_x_mm = tooth.descriptions.iter().find_map(|damage| match damage {
-            DamageDescription::ToothBreakage { chip_start_index, .. } => Some(x_mm(*chip_start_index)),
-            _ => None,
-        });
+        let chip =
+            tooth.descriptions.iter().find(|damage| damage.part == ToothPart::Tip && damage.is_partial);
         let crack_mm = tooth.crack.map(|crack| {
             let (tip_x_mm, tip_y_mm) = crack.tip_mm();
             [[crack.start_x_mm, crack.start_y_mm], [tip_x_mm, tip_y_mm]]
@@ -152,7 +150,7 @@ impl DamagedInPlane {
             numbers: tooth.teeth.iter().map(|index| index + 1).collect(),
             flank_y_mm: at(&tooth.outline_y_mm(), points),
             end_x_mm: x_mm(tooth.gone_from_index),
-            chip_x_mm,
+            chip_x_mm: chip.map(|chip| x_mm(chip.range[0])),
             crack_mm,
         }
     }

@@ -1,4 +1,4 @@
-//! Who may ask: the page itself, by its own address, and nobody else's page.
+//! The guard that answers only the page itself, at its own address.
 
 use std::sync::Arc;
 
@@ -11,13 +11,13 @@ use axum::response::{IntoResponse, Response};
 
 use super::Embedding;
 
-/// What is refused, before anything is read of it.
+/// Refuses requests before anything is read of them.
 #[derive(Debug, Clone)]
 pub(super) struct Guard(Arc<Rules>);
 
 #[derive(Debug)]
 struct Rules {
-    /// What a request may call this machine.
+    /// Names by which a request may call this machine.
     hosts: [String; 2],
     /// The first part of every path.
     token: String,

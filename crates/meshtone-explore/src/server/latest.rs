@@ -1,4 +1,4 @@
-//! Which request of a page is its newest: older ones are dropped.
+//! The newest request of each page: older ones are dropped.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -7,22 +7,22 @@ use std::time::{Duration, Instant};
 
 /// Pages and purposes that are remembered; the one asked longest ago is forgotten first.
 const MOST_REMEMBERED: usize = 64;
-/// How long an answer may take.
+/// Longest time of an answer.
 const MOST_TIME: Duration = Duration::from_secs(60);
 
 /// The newest request of each page, for each purpose.
 #[derive(Debug, Default)]
-pub(super) struct Latest {
+pub(super) struct NewestRequests {
     numbers: Mutex<VecDeque<(String, Arc<AtomicU64>)>>,
 }
 
-impl Latest {
+impl NewestRequests {
     /// Notes a request.
     ///
     /// # Arguments
     /// * `asker` - which page, and for what
     /// * `number` - the request's; later ones are higher
-    pub(super) fn note(&self, asker: &str, number: u64) -> Turn {
+    pub(super) fn note(&self, asker: &str, number: u64) -> RequestTurn {
         let mut numbers = self.numbers.lock().unwrap_or_else(PoisonError::into_inner);
         let known = numbers.iter().position(|(name, _)| name == asker);
         let entry =
@@ -33,33 +33,33 @@ impl Latest {
             numbers.pop_front();
         }
         latest.fetch_max(number, Ordering::Relaxed);
-        Turn { number, latest, abandoned: Arc::default(), until: Instant::now() + MOST_TIME }
+        RequestTurn { number, latest, abandoned: Arc::default(), until: Instant::now() + MOST_TIME }
     }
 }
 
 /// A request's turn: until a later one comes, nobody waits for it any more, or it has taken too long.
 #[derive(Debug, Clone)]
-pub(super) struct Turn {
+pub(super) struct RequestTurn {
     number: u64,
     latest: Arc<AtomicU64>,
     abandoned: Arc<AtomicBool>,
     until: Instant,
 }
 
-impl Turn {
-    /// Whether its answer is still wanted.
+impl RequestTurn {
+    /// Returns whether its answer is still wanted.
     pub(super) fn is_wanted(&self) -> bool {
         self.latest.load(Ordering::Relaxed) <= self.number
             && !self.abandoned.load(Ordering::Relaxed)
             && !self.is_late()
     }
 
-    /// Whether it has taken too long.
+    /// Returns whether it has taken too long.
     pub(super) fn is_late(&self) -> bool {
         Instant::now() > self.until
     }
 
-    /// What ends the turn when it is dropped: with a connection that is closed.
+    /// A guard that ends the turn when it is dropped: with a connection that is closed.
     pub(super) fn abandoned_on_drop(&self) -> AbandonedOnDrop {
         AbandonedOnDrop(Arc::clone(&self.abandoned))
     }
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn a_later_request_takes_the_place_of_earlier_ones() {
-        let latest = Latest::default();
+        let latest = NewestRequests::default();
         let first = latest.note("page", 1);
         assert!(first.is_wanted());
         let second = latest.note("page", 2);
@@ -99,7 +99,7 @@ mod tests {
 
     #[test]
     fn no_more_than_some_pages_are_remembered() {
-        let latest = Latest::default();
+        let latest = NewestRequests::default();
         (0..1000).for_each(|page| drop(latest.note(&page.to_string(), 1)));
         assert_eq!(latest.numbers.lock().unwrap().len(), MOST_REMEMBERED);
     }

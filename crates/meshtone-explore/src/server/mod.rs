@@ -18,7 +18,7 @@ use tokio::sync::{Semaphore, oneshot};
 
 use crate::answer::HealthyIndicators;
 use guard::Guard;
-use latest::Latest;
+use latest::NewestRequests;
 
 /// Requests that are computed at once: one for what is seen, one for what is compared with it.
 const AT_ONCE: usize = 2;
@@ -35,7 +35,7 @@ pub enum Embedding {
     Notebook,
 }
 
-/// How the page is served.
+/// Settings by which the page is served.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ServerSettings {
     /// The scenario that the page opens with.
@@ -56,15 +56,15 @@ pub struct Server {
     thread: Option<JoinHandle<()>>,
 }
 
-/// What all requests share.
+/// State that all requests share.
 #[derive(Debug)]
 struct Shared {
-    /// What the page opens with.
+    /// Scenario with which the page opens.
     start: Scenario,
-    /// What is set on the page: the last scenario that was answered in full.
+    /// The scenario on the page: the last scenario that was answered in full.
     current: Mutex<Scenario>,
     /// The newest request of each page.
-    latest: Latest,
+    latest: NewestRequests,
     /// Room for computations.
     room: Arc<Semaphore>,
     /// The gears without damage that were computed last, and for what.
@@ -105,7 +105,7 @@ impl Server {
         let shared = Arc::new(Shared {
             start: scenario.clone(),
             current: Mutex::new(scenario),
-            latest: Latest::default(),
+            latest: NewestRequests::default(),
             room: Arc::new(Semaphore::new(AT_ONCE)),
             healthy: Mutex::new(None),
         });
@@ -135,7 +135,7 @@ impl Server {
         format!("http://{}/{}/", self.address, self.token)
     }
 
-    /// What is set on the page: the last scenario that it was answered in full, or the one that it opens with.
+    /// The scenario on the page: the last scenario that it was answered in full, or the one that it opens with.
     pub fn scenario(&self) -> Scenario {
         self.shared.current.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }

@@ -1,4 +1,4 @@
-//! What the page asks.
+//! Requests of the page.
 
 use std::sync::{Arc, PoisonError};
 
@@ -13,7 +13,7 @@ use serde_json::{Map, Value, json};
 
 use super::Shared;
 use super::guard::respond;
-use super::latest::Turn;
+use super::latest::RequestTurn;
 use crate::answer::{
     AnswerOptions, Detail, HealthyIndicators, RecordingQuestion, State, answer, healthy_indicators,
     recording, severity_curve,
@@ -30,7 +30,7 @@ const MOST_OF_RECORDING: usize = 64 << 20;
 /// Bytes of the length, little endian, that stands before what is said about a recording.
 const LENGTH_BYTES: usize = 4;
 
-/// Where the page asks, and what.
+/// Addresses of the requests of the page.
 pub(super) fn router(shared: Arc<Shared>) -> Router {
     let about_recordings =
         Router::new().route("/recording", post(of_recording)).layer(DefaultBodyLimit::max(MOST_OF_RECORDING));
@@ -45,20 +45,20 @@ pub(super) fn router(shared: Arc<Shared>) -> Router {
         .with_state(shared)
 }
 
-/// What a request says beside the scenario.
+/// Fields of a request besides the scenario.
 #[derive(Debug)]
-struct Asked {
-    /// Which page asks.
+struct RequestOptions {
+    /// Identity of the page.
     page: String,
     /// Number of the request: later ones are higher.
     number: u64,
-    /// How much of the simulation, and which channel.
+    /// Level of detail, and channel.
     options: AnswerOptions,
-    /// Which fault's severity.
+    /// Number of the fault whose severity is meant.
     fault: usize,
 }
 
-impl Asked {
+impl RequestOptions {
     fn of(question: &Value) -> Self {
         let text = |name: &str| question.get(name).and_then(Value::as_str);
         let number = |name: &str| question.get(name).and_then(Value::as_u64).unwrap_or(0);
@@ -73,17 +73,17 @@ impl Asked {
 }
 
 /// A request about a scenario, taken apart.
-fn parsed(body: &[u8]) -> Result<(Asked, Value), Refusal> {
+fn parsed(body: &[u8]) -> Result<(RequestOptions, Value), Refusal> {
     let wrong = |error: serde_json::Error| Refusal::unfit(format!("the request is not understood: {error}"));
     let question: Value = serde_json::from_slice(body).map_err(wrong)?;
-    Ok((Asked::of(&question), question))
+    Ok((RequestOptions::of(&question), question))
 }
 
 /// Computes an answer beside the server's own thread, while somebody waits for it.
 async fn compute<T: Send + 'static>(
     shared: &Arc<Shared>,
-    turn: Turn,
-    work: impl FnOnce(&Turn) -> Result<T, Refusal> + Send + 'static,
+    turn: RequestTurn,
+    work: impl FnOnce(&RequestTurn) -> Result<T, Refusal> + Send + 'static,
 ) -> Result<T, Refusal> {
     let _abandoned = turn.abandoned_on_drop();
     let failed = |what: &str| {
@@ -106,7 +106,7 @@ fn too_long() -> Refusal {
     )
 }
 
-/// What the page is made from, and what it opens with.
+/// Answers with what the page is made from, and the scenario with which it opens.
 async fn start(Shares(shared): Shares<Arc<Shared>>) -> Response {
     let mut said = controls();
     said["scenario"] = Value::Object(without_defaults(&shared.start));
@@ -136,7 +136,7 @@ async fn of_answer(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Result<R
     Ok(respond(StatusCode::OK, "application/octet-stream", bytes.await?))
 }
 
-/// Where the gears without damage are known already: where they have none, or the damage alone has changed.
+/// Indicators of the gears without damage, where they are known already: where they have none, or the damage alone has changed.
 fn known_healthy(shared: &Shared, state: &State, options: &AnswerOptions) -> Option<HealthyIndicators> {
     if state.scenario.faults.is_empty() {
         let unit = state.channel.unit();

@@ -5,10 +5,10 @@ use std::io::{self, Write};
 use meshtone::scenario::{Fault, Scenario};
 use meshtone::tuning::{HybridError, SimulatedCases, TuningIndicator, difference_signals};
 use parquet::basic::{Compression, ZstdLevel};
-use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 
 use super::Tuned;
+use crate::run_identity::fnv_1a;
 use crate::table::{CellType, Cells, TableColumn, TableWriter};
 
 const COMPRESSION_LEVEL: i32 = 1;
@@ -68,7 +68,7 @@ pub fn enhance(
     let healthy_rms_g = enhanced.healthy_rms * noise.sqrt();
     let label = label(&scenario.faults);
     // Files of different scenarios must not share their noise.
-    let noise_seed = seed ^ identity(scenario);
+    let noise_seed = seed ^ fnv_1a(scenario.to_toml().as_bytes());
     let record = |draw: u64| {
         let mut signal = enhanced.with_noise(noise_seed, draw)?;
         signal.iter_mut().for_each(|value| *value /= healthy_rms_g);
@@ -90,13 +90,6 @@ fn label(faults: &[Fault]) -> String {
     }
     let kinds: Vec<_> = faults.iter().map(|fault| fault.damage.kind()).collect();
     kinds.join(" + ")
-}
-
-/// A number that stands for the whole scenario (FNV-1a of its file).
-fn identity(scenario: &Scenario) -> u64 {
-    scenario.to_toml().bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
 }
 
 /// What all records of a file have in common.
@@ -126,24 +119,19 @@ pub fn write_enhanced(
     head: EnhancedHead,
     records: &[EnhancedRecord],
 ) -> io::Result<()> {
-    let column = |name: &str, cells| TableColumn {
-        name: name.to_owned(),
-        cells,
-        nullable: false,
-        metadata: Vec::new(),
-    };
-    let columns = vec![
-        column("label", CellType::Text),
-        column("draw", CellType::UInt64),
-        column("relative_rms", CellType::Float64),
-        column("kurtosis", CellType::Float64),
-        column("relative_difference", CellType::Float32List { nullable_items: true }),
+    let columns = [
+        ("label", CellType::Text),
+        ("draw", CellType::Int64),
+        ("relative_rms", CellType::Float64),
+        ("kurtosis", CellType::Float64),
+        ("relative_difference", CellType::Float32List),
     ];
+    let columns = columns.map(|(name, cells)| TableColumn::new(name, cells)).to_vec();
     let signal = |record: &EnhancedRecord| record.relative_difference.iter().map(|&x| x as f32).collect();
     let signals: Vec<Vec<f32>> = records.iter().map(signal).collect();
     let cells = vec![
         Cells::Text(records.iter().map(|record| Some(record.label.clone())).collect()),
-        Cells::UInt64(records.iter().map(|record| Some(record.draw)).collect()),
+        Cells::Int64(records.iter().map(|record| Some(record.draw as i64)).collect()),
         Cells::Float64(records.iter().map(|record| Some(record.relative_rms)).collect()),
         Cells::Float64(records.iter().map(|record| Some(record.kurtosis)).collect()),
         Cells::Float32List(signals.iter().map(Vec::as_slice).collect()),
@@ -162,14 +150,11 @@ pub fn write_enhanced(
             ),
         ),
     ];
-    let level = ZstdLevel::try_new(COMPRESSION_LEVEL).map_err(io::Error::other)?;
-    let properties = WriterProperties::builder()
-        .set_compression(Compression::ZSTD(level))
-        .set_key_value_metadata(Some(
-            metadata.into_iter().map(|(key, value)| KeyValue::new(key.to_owned(), value)).collect(),
-        ))
-        .build();
+    let compression =
+        ZstdLevel::try_new(COMPRESSION_LEVEL).map(Compression::ZSTD).map_err(io::Error::other)?;
+    let properties = WriterProperties::builder().set_compression(compression).build();
     let mut table = TableWriter::new(to, columns, properties)?;
+    table.add_metadata(metadata);
     if !records.is_empty() {
         table.write_rows(cells)?;
     }

@@ -2,13 +2,13 @@
 
 use std::collections::BTreeSet;
 use std::io::Read;
-use std::path::PathBuf;
 
 use csv::StringRecord;
 use meshtone::tuning::{Case, Measurements};
-use meshtone_toml::{ReadResult, TomlError, TomlTable, TomlValue};
+use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
 use super::measured::Wanted;
+use super::read::Reading;
 use crate::input_file::{MEMORY_PER_BYTE_OF_NUMBERS, open_stream};
 
 /// The series that is read unless another is named.
@@ -20,28 +20,27 @@ const MEASURED: &str = "measured";
 /// * `table` - `[measured]`
 /// * `file` - the name of the file
 /// * `wanted` - cases and indicators
-/// * `sources` - gets the file's path
+/// * `reading` - gets the file's path
 pub(super) fn read(
     table: &TomlTable<'_>,
     file: &TomlValue<'_>,
     wanted: &Wanted,
-    sources: &mut Vec<PathBuf>,
+    reading: &mut Reading,
 ) -> ReadResult<Measurements> {
-    let path = wanted.directory.join(file.string()?);
-    let experiment = table.optional("experiment").map(|value| value.string()).transpose()?;
-    let series = table.optional("series").map(|value| value.string()).transpose()?;
+    let path = reading.source(file.string()?);
+    let experiment = table.read_optional("experiment", TomlValue::string)?;
+    let series = table.read_optional("series", TomlValue::string)?;
     let problem = |problem: String| file.error(format!("{}: {problem}", path.display()));
     let text = open_stream(&path, MEMORY_PER_BYTE_OF_NUMBERS)
         .map_err(|error| problem(format!("cannot be read: {error}")))?;
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text);
-    sources.push(path.clone());
     let columns = Columns::new(&mut reader, [experiment.is_some(), series.is_some()]).map_err(&problem)?;
     let mut rows = Rows {
         columns,
         experiment,
         series: series.unwrap_or(MEASURED),
         values: vec![vec![Vec::new(); wanted.indicators.len()]; wanted.cases.len()],
-        held: Held::default(),
+        contents: Contents::default(),
     };
     for (row, record) in reader.records().enumerate() {
         let record = record.map_err(|error| problem(format!("cannot be read: {error}")))?;
@@ -49,7 +48,7 @@ pub(super) fn read(
     }
     rows.check_complete(wanted).map_err(&problem)?;
     Measurements::from_compared(wanted.indicators.to_vec(), rows.values)
-        .map_err(|error: meshtone::tuning::HybridError| -> TomlError { problem(error.to_string()) })
+        .map_err(|error| problem(error.to_string()))
 }
 
 /// Places of the columns.
@@ -84,9 +83,9 @@ impl Columns {
     }
 }
 
-/// What a table holds, for a message about what it does not hold.
+/// The names and severities in a table, for messages about missing ones.
 #[derive(Default)]
-struct Held {
+struct Contents {
     experiments: BTreeSet<String>,
     series: BTreeSet<String>,
     /// Of the experiment and series that are read: in the order of the numbers.
@@ -100,12 +99,12 @@ struct Rows<'a> {
     series: &'a str,
     /// By case and indicator.
     values: Vec<Vec<Vec<f64>>>,
-    held: Held,
+    contents: Contents,
 }
 
 impl Rows<'_> {
     fn take(&mut self, line: usize, record: &StringRecord, wanted: &Wanted) -> Result<(), String> {
-        let Self { columns, experiment, series, values, held } = self;
+        let Self { columns, experiment, series, values, contents } = self;
         let field = |at: usize| record.get(at).unwrap_or_default();
         let number = |at: usize| {
             let text = field(at);
@@ -115,16 +114,16 @@ impl Rows<'_> {
         };
         let of_experiment = columns.experiment.map(field);
         let of_series = columns.series.map(field);
-        held.experiments.extend(of_experiment.map(str::to_owned));
-        held.series.extend(of_series.map(str::to_owned));
+        contents.experiments.extend(of_experiment.map(str::to_owned));
+        contents.series.extend(of_series.map(str::to_owned));
         let other_experiment = experiment.is_some() && of_experiment != *experiment;
         if other_experiment || of_series.is_some_and(|of_row| of_row != *series) {
             return Ok(());
         }
         let severity = number(columns.severity)?;
-        held.indicators.insert(field(columns.indicator).to_owned());
-        if let Err(place) = held.severities.binary_search_by(|other| other.total_cmp(&severity)) {
-            held.severities.insert(place, severity);
+        contents.indicators.insert(field(columns.indicator).to_owned());
+        if let Err(place) = contents.severities.binary_search_by(|other| other.total_cmp(&severity)) {
+            contents.severities.insert(place, severity);
         }
         let name = field(columns.indicator);
         let indicator = wanted.indicators.iter().position(|indicator| indicator.name() == name);
@@ -137,8 +136,8 @@ impl Rows<'_> {
 
     /// Refuses several experiments without a choice, and a case without records.
     fn check_complete(&self, wanted: &Wanted) -> Result<(), String> {
-        if self.experiment.is_none() && self.held.experiments.len() > 1 {
-            let all = listed(&self.held.experiments);
+        if self.experiment.is_none() && self.contents.experiments.len() > 1 {
+            let all = listed(&self.contents.experiments);
             return Err(format!(
                 "holds more than one experiment; say which with measured.experiment ({all})"
             ));
@@ -154,7 +153,7 @@ impl Rows<'_> {
     }
 
     fn missing(&self, indicator: &str, case: &Case) -> String {
-        let Held { experiments, series, severities, indicators } = &self.held;
+        let Contents { experiments, series, severities, indicators } = &self.contents;
         let mut chosen = String::new();
         if let Some(experiment) = self.experiment {
             chosen.push_str(&format!(", experiment {experiment}"));

@@ -1,21 +1,20 @@
 //! What was measured: a table of indicators, difference signals, or recordings.
 
-use std::path::{Path, PathBuf};
-
 use meshtone::scenario::Scenario;
 use meshtone::tuning::{Case, DifferenceChain, Measurements, TuningIndicator};
 use meshtone_toml::{ReadResult, TomlError, TomlTable, TomlValue};
 
+use super::read::Reading;
 use super::{indicator_table, recordings};
-use crate::recording::{ColumnChoice, RecordingOptions, TimeColumn, read_recording};
+use crate::recording::{RecordingOptions, TimeColumn, read_recording};
 
 /// Files of one case, with the key and line that name them.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(super) struct CaseFiles {
     pub(super) difference: Option<Named>,
     pub(super) recordings: Vec<Named>,
-    /// Of the case itself.
-    pub(super) place: Option<TomlError>,
+    /// What an error about the case itself starts from.
+    place: TomlError,
 }
 
 /// A file's name, and what an error about it starts from.
@@ -31,24 +30,34 @@ impl Named {
     }
 
     pub(super) fn error(&self, problem: impl std::fmt::Display) -> TomlError {
-        with_problem(self.place.clone(), problem.to_string())
+        with_problem(&self.place, problem.to_string())
     }
 }
 
 impl CaseFiles {
     pub(super) fn read(table: &TomlTable<'_>) -> ReadResult<Self> {
-        let difference = table.optional("difference_file").map(|value| Named::read(&value)).transpose()?;
-        let recordings = match table.optional("recordings") {
-            None => Vec::new(),
-            Some(value) => value.array()?.iter().map(Named::read).collect::<ReadResult<_>>()?,
-        };
-        Ok(Self { difference, recordings, place: Some(table.error("", "")) })
+        let difference = table.read_optional("difference_file", Named::read)?;
+        let recordings =
+            table.read_optional("recordings", |value| value.array()?.iter().map(Named::read).collect())?;
+        Ok(Self { difference, recordings: recordings.unwrap_or_default(), place: table.error("", "") })
     }
+
+    /// An error about a case without the files that others have.
+    pub(super) fn missing(&self, case: &Case, what: &str) -> TomlError {
+        let problem = format!("the case \"{}\" has no {what}, but others have", case.label);
+        with_problem(&self.place, problem)
+    }
+}
+
+/// An error at a place.
+fn with_problem(place: &TomlError, problem: String) -> TomlError {
+    let mut error = place.clone();
+    error.problem = problem;
+    error
 }
 
 /// What measurements are read for.
 pub(super) struct Wanted<'a> {
-    pub(super) directory: &'a Path,
     pub(super) cases: &'a [Case],
     pub(super) files: &'a [CaseFiles],
     pub(super) indicators: &'a [TuningIndicator],
@@ -60,17 +69,16 @@ pub(super) struct Wanted<'a> {
 pub(super) fn read(
     table: &TomlTable<'_>,
     wanted: &Wanted,
-    sources: &mut Vec<PathBuf>,
-    warnings: &mut Vec<String>,
+    reading: &mut Reading,
 ) -> ReadResult<Measurements> {
     let by_table = table.optional("indicators_file");
     let by_difference = wanted.files.iter().any(|files| files.difference.is_some());
     let by_recording = wanted.files.iter().any(|files| !files.recordings.is_empty());
     match (by_table, by_difference, by_recording) {
-        (Some(file), false, false) => indicator_table::read(table, &file, wanted, sources),
-        (None, true, false) => difference_files(wanted, sources),
+        (Some(file), false, false) => indicator_table::read(table, &file, wanted, reading),
+        (None, true, false) => difference_files(wanted, reading),
         (None, false, true) => {
-            let signals = recordings::differences(table, wanted, sources, warnings)?;
+            let signals = recordings::differences(table, wanted, reading)?;
             from_differences(wanted, &signals)
         }
         (None, false, false) => Err(table.error(
@@ -90,41 +98,19 @@ fn from_differences(wanted: &Wanted, signals: &[Vec<Vec<f64>>]) -> ReadResult<Me
 }
 
 /// One record per column, one file per case.
-fn difference_files(wanted: &Wanted, sources: &mut Vec<PathBuf>) -> ReadResult<Measurements> {
+fn difference_files(wanted: &Wanted, reading: &mut Reading) -> ReadResult<Measurements> {
+    // The rows are angles, not times, and have no sampling rate.
+    let options = RecordingOptions {
+        sampling_rate_hz: Some(1.0),
+        time: TimeColumn::Absent,
+        ..RecordingOptions::default()
+    };
     let mut signals = Vec::new();
     for (case, files) in wanted.cases.iter().zip(wanted.files) {
-        let Some(named) = &files.difference else {
-            return Err(missing(
-                files,
-                format!("the case \"{}\" has no difference_file, but others have", case.label),
-            ));
-        };
-        let path = wanted.directory.join(&named.name);
-        // Angles, not times: no rate.
-        let options = RecordingOptions {
-            sampling_rate_hz: Some(1.0),
-            time: TimeColumn::Absent,
-            ..RecordingOptions::default()
-        };
-        let recording = read_recording(&path, &options).map_err(|error| named.error(error))?;
-        sources.push(path);
+        let named = files.difference.as_ref().ok_or_else(|| files.missing(case, "difference_file"))?;
+        let recording = read_recording(&reading.source(&named.name), &options);
+        let recording = recording.map_err(|error| named.error(error))?;
         signals.push(recording.channels.into_iter().map(|channel| channel.samples).collect());
     }
     from_differences(wanted, &signals)
-}
-
-pub(super) fn missing(files: &CaseFiles, problem: String) -> TomlError {
-    let place = files.place.clone().unwrap_or_else(|| TomlError::new("case", "", ""));
-    with_problem(place, problem)
-}
-
-/// The same error with what is wrong.
-fn with_problem(mut error: TomlError, problem: String) -> TomlError {
-    error.problem = problem;
-    error
-}
-
-/// Columns to be read: one by name or number.
-pub(super) fn column(name: &str) -> ColumnChoice {
-    ColumnChoice::parse(name)
 }

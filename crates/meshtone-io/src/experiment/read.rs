@@ -1,7 +1,5 @@
 //! The experiment file.
 
-use crate::channel_name::{accelerations, read_channel};
-use crate::wheel_name::read_wheel;
 use std::path::{Path, PathBuf};
 
 use meshtone::scenario::{Fault, Scenario};
@@ -14,9 +12,11 @@ use meshtone::tuning::{
 };
 use meshtone_toml::{ReadResult, TomlDocument, TomlError, TomlTable, TomlValue};
 
-use super::measured::{self, CaseFiles};
+use super::measured::{self, CaseFiles, Wanted};
 use super::recordings::RATE_TOLERANCE;
+use crate::channel_name::{accelerations, read_channel};
 use crate::scenario_file::{FileKind, ReadScenarioError, ScenarioFile, read_text};
+use crate::wheel_name::read_wheel;
 
 /// Combinations of the tuned keys' values that are simulated unless the file says otherwise.
 const CANDIDATES: u64 = 160;
@@ -48,55 +48,77 @@ pub struct ExperimentFile {
 /// A file that cannot be read; what is wrong in one of them, with key and line; what [`Experiment::check`] refuses.
 pub fn read_experiment(path: &Path) -> Result<ExperimentFile, ReadScenarioError> {
     let text = read_text(path)?;
-    let directory = path.parent().unwrap_or(Path::new(""));
-    let mut sources = vec![path.to_path_buf()];
-    let (mut warnings, mut base) = (Vec::new(), None);
+    let mut reading =
+        Reading { path, sources: vec![path.to_path_buf()], warnings: Vec::new(), scenario_error: None };
     let read = TomlDocument::parse(&text).and_then(|document| {
-        let result = document.root().read(|root| {
-            let mut reading = Reading {
-                path,
-                directory,
-                sources: &mut sources,
-                warnings: &mut warnings,
-                scenario_error: &mut base,
-            };
-            reading.experiment(root)
-        });
-        result.map_err(|error| document.locate(error))
+        document.root().read(|root| reading.experiment(root)).map_err(|error| document.locate(error))
     });
-    match (read, base) {
-        (Ok(experiment), _) => {
-            Ok(ExperimentFile { path: path.to_path_buf(), text, experiment, sources, warnings })
-        }
-        // What is wrong in the scenario file is told with that file's lines.
-        (Err(_), Some(error)) => Err(error),
-        (Err(error), None) => {
-            Err(ReadScenarioError::invalid(FileKind::Experiment, path.to_path_buf(), text, error))
-        }
+    let Reading { sources, warnings, scenario_error, .. } = reading;
+    let path = path.to_path_buf();
+    match read {
+        Ok(experiment) => Ok(ExperimentFile { path, text, experiment, sources, warnings }),
+        // An error in the scenario file is reported with that file's lines.
+        Err(error) => Err(scenario_error
+            .unwrap_or_else(|| ReadScenarioError::invalid(FileKind::Experiment, path, text, error))),
     }
 }
 
-struct Reading<'a> {
+/// What is kept while an experiment is read.
+pub(super) struct Reading<'a> {
+    /// The experiment file.
     path: &'a Path,
-    directory: &'a Path,
-    /// Files that were read.
-    sources: &'a mut Vec<PathBuf>,
+    /// All files that were read.
+    sources: Vec<PathBuf>,
     /// What is doubtful about the recordings.
-    warnings: &'a mut Vec<String>,
+    pub(super) warnings: Vec<String>,
     /// What is wrong in the scenario file, with that file's lines.
-    scenario_error: &'a mut Option<ReadScenarioError>,
+    scenario_error: Option<ReadScenarioError>,
 }
 
 impl Reading<'_> {
+    fn directory(&self) -> &Path {
+        self.path.parent().unwrap_or(Path::new(""))
+    }
+
+    /// The path of a file that the experiment names, relative to its directory; it is added to the files that were read.
+    pub(super) fn source(&mut self, name: &str) -> PathBuf {
+        let path = self.directory().join(name);
+        self.sources.push(path.clone());
+        path
+    }
+
     fn experiment(&mut self, root: &TomlTable<'_>) -> ReadResult<Experiment> {
         let base = self.scenario(root)?;
-        experiment(root, base, self.directory, self.sources, self.warnings)
+        let chain = root.table_or_empty("signal")?.read(|table| signal(table, &base))?;
+        let listed = root.required("case", "the cases, [[case]] each, the healthy one first")?;
+        let (mut cases, mut files) = (Vec::new(), Vec::new());
+        for value in listed.array()? {
+            let (case, of_case) = value.table()?.read(case)?;
+            let scenario = base.clone().with_faults(case.faults.clone());
+            // Before anything is simulated.
+            if let Err(error) = stages(&scenario) {
+                let key = format!("{}.{}", value.path(), error.key);
+                return Err(TomlError::from(error).with_key(key).at_line(Some(value.line())));
+            }
+            cases.push(case);
+            files.push(of_case);
+        }
+        check_cases(&listed, &cases)?;
+        let Tune { indicators, bounds, keys, candidates, seed } = root.table_or_empty("tune")?.read(tune)?;
+        let wanted =
+            Wanted { cases: &cases, files: &files, indicators: &indicators, chain: &chain, base: &base };
+        let measured = root.table_or_empty("measured")?.read(|table| measured::read(table, &wanted, self))?;
+        let experiment = Experiment { base, cases, chain, measured, bounds, keys, candidates, seed };
+        for number in 0..experiment.keys.len() {
+            experiment.check_key(number).map_err(|error| key_error(number, &error))?;
+        }
+        experiment.check().map_err(|error| TomlError::new("tune", "", error.to_string()))?;
+        Ok(experiment)
     }
 
     fn scenario(&mut self, root: &TomlTable<'_>) -> ReadResult<Scenario> {
         let named = root.required("scenario", "the scenario file that all cases have in common")?;
-        let file = self.directory.join(named.string()?);
-        let mut error = match ScenarioFile::read(&file) {
+        let mut error = match ScenarioFile::read(&self.directory().join(named.string()?)) {
             Ok(file) => {
                 self.sources.extend(file.sources().map(Path::to_path_buf));
                 return Ok(file.scenario);
@@ -110,70 +132,21 @@ impl Reading<'_> {
                 Some(help) => format!("{help} ({named_by})"),
                 None => named_by,
             });
-            *self.scenario_error = Some(error);
+            self.scenario_error = Some(error);
             return Err(problem);
         }
         Err(problem.with_help("check the name; it is relative to the experiment file's directory"))
     }
 }
 
-fn experiment(
-    root: &TomlTable<'_>,
-    base: Scenario,
-    directory: &Path,
-    sources: &mut Vec<PathBuf>,
-    warnings: &mut Vec<String>,
-) -> ReadResult<Experiment> {
-    let chain = root.table_or_empty("signal")?.read(|table| signal(table, &base))?;
-    let listed = root.required("case", "the cases, [[case]] each, the healthy one first")?;
-    let mut cases = Vec::new();
-    let mut files = Vec::new();
-    for value in listed.array()? {
-        let (case, of_case) = value.table()?.read(case)?;
-        let scenario = base.clone().with_faults(case.faults.clone());
-        // Before anything is simulated.
-        if let Err(error) = stages(&scenario) {
-            let key = format!("{}.{}", value.path(), error.key);
-            return Err(TomlError::from(error).with_key(key).at_line(Some(value.line())));
-        }
-        cases.push(case);
-        files.push(of_case);
-    }
-    check_cases(&listed, &cases)?;
-    let tune = root.table_or_empty("tune")?.read(tune)?;
-    let measured = root.table_or_empty("measured")?.read(|table| {
-        measured::read(
-            table,
-            &measured::Wanted {
-                directory,
-                cases: &cases,
-                files: &files,
-                indicators: &tune.indicators,
-                chain: &chain,
-                base: &base,
-            },
-            sources,
-            warnings,
-        )
-    })?;
-    let Tune { bounds, keys, candidates, seed, .. } = tune;
-    let experiment = Experiment { base, cases, chain, measured, bounds, keys, candidates, seed };
-    for number in 0..experiment.keys.len() {
-        experiment.check_key(number).map_err(|error| key_error(number, &error))?;
-    }
-    experiment.check().map_err(|error| TomlError::new("tune", "", error.to_string()))?;
-    Ok(experiment)
-}
-
-/// An error about a tuned key, to be told at its own line.
+/// An error about a tuned key, which is reported at its own line.
 fn key_error(number: usize, error: &HybridError) -> TomlError {
+    let located = TomlError::new(format!("tune.key[{number}].key"), "", error.to_string());
     let help = match error {
         HybridError::Scenario(error) => error.help.clone(),
         _ => None,
     };
-    let mut told = TomlError::new(format!("tune.key[{number}].key"), "", error.to_string());
-    told.help = help;
-    told
+    help.into_iter().fold(located, TomlError::with_help)
 }
 
 fn check_cases(listed: &TomlValue<'_>, cases: &[Case]) -> ReadResult<()> {
@@ -201,26 +174,22 @@ fn case(table: &TomlTable<'_>) -> ReadResult<(Case, CaseFiles)> {
     Ok((Case { label, severity, faults }, CaseFiles::read(table)?))
 }
 
+/// Reads how difference signals are taken. The sampling rate must lie between twice the mesh frequency and the simulation's rate:
+/// below, the mesh is not in the signals, and above, the simulations hold nothing to compare with.
 fn signal(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<DifferenceChain> {
-    let channel = table
-        .optional("channel")
-        .map(|value| read_channel(&value, &accelerations(&base.sensors)))
-        .transpose()?;
+    let channel =
+        table.read_optional("channel", |value| read_channel(value, &accelerations(&base.sensors)))?;
     let rate = table.required("sampling_rate_hz", "(S/s) the sampling rate of the rig's recordings")?;
     let sampling_rate_hz = rate.number()?;
     let mesh_hz = base.operation.pinion_speed_hz * f64::from(base.gears.pinion_teeth);
     if sampling_rate_hz <= 2.0 * mesh_hz {
         let problem = format!("must be more than twice the mesh frequency of {mesh_hz} Hz");
         let error = rate.error(problem);
-        let kilohertz = sampling_rate_hz > 0.0 && sampling_rate_hz <= MOST_KILOHERTZ;
-        return Err(if kilohertz {
-            error.with_help(format!(
-                "in samples a second: {sampling_rate_hz} kHz are {}",
-                1e3 * sampling_rate_hz
-            ))
-        } else {
-            error
-        });
+        if !(sampling_rate_hz > 0.0 && sampling_rate_hz <= MOST_KILOHERTZ) {
+            return Err(error);
+        }
+        let hertz = 1e3 * sampling_rate_hz;
+        return Err(error.with_help(format!("in samples a second: {sampling_rate_hz} kHz are {hertz}")));
     }
     let simulated_hz = stages(base).map_err(|error| rate.error(error.to_string()))?.time.sampling_rate_hz;
     if sampling_rate_hz > simulated_hz * (1.0 + RATE_TOLERANCE) {
@@ -230,13 +199,13 @@ fn signal(table: &TomlTable<'_>, base: &Scenario) -> ReadResult<DifferenceChain>
         let help = "raise solver.sampling_rate_hz in the scenario, or resample the recordings";
         return Err(rate.error(problem).with_help(help));
     }
-    let wheel = table.optional("wheel").map(|value| read_wheel(&value)).transpose()?.unwrap_or_default();
+    let wheel = table.read_optional("wheel", read_wheel)?.unwrap_or_default();
     let teeth = base.gears.teeth(wheel) as usize;
     let default = SeparationSettings::new(teeth);
     let most_sidebands = (teeth as u64).saturating_sub(2) / 2;
-    let sidebands = table.optional("sidebands").map(|value| value.integer(0..=most_sidebands)).transpose()?;
-    let orders =
-        table.optional("shaft_orders").map(|value| value.integer(0..=teeth as u64 - 1)).transpose()?;
+    let count = |key, most: u64| table.read_optional(key, |value| value.integer(0..=most));
+    let sidebands = count("sidebands", most_sidebands)?;
+    let orders = count("shaft_orders", teeth as u64 - 1)?;
     let separation = SeparationSettings {
         sidebands: sidebands.map_or(default.sidebands, |count| count as usize),
         shaft_orders: orders.map_or(default.shaft_orders, |last| (1..=last as usize).collect()),
@@ -259,6 +228,8 @@ struct Tune {
     seed: u64,
 }
 
+/// Reads what is tuned: the indicators that are compared, the bounds of the enhancement, and keys of the scenario with their ranges.
+/// Each key that is absent takes its default.
 fn tune(table: &TomlTable<'_>) -> ReadResult<Tune> {
     let names = TuningIndicator::ALL.map(|indicator| (indicator.name(), indicator));
     let indicators = match table.optional("indicators") {
@@ -289,24 +260,18 @@ fn tune(table: &TomlTable<'_>) -> ReadResult<Tune> {
         fault_to_harmonics_ratio: range("fault_to_harmonics_ratio", default.fault_to_harmonics_ratio)?,
         noise_level: range("noise_level", default.noise_level)?,
     };
-    let keys = match table.optional("key") {
-        None => Vec::new(),
-        Some(value) => {
-            let read = |value: &TomlValue<'_>| {
-                let key = value.table()?.read(tuned_key)?;
-                key.check().map_err(|error| value.error(error.to_string()))?;
-                Ok(key)
-            };
-            value.array()?.iter().map(read).collect::<ReadResult<Vec<_>>>()?
-        }
+    let key = |value: &TomlValue<'_>| {
+        let key = value.table()?.read(tuned_key)?;
+        key.check().map_err(|error| value.error(error.to_string()))?;
+        Ok(key)
     };
-    let candidates =
-        table.optional("candidates").map(|value| value.integer(1..=MOST_CANDIDATES as u64)).transpose()?;
-    let seed = table.optional("seed").map(|value| value.integer(0..=u64::MAX)).transpose()?;
+    let keys = table.read_optional("key", |value| value.array()?.iter().map(key).collect())?;
+    let candidates = table.read_optional("candidates", |value| value.integer(1..=MOST_CANDIDATES as u64))?;
+    let seed = table.read_optional("seed", |value| value.integer(0..=u64::MAX))?;
     Ok(Tune {
         indicators,
         bounds,
-        keys,
+        keys: keys.unwrap_or_default(),
         candidates: candidates.unwrap_or(CANDIDATES) as usize,
         seed: seed.unwrap_or(1),
     })
@@ -316,8 +281,8 @@ fn tuned_key(table: &TomlTable<'_>) -> ReadResult<TunedKey> {
     let key = table.required("key", "the dotted key of a number of the scenario file")?.string()?.to_owned();
     let one_of = table.optional("one_of");
     let ends = ["least", "largest"].map(|end| table.optional(end));
-    let logarithmic = table.optional("logarithmic").map(|value| value.boolean()).transpose()?;
-    // Told before what is missing.
+    let logarithmic = table.read_optional("logarithmic", TomlValue::boolean)?;
+    // An unknown key is reported before a missing one.
     table.refuse_unknown(&[])?;
     let range = match (one_of, ends) {
         (Some(values), [None, None]) if logarithmic.is_none() => KeyRange::OneOf(values.numbers()?),

@@ -1,7 +1,5 @@
 //! Measured difference signals from recordings with their shaft phase.
 
-use std::path::PathBuf;
-
 use meshtone::scenario::WheelName;
 use meshtone::signal::{
     AngularSettings, AngularSignal, ChainSettings, MeshTone, ShaftPhase, SignalError, StatedFacts,
@@ -9,10 +7,11 @@ use meshtone::signal::{
     process_angular_segments, tachometer_pulses,
 };
 use meshtone::tuning::DifferenceChain;
-use meshtone_toml::{ReadResult, TomlError, TomlTable};
+use meshtone_toml::{ReadResult, TomlError, TomlTable, TomlValue};
 
-use super::measured::{Wanted, column, missing};
-use crate::recording::{Recording, RecordingOptions, read_recording};
+use super::measured::Wanted;
+use super::read::Reading;
+use crate::recording::{ColumnChoice, Recording, RecordingOptions, read_recording};
 use crate::wheel_name::read_wheel;
 
 /// Of a sampling rate, relative: what a file's rounded times are off.
@@ -32,39 +31,37 @@ enum Phase<'a> {
 }
 
 /// Difference signals by case and record.
+///
+/// Each recording is resampled over the turns of the wheel that the simulations are averaged over, with as many points a revolution
+/// as they have, so that both are compared in the same way. What does not fit the scenario becomes a warning of the reading.
 pub(super) fn differences(
     table: &TomlTable<'_>,
     wanted: &Wanted,
-    sources: &mut Vec<PathBuf>,
-    warnings: &mut Vec<String>,
+    reading: &mut Reading,
 ) -> ReadResult<Vec<Vec<Vec<f64>>>> {
     let channel = table.required("channel", "name or number of the recordings' channel")?.string()?;
     let rate = table.number("sampling_rate_hz")?;
-    let segment = table
-        .optional("revolutions_per_record")
-        .map(|value| value.integer(2..=u64::from(u32::MAX)))
-        .transpose()?;
-    let phase = phase(table, wanted)?;
+    let segment =
+        table.read_optional("revolutions_per_record", |value| value.integer(2..=u64::from(u32::MAX)))?;
+    let known = phase(table, wanted)?;
+    let tachometer = match known {
+        Phase::Tachometer { channel, .. } => Some(channel),
+        _ => None,
+    };
+    let channels = [Some(channel), tachometer].into_iter().flatten().map(ColumnChoice::parse).collect();
+    let options = RecordingOptions { channels, sampling_rate_hz: rate, ..RecordingOptions::default() };
     let teeth = wanted.base.gears.teeth(wanted.chain.wheel);
     let settings = settings(wanted)?;
-    let mut doubts = Doubts::default();
+    let mut warnings = Warnings::default();
     let mut all = Vec::new();
     for (case, files) in wanted.cases.iter().zip(wanted.files) {
         if files.recordings.is_empty() {
-            let problem = format!("the case \"{}\" has no recordings, but others have", case.label);
-            return Err(missing(files, problem));
+            return Err(files.missing(case, "recordings"));
         }
         let mut records = Vec::new();
         for named in &files.recordings {
-            let path = wanted.directory.join(&named.name);
-            let mut channels = vec![column(channel)];
-            if let Phase::Tachometer { channel, .. } = phase {
-                channels.push(column(channel));
-            }
-            let options =
-                RecordingOptions { channels, sampling_rate_hz: rate, ..RecordingOptions::default() };
-            let recording = read_recording(&path, &options).map_err(|error| named.error(error))?;
-            sources.push(path);
+            let recording = read_recording(&reading.source(&named.name), &options);
+            let recording = recording.map_err(|error| named.error(error))?;
             let refuse = |error: SignalError| named.error(format!("{}: {error}", named.name));
             let (given, stated) = (recording.sampling_rate_hz, wanted.chain.sampling_rate_hz);
             if (given / stated - 1.0).abs() > RATE_TOLERANCE {
@@ -73,11 +70,10 @@ pub(super) fn differences(
                     named.name
                 )));
             }
-            let known = &phase;
-            let phase = shaft_phase(&recording, known, wanted).map_err(refuse)?;
+            let phase = shaft_phase(&recording, &known, wanted).map_err(refuse)?;
             let signal = &recording.channels[0].samples;
             let angular = angular_resample(signal, &phase, &settings.angular).map_err(refuse)?;
-            doubts.look(&named.name, wanted, known, (&phase, &angular), given);
+            warnings.check(&named.name, wanted, &known, (&phase, &angular), given);
             let found = match segment {
                 None => process_angular(&angular, teeth, &settings).map(|record| vec![record]),
                 Some(count) => process_angular_segments(&angular, teeth, &settings, count as usize),
@@ -86,18 +82,18 @@ pub(super) fn differences(
         }
         all.push(records);
     }
-    warnings.extend(doubts.in_words());
+    reading.warnings.extend(warnings.in_words());
     Ok(all)
 }
 
-/// Doubts about recordings. Of many that say the same, the first is reported.
+/// Warnings about recordings. Of several recordings with a warning of one kind, the first one is named.
 #[derive(Default)]
-struct Doubts {
-    found: Vec<Doubt>,
+struct Warnings {
+    first_of_kind: Vec<Warning>,
 }
 
-struct Doubt {
-    about: About,
+struct Warning {
+    kind: WarningKind,
     /// The first file that it is of.
     file: String,
     words: String,
@@ -106,22 +102,22 @@ struct Doubt {
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum About {
+enum WarningKind {
     /// The shaft turns at another speed than the scenario's.
     Speed,
-    /// The recording is hardly of what is stated.
-    Mismatch,
+    /// The recording hardly fits what is stated about it.
+    Misfit,
     /// How the phase was found.
     Phase,
 }
 
-impl Doubts {
+impl Warnings {
     /// # Arguments
     /// * `file` - the recording's name
     /// * `known` - how its phase is known
     /// * `phase`, `angular` - of the wheel over whose revolutions is averaged
     /// * `rate` - (S/s) of the recording
-    fn look(
+    fn check(
         &mut self,
         file: &str,
         wanted: &Wanted,
@@ -130,16 +126,16 @@ impl Doubts {
         rate: f64,
     ) {
         if let Some(warning) = phase.warnings.first() {
-            self.add(About::Phase, file, warning.to_string());
+            self.add(WarningKind::Phase, file, warning.to_string());
         }
         let wheel = wanted.chain.wheel;
         let (turned, simulated) = (phase.mean_speed_hz(rate), nominal_speed_hz(wanted, wheel));
         if (turned / simulated - 1.0).abs() > SPEED_TOLERANCE {
-            self.add(About::Speed, file, other_speed(wanted, turned / simulated));
+            self.add(WarningKind::Speed, file, other_speed(wanted, turned / simulated));
             return;
         }
         let gears = &wanted.base.gears;
-        let stated = StatedFacts {
+        let told = StatedFacts {
             teeth: gears.teeth(wheel),
             mate_teeth: Some(gears.teeth(wheel.mate())),
             turning: match *known {
@@ -153,22 +149,25 @@ impl Doubts {
                 Phase::Tachometer { .. } | Phase::MeshTone { .. } => StatedTurning::Other,
             },
         };
-        if let Some(mismatch) = find_mismatch(angular, &stated) {
-            let words =
-                format!("over the revolutions of the {}, {} teeth: {mismatch}", wheel.name(), stated.teeth);
-            self.add(About::Mismatch, file, words);
+        if let Some(find_mismatch) = find_mismatch(angular, &told) {
+            let words = format!(
+                "over the revolutions of the {}, {} teeth: {find_mismatch}",
+                wheel.name(),
+                told.teeth
+            );
+            self.add(WarningKind::Misfit, file, words);
         }
     }
 
-    fn add(&mut self, about: About, file: &str, words: String) {
-        match self.found.iter_mut().find(|doubt| doubt.about == about) {
-            Some(doubt) => doubt.more += 1,
-            None => self.found.push(Doubt { about, file: file.to_owned(), words, more: 0 }),
+    fn add(&mut self, kind: WarningKind, file: &str, words: String) {
+        match self.first_of_kind.iter_mut().find(|warning| warning.kind == kind) {
+            Some(warning) => warning.more += 1,
+            None => self.first_of_kind.push(Warning { kind, file: file.to_owned(), words, more: 0 }),
         }
     }
 
     fn in_words(self) -> impl Iterator<Item = String> {
-        self.found.into_iter().map(|Doubt { file, words, more, .. }| match more {
+        self.first_of_kind.into_iter().map(|Warning { file, words, more, .. }| match more {
             0 => format!("{file}: {words}"),
             1 => format!("{file}: {words} (likewise of another recording)"),
             more => format!("{file}: {words} (likewise of {more} other recordings)"),
@@ -213,33 +212,30 @@ fn phase<'a>(table: &TomlTable<'a>, wanted: &Wanted) -> ReadResult<Phase<'a>> {
     let stated = table.number("gear_shaft_hz")?;
     let gear_shaft_hz = stated.unwrap_or(nominal);
     let tachometer = table.optional("tachometer_channel");
-    let pulses =
-        table.optional("pulses_per_revolution").map(|value| value.integer(1..=100_000)).transpose()?;
-    let on = table.optional("tachometer_shaft").map(|value| read_wheel(&value)).transpose()?;
-    let mesh_tone = table.optional("phase_from_mesh_tone").map(|value| value.boolean()).transpose()?;
-    if tachometer.is_none() {
-        for (key, given) in [("pulses_per_revolution", pulses.is_some()), ("tachometer_shaft", on.is_some())]
-        {
-            if given {
-                return Err(table.error(key, "given without tachometer_channel, so it has no meaning"));
-            }
-        }
-    } else if stated.is_some() {
-        return Err(table.error("gear_shaft_hz", "given beside tachometer_channel; the phase has one source"));
-    }
-    match (tachometer, mesh_tone.unwrap_or(false)) {
-        (Some(_), true) => {
-            Err(table
-                .error("phase_from_mesh_tone", "given beside tachometer_channel; the phase has one source"))
-        }
-        (Some(channel), false) => Ok(Phase::Tachometer {
-            channel: channel.string()?,
-            pulses_per_revolution: pulses.unwrap_or(1) as u32,
-            shaft: on.unwrap_or_default(),
-        }),
-        (None, true) => Ok(Phase::MeshTone { gear_shaft_hz }),
-        (None, false) => Ok(Phase::Constant { gear_shaft_hz }),
-    }
+    let pulses = table.read_optional("pulses_per_revolution", |value| value.integer(1..=100_000))?;
+    let on = table.read_optional("tachometer_shaft", read_wheel)?;
+    let is_mesh_tone = table.read_optional("phase_from_mesh_tone", TomlValue::boolean)?.unwrap_or(false);
+    let refuse_if = |given: bool, key: &str, problem: &str| match given {
+        true => Err(table.error(key, problem)),
+        false => Ok(()),
+    };
+    let Some(channel) = tachometer else {
+        let problem = "given without tachometer_channel, so it has no meaning";
+        refuse_if(pulses.is_some(), "pulses_per_revolution", problem)?;
+        refuse_if(on.is_some(), "tachometer_shaft", problem)?;
+        return Ok(match is_mesh_tone {
+            true => Phase::MeshTone { gear_shaft_hz },
+            false => Phase::Constant { gear_shaft_hz },
+        });
+    };
+    let problem = "given beside tachometer_channel; the phase has one source";
+    refuse_if(stated.is_some(), "gear_shaft_hz", problem)?;
+    refuse_if(is_mesh_tone, "phase_from_mesh_tone", problem)?;
+    Ok(Phase::Tachometer {
+        channel: channel.string()?,
+        pulses_per_revolution: pulses.unwrap_or(1) as u32,
+        shaft: on.unwrap_or_default(),
+    })
 }
 
 /// Phase of the shaft over whose revolutions is averaged.

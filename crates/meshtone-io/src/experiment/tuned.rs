@@ -1,7 +1,5 @@
 //! What tuning found, in a form that other commands use.
 
-use crate::channel_name::read_any_acceleration;
-use crate::wheel_name::read_wheel;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -11,7 +9,9 @@ use meshtone::signal::{MeanPart, SeparationSettings};
 use meshtone::tuning::{DifferenceChain, Enhancement, Experiment, ExperimentResult};
 use meshtone_toml::{ReadResult, TomlDocument, TomlTable, TomlValue};
 
+use crate::channel_name::read_any_acceleration;
 use crate::scenario_file::{FileKind, ReadScenarioError, read_text};
+use crate::wheel_name::read_wheel;
 
 /// What tuning found.
 #[derive(Debug, Clone, PartialEq)]
@@ -111,7 +111,7 @@ impl Tuned {
 ///
 /// # Arguments
 /// * `tuned` - what was found
-/// * `from` - the experiment, told in a comment
+/// * `from` - the experiment, which a comment of the file names
 ///
 /// ```
 /// use meshtone::sensor::ChannelKind;
@@ -185,9 +185,10 @@ pub fn read_tuned(path: &Path) -> Result<Tuned, ReadScenarioError> {
     read.map_err(|error| ReadScenarioError::invalid(FileKind::Tuned, path.to_path_buf(), text, error))
 }
 
+/// Reads the content of the file. Every value is checked where it is read, so that an error names its key and line.
 fn tuned(root: &TomlTable<'_>) -> ReadResult<Tuned> {
     let models = Model::ALL.map(|model| (model.name(), model));
-    let model = root.required("model", "the model that was tuned")?.choice(&models)?;
+    let model = root.read_optional("model", |value| value.choice(&models))?;
     let (enhancement, centre_rev) = root.table_or_empty("enhancement")?.read(|table| {
         let above_0 = |key, meaning: &str| {
             let value = table.required(key, meaning)?;
@@ -207,39 +208,30 @@ fn tuned(root: &TomlTable<'_>) -> ReadResult<Tuned> {
         };
         Ok((enhancement, table.number_or("centre_rev", 0.0)?))
     })?;
-    let (channel, rate, wheel, sidebands, orders) = root.table_or_empty("signal")?.read(|table| {
-        let channel = table.optional("channel").map(|value| read_any_acceleration(&value)).transpose()?;
+    let keys =
+        root.read_optional("key", |value| value.array()?.iter().map(key).collect())?.unwrap_or_default();
+    root.table_or_empty("signal")?.read(|table| {
+        let channel = table.read_optional("channel", read_any_acceleration)?;
         let rate = table.required("sampling_rate_hz", "(S/s) the rig's sampling rate")?;
         let sampling_rate_hz = rate.number()?;
         if sampling_rate_hz <= 0.0 {
             return Err(rate.error("must be more than 0"));
         }
-        let wheel = table.optional("wheel").map(|value| read_wheel(&value)).transpose()?;
-        let count = |key, default: u64| -> ReadResult<u64> {
-            Ok(table.optional(key).map(|value| value.integer(0..=10_000)).transpose()?.unwrap_or(default))
+        let count = |key, default: usize| -> ReadResult<usize> {
+            let given = table.read_optional(key, |value| value.integer(0..=10_000))?;
+            Ok(given.map_or(default, |count| count as usize))
         };
-        Ok((
-            channel.unwrap_or(ChannelKind::Vertical.into()),
+        Ok(Tuned {
+            model: model.unwrap_or(Model::Linear),
+            enhancement,
+            centre_rev,
+            channel: channel.unwrap_or(ChannelKind::Vertical.into()),
             sampling_rate_hz,
-            wheel.unwrap_or_default(),
-            count("sidebands", 2)?,
-            count("shaft_orders", 7)?,
-        ))
-    })?;
-    let keys = match root.optional("key") {
-        None => Vec::new(),
-        Some(value) => value.array()?.iter().map(key).collect::<ReadResult<_>>()?,
-    };
-    Ok(Tuned {
-        model,
-        enhancement,
-        centre_rev,
-        channel,
-        sampling_rate_hz: rate,
-        wheel,
-        sidebands: sidebands as usize,
-        shaft_orders: orders as usize,
-        keys,
+            wheel: table.read_optional("wheel", read_wheel)?.unwrap_or_default(),
+            sidebands: count("sidebands", 2)?,
+            shaft_orders: count("shaft_orders", 7)?,
+            keys,
+        })
     })
 }
 

@@ -1,7 +1,7 @@
 //! The numbers of a tuning.
 
-use meshtone::tuning::{Experiment, ExperimentResult, Tuning};
-use serde_json::{Map, Value, json};
+use meshtone::tuning::{Case, Experiment, ExperimentResult, Tuning, TuningIndicator};
+use serde_json::{Value, json};
 
 use super::ExperimentFile;
 
@@ -16,28 +16,23 @@ use super::ExperimentFile;
 pub fn tuning_json(file: &ExperimentFile, result: &ExperimentResult) -> String {
     let experiment = &file.experiment;
     let mut all = tuning(experiment, result.tuning());
-    all.insert("warnings".into(), json!(warnings(file, result)));
-    all.insert("meshtone_version".into(), json!(env!("CARGO_PKG_VERSION")));
-    all.insert("seed".into(), json!(experiment.seed));
-    all.insert("wheel".into(), json!(experiment.chain.wheel.name()));
-    all.insert("centre_rev".into(), json!(result.simulated().centre_rev()));
+    all["warnings"] = json!(warnings(file, result));
+    all["meshtone_version"] = json!(env!("CARGO_PKG_VERSION"));
+    all["seed"] = json!(experiment.seed);
+    all["wheel"] = json!(experiment.chain.wheel.name());
+    all["centre_rev"] = json!(result.simulated().centre_rev());
     if let Some(keys) = &result.with_keys {
         let values = experiment.keys.iter().zip(&keys.values);
-        let values: Map<String, Value> = values.map(|(key, value)| (key.key.clone(), json!(value))).collect();
-        all.insert("scenario_keys".into(), Value::Object(values));
-        all.insert(
-            "candidates".into(),
-            json!({
-                "simulated": keys.candidates,
-                "failed": keys.failed,
-                "first_failure": keys.first_failure,
-            }),
-        );
-        let alone = tuning(experiment, &result.enhancement_alone);
-        all.insert("enhancement_alone".into(), Value::Object(alone));
+        all["scenario_keys"] = values.map(|(key, value)| (key.key.clone(), json!(value))).collect();
+        all["candidates"] = json!({
+            "simulated": keys.candidates,
+            "failed": keys.failed,
+            "first_failure": keys.first_failure,
+        });
+        all["enhancement_alone"] = tuning(experiment, &result.enhancement_alone);
     }
     // Alternate: indented.
-    format!("{:#}\n", Value::Object(all))
+    format!("{all:#}\n")
 }
 
 /// What is doubtful about a tuning: about its recordings, then about what was found.
@@ -50,49 +45,41 @@ pub fn warnings(file: &ExperimentFile, result: &ExperimentResult) -> Vec<String>
     file.warnings.iter().cloned().chain(of_tuning).collect()
 }
 
-fn tuning(experiment: &Experiment, tuning: &Tuning) -> Map<String, Value> {
+/// The numbers of one tuning: parameters with their intervals, errors, and the indicators of every case as measured and as simulated.
+fn tuning(experiment: &Experiment, tuning: &Tuning) -> Value {
     let parameters = tuning.enhancement;
     let intervals = tuning.intervals;
     let measured = &experiment.measured;
-    let cases: Vec<Value> = experiment
-        .cases
-        .iter()
-        .enumerate()
-        .map(|(number, case)| {
-            let indicators: Map<String, Value> = measured
-                .indicators()
-                .iter()
-                .enumerate()
-                .map(|(j, indicator)| {
-                    let (original, enhanced) = (tuning.original[number][j], tuning.enhanced[number][j]);
-                    let value = json!({
-                        "logarithmic": indicator.is_logarithmic(),
-                        "measured_median": measured.median(number, j),
-                        "records": measured.records(number, j).len(),
-                        "original": original,
-                        "enhanced": enhanced,
-                        "error": {
-                            "original": measured.error(number, j, original),
-                            "enhanced": measured.error(number, j, enhanced),
-                        },
-                    });
-                    (indicator.name().to_owned(), value)
-                })
-                .collect();
-            json!({
-                "label": case.label,
-                "severity": case.severity,
-                "indicators": indicators,
-                "error": {
-                    "original": measured.case_error(number, &tuning.original[number]),
-                    "enhanced": measured.case_error(number, &tuning.enhanced[number]),
-                    "leave_one_out": tuning.leave_one_out_error[number],
-                },
-            })
+    let indicator = |number: usize, j: usize, indicator: &TuningIndicator| {
+        let (original, enhanced) = (tuning.original[number][j], tuning.enhanced[number][j]);
+        let value = json!({
+            "logarithmic": indicator.is_logarithmic(),
+            "measured_median": measured.median(number, j),
+            "records": measured.records(number, j).len(),
+            "original": original,
+            "enhanced": enhanced,
+            "error": {
+                "original": measured.error(number, j, original),
+                "enhanced": measured.error(number, j, enhanced),
+            },
+        });
+        (indicator.name().to_owned(), value)
+    };
+    let case = |(number, case): (usize, &Case)| {
+        let indicators = measured.indicators().iter().enumerate();
+        let indicators: Value = indicators.map(|(j, name)| indicator(number, j, name)).collect();
+        json!({
+            "label": case.label,
+            "severity": case.severity,
+            "indicators": indicators,
+            "error": {
+                "original": measured.case_error(number, &tuning.original[number]),
+                "enhanced": measured.case_error(number, &tuning.enhanced[number]),
+                "leave_one_out": tuning.leave_one_out_error[number],
+            },
         })
-        .collect();
-    let warnings: Vec<String> = tuning.warnings.iter().map(ToString::to_string).collect();
-    let value = json!({
+    };
+    json!({
         "parameters": {
             "width_ratio": parameters.width_ratio,
             "fault_to_harmonics_ratio": parameters.fault_to_harmonics_ratio,
@@ -110,11 +97,7 @@ fn tuning(experiment: &Experiment, tuning: &Tuning) -> Map<String, Value> {
             "leave_one_out": tuning.mean_leave_one_out_error(),
             "measurements_own_scatter": tuning.scatter,
         },
-        "cases": cases,
-        "warnings": warnings,
-    });
-    match value {
-        Value::Object(map) => map,
-        _ => Map::new(),
-    }
+        "cases": experiment.cases.iter().enumerate().map(case).collect::<Vec<_>>(),
+        "warnings": tuning.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
+    })
 }

@@ -4,7 +4,6 @@ use std::io::{self, Write};
 
 use meshtone::signal::IndicatorValue;
 use parquet::basic::{Compression, ZstdLevel};
-use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 
 use super::{IndicatorResults, RecordEntry, SETTINGS_KEY};
@@ -15,11 +14,8 @@ use crate::table::{CellType, Cells, TableColumn, TableWriter};
 type Column = (TableColumn, Cells<'static>);
 
 fn column(name: &str, unit: &str, nullable: bool, (kind, cells): (CellType, Cells<'static>)) -> Column {
-    let unit = (!unit.is_empty()).then(|| ("unit".to_string(), unit.to_string()));
-    (
-        TableColumn { name: name.to_string(), cells: kind, nullable, metadata: unit.into_iter().collect() },
-        cells,
-    )
+    let unit = (!unit.is_empty()).then_some(("unit", unit));
+    (TableColumn { nullable, ..TableColumn::new(name, kind).with_metadata(unit) }, cells)
 }
 
 impl IndicatorResults {
@@ -32,24 +28,17 @@ impl IndicatorResults {
     /// Those of `to`.
     pub fn write_parquet(&self, to: impl Write + Send) -> io::Result<()> {
         let (columns, cells) = self.circumstances().into_iter().chain(self.values()).unzip();
-        let properties = self.properties().map_err(io::Error::other)?;
+        let compression = ZstdLevel::try_new(1).map(Compression::ZSTD).map_err(io::Error::other)?;
+        let properties = WriterProperties::builder().set_compression(compression).build();
         let mut table = TableWriter::new(to, columns, properties)?;
+        table.add_metadata([
+            (VERSION_KEY, env!("CARGO_PKG_VERSION").to_string()),
+            (SETTINGS_KEY, self.settings_json().to_string()),
+        ]);
         if !self.records.is_empty() {
             table.write_rows(cells)?;
         }
         table.close()
-    }
-
-    fn properties(&self) -> Result<WriterProperties, parquet::errors::ParquetError> {
-        let metadata = [
-            (VERSION_KEY, env!("CARGO_PKG_VERSION").to_string()),
-            (SETTINGS_KEY, self.settings_json().to_string()),
-        ];
-        let metadata = metadata.map(|(key, value)| KeyValue::new(key.to_string(), value));
-        Ok(WriterProperties::builder()
-            .set_compression(Compression::ZSTD(ZstdLevel::try_new(1)?))
-            .set_key_value_metadata(Some(metadata.to_vec()))
-            .build())
     }
 
     /// What each record is of.
@@ -62,16 +51,13 @@ impl IndicatorResults {
             (CellType::Text, Cells::Text(self.records.iter().map(value).collect()))
         };
         let count = |value: &dyn Fn(&RecordEntry) -> Option<usize>| {
-            let counts = self.records.iter().map(|record| value(record).map(|count| count as u64));
-            (CellType::UInt64, Cells::UInt64(counts.collect()))
+            let counts = self.records.iter().map(|record| value(record).map(|count| count as i64));
+            (CellType::Int64, Cells::Int64(counts.collect()))
         };
         let number = |value: &dyn Fn(&RecordEntry) -> f64| {
-            (
-                CellType::Float64,
-                Cells::Float64(self.records.iter().map(|record| Some(value(record))).collect()),
-            )
+            let numbers = self.records.iter().map(|record| Some(value(record)));
+            (CellType::Float64, Cells::Float64(numbers.collect()))
         };
-        let teeth = self.records.iter().map(|record| Some(record.teeth)).collect();
         vec![
             column("recording", "", false, count(&|record| Some(record.recording))),
             column("file", "", false, text(&|record| Some(file(record)))),
@@ -79,7 +65,7 @@ impl IndicatorResults {
             column("channel", "", false, text(&|_| Some(self.channel.clone()))),
             column("unit", "", true, text(&|_| self.unit.clone())),
             column("wheel", "", false, text(&|record| Some(record.wheel.clone()))),
-            column("teeth", "", false, (CellType::UInt32, Cells::UInt32(teeth))),
+            column("teeth", "", false, count(&|record| Some(record.teeth as usize))),
             column("revolutions", "", false, count(&|record| Some(record.revolutions))),
             column("mean_speed_hz", "Hz", false, number(&|record| record.mean_speed_hz)),
             column("points_per_revolution", "", false, count(&|record| Some(record.points_per_revolution))),

@@ -2,8 +2,7 @@
 
 use std::io::{self, Read};
 
-use super::catalogue::Numbers;
-use super::number::{NumberKind, append_strided};
+use super::number::Numbers;
 
 /// More columns than any recording has; an array that is wider is no recording.
 const MAX_CHANNELS: u64 = 4096;
@@ -66,52 +65,39 @@ pub(super) fn shape_text(shape: &[u64]) -> String {
 ///
 /// # Arguments
 /// * `from` - the array's bytes
-/// * `layout`, `kind`, `big_endian` - how they are to be read
+/// * `layout`, `numbers` - how they are to be read
 /// * `wanted` - for each channel, whether it is read
 /// * `present_bytes` - bytes that are surely there: memory for more is taken only as they come
 pub(super) fn read_channels(
     from: &mut dyn Read,
     layout: ArrayLayout,
-    kind: NumberKind,
-    big_endian: bool,
+    numbers: Numbers,
     wanted: &[bool],
     present_bytes: u64,
 ) -> io::Result<Vec<Vec<f64>>> {
-    let size = kind.size();
-    let sure = present_bytes / (size * layout.channels) as u64;
-    let reserve = layout.samples.min(sure) as usize;
-    let mut columns: Vec<Vec<f64>> =
-        wanted.iter().map(|wanted| Vec::with_capacity(if *wanted { reserve } else { 0 })).collect();
-    if layout.interleaved {
-        let record = size * layout.channels;
-        read_records(from, record, layout.samples, |block| {
+    let ArrayLayout { channels, samples, interleaved } = layout;
+    let element = numbers.element_bytes();
+    let sure = present_bytes / (element * channels) as u64;
+    let mut columns = vec![Vec::new(); channels];
+    let wanted_columns = columns.iter_mut().zip(wanted).filter(|(_, wanted)| **wanted);
+    wanted_columns.for_each(|(column, _)| column.reserve_exact(samples.min(sure) as usize));
+    if interleaved {
+        read_records(from, element * channels, samples, |block| {
             for (channel, column) in columns.iter_mut().enumerate().filter(|(channel, _)| wanted[*channel]) {
-                append_strided(block, record, channel * size, kind, big_endian, column);
+                numbers.append(block, channels, channel, column);
             }
         })?;
     } else {
-        let after = wanted.iter().rposition(|wanted| *wanted).map_or(0, |last| last + 1);
-        for (column, wanted) in columns.iter_mut().zip(wanted).take(after) {
+        let behind_last = wanted.iter().rposition(|wanted| *wanted).map_or(0, |last| last + 1);
+        for (column, wanted) in columns.iter_mut().zip(wanted).take(behind_last) {
             if *wanted {
-                read_records(from, size, layout.samples, |block| {
-                    append_strided(block, size, 0, kind, big_endian, column);
-                })?;
+                read_records(from, element, samples, |block| numbers.append(block, 1, 0, column))?;
             } else {
-                skip(from, layout.samples * size as u64)?;
+                skip(from, samples * element as u64)?;
             }
         }
     }
     Ok(columns.into_iter().zip(wanted).filter_map(|(column, wanted)| wanted.then_some(column)).collect())
-}
-
-/// Reads one number.
-pub(super) fn read_one(from: &mut dyn Read, numbers: Numbers) -> io::Result<f64> {
-    let mut bytes = [0; 8];
-    let bytes = &mut bytes[..numbers.kind.size()];
-    from.read_exact(bytes)?;
-    let mut number = Vec::with_capacity(1);
-    append_strided(bytes, bytes.len(), 0, numbers.kind, numbers.big_endian, &mut number);
-    number.pop().ok_or_else(|| io::ErrorKind::UnexpectedEof.into())
 }
 
 /// Hands over a number of records, as many at a time as fit into a block.

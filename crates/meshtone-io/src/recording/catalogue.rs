@@ -1,26 +1,21 @@
 //! The arrays of a file that holds several, as columns.
 
-use std::path::Path;
-
 use meshtone_toml::nearest_name;
 
 use super::array::{ArrayLayout, shape_text};
+use super::assemble::{Columns, assemble};
+use super::error::Problem;
 use super::label::Label;
-use super::number::NumberKind;
+use super::number::Numbers;
 use super::rate::StatedRate;
-use super::{ReadRecordingError, RecordingOptions};
+use super::selection::{Selection, select};
+use super::{Recording, RecordingOptions, RecordingWarning, memory_need};
+use crate::memory;
 
 /// Arrays beyond which a file is none that recordings come in; each costs memory.
 pub(super) const MAX_ARRAYS: usize = 10_000;
 /// Columns of all arrays together, likewise.
 const MAX_COLUMNS: usize = 100_000;
-
-/// How the numbers of an array stand in a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Numbers {
-    pub kind: NumberKind,
-    pub big_endian: bool,
-}
 
 /// An array, before it is read.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,40 +40,55 @@ impl ArrayEntry {
         format!("{} ({} {})", self.name, shape_text(&self.shape), self.type_name)
     }
 
+    fn layout(&self) -> Result<ArrayLayout, String> {
+        ArrayLayout::of_shape(&self.shape, self.first_runs_fastest)
+    }
+
     /// Whether it holds one number only.
-    pub(super) fn is_single(&self) -> bool {
+    fn is_single(&self) -> bool {
         self.shape.iter().all(|length| *length == 1)
     }
 }
 
-/// Where a column's samples are.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Place {
-    entry: usize,
-    channel: usize,
+/// Reads a recording whose channels are those of arrays.
+///
+/// # Arguments
+/// * `entries` - the file's arrays
+/// * `options` - of the recording
+/// * `units_in_names` - whether a name such as `acc [g]` says the unit
+/// * `read` - reads the wanted channels of the array with an index
+pub(super) fn read_arrays(
+    entries: &[ArrayEntry],
+    options: &RecordingOptions,
+    units_in_names: bool,
+    read: impl FnMut(usize, ArrayLayout, Numbers, &[bool]) -> Result<Vec<Vec<f64>>, Problem>,
+) -> Result<Recording, Problem> {
+    let catalogue = Catalogue::new(entries, options, units_in_names)?;
+    let Catalogue { labels, stated, .. } = &catalogue;
+    let selection = select(labels, options)?;
+    let samples = |column: usize| catalogue.layout(column).map_or(0, |layout| layout.samples);
+    memory_need::check(memory::limit(), options, &selection, samples, 0)?;
+    let samples = catalogue.read(&selection.wanted, read)?;
+    let mut recording = assemble(Columns { labels, selection: &selection, samples, stated }, options)?;
+    recording.warnings.extend(zero_twins(labels, &selection));
+    Ok(recording)
 }
 
 /// The columns of all arrays, or of the chosen variable.
-#[derive(Debug)]
-pub(super) struct Catalogue {
-    pub labels: Vec<Label>,
-    places: Vec<Place>,
-    pub stated: Vec<StatedRate>,
+struct Catalogue<'e> {
+    entries: &'e [ArrayEntry],
+    labels: Vec<Label>,
+    /// Of each column, the index of its array and its channel in it.
+    places: Vec<(usize, usize)>,
+    stated: Vec<StatedRate>,
 }
 
-impl Catalogue {
-    /// Makes columns of arrays.
-    ///
-    /// # Arguments
-    /// * `path`, `options` - of the recording
-    /// * `entries` - the file's arrays
-    /// * `units_in_names` - whether a name such as `acc [g]` says the unit
-    pub(super) fn new(
-        path: &Path,
-        entries: &[ArrayEntry],
+impl<'e> Catalogue<'e> {
+    fn new(
+        entries: &'e [ArrayEntry],
         options: &RecordingOptions,
         units_in_names: bool,
-    ) -> Result<Catalogue, ReadRecordingError> {
+    ) -> Result<Self, Problem> {
         let variable = options.variable.as_deref().map(str::trim);
         let chosen = |entry: &ArrayEntry| variable.is_none_or(|variable| is_within(&entry.name, variable));
         let rates = |within: bool| -> Vec<StatedRate> {
@@ -87,7 +97,7 @@ impl Catalogue {
         };
         let inside = rates(true);
         let stated = if inside.is_empty() { rates(false) } else { inside };
-        let mut catalogue = Catalogue { labels: Vec::new(), places: Vec::new(), stated };
+        let mut catalogue = Catalogue { entries, labels: Vec::new(), places: Vec::new(), stated };
         for (index, entry) in entries.iter().enumerate().filter(|(_, entry)| chosen(entry)) {
             if !entry.is_single() || entry.name.is_empty() || variable == Some(entry.name.as_str()) {
                 catalogue.add(index, entry, variable, units_in_names);
@@ -95,103 +105,71 @@ impl Catalogue {
         }
         if catalogue.labels.len() > MAX_COLUMNS {
             let problem = format!("its arrays have more than {MAX_COLUMNS} columns; choose a variable");
-            return Err(ReadRecordingError::Ambiguous {
-                path: path.to_path_buf(),
-                problem,
-                present: Vec::new(),
-            });
+            return Err(Problem::Refused(problem));
         }
         let useless = catalogue.labels.iter().all(|label| label.not_numeric.is_some());
         match variable {
-            Some(variable) if useless => Err(no_variable(path, entries, variable)),
+            Some(variable) if useless => Err(no_variable(entries, variable)),
             _ => Ok(catalogue),
         }
     }
 
     fn add(&mut self, index: usize, entry: &ArrayEntry, variable: Option<&str>, units_in_names: bool) {
-        let layout = ArrayLayout::of_shape(&entry.shape, entry.first_runs_fastest);
-        let layout = entry.numbers.clone().and(layout);
         let name = short_name(&entry.name, variable);
-        let label = |name: &str| Label {
-            raw: name.to_string(),
-            name: name.to_string(),
-            unit: None,
-            array: None,
-            not_numeric: None,
-            is_zero_twin: entry.is_zero_twin,
-        };
-        let mut push = |label: Label, channel: usize| {
-            self.labels.push(label);
-            self.places.push(Place { entry: index, channel });
-        };
-        match layout {
-            Err(kind) => push(Label { not_numeric: Some(kind), ..label(name) }, 0),
-            Ok(layout) if layout.channels == 1 => push(
-                match (name, units_in_names) {
-                    ("", _) => Label::numbered("channel", 1),
-                    (_, true) => Label::from_header(name),
-                    (_, false) => label(name),
-                },
-                0,
-            ),
-            Ok(layout) => {
-                for channel in 0..layout.channels.min(MAX_COLUMNS) {
-                    let number = channel + 1;
-                    let column = if name.is_empty() {
-                        Label::numbered("channel", number)
-                    } else {
-                        Label { array: Some(name.to_string()), ..label(&format!("{name} {number}")) }
-                    };
-                    push(column, channel);
+        let plain = |name: &str| Label { is_zero_twin: entry.is_zero_twin, ..Label::plain(name) };
+        let labels = match entry.numbers.clone().and_then(|_| entry.layout()) {
+            Err(kind) => vec![Label { not_numeric: Some(kind), ..plain(name) }],
+            Ok(ArrayLayout { channels, .. }) => match (name, channels) {
+                ("", _) => (1..=channels).map(|number| Label::numbered("channel", number)).collect(),
+                (_, 1) if units_in_names => vec![Label::from_header(name)],
+                (_, 1) => vec![plain(name)],
+                _ => {
+                    let of_array = |number| plain(&format!("{name} {number}"));
+                    let of_array = (1..=channels).map(of_array);
+                    of_array.map(|label| Label { array: Some(name.to_string()), ..label }).collect()
                 }
-            }
-        }
+            },
+        };
+        self.places.extend((0..labels.len()).map(|channel| (index, channel)));
+        self.labels.extend(labels);
     }
 
-    /// Samples of columns.
-    ///
-    /// # Arguments
-    /// * `wanted` - the columns
-    /// * `entries` - those that the catalogue was made of
-    pub(super) fn samples<'c>(
-        &'c self,
-        wanted: &'c [usize],
-        entries: &'c [ArrayEntry],
-    ) -> impl Iterator<Item = u64> + 'c {
-        let layout = |entry: &ArrayEntry| ArrayLayout::of_shape(&entry.shape, entry.first_runs_fastest);
-        wanted.iter().map(move |column| {
-            layout(&entries[self.places[*column].entry]).map_or(0, |layout| layout.samples)
-        })
+    fn layout(&self, column: usize) -> Result<ArrayLayout, String> {
+        self.entries[self.places[column].0].layout()
     }
 
     /// Reads columns, array by array.
     ///
     /// # Arguments
     /// * `wanted` - the columns, rising
-    /// * `entries` - those that the catalogue was made of
     /// * `read` - reads the wanted channels of the array with an index
-    pub(super) fn read(
+    fn read(
         &self,
         wanted: &[usize],
-        entries: &[ArrayEntry],
-        mut read: impl FnMut(usize, ArrayLayout, Numbers, &[bool]) -> Result<Vec<Vec<f64>>, ReadRecordingError>,
-    ) -> Result<Vec<Vec<f64>>, ReadRecordingError> {
+        mut read: impl FnMut(usize, ArrayLayout, Numbers, &[bool]) -> Result<Vec<Vec<f64>>, Problem>,
+    ) -> Result<Vec<Vec<f64>>, Problem> {
         let mut samples = Vec::with_capacity(wanted.len());
-        let mut rest = wanted;
-        while let Some(first) = rest.first() {
-            let index = self.places[*first].entry;
-            let same = rest.iter().take_while(|column| self.places[**column].entry == index).count();
-            let entry = &entries[index];
-            let layout = ArrayLayout::of_shape(&entry.shape, entry.first_runs_fastest);
-            if let (Ok(layout), Ok(numbers)) = (layout, &entry.numbers) {
+        for of_array in wanted.chunk_by(|one, next| self.places[*one].0 == self.places[*next].0) {
+            let index = self.places[of_array[0]].0;
+            let entry = &self.entries[index];
+            if let (Ok(layout), Ok(numbers)) = (entry.layout(), &entry.numbers) {
                 let mut channels = vec![false; layout.channels];
-                rest[..same].iter().for_each(|column| channels[self.places[*column].channel] = true);
+                of_array.iter().for_each(|column| channels[self.places[*column].1] = true);
                 samples.extend(read(index, layout, *numbers, &channels)?);
             }
-            rest = &rest[same..];
         }
         Ok(samples)
     }
+}
+
+/// Zero twins of what was read, which were left out.
+fn zero_twins(labels: &[Label], selection: &Selection) -> Vec<RecordingWarning> {
+    let is_read = |name: &str| selection.channels.iter().any(|&index| labels[index].raw == name);
+    let warning = |(index, label): (usize, &Label)| {
+        let left_out = label.is_zero_twin && !selection.channels.contains(&index) && is_read(&label.raw);
+        left_out.then(|| RecordingWarning::ZeroTwin { name: label.raw.clone(), number: index + 1 })
+    };
+    labels.iter().enumerate().filter_map(warning).collect()
 }
 
 /// Whether a path is the variable, or leads into it. `a(1)` and `a` are the same where `a` is single.
@@ -209,9 +187,9 @@ fn short_name<'n>(name: &'n str, variable: Option<&str>) -> &'n str {
     inside.unwrap_or(name)
 }
 
-fn no_variable(path: &Path, entries: &[ArrayEntry], wanted: &str) -> ReadRecordingError {
+fn no_variable(entries: &[ArrayEntry], wanted: &str) -> Problem {
     let nearest = nearest_name(wanted, entries.iter().map(|entry| entry.name.as_str()));
-    let nearest = nearest.filter(|nearest| *nearest != wanted).map(str::to_string);
-    let present = entries.iter().map(ArrayEntry::described).collect();
-    ReadRecordingError::NoVariable { path: path.to_path_buf(), wanted: wanted.to_string(), nearest, present }
+    let nearest = nearest.filter(|nearest| *nearest != wanted);
+    let present: Vec<String> = entries.iter().map(ArrayEntry::described).collect();
+    Problem::absent(&format!("variable `{wanted}` that holds numbers"), nearest, &present)
 }

@@ -1,11 +1,10 @@
 //! The format of a file, by its first bytes and its ending.
 
 use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{Read, Seek};
 use std::path::Path;
 
-use super::ReadRecordingError;
-use super::error::unreadable;
+use super::error::Problem;
 use crate::scenario_file::{FileKind, read_text};
 
 /// Bytes that are looked at: those of a MATLAB header, and the mark of HDF5 behind it.
@@ -33,24 +32,34 @@ pub enum RecordingFormat {
     Wav,
 }
 
+impl RecordingFormat {
+    /// The name of the format in messages.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Text => "text",
+            Self::Parquet => "Parquet",
+            Self::Npy => "NPY",
+            Self::Npz => "NPZ",
+            Self::Mat => "MAT",
+            Self::Wav => "WAV",
+        }
+    }
+}
+
 /// Finds out the format, and leaves the file at its start.
 pub(super) fn detect(
     path: &Path,
     file: &mut File,
     given: Option<RecordingFormat>,
-) -> Result<RecordingFormat, ReadRecordingError> {
+) -> Result<RecordingFormat, Problem> {
     let mut head = Vec::new();
-    let head_read = file.take(HEAD_BYTES).read_to_end(&mut head);
-    head_read.and_then(|_| file.seek(SeekFrom::Start(0))).map_err(|source| unreadable(path, source))?;
+    file.take(HEAD_BYTES).read_to_end(&mut head)?;
+    file.rewind()?;
     if head.is_empty() {
-        return Err(ReadRecordingError::Empty {
-            path: path.to_path_buf(),
-            problem: "is empty (0 bytes)".to_string(),
-        });
+        return Err(Problem::Refused("is empty (0 bytes)".to_string()));
     }
     if let Some((what, how)) = to_convert(&head) {
-        let (what, how) = (what.to_string(), how.to_string());
-        return Err(ReadRecordingError::Convert { path: path.to_path_buf(), what, how });
+        return Err(Problem::convert(what, how));
     }
     if let Some(format) = given.or_else(|| by_content(&head)) {
         return Ok(format);
@@ -75,7 +84,7 @@ pub(super) fn detect(
             } else {
                 format!("it ends in .{ending}, and its {kind} begins with the bytes {first}")
             };
-            Err(ReadRecordingError::UnknownFormat { path: path.to_path_buf(), found })
+            Err(Problem::UnknownFormat(found))
         }
     }
 }

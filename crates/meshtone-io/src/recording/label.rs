@@ -47,7 +47,13 @@ impl Label {
         let raw = header.trim().to_string();
         let (name, unit) = split_unit(&raw).unwrap_or((&raw, None));
         let (name, unit) = (name.to_string(), unit.map(str::to_string));
-        Label { raw: raw.clone(), name, unit, array: None, not_numeric: None, is_zero_twin: false }
+        Label { name, unit, ..Label::plain(&raw) }
+    }
+
+    /// From a name that says no unit.
+    pub(super) fn plain(name: &str) -> Label {
+        let (raw, name) = (name.to_string(), name.to_string());
+        Label { raw, name, unit: None, array: None, not_numeric: None, is_zero_twin: false }
     }
 
     /// Of a column that has no name: a word and its number, counted from 1.

@@ -12,7 +12,7 @@
 
 pub(crate) mod array;
 mod assemble;
-pub(crate) mod catalogue;
+mod catalogue;
 mod error;
 mod format;
 mod label;
@@ -22,7 +22,6 @@ pub(crate) mod number;
 pub(crate) mod numpy;
 mod options;
 mod parquet_check;
-mod parquet_depth;
 mod parquet_file;
 mod rate;
 mod selection;
@@ -32,15 +31,17 @@ mod unit;
 mod warning;
 mod wav;
 
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
-pub use error::{Position, ReadRecordingError};
+pub use error::ReadRecordingError;
 pub use format::RecordingFormat;
 pub use options::{
     Calibration, ColumnChoice, DecimalSign, RecordingOptions, Separator, TextOptions, TimeColumn,
 };
 pub use warning::RecordingWarning;
 
+use self::error::Problem;
 use crate::input_file::open_ordinary;
 
 /// The file in a folder of results that is read for the folder.
@@ -164,18 +165,26 @@ impl Recording {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read_recording(path: &Path, options: &RecordingOptions) -> Result<Recording, ReadRecordingError> {
-    options.check()?;
     let inside = path.join(SIGNALS_FILE);
     let path = if path.is_dir() && inside.exists() { inside.as_path() } else { path };
-    let mut file = open_ordinary(path).map_err(|source| error::unreadable(path, source))?;
+    let opened = options.check().and_then(|()| open(path, options));
+    let (file, format) = opened.map_err(|problem| problem.of_file(path, "recording"))?;
+    let recording = match format {
+        RecordingFormat::Text => text::read(file, options),
+        RecordingFormat::Parquet => parquet_file::read(file, options),
+        RecordingFormat::Npy => numpy::read_npy(file, options),
+        RecordingFormat::Npz => numpy::read_npz(file, options),
+        RecordingFormat::Mat => mat::read(file, options),
+        RecordingFormat::Wav => wav::read(file, options),
+    };
+    let recording = recording.map_err(|problem| problem.of_file(path, format.name()))?;
+    Ok(Recording { source: path.to_path_buf(), ..recording })
+}
+
+/// Opens a file and finds its format.
+fn open(path: &Path, options: &RecordingOptions) -> Result<(File, RecordingFormat), Problem> {
+    let mut file = open_ordinary(path)?;
     let format = format::detect(path, &mut file, options.format)?;
     options.check_format(path, format)?;
-    match format {
-        RecordingFormat::Text => text::read(path, file, options),
-        RecordingFormat::Parquet => parquet_file::read(path, file, options),
-        RecordingFormat::Npy => numpy::read_npy(path, file, options),
-        RecordingFormat::Npz => numpy::read_npz(path, file, options),
-        RecordingFormat::Mat => mat::read(path, file, options),
-        RecordingFormat::Wav => wav::read(path, file, options),
-    }
+    Ok((file, format))
 }

@@ -1,5 +1,7 @@
 //! Numbers as bytes.
 
+use std::io::{self, Read};
+
 /// How a number is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum NumberKind {
@@ -7,6 +9,7 @@ pub(crate) enum NumberKind {
     U8,
     I16,
     U16,
+    I24,
     I32,
     U32,
     I64,
@@ -19,72 +22,117 @@ impl NumberKind {
     /// Bytes of a number.
     pub(crate) fn size(self) -> usize {
         match self {
-            NumberKind::I8 | NumberKind::U8 => 1,
-            NumberKind::I16 | NumberKind::U16 => 2,
-            NumberKind::I32 | NumberKind::U32 | NumberKind::F32 => 4,
-            NumberKind::I64 | NumberKind::U64 | NumberKind::F64 => 8,
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I24 => 3,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::I64 | Self::U64 | Self::F64 => 8,
         }
     }
 
     pub(crate) fn name(self) -> &'static str {
         match self {
-            NumberKind::I8 => "int8",
-            NumberKind::U8 => "uint8",
-            NumberKind::I16 => "int16",
-            NumberKind::U16 => "uint16",
-            NumberKind::I32 => "int32",
-            NumberKind::U32 => "uint32",
-            NumberKind::I64 => "int64",
-            NumberKind::U64 => "uint64",
-            NumberKind::F32 => "float32",
-            NumberKind::F64 => "float64",
+            Self::I8 => "int8",
+            Self::U8 => "uint8",
+            Self::I16 => "int16",
+            Self::U16 => "uint16",
+            Self::I24 => "int24",
+            Self::I32 => "int32",
+            Self::U32 => "uint32",
+            Self::I64 => "int64",
+            Self::U64 => "uint64",
+            Self::F32 => "float32",
+            Self::F64 => "float64",
         }
     }
 }
 
-/// Appends one number of each record.
-///
-/// # Arguments
-/// * `bytes` - whole records, one behind the other
-/// * `record` - bytes of a record
-/// * `offset` - where the number begins in a record
-/// * `kind`, `big_endian` - how it is stored
-/// * `to` - what it is appended to
-pub(crate) fn append_strided(
-    bytes: &[u8],
+/// How the numbers of an array stand in a file: one in each element.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Numbers {
+    pub kind: NumberKind,
+    pub big_endian: bool,
+    /// Bytes of an element before its number, as those of other fields.
+    pub before: usize,
+    /// Bytes of an element behind its number.
+    pub behind: usize,
+}
+
+impl Numbers {
+    /// Numbers without anything between them.
+    pub(crate) fn plain(kind: NumberKind, big_endian: bool) -> Self {
+        Self { kind, big_endian, before: 0, behind: 0 }
+    }
+
+    /// Bytes of an element.
+    pub(crate) fn element_bytes(self) -> usize {
+        self.before + self.kind.size() + self.behind
+    }
+
+    /// Reads one element.
+    pub(crate) fn read_one(self, from: &mut dyn Read) -> io::Result<f64> {
+        let mut bytes = vec![0; self.element_bytes()];
+        from.read_exact(&mut bytes)?;
+        let mut number = Vec::with_capacity(1);
+        self.append(&bytes, 1, 0, &mut number);
+        number.pop().ok_or_else(|| io::ErrorKind::UnexpectedEof.into())
+    }
+
+    /// Appends one number of each record.
+    ///
+    /// # Arguments
+    /// * `bytes` - whole records, one behind the other
+    /// * `elements` - elements of a record
+    /// * `element` - the one of a record whose number is appended
+    /// * `to` - what the numbers are appended to
+    pub(crate) fn append(self, bytes: &[u8], elements: usize, element: usize, to: &mut Vec<f64>) {
+        let place = Place {
+            record: elements * self.element_bytes(),
+            offset: element * self.element_bytes() + self.before,
+            big_endian: self.big_endian,
+        };
+        match self.kind {
+            NumberKind::I8 => place.append(bytes, to, |number| i8::from_le_bytes(number).into()),
+            NumberKind::U8 => place.append(bytes, to, |number| u8::from_le_bytes(number).into()),
+            NumberKind::I16 => place.append(bytes, to, |number| i16::from_le_bytes(number).into()),
+            NumberKind::U16 => place.append(bytes, to, |number| u16::from_le_bytes(number).into()),
+            // As the upper bytes of 32 bits, so that the sign is that of the number.
+            NumberKind::I24 => {
+                place.append(bytes, to, |[a, b, c]| (i32::from_le_bytes([0, a, b, c]) >> 8).into());
+            }
+            NumberKind::I32 => place.append(bytes, to, |number| i32::from_le_bytes(number).into()),
+            NumberKind::U32 => place.append(bytes, to, |number| u32::from_le_bytes(number).into()),
+            NumberKind::I64 => place.append(bytes, to, |number| i64::from_le_bytes(number) as f64),
+            NumberKind::U64 => place.append(bytes, to, |number| u64::from_le_bytes(number) as f64),
+            NumberKind::F32 => place.append(bytes, to, |number| f32::from_le_bytes(number).into()),
+            NumberKind::F64 => place.append(bytes, to, f64::from_le_bytes),
+        }
+    }
+}
+
+/// Where a number stands in each record.
+struct Place {
     record: usize,
     offset: usize,
-    kind: NumberKind,
     big_endian: bool,
-    to: &mut Vec<f64>,
-) {
-    macro_rules! append {
-        ($number:ty) => {{
-            const SIZE: usize = size_of::<$number>();
-            if record == SIZE && offset == 0 && !big_endian {
-                // Nothing between the numbers: whole vectors at a time.
-                to.extend(bytes.as_chunks().0.iter().map(|bytes| <$number>::from_le_bytes(*bytes) as f64));
-                return;
+}
+
+impl Place {
+    /// * `number` - reads a number whose lowest byte is the first
+    #[inline]
+    fn append<const SIZE: usize>(&self, bytes: &[u8], to: &mut Vec<f64>, number: impl Fn([u8; SIZE]) -> f64) {
+        if self.record == SIZE && !self.big_endian {
+            // Nothing stands between the numbers: they are converted in vectors.
+            to.extend(bytes.as_chunks().0.iter().map(|bytes| number(*bytes)));
+            return;
+        }
+        let found = bytes.chunks_exact(self.record);
+        let found = found.filter_map(|record| record.get(self.offset..)?.first_chunk::<SIZE>().copied());
+        to.extend(found.map(|mut bytes| {
+            if self.big_endian {
+                bytes.reverse();
             }
-            let records = bytes.chunks_exact(record);
-            let numbers = records.filter_map(|record| record.get(offset..)?.first_chunk::<SIZE>());
-            if big_endian {
-                to.extend(numbers.map(|bytes| <$number>::from_be_bytes(*bytes) as f64));
-            } else {
-                to.extend(numbers.map(|bytes| <$number>::from_le_bytes(*bytes) as f64));
-            }
-        }};
-    }
-    match kind {
-        NumberKind::I8 => append!(i8),
-        NumberKind::U8 => append!(u8),
-        NumberKind::I16 => append!(i16),
-        NumberKind::U16 => append!(u16),
-        NumberKind::I32 => append!(i32),
-        NumberKind::U32 => append!(u32),
-        NumberKind::I64 => append!(i64),
-        NumberKind::U64 => append!(u64),
-        NumberKind::F32 => append!(f32),
-        NumberKind::F64 => append!(f64),
+            number(bytes)
+        }));
     }
 }

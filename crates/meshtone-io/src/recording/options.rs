@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use super::{ReadRecordingError, RecordingFormat};
+use super::RecordingFormat;
+use super::error::Problem;
 
 /// A column of a file, by its name or its number.
 ///
@@ -140,42 +141,35 @@ pub struct RecordingOptions {
 }
 
 impl RecordingOptions {
-    /// What applies to some formats only.
+    /// Checks what applies to some formats only.
     ///
     /// # Arguments
     /// * `path`, `format` - of the recording
-    pub(super) fn check_format(
-        &self,
-        path: &Path,
-        format: RecordingFormat,
-    ) -> Result<(), ReadRecordingError> {
+    pub(super) fn check_format(&self, path: &Path, format: RecordingFormat) -> Result<(), Problem> {
         let holds_variables = matches!(format, RecordingFormat::Npz | RecordingFormat::Mat);
         match &self.variable {
-            Some(variable) if !holds_variables => Err(ReadRecordingError::Option {
-                problem: format!(
-                    "{}: variable `{variable}` is given, but only NPZ and MAT files hold variables",
-                    path.display()
-                ),
-            }),
+            Some(variable) if !holds_variables => Err(Problem::Option(format!(
+                "{}: variable `{variable}` is given, but only NPZ and MAT files hold variables",
+                path.display()
+            ))),
             _ => Ok(()),
         }
     }
 
-    /// The numbers, which the types do not rule out.
-    pub(super) fn check(&self) -> Result<(), ReadRecordingError> {
+    /// Checks the numbers, which the types do not rule out.
+    pub(super) fn check(&self) -> Result<(), Problem> {
         let positive = |rate: &f64| rate.is_finite() && *rate > 0.0;
         if let Some(rate) = self.sampling_rate_hz.filter(|rate| !positive(rate)) {
             let problem = format!("sampling_rate_hz is {rate}; must be a finite number above 0");
-            return Err(ReadRecordingError::Option { problem });
+            return Err(Problem::Option(problem));
         }
         for calibration in &self.calibrations {
             let usable = |sensitivity: &f64| sensitivity.is_finite() && *sensitivity != 0.0;
             if let Some(wrong) = calibration.sensitivity_v_per_unit.filter(|given| !usable(given)) {
-                let problem = format!(
+                return Err(Problem::Option(format!(
                     "the sensitivity of channel {} is {wrong} V per unit; must be a finite number other than 0",
                     calibration.channel
-                );
-                return Err(ReadRecordingError::Option { problem });
+                )));
             }
         }
         Ok(())

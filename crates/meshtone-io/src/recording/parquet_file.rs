@@ -2,23 +2,21 @@
 
 use std::fs::File;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
 
 use parquet::basic::Compression;
 use parquet::file::metadata::{ColumnChunkMetaData, FileMetaData};
 
-use super::assemble::{Parts, assemble};
-use super::error::{broken, read_failed, unreadable};
+use super::assemble::{Columns, assemble};
+use super::error::Problem;
 use super::label::Label;
-use super::parquet_check::check;
-use super::parquet_depth::is_too_deep;
+use super::parquet_check::{check_depth, check_metadata};
 use super::rate::StatedRate;
 use super::selection::select;
-use super::{Position, ReadRecordingError, Recording, RecordingOptions, memory_need};
+use super::{Recording, RecordingOptions, memory_need};
+use crate::memory;
 use crate::signals::SCENARIO_KEY;
 use crate::table::{FoundColumn, FoundType, TableReader};
 
-const FORMAT: &str = "Parquet";
 /// Bytes of samples that a byte of a file may well stand for; memory for more is taken only as they come.
 const USUAL_COMPRESSION: u64 = 16;
 
@@ -26,54 +24,46 @@ const USUAL_COMPRESSION: u64 = 16;
 ///
 /// The `parquet` crate panics where a page contradicts the metadata, which no check finds before it is decoded; so
 /// its panics are caught. Nothing but what is dropped with them has changed by then.
-pub(super) fn read(
-    path: &Path,
-    file: File,
-    options: &RecordingOptions,
-) -> Result<Recording, ReadRecordingError> {
-    let result = catch_unwind(AssertUnwindSafe(|| decode(path, file, options)));
+pub(super) fn read(file: File, options: &RecordingOptions) -> Result<Recording, Problem> {
+    let result = catch_unwind(AssertUnwindSafe(|| decode(file, options)));
     result.unwrap_or_else(|panic| {
         let message = panic.downcast_ref::<String>().map(String::as_str);
         let message = message.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("unknown");
-        Err(broken(path, FORMAT, format!("its pages cannot be decoded ({message})")))
+        Err(Problem::Broken(format!("its pages cannot be decoded ({message})")))
     })
 }
 
-fn decode(path: &Path, mut file: File, options: &RecordingOptions) -> Result<Recording, ReadRecordingError> {
-    let file_bytes = file.metadata().map_err(|source| unreadable(path, source))?.len();
-    let too_deep = is_too_deep(&mut file, file_bytes).map_err(|error| read_failed(path, FORMAT, error))?;
-    if too_deep {
-        return Err(broken(path, FORMAT, "its list of columns is damaged, or nested more than 64 deep"));
-    }
-    let table = TableReader::new(file).map_err(|error| broken(path, FORMAT, error))?;
-    check(table.metadata(), file_bytes).map_err(|problem| broken(path, FORMAT, problem))?;
+fn decode(mut file: File, options: &RecordingOptions) -> Result<Recording, Problem> {
+    let file_bytes = file.metadata()?.len();
+    check_depth(&mut file, file_bytes)?;
+    let table = TableReader::new(file).map_err(Problem::broken)?;
+    check_metadata(table.metadata(), file_bytes).map_err(Problem::Broken)?;
     let head = table.metadata().file_metadata();
     let labels: Vec<Label> = table.columns().iter().map(label).collect();
-    let stated = stated_rates(head);
-    let scenario_toml = scenario(head);
-    let selection = select(path, &labels, options)?;
-    let wanted = selection.wanted();
+    let selection = select(&labels, options)?;
     let rows = u64::try_from(head.num_rows()).unwrap_or(0);
-    let chunks = || wanted.iter().flat_map(|index| table.chunks(&table.columns()[*index]));
+    let chunks = || selection.wanted.iter().flat_map(|index| table.chunks(&table.columns()[*index]));
     if let Some(foreign) = chunks().find(|chunk| !is_read(chunk.compression())) {
-        return Err(foreign_codec(path, foreign));
+        return Err(foreign_codec(foreign));
     }
     // A page is there as a whole beside the numbers that it becomes, and is its whole chunk at most.
     let page_bytes = chunks().filter_map(|chunk| u64::try_from(chunk.uncompressed_size()).ok()).max();
-    memory_need::check(path, options, &selection, wanted.iter().map(|_| rows), page_bytes.unwrap_or(0))?;
-    let capacity = capacity(wanted.len(), head.num_rows(), file_bytes);
+    memory_need::check(memory::limit(), options, &selection, |_| rows, page_bytes.unwrap_or(0))?;
+    let bytes = rows.checked_mul(8 * selection.wanted.len() as u64);
+    let is_usual = bytes.is_some_and(|bytes| bytes <= file_bytes.saturating_mul(USUAL_COMPRESSION));
+    let capacity = if is_usual { rows as usize } else { 0 };
     let read = |index: &usize| {
-        let column = &table.columns()[*index];
-        let numbers = table.numbers(column, capacity).map_err(|error| broken(path, FORMAT, error))?;
+        let numbers = table.numbers(&table.columns()[*index], capacity).map_err(Problem::broken)?;
         match numbers.first_empty {
             None => Ok(numbers.values),
-            Some(row) => Err(gap(path, &labels[*index], row)),
+            Some(row) => {
+                Err(Problem::gap(format!("sample {}", row + 1), &labels[*index].raw, "empty (null)"))
+            }
         }
     };
-    let columns = wanted.iter().map(read).collect::<Result<_, _>>()?;
-    let parts = Parts { path, labels: &labels, selection: &selection, samples: columns, stated: &stated };
-    let recording = assemble(parts, options)?;
-    Ok(Recording { scenario_toml, ..recording })
+    let samples = selection.wanted.iter().map(read).collect::<Result<_, _>>()?;
+    let columns = Columns { labels: &labels, selection: &selection, samples, stated: &stated_rates(head) };
+    Ok(Recording { scenario_toml: scenario(head), ..assemble(columns, options)? })
 }
 
 fn label(column: &FoundColumn) -> Label {
@@ -86,7 +76,7 @@ fn label(column: &FoundColumn) -> Label {
     }
     match &column.kind {
         FoundType::Number(_) => {}
-        FoundType::Moment(_) => label.unit = Some("s".to_string()),
+        FoundType::Moment { .. } => label.unit = Some("s".to_string()),
         other => label.not_numeric = Some(other.to_string()),
     }
     label
@@ -99,18 +89,15 @@ fn is_read(codec: Compression) -> bool {
     matches!(codec, UNCOMPRESSED | SNAPPY | GZIP(_) | LZ4 | LZ4_RAW | ZSTD(_))
 }
 
-fn foreign_codec(path: &Path, chunk: &ColumnChunkMetaData) -> ReadRecordingError {
+fn foreign_codec(chunk: &ColumnChunkMetaData) -> Problem {
     let codec = chunk.compression().to_string();
     let codec = codec.split('(').next().unwrap_or_default();
     let column = chunk.column_path().string();
-    ReadRecordingError::Convert {
-        path: path.to_path_buf(),
-        what: format!("a Parquet file whose column {column} is compressed by {codec}"),
-        how:
-            "write it again uncompressed or with Snappy, gzip, LZ4 or Zstandard, for instance in Python with \
-              `pandas.read_parquet('FILE').to_parquet('NEW', compression='zstd')`"
-                .to_string(),
-    }
+    Problem::convert(
+        &format!("a Parquet file whose column {column} is compressed by {codec}"),
+        "write it again uncompressed or with Snappy, gzip, LZ4 or Zstandard, for instance in Python with \
+         `pandas.read_parquet('FILE').to_parquet('NEW', compression='zstd')`",
+    )
 }
 
 fn stated_rates(metadata: &FileMetaData) -> Vec<StatedRate> {
@@ -124,23 +111,5 @@ fn stated_rates(metadata: &FileMetaData) -> Vec<StatedRate> {
 
 fn scenario(metadata: &FileMetaData) -> Option<String> {
     let mut entries = metadata.key_value_metadata().into_iter().flatten();
-    let entry = entries.find(|entry| entry.key == SCENARIO_KEY)?;
-    entry.value.clone()
-}
-
-/// Numbers of a column for which memory is taken beforehand.
-fn capacity(columns: usize, rows: i64, file_bytes: u64) -> usize {
-    let rows = u64::try_from(rows).unwrap_or(0);
-    let bytes = rows.checked_mul(8 * columns as u64);
-    let usual = bytes.is_some_and(|bytes| bytes <= file_bytes.saturating_mul(USUAL_COMPRESSION));
-    if usual { rows as usize } else { 0 }
-}
-
-fn gap(path: &Path, label: &Label, row: usize) -> ReadRecordingError {
-    ReadRecordingError::Gap {
-        path: path.to_path_buf(),
-        position: Position::Sample(row as u64 + 1),
-        column: label.raw.clone(),
-        what: "empty (null)".to_string(),
-    }
+    entries.find(|entry| entry.key == SCENARIO_KEY)?.value.clone()
 }

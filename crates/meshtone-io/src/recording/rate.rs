@@ -1,9 +1,8 @@
 //! Sampling rates that a file states.
 
-use std::path::Path;
-
+use super::RecordingOptions;
+use super::error::{Problem, names};
 use super::time::Timing;
-use super::{ReadRecordingError, RecordingOptions};
 
 /// Two statements of one rate may differ by this part, for instance by the digits that were written.
 const AGREEMENT: f64 = 1e-6;
@@ -35,40 +34,56 @@ impl StatedRate {
     }
 }
 
-/// The rate and the time of the first sample, from all that says something about them.
+/// The rate and the time of the first sample, from all statements about them.
+///
+/// # Arguments
+/// * `stated` - rates that the file states
+/// * `timing` - the name of the time column and what it says
+/// * `options` - of the recording
+/// * `present` - the columns of the file, for messages
 pub(super) fn decide(
-    path: &Path,
     stated: &[StatedRate],
-    timing: Option<(String, Timing)>,
+    timing: Option<(&str, Timing)>,
     options: &RecordingOptions,
     present: impl Fn() -> Vec<String>,
-) -> Result<(f64, f64), ReadRecordingError> {
+) -> Result<(f64, f64), Problem> {
     if let Some(rate_hz) = options.sampling_rate_hz {
         return Ok((rate_hz, 0.0));
     }
-    let refuse = |problem: String| ReadRecordingError::Rate { path: path.to_path_buf(), problem };
     let Some(first) = stated.first() else {
-        let no_rate = || ReadRecordingError::NoRate { path: path.to_path_buf(), present: present() };
-        return timing.map(|(_, timing)| (timing.rate_hz, timing.start_s)).ok_or_else(no_rate);
+        let timing = timing.map(|(_, timing)| (timing.rate_hz, timing.start_s));
+        return timing.ok_or_else(|| no_rate(&present()));
     };
-    for other in stated {
-        if !(other.rate_hz.is_finite() && other.rate_hz > 0.0) {
-            let StatedRate { by, rate_hz } = other;
-            return Err(refuse(format!("{by} says a sampling rate of {rate_hz} S/s; must be above 0")));
+    for StatedRate { by, rate_hz } in stated {
+        if !(rate_hz.is_finite() && *rate_hz > 0.0) {
+            let problem = format!("{by} says a sampling rate of {rate_hz} S/s; must be above 0");
+            return Err(Problem::rate(&problem));
         }
-        if (other.rate_hz / first.rate_hz - 1.0).abs() > AGREEMENT {
-            return Err(refuse(format!(
-                "{} says a sampling rate of {} S/s, but {} says {} S/s",
-                first.by, first.rate_hz, other.by, other.rate_hz
-            )));
+        if (rate_hz / first.rate_hz - 1.0).abs() > AGREEMENT {
+            return Err(contradiction(first, by, *rate_hz));
         }
     }
     let Some((column, timing)) = timing else { return Ok((first.rate_hz, 0.0)) };
     if (timing.rate_hz / first.rate_hz - 1.0).abs() > timing.uncertainty + AGREEMENT {
-        return Err(refuse(format!(
-            "{} says a sampling rate of {} S/s, but time column {column} says {} S/s",
-            first.by, first.rate_hz, timing.rate_hz
-        )));
+        return Err(contradiction(first, &format!("time column {column}"), timing.rate_hz));
     }
     Ok((first.rate_hz, timing.start_s))
+}
+
+fn contradiction(first: &StatedRate, other: &str, other_hz: f64) -> Problem {
+    let StatedRate { by, rate_hz } = first;
+    Problem::rate(&format!("{by} says a sampling rate of {rate_hz} S/s, but {other} says {other_hz} S/s"))
+}
+
+/// A file that does not state its sampling rate. A single column is hardly the time.
+fn no_rate(present: &[String]) -> Problem {
+    let rest = match present {
+        [_] => ", and has one column alone; give the sampling rate (option sampling_rate_hz)".to_owned(),
+        _ => format!(
+            ", and no column is named as time; give the sampling rate (option sampling_rate_hz) or say which column holds the \
+             time (option time); it has {}",
+            names(present)
+        ),
+    };
+    Problem::Refused(format!("does not say its sampling rate{rest}"))
 }

@@ -5,9 +5,7 @@
 //! in the file: 50 kS/s with four decimals of a second are five equal times in a row, and uniform none the less.
 //! That step is found from the numbers themselves.
 
-use std::path::Path;
-
-use super::ReadRecordingError;
+use super::error::Problem;
 
 /// Part of the interval by which a time may deviate.
 const JITTER: f64 = 0.01;
@@ -55,34 +53,28 @@ struct Steps {
 
 /// Finds the sampling rate.
 ///
+/// The times must rise, and must not deviate from the straight line through them by more than rounding explains. Where they do, the
+/// error names the step that differs most, since that is where samples are missing. The rate is then the number of fewest digits that
+/// the times allow.
+///
 /// # Arguments
-/// * `path`, `column` - for messages
+/// * `column` - the name of the time column, for messages
 /// * `times` - finite times in the file's unit
 /// * `unit_s` - (s) that unit
-pub(super) fn timing(
-    path: &Path,
-    column: &str,
-    times: &[f64],
-    unit_s: f64,
-) -> Result<Timing, ReadRecordingError> {
-    let refuse = |problem: String| ReadRecordingError::Time {
-        path: path.to_path_buf(),
-        column: column.to_string(),
-        problem,
-    };
+pub(super) fn timing(column: &str, times: &[f64], unit_s: f64) -> Result<Timing, Problem> {
+    let refuse = |problem: &str| Err(Problem::time(column, problem));
     let (&[first, .., last], count) = (times, times.len()) else {
-        return Err(refuse("has one sample only, which tells no sampling rate".to_string()));
+        return refuse("has one sample only, which tells no sampling rate");
     };
     // All are compared first: without a way out in between, in vectors.
     let goes_back = times.iter().zip(&times[1..]).fold(false, |back, (from, to)| back | (to < from));
     let back = || times.windows(2).position(|pair| pair[1] < pair[0]);
     if let Some(index) = goes_back.then(back).flatten() {
         let (from, to) = (times[index] * unit_s, times[index + 1] * unit_s);
-        let problem = format!("goes back from {from} s to {to} s at sample {}", index + 2);
-        return Err(refuse(problem));
+        return refuse(&format!("goes back from {from} s to {to} s at sample {}", index + 2));
     }
     if last <= first {
-        return Err(refuse(format!("stays at {} s", first * unit_s)));
+        return refuse(&format!("stays at {} s", first * unit_s));
     }
     let steps = steps(times);
     let line = line(times);
@@ -101,23 +93,24 @@ pub(super) fn timing(
         let from_median = |index: &usize| (step(*index) - steps.median).abs() == steps.largest_difference;
         let worst = (0..count - 1).find(from_median).unwrap_or(0);
         let deviates = |index: &usize| line.deviation(times, *index) == largest_deviation;
-        return Err(ReadRecordingError::NonUniformTime {
-            path: path.to_path_buf(),
-            column: column.to_string(),
-            from_sample: worst as u64 + 1,
-            step_s: readable(step(worst) * unit_s),
-            interval_s: readable(if steps.median > 0.0 { steps.median } else { line.interval() } * unit_s),
-            largest_deviation_s: readable(largest_deviation * unit_s),
-            deviation_sample: (0..count).find(deviates).unwrap_or(0) as u64 + 1,
-        });
+        let interval = if steps.median > 0.0 { steps.median } else { line.interval() };
+        let [step_s, interval_s, deviation_s] =
+            [step(worst), interval, largest_deviation].map(|time| readable(time * unit_s));
+        return Err(Problem::Refused(format!(
+            "time column {column} is not uniform: from sample {} to the next it advances by {step_s} s, elsewhere by {interval_s} s; \
+             the largest deviation from uniform time is {deviation_s} s, at sample {}; resample the recording, cut it at the gap, \
+             or, if the samples are uniform and only the time column is not, give the sampling rate (option sampling_rate_hz)",
+            worst + 1,
+            (0..count).find(deviates).unwrap_or(0) + 1,
+        )));
     }
     let uncertainty = (1.5 * resolution + rounding) / (last - first) + 1e-12;
     if uncertainty > MAX_UNCERTAINTY {
         let (resolution_s, span_s) = (readable(resolution * unit_s), readable((last - first) * unit_s));
         let percent = readable(100.0 * uncertainty);
-        return Err(refuse(format!(
+        return refuse(&format!(
             "is rounded to {resolution_s} s over {span_s} s, which tells the sampling rate only to {percent} %"
-        )));
+        ));
     }
     let rate_hz = shortest_within(1.0 / (line.interval() * unit_s), uncertainty);
     Ok(Timing { rate_hz, start_s: first * unit_s, uncertainty })

@@ -20,7 +20,7 @@ pub enum FileKind {
 }
 
 impl FileKind {
-    /// What a text is, by the tables that no other kind has; none where that cannot be told.
+    /// What a text is, by the tables that no other kind has; none where that cannot be decided.
     ///
     /// # Arguments
     /// * `text` - of the file
@@ -96,7 +96,7 @@ impl ReadScenarioError {
     }
 }
 
-/// What is told of a text that is another format altogether.
+/// The error about a text that is of another format altogether.
 fn no_toml(expected: FileKind, path: &Path, text: &str, error: &TomlError) -> Option<TomlError> {
     if error.kind != ErrorKind::NotToml {
         return None;

@@ -1,13 +1,11 @@
 //! Scenario files, with the files that they name.
 
-mod frequency_response_csv;
 mod kind;
 mod number_csv;
-mod profile_csv;
 mod profile_errors_npz;
-mod remembering;
 mod source;
 
+use std::cell::RefCell;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -17,9 +15,10 @@ use meshtone::scenario::{
 use meshtone_toml::TomlError;
 
 pub use kind::FileKind;
-pub use profile_errors_npz::{write_profile_errors_npz, write_wheels_npz};
-pub use source::ScenarioFile;
-pub use source::read_text;
+pub use profile_errors_npz::write_wheels_npz;
+pub use source::{ScenarioFile, read_text};
+
+use number_csv::{FREQUENCY_RESPONSE, PROFILE};
 
 /// A scenario file that could not be read.
 #[derive(Debug, thiserror::Error)]
@@ -80,6 +79,7 @@ pub fn read_scenario(path: &Path) -> Result<Scenario, ReadScenarioError> {
 #[derive(Debug, Clone)]
 pub struct FilesBeside {
     directory: PathBuf,
+    named: RefCell<Vec<PathBuf>>,
 }
 
 impl FilesBeside {
@@ -88,12 +88,22 @@ impl FilesBeside {
     /// # Arguments
     /// * `directory` - where relative names start
     pub fn new(directory: impl Into<PathBuf>) -> Self {
-        Self { directory: directory.into() }
+        Self { directory: directory.into(), named: RefCell::default() }
     }
 
-    /// Where the file of a name is.
+    /// The files that the scenario named, in the order of reading.
+    pub fn into_named(self) -> Vec<PathBuf> {
+        self.named.into_inner()
+    }
+
+    /// Where the file of a name is, which is kept among the named ones.
     fn path_of(&self, name: &str) -> PathBuf {
-        self.directory.join(name)
+        let path = self.directory.join(name);
+        let mut named = self.named.borrow_mut();
+        if !named.contains(&path) {
+            named.push(path.clone());
+        }
+        path
     }
 }
 
@@ -107,11 +117,13 @@ impl ScenarioFiles for FilesBeside {
     }
 
     fn profile(&self, name: &str) -> Result<Profile, FileProblem> {
-        profile_csv::read(&self.path_of(name))
+        let [time_s, value] = PROFILE.read(&self.path_of(name))?;
+        Ok(Profile { time_s, value })
     }
 
     fn frequency_response(&self, name: &str) -> Result<FrequencyResponse, FileProblem> {
-        frequency_response_csv::read(&self.path_of(name))
+        let [frequency_hz, magnitude, phase_deg] = FREQUENCY_RESPONSE.read(&self.path_of(name))?;
+        Ok(FrequencyResponse { frequency_hz, magnitude, phase_deg })
     }
 }
 

@@ -8,6 +8,25 @@ use meshtone::scenario::FileProblem;
 use super::unreadable;
 use crate::input_file::{MEMORY_PER_BYTE_OF_NUMBERS, open_stream};
 
+/// A quantity against time.
+pub(super) const PROFILE: NumberCsv<2> = NumberCsv {
+    names: ["time_s", "value"],
+    // The second column may have any name.
+    checked_names: 1,
+    needs_names: false,
+    help: "write two columns separated by a comma, time_s and value, with a point as decimal sign; the first line may name them",
+};
+
+/// A frequency response.
+pub(super) const FREQUENCY_RESPONSE: NumberCsv<3> = NumberCsv {
+    names: ["frequency_hz", "magnitude", "phase_deg"],
+    checked_names: 3,
+    // Real and imaginary parts, decibels or radians would otherwise be taken for magnitude and phase.
+    needs_names: true,
+    help: "write three columns separated by a comma, with a point as decimal sign; the first line must be \
+           frequency_hz,magnitude,phase_deg",
+};
+
 /// A CSV file of some columns of numbers.
 pub(super) struct NumberCsv<const COLUMNS: usize> {
     /// Their names.
@@ -30,7 +49,7 @@ impl<const COLUMNS: usize> NumberCsv<COLUMNS> {
             .trim(Trim::All)
             .comment(Some(b'#'))
             .from_reader(file);
-        let mut columns = std::array::from_fn(|_| Vec::new());
+        let mut columns = [const { Vec::new() }; COLUMNS];
         for (index, record) in reader.records().enumerate() {
             let record = record.map_err(|error| {
                 let words = error.to_string();
@@ -43,11 +62,7 @@ impl<const COLUMNS: usize> NumberCsv<COLUMNS> {
                 self.check_names(path, &record)?;
                 continue;
             }
-            let row = self.numbers(&record).map_err(|what| self.problem(path, &what))?;
-            columns
-                .iter_mut()
-                .zip(row)
-                .for_each(|(column, number): (&mut Vec<f64>, f64)| column.push(number));
+            self.append(&record, &mut columns).map_err(|what| self.problem(path, &what))?;
         }
         Ok(columns)
     }
@@ -69,18 +84,18 @@ impl<const COLUMNS: usize> NumberCsv<COLUMNS> {
         Ok(())
     }
 
-    fn numbers(&self, record: &StringRecord) -> Result<[f64; COLUMNS], String> {
+    fn append(&self, record: &StringRecord, columns: &mut [Vec<f64>; COLUMNS]) -> Result<(), String> {
         let line = record.position().map_or(0, csv::Position::line);
         if record.len() != COLUMNS {
             return Err(format!("has {} columns in line {line}; must have {COLUMNS}", record.len()));
         }
-        let mut numbers = [0.0; COLUMNS];
-        for (number, field) in numbers.iter_mut().zip(record) {
-            let parsed = field.parse::<f64>().ok().filter(|number| number.is_finite());
-            *number =
-                parsed.ok_or_else(|| format!("says `{field}` in line {line}; must be a finite number"))?;
+        for (column, field) in columns.iter_mut().zip(record) {
+            let number = field.parse().ok().filter(|number: &f64| number.is_finite());
+            column.push(
+                number.ok_or_else(|| format!("says `{field}` in line {line}; must be a finite number"))?,
+            );
         }
-        Ok(numbers)
+        Ok(())
     }
 }
 

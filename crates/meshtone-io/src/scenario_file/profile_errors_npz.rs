@@ -19,17 +19,16 @@ const HELP: &str = "save both wheels' errors with numpy.savez(name, pinion_profi
                     gear_profile_errors_mm=…), each 100 × teeth, in mm";
 
 pub(super) fn read(path: &Path) -> Result<ProfileErrors, FileProblem> {
-    let mut archive = open(path)?;
+    let (mut archive, present) = open(path)?;
     Ok(ProfileErrors {
-        pinion_profile_errors_mm: read_entry(path, &mut archive, PINION)?,
-        gear_profile_errors_mm: read_entry(path, &mut archive, GEAR)?,
+        pinion_profile_errors_mm: read_entry(path, &mut archive, &present, PINION)?,
+        gear_profile_errors_mm: read_entry(path, &mut archive, &present, GEAR)?,
     })
 }
 
 /// Pitches, run-out and helix slopes, as far as the archive has them.
 pub(super) fn read_deviations(path: &Path) -> Result<[WheelDeviations; 2], FileProblem> {
-    let mut archive = open(path)?;
-    let present = names(path, &archive)?;
+    let (mut archive, present) = open(path)?;
     let mut both = [WheelDeviations::default(), WheelDeviations::default()];
     for key in WheelDeviations::keys().filter(|key| present.iter().any(|entry| entry == key)) {
         let numbers = floats(path, &mut archive, key)?.numbers;
@@ -40,13 +39,13 @@ pub(super) fn read_deviations(path: &Path) -> Result<[WheelDeviations; 2], FileP
     Ok(both)
 }
 
-fn open(path: &Path) -> Result<NpzReader, FileProblem> {
+/// Opens an archive, and gives the names of its arrays.
+fn open(path: &Path) -> Result<(NpzReader, Vec<String>), FileProblem> {
     let file = open_ordinary(path).map_err(|error| unreadable(path, &error))?;
-    NpzReader::new(file).map_err(|error| problem(path, &format!("is not an .npz archive: {error}")))
-}
-
-fn names(path: &Path, archive: &NpzReader) -> Result<Vec<String>, FileProblem> {
-    archive.names().map_err(|error| problem(path, &format!("cannot be read: {error}")))
+    let archive =
+        NpzReader::new(file).map_err(|error| problem(path, &format!("is not an .npz archive: {error}")))?;
+    let names = archive.names().map_err(|error| problem(path, &format!("cannot be read: {error}")))?;
+    Ok((archive, names))
 }
 
 fn floats(path: &Path, archive: &mut NpzReader, name: &str) -> Result<ReadArray, FileProblem> {
@@ -59,8 +58,12 @@ fn problem(path: &Path, what: &str) -> FileProblem {
     FileProblem::new(format!("{} {what}", path.display()), HELP)
 }
 
-fn read_entry(path: &Path, archive: &mut NpzReader, name: &str) -> Result<ErrorTable, FileProblem> {
-    let present = names(path, archive)?;
+fn read_entry(
+    path: &Path,
+    archive: &mut NpzReader,
+    present: &[String],
+    name: &str,
+) -> Result<ErrorTable, FileProblem> {
     if !present.iter().any(|entry| entry == name) {
         let present = if present.is_empty() { "nothing".to_string() } else { present.join(", ") };
         return Err(problem(path, &format!("has no entry {name}; it has {present}")));
@@ -76,34 +79,6 @@ fn read_entry(path: &Path, archive: &mut NpzReader, name: &str) -> Result<ErrorT
         true => ErrorTable::from_fn(rows, columns, |row, column| array.numbers[column * rows + row]),
         false => ErrorTable::from_fn(rows, columns, |row, column| array.numbers[row * columns + column]),
     })
-}
-
-/// Writes profile errors to a NumPy archive, as `quality.errors_file` reads them.
-///
-/// # Arguments
-/// * `path` - the archive; it is replaced if it exists
-/// * `errors` - (mm) both wheels' errors, 100 × teeth
-///
-/// # Errors
-/// The file cannot be written; what was there before is then still there.
-///
-/// ```
-/// use meshtone::scenario::ProfileErrors;
-/// use meshtone_io::scenario_file::{FilesBeside, write_profile_errors_npz};
-/// use meshtone::scenario::ScenarioFiles;
-/// use meshtone::wheel::ErrorTable;
-///
-/// let directory = tempfile::tempdir()?;
-/// let errors = ProfileErrors {
-///     pinion_profile_errors_mm: ErrorTable::filled(100, 17, 0.002),
-///     gear_profile_errors_mm: ErrorTable::filled(100, 38, 0.003),
-/// };
-/// write_profile_errors_npz(&directory.path().join("wheels.npz"), &errors)?;
-/// assert_eq!(FilesBeside::new(directory.path()).profile_errors("wheels.npz")?, errors);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn write_profile_errors_npz(path: &Path, errors: &ProfileErrors) -> Result<(), WriteFileError> {
-    write_wheels_npz(path, errors, &[WheelDeviations::default(), WheelDeviations::default()])
 }
 
 /// Writes all deviations of both wheels to a NumPy archive, as `quality.errors_file` reads them.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use meshtone::scenario::{MemoryLimit, Scenario, ScenarioError};
 use meshtone_toml::TomlDocument;
 
-use super::{FileKind, FilesBeside, ReadScenarioError, remembering::Remembering};
+use super::{FileKind, FilesBeside, ReadScenarioError};
 use crate::input_file::read_document;
 use crate::memory;
 
@@ -45,10 +45,9 @@ impl ScenarioFile {
     pub fn read_within(path: &Path, limit: MemoryLimit) -> Result<Self, ReadScenarioError> {
         let text = read_text(path)?;
         let files = FilesBeside::new(path.parent().unwrap_or(Path::new("")));
-        let files = Remembering::new(&files);
         let path = path.to_path_buf();
         match Scenario::from_toml_within(&text, &files, limit) {
-            Ok(scenario) => Ok(Self { path, text, scenario, named_files: files.read() }),
+            Ok(scenario) => Ok(Self { path, text, scenario, named_files: files.into_named() }),
             Err(error) => Err(ReadScenarioError::invalid(FileKind::Scenario, path, text, error.into())),
         }
     }

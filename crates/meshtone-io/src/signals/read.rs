@@ -82,7 +82,7 @@ fn rate(metadata: &FileMetaData) -> Result<f64, String> {
 fn numbers(table: &TableReader<File>, name: &str) -> Result<Vec<f64>, String> {
     let column = table.column(name).ok_or_else(|| format!("has no column {name}"))?;
     let wrong = || format!("has a column {name} of {}; must be of Float64 without nulls", column.kind);
-    if column.kind != FoundType::Number(NumberType::Float64) {
+    if column.kind != FoundType::Number(NumberType::Float(64)) {
         return Err(wrong());
     }
     let numbers =

@@ -5,7 +5,6 @@ use std::io::{self, Write};
 use meshtone::scenario::Scenario;
 use meshtone::sensor::{Channel, Channels};
 use parquet::basic::{Compression, Encoding};
-use parquet::file::metadata::KeyValue;
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::schema::types::ColumnPath;
 
@@ -27,12 +26,17 @@ const GROUP_ROWS: usize = 1 << 20;
 /// # Errors
 /// Those of `to`.
 pub fn write_signals(to: impl Write + Send, scenario: &Scenario, channels: &Channels) -> io::Result<()> {
-    let properties = properties(scenario, channels);
     let time = table_column(TIME, "s", "time since the start of the simulation");
     let listed = channels.list();
     let column = |channel: &Channel| table_column(&channel.name(), channel.unit(), channel.meaning());
     let signals = listed.iter().map(column);
-    let mut table = TableWriter::new(to, std::iter::once(time).chain(signals).collect(), properties)?;
+    let mut table = TableWriter::new(to, std::iter::once(time).chain(signals).collect(), properties())?;
+    table.add_metadata([
+        (SCENARIO_KEY, scenario.to_toml()),
+        (VERSION_KEY, env!("CARGO_PKG_VERSION").to_string()),
+        (RUN_KEY, RunIdentity::of(scenario).to_string()),
+        (RATE_KEY, format!("{:?}", channels.sampling_rate_hz)),
+    ]);
     for start in (0..channels.len()).step_by(GROUP_ROWS) {
         let rows = start..channels.len().min(start + GROUP_ROWS);
         let time = |row: usize| channels.time_s(start + row);
@@ -45,24 +49,11 @@ pub fn write_signals(to: impl Write + Send, scenario: &Scenario, channels: &Chan
 }
 
 fn table_column(name: &str, unit: &str, description: &str) -> TableColumn {
-    let metadata = [("unit", unit), ("description", description)]
-        .map(|(key, value)| (key.to_string(), value.to_string()));
-    TableColumn {
-        name: name.to_string(),
-        cells: CellType::Float64,
-        nullable: false,
-        metadata: metadata.to_vec(),
-    }
+    let column = TableColumn::new(name, CellType::Float64);
+    column.with_metadata([("unit", unit), ("description", description)])
 }
 
-fn properties(scenario: &Scenario, channels: &Channels) -> WriterProperties {
-    let metadata = [
-        (SCENARIO_KEY, scenario.to_toml()),
-        (VERSION_KEY, env!("CARGO_PKG_VERSION").to_string()),
-        (RUN_KEY, RunIdentity::of(scenario).to_string()),
-        (RATE_KEY, format!("{:?}", channels.sampling_rate_hz)),
-    ];
-    let metadata = metadata.map(|(key, value)| KeyValue::new(key.to_string(), value));
+fn properties() -> WriterProperties {
     WriterProperties::builder()
         // Zstandard makes the noise-like digits of a vibration 7 % smaller and takes twice as long.
         .set_compression(Compression::SNAPPY)
@@ -72,6 +63,5 @@ fn properties(scenario: &Scenario, channels: &Channels) -> WriterProperties {
         // Rows are looked up by their time; the extremes of a signal are found in every part of it.
         .set_statistics_enabled(EnabledStatistics::None)
         .set_column_statistics_enabled(ColumnPath::from(TIME), EnabledStatistics::Chunk)
-        .set_key_value_metadata(Some(metadata.to_vec()))
         .build()
 }

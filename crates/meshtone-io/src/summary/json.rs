@@ -3,12 +3,12 @@
 use std::io::{self, Write};
 use std::time::Duration;
 
-use meshtone::damage::{FaultyTeeth, FlankPit, PittedTooth, PittingGrade};
+use meshtone::damage::{FaultyTeeth, QuantityValue};
 use meshtone::sensor::ChannelKind;
 use meshtone::signal::{IndicatorValue, Indicators, Shaft};
 use serde_json::{Map, Value, json};
 
-use super::{ChannelSummary, FaultSummary, MeshForce, Summary};
+use super::{ChannelSummary, FaultSummary, MeshForce, PittedTooth, Summary};
 
 /// A fault's kind, place and severity, and the pits of each of its teeth, as a scenario file may list them.
 fn fault(summary: &FaultSummary) -> Value {
@@ -21,18 +21,16 @@ fn fault(summary: &FaultSummary) -> Value {
     entry
 }
 
-fn pitted_tooth(pitted: &PittedTooth) -> Value {
-    let every = |of: fn(&FlankPit) -> f64| pitted.pits.iter().map(of).collect::<Vec<_>>();
-    json!({
-        "tooth": pitted.tooth,
-        "area_percent": pitted.area_percent,
-        "grade": PittingGrade::of(pitted.area_percent).name(),
-        "at": every(|pit| pit.at),
-        "z_mm": every(|pit| pit.z_mm),
-        "radius_mm": every(|pit| pit.radius_mm),
-        "face_radius_mm": every(|pit| pit.face_radius_mm),
-        "depth_mm": every(|pit| pit.depth_mm),
-    })
+fn pitted_tooth((tooth, quantities): &PittedTooth) -> Value {
+    let mut entry = json!({ "tooth": tooth });
+    for (name, value) in quantities {
+        entry[name] = match value {
+            QuantityValue::Number(value) => json!(value),
+            QuantityValue::Word(word) => json!(word),
+            several => json!(several.numbers()),
+        };
+    }
+    entry
 }
 
 /// A number, an array of them, or `"all"`, as in the scenario file.

@@ -8,7 +8,7 @@ mod read;
 
 use std::time::Duration;
 
-use meshtone::damage::{PittedTooth, pitted_teeth};
+use meshtone::damage::{QuantityValue, ToothPart, damages_of_fault};
 use meshtone::scenario::{Fault, FaultyTeeth, ScenarioWarning};
 use meshtone::signal::{ChainSettings, Indicators, Shaft, SimulatedShafts, kurtosis, peak, rms};
 use meshtone::{Simulation, Stages};
@@ -78,21 +78,27 @@ pub struct FaultSummary {
     pub tooth: FaultyTeeth,
     /// (-) How severe it is, from 0, none, to 1, the largest that the tooth allows.
     pub severity: f64,
-    /// The pits of each tooth, of a fault that is pits.
+    /// What it has done to each of its teeth; only of a fault that takes spots of their flanks.
     pub pitted_teeth: Vec<PittedTooth>,
 }
+
+/// Number of a tooth, from 1, and the quantities of the damage there, by their names.
+pub type PittedTooth = (u32, Vec<(&'static str, QuantityValue)>);
 
 impl FaultSummary {
     /// Those of a simulation.
     fn all(stages: &Stages) -> Vec<Self> {
-        let all = &stages.scenario.faults;
-        let faults = all.iter().zip(&stages.fault_severities).enumerate();
+        let faults = stages.scenario.faults.iter().zip(&stages.fault_severities).enumerate();
         let summary = |(number, (fault, &severity)): (usize, (&Fault, &f64))| Self {
             kind: fault.damage.kind(),
             wheel: fault.wheel.name(),
             tooth: fault.tooth.clone(),
             severity,
-            pitted_teeth: pitted_teeth(all, &stages.damaged, number),
+            pitted_teeth: damages_of_fault(&stages.damaged, number)
+                .into_iter()
+                .filter(|(_, damage)| damage.part == ToothPart::FlankSpots)
+                .map(|(tooth, damage)| (tooth, damage.quantities.clone()))
+                .collect(),
         };
         faults.map(summary).collect()
     }
@@ -161,8 +167,10 @@ impl Summary {
     pub fn new(simulation: &Simulation, run: RunIdentity, warnings: &[ScenarioWarning]) -> Self {
         let (stages, channels) = (&simulation.stages, &simulation.channels);
         let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
-        let stiffness = Extremes::of(&stages.mesh.stiffness_n_per_mm());
-        let force = Extremes::of(&channels.mesh_force_n);
+        let mesh = stages.mesh_curves().into_iter().next();
+        let [min_n_per_mm, mean_n_per_mm, max_n_per_mm] =
+            extremes(mesh.as_ref().map_or(&[], |mesh| &mesh.stiffness_n_per_mm));
+        let [min_n, mean_n, max_n] = extremes(&channels.mesh_force_n);
         let contact = simulation.contact_figures();
         let (leading, signal) = channels.leading();
         let stage_times = simulation.timings.iter().map(|time| (time.stage.to_string(), time.elapsed));
@@ -178,17 +186,13 @@ impl Summary {
             start_s: channels.start_s,
             samples_per_pinion_revolution: stages.time.samples_per_pinion_revolution,
             contact_ratio: stages.teeth.contact.contact_ratio,
-            face_load_factor: stages.mesh.contact().map(|mesh| mesh.face_load_factor),
+            face_load_factor: mesh.and_then(|mesh| mesh.face_load_factor),
             natural_frequencies_hz: stages.natural_frequencies_hz(),
-            mesh_stiffness: MeshStiffness {
-                min_n_per_mm: stiffness.min,
-                mean_n_per_mm: stiffness.mean,
-                max_n_per_mm: stiffness.max,
-            },
+            mesh_stiffness: MeshStiffness { min_n_per_mm, mean_n_per_mm, max_n_per_mm },
             mesh_force: MeshForce {
-                min_n: force.min,
-                mean_n: force.mean,
-                max_n: force.max,
+                min_n,
+                mean_n,
+                max_n,
                 tension_fraction: contact.is_none().then(|| channels.tension_fraction()),
                 contact,
             },
@@ -215,18 +219,11 @@ impl Summary {
     }
 }
 
-struct Extremes {
-    min: f64,
-    mean: f64,
-    max: f64,
-}
-
-impl Extremes {
-    fn of(values: &[f64]) -> Self {
-        Self {
-            min: values.iter().copied().fold(f64::INFINITY, f64::min),
-            mean: values.iter().sum::<f64>() / values.len() as f64,
-            max: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        }
-    }
+/// Smallest value, mean and largest value.
+fn extremes(values: &[f64]) -> [f64; 3] {
+    [
+        values.iter().copied().fold(f64::INFINITY, f64::min),
+        values.iter().sum::<f64>() / values.len() as f64,
+        values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    ]
 }

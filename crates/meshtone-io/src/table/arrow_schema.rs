@@ -10,7 +10,7 @@ use flatbuffers::{FlatBufferBuilder, TableFinishedWIPOffset, VOffsetT, WIPOffset
 
 use super::flat_buffer::{BEFORE_PLACES, FlatTable};
 use super::write::LIST_ITEM;
-use super::{CellType, TableColumn, TimeUnit};
+use super::{CellType, FoundType, TableColumn};
 
 /// The metadata key.
 pub(super) const KEY: &str = "ARROW:schema";
@@ -60,8 +60,10 @@ mod type_code {
     pub const LIST: u8 = 12;
     pub const DURATION: u8 = 18;
 }
-/// Of dates, times, timestamps and durations alike.
+/// The field of dates, times, timestamps and durations alike that says their unit.
 const UNIT: usize = 0;
+/// How many of each unit make a second.
+const PER_SECOND: [u32; 4] = [1, 1_000, 1_000_000, 1_000_000_000];
 
 /// What Arrow knows about a column.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -69,16 +71,7 @@ pub(super) struct ArrowField {
     pub name: String,
     pub metadata: Vec<(String, String)>,
     /// Its type, where that is one that Parquet's integers may stand for.
-    pub kind: Option<ArrowKind>,
-}
-
-/// A type that Parquet stores as plain integers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum ArrowKind {
-    Timestamp(TimeUnit),
-    Duration(TimeUnit),
-    Time,
-    Date,
+    pub kind: Option<FoundType>,
 }
 
 /// Reads the columns of a schema; none where it is no schema.
@@ -116,21 +109,30 @@ fn arrow_field(table: FlatTable, left: &mut usize) -> Option<ArrowField> {
     Some(ArrowField { name, metadata, kind: kind.and_then(|(kind, code)| arrow_kind(kind, code)) })
 }
 
-fn arrow_kind(kind: FlatTable, code: u8) -> Option<ArrowKind> {
-    let unit = |default: TimeUnit| kind.u16(UNIT).map_or(Some(default), TimeUnit::from_code);
-    Some(match code {
-        type_code::TIMESTAMP => ArrowKind::Timestamp(unit(TimeUnit::Second)?),
-        type_code::DURATION => ArrowKind::Duration(unit(TimeUnit::Millisecond)?),
-        type_code::TIME => ArrowKind::Time,
-        type_code::DATE => ArrowKind::Date,
-        _ => return None,
-    })
+/// A type that Parquet stores as plain integers.
+fn arrow_kind(kind: FlatTable, code: u8) -> Option<FoundType> {
+    let moment = |default_unit: u16| {
+        let unit = usize::from(kind.u16(UNIT).unwrap_or(default_unit));
+        let per_second = *PER_SECOND.get(unit)?;
+        Some(FoundType::Moment { per_second })
+    };
+    match code {
+        type_code::TIMESTAMP => moment(0),
+        type_code::DURATION => moment(1),
+        type_code::TIME => Some(FoundType::Other("Time")),
+        type_code::DATE => Some(FoundType::Other("Date")),
+        _ => None,
+    }
 }
 
 /// A schema of columns as text.
 pub(super) fn encode(columns: &[TableColumn]) -> String {
     let mut buffer = FlatBufferBuilder::new();
-    let fields: Vec<FlatField> = columns.iter().map(|column| put_column(&mut buffer, column)).collect();
+    let put = |column: &TableColumn| {
+        let kind = ArrowType::of(column.cells);
+        put_field(&mut buffer, &column.name, kind, column.nullable, &column.metadata)
+    };
+    let fields: Vec<FlatField> = columns.iter().map(put).collect();
     let fields = buffer.create_vector(&fields);
     let start = buffer.start_table();
     buffer.push_slot_always(offset(schema::FIELDS), fields);
@@ -154,38 +156,23 @@ fn offset(field: usize) -> VOffsetT {
     (BEFORE_PLACES + 2 * field) as VOffsetT
 }
 
-fn put_column(buffer: &mut FlatBufferBuilder, column: &TableColumn) -> FlatField {
-    put_field(buffer, &column.name, ArrowType::of(column.cells), column.nullable, &column.metadata)
-}
-
 /// The types that are written.
 #[derive(Clone, Copy)]
 enum ArrowType {
-    Integer { bits: i32, is_signed: bool },
+    Integer { bits: i32 },
     FloatingPoint { precision: i16 },
     Text,
-    Float32List { nullable_items: bool },
+    Float32List,
 }
 
 impl ArrowType {
     fn of(cells: CellType) -> Self {
         match cells {
-            CellType::Int32 => Self::Integer { bits: 32, is_signed: true },
-            CellType::Int64 => Self::Integer { bits: 64, is_signed: true },
-            CellType::UInt32 => Self::Integer { bits: 32, is_signed: false },
-            CellType::UInt64 => Self::Integer { bits: 64, is_signed: false },
+            CellType::Int32 => Self::Integer { bits: 32 },
+            CellType::Int64 => Self::Integer { bits: 64 },
             CellType::Float64 => Self::FloatingPoint { precision: floating_point::DOUBLE },
             CellType::Text => Self::Text,
-            CellType::Float32List { nullable_items } => Self::Float32List { nullable_items },
-        }
-    }
-
-    fn code(self) -> u8 {
-        match self {
-            Self::Integer { .. } => type_code::INTEGER,
-            Self::FloatingPoint { .. } => type_code::FLOATING_POINT,
-            Self::Text => type_code::TEXT,
-            Self::Float32List { .. } => type_code::LIST,
+            CellType::Float32List => Self::Float32List,
         }
     }
 }
@@ -204,26 +191,23 @@ fn put_field(
     let metadata = (!metadata.is_empty()).then(|| buffer.create_vector(&metadata));
     let name = buffer.create_string(name);
     let children: Vec<FlatField> = match kind {
-        ArrowType::Float32List { nullable_items } => {
+        ArrowType::Float32List => {
             let item = ArrowType::FloatingPoint { precision: floating_point::SINGLE };
-            vec![put_field(buffer, LIST_ITEM, item, nullable_items, &[])]
+            vec![put_field(buffer, LIST_ITEM, item, false, &[])]
         }
         _ => Vec::new(),
     };
     // Parts in the order of Arrow's own Rust library: then files are its files, byte by byte.
-    let (parameters, children) = match kind {
-        ArrowType::Text | ArrowType::Float32List { .. } => {
-            let parameters = put_parameters(buffer, kind);
-            (parameters, buffer.create_vector(&children))
-        }
+    let ((code, parameters), children) = match kind {
+        ArrowType::Text | ArrowType::Float32List => (put_type(buffer, kind), buffer.create_vector(&children)),
         ArrowType::Integer { .. } | ArrowType::FloatingPoint { .. } => {
             let children = buffer.create_vector(&children);
-            (put_parameters(buffer, kind), children)
+            (put_type(buffer, kind), children)
         }
     };
     let start = buffer.start_table();
     buffer.push_slot_always(offset(field::NAME), name);
-    buffer.push_slot_always(offset(field::TYPE_CODE), kind.code());
+    buffer.push_slot_always(offset(field::TYPE_CODE), code);
     buffer.push_slot(offset(field::NULLABLE), nullable, false);
     buffer.push_slot_always(offset(field::CHILDREN), children);
     buffer.push_slot_always(offset(field::TYPE), parameters);
@@ -241,20 +225,23 @@ fn put_entry(buffer: &mut FlatBufferBuilder, key: &str, value: &str) -> FlatFiel
     buffer.end_table(start)
 }
 
-/// What a type says besides its code.
-fn put_parameters(buffer: &mut FlatBufferBuilder, kind: ArrowType) -> FlatField {
+/// The code of a type, and the table of what it says besides.
+fn put_type(buffer: &mut FlatBufferBuilder, kind: ArrowType) -> (u8, FlatField) {
     let start = buffer.start_table();
-    match kind {
-        ArrowType::Integer { bits, is_signed } => {
-            buffer.push_slot(offset(integer::IS_SIGNED), is_signed, false);
+    let code = match kind {
+        ArrowType::Integer { bits } => {
+            buffer.push_slot_always(offset(integer::IS_SIGNED), true);
             buffer.push_slot_always(offset(integer::BITS), bits);
+            type_code::INTEGER
         }
         ArrowType::FloatingPoint { precision } => {
             buffer.push_slot_always(offset(floating_point::PRECISION), precision);
+            type_code::FLOATING_POINT
         }
-        ArrowType::Text | ArrowType::Float32List { .. } => {}
-    }
-    buffer.end_table(start)
+        ArrowType::Text => type_code::TEXT,
+        ArrowType::Float32List => type_code::LIST,
+    };
+    (code, buffer.end_table(start))
 }
 
 #[cfg(test)]
@@ -271,7 +258,7 @@ mod tests {
         vec![
             column("label", CellType::Text, false, ""),
             column("speed", CellType::Float64, true, "Hz"),
-            column("signal", CellType::Float32List { nullable_items: false }, false, "g"),
+            column("signal", CellType::Float32List, false, "g"),
         ]
     }
 

@@ -1,187 +1,119 @@
 //! What a column of any Parquet file holds.
 
-use parquet::basic::{ConvertedType, LogicalType, Repetition, TimeUnit as ParquetUnit, Type as Physical};
+use std::fmt;
+
+use parquet::basic::{ConvertedType, LogicalType, Repetition, TimeUnit, Type as Physical};
 use parquet::schema::types::Type;
 
-use super::arrow_schema::ArrowKind;
-
 /// What a column holds.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FoundType {
     /// Numbers.
     Number(NumberType),
     /// Points in time or times between them, as integers.
-    Moment(TimeUnit),
+    Moment {
+        /// How many units of time make a second.
+        per_second: u32,
+    },
     /// Text.
     Text,
     /// Something else, in Arrow's words.
-    Other(String),
+    Other(&'static str),
 }
 
-/// A type of numbers.
+/// A type of numbers, with its bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NumberType {
-    /// 8 bits with sign
-    Int8,
-    /// 16 bits with sign
-    Int16,
-    /// 32 bits with sign
-    Int32,
-    /// 64 bits with sign
-    Int64,
-    /// 8 bits without sign
-    UInt8,
-    /// 16 bits without sign
-    UInt16,
-    /// 32 bits without sign
-    UInt32,
-    /// 64 bits without sign
-    UInt64,
-    /// single precision
-    Float32,
-    /// double precision
-    Float64,
-}
-
-/// A unit of time.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum TimeUnit {
-    /// 1 s
-    Second,
-    /// 1 ms
-    Millisecond,
-    /// 1 µs
-    Microsecond,
-    /// 1 ns
-    Nanosecond,
-}
-
-impl TimeUnit {
-    /// The unit of a number in Arrow's schemas.
-    pub(super) fn from_code(code: u16) -> Option<Self> {
-        [Self::Second, Self::Millisecond, Self::Microsecond, Self::Nanosecond].get(usize::from(code)).copied()
-    }
-
-    /// How many make a second.
-    pub fn per_second(self) -> f64 {
-        match self {
-            Self::Second => 1.0,
-            Self::Millisecond => 1e3,
-            Self::Microsecond => 1e6,
-            Self::Nanosecond => 1e9,
-        }
-    }
-}
-
-impl From<ParquetUnit> for TimeUnit {
-    fn from(unit: ParquetUnit) -> Self {
-        match unit {
-            ParquetUnit::MILLIS => Self::Millisecond,
-            ParquetUnit::MICROS => Self::Microsecond,
-            ParquetUnit::NANOS => Self::Nanosecond,
-        }
-    }
+    /// Integers with sign.
+    Int(u8),
+    /// Integers without sign.
+    UInt(u8),
+    /// Floating point.
+    Float(u8),
 }
 
 impl FoundType {
     /// Of a column of the file's schema, and what Arrow's schema says of it.
-    pub(super) fn of(column: &Type, arrow: Option<ArrowKind>) -> Self {
+    pub(super) fn of(column: &Type, arrow: Option<FoundType>) -> Self {
         let info = column.get_basic_info();
         if info.has_repetition() && info.repetition() == Repetition::REPEATED {
-            return Self::Other("List".to_owned());
+            return Self::Other("List");
         }
+        // Older files have only the converted type, which says less.
+        let logical = info.logical_type_ref();
+        let converted = logical.map_or(info.converted_type(), |logical| Some(logical.clone()).into());
         if column.is_group() {
-            return Self::Other(group(info.logical_type_ref(), info.converted_type()).to_owned());
+            return Self::Other(match converted {
+                ConvertedType::LIST => "List",
+                ConvertedType::MAP | ConvertedType::MAP_KEY_VALUE => "Map",
+                _ => "Struct",
+            });
         }
-        if matches!(info.logical_type_ref(), Some(LogicalType::Unknown)) {
-            return Self::Other("Null".to_owned());
-        }
-        let stored = primitive(column.get_physical_type(), info.logical_type_ref(), info.converted_type());
-        match (stored, arrow) {
+        let physical = column.get_physical_type();
+        match (primitive(physical, logical, converted), arrow) {
             // Arrow has types that Parquet lacks; they are stored as integers.
-            (Self::Number(_), Some(kind)) if is_integer(column) => Self::of_arrow(kind),
+            (Self::Number(_), Some(arrow)) if matches!(physical, Physical::INT32 | Physical::INT64) => arrow,
             (stored, _) => stored,
         }
     }
-
-    fn of_arrow(kind: ArrowKind) -> Self {
-        match kind {
-            ArrowKind::Timestamp(unit) | ArrowKind::Duration(unit) => Self::Moment(unit),
-            ArrowKind::Time => Self::Other("Time".to_owned()),
-            ArrowKind::Date => Self::Other("Date".to_owned()),
-        }
-    }
 }
 
-fn is_integer(column: &Type) -> bool {
-    matches!(column.get_physical_type(), Physical::INT32 | Physical::INT64)
-}
-
-/// A type that is made of others.
-fn group(logical: Option<&LogicalType>, converted: ConvertedType) -> &'static str {
-    match (logical, converted) {
-        (Some(LogicalType::List), _) | (None, ConvertedType::LIST) => "List",
-        (Some(LogicalType::Map), _) | (None, ConvertedType::MAP | ConvertedType::MAP_KEY_VALUE) => "Map",
-        _ => "Struct",
-    }
-}
-
-/// A type of single values; older files have only the converted type.
+/// A type of single values.
+///
+/// Types of which the converted type says too little are found by their logical type, all others by the converted one, and those
+/// without either by how they are stored.
 fn primitive(physical: Physical, logical: Option<&LogicalType>, converted: ConvertedType) -> FoundType {
-    let other = |name: &str| FoundType::Other(name.to_owned());
-    match (logical, converted) {
-        (Some(LogicalType::Integer(kind)), _) => integer(kind.bit_width, kind.is_signed),
-        (Some(LogicalType::Timestamp(kind)), _) => FoundType::Moment(kind.unit.into()),
-        (Some(LogicalType::String | LogicalType::Json), _) => FoundType::Text,
-        (Some(LogicalType::Date), _) => other("Date32"),
-        (Some(LogicalType::Time(_)), _) => other("Time"),
-        (Some(LogicalType::Decimal(_)), _) => other("Decimal"),
-        (Some(LogicalType::Float16), _) => other("Float16"),
-        (None, ConvertedType::INT_8) => integer(8, true),
-        (None, ConvertedType::INT_16) => integer(16, true),
-        (None, ConvertedType::UINT_8) => integer(8, false),
-        (None, ConvertedType::UINT_16) => integer(16, false),
-        (None, ConvertedType::UINT_32) => integer(32, false),
-        (None, ConvertedType::UINT_64) => integer(64, false),
-        (None, ConvertedType::TIMESTAMP_MILLIS) => FoundType::Moment(TimeUnit::Millisecond),
-        (None, ConvertedType::TIMESTAMP_MICROS) => FoundType::Moment(TimeUnit::Microsecond),
-        (None, ConvertedType::UTF8 | ConvertedType::JSON) => FoundType::Text,
-        (None, ConvertedType::DATE) => other("Date32"),
-        (None, ConvertedType::TIME_MILLIS | ConvertedType::TIME_MICROS) => other("Time"),
-        (None, ConvertedType::DECIMAL) => other("Decimal"),
-        (None, ConvertedType::INTERVAL) => other("Interval"),
+    use FoundType::{Moment, Number, Other, Text};
+    use NumberType::{Float, Int, UInt};
+
+    match logical {
+        Some(LogicalType::Timestamp(kind)) => {
+            let per_second = match kind.unit {
+                TimeUnit::MILLIS => 1_000,
+                TimeUnit::MICROS => 1_000_000,
+                TimeUnit::NANOS => 1_000_000_000,
+            };
+            return Moment { per_second };
+        }
+        Some(LogicalType::Time(_)) => return Other("Time"),
+        Some(LogicalType::Float16) => return Other("Float16"),
+        Some(LogicalType::Unknown) => return Other("Null"),
+        _ => {}
+    }
+    match converted {
+        ConvertedType::INT_8 => Number(Int(8)),
+        ConvertedType::INT_16 => Number(Int(16)),
+        ConvertedType::UINT_8 => Number(UInt(8)),
+        ConvertedType::UINT_16 => Number(UInt(16)),
+        ConvertedType::UINT_32 => Number(UInt(32)),
+        ConvertedType::UINT_64 => Number(UInt(64)),
+        ConvertedType::TIMESTAMP_MILLIS => Moment { per_second: 1_000 },
+        ConvertedType::TIMESTAMP_MICROS => Moment { per_second: 1_000_000 },
+        ConvertedType::UTF8 | ConvertedType::JSON => Text,
+        ConvertedType::DATE => Other("Date32"),
+        ConvertedType::TIME_MILLIS | ConvertedType::TIME_MICROS => Other("Time"),
+        ConvertedType::DECIMAL => Other("Decimal"),
+        ConvertedType::INTERVAL => Other("Interval"),
         _ => match physical {
-            Physical::INT32 => integer(32, true),
-            Physical::INT64 => integer(64, true),
-            Physical::FLOAT => FoundType::Number(NumberType::Float32),
-            Physical::DOUBLE => FoundType::Number(NumberType::Float64),
+            Physical::INT32 => Number(Int(32)),
+            Physical::INT64 => Number(Int(64)),
+            Physical::FLOAT => Number(Float(32)),
+            Physical::DOUBLE => Number(Float(64)),
             // Old programs' timestamps.
-            Physical::INT96 => FoundType::Moment(TimeUnit::Nanosecond),
-            Physical::BOOLEAN => other("Boolean"),
-            Physical::BYTE_ARRAY | Physical::FIXED_LEN_BYTE_ARRAY => other("Binary"),
+            Physical::INT96 => Moment { per_second: 1_000_000_000 },
+            Physical::BOOLEAN => Other("Boolean"),
+            Physical::BYTE_ARRAY | Physical::FIXED_LEN_BYTE_ARRAY => Other("Binary"),
         },
     }
 }
 
-fn integer(bits: i8, is_signed: bool) -> FoundType {
-    use NumberType::*;
-    FoundType::Number(match (bits, is_signed) {
-        (8, true) => Int8,
-        (16, true) => Int16,
-        (32, true) => Int32,
-        (8, false) => UInt8,
-        (16, false) => UInt16,
-        (32, false) => UInt32,
-        (64, false) => UInt64,
-        _ => Int64,
-    })
-}
-
-impl std::fmt::Display for FoundType {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl fmt::Display for FoundType {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Number(kind) => write!(formatter, "{kind:?}"),
-            Self::Moment(unit) => write!(formatter, "Timestamp({unit:?})"),
+            Self::Number(NumberType::Int(bits)) => write!(formatter, "Int{bits}"),
+            Self::Number(NumberType::UInt(bits)) => write!(formatter, "UInt{bits}"),
+            Self::Number(NumberType::Float(bits)) => write!(formatter, "Float{bits}"),
+            Self::Moment { per_second } => write!(formatter, "Timestamp({per_second} a second)"),
             Self::Text => formatter.write_str("Utf8"),
             Self::Other(name) => formatter.write_str(name),
         }

@@ -6,14 +6,13 @@
 //! Meshtone.
 
 mod arrow_schema;
-mod file;
 mod flat_buffer;
 mod found_type;
 mod read;
 mod split_signal;
 mod write;
 
-pub use found_type::{FoundType, NumberType, TimeUnit};
+pub use found_type::{FoundType, NumberType};
 pub use read::{FoundColumn, Numbers, TableReader};
 pub use write::{CellType, Cells, TableColumn, TableWriter};
 

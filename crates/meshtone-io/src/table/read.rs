@@ -1,14 +1,14 @@
 //! Reading a table.
 
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
-use parquet::data_type::{DataType, DoubleType, Int96Type};
+use parquet::data_type::DataType;
 use parquet::errors::{ParquetError, Result};
 use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData};
 use parquet::file::reader::{ChunkReader, FileReader, SerializedFileReader};
 use parquet::schema::types::Type;
 
 use super::arrow_schema::{self, ArrowField};
-use super::{FoundType, NumberType, TimeUnit};
+use super::{FoundType, NumberType};
 
 /// Rows that are decoded at once.
 const ROWS_AT_ONCE: usize = 1 << 14;
@@ -41,8 +41,6 @@ pub struct Numbers {
     pub values: Vec<f64>,
     /// The first row whose cell is empty.
     pub first_empty: Option<usize>,
-    /// The first moment, from which moments are counted.
-    first_moment: Option<i64>,
 }
 
 impl<R: ChunkReader + 'static> TableReader<R> {
@@ -100,33 +98,35 @@ impl<R: ChunkReader + 'static> TableReader<R> {
     /// The file cannot be read; the column holds something else.
     pub fn numbers(&self, column: &FoundColumn, capacity: usize) -> Result<Numbers> {
         let mut numbers = Numbers { values: Vec::with_capacity(capacity), ..Numbers::default() };
-        self.each_group(column, |reader| match (reader, &column.kind) {
+        let mut first = None;
+        self.each_group(column, |reader| match (reader, column.kind) {
             (ColumnReader::DoubleColumnReader(reader), FoundType::Number(_)) => {
-                numbers.append_stored(reader, column.nullable)
+                numbers.append(reader, column, |&number| number)
             }
             (ColumnReader::FloatColumnReader(reader), FoundType::Number(_)) => {
-                numbers.append(reader, column.nullable, |&number| f64::from(number))
+                numbers.append(reader, column, |&number| f64::from(number))
             }
-            (ColumnReader::Int32ColumnReader(reader), FoundType::Number(kind)) => match kind {
-                NumberType::UInt8 | NumberType::UInt16 | NumberType::UInt32 => {
-                    numbers.append(reader, column.nullable, |&number| f64::from(number.cast_unsigned()))
-                }
-                _ => numbers.append(reader, column.nullable, |&number| f64::from(number)),
-            },
-            (ColumnReader::Int64ColumnReader(reader), FoundType::Number(kind)) => match kind {
-                NumberType::UInt64 => {
-                    numbers.append(reader, column.nullable, |&number| number.cast_unsigned() as f64)
-                }
-                _ => numbers.append(reader, column.nullable, |&number| number as f64),
-            },
-            (ColumnReader::Int32ColumnReader(reader), FoundType::Moment(unit)) => {
-                numbers.append_moments(reader, column.nullable, *unit, |&moment| i64::from(moment))
+            (ColumnReader::Int32ColumnReader(reader), FoundType::Number(NumberType::UInt(_))) => {
+                numbers.append(reader, column, |&number| f64::from(number.cast_unsigned()))
             }
-            (ColumnReader::Int64ColumnReader(reader), FoundType::Moment(unit)) => {
-                numbers.append_moments(reader, column.nullable, *unit, |&moment| moment)
+            (ColumnReader::Int32ColumnReader(reader), FoundType::Number(_)) => {
+                numbers.append(reader, column, |&number| f64::from(number))
             }
-            (ColumnReader::Int96ColumnReader(reader), FoundType::Moment(unit)) => numbers
-                .append_moments::<Int96Type>(reader, column.nullable, *unit, |moment| moment.to_nanos()),
+            (ColumnReader::Int64ColumnReader(reader), FoundType::Number(NumberType::UInt(_))) => {
+                numbers.append(reader, column, |&number| number.cast_unsigned() as f64)
+            }
+            (ColumnReader::Int64ColumnReader(reader), FoundType::Number(_)) => {
+                numbers.append(reader, column, |&number| number as f64)
+            }
+            (ColumnReader::Int32ColumnReader(reader), FoundType::Moment { per_second }) => {
+                numbers.append(reader, column, |&moment| seconds(moment.into(), &mut first, per_second))
+            }
+            (ColumnReader::Int64ColumnReader(reader), FoundType::Moment { per_second }) => {
+                numbers.append(reader, column, |&moment| seconds(moment, &mut first, per_second))
+            }
+            (ColumnReader::Int96ColumnReader(reader), FoundType::Moment { per_second }) => {
+                numbers.append(reader, column, |moment| seconds(moment.to_nanos(), &mut first, per_second))
+            }
             _ => Err(holds(column)),
         })?;
         Ok(numbers)
@@ -141,7 +141,7 @@ impl<R: ChunkReader + 'static> TableReader<R> {
     /// The file cannot be read; the column holds something else.
     pub fn texts(&self, column: &FoundColumn) -> Result<Vec<Option<String>>> {
         let mut texts = Vec::new();
-        self.each_group(column, |reader| match (reader, &column.kind) {
+        self.each_group(column, |reader| match (reader, column.kind) {
             (ColumnReader::ByteArrayColumnReader(reader), FoundType::Text) => {
                 each_block(reader, column.nullable, |values, levels| {
                     let mut values = values.iter();
@@ -267,51 +267,22 @@ fn each_block<T: DataType>(
     }
 }
 
-impl Numbers {
-    /// Numbers that are stored as they are wanted are decoded to where they belong.
-    fn append_stored(&mut self, mut reader: ColumnReaderImpl<DoubleType>, nullable: bool) -> Result<usize> {
-        let mut definitions = Vec::new();
-        let mut all = 0;
-        loop {
-            definitions.clear();
-            let levels = nullable.then_some(&mut definitions);
-            let (rows, found, _) = reader.read_records(ROWS_AT_ONCE, levels, None, &mut self.values)?;
-            if rows == 0 {
-                return Ok(all);
-            }
-            self.spread(found, &Levels { rows, definitions: &definitions });
-            all += rows;
-        }
-    }
+/// (s) A moment since the first one, which is kept.
+fn seconds(moment: i64, first: &mut Option<i64>, per_second: u32) -> f64 {
+    let first = *first.get_or_insert(moment);
+    // In 128 bits, as two moments may be farther apart than fits into 64.
+    (i128::from(moment) - i128::from(first)) as f64 / f64::from(per_second)
+}
 
+impl Numbers {
     fn append<T: DataType>(
         &mut self,
         reader: ColumnReaderImpl<T>,
-        nullable: bool,
-        number: impl Fn(&T::T) -> f64,
+        column: &FoundColumn,
+        mut number: impl FnMut(&T::T) -> f64,
     ) -> Result<usize> {
-        each_block(reader, nullable, |values, levels| {
-            self.values.extend(values.iter().map(&number));
-            self.spread(values.len(), &levels);
-            Ok(())
-        })
-    }
-
-    fn append_moments<T: DataType>(
-        &mut self,
-        reader: ColumnReaderImpl<T>,
-        nullable: bool,
-        unit: TimeUnit,
-        moment: impl Fn(&T::T) -> i64,
-    ) -> Result<usize> {
-        let per_second = unit.per_second();
-        each_block(reader, nullable, |values, levels| {
-            if let Some(first) = values.first() {
-                let first = *self.first_moment.get_or_insert_with(|| moment(first));
-                // In 128 bits, as two moments may be farther apart than fits into 64.
-                let seconds = |value| (i128::from(moment(value)) - i128::from(first)) as f64 / per_second;
-                self.values.extend(values.iter().map(seconds));
-            }
+        each_block(reader, column.nullable, |values, levels| {
+            self.values.extend(values.iter().map(&mut number));
             self.spread(values.len(), &levels);
             Ok(())
         })

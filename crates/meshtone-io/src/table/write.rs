@@ -10,11 +10,10 @@ use parquet::data_type::{self, ByteArray, DataType};
 use parquet::errors::{ParquetError, Result};
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
+use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{Type, TypePtr};
 
-use super::file::TableFile;
-use super::split_signal::Signal;
-use super::{arrow_schema, into_io};
+use super::{arrow_schema, into_io, split_signal};
 
 /// Name of the table itself, as Arrow's writers give it.
 const TABLE: &str = "arrow_schema";
@@ -43,19 +42,12 @@ pub enum CellType {
     Int32,
     /// Integers of 64 bits.
     Int64,
-    /// Integers of 32 bits without sign.
-    UInt32,
-    /// Integers of 64 bits without sign.
-    UInt64,
     /// Double precision.
     Float64,
     /// Text.
     Text,
-    /// Lists of numbers in single precision.
-    Float32List {
-        /// Whether the column's type allows empty items, which are never written.
-        nullable_items: bool,
-    },
+    /// Lists of numbers in single precision, none of them empty.
+    Float32List,
 }
 
 /// Cells of a sequence that are computed at a time.
@@ -67,10 +59,6 @@ pub enum Cells<'c> {
     Int32(Vec<Option<i32>>),
     /// Of [`CellType::Int64`].
     Int64(Vec<Option<i64>>),
-    /// Of [`CellType::UInt32`].
-    UInt32(Vec<Option<u32>>),
-    /// Of [`CellType::UInt64`].
-    UInt64(Vec<Option<u64>>),
     /// Of [`CellType::Float64`].
     Float64(Vec<Option<f64>>),
     /// Of [`CellType::Float64`], none of them empty.
@@ -89,7 +77,24 @@ pub enum Cells<'c> {
 }
 
 impl TableColumn {
-    /// The number of a column's leaf is its own: lists have one leaf too.
+    /// A column without empty cells, of which Arrow's schema says nothing more.
+    ///
+    /// # Arguments
+    /// * `name`, `cells` - of the column
+    pub fn new(name: &str, cells: CellType) -> Self {
+        Self { name: name.to_owned(), cells, nullable: false, metadata: Vec::new() }
+    }
+
+    /// The column with entries of Arrow's schema.
+    ///
+    /// # Arguments
+    /// * `entries` - keys and values, such as `unit` and `Hz`
+    pub fn with_metadata<'m>(mut self, entries: impl IntoIterator<Item = (&'m str, &'m str)>) -> Self {
+        self.metadata.extend(entries.into_iter().map(|(key, value)| (key.to_owned(), value.to_owned())));
+        self
+    }
+
+    /// The column of Parquet's schema. The number of its leaf is that of the column: lists have one leaf too.
     fn schema(&self) -> Result<TypePtr> {
         let repetition = |nullable| if nullable { Repetition::OPTIONAL } else { Repetition::REQUIRED };
         let of = |physical, logical| {
@@ -101,13 +106,11 @@ impl TableColumn {
         let column = match self.cells {
             CellType::Int32 => of(Physical::INT32, None),
             CellType::Int64 => of(Physical::INT64, None),
-            CellType::UInt32 => of(Physical::INT32, Some(LogicalType::integer(32, false))),
-            CellType::UInt64 => of(Physical::INT64, Some(LogicalType::integer(64, false))),
             CellType::Float64 => of(Physical::DOUBLE, None),
             CellType::Text => of(Physical::BYTE_ARRAY, Some(LogicalType::String)),
-            CellType::Float32List { nullable_items } => {
+            CellType::Float32List => {
                 let item = Type::primitive_type_builder(LIST_ITEM, Physical::FLOAT)
-                    .with_repetition(repetition(nullable_items))
+                    .with_repetition(Repetition::REQUIRED)
                     .build()?;
                 let list = Type::group_type_builder(LIST)
                     .with_fields(vec![Arc::new(item)])
@@ -123,14 +126,9 @@ impl TableColumn {
         column.map(Arc::new)
     }
 
-    /// The cells of a column in double precision without empty ones.
-    fn signal<'c>(&self, cells: &Cells<'c>) -> Option<Signal<'c>> {
-        let is_signal = self.cells == CellType::Float64 && !self.nullable;
-        match *cells {
-            Cells::Signal(values) if is_signal => Some(Signal::Stored(values)),
-            Cells::Sequence { rows, at } if is_signal => Some(Signal::Computed { rows, at }),
-            _ => None,
-        }
+    /// Whether no cell is empty, and each is a number in double precision.
+    fn holds_signals(&self) -> bool {
+        self.cells == CellType::Float64 && !self.nullable
     }
 
     /// Names from the column to where its numbers are, as properties of the file name them.
@@ -144,7 +142,7 @@ impl TableColumn {
 
 /// A table that is written, one group of rows after the other.
 pub struct TableWriter<W: Write + Send> {
-    file: TableFile<W>,
+    file: SerializedFileWriter<W>,
     columns: Vec<TableColumn>,
 }
 
@@ -169,9 +167,9 @@ impl<W: Write + Send> TableWriter<W> {
         }
         let fields = columns.iter().map(TableColumn::schema).collect::<Result<_>>()?;
         let schema = Arc::new(Type::group_type_builder(TABLE).with_fields(fields).build()?);
-        let mut file = TableFile::new(to, schema, properties)?;
+        let mut file = SerializedFileWriter::new(to, schema, Arc::new(properties))?;
         let arrow = arrow_schema::encode(&columns);
-        file.add_metadata(KeyValue::new(arrow_schema::KEY.to_owned(), arrow));
+        file.append_key_value_metadata(KeyValue::new(arrow_schema::KEY.to_owned(), arrow));
         Ok(Self { file, columns })
     }
 
@@ -187,30 +185,42 @@ impl<W: Write + Send> TableWriter<W> {
     }
 
     fn try_write(&mut self, cells: Vec<Cells>) -> Result<()> {
-        if cells.len() != self.columns.len() {
-            return Err(ParquetError::General(format!(
-                "{} columns instead of {}",
-                cells.len(),
-                self.columns.len()
-            )));
+        let (given, needed) = (cells.len(), self.columns.len());
+        if given != needed {
+            return Err(ParquetError::General(format!("{given} columns instead of {needed}")));
         }
-        let start = self.file.bytes_written();
-        for (column, cells) in self.columns.iter().zip(cells) {
-            let signal = column.signal(&cells);
-            if !signal.map_or(Ok(false), |signal| self.file.try_write_split(&signal))? {
-                self.file.write_column(|writer| write_cells(writer, column, cells))?;
+        let properties = Arc::clone(self.file.properties());
+        let leaves = self.file.schema_descr().columns().to_vec();
+        let mut group = self.file.next_row_group()?;
+        for ((column, leaf), cells) in self.columns.iter().zip(leaves).zip(cells) {
+            match cells {
+                Cells::Signal(signal)
+                    if !signal.is_empty()
+                        && column.holds_signals()
+                        && split_signal::applies_to(&properties, leaf.path()) =>
+                {
+                    let (pages, closed) = split_signal::encode(leaf, signal)?;
+                    group.append_column(&pages, closed)?;
+                }
+                cells => {
+                    let writer = group.next_column()?;
+                    let mut writer =
+                        writer.ok_or_else(|| ParquetError::General("a column too many".to_owned()))?;
+                    write_cells(writer.untyped(), column, cells)?;
+                    writer.close()?;
+                }
             }
         }
-        self.file.end_group(start)
+        group.close().map(drop)
     }
 
     /// Adds to what the file says about itself.
     ///
     /// # Arguments
     /// * `entries` - keys and values
-    pub fn add_metadata(&mut self, entries: impl IntoIterator<Item = (String, String)>) {
+    pub fn add_metadata(&mut self, entries: impl IntoIterator<Item = (impl Into<String>, String)>) {
         for (key, value) in entries {
-            self.file.add_metadata(KeyValue::new(key, value));
+            self.file.append_key_value_metadata(KeyValue::new(key.into(), value));
         }
     }
 
@@ -219,7 +229,7 @@ impl<W: Write + Send> TableWriter<W> {
     /// # Errors
     /// Those of the file.
     pub fn close(self) -> io::Result<()> {
-        self.file.close().map_err(into_io)
+        self.file.close().map(drop).map_err(into_io)
     }
 }
 
@@ -231,24 +241,15 @@ fn write_cells(writer: &mut ColumnWriter, column: &TableColumn, cells: Cells) ->
         (CellType::Int64, Cells::Int64(cells)) => {
             write::<data_type::Int64Type>(writer, column, cells.into_iter())
         }
-        // Parquet has no types without sign: their bits are stored.
-        (CellType::UInt32, Cells::UInt32(cells)) => {
-            let bits = cells.into_iter().map(|cell| cell.map(u32::cast_signed));
-            write::<data_type::Int32Type>(writer, column, bits)
-        }
-        (CellType::UInt64, Cells::UInt64(cells)) => {
-            let bits = cells.into_iter().map(|cell| cell.map(u64::cast_signed));
-            write::<data_type::Int64Type>(writer, column, bits)
-        }
         (CellType::Float64, Cells::Float64(cells)) => {
             write::<data_type::DoubleType>(writer, column, cells.into_iter())
         }
-        (CellType::Float64, Cells::Signal(signal)) if !column.nullable => {
+        (_, Cells::Signal(signal)) if column.holds_signals() => {
             get_typed_column_writer_mut::<data_type::DoubleType>(writer)
                 .write_batch(signal, None, None)
                 .map(|_| ())
         }
-        (CellType::Float64, Cells::Sequence { rows, at }) if !column.nullable => {
+        (_, Cells::Sequence { rows, at }) if column.holds_signals() => {
             let writer = get_typed_column_writer_mut::<data_type::DoubleType>(writer);
             let mut batch = Vec::with_capacity(SEQUENCE_BATCH);
             for start in (0..rows).step_by(SEQUENCE_BATCH) {
@@ -262,9 +263,7 @@ fn write_cells(writer: &mut ColumnWriter, column: &TableColumn, cells: Cells) ->
             let texts = cells.into_iter().map(|cell| cell.map(|text| ByteArray::from(text.into_bytes())));
             write::<data_type::ByteArrayType>(writer, column, texts)
         }
-        (CellType::Float32List { nullable_items }, Cells::Float32List(lists)) if !column.nullable => {
-            write_lists(writer, nullable_items, &lists)
-        }
+        (CellType::Float32List, Cells::Float32List(lists)) if !column.nullable => write_lists(writer, &lists),
         _ => Err(ParquetError::General(format!("column {} holds {:?}", column.name, column.cells))),
     }
 }
@@ -287,12 +286,11 @@ fn write<T: DataType>(
 }
 
 /// Dremel's levels: an item that begins its list has no repetition, and an empty list no definition.
-fn write_lists(writer: &mut ColumnWriter, nullable_items: bool, lists: &[&[f32]]) -> Result<()> {
-    let defined = 1 + i16::from(nullable_items);
+fn write_lists(writer: &mut ColumnWriter, lists: &[&[f32]]) -> Result<()> {
     let count = lists.iter().map(|list| list.len().max(1)).sum();
     let (mut definitions, mut repetitions) = (Vec::with_capacity(count), Vec::with_capacity(count));
     for list in lists {
-        definitions.resize(definitions.len() + list.len().max(1), if list.is_empty() { 0 } else { defined });
+        definitions.resize(definitions.len() + list.len().max(1), i16::from(!list.is_empty()));
         repetitions.push(0);
         repetitions.resize(definitions.len(), 1);
     }

@@ -297,7 +297,9 @@ fn wav_of_double_precision_is_read() {
     }
     let message = refused("a.wav", &wav_of_doubles(&samples[..5], false), &defaults());
     assert!(
-        message.contains("its 40 bytes of samples are no whole number of doubles for each of 2"),
+        message.contains(
+            "its 40 bytes of samples are no whole number of samples of 8 bytes for each of 2 channels"
+        ),
         "{message}"
     );
     let huge = wav_of_doubles(&samples, false);

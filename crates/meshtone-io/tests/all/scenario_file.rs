@@ -2,13 +2,10 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::fs::{self, File};
-use std::path::Path;
 
 use meshtone::scenario::{Model, ProfileErrors, Scenario, ScenarioError, template};
 use meshtone::wheel::ErrorTable;
-use meshtone_io::scenario_file::{
-    ReadScenarioError, read_scenario, write_profile_errors_npz, write_wheels_npz,
-};
+use meshtone_io::scenario_file::{ReadScenarioError, read_scenario, write_wheels_npz};
 use ndarray::{Array1, Array2, ArrayView2, ShapeBuilder};
 use ndarray_npy::NpzWriter;
 use tempfile::{TempDir, tempdir};
@@ -133,7 +130,7 @@ fn profile_errors_written_are_read_back() {
         pinion_profile_errors_mm: matrix(errors(17).view()),
         gear_profile_errors_mm: matrix(errors(38).view()),
     };
-    write_profile_errors_npz(&directory.path().join("wheels.npz"), &written).unwrap();
+    write_wheels_npz(&directory.path().join("wheels.npz"), &written, &Default::default()).unwrap();
     let scenario = with_errors(&directory).unwrap();
     assert_eq!(scenario.quality.profile_errors.as_ref(), Some(&written));
     let alone = Scenario::from_toml(&scenario.to_toml()).unwrap();
@@ -295,7 +292,7 @@ fn names_are_relative_to_the_scenario_file() {
         pinion_profile_errors_mm: matrix(errors(17).view()),
         gear_profile_errors_mm: matrix(errors(38).view()),
     };
-    write_profile_errors_npz(&directory.path().join(Path::new("wheels/a.npz")), &written).unwrap();
+    write_wheels_npz(&directory.path().join("wheels/a.npz"), &written, &Default::default()).unwrap();
     let scenario = read_with(&directory, "[quality]\nerrors_file = \"wheels/a.npz\"").unwrap();
     assert_eq!(scenario.quality.profile_errors, Some(written));
 }

@@ -17,7 +17,14 @@ use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use tempfile::tempdir;
 
 fn scenario() -> Scenario {
-    Scenario::new(GearPair { pinion_teeth: 20, gear_teeth: 40, ..GearPair::example() })
+    Scenario::new(GearPair {
+        module_mm: 3.0,
+        pinion_teeth: 20,
+        gear_teeth: 40,
+        face_width_mm: 15.0,
+        pinion_speed_hz: 40.0,
+        brake_torque_nm: 10.0,
+    })
 }
 
 /// More rows than are written at once, with numbers that only exact writing keeps.
@@ -69,7 +76,7 @@ fn files_of_others_are_refused() {
     let wrong_rate = [good(), vec![text(RATE_KEY, "fast")]].concat();
     refused(&path, wrong_rate, "is `fast`; must be a number above 0");
     let single = [good(), vec![text(RATE_KEY, "1000.0")]].concat();
-    refused(&path, single.clone(), "column time_s of Float32; must be of Float64");
+    refused(&path, single, "column time_s of Float32; must be of Float64");
 }
 
 #[test]
@@ -171,7 +178,6 @@ fn a_full_disk_is_told_wherever_it_happens() {
     }
 }
 
-/// A file whose accelerations are called as earlier versions called them.
 /// Sensors come first, in their order, and are read back by the scenario's names.
 #[test]
 fn sensors_are_the_first_columns() {

@@ -1,12 +1,7 @@
 //! A signal of each class.
 
 use super::DatasetPreview;
-use crate::axes::{self, Area, Axes};
-use crate::canvas::Canvas;
-use crate::font;
-use crate::style::{Stroke, TextStyle, colour};
-use crate::text::fitted;
-use crate::ticks::Ticks;
+use crate::drawing::{Area, Axes, Canvas, Stroke, TextStyle, Ticks, axes, colour};
 
 const CURVE: Stroke = Stroke::solid(colour::BLUE, 1.0);
 /// (px) Between two plots: the title of the lower one.
@@ -17,38 +12,27 @@ const MOST: usize = 9;
 const MARGIN: f64 = 1.06;
 
 pub(super) fn draw(canvas: &mut Canvas, area: Area, preview: &DatasetPreview) {
+    let angle =
+        if preview.over_angle { "Shaft angle from the mark (rev)" } else { "Part of the record (–)" };
     let shown = preview.examples.len().min(MOST);
-    let height = ((area.height + GAP) / shown.max(1) as f64 - GAP).min(TALLEST);
-    for (place, example) in preview.examples.iter().take(MOST).enumerate() {
-        let top = area.top + place as f64 * (height + GAP);
-        let plot = Area::new(area.left, top, area.width, height);
-        let size = example.signal.iter().copied().filter(|value| axes::drawable(*value));
-        let half = size.fold(0.0f64, |size, value| size.max(value.abs()));
-        let half = if half > 0.0 { MARGIN * half } else { 1.0 };
+    let plots = area.grid([1, shown], [0.0, GAP], TALLEST);
+    for (place, (example, plot)) in preview.examples.iter().zip(plots).enumerate() {
+        let largest = axes::largest(&example.signal);
+        let half = if largest > 0.0 { MARGIN * largest } else { 1.0 };
         let axes = Axes::new(plot, [0.0, 1.0], [-half, half]);
-        let label = fitted(&example.label, TextStyle::AXES_TITLE, 0.45 * area.width);
+        let label = TextStyle::AXES_TITLE.fitted(&example.label, 0.45 * area.width);
         axes.title(canvas, &label);
-        let after = font::text_width(&label, TextStyle::AXES_TITLE.size, true) + 12.0;
-        let conditions = fitted(&example.conditions, TextStyle::NOTE, area.width - after);
+        let after = TextStyle::AXES_TITLE.width(&label) + 12.0;
+        let conditions = TextStyle::NOTE.fitted(&example.conditions, area.width - after);
         let at = (plot.left + after, plot.top - axes::TITLE_ABOVE);
         canvas.text(at, &conditions, TextStyle::NOTE.coloured(colour::MUTED));
         let ticks = Ticks::every(0.2, 0.0, 1.0);
         axes.x_grid(canvas, &ticks);
         if place + 1 == shown {
-            axes.x_axis(
-                canvas,
-                &ticks,
-                if preview.over_angle {
-                    "Shaft angle from the mark (rev)"
-                } else {
-                    "Part of the record (–)"
-                },
-            );
+            axes.x_axis(canvas, &ticks, angle);
         }
         axes.y_axis(canvas, &Ticks::about_zero(half), "", NAME_LEFT);
-        let last = example.signal.len().max(1) as f64;
-        let points = example.signal.iter().enumerate().map(|(i, &value)| (i as f64 / last, value));
-        axes.line(canvas, points, CURVE);
+        axes.line(canvas, axes::over(axes.x, &example.signal), CURVE);
         axes.frame(canvas);
     }
     if preview.examples.len() > MOST {

@@ -1,11 +1,7 @@
 //! Indicators by class.
 
 use super::DatasetPreview;
-use crate::axes::{self, Area, Axes};
-use crate::canvas::Canvas;
-use crate::font;
-use crate::style::{Fill, Stroke, TextStyle, colour};
-use crate::ticks::Ticks;
+use crate::drawing::{Area, Axes, Canvas, Fill, Stroke, TextStyle, Ticks, axes, colour};
 
 const DOTS: Fill = Fill::tint(colour::BLUE, 0.35);
 const DOT_RADIUS: f64 = 1.3;
@@ -23,16 +19,13 @@ const EXTREMES: usize = 300;
 const MOST_DOTS: usize = 400;
 
 pub(super) fn draw(canvas: &mut Canvas, area: Area, preview: &DatasetPreview) {
-    let count = preview.indicators.len().max(1) as f64;
-    let height = (area.height - NAMES_HEIGHT + GAP) / count - GAP;
-    let mut bottom = area.top;
-    for (place, indicator) in preview.indicators.iter().enumerate() {
-        let plot = Area::new(area.left, area.top + place as f64 * (height + GAP), area.width, height);
-        bottom = plot.bottom();
+    let plots = Area { height: area.height - NAMES_HEIGHT, ..area };
+    let each = plots.grid([1, preview.indicators.len()], [0.0, GAP], f64::INFINITY);
+    for (indicator, plot) in preview.indicators.iter().zip(each) {
         one(canvas, plot, &indicator.name, &indicator.values, preview);
     }
     if !preview.indicators.is_empty() {
-        names(canvas, area, bottom, preview);
+        names(canvas, plots, preview);
     }
 }
 
@@ -74,15 +67,14 @@ fn without_extremes(values: &[f64]) -> Vec<f64> {
     sorted[few..sorted.len() - few].to_vec()
 }
 
-fn names(canvas: &mut Canvas, area: Area, bottom: f64, preview: &DatasetPreview) {
+fn names(canvas: &mut Canvas, area: Area, preview: &DatasetPreview) {
     let slot = area.width / preview.classes.len().max(1) as f64;
     let style = TextStyle::TICK;
     for (class, name) in preview.classes.iter().enumerate() {
         let middle = area.left + (class as f64 + 0.5) * slot;
-        let lines =
-            font::wrapped(&name.replace(['-', '_'], " "), slot - 4.0, NAME_LINES, style.size, style.bold);
+        let lines = style.wrapped(&name.replace(['-', '_'], " "), slot - 4.0, NAME_LINES);
         for (line, text) in lines.iter().enumerate() {
-            canvas.text((middle, bottom + 17.0 + line as f64 * LINE), text, style);
+            canvas.text((middle, area.bottom() + axes::NUMBERS_BELOW + line as f64 * LINE), text, style);
         }
     }
 }

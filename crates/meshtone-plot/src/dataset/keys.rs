@@ -1,11 +1,7 @@
-//! How the varied keys are distributed.
+//! Distributions of the varied keys.
 
 use super::{DatasetPreview, TRAIN, as_strips, split_colour, split_stroke};
-use crate::axes::{Area, Axes};
-use crate::canvas::{Canvas, Pixel};
-use crate::style::{Fill, TextStyle, colour};
-use crate::text::fitted;
-use crate::ticks::Ticks;
+use crate::drawing::{Area, Axes, Canvas, Fill, Pixel, TextStyle, Ticks, colour};
 
 const COLUMNS: usize = 2;
 const ROWS: usize = 6;
@@ -26,13 +22,8 @@ const FEW: usize = 12;
 
 pub(super) fn draw(canvas: &mut Canvas, area: Area, preview: &DatasetPreview) {
     let shown = preview.keys.len().min(COLUMNS * ROWS);
-    let rows = shown.div_ceil(COLUMNS).max(1) as f64;
-    let width = (area.width - GAP[0]) / COLUMNS as f64;
-    let height = ((area.height + GAP[1]) / rows - GAP[1]).min(TALLEST);
-    for (place, key) in preview.keys.iter().take(shown).enumerate() {
-        let (row, column) = ((place / COLUMNS) as f64, (place % COLUMNS) as f64);
-        let left = area.left + column * (width + GAP[0]);
-        let plot = Area::new(left, area.top + row * (height + GAP[1]), width, height);
+    let plots = area.grid([COLUMNS, shown.div_ceil(COLUMNS)], GAP, TALLEST);
+    for (key, plot) in preview.keys.iter().zip(plots) {
         histogram(canvas, plot, &key.name, &key.values, preview);
     }
     if preview.keys.len() > shown {
@@ -42,45 +33,35 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, preview: &DatasetPreview) {
 }
 
 fn histogram(canvas: &mut Canvas, area: Area, name: &str, values: &[f64], preview: &DatasetPreview) {
-    let ends = |values: &[f64]| {
-        let finite = values.iter().copied().filter(|value| value.is_finite());
-        finite
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
-    };
-    let [low, high] = ends(values);
-    let mut by_size: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-    by_size.sort_by(f64::total_cmp);
-    let median = by_size.get(by_size.len() / 2).copied().unwrap_or(0.0);
+    let sorted = finite_and_sorted(values);
+    let (Some(&low), Some(&high)) = (sorted.first(), sorted.last()) else { return };
+    let median = sorted[sorted.len() / 2];
     let logarithmic = low > 0.0 && high > LOGARITHMIC * low && median < SKEWED * (low + high);
     let values: Vec<f64> =
         values.iter().map(|value| if logarithmic { value.log10() } else { *value }).collect();
-    let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-    sorted.sort_by(f64::total_cmp);
-    let (Some(&least), Some(&largest)) = (sorted.first(), sorted.last()) else { return };
-    let mut distinct = sorted.clone();
+    let mut distinct = finite_and_sorted(&values);
     distinct.dedup();
-    let range = if distinct.len() <= FEW {
+    let (least, largest) = (distinct[0], distinct[distinct.len() - 1]);
+    let are_few = distinct.len() <= FEW;
+    let (range, bins) = if are_few {
+        // So narrow that neighbours have bins of their own.
         let step = distinct.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
         let margin = if step.is_finite() { 0.5 * step } else { 0.5 };
-        [least - margin, largest + margin]
+        let range = [least - margin, largest + margin];
+        let bins = ((range[1] - range[0]) / (2.0 * (least - range[0])).max(1e-300)).round() as usize;
+        (range, bins.clamp(1, 60))
     } else {
-        [least, largest]
-    };
-    let bins = if distinct.len() <= FEW {
-        // So narrow that neighbours have bins of their own.
-        (((range[1] - range[0]) / (2.0 * (distinct[0] - range[0])).max(1e-300)).round() as usize).clamp(1, 60)
-    } else {
-        BINS
+        ([least, largest], BINS)
     };
     let shares: Vec<Vec<f64>> = (0..preview.splits.len())
         .map(|split| shares(&values, &preview.split_of, split, range, bins))
         .collect();
     let highest = shares.iter().flatten().copied().fold(0.0f64, f64::max);
     let axes = Axes::new(area, range, [0.0, 1.08 * if highest > 0.0 { highest } else { 1.0 }]);
-    axes.title(canvas, &fitted(name, TextStyle::AXES_TITLE, area.width));
+    axes.title(canvas, &TextStyle::AXES_TITLE.fitted(name, area.width));
     let ticks = match logarithmic {
         true => Ticks::of_logarithms(range[0], range[1]).thinned(6),
-        false if distinct.len() <= FEW && distinct.iter().all(|value| value.fract() == 0.0) => {
+        false if are_few && distinct.iter().all(|value| value.fract() == 0.0) => {
             Ticks::whole(range[0], range[1], 5)
         }
         false => Ticks::nice(range[0], range[1], 5),
@@ -90,13 +71,22 @@ fn histogram(canvas: &mut Canvas, area: Area, name: &str, values: &[f64], previe
     let edge = |bin: usize| range[0] + (range[1] - range[0]) * bin as f64 / bins as f64;
     if as_strips(preview) {
         strips(canvas, &axes, &shares, edge);
-        axes.frame(canvas);
-        return;
+    } else {
+        outlines(canvas, &axes, &shares, edge);
     }
-    for (split, shares) in shares.iter().enumerate() {
-        if shares.iter().all(|&share| share == 0.0) {
-            continue;
-        }
+    axes.frame(canvas);
+}
+
+fn finite_and_sorted(values: &[f64]) -> Vec<f64> {
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted
+}
+
+/// Bars for the training, and the outline of the distribution of each other split that has records with the key.
+fn outlines(canvas: &mut Canvas, axes: &Axes, shares: &[Vec<f64>], edge: impl Fn(usize) -> f64) {
+    let has_records = |shares: &[f64]| shares.iter().any(|&share| share > 0.0);
+    for (split, shares) in shares.iter().enumerate().filter(|(_, shares)| has_records(shares)) {
         if split == 0 {
             let bars: Vec<[Pixel; 2]> = shares
                 .iter()
@@ -109,11 +99,10 @@ fn histogram(canvas: &mut Canvas, area: Area, name: &str, values: &[f64], previe
             for (b, &share) in shares.iter().enumerate() {
                 steps.extend([axes.at(edge(b), share), axes.at(edge(b + 1), share)]);
             }
-            steps.push(axes.at(edge(bins), 0.0));
+            steps.push(axes.at(edge(shares.len()), 0.0));
             canvas.polyline(&steps, split_stroke(split));
         }
     }
-    axes.frame(canvas);
 }
 
 /// A strip for each split that has records with the key, in the order of the legend: the darker, the more of its records are in a

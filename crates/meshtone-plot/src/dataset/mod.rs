@@ -7,12 +7,8 @@ mod examples;
 mod indicators;
 mod keys;
 
-use crate::axes::Area;
-use crate::canvas::Canvas;
-use crate::legend::{self, Entry, Sample};
-use crate::style::{Colour, Fill, Stroke, TextStyle, colour};
-use crate::text::fitted;
-use crate::{Figure, font};
+use crate::Figure;
+use crate::drawing::{Area, Canvas, Colour, Entry, Fill, Sample, Stroke, colour, legend};
 
 const WIDTH: u32 = 1600;
 const HEIGHT: u32 = 1000;
@@ -25,12 +21,11 @@ const TOP: f64 = 136.0;
 const BOTTOM: f64 = 944.0;
 /// (px) Baseline of what was left out, below the lowest axis' name.
 const SECOND_LINE: f64 = 996.0;
-/// (px) Left edges and widths of the three columns' plots.
-const EXAMPLES: [f64; 2] = [74.0, 436.0];
-const KEYS: [f64; 2] = [582.0, 478.0];
-const INDICATORS: [f64; 2] = [1140.0, 434.0];
+const EXAMPLES: Area = Area::new(74.0, TOP, 436.0, BOTTOM - TOP);
+const KEYS: Area = Area::new(582.0, TOP, 478.0, BOTTOM - TOP);
+const INDICATORS: Area = Area::new(1140.0, TOP, 434.0, BOTTOM - TOP);
 
-/// What the figure shows.
+/// Content of the figure.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DatasetPreview {
     /// Title.
@@ -71,7 +66,7 @@ pub struct Example {
 /// A varied key.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Key {
-    /// What it is called, with its unit: `pinion speed (Hz)`.
+    /// Its name, with its unit: `pinion speed (Hz)`.
     pub name: String,
     /// Its value in each record; NaN where it has none.
     pub values: Vec<f64>,
@@ -80,7 +75,7 @@ pub struct Key {
 /// An indicator.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Indicator {
-    /// What it is called, with its unit: `pinion speed (Hz)`.
+    /// Its name, with its unit: `pinion speed (Hz)`.
     pub name: String,
     /// Its value in each record; NaN where it has none.
     pub values: Vec<f64>,
@@ -103,14 +98,14 @@ fn split_colour(split: usize) -> Colour {
     SPLIT_COLOURS[split % SPLIT_COLOURS.len()]
 }
 
-/// How the distribution of a split after the training is drawn over that.
+/// Stroke of the distribution of a split after the training.
 fn split_stroke(split: usize) -> Stroke {
     Stroke::solid(split_colour(split), 1.5)
 }
 
 const TRAIN: Fill = Fill::tint(colour::BLUE, 0.3);
 
-/// Whether each split has a strip of its own, as there are too many for outlines.
+/// Returns whether each split has a strip of its own, as there are too many for outlines.
 fn as_strips(preview: &DatasetPreview) -> bool {
     preview.splits.len() > MOST_OUTLINES
 }
@@ -129,26 +124,19 @@ fn as_strips(preview: &DatasetPreview) -> bool {
 pub fn dataset_figure(preview: &DatasetPreview) -> Figure {
     let mut canvas = Canvas::new(WIDTH, HEIGHT);
     let width = f64::from(WIDTH) - 2.0 * TEXT_LEFT;
-    canvas.text(
-        (TEXT_LEFT, TITLE_BASELINE),
-        &fitted(&preview.title, TextStyle::TITLE, width),
-        TextStyle::TITLE,
-    );
-    canvas.text(
-        (TEXT_LEFT, FACTS_BASELINE),
-        &fitted(&preview.facts, TextStyle::FACTS, width),
-        TextStyle::FACTS,
-    );
-    section(&mut canvas, EXAMPLES, &format!("One example of each class: {}", preview.signal_name));
+    canvas.heading(TEXT_LEFT, width, (TITLE_BASELINE, &preview.title), (FACTS_BASELINE, &preview.facts));
     let distribution = match as_strips(preview) {
         true => "Varied keys, a strip each split: darker, more of its records",
         false => "Distribution of the varied keys, by split",
     };
-    section(&mut canvas, KEYS, distribution);
-    section(&mut canvas, INDICATORS, "Indicators by class");
-    examples::draw(&mut canvas, column(EXAMPLES), preview);
-    keys::draw(&mut canvas, column(KEYS), preview);
-    indicators::draw(&mut canvas, column(INDICATORS), preview);
+    let examples = format!("One example of each class: {}", preview.signal_name);
+    let columns = [(EXAMPLES, &*examples), (KEYS, distribution), (INDICATORS, "Indicators by class")];
+    for (Area { left, width, .. }, text) in columns {
+        canvas.section((left, HEADING_BASELINE), width, text, 6.0);
+    }
+    examples::draw(&mut canvas, EXAMPLES, preview);
+    keys::draw(&mut canvas, KEYS, preview);
+    indicators::draw(&mut canvas, INDICATORS, preview);
     splits_legend(&mut canvas, preview);
     let description = format!(
         "A data set of the classes {}: {}. Examples of each class, distributions of the varied keys, indicators by class.",
@@ -158,19 +146,7 @@ pub fn dataset_figure(preview: &DatasetPreview) -> Figure {
     canvas.finish(&preview.title, &description)
 }
 
-fn column([left, width]: [f64; 2]) -> Area {
-    Area::new(left, TOP, width, BOTTOM - TOP)
-}
-
-fn section(canvas: &mut Canvas, [left, width]: [f64; 2], text: &str) {
-    let style = TextStyle::HEADING;
-    let lines = font::wrapped(text, width, 1, style.size, style.bold);
-    canvas.text((left, HEADING_BASELINE), lines.first().map_or("", String::as_str), style);
-    let below = HEADING_BASELINE + 6.0;
-    canvas.line((left, below), (left + width, below), Stroke::solid(colour::INK, 1.2));
-}
-
-/// What the fills and lines of the distributions mean, at the page's right edge beside the title.
+/// Draws the legend of the distributions' fills and lines, at the page's right edge beside the title.
 fn splits_legend(canvas: &mut Canvas, preview: &DatasetPreview) {
     let there = |split: usize| preview.split_of.contains(&split);
     let entries: Vec<Entry> = preview
@@ -184,8 +160,8 @@ fn splits_legend(canvas: &mut Canvas, preview: &DatasetPreview) {
                 0 => Sample::Area(TRAIN),
                 _ => Sample::Line(split_stroke(split)),
             };
-            Entry { sample, text: name }
+            (sample, name.as_str())
         })
         .collect();
-    legend::row(canvas, (INDICATORS[0] + INDICATORS[1], TITLE_BASELINE), &entries);
+    legend::row(canvas, (INDICATORS.right(), TITLE_BASELINE), &entries);
 }

@@ -6,12 +6,8 @@ use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
 use meshtone::wheel::WheelName;
 
 use super::damage;
-use crate::axes::{self, Area, Axes};
-use crate::canvas::Canvas;
 use crate::damaged_tooth;
-use crate::legend::{self, Entry, Sample};
-use crate::style::{Stroke, colour};
-use crate::ticks::Ticks;
+use crate::drawing::{Area, Axes, Canvas, Sample, Stroke, Ticks, axes, capitalised, colour, over};
 
 pub(super) const CURVE: Stroke = Stroke::solid(colour::BLUE, 1.2);
 const SECOND_CURVE: Stroke = Stroke::solid(colour::GREEN, 1.4);
@@ -26,25 +22,33 @@ pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], stages: &Stages, chann
     }
     let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
     let quantity = quantity(&channels.leading().0);
-    let averages = Shaft::BOTH.map(|shaft| Average::new(channels, &shafts, shaft));
-    let values = averages.iter().flat_map(|average| average.values.iter().copied());
+    // Where there is no whole revolution there is no average.
+    let average = |shaft| shafts.average(channels.leading().1, shaft, &ChainSettings::default()).ok();
+    let averages = Shaft::BOTH
+        .map(|shaft| average(shaft).map_or_else(Default::default, |of| (of.values, of.revolutions)));
+    let values = averages.iter().flat_map(|(values, _)| values.iter().copied());
     let y = axes::range(values, MARGIN);
-    for (column, average) in averages.iter().enumerate() {
+    for (column, (values, revolutions)) in averages.iter().enumerate() {
         let axes = Axes::new(areas[column], [0.0, 360.0], y);
         let wheel = WheelName::BOTH[column];
         let damaged = damage::damaged_teeth(stages, wheel);
-        axes.title(canvas, &average.title(wheel.name()));
-        if let Some(text) = damaged_tooth::in_words(&[(wheel.name(), &damaged)]) {
-            let end_of_title = (axes.area.right(), axes.area.top - axes::TITLE_ABOVE);
-            legend::row(canvas, end_of_title, &[damaged_tooth::legend_entry(&text)]);
+        let name = wheel.name();
+        let title = match revolutions {
+            0 => format!("Average over the {name}’s revolutions"),
+            1 => format!("One revolution of the {name}"),
+            count => format!("Average of {count} {name} revolutions"),
+        };
+        axes.title(canvas, &title);
+        if let Some(text) = damaged_tooth::in_words(&[(name, &damaged)]) {
+            axes.legend(canvas, &[damaged_tooth::legend_entry(&text)]);
         }
         let teeth = stages.teeth.wheel(wheel).teeth;
         damaged_tooth::tint(canvas, &axes, &damaged, teeth, 360.0 / f64::from(teeth.max(1)));
-        let name = if wheel == WheelName::Pinion { "Pinion" } else { "Gear" };
-        let since = format!("{name} angle since its {} (°)", damage::start_of_revolution(&damaged));
+        let since =
+            format!("{} angle since its {} (°)", capitalised(name), damage::start_of_revolution(&damaged));
         axes.x_axis(canvas, &Ticks::every(45.0, 0.0, 360.0), &since);
         axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), &format!("{quantity} (g)"), super::NAME_LEFT);
-        average.draw(canvas, &axes);
+        curve(canvas, &axes, values, channels);
         axes.frame(canvas);
     }
 }
@@ -56,67 +60,26 @@ const LONGEST_NAME: usize = 28;
 fn quantity(channel: &Channel) -> String {
     match channel {
         Channel::Sensor(name) if name.len() > LONGEST_NAME => "First sensor".to_owned(),
-        Channel::Sensor(name) => {
-            let words = name.replace('_', " ");
-            let mut letters = words.chars();
-            let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
-            first + letters.as_str()
-        }
+        Channel::Sensor(name) => capitalised(&name.replace('_', " ")),
         _ => "Vertical acceleration".to_owned(),
     }
 }
 
-/// An average from the angle at which the first tooth enters contact.
-struct Average {
-    values: Vec<f64>,
-    revolutions: usize,
-    is_empty: bool,
-}
-
-impl Average {
-    fn new(channels: &Channels, shafts: &SimulatedShafts, shaft: Shaft) -> Self {
-        // Where there is no whole revolution there is no average.
-        let average = shafts.average(channels.leading().1, shaft, &ChainSettings::default());
-        let (values, revolutions) =
-            average.map_or_else(|_| (Vec::new(), 0), |average| (average.values, average.revolutions));
-        Self { values, revolutions, is_empty: channels.is_empty() }
-    }
-
-    fn title(&self, wheel: &str) -> String {
-        match self.revolutions {
-            0 => format!("Average over the {wheel}’s revolutions"),
-            1 => format!("One revolution of the {wheel}"),
-            count => format!("Average of {count} {wheel} revolutions"),
-        }
-    }
-
-    fn draw(&self, canvas: &mut Canvas, axes: &Axes) {
-        if self.values.is_empty() {
-            let reason = if self.is_empty {
-                "no samples were kept"
-            } else {
-                "the kept signal is shorter than a revolution"
-            };
-            axes.note(canvas, reason);
-            return;
-        }
-        let degrees = 360.0 / self.values.len() as f64;
-        axes.line(
-            canvas,
-            self.values.iter().enumerate().map(|(k, &value)| (k as f64 * degrees, value)),
-            CURVE,
-        );
+/// Draws an average from the angle at which the first tooth enters contact.
+fn curve(canvas: &mut Canvas, axes: &Axes, values: &[f64], channels: &Channels) {
+    match (values, channels.is_empty()) {
+        ([], true) => axes.note(canvas, "no samples were kept"),
+        ([], false) => axes.note(canvas, "the kept signal is shorter than a revolution"),
+        _ => axes.line(canvas, over(axes.x, values), CURVE),
     }
 }
 
 fn over_time(canvas: &mut Canvas, areas: [Area; 2], channels: &Channels) {
-    let samples = channels.len();
-    let time = if samples > 1 {
-        [channels.time_s(0), channels.time_s(samples - 1)]
-    } else {
-        [channels.start_s, channels.start_s + 1.0]
+    let time = match channels.len() {
+        0 | 1 => [channels.start_s, channels.start_s + 1.0],
+        samples => [channels.time_s(0), channels.time_s(samples - 1)],
     };
-    let time = if time[1] > time[0] && time.iter().all(|&t| axes::drawable(t)) { time } else { [0.0, 1.0] };
+    let time = axes::time_range(time);
     let (channel, signal) = channels.leading();
     let quantity = quantity(&channel);
     let acceleration = [(signal, CURVE)];
@@ -127,9 +90,7 @@ fn over_time(canvas: &mut Canvas, areas: [Area; 2], channels: &Channels) {
     let title = format!("{quantity}, at changing speed");
     signals(canvas, areas[0], time, &title, &format!("{quantity} (g)"), &acceleration);
     let axes = signals(canvas, areas[1], time, "Speed of both shafts", "Speed (Hz)", &speeds);
-    let entries = [("pinion", CURVE), ("gear", SECOND_CURVE)]
-        .map(|(text, stroke)| Entry { sample: Sample::Line(stroke), text });
-    legend::row(canvas, (axes.area.right(), axes.area.top - axes::TITLE_ABOVE), &entries);
+    axes.legend(canvas, &[(Sample::Line(CURVE), "pinion"), (Sample::Line(SECOND_CURVE), "gear")]);
 }
 
 /// Signals of all samples over time.

@@ -2,11 +2,7 @@
 
 use super::face::{CONTACT, RELIEF};
 use super::side::Side;
-use crate::axes::{Area, Axes, drawable};
-use crate::canvas::{Canvas, Pixel};
-use crate::legend::{self, Entry, Sample};
-use crate::style::{Fill, Stroke, colour};
-use crate::ticks::Ticks;
+use crate::drawing::{Area, Axes, Canvas, Fill, Pixel, Sample, Stroke, Ticks, axes, colour, legend};
 use meshtone::wheel::ErrorTable;
 
 const THIS: Stroke = Stroke::solid(colour::BLUE, 2.0);
@@ -15,13 +11,7 @@ const ALL: Fill = Fill::tint(colour::BLUE, 0.2);
 /// Draws the errors; `along` is the tooth's own range.
 pub(super) fn draw(canvas: &mut Canvas, area: Area, along: [f64; 2], side: &Side) {
     let errors = side.errors_mm.filter(|errors| errors.points() > 1 && errors.teeth() > side.tooth_index());
-    let largest = errors
-        .into_iter()
-        .flat_map(ErrorTable::each_tooth)
-        .flatten()
-        .map(|error| 1e3 * error.abs())
-        .filter(|&error| drawable(error))
-        .fold(0.0, f64::max);
+    let largest = 1e3 * axes::largest(errors.into_iter().flat_map(ErrorTable::each_tooth).flatten());
     let half = if largest > 0.0 { 1.15 * largest } else { 10.0 };
     let axes = Axes::new(area, [-half, half], along);
     axes.title(canvas, "Profile errors");
@@ -56,7 +46,7 @@ fn curves(canvas: &mut Canvas, axes: &Axes, side: &Side, errors: &ErrorTable) {
     let mut band = extreme(f64::min, f64::INFINITY);
     band.extend(extreme(f64::max, f64::NEG_INFINITY).into_iter().rev());
     canvas.polygon(&band, ALL);
-    let all = Entry { sample: Sample::Area(ALL), text: "all teeth" };
+    let all = (Sample::Area(ALL), "all teeth");
     let start = (axes.area.left + 6.0, axes.area.bottom() - 26.0);
     if side.is_missing() {
         legend::column(canvas, start, &[all]);
@@ -67,5 +57,5 @@ fn curves(canvas: &mut Canvas, axes: &Axes, side: &Side, errors: &ErrorTable) {
         &axes.along_y((0..rows).map(|place| (1e3 * errors[(row(place), tooth)], x_mm[place]))),
         THIS,
     );
-    legend::column(canvas, start, &[Entry { sample: Sample::Line(THIS), text: &side.tooth_name() }, all]);
+    legend::column(canvas, start, &[(Sample::Line(THIS), &side.tooth_name()), all]);
 }

@@ -1,24 +1,22 @@
 //! Title, key facts and the columns' headings.
 
 use meshtone::Stages;
-use meshtone::scenario::{Gears, Model, Operation, Scenario};
+use meshtone::scenario::{Gears, Model, Scenario};
 
 use super::damage;
 use super::side::Side;
-use crate::canvas::{Canvas, Pixel};
-use crate::style::{Stroke, TextStyle, colour};
-use crate::text::fitted;
-use crate::ticks::number;
-use crate::{DamagedTooth, damaged_tooth, font};
+use crate::drawing::{BETWEEN_FACTS, Canvas, Pixel, TextStyle, number};
+use crate::{DamagedTooth, damaged_tooth};
 
 /// (px) From the panel's edge to the headings.
 const EDGE: f64 = super::LEFT - super::NAME_LEFT - 11.0;
+/// (px) Width of the headings.
+const ROOM: f64 = super::WIDTH as f64 - 2.0 * EDGE;
 
 /// The faults and their sizes.
 pub(super) fn title(stages: &Stages) -> String {
-    let room = f64::from(super::WIDTH) - 2.0 * EDGE;
-    let width = |text: &str| font::text_width(text, TextStyle::TITLE.size, TextStyle::TITLE.bold);
-    fitted(&damage::title(stages, |text| width(text) <= room), TextStyle::TITLE, room)
+    let title = damage::title(stages, |text| TextStyle::TITLE.width(text) <= ROOM);
+    TextStyle::TITLE.fitted(&title, ROOM)
 }
 
 /// The panel in a sentence, for readers who cannot see it.
@@ -31,21 +29,20 @@ pub(super) fn description(stages: &Stages) -> String {
 }
 
 pub(super) fn draw(canvas: &mut Canvas, title: &str, stages: &Stages) {
-    canvas.text((EDGE, 36.0), title, TextStyle::TITLE);
-    let facts = facts(&stages.scenario).join("  ·  ");
-    canvas.text((EDGE, 61.0), &facts, TextStyle::FACTS);
+    canvas.heading(EDGE, ROOM, (36.0, title), (61.0, &facts(&stages.scenario).join(BETWEEN_FACTS)));
 }
 
 pub(super) fn column(canvas: &mut Canvas, (left, baseline): Pixel, width: f64, side: &Side) {
     let damage = damaged_teeth(&side.damaged);
     let text = format!("{}, {}: {} teeth{damage}", side.name, side.shaft, side.wheel.teeth);
-    canvas.text((left, baseline), &text, TextStyle::HEADING);
-    let rule = Stroke::solid(colour::INK, 1.2);
-    canvas.line((left, baseline + 8.0), (left + width, baseline + 8.0), rule);
+    canvas.section((left, baseline), width, &text, 8.0);
 }
 
 fn facts(scenario: &Scenario) -> Vec<String> {
     let gears = &scenario.gears;
+    let operation = &scenario.operation;
+    let speeds_hz = operation.speed_profile_hz.as_ref().map(|profile| &profile.value[..]);
+    let torques_nm = operation.torque_profile_nm.as_ref().map(|profile| &profile.value[..]);
     let wheels = vec![
         format!("{} and {} teeth", gears.pinion_teeth, gears.gear_teeth),
         format!("module {} mm", number(gears.module_mm)),
@@ -53,8 +50,8 @@ fn facts(scenario: &Scenario) -> Vec<String> {
         format!("pressure angle {}°", number(gears.pressure_angle_deg)),
     ];
     let run = [
-        speed(&scenario.operation),
-        torque(&scenario.operation),
+        format!("pinion speed {} Hz", extent(operation.pinion_speed_hz, speeds_hz)),
+        format!("brake torque {} N·m", extent(operation.brake_torque_nm, torques_nm)),
         quality(scenario),
         match scenario.model {
             Model::Published => "model as published".to_owned(),
@@ -86,23 +83,11 @@ fn damaged_teeth(damaged: &[DamagedTooth]) -> String {
     named(&missing, "missing") + &named(&others, "damaged")
 }
 
-fn speed(operation: &Operation) -> String {
-    match operation.speed_profile_hz.as_ref().and_then(|profile| extremes(&profile.value)) {
-        Some((low, high)) => format!("pinion speed {} to {} Hz", number(low), number(high)),
-        None => format!("pinion speed {} Hz", number(operation.pinion_speed_hz)),
-    }
-}
-
-fn torque(operation: &Operation) -> String {
-    match operation.torque_profile_nm.as_ref().and_then(|profile| extremes(&profile.value)) {
-        Some((low, high)) => format!("brake torque {} to {} N·m", number(low), number(high)),
-        None => format!("brake torque {} N·m", number(operation.brake_torque_nm)),
-    }
-}
-
-fn extremes(values: &[f64]) -> Option<(f64, f64)> {
-    let first = *values.first()?;
-    Some(values.iter().fold((first, first), |(low, high), &value| (low.min(value), high.max(value))))
+/// A constant, or from the least to the largest value of the profile that is given in its place.
+fn extent(constant: f64, profile: Option<&[f64]>) -> String {
+    let Some((&first, others)) = profile.and_then(<[f64]>::split_first) else { return number(constant) };
+    let [low, high] = [f64::min, f64::max].map(|pick| others.iter().copied().fold(first, pick));
+    format!("{} to {}", number(low), number(high))
 }
 
 fn quality(scenario: &Scenario) -> String {

@@ -17,8 +17,7 @@ use meshtone::Stages;
 use meshtone::sensor::Channels;
 use meshtone::wheel::WheelName;
 
-use crate::axes::Area;
-use crate::canvas::Canvas;
+use crate::drawing::{Area, Canvas};
 use crate::{Figure, PlotError};
 use side::Side;
 

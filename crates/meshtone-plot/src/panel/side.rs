@@ -8,7 +8,7 @@ use meshtone::wheel::{ToothProfile, Wheel, WheelName};
 
 use super::damage;
 use crate::PlotError;
-use crate::axes::Area;
+use crate::drawing::Area;
 
 /// A wheel, and one of its teeth: the first damaged one, or the first.
 pub(super) struct Side<'a> {
@@ -32,28 +32,32 @@ pub(super) struct Side<'a> {
 
 impl<'a> Side<'a> {
     pub(super) fn new(stages: &'a Stages, name: WheelName) -> Result<Self, PlotError> {
-        let (title, shaft) = match name {
-            WheelName::Pinion => ("Pinion", "input shaft"),
-            WheelName::Gear => ("Gear", "output shaft"),
-        };
         let errors = stages.profile_errors.as_ref();
+        let (title, shaft, errors_mm) = match name {
+            WheelName::Pinion => {
+                ("Pinion", "input shaft", errors.map(|errors| &errors.pinion_profile_errors_mm))
+            }
+            WheelName::Gear => ("Gear", "output shaft", errors.map(|errors| &errors.gear_profile_errors_mm)),
+        };
+        let profile = stages.teeth.profile(name);
+        let contact_index = stages.teeth.initial_contact_index(name);
+        let points = profile.len().min(profile.y_mm.len());
+        if points < 2 || contact_index + 1 >= points {
+            return Err(PlotError::NoProfile { wheel: title, points });
+        }
         let damaged = stages.damaged.iter().filter(|tooth| tooth.wheel == name);
-        let side = Self {
+        Ok(Self {
             name: title,
             shaft,
             wheel: stages.teeth.wheel(name),
-            profile: stages.teeth.profile(name),
-            contact_index: stages.teeth.initial_contact_index(name),
-            tip_shapes: tip_shapes(stages, stages.teeth.profile(name)),
+            profile,
+            contact_index,
+            tip_shapes: tip_shapes(stages, profile),
             tooth: damaged.min_by_key(|tooth| tooth.first_tooth()),
             damaged: damage::damaged_teeth(stages, name),
-            errors_mm: errors.map(|errors| match name {
-                WheelName::Pinion => &errors.pinion_profile_errors_mm,
-                WheelName::Gear => &errors.gear_profile_errors_mm,
-            }),
+            errors_mm,
             errors_from_tip: name == WheelName::Gear,
-        };
-        side.checked()
+        })
     }
 
     /// Index of the tooth, from 0.
@@ -72,14 +76,6 @@ impl<'a> Side<'a> {
     /// Whether the whole tooth is gone.
     pub(super) fn is_missing(&self) -> bool {
         self.tooth.is_some_and(DamagedTooth::is_missing)
-    }
-
-    fn checked(self) -> Result<Self, PlotError> {
-        let points = self.profile.len().min(self.profile.y_mm.len());
-        if points < 2 || self.contact_index + 1 >= points {
-            return Err(PlotError::NoProfile { wheel: self.name, points });
-        }
-        Ok(self)
     }
 
     pub(super) fn last(&self) -> usize {

@@ -6,12 +6,8 @@ use meshtone::Stages;
 use meshtone::wheel::WheelName;
 
 use super::damage;
-use crate::axes::{self, Area, Axes};
-use crate::canvas::Canvas;
 use crate::damaged_tooth::{self, DamagedTooth};
-use crate::legend::{self, Entry, Sample};
-use crate::style::{Stroke, colour};
-use crate::ticks::Ticks;
+use crate::drawing::{Area, Axes, Canvas, Sample, Stroke, Ticks, axes, colour};
 
 const MESH: Stroke = Stroke::solid(colour::BLUE, 1.6);
 const HEALTHY: Stroke = Stroke::dashed(colour::INK, 1.4, &[5.0, 3.0]);
@@ -43,7 +39,7 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, stages: &Stages) {
         }
     }
     whole.title(canvas, "Mesh stiffness over a gear revolution");
-    let start = damage::start_of_revolution(&damage.gear);
+    let start = damage::start_of_revolution(&damage.wheels[1].1);
     let name = format!("Pitches since the gear’s {start}");
     whole.x_axis(canvas, &Ticks::whole(whole.x[0], whole.x[1], 20), &name);
     whole.y_axis(canvas, &ticks, "Stiffness (N/mm)", super::NAME_LEFT);
@@ -59,70 +55,66 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, stages: &Stages) {
 
 /// The pairs that a damaged tooth is in. Pair n enters contact n pitches after the start of the simulation.
 struct DamagedPairs {
-    pinion: Vec<DamagedTooth>,
-    gear: Vec<DamagedTooth>,
-    pinion_teeth: i64,
-    gear_teeth: i64,
-    /// The first of them; 0 where there is none.
+    /// Teeth of pinion and gear, and the damaged ones among them.
+    wheels: [(i64, Vec<DamagedTooth>); 2],
+    /// The first of the pairs; 0 where there is none.
     first: i64,
 }
 
 impl DamagedPairs {
     fn new(stages: &Stages) -> Self {
-        let [pinion, gear] = WheelName::BOTH.map(|wheel| damage::damaged_teeth(stages, wheel));
-        let teeth = |wheel| i64::from(stages.teeth.wheel(wheel).teeth.max(1));
-        let first = pinion.iter().chain(&gear).map(|tooth| i64::from(tooth.tooth) - 1).min().unwrap_or(0);
-        Self {
-            pinion,
-            gear,
-            pinion_teeth: teeth(WheelName::Pinion),
-            gear_teeth: teeth(WheelName::Gear),
-            first,
-        }
+        let wheels = WheelName::BOTH.map(|wheel| {
+            let teeth = i64::from(stages.teeth.wheel(wheel).teeth.max(1));
+            (teeth, damage::damaged_teeth(stages, wheel))
+        });
+        let damaged = wheels.iter().flat_map(|(_, damaged)| damaged);
+        let first = damaged.map(|tooth| i64::from(tooth.tooth) - 1).min().unwrap_or(0);
+        Self { wheels, first }
     }
 
     /// The gear's revolution that the first one is in.
     fn revolution(&self) -> Range<i64> {
-        let start = self.first / self.gear_teeth * self.gear_teeth;
-        start..start + self.gear_teeth
+        let gear_teeth = self.wheels[1].0;
+        let start = self.first / gear_teeth * gear_teeth;
+        start..start + gear_teeth
     }
 
     /// (pitches) The parts of a window in which one of them is in contact.
     fn turns(&self, window: [f64; 2]) -> Vec<[f64; 2]> {
-        let contact = self.pinion.iter().chain(&self.gear).map(|tooth| tooth.contact_pitches);
-        let meets = |damaged: &[DamagedTooth], teeth: i64, pair: i64| {
-            damaged.iter().any(|tooth| i64::from(tooth.tooth) == pair.rem_euclid(teeth) + 1)
-        };
-        damaged_tooth::turns(window, contact.fold(0.0, f64::max), |pair| {
-            meets(&self.pinion, self.pinion_teeth, pair) || meets(&self.gear, self.gear_teeth, pair)
+        let damaged = self.wheels.iter().flat_map(|(_, damaged)| damaged);
+        let contact = damaged.map(|tooth| tooth.contact_pitches).fold(0.0, f64::max);
+        damaged_tooth::turns(window, contact, |pair| {
+            self.wheels.iter().any(|(teeth, damaged)| damaged_tooth::is_of_pair(damaged, *teeth, pair))
         })
     }
 
     fn title_of_enlarged(&self) -> String {
-        let is_first = |tooth: &&DamagedTooth| i64::from(tooth.tooth) == self.first + 1;
-        let gear = self.gear.iter().find(is_first).map(|_| "gear");
-        match gear.or(self.pinion.iter().find(is_first).map(|_| "pinion")) {
-            None => "Four pitches, enlarged".to_owned(),
-            Some("gear") if self.first == 0 => "Its first pitches, enlarged".to_owned(),
-            Some(wheel) => format!("Around {wheel} tooth {}, enlarged", self.first + 1),
+        let is_first = |wheel: usize| {
+            let (_, damaged) = &self.wheels[wheel];
+            damaged.iter().any(|tooth| i64::from(tooth.tooth) == self.first + 1)
+        };
+        let tooth = self.first + 1;
+        match (is_first(0), is_first(1)) {
+            (_, true) if self.first == 0 => "Its first pitches, enlarged".to_owned(),
+            (_, true) => format!("Around gear tooth {tooth}, enlarged"),
+            (true, _) => format!("Around pinion tooth {tooth}, enlarged"),
+            _ => "Four pitches, enlarged".to_owned(),
         }
     }
 
     fn legend(&self, canvas: &mut Canvas, axes: &Axes) {
-        let Some(text) = damaged_tooth::in_words(&[("pinion", &self.pinion), ("gear", &self.gear)]) else {
-            return;
-        };
-        let [this, healthy] = if self.pinion.is_empty() {
-            ["this gear", "healthy gear"]
-        } else {
-            ["this pair", "healthy pair"]
+        let [(_, pinion), (_, gear)] = &self.wheels;
+        let Some(text) = damaged_tooth::in_words(&[("pinion", pinion), ("gear", gear)]) else { return };
+        let [this, healthy] = match pinion[..] {
+            [] => ["this gear", "healthy gear"],
+            _ => ["this pair", "healthy pair"],
         };
         let entries = [
-            Entry { sample: Sample::Line(MESH), text: this },
-            Entry { sample: Sample::Line(HEALTHY), text: healthy },
+            (Sample::Line(MESH), this),
+            (Sample::Line(HEALTHY), healthy),
             damaged_tooth::legend_entry(&text),
         ];
-        legend::row(canvas, (axes.area.right(), axes.area.top - axes::TITLE_ABOVE), &entries);
+        axes.legend(canvas, &entries);
     }
 }
 
@@ -136,26 +128,14 @@ struct Mesh {
 }
 
 impl Mesh {
+    /// The machine's first mesh.
     fn new(stages: &Stages, pitches: Range<i64>) -> Self {
-        let count = (pitches.end + 1 - pitches.start).max(0) as usize;
-        // The cycle repeats: what comes before the first pair is its end.
-        let window = |cycle: usize| {
-            let start = pitches.start.rem_euclid(cycle as i64) as usize;
-            start..start + count
-        };
-        let mesh_n_per_mm = match (stages.mesh.pairs(), stages.mesh.contact()) {
-            (Some(mesh), _) => mesh.stiffness_n_per_mm(window(mesh.sequence.cycle())),
-            (None, Some(mesh)) => mesh.stiffness_n_per_mm(window(mesh.sequence.cycle())),
-            (None, None) => {
-                let cycle = stages.mesh.stiffness_n_per_mm();
-                let points = stages.mesh.points_per_pitch();
-                let start = pitches.start * points as i64;
-                let start = start.checked_rem_euclid(cycle.len() as i64).unwrap_or(0) as usize;
-                cycle.iter().cycle().skip(start).take(count * points).copied().collect()
-            }
-        };
-        let healthy_n_per_mm = stages.mesh.healthy_stiffness_n_per_mm();
-        Self { mesh_n_per_mm, first_pitch: pitches.start, healthy_n_per_mm }
+        let first_pitch = pitches.start;
+        let curve = stages.mesh_curves_over(first_pitch..pitches.end + 1).into_iter().next();
+        let (mesh_n_per_mm, healthy_n_per_mm) = curve.map_or_else(Default::default, |curve| {
+            (curve.stiffness_n_per_mm, curve.healthy_stiffness_n_per_mm)
+        });
+        Self { mesh_n_per_mm, first_pitch, healthy_n_per_mm }
     }
 
     fn values(&self) -> impl Iterator<Item = f64> {
@@ -173,6 +153,7 @@ impl Mesh {
         }
         axes.line(canvas, self.curve(&self.mesh_n_per_mm, self.first_pitch, axes.x), MESH);
     }
+
     /// (pitches, N/mm) Values of a window.
     ///
     /// Where a pair enters or leaves contact, a point holds a part of that pair; to the window's edges reach the values beside them.

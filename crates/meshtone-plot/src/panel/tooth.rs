@@ -1,15 +1,12 @@
 //! The tooth in its own plane.
 
-use meshtone::damage::{Crack, DamageDescription, DamagedTooth};
+use meshtone::damage::{Crack, DamageDescription, DamagedTooth, ToothPart};
 
-use super::damage;
 use super::side::Side;
-use crate::axes::{Area, Axes};
-use crate::canvas::{Canvas, Pixel};
-use crate::curve;
 use crate::damaged_tooth;
-use crate::style::{Anchor, Colour, Fill, Stroke, TextStyle, colour};
-use crate::ticks::Ticks;
+use crate::drawing::{
+    Anchor, Area, Axes, Canvas, Colour, Fill, Pixel, Stroke, TextStyle, Ticks, capitalised, colour, curve,
+};
 
 const WORKING: Stroke = Stroke::solid(colour::BLUE, 2.4);
 const BACK: Stroke = Stroke::solid(colour::MUTED, 1.6);
@@ -45,10 +42,7 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, across: [f64; 2], along: [f6
 }
 
 fn title(side: &Side) -> String {
-    let title = match side.tooth_index() {
-        0 => "First tooth, in its plane".to_owned(),
-        index => format!("{} tooth {}, in its plane", side.name, index + 1),
-    };
+    let title = format!("{}, in its plane", capitalised(&side.tooth_name()));
     let drawn = side.tooth_index() as u32 + 1;
     let others: Vec<_> = side.damaged.iter().copied().filter(|tooth| tooth.tooth != drawn).collect();
     match &others[..] {
@@ -94,8 +88,7 @@ impl Drawing<'_> {
                 outline.extend(self.axes.along_y((0..=top).map(working)).into_iter().rev());
             }
             None => {
-                outline.extend(self.flank(-1.0, 0, last));
-                outline.extend(self.flank(1.0, 0, last).into_iter().rev());
+                outline.extend(self.slab(0, last));
             }
         }
         outline.extend(self.space(1.0));
@@ -181,8 +174,7 @@ impl Drawing<'_> {
 
     fn missing(&self, canvas: &mut Canvas) {
         let last = self.side.last();
-        let mut ghost = self.flank(-1.0, 0, last);
-        ghost.extend(self.flank(1.0, 0, last).into_iter().rev());
+        let mut ghost = self.slab(0, last);
         canvas.polyline(&ghost, DAMAGE_EDGE);
         // Down to the root that is left, which rises between the feet.
         ghost.extend(self.root_gap().into_iter().rev());
@@ -197,11 +189,8 @@ impl Drawing<'_> {
     fn damaged(&self, canvas: &mut Canvas, tooth: &DamagedTooth) {
         let last = self.side.last();
         let top = tooth.gone_from_index.min(last);
-        let chips = tooth.descriptions.iter().filter_map(|damage| match damage {
-            DamageDescription::ToothBreakage { chip_start_index, .. } => Some((*chip_start_index).min(top)),
-            _ => None,
-        });
-        let chips: Vec<usize> = chips.collect();
+        let chips = tooth.descriptions.iter().filter(|damage| damage.part == ToothPart::Tip);
+        let chips: Vec<usize> = chips.map(|damage| damage.range[0].min(top)).collect();
         let cuts = self.cuts(tooth, top);
         for &chip in &chips {
             canvas.polygon(&self.slab(chip, top), PARTLY_LOST);
@@ -242,8 +231,7 @@ impl Drawing<'_> {
         if let Some(crack) = &tooth.crack {
             self.crack(canvas, crack);
         }
-        let face_width_mm = self.side.wheel.face_width_mm;
-        if tooth.descriptions.iter().any(|damage| damage::is_partial(damage, face_width_mm)) {
+        if tooth.descriptions.iter().any(|damage| damage.is_partial) {
             self.remark(canvas, 0, "hatched: lost over part of the face width", colour::VERMILLION);
         } else if tooth.crack.is_some() {
             self.remark(canvas, 0, "dashed: nothing beyond carries load", colour::VERMILLION);
@@ -255,19 +243,11 @@ impl Drawing<'_> {
         let outline_y_mm = tooth.outline_y_mm();
         let at = |index: usize| (outline_y_mm[index], self.side.profile.x_mm[index]);
         let cut = |damage: &DamageDescription| {
-            let (first, end) = damage::damaged_range(damage, tooth, self.side);
-            let (first, end) = (first.min(top), end.min(top));
-            Cut {
-                first,
-                end,
-                flank: self.axes.along_y((first..=end).map(at)),
-                is_partial: damage::is_partial(damage, self.side.wheel.face_width_mm),
-            }
+            let [first, end] = damage.range.map(|index| index.min(top));
+            Cut { first, end, flank: self.axes.along_y((first..=end).map(at)), is_partial: damage.is_partial }
         };
-        let is_cut = |damage: &&DamageDescription| {
-            !matches!(damage, DamageDescription::ToothBreakage { .. } | DamageDescription::RootCrack { .. })
-        };
-        let mut cuts: Vec<Cut> = tooth.descriptions.iter().filter(is_cut).map(cut).collect();
+        let of_flank = tooth.descriptions.iter().filter(|damage| damage.part.is_of_flank());
+        let mut cuts: Vec<Cut> = of_flank.map(cut).collect();
         cuts.sort_by_key(|cut| cut.first);
         cuts
     }

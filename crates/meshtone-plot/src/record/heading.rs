@@ -1,13 +1,7 @@
-//! Title, facts and the columns' headings.
+//! The columns' headings, and the figure in a sentence.
 
-use super::{LEFT, NAME_LEFT, RIGHT, RecordFigure, WheelView};
-use crate::canvas::{Canvas, Pixel};
-use crate::style::{Stroke, TextStyle, colour};
-use crate::text::fitted;
-use crate::ticks::number;
-
-/// (px) Where the names of the vertical axes begin.
-const EDGE: f64 = LEFT - NAME_LEFT - 11.0;
+use super::{RecordFigure, WheelView};
+use crate::drawing::{BETWEEN_FACTS, Canvas, Pixel, TextStyle, capitalised, number};
 
 /// The figure in a sentence, for readers who cannot see it.
 pub(super) fn description(figure: &RecordFigure) -> String {
@@ -20,31 +14,17 @@ pub(super) fn description(figure: &RecordFigure) -> String {
     )
 }
 
-pub(super) fn draw(canvas: &mut Canvas, figure: &RecordFigure) {
-    let title = fitted(figure.title, TextStyle::TITLE, RIGHT - EDGE);
-    canvas.text((EDGE, 36.0), &title, TextStyle::TITLE);
-    let facts = fitted(&figure.facts.join("  ·  "), TextStyle::FACTS, RIGHT - EDGE);
-    canvas.text((EDGE, 61.0), &facts, TextStyle::FACTS);
-}
-
 pub(super) fn column(canvas: &mut Canvas, (left, baseline): Pixel, width: f64, wheel: &WheelView) {
-    let text = format!(
-        "{}: average of {} revolutions at {} Hz",
-        name(wheel),
-        wheel.record.average.revolutions,
-        number(wheel.mean_speed_hz)
-    );
-    canvas.text((left, baseline), &fitted(&text, TextStyle::HEADING, width), TextStyle::HEADING);
-    canvas.line((left, baseline + 8.0), (left + width, baseline + 8.0), Stroke::solid(colour::INK, 1.2));
+    let (revolutions, speed) = (wheel.record.average.revolutions, number(wheel.mean_speed_hz));
+    let text = format!("{}: average of {revolutions} revolutions at {speed} Hz", name(wheel));
+    canvas.section((left, baseline), width, &text, 8.0);
     let style = TextStyle::FACTS;
-    canvas.text((left, baseline + 29.0), &fitted(&gear(wheel), style, width), style);
+    canvas.text((left, baseline + 29.0), &style.fitted(&gear(wheel), width), style);
 }
 
 /// `Gear, 38 teeth`.
 fn name(wheel: &WheelView) -> String {
-    let mut letters = wheel.name.chars();
-    let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
-    format!("{first}{}, {} teeth", letters.as_str(), wheel.teeth)
+    format!("{}, {} teeth", capitalised(wheel.name), wheel.teeth)
 }
 
 /// The gear's indicators.
@@ -57,9 +37,7 @@ fn gear(wheel: &WheelView) -> String {
         ("energy ratio", indicators.energy_ratio),
         ("sideband level factor", indicators.sideband_level_factor),
     ];
-    let texts = values.map(|(name, value)| match value {
-        Some(value) => format!("{name} {}", number(value)),
-        None => format!("{name} –"),
-    });
-    texts.join("  ·  ")
+    let texts =
+        values.map(|(name, value)| format!("{name} {}", value.map_or_else(|| "–".to_owned(), number)));
+    texts.join(BETWEEN_FACTS)
 }

@@ -4,19 +4,14 @@
 //! revolution and its difference, both over the teeth, and the order spectrum: all of it, and its low orders with what belongs
 //! to which part.
 
-mod difference;
 mod heading;
-mod signal;
 mod spectrum;
 mod teeth;
 
 use meshtone::signal::Record;
 
-use crate::axes::{self, Area, Axes};
-use crate::canvas::Canvas;
-use crate::legend;
-use crate::style::{Stroke, colour};
-use crate::{DamagedTooth, Figure, damaged_tooth};
+use crate::drawing::{Area, Axes, BETWEEN_FACTS, Canvas, Stroke, TextStyle, Ticks, axes, colour, number};
+use crate::{DamagedTooth, Figure};
 
 /// (px) Size of the figure.
 pub const WIDTH: u32 = 1600;
@@ -28,18 +23,21 @@ const RIGHT: f64 = 1576.0;
 const COLUMN_GAP: f64 = 92.0;
 /// (px) From the frame of a plot to the baseline of its vertical axis' name.
 const NAME_LEFT: f64 = 56.0;
-const SIGNAL_TOP: f64 = 100.0;
-const SIGNAL_HEIGHT: f64 = 130.0;
+/// (px) Where title and facts begin.
+const EDGE: f64 = 17.0;
+const SIGNAL: Area = Area::new(LEFT, 100.0, RIGHT - LEFT, 130.0);
 const HEADING_BASELINE: f64 = 302.0;
-const AVERAGE_TOP: f64 = 372.0;
-const SPECTRUM_TOP: f64 = 604.0;
-const SPECTRUM_HEIGHT: f64 = 308.0;
-const DIFFERENCE_TOP: f64 = 990.0;
-const HEIGHT_OF_AXES: f64 = 162.0;
+/// (px) Upper and lower edges of the plots of each wheel.
+const AVERAGE: [f64; 2] = [372.0, 534.0];
+const SPECTRUM: [f64; 2] = [604.0, 912.0];
+const DIFFERENCE: [f64; 2] = [990.0, 1152.0];
+/// Letters of a unit for which the axes have room.
+const LONGEST_UNIT: usize = 12;
 const MARGIN: f64 = 0.06;
 const CURVE: Stroke = Stroke::solid(colour::BLUE, 1.2);
+const ENVELOPE: Stroke = Stroke::solid(colour::INK, 1.2);
 
-/// What the figure shows.
+/// Content of the figure.
 #[derive(Debug, Clone, Copy)]
 pub struct RecordFigure<'a> {
     /// Title: what was recorded, and which channel.
@@ -55,7 +53,7 @@ pub struct RecordFigure<'a> {
 /// A channel, as it was read.
 #[derive(Debug, Clone, Copy)]
 pub struct SignalView<'a> {
-    /// What was measured, such as `vertical acceleration`.
+    /// Name of the measured quantity, such as `vertical acceleration`.
     pub quantity: &'a str,
     /// Its unit, where it is known.
     pub unit: Option<&'a str>,
@@ -67,7 +65,7 @@ pub struct SignalView<'a> {
     pub samples: &'a [f64],
 }
 
-/// What is shown about one wheel.
+/// Results of one wheel.
 #[derive(Debug, Clone, Copy)]
 pub struct WheelView<'a> {
     /// Its name, such as `gear`.
@@ -80,19 +78,12 @@ pub struct WheelView<'a> {
     pub sidebands: usize,
     /// The shaft orders 1 to this one belong to the regular part.
     pub low_orders: usize,
-    /// What marks tooth 1, such as `tooth 1 is in mesh at the tachometer's pulse`.
+    /// Mark of tooth 1, such as `tooth 1 is in mesh at the tachometer's pulse`.
     pub first_tooth: &'a str,
     /// The damaged teeth, where they are known; their turns are tinted.
     pub damaged_teeth: &'a [DamagedTooth],
     /// The record.
     pub record: &'a Record,
-}
-
-impl WheelView<'_> {
-    /// What the tinted parts of its revolution are.
-    fn damage_in_words(&self) -> Option<String> {
-        damaged_tooth::in_words(&[(self.name, self.damaged_teeth)])
-    }
 }
 
 /// Draws the figure of one record.
@@ -125,65 +116,61 @@ impl WheelView<'_> {
 /// ```
 pub fn draw(figure: &RecordFigure) -> Figure {
     let mut canvas = Canvas::new(WIDTH, HEIGHT);
-    heading::draw(&mut canvas, figure);
-    signal::draw(&mut canvas, Area::new(LEFT, SIGNAL_TOP, RIGHT - LEFT, SIGNAL_HEIGHT), &figure.signal);
+    canvas.heading(EDGE, RIGHT - EDGE, (36.0, figure.title), (61.0, &figure.facts.join(BETWEEN_FACTS)));
+    let unit = figure.signal.unit.filter(|unit| !unit.is_empty());
+    let shortened = |unit: &str| unit.chars().take(LONGEST_UNIT).collect();
+    let unit: String = unit.map_or_else(|| "unit not stated".to_owned(), shortened);
     let wheels = &figure.wheels[..figure.wheels.len().min(2)];
-    let unit = unit(figure.signal.unit);
-    let y = common(wheels.iter().flat_map(|wheel| wheel.record.average.values.iter().copied()));
-    let around = common(wheels.iter().flat_map(|wheel| difference::extent(wheel)));
-    let column = column_area(0, wheels.len(), 0.0, 0.0);
-    let amplitudes = spectrum::Amplitudes::of(wheels, column.width);
-    for (column, wheel) in wheels.iter().enumerate() {
-        let area = |top: f64| column_area(column, wheels.len(), top, HEIGHT_OF_AXES);
-        heading::column(&mut canvas, (area(0.0).left, HEADING_BASELINE), area(0.0).width, wheel);
-        average(&mut canvas, Axes::new(area(AVERAGE_TOP), [0.0, f64::from(wheel.teeth)], y), wheel, &unit);
-        let spectrum_area = column_area(column, wheels.len(), SPECTRUM_TOP, SPECTRUM_HEIGHT);
-        spectrum::draw(&mut canvas, spectrum_area, &amplitudes, wheel, &unit);
-        let axes = Axes::new(area(DIFFERENCE_TOP), [0.0, f64::from(wheel.teeth)], around);
-        difference::draw(&mut canvas, axes, wheel, &unit);
+    signal(&mut canvas, &figure.signal, &unit);
+    // Both wheels have the same scales.
+    let averages = wheels.iter().flat_map(|wheel| &wheel.record.average.values);
+    let differences =
+        wheels.iter().flat_map(|wheel| [&wheel.record.parts.difference, &wheel.record.envelope]);
+    let y = axes::range(averages.copied(), MARGIN);
+    let around = axes::range(differences.flatten().copied(), MARGIN);
+    let amplitudes = spectrum::Amplitudes::of(wheels, column(0, wheels.len(), [0.0; 2]).width);
+    for (place, wheel) in wheels.iter().enumerate() {
+        let area = |vertical: [f64; 2]| column(place, wheels.len(), vertical);
+        let Area { left, width, .. } = area(AVERAGE);
+        heading::column(&mut canvas, (left, HEADING_BASELINE), width, wheel);
+        let record = wheel.record;
+        let title = format!("Average over a revolution of the {}", wheel.name);
+        let average = [(None, &record.average.values[..], CURVE)];
+        teeth::draw(&mut canvas, area(AVERAGE), (y, &unit), &title, wheel, &average);
+        spectrum::draw(&mut canvas, area(SPECTRUM), &amplitudes, wheel, &unit);
+        let curves = [
+            (Some("difference"), &record.parts.difference[..], CURVE),
+            (Some("envelope"), &record.envelope[..], ENVELOPE),
+        ];
+        teeth::draw(&mut canvas, area(DIFFERENCE), (around, &unit), "Difference signal", wheel, &curves);
     }
     canvas.finish(figure.title, &heading::description(figure))
 }
 
-fn average(canvas: &mut Canvas, axes: Axes, wheel: &WheelView, unit: &str) {
-    axes.title(canvas, &format!("Average over a revolution of the {}", wheel.name));
-    if let Some(text) = wheel.damage_in_words() {
-        let end_of_title = (axes.area.right(), axes.area.top - axes::TITLE_ABOVE);
-        legend::row(canvas, end_of_title, &[damaged_tooth::legend_entry(&text)]);
-    }
-    teeth::axis(canvas, &axes, wheel);
-    value_axis(canvas, &axes, unit);
-    axes.line(canvas, teeth::over(&wheel.record.average.values, wheel.teeth), CURVE);
+/// The recording over time.
+fn signal(canvas: &mut Canvas, signal: &SignalView, unit: &str) {
+    let SignalView { quantity, sampling_rate_hz, start_s, samples, .. } = *signal;
+    let duration_s = samples.len() as f64 / sampling_rate_hz;
+    let time = axes::time_range([start_s, start_s + duration_s]);
+    let y = axes::range(samples.iter().copied(), MARGIN);
+    let axes = Axes::new(SIGNAL, time, y);
+    let title = format!(
+        "{}: {} s, {} samples at {} S/s",
+        TextStyle::AXES_TITLE.fitted(quantity, 0.5 * SIGNAL.width),
+        number(duration_s),
+        samples.len(),
+        number(sampling_rate_hz)
+    );
+    axes.title(canvas, &title);
+    axes.x_axis(canvas, &Ticks::nice(time[0], time[1], 12), "Time (s)");
+    axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 4), &format!("Signal ({unit})"), NAME_LEFT);
+    axes.line(canvas, axes::over(time, samples), CURVE);
     axes.frame(canvas);
 }
 
-fn value_axis(canvas: &mut Canvas, axes: &Axes, unit: &str) {
-    axes.y_axis(
-        canvas,
-        &crate::ticks::Ticks::nice(axes.y[0], axes.y[1], 5),
-        &format!("Amplitude ({unit})"),
-        NAME_LEFT,
-    );
-}
-
-/// The same scale for both wheels.
-fn common(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    axes::range(values, MARGIN)
-}
-
-fn column_area(column: usize, columns: usize, top: f64, height: f64) -> Area {
-    let width = match columns {
-        0 | 1 => RIGHT - LEFT,
-        _ => (RIGHT - LEFT - COLUMN_GAP) / 2.0,
-    };
-    Area::new(LEFT + column as f64 * (width + COLUMN_GAP), top, width, height)
-}
-
-/// The unit in an axis' name.
-fn unit(unit: Option<&str>) -> String {
-    unit.filter(|unit| !unit.is_empty()).map_or_else(|| "unit not stated".to_owned(), shortened_unit)
-}
-
-fn shortened_unit(unit: &str) -> String {
-    unit.chars().take(12).collect()
+/// One of one or two columns, between two heights.
+fn column(place: usize, columns: usize, [top, bottom]: [f64; 2]) -> Area {
+    let gaps = columns.saturating_sub(1) as f64;
+    let width = (RIGHT - LEFT - gaps * COLUMN_GAP) / (gaps + 1.0);
+    Area::new(LEFT + place as f64 * (width + COLUMN_GAP), top, width, bottom - top)
 }

@@ -6,13 +6,10 @@ use super::data::{DRAWS, Data};
 use super::symbols::{
     ENHANCED, ENHANCED_MARKER, LEFT_OUT, LEFT_OUT_MARKER, MEDIAN, ORIGINAL, ORIGINAL_MARKER, RECORDS,
 };
-use crate::axes::{self, Area, Axes};
-use crate::canvas::Canvas;
-use crate::font;
-use crate::legend::{self, Entry, Sample};
-use crate::marker::Marker;
-use crate::style::{Anchor, DOT_RADIUS, Fill, Stroke, TextStyle, colour};
-use crate::ticks::Ticks;
+use crate::drawing::{
+    Anchor, Area, Axes, Canvas, DOT_RADIUS, Fill, Marker, Sample, Stroke, TextStyle, Ticks, axes, colour,
+    legend,
+};
 
 const MARGIN: f64 = 0.08;
 /// (cases) Half of the width over which records are spread, and their middle.
@@ -47,146 +44,158 @@ pub(super) fn draw(canvas: &mut Canvas, areas: &[Area], data: &Data) {
     labels(canvas, *errors, data);
 }
 
+/// What one of the simulations gives, by case.
+struct Series {
+    values: Vec<f64>,
+    /// (cases) Where its markers stand beside the middle of a case.
+    at: f64,
+    stroke: Stroke,
+    marker: Marker,
+}
+
+/// A plot over the cases.
+struct CasesPlot {
+    axes: Axes,
+    cases: usize,
+}
+
+impl CasesPlot {
+    /// Draws title, vertical axis and a line between neighbouring cases.
+    fn new(canvas: &mut Canvas, area: Area, cases: usize, y: [f64; 2], title: &str, unit: &str) -> Self {
+        let axes = axes_of(area, cases, y);
+        axes.title(canvas, title);
+        let numbers = (area.height / PER_NUMBER) as usize;
+        let most = (area.height / LEAST_PER_NUMBER) as usize;
+        let ticks = Ticks::nice(y[0], y[1], numbers.clamp(2, 6)).thinned(most);
+        axes.y_axis(canvas, &ticks, unit, super::NAME_LEFT);
+        for case in 1..cases {
+            let x = axes.px(case as f64 - 0.5);
+            canvas.line((x, area.top), (x, area.bottom()), NAMES);
+        }
+        Self { axes, cases }
+    }
+
+    /// A place beside the middle of a case, given in cases.
+    fn beside(&self, case: usize, at: f64) -> f64 {
+        case as f64 + at * (WIDEST * self.cases as f64 / self.axes.area.width).min(1.0)
+    }
+
+    /// The drawable values of a series and their places.
+    fn places(&self, series: &Series) -> impl Iterator<Item = (f64, f64)> {
+        let places = series.values.iter().enumerate();
+        let places = places.map(|(case, &value)| (self.beside(case, series.at), value));
+        places.filter(|&(_, y)| axes::drawable(y))
+    }
+
+    /// Lines from case to case, in the order in which the series are given.
+    fn connected(&self, canvas: &mut Canvas, series: &[Series]) {
+        series.iter().for_each(|series| self.axes.line(canvas, self.places(series), series.stroke));
+    }
+
+    fn markers(&self, canvas: &mut Canvas, series: &[Series]) {
+        for series in series {
+            self.places(series).for_each(|(x, y)| series.marker.draw(canvas, self.axes.at(x, y)));
+        }
+    }
+
+    /// A short line, as wide as the records.
+    fn level(&self, canvas: &mut Canvas, case: usize, at: f64, y: f64) {
+        let ends = [-HALF_RECORDS, HALF_RECORDS];
+        let [from, to] = ends.map(|half| self.axes.at(self.beside(case, at + half), y));
+        canvas.line(from, to, MEDIAN);
+    }
+
+    fn whisker(&self, canvas: &mut Canvas, x: f64, ends: [f64; 2]) {
+        let [low, high] = ends.map(|y| self.axes.at(x, y));
+        canvas.line(low, high, ENHANCED);
+        for (x, y) in [low, high] {
+            canvas.line((x - 4.0, y), (x + 4.0, y), ENHANCED);
+        }
+    }
+
+    /// Every record, spread over the width of the case in the order of measurement.
+    fn dots(&self, canvas: &mut Canvas, case: usize, records: &[f64], every: usize) {
+        let mut sorted: Vec<(usize, f64)> = records.iter().copied().enumerate().collect();
+        sorted.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let pixel = |(record, value): (usize, f64)| {
+            let place = (record as f64 * GOLDEN).fract() - 0.5;
+            self.axes.at(self.beside(case, RECORDS_AT + 2.0 * 0.95 * HALF_RECORDS * place), value)
+        };
+        let pixels: Vec<_> = sorted.into_iter().step_by(every).map(pixel).collect();
+        canvas.dots(&pixels, DOT_RADIUS, RECORDS);
+    }
+}
+
 fn axes_of(area: Area, cases: usize, y: [f64; 2]) -> Axes {
     Axes::new(area, [-0.5, cases as f64 - 0.5], y)
 }
 
-/// A place beside the middle of a case, given in cases.
-fn beside(axes: &Axes, case: usize, at: f64) -> f64 {
-    let cases = axes.x[1] - axes.x[0];
-    case as f64 + at * (WIDEST * cases / axes.area.width).min(1.0)
-}
-
-/// Title, vertical axis and a line between neighbouring cases.
-fn ground(canvas: &mut Canvas, axes: &Axes, cases: usize, title: &str, unit: &str) {
-    axes.title(canvas, title);
-    let numbers = (axes.area.height / PER_NUMBER) as usize;
-    let most = (axes.area.height / LEAST_PER_NUMBER) as usize;
-    let ticks = Ticks::nice(axes.y[0], axes.y[1], numbers.clamp(2, 6)).thinned(most);
-    axes.y_axis(canvas, &ticks, unit, super::NAME_LEFT);
-    for case in 1..cases {
-        let x = axes.px(case as f64 - 0.5);
-        canvas.line((x, axes.area.top), (x, axes.area.bottom()), NAMES);
-    }
-}
-
 fn indicator(canvas: &mut Canvas, area: Area, data: &Data, j: usize, indicator: TuningIndicator) {
-    let cases = data.cases();
-    let original = |case: usize| data.tuning.original[case][j];
-    let enhanced = |case: usize| data.tuning.enhanced[case][j];
-    let simulated = (0..cases).flat_map(|case| {
-        let [low, high] = data.spread[case][j];
-        [original(case), enhanced(case), low, high]
-    });
-    let records = (0..cases).flat_map(|case| data.measured().records(case, j).iter().copied());
-    let axes = axes_of(area, cases, axes::range(simulated.chain(records), MARGIN));
-    ground(canvas, &axes, cases, &title(indicator), "(–)");
+    let (cases, measured) = (data.cases(), data.measured());
+    let of_cases = |values: &[Vec<f64>]| values.iter().map(|of_case| of_case[j]).collect();
+    let series = [
+        Series {
+            values: of_cases(&data.tuning.original),
+            at: ORIGINAL_AT,
+            stroke: ORIGINAL,
+            marker: ORIGINAL_MARKER,
+        },
+        Series {
+            values: of_cases(&data.tuning.enhanced),
+            at: ENHANCED_AT,
+            stroke: ENHANCED,
+            marker: ENHANCED_MARKER,
+        },
+    ];
+    let simulated = series.iter().flat_map(|series| series.values.iter());
+    let spread = data.spread.iter().flat_map(|of_case| &of_case[j]);
+    let records = (0..cases).flat_map(|case| measured.records(case, j));
+    let y = axes::range(simulated.chain(spread).chain(records).copied(), MARGIN);
+    let plot = CasesPlot::new(canvas, area, cases, y, &title(indicator), "(–)");
     for case in 0..cases {
-        dots(canvas, &axes, case, data.measured().records(case, j), every_nth(data));
+        plot.dots(canvas, case, measured.records(case, j), every_nth(data));
     }
-    connected(canvas, &axes, cases, ORIGINAL_AT, &original, ORIGINAL);
-    connected(canvas, &axes, cases, ENHANCED_AT, &enhanced, ENHANCED);
+    plot.connected(canvas, &series);
     for case in 0..cases {
-        level(canvas, &axes, case, RECORDS_AT, data.measured().median(case, j));
+        plot.level(canvas, case, RECORDS_AT, measured.median(case, j));
         let [low, high] = data.spread[case][j];
         if axes::drawable(low) && axes::drawable(high) {
-            whisker(canvas, &axes, beside(&axes, case, ENHANCED_AT), [low, high]);
+            plot.whisker(canvas, plot.beside(case, ENHANCED_AT), [low, high]);
         }
     }
-    markers(canvas, &axes, cases, ORIGINAL_AT, &original, ORIGINAL_MARKER);
-    markers(canvas, &axes, cases, ENHANCED_AT, &enhanced, ENHANCED_MARKER);
-    axes.frame(canvas);
-}
-
-/// A short line, as wide as the records.
-fn level(canvas: &mut Canvas, axes: &Axes, case: usize, at: f64, y: f64) {
-    let [from, to] = [-HALF_RECORDS, HALF_RECORDS].map(|half| axes.at(beside(axes, case, at + half), y));
-    canvas.line(from, to, MEDIAN);
-}
-
-fn whisker(canvas: &mut Canvas, axes: &Axes, x: f64, ends: [f64; 2]) {
-    let [low, high] = ends.map(|y| axes.at(x, y));
-    canvas.line(low, high, ENHANCED);
-    for (x, y) in [low, high] {
-        canvas.line((x - 4.0, y), (x + 4.0, y), ENHANCED);
-    }
+    plot.markers(canvas, &series);
+    plot.axes.frame(canvas);
 }
 
 fn error(canvas: &mut Canvas, area: Area, data: &Data) {
-    let cases = data.cases();
-    let measured = data.measured();
-    let original = |case: usize| measured.case_error(case, &data.tuning.original[case]);
-    let enhanced = |case: usize| measured.case_error(case, &data.tuning.enhanced[case]);
-    let left_out = |case: usize| data.tuning.leave_one_out_error[case];
-    let all = (0..cases).flat_map(|case| [original(case), enhanced(case), left_out(case)]);
-    let [_, high] = axes::range(all, MARGIN);
-    let axes = axes_of(area, cases, [0.0, high]);
-    ground(canvas, &axes, cases, "Mean error of the case", "(σ)");
-    connected(canvas, &axes, cases, 0.0, &original, ORIGINAL);
-    connected(canvas, &axes, cases, 0.0, &left_out, LEFT_OUT);
-    connected(canvas, &axes, cases, 0.0, &enhanced, ENHANCED);
+    let (cases, measured, tuning) = (data.cases(), data.measured(), data.tuning);
+    let errors = |predicted: &[Vec<f64>]| {
+        (0..cases).map(|case| measured.case_error(case, &predicted[case])).collect::<Vec<f64>>()
+    };
+    let series = [
+        (errors(&tuning.original), ORIGINAL, ORIGINAL_MARKER),
+        (tuning.leave_one_out_error.clone(), LEFT_OUT, LEFT_OUT_MARKER),
+        (errors(&tuning.enhanced), ENHANCED, ENHANCED_MARKER),
+    ]
+    .map(|(values, stroke, marker)| Series { values, at: 0.0, stroke, marker });
+    let [_, high] = axes::range(series.iter().flat_map(|series| series.values.iter().copied()), MARGIN);
+    let plot = CasesPlot::new(canvas, area, cases, [0.0, high], "Mean error of the case", "(σ)");
+    plot.connected(canvas, &series);
     for case in 0..cases {
-        level(canvas, &axes, case, 0.0, measured.case_scatter(case));
+        plot.level(canvas, case, 0.0, measured.case_scatter(case));
     }
-    markers(canvas, &axes, cases, 0.0, &original, ORIGINAL_MARKER);
-    markers(canvas, &axes, cases, 0.0, &left_out, LEFT_OUT_MARKER);
-    markers(canvas, &axes, cases, 0.0, &enhanced, ENHANCED_MARKER);
-    axes.frame(canvas);
+    plot.markers(canvas, &series);
+    plot.axes.frame(canvas);
     let entries = [
         (Sample::Line(MEDIAN), "measurements’ own scatter"),
-        (Sample::Marked(LEFT_OUT, LEFT_OUT_MARKER), "predicted by a fit to the other cases"),
-    ]
-    .map(|(sample, text)| Entry { sample, text });
-    legend::row(canvas, (area.right(), area.top - axes::TITLE_ABOVE), &entries);
-}
-
-/// Every record, spread over the width of the case in the order of measurement.
-fn dots(canvas: &mut Canvas, axes: &Axes, case: usize, records: &[f64], every: usize) {
-    let mut sorted: Vec<(usize, f64)> = records.iter().copied().enumerate().collect();
-    sorted.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let pixels: Vec<_> = sorted
-        .into_iter()
-        .step_by(every)
-        .map(|(record, value)| {
-            let place = (record as f64 * GOLDEN).fract() - 0.5;
-            axes.at(beside(axes, case, RECORDS_AT + 2.0 * 0.95 * HALF_RECORDS * place), value)
-        })
-        .collect();
-    canvas.dots(&pixels, DOT_RADIUS, RECORDS);
+        (Sample::Marker(Some(LEFT_OUT), LEFT_OUT_MARKER), "predicted by a fit to the other cases"),
+    ];
+    plot.axes.legend(canvas, &entries);
 }
 
 fn every_nth(data: &Data) -> usize {
     let records = |case| (0..data.indicators().len()).map(move |j| data.measured().records(case, j).len());
     (0..data.cases()).flat_map(records).sum::<usize>().div_ceil(MOST_DOTS).max(1)
-}
-
-fn places(axes: &Axes, cases: usize, at: f64, value: &dyn Fn(usize) -> f64) -> Vec<(f64, f64)> {
-    let place = |case| (beside(axes, case, at), value(case));
-    (0..cases).map(place).filter(|&(_, y)| axes::drawable(y)).collect()
-}
-
-fn connected(
-    canvas: &mut Canvas,
-    axes: &Axes,
-    cases: usize,
-    at: f64,
-    value: &dyn Fn(usize) -> f64,
-    stroke: Stroke,
-) {
-    axes.line(canvas, places(axes, cases, at, value).into_iter(), stroke);
-}
-
-fn markers(
-    canvas: &mut Canvas,
-    axes: &Axes,
-    cases: usize,
-    at: f64,
-    value: &dyn Fn(usize) -> f64,
-    marker: Marker,
-) {
-    for (x, y) in places(axes, cases, at, value) {
-        marker.draw(canvas, axes.at(x, y));
-    }
 }
 
 /// At the end of the heading.
@@ -199,10 +208,9 @@ fn legend(canvas: &mut Canvas, baseline: f64, data: &Data) {
     let entries = [
         (Sample::Dots(Fill { opacity: 0.6, ..RECORDS }), records.as_str()),
         (Sample::Line(MEDIAN), "their median"),
-        (Sample::Marked(ORIGINAL, ORIGINAL_MARKER), "original simulation"),
-        (Sample::Marked(ENHANCED, ENHANCED_MARKER), enhanced.as_str()),
-    ]
-    .map(|(sample, text)| Entry { sample, text });
+        (Sample::Marker(Some(ORIGINAL), ORIGINAL_MARKER), "original simulation"),
+        (Sample::Marker(Some(ENHANCED), ENHANCED_MARKER), enhanced.as_str()),
+    ];
     legend::row(canvas, (super::LEFT + super::CASES_WIDTH, baseline), &entries);
 }
 
@@ -220,11 +228,10 @@ fn labels(canvas: &mut Canvas, area: Area, data: &Data) {
 
 fn label_lines(width: f64, data: &Data) -> Vec<Vec<String>> {
     let of_case = width / data.cases() as f64 - LABEL_GAP;
-    let style = TextStyle::NOTE;
     let numbered = data.shown_cases().len() < data.cases();
     let lines = |(number, case): (usize, &Case)| {
         let label = if numbered { format!("{number}: {}", case.label) } else { case.label.clone() };
-        font::wrapped(&label, of_case, LABEL_LINES, style.size, style.bold)
+        TextStyle::NOTE.wrapped(&label, of_case, LABEL_LINES)
     };
     data.experiment.cases.iter().enumerate().map(lines).collect()
 }
@@ -235,19 +242,16 @@ pub(super) fn labels_height(width: f64, data: &Data) -> f64 {
     FIRST_LABEL + LABEL_PITCH * (most as f64 - 1.0)
 }
 
-/// What the indicator is and whether its logarithm is drawn.
+/// Name of the indicator, and of its logarithm where that is drawn.
 fn title(indicator: TuningIndicator) -> String {
-    let name = name(indicator);
-    if indicator.is_logarithmic() { format!("{name}, decadic logarithm") } else { name.to_owned() }
-}
-
-fn name(indicator: TuningIndicator) -> &'static str {
-    match indicator {
+    let name = match indicator {
         TuningIndicator::Rms => "Rms over the healthy rms",
         TuningIndicator::Kurtosis => "Kurtosis",
         TuningIndicator::Skewness => "Skewness",
         TuningIndicator::EnvelopeRms => "Rms of the envelope over the healthy one",
         TuningIndicator::EnvelopeKurtosis => "Kurtosis of the envelope",
         TuningIndicator::EnvelopeSkewness => "Skewness of the envelope",
-    }
+    };
+    let logarithm = if indicator.is_logarithmic() { ", decadic logarithm" } else { "" };
+    format!("{name}{logarithm}")
 }

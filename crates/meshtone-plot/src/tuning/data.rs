@@ -1,4 +1,4 @@
-//! What the figure shows.
+//! The data of the figure.
 
 use meshtone::tuning::{
     Enhancement, Experiment, ExperimentResult, HybridError, Measurements, SimulatedCases, Tuning,
@@ -20,7 +20,7 @@ pub(super) struct Data<'a> {
     pub(super) tuning: &'a Tuning,
     /// Difference signals of the original simulation, in healthy rms, the faults' responses in the middle.
     pub(super) original_signals: Vec<Vec<f64>>,
-    /// The same enhanced, with one draw of noise.
+    /// Enhanced difference signals, with one draw of noise.
     pub(super) enhanced_signals: Vec<Vec<f64>>,
     /// A measured difference signal of each case, likewise; none where only indicators were measured.
     pub(super) measured_signals: Option<Vec<&'a [f64]>>,

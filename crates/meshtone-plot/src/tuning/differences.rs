@@ -1,13 +1,8 @@
 //! Difference signals of the cases: original, enhanced, and measured where such were given.
 
-use meshtone::scenario::WheelName;
-
 use super::data::Data;
 use super::symbols::{ENHANCED_CURVE, MEASURED_CURVE, ORIGINAL_CURVE};
-use crate::axes::{self, Area, Axes};
-use crate::canvas::Canvas;
-use crate::style::{Anchor, Stroke, TextStyle};
-use crate::ticks::Ticks;
+use crate::drawing::{Anchor, Area, Axes, Canvas, Stroke, TextStyle, Ticks, axes, capitalised};
 
 const ORIGINAL_TITLE: &str = "Original simulation";
 const ENHANCED_TITLE: &str = "Enhanced, one draw of the noise";
@@ -28,20 +23,13 @@ pub(super) fn heading(data: &Data) -> String {
     format!("Difference signals over one {} revolution, {scales}", data.experiment.chain.wheel.name())
 }
 
-/// How many rows of signals there are.
+/// Number of rows of signals.
 pub(super) fn rows(data: &Data) -> usize {
     if data.measured_signals.is_some() { 3 } else { 2 }
 }
 
-fn angle(wheel: WheelName) -> &'static str {
-    match wheel {
-        WheelName::Pinion => "Pinion angle from the middle of the fault’s response (rev)",
-        WheelName::Gear => "Gear angle from the middle of the fault’s response (rev)",
-    }
-}
-
 /// One row: a signal of each case.
-struct Row<'a> {
+struct SignalRow<'a> {
     title: &'static str,
     stroke: Stroke,
     /// By case.
@@ -50,23 +38,18 @@ struct Row<'a> {
     sizes: Vec<f64>,
 }
 
-impl<'a> Row<'a> {
+impl<'a> SignalRow<'a> {
     fn new(title: &'static str, stroke: Stroke, signals: Vec<&'a [f64]>) -> Self {
-        let sizes = signals.iter().map(|values| size(values)).collect();
+        let sizes = signals.iter().map(|values| axes::largest(*values)).collect();
         Self { title, stroke, signals, sizes }
     }
 }
 
-fn size(values: &[f64]) -> f64 {
-    let drawn = values.iter().copied().filter(|value| axes::drawable(*value));
-    drawn.fold(0.0f64, |size, value| size.max(value.abs()))
-}
-
-fn rows_of<'a>(data: &'a Data) -> Vec<Row<'a>> {
+fn rows_of<'a>(data: &'a Data) -> Vec<SignalRow<'a>> {
     let all = |signals: &'a [Vec<f64>]| signals.iter().map(Vec::as_slice).collect();
-    let mut enhanced = Row::new(ENHANCED_TITLE, ENHANCED_CURVE, all(&data.enhanced_signals));
+    let mut enhanced = SignalRow::new(ENHANCED_TITLE, ENHANCED_CURVE, all(&data.enhanced_signals));
     let measured = data.measured_signals.clone().map(|signals| {
-        let mut row = Row::new(MEASURED_TITLE, MEASURED_CURVE, signals);
+        let mut row = SignalRow::new(MEASURED_TITLE, MEASURED_CURVE, signals);
         // Compared by eye, so on the same scale.
         for (one, other) in row.sizes.iter_mut().zip(&mut enhanced.sizes) {
             *one = one.max(*other);
@@ -74,7 +57,7 @@ fn rows_of<'a>(data: &'a Data) -> Vec<Row<'a>> {
         }
         row
     });
-    let original = Row::new(ORIGINAL_TITLE, ORIGINAL_CURVE, all(&data.original_signals));
+    let original = SignalRow::new(ORIGINAL_TITLE, ORIGINAL_CURVE, all(&data.original_signals));
     [Some(original), Some(enhanced), measured].into_iter().flatten().collect()
 }
 
@@ -84,7 +67,7 @@ pub(super) fn draw(canvas: &mut Canvas, areas: &[Area], data: &Data) {
     let Some(&lowest) = areas.last() else { return };
     for (number, (row, &area)) in rows_of(data).iter().zip(areas).enumerate() {
         canvas.text((area.left + NUMBERS, area.top - axes::TITLE_ABOVE), row.title, TextStyle::AXES_TITLE);
-        let unit_at = (area.left - super::NAME_LEFT + 19.0, area.top + area.height / 2.0);
+        let unit_at = (area.left - super::NAME_LEFT + 19.0, area.middle().1);
         canvas.text(unit_at, UNIT, TextStyle::AXIS.upwards());
         let slot = area.width / shown.len() as f64;
         for (column, &case) in shown.iter().enumerate() {
@@ -96,12 +79,12 @@ pub(super) fn draw(canvas: &mut Canvas, areas: &[Area], data: &Data) {
             }
         }
     }
-    let middle = lowest.left + lowest.width / 2.0;
-    let angle = angle(data.experiment.chain.wheel);
-    canvas.text((middle, lowest.bottom() + axes::NAME_BELOW), angle, TextStyle::AXIS);
+    let wheel = capitalised(data.experiment.chain.wheel.name());
+    let angle = format!("{wheel} angle from the middle of the fault’s response (rev)");
+    Axes::new(lowest, [0.0; 2], [0.0; 2]).x_name(canvas, &angle);
 }
 
-fn signal(canvas: &mut Canvas, area: Area, row: &Row, case: usize, numbered: bool) {
+fn signal(canvas: &mut Canvas, area: Area, row: &SignalRow, case: usize, numbered: bool) {
     let values = row.signals[case];
     let half = if row.sizes[case] > 0.0 { MARGIN * row.sizes[case] } else { 1.0 };
     let axes = Axes::new(area, [-0.5, 0.5], [-half, half]);

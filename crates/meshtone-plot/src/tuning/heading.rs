@@ -4,27 +4,23 @@ use meshtone::tuning::Tuning;
 
 use super::data::Data;
 use super::key_words::in_words;
-use crate::canvas::Canvas;
-use crate::font;
-use crate::style::TextStyle;
-use crate::ticks::number;
+use crate::drawing::{BETWEEN_FACTS, Canvas, TextStyle, number};
 
 const TITLE_BASELINE: f64 = 34.0;
 const FACTS_BASELINE: f64 = 57.0;
 const FACTS_PITCH: f64 = 19.0;
-const BETWEEN: &str = "  ·  ";
 
 pub(super) fn draw(canvas: &mut Canvas, title: &str, data: &Data) {
     let width = f64::from(super::WIDTH) - 2.0 * super::TEXT_LEFT;
     let mut line = |baseline: f64, text: &str, style: TextStyle| {
-        if let Some(text) = font::wrapped(text, width, 1, style.size, style.bold).first() {
+        if let Some(text) = style.wrapped(text, width, 1).first() {
             canvas.text((super::TEXT_LEFT, baseline), text, style);
         }
     };
     line(TITLE_BASELINE, title, TextStyle::TITLE);
     let rows = [parameters(data), keys(data), errors(data)].into_iter().filter(|facts| !facts.is_empty());
     for (row, facts) in rows.enumerate() {
-        line(FACTS_BASELINE + FACTS_PITCH * row as f64, &facts.join(BETWEEN), TextStyle::FACTS);
+        line(FACTS_BASELINE + FACTS_PITCH * row as f64, &facts.join(BETWEEN_FACTS), TextStyle::FACTS);
     }
 }
 
@@ -41,18 +37,20 @@ pub(super) fn description(data: &Data) -> String {
 
 fn parameters(data: &Data) -> Vec<String> {
     let Tuning { enhancement, intervals, .. } = data.tuning;
-    let parameter = |name: &str, value: f64, [low, high]: [f64; 2]| {
-        format!("{name} {} ({} to {})", short(value), short(low), short(high))
-    };
-    let mut facts = vec![
-        parameter("width ratio", enhancement.width_ratio, intervals.width_ratio),
-        parameter(
+    let parameters = [
+        ("width ratio", enhancement.width_ratio, intervals.width_ratio),
+        (
             "fault-to-harmonics ratio",
             enhancement.fault_to_harmonics_ratio,
             intervals.fault_to_harmonics_ratio,
         ),
-        parameter("noise level", enhancement.noise_level, intervals.noise_level),
+        ("noise level", enhancement.noise_level, intervals.noise_level),
     ];
+    let mut facts = parameters
+        .map(|(name, value, [low, high])| {
+            format!("{name} {} ({} to {})", short(value), short(low), short(high))
+        })
+        .to_vec();
     if let Some(last) = facts.last_mut() {
         last.push_str(", in brackets the 95 % intervals");
     }

@@ -1,10 +1,10 @@
 //! Keys of the scenario file in words and units.
 
-use crate::ticks::number;
+use crate::drawing::number;
 
 /// Sections whose name says nothing beside that of the key.
 const SECTIONS: [&str; 6] = ["fault", "gears", "operation", "quality", "rig", "solver"];
-/// How names of keys end, and the unit that this is; the longer ones first.
+/// Endings of the names of keys, and their units; the longer ones first.
 const UNITS: [(&str, &str); 19] = [
     ("_g_per_rthz", "g/√Hz"),
     ("_nm_per_rad", "N m/rad"),

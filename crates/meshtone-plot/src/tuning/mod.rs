@@ -15,9 +15,7 @@ mod width;
 
 use meshtone::tuning::{Experiment, ExperimentResult};
 
-use crate::axes::Area;
-use crate::canvas::Canvas;
-use crate::style::{Stroke, TextStyle, colour};
+use crate::drawing::{Area, Canvas};
 use crate::{Figure, PlotError};
 use data::Data;
 
@@ -35,6 +33,8 @@ const NAME_LEFT: f64 = 48.0;
 /// (px) Left edge of title and facts.
 const TEXT_LEFT: f64 = 15.0;
 
+/// (px) From a heading's baseline to the rule below it.
+const RULE_BELOW: f64 = 6.0;
 const HEADING_BASELINE: f64 = 125.0;
 /// (px) From a heading's baseline to the frame of the first plot below it, which has a title.
 const BELOW_HEADING: f64 = 38.0;
@@ -46,8 +46,8 @@ const BELOW_LABELS: f64 = 36.0;
 const DIFFERENCES_HEIGHT: f64 = 108.0;
 /// (px) Between two rows of difference signals: the lower one's title.
 const DIFFERENCES_GAP: f64 = 28.0;
-/// (px) Of a plot of an indicator, and of the title above the next one.
-const LARGEST_PITCH: f64 = 200.0;
+/// (px) Greatest height of a plot of an indicator, and room for the title above the next one.
+const TALLEST: f64 = 173.0;
 const TITLE_HEIGHT: f64 = 27.0;
 
 const SURFACE_SIZE: [f64; 2] = [312.0, 312.0];
@@ -114,32 +114,23 @@ pub fn tuning_figure(
     let first_top = HEADING_BASELINE + BELOW_HEADING;
     let differences = 2.0 * DIFFERENCES_HEIGHT + DIFFERENCES_GAP + BELOW_HEADING + BELOW_LABELS;
     let room = BOTTOM - differences - labels - first_top;
-    let pitch = ((room + TITLE_HEIGHT) / rows as f64).min(LARGEST_PITCH);
-    let areas: Vec<Area> = (0..rows)
-        .map(|row| Area::new(LEFT, first_top + row as f64 * pitch, CASES_WIDTH, pitch - TITLE_HEIGHT))
-        .collect();
+    let areas = Area::new(LEFT, first_top, CASES_WIDTH, room);
+    let areas: Vec<Area> = areas.grid([1, rows], [0.0, TITLE_HEIGHT], TALLEST).collect();
     let bottom = areas.last().map_or(first_top, Area::bottom);
-    section(&mut canvas, (LEFT, HEADING_BASELINE), CASES_WIDTH, "Indicators of the difference signal");
+    canvas.section((LEFT, HEADING_BASELINE), CASES_WIDTH, "Indicators of the difference signal", RULE_BELOW);
     cases::draw(&mut canvas, &areas, &data);
 
     let baseline = bottom + labels + BELOW_LABELS;
-    section(&mut canvas, (LEFT, baseline), CASES_WIDTH, &differences::heading(&data));
+    canvas.section((LEFT, baseline), CASES_WIDTH, &differences::heading(&data), RULE_BELOW);
     let top = baseline + BELOW_HEADING;
-    let pitch = (figure_bottom - top + DIFFERENCES_GAP) / signals as f64;
-    let areas: Vec<Area> = (0..signals)
-        .map(|row| Area::new(LEFT, top + row as f64 * pitch, CASES_WIDTH, pitch - DIFFERENCES_GAP))
-        .collect();
+    let areas = Area::new(LEFT, top, CASES_WIDTH, figure_bottom - top);
+    let areas: Vec<Area> = areas.grid([1, signals], [0.0, DIFFERENCES_GAP], f64::INFINITY).collect();
     differences::draw(&mut canvas, &areas, &data);
 
-    section(&mut canvas, (ERRORS_LEFT, HEADING_BASELINE), ERRORS_WIDTH, "Error around the optimum");
+    canvas.section((ERRORS_LEFT, HEADING_BASELINE), ERRORS_WIDTH, "Error around the optimum", RULE_BELOW);
     let [width, height] = SURFACE_SIZE;
     surface::draw(&mut canvas, Area::new(ERRORS_LEFT, first_top, width, height), &data)?;
     let top = BOTTOM - WIDTH_PLOT_HEIGHT;
     width::draw(&mut canvas, Area::new(ERRORS_LEFT, top, ERRORS_WIDTH, figure_bottom - top), &data)?;
     Ok(canvas.finish(title, &heading::description(&data)))
-}
-
-fn section(canvas: &mut Canvas, (left, baseline): (f64, f64), width: f64, text: &str) {
-    canvas.text((left, baseline), text, TextStyle::HEADING);
-    canvas.line((left, baseline + 6.0), (left + width, baseline + 6.0), Stroke::solid(colour::INK, 1.2));
 }

@@ -5,11 +5,9 @@ use meshtone::tuning::{Enhancement, HybridError};
 use super::data::Data;
 use super::heading::short;
 use super::symbols::ENHANCED_MARKER;
-use crate::axes::{self, Area, Axes};
-use crate::canvas::{Canvas, Pixel};
-use crate::legend::{self, Entry, Sample};
-use crate::style::{Anchor, Colour, Fill, Stroke, TextStyle, colour};
-use crate::ticks::Ticks;
+use crate::drawing::{
+    Anchor, Area, Axes, Canvas, Colour, Fill, Pixel, Sample, Stroke, TextStyle, Ticks, axes, colour, legend,
+};
 
 /// Ends of the bands, over the best error. Narrow at first: the valley is flat.
 const BANDS: [f64; 9] = [1.02, 1.05, 1.1, 1.2, 1.35, 1.6, 2.0, 3.0, 5.0];
@@ -30,7 +28,7 @@ const COLOURS: [Colour; 10] = [
 const LEAST_BASE: f64 = 0.005;
 /// The range around the best point, at least this factor on either side.
 const AROUND: f64 = 4.0;
-/// How far beyond the interval the range goes.
+/// Ratio of the range to the interval.
 const BEYOND: f64 = 1.25;
 /// Places at which the error is computed, along each axis.
 const NODES: usize = 72;
@@ -64,11 +62,10 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, data: &Data) -> Result<(), H
     axes.frame(canvas);
     bar(canvas, area, base);
     let entries = [
-        (Sample::Marker(ENHANCED_MARKER), "chosen"),
+        (Sample::Marker(None, ENHANCED_MARKER), "chosen"),
         (Sample::Line(INTERVAL), "95 % intervals"),
         (Sample::Line(UNIT_RATIO), "α = 1"),
-    ]
-    .map(|(sample, text)| Entry { sample, text });
+    ];
     legend::row(canvas, (area.right(), area.bottom() + axes::NAME_BELOW + 24.0), &entries);
     Ok(())
 }
@@ -77,8 +74,12 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, data: &Data) -> Result<(), H
 fn range(best: f64, interval: [f64; 2], bounds: [f64; 2]) -> [f64; 2] {
     let low = (best / AROUND).min(interval[0] / BEYOND).max(bounds[0]);
     let high = (best * AROUND).max(interval[1] * BEYOND).min(bounds[1]);
-    // A parameter that is held has no range.
-    if low < high { [low.log10(), high.log10()] } else { [(best / 2.0).log10(), (best * 2.0).log10()] }
+    logarithms(best, [low, high])
+}
+
+/// Decadic logarithms of a parameter's range; around the best one where it is held and has no range.
+pub(super) fn logarithms(best: f64, [low, high]: [f64; 2]) -> [f64; 2] {
+    if low < high { [low, high] } else { [best / 2.0, best * 2.0] }.map(f64::log10)
 }
 
 /// Errors at equal distances of both logarithms.
@@ -121,7 +122,7 @@ impl Grid {
         along(row) * (1.0 - dy) + along(row + 1) * dy
     }
 
-    /// Where the error exceeds a limit, row by row.
+    /// Rectangles in which the error exceeds a limit, row by row.
     fn above(&self, area: Area, limit: f64) -> Vec<[Pixel; 2]> {
         let [columns, rows] = [area.width, area.height].map(|size| (size / CELL).round() as usize);
         let mut runs = Vec::new();

@@ -1,7 +1,6 @@
-//! What stands for what was measured, simulated and enhanced.
+//! Symbols of measured, simulated and enhanced results.
 
-use crate::marker::{Marker, Shape};
-use crate::style::{Fill, Stroke, colour};
+use crate::drawing::{Fill, Marker, Shape, Stroke, colour};
 
 pub(super) const RECORDS: Fill = Fill::tint(colour::MUTED, 0.35);
 pub(super) const MEDIAN: Stroke = Stroke::solid(colour::INK, 2.6);

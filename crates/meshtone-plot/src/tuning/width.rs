@@ -5,12 +5,9 @@ use std::sync::atomic::AtomicBool;
 use meshtone::tuning::{Enhancement, EnhancementBounds, HybridError, fit};
 
 use super::data::Data;
+use super::surface::logarithms;
 use super::symbols::{ENHANCED, ENHANCED_MARKER, MEDIAN};
-use crate::axes::{self, Area, Axes};
-use crate::canvas::Canvas;
-use crate::legend::{self, Entry, Sample};
-use crate::style::{Fill, Stroke, colour};
-use crate::ticks::Ticks;
+use crate::drawing::{Area, Axes, Canvas, Fill, Sample, Stroke, TextStyle, Ticks, axes, colour, legend};
 
 const PLACES: usize = 160;
 /// Width ratios at which the other parameters are searched anew.
@@ -26,8 +23,7 @@ const LEGEND_ROW: f64 = 18.0;
 pub(super) fn draw(canvas: &mut Canvas, area: Area, data: &Data) -> Result<(), HybridError> {
     let bounds = &data.experiment.bounds;
     let best = data.tuning.enhancement.width_ratio;
-    let [low, high] = bounds.width_ratio;
-    let x = if low < high { [low.log10(), high.log10()] } else { [best / 2.0, best * 2.0].map(f64::log10) };
+    let x = logarithms(best, bounds.width_ratio);
     let held =
         curve(x, PLACES, |width_ratio| data.error(&Enhancement { width_ratio, ..data.tuning.enhancement }))?;
     let never = AtomicBool::new(false);
@@ -38,12 +34,8 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, data: &Data) -> Result<(), H
     let errors = held.iter().chain(&adjusted).map(|(_, error)| *error);
     let [_, most] = axes::range(errors.chain([data.tuning.scatter]), MARGIN);
     let axes = Axes::new(area, x, [0.0, most]);
-    axes.band(
-        canvas,
-        data.tuning.intervals.width_ratio[0].log10(),
-        data.tuning.intervals.width_ratio[1].log10(),
-        INTERVAL,
-    );
+    let [from, to] = data.tuning.intervals.width_ratio.map(f64::log10);
+    axes.band(canvas, from, to, INTERVAL);
     axes.x_axis(canvas, &Ticks::of_logarithms(x[0], x[1]), "Width ratio w (–)");
     axes.y_axis(canvas, &Ticks::nice(0.0, most, 6), "Mean error (σ)", super::NAME_LEFT);
     axes.horizontal(canvas, data.tuning.scatter, FLOOR);
@@ -72,15 +64,15 @@ fn curve(
 
 fn key(canvas: &mut Canvas, area: Area) {
     let title = (area.left, area.top - axes::TITLE_ABOVE - 2.0 * LEGEND_ROW);
-    canvas.text(title, "Mean error against the width ratio", crate::style::TextStyle::AXES_TITLE);
+    canvas.text(title, "Mean error against the width ratio", TextStyle::AXES_TITLE);
     let curves = [
-        (Sample::Marked(HELD, ENHANCED_MARKER), "α and ν as chosen"),
+        (Sample::Marker(Some(HELD), ENHANCED_MARKER), "α and ν as chosen"),
         (Sample::Line(ADJUSTED), "α and ν adjusted"),
     ];
     let limits =
         [(Sample::Area(INTERVAL), "95 % interval"), (Sample::Line(FLOOR), "measurements’ own scatter")];
     for (row, entries) in [curves, limits].into_iter().enumerate() {
         let baseline = area.top - axes::TITLE_ABOVE - LEGEND_ROW * (1.0 - row as f64);
-        legend::row(canvas, (area.right(), baseline), &entries.map(|(sample, text)| Entry { sample, text }));
+        legend::row(canvas, (area.right(), baseline), &entries);
     }
 }

@@ -228,10 +228,10 @@ fn damage_is_at_the_end_from_which_the_load_moves_away() {
             &panel::draw(&simulation.stages, &simulation.channels).unwrap(),
             &["tip relief", "linear model"],
         );
-        let states = &simulation.stages.mesh.pairs().unwrap().classes[1].load;
+        let states = &simulation.stages.meshes[0].classes[1].states;
         assert!(
-            states.iter().any(|state| state.mean_z_m < 0.0)
-                && states.iter().all(|state| state.mean_z_m <= 0.0)
+            states.iter().any(|state| state.face_centre_m < 0.0)
+                && states.iter().all(|state| state.face_centre_m <= 0.0)
         );
         let figure = panel::draw(&simulation.stages, &simulation.channels).unwrap();
         let face_middle = figure.labels().iter().filter(|label| label.text == "Face width, z (mm)");

@@ -56,7 +56,7 @@ impl Keep for KeepSimulation {
     type Kept = Simulation;
 
     fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
-        Ok(outputs_of_all(&scenario.sensors, scenario.model))
+        Ok(outputs_of_all(&scenario.sensors))
     }
 
     fn recorder(&self, stages: &Stages) -> Channels {
@@ -164,7 +164,7 @@ impl Keep for KeepChannels {
     type Kept = Signals;
 
     fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
-        self.channels.iter().map(|channel| channel.output(&scenario.sensors, scenario.model)).collect()
+        self.channels.iter().map(|channel| channel.output(&scenario.sensors)).collect()
     }
 
     fn kept_bytes(&self, scenario: &Scenario) -> usize {

@@ -94,7 +94,7 @@ impl Keep for KeepObserved {
     fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
         let mut outputs = self.kept.outputs(scenario)?;
         for channel in &self.seen {
-            outputs.push(channel.output(&scenario.sensors, scenario.model)?);
+            outputs.push(channel.output(&scenario.sensors)?);
         }
         Ok(outputs)
     }

@@ -1,8 +1,7 @@
 //! A tooth with all its damage.
 
-use std::ops::RangeInclusive;
-
-use super::{Crack, DamageDescription, Fault, FlankPits};
+use super::kind::Kind;
+use super::{Crack, DamageDescription, Fault, FlankPits, ToothPart};
 use crate::error::ScenarioError;
 use crate::random::{Draws, Purpose};
 use crate::wheel::{Flank, PathOfContact, Teeth, ToothProfile, Wheel, WheelName};
@@ -27,29 +26,14 @@ pub struct DamagedTooth {
     pub corner_y_mm: Vec<f64>,
     /// First index from which on nothing of the tooth is left; the number of points where nothing is lost.
     pub gone_from_index: usize,
-    /// (mm) How far the flank lies back along the line of action when it is touched there; 0 or less.
-    pub deviation_mm: Vec<f64>,
-    /// Where the mate does not touch the flank but turns about two edges.
-    pub rolling: Vec<RollingPit>,
+    /// Last profile indices of pits over the whole face width, at which each has its edge towards the tip.
+    pub upper_edges: Vec<usize>,
     /// A crack in its root.
     pub crack: Option<Crack>,
     /// Pits that take a part of the face.
     pub pits: Option<FlankPits>,
     /// What the damages are.
     pub descriptions: Vec<DamageDescription>,
-}
-
-/// A pit over the whole width: the mate turns about its edges.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RollingPit {
-    /// First profile index inside the pit: the edge about which the mate turns up to `mid_index`.
-    pub start_index: usize,
-    /// Last index of the first half.
-    pub mid_index: usize,
-    /// Last profile index inside the pit: the edge about which the mate turns after `mid_index`.
-    pub end_index: usize,
-    /// (mm) Largest displacement: how far the two flanks bulge over the chords between their edges.
-    pub deviation_mm: f64,
 }
 
 /// The healthy tooth that a damage is done to.
@@ -61,6 +45,11 @@ pub(crate) struct HealthyTooth<'a> {
 }
 
 impl<'a> HealthyTooth<'a> {
+    /// The gear's first tooth.
+    pub(crate) fn first_of_gear(teeth: &'a Teeth, seed: u64) -> Self {
+        Self { teeth, name: WheelName::Gear, tooth: 0, seed }
+    }
+
     /// Whose tooth it is.
     pub(super) fn name(&self) -> WheelName {
         self.name
@@ -99,30 +88,12 @@ impl<'a> HealthyTooth<'a> {
         position.clamp(0.0, self.teeth.path.contact_ratio) / f64::from(self.teeth.pinion.teeth)
     }
 
-    /// The mate's flank, and the index of its point nearest to the one that meets a point of this tooth.
-    pub(super) fn met_by(&self, index: usize) -> (Flank<'a>, usize) {
-        let mate = self.teeth.flank(self.name.mate());
-        let curvature = self.teeth.path.line_mm - self.flank().curvature_mm(index);
-        (mate, mate.at_curvature(curvature).nearest())
-    }
-
-    /// Draws for the roughness of this tooth.
+    /// Random draws for a damage of this tooth.
     ///
     /// # Arguments
-    /// * `earlier` - number of rough damages that the tooth has already
-    pub(super) fn roughness(&self, earlier: usize) -> Draws {
-        self.draws(Purpose::DestructionNoise, earlier)
-    }
-
-    /// Draws for pits of this tooth.
-    ///
-    /// # Arguments
-    /// * `earlier` - number of pitting damages that the tooth has already
-    pub(super) fn pit_draws(&self, earlier: usize) -> Draws {
-        self.draws(Purpose::Pits, earlier)
-    }
-
-    fn draws(&self, purpose: Purpose, earlier: usize) -> Draws {
+    /// * `purpose` - what is drawn
+    /// * `earlier` - number of damages of the same kind that the tooth has already
+    pub(super) fn draws(&self, purpose: Purpose, earlier: usize) -> Draws {
         // The pinion's teeth count from 2³² on.
         let first = if self.name == WheelName::Pinion { 1 << 32 } else { 0 };
         Draws::new(self.seed, purpose, first + self.tooth as u64 + ((earlier as u64) << 33))
@@ -141,7 +112,7 @@ impl<'a> HealthyTooth<'a> {
 
 impl DamagedTooth {
     /// Teeth of which nothing is missing.
-    pub(super) fn sound(name: WheelName, teeth: Vec<usize>, profile: &ToothProfile) -> Self {
+    pub(crate) fn sound(name: WheelName, teeth: Vec<usize>, profile: &ToothProfile) -> Self {
         let points = profile.len();
         Self {
             wheel: name,
@@ -151,8 +122,7 @@ impl DamagedTooth {
             corner_width_mm: vec![0.0; points],
             corner_y_mm: profile.y_mm.clone(),
             gone_from_index: points,
-            deviation_mm: vec![0.0; points],
-            rolling: Vec::new(),
+            upper_edges: Vec::new(),
             crack: None,
             pits: None,
             descriptions: Vec::new(),
@@ -192,51 +162,34 @@ impl DamagedTooth {
         self.gone_from_index == 0
     }
 
-    /// The rolling pit that a profile index lies in.
-    pub(crate) fn rolling_at(&self, index: usize) -> Option<&RollingPit> {
-        self.rolling.iter().find(|pit| (pit.start_index..=pit.end_index).contains(&index))
+    /// How many damages of a kind the tooth has.
+    pub(super) fn count_of<K: Kind>(&self) -> usize {
+        self.descriptions.iter().filter(|damage| damage.kind == K::NAME).count()
     }
 
-    /// Profile indices at which the flank is cut by one of the damages.
-    fn cut_range(description: &DamageDescription) -> Option<RangeInclusive<usize>> {
-        match description {
-            DamageDescription::FaceFault { pit, .. } => Some(pit.start_index..=pit.end_index),
-            DamageDescription::ToothDestruction { start_index, end_index, .. } => {
-                Some(*start_index..=*end_index)
-            }
-            DamageDescription::MissingTooth
-            | DamageDescription::ToothBreakage { .. }
-            | DamageDescription::RootCrack { .. }
-            | DamageDescription::Pits { .. }
-            | DamageDescription::Wear { .. } => None,
-        }
-    }
-
-    /// Refuses a cut where there is one already, and a pit without an edge that the mate can turn about: what becomes of such a
+    /// Refuses a cut where there is one already, and a pit without its edge towards the tip: what becomes of such a
     /// flank is not known.
-    ///
-    /// # Arguments
-    /// * `faults` - numbers and kinds of the damages, in the order of the descriptions; the last is the one that is refused
-    fn refuse_overlap(&self, faults: &[(usize, &'static str)]) -> Result<(), ScenarioError> {
+    fn refuse_overlap(&self) -> Result<(), ScenarioError> {
         let place = format!("the {}'s tooth {}", self.wheel.name(), self.first_tooth() + 1);
-        if self.rolling.iter().any(|pit| pit.end_index >= self.gone_from_index) {
+        if self.upper_edges.iter().any(|&index| index >= self.gone_from_index) {
             let problem = format!(
                 "leaves a pit without its edge at the tip on {place}{}; a pit over the whole face must end below what has broken off",
-                beside(faults.split_last().map_or(&[], |(_, earlier)| earlier))
+                beside(self.descriptions.split_last().map_or(&[], |(_, earlier)| earlier))
             );
             return Err(ScenarioError::new("fault", "", problem)
                 .with_help("move the pit towards the root, or lessen the breakage's tip_loss_mm"));
         }
+        let is_cut = |damage: &&DamageDescription| damage.part == ToothPart::FlankLength;
         let Some((last, earlier)) = self.descriptions.split_last() else { return Ok(()) };
-        let Some(range) = Self::cut_range(last) else { return Ok(()) };
         let overlaps =
-            |other: RangeInclusive<usize>| range.start() <= other.end() && other.start() <= range.end();
-        match earlier.iter().position(|earlier| Self::cut_range(earlier).is_some_and(overlaps)) {
+            |other: &&DamageDescription| last.range[0] <= other.range[1] && other.range[0] <= last.range[1];
+        let cuts = || earlier.iter().filter(is_cut);
+        match Some(last).filter(is_cut).and_then(|_| cuts().find(overlaps)) {
             None => Ok(()),
             Some(other) => {
                 let problem = format!(
                     "cuts the flank of {place} where {} has cut it; must leave a piece of sound flank between them",
-                    faults.get(other).map_or_else(|| "another fault".to_owned(), named)
+                    named(other)
                 );
                 Err(ScenarioError::new("fault", "", problem)
                     .with_help("move one of them along the flank, or to another tooth"))
@@ -246,12 +199,12 @@ impl DamagedTooth {
 }
 
 /// A fault by its number and kind.
-fn named((number, kind): &(usize, &'static str)) -> String {
-    format!("fault[{number}] ({kind})")
+fn named(damage: &DamageDescription) -> String {
+    format!("fault[{}] ({})", damage.fault, damage.kind)
 }
 
 /// ` beside fault[0] (tooth-breakage)`; nothing where there is no other.
-fn beside(others: &[(usize, &'static str)]) -> String {
+fn beside(others: &[DamageDescription]) -> String {
     let names: Vec<String> = others.iter().map(named).collect();
     if names.is_empty() { String::new() } else { format!(" beside {}", names.join(" and ")) }
 }
@@ -326,13 +279,12 @@ pub fn damaged_teeth(faults: &[Fault], teeth: &Teeth, seed: u64) -> Result<Vec<D
             groups.iter().zip(&mut damaged).filter(|(group, _)| group.faults.contains(&place))
         {
             let healthy = HealthyTooth { teeth, name: group.wheel, tooth: tooth.first_tooth(), seed };
-            let so_far = group.faults.iter().filter(|&&other| other <= place);
-            let so_far: Vec<_> = so_far.map(|&other| (numbers[other], shown[other].damage.kind())).collect();
-            fault
-                .damage
-                .damage(tooth, &healthy)
-                .and_then(|()| tooth.refuse_overlap(&so_far))
-                .map_err(|error| error.in_entry("fault", numbers[place], faults.len()))?;
+            let number = numbers[place];
+            let done = fault.damage.damage(tooth, &healthy).and_then(|description| {
+                tooth.descriptions.push(DamageDescription { fault: number, ..description });
+                tooth.refuse_overlap()
+            });
+            done.map_err(|error| error.in_entry("fault", number, faults.len()))?;
         }
     }
     Ok(damaged)

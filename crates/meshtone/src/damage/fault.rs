@@ -199,22 +199,21 @@ impl Fault {
         Place { wheel: self.wheel, tooth: self.tooth.clone(), severity: self.severity }
     }
 
+    /// Names of the damage's keys that are not written: those that a severity stands in place of.
+    fn left_out(&self) -> &'static [&'static str] {
+        if self.severity.is_some() { self.damage.sizes() } else { &[] }
+    }
+
     /// The lines of its section, without the header.
     pub(crate) fn write(&self) -> String {
-        let keys = match self.severity {
-            None => self.damage.write(),
-            Some(_) => self.damage.write_but_sizes(),
-        };
+        let keys = self.damage.write(self.left_out());
         format!("{}kind = \"{}\"\n{keys}", write_keys(&self.place()), self.damage.kind())
     }
 
     /// The lines of its section with a comment for every key, without the header.
     pub(crate) fn commented(&self) -> String {
         let kind = format!("# {}\nkind = \"{}\"\n", self.damage.summary(), self.damage.kind());
-        let keys = match self.severity {
-            None => self.damage.commented(),
-            Some(_) => self.damage.commented_but_sizes(),
-        };
+        let keys = self.damage.commented(self.left_out());
         [kind, keys, commented_from(&self.place(), &Place::of(&self.damage))].concat()
     }
 
@@ -237,7 +236,7 @@ impl Fault {
 }
 
 /// The keys that every fault has beside `kind`.
-pub(super) fn keys_of_every_fault() -> Vec<KeyDescription> {
+pub fn keys_of_every_fault() -> Vec<KeyDescription> {
     describe::<Place>()
 }
 
@@ -254,9 +253,9 @@ pub(super) fn keys_of_place(damage: &Damage) -> Vec<KeyDescription> {
 pub(crate) fn check_faults(faults: &[Fault], gears: &Gears) -> Check {
     for (index, fault) in faults.iter().enumerate() {
         let beside = faults[..index].iter().enumerate().find_map(|(number, other)| {
-            let on_same_wheel = other.wheel == fault.wheel && excludes(&other.damage, &fault.damage);
-            let tooth = on_same_wheel.then(|| other.tooth.shared(&fault.tooth)).flatten();
-            tooth.map(|tooth| second_damage(fault, tooth, number, other))
+            let why = other.damage.part().excludes(fault.damage.part())?;
+            let tooth = (other.wheel == fault.wheel).then(|| other.tooth.shared(&fault.tooth)).flatten()?;
+            Some(second_damage(fault, tooth, number, other, why))
         });
         let checked = beside.map_or_else(|| fault.check(gears), Err);
         checked.map_err(|error| error.in_entry("fault", index, faults.len()))?;
@@ -264,27 +263,11 @@ pub(crate) fn check_faults(faults: &[Fault], gears: &Gears) -> Check {
     Ok(())
 }
 
-/// Whether a tooth with one damage has no room for the other, whatever their sizes: nothing is left of a missing tooth, a tip
-/// breaks off once, a flank has worn so deep or so deep, and a second crack beside the first is not known to any formula. A wheel
-/// that has worn may have lost a tooth.
-fn excludes(damage: &Damage, other: &Damage) -> bool {
-    let missing = |damage: &Damage| matches!(damage, Damage::MissingTooth(_));
-    let broken = |damage: &Damage| matches!(damage, Damage::ToothBreakage(_));
-    let cracked = |damage: &Damage| matches!(damage, Damage::RootCrack(_));
-    let worn = |damage: &Damage| matches!(damage, Damage::Wear(_));
-    (missing(damage) && !worn(other))
-        || (missing(other) && !worn(damage))
-        || (broken(damage) && broken(other))
-        || (cracked(damage) && cracked(other))
-        || (worn(damage) && worn(other))
-}
-
-fn second_damage(fault: &Fault, tooth: u32, number: usize, other: &Fault) -> ScenarioError {
+/// A tooth that has lost already what the fault would take.
+fn second_damage(fault: &Fault, tooth: u32, number: usize, other: &Fault, why: &str) -> ScenarioError {
     let (wheel, kind) = (fault.wheel.name(), fault.damage.kind());
-    let problem = format!(
-        "tooth {tooth} of the {wheel} has fault[{number}] already ({}); a missing tooth has no other damage but wear, and a tooth breaks and cracks once, and has worn once",
-        other.damage.kind()
-    );
+    let problem =
+        format!("tooth {tooth} of the {wheel} has fault[{number}] already ({}); {why}", other.damage.kind());
     ScenarioError::new("fault.kind", format!("\"{kind}\""), problem)
         .with_help("remove one of the two, or give it another tooth")
 }

@@ -1,12 +1,10 @@
 //! What a kind of damage has to say about itself.
 
-use super::FaultyTeeth;
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
-use super::published::{FaultGeometry, unknown_kind};
 use super::severity::SoundTooth;
-use crate::error::ScenarioError;
+use super::{DamageResult, FaultyTeeth, ToothPart};
 use crate::keys::{Check, Keys};
-use crate::wheel::{Gears, Teeth};
+use crate::wheel::Gears;
 
 /// A kind of damage: its parameters are the keys of its section, beside those that every fault has.
 pub(crate) trait Kind: Keys {
@@ -16,8 +14,14 @@ pub(crate) trait Kind: Keys {
     /// The rig of a file to start from.
     const RIG: PaperRig = PaperRig::Breakage;
 
+    /// What it is called in a title.
+    const TITLE: &str;
+
     /// What it makes of the mesh.
     const EFFECT: MeshEffect;
+
+    /// What it takes of a tooth.
+    const PART: ToothPart;
 
     /// The teeth that it is on where none are named.
     const TEETH: FaultyTeeth = FaultyTeeth::One(1);
@@ -53,7 +57,7 @@ pub(crate) trait Kind: Keys {
         false
     }
 
-    /// Does the damage to a tooth.
+    /// Does the damage to a tooth, and describes it.
     ///
     /// # Arguments
     /// * `tooth` - what is left of it after the damages before
@@ -61,19 +65,7 @@ pub(crate) trait Kind: Keys {
     ///
     /// # Errors
     /// A damage that does not fit the tooth. Its keys are named `fault.…`.
-    fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> Result<(), ScenarioError>;
-
-    /// What the published model makes of it, on the gear's first tooth.
-    ///
-    /// # Arguments
-    /// * `teeth` - both healthy teeth
-    /// * `seed` - of random draws
-    ///
-    /// # Errors
-    /// A damage that does not fit the tooth, and one that the published model does not know, as by default.
-    fn published_geometry(&self, _teeth: &Teeth, _seed: u64) -> Result<FaultGeometry, ScenarioError> {
-        Err(unknown_kind(Self::NAME))
-    }
+    fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> DamageResult;
 }
 
 /// What a damage makes of the forces of its pairs, in the order of what a step of the solver costs.

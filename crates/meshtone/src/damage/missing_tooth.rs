@@ -2,13 +2,10 @@
 
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
 use super::kind::MeshEffect;
-use super::published::{self, FaultGeometry};
 use super::severity::SoundTooth;
-use super::{DamageDescription, Kind};
-use crate::error::ScenarioError;
+use super::{DamageDescription, DamageResult, FacePatch, Kind, ToothPart};
 use crate::keys::{Check, Keys, Row};
 use crate::wheel::Gears;
-use crate::wheel::Teeth;
 
 /// A tooth that is gone: it carries nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -26,7 +23,9 @@ impl Keys for MissingTooth {
 
 impl Kind for MissingTooth {
     const NAME: &str = "missing-tooth";
+    const TITLE: &str = "missing tooth";
     const EFFECT: MeshEffect = MeshEffect::Flat;
+    const PART: ToothPart = ToothPart::Whole;
     const SIZES: &[&str] = &[];
 
     fn example() -> Self {
@@ -45,13 +44,22 @@ impl Kind for MissingTooth {
         Ok(())
     }
 
-    fn damage(&self, tooth: &mut DamagedTooth, _: &HealthyTooth) -> Result<(), ScenarioError> {
+    fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> DamageResult {
         tooth.gone_from_index = 0;
-        tooth.descriptions.push(DamageDescription::MissingTooth);
-        Ok(())
+        Ok(Self::describe(healthy))
     }
+}
 
-    fn published_geometry(&self, teeth: &Teeth, _seed: u64) -> Result<FaultGeometry, ScenarioError> {
-        Ok(published::missing_tooth::geometry(teeth))
+impl MissingTooth {
+    pub(crate) fn describe(healthy: &HealthyTooth) -> DamageDescription {
+        let range = [0, healthy.profile().len() - 1];
+        let mut face = FacePatch::whole_width(range, healthy);
+        // The root is left, so that there is no edge along it.
+        face.edge_mm = [0, 3, 2, 1].map(|corner| face.outline_mm[corner]).to_vec();
+        DamageDescription {
+            face: vec![face],
+            caption: vec!["tooth missing".to_owned()],
+            ..DamageDescription::of::<Self>(range)
+        }
     }
 }

@@ -1,7 +1,6 @@
 //! What is broken: one file a kind of damage.
 //!
-//! A kind's file holds its parameters, their rules and what it does to a tooth ([`DamagedTooth`]). What the published model
-//! makes of the kinds that it knows is apart, in [`published`].
+//! A kind's file holds its parameters, their rules and what it does to a tooth ([`DamagedTooth`]).
 
 mod damaged_tooth;
 mod description;
@@ -10,11 +9,10 @@ mod faulty_teeth;
 mod flank_pits;
 mod kind;
 mod missing_tooth;
+mod part;
 mod partial_face;
 mod pit_circle;
 mod pits;
-#[doc(hidden)]
-pub mod published;
 mod root_crack;
 mod section;
 mod severity;
@@ -23,21 +21,25 @@ mod tooth_breakage;
 mod tooth_destruction;
 mod wear;
 
-use damaged_tooth::HealthyTooth;
-pub use damaged_tooth::{DamagedTooth, RollingPit, damaged_teeth};
-pub use description::{DamageDescription, Pit};
-pub use fault::Fault;
+pub(crate) use damaged_tooth::HealthyTooth;
+pub use damaged_tooth::{DamagedTooth, damaged_teeth};
+pub(crate) use description::DamageResult;
+pub use description::{DamageDescription, FacePatch, QuantityValue, damages_of_fault};
 pub(crate) use fault::check_faults;
+pub use fault::{Fault, keys_of_every_fault};
 pub use faulty_teeth::FaultyTeeth;
 pub use flank_pits::FlankPits;
 pub(crate) use flank_pits::united;
 pub(crate) use kind::{Kind, MeshEffect, PaperRig};
 pub use missing_tooth::MissingTooth;
+pub use part::ToothPart;
 pub use partial_face::PartialFace;
 pub use pit_circle::PitCircle;
-pub use pits::{FlankPit, Pits, PittedTooth, PittingGrade, pitted_teeth};
+pub(crate) use pit_circle::{Pit, cut_flank};
+pub use pits::{FlankPit, Pits};
 pub use root_crack::{Crack, RootCrack};
 pub use section::Section;
+pub(crate) use section::shear_flexibility;
 pub use through_face::ThroughFace;
 pub use tooth_breakage::ToothBreakage;
 pub use tooth_destruction::{DestructionLine, ToothDestruction};
@@ -45,12 +47,11 @@ pub use wear::{Wear, load_share, slide_factor};
 
 use meshtone_toml::{ReadResult, TomlTable};
 
-use crate::error::ScenarioError;
 use crate::keys::{
-    Check, KeyDescription, Keys, NoFiles, check_rows, commented, commented_rows, describe, read_keys,
-    read_rows, rows_but, write_keys, write_rows,
+    Check, KeyDescription, Keys, NoFiles, check_rows, commented_rows, describe, read_keys, read_rows,
+    rows_but, write_rows,
 };
-use crate::wheel::{Gears, Teeth};
+use crate::wheel::Gears;
 use severity::SoundTooth;
 
 /// The kinds of damage, each with what it is in a sentence: a struct of its name, in a file of its own, implements [`Kind`].
@@ -95,18 +96,6 @@ macro_rules! kinds {
                 }
             }
 
-            fn write(&self) -> String {
-                match self {
-                    $(Self::$kind(damage) => write_keys(damage),)+
-                }
-            }
-
-            fn commented(&self) -> String {
-                match self {
-                    $(Self::$kind(damage) => commented(damage),)+
-                }
-            }
-
             fn check(&self, gears: &Gears) -> Check {
                 match self {
                     $(Self::$kind(damage) => Kind::check(damage, gears),)+
@@ -141,15 +130,17 @@ macro_rules! kinds {
                 }
             }
 
-            fn write_but_sizes(&self) -> String {
+            /// The lines of its keys, but for those that are left out.
+            fn write(&self, left_out: &[&str]) -> String {
                 match self {
-                    $(Self::$kind(damage) => write_rows(&rows_but($kind::SIZES), damage),)+
+                    $(Self::$kind(damage) => write_rows(&rows_but(left_out), damage),)+
                 }
             }
 
-            fn commented_but_sizes(&self) -> String {
+            /// The same with a comment for every key.
+            fn commented(&self, left_out: &[&str]) -> String {
                 match self {
-                    $(Self::$kind(damage) => commented_rows(&rows_but($kind::SIZES), damage),)+
+                    $(Self::$kind(damage) => commented_rows(&rows_but(left_out), damage),)+
                 }
             }
 
@@ -179,6 +170,13 @@ macro_rules! kinds {
                 }
             }
 
+            /// What it takes of a tooth.
+            pub fn part(&self) -> ToothPart {
+                match self {
+                    $(Self::$kind(_) => $kind::PART,)+
+                }
+            }
+
             /// What it makes of the mesh.
             pub(crate) fn effect(&self) -> MeshEffect {
                 match self {
@@ -186,27 +184,7 @@ macro_rules! kinds {
                 }
             }
 
-            /// What the published model makes of it, on the gear's first tooth.
-            ///
-            /// # Arguments
-            /// * `teeth` - both healthy teeth
-            /// * `seed` - seed of a destruction's roughness
-            ///
-            /// # Errors
-            /// A fault that does not fit the tooth: a pit that misses the flank or is deeper than the tooth, a
-            /// chip larger than the tooth, a line that leaves no tooth; a kind that the published model does not know.
-            #[doc(hidden)]
-            pub fn published_geometry(
-                &self,
-                teeth: &Teeth,
-                seed: u64,
-            ) -> Result<published::FaultGeometry, ScenarioError> {
-                match self {
-                    $(Self::$kind(damage) => damage.published_geometry(teeth, seed),)+
-                }
-            }
-
-            fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> Result<(), ScenarioError> {
+            fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> DamageResult {
                 match self {
                     $(Self::$kind(damage) => damage.damage(tooth, healthy),)+
                 }
@@ -269,11 +247,6 @@ pub struct DamageKind {
     pub sizes: &'static [&'static str],
     pub(crate) start: Damage,
     pub(crate) rig: PaperRig,
-}
-
-/// The keys that every fault has beside `kind`.
-pub fn keys_of_every_fault() -> Vec<KeyDescription> {
-    fault::keys_of_every_fault()
 }
 
 impl Damage {

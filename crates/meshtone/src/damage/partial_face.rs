@@ -1,15 +1,11 @@
 //! A pit over a part of the face width, from one side.
 
 use super::kind::MeshEffect;
-use super::published::{self, FaultGeometry};
 use super::severity::{LARGEST, SoundTooth};
-use crate::wheel::Teeth;
 use meshtone_toml::{ReadResult, TomlTable};
 
-use super::DamageDescription;
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
-use super::{Kind, PitCircle};
-use crate::error::ScenarioError;
+use super::{DamageResult, Kind, PitCircle, ToothPart};
 use crate::keys::{Check, Keys, NumberFiles, Range, Row, check_keys, field, flatten, require, row};
 use crate::wheel::Gears;
 
@@ -43,7 +39,9 @@ impl Keys for PartialFace {
 
 impl Kind for PartialFace {
     const NAME: &str = "partial-face";
+    const TITLE: &str = "pit over part of the face";
     const EFFECT: MeshEffect = MeshEffect::Tilting;
+    const PART: ToothPart = ToothPart::FlankLength;
     const SIZES: &[&str] = &["width_mm", "start", "end", "depth", "circle"];
 
     fn example() -> Self {
@@ -72,17 +70,12 @@ impl Kind for PartialFace {
         self.pit.check_edges()
     }
 
-    fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> Result<(), ScenarioError> {
+    fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> DamageResult {
         let (pit, flank_y_mm) = healthy.cut(&self.pit)?;
         for i in pit.start_index..=pit.end_index {
             tooth.corner_width_mm[i] = self.width_mm;
             tooth.corner_y_mm[i] = tooth.cut_y_mm(i, flank_y_mm[i], healthy.profile());
         }
-        tooth.descriptions.push(DamageDescription::FaceFault { pit, width_mm: self.width_mm });
-        Ok(())
-    }
-
-    fn published_geometry(&self, teeth: &Teeth, _seed: u64) -> Result<FaultGeometry, ScenarioError> {
-        published::partial_face::geometry(self, teeth)
+        Ok(pit.describe::<Self>(self.width_mm, &flank_y_mm, healthy))
     }
 }

@@ -4,14 +4,14 @@ use std::ops::Bound::{Excluded, Included};
 
 use meshtone_toml::{ReadResult, TomlTable};
 
-use super::Pit;
 use super::damaged_tooth::HealthyTooth;
+use super::description::{hundredths, largest_depth_mm};
 use super::fault::end_after;
 use super::severity::SoundTooth;
+use super::{DamageDescription, FacePatch, Kind, QuantityValue};
 use crate::error::ScenarioError;
 use crate::interpolation::UniformLinear;
 use crate::keys::{Check, Keys, NumberFiles, Range, Row, field, row, sub_table};
-use crate::model::Model;
 use crate::wheel::{ToothProfile, first_minimum};
 use std::f64::consts::PI;
 
@@ -153,18 +153,75 @@ impl PitCircle {
 /// (-) Depth over half the chord that a pit of a given severity has: no flank is so slanted that its circle would undercut it.
 const SHALLOW: f64 = 0.2;
 
-/// Where a pit lies on the flank, and the flank with the pit cut into it.
-pub(super) struct CutFlank {
+/// A pit's place on the flank.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Pit {
     /// First profile index inside the pit.
-    pub(super) start_index: usize,
-    /// Last profile index inside it.
-    pub(super) end_index: usize,
+    pub(crate) start_index: usize,
+    /// Middle of the pit.
+    pub(crate) mid_index: usize,
+    /// Last profile index inside the pit.
+    pub(crate) end_index: usize,
     /// (mm) Chord between the pit's edges.
-    pub(super) length_mm: f64,
+    pub(crate) length_mm: f64,
     /// (-) `length_mm` over the chord of the flank's contact part.
-    pub(super) length_fraction: f64,
+    pub(crate) length_fraction: f64,
+    /// (rev) Position at which the pit enters contact (its `end_index`).
+    pub(crate) start_rev: f64,
+    /// (rev) Position at which it leaves contact (its `start_index`).
+    pub(crate) end_rev: f64,
+}
+
+impl Pit {
+    /// The pit in words and pictures.
+    ///
+    /// # Arguments
+    /// * `width_mm` - (mm) its width along the face, from one end
+    /// * `flank_y_mm` - (mm) the flank with the pit cut into it
+    /// * `healthy` - the healthy tooth
+    pub(crate) fn describe<K: Kind>(
+        &self,
+        width_mm: f64,
+        flank_y_mm: &[f64],
+        healthy: &HealthyTooth,
+    ) -> DamageDescription {
+        let (profile, face_width_mm) = (healthy.profile(), healthy.wheel().face_width_mm);
+        let range = [self.start_index, self.end_index];
+        let half = face_width_mm / 2.0;
+        let [width, length] = [width_mm, self.length_mm].map(hundredths);
+        let depth = hundredths(largest_depth_mm(profile, flank_y_mm));
+        DamageDescription {
+            quantities: vec![
+                ("indices", QuantityValue::Indices(vec![self.start_index, self.mid_index, self.end_index])),
+                ("length_mm", QuantityValue::Number(self.length_mm)),
+                ("length_fraction", QuantityValue::Number(self.length_fraction)),
+                ("positions_rev", QuantityValue::Numbers(vec![self.start_rev, self.end_rev])),
+            ],
+            is_partial: width_mm < face_width_mm,
+            face: vec![FacePatch::rectangle([half - width_mm, half], range.map(|index| profile.x_mm[index]))],
+            sizes: vec![
+                format!("{width} mm wide"),
+                format!("{length} mm long"),
+                format!("up to {depth} mm deep across the tooth"),
+            ],
+            caption: vec![format!("pit {width} mm wide,"), format!("{length} mm long")],
+            ..DamageDescription::of::<K>(range)
+        }
+    }
+}
+
+/// Where a pit lies on the flank, and the flank with the pit cut into it.
+pub(crate) struct CutFlank {
+    /// First profile index inside the pit.
+    pub(crate) start_index: usize,
+    /// Last profile index inside it.
+    pub(crate) end_index: usize,
+    /// (mm) Chord between the pit's edges.
+    pub(crate) length_mm: f64,
+    /// (-) `length_mm` over the chord of the flank's contact part.
+    pub(crate) length_fraction: f64,
     /// (mm) The flank, over the profile points.
-    pub(super) flank_y_mm: Vec<f64>,
+    pub(crate) flank_y_mm: Vec<f64>,
 }
 
 struct Circle {
@@ -189,15 +246,16 @@ const CIRCLE_SAMPLES: usize = 10_000;
 /// * `given` - the circle
 /// * `profile` - the healthy flank
 /// * `first_contact` - profile index where contact starts at the root side
-/// * `model` - how the pit's edges are found
+/// * `edge_samples` - which samples of the lower half circle are the pit's edges, the root side's first, by their heights above
+///   the flank
 ///
 /// # Errors
 /// A circle that does not cut the contact part of the flank in two points, or reaches through the tooth.
-pub(super) fn cut_flank(
+pub(crate) fn cut_flank(
     given: &PitCircle,
     profile: &ToothProfile,
     first_contact: usize,
-    model: Model,
+    edge_samples: impl Fn(&[f64]) -> (usize, usize),
 ) -> Result<CutFlank, ScenarioError> {
     let (key, value) = match given {
         PitCircle::Fractions { start, end, depth } => {
@@ -216,7 +274,7 @@ pub(super) fn cut_flank(
             return Err(ScenarioError::new("fault.depth", format!("{depth:?}"), problem));
         }
     }
-    let (start_y, end_y) = edges(&circle, profile, first_contact, model)
+    let (start_y, end_y) = edges(&circle, profile, first_contact, edge_samples)
         .ok_or_else(|| refuse(misses_flank(profile, first_contact)))?;
 
     // The flank falls with x, so "above an edge's y" is "before it".
@@ -308,7 +366,7 @@ fn edges(
     circle: &Circle,
     profile: &ToothProfile,
     initial_contact: usize,
-    model: Model,
+    edge_samples: impl Fn(&[f64]) -> (usize, usize),
 ) -> Option<(f64, f64)> {
     let first = profile.nearest_to_x(circle.x_mm - circle.radius_mm).max(initial_contact);
     let last = profile.nearest_to_x(circle.x_mm + circle.radius_mm);
@@ -328,20 +386,16 @@ fn edges(
     if above[deepest] >= 0.0 || above[0] < 0.0 || above[CIRCLE_SAMPLES - 1] < 0.0 {
         return None;
     }
-    let (a, b) = match model {
-        Model::Linear | Model::Contact => {
-            let distance = |range: &[f64]| first_minimum(range.iter().map(|d| d.abs()));
-            (distance(&above[..deepest]), deepest + distance(&above[deepest..]))
-        }
-        Model::Published => {
-            let mut order: Vec<usize> = (0..CIRCLE_SAMPLES).collect();
-            order.sort_by(|&i, &j| above[i].abs().total_cmp(&above[j].abs()));
-            let pair = if order[1] == order[0] + 1 { (order[1], order[2]) } else { (order[0], order[1]) };
-            (pair.0.min(pair.1), pair.0.max(pair.1))
-        }
-    };
+    let (a, b) = edge_samples(&above);
     let flank_y = |k: usize| samples[k].1 - above[k];
     Some((flank_y(a), flank_y(b)))
+}
+
+/// The samples of a half circle that are nearest to the flank on either side of the deepest one.
+fn nearest_on_either_side(above: &[f64]) -> (usize, usize) {
+    let deepest = first_minimum(above.iter().copied());
+    let nearest = |range: &[f64]| first_minimum(range.iter().map(|d| d.abs()));
+    (nearest(&above[..deepest]), deepest + nearest(&above[deepest..]))
 }
 
 /// Straight lines through (x, y), x uniform; the end pieces extrapolate.
@@ -356,7 +410,7 @@ impl HealthyTooth<'_> {
     /// # Errors
     /// As [`cut_flank`].
     pub(super) fn cut(&self, circle: &PitCircle) -> Result<(Pit, Vec<f64>), ScenarioError> {
-        let cut = cut_flank(circle, self.profile(), self.first_contact(), Model::Linear)?;
+        let cut = cut_flank(circle, self.profile(), self.first_contact(), nearest_on_either_side)?;
         let positions = [cut.start_index, cut.end_index].map(|index| self.position_rev(index));
         let pit = Pit {
             start_index: cut.start_index,

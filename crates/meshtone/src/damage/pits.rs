@@ -5,14 +5,15 @@ use std::f64::consts::PI;
 use meshtone_toml::{ReadResult, TomlTable};
 
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
+use super::description::tenths;
 use super::kind::MeshEffect;
 use super::pit_circle::flank_index;
 use super::severity::{LARGEST, SoundTooth};
-use super::{DamageDescription, Fault, FlankPits, Kind};
+use super::{DamageDescription, DamageResult, FacePatch, FlankPits, Kind, QuantityValue, ToothPart};
 use crate::error::ScenarioError;
 use crate::keys::{Check, Keys, NumberFiles, Range, Row, check_keys, field, require, row, sub_table};
-use crate::random::Draws;
-use crate::wheel::Gears;
+use crate::random::{Draws, Purpose};
+use crate::wheel::{Gears, ToothProfile};
 
 /// Pits on the working flank: ellipses with upright walls and an even bottom.
 #[derive(Debug, Clone, PartialEq)]
@@ -196,7 +197,9 @@ impl Keys for Pits {
 
 impl Kind for Pits {
     const NAME: &str = "pits";
+    const TITLE: &str = "pits";
     const EFFECT: MeshEffect = MeshEffect::Tilting;
+    const PART: ToothPart = ToothPart::FlankSpots;
     const SIZES: &[&str] = &["at", "z_mm", "radius_mm", "face_radius_mm", "depth_mm", "random"];
 
     fn example() -> Self {
@@ -276,17 +279,16 @@ impl Kind for Pits {
         matches!(self, Self::Drawn { .. })
     }
 
-    fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> Result<(), ScenarioError> {
+    fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> DamageResult {
         let face_width_mm = healthy.wheel().face_width_mm;
         let none = FlankPits::none(healthy);
-        let earlier =
-            tooth.descriptions.iter().filter(|other| matches!(other, DamageDescription::Pits { .. }));
         let pits = match self {
             Self::Listed { .. } => self.listed(healthy, &none),
-            Self::Drawn { .. } => self.drawn(healthy, &none, healthy.pit_draws(earlier.count()))?,
+            Self::Drawn { .. } => {
+                self.drawn(healthy, &none, healthy.draws(Purpose::Pits, tooth.count_of::<Self>()))?
+            }
         };
         let own = FlankPits { pits: pits.clone(), ..none.clone() };
-        let area_percent = own.area_percent();
         let on_flank = tooth.pits.get_or_insert(none);
         on_flank.pits.extend(&pits);
         let left_mm = on_flank.least_left_mm();
@@ -302,8 +304,61 @@ impl Kind for Pits {
             ));
         }
         self.refuse_deep(&own)?;
-        tooth.descriptions.push(DamageDescription::Pits { pits, area_percent });
-        Ok(())
+        Ok(own.describe(healthy.profile()))
+    }
+}
+
+/// Pieces of a pit's outline.
+const OUTLINE: usize = 48;
+
+impl FlankPits {
+    /// The pits in words and pictures.
+    fn describe(&self, profile: &ToothProfile) -> DamageDescription {
+        let last = profile.len() - 1;
+        let is_pitted =
+            |along_mm: &f64| self.pits.iter().any(|pit| (along_mm - pit.along_mm).abs() < pit.radius_mm);
+        let reached = [self.along_mm.iter().position(is_pitted), self.along_mm.iter().rposition(is_pitted)];
+        let every =
+            |of: fn(&FlankPit) -> f64| QuantityValue::Numbers(self.pits.iter().map(of).collect::<Vec<_>>());
+        let area_percent = self.area_percent();
+        let grade = pitting_grade(area_percent);
+        let number = match self.pits.len() {
+            1 => "1 pit".to_owned(),
+            count => format!("{count} pits"),
+        };
+        let area = format!("{} % of the flank", tenths(area_percent));
+        DamageDescription {
+            quantities: vec![
+                ("area_percent", QuantityValue::Number(area_percent)),
+                ("grade", QuantityValue::Word(grade)),
+                ("at", every(|pit| pit.at)),
+                ("z_mm", every(|pit| pit.z_mm)),
+                ("radius_mm", every(|pit| pit.radius_mm)),
+                ("face_radius_mm", every(|pit| pit.face_radius_mm)),
+                ("depth_mm", every(|pit| pit.depth_mm)),
+            ],
+            is_partial: true,
+            face: self.pits.iter().map(|pit| self.patch(pit, profile)).collect(),
+            sizes: vec![format!("{number}, {area} ({grade})")],
+            caption: vec![format!("{number},"), area],
+            ..DamageDescription::of::<Pits>(reached.map(|index| index.unwrap_or(last)))
+        }
+    }
+
+    /// A pit's ellipse, within the face and the flank.
+    fn patch(&self, pit: &FlankPit, profile: &ToothProfile) -> FacePatch {
+        let half_mm = self.face_width_mm / 2.0;
+        let x_mm = |along_mm: f64| {
+            let index = self.along_mm.partition_point(|&other| other < along_mm);
+            profile.x_mm[index.min(profile.len() - 1)]
+        };
+        let point = |k: usize| {
+            let (sin, cos) = (2.0 * PI * k as f64 / OUTLINE as f64).sin_cos();
+            let z_mm = pit.z_mm + pit.face_radius_mm * cos;
+            [z_mm.clamp(-half_mm, half_mm), x_mm(pit.along_mm + pit.radius_mm * sin)]
+        };
+        let outline_mm: Vec<[f64; 2]> = (0..=OUTLINE).map(point).collect();
+        FacePatch { edge_mm: outline_mm.clone(), outline_mm }
     }
 }
 
@@ -404,81 +459,24 @@ fn poisson(mean: f64, draws: &mut Draws) -> usize {
     }
 }
 
-/// How far a flank is pitted, by the area of its pits.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PittingGrade {
-    /// Below 3 %.
-    Slight,
-    /// From 3 % to 10 %.
-    Moderate,
-    /// Above 10 %.
-    Severe,
-}
-
-impl PittingGrade {
-    /// The grade of an area.
-    ///
-    /// # Arguments
-    /// * `area_percent` - (%) part of the flank's contact part
-    pub fn of(area_percent: f64) -> Self {
-        match area_percent {
-            area if area > 10.0 => Self::Severe,
-            area if area >= 3.0 => Self::Moderate,
-            _ => Self::Slight,
-        }
+/// The grade of pitting by the area of the pits, (%) of the flank's contact part: slight below 3 %, severe above 10 %.
+fn pitting_grade(area_percent: f64) -> &'static str {
+    match area_percent {
+        area if area > 10.0 => "severe",
+        area if area >= 3.0 => "moderate",
+        _ => "slight",
     }
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Slight => "slight",
-            Self::Moderate => "moderate",
-            Self::Severe => "severe",
-        }
-    }
-}
-
-/// A tooth with the pits of a fault.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PittedTooth {
-    /// Its number, from 1.
-    pub tooth: u32,
-    /// The pits.
-    pub pits: Vec<FlankPit>,
-    /// (%) Part of the flank's contact part that they take together.
-    pub area_percent: f64,
-}
-
-/// What a fault has pitted, tooth by tooth; nothing where it is of another kind.
-///
-/// # Arguments
-/// * `faults` - of the scenario
-/// * `damaged` - its damaged teeth
-/// * `number` - of the fault, from 0
-pub fn pitted_teeth(faults: &[Fault], damaged: &[DamagedTooth], number: usize) -> Vec<PittedTooth> {
-    let fault = &faults[number];
-    let of_wheel = damaged.iter().filter(|tooth| tooth.wheel == fault.wheel);
-    let teeth = of_wheel.flat_map(|alike| alike.teeth.iter().map(move |index| (alike, *index as u32 + 1)));
-    let pitted = teeth.filter(|(_, tooth)| fault.tooth.contains(*tooth)).filter_map(|(alike, tooth)| {
-        // A tooth describes its damages in the order of the faults.
-        let on_tooth = |other: &&Fault| other.wheel == fault.wheel && other.tooth.contains(tooth);
-        let before = faults[..number].iter().filter(on_tooth).count();
-        match alike.descriptions.get(before)? {
-            DamageDescription::Pits { pits, area_percent } => {
-                Some(PittedTooth { tooth, pits: pits.clone(), area_percent: *area_percent })
-            }
-            _ => None,
-        }
-    });
-    let mut pitted: Vec<PittedTooth> = pitted.collect();
-    pitted.sort_by_key(|pitted| pitted.tooth);
-    pitted
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Purpose;
+
+    #[test]
+    fn the_area_is_graded() {
+        let grades = [2.9, 3.0, 10.0, 10.1].map(pitting_grade);
+        assert_eq!(grades, ["slight", "moderate", "moderate", "severe"]);
+    }
 
     #[test]
     fn counts_have_the_mean_and_the_variance_of_poisson() {

@@ -4,9 +4,10 @@ use std::f64::consts::PI;
 use std::ops::Bound::{Excluded, Included};
 
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
+use super::description::{hundredths, tenths};
 use super::kind::MeshEffect;
 use super::severity::{LARGEST, SoundTooth};
-use super::{DamageDescription, Kind};
+use super::{DamageDescription, DamageResult, FacePatch, Kind, QuantityValue, ToothPart};
 use crate::error::ScenarioError;
 use crate::keys::{Check, Keys, Range, Row, below, check_keys, field, require, row};
 use crate::wheel::{Gears, ToothProfile};
@@ -57,7 +58,9 @@ impl Keys for RootCrack {
 
 impl Kind for RootCrack {
     const NAME: &str = "root-crack";
+    const TITLE: &str = "root crack";
     const EFFECT: MeshEffect = MeshEffect::Flat;
+    const PART: ToothPart = ToothPart::Root;
     const SIZES: &[&str] = &["depth_mm", "length_mm"];
 
     fn example() -> Self {
@@ -86,11 +89,10 @@ impl Kind for RootCrack {
         })
     }
 
-    fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> Result<(), ScenarioError> {
+    fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> DamageResult {
         let crack = self.open(healthy.profile())?;
         tooth.crack = Some(crack);
-        tooth.descriptions.push(DamageDescription::RootCrack { crack });
-        Ok(())
+        Ok(crack.describe(healthy))
     }
 }
 
@@ -175,6 +177,31 @@ impl Crack {
     pub fn tip_mm(&self) -> (f64, f64) {
         let (sin, cos) = self.angle_rad.sin_cos();
         (self.start_x_mm - self.depth_mm * cos, self.start_y_mm - self.depth_mm * sin)
+    }
+
+    fn describe(&self, healthy: &HealthyTooth) -> DamageDescription {
+        let (profile, half) = (healthy.profile(), healthy.wheel().face_width_mm / 2.0);
+        let (tip_x_mm, tip_y_mm) = self.tip_mm();
+        let end = half - self.length_mm.unwrap_or(2.0 * half);
+        let (up_to, extent) = match self.length_mm {
+            Some(length_mm) => ("up to ", format!("{} mm along the face", hundredths(length_mm))),
+            None => ("", "over the whole face".to_owned()),
+        };
+        let depth = format!("{up_to}{} mm deep", hundredths(self.depth_mm));
+        let angle = format!("at {}° to the centre line", tenths(self.angle_rad.to_degrees()));
+        DamageDescription {
+            quantities: vec![
+                ("crack_x_mm", QuantityValue::Numbers(vec![self.start_x_mm, tip_x_mm])),
+                ("crack_y_mm", QuantityValue::Numbers(vec![self.start_y_mm, tip_y_mm])),
+            ],
+            face: vec![FacePatch {
+                outline_mm: Vec::new(),
+                edge_mm: vec![[end, self.start_x_mm], [half, self.start_x_mm]],
+            }],
+            caption: vec![format!("crack {depth},"), extent.clone()],
+            sizes: vec![depth, angle, extent],
+            ..DamageDescription::of::<RootCrack>([0, profile.nearest_to_x(self.start_x_mm)])
+        }
     }
 
     /// (mm) Height up to which a section is left over the whole face.

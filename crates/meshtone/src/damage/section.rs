@@ -200,7 +200,7 @@ fn stacked(
 /// centre, from below.
 ///
 /// On each `Q(y) = Q_end + b (y_end² − y²)/2`, with `Q_end` the first moment beyond it.
-pub(super) fn shear_flexibility(rectangles: impl DoubleEndedIterator<Item = (f64, [f64; 2])>) -> f64 {
+pub(crate) fn shear_flexibility(rectangles: impl DoubleEndedIterator<Item = (f64, [f64; 2])>) -> f64 {
     let (mut beyond, mut sum) = (0.0, 0.0);
     for (width, [from, to]) in rectangles.rev() {
         // Q²/b with Q = a − b y²/2.

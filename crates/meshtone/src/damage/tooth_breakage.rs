@@ -1,15 +1,13 @@
 //! A corner of the tooth that has chipped off, and a tip that is lost over the whole width.
 
-use super::DamageDescription;
-use super::Kind;
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
+use super::description::hundredths;
 use super::kind::MeshEffect;
-use super::published::{self, FaultGeometry};
 use super::severity::SoundTooth;
+use super::{DamageDescription, DamageResult, FacePatch, Kind, QuantityValue, ToothPart};
 use crate::error::ScenarioError;
 use crate::keys::{Check, Keys, Range, Row, below, check_keys, field, require, row};
 use crate::wheel::Gears;
-use crate::wheel::Teeth;
 use crate::wheel::ToothProfile;
 
 /// A corner chipped off, and the tip lost over the whole width.
@@ -57,7 +55,9 @@ impl Keys for ToothBreakage {
 
 impl Kind for ToothBreakage {
     const NAME: &str = "tooth-breakage";
+    const TITLE: &str = "tooth breakage";
     const EFFECT: MeshEffect = MeshEffect::Tilting;
+    const PART: ToothPart = ToothPart::Tip;
     const SIZES: &[&str] = &["chip_height_mm", "chip_width_mm", "tip_loss_mm"];
 
     fn example() -> Self {
@@ -98,35 +98,24 @@ impl Kind for ToothBreakage {
         below("fault.tip_loss_mm", self.tip_loss_mm, height, height_is)
     }
 
-    fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> Result<(), ScenarioError> {
+    fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> DamageResult {
         let chipped = self.chip(healthy.profile())?;
         for (missing, of_chip) in tooth.missing_width_mm.iter_mut().zip(&chipped.missing_width_mm) {
             *missing = missing.max(*of_chip);
         }
         tooth.gone_from_index = tooth.gone_from_index.min(chipped.lost_from_index);
-        let reached = healthy.position_rev(chipped.chip_start_index);
-        tooth.descriptions.push(DamageDescription::ToothBreakage {
-            exit_rev: reached,
-            chip_start_index: chipped.chip_start_index,
-            tip_loss_mm: self.tip_loss_mm,
-            missing_width_mm: chipped.missing_width_mm,
-        });
-        Ok(())
-    }
-
-    fn published_geometry(&self, teeth: &Teeth, _seed: u64) -> Result<FaultGeometry, ScenarioError> {
-        published::tooth_breakage::geometry(self, teeth)
+        Ok(self.describe(&chipped, healthy.position_rev(chipped.chip_start_index), healthy))
     }
 }
 
 /// What a breakage leaves of a flank.
-pub(super) struct ChippedFlank {
+pub(crate) struct ChippedFlank {
     /// Last profile index below the chip.
-    pub(super) chip_start_index: usize,
+    pub(crate) chip_start_index: usize,
     /// First profile index of the lost tip.
-    pub(super) lost_from_index: usize,
+    pub(crate) lost_from_index: usize,
     /// (mm) Missing width over the profile points.
-    pub(super) missing_width_mm: Vec<f64>,
+    pub(crate) missing_width_mm: Vec<f64>,
 }
 
 impl ToothBreakage {
@@ -137,7 +126,7 @@ impl ToothBreakage {
     ///
     /// # Errors
     /// A chip or a lost tip that is larger than the tooth, whose corner at the tip lies a little below the tip circle.
-    pub(super) fn chip(&self, profile: &ToothProfile) -> Result<ChippedFlank, ScenarioError> {
+    pub(crate) fn chip(&self, profile: &ToothProfile) -> Result<ChippedFlank, ScenarioError> {
         let tip = profile.tip_x_mm();
         let height = tip - profile.x_mm[0];
         for (key, value) in
@@ -159,5 +148,53 @@ impl ToothBreakage {
             lost_from_index: profile.x_mm.partition_point(|&x| x <= tip - self.tip_loss_mm),
             missing_width_mm,
         })
+    }
+
+    /// The chip and the lost tip in words and pictures.
+    ///
+    /// # Arguments
+    /// * `chipped` - what is left
+    /// * `exit_rev` - (rev) position at which contact with the chip ends
+    /// * `healthy` - the healthy tooth
+    pub(crate) fn describe(
+        &self,
+        chipped: &ChippedFlank,
+        exit_rev: f64,
+        healthy: &HealthyTooth,
+    ) -> DamageDescription {
+        let (profile, half) = (healthy.profile(), healthy.wheel().face_width_mm / 2.0);
+        let last = profile.len() - 1;
+        let (bottom, tip) = (profile.x_mm[chipped.chip_start_index], profile.tip_x_mm());
+        let tip_is_lost = self.tip_loss_mm > 0.0;
+        // The lost tip takes the chip's upper part with it.
+        let end = if tip_is_lost { profile.x_mm[chipped.lost_from_index.min(last)] } else { tip };
+        let mut face = Vec::new();
+        if bottom < end {
+            let width = chipped.missing_width_mm[last] * (end - bottom) / (tip - bottom);
+            let [below, corner, along] = [[half, bottom], [half, end], [half - width, end]];
+            face.push(FacePatch { outline_mm: vec![below, corner, along], edge_mm: vec![below, along] });
+        }
+        let mut sizes = vec![format!(
+            "chip {} mm high, {} mm wide",
+            hundredths(self.chip_height_mm),
+            hundredths(self.chip_width_mm)
+        )];
+        let mut caption = vec!["corner chipped off".to_owned()];
+        if tip_is_lost {
+            let edge_mm = vec![[-half, end], [half, end]];
+            face.push(FacePatch { edge_mm, ..FacePatch::rectangle([-half, half], [end, tip]) });
+            let loss = format!("tip loss {} mm", hundredths(self.tip_loss_mm));
+            sizes.push(loss.clone());
+            caption.push(loss);
+        }
+        let range = [chipped.chip_start_index.min(chipped.lost_from_index).min(last), last];
+        DamageDescription {
+            quantities: vec![("exit_rev", QuantityValue::Number(exit_rev))],
+            is_partial: true,
+            face,
+            sizes,
+            caption,
+            ..DamageDescription::of::<Self>(range)
+        }
     }
 }

@@ -1,22 +1,19 @@
 //! A working flank that has been ground down along a straight line.
 
 use super::kind::MeshEffect;
-use super::published::{self, FaultGeometry};
 use super::severity::SoundTooth;
-use crate::wheel::Teeth;
 use std::ops::Bound::Excluded;
 
 use meshtone_toml::{ReadResult, TomlTable};
 
-use super::DamageDescription;
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
+use super::description::{hundredths, largest_depth_mm, tenths};
 use super::fault::end_after;
 use super::pit_circle::flank_index;
-use super::{Kind, PaperRig};
+use super::{DamageDescription, DamageResult, FacePatch, Kind, PaperRig, QuantityValue, ToothPart};
 use crate::error::ScenarioError;
 use crate::keys::{Check, Keys, NumberFiles, Range, Row, below, check_keys, field, flatten, row};
-use crate::model::Model;
-use crate::random::Draws;
+use crate::random::{Draws, Purpose};
 use crate::wheel::ToothProfile;
 use crate::wheel::{Gears, HALF_THICKNESS};
 
@@ -128,7 +125,9 @@ impl Keys for DestructionLine {
 impl Kind for ToothDestruction {
     const NAME: &str = "tooth-destruction";
     const RIG: PaperRig = PaperRig::Destruction;
+    const TITLE: &str = "tooth destruction";
     const EFFECT: MeshEffect = MeshEffect::Flat;
+    const PART: ToothPart = ToothPart::FlankLength;
     const SIZES: &[&str] = &["start", "end", "slope_deg", "offset_mm"];
 
     fn example() -> Self {
@@ -165,44 +164,56 @@ impl Kind for ToothDestruction {
         self.noise_mm > 0.0
     }
 
-    fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> Result<(), ScenarioError> {
-        let is_rough =
-            |damage: &&DamageDescription| matches!(damage, DamageDescription::ToothDestruction { .. });
-        let roughness = healthy.roughness(tooth.descriptions.iter().filter(is_rough).count());
-        let ground = self.grind(healthy.profile(), healthy.first_contact(), roughness, Model::Linear)?;
+    fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> DamageResult {
+        let roughness = healthy.draws(Purpose::DestructionNoise, tooth.count_of::<Self>());
+        let ground = self.grind(healthy.profile(), healthy.first_contact(), roughness, f64::min)?;
         for i in 0..ground.flank_y_mm.len() {
             if ground.deviation_mm[i] < 0.0 {
                 tooth.flank_y_mm[i] = tooth.cut_y_mm(i, ground.flank_y_mm[i], healthy.profile());
                 tooth.corner_y_mm[i] = tooth.flank_y_mm[i];
-                tooth.deviation_mm[i] = tooth.deviation_mm[i].min(ground.deviation_mm[i]);
             }
         }
-        tooth.descriptions.push(DamageDescription::ToothDestruction {
-            start_index: ground.start_index,
-            end_index: ground.end_index,
-            slope_rad: ground.slope_rad,
-        });
-        Ok(())
-    }
-
-    fn published_geometry(&self, teeth: &Teeth, seed: u64) -> Result<FaultGeometry, ScenarioError> {
-        published::tooth_destruction::geometry(self, teeth, seed)
+        Ok(ground.describe(healthy))
     }
 }
 
 /// A flank that has been ground down.
-pub(super) struct GroundFlank {
-    /// Profile index of the line's start.
-    pub(super) start_index: usize,
+pub(crate) struct GroundFlank {
+    /// First profile index that is ground.
+    pub(crate) start_index: usize,
     /// Last profile index that is ground.
-    pub(super) end_index: usize,
+    pub(crate) end_index: usize,
     /// (rad) Angle of the line to the tooth's centre line.
-    pub(super) slope_rad: f64,
+    pub(crate) slope_rad: f64,
     /// (mm) The flank, over the profile points.
-    pub(super) flank_y_mm: Vec<f64>,
+    pub(crate) flank_y_mm: Vec<f64>,
     /// (mm) How far the flank lies back along its own normal, the line of action when it is touched there; less than 0 where
     /// material is missing. Over the profile points.
-    pub(super) deviation_mm: Vec<f64>,
+    pub(crate) deviation_mm: Vec<f64>,
+}
+
+impl GroundFlank {
+    /// The ground flank in words and pictures.
+    ///
+    /// # Arguments
+    /// * `healthy` - the healthy tooth
+    pub(crate) fn describe(&self, healthy: &HealthyTooth) -> DamageDescription {
+        let depth = hundredths(largest_depth_mm(healthy.profile(), &self.flank_y_mm));
+        let range = [self.start_index, self.end_index];
+        DamageDescription {
+            quantities: vec![
+                ("indices", QuantityValue::Indices(vec![self.start_index, self.end_index])),
+                ("slope_rad", QuantityValue::Number(self.slope_rad)),
+            ],
+            face: vec![FacePatch::whole_width(range, healthy)],
+            sizes: vec![
+                format!("flank ground up to {depth} mm deep across the tooth"),
+                format!("line at {}° to the centre line", tenths(self.slope_rad.to_degrees().abs())),
+            ],
+            caption: vec!["flank ground down".to_owned()],
+            ..DamageDescription::of::<ToothDestruction>(range)
+        }
+    }
 }
 
 /// The straight line that a flank is ground along.
@@ -257,16 +268,16 @@ impl ToothDestruction {
     /// * `profile` - the healthy flank
     /// * `first_contact` - profile index where contact starts at the root side
     /// * `roughness` - draws of the ground flank's roughness
-    /// * `model` - whether a line outside the flank adds metal
+    /// * `left_y_mm` - what is left of the flank, of the ground one and the healthy one
     ///
     /// # Errors
     /// A line that starts below the root, does not cut the flank, or leaves no tooth.
-    pub(super) fn grind(
+    pub(crate) fn grind(
         &self,
         profile: &ToothProfile,
         first_contact: usize,
         mut roughness: Draws,
-        model: Model,
+        left_y_mm: impl Fn(f64, f64) -> f64,
     ) -> Result<GroundFlank, ScenarioError> {
         let contact_points = profile.len() - first_contact;
         let least_start = -(first_contact as f64) / (contact_points - 1) as f64;
@@ -298,11 +309,7 @@ impl ToothDestruction {
         let mut flank_y_mm = profile.y_mm.clone();
         for i in first..=last {
             let ground = line(profile.x_mm[i]) + roughness.uniform(0.0, self.noise_mm);
-            flank_y_mm[i] = match model {
-                // Model: where line or roughness lie outside the flank, the published code adds metal.
-                Model::Published => ground,
-                Model::Linear | Model::Contact => ground.min(profile.y_mm[i]),
-            };
+            flank_y_mm[i] = left_y_mm(ground, profile.y_mm[i]);
             if flank_y_mm[i] <= -profile.y_mm[i] {
                 return Err(ScenarioError::new(
                     "fault",
@@ -328,6 +335,6 @@ impl ToothDestruction {
                 -(profile.y_mm[i] - flank_y_mm[i]) * slope_rad.cos() / (angle + slope_rad).cos()
             })
             .collect();
-        Ok(GroundFlank { start_index: start, end_index: last, slope_rad, flank_y_mm, deviation_mm })
+        Ok(GroundFlank { start_index: first, end_index: last, slope_rad, flank_y_mm, deviation_mm })
     }
 }

@@ -1,9 +1,10 @@
 //! Flanks that sliding has worn.
 
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
+use super::description::hundredths;
 use super::kind::MeshEffect;
 use super::severity::SoundTooth;
-use super::{DamageDescription, FaultyTeeth, Kind};
+use super::{DamageDescription, DamageResult, FacePatch, FaultyTeeth, Kind, QuantityValue, ToothPart};
 use crate::error::ScenarioError;
 use crate::keys::{Check, Keys, Range, Row, check_keys, field, row};
 use crate::wheel::{Gears, Teeth, WheelName};
@@ -42,7 +43,9 @@ impl Keys for Wear {
 
 impl Kind for Wear {
     const NAME: &str = "wear";
+    const TITLE: &str = "wear";
     const EFFECT: MeshEffect = MeshEffect::Flat;
+    const PART: ToothPart = ToothPart::FlankSurface;
     const TEETH: FaultyTeeth = FaultyTeeth::All;
     const SIZES: &[&str] = &["depth_um"];
 
@@ -64,7 +67,7 @@ impl Kind for Wear {
         check_keys(self, "fault")
     }
 
-    fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> Result<(), ScenarioError> {
+    fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> DamageResult {
         let depth_mm = self.depths_mm(healthy);
         let (flank, y_mm) = (healthy.flank(), &healthy.profile().y_mm);
         let worn = |i: &usize| depth_mm[*i] > 0.0;
@@ -77,19 +80,31 @@ impl Kind for Wear {
             }
             tooth.flank_y_mm[i] = tooth.flank_y_mm[i].min(y_mm[i] - across_mm);
             tooth.corner_y_mm[i] = tooth.corner_y_mm[i].min(tooth.flank_y_mm[i]);
-            tooth.deviation_mm[i] = tooth.deviation_mm[i].min(-depth_mm[i]);
         }
-        let (start, end) = (depth_mm.iter().position(|h| *h > 0.0), depth_mm.iter().rposition(|h| *h > 0.0));
-        tooth.descriptions.push(DamageDescription::Wear {
-            start_index: start.unwrap_or(healthy.first_contact()),
-            end_index: end.unwrap_or(healthy.first_contact()),
-            depth_mm,
-        });
-        Ok(())
+        Ok(self.describe(depth_mm, healthy))
     }
 }
 
 impl Wear {
+    fn describe(&self, depth_mm: Vec<f64>, healthy: &HealthyTooth) -> DamageDescription {
+        let first_contact = healthy.first_contact();
+        let is_worn = |depth_mm: &f64| *depth_mm > 0.0;
+        let start = depth_mm.iter().position(is_worn).unwrap_or(first_contact);
+        let end = depth_mm.iter().rposition(is_worn).unwrap_or(first_contact);
+        let range = [start.max(first_contact), end];
+        let depth = format!("up to {} µm deep", hundredths(self.depth_um));
+        DamageDescription {
+            quantities: vec![
+                ("indices", QuantityValue::Indices(vec![start, end])),
+                ("depth_mm", QuantityValue::OverProfile(depth_mm)),
+            ],
+            face: vec![FacePatch::whole_width(range, healthy)],
+            sizes: vec![depth.clone()],
+            caption: vec!["flank worn".to_owned(), depth],
+            ..DamageDescription::of::<Self>(range)
+        }
+    }
+
     /// (mm) Depth at the profile's points, along the flank's normal.
     fn depths_mm(&self, healthy: &HealthyTooth) -> Vec<f64> {
         let (flank, path) = (healthy.flank(), healthy.path());
@@ -142,10 +157,9 @@ fn involutes_begin_mm(teeth: &Teeth) -> [f64; 2] {
 ///
 /// ```
 /// use meshtone::damage::slide_factor;
-/// use meshtone::scenario::Model;
 /// use meshtone::wheel::{Gears, WheelName, teeth};
 ///
-/// let teeth = teeth(&Gears::new(3.0, 17, 38, 15.0), [10.0; 2], Model::Linear);
+/// let teeth = teeth(&Gears::new(3.0, 17, 38, 15.0), [10.0; 2]);
 /// assert!((slide_factor(&teeth, WheelName::Pinion, 0.0) - 9.264).abs() < 5e-4);
 /// assert!((slide_factor(&teeth, WheelName::Gear, 0.0) - 0.903).abs() < 5e-4);
 /// ```

@@ -1,4 +1,4 @@
-//! Where in a section a row's value is kept.
+//! The place in a section at which a row's value is kept.
 
 use meshtone_toml::{ReadResult, TomlValue};
 
@@ -15,7 +15,7 @@ use super::value::{KeyValue, Written};
 pub(super) trait Cell<S> {
     /// Reads the value; a form of the section that has no such key keeps what it has.
     fn read(&self, section: &mut S, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()>;
-    /// What is written; none where the section has a form without this key.
+    /// The written value; none where the section has a form without this key.
     fn write(&self, section: &S) -> Option<Written>;
     fn check(&self, section: &S, key: &str, range: &Range, unit: &str) -> Check;
     fn copy(&self, from: &S, to: &mut S);
@@ -76,7 +76,7 @@ impl<S> Cell<S> for SubTable<S> {
     }
 
     fn inside(&self, section: &S) -> Vec<KeyDescription> {
-        self.0.iter().flat_map(|row| row.describe(section)).collect()
+        self.0.iter().flat_map(|row| row.describe(section, Vec::new())).collect()
     }
 }
 
@@ -121,13 +121,13 @@ impl<S, V: KeyValue> Cell<S> for Field<S, V> {
 }
 
 /// A row of a part of a section, whose keys stand among the section's own.
-struct InPart<S, P> {
+struct PartCell<S, P> {
     get: fn(&S) -> Option<&P>,
     get_mut: fn(&mut S) -> Option<&mut P>,
     cell: Box<dyn Cell<P>>,
 }
 
-impl<S, P> Cell<S> for InPart<S, P> {
+impl<S, P> Cell<S> for PartCell<S, P> {
     fn read(&self, section: &mut S, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
         (self.get_mut)(section).map_or(Ok(()), |part| self.cell.read(part, value, files))
     }
@@ -158,5 +158,5 @@ impl<S, P> Cell<S> for InPart<S, P> {
 /// The rows of a part of a section, whose keys stand among the section's own rather than in a table of theirs.
 pub(crate) fn flatten<S: 'static, P: Keys>(part: Field<S, P>) -> impl Iterator<Item = Row<S>> {
     let Field { get, get_mut } = part;
-    P::rows().into_iter().map(move |row| row.moved(|cell| Box::new(InPart { get, get_mut, cell })))
+    P::rows().into_iter().map(move |row| row.moved(|cell| Box::new(PartCell { get, get_mut, cell })))
 }

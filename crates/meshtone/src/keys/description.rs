@@ -1,7 +1,7 @@
-//! What a key of the scenario file is, for documentation.
+//! The description of a key of the scenario file, for documentation.
 
-/// What a key of the scenario file is: what the guide's tables, the commented files of `meshtone init` and Python's signatures
-/// are made from.
+/// Description of a key of the scenario file, from which the guide's tables, the commented files of `meshtone init` and Python's signatures
+/// are made.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct KeyDescription {
@@ -9,36 +9,36 @@ pub struct KeyDescription {
     pub key: String,
     /// Unit of its numbers; empty where there is none.
     pub unit: &'static str,
-    /// What it says.
+    /// Its meaning.
     pub meaning: &'static str,
     /// Whether it must be given.
     pub required: bool,
-    /// What is taken where it is left out: a TOML value, or words; empty where it is required whatever else is given.
+    /// Its default: a TOML value, or words; empty where it is required whatever else is given.
     pub default: String,
-    /// What is allowed; empty where that is plain from `kind`.
+    /// The allowed values; empty where `kind` makes them plain.
     pub allowed: String,
     /// Bounds of its numbers whatever the other keys say, the least and the largest, where there are such; they may themselves not be
     /// allowed, as `allowed` says.
     pub bounds: [Option<f64>; 2],
-    /// What kind of value it has.
+    /// Kind of its value.
     pub kind: KeyKind,
     /// Names of the models that simulate its default whatever it says.
-    pub ignored_by: &'static [&'static str],
+    pub ignored_by: Vec<&'static str>,
 }
 
 impl KeyDescription {
-    /// Which models ignore it, as a sentence; empty where all heed it.
+    /// A sentence that names the models that ignore it; empty where all heed it.
     pub fn ignored_in_words(&self) -> String {
-        ignored_in_words(self.ignored_by)
+        ignored_in_words(&self.ignored_by)
     }
 }
 
-/// Which models ignore a key, as a sentence.
+/// A sentence that names the models that ignore a key.
 pub(super) fn ignored_in_words(models: &[&str]) -> String {
-    if models.is_empty() { String::new() } else { format!("Ignored by {}.", models.join(" and ")) }
+    if models.is_empty() { String::new() } else { format!("Ignored by {}.", models.join(", ")) }
 }
 
-/// What kind of value a key has.
+/// Kind of the value of a key.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum KeyKind {

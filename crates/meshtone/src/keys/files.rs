@@ -5,13 +5,13 @@ use std::fmt;
 
 use meshtone_toml::{ReadResult, TomlValue};
 
-/// What is wrong with a file that a scenario names.
+/// A problem of a file that a scenario names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct FileProblem {
-    /// What is wrong and what is allowed.
+    /// The problem, and what is allowed.
     pub problem: String,
-    /// What the user can do.
+    /// Advice to the user.
     pub help: String,
 }
 

@@ -27,6 +27,7 @@ mod cell;
 mod check;
 mod description;
 mod files;
+mod model;
 mod names;
 mod range;
 mod row;

@@ -1,4 +1,4 @@
-//! Which numbers a key may have.
+//! The range of numbers that a key may have.
 
 use std::ops::Bound::{self, Excluded, Included, Unbounded};
 
@@ -52,17 +52,17 @@ impl Range {
         Self { implausible_above: Some(largest), ..self }
     }
 
-    /// The same with a message of its own, that says what is allowed.
+    /// Returns the range with a message of its own, which says what is allowed.
     pub const fn message(self, message: &'static str) -> Self {
         Self { message: Some(message), ..self }
     }
 
-    /// The same with advice.
+    /// Returns the range with advice.
     pub const fn help(self, help: &'static str) -> Self {
         Self { help: Some(help), ..self }
     }
 
-    /// Whether a number is in it.
+    /// Checks whether a number is in it.
     ///
     /// # Arguments
     /// * `key` - dotted key, for the message
@@ -109,7 +109,7 @@ impl Range {
         [number(self.least), number(self.most).or(self.implausible_above)]
     }
 
-    /// What is allowed; none where every finite number is.
+    /// The allowed numbers, in words; none where every finite number is allowed.
     ///
     /// # Arguments
     /// * `unit` - the key's

@@ -18,25 +18,24 @@ pub(crate) struct Row<S> {
     absent: Absent,
     range: Range,
     rule: &'static str,
-    shown: Shown,
-    ignored_by: &'static [&'static str],
+    shown: CommentedForm,
     cell: Box<dyn Cell<S>>,
 }
 
-/// What an absent key means.
+/// Meaning of an absent key.
 enum Absent {
     /// It must be given.
     Refused,
     /// It must be given, unless another key is.
     RefusedUnless(&'static [&'static str]),
-    /// What [`Keys::start`](super::Keys::start) has.
+    /// The value in [`Keys::start`](super::Keys::start).
     Default,
     /// Something that is found elsewhere, in words.
     Words(&'static str),
 }
 
-/// How a commented file shows a key that is not set in it.
-enum Shown {
+/// The form in which a commented file shows a key that is not set in it.
+enum CommentedForm {
     /// With its default, to be set by taking the `#` away.
     Default,
     /// With an example, likewise.
@@ -90,8 +89,7 @@ impl<S> Row<S> {
             absent: Absent::Default,
             range: Range::finite(),
             rule: "",
-            shown: Shown::Default,
-            ignored_by: &[],
+            shown: CommentedForm::Default,
             cell,
         }
     }
@@ -110,7 +108,7 @@ impl<S> Row<S> {
         matches!(self.absent, Absent::Refused | Absent::RefusedUnless(_))
     }
 
-    /// What is taken where the key is left out, in words; the section starts without a value.
+    /// States in words what is taken where the key is left out; the section starts without a value.
     pub(crate) fn otherwise(self, words: &'static str) -> Self {
         Self { absent: Absent::Words(words), ..self }
     }
@@ -120,39 +118,30 @@ impl<S> Row<S> {
         Self { range, ..self }
     }
 
-    /// What else is allowed, in the words of the documentation; a function beside the rows checks it.
+    /// States a further rule, in the words of the documentation; a function beside the rows checks it.
     pub(crate) fn rule(self, rule: &'static str) -> Self {
         Self { rule, ..self }
     }
 
-    /// How a commented file shows the key: with an example that may be set as it stands.
+    /// Sets how a commented file shows the key: with an example that may be set as it stands.
     pub(crate) fn example(self, value: &'static str) -> Self {
-        Self { shown: Shown::Example(value), ..self }
+        Self { shown: CommentedForm::Example(value), ..self }
     }
 
-    /// How a commented file shows the key: with an example that stands in place of other keys.
+    /// Sets how a commented file shows the key: with an example that stands in place of other keys.
     pub(crate) fn alternative(self, value: &'static str) -> Self {
-        Self { shown: Shown::Alternative(value), ..self }
+        Self { shown: CommentedForm::Alternative(value), ..self }
     }
 
-    /// Models that simulate the default whatever the key says, by their names.
-    pub(crate) fn ignored_by(self, models: &'static [&'static str]) -> Self {
-        Self { ignored_by: models, ..self }
-    }
-
-    /// The same row of another section, with the value elsewhere.
+    /// Moves the row to another section, with the value elsewhere.
     pub(super) fn moved<T>(self, move_cell: impl FnOnce(Box<dyn Cell<S>>) -> Box<dyn Cell<T>>) -> Row<T> {
-        let Self { name, unit, meaning, absent, range, rule, shown, ignored_by, cell } = self;
+        let Self { name, unit, meaning, absent, range, rule, shown, cell } = self;
         let cell = move_cell(cell);
-        Row { name, unit, meaning, absent, range, rule, shown, ignored_by, cell }
+        Row { name, unit, meaning, absent, range, rule, shown, cell }
     }
 
     pub(crate) fn name(&self) -> &'static str {
         self.name
-    }
-
-    pub(crate) fn is_ignored_by(&self, model: &str) -> bool {
-        self.ignored_by.contains(&model)
     }
 
     /// Sets the key in one section to its value in another.
@@ -213,8 +202,12 @@ impl<S> Row<S> {
         format!("{unit}{}{unless}", self.meaning)
     }
 
-    /// What the key is, and then the keys inside it.
-    pub(super) fn describe(&self, start: &S) -> Vec<KeyDescription> {
+    /// Describes the key, and then the keys inside it.
+    ///
+    /// # Arguments
+    /// * `start` - the section with its defaults
+    /// * `ignored_by` - names of the models that ignore it
+    pub(super) fn describe(&self, start: &S, ignored_by: Vec<&'static str>) -> Vec<KeyDescription> {
         let kind = self.cell.kind();
         let mut allowed = Vec::new();
         match &kind {
@@ -246,7 +239,7 @@ impl<S> Row<S> {
             allowed: allowed.join("; "),
             bounds: self.range.bounds(),
             kind,
-            ignored_by: self.ignored_by,
+            ignored_by,
         };
         let inside = self
             .cell
@@ -269,7 +262,7 @@ impl<S> Row<S> {
     }
 
     /// The key in a commented file: what it is, and a line that sets it.
-    pub(super) fn commented(&self, section: &S, start: &S) -> String {
+    pub(super) fn commented(&self, section: &S, start: &S, ignored_by: &[&str]) -> String {
         let written = self.cell.write(section).unwrap_or(Written::Nothing);
         let is_default = self.cell.write(start).is_some_and(|default| default == written);
         let is_set = written != Written::Nothing && (self.is_required() || !is_default);
@@ -282,14 +275,14 @@ impl<S> Row<S> {
             (Written::Value(_), _) if is_set => {
                 vec![format!("{} = {}", self.name, self.shown_value(section).unwrap_or_default())]
             }
-            (_, Shown::Example(value)) => vec![format!("#{} = {value}", self.name)],
-            (_, Shown::Alternative(value)) => vec![format!("# {} = {value}", self.name)],
-            (Written::Value(_), Shown::Default) => {
+            (_, CommentedForm::Example(value)) => vec![format!("#{} = {value}", self.name)],
+            (_, CommentedForm::Alternative(value)) => vec![format!("# {} = {value}", self.name)],
+            (Written::Value(_), CommentedForm::Default) => {
                 vec![format!("#{} = {}", self.name, self.shown_value(section).unwrap_or_default())]
             }
-            (Written::Nothing, Shown::Default) => Vec::new(),
+            (Written::Nothing, CommentedForm::Default) => Vec::new(),
         };
-        let mut text = comment(&self.sentences(start));
+        let mut text = comment(&self.sentences(start, ignored_by));
         for line in lines {
             text.extend([line.as_str(), "\n"]);
         }
@@ -297,7 +290,7 @@ impl<S> Row<S> {
     }
 
     /// Meaning and default, in sentences.
-    fn sentences(&self, start: &S) -> String {
+    fn sentences(&self, start: &S, ignored_by: &[&str]) -> String {
         let unit = if self.unit.is_empty() { String::new() } else { format!("({}) ", self.unit) };
         let mut letters = self.meaning.chars();
         let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
@@ -316,7 +309,7 @@ impl<S> Row<S> {
                 _ => "Default as here.".to_string(),
             },
         };
-        let ignored = ignored_in_words(self.ignored_by);
+        let ignored = ignored_in_words(ignored_by);
         format!("{unit}{first}{}{names}. {absent} {ignored}", letters.as_str())
     }
 }

@@ -5,21 +5,25 @@ use meshtone_toml::{ReadResult, TomlTable};
 use super::check::Check;
 use super::description::KeyDescription;
 use super::files::NumberFiles;
-use super::row::Row;
+use super::row::{Row, dotted};
 use super::value::Written;
+use crate::model::models_ignoring;
 
 /// Parameters that stand in one table of the scenario file.
 pub(crate) trait Keys: Clone + PartialEq + 'static {
     /// Whether a table inside another one is written key by key, each on its own line.
     const IN_LINES: bool = false;
 
+    /// Name of the section of the scenario file that it is; empty for other tables.
+    const SECTION: &str = "";
+
     /// Every key at its default, those without one at whatever is refused or replaced.
     fn start() -> Self;
 
-    /// What the keys are, in the order in which they are read and written.
+    /// Lists the keys in the order in which they are read and written.
     fn rows() -> Vec<Row<Self>>;
 
-    /// Which of several forms the table has, for parameters that can be given in several ways; the form's keys are read
+    /// Chooses one of several forms of the table, for parameters that can be given in several ways; the form's keys are read
     /// afterwards.
     ///
     /// # Errors
@@ -95,14 +99,14 @@ pub(crate) fn check_rows<S: Keys>(rows: &[Row<S>], section: &S, path: &str) -> C
     rows.iter().try_for_each(|row| row.check(section, path))
 }
 
-/// What the keys of a section are.
+/// Describes the keys of a section.
 pub(crate) fn describe<S: Keys>() -> Vec<KeyDescription> {
     describe_from(&S::start())
 }
 
-/// The same, with what `start` has as defaults.
+/// Describes the keys of a section, with what `start` has as defaults.
 pub(crate) fn describe_from<S: Keys>(start: &S) -> Vec<KeyDescription> {
-    S::rows().iter().flat_map(|row| row.describe(start)).collect()
+    S::rows().iter().flat_map(|row| row.describe(start, ignoring::<S>(row))).collect()
 }
 
 /// The lines of a section with a comment for every key, without its header.
@@ -110,13 +114,21 @@ pub(crate) fn commented<S: Keys>(section: &S) -> String {
     commented_from(section, &S::start())
 }
 
-/// The same, with what `start` has as defaults.
+/// Writes a commented section, with what `start` has as defaults.
 pub(crate) fn commented_from<S: Keys>(section: &S, start: &S) -> String {
-    S::rows().iter().map(|row| row.commented(section, start)).collect()
+    commented_of(&S::rows(), section, start)
 }
 
 /// The lines of some keys of a section, likewise.
 pub(crate) fn commented_rows<S: Keys>(rows: &[Row<S>], section: &S) -> String {
-    let start = S::start();
-    rows.iter().map(|row| row.commented(section, &start)).collect()
+    commented_of(rows, section, &S::start())
+}
+
+fn commented_of<S: Keys>(rows: &[Row<S>], section: &S, start: &S) -> String {
+    rows.iter().map(|row| row.commented(section, start, &ignoring::<S>(row))).collect()
+}
+
+/// Names of the models that ignore a key.
+fn ignoring<S: Keys>(row: &Row<S>) -> Vec<&'static str> {
+    models_ignoring(&dotted(S::SECTION, row.name()))
 }

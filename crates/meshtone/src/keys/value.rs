@@ -9,7 +9,7 @@ use super::range::Range;
 use super::table::{Keys, check_keys, describe_from, read_keys, write_pairs};
 use super::text::{array, inline_table, number};
 
-/// What a key's value is written as.
+/// Written form of a key's value.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Written {
     /// The key is left out.
@@ -25,15 +25,15 @@ pub(crate) trait KeyValue: Clone + PartialEq + 'static {
     /// Reads it over what is there, which is the default.
     fn read(&mut self, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()>;
 
-    /// What it is written as.
+    /// Its written form.
     fn write(&self) -> Written;
 
-    /// Whether its numbers are allowed.
+    /// Checks whether its numbers are allowed.
     fn check(&self, _key: &str, _range: &Range, _unit: &str) -> Check {
         Ok(())
     }
 
-    /// What kind of value it is.
+    /// Kind of the value.
     fn kind() -> KeyKind;
 
     /// The keys inside it.
@@ -111,7 +111,7 @@ fn check_entries(entries: &[f64], key: &str, range: &Range, unit: &str) -> Check
     entries.try_for_each(|(index, entry)| entry.check(&format!("{key}[{index}]"), range, unit))
 }
 
-/// As many as other keys say.
+/// A list whose length other keys state.
 impl KeyValue for Vec<f64> {
     fn read(&mut self, value: &TomlValue<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
         *self = value.numbers()?;
@@ -131,7 +131,7 @@ impl KeyValue for Vec<f64> {
     }
 }
 
-/// What may be left out.
+/// Values that may be left out.
 macro_rules! optional {
     ($($type:ty, $blank:expr);+) => {$(
         impl KeyValue for Option<$type> {

@@ -3,7 +3,6 @@
 use std::f64::consts::PI;
 
 use crate::machine::WheelInertia;
-use crate::model::Model;
 use crate::wheel::Material;
 use crate::wheel::Wheel;
 
@@ -26,22 +25,17 @@ impl WheelBody {
     /// * `wheel` - geometry
     /// * `material` - for the density
     /// * `given` - values of the user
-    /// * `model` - the published code leaves out the division by 12
-    pub fn new(wheel: &Wheel, material: Material, given: &WheelInertia, model: Model) -> Self {
+    pub fn new(wheel: &Wheel, material: Material, given: &WheelInertia) -> Self {
         let radius = wheel.v_circle_radius_mm() * 1e-3;
         let width = wheel.face_width_mm * 1e-3;
         let solid_mass = PI * radius * radius * width * material.density_kg_per_m3();
         let mass_kg = given.mass_kg.unwrap_or(solid_mass);
-        let twelfths = match model {
-            Model::Published => 1.0,
-            Model::Linear | Model::Contact => 12.0,
-        };
         Self {
             mass_kg,
             polar_kgm2: given.polar_inertia_kgm2.unwrap_or(mass_kg * radius * radius / 2.0),
             transverse_kgm2: given
                 .transverse_inertia_kgm2
-                .unwrap_or(mass_kg * (3.0 * radius * radius + width * width) / twelfths),
+                .unwrap_or(mass_kg * (3.0 * radius * radius + width * width) / 12.0),
         }
     }
 }

@@ -1,21 +1,19 @@
-//! Stage 6: the equations of motion, `M ü + C u̇ + K(θ_p) u = F`.
+//! Stage 6: the machine around the meshes, `M ü + C u̇ + K u = F(t) − Σ g f(gᵀu, t)`.
 //!
-//! `u` has 13 coordinates ([`coordinates`]). The mesh couples them along one line of action
-//! ([`MeshDirections`]); everything else is constant.
+//! A [`Machine`] is a list of parts in any number of coordinates. The meshes are not among them: they act along its lines of action,
+//! and the solver closes or opens them. Only `train` names the coordinates of a rig.
 
 mod body;
-pub mod coordinates;
-mod mesh_directions;
 mod modes;
+mod parts;
 mod rig;
 mod shaft_bending;
-mod structure;
-mod system;
+mod train;
 
 pub use body::WheelBody;
-pub use mesh_directions::MeshDirections;
-pub use modes::Modes;
+pub use modes::{ClosedMesh, DecayingMode, Modes};
+pub use parts::{Axis, Drive, Machine};
+#[cfg(feature = "internals")]
+pub use parts::{LineOfAction, Place, Spring};
 pub use rig::{DampingRatio, Rig, Shaft, Support, WheelInertia};
-pub(crate) use structure::DecayingMode;
-pub use structure::{ClosedMesh, Structure};
-pub use system::{Excitation, System};
+pub use train::{GEAR, GEAR_SUPPORT, PINION, PINION_SUPPORT, SENSOR, Supports, Train, WHEELS};

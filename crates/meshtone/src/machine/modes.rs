@@ -1,34 +1,157 @@
-//! Undamped modes of the mean system.
+//! Undamped modes of a machine, and their damping.
+
+use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use super::coordinates::{COORDINATES, CoordinateMatrix, CoordinateVector};
+use super::parts::Machine;
 
-/// Natural frequencies and mass-normalised mode shapes, `Φᵀ M Φ = 1`, in rising order.
+/// Modes of a machine without its meshes, in rising order, in turned coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Modes {
-    /// (rad/s) Natural angular frequencies.
-    pub angular_frequencies: [f64; COORDINATES],
-    /// Columns: mode shapes.
-    pub shapes: CoordinateMatrix,
+    /// (rad/s) Natural angular frequencies; 0 of a shaft that nothing but a mesh holds.
+    pub angular_frequencies: Vec<f64>,
+    /// Mass-normalised shapes, a column each: `Φᵀ M Φ = 1`.
+    pub shapes: DMatrix<f64>,
+    /// (-) Damping ratio of each mode.
+    pub damping_ratio: Vec<f64>,
 }
 
+/// A mesh as if it were closed always, with its mean stiffness.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClosedMesh {
+    /// (N/m) Stiffness along the line of action.
+    pub stiffness_n_per_m: f64,
+    /// (s) Damping over stiffness.
+    pub damping_time_s: f64,
+}
+
+/// A mode that decays.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DecayingMode {
+    /// (Hz) Natural frequency.
+    pub frequency_hz: f64,
+    /// (1/s) Rate.
+    pub decay_per_s: f64,
+}
+
+/// Part of the largest entry of a vector, or of the largest frequency, below which another is rounding.
+const ROUNDING: f64 = 1e-12;
+
 impl Modes {
-    /// Modes of `K φ = ω² M φ` with a diagonal mass matrix.
+    /// Modes whose damping is that of the springs, weighted by their strain energy.
     ///
     /// # Arguments
-    /// * `mass` - the mass matrix's diagonal
-    /// * `stiffness` - symmetric stiffness matrix
-    pub fn new(mass: &CoordinateVector, stiffness: &CoordinateMatrix) -> Self {
-        let stiffness = DMatrix::from_fn(COORDINATES, COORDINATES, |r, c| stiffness[(r, c)]);
-        let modes = mass_normalised_modes(mass.as_slice(), &stiffness);
-        let mut angular_frequencies = [0.0; COORDINATES];
-        let mut shapes = CoordinateMatrix::zeros();
-        for (n, (frequency, shape)) in modes.into_iter().enumerate() {
-            angular_frequencies[n] = frequency;
-            shapes.set_column(n, &CoordinateVector::from_column_slice(shape.as_slice()));
-        }
-        Self { angular_frequencies, shapes }
+    /// * `machine` - the machine
+    ///
+    /// Source: C. D. Johnson, D. A. Kienholz, AIAA Journal 20 (1982).
+    pub fn damped_by_springs(machine: &Machine) -> Self {
+        let mut modes = Self::undamped(machine);
+        modes.damping_ratio = (0..modes.damping_ratio.len())
+            .map(|n| {
+                let shape = modes.shapes.column(n);
+                let energies = machine.springs.iter().map(|spring| (&spring.stiffness * shape).dot(&shape));
+                let whole: f64 = energies.clone().sum();
+                let ratios = machine.springs.iter().map(|spring| spring.damping_ratio);
+                let damped: f64 = ratios.zip(energies).map(|(ratio, energy)| ratio * energy).sum();
+                if modes.angular_frequencies[n] > 0.0 { damped / whole } else { 0.0 }
+            })
+            .collect();
+        modes
+    }
+
+    /// Modes of one damping ratio; free rotations have none.
+    ///
+    /// # Arguments
+    /// * `machine` - the machine
+    /// * `damping_ratio` - (-) of every mode that deforms it
+    pub fn damped_alike(machine: &Machine, damping_ratio: f64) -> Self {
+        let mut modes = Self::undamped(machine);
+        modes.damping_ratio =
+            modes.angular_frequencies.iter().map(|omega| if *omega > 0.0 { damping_ratio } else { 0.0 }).collect();
+        modes
+    }
+
+    fn undamped(machine: &Machine) -> Self {
+        let modes = mass_normalised_modes(&machine.mass, &machine.stiffness());
+        let angular_frequencies: Vec<f64> = modes.iter().map(|(omega, _)| *omega).collect();
+        let shapes = DMatrix::from_columns(&modes.into_iter().map(|(_, shape)| shape).collect::<Vec<_>>());
+        Self { damping_ratio: vec![0.0; angular_frequencies.len()], angular_frequencies, shapes }
+    }
+
+    /// (1/s) `2 ζ ω` of mode `n`.
+    pub fn damping_per_s(&self, n: usize) -> f64 {
+        2.0 * self.damping_ratio[n] * self.angular_frequencies[n]
+    }
+
+    /// Damping matrix in the coordinates themselves, `C = M Σ_n 2 ζ_n ω_n φ_n φ_nᵀ M`.
+    ///
+    /// # Arguments
+    /// * `machine` - the machine whose modes these are
+    pub fn damping_matrix(&self, machine: &Machine) -> DMatrix<f64> {
+        let mass = DMatrix::from_diagonal(&DVector::from_column_slice(&machine.mass));
+        let mass_shapes = &machine.turn * mass * &self.shapes;
+        let modal = DVector::from_fn(self.angular_frequencies.len(), |n, _| self.damping_per_s(n));
+        &mass_shapes * DMatrix::from_diagonal(&modal) * mass_shapes.transpose()
+    }
+
+    /// (rad/(N m)) How far a moment of a mesh's force about the middle of the face tilts its wheels against one another, at rest.
+    ///
+    /// # Arguments
+    /// * `machine` - the machine whose modes these are
+    /// * `mesh` - number of the mesh
+    pub fn tilt_rad_per_nm(&self, machine: &Machine, mesh: usize) -> f64 {
+        let tilt = self.shapes.transpose() * &machine.lines[mesh].per_m;
+        let yields = tilt.iter().zip(&self.angular_frequencies).filter(|(_, omega)| **omega > 0.0);
+        yields.map(|(tilt, omega)| (tilt / omega).powi(2)).sum()
+    }
+
+    /// The slowest to decay of the modes that the meshes move, with the meshes closed: at the rate `φᵀ C φ/2`, as if damping did not
+    /// couple modes.
+    ///
+    /// # Arguments
+    /// * `machine` - the machine whose modes these are
+    /// * `meshes` - its meshes, closed
+    pub fn slowest_closed(&self, machine: &Machine, meshes: &[ClosedMesh]) -> DecayingMode {
+        let stiffness: Vec<f64> = meshes.iter().map(|mesh| mesh.stiffness_n_per_m).collect();
+        let mass = DVector::from_column_slice(&machine.mass);
+        let modes = mass_normalised_modes(&machine.mass, &machine.closed_stiffness(&stiffness));
+        let decay_per_s = |shape: &DVector<f64>| {
+            let own = self.shapes.transpose() * shape.component_mul(&mass);
+            let structural: f64 = (0..own.len()).map(|n| self.damping_per_s(n) * own[n] * own[n]).sum();
+            let of_mesh = machine.lines.iter().zip(meshes).map(|(line, mesh)| {
+                let deflection = line.at_middle.dot(shape);
+                mesh.stiffness_n_per_m * mesh.damping_time_s * deflection * deflection
+            });
+            (structural + of_mesh.sum::<f64>()) / 2.0
+        };
+        let moved_by_mesh = |shape: &DVector<f64>| {
+            machine.lines.iter().map(|line| line.at_middle.dot(shape).abs()).fold(0.0, f64::max)
+        };
+        let largest = modes.iter().map(|(_, shape)| moved_by_mesh(shape)).fold(0.0, f64::max);
+        let moved = modes.iter().filter(|(_, shape)| moved_by_mesh(shape) > ROUNDING * largest);
+        let decaying = moved
+            .map(|(omega, shape)| DecayingMode { frequency_hz: omega / TAU, decay_per_s: decay_per_s(shape) });
+        let none = DecayingMode { frequency_hz: 0.0, decay_per_s: f64::INFINITY };
+        decaying
+            .fold(none, |slowest, mode| if mode.decay_per_s < slowest.decay_per_s { mode } else { slowest })
+    }
+}
+
+/// Part of the largest eigenvalue of connected coordinates below which another is rounding, as that of a shaft that turns freely.
+const ROUNDING_OF_EIGENVALUES: f64 = 1e-13;
+
+impl Machine {
+    /// (Hz) Natural frequencies, rising, and mass-normalised shapes in the coordinates themselves, a column each, with the meshes
+    /// closed.
+    ///
+    /// # Arguments
+    /// * `mesh_stiffness_n_per_m` - (N/m) of each mesh along its line of action
+    pub fn closed_modes(&self, mesh_stiffness_n_per_m: &[f64]) -> (Vec<f64>, DMatrix<f64>) {
+        let modes = mass_normalised_modes(&self.mass, &self.closed_stiffness(mesh_stiffness_n_per_m));
+        let frequencies = modes.iter().map(|(omega, _)| omega / TAU).collect();
+        let shapes = DMatrix::from_columns(&modes.into_iter().map(|(_, shape)| shape).collect::<Vec<_>>());
+        (frequencies, &self.turn * shapes)
     }
 }
 
@@ -41,7 +164,7 @@ impl Modes {
 /// # Arguments
 /// * `mass` - the mass matrix's diagonal
 /// * `stiffness` - symmetric stiffness matrix
-pub(super) fn mass_normalised_modes(mass: &[f64], stiffness: &DMatrix<f64>) -> Vec<(f64, DVector<f64>)> {
+fn mass_normalised_modes(mass: &[f64], stiffness: &DMatrix<f64>) -> Vec<(f64, DVector<f64>)> {
     let scale: Vec<f64> = mass.iter().map(|m| 1.0 / m.sqrt()).collect();
     let mut modes: Vec<(f64, DVector<f64>)> = Vec::with_capacity(mass.len());
     for group in connected_groups(stiffness) {
@@ -50,12 +173,13 @@ pub(super) fn mass_normalised_modes(mass: &[f64], stiffness: &DMatrix<f64>) -> V
             stiffness[(group[r], group[c])] * scale[group[r]] * scale[group[c]]
         });
         let eigen = SymmetricEigen::new(scaled);
+        let rounding = ROUNDING_OF_EIGENVALUES * eigen.eigenvalues.amax();
         for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
             let mut shape = DVector::zeros(mass.len());
             for (&coordinate, entry) in group.iter().zip(vector.iter()) {
                 shape[coordinate] = entry * scale[coordinate];
             }
-            modes.push((value.max(0.0).sqrt(), shape));
+            modes.push((if *value > rounding { value.sqrt() } else { 0.0 }, shape));
         }
     }
     modes.sort_by(|a, b| a.0.total_cmp(&b.0));

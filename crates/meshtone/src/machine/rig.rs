@@ -64,6 +64,8 @@ const STIFFNESS: Range = Range::positive().implausible_above(1e15);
 const MASS: Range = Range::positive().implausible_above(1e9);
 
 impl Keys for Rig {
+    const SECTION: &str = "rig";
+
     fn start() -> Self {
         Self::default()
     }
@@ -77,16 +79,14 @@ impl Keys for Rig {
                 "the stiffness of each wheel's bearings in x, y and z",
                 field!(bearing_stiffness_n_per_m),
             )
-            .range(STIFFNESS)
-            .ignored_by(&["published"]),
+            .range(STIFFNESS),
             row(
                 "wheel_rotational_stiffness_nm_per_rad",
                 "N m/rad",
                 "the stiffness of each wheel against tilting, about x and about y",
                 field!(wheel_rotational_stiffness_nm_per_rad),
             )
-            .range(STIFFNESS)
-            .ignored_by(&["contact"]),
+            .range(STIFFNESS),
             row("brake_inertia_kgm2", "kg m²", "the inertia of the brake", field!(brake_inertia_kgm2)).range(MASS),
             row(
                 "damping_ratio",
@@ -98,12 +98,10 @@ impl Keys for Rig {
                 Range::below_one()
                     .message("must be from 0 to less than 1 (1 is critical damping)")
                     .help("a usual ratio is 0.05, which is 5 %"),
-            )
-            .ignored_by(&["contact"]),
+            ),
             row("eccentricity_mm", "mm", "the eccentricity of both wheels", field!(eccentricity_mm))
                 .range(Range::not_negative())
-                .rule("less than the module")
-                .ignored_by(&["published"]),
+                .rule("less than the module"),
             row(
                 "misalignment_um",
                 "µm",
@@ -112,8 +110,7 @@ impl Keys for Rig {
                  uneven load is computed",
                 field!(misalignment_um),
             )
-            .range(Range::from_to(-1e3, 1e3))
-            .ignored_by(&["linear", "published"]),
+            .range(Range::from_to(-1e3, 1e3)),
             row("pinion_shaft", "", "the shaft to motor (pinion) or brake (gear)", field!(pinion_shaft)),
             row("gear_shaft", "", "the shaft to motor (pinion) or brake (gear)", field!(gear_shaft)),
             row(
@@ -132,8 +129,7 @@ impl Keys for Rig {
                 "",
                 "what each shaft's bearings sit in",
                 field!(support),
-            )
-            .ignored_by(&["linear", "published"]),
+            ),
             row(
                 "mesh_damping_ratio",
                 "-",
@@ -141,8 +137,7 @@ impl Keys for Rig {
                  stiffness",
                 field!(mesh_damping_ratio),
             )
-            .range(Range::below_one().help("measured ratios are 0.03 to 0.17"))
-            .ignored_by(&["linear", "published"]),
+            .range(Range::below_one().help("measured ratios are 0.03 to 0.17")),
         ]
     }
 }
@@ -243,6 +238,11 @@ pub enum DampingRatio {
 }
 
 impl DampingRatio {
+    /// (-) The ratio that all modes have in common; that of the lowest one where each has its own.
+    pub(crate) fn of_all_modes(&self) -> f64 {
+        self.per_mode()[0]
+    }
+
     /// (-) The ratio of each mode, in the order of rising natural frequency.
     pub fn per_mode(&self) -> [f64; 13] {
         match *self {

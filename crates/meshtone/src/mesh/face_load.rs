@@ -5,7 +5,7 @@
 //! the time loop a pair is the spring that this is about the nominal load: the stiffness of the length that bears, closed where
 //! its middle is, with the load at its centroid.
 
-use super::contact_pairs::ContactState;
+use super::path_table::PairState;
 
 /// Flanks that close by more towards one end of the face.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -106,7 +106,7 @@ impl FaceLoad {
     /// * `state` - of a pair that bears from the end of the face at negative z to one that is as far from the other end as twice
     ///   its face centre
     /// * `middle_m` - (m) where along the face the separation stays as it is
-    pub(crate) fn lean(&self, state: &mut ContactState, middle_m: f64) {
+    pub(crate) fn lean(&self, state: &mut PairState, middle_m: f64) {
         let half_m = self.face.width_m / 2.0;
         let (from_m, until_m) = (-half_m, half_m + 2.0 * state.face_centre_m);
         let bearing = self.bearing(from_m, until_m);
@@ -135,8 +135,8 @@ mod tests {
         FaceLoad::new(face, force_n / STIFFNESS)
     }
 
-    fn leaned(face: &FaceLoad) -> ContactState {
-        let mut state = ContactState { stiffness_n_per_m: STIFFNESS, separation_m: 0.0, face_centre_m: 0.0 };
+    fn leaned(face: &FaceLoad) -> PairState {
+        let mut state = PairState { stiffness_n_per_m: STIFFNESS, separation_m: 0.0, face_centre_m: 0.0 };
         face.lean(&mut state, face.middle_m());
         state
     }
@@ -212,7 +212,7 @@ mod tests {
     fn a_part_that_is_missing_is_missed() {
         let face = face(5.0, 200.0, 0.0);
         let mut chipped =
-            ContactState { stiffness_n_per_m: STIFFNESS, separation_m: 0.0, face_centre_m: -0.0025 };
+            PairState { stiffness_n_per_m: STIFFNESS, separation_m: 0.0, face_centre_m: -0.0025 };
         face.lean(&mut chipped, face.middle_m());
         assert!(chipped.separation_m > 1e-6 && chipped.face_centre_m < leaned(&face).face_centre_m);
     }

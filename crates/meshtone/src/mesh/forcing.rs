@@ -1,50 +1,491 @@
-//! The right-hand side in blocks of samples, as fast as the solution.
+//! What drives the machine, sample by sample: motor and brake, and the pairs of each mesh.
 
-use super::contact_forcing::PairsBlock;
+use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
 
-/// Forcing of successive samples.
+use super::deviations::{Eccentricity, FlankErrors, PairDeviations};
+use super::gear_mesh::{Mesh, PairTable};
+use super::path_table::PairState;
+use crate::operation::{Motion, TimeGrid};
+use crate::wheel::WheelName;
+
+/// Most pairs that a step looks at: as many as reach from `ε + 0.6` back to `−0.6` base pitches.
+pub(crate) const PAIRS: usize = 3;
+
+/// Forcing of successive samples of one simulation.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct ForcingBlock {
-    /// (N) Force of the flanks' deviations in each of the mesh's directions that the solution uses.
-    pub(crate) errors: Vec<Vec<f64>>,
-    /// Entries of the mesh's table, where they are known beforehand.
-    pub(crate) entries: Vec<u32>,
-    /// The pairs, under `contact`.
-    pub(crate) pairs: PairsBlock,
-    /// (rad) Angle of the motor less that of the rigid rotation at the nominal speed.
-    pub(crate) motor_lead_rad: Vec<f64>,
-    /// (N m) Torque of the brake less its nominal value.
-    pub(crate) torque_deviation_nm: Vec<f64>,
-    /// (rad/s) Speed of the motor less the nominal one.
-    pub(crate) speed_deviation_rad_per_s: Vec<f64>,
+pub struct ForcingBlock {
+    /// How motor and brake differ from their nominal motion; empty while both are steady.
+    pub external: ExternalBlock,
+    /// The pairs of each mesh.
+    pub meshes: Vec<PairsBlock>,
 }
 
-impl ForcingBlock {
-    /// Forgets the samples before and makes room for `samples` of `directions` directions, without errors.
-    pub(crate) fn clear(&mut self, directions: usize, samples: usize) {
-        self.errors.resize_with(directions, Vec::new);
-        for errors in &mut self.errors {
-            errors.clear();
-            errors.resize(samples, 0.0);
-        }
-        self.entries.clear();
-        self.motor_lead_rad.clear();
-        self.torque_deviation_nm.clear();
-        self.speed_deviation_rad_per_s.clear();
+/// How motor and brake differ from the nominal motion at successive samples.
+#[derive(Debug, Clone, Default)]
+pub struct ExternalBlock {
+    /// (rad) Angle of the motor less that of the rigid rotation at the nominal speed.
+    pub motor_lead_rad: Vec<f64>,
+    /// (N m) Torque of the brake less its nominal value.
+    pub torque_deviation_nm: Vec<f64>,
+    /// (rad/s) Speed of the motor less the nominal one.
+    pub speed_deviation_rad_per_s: Vec<f64>,
+}
+
+impl ExternalBlock {
+    /// All three, in this order.
+    pub(crate) fn parts(&self) -> [&Vec<f64>; 3] {
+        [&self.motor_lead_rad, &self.torque_deviation_nm, &self.speed_deviation_rad_per_s]
     }
 }
 
-/// Produces the forcing of one simulation, block by block.
-pub(crate) trait Forcing {
-    /// The next `samples` samples.
-    fn next_block(&mut self, samples: usize, block: &mut ForcingBlock);
+/// The pairs of one mesh at successive samples. Pair n is in place `n mod PAIRS`.
+#[derive(Debug, Clone, Default)]
+pub struct PairsBlock {
+    /// (N/m) Stiffness; 0 where there is no pair.
+    pub stiffness: [Vec<f64>; PAIRS],
+    /// (m) What the pair's deviation and separation add to the deflection, with the damping's lead: `o + τ ȯ`, `o = e − S`.
+    pub offset: [Vec<f64>; PAIRS],
+    /// (m) Where along the face the load acts; empty where that is the middle throughout.
+    pub face_centre: Vec<f64>,
 }
 
-/// What forces one simulation.
-pub(crate) trait ForcingSource: Sync {
-    /// Forcing from the first simulated sample on.
+impl PairsBlock {
+    /// Room for `samples` samples, whatever they hold: the tabulated forcing sets each.
+    fn resize(&mut self, samples: usize, tilts: bool) {
+        for values in self.stiffness.iter_mut().chain(&mut self.offset) {
+            values.resize(samples, 0.0);
+        }
+        self.face_centre.resize(if tilts { samples } else { 0 }, 0.0);
+    }
+
+    /// `samples` samples without pairs.
+    fn clear(&mut self, samples: usize, tilts: bool) {
+        self.resize(0, false);
+        self.resize(samples, tilts);
+    }
+}
+
+/// Forcing of one simulation, block by block.
+pub struct Forcing<'a> {
+    motion: Motion<'a>,
+    is_steady: bool,
+    /// Number of the next sample.
+    sample: usize,
+    samples_per_revolution: f64,
+    step_s: f64,
+    nominal_speed_hz: f64,
+    nominal_torque_nm: f64,
+    meshes: Vec<MeshForcing<'a>>,
+    /// (rev) Rotation of the motor at the samples of a block, where a mesh needs it.
+    revolutions: Vec<f64>,
+}
+
+impl<'a> Forcing<'a> {
+    /// Forcing from sample `first_sample` on.
     ///
     /// # Arguments
-    /// * `directions` - which of the mesh's constant directions the solution uses
-    fn forcing(&self, directions: &[usize]) -> Box<dyn Forcing + '_>;
+    /// * `motion` - motor and brake from the start
+    /// * `time` - division of time
+    /// * `nominal` - (Hz, N m) nominal speed and torque
+    /// * `first_sample` - beyond 0 only while motor and brake are steady
+    /// * `meshes` - each mesh, with the deviations of its flanks
+    pub fn new(
+        motion: Motion<'a>,
+        time: &TimeGrid,
+        [nominal_speed_hz, nominal_torque_nm]: [f64; 2],
+        first_sample: usize,
+        meshes: impl IntoIterator<Item = (&'a Mesh, PairDeviations<'a>)>,
+    ) -> Self {
+        let is_steady = motion.is_steady() && motion.has_constant_torque();
+        let meshes = meshes.into_iter().map(|(mesh, deviations)| {
+            let turning = mesh.turning;
+            let per_revolution = mesh.points_per_pitch as f64 * turning.pitches_per_revolution;
+            // The ratio of a wheel's speed to the motor's is rarely an exact number.
+            let points_per_sample = per_revolution / time.samples_per_pinion_revolution as f64;
+            let every_sample_is_a_point =
+                is_steady && turning.first_pitch == 0.0 && (points_per_sample - 1.0).abs() < ROUNDING;
+            MeshForcing::new(mesh, &deviations, time.step_s(), every_sample_is_a_point)
+        });
+        Self {
+            motion,
+            is_steady,
+            sample: first_sample,
+            samples_per_revolution: time.samples_per_pinion_revolution as f64,
+            step_s: time.step_s(),
+            nominal_speed_hz,
+            nominal_torque_nm,
+            meshes: meshes.collect(),
+            revolutions: Vec::new(),
+        }
+    }
+
+    /// Sets a block to the next `samples` samples.
+    ///
+    /// # Arguments
+    /// * `samples` - how many
+    /// * `block` - is overwritten
+    pub fn next_block(&mut self, samples: usize, block: &mut ForcingBlock) {
+        self.revolutions.clear();
+        if !self.is_steady {
+            self.follow_motion(samples, &mut block.external);
+        } else if self.meshes.iter().any(|mesh| mesh.tables.is_none()) {
+            let turned = |k: usize| (self.sample + k) as f64 / self.samples_per_revolution;
+            self.revolutions.extend((0..samples).map(turned));
+        }
+        block.meshes.resize_with(self.meshes.len(), PairsBlock::default);
+        for (mesh, pairs) in self.meshes.iter_mut().zip(&mut block.meshes) {
+            mesh.next_block(self.sample, samples, &self.revolutions, pairs);
+        }
+        self.sample += samples;
+    }
+
+    fn follow_motion(&mut self, samples: usize, block: &mut ExternalBlock) {
+        block.motor_lead_rad.clear();
+        block.torque_deviation_nm.clear();
+        block.speed_deviation_rad_per_s.clear();
+        for (k, motion) in self.motion.by_ref().take(samples).enumerate() {
+            let rotation = self.nominal_speed_hz * ((self.sample + k) as f64 * self.step_s);
+            self.revolutions.push(motion.revolutions);
+            block.motor_lead_rad.push(TAU * (motion.revolutions - rotation));
+            block.torque_deviation_nm.push(motion.torque_nm - self.nominal_torque_nm);
+            block.speed_deviation_rad_per_s.push(TAU * (motion.speed_hz - self.nominal_speed_hz));
+        }
+    }
+}
+
+/// Relative difference of two rates below which they are the same but for rounding.
+const ROUNDING: f64 = 1e-13;
+
+/// How a mesh turns with the motor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turning {
+    /// (-) Pairs that meet in a revolution of the motor.
+    pub pitches_per_revolution: f64,
+    /// (base pitches) Position of pair 0 at the start of the simulation.
+    pub first_pitch: f64,
+}
+
+/// Forcing of one mesh.
+struct MeshForcing<'a> {
+    mesh: &'a Mesh,
+    pinion: FlankErrors<'a>,
+    gear: FlankErrors<'a>,
+    eccentricity: Option<Eccentricity>,
+    /// Whether the load moves along the face.
+    tilts: bool,
+    /// (-) τ over the time step.
+    lead: f64,
+    /// The pairs at every point, where every sample is a point of the mesh's tables.
+    tables: Option<TabulatedPairs>,
+    /// (m) Offset of each place's pair at the two samples before, with the pair's number, where it is not.
+    before: [(i64, [f64; 2]); PAIRS],
+}
+
+/// Pairs at every point of their tables, with the damping's lead.
+struct TabulatedPairs {
+    /// (N/m) By class.
+    stiffness: Vec<Vec<f64>>,
+    /// (m) By class, `−S` less that of sound pairs.
+    further_apart_m: Vec<Vec<f64>>,
+    /// (m) Deviation by tooth.
+    pinion_m: Vec<Vec<f64>>,
+    /// (m) Deviation by tooth, and `−S` of sound pairs: all that most pairs need beside the pinion's.
+    gear_m: Vec<Vec<f64>>,
+    /// By class; none where the load stays midway along the face.
+    bearing: Vec<BorneLoad>,
+}
+
+/// The class of sound pairs.
+const SOUND: usize = 0;
+
+/// The part of the nominal load that a class of pairs bears, at every point of a pair.
+struct BorneLoad {
+    /// (N) Load.
+    load: Vec<f64>,
+    /// (N m) Its moment about the middle of the face.
+    moment: Vec<f64>,
+    /// Whether it acts beside the middle anywhere.
+    leans: bool,
+}
+
+impl BorneLoad {
+    fn of(mesh: &Mesh, table: &PairTable) -> Self {
+        let load: Vec<f64> = table.states.iter().map(|state| borne_n(mesh, state)).collect();
+        let moment: Vec<f64> =
+            load.iter().zip(&table.states).map(|(load, state)| load * state.face_centre_m).collect();
+        let leans = table.states.iter().any(|state| state.face_centre_m != 0.0);
+        Self { load, moment, leans }
+    }
+}
+
+/// Makes an offset at uniform points `o + τ ȯ`, the derivative by central differences: one to the point before would be late by half
+/// a step, and the motion's error of the first order.
+fn add_lead(offset_m: &mut [f64], lead: f64) {
+    let mut before = offset_m.first().copied().unwrap_or(0.0);
+    for n in 0..offset_m.len() {
+        let now = offset_m[n];
+        let after = offset_m.get(n + 1).copied().unwrap_or(now);
+        offset_m[n] += lead / 2.0 * (after - before);
+        before = now;
+    }
+}
+
+impl TabulatedPairs {
+    fn new(
+        mesh: &Mesh,
+        flanks: [&FlankErrors; 2],
+        eccentricity: Option<&Eccentricity>,
+        tilts: bool,
+        lead: f64,
+    ) -> Self {
+        let sound = &mesh.classes[SOUND].states;
+        let tabulate = |wheel: WheelName| -> Vec<Vec<f64>> {
+            let positions = (0..mesh.points()).map(|point| mesh.position(point));
+            let mut tables = flanks[wheel as usize].tabulate_at(positions);
+            tables.resize_with(mesh.sequence.teeth_of(wheel), || vec![0.0; mesh.points()]);
+            if let Some(eccentricity) = eccentricity {
+                eccentricity.add_to(&mut tables, mesh, wheel);
+            }
+            if wheel == WheelName::Gear {
+                let apart = |(deviation, state): (&mut f64, &PairState)| *deviation -= state.separation_m;
+                tables.iter_mut().for_each(|table| table.iter_mut().zip(sound).for_each(apart));
+            }
+            tables.iter_mut().for_each(|table| add_lead(table, lead));
+            tables
+        };
+        let further_apart = |class: &PairTable| {
+            let states = sound.iter().zip(&class.states);
+            let mut further_m: Vec<f64> =
+                states.map(|(sound, state)| sound.separation_m - state.separation_m).collect();
+            add_lead(&mut further_m, lead);
+            further_m
+        };
+        Self {
+            stiffness: (mesh.classes.iter())
+                .map(|class| class.states.iter().map(|state| state.stiffness_n_per_m).collect())
+                .collect(),
+            further_apart_m: mesh.classes.iter().map(further_apart).collect(),
+            bearing: (mesh.classes.iter().filter(|_| tilts))
+                .map(|class| BorneLoad::of(mesh, class))
+                .collect(),
+            pinion_m: tabulate(WheelName::Pinion),
+            gear_m: tabulate(WheelName::Gear),
+        }
+    }
+}
+
+impl<'a> MeshForcing<'a> {
+    fn new(
+        mesh: &'a Mesh,
+        deviations: &PairDeviations<'a>,
+        step_s: f64,
+        every_sample_is_a_point: bool,
+    ) -> Self {
+        let [pinion, gear] = FlankErrors::of_both(deviations);
+        let lead = mesh.damping_time_s / step_s;
+        let eccentricity = Eccentricity::of(deviations);
+        let tilts = mesh.tilts();
+        let tables = every_sample_is_a_point
+            .then(|| TabulatedPairs::new(mesh, [&pinion, &gear], eccentricity.as_ref(), tilts, lead));
+        let before = [(i64::MIN, [0.0; 2]); PAIRS];
+        Self { mesh, pinion, gear, eccentricity, tilts, lead, tables, before }
+    }
+
+    /// Sets a block to `samples` samples from `first` on.
+    ///
+    /// # Arguments
+    /// * `revolutions` - (rev) rotation of the motor at each, where the samples are not points of the tables
+    fn next_block(&mut self, first: usize, samples: usize, revolutions: &[f64], block: &mut PairsBlock) {
+        match &self.tables {
+            Some(tables) => {
+                block.resize(samples, self.tilts);
+                self.copy_from(tables, first, block);
+            }
+            None => {
+                block.clear(samples, self.tilts);
+                self.read_between_points(revolutions, block);
+            }
+        }
+    }
+
+    /// Copies the pairs at successive points from their tables. Each place of the block holds every third pair, one after the other,
+    /// so that whole ranges are copied, and zeros between them.
+    fn copy_from(&self, tables: &TabulatedPairs, first: usize, block: &mut PairsBlock) {
+        let (per_pitch, before) = (self.mesh.points_per_pitch, self.mesh.points_before);
+        let samples = block.stiffness[0].len();
+        // Sample s is point s + before of pair 0, and each pair begins a pitch after the one before.
+        let (first_point, last_point) = (first + before, first + samples - 1 + before);
+        let oldest = (first_point as i64 - self.mesh.points() as i64).div_euclid(per_pitch as i64) + 1;
+        let pairs = oldest..=(last_point / per_pitch) as i64;
+        let mut set = [0; PAIRS];
+        let mut leans = false;
+        for pair in pairs.clone() {
+            let Some(Part { from, until, point }) = self.part(pair, first, samples) else { continue };
+            let range = point..point + until - from;
+            let place = pair.rem_euclid(PAIRS as i64) as usize;
+            let class = self.mesh.sequence.class(pair);
+            leans |= tables.bearing.get(class).is_some_and(|bearing| bearing.leans);
+            block.stiffness[place][set[place]..from].fill(0.0);
+            block.offset[place][set[place]..from].fill(0.0);
+            set[place] = until;
+            block.stiffness[place][from..until].copy_from_slice(&tables.stiffness[class][range.clone()]);
+            let offsets = &mut block.offset[place][from..until];
+            let (pinion_tooth, gear_tooth) = self.mesh.sequence.teeth(pair);
+            let pinion = &tables.pinion_m[pinion_tooth][range.clone()];
+            let gear = &tables.gear_m[gear_tooth][range.clone()];
+            for (offset, (pinion, gear)) in offsets.iter_mut().zip(pinion.iter().zip(gear)) {
+                *offset = pinion + gear;
+            }
+            if class != SOUND {
+                for (offset, further) in offsets.iter_mut().zip(&tables.further_apart_m[class][range]) {
+                    *offset += further;
+                }
+            }
+        }
+        for (place, set) in set.into_iter().enumerate() {
+            block.stiffness[place][set..].fill(0.0);
+            block.offset[place][set..].fill(0.0);
+        }
+        block.face_centre.fill(0.0);
+        if leans {
+            self.find_face_centre(tables, pairs, first, &mut block.face_centre);
+        }
+    }
+
+    /// The samples of a block from `first` on in which a pair takes part.
+    fn part(&self, pair: i64, first: usize, samples: usize) -> Option<Part> {
+        let since_first =
+            pair * self.mesh.points_per_pitch as i64 - self.mesh.points_before as i64 - first as i64;
+        let from = since_first.max(0);
+        let until = (since_first + self.mesh.points() as i64).min(samples as i64);
+        let part =
+            || Part { from: from as usize, until: until as usize, point: (from - since_first) as usize };
+        (from < until).then(part)
+    }
+
+    /// (m) Where along the face the load of all pairs acts at the samples of a block.
+    fn find_face_centre(
+        &self,
+        tables: &TabulatedPairs,
+        pairs: RangeInclusive<i64>,
+        first: usize,
+        face_centre: &mut [f64],
+    ) {
+        let mut whole_load = vec![0.0; face_centre.len()];
+        for pair in pairs {
+            let Some(Part { from, until, point }) = self.part(pair, first, face_centre.len()) else {
+                continue;
+            };
+            let bearing = &tables.bearing[self.mesh.sequence.class(pair)];
+            let sums = face_centre[from..until].iter_mut().zip(&mut whole_load[from..until]);
+            let of_pair = bearing.moment[point..].iter().zip(&bearing.load[point..]);
+            for ((moments, whole), (moment, load)) in sums.zip(of_pair) {
+                *moments += moment;
+                *whole += load;
+            }
+        }
+        for (k, (moment, whole)) in face_centre.iter_mut().zip(whole_load).enumerate() {
+            *moment = if whole > 0.0 { *moment / whole } else { self.face_centre_m(first + k) };
+        }
+    }
+
+    /// (m) Where along the face the load of all pairs acts: where all are further apart than the nominal load presses the mean mesh
+    /// together, or without a load, that of the nearest pair.
+    fn face_centre_m(&self, point: usize) -> f64 {
+        let (mut moment, mut whole) = (0.0, 0.0);
+        let (mut least_m, mut of_nearest) = (f64::INFINITY, 0.0);
+        for (_, state) in self.mesh.pairs_at(point) {
+            let load = borne_n(self.mesh, state);
+            moment += load * state.face_centre_m;
+            whole += load;
+            if state.stiffness_n_per_m > 0.0 && state.separation_m < least_m {
+                (least_m, of_nearest) = (state.separation_m, state.face_centre_m);
+            }
+        }
+        if whole > 0.0 { moment / whole } else { of_nearest }
+    }
+
+    /// Reads the tables between their points, at any rotation of the motor.
+    fn read_between_points(&mut self, revolutions: &[f64], block: &mut PairsBlock) {
+        let (mesh, per_pitch) = (self.mesh, self.mesh.points_per_pitch as f64);
+        for (k, revolutions) in revolutions.iter().enumerate() {
+            let pitches = mesh.turning.first_pitch + revolutions * mesh.turning.pitches_per_revolution;
+            let eccentric = self.eccentricity.as_ref().map_or(0.0, |eccentricity| {
+                let of_wheel =
+                    |wheel| eccentricity.of_wheel_m(wheel, pitches / mesh.sequence.teeth_of(wheel) as f64);
+                WheelName::BOTH.map(of_wheel).iter().sum()
+            });
+            let latest = (pitches + mesh.points_before as f64 / per_pitch).floor() as i64;
+            for pair in latest + 1 - PAIRS as i64..=latest {
+                let place = pair.rem_euclid(PAIRS as i64) as usize;
+                let position = pitches - pair as f64;
+                let point = position * per_pitch + mesh.points_before as f64;
+                let states = &mesh.classes[mesh.sequence.class(pair)].states;
+                let (index, part) = (point.floor().max(0.0) as usize, point - point.floor());
+                let Some([here, next]) = states.get(index..index + 2) else {
+                    self.before[place] = (i64::MIN, [0.0; 2]);
+                    continue;
+                };
+                let between = |a: f64, b: f64| a + part * (b - a);
+                let (pinion_tooth, gear_tooth) = mesh.sequence.teeth(pair);
+                let offset = self.pinion.at_position_m(pinion_tooth, position)
+                    + self.gear.at_position_m(gear_tooth, position)
+                    + eccentric
+                    - between(here.separation_m, next.separation_m);
+                let [last, last_but_one] =
+                    if self.before[place].0 == pair { self.before[place].1 } else { [f64::NAN; 2] };
+                self.before[place] = (pair, [offset, last]);
+                block.stiffness[place][k] = between(here.stiffness_n_per_m, next.stiffness_n_per_m);
+                // The next one is not known: the slope here of the parabola through the last three, or of the line through two.
+                let change = if last.is_nan() {
+                    0.0
+                } else if last_but_one.is_nan() {
+                    offset - last
+                } else {
+                    1.5 * offset - 2.0 * last + 0.5 * last_but_one
+                };
+                block.offset[place][k] = offset + self.lead * change;
+            }
+            if self.tilts {
+                block.face_centre[k] = self.face_centre_m((pitches * per_pitch).round().max(0.0) as usize);
+            }
+        }
+    }
+}
+
+/// The samples of a block in which a pair takes part, and its point at the first of them.
+struct Part {
+    from: usize,
+    until: usize,
+    point: usize,
+}
+
+/// (N) The part of the nominal load, which presses the mean mesh together, that a pair bears: its weight where the place of the load
+/// along the face is found.
+fn borne_n(mesh: &Mesh, state: &PairState) -> f64 {
+    state.stiffness_n_per_m * (mesh.nominal_deflection_m - state.separation_m).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scenario::{Fault, GearPair, Scenario, ToothBreakage};
+    use crate::simulate::stages;
+
+    use super::ForcingBlock;
+
+    // Also where all pairs are further apart than the load presses the mesh together, as without a load.
+    #[test]
+    fn damage_on_a_side_moves_the_load_at_any_torque() {
+        for brake_torque_nm in [0.0, 10.0] {
+            let mut scenario = Scenario::new(GearPair { brake_torque_nm, ..GearPair::example() });
+            let chip = ToothBreakage { chip_height_mm: 6.0, chip_width_mm: 14.0, tip_loss_mm: 0.0 };
+            scenario.faults = vec![Fault::on_first_gear_tooth(chip)];
+            let stages = stages(&scenario).unwrap();
+            let mut block = ForcingBlock::default();
+            let revolution = 3 * stages.time.samples_per_pinion_revolution;
+            stages.lane(&[]).unwrap().forcing.next_block(revolution, &mut block);
+            assert!(block.meshes[0].face_centre.iter().any(|z_m| *z_m < -1e-3), "{brake_torque_nm} N m");
+        }
+    }
 }

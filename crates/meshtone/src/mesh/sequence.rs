@@ -175,12 +175,12 @@ mod tests {
     #[test]
     fn every_class_is_met_as_often_as_counted() {
         use crate::damage::damaged_teeth;
-        use crate::model::Model;
+
         use crate::scenario::{Fault, Gears, MissingTooth};
         use crate::wheel::{WheelName, teeth};
 
         for (z_p, z_g) in [(17, 38), (20, 45), (25, 30), (12, 36)] {
-            let healthy = teeth(&Gears::new(3.0, z_p, z_g, 15.0), [10.0; 2], Model::Linear);
+            let healthy = teeth(&Gears::new(3.0, z_p, z_g, 15.0), [10.0; 2]);
             let missing = |wheel, tooth: u32| Fault::new(wheel, tooth, MissingTooth);
             let faults =
                 [missing(WheelName::Pinion, 1), missing(WheelName::Gear, 1), missing(WheelName::Gear, 6)];

@@ -2,11 +2,8 @@
 
 use std::ops::Range;
 
-use super::contact_forcing::PAIRS;
-use super::contact_mesh::ContactMesh;
-use super::contact_pairs::ContactState;
-use super::law::{ContactSample, deflection_at_rest};
-use crate::simd::Lanes;
+use super::gear_mesh::Mesh;
+use super::path_table::PairState;
 
 /// A mesh at rest, point by point.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,7 +24,7 @@ impl StaticMesh {
     }
 }
 
-impl ContactMesh {
+impl Mesh {
     /// The mesh at rest under a force over some pitches, `Σ k_n max(0, δ − S_n) = F`: of teeth without deviations, with their
     /// relief, chamfer and damage.
     ///
@@ -38,12 +35,11 @@ impl ContactMesh {
     /// ```
     /// use std::num::NonZeroUsize;
     ///
-    /// use meshtone::scenario::{GearPair, Model, Scenario};
+    /// use meshtone::scenario::{GearPair, Scenario};
     ///
-    /// let mut scenario = Scenario::new(GearPair::example());
-    /// scenario.model = Model::Contact;
+    /// let scenario = Scenario::new(GearPair::example());
     /// let stages = meshtone::stages(&scenario)?;
-    /// let mesh = stages.contact_mesh(NonZeroUsize::new(100).unwrap())?.unwrap();
+    /// let mesh = &stages.meshes_at(NonZeroUsize::new(100).unwrap())?[0];
     /// let at_rest = mesh.at_rest(stages.static_force_n(), 0..2);
     /// assert!(at_rest.deflection_m.iter().all(|deflection| (0.5e-6..2e-6).contains(deflection)));
     /// # Ok::<(), meshtone::scenario::ScenarioError>(())
@@ -60,27 +56,25 @@ impl ContactMesh {
         let mut pair_force_n = vec![vec![0.0; points.len()]; rows];
         let mut deflection_m = Vec::with_capacity(points.len());
         for (column, point) in points.enumerate() {
-            let mut sample = ContactSample::<1>::NOTHING;
-            for (slot, (_, state)) in self.pairs_at(point).take(PAIRS).enumerate() {
-                sample.stiffness[slot] = Lanes([state.stiffness_n_per_m]);
-                sample.offset[slot] = Lanes([-state.separation_m]);
-            }
-            if sample.stiffness.iter().all(|stiffness| stiffness.0[0] == 0.0) {
+            let states = self.pairs_at(point).map(|(_, state)| state);
+            let Some(deflection) = self.deflection_at_rest(states, force_n) else {
                 deflection_m.push(f64::NAN);
                 continue;
-            }
-            let deflection = deflection_at_rest(&sample, 0, force_n);
+            };
             deflection_m.push(deflection);
             for (pair, state) in self.pairs_at(point) {
-                pair_force_n[(pair - first_pair) as usize][column] =
-                    state.stiffness_n_per_m * (deflection - state.separation_m).max(0.0);
+                let penetration = deflection - state.separation_m;
+                if self.contact.touches(penetration) {
+                    pair_force_n[(pair - first_pair) as usize][column] =
+                        state.stiffness_n_per_m * penetration;
+                }
             }
         }
         StaticMesh { deflection_m, first_pair, pair_force_n }
     }
 
     /// The pairs whose tables reach a point, counted from the start of the simulation: the newest first.
-    pub(super) fn pairs_at(&self, point: usize) -> impl Iterator<Item = (i64, &ContactState)> {
+    pub(super) fn pairs_at(&self, point: usize) -> impl Iterator<Item = (i64, &PairState)> {
         let (newest, since) = (
             (point + self.points_before) / self.points_per_pitch,
             (point + self.points_before) % self.points_per_pitch,
@@ -98,17 +92,16 @@ mod tests {
     use std::num::NonZeroUsize;
 
     use super::*;
-    use crate::scenario::{Fault, GearPair, MissingTooth, Model, Scenario};
+    use crate::scenario::{Fault, GearPair, MissingTooth, Scenario};
     use crate::simulate::stages;
     use crate::wheel::{FlankRelief, ReliefShape};
 
-    fn mesh(change: impl FnOnce(&mut Scenario)) -> ContactMesh {
+    fn mesh(change: impl FnOnce(&mut Scenario)) -> Mesh {
         let mut scenario = Scenario::new(GearPair::example());
-        scenario.model = Model::Contact;
         scenario.gears.tip_chamfer_mm = Some(0.0);
         change(&mut scenario);
         let points = NonZeroUsize::new(200).unwrap();
-        stages(&scenario).unwrap().contact_mesh(points).unwrap().unwrap()
+        stages(&scenario).unwrap().meshes_at(points).unwrap().swap_remove(0)
     }
 
     /// The force of the pairs at a point, the newest first.

@@ -127,28 +127,6 @@ impl CycleGrid {
         }
     }
 
-    /// The division of the cycle as the published code has it: a pitch has `⌈(1/z_p)/d_f⌉` fine points, in floating point. Where
-    /// that quotient is a rounding error above a whole number (20 and 25 teeth), every pitch is a fine point too long.
-    pub(crate) fn as_published(mut self, pinion_teeth: u32, gear_teeth: u32) -> Self {
-        let quotient = (1.0 / f64::from(pinion_teeth)) / self.fine_step_rev;
-        self.fine_points_per_pitch = quotient.ceil() as usize;
-        if !self.pitch_is_whole() {
-            let fine_points = self.fine_points_per_pitch.saturating_mul(gear_teeth as usize);
-            self.points_per_gear_revolution = fine_points.div_ceil(FINE_PER_COARSE);
-        }
-        self
-    }
-
-    /// Whether a pitch is a whole number of coarse points.
-    pub(crate) fn pitch_is_whole(&self) -> bool {
-        self.fine_points_per_pitch == FINE_PER_COARSE * self.points_per_pitch
-    }
-
-    /// Number of coarse points at which a pair that spans `span_rev` is in contact.
-    pub fn coarse_points_in(&self, span_rev: f64) -> usize {
-        self.fine_points_in(span_rev).div_ceil(FINE_PER_COARSE)
-    }
-
     /// Number of fine points at which a pair that spans `span_rev` is in contact.
     pub fn fine_points_in(&self, span_rev: f64) -> usize {
         (span_rev / self.fine_step_rev * (1.0 + 1e-14)) as usize + 1

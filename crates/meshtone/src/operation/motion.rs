@@ -1,13 +1,11 @@
-//! What motor and brake do, sample by sample.
+//! The motion of motor and brake, sample by sample.
 
 use super::{Operation, Profile, TimeGrid};
-use crate::model::Model;
 use crate::random::{Draws, Purpose};
 
 /// The motor's angle and speed and the brake's torque at successive samples: an iterator without end.
 pub struct Motion<'a> {
     operation: &'a Operation,
-    model: Model,
     step_s: f64,
     samples_per_revolution: f64,
     sample: usize,
@@ -34,13 +32,11 @@ impl<'a> Motion<'a> {
     /// # Arguments
     /// * `operation` - speed, load, their profiles and fluctuations
     /// * `seed` - of the fluctuations
-    /// * `model` - how the angle follows from the speed
     /// * `time` - division of time
-    pub fn new(operation: &'a Operation, seed: u64, model: Model, time: &TimeGrid) -> Self {
+    pub fn new(operation: &'a Operation, seed: u64, time: &TimeGrid) -> Self {
         let draws = |half_width: f64, purpose| (half_width > 0.0).then(|| Draws::new(seed, purpose, 0));
         let mut motion = Self {
             operation,
-            model,
             step_s: time.step_s(),
             samples_per_revolution: time.samples_per_pinion_revolution as f64,
             sample: 0,
@@ -70,12 +66,12 @@ impl<'a> Motion<'a> {
         profile.map_or(constant, |profile| profile_at(profile, self.sample as f64 * self.step_s))
     }
 
-    /// Whether the motor's speed is constant.
+    /// Returns whether the motor's speed is constant.
     pub(crate) fn is_steady(&self) -> bool {
         self.speed_draws.is_none() && self.operation.speed_profile_hz.is_none()
     }
 
-    /// Whether the brake's torque is constant.
+    /// Returns whether the brake's torque is constant.
     pub(crate) fn has_constant_torque(&self) -> bool {
         self.torque_draws.is_none() && self.operation.torque_profile_nm.is_none()
     }
@@ -92,16 +88,10 @@ impl Iterator for Motion<'_> {
         };
         self.sample += 1;
         self.speed_hz = self.draw_speed();
-        self.revolutions = match self.model {
-            // Model: the published code adds up sample by sample, and its rounding errors decide which
-            // of two equally near grid points a sample is given.
-            Model::Published => self.revolutions + here.speed_hz * self.step_s,
-            Model::Linear | Model::Contact if self.is_steady() => {
-                self.sample as f64 / self.samples_per_revolution
-            }
-            Model::Linear | Model::Contact => {
-                self.revolutions + 0.5 * (here.speed_hz + self.speed_hz) * self.step_s
-            }
+        self.revolutions = if self.is_steady() {
+            self.sample as f64 / self.samples_per_revolution
+        } else {
+            self.revolutions + 0.5 * (here.speed_hz + self.speed_hz) * self.step_s
         };
         Some(here)
     }

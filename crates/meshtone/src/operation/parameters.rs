@@ -6,7 +6,7 @@ use crate::keys::{
     Check, KeyKind, KeyValue, Keys, NumberFiles, Range, Row, Written, array, field, load, row,
 };
 
-/// How the pair is driven and loaded.
+/// Drive and load of the pair.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Operation {
@@ -29,7 +29,7 @@ impl Operation {
     /// Constant speed and load.
     ///
     /// # Arguments
-    /// As the fields of the same names.
+    /// They are the fields of the same names.
     pub fn new(pinion_speed_hz: f64, brake_torque_nm: f64) -> Self {
         Self {
             pinion_speed_hz,
@@ -43,6 +43,8 @@ impl Operation {
 }
 
 impl Keys for Operation {
+    const SECTION: &str = "operation";
+
     fn start() -> Self {
         Self::new(f64::NAN, f64::NAN)
     }
@@ -85,8 +87,7 @@ impl Keys for Operation {
             )
             .otherwise("none")
             .rule("at least 2 points, times increasing, values > 0")
-            .example("{ time_s = [0.0, 1.0], value = [40.0, 40.0] }")
-            .ignored_by(&["published"]),
+            .example("{ time_s = [0.0, 1.0], value = [40.0, 40.0] }"),
             row("torque_profile_nm", "s, N m", "the torque against time, likewise", field!(torque_profile_nm))
                 .otherwise("none")
                 .rule("likewise, values ≥ 0")

@@ -2,7 +2,7 @@
 
 use crate::keys::{Keys, Range, Row, field, row};
 
-/// How the equations of motion are solved.
+/// Settings of the solver of the equations of motion.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Solver {
@@ -35,6 +35,8 @@ impl Default for Solver {
 }
 
 impl Keys for Solver {
+    const SECTION: &str = "solver";
+
     fn start() -> Self {
         Self::default()
     }

@@ -55,7 +55,7 @@ impl Scenario {
         }
     }
 
-    /// The same scenario with another number at a key of the scenario file.
+    /// Returns the scenario with another number at a key of the scenario file.
     ///
     /// # Arguments
     /// * `key` - dotted, as in the file
@@ -78,7 +78,7 @@ impl Scenario {
         self.with_numbers(&[(key, value)])
     }
 
-    /// The same scenario with other numbers at some keys of the scenario file. All are set before anything is checked, so that
+    /// Returns the scenario with other numbers at some keys of the scenario file. All are set before anything is checked, so that
     /// numbers may be allowed together that are not alone.
     ///
     /// # Arguments
@@ -106,7 +106,7 @@ impl Scenario {
         })
     }
 
-    /// As [`Self::with_numbers`], but numbers at keys that this scenario does not have, such as another fault's, are left out.
+    /// Does what [`Self::with_numbers`] does, but numbers at keys that this scenario does not have, such as another fault's, are left out.
     ///
     /// # Arguments
     /// * `numbers` - dotted key, as in the file, and value in the key's unit

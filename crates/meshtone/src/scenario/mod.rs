@@ -7,10 +7,9 @@
 
 mod edit;
 mod from_toml;
-mod honoured;
+mod ignored_keys;
 mod sections;
 mod serialise;
-mod severity;
 mod template;
 mod to_toml;
 mod validate;
@@ -51,7 +50,7 @@ use crate::operation::{Motion, TimeGrid};
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Scenario {
-    /// Which model of the mesh.
+    /// Model of the mesh.
     pub model: Model,
     /// Seed of every random draw (profile errors, fluctuations, destruction noise, sensors' noise).
     pub seed: u64,
@@ -61,17 +60,17 @@ pub struct Scenario {
     pub operation: Operation,
     /// Manufacturing quality.
     pub quality: Quality,
-    /// What is broken; nothing in a healthy pair.
+    /// Faults; none in a healthy pair.
     pub faults: Vec<Fault>,
     /// The rig around the wheels.
     pub rig: Rig,
-    /// What is listed of sensors; the channels that every simulation has are there without them.
+    /// Listed sensors. Every simulation has further channels without them.
     pub sensors: Vec<Sensor>,
     /// Sampling, settling and initial state.
     pub solver: Solver,
 }
 
-/// What a scenario cannot be without: everything else has a default.
+/// The numbers that a scenario requires: everything else has a default.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GearPair {
     /// (mm) Module of both wheels.
@@ -131,7 +130,7 @@ impl Scenario {
         }
     }
 
-    /// The same scenario with other damage.
+    /// Returns the scenario with other damage.
     ///
     /// # Arguments
     /// * `faults` - what is broken; nothing in a healthy pair
@@ -147,7 +146,7 @@ impl Scenario {
         Self { faults, ..self }
     }
 
-    /// The same scenario with another seed.
+    /// Returns the scenario with another seed.
     ///
     /// # Arguments
     /// * `seed` - of every random draw
@@ -155,7 +154,7 @@ impl Scenario {
         Self { seed, ..self }
     }
 
-    /// The same scenario with other sensors.
+    /// Returns the scenario with other sensors.
     ///
     /// # Arguments
     /// * `sensors` - in the order of their channels
@@ -168,11 +167,11 @@ impl Scenario {
         TimeGrid::new(&self.gears, &self.operation, &self.solver)
     }
 
-    /// What motor and brake do, sample by sample from the start of the simulation.
+    /// Motion of motor and brake, sample by sample from the start of the simulation.
     ///
     /// # Arguments
     /// * `time` - division of time
     pub fn motion(&self, time: &TimeGrid) -> Motion<'_> {
-        Motion::new(&self.operation, self.seed, self.model, time)
+        Motion::new(&self.operation, self.seed, time)
     }
 }

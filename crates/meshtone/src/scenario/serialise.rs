@@ -25,7 +25,7 @@ impl Serialize for Scenario {
     }
 }
 
-/// What is missing has its default; what is wrong is told as of a file, by key and value.
+/// A missing key has its default; an error names key and value, as for a file.
 impl<'de> Deserialize<'de> for Scenario {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let sections = toml::Table::deserialize(deserializer)?;

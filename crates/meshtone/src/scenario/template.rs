@@ -37,7 +37,7 @@ pub fn template_kinds() -> Vec<&'static str> {
 
 /// A commented scenario file: every key with its unit, meaning and default.
 ///
-/// What follows `# ` is a comment. What follows `#` directly is a key that may be left out: take the
+/// Text after `# ` is a comment. Text directly after `#` is a key that may be left out: take the
 /// `#` away to set it.
 ///
 /// # Arguments
@@ -107,7 +107,7 @@ impl Style for Commented {
         Some(format!("{WITHOUT_FAULTS}{kinds}# kind = \"root-crack\"\n# severity = 0.4\n"))
     }
 
-    /// As a comment throughout: keys alone, without their section, would be another section's.
+    /// Writes a comment throughout: keys alone, without their section, would be another section's.
     fn without_sensors(&self) -> Option<String> {
         let keys: String = commented(&Sensor::start())
             .lines()

@@ -47,15 +47,15 @@ impl Scenario {
     }
 }
 
-/// How the keys of a section are written.
+/// Style in which the keys of a section are written.
 pub(super) trait Style {
     fn keys<S: Keys>(&self, section: &S) -> String;
     fn fault(&self, fault: &Fault) -> String;
-    /// What stands above an entry of a list.
+    /// Header above an entry of a list.
     fn entry_header(&self, name: &str, entries: usize) -> String;
-    /// What stands where nothing is broken.
+    /// Text in place of faults, where nothing is broken.
     fn without_faults(&self) -> Option<String>;
-    /// What stands where no sensor is listed.
+    /// Text in place of sensors, where none is listed.
     fn without_sensors(&self) -> Option<String>;
 }
 

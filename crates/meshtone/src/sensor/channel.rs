@@ -1,11 +1,10 @@
-//! Which signal: one that every simulation has, or a sensor's.
+//! A channel: one that every simulation has, or a sensor's.
 
 use std::borrow::Cow;
 
 use super::parameters::{channel_of, is_name};
 use super::{ChannelKind, Channels, Sensor};
 use crate::error::ScenarioError;
-use crate::model::Model;
 use crate::solver::Output;
 
 /// A signal of a simulation, by its name.
@@ -14,7 +13,7 @@ use crate::solver::Output;
 pub enum Channel {
     /// One that every simulation has.
     Fixed(ChannelKind),
-    /// That of the sensor of this name.
+    /// The channel of the sensor of this name.
     Sensor(String),
 }
 
@@ -119,7 +118,7 @@ impl Channel {
         }
     }
 
-    /// Whether it is an acceleration: a sensor's, or one that a sensor on all supports or wheels would show.
+    /// Returns whether it is an acceleration: a sensor's, or one that a sensor on all supports or wheels would show.
     pub fn is_acceleration(&self) -> bool {
         match self {
             Self::Fixed(kind) => ChannelKind::ACCELERATIONS.contains(kind),
@@ -127,19 +126,18 @@ impl Channel {
         }
     }
 
-    /// What is read off the solution for it; of a sensor, before [`measure`](super::measure()).
+    /// Output of the solution for it; of a sensor, before [`measure`](super::measure()).
     ///
     /// # Arguments
     /// * `sensors` - the scenario's
-    /// * `model` - of the mesh
     ///
     /// # Errors
     /// A sensor that the scenario does not have.
-    pub fn output(&self, sensors: &[Sensor], model: Model) -> Result<Output, ScenarioError> {
+    pub fn output(&self, sensors: &[Sensor]) -> Result<Output, ScenarioError> {
         match self {
             Self::Fixed(kind) => Ok(kind.output()),
             Self::Sensor(name) => match sensors.iter().find(|sensor| sensor.name() == *name) {
-                Some(sensor) => Ok(sensor.output(model)),
+                Some(sensor) => Ok(sensor.output()),
                 None => Err(self.unknown_among(sensors)),
             },
         }
@@ -174,7 +172,7 @@ impl Channels {
         sensors.chain(ChannelKind::ALL.map(Channel::Fixed)).collect()
     }
 
-    /// What is looked at first, and its channel: the first sensor's signal, or the vertical acceleration where none is listed.
+    /// The main signal and its channel: the first sensor's signal, or the vertical acceleration where none is listed.
     pub fn leading(&self) -> (Channel, &[f64]) {
         match self.sensors.first() {
             Some(sensor) => (Channel::Sensor(sensor.name.clone()), &sensor.values_g),

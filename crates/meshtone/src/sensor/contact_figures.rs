@@ -1,15 +1,15 @@
-//! How the teeth touched, by the force between them.
+//! Contact of the teeth, by the force between them.
 
 use super::Channels;
 
-/// How the teeth of a mesh touched over the kept time.
+/// Contact of the teeth of a mesh over the kept time.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ContactFigures {
     /// (-) Part of the time in which no teeth touched.
     pub apart_fraction: f64,
     /// (-) Part of the time in which back flanks touched.
     pub back_flank_fraction: f64,
-    /// How often back flanks hit.
+    /// Number of hits of back flanks.
     pub back_flank_hits: usize,
     /// (N) Largest force, of either sign.
     pub largest_force_n: f64,

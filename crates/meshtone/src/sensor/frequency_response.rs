@@ -62,7 +62,7 @@ impl FrequencyResponse {
         })
     }
 
-    /// What it makes of a sine.
+    /// Its complex gain for a sine.
     ///
     /// # Arguments
     /// * `frequencies_hz` - the sines' frequencies, rising

@@ -1,4 +1,4 @@
-//! What a sensor makes of the motion of its place.
+//! The signal that a sensor makes of the motion of its place.
 //!
 //! In this order: the path and the mounted resonance, noise, range, resolution.
 
@@ -8,7 +8,7 @@ use super::GRAVITY_M_PER_S2;
 use super::parameters::{ResponseInput, Sensor};
 use crate::random::{Draws, Purpose};
 
-/// What the signal of a sensor depends on, beside the sensor and the motion of its place.
+/// The conditions on which the signal of a sensor depends, besides the sensor and the motion of its place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measurement {
     /// (S/s) Sampling rate.
@@ -18,7 +18,7 @@ pub struct Measurement {
     pub is_periodic: bool,
     /// Seed of the noise, unless the sensor has its own.
     pub seed: u64,
-    /// Which of the scenario's sensors it is, from 0: each has its own noise.
+    /// Number of the sensor in the scenario, from 0: each has its own noise.
     pub index: usize,
 }
 
@@ -89,7 +89,7 @@ fn passed(raw: Vec<f64>, sensor: &Sensor, measurement: &Measurement) -> Vec<f64>
     signal
 }
 
-/// What a sensor on its mount makes of a sine: `H = ω₀²/(ω₀² − ω² + 2iζω₀ω)`.
+/// Complex gain of a sensor on its mount for a sine: `H = ω₀²/(ω₀² − ω² + 2iζω₀ω)`.
 ///
 /// # Arguments
 /// * `ratio` - (-) the sine's frequency over the natural one

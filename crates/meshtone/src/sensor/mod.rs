@@ -1,4 +1,4 @@
-//! What is read off the solution: the channels, as sensors on the rig would show them.
+//! Outputs of the solution: the channels, as sensors on the rig would show them.
 //!
 //! A channel that every simulation has is a row of one table; its name is the same in the file of signals, in the list of a data
 //! set's plan, in an experiment and in Python. Sensors that the scenario lists have channels of their own, `NAME_g`: the motion of
@@ -21,10 +21,9 @@ pub use path_ripple::PathRipple;
 
 use std::f64::consts::TAU;
 
-use crate::machine::coordinates::*;
-use crate::model::Model;
+use crate::machine::{Axis, GEAR, GEAR_SUPPORT, PINION, PINION_SUPPORT, SENSOR, WHEELS};
 use crate::operation::TimeGrid;
-use crate::solver::{Axis, Block, Output, Recorder};
+use crate::solver::{Block, Output, Recorder};
 
 /// (m/s²) One g, as the published model has it.
 pub const GRAVITY_M_PER_S2: f64 = 9.81;
@@ -40,7 +39,7 @@ macro_rules! channels {
         }
 
         impl ChannelKind {
-            /// All of them, in the order of [`Channels`]' fields.
+            /// All channels, in the order of [`Channels`]' fields.
             pub const ALL: [Self; [$($unit),+].len()] = [$(Self::$kind),+];
 
             /// Name with the unit at its end, the same wherever a channel is named.
@@ -58,7 +57,7 @@ macro_rules! channels {
                 match self { $(Self::$kind => $meaning,)+ }
             }
 
-            /// What is read off the solution.
+            /// Output of the solution.
             pub fn output(self) -> Output {
                 match self { $(Self::$kind => $output,)+ }
             }
@@ -73,7 +72,7 @@ macro_rules! channels {
             /// (s) Time of the first kept sample since the start of the simulation.
             pub start_s: f64,
             $(#[doc = concat!("(", $unit, ") ", $meaning, ".")] pub $name: Vec<f64>,)+
-            /// What the scenario's sensors show, in their order.
+            /// Signals of the scenario's sensors, in their order.
             pub sensors: Vec<SensorSignal>,
         }
 
@@ -93,48 +92,49 @@ macro_rules! channels {
 
 channels! {
     Horizontal horizontal_g "g" "horizontal acceleration of the supports, their mean, over 9.81 m/s²; under linear and published the sum of both wheels'"
-        Output::Sensor(Axis::X, PER_G);
+        acceleration_g(SENSOR, Axis::X);
     Vertical vertical_g "g" "vertical acceleration of the supports, their mean, over 9.81 m/s²; under linear and published the sum of both wheels'"
-        Output::Sensor(Axis::Y, PER_G);
+        acceleration_g(SENSOR, Axis::Y);
     Axial axial_g "g" "sum of both wheels' axial accelerations, over 9.81 m/s²"
-        Output::Sensor(Axis::Z, PER_G);
+        acceleration_g(SENSOR, Axis::Z);
     PinionShaftSpeed pinion_shaft_speed_hz "Hz" "revolutions of the pinion per second"
-        Output::Velocity(weighted(&[(THETA_PINION, 1.0 / TAU)]));
+        speed_hz(PINION);
     GearShaftSpeed gear_shaft_speed_hz "Hz" "revolutions of the gear per second"
-        Output::Velocity(weighted(&[(THETA_GEAR, -1.0 / TAU)]));
+        speed_hz(GEAR);
     MeshForce mesh_force_n "N"
         "force along the line of action; negative: back flanks touch, or the linear mesh pulls where real teeth would part"
-        Output::MeshForce;
+        Output::MeshForce { mesh: 0 };
 }
 
 /// (s²/m) One over g.
 const PER_G: f64 = 1.0 / GRAVITY_M_PER_S2;
 
-fn weighted(terms: &[(usize, f64)]) -> Vec<f64> {
-    let mut weights = vec![0.0; COORDINATES];
-    for &(coordinate, weight) in terms {
-        weights[coordinate] = weight;
-    }
-    weights
+/// The acceleration of a place, in g.
+fn acceleration_g(place: &'static str, axis: Axis) -> Output {
+    Output::Acceleration { place, axis, factor: PER_G }
+}
+
+/// The rotational speed of a wheel, in Hz.
+fn speed_hz(wheel: &'static str) -> Output {
+    Output::Velocity { place: wheel, axis: Axis::Rotation, factor: 1.0 / TAU }
 }
 
 impl ChannelKind {
-    /// Those that an accelerometer would show.
+    /// Channels that an accelerometer would show.
     pub const ACCELERATIONS: [Self; 3] = [Self::Horizontal, Self::Vertical, Self::Axial];
 }
 
-/// What [`Channels`] reads off the solution, in the order of [`ChannelKind::ALL`].
+/// Outputs of the solution for [`Channels`], in the order of [`ChannelKind::ALL`].
 pub fn channel_outputs() -> [Output; ChannelKind::ALL.len()] {
     ChannelKind::ALL.map(ChannelKind::output)
 }
 
-/// What [`Channels`] of a scenario with sensors reads off the solution: that of [`channel_outputs`], then the sensors'.
+/// The outputs that [`Channels`] of a scenario with sensors are made of: those of [`channel_outputs`], then the sensors'.
 ///
 /// # Arguments
 /// * `sensors` - the scenario's
-/// * `model` - of the mesh
-pub(crate) fn outputs_of_all(sensors: &[Sensor], model: Model) -> Vec<Output> {
-    channel_outputs().into_iter().chain(sensors.iter().map(|sensor| sensor.output(model))).collect()
+pub(crate) fn outputs_of_all(sensors: &[Sensor]) -> Vec<Output> {
+    channel_outputs().into_iter().chain(sensors.iter().map(Sensor::output)).collect()
 }
 
 /// The signal of a sensor.
@@ -154,33 +154,24 @@ impl SensorSignal {
 }
 
 impl Sensor {
-    /// What is read off the solution for it: its place's acceleration over g, or the force that goes through its frequency response.
-    ///
-    /// # Arguments
-    /// * `model` - of the mesh: under `linear` and `published` there are no supports that move, and the wheels are read
-    pub fn output(&self, model: Model) -> Output {
+    /// The output that it shows: the acceleration of its place over g, or the force that goes through its frequency response. Where
+    /// a model has no supports that move, every place is that of both wheels.
+    pub fn output(&self) -> Output {
         if self.response_input == ResponseInput::Force {
-            return Output::MeshForce;
+            return Output::MeshForce { mesh: 0 };
         }
-        let (axis, [pinion, gear], [pinion_support, gear_support]) = match self.direction {
-            SensorDirection::Horizontal => (Axis::X, [X_PINION, X_GEAR], [X_PINION_SUPPORT, X_GEAR_SUPPORT]),
-            SensorDirection::Vertical => (Axis::Y, [Y_PINION, Y_GEAR], [Y_PINION_SUPPORT, Y_GEAR_SUPPORT]),
-            // No support moves along the shafts.
-            SensorDirection::Axial => (Axis::Z, [Z_PINION, Z_GEAR], [Z_PINION, Z_GEAR]),
+        let axis = match self.direction {
+            SensorDirection::Horizontal => Axis::X,
+            SensorDirection::Vertical => Axis::Y,
+            SensorDirection::Axial => Axis::Z,
         };
-        let of = |coordinates: &[usize]| {
-            let mut weights = vec![0.0; COORDINATES_WITH_SUPPORTS];
-            coordinates.iter().for_each(|&coordinate| weights[coordinate] = PER_G);
-            Output::Acceleration(weights)
+        let place = match self.at {
+            SensorPlace::Support => SENSOR,
+            SensorPlace::PinionSupport => PINION_SUPPORT,
+            SensorPlace::GearSupport => GEAR_SUPPORT,
+            SensorPlace::Wheels => WHEELS,
         };
-        match (model, self.at) {
-            (Model::Linear | Model::Published, _) | (Model::Contact, SensorPlace::Support) => {
-                Output::Sensor(axis, PER_G)
-            }
-            (Model::Contact, SensorPlace::PinionSupport) => of(&[pinion_support]),
-            (Model::Contact, SensorPlace::GearSupport) => of(&[gear_support]),
-            (Model::Contact, SensorPlace::Wheels) => of(&[pinion, gear]),
-        }
+        acceleration_g(place, axis)
     }
 }
 
@@ -201,7 +192,7 @@ impl Channels {
         channels
     }
 
-    /// The same with room for some sensors too, which take the outputs behind those of [`ChannelKind::ALL`].
+    /// Channels with room for some sensors too, which take the outputs behind those of [`ChannelKind::ALL`].
     ///
     /// # Arguments
     /// * `sensors` - the scenario's
@@ -218,7 +209,7 @@ impl Channels {
         self.vertical_g.len()
     }
 
-    /// Whether there are no samples.
+    /// Returns whether there are no samples.
     pub fn is_empty(&self) -> bool {
         self.vertical_g.is_empty()
     }

@@ -32,7 +32,7 @@ use crate::model::Model;
 pub struct Sensor {
     /// Its name, of which its channel's is made: `NAME_g`. Default: place and direction.
     pub name: Option<String>,
-    /// Where it sits. Default the supports' mean.
+    /// Place at which it sits. Default the supports' mean.
     pub at: SensorPlace,
     /// In which direction it measures. Default vertical.
     pub direction: SensorDirection,
@@ -48,13 +48,13 @@ pub struct Sensor {
     pub range_g: Option<f64>,
     /// (bits) Resolution over the whole range, from minus to plus. Default: none.
     pub bits: Option<u32>,
-    /// What was measured of the path to it. Default: none.
+    /// Measured frequency response of the path to it. Default: none.
     pub frequency_response: Option<FrequencyResponse>,
-    /// What goes through [`Self::frequency_response`]. Default the acceleration of its place.
+    /// Input of [`Self::frequency_response`]. Default the acceleration of its place.
     pub response_input: ResponseInput,
 }
 
-/// Where a sensor sits.
+/// Place at which a sensor sits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SensorPlace {
     /// On both supports: their mean.
@@ -93,7 +93,7 @@ by_name!(SensorDirection, [
     "axial" => SensorDirection::Axial,
 ]);
 
-/// What goes through a measured frequency response.
+/// Input of a measured frequency response.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ResponseInput {
     /// The acceleration of the sensor's place; magnitudes have no unit.
@@ -124,6 +124,8 @@ impl Default for Sensor {
 }
 
 impl Keys for Sensor {
+    const SECTION: &str = "sensor";
+
     fn start() -> Self {
         Self::default()
     }
@@ -140,8 +142,7 @@ impl Keys for Sensor {
                 "where it sits: on both supports (their mean), on one, or on the wheels (their sum); always the \
                  wheels under linear and published",
                 field!(at),
-            )
-            .ignored_by(&["linear", "published"]),
+            ),
             row(
                 "direction",
                 "",
@@ -239,7 +240,7 @@ impl Sensor {
         channel_of(&self.name())
     }
 
-    /// Whether what it shows depends on the motion of its place.
+    /// Returns whether what it shows depends on the motion of its place.
     fn reads_its_place(&self) -> bool {
         self.response_input == ResponseInput::Acceleration
     }
@@ -282,7 +283,7 @@ pub(super) fn channel_of(name: &str) -> String {
 /// Most letters of a name.
 const LONGEST_NAME: usize = 64;
 
-/// Whether a text can be a sensor's name, whatever others there are.
+/// Returns whether a text can be a sensor's name, whatever others there are.
 pub(super) fn is_name(name: &str) -> bool {
     name.len() <= LONGEST_NAME
         && name.starts_with(|first: char| first.is_ascii_alphabetic())
@@ -308,7 +309,7 @@ fn check_name(name: &str) -> Check {
     Ok(())
 }
 
-/// Whether every sensor can be, alone and beside the others.
+/// Checks every sensor, alone and beside the others.
 ///
 /// # Arguments
 /// * `sensors` - all of a scenario

@@ -1,4 +1,4 @@
-//! How the path from one place to another passes frequencies differently.
+//! The ripple of the path from one place to another over frequency.
 
 use crate::random::{Draws, Purpose};
 
@@ -10,7 +10,8 @@ const DRAWS_PER_OCTAVE: f64 = 2.0;
 const OCTAVES: usize = 16;
 /// (-) How far the lines of one binomial series are from their middle, over its frequency.
 const SERIES_REACH: f64 = 1.0 / 64.0;
-/// The same of steep lines, times the power of the frequency that they are: the terms fall by as much each.
+/// (-) Distance of steep lines from their middle, over its frequency, times the power of the frequency that they are: the terms fall by
+/// as much each.
 const STEEP_REACH: f64 = 1.0 / 12.0;
 /// Its terms.
 const SERIES_TERMS: usize = 9;

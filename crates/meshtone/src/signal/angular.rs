@@ -12,7 +12,7 @@ const ANGLE_ROUNDING: f64 = 1e-9;
 /// Most points per revolution: half a gigabyte a revolution.
 const MOST_POINTS: usize = 1 << 26;
 
-/// How the signal is read between its samples.
+/// Interpolation of the signal between its samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Interpolation {
     /// PCHIP, as the published code: [`super::interpolate_pchip`]. It flattens peaks: a tone of 5 samples a period loses 5 %.
@@ -53,14 +53,14 @@ impl AngularSignal {
     }
 }
 
-/// How a signal is resampled over the angle.
+/// Settings of the resampling over the angle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct AngularSettings {
     /// Number of values in a revolution; by default [`points_per_revolution`].
     pub points_per_revolution: Option<usize>,
-    /// How the signal is read between its samples.
+    /// Interpolation of the signal between its samples.
     pub interpolation: Interpolation,
-    /// How the signal goes on beyond the recording's ends. With [`Edge::Periodic`] it must span whole revolutions, and all
+    /// Continuation of the signal beyond the recording's ends. With [`Edge::Periodic`] it must span whole revolutions, and all
     /// of them are used; otherwise those whose every value lies between the first and the last sample.
     pub edge: Edge,
 }

@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use super::check::check_positive;
-use super::filter_bank::{FilterBank, Place, SincCurve};
+use super::filter_bank::{BankPosition, FilterBank, SincCurve};
 use super::resample::{BETA, ZERO_CROSSINGS};
 use super::{Edge, SignalError};
 
@@ -65,7 +65,7 @@ impl AntiAliasing {
     /// * `from_hz`, `to_hz` - (S/s) as for [`Self::new`]
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// Those of [`Self::new`].
     ///
     /// Source: J. F. Kaiser, "Nonrecursive digital filter design using the I₀-sinh window function", Proc. IEEE ISCAS (1974) 20–23.
     ///
@@ -98,21 +98,21 @@ impl AntiAliasing {
     ///
     /// Returns the values of each signal.
     pub fn read(&self, signals: &[&[f32]], places: impl Iterator<Item = f64>, edge: Edge) -> Vec<Vec<f32>> {
-        self.bank.read(signals, self.on_the_bank(places), edge, |value| value as f32)
+        self.bank.read(signals, self.bank_positions(places), edge, |value| value as f32)
     }
 
-    /// As [`Self::read`], of one signal in double precision.
+    /// Does what [`Self::read`] does for one signal in double precision.
     ///
     /// # Arguments
     /// * `signal` - the samples
     /// * `places` - in samples from the first; fractions are places between samples
     /// * `edge` - how the signal goes on beyond its ends
     pub fn read_double(&self, signal: &[f64], places: impl Iterator<Item = f64>, edge: Edge) -> Vec<f64> {
-        self.bank.read(&[signal], self.on_the_bank(places), edge, |value| value).swap_remove(0)
+        self.bank.read(&[signal], self.bank_positions(places), edge, |value| value).swap_remove(0)
     }
 
-    fn on_the_bank(&self, places: impl Iterator<Item = f64>) -> impl Iterator<Item = Place> {
-        places.map(|place| Place::between_samples(place, self.reach, self.steps))
+    fn bank_positions(&self, places: impl Iterator<Item = f64>) -> impl Iterator<Item = BankPosition> {
+        places.map(|place| BankPosition::between_samples(place, self.reach, self.steps))
     }
 }
 

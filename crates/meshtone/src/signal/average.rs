@@ -33,7 +33,7 @@ pub fn revolution_average(signal: &[f64], samples_per_revolution: usize) -> Vec<
     average
 }
 
-/// What repeats with every revolution of a shaft.
+/// The part of a signal that repeats with every revolution of a shaft.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SynchronousAverage {
     /// Number of revolutions that were averaged. What does not repeat falls with its square root.

@@ -1,4 +1,4 @@
-//! Whether a channel can be processed.
+//! A check that a channel can be processed.
 
 use super::SignalError;
 

@@ -1,6 +1,6 @@
-//! How a signal goes on beyond its ends.
+//! The continuation of a signal beyond its ends.
 
-/// How a signal goes on beyond its first and last sample, where a filter reaches over them.
+/// Continuation of a signal beyond its first and last sample, where a filter reaches over them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Edge {
     /// With zeros, as MATLAB's `resample` and SciPy's `resample_poly`: a signal that does not vanish at its ends rings

@@ -47,7 +47,7 @@ pub fn analytic_signal(signal: &[f64]) -> Result<Vec<Complex64>, SignalError> {
 /// * `signal` - whole periods
 ///
 /// # Errors
-/// As [`analytic_signal`].
+/// Those of [`analytic_signal`].
 ///
 /// ```
 /// use std::f64::consts::TAU;
@@ -69,7 +69,7 @@ pub fn envelope(signal: &[f64]) -> Result<Vec<f64>, SignalError> {
 /// * `signal` - whole periods; of a difference signal over one revolution the index is the shaft order
 ///
 /// # Errors
-/// As [`analytic_signal`].
+/// Those of [`analytic_signal`].
 ///
 /// ```
 /// use std::f64::consts::TAU;

@@ -1,4 +1,4 @@
-//! What is wrong with a recording.
+//! Errors about a recording.
 
 use thiserror::Error;
 
@@ -22,7 +22,7 @@ pub enum SignalError {
         sample: usize,
         /// Its value.
         value: f64,
-        /// How many there are.
+        /// The number of them.
         count: usize,
         /// Length of the channel.
         samples: usize,
@@ -38,17 +38,17 @@ pub enum SignalError {
     /// There are too few values.
     #[error("{what}: there are {given}, but at least {needed} are needed")]
     TooFew {
-        /// What there is too little of.
+        /// Name of the scarce quantity.
         what: &'static str,
-        /// How many there are.
+        /// The number of them.
         given: usize,
-        /// How many are needed.
+        /// The number that is needed.
         needed: usize,
     },
     /// Two things that must be equally long are not.
     #[error("{what}: {given} values, but {expected} are expected")]
     LengthMismatch {
-        /// What has the wrong length.
+        /// Name of the values whose length is wrong.
         what: &'static str,
         /// Its length.
         given: usize,
@@ -62,7 +62,7 @@ pub enum SignalError {
     TooFewRevolutions {
         /// (rev) What is covered.
         revolutions: f64,
-        /// What is needed.
+        /// The requirement.
         needed: usize,
     },
     /// A recording that is to be continued periodically does not hold whole revolutions.
@@ -101,9 +101,9 @@ pub enum SignalError {
         index: usize,
         /// (s) Its time.
         after_s: f64,
-        /// How many are missing, by the spacing of those around.
+        /// Number of missing pulses, by the spacing of those around.
         missing: f64,
-        /// How many may be.
+        /// Largest number allowed.
         allowed: usize,
     },
     /// The stated speed is not the one of the pulses.
@@ -162,7 +162,7 @@ pub enum SignalError {
         name: &'static str,
         /// Its value.
         value: f64,
-        /// What is allowed.
+        /// The allowed values.
         allowed: &'static str,
     },
 }

@@ -21,9 +21,9 @@ pub(super) struct FilterBank {
     rows: Vec<f64>,
 }
 
-/// Where a filter bank is laid over a signal.
+/// Position of a filter bank over a signal.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct BankPosition {
     /// Sample that the first tap weights; it may lie beyond the signal's ends.
     pub(super) first: isize,
     /// Row of the bank.
@@ -32,7 +32,7 @@ pub(super) struct Place {
     pub(super) between: f64,
 }
 
-impl Place {
+impl BankPosition {
     /// A place of a [`FilterBank::low_pass`].
     ///
     /// # Arguments
@@ -130,13 +130,13 @@ impl FilterBank {
     pub(super) fn read<T: Copy + Into<f64>, V>(
         &self,
         signals: &[&[T]],
-        mut places: impl Iterator<Item = Place>,
+        mut places: impl Iterator<Item = BankPosition>,
         edge: Edge,
         rounded: impl Fn(f64) -> V + Copy,
     ) -> Vec<Vec<V>> {
         let expected = places.size_hint().0;
         let mut values: Vec<Vec<V>> = signals.iter().map(|_| Vec::with_capacity(expected)).collect();
-        let mut block = [Place { first: 0, row: 0, between: 0.0 }; BLOCK];
+        let mut block = [BankPosition { first: 0, row: 0, between: 0.0 }; BLOCK];
         let mut beyond = vec![0.0; self.taps];
         loop {
             let mut count = 0;
@@ -163,7 +163,7 @@ impl FilterBank {
     fn read_block<T: Copy + Into<f64>, V, const N: usize>(
         &self,
         signals: [&[T]; N],
-        places: &[Place],
+        places: &[BankPosition],
         edge: Edge,
         beyond: &mut [f64],
         rounded: impl Fn(f64) -> V,
@@ -171,7 +171,7 @@ impl FilterBank {
     ) {
         let mut read = [[0.0; N]; BLOCK];
         let read = &mut read[..places.len()];
-        InstructionSet::fastest().run(Reading { bank: self, signals, places, edge, beyond, read });
+        InstructionSet::fastest().run(BankReading { bank: self, signals, places, edge, beyond, read });
         for (n, values) in values.iter_mut().enumerate() {
             values.extend(read.iter().map(|value| rounded(value[n])));
         }
@@ -179,18 +179,18 @@ impl FilterBank {
 }
 
 /// A block of places of signals of one length: all are weighted by the same taps, and no sum waits for another's.
-struct Reading<'a, T, const N: usize> {
+struct BankReading<'a, T, const N: usize> {
     bank: &'a FilterBank,
     signals: [&'a [T]; N],
-    places: &'a [Place],
+    places: &'a [BankPosition],
     edge: Edge,
     /// Room for samples of which some lie beyond the signal's ends.
     beyond: &'a mut [f64],
-    /// What is read of each signal at each place.
+    /// Values of each signal at each place.
     read: &'a mut [[f64; N]],
 }
 
-impl<T: Copy + Into<f64>, const N: usize> Task for Reading<'_, T, N> {
+impl<T: Copy + Into<f64>, const N: usize> Task for BankReading<'_, T, N> {
     type Output = ();
 
     #[inline(always)]

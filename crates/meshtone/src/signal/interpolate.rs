@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use super::check::check_finite;
-use super::filter_bank::{FilterBank, Place, SincCurve};
+use super::filter_bank::{BankPosition, FilterBank, SincCurve};
 use super::{Edge, SignalError};
 use crate::interpolation::Pchip;
 
@@ -49,7 +49,7 @@ pub fn interpolate_pchip(signal: &[f64], places: &[f64], edge: Edge) -> Result<V
     Ok(pchip(signal, places.iter().copied(), edge))
 }
 
-/// As [`interpolate_pchip`], of samples and at places that are known to be numbers.
+/// Does what [`interpolate_pchip`] does, for samples and places that are known to be numbers.
 pub(super) fn pchip(signal: &[f64], places: impl Iterator<Item = f64>, edge: Edge) -> Vec<f64> {
     // PCHIP has its own ends where there is nothing beyond them.
     if edge == Edge::Zero {
@@ -98,9 +98,9 @@ pub fn interpolate_band_limited(signal: &[f64], places: &[f64], edge: Edge) -> R
     Ok(band_limited(signal, places.iter().copied(), edge))
 }
 
-/// As [`interpolate_band_limited`], of samples and at places that are known to be numbers.
+/// Does what [`interpolate_band_limited`] does, for samples and places that are known to be numbers.
 pub(super) fn band_limited(signal: &[f64], places: impl Iterator<Item = f64>, edge: Edge) -> Vec<f64> {
-    let places = places.map(|place| Place::between_samples(place, REACH, STEPS));
+    let places = places.map(|place| BankPosition::between_samples(place, REACH, STEPS));
     BANK.read(&[signal], places, edge, |value| value).swap_remove(0)
 }
 

@@ -11,7 +11,7 @@ use super::{SignalError, kurtosis};
 pub const OCTAVES: [(&str, f64); 7] =
     [("half", 0.5), ("1", 1.0), ("2", 2.0), ("4", 4.0), ("8", 8.0), ("16", 16.0), ("32", 32.0)];
 
-/// What a signal has in an octave of mesh orders.
+/// Content of a signal in an octave of mesh orders.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OctaveBand {
     /// (mesh orders) Its middle: it reaches from `1/√2` to `√2` of it.

@@ -2,16 +2,16 @@
 
 use super::*;
 
-/// How a channel is processed.
+/// Settings by which a channel is processed.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ChainSettings {
-    /// How the channel is resampled over the angle.
+    /// Settings of the resampling over the angle.
     pub angular: AngularSettings,
     /// Sidebands, shaft orders and mean; by default [`SeparationSettings::new`] with the wheel's teeth.
     pub separation: Option<SeparationSettings>,
 }
 
-/// What one recording, or one segment of it, shows about one wheel.
+/// Results of one recording, or one segment of it, for one wheel.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Record {
@@ -27,7 +27,7 @@ pub struct Record {
     pub envelope_spectrum: Vec<f64>,
     /// The indicators.
     pub indicators: Indicators,
-    /// What is doubtful about them, beside the warnings of the phase: [`ShaftPhase::warnings`].
+    /// Warnings besides those of the phase: [`ShaftPhase::warnings`].
     pub warnings: Vec<SignalWarning>,
 }
 
@@ -49,7 +49,7 @@ pub struct Recording<'a> {
 /// * `settings` - how
 ///
 /// # Errors
-/// What [`angular_resample`], [`synchronous_average`] and [`separate`] refuse: NaN, a constant channel, fewer than two whole
+/// Those of [`angular_resample`], [`synchronous_average`] and [`separate`]: NaN, a constant channel, fewer than two whole
 /// revolutions, a mesh order beyond what the sampling rate shows.
 ///
 /// ```
@@ -80,7 +80,7 @@ pub fn process_channel(
 /// * `teeth`, `settings` - as for [`process_channel`]
 ///
 /// # Errors
-/// What [`synchronous_average`] and [`separate`] refuse.
+/// Those of [`synchronous_average`] and [`separate`].
 pub fn process_angular(
     angular: &AngularSignal,
     teeth: u32,
@@ -98,7 +98,7 @@ pub fn process_angular(
 /// Returns the records in the order of time; NA4 is that of the series.
 ///
 /// # Errors
-/// As [`process_channel`]; not even one segment.
+/// Those of [`process_channel`]; not even one segment.
 ///
 /// ```
 /// use meshtone::signal::{ChainSettings, ShaftPhase, process_segments};
@@ -127,7 +127,7 @@ pub fn process_segments(
 /// * `teeth`, `settings`, `revolutions` - as for [`process_segments`]
 ///
 /// # Errors
-/// As [`process_angular`]; not even one segment.
+/// Those of [`process_angular`]; not even one segment.
 pub fn process_angular_segments(
     angular: &AngularSignal,
     teeth: u32,
@@ -147,7 +147,7 @@ pub fn process_angular_segments(
 /// Returns a record for each; NA4 is that of the series.
 ///
 /// # Errors
-/// As [`process_channel`], for the first recording that is refused; no recordings.
+/// Those of [`process_channel`], for the first recording that is refused; no recordings.
 ///
 /// ```
 /// use meshtone::signal::{ChainSettings, Recording, ShaftPhase, process_series};

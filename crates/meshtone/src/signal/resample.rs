@@ -2,7 +2,7 @@
 
 use super::anti_aliasing::AntiAliasing;
 use super::check::check_positive;
-use super::filter_bank::{FilterBank, Place};
+use super::filter_bank::{BankPosition, FilterBank};
 use super::kaiser::windowed_sinc;
 use super::{Edge, SignalError};
 
@@ -100,7 +100,7 @@ pub fn resample(signal: &[f64], up: usize, down: usize, edge: Edge) -> Result<Ve
 /// Returns `⌈n up/down⌉` samples.
 ///
 /// # Errors
-/// As [`resample`]; an even number of taps.
+/// Those of [`resample`]; an even number of taps.
 ///
 /// Source: R. E. Crochiere, L. R. Rabiner, "Multirate Digital Signal Processing", Prentice-Hall (1983), section 3.3.
 ///
@@ -131,7 +131,7 @@ pub fn resample_with(
     // Where the filter's first tap lies at first: on a sample, or so many steps of the high rate behind it.
     let (mut newest, mut behind) = (taps.len() / 2 / up, taps.len() / 2 % up);
     let places = (0..samples).map(|_| {
-        let place = Place { first: newest as isize + 1 - length as isize, row: behind, between: 0.0 };
+        let place = BankPosition { first: newest as isize + 1 - length as isize, row: behind, between: 0.0 };
         newest += down / up;
         behind += down % up;
         if behind >= up {
@@ -196,7 +196,7 @@ pub fn resampling_ratio(from_hz: f64, to_hz: f64) -> Result<(usize, usize), Sign
     })
 }
 
-/// As [`resampling_ratio`]; none where there is no such fraction.
+/// Those of [`resampling_ratio`]; none where there is no such fraction.
 pub(crate) fn whole_ratio(from_hz: f64, to_hz: f64) -> Result<Option<(usize, usize)>, SignalError> {
     check_positive("from_hz", from_hz)?;
     check_positive("to_hz", to_hz)?;

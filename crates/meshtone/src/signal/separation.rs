@@ -1,10 +1,10 @@
-//! What an average consists of.
+//! The parts of an average.
 
 use meshtone_fourier::{Complex64, from_real_spectrum, real_spectrum};
 
 use super::SignalError;
 
-/// What belongs to the regular part.
+/// The orders that belong to the regular part.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SeparationSettings {
     /// Teeth of the wheel on the shaft: the mesh order.
@@ -13,11 +13,11 @@ pub struct SeparationSettings {
     pub sidebands: usize,
     /// Orders of the shaft that belong to it. Default 1 to 7.
     pub shaft_orders: Vec<usize>,
-    /// What becomes of the mean.
+    /// Treatment of the mean.
     pub mean: MeanPart,
 }
 
-/// Which part order 0, the mean, goes to.
+/// Part to which order 0, the mean, belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum MeanPart {
     /// To the residual and the difference, as in the published code. No indicator but the rms sees it.

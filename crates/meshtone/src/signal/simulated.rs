@@ -30,18 +30,18 @@ impl Shaft {
     }
 }
 
-/// How far the shafts of a simulated pair have turned at its kept samples. At whole revolutions the wheel's first tooth
+/// Angles of the shafts of a simulated pair at its kept samples. At whole revolutions the wheel's first tooth
 /// enters contact.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SimulatedShafts {
     teeth: [u32; 2],
     sampling_rate_hz: f64,
     samples: usize,
-    turning: Turning,
+    turning: SimulatedAngle,
 }
 
 #[derive(Debug, Clone, PartialEq)]
-enum Turning {
+enum SimulatedAngle {
     /// Whole numbers of samples in each revolution.
     Steady { start: usize, samples_per_pinion_revolution: usize },
     /// (rev) Angle of the pinion at each sample.
@@ -56,15 +56,17 @@ impl SimulatedShafts {
     /// * `start_s` - (s) [`Channels::start_s`]
     /// * `samples` - how many were kept
     pub fn new(scenario: &Scenario, start_s: f64, samples: usize) -> Self {
-        let scenario = scenario.as_honoured();
+        let scenario = scenario.without_ignored_keys();
         let time = scenario.time_grid();
         let start = ((start_s * time.sampling_rate_hz).round().max(0.0) as usize).min(time.samples);
         let motion = scenario.motion(&time);
         let turning = if motion.is_steady() {
             let samples_per_pinion_revolution = time.samples_per_pinion_revolution;
-            Turning::Steady { start, samples_per_pinion_revolution }
+            SimulatedAngle::Steady { start, samples_per_pinion_revolution }
         } else {
-            Turning::Varying(motion.skip(start).take(samples).map(|sample| sample.revolutions).collect())
+            SimulatedAngle::Varying(
+                motion.skip(start).take(samples).map(|sample| sample.revolutions).collect(),
+            )
         };
         let teeth = [scenario.gears.pinion_teeth, scenario.gears.gear_teeth];
         Self { teeth, sampling_rate_hz: time.sampling_rate_hz, samples, turning }
@@ -84,9 +86,9 @@ impl SimulatedShafts {
         self.sampling_rate_hz
     }
 
-    /// Whether both shafts turn at constant speed.
+    /// Returns whether both shafts turn at constant speed.
     pub fn is_steady(&self) -> bool {
-        matches!(self.turning, Turning::Steady { .. })
+        matches!(self.turning, SimulatedAngle::Steady { .. })
     }
 
     /// Teeth of a shaft's wheel.
@@ -103,10 +105,10 @@ impl SimulatedShafts {
     /// * `shaft` - which
     pub fn mean_speed_hz(&self, shaft: Shaft) -> f64 {
         let pinion_hz = match &self.turning {
-            Turning::Steady { samples_per_pinion_revolution, .. } => {
+            SimulatedAngle::Steady { samples_per_pinion_revolution, .. } => {
                 self.sampling_rate_hz / *samples_per_pinion_revolution as f64
             }
-            Turning::Varying(angles) => match angles[..] {
+            SimulatedAngle::Varying(angles) => match angles[..] {
                 [first, .., last] => (last - first) * self.sampling_rate_hz / (angles.len() - 1) as f64,
                 _ => 0.0,
             },
@@ -150,11 +152,11 @@ impl SimulatedShafts {
             return Err(SignalError::LengthMismatch { what, given: signal.len(), expected: self.samples });
         }
         match &self.turning {
-            Turning::Steady { start, .. } => {
+            SimulatedAngle::Steady { start, .. } => {
                 let points = self.samples_per_revolution(shaft).unwrap_or(1);
                 Ok(from_first_tooth(signal, *start, points))
             }
-            Turning::Varying(angles) => {
+            SimulatedAngle::Varying(angles) => {
                 let pinion = ShaftPhase::new(0, angles.clone())?;
                 let phase = match shaft {
                     Shaft::Pinion => pinion,
@@ -171,7 +173,7 @@ impl SimulatedShafts {
     /// * `signal`, `shaft`, `settings` - as for [`Self::angular`]
     ///
     /// # Errors
-    /// As [`Self::angular`].
+    /// Those of [`Self::angular`].
     ///
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};
@@ -191,7 +193,7 @@ impl SimulatedShafts {
         shaft: Shaft,
         settings: &ChainSettings,
     ) -> Result<SynchronousAverage, SignalError> {
-        if let (Turning::Steady { start, .. }, true) = (&self.turning, signal.len() == self.samples) {
+        if let (SimulatedAngle::Steady { start, .. }, true) = (&self.turning, signal.len() == self.samples) {
             return Ok(average_from_first_tooth(
                 signal,
                 *start,
@@ -207,7 +209,7 @@ impl SimulatedShafts {
     }
 
     fn samples_per_revolution(&self, shaft: Shaft) -> Option<usize> {
-        let Turning::Steady { samples_per_pinion_revolution, .. } = self.turning else { return None };
+        let SimulatedAngle::Steady { samples_per_pinion_revolution, .. } = self.turning else { return None };
         let [pinion, gear] = self.teeth.map(|teeth| teeth.max(1) as usize);
         Some(match shaft {
             Shaft::Pinion => samples_per_pinion_revolution,
@@ -215,7 +217,7 @@ impl SimulatedShafts {
         })
     }
 
-    /// As [`super::process_channel`], for one wheel of a simulated pair.
+    /// Does what [`super::process_channel`] does, for one wheel of a simulated pair.
     ///
     /// # Arguments
     /// * `signal` - one of the kept signals
@@ -223,7 +225,7 @@ impl SimulatedShafts {
     /// * `settings` - how
     ///
     /// # Errors
-    /// As [`super::process_channel`].
+    /// Those of [`super::process_channel`].
     pub fn process(
         &self,
         signal: &[f64],
@@ -235,14 +237,14 @@ impl SimulatedShafts {
         process_average(average, self.teeth(shaft), &self.settings(settings))
     }
 
-    /// As [`super::process_segments`], for one wheel of a simulated pair.
+    /// Does what [`super::process_segments`] does, for one wheel of a simulated pair.
     ///
     /// # Arguments
     /// * `signal`, `shaft`, `settings` - as for [`Self::process`]
     /// * `revolutions` - (at least 2) of each segment
     ///
     /// # Errors
-    /// As [`super::process_segments`].
+    /// Those of [`super::process_segments`].
     pub fn process_segments(
         &self,
         signal: &[f64],

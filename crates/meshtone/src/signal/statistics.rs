@@ -7,7 +7,7 @@ use crate::simd::{InstructionSet, Instructions, Lanes, Task};
 /// same bits whatever vector instructions there are.
 const LANES: usize = 8;
 
-/// What one pass over a signal gives.
+/// Sums of one pass over a signal.
 struct Sums {
     /// `Σx²`.
     squares: f64,

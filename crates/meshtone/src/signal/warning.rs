@@ -1,4 +1,4 @@
-//! What is doubtful about a recording.
+//! Warnings about a recording.
 
 use thiserror::Error;
 
@@ -15,7 +15,7 @@ pub enum SignalWarning {
         index: usize,
         /// (s) Its time.
         after_s: f64,
-        /// How many are missing.
+        /// Number of missing pulses.
         count: usize,
     },
     /// A pulse that is one too many; it was left out.
@@ -43,7 +43,7 @@ pub enum SignalWarning {
         100.0 * ratio
     )]
     MeshToneFades {
-        /// Where it is weakest.
+        /// Sample at which it is weakest.
         sample: usize,
         /// (-) Its amplitude there over the mean one.
         ratio: f64,

@@ -11,7 +11,7 @@ pub enum InstructionSet {
     Avx2,
     /// NEON (aarch64).
     Neon,
-    /// What every processor of the compiled architecture has.
+    /// Instructions that every processor of the compiled architecture has.
     Plain,
 }
 
@@ -109,13 +109,11 @@ pub(crate) trait Instructions: Copy {
     fn negative_mul_add<const L: usize>(self, a: [f64; L], b: [f64; L], c: [f64; L]) -> [f64; L];
     /// `a / b`.
     fn div<const L: usize>(self, a: [f64; L], b: [f64; L]) -> [f64; L];
-    /// Rounded down; for numbers below 2⁵¹ in size.
-    fn floor<const L: usize>(self, a: [f64; L]) -> [f64; L];
     /// `yes` where `a < b`, else `no`.
     fn where_less<const L: usize>(self, a: [f64; L], b: [f64; L], yes: [f64; L], no: [f64; L]) -> [f64; L];
 }
 
-/// Whatever the compiled architecture has; products are rounded before they are added.
+/// Instructions that the compiled architecture has; products are rounded before they are added.
 #[derive(Clone, Copy)]
 struct Plain;
 
@@ -148,11 +146,6 @@ impl Instructions for Plain {
     #[inline(always)]
     fn div<const L: usize>(self, a: [f64; L], b: [f64; L]) -> [f64; L] {
         std::array::from_fn(|l| a[l] / b[l])
-    }
-
-    #[inline(always)]
-    fn floor<const L: usize>(self, a: [f64; L]) -> [f64; L] {
-        a.map(f64::floor)
     }
 
     #[inline(always)]
@@ -227,20 +220,6 @@ impl<S: pulp::Simd> Instructions for Fused<S> {
     #[inline(always)]
     fn div<const L: usize>(self, a: [f64; L], b: [f64; L]) -> [f64; L] {
         by_register!(self, |a, b| self.0.div_f64s(a, b), |a: f64, b: f64| a / b, a, b)
-    }
-
-    #[inline(always)]
-    fn floor<const L: usize>(self, a: [f64; L]) -> [f64; L] {
-        // Adding and subtracting 1.5 · 2⁵² rounds to the nearest.
-        const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
-        let simd = self.0;
-        let floor = |a: S::f64s| {
-            let shift = simd.splat_f64s(ROUND);
-            let nearest = simd.sub_f64s(simd.add_f64s(a, shift), shift);
-            let below = simd.sub_f64s(nearest, simd.splat_f64s(1.0));
-            simd.select_f64s(simd.less_than_f64s(a, nearest), below, nearest)
-        };
-        by_register!(self, floor, |a: f64| a.floor(), a)
     }
 
     #[inline(always)]

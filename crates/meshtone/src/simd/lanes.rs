@@ -4,7 +4,7 @@ use super::instruction_set::Instructions;
 
 /// `L` numbers, one per simulation (lane).
 ///
-/// What a lane computes does not depend on the number of lanes.
+/// The result of a lane does not depend on the number of lanes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Lanes<const L: usize>(pub(crate) [f64; L]);
 
@@ -61,24 +61,10 @@ impl<const L: usize> Lanes<L> {
         Self(simd.div(self.0, other.0))
     }
 
-    /// Rounded down; for numbers below 2⁵¹ in size.
-    #[inline(always)]
-    pub(crate) fn floor<I: Instructions>(self, simd: I) -> Self {
-        Self(simd.floor(self.0))
-    }
-
     /// `self` where `left < right`, `other` elsewhere.
     #[inline(always)]
     pub(crate) fn where_less<I: Instructions>(self, simd: I, left: Self, right: Self, other: Self) -> Self {
         Self(simd.where_less(left.0, right.0, self.0, other.0))
-    }
-
-    /// Whole numbers from 0 to 2³² − 1 as indices; of others no more is said than that they are some index.
-    #[inline(always)]
-    pub(crate) fn indices<I: Instructions>(self, simd: I) -> [usize; L] {
-        // Adding 2⁵² leaves a whole number in the mantissa's low bits: unlike a cast it vectorises.
-        const SHIFT: f64 = (1u64 << 52) as f64;
-        simd.add(self.0, [SHIFT; L]).map(|shifted| shifted.to_bits() as u32 as usize)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::solver::Output;
 impl Stages {
     /// What [`Self::channels`] take of the solution.
     pub(crate) fn channel_outputs(&self) -> Vec<Output> {
-        outputs_of_all(&self.scenario.sensors, self.scenario.model)
+        outputs_of_all(&self.scenario.sensors)
     }
 
     /// Empty channels, with room for the kept samples and the scenario's sensors.

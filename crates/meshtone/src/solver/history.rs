@@ -1,25 +1,28 @@
 //! States of one block of samples, and what is read off them.
 
-use super::outputs::{EXTERNALS, OutputRow};
+use super::outputs::{EXTERNALS, OutputWeights};
 use super::step::State;
 use crate::simd::{InstructionSet, Instructions, Lanes, Task};
 
+/// Samples that are forced, solved and handed out at a time: the states of eight simulations stay in the second-level cache.
+pub(super) const BLOCK: usize = 256;
+
 /// `V` variables over a block of samples.
-struct Columns<const L: usize, const V: usize, const BLOCK: usize>(Box<Aligned<[[Lanes<L>; BLOCK]; V]>>);
+struct Columns<const L: usize, const V: usize>(Box<Aligned<[[Lanes<L>; BLOCK]; V]>>);
 
 /// Starts at a cache line.
 #[repr(align(64))]
 struct Aligned<T>(T);
 
 /// States of one block of samples, variable by variable, so that outputs are computed for many samples at once.
-pub(super) struct History<const L: usize, const N: usize, const R: usize, const BLOCK: usize> {
-    displacement: Columns<L, N, BLOCK>,
-    scaled_velocity: Columns<L, N, BLOCK>,
-    force: Columns<L, R, BLOCK>,
-    external: Columns<L, EXTERNALS, BLOCK>,
+pub(super) struct History<const L: usize, const N: usize, const R: usize> {
+    displacement: Columns<L, N>,
+    scaled_velocity: Columns<L, N>,
+    force: Columns<L, R>,
+    external: Columns<L, EXTERNALS>,
 }
 
-impl<const L: usize, const N: usize, const R: usize, const BLOCK: usize> History<L, N, R, BLOCK> {
+impl<const L: usize, const N: usize, const R: usize> History<L, N, R> {
     pub(super) fn new() -> Self {
         Self {
             displacement: Columns::new(),
@@ -31,7 +34,7 @@ impl<const L: usize, const N: usize, const R: usize, const BLOCK: usize> History
 
     /// Stores the state of sample `k` of the block.
     #[inline(always)]
-    pub(super) fn store<const STEADY: bool>(&mut self, k: usize, state: &State<L, N, R>) {
+    pub(super) fn store(&mut self, k: usize, state: &State<L, N, R>) {
         // Never larger; lets the compiler see that.
         let k = k % BLOCK;
         for n in 0..N {
@@ -41,7 +44,8 @@ impl<const L: usize, const N: usize, const R: usize, const BLOCK: usize> History
         for r in 0..R {
             self.force.0.0[r][k] = state.force[r];
         }
-        if !STEADY {
+        // Where motor and brake are steady, this is known when it is compiled, and externals stay 0.
+        if !State::<L, N, R>::STEADY {
             for x in 0..EXTERNALS {
                 self.external.0.0[x][k] = state.external[x];
             }
@@ -55,7 +59,7 @@ impl<const L: usize, const N: usize, const R: usize, const BLOCK: usize> History
     }
 }
 
-impl<const L: usize, const V: usize, const BLOCK: usize> Columns<L, V, BLOCK> {
+impl<const L: usize, const V: usize> Columns<L, V> {
     fn new() -> Self {
         Self(Box::new(Aligned([[Lanes::splat(0.0); BLOCK]; V])))
     }
@@ -65,8 +69,9 @@ impl<const L: usize, const V: usize, const BLOCK: usize> Columns<L, V, BLOCK> {
     }
 }
 
-/// An output as a combination of a [`History`]'s variables; those whose weight is zero everywhere are left out.
-pub(super) struct Row<const L: usize> {
+/// An output of several simulations as a combination of a [`History`]'s variables; those whose weight is zero everywhere are left
+/// out.
+pub(super) struct OutputTerms<const L: usize> {
     weights: Vec<(usize, Lanes<L>)>,
     constant: Lanes<L>,
     per_sample: Lanes<L>,
@@ -74,23 +79,31 @@ pub(super) struct Row<const L: usize> {
     start: Lanes<L>,
 }
 
-impl<const L: usize> Row<L> {
+impl<const L: usize> OutputTerms<L> {
     /// Lines an output of `L` simulations up.
     ///
     /// # Arguments
-    /// * `rows` - of each lane
+    /// * `outputs` - of each lane; a lane without this output gives 0
     /// * `start` - number of the sample at which each lane starts
-    pub(super) fn new<const N: usize, const R: usize>(rows: [&OutputRow; L], start: Lanes<L>) -> Self {
-        let value = |values: &[f64], index: usize| values.get(index).copied().unwrap_or(0.0);
-        let displacement = (0..N).map(|n| (n, Lanes::from_fn(|l| value(&rows[l].displacement, n))));
-        let velocity = (0..N).map(|n| (N + n, Lanes::from_fn(|l| value(&rows[l].scaled_velocity, n))));
-        let force = (0..R).map(|r| (2 * N + r, Lanes::from_fn(|l| value(&rows[l].force, r))));
-        let external = (0..EXTERNALS).map(|x| (2 * N + R + x, Lanes::from_fn(|l| rows[l].external[x])));
-        let all = displacement.chain(velocity).chain(force).chain(external);
+    pub(super) fn new<const N: usize, const R: usize>(
+        outputs: [Option<&OutputWeights>; L],
+        start: Lanes<L>,
+    ) -> Self {
+        let lanes = |of: &dyn Fn(&OutputWeights) -> f64| Lanes::from_fn(|l| outputs[l].map_or(0.0, of));
+        let weight = |variable: usize| {
+            let value = |values: &[f64], index: usize| values.get(index).copied().unwrap_or(0.0);
+            lanes(&|output| match variable {
+                _ if variable < N => value(&output.displacement, variable),
+                _ if variable < 2 * N => value(&output.scaled_velocity, variable - N),
+                _ if variable < 2 * N + R => value(&output.force, variable - 2 * N),
+                _ => output.external[variable - 2 * N - R],
+            })
+        };
+        let all = (0..2 * N + R + EXTERNALS).map(|variable| (variable, weight(variable)));
         Self {
-            weights: all.filter(|(_, weight): &(usize, Lanes<L>)| weight.0 != [0.0; L]).collect(),
-            constant: Lanes::from_fn(|l| rows[l].constant),
-            per_sample: Lanes::from_fn(|l| rows[l].per_sample),
+            weights: all.filter(|(_, weight)| weight.0 != [0.0; L]).collect(),
+            constant: lanes(&|output| output.constant),
+            per_sample: lanes(&|output| output.per_sample),
             start,
         }
     }
@@ -102,16 +115,16 @@ impl<const L: usize> Row<L> {
     /// * `history` - the states
     /// * `first` - number of steps before the block's first sample
     /// * `output` - set, one per sample
-    pub(super) fn evaluate<const N: usize, const R: usize, const BLOCK: usize>(
+    pub(super) fn evaluate<const N: usize, const R: usize>(
         &self,
         instructions: InstructionSet,
-        history: &History<L, N, R, BLOCK>,
+        history: &History<L, N, R>,
         first: usize,
         output: &mut [Lanes<L>],
     ) {
         let terms: Vec<_> =
             self.weights.iter().map(|&(variable, weight)| (weight, history.variable(variable))).collect();
-        instructions.run(Evaluate { row: self, terms: &terms, first, output });
+        instructions.run(Evaluate { of: self, terms: &terms, first, output });
     }
 }
 
@@ -120,7 +133,7 @@ const CHUNK: usize = 8;
 
 /// `output = constant + slope · sample + Σ weight · variable`.
 struct Evaluate<'a, const L: usize> {
-    row: &'a Row<L>,
+    of: &'a OutputTerms<L>,
     terms: &'a [(Lanes<L>, &'a [Lanes<L>])],
     first: usize,
     output: &'a mut [Lanes<L>],
@@ -129,8 +142,8 @@ struct Evaluate<'a, const L: usize> {
 impl<const L: usize> Evaluate<'_, L> {
     #[inline(always)]
     fn constant<I: Instructions>(&self, simd: I, k: usize) -> Lanes<L> {
-        let sample = self.row.start.add(simd, Lanes::splat((self.first + k) as f64));
-        self.row.per_sample.mul_add(simd, sample, self.row.constant)
+        let sample = self.of.start.add(simd, Lanes::splat((self.first + k) as f64));
+        self.of.per_sample.mul_add(simd, sample, self.of.constant)
     }
 }
 

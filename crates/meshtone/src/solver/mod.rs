@@ -1,27 +1,26 @@
-//! Stage 7: time integration by Newmark's method, in modal coordinates and with a low-rank correction.
+//! Stage 7: time integration by Newmark's method, in the modes of the machine without its meshes.
 //!
-//! In the mass-normalised modes of the mean stiffness the mass matrix is the identity and the damping and the
-//! mean stiffness are diagonal. What varies, `K(cycle) − K_mean = B S(cycle) Bᵀ`, has the rank of the mesh's
-//! directions: a step costs a diagonal update and the solution of a system of that size. Modes that neither a
-//! force nor the mesh reaches stay at rest and are left out ([`ReducedModel`]).
+//! In these mass-normalised modes the machine is a row of decoupled oscillators, and only the deflections of its meshes are unknown: one
+//! number for each. A step costs a diagonal update and the solution of as many scalar equations, which are piecewise linear
+//! ([`MeshLaw`](crate::mesh::MeshLaw)). Modes that neither a force nor a mesh reaches stay at rest and are left out ([`ModalMachine`]).
+//!
+//! [`integrate()`] takes simulations of one mesh, one or several side by side (`step`); several meshes on one machine are
+//! stepped by `coupled`.
 
-mod coefficients;
-mod handout;
+mod coupled;
 mod history;
 mod integrate;
+mod lane_outputs;
+mod modal;
 mod outputs;
 mod prepare;
-mod reduce;
-mod shared_forcing;
-mod size;
 mod steady_sine;
 mod step;
-mod step_factors;
-mod stretch;
 
-pub use integrate::{Block, Recorder};
-pub(crate) use integrate::{Diverged, LANES, Problem, integrate, integrate_side_by_side};
-pub use outputs::{Axis, Output};
-pub use reduce::ReducedModel;
-pub(crate) use size::Size;
+pub use integrate::{Block, Diverged, Problem, Recorder, integrate};
+pub(crate) use integrate::{LANES, integrate_side_by_side};
+#[cfg(feature = "internals")]
+pub use modal::ModalLine;
+pub use modal::{InitialMotion, ModalMachine};
+pub use outputs::Output;
 pub(crate) use steady_sine::MeanMachine;

@@ -1,228 +1,173 @@
 //! Everything about a simulation that does not change from step to step, and its first state.
 
-use nalgebra::{DMatrix, DVector};
-
 use super::integrate::Problem;
-use super::outputs::{EXTERNALS, OutputRow, Scales};
-use super::reduce::ReducedModel;
-use super::step_factors::StepFactors;
-use crate::machine::coordinates::THETA_PINION;
-use crate::mesh::law::{
-    ContactConstants, ContactSample, MeshTable, Reduction, TabulatedSample, deflection_at_rest, force_on,
-};
+use super::modal::ModalMachine;
+use super::outputs::{EXTERNALS, OutputWeights, dot, external_forces};
+use crate::mesh::{MeshLaw, PairsSample, deflection_at_rest};
 
-/// Everything about one simulation that does not change from step to step.
-pub(super) struct Prepared<const R: usize> {
-    pub(super) factors: StepFactors,
-    pub(super) scales: Scales,
-    pub(super) rows: Vec<OutputRow>,
-    /// Angle of the pinion in coarse points of the cycle, per modal displacement.
-    pub(super) angle: Vec<f64>,
-    /// Angle under the constant loads, plus the half point that makes rounding down the nearest.
-    pub(super) static_angle: f64,
-    /// Deflection under the constant loads.
-    pub(super) static_deflection: [f64; R],
-    /// Coarse points of the cycle per sample, at the nominal speed.
-    pub(super) points_per_sample: f64,
+/// The constants of one simulation's steps; the columns of all lines of action are counted through, mesh by mesh.
+pub(super) struct Prepared {
+    /// (s) h, half of the time step.
+    pub(super) half_step_s: f64,
+    /// (-) `2E` of each mode, `E = 1/(1 + 2ζω h + ω² h²)`.
+    pub(super) keep: Vec<f64>,
+    /// (-) `2 h² ω² E`.
+    pub(super) restore: Vec<f64>,
+    /// `h² E` times the modal force of each external.
+    pub(super) external_push: [Vec<f64>; EXTERNALS],
+    /// Each column of the lines of action.
+    pub(super) columns: Vec<Column>,
+    /// (m/N) Γ: deflection in each column per force of the step in each.
+    pub(super) compliance: Vec<Vec<f64>>,
+    /// The outputs.
+    pub(super) outputs: Vec<OutputWeights>,
+    /// The law of each mesh.
+    pub(super) laws: Vec<MeshLaw>,
+    /// (N) Force of each mesh under the constant loads.
+    pub(super) static_force_n: Vec<f64>,
+}
+
+/// One column of a line of action, and what the deflection in it at the end of a step, with its damping's lead ℓ = 1 + τ/h, is without
+/// the step's own force.
+///
+/// With the step's change S it is `D = B·(q₀ + ℓ S − (ℓ − 1) s₀)`, hence a sum over the modes of the state before. That state but
+/// for its own force's share is known a step earlier. So the sum over the modes is made while that force is sought, and when it is
+/// found only its product with one number is left: without that a step of a single simulation waits most of its time.
+pub(super) struct Column {
+    /// `h² E B`: a force's displacement in each mode.
+    pub(super) push: Vec<f64>,
+    /// (m) Deflection under the constant loads.
+    pub(super) static_deflection: f64,
+    /// `B (1 − 2ℓh²ω²E)`.
+    pub(super) of_displacement: Vec<f64>,
+    /// `B (2ℓE − ℓ + 1)`.
+    pub(super) of_velocity: Vec<f64>,
+    /// (m/N) Per force at the step's start in each column: its share in the state there, and `ℓ Γ`.
+    pub(super) of_force: Vec<f64>,
+    /// Per sum of an external at both ends of the step.
+    pub(super) of_external: [f64; EXTERNALS],
 }
 
 /// State of the modes at the first sample.
-pub(super) struct FirstState<const R: usize> {
+pub(super) struct FirstState {
     pub(super) displacement: Vec<f64>,
     pub(super) scaled_velocity: Vec<f64>,
-    pub(super) force: [f64; R],
-    pub(super) entry: usize,
+    /// (N) Force in each column.
+    pub(super) force: Vec<f64>,
 }
 
-impl<const R: usize> Prepared<R> {
-    /// Tabulates a simulation.
+impl Prepared {
+    /// The constants of a simulation.
+    ///
+    /// Follows the equations of [`super::step`]: the factors of each mode first, then what they make of a force in each column of the
+    /// lines of action.
     pub(super) fn new(problem: &Problem) -> Self {
-        let model = problem.model;
-        let half_step_s = problem.time.step_s() / 2.0;
-        let factors = StepFactors::new(model, half_step_s);
-        let drag: Vec<f64> =
-            model.damping.iter().zip(&model.rigid_velocity).map(|(damping, rigid)| damping * rigid).collect();
-        let static_displacement: Vec<f64> = (0..model.modes())
-            .map(|n| {
-                let brake = if model.damps_rotation { drag[n] * model.rotation_rad_per_s } else { 0.0 };
-                let mesh = model.mesh.first().map_or(0.0, |line| line[n] * model.static_mesh_force_n);
-                let load = model.brake[n] * problem.brake_torque_nm - brake - mesh;
-                // What turns freely is in balance already.
-                if model.stiffness[n] == 0.0 { 0.0 } else { load / model.stiffness[n] }
+        let model = &problem.machine;
+        let h = problem.time.step_s() / 2.0;
+        let modes = model.modes();
+        let e: Vec<f64> =
+            (0..modes).map(|n| 1.0 / (1.0 + h * model.damping[n] + h * h * model.stiffness[n])).collect();
+        let keep: Vec<f64> = e.iter().map(|e| 2.0 * e).collect();
+        let restore: Vec<f64> = (0..modes).map(|n| 2.0 * h * h * model.stiffness[n] * e[n]).collect();
+        let share: Vec<f64> = e.iter().map(|e| h * h * e).collect();
+        let shared = |force: &[f64]| share.iter().zip(force).map(|(s, f)| s * f).collect::<Vec<f64>>();
+        let external_push = external_forces(model).map(|force| shared(&force));
+        let lines: Vec<(&[f64], f64)> = (model.lines.iter().zip(&problem.laws))
+            .flat_map(|(line, law)| line.columns.iter().map(|column| (column.as_slice(), law.lead(h))))
+            .collect();
+        let pushes: Vec<Vec<f64>> = lines.iter().map(|(line, _)| shared(line)).collect();
+        let compliance: Vec<Vec<f64>> = lines
+            .iter()
+            .map(|(line, _)| {
+                let weighted: Vec<f64> = line.iter().zip(&share).map(|(line, share)| line * share).collect();
+                lines.iter().map(|(other, _)| nalgebra_dot(&weighted, other)).collect()
             })
             .collect();
-        let followed_speed = if model.damps_rotation { vec![0.0; model.modes()] } else { drag };
-        let points_per_rad = problem.points_per_revolution / std::f64::consts::TAU;
-        let angle: Vec<f64> = model.shapes.iter().map(|shape| shape[THETA_PINION] * points_per_rad).collect();
-        let column = |r: usize| model.mesh.get(r).map_or(&[][..], |column| column.as_slice());
-        let scales = Scales {
-            half_step_s,
-            external: [model.motor.clone(), model.brake.clone(), followed_speed],
-            static_displacement,
+        let column = |r: usize| {
+            let (line, lead) = lines[r];
+            let of_modes = |f: &dyn Fn(usize) -> f64| (0..modes).map(|n| line[n] * f(n)).collect::<Vec<f64>>();
+            let of_displacement = of_modes(&|n| 1.0 - lead * restore[n]);
+            let of_velocity = of_modes(&|n| lead * keep[n] - (lead - 1.0));
+            let of_force = pushes.iter().zip(&compliance[r]).map(|(push, compliance)| {
+                dot(&of_displacement, push) + dot(&of_velocity, push) + lead * compliance
+            });
+            Column {
+                push: pushes[r].clone(),
+                static_deflection: dot(line, &model.static_displacement),
+                of_force: of_force.collect(),
+                of_external: external_push.each_ref().map(|push| lead * dot(line, push)),
+                of_displacement,
+                of_velocity,
+            }
         };
         Self {
-            rows: problem.outputs.iter().map(|output| output.row(model, &scales)).collect(),
-            static_angle: sum(&angle, &scales.static_displacement) + 0.5,
-            static_deflection: std::array::from_fn(|r| sum(column(r), &scales.static_displacement)),
-            points_per_sample: problem.points_per_revolution
-                / problem.time.samples_per_pinion_revolution as f64,
-            angle,
-            factors,
-            scales,
+            half_step_s: h,
+            columns: (0..lines.len()).map(column).collect(),
+            outputs: problem.outputs.iter().map(|output| output.weights(model, h)).collect(),
+            keep,
+            restore,
+            external_push,
+            compliance,
+            laws: problem.laws.clone(),
+            static_force_n: model.lines.iter().map(|line| line.static_force_n).collect(),
         }
     }
 
-    /// (rad, m) `share · column`: what a force in mesh direction `r` adds to each mode in a step.
-    pub(super) fn push(&self, problem: &Problem, r: usize) -> Vec<f64> {
-        problem.model.mesh.get(r).map_or_else(Vec::new, |column| self.share(column.as_slice()))
-    }
-
-    /// `h² E` times a modal force.
-    pub(super) fn share(&self, force: &[f64]) -> Vec<f64> {
-        self.factors.share.iter().zip(force).map(|(share, force)| share * force).collect()
-    }
-
-    fn scaled_velocity(&self, model: &ReducedModel) -> Vec<f64> {
-        model.initial_velocity.iter().map(|velocity| velocity * self.scales.half_step_s).collect()
-    }
-
-    /// The mesh as a table, of a simulation whose law is one of tables.
-    pub(super) fn table(&self, problem: &Problem) -> MeshTable<R> {
-        problem.mesh.table(&Reduction {
-            directions: &problem.model.directions,
-            mean_stiffness: &problem.model.mean_mesh_stiffness,
-            compliance: &self.factors.compliance,
-        })
-    }
-
-    /// The displacement that the user gives for the start, relative to the one under the constant loads.
-    fn given_displacement(&self, model: &ReducedModel) -> Option<Vec<f64>> {
-        let given = model.initial_displacement.as_ref()?;
-        let relative = given.iter().zip(&self.scales.static_displacement);
-        Some(relative.map(|(given, at_rest)| given - at_rest).collect())
-    }
-
-    /// (m) Deflection in the mesh's directions.
-    fn deflection(&self, model: &ReducedModel, displacement: &[f64]) -> [f64; R] {
-        std::array::from_fn(|r| {
-            let column = model.mesh.get(r).map_or(0.0, |column| sum(column.as_slice(), displacement));
-            self.static_deflection[r] + column
-        })
-    }
-
-    /// The state at the first simulated sample, under the law of contact: as given, or at rest but for the rigid rotation with the
-    /// mesh closed. All that deforms is then as under the constant loads, and the freely turning train has turned until the pairs
-    /// carry the load.
+    /// The state at the first simulated sample: with the given velocity, and the meshes closed at rest. All that deforms is then as
+    /// under the constant loads, and the shafts that turn freely have turned until the pairs carry the load.
     ///
     /// # Arguments
-    /// * `problem` - the simulation
-    /// * `constants` - of its law
-    /// * `sample`, `lane` - its pairs at that sample
-    pub(super) fn first_state_in_contact<const L: usize>(
-        &self,
-        problem: &Problem,
-        constants: &ContactConstants,
-        sample: &ContactSample<L>,
-        lane: usize,
-    ) -> FirstState<R> {
-        let model = problem.model;
-        let z = sample.face_centre.0[lane];
-        let displacement = self.given_displacement(model).unwrap_or_else(|| {
-            let mut displacement = vec![0.0; model.modes()];
-            let closed = deflection_at_rest(sample, lane, constants.static_force_n.max(0.0));
-            if let (Some(turned), Some(line)) = (displacement.first_mut(), model.mesh.first()) {
-                let tilted = if R > 1 { z * self.static_deflection[1] } else { 0.0 };
-                *turned = (closed - self.static_deflection[0] - tilted) / line[0];
-            }
-            displacement
-        });
-        let scaled_velocity = self.scaled_velocity(model);
-        let deflection = self.deflection(model, &displacement);
-        let speed = model.mesh.first().map_or(0.0, |line| sum(line.as_slice(), &scaled_velocity));
-        let tilted = if R > 1 { z * deflection[1] } else { 0.0 };
-        let lead = constants.damping_time_s / self.scales.half_step_s * speed;
-        let whole = force_on(constants, sample, lane, deflection[0] + tilted + lead);
-        let mut force = [0.0; R];
-        force[0] = whole;
-        if R > 1 {
-            force[1] = z * (whole - constants.static_force_n);
-        }
-        FirstState { displacement, scaled_velocity, force, entry: 0 }
-    }
-
-    /// The state at the first simulated sample, under a law of tables: as given, or the static equilibrium of the loaded mesh
-    /// there.
-    ///
-    /// # Arguments
-    /// * `problem` - the simulation
-    /// * `table` - its mesh
-    /// * `sample`, `lane` - force of the profile errors at that sample, in the mesh's directions, and entry of the mesh's table
-    ///   there, where the motor's angle decides it
-    /// * `external` - motor lead, torque deviation and speed deviation there
+    /// * `model` - the machine
+    /// * `samples`, `lane` - the pairs of each mesh at that sample
     pub(super) fn first_state<const L: usize>(
         &self,
-        problem: &Problem,
-        table: &MeshTable<R>,
-        (sample, lane): (&TabulatedSample<L, R>, usize),
-        external: &[f64; EXTERNALS],
-    ) -> FirstState<R> {
-        let model = problem.model;
-        let errors = &sample.errors.map(|errors| errors.0[lane]);
-        let known_entry = sample.entries[lane] as usize;
-        let Some(displacement) = self.given_displacement(model) else {
-            return self.equilibrium(problem, table, errors, external, known_entry);
+        model: &ModalMachine,
+        samples: &[PairsSample<L>],
+        lane: usize,
+    ) -> FirstState {
+        let scaled_velocity: Vec<f64> =
+            model.initial_velocity.iter().map(|velocity| velocity * self.half_step_s).collect();
+        // Column numbers of the lines of action of each mesh.
+        let mut next = 0;
+        let columns: Vec<std::ops::Range<usize>> = (model.lines.iter())
+            .map(|line| {
+                next += line.columns.len();
+                next - line.columns.len()..next
+            })
+            .collect();
+        let at_face_centre = |mesh: usize, of: &dyn Fn(usize) -> f64| {
+            let z = samples[mesh].face_centre.0[lane];
+            let tilted: f64 = columns[mesh].clone().skip(1).map(|column| z * of(column)).sum();
+            (of(columns[mesh].start), tilted)
         };
-        let angle = self.static_angle + sum(&self.angle, &displacement);
-        let rotation = problem.time.first_simulated_sample as f64 * self.points_per_sample;
-        let entry = problem.mesh.cycle().map_or(known_entry, |cycle| cycle.entry(rotation + angle));
-        let force = table.points[entry].force_on(errors, &self.deflection(model, &displacement));
-        FirstState { displacement, scaled_velocity: self.scaled_velocity(model), force, entry }
-    }
-
-    /// No acceleration: `ω² q = B w + p` with `w = −(f + S' y)` and p the externals' and the damping's force. A problem of the
-    /// size of the mesh's directions, `w = −(1 + S' Γ₀)⁻¹ (f + S' y₀)` with `Γ₀ = Bᵀ ω⁻² B` and y₀ the deflection without
-    /// w.
-    fn equilibrium(
-        &self,
-        problem: &Problem,
-        table: &MeshTable<R>,
-        errors: &[f64; R],
-        external: &[f64; EXTERNALS],
-        entry: usize,
-    ) -> FirstState<R> {
-        let model = problem.model;
-        let columns = model.mesh.len();
-        let stiffness = DVector::from_column_slice(&model.stiffness);
-        let flexible: Vec<DVector<f64>> =
-            model.mesh.iter().map(|column| column.component_div(&stiffness)).collect();
-        let compliance = DMatrix::from_fn(columns, columns, |r, c| model.mesh[r].dot(&flexible[c]));
-        let forces = externals(self);
-        let alone = DVector::from_fn(model.modes(), |n, _| {
-            let driven = forces.iter().zip(external).map(|(force, value)| force[n] * value);
-            (driven.sum::<f64>() - model.damping[n] * model.initial_velocity[n]) / model.stiffness[n]
-        });
-        let deflection_alone =
-            DVector::from_fn(columns, |r, _| self.static_deflection[r] + model.mesh[r].dot(&alone));
-        let force = table.points[entry].static_force(errors, &deflection_alone, &compliance);
-        let mut displacement = alone;
-        for (column, force) in flexible.iter().zip(force.iter()) {
-            displacement.axpy(*force, column, 1.0);
+        let missing: Vec<f64> = (self.laws.iter().enumerate())
+            .map(|(mesh, law)| {
+                let force_n = self.static_force_n[mesh].max(0.0);
+                let closed = deflection_at_rest(law.contact, &samples[mesh], lane, force_n);
+                let (at_rest, tilted) =
+                    at_face_centre(mesh, &|column| self.columns[column].static_deflection);
+                closed - at_rest - tilted
+            })
+            .collect();
+        let displacement = model.turned_by(&missing);
+        let lines: Vec<&Vec<f64>> = model.lines.iter().flat_map(|line| &line.columns).collect();
+        let mut force = Vec::with_capacity(lines.len());
+        for (mesh, law) in self.laws.iter().enumerate() {
+            let (deflection, tilted) = at_face_centre(mesh, &|column| {
+                self.columns[column].static_deflection + dot(lines[column], &displacement)
+            });
+            let lead = law.damping_time_s / self.half_step_s * dot(lines[columns[mesh].start], &scaled_velocity);
+            let carried = law.force_n(&samples[mesh], lane, deflection + tilted + lead);
+            let whole = self.static_force_n[mesh] - carried;
+            force.push(whole);
+            let z = samples[mesh].face_centre.0[lane];
+            force.extend(columns[mesh].clone().skip(1).map(|_| z * (whole - self.static_force_n[mesh])));
         }
-        FirstState {
-            displacement: displacement.as_slice().to_vec(),
-            scaled_velocity: self.scaled_velocity(model),
-            force: std::array::from_fn(|r| force.get(r).copied().unwrap_or(0.0)),
-            entry,
-        }
+        FirstState { displacement, scaled_velocity, force }
     }
 }
 
-/// Modal force of each external, of a simulation.
-pub(super) fn externals<const R: usize>(prepared: &Prepared<R>) -> [&[f64]; EXTERNALS] {
-    std::array::from_fn(|x| prepared.scales.external[x].as_slice())
-}
-
-/// `Σ a_n b_n`.
-pub(super) fn sum(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+/// `Σ a_n b_n` in the order in which nalgebra sums.
+fn nalgebra_dot(a: &[f64], b: &[f64]) -> f64 {
+    nalgebra::DVectorView::from_slice(a, a.len()).dot(&nalgebra::DVectorView::from_slice(b, b.len()))
 }

@@ -3,12 +3,26 @@
 //! `(cos²α/(E W)) (L u² + M u + P (1 + Q tan²α))`, `u = (x − Rd − y tan α)/S_f`, `S_f = 2 θ_f Rd`.
 //! Source: P. Sainsot, P. Velex, O. Duverger, Journal of Mechanical Design 126 (2004).
 
-use super::energy::LoadDirection;
 use crate::wheel::FoundationCoefficients;
 use crate::wheel::{ToothProfile, Wheel};
 
+/// Pressure angle of a load.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LoadDirection {
+    pub(crate) sin: f64,
+    pub(crate) cos: f64,
+    pub(crate) tan: f64,
+}
+
+impl LoadDirection {
+    pub(crate) fn new(pressure_angle_rad: f64) -> Self {
+        let (sin, cos) = pressure_angle_rad.sin_cos();
+        Self { sin, cos, tan: pressure_angle_rad.tan() }
+    }
+}
+
 /// The polynomials of one wheel.
-pub(super) struct Foundation {
+pub(crate) struct Foundation {
     l: f64,
     m: f64,
     p: f64,
@@ -18,7 +32,7 @@ pub(super) struct Foundation {
 }
 
 impl Foundation {
-    pub(super) fn new(wheel: &Wheel, profile: &ToothProfile, coefficients: &FoundationCoefficients) -> Self {
+    pub(crate) fn new(wheel: &Wheel, profile: &ToothProfile, coefficients: &FoundationCoefficients) -> Self {
         let theta = (profile.y_mm[0] / profile.x_mm[0]).atan();
         let h = wheel.root_radius_mm / wheel.bore_radius_mm;
         let polynomial = |[a, b, c, d, e, f]: [f64; 6]| {
@@ -35,7 +49,7 @@ impl Foundation {
     }
 
     /// (mm/N) Compliance of a load at (x, y) over `width_mm`.
-    pub(super) fn compliance(
+    pub(crate) fn compliance(
         &self,
         (x, y): (f64, f64),
         direction: LoadDirection,

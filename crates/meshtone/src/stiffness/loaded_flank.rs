@@ -5,15 +5,14 @@
 //! `U = ∫ (M_z² Iy − 2 M_z M_y Iyz + M_y² Iz)/(2E (Iy Iz − Iyz²)) + F_s² s/G + F_a²/(2EA) dx` from the root to x_i. Everything
 //! that depends on the load is moved out of the integrals (paper, Eq. 2 → 3): they are evaluated once for all loads.
 
-use super::energy::LoadDirection;
-use super::foundation::Foundation;
+use super::foundation::{Foundation, LoadDirection};
 use crate::damage::{DamagedTooth, Section};
 use crate::wheel::{Flank, FlankPoint, FoundationCoefficients, Material};
 
 /// A load on a flank, of unit size.
 #[derive(Debug, Clone, Copy)]
 pub struct FlankLoad {
-    /// Where it acts.
+    /// Point at which it acts.
     pub point: FlankPoint,
     /// (-) Sine of its angle to the normal of the tooth's centre line.
     pub sin: f64,

@@ -28,7 +28,7 @@ pub(super) fn average(trace: &mut Trace, stages: &Stages, channels: &Channels, r
         vertical_g,
         pinion_speed_hz,
         rate_hz,
-        ChainSettings { angular: published(), separation: None },
+        ChainSettings { angular: by_pchip(), separation: None },
     ) else {
         return;
     };
@@ -44,8 +44,8 @@ pub(super) fn average(trace: &mut Trace, stages: &Stages, channels: &Channels, r
     trace.scalar("sa_rate_in_hz", rate_hz);
 }
 
-/// As the published code reads a signal between its samples.
-fn published() -> AngularSettings {
+/// A signal is read by PCHIP between its samples, under every model.
+fn by_pchip() -> AngularSettings {
     AngularSettings { interpolation: Interpolation::Pchip, ..AngularSettings::default() }
 }
 

@@ -7,7 +7,7 @@ use crate::random::{Draws, Purpose};
 const SPREAD: f64 = 0.4;
 /// Rounds of candidates near the best.
 const ROUNDS: usize = 4;
-/// How many of the best are refined.
+/// Number of the best combinations that are refined.
 const PARENTS: usize = 4;
 /// Width of a round's neighbourhood over the round's before.
 const SHRINK: f64 = 0.5;

@@ -11,7 +11,7 @@ use crate::simulate::Stages;
 use crate::solver::{Block, Output, Recorder};
 use crate::wheel::WheelName;
 
-/// How a difference signal is taken from a simulation.
+/// Settings by which a difference signal is taken from a simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DifferenceChain {
     /// The channel: of a sensor, one that every scenario lists.
@@ -35,16 +35,14 @@ impl DifferenceChain {
         Self { channel, sampling_rate_hz, wheel: WheelName::Gear, separation: None }
     }
 
-    /// How signals, simulated or measured, are read at equal angles: under `published` by PCHIP as in the paper, which flattens a
+    /// Settings by which signals, simulated or measured, are read at equal angles: under `published` by PCHIP as in the paper, which flattens a
     /// burst the more the farther its peaks lie from a point; under `linear` band-limited.
     ///
     /// # Arguments
     /// * `model` - of the scenario
     pub fn angular_settings(model: Model) -> AngularSettings {
-        let interpolation = match model {
-            Model::Published => Interpolation::Pchip,
-            Model::Linear | Model::Contact => Interpolation::BandLimited,
-        };
+        let interpolation =
+            if model.has_meshes() { Interpolation::BandLimited } else { Interpolation::Pchip };
         AngularSettings { interpolation, ..AngularSettings::default() }
     }
 
@@ -56,7 +54,7 @@ impl DifferenceChain {
     /// * `pinion_speed_hz` - (Hz) likewise; read where the speed follows a profile
     ///
     /// # Errors
-    /// As of [`crate::signal::process_channel`].
+    /// Those of [`crate::signal::process_channel`].
     pub fn record(
         &self,
         stages: &Stages,
@@ -123,7 +121,7 @@ impl Keep for KeepDifference<'_> {
     type Kept = Result<Vec<f64>, HybridError>;
 
     fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
-        let channel = self.0.channel.output(&scenario.sensors, scenario.model)?;
+        let channel = self.0.channel.output(&scenario.sensors)?;
         Ok(vec![channel, ChannelKind::PinionShaftSpeed.output()])
     }
 

@@ -1,4 +1,4 @@
-//! What the hybrid stage refuses.
+//! Errors of the hybrid stage.
 
 use thiserror::Error;
 
@@ -14,15 +14,15 @@ pub enum HybridError {
     Parameter {
         /// Its name.
         name: String,
-        /// What was given.
+        /// The given value.
         value: String,
-        /// What is allowed.
+        /// The allowed values.
         allowed: String,
     },
     /// A cycle is too short to be interpolated.
     #[error("{what} has {values} values, but needs 4 or more")]
     TooShort {
-        /// Which cycle.
+        /// Name of the cycle.
         what: &'static str,
         /// Its length.
         values: usize,
@@ -30,7 +30,7 @@ pub enum HybridError {
     /// A value is not a finite number.
     #[error("value {index} of {what} is not a finite number")]
     NotANumber {
-        /// Which cycle.
+        /// Name of the cycle.
         what: &'static str,
         /// Place of the value, from 0 on.
         index: usize,
@@ -48,7 +48,7 @@ pub enum HybridError {
     /// A signal without shape.
     #[error("a signal is constant, so it has no {indicator}")]
     Constant {
-        /// What was asked for.
+        /// The requested indicator.
         indicator: &'static str,
     },
     /// Nothing to tune by.
@@ -124,9 +124,9 @@ pub enum HybridError {
     /// No candidates, or too many.
     #[error("{candidates} candidates; must be a whole number from 1 to {most}")]
     Candidates {
-        /// How many.
+        /// The number.
         candidates: usize,
-        /// How many are allowed.
+        /// The largest number allowed.
         most: usize,
     },
     /// None of the combinations of the keys' values could be simulated.

@@ -14,7 +14,7 @@ const MOST_COMBINATIONS: usize = 243;
 pub struct Case {
     /// Its name.
     pub label: String,
-    /// How severe the fault is, in the experiment's own unit; 0 for the healthy state.
+    /// Severity of the fault, in the experiment's own unit; 0 for the healthy state.
     pub severity: f64,
     /// The faults; none for the healthy state.
     pub faults: Vec<Fault>,
@@ -96,19 +96,19 @@ impl TunedKey {
 /// A rig's experiment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Experiment {
-    /// What all cases have in common; its fault does not count.
+    /// The scenario that all cases share; its fault does not count.
     pub base: Scenario,
     /// The cases; the first is the healthy one.
     pub cases: Vec<Case>,
-    /// How difference signals are taken.
+    /// The processing that gives difference signals.
     pub chain: DifferenceChain,
-    /// What was measured, of the same cases.
+    /// Measurements of the same cases.
     pub measured: Measurements,
-    /// Where the enhancement is searched.
+    /// Bounds within which the enhancement is searched.
     pub bounds: EnhancementBounds,
     /// Numbers of the scenario that are tuned as well; none for the paper's three parameters alone.
     pub keys: Vec<TunedKey>,
-    /// How many combinations of the keys' values are simulated, all cases each.
+    /// Number of combinations of the keys' values that are simulated, all cases each.
     pub candidates: usize,
     /// Of the combinations and the bootstrap.
     pub seed: u64,
@@ -160,7 +160,8 @@ impl Experiment {
             for &value in &values {
                 match scenario.with_number(&key.key, value) {
                     Ok(changed) => {
-                        honoured |= value != before && changed.as_honoured() != scenario.as_honoured();
+                        honoured |= value != before
+                            && changed.without_ignored_keys() != scenario.without_ignored_keys();
                     }
                     Err(_) if self.allows_together(&scenario, number, value) => honoured = true,
                     Err(error) => return Err(error.into()),
@@ -174,7 +175,7 @@ impl Experiment {
         }
     }
 
-    /// Whether a value that the scenario refuses is allowed together with values of the other keys.
+    /// Returns whether a value that the scenario refuses is allowed together with values of the other keys.
     fn allows_together(&self, scenario: &Scenario, number: usize, value: f64) -> bool {
         let others: Vec<(&str, Vec<f64>)> = self
             .keys

@@ -23,7 +23,7 @@ pub enum TuningIndicator {
 }
 
 impl TuningIndicator {
-    /// All of them.
+    /// All of its values.
     pub const ALL: [Self; 6] = [
         Self::Rms,
         Self::Kurtosis,
@@ -58,17 +58,17 @@ impl TuningIndicator {
         Self::ALL.into_iter().find(|indicator| indicator.name() == name)
     }
 
-    /// Whether the healthy state's rms is divided out.
+    /// Returns whether the healthy state's rms is divided out.
     pub fn is_relative(self) -> bool {
         matches!(self, Self::Rms | Self::EnvelopeRms)
     }
 
-    /// Whether the logarithm is taken.
+    /// Returns whether the logarithm is taken.
     pub fn is_logarithmic(self) -> bool {
         !matches!(self, Self::Skewness | Self::EnvelopeSkewness)
     }
 
-    /// Whether it is of the envelope.
+    /// Returns whether it is of the envelope.
     pub fn is_of_envelope(self) -> bool {
         matches!(self, Self::EnvelopeRms | Self::EnvelopeKurtosis | Self::EnvelopeSkewness)
     }
@@ -102,7 +102,7 @@ impl TuningIndicator {
         }
     }
 
-    /// What is compared: the logarithm where it is taken.
+    /// The number that is compared: the logarithm where it is taken.
     ///
     /// # Arguments
     /// * `value` - as of [`Self::measure`]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::candidates::{place, rounds, value};
 use super::search::Grid;
 use super::simulations::{Differences, Simulations};
-use super::tune::{Common, tune_among};
+use super::tune::{TuningInputs, tune_among};
 use super::{Experiment, Fit, HybridError, SimulatedCases, TunedKeys};
 use crate::scenario::Scenario;
 use crate::threads;
@@ -22,13 +22,13 @@ struct Candidate {
     differences: Arc<Differences>,
 }
 
-/// What fits all cases but one best.
-struct Fold {
+/// The best fit to all cases but one.
+struct LeftOutFit {
     fit: Fit,
     differences: Arc<Differences>,
 }
 
-/// What fits a combination's simulations.
+/// The fits to a combination's simulations.
 struct Fits {
     differences: Arc<Differences>,
     all: Fit,
@@ -39,10 +39,10 @@ struct Fits {
 pub(super) struct KeySearch<'a> {
     experiment: &'a Experiment,
     simulations: &'a Simulations<'a>,
-    common: Common<'a>,
+    common: TuningInputs<'a>,
     /// The best so far first.
     best: Vec<Candidate>,
-    folds: Vec<Fold>,
+    folds: Vec<LeftOutFit>,
     candidates: usize,
     failed: usize,
     first_failure: Option<String>,
@@ -55,11 +55,11 @@ impl<'a> KeySearch<'a> {
     pub(super) fn new(
         experiment: &'a Experiment,
         simulations: &'a Simulations<'a>,
-        common: Common<'a>,
+        common: TuningInputs<'a>,
         original: &SimulatedCases,
     ) -> Result<Self, HybridError> {
         let differences = Arc::new(original.differences().to_vec());
-        let fold = |fit| Fold { fit, differences: differences.clone() };
+        let fold = |fit| LeftOutFit { fit, differences: differences.clone() };
         let grid = Grid::new(original, common.measured, common.bounds, common.cancelled)?;
         let folds = left_out(&grid, experiment.cases.len())?.into_iter().map(fold).collect();
         Ok(Self {
@@ -83,7 +83,7 @@ impl<'a> KeySearch<'a> {
             let end = index + count;
             while index < end {
                 let next = (index + together).min(end);
-                self.try_some(index..next, round, &parents)?;
+                self.try_combinations(index..next, round, &parents)?;
                 index = next;
             }
         }
@@ -119,7 +119,7 @@ impl<'a> KeySearch<'a> {
     }
 
     /// Simulates some combinations and keeps the best.
-    fn try_some(
+    fn try_combinations(
         &mut self,
         numbers: std::ops::Range<usize>,
         round: usize,
@@ -165,7 +165,7 @@ impl<'a> KeySearch<'a> {
         self.candidates += 1;
         for (fold, fit) in self.folds.iter_mut().zip(left_out) {
             if fit.error < fold.fit.error {
-                *fold = Fold { fit, differences: differences.clone() };
+                *fold = LeftOutFit { fit, differences: differences.clone() };
             }
         }
         // Of equals the one that was drawn first.
@@ -190,7 +190,7 @@ fn left_out(grid: &Grid, cases: usize) -> Result<Vec<Fit>, HybridError> {
     (0..cases).map(|case| grid.fit(Some(case))).collect()
 }
 
-fn fits(common: &Common, differences: Differences, leave_out: bool) -> Result<Fits, HybridError> {
+fn fits(common: &TuningInputs, differences: Differences, leave_out: bool) -> Result<Fits, HybridError> {
     let simulated = SimulatedCases::new(differences)?;
     let grid = Grid::new(&simulated, common.measured, common.bounds, common.cancelled)?;
     let all = grid.fit(None)?;

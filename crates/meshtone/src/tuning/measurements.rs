@@ -1,4 +1,4 @@
-//! What was measured on a rig.
+//! Measurements on a rig.
 
 use super::simulated::burst_centre_rev;
 use super::{HybridError, TuningIndicator};
@@ -14,7 +14,7 @@ pub struct Measurements {
     paired: bool,
     /// Standard deviation of all records, by indicator.
     scale: Vec<f64>,
-    /// As of [`Self::typical_difference`], by case; empty where only indicators were measured.
+    /// Values of [`Self::typical_difference`], by case; empty where only indicators were measured.
     typical_differences: Vec<Vec<f64>>,
 }
 
@@ -85,7 +85,7 @@ impl Measurements {
     /// * `signals` - by case (the first is the healthy one) and record: one cycle each, all of one length
     ///
     /// # Errors
-    /// As [`Self::from_compared`]; a constant signal; signals of different lengths.
+    /// Those of [`Self::from_compared`]; a constant signal; signals of different lengths.
     pub fn from_difference_signals(
         indicators: Vec<TuningIndicator>,
         signals: &[Vec<Vec<f64>>],
@@ -136,7 +136,7 @@ impl Measurements {
         Ok(Self { indicators, records, paired, scale, typical_differences: Vec::new() })
     }
 
-    /// What [`Self::typical_difference`] hands out.
+    /// The values that [`Self::typical_difference`] returns.
     fn typical(&self, signals: &[Vec<Vec<f64>>]) -> Result<Vec<Vec<f64>>, HybridError> {
         let rms = |signal: &Vec<f64>| TuningIndicator::Rms.measure(signal);
         let healthy_rms = mean(&signals[0].iter().map(rms).collect::<Result<Vec<_>, _>>()?);
@@ -166,7 +166,7 @@ impl Measurements {
         records.min_by(|&a, &b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
     }
 
-    /// What was measured.
+    /// The measured indicators.
     pub fn indicators(&self) -> &[TuningIndicator] {
         &self.indicators
     }
@@ -243,7 +243,7 @@ impl Measurements {
         (0..self.cases()).map(|case| self.case_scatter(case)).sum::<f64>() / self.cases() as f64
     }
 
-    /// The same of one case.
+    /// Scatter of one case.
     ///
     /// # Arguments
     /// * `case` - its number

@@ -163,7 +163,7 @@ impl Enhancement {
     /// * `centre_rev` - (rev) where the fault's response is, in both
     ///
     /// # Errors
-    /// As the modifications'.
+    /// Those of the modifications.
     pub fn without_noise(
         &self,
         difference: &[f64],
@@ -195,13 +195,13 @@ impl Enhanced {
     /// * `seed`, `draw` - as of [`add_noise`]
     ///
     /// # Errors
-    /// As [`add_noise`]'s.
+    /// Those of [`add_noise`].
     pub fn with_noise(&self, seed: u64, draw: u64) -> Result<Vec<f64>, HybridError> {
         add_noise(&self.signal, self.noise_level, self.healthy_rms, seed, draw)
     }
 }
 
-/// What interpolation needs: 4 values, all of them numbers.
+/// Checks the values that interpolation needs: at least 4, all of them numbers.
 pub(super) fn check_cycle(what: &'static str, values: &[f64]) -> Result<(), HybridError> {
     if values.len() < 4 {
         return Err(HybridError::TooShort { what, values: values.len() });

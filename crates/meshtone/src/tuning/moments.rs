@@ -44,7 +44,7 @@ impl Window {
         cycle[first..end].iter().enumerate().map(move |(n, value)| (part((first + n) as f64), value))
     }
 
-    /// How many zeros of the padding it holds.
+    /// Number of zeros of the padding that it holds.
     pub(super) fn padding(self) -> f64 {
         self.count - (self.to - self.from)
     }
@@ -109,7 +109,7 @@ impl WindowMoments {
     ///
     /// # Arguments
     /// * `width_ratio` - (-) as of [`super::change_duration`]; above 1 the zeros of the padding count
-    pub fn at_width(&self, width_ratio: f64) -> JointMoments {
+    pub fn at_duration(&self, width_ratio: f64) -> JointMoments {
         let Window { from, to, count } = Window::new(self.points, width_ratio);
         let mut moments = JointMoments::default();
         for i in 0..POWERS {

@@ -4,11 +4,11 @@ use std::sync::atomic::AtomicBool;
 
 use super::key_search::KeySearch;
 use super::simulations::Simulations;
-use super::tune::Common;
+use super::tune::TuningInputs;
 use super::{Case, Enhancement, Experiment, HybridError, SimulatedCases, Tuning, TuningWarning, tune};
 use crate::scenario::Scenario;
 
-/// What an experiment gave.
+/// Result of an experiment.
 #[derive(Debug, Clone)]
 pub struct ExperimentResult {
     /// The original simulation: difference signals of the scenario as it is, before anything was tuned.
@@ -67,7 +67,7 @@ pub struct ExperimentControl<'a> {
 /// * `control` - progress and cancellation
 ///
 /// # Errors
-/// As of [`Experiment::check`]; a case that cannot be simulated as it is; no combination of the keys' values that can be
+/// Those of [`Experiment::check`]; a case that cannot be simulated as it is; no combination of the keys' values that can be
 /// simulated; cancelled.
 pub fn run_experiment(
     experiment: &Experiment,
@@ -83,20 +83,20 @@ pub fn run_experiment(
     let mut with_keys = None;
     if !experiment.keys.is_empty() {
         let predicted = original.predict(measured.indicators(), &Enhancement::default())?;
-        let common = Common { measured, bounds, seed: *seed, cancelled, original: &predicted };
+        let common = TuningInputs { measured, bounds, seed: *seed, cancelled, original: &predicted };
         let keys = KeySearch::new(experiment, &simulations, common, &original)?.run()?;
         with_keys = kept(keys, &mut enhancement_alone);
     }
     let keys = if with_keys.is_some() { experiment.keys.len() } else { 0 };
     let reported = with_keys.as_mut().map_or(&mut enhancement_alone, |keys| &mut keys.tuning);
-    reported.warnings.extend(damaged_on_the_mate(experiment));
+    reported.warnings.extend(damaged_on_mate_wheel(experiment));
     reported.warnings.extend(few_numbers(experiment, keys));
     reported.warnings.extend(predicts_worse(reported));
     Ok(ExperimentResult { original, enhancement_alone, with_keys })
 }
 
 /// Cases whose damage meets another place of the averaged wheel in each of its revolutions.
-fn damaged_on_the_mate(experiment: &Experiment) -> impl Iterator<Item = TuningWarning> {
+fn damaged_on_mate_wheel(experiment: &Experiment) -> impl Iterator<Item = TuningWarning> {
     let averaged = experiment.chain.wheel;
     let gears = &experiment.base.gears;
     // Where the mate turns a whole number of times meanwhile, its damage is averaged as well.
@@ -108,7 +108,7 @@ fn damaged_on_the_mate(experiment: &Experiment) -> impl Iterator<Item = TuningWa
         .map(move |(case, _)| TuningWarning::OtherWheel { case, averaged })
 }
 
-/// That the measurements are no more than what is tuned to them.
+/// Warns where there are no more measurements than tuned numbers.
 ///
 /// # Arguments
 /// * `keys` - that were tuned as well
@@ -119,7 +119,7 @@ fn few_numbers(experiment: &Experiment, keys: usize) -> Option<TuningWarning> {
     (measured <= tuned).then_some(TuningWarning::FewNumbers { measured, tuned })
 }
 
-/// That other cases were better predicted before anything was tuned.
+/// Warns where other cases were better predicted before anything was tuned.
 fn predicts_worse(tuning: &Tuning) -> Option<TuningWarning> {
     let (original, left_out) = (tuning.original_error, tuning.mean_leave_one_out_error());
     (left_out > original).then_some(TuningWarning::PredictsWorse { original, left_out })

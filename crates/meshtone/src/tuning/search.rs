@@ -5,12 +5,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use argmin::core::{CostFunction, Error, Executor, State};
 use argmin::solver::neldermead::NelderMead;
 
-use super::simulated::AtWidth;
+use super::simulated::CasesOfDuration;
 use super::{Enhancement, HybridError, Measurements, SimulatedCases};
 
 /// Points of the global grid, by parameter.
 const GRID: [usize; 3] = [24, 16, 16];
-/// Likewise where every point costs a pass over all envelopes.
+/// Coarse grid where every point costs a pass over all envelopes.
 const COARSE_GRID: [usize; 3] = [12, 8, 8];
 /// Starts of the refinement: this many of the grid's best points.
 const STARTS: usize = 3;
@@ -18,7 +18,7 @@ const MOST_ITERATIONS: u64 = 120;
 /// Of the simplex's errors, where the refinement ends.
 const TOLERANCE: f64 = 1e-6;
 
-/// Where the three parameters are searched.
+/// Bounds of the three parameters in the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EnhancementBounds {
     /// (-) Least and largest width ratio.
@@ -88,7 +88,7 @@ pub struct Fit {
     pub error: f64,
 }
 
-/// What is minimised: the mean error over the cases.
+/// The objective that is minimised: the mean error over the cases.
 #[derive(Clone, Copy)]
 pub(super) struct Objective<'a> {
     pub(super) simulated: &'a SimulatedCases,
@@ -108,8 +108,8 @@ impl Objective<'_> {
     pub(super) fn at(&self, point: Point) -> Result<f64, HybridError> {
         stop_where(self.cancelled)?;
         let enhancement = enhancement(point);
-        let at_width = self.simulated.at_width(self.measured.indicators(), enhancement.width_ratio);
-        Ok(weighted_mean(self.weights, |case| case_error(self.measured, &at_width, case, &enhancement)))
+        let at_duration = self.simulated.at_duration(self.measured.indicators(), enhancement.width_ratio);
+        Ok(weighted_mean(self.weights, |case| case_error(self.measured, &at_duration, case, &enhancement)))
     }
 }
 
@@ -118,9 +118,14 @@ fn stop_where(cancelled: &AtomicBool) -> Result<(), HybridError> {
 }
 
 /// Expected error of a case, the mean over the indicators.
-fn case_error(measured: &Measurements, at_width: &AtWidth, case: usize, enhancement: &Enhancement) -> f64 {
+fn case_error(
+    measured: &Measurements,
+    at_duration: &CasesOfDuration,
+    case: usize,
+    enhancement: &Enhancement,
+) -> f64 {
     let mut sum = 0.0;
-    at_width.indicators(case, enhancement, |j, value| sum += measured.error(case, j, value));
+    at_duration.indicators(case, enhancement, |j, value| sum += measured.error(case, j, value));
     sum / measured.indicators().len() as f64
 }
 
@@ -165,13 +170,15 @@ impl<'a> Grid<'a> {
         let (mut points, mut errors) = (Vec::new(), Vec::new());
         for &width in &places[0] {
             stop_where(cancelled)?;
-            let at_width = simulated.at_width(measured.indicators(), width.exp());
+            let at_duration = simulated.at_duration(measured.indicators(), width.exp());
             for &ratio in &places[1] {
                 for &noise in &places[2] {
                     let point = [width, ratio, noise];
                     let enhancement = enhancement(point);
                     points.push(point);
-                    errors.extend((0..cases).map(|case| case_error(measured, &at_width, case, &enhancement)));
+                    errors.extend(
+                        (0..cases).map(|case| case_error(measured, &at_duration, case, &enhancement)),
+                    );
                 }
             }
         }

@@ -92,10 +92,10 @@ impl SimulatedCases {
         enhancement: &Enhancement,
     ) -> Result<Vec<Vec<f64>>, HybridError> {
         enhancement.check()?;
-        let at_width = self.at_width(indicators, enhancement.width_ratio);
+        let at_duration = self.at_duration(indicators, enhancement.width_ratio);
         let mut predicted = vec![Vec::with_capacity(indicators.len()); self.differences.len()];
         for (case, values) in predicted.iter_mut().enumerate() {
-            at_width.indicators(case, enhancement, |_, value| values.push(value));
+            at_duration.indicators(case, enhancement, |_, value| values.push(value));
             if let Some(j) = values.iter().position(|value| !value.is_finite()) {
                 return Err(HybridError::Constant { indicator: indicators[j].name() });
             }
@@ -108,11 +108,15 @@ impl SimulatedCases {
     /// # Arguments
     /// * `indicators` - that are asked for
     /// * `width_ratio` - (-) as of [`super::change_duration`]
-    pub(super) fn at_width<'a>(&'a self, indicators: &'a [TuningIndicator], width_ratio: f64) -> AtWidth<'a> {
+    pub(super) fn at_duration<'a>(
+        &'a self,
+        indicators: &'a [TuningIndicator],
+        width_ratio: f64,
+    ) -> CasesOfDuration<'a> {
         let asked = |of_envelope: bool| indicators.iter().any(|one| one.is_of_envelope() == of_envelope);
         let moments: Vec<JointMoments> =
-            self.windows.iter().map(|window| window.at_width(width_ratio)).collect();
-        AtWidth {
+            self.windows.iter().map(|window| window.at_duration(width_ratio)).collect();
+        CasesOfDuration {
             simulated: self,
             indicators,
             width_ratio,
@@ -126,7 +130,7 @@ impl SimulatedCases {
 }
 
 /// The cases after a change of duration.
-pub(super) struct AtWidth<'a> {
+pub(super) struct CasesOfDuration<'a> {
     simulated: &'a SimulatedCases,
     indicators: &'a [TuningIndicator],
     width_ratio: f64,
@@ -137,7 +141,7 @@ pub(super) struct AtWidth<'a> {
     healthy_envelope_square: f64,
 }
 
-impl AtWidth<'_> {
+impl CasesOfDuration<'_> {
     /// Expected indicators of a case, as they are compared.
     ///
     /// # Arguments

@@ -11,7 +11,7 @@ use crate::wheel::WheelName;
 const BOOTSTRAP_SAMPLES: u64 = 200;
 /// Part of the bootstrap samples that the intervals hold.
 const CONFIDENCE: f64 = 0.95;
-/// How much more error a solution nearer to α = 1 may have, relative.
+/// Relative excess of error that a solution nearer to α = 1 may have.
 const VALLEY: f64 = 0.005;
 /// Halvings of an interval's end.
 const HALVINGS: usize = 9;
@@ -57,7 +57,7 @@ pub struct Tuning {
     pub original: Vec<Vec<f64>>,
     /// Indicators after the enhancement, by case and indicator.
     pub enhanced: Vec<Vec<f64>>,
-    /// What is doubtful.
+    /// Warnings.
     pub warnings: Vec<TuningWarning>,
 }
 
@@ -127,7 +127,7 @@ pub enum TuningWarning {
     },
     /// Combinations of the keys' values that could not be simulated.
     Failed {
-        /// How many.
+        /// The number.
         failed: usize,
         /// Reason of the first.
         first: String,
@@ -195,7 +195,7 @@ impl std::fmt::Display for TuningWarning {
 /// * `cancelled` - set it to stop
 ///
 /// # Errors
-/// As [`fit`](super::fit)'s.
+/// Those of [`fit`](super::fit).
 ///
 /// Source: section 5 of arXiv:2410.05073, Eq. 7.
 pub fn tune(
@@ -208,7 +208,7 @@ pub fn tune(
     let grid = Grid::new(simulated, measured, bounds, cancelled)?;
     let best = grid.fit(None)?;
     let original = simulated.predict(measured.indicators(), &Enhancement::default())?;
-    let common = Common { measured, bounds, seed, cancelled, original: &original };
+    let common = TuningInputs { measured, bounds, seed, cancelled, original: &original };
     let mut tuning = tune_among(&[(simulated, best)], &common)?;
     tuning.leave_one_out_error = threads::try_map(0..measured.cases(), |case| {
         common.left_out_error(simulated, grid.fit(Some(case))?, case)
@@ -216,9 +216,9 @@ pub fn tune(
     Ok(tuning)
 }
 
-/// What tuning needs beside simulations.
+/// The inputs of tuning besides simulations.
 #[derive(Clone, Copy)]
-pub(super) struct Common<'a> {
+pub(super) struct TuningInputs<'a> {
     pub(super) measured: &'a Measurements,
     pub(super) bounds: &'a EnhancementBounds,
     /// Of the bootstrap.
@@ -228,7 +228,7 @@ pub(super) struct Common<'a> {
     pub(super) original: &'a [Vec<f64>],
 }
 
-impl Common<'_> {
+impl TuningInputs<'_> {
     /// Error of a case, predicted by what is tuned to the others.
     ///
     /// # Arguments
@@ -252,9 +252,9 @@ impl Common<'_> {
 /// Leave-one-out errors are not computed.
 pub(super) fn tune_among(
     candidates: &[(&SimulatedCases, Fit)],
-    common: &Common,
+    common: &TuningInputs,
 ) -> Result<Tuning, HybridError> {
-    let Common { measured, bounds, seed, cancelled, original } = *common;
+    let TuningInputs { measured, bounds, seed, cancelled, original } = *common;
     let weights = equal_weights(measured.cases(), None);
     let (simulated, best) = candidates.first().copied().ok_or(HybridError::NoFit)?;
     let objective = Objective { simulated, measured, weights: &weights, cancelled };
@@ -360,7 +360,7 @@ fn intervals(
     })
 }
 
-/// How far a parameter can go, the others adjusted, before the error exceeds a limit.
+/// Value of a parameter at which the error, the others adjusted, exceeds a limit.
 fn end_of_profile(
     objective: &Objective,
     ranges: [[f64; 2]; 3],

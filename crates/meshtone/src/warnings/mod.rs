@@ -1,4 +1,4 @@
-//! What is doubtful about a simulation: before the time loop, and by its signals.
+//! Warnings about a simulation: before the time loop, and by its signals.
 
 mod observer;
 mod of_signals;
@@ -10,11 +10,10 @@ pub use step_error::StepJudgement;
 use std::f64::consts::TAU;
 
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
-use crate::machine::coordinates::{X_GEAR, X_PINION};
-use crate::machine::{DecayingMode, Shaft, Structure, WheelBody};
+use crate::machine::{DecayingMode, Shaft, WheelBody};
 use crate::mesh::Mesh;
 use crate::scenario::{MemoryLimit, Scenario};
-use crate::simulate::{Stages, stages_within};
+use crate::simulate::{Equations, Stages, stages_within};
 use crate::wheel::WheelName;
 
 /// (-) Part of the starting transient that may be left where the kept signal starts.
@@ -29,7 +28,7 @@ const TOLERATED_DEFLECTION: f64 = 0.1;
 /// * `limit` - most memory that the simulation may need
 ///
 /// # Errors
-/// As [`stages_within`].
+/// Those of [`stages_within`].
 ///
 /// ```
 /// use meshtone::scenario::{GearPair, MemoryLimit, Scenario};
@@ -52,19 +51,20 @@ pub fn stages_and_warnings(
 }
 
 impl Stages {
-    /// What deserves attention though it can be simulated: what [`Scenario::validate`] tells, keys that the model ignores, wheels
+    /// Warnings about stages that can be simulated: those of [`Scenario::validate`], keys that the model ignores, wheels
     /// whose accelerations, or whose supports', cancel in the channels, a settling too short for the slowest mode, a load that would
     /// break the teeth, and under a linear mesh places at which none meet.
     pub fn warnings(&self) -> Vec<ScenarioWarning> {
-        let doubtful = [self.equal_wheels(), self.unsettled(), self.crushed(), self.without_contact()];
+        let doubtful = [self.equal_wheels(), self.unsettled(), self.overload(), self.without_contact()];
         self.warnings_of_scenario.iter().cloned().chain(doubtful.into_iter().flatten()).collect()
     }
 
     /// Teeth that the load would bend off.
-    fn crushed(&self) -> Option<ScenarioWarning> {
+    fn overload(&self) -> Option<ScenarioWarning> {
         let (key, torque_nm) = largest_torque(&self.scenario);
         let force_n = self.force_of_torque_n(torque_nm);
-        let deflection_mm = force_n / self.mesh.mean_stiffness_n_per_mm();
+        let weakest_n_per_m = self.mean_stiffness_n_per_m().into_iter().fold(f64::INFINITY, f64::min);
+        let deflection_mm = force_n / weakest_n_per_m * 1e3;
         let (module_mm, width_mm) = (self.scenario.gears.module_mm, self.scenario.gears.face_width_mm);
         let most_mm = TOLERATED_DEFLECTION * module_mm;
         (deflection_mm > most_mm).then(|| {
@@ -81,16 +81,15 @@ impl Stages {
     /// Places at which no pair of teeth meets: nothing holds the wheels there, where real teeth would touch with their tips'
     /// corners. Under `contact` they do.
     fn without_contact(&self) -> Option<ScenarioWarning> {
-        let stiffness = match &self.mesh {
-            _ if self.damaged.is_empty() => return None,
-            Mesh::Contact(_) => return None,
-            Mesh::Published(_) => self.mesh.stiffness_n_per_mm(),
-            // Of the wheel that has more teeth: every tooth of both has met another by then.
-            Mesh::Pairs(mesh) => {
-                let [pinion, gear] =
-                    [WheelName::Pinion, WheelName::Gear].map(|wheel| mesh.sequence.teeth_of(wheel));
-                mesh.stiffness_n_per_mm(0..pinion.max(gear))
-            }
+        if self.damaged.is_empty() || self.teeth_part() {
+            return None;
+        }
+        // Of the wheel that has more teeth: every tooth of both has met another by then.
+        let pitches = WheelName::BOTH.map(|wheel| self.teeth.wheel(wheel).teeth as usize).into_iter().max();
+        let of_mesh = |mesh: &Mesh| mesh.stiffness_n_per_mm(0..pitches.unwrap_or(0));
+        let stiffness: Vec<f64> = match &self.equations {
+            Equations::Machine(..) => self.meshes.iter().flat_map(of_mesh).collect(),
+            Equations::Published(published) => published.mesh_curve(None).stiffness_n_per_mm,
         };
         let bare = stiffness.iter().filter(|&&stiffness| stiffness <= 0.0).count();
         (bare > 0).then(|| {
@@ -106,30 +105,11 @@ impl Stages {
     /// (-) Part of the starting transient that is left where the kept signal starts, by the slowest active mode's decay.
     pub fn transient_remainder(&self) -> f64 {
         let settling_s = self.time.first_kept_sample as f64 * self.time.step_s();
-        (-self.slowest_decay_per_s() * settling_s).exp()
+        (-self.slowest_mode().decay_per_s * settling_s).exp()
     }
 
     fn equal_wheels(&self) -> Option<ScenarioWarning> {
-        let message = match &self.structure {
-            None => {
-                let mass = &self.system.mass_diagonal;
-                (mass[X_GEAR] == mass[X_PINION]).then_some(
-                    "both wheels have the same mass and the same bearings: they move in opposition, and the \
-                     horizontal and vertical channels, which are the sum of both wheels' accelerations, are 0; give one \
-                     wheel its own mass (rig.gear_inertia.mass_kg)",
-                )
-            }
-            Some(structure) => self.sides_are_alike(structure).then_some(
-                "both wheels have the same mass, shafts and bearings: they and their supports move in opposition, and the \
-                 horizontal and vertical channels, which are the mean of both supports' accelerations, are 0; give one wheel \
-                 its own mass (rig.gear_inertia.mass_kg) or shaft (rig.gear_shaft.bearing_span_mm)",
-            ),
-        };
-        message.map(|message| ScenarioWarning::new(WarningKind::EqualWheels, "gears.gear_teeth", message))
-    }
-
-    /// Whether wheels and shafts are such that both supports move alike, in opposition.
-    fn sides_are_alike(&self, structure: &Structure) -> bool {
+        let Equations::Machine(train, _) = &self.equations else { return None };
         let rig = &self.scenario.rig;
         let side = |body: &WheelBody, shaft: &Shaft| {
             let bearing = shaft.bearing_stiffness_n_per_m.unwrap_or(rig.bearing_stiffness_n_per_m);
@@ -137,13 +117,28 @@ impl Stages {
                 [shaft.radius_mm, shaft.bearing_span_mm, shaft.wheel_at, shaft.damping_ratio, bearing];
             (body.mass_kg, body.transverse_kgm2, bends)
         };
-        side(&structure.pinion, &rig.pinion_shaft) == side(&structure.gear, &rig.gear_shaft)
+        let [pinion, gear] = &train.wheels;
+        if side(pinion, &rig.pinion_shaft) != side(gear, &rig.gear_shaft) {
+            return None;
+        }
+        let (moving, channels) = if self.teeth_part() {
+            ("they and their supports", "the mean of both supports' accelerations")
+        } else {
+            ("they", "the sum of both wheels' accelerations")
+        };
+        let message = format!(
+            "both wheels have the same mass, shafts and bearings: {moving} move in opposition, and the horizontal and vertical \
+             channels, which are {channels}, are 0; give one wheel its own mass (rig.gear_inertia.mass_kg) or shaft \
+             (rig.gear_shaft.bearing_span_mm)"
+        );
+        Some(ScenarioWarning::new(WarningKind::EqualWheels, "gears.gear_teeth", message))
     }
 
     fn unsettled(&self) -> Option<ScenarioWarning> {
         let remainder = self.transient_remainder();
         (remainder > TOLERATED_TRANSIENT).then(|| {
-            let decay = self.slowest_decay_per_s();
+            let mode = self.slowest_mode();
+            let decay = mode.decay_per_s;
             let settling_s = self.time.first_kept_sample as f64 * self.time.step_s();
             let advice = if decay > 0.0 {
                 format!("it takes {:.3} s to fall to 1 %", -TOLERATED_TRANSIENT.ln() / decay)
@@ -151,9 +146,10 @@ impl Stages {
                 "it never decays: a mode has no damping".to_string()
             };
             let percent = 100.0 * remainder;
-            let advice = match self.slowest_closed_mode() {
-                Some(mode) if decay > 0.0 => format!("{advice}; {}", slowest_mode(&mode)),
-                _ => advice,
+            let advice = if decay > 0.0 && self.teeth_part() {
+                format!("{advice}; {}", words_of(&mode))
+            } else {
+                advice
             };
             let message = format!(
                 "up to {percent:.0} % of the start-up transient is left when the kept signal starts, after {settling_s:.3} s; \
@@ -176,7 +172,7 @@ fn largest_torque(scenario: &Scenario) -> (String, f64) {
 }
 
 /// Which mode is slow, and what damps it.
-fn slowest_mode(mode: &DecayingMode) -> String {
+fn words_of(mode: &DecayingMode) -> String {
     let ratio = mode.decay_per_s / (TAU * mode.frequency_hz);
     format!(
         "slowest is the mode at {:.0} Hz, at {:.2} % of critical damping, which the damping_ratio of shafts and supports raises",

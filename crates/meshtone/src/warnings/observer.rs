@@ -1,6 +1,5 @@
-//! What of a simulation's signals tells whether they can be right, gathered while they come.
+//! Sums over a simulation's signals that show whether they can be right, gathered while they come.
 
-use crate::model::Model;
 use crate::sensor::ChannelKind;
 use crate::simulate::Stages;
 
@@ -11,7 +10,7 @@ pub struct Observer {
     /// (Hz) Of the pinion's and of the gear's speed.
     speeds_hz: [Sum; 2],
     /// The vertical acceleration and the mesh force over turns of the wheels, where a motion lasts that repeats with them.
-    pub(super) turns: Option<[OverTurns; 2]>,
+    pub(super) turns: Option<[WheelTurnSums; 2]>,
 }
 
 impl Observer {
@@ -28,7 +27,7 @@ impl Observer {
     /// # Arguments
     /// * `stages` - of the simulation
     pub fn new(stages: &Stages) -> Self {
-        let turns = lasts(stages).then(|| [OverTurns::new(stages), OverTurns::new(stages)]);
+        let turns = lasts(stages).then(|| [WheelTurnSums::new(stages), WheelTurnSums::new(stages)]);
         Self { force: ForceFigures::default(), speeds_hz: [Sum::default(); 2], turns }
     }
 
@@ -63,11 +62,11 @@ impl Observer {
     }
 }
 
-/// Whether a steady vibration is reached whose lines can be looked at. A fluctuation is drawn for every sample: with a finer step it
+/// Returns whether a steady vibration is reached whose lines can be looked at. A fluctuation is drawn for every sample: with a finer step it
 /// is another one.
 fn lasts(stages: &Stages) -> bool {
     let operation = &stages.scenario.operation;
-    stages.scenario.model != Model::Published
+    stages.scenario.model.has_meshes()
         && operation.speed_profile_hz.is_none()
         && operation.speed_fluctuation_hz == 0.0
         && operation.torque_fluctuation_nm == 0.0
@@ -165,19 +164,19 @@ impl Sum {
 
 /// A signal summed over the turns of either wheel.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct OverTurns {
+pub(super) struct WheelTurnSums {
     samples: usize,
     squares: Sum,
-    pub of_gear: Turns,
-    pub of_pinion: Turns,
+    pub of_gear: TurnSum,
+    pub of_pinion: TurnSum,
 }
 
-impl OverTurns {
+impl WheelTurnSums {
     fn new(stages: &Stages) -> Self {
         let (time, teeth) = (&stages.time, &stages.teeth);
         let of_pinion = time.samples_per_pinion_revolution;
         let of_gear = of_pinion / teeth.pinion.teeth as usize * teeth.gear.teeth as usize;
-        let turns = |samples_per_turn| Turns::new(samples_per_turn, time.kept_samples());
+        let turns = |samples_per_turn| TurnSum::new(samples_per_turn, time.kept_samples());
         Self { samples: 0, squares: Sum::default(), of_gear: turns(of_gear), of_pinion: turns(of_pinion) }
     }
 
@@ -196,8 +195,8 @@ impl OverTurns {
 
 /// A signal summed over all whole turns of a wheel.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Turns {
-    /// How many whole turns there are.
+pub(super) struct TurnSum {
+    /// Number of whole turns.
     pub count: usize,
     /// The sum, a value for each sample of a turn; none of a signal shorter than a turn.
     pub sum: Vec<f64>,
@@ -205,7 +204,7 @@ pub(super) struct Turns {
     samples: usize,
 }
 
-impl Turns {
+impl TurnSum {
     /// No samples of any turn yet.
     ///
     /// # Arguments

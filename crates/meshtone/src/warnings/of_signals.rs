@@ -1,4 +1,4 @@
-//! What the signals show to be doubtful.
+//! Warnings that the signals cause.
 
 use super::largest_torque;
 use super::observer::{ForceFigures, Observer};
@@ -18,7 +18,7 @@ const TOLERATED_SPEED: f64 = 0.2;
 const TOLERATED_STEP: f64 = 0.02;
 
 impl Simulation {
-    /// What the signals show to be doubtful: a mesh that pulls (not under `contact`, whose teeth part:
+    /// Warnings that the signals cause: a mesh that pulls (not under `contact`, whose teeth part:
     /// [`Simulation::contact_figures`] says for how long), a resonance beyond all measure, a shaft that does not turn at the speed
     /// that it is driven at, a step too long for a resonance. Where the latter is suspected the simulation is repeated with half the
     /// step.
@@ -30,15 +30,14 @@ impl Simulation {
 }
 
 impl Stages {
-    /// As [`Simulation::warnings_of_signals`], of signals that need not be kept.
+    /// Does what [`Simulation::warnings_of_signals`] does, for signals that need not be kept.
     ///
     /// # Arguments
     /// * `observer` - it has seen all kept samples
     /// * `judgement` - how the step is judged where a resonance is suspected
     pub fn warnings_of_signals(&self, observer: &Observer, judgement: StepJudgement) -> Vec<ScenarioWarning> {
         let is_damaged = !self.damaged.is_empty();
-        let is_linear = self.mesh.contact().is_none();
-        let pulling = is_linear.then(|| tension(&observer.force, is_damaged)).flatten();
+        let pulling = (!self.teeth_part()).then(|| tension(&observer.force, is_damaged)).flatten();
         let step = step_error(self, observer, judgement).and_then(|error| long_step(error, self));
         let doubtful = [pulling, self.resonance(observer.force.largest_n), self.other_speed(observer), step];
         doubtful.into_iter().flatten().collect()

@@ -1,16 +1,15 @@
-//! How far the solver's step falsifies a steady vibration.
+//! The error of a steady vibration that the solver's step causes.
 
 use std::f64::consts::TAU;
 
 use crate::error::Error;
-use crate::machine::ClosedMesh;
 use crate::operation::{greatest_common_divisor, least_common_multiple};
 use crate::sensor::ChannelKind;
-use crate::simulate::{Stages, stages_within};
+use crate::simulate::{Equations, Stages, stages_within};
 use crate::solver::{Block, MeanMachine, Recorder};
 use meshtone_fourier::real_spectrum;
 
-use super::observer::{Observer, OverTurns, Turns};
+use super::observer::{Observer, TurnSum, WheelTurnSums};
 
 /// (-) Part of a signal's power below which a line of its spectrum does not count.
 const LEAST_PART: f64 = 1e-6;
@@ -26,7 +25,7 @@ const SUSPICIOUS: f64 = 0.02;
 /// change by 0.1 to 0.4 %.
 const CERTAIN: f64 = 0.1;
 
-/// What is known of the step's error.
+/// Estimate of the step's error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum StepError {
     /// (-) How far the rms may be wrong, where the simulation could not be repeated with a finer step.
@@ -40,7 +39,7 @@ pub(super) enum StepError {
     },
 }
 
-/// How the step's error is judged where a resonance is suspected of it.
+/// Method by which the step's error is judged where a resonance is suspected of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StepJudgement {
     /// By a second simulation, with half the step: it takes twice as long as the first.
@@ -49,7 +48,7 @@ pub enum StepJudgement {
     Estimated,
 }
 
-/// What is known of the step's error where a resonance is suspected of it.
+/// Estimate of the step's error where a resonance is suspected of it.
 pub(super) fn step_error(
     stages: &Stages,
     observer: &Observer,
@@ -70,7 +69,7 @@ pub(super) fn step_error(
     else {
         return Some(StepError::Suspected(estimate));
     };
-    let gain = |coarse: &OverTurns, finer: f64| {
+    let gain = |coarse: &WheelTurnSums, finer: f64| {
         let coarse = coarse.rms();
         if coarse < ROUNDING { 0.0 } else { finer / coarse - 1.0 }
     };
@@ -83,20 +82,20 @@ pub(super) fn step_error(
 /// themselves are kept nowhere.
 fn rms_of(stages: &Stages) -> Result<(f64, [f64; 2]), Error> {
     let outputs = [ChannelKind::Vertical, ChannelKind::MeshForce].map(ChannelKind::output);
-    let mut squares = Squares::default();
-    stages.integrate(&stages.reduced_model(), &outputs, stages.time.first_kept_sample, &mut squares)?;
+    let mut squares = SquareSums::default();
+    stages.integrate(&outputs, stages.time.first_kept_sample, &mut squares)?;
     let rms = squares.sums.map(|sum| (sum / squares.samples.max(1) as f64).sqrt());
     Ok((stages.time.sampling_rate_hz, rms))
 }
 
 /// Sums of the squares of two outputs.
 #[derive(Default)]
-struct Squares {
+struct SquareSums {
     samples: usize,
     sums: [f64; 2],
 }
 
-impl Recorder for Squares {
+impl Recorder for SquareSums {
     fn record(&mut self, block: &Block) {
         self.samples += block.len();
         for (index, sum) in self.sums.iter_mut().enumerate() {
@@ -119,11 +118,14 @@ fn nominal_rate_of_half_step_hz(stages: &Stages) -> f64 {
 /// Every sine of the signal that repeats with a wheel's turn is as large as the machine's answer at the frequency that the step
 /// makes of its own, [`MeanMachine::squared_growth`]; what does not repeat, as the ringing after a hit, only changes its pitch. Of teeth
 /// that part it says nothing: their motion has no resonance that lasts.
-fn estimate(stages: &Stages, acceleration: &OverTurns, force: &OverTurns) -> f64 {
-    let model = stages.reduced_model();
-    let machine = MeanMachine::new(&model, closed_mesh(stages));
+fn estimate(stages: &Stages, acceleration: &WheelTurnSums, force: &WheelTurnSums) -> f64 {
+    let (Equations::Machine(train, modes), [mesh]) = (&stages.equations, &stages.closed_meshes()[..]) else {
+        return 0.0;
+    };
+    let model = stages.modal_machine(train, modes);
+    let machine = MeanMachine::new(&model, *mesh);
     let step_s = stages.time.step_s();
-    let error = |(answer, signal): (usize, &OverTurns)| {
+    let error = |(answer, signal): (usize, &WheelTurnSums)| {
         let power = signal.rms().powi(2);
         if power < ROUNDING * ROUNDING {
             return 0.0;
@@ -141,12 +143,6 @@ fn estimate(stages: &Stages, acceleration: &OverTurns, force: &OverTurns) -> f64
     [acceleration, force].into_iter().enumerate().map(error).fold(0.0, f64::max)
 }
 
-/// The mesh under `contact`, as if it were closed always.
-fn closed_mesh(stages: &Stages) -> Option<ClosedMesh> {
-    let mesh = stages.mesh.contact()?;
-    Some(ClosedMesh { stiffness_n_per_m: mesh.mean_stiffness_n_per_m, damping_time_s: mesh.damping_time_s })
-}
-
 /// A sine of a signal.
 struct Line {
     frequency_hz: f64,
@@ -155,7 +151,7 @@ struct Line {
 }
 
 /// The sines of a signal that repeat with every turn of the gear, and those that do with the pinion's.
-fn lines<'a>(stages: &Stages, signal: &'a OverTurns) -> impl Iterator<Item = Line> + 'a {
+fn lines<'a>(stages: &Stages, signal: &'a WheelTurnSums) -> impl Iterator<Item = Line> + 'a {
     let [pinion, gear] = [stages.teeth.pinion.teeth, stages.teeth.gear.teeth];
     let speed_hz = stages.scenario.operation.pinion_speed_hz;
     // Orders of the pinion that are orders of the gear too.
@@ -168,7 +164,7 @@ fn lines<'a>(stages: &Stages, signal: &'a OverTurns) -> impl Iterator<Item = Lin
 }
 
 /// Mean squares of the sines that repeat with a shaft's turn, by their order from 1; none of a signal shorter than a turn.
-fn orders(turns: &Turns) -> impl Iterator<Item = (usize, f64)> {
+fn orders(turns: &TurnSum) -> impl Iterator<Item = (usize, f64)> {
     let samples_per_turn = turns.sum.len();
     let spectrum = if turns.sum.is_empty() { Vec::new() } else { real_spectrum(&turns.sum) };
     let scale = 2.0 / ((turns.count * samples_per_turn).max(1) as f64).powi(2);
@@ -193,13 +189,13 @@ mod tests {
             (TAU * n as f64 / samples as f64).sin() * 3.0 + (TAU * 70.0 * n as f64 / samples as f64).cos()
         };
         let signal: Vec<f64> = (0..4 * samples).map(turn).collect();
-        let mut turns = Turns::new(samples, signal.len());
+        let mut turns = TurnSum::new(samples, signal.len());
         // In blocks of any length, with a part of a turn left over.
         signal.chunks(97).for_each(|block| turns.add(block));
         turns.add(&signal[..samples / 2]);
         let found: Vec<(usize, f64)> = orders(&turns).filter(|(_, power)| *power > 1e-12).collect();
         assert_eq!(found.iter().map(|(order, _)| *order).collect::<Vec<_>>(), [1, 70]);
         assert!((found[0].1 - 4.5).abs() < 1e-12 && (found[1].1 - 0.5).abs() < 1e-12, "{found:?}");
-        assert_eq!(orders(&Turns::new(700, signal.len())).count(), 0);
+        assert_eq!(orders(&TurnSum::new(700, signal.len())).count(), 0);
     }
 }

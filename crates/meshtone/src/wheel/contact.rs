@@ -1,15 +1,14 @@
-//! Where two teeth touch.
+//! The points at which two teeth touch.
 
 use super::profile::ToothProfile;
 use super::radii::Wheel;
-use crate::interpolation::Pchip;
 
 /// The part of both profiles that takes part in contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactLine {
     /// (-) Mean number of tooth pairs in contact, `ε`.
     pub contact_ratio: f64,
-    /// Index of the gear's profile where contact starts at its root side, `i_c`; under `published` of the pinion's too.
+    /// Index of the gear's profile where contact starts at its root side, `i_c`.
     pub initial_contact_index: usize,
     /// Index of the pinion's profile where contact starts.
     pub pinion_initial_contact_index: usize,
@@ -21,18 +20,6 @@ pub struct ContactLine {
     pub gear_initial_radius_mm: f64,
     /// (rev) Part of a pinion revolution during which a pair touches, `ε/z_p`.
     pub span_rev: f64,
-}
-
-impl ContactLine {
-    /// Number of points of either profile, `N`.
-    pub fn profile_points(&self) -> usize {
-        self.initial_contact_index + self.points
-    }
-
-    /// Index of the mate's profile that meets index `i` of a tooth's profile, `N − 1 + i_c − i`.
-    pub fn mate_index(&self, index: usize) -> usize {
-        self.profile_points() - 1 + self.initial_contact_index - index
-    }
 }
 
 /// (-) Contact ratio of two standard wheels, without profile shift.
@@ -110,54 +97,4 @@ pub fn contact_line(
         gear_initial_radius_mm: gear_radius,
         span_rev: ratio / f64::from(pinion.teeth),
     }
-}
-
-/// As [`contact_line`], as the published code pairs points: both flanks' contact parts are uniform in x, and the pinion's is
-/// resampled so that the two match index by index. The pairs are not conjugate.
-///
-/// # Arguments
-/// * `pinion`, `gear` - the wheels
-/// * `pinion_profile`, `gear_profile` - their profiles, equally long
-///
-/// Returns the contact line and the resampled profile of the pinion: its parts before and after
-/// its own contact start have the lengths of the gear's.
-pub fn published_contact_line(
-    pinion: &Wheel,
-    pinion_profile: &ToothProfile,
-    gear: &Wheel,
-    gear_profile: &ToothProfile,
-) -> (ContactLine, ToothProfile) {
-    let contact = contact_line(pinion, pinion_profile, gear, gear_profile);
-    let (pinion_index, gear_index) = (contact.pinion_initial_contact_index, contact.initial_contact_index);
-    let resample = |values: &[f64], stretch: fn(&[f64], usize) -> Vec<f64>| {
-        let mut resampled = stretch(&values[..pinion_index], gear_index);
-        resampled.extend(stretch(&values[pinion_index..], contact.points));
-        resampled
-    };
-    let resampled = ToothProfile {
-        x_mm: resample(&pinion_profile.x_mm, stretch_line),
-        y_mm: resample(&pinion_profile.y_mm, stretch),
-        involute_radius_mm: resample(&pinion_profile.involute_radius_mm, stretch),
-        tip_relief_index: pinion_profile.tip_relief_index,
-    };
-    let contact = ContactLine { pinion_initial_contact_index: gear_index, ..contact };
-    (contact, resampled)
-}
-
-/// As [`stretch`], of values that are uniform: the curve is a line.
-fn stretch_line(values: &[f64], count: usize) -> Vec<f64> {
-    let (Some(&first), Some(&last)) = (values.first(), values.last()) else { return Vec::new() };
-    let step = (last - first) / (count.max(2) - 1) as f64;
-    (0..count).map(|i| if i + 1 == count { last } else { first + step * i as f64 }).collect()
-}
-
-/// The curve through `values` over a uniform parameter, at `count` uniform points.
-fn stretch(values: &[f64], count: usize) -> Vec<f64> {
-    if values.len() == count || values.len() < 2 {
-        return values.iter().copied().cycle().take(if values.is_empty() { 0 } else { count }).collect();
-    }
-    let curve = Pchip::uniform(0.0, 1.0, values);
-    let last = (count.max(2) - 1) as f64;
-    let scale = (values.len() - 1) as f64;
-    (0..count).map(|i| curve.at(i as f64 / last * scale)).collect()
 }

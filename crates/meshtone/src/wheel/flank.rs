@@ -2,7 +2,7 @@
 
 use super::{ToothProfile, Wheel};
 
-/// Where a flank is touched, and from where.
+/// Point at which a flank is touched, and the direction of the contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlankPoint {
     /// Profile point before it.

@@ -66,7 +66,7 @@ impl Gears {
     /// Two wheels with everything but the arguments at its default.
     ///
     /// # Arguments
-    /// As the fields of the same names.
+    /// They are the fields of the same names.
     pub fn new(module_mm: f64, pinion_teeth: u32, gear_teeth: u32, face_width_mm: f64) -> Self {
         Self {
             module_mm,
@@ -94,6 +94,8 @@ impl Gears {
 }
 
 impl Keys for Gears {
+    const SECTION: &str = "gears";
+
     fn start() -> Self {
         Self::new(f64::NAN, 0, 0, f64::NAN)
     }
@@ -108,22 +110,23 @@ impl Keys for Gears {
             row("module_mm", "mm", "the module of both wheels", field!(module_mm))
                 .required()
                 .range(Range::positive().implausible_above(100.0)),
-            row("pinion_teeth", "", "the tooth count", field!(pinion_teeth))
-                .required()
-                .range(TEETH)
-                .rule(
-                    "contact ratio at least 1; undercut (fewer than 17 at 20°) is left out, with a warning",
-                ),
-            row("gear_teeth", "", "the tooth count", field!(gear_teeth))
-                .required()
-                .range(TEETH)
-                .rule("contact ratio at least 1; undercut (fewer than 17 at 20°) is left out, with a warning"),
+            row("pinion_teeth", "", "the tooth count", field!(pinion_teeth)).required().range(TEETH).rule(
+                "contact ratio at least 1; undercut (fewer than 17 at 20°) is left out, with a warning",
+            ),
+            row("gear_teeth", "", "the tooth count", field!(gear_teeth)).required().range(TEETH).rule(
+                "contact ratio at least 1; undercut (fewer than 17 at 20°) is left out, with a warning",
+            ),
             row("face_width_mm", "mm", "the face width of both wheels", field!(face_width_mm))
                 .required()
                 .range(Range::positive().implausible_above(10_000.0)),
-            row("pressure_angle_deg", "°", "the pressure angle at the pitch circle", field!(pressure_angle_deg))
-                .range(Range::from_to(10.0, 35.0).help("usual pressure angles are 14.5°, 20° and 25°"))
-                .rule("no teeth pointed below full height"),
+            row(
+                "pressure_angle_deg",
+                "°",
+                "the pressure angle at the pitch circle",
+                field!(pressure_angle_deg),
+            )
+            .range(Range::from_to(10.0, 35.0).help("usual pressure angles are 14.5°, 20° and 25°"))
+            .rule("no teeth pointed below full height"),
             row(
                 "pinion_profile_shift",
                 "-",
@@ -178,10 +181,18 @@ impl Keys for Gears {
                 .rule("at least the default; contact ratio at least 1")
                 .alternative("83.0"),
             row("material", "", "the material of wheels and shafts", field!(material)),
-            row("tip_relief", "", "the material removed near the tips, or `false` for none", field!(tip_relief))
-                .ignored_by(&["published", "contact"]),
-            row("flank_relief", "", "the relief of the flanks near the tips, as a gap in µm", field!(flank_relief))
-                .ignored_by(&["linear", "published"]),
+            row(
+                "tip_relief",
+                "",
+                "the material removed near the tips, or `false` for none",
+                field!(tip_relief),
+            ),
+            row(
+                "flank_relief",
+                "",
+                "the relief of the flanks near the tips, as a gap in µm",
+                field!(flank_relief),
+            ),
             row(
                 "tip_chamfer_mm",
                 "mm",
@@ -191,31 +202,29 @@ impl Keys for Gears {
             .otherwise("0.2 modules")
             .alternative("0.6")
             .range(Range::not_negative())
-            .rule("less than 1 module")
-            .ignored_by(&["linear", "published"]),
+            .rule("less than 1 module"),
             row("backlash_mm", "mm", "the backlash along the line of action", field!(backlash_mm))
-                .otherwise(
-                    "⅔ (0.06 + 0.0005 a + 0.03 m), a the centre distance, and what a given one opens",
-                )
+                .otherwise("⅔ (0.06 + 0.0005 a + 0.03 m), a the centre distance, and what a given one opens")
                 .range(Range::not_negative())
                 .rule("less than 1 module; at least what a given centre distance opens")
-                .alternative("0.1275")
-                .ignored_by(&["linear", "published"]),
+                .alternative("0.1275"),
             row("crowning_mm", "mm", "a constant reduction of the working flank", field!(crowning_mm))
                 .range(Range::not_negative())
                 .rule("less than π/4 modules, half the tooth's thickness"),
-            row("points_per_tooth", "", "the number of points along a tooth's profile", field!(points_per_tooth))
-                .range(
-                    Range::from_to(500.0, 1e6).message("must be from 500 to 1000000; the default is 10000"),
-                ),
+            row(
+                "points_per_tooth",
+                "",
+                "the number of points along a tooth's profile",
+                field!(points_per_tooth),
+            )
+            .range(Range::from_to(500.0, 1e6).message("must be from 500 to 1000000; the default is 10000")),
             row(
                 "foundation",
                 "",
                 "the coefficients A to F of the four polynomials of the fillet foundation's compliance, by Sainsot, \
                  Velex and Duverger (2004)",
                 field!(foundation),
-            )
-            .ignored_by(&["published"]),
+            ),
         ]
     }
 }

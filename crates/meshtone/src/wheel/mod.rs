@@ -15,7 +15,7 @@ mod radii;
 mod rules;
 mod undercut;
 
-pub use contact::{ContactLine, contact_line, contact_ratio, published_contact_line};
+pub use contact::{ContactLine, contact_line, contact_ratio};
 pub use flank::{Flank, FlankPoint};
 pub use flank_relief::FlankRelief;
 pub use gears::{FoundationCoefficients, Gears, ReliefShape, TipRelief};
@@ -31,8 +31,6 @@ pub use quality::{
 pub use radii::Wheel;
 pub(crate) use rules::HALF_THICKNESS;
 
-use crate::model::Model;
-
 /// Stage 2's result: both wheels with their teeth, ready to mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Teeth {
@@ -40,12 +38,11 @@ pub struct Teeth {
     pub pinion: Wheel,
     /// The driven wheel.
     pub gear: Wheel,
-    /// Profile of a healthy pinion tooth; under `published` resampled so that its index `N − 1 + i_c − i` meets index `i` of
-    /// the gear.
+    /// Profile of a healthy pinion tooth.
     pub pinion_profile: ToothProfile,
     /// Profile of a healthy gear tooth.
     pub gear_profile: ToothProfile,
-    /// Where along the profiles the teeth touch.
+    /// Points along the profiles at which the teeth touch.
     pub contact: ContactLine,
     /// The path along which conjugate flanks touch.
     pub path: PathOfContact,
@@ -74,7 +71,7 @@ impl Teeth {
         }
     }
 
-    /// Working flank of a healthy tooth of one of the two wheels; not under `published`, which resamples the pinion's.
+    /// Working flank of a healthy tooth of one of the two wheels.
     ///
     /// # Arguments
     /// * `wheel` - which
@@ -99,24 +96,15 @@ impl Teeth {
 /// # Arguments
 /// * `gears` - geometry of the pair
 /// * `bore_radii_mm` - (mm) radii of the pinion's and of the gear's bore
-/// * `model` - published or linear
 ///
 /// Source: paper, stage 2.
-pub fn teeth(gears: &Gears, bore_radii_mm: [f64; 2], model: Model) -> Teeth {
+pub fn teeth(gears: &Gears, bore_radii_mm: [f64; 2]) -> Teeth {
     let pinion = Wheel::new(gears, WheelName::Pinion, bore_radii_mm[0]);
     let gear = Wheel::new(gears, WheelName::Gear, bore_radii_mm[1]);
-    // Model: a relief that thins the tip by half its thickness leaves nothing to touch.
-    let relief = gears.tip_relief.filter(|_| model != Model::Contact);
-    let profile = |wheel| tooth_profile(wheel, gears.points_per_tooth, gears.crowning_mm, relief, model);
-    let gear_profile = profile(&gear);
-    let own_profile = profile(&pinion);
-    let (contact, pinion_profile) = match model {
-        // Model: the published code pairs points uniform in x; conjugate ones pair by their radii of curvature.
-        Model::Published => published_contact_line(&pinion, &own_profile, &gear, &gear_profile),
-        Model::Linear | Model::Contact => {
-            (contact_line(&pinion, &own_profile, &gear, &gear_profile), own_profile)
-        }
-    };
+    // A relief that thins the tip by half its thickness would leave nothing to touch: it is the published model's alone.
+    let profile = |wheel| tooth_profile(wheel, gears.points_per_tooth, gears.crowning_mm, None, None);
+    let (pinion_profile, gear_profile) = (profile(&pinion), profile(&gear));
+    let contact = contact_line(&pinion, &pinion_profile, &gear, &gear_profile);
     let path = PathOfContact::new(&pinion, &gear);
     Teeth { pinion, gear, pinion_profile, gear_profile, contact, path }
 }

@@ -1,4 +1,4 @@
-//! How two wheels stand to one another: profile shift, working pressure angle, centre distance, backlash.
+//! Mounting of two wheels: profile shift, working pressure angle, centre distance, backlash.
 //!
 //! A rack that makes teeth can be set off from the wheel's pitch circle by `x m`: positive shifts make the tooth thicker at its
 //! root and its tip narrower. Two such wheels touch without backlash at a distance of their own, where the line of action is

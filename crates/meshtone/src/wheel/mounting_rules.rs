@@ -14,7 +14,7 @@ pub(super) const TOOL_ROUNDING: f64 = 0.25;
 /// Source: G. Niemann, H. Winter, *Maschinenelemente II*, section 21.5: 0.2 modules, 0.4 of hardened teeth.
 const THIN_TIP: f64 = 0.2;
 
-/// What wheels that are not standard ones must satisfy, alone and together; standard ones have rules of their own.
+/// Checks wheels that are not standard ones, alone and together; standard ones have rules of their own.
 pub(super) fn check(gears: &Gears) -> Check {
     if gears.beyond_standard().is_empty() || is_sound(gears) {
         return Ok(());
@@ -33,11 +33,11 @@ pub(super) fn check(gears: &Gears) -> Check {
     contact_ratio(gears)
 }
 
-/// Whether all of the rules hold.
+/// Returns whether all of the rules hold.
 fn is_sound(gears: &Gears) -> bool {
     let both =
         |holds: fn(&Gears, WheelName) -> bool| WheelName::BOTH.into_iter().all(|wheel| holds(gears, wheel));
-    mesh_somewhere(gears)
+    can_mesh(gears)
         && both(is_not_undercut)
         && both(has_tips)
         && both(has_spaces)
@@ -117,8 +117,8 @@ fn undercut_help(gears: &Gears, wheel: WheelName) -> &'static str {
     }
 }
 
-/// Whether there is a distance at which the teeth fit into one another: not with shifts too far inwards.
-fn mesh_somewhere(gears: &Gears) -> bool {
+/// Returns whether there is a distance at which the teeth fit into one another: not with shifts too far inwards.
+fn can_mesh(gears: &Gears) -> bool {
     Mounting::without_backlash(gears).working_pressure_angle_rad > 0.0
 }
 
@@ -129,10 +129,10 @@ fn shifts_together(gears: &Gears) -> Check {
         [WheelName::Gear, WheelName::Pinion]
     };
     let causes = [Coefficient::Shift(smaller), Coefficient::Shift(other)];
-    refuse_first(gears, &causes, "the teeth would fit into one another at no distance", mesh_somewhere)
+    refuse_first(gears, &causes, "the teeth would fit into one another at no distance", can_mesh)
 }
 
-/// Whether tips end at their height.
+/// Returns whether tips end at their height.
 fn has_tips(gears: &Gears, wheel: WheelName) -> bool {
     tip_thickness_mm(gears, wheel) > 0.0
 }
@@ -143,7 +143,7 @@ fn pointed(gears: &Gears, wheel: WheelName) -> Check {
     refuse_first(gears, &causes, &what, |gears| has_tips(gears, wheel))
 }
 
-/// Whether the spaces between teeth are open down to their roots.
+/// Returns whether the spaces between teeth are open down to their roots.
 fn has_spaces(gears: &Gears, wheel: WheelName) -> bool {
     let wheel = gears.wheel(wheel);
     let foot_mm = wheel.root_radius_mm.max(wheel.base_radius_mm);
@@ -156,14 +156,14 @@ fn closed_space(gears: &Gears, wheel: WheelName) -> Check {
     refuse_first(gears, &causes, &what, |gears| has_spaces(gears, wheel))
 }
 
-/// Whether the axes are as far apart as teeth of nominal thickness need.
+/// Returns whether the axes are as far apart as teeth of nominal thickness need.
 fn has_room(gears: &Gears) -> bool {
     gears
         .centre_distance_mm
         .is_none_or(|distance_mm| distance_mm >= Mounting::least_centre_distance_mm(gears))
 }
 
-/// Whether a given backlash is at least what a given distance opens.
+/// Returns whether a given backlash is at least what a given distance opens.
 fn has_backlash(gears: &Gears) -> bool {
     gears.backlash_mm.is_none_or(|backlash_mm| backlash_mm >= Mounting::new(gears).opened_backlash_mm)
 }
@@ -184,7 +184,7 @@ fn centre_distance(gears: &Gears) -> Check {
         .map_err(|error| error.with_help("leave it out for the standard's least backlash on top of that"))
 }
 
-/// Whether the mate's tips stay off the ground of a wheel's tooth spaces.
+/// Returns whether the mate's tips stay off the ground of a wheel's tooth spaces.
 fn is_clear(gears: &Gears, wheel: WheelName) -> bool {
     let (own, mate) = (gears.wheel(wheel), gears.wheel(wheel.mate()));
     own.working_pitch_radius_mm + mate.working_pitch_radius_mm > own.root_radius_mm + mate.tip_radius_mm
@@ -197,7 +197,7 @@ fn clearance(gears: &Gears, wheel: WheelName) -> Check {
     refuse_first(gears, &causes, &what, |gears| is_clear(gears, wheel))
 }
 
-/// Whether the mate's tips stay off a wheel's fillets, in which its involute has ended. A wheel that is undercut without a shift
+/// Returns whether the mate's tips stay off a wheel's fillets, in which its involute has ended. A wheel that is undercut without a shift
 /// is warned of instead.
 fn is_free(gears: &Gears, wheel: WheelName) -> bool {
     let (own, mate) = (gears.wheel(wheel), gears.wheel(wheel.mate()));
@@ -231,7 +231,7 @@ pub(super) fn touched_curvature_mm(wheel: &Wheel, mate: &Wheel) -> f64 {
 /// Part of a module that is left to rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Whether a pair of teeth is still in contact when the next one comes.
+/// Returns whether a pair of teeth is still in contact when the next one comes.
 fn stays_in_contact(gears: &Gears) -> bool {
     gears.contact_ratio() >= 1.0
 }
@@ -243,7 +243,7 @@ fn contact_ratio(gears: &Gears) -> Check {
         let tight_mm = Mounting::without_backlash(gears).centre_distance_mm;
         let at = |distance_mm| Gears { centre_distance_mm: Some(distance_mm), ..gears.clone() };
         let does = |distance_mm| stays_in_contact(&at(distance_mm));
-        if let Some(most) = nearest_that_does(distance_mm, tight_mm, does).filter(|_| !does(distance_mm)) {
+        if let Some(most) = nearest_valid(distance_mm, tight_mm, does).filter(|_| !does(distance_mm)) {
             let problem = format!("{what}; must be at most {most:.4} mm");
             return Err(refuse("gears.centre_distance_mm", distance_mm, problem));
         }
@@ -309,7 +309,7 @@ fn refuse_first(gears: &Gears, causes: &[Coefficient], what: &str, holds: impl F
         for cause in causes {
             let mut changed = gears.clone();
             let given = *cause.of(&mut changed);
-            let nearest = nearest_that_does(given, cause.default(), |value| {
+            let nearest = nearest_valid(given, cause.default(), |value| {
                 let mut changed = gears.clone();
                 *cause.of(&mut changed) = value;
                 does(&changed)
@@ -325,7 +325,7 @@ fn refuse_first(gears: &Gears, causes: &[Coefficient], what: &str, holds: impl F
 
 /// The last value on the way from one that does to one that is given and does not, to four digits; none where the former does
 /// not either.
-fn nearest_that_does(given: f64, good: f64, does: impl Fn(f64) -> bool) -> Option<f64> {
+fn nearest_valid(given: f64, good: f64, does: impl Fn(f64) -> bool) -> Option<f64> {
     if !does(good) {
         return None;
     }

@@ -1,4 +1,4 @@
-//! Which of the two wheels.
+//! The name of one of the two wheels.
 
 use crate::keys::by_name;
 

@@ -1,4 +1,4 @@
-//! Where two conjugate flanks touch.
+//! The points at which two conjugate flanks touch.
 
 use super::{Wheel, WheelName};
 

@@ -2,7 +2,6 @@
 
 use super::radii::Wheel;
 use crate::interpolation::NaturalSpline;
-use crate::model::Model;
 use crate::wheel::{ReliefShape, TipRelief};
 
 /// Working flank of a tooth in its own plane: x along the tooth's centre line from the wheel's
@@ -26,7 +25,7 @@ impl ToothProfile {
         self.x_mm.len()
     }
 
-    /// Whether there are no points.
+    /// Returns whether there are no points.
     pub fn is_empty(&self) -> bool {
         self.x_mm.is_empty()
     }
@@ -74,15 +73,15 @@ pub(crate) fn first_minimum(values: impl Iterator<Item = f64>) -> usize {
 /// * `points` - (≥ 2) number of points, uniform in x
 /// * `crowning_mm` - (mm) constant reduction of y
 /// * `relief` - tip relief, or none
-/// * `model` - how fillet and involute are joined
+/// * `bridge` - a curve that takes the place of fillet and involute round their joint, if any
 pub fn tooth_profile(
     wheel: &Wheel,
     points: usize,
     crowning_mm: f64,
     relief: Option<TipRelief>,
-    model: Model,
+    bridge: Option<NaturalSpline>,
 ) -> ToothProfile {
-    let flank = Curve::new(wheel, model);
+    let flank = Curve::new(wheel, bridge);
     let start = flank.start_x_mm();
     let step = (flank.tip_x_mm() - start) / (points - 1) as f64;
     let mut x_mm: Vec<f64> = (0..points).map(|i| start + step * i as f64).collect();
@@ -126,22 +125,13 @@ struct Fillet {
     centre_y_mm: f64,
     start_x_mm: f64,
     end_x_mm: f64,
-    /// (rad) γ of the involute's foot, `ψ`.
-    foot_gamma_rad: f64,
 }
 
-/// Number of points on the fillet of the published code, and of steps from base to tip circle on its
-/// involute near the base circle. Inferred from the published profiles, which they reproduce to 1e-10 mm.
-const FILLET_SAMPLES: usize = 5_001;
-const INVOLUTE_STEPS: f64 = 14_800.0;
-/// Number of points on either side of the joint between fillet and involute that a spline through it still
-/// feels: the effect of a point shrinks by 0.27 from one to the next.
-const BRIDGE_KNOTS: usize = 60;
-/// Number of points on the involute among which the published code seeks the root circle.
+/// Number of points on the involute among which the root circle is sought.
 const INVOLUTE_SAMPLES: usize = 15_001;
 
 impl Curve {
-    fn new(wheel: &Wheel, model: Model) -> Self {
+    fn new(wheel: &Wheel, bridge: Option<NaturalSpline>) -> Self {
         let (base, root) = (wheel.base_radius_mm, wheel.root_radius_mm);
         let foot_angle_rad = wheel.foot_angle_rad();
         let tip_angle = (base / wheel.tip_radius_mm).acos();
@@ -157,28 +147,7 @@ impl Curve {
             let near = (first..first + 4).filter(|&k| k < INVOLUTE_SAMPLES);
             angle(first + first_minimum(near.map(distance))).tan()
         };
-        let mut flank = Self {
-            base_radius_mm: base,
-            foot_angle_rad,
-            first_roll,
-            last_roll: tip_angle.tan(),
-            fillet,
-            bridge: None,
-        };
-        // Model: the published code takes the fillet's nearer intersection with each ray. Where the involute's
-        // foot lies on the arc's farther side (small tooth counts) that leaves a gap, which its resampling
-        // bridges by a cubic spline through both curves' points.
-        if let (Model::Published, Some(fillet)) = (model, &flank.fillet) {
-            let (mut x, mut y) = fillet.last_published_points();
-            for k in 0..BRIDGE_KNOTS {
-                let knot = tip_angle * k as f64 / INVOLUTE_STEPS;
-                let (involute_x, involute_y) = flank.involute_point_mm(knot.tan());
-                x.push(involute_x);
-                y.push(involute_y);
-            }
-            flank.bridge = Some(NaturalSpline::new(x, y));
-        }
-        flank
+        Self { base_radius_mm: base, foot_angle_rad, first_roll, last_roll: tip_angle.tan(), fillet, bridge }
     }
 
     fn involute_point_mm(&self, roll: f64) -> (f64, f64) {
@@ -307,25 +276,7 @@ impl Fillet {
             centre_y_mm: (root + radius_mm) * sin,
             start_x_mm: root * cos,
             end_x_mm: base * foot_angle.cos(),
-            foot_gamma_rad: psi,
         })
-    }
-
-    /// The published code's points nearest to the joint; its very last one is left to the involute.
-    fn last_published_points(&self) -> (Vec<f64>, Vec<f64>) {
-        let distance = self.centre_x_mm.hypot(self.centre_y_mm);
-        let centre_angle = self.centre_y_mm.atan2(self.centre_x_mm);
-        let last = FILLET_SAMPLES - 1;
-        (last - BRIDGE_KNOTS..last)
-            .map(|k| {
-                let gamma = self.foot_gamma_rad * k as f64 / last as f64;
-                let c = distance * gamma.cos();
-                let squared = self.radius_mm.powi(2) - (distance * gamma.sin()).powi(2);
-                let r = c - squared.max(0.0).sqrt();
-                let theta = centre_angle - gamma;
-                (r * theta.cos(), r * theta.sin())
-            })
-            .unzip()
     }
 
     fn y_mm(&self, x: f64) -> f64 {

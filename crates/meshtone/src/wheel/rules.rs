@@ -48,7 +48,7 @@ impl Gears {
         tip_thickness(self)
     }
 
-    /// What can be simulated but deserves attention.
+    /// Warnings about wheels that can be simulated.
     pub(crate) fn warnings(&self) -> Vec<ScenarioWarning> {
         undercut(self).chain(thin_tips(self)).chain(flared_tip(self)).collect()
     }
@@ -73,7 +73,7 @@ impl Gears {
     }
 }
 
-/// What [`Gears::half_thickness_mm`] is, in words for a message.
+/// Name of [`Gears::half_thickness_mm`] in messages.
 pub(crate) const HALF_THICKNESS: &str = "half the tooth's thickness at the pitch circle";
 
 /// Undercut of wheels without a shift.
@@ -118,7 +118,7 @@ fn flared_tip(gears: &Gears) -> Option<ScenarioWarning> {
     })
 }
 
-/// Whether the mate's tip reaches beyond the point where the line of action touches the wheel's base circle.
+/// Returns whether the mate's tip reaches beyond the point where the line of action touches the wheel's base circle.
 fn interferes(wheel: &Wheel, mate: &Wheel) -> bool {
     touched_curvature_mm(wheel, mate) < 0.0
 }
@@ -160,7 +160,7 @@ fn tip_relief(relief: &TipRelief, module_mm: f64, half_thickness_mm: f64) -> Che
     .map_err(|error| error.with_help(NO_RELIEF))
 }
 
-/// What may be wanted where a relief is refused.
+/// Advice where a relief is refused.
 pub(super) const NO_RELIEF: &str = "for no relief, write tip_relief = false; its default is 1 mm × 1 mm";
 
 /// Relief and crowning must leave some of the tip: the compliances take what is beyond the tooth's centre line for a

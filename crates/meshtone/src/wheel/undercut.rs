@@ -1,4 +1,4 @@
-//! Where the involute of an undercut tooth begins.
+//! The radius at which the involute of an undercut tooth begins.
 
 use super::Wheel;
 use super::mounting_rules::TOOL_ROUNDING;

@@ -47,6 +47,14 @@ fn damages() -> Vec<Option<Damage>> {
     ]
 }
 
+/// (m/s, rad/s) A velocity at the start that is not that of the rigid rotation in any coordinate.
+fn pushed(scenario: &Scenario) -> [f64; 13] {
+    let turns = std::f64::consts::TAU * scenario.operation.pinion_speed_hz;
+    let slower = -turns * f64::from(scenario.gears.pinion_teeth) / f64::from(scenario.gears.gear_teeth);
+    let rigid = [0.0, 0.0, 0.0, 0.0, slower, turns, slower, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    std::array::from_fn(|c| rigid[c] + 1e-3 * (c + 1) as f64)
+}
+
 /// Everything that may be mixed: faults, teeth, lengths, models, drives, initial states, and one that is refused.
 fn mixed() -> Vec<Scenario> {
     let mut scenarios = Vec::new();
@@ -66,7 +74,7 @@ fn mixed() -> Vec<Scenario> {
                 scenario.rig.eccentricity_mm = 0.01;
             }
             if k == 1 && n == 5 {
-                scenario.solver.initial_displacement = Some(std::array::from_fn(|c| 1e-6 * c as f64));
+                scenario.solver.initial_velocity = Some(pushed(&scenario));
             }
             scenarios.push(scenario);
         }
@@ -102,7 +110,7 @@ fn mixed_in_contact() -> Vec<Scenario> {
             0 => scenario.operation.speed_fluctuation_hz = 0.3,
             1 => scenario.operation.torque_fluctuation_nm = 5.0,
             _ => {
-                scenario.solver.initial_displacement = Some(std::array::from_fn(|c| 1e-6 * c as f64));
+                scenario.solver.initial_velocity = Some(pushed(&scenario));
             }
         }
         scenarios.push(scenario);
@@ -215,7 +223,9 @@ fn every_instruction_set_gives_the_same() {
             ] {
                 let square = |values: &mut dyn Iterator<Item = f64>| values.map(|x| x * x).sum::<f64>();
                 let difference = square(&mut a.iter().zip(b).map(|(a, b)| a - b)).sqrt();
-                assert!(difference <= 1e-9 * square(&mut b.iter().copied()).sqrt(), "{instructions:?}");
+                // Equal wheels move in opposition: of their sum only rounding is left.
+                let most = 1e-9 * square(&mut b.iter().copied()).sqrt() + 1e-11;
+                assert!(difference <= most, "{instructions:?}");
             }
         }
         if instructions != InstructionSet::Plain {

@@ -1,11 +1,12 @@
 //! The model of contact as a whole: teeth that push and never pull, on shafts that bend, in supports.
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
+use crate::dense::*;
 use crate::physics::*;
-use meshtone::machine::coordinates::{COORDINATES_WITH_SUPPORTS, THETA_BRAKE};
-use meshtone::mesh::{ContactState, Mesh};
+use meshtone::machine::Drive;
+use meshtone::mesh::{Contact, PairState};
 use meshtone::scenario::*;
-use meshtone::solver::{Block, Output, Recorder};
+use meshtone::solver::Output;
 use meshtone::{simulate, stages};
 use nalgebra::DVector;
 
@@ -54,16 +55,6 @@ fn rigid(scenario: &mut Scenario) {
     }
 }
 
-struct Kept(Vec<Vec<f64>>);
-
-impl Recorder for Kept {
-    fn record(&mut self, block: &Block) {
-        for (n, kept) in self.0.iter_mut().enumerate() {
-            kept.extend_from_slice(block.output(n));
-        }
-    }
-}
-
 // With all pairs closed, tip corners and back flanks out of reach, what remains is the linear model: same stiffness, same start.
 // The two are solved in different modes, with and without the mesh.
 #[test]
@@ -79,7 +70,6 @@ fn compare_closed_pairs(name: &str, deviates: bool, expected: &[(usize, f64)]) {
     linear.model = Model::Linear;
     // Undamped, the mesh's own variation makes it ring ever more; so slow that it takes a while.
     linear.operation.pinion_speed_hz = 5.0;
-    linear.gears.tip_relief = None;
     linear.solver.sampling_rate_hz = 2e5;
     rigid(&mut linear);
     if deviates {
@@ -90,20 +80,12 @@ fn compare_closed_pairs(name: &str, deviates: bool, expected: &[(usize, f64)]) {
     contact.model = Model::Contact;
     let of_linear = stages(&linear).unwrap();
     let mut of_contact = stages(&contact).unwrap();
-    let Mesh::Contact(mesh) = &mut of_contact.mesh else { panic!("not in contact") };
-    mesh.points_before = 0;
-    mesh.backlash_m = 1.0;
-    mesh.classes[0].states = of_linear.mesh.pairs().unwrap().classes[0]
-        .stiffness_n_per_m
-        .iter()
-        .map(|&stiffness_n_per_m| ContactState { stiffness_n_per_m, separation_m: 0.0, face_centre_m: 0.0 })
-        .collect();
+    of_contact.meshes = of_linear.meshes.clone();
+    of_contact.meshes[0].contact = Contact::Unilateral;
     // The motion until then; what comes after may be without bound.
     let force = |stages: &meshtone::Stages| {
-        let mut kept = Kept(vec![Vec::new()]);
-        let first = stages.time.first_simulated_sample;
-        let _ = stages.integrate(&stages.reduced_model(), &[Output::MeshForce], first, &mut kept);
-        kept.0.swap_remove(0)
+        outputs_from(stages.time.first_simulated_sample, stages, &[Output::MeshForce { mesh: 0 }])
+            .swap_remove(0)
     };
     let (a, b) = (force(&of_linear), force(&of_contact));
     // Until the undamped motion parts the linear flanks too.
@@ -130,44 +112,42 @@ fn motor_and_brake_put_in_what_damping_takes() {
         Some(Profile { time_s: vec![0.0, 0.2, 0.3, 1.0, 3.0], value: vec![10.0, 10.0, 25.0, 8.0, 12.0] });
     let mut stages = stages(&scenario).unwrap();
     let torque: Vec<f64> =
-        stages.excitation().take(stages.time.samples).map(|now| now.brake_torque_nm).collect();
-    let Mesh::Contact(mesh) = &mut stages.mesh else { panic!("not in contact") };
+        stages.scenario.motion(&stages.time).take(stages.time.samples).map(|now| now.torque_nm).collect();
+    let mesh = &mut stages.meshes[0];
     let stiffness = mesh.mean_stiffness_n_per_m;
     mesh.points_before = 0;
     // One more than a pitch has, for the interpolation.
-    let closed = ContactState { stiffness_n_per_m: stiffness, separation_m: 0.0, face_centre_m: 0.0 };
+    let closed = PairState { stiffness_n_per_m: stiffness, separation_m: 0.0, face_centre_m: 0.0 };
     mesh.classes[0].states = vec![closed; mesh.points_per_pitch + 1];
-    let structure = stages.structure.clone().unwrap();
-    let n = COORDINATES_WITH_SUPPORTS;
-    let unit = |coordinate: usize| -> Vec<f64> { (0..n).map(|row| f64::from(row == coordinate)).collect() };
-    let outputs: Vec<Output> = ((0..n).map(|coordinate| Output::Displacement(unit(coordinate))))
-        .chain((0..n).map(|coordinate| Output::Velocity(unit(coordinate))))
-        .chain([Output::MeshForce])
-        .collect();
-    let mut kept = Kept(vec![Vec::new(); outputs.len()]);
-    stages.integrate(&stages.reduced_model(), &outputs, 0, &mut kept).unwrap();
+    let (train, modes) = machine_of(&stages);
+    let machine = &train.machine;
+    let n = machine.coordinates();
+    let force = [Output::MeshForce { mesh: 0 }];
+    let outputs: Vec<Output> = coordinates(machine, 0).chain(coordinates(machine, 1)).chain(force).collect();
+    let kept = outputs_from(0, &stages, &outputs);
     let step_s = stages.time.step_s();
-    let rigid = structure.rigid_rotation() * (std::f64::consts::TAU * 40.0);
+    let rigid = &machine.rigid_rotation * (std::f64::consts::TAU * 40.0);
     // Relative to the rigid rotation, at which the motor turns.
-    let state = |first: usize, k: usize| DVector::from_fn(n, |row, _| kept.0[first + row][k]);
+    let state = |first: usize, k: usize| DVector::from_fn(n, |row, _| kept[first + row][k]);
     let way = |k: usize| state(0, k) - &rigid * (k as f64 * step_s);
-    let line = &structure.turn * &structure.line_of_action[0];
-    let mass = DVector::from_column_slice(&structure.mass_diagonal);
-    let (damping, springs) = (structure.damping_matrix(), structure.stiffness_matrix());
+    let line = &machine.turn * &machine.lines[0].at_middle;
+    let mass = DVector::from_column_slice(&machine.mass);
+    let (damping, springs) = (modes.damping_matrix(machine), machine.turn_back(&machine.stiffness()));
     let energy = |k: usize| {
         let (u, v) = (way(k), state(n, k) - &rigid);
         let deflection = line.dot(&u).max(0.0);
         (v.component_mul(&mass).dot(&v) + (&springs * &u).dot(&u) + stiffness * deflection * deflection) / 2.0
     };
-    let from = kept.0[0].len() / 20;
+    let Drive::Brake { coordinate: theta_brake, .. } = machine.drives[1] else { panic!("no brake") };
+    let from = kept[0].len() / 20;
     let until = from + 100_000;
     let (mut put_in, mut structural, mut of_contact) = (0.0, 0.0, 0.0);
     for k in from..until {
         let (before, after) = (way(k), way(k + 1));
         let moved = &after - &before;
-        put_in += (torque[k] + torque[k + 1]) / 2.0 * moved[THETA_BRAKE];
+        put_in += (torque[k] + torque[k + 1]) / 2.0 * moved[theta_brake];
         structural += (&damping * &moved).dot(&moved) / step_s;
-        let lost = |k: usize, u: &DVector<f64>| kept.0[2 * n][k] - stiffness * line.dot(u).max(0.0);
+        let lost = |k: usize, u: &DVector<f64>| kept[2 * n][k] - stiffness * line.dot(u).max(0.0);
         of_contact += (lost(k, &before) + lost(k + 1, &after)) / 2.0 * line.dot(&moved);
     }
     let stored = energy(until) - energy(from);
@@ -256,11 +236,11 @@ fn small_damages_are_small() {
 #[test]
 fn mesh_stiffness_is_the_linear_one() {
     let mut scenario = pair(3.0, 17, 38, 10.0);
-    scenario.gears.tip_relief = None;
     scenario.gears.tip_chamfer_mm = Some(0.0);
-    let contact = stages(&scenario).unwrap().mesh.mean_stiffness_n_per_mm();
+    let mean = |scenario: &Scenario| stages(scenario).unwrap().mesh_curves()[0].mean_stiffness_n_per_mm;
+    let contact = mean(&scenario);
     scenario.model = Model::Linear;
-    let linear = stages(&scenario).unwrap().mesh.mean_stiffness_n_per_mm();
+    let linear = mean(&scenario);
     println!("mean stiffness {contact:.0} and {linear:.0} N/mm");
     assert!((contact / linear - 1.0).abs() < 2e-3);
 }
@@ -317,12 +297,12 @@ fn given_pitches_have_the_run_out_in_them() {
 fn helix_slopes_and_misalignment_add_up() {
     let mut scenario = of_rig(6);
     let aligned = simulate(&scenario).unwrap();
-    assert_eq!(aligned.stages.mesh.contact().unwrap().face_load_factor, 1.0);
+    assert_eq!(mesh(&aligned.stages).face_load_factor, 1.0);
     scenario.rig.misalignment_um = 8.0;
     let misaligned = simulate(&scenario).unwrap();
-    let mesh = |simulation: &meshtone::Simulation| simulation.stages.mesh.contact().unwrap().clone();
-    assert!(mesh(&misaligned).face_load_factor > 2.0);
-    assert!(mesh(&misaligned).mean_stiffness_n_per_m < 0.9 * mesh(&aligned).mean_stiffness_n_per_m);
+    let [before, after] = [&aligned, &misaligned].map(|simulation| mesh(&simulation.stages));
+    assert!(after.face_load_factor > 2.0);
+    assert!(after.mean_stiffness_n_per_m < 0.9 * before.mean_stiffness_n_per_m);
     scenario.quality.pinion_deviations.helix_slope_um = Some(-3.0);
     scenario.quality.gear_deviations.helix_slope_um = Some(-5.0);
     assert_eq!(simulate(&scenario).unwrap().channels, aligned.channels);

@@ -1,10 +1,11 @@
 //! Load that is carried by a part of the face: the time loop lets a pair act at the middle of what bears; here, in a solver of its
 //! own, every slice of the face of every pair touches or does not, with the wheels' tilt.
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
+use crate::dense::machine_of;
 use crate::physics::*;
-use meshtone::machine::coordinates::{COORDINATES_WITH_SUPPORTS, Y_GEAR_SUPPORT, Y_PINION_SUPPORT};
-use meshtone::mesh::ContactMesh;
+use meshtone::machine::{Axis, Drive, SENSOR};
+use meshtone::mesh::Mesh;
 use meshtone::scenario::*;
 use meshtone::{Stages, simulate};
 use nalgebra::{DVector, Matrix2, Vector2};
@@ -33,7 +34,7 @@ struct Face {
 }
 
 /// The slices that carry, of all pairs at a sample. The stiffness of what is left of a pair's face is spread over it.
-fn slices(mesh: &ContactMesh, face: &Face, width_m: f64, sample: usize) -> Vec<Slice> {
+fn slices(mesh: &Mesh, face: &Face, width_m: f64, sample: usize) -> Vec<Slice> {
     let point = sample + mesh.points_before;
     let (latest, since) = ((point / mesh.points_per_pitch) as i64, point % mesh.points_per_pitch);
     let mut all = Vec::new();
@@ -74,30 +75,28 @@ fn at_rest(all: &[Slice], force: f64) -> f64 {
 
 /// (m/s²) Mean vertical acceleration of both supports.
 fn by_slices(stages: &Stages, face: &Face, samples: usize) -> Vec<f64> {
-    let structure = stages.structure.as_ref().unwrap();
-    let mesh = stages.mesh.contact().unwrap();
-    let model = stages.reduced_model();
+    let (train, modes) = machine_of(stages);
+    let (machine, mesh) = (&train.machine, mesh(stages));
     let width_m = stages.teeth.gear.face_width_mm * 1e-3;
-    let (n, h) = (COORDINATES_WITH_SUPPORTS, stages.time.step_s() / 2.0);
-    let omega2 = DVector::from_fn(n, |m, _| structure.angular_frequencies[m].powi(2));
-    let damping = DVector::from_fn(n, |m, _| structure.modal_damping(m));
-    let lines = structure.line_of_action.each_ref().map(|line| structure.shapes.transpose() * line);
+    let (n, h) = (machine.coordinates(), stages.time.step_s() / 2.0);
+    let omega2 = DVector::from_fn(n, |m, _| modes.angular_frequencies[m].powi(2));
+    let damping = DVector::from_fn(n, |m, _| modes.damping_per_s(m));
+    let line = &machine.lines[0];
+    let lines = [&line.at_middle, &line.per_m].map(|line| modes.shapes.transpose() * line);
     let e = DVector::from_fn(n, |m, _| 1.0 / (1.0 + h * damping[m] + h * h * omega2[m]));
     let tau = face.damping_time_s;
     let lead = 1.0 + tau / h;
     let gamma =
         Matrix2::from_fn(|r, c| lead * h * h * (0..n).map(|m| lines[r][m] * e[m] * lines[c][m]).sum::<f64>());
-    let force = model.static_mesh_force_n;
+    let force = stages.static_force_n();
     let torque = stages.scenario.operation.brake_torque_nm;
-    let brake = structure.shapes.row(meshtone::machine::coordinates::THETA_BRAKE).transpose() * torque;
+    let Drive::Brake { coordinate, .. } = machine.drives[1] else { panic!("no brake") };
+    let brake = modes.shapes.row(coordinate).transpose() * torque;
     let steady = DVector::from_fn(n, |m, _| {
         if omega2[m] == 0.0 { 0.0 } else { (brake[m] - lines[0][m] * force) / omega2[m] }
     });
     let of_static = Vector2::new(lines[0].dot(&steady), lines[1].dot(&steady));
-    let row = DVector::from_fn(n, |m, _| {
-        let mean = |coordinate| (structure.turn.row(coordinate) * structure.shapes.column(m))[0];
-        0.5 * (mean(Y_GEAR_SUPPORT) + mean(Y_PINION_SUPPORT))
-    });
+    let row = modes.shapes.transpose() * machine.turn.transpose() * machine.weights(SENSOR, Axis::Y);
     let solve = |all: &[Slice], rates: &[f64], free: Vector2<f64>| -> Vector2<f64> {
         let offset = |i: usize| -all[i].separation + tau * rates[i];
         let load = free + gamma * Vector2::new(force, 0.0);
@@ -189,7 +188,7 @@ fn the_middle_of_what_bears_acts_as_its_slices_do() {
         let simulation = simulate(&scenario).unwrap();
         let samples = 3 * simulation.stages.time.samples_per_pinion_revolution;
         let mean: Vec<f64> = simulation.channels.vertical_g[..samples].iter().map(|g| g * 9.81).collect();
-        let damping_time_s = simulation.stages.mesh.contact().unwrap().damping_time_s;
+        let damping_time_s = mesh(&simulation.stages).damping_time_s;
         let face = Face { slices: SLICES, slope: 0.0, damping_time_s };
         let sliced = by_slices(&simulation.stages, &face, samples);
         let difference: Vec<f64> = mean.iter().zip(&sliced).map(|(a, b)| a - b).collect();
@@ -227,7 +226,7 @@ fn an_end_of_the_face_acts_as_its_slices_do() {
         let aligned = simulate(&scenario).unwrap();
         scenario.rig.misalignment_um = misalignment_um;
         let leaning = simulate(&scenario).unwrap();
-        let mesh = leaning.stages.mesh.contact().unwrap();
+        let mesh = mesh(&leaning.stages);
         let revolution = leaning.stages.time.samples_per_pinion_revolution;
         // Until the start is forgotten.
         let kept = 6 * revolution..20 * revolution;

@@ -1,194 +1,390 @@
-//! The equations of motion solved as they are written, with dense 13 × 13 matrices: what the modal, low-rank solver is
-//! compared with, in its results and in its speed.
+//! The equations of motion of a machine with any number of meshes, solved as they are written, with full matrices in the machine's own
+//! coordinates: what the modal, low-rank solver is compared with.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use meshtone::Stages;
-use meshtone::machine::Excitation;
-use meshtone::machine::coordinates::{CoordinateMatrix, CoordinateVector, THETA_PINION};
-use meshtone::scenario::Model;
+use std::f64::consts::TAU;
 
-const MOST_ITERATIONS: usize = 11;
+use meshtone::interpolation::NotAKnotSpline;
+use meshtone::machine::{Drive, Machine, Modes, Train};
+use meshtone::mesh::{Contact, Mesh, PairDeviations, PairState};
+use meshtone::operation::{MotionSample, TimeGrid};
+use meshtone::solver::{Block, InitialMotion, Output, Recorder};
+use meshtone::wheel::WheelName;
+use meshtone::{Equations, Stages};
+use nalgebra::{DMatrix, DVector};
 
-/// Newmark's method (γ = ½, β = ¼) in the 13 coordinates, with full matrices and their inverses.
-///
-/// The unknown is `u` less the rigid rotation at the nominal speed, whose forces are subtracted. The equations are the
-/// same; in `u` itself rounding grows with the angle turned (to 1e-8 of the acceleration in 76 revolutions), which
-/// would hide what is compared.
+/// Pairs that can touch at once.
+const PAIRS: i64 = 3;
+/// Most of Newton's iterations in a step.
+const MOST_ITERATIONS: usize = 50;
+
+/// The rig of a simulation, and its modes without the mesh.
+pub fn machine_of(stages: &Stages) -> (&Train, &Modes) {
+    match &stages.equations {
+        Equations::Machine(train, modes) => (train, modes),
+        Equations::Published(_) => panic!("the published model has a machine of its own"),
+    }
+}
+
+/// The outputs of a solution, each at all recorded samples.
+pub struct Recorded(pub Vec<Vec<f64>>);
+
+impl Recorder for Recorded {
+    fn record(&mut self, block: &Block) {
+        for (n, values) in self.0.iter_mut().enumerate() {
+            values.extend_from_slice(block.output(n));
+        }
+    }
+}
+
+/// The outputs of a simulation from a sample on, as far as it is bounded.
+pub fn outputs_from(first_sample: usize, stages: &Stages, outputs: &[Output]) -> Vec<Vec<f64>> {
+    let mut recorded = Recorded(vec![Vec::new(); outputs.len()]);
+    // What comes after an error is without bound.
+    let _ = stages.integrate(outputs, first_sample, &mut recorded);
+    recorded.0
+}
+
+/// Displacement, velocity or acceleration of all coordinates of a machine, by the order of the derivative.
+pub fn coordinates(machine: &Machine, derivative: usize) -> impl Iterator<Item = Output> {
+    (0..machine.coordinates()).map(move |number| Output::Coordinate { number, derivative })
+}
+
+/// The deviations of the flanks of a simulation.
+pub fn deviations_of(stages: &Stages) -> PairDeviations<'_> {
+    PairDeviations {
+        teeth: &stages.teeth,
+        errors: stages.profile_errors.as_ref(),
+        eccentricity_m: stages.scenario.rig.eccentricity_mm * 1e-3,
+        run_out: stages.run_out,
+    }
+}
+
+/// One mesh of a machine, with the deviations of its flanks.
+pub struct DenseMesh<'a> {
+    mesh: &'a Mesh,
+    deviations: PairDeviations<'a>,
+    /// (mm) Profile errors of each tooth over the rows of their table, of the pinion and of the gear.
+    errors: [Vec<NotAKnotSpline<'a>>; 2],
+}
+
+/// What a mesh does at one sample.
+struct Load {
+    contact: Contact,
+    /// (N/m, m) Stiffness of each pair, and what it adds to the deflection, with the damping's lead.
+    pairs: Vec<[f64; 2]>,
+    /// (N/m, m) The same of the back flanks.
+    back: Option<[f64; 2]>,
+    /// (m) Where along the face the load acts.
+    face_centre_m: f64,
+}
+
+impl<'a> DenseMesh<'a> {
+    /// Nothing is computed yet.
+    pub fn new(mesh: &'a Mesh, deviations: PairDeviations<'a>) -> Self {
+        let errors = WheelName::BOTH.map(|wheel| {
+            let table = deviations.errors.map(|errors| match wheel {
+                WheelName::Pinion => &errors.pinion_profile_errors_mm,
+                WheelName::Gear => &errors.gear_profile_errors_mm,
+            });
+            let teeth =
+                table.into_iter().flat_map(|table| (0..table.teeth()).map(|tooth| table.tooth(tooth)));
+            teeth.map(|tooth| NotAKnotSpline::uniform(0.0, 1.0, tooth)).collect()
+        });
+        Self { mesh, deviations, errors }
+    }
+
+    /// (m) How far the flank of a pair's tooth lies outside of the ideal one, at a position in base pitches.
+    fn deviation_m(&self, wheel: WheelName, pair: i64, position: f64) -> f64 {
+        let PairDeviations { teeth, errors, eccentricity_m, run_out } = &self.deviations;
+        let (of_wheel, run_out) = (teeth.wheel(wheel), run_out[wheel as usize]);
+        let (sign, first_mm) = match wheel {
+            WheelName::Pinion => (-1.0, teeth.contact.pinion_initial_radius_mm),
+            WheelName::Gear => (1.0, teeth.contact.gear_initial_radius_mm),
+        };
+        let tooth = pair.rem_euclid(i64::from(of_wheel.teeth));
+        let angle = TAU * (tooth as f64 + position) / f64::from(of_wheel.teeth);
+        let axis_m = sign * eccentricity_m * (teeth.gear.working_pressure_angle_rad + angle).sin();
+        let circle_m = run_out.run_out_um * 0.5e-6 * (angle + run_out.phase_rad).sin();
+        let flank_m = errors.map_or(0.0, |errors| {
+            // Rows are uniform in radius, from where a flank's contact begins to where it ends: the gear's begins at its tip.
+            let radius_mm = teeth.path.curvature_mm(wheel, position).hypot(of_wheel.base_radius_mm);
+            let from_root = ((radius_mm - first_mm) / (of_wheel.tip_radius_mm - first_mm)).clamp(0.0, 1.0);
+            let passed = if wheel == WheelName::Pinion { from_root } else { 1.0 - from_root };
+            let rows = (errors.pinion_profile_errors_mm.points() - 1) as f64;
+            self.errors[wheel as usize][tooth as usize].at(passed * rows) * 1e-3
+        });
+        axis_m + circle_m + flank_m
+    }
+
+    /// (N/m, m) Stiffness of a pair and its offset, deviation less separation, at a point of its table: between two of them where
+    /// the point is not a whole number. None beyond the table.
+    fn pair_at(&self, pair: i64, point: f64) -> Option<[f64; 2]> {
+        let states = &self.mesh.classes[self.mesh.sequence.class(pair)].states;
+        let (index, part) = (point.floor(), point - point.floor());
+        let at = |n: f64| states.get((n >= 0.0).then_some(n as usize)?);
+        let here = at(index)?;
+        let next = if part > 0.0 { at(index + 1.0)? } else { here };
+        let between = |of: fn(&PairState) -> f64| of(here) + part * (of(next) - of(here));
+        let position = (point - self.mesh.points_before as f64) / self.mesh.points_per_pitch as f64;
+        let deviation: f64 =
+            WheelName::BOTH.map(|wheel| self.deviation_m(wheel, pair, position)).iter().sum();
+        Some([between(|state| state.stiffness_n_per_m), deviation - between(|state| state.separation_m)])
+    }
+
+    /// The pairs that can touch after some pitches, the newest first, with the points of their tables.
+    fn pairs_after(&self, pitches: f64) -> impl Iterator<Item = (i64, f64)> {
+        let (per_pitch, before) = (self.mesh.points_per_pitch as f64, self.mesh.points_before as f64);
+        let newest = ((pitches * per_pitch + before) / per_pitch).floor() as i64;
+        (0..PAIRS).map(move |age| (newest - age, (pitches - (newest - age) as f64) * per_pitch + before))
+    }
+
+    /// What the mesh does at a sample, of the motor's rotation until then.
+    ///
+    /// Where every sample is a point of the tables, the offset's derivative is a central difference of the table. Elsewhere the next
+    /// sample is not known, and the derivative is that of the parabola through the last three.
+    fn load(&self, revolutions: &[f64], sample: usize, is_steady: bool, time: &TimeGrid) -> Load {
+        let mesh = self.mesh;
+        let per_pitch = mesh.points_per_pitch as f64;
+        let samples_per_revolution = time.samples_per_pinion_revolution as f64;
+        let points_per_revolution = per_pitch * mesh.turning.pitches_per_revolution;
+        let on_points = is_steady
+            && mesh.turning.first_pitch == 0.0
+            && (points_per_revolution / samples_per_revolution - 1.0).abs() < 1e-13;
+        let pitches = |sample: usize| {
+            mesh.turning.first_pitch + revolutions[sample] * mesh.turning.pitches_per_revolution
+        };
+        let last = (mesh.points() - 1) as f64;
+        let of_pair = |(pair, point): (i64, f64)| {
+            let point = if on_points { point.round() } else { point };
+            let [stiffness, offset] = self.pair_at(pair, point)?;
+            let before = |samples: usize| {
+                let then = pitches(sample.checked_sub(samples)?) - pair as f64;
+                Some(self.pair_at(pair, then * per_pitch + mesh.points_before as f64)?[1])
+            };
+            let change = if on_points {
+                let beside = |by: f64| self.pair_at(pair, (point + by).clamp(0.0, last));
+                (beside(1.0)?[1] - beside(-1.0)?[1]) / 2.0
+            } else {
+                match (before(1), before(2)) {
+                    (Some(one), Some(two)) => 1.5 * offset - 2.0 * one + 0.5 * two,
+                    (Some(one), None) => offset - one,
+                    (None, _) => 0.0,
+                }
+            };
+            Some([stiffness, offset + mesh.damping_time_s * change / time.step_s()])
+        };
+        Load {
+            contact: mesh.contact,
+            pairs: self.pairs_after(pitches(sample)).filter_map(of_pair).collect(),
+            back: mesh.backlash_m.map(|backlash_m| [mesh.mean_stiffness_n_per_m, backlash_m]),
+            face_centre_m: self.face_centre_m((pitches(sample) * per_pitch).round()),
+        }
+    }
+
+    /// (m) Where the parts of the nominal load that the pairs bear at a point act together; at the nearest pair where none bears any.
+    fn face_centre_m(&self, point: f64) -> f64 {
+        let (mut load, mut moment) = (0.0, 0.0);
+        let (mut least_m, mut of_nearest_m) = (f64::INFINITY, 0.0);
+        for (pair, at) in self.pairs_after(point / self.mesh.points_per_pitch as f64) {
+            let states = &self.mesh.classes[self.mesh.sequence.class(pair)].states;
+            let Some(state) = states.get(at.round() as usize) else { continue };
+            let borne =
+                state.stiffness_n_per_m * (self.mesh.nominal_deflection_m - state.separation_m).max(0.0);
+            load += borne;
+            moment += borne * state.face_centre_m;
+            if state.stiffness_n_per_m > 0.0 && state.separation_m < least_m {
+                (least_m, of_nearest_m) = (state.separation_m, state.face_centre_m);
+            }
+        }
+        if load > 0.0 { moment / load } else { of_nearest_m }
+    }
+}
+
+impl Load {
+    /// (N/m, N) Slope and constant of the straight line on which the force lies about a deflection.
+    fn straight(&self, deflection_m: f64) -> [f64; 2] {
+        let touching =
+            |&&[_, offset]: &&[f64; 2]| self.contact == Contact::Bilateral || deflection_m + offset > 0.0;
+        let drive = self.pairs.iter().filter(touching).map(|[k, offset]| [*k, k * offset]);
+        let back = self.back.filter(|[_, backlash]| deflection_m + backlash < 0.0);
+        let all = drive.chain(back.map(|[k, backlash]| [k, k * backlash]));
+        all.fold([0.0; 2], |[slope, constant], [k, force]| [slope + k, constant + force])
+    }
+
+    fn force_n(&self, deflection_m: f64) -> f64 {
+        let [slope, constant] = self.straight(deflection_m);
+        slope * deflection_m + constant
+    }
+
+    /// (m) Deflection at which the drive flanks carry a force.
+    fn at_rest_m(&self, force_n: f64) -> f64 {
+        let (mut low, mut high) = (-1e-2, 1e-2);
+        for _ in 0..100 {
+            let middle = (low + high) / 2.0;
+            if self.force_n(middle) < force_n { low = middle } else { high = middle }
+        }
+        high
+    }
+}
+
+/// A machine with its meshes, and what drives it.
 pub struct Dense<'a> {
-    stages: &'a Stages,
-    mass: CoordinateMatrix,
-    damping: CoordinateMatrix,
-    stiffness: Vec<Option<CoordinateMatrix>>,
-    inverse: Vec<Option<CoordinateMatrix>>,
-    dt: f64,
+    pub machine: &'a Machine,
+    pub modes: &'a Modes,
+    pub meshes: Vec<DenseMesh<'a>>,
+    pub time: &'a TimeGrid,
+    /// Motor and brake at every sample from the start.
+    pub motion: Vec<MotionSample>,
+    /// Whether motor and brake are steady.
+    pub is_steady: bool,
+    pub start: InitialMotion<'a>,
 }
 
 impl<'a> Dense<'a> {
-    /// Nothing is computed yet.
-    pub fn new(stages: &'a Stages) -> Self {
-        // What differs of the mesh: entries of the pairs' table, or all coarse points of a gear revolution.
-        let points =
-            stages.mesh.pairs().map_or(stages.cycle.points_per_gear_revolution, |pairs| pairs.entries());
+    /// The machine of a simulation, over its first samples.
+    pub fn of(stages: &'a Stages, samples: usize) -> Self {
+        let (train, modes) = machine_of(stages);
+        let operation = &stages.scenario.operation;
+        let profile = operation.speed_profile_hz.as_ref();
         Self {
-            stages,
-            mass: CoordinateMatrix::from_diagonal(&CoordinateVector::from(stages.system.mass_diagonal)),
-            damping: stages.system.damping_matrix(),
-            stiffness: vec![None; points],
-            inverse: vec![None; points],
-            dt: stages.time.step_s(),
+            machine: &train.machine,
+            modes,
+            meshes: stages.meshes.iter().map(|mesh| DenseMesh::new(mesh, deviations_of(stages))).collect(),
+            time: &stages.time,
+            motion: stages.scenario.motion(&stages.time).take(samples).collect(),
+            is_steady: stages.is_steady(),
+            start: InitialMotion {
+                nominal_rad_per_s: TAU * operation.pinion_speed_hz,
+                brake_torque_nm: operation.brake_torque_nm,
+                motor_rad_per_s: TAU * profile.map_or(operation.pinion_speed_hz, |profile| profile.value[0]),
+                velocity: stages.scenario.solver.initial_velocity.as_ref().map(|given| given.as_slice()),
+            },
         }
     }
 
-    fn stiffness(&mut self, point: usize) -> CoordinateMatrix {
-        *self.stiffness[point]
-            .get_or_insert_with(|| self.stages.system.stiffness_matrix_at(&self.stages.mesh, point))
-    }
-
-    fn effective(&mut self, point: usize) -> CoordinateMatrix {
-        self.stiffness(point) + self.damping * (2.0 / self.dt) + self.mass * (4.0 / (self.dt * self.dt))
-    }
-
-    fn inverse(&mut self, point: usize) -> CoordinateMatrix {
-        let effective = self.effective(point);
-        *self.inverse[point].get_or_insert_with(|| effective.try_inverse().unwrap())
-    }
-
-    /// Published: the coarse point of the cycle nearest to the pinion's own angle.
-    fn point(&self, angle: f64) -> usize {
-        let turns = angle / std::f64::consts::TAU / self.stages.cycle.coarse_step_rev;
-        (turns.round() as i64).rem_euclid(self.stages.cycle.points_per_gear_revolution as i64) as usize
-    }
-
-    fn nominal_speed(&self) -> f64 {
-        std::f64::consts::TAU * self.stages.scenario.operation.pinion_speed_hz
-    }
-
-    fn rotation(&self, sample: usize) -> f64 {
-        self.nominal_speed() * (sample as f64 * self.dt)
-    }
-
-    fn force(&self, sample: usize, excitation: Excitation) -> CoordinateVector {
-        let model = self.stages.scenario.model;
-        let mut relative = excitation;
-        relative.motor_angle_rad -= self.rotation(sample);
-        relative.motor_speed_rad_per_s -= self.nominal_speed();
-        let force = self.stages.system.force(&relative);
-        match model {
-            Model::Linear => force,
-            Model::Published => {
-                force - self.damping * self.stages.system.rigid_rotation() * self.nominal_speed()
-            }
-            _ => panic!("a model that this oracle does not know"),
-        }
-    }
-
-    /// The published iteration, on the residual.
-    fn published_step(
-        &mut self,
-        increment: &CoordinateVector,
-        u: &CoordinateVector,
-        angle: f64,
-        point: &mut usize,
-        whole: impl Fn(&CoordinateVector) -> f64,
-    ) -> CoordinateVector {
-        let start_stiffness = self.stiffness(*point);
-        let mut p = CoordinateVector::zeros();
-        let mut residual = *increment;
-        for iteration in 0..MOST_ITERATIONS {
-            let change = self.inverse(*point) * residual;
-            p += change;
-            let error = if iteration == 0 { 1.0 } else { (residual.dot(&change) / whole(&p)).abs() };
-            *point = self.point(angle + p[THETA_PINION]);
-            residual =
-                increment - self.effective(*point) * p + (start_stiffness - self.stiffness(*point)) * u;
-            if error <= 1e-5 {
-                break;
+    /// (N) What motor and brake do, and what damping makes of the motor's speed, relative to the rigid rotation at the nominal speed.
+    fn external(&self, sample: usize, damping: &DMatrix<f64>) -> DVector<f64> {
+        let MotionSample { revolutions, speed_hz, torque_nm } = self.motion[sample];
+        let nominal = self.start.nominal_rad_per_s;
+        let lead = TAU * revolutions - nominal * (sample as f64 * self.time.step_s());
+        let mut force = damping * &self.machine.rigid_rotation * (TAU * speed_hz - nominal);
+        for drive in &self.machine.drives {
+            match *drive {
+                Drive::Motor { coordinate, stiffness_nm_per_rad, speed_ratio } => {
+                    force[coordinate] += stiffness_nm_per_rad * speed_ratio * lead;
+                }
+                Drive::Brake { coordinate, torque_share } => force[coordinate] += torque_share * torque_nm,
             }
         }
-        p
+        force
     }
 
-    /// Linear: the mesh's point nearest to the motor's angle, at every sample. Nothing of the solution decides it.
-    fn known_points(&self) -> Vec<usize> {
-        let Some(pairs) = self.stages.mesh.pairs() else { return Vec::new() };
-        let points_per_revolution = (pairs.points_per_pitch * self.stages.teeth.pinion.teeth as usize) as f64;
-        self.stages
-            .scenario
-            .motion(&self.stages.time)
-            .take(self.stages.time.samples)
-            .map(|motion| pairs.entry((motion.revolutions * points_per_revolution).round() as usize))
+    /// The line of action of each mesh, where its load acts along the face.
+    fn lines(&self, loads: &[Load]) -> Vec<DVector<f64>> {
+        let lines = self.machine.lines.iter().zip(loads);
+        lines
+            .map(|(line, load)| &self.machine.turn * (&line.at_middle + &line.per_m * load.face_centre_m))
             .collect()
     }
 
-    /// The linear step: no iteration, since the point at its end is known.
-    fn linear_step(
-        &mut self,
-        increment: &CoordinateVector,
-        u: &CoordinateVector,
-        point: &mut usize,
-        next: usize,
-    ) -> CoordinateVector {
-        let start_stiffness = self.stiffness(*point);
-        *point = next;
-        self.inverse(next) * (increment + (start_stiffness - self.stiffness(next)) * u)
-    }
-
-    /// Displacement and velocity at the start, relative to the rigid rotation.
-    fn start(&self) -> (CoordinateVector, CoordinateVector) {
-        let (solver, operation) = (&self.stages.scenario.solver, &self.stages.scenario.operation);
-        let rigid = self.stages.system.rigid_rotation();
-        let u = solver.initial_displacement.map_or_else(CoordinateVector::zeros, Into::into);
-        let speed_hz =
-            operation.speed_profile_hz.as_ref().map_or(operation.pinion_speed_hz, |profile| profile.value[0]);
-        let v = solver
-            .initial_velocity
-            .map_or_else(|| rigid * (std::f64::consts::TAU * speed_hz), CoordinateVector::from);
-        (u, v - rigid * self.nominal_speed())
-    }
-
-    fn starts_in_equilibrium(&self) -> bool {
-        let scenario = &self.stages.scenario;
-        scenario.model == Model::Linear && scenario.solver.initial_displacement.is_none()
-    }
-
-    /// Accelerations of all samples.
-    pub fn accelerations(&mut self) -> Vec<CoordinateVector> {
-        let model = self.stages.scenario.model;
-        let rigid = self.stages.system.rigid_rotation();
-        let rigid_step = rigid * self.nominal_speed() * self.dt;
-        let rigid_increment = self.effective(0) * rigid_step;
-        let (mut u, mut v) = self.start();
-        let mut excitation = self.stages.excitation();
-        let mut force = self.force(0, excitation.next().unwrap());
-        let known = self.known_points();
-        let mut point = known.first().copied().unwrap_or_else(|| self.point(u[THETA_PINION]));
-        if self.starts_in_equilibrium() {
-            // K u = F − C u̇.
-            u = self.stiffness(point).lu().solve(&(force - self.damping * v)).unwrap();
+    /// Displacement at rest under the nominal torque and the meshes' forces, which act midway along the faces, with the meshes closed.
+    fn displacement_at_rest(&self, stiffness: &DMatrix<f64>, loads: &[Load]) -> DVector<f64> {
+        let (n, meshes) = (self.machine.coordinates(), loads.len());
+        let mut matrix = DMatrix::zeros(n + meshes, n + meshes);
+        matrix.view_mut((0, 0), (n, n)).copy_from(stiffness);
+        for (mesh, (line, at_load)) in self.machine.lines.iter().zip(self.lines(loads)).enumerate() {
+            matrix.view_mut((0, n + mesh), (n, 1)).copy_from(&(&self.machine.turn * &line.at_middle));
+            matrix.view_mut((n + mesh, 0), (1, n)).copy_from(&at_load.transpose());
         }
-        let mass_inverse = self.mass.try_inverse().unwrap();
-        let mut a = mass_inverse * (force - self.damping * v - self.stiffness(point) * u);
-        let mut accelerations = vec![a];
-        for sample in 1..self.stages.time.samples {
-            let next_force = self.force(sample, excitation.next().unwrap());
-            let increment = next_force - force
-                + (self.mass * (4.0 / self.dt) + self.damping * 2.0) * v
-                + self.mass * a * 2.0;
-            let angle = u[THETA_PINION] + self.rotation(sample);
-            let p = match model {
-                Model::Published => {
-                    let whole = |p: &CoordinateVector| (increment + rigid_increment).dot(&(p + rigid_step));
-                    self.published_step(&increment, &u, angle, &mut point, whole)
-                }
-                Model::Linear => self.linear_step(&increment, &u, &mut point, known[sample]),
-                _ => panic!("a model that this oracle does not know"),
+        let matrix = matrix.lu();
+        let mut right = DVector::zeros(n + meshes);
+        for drive in &self.machine.drives {
+            if let Drive::Brake { coordinate, torque_share } = *drive {
+                right[coordinate] += torque_share * self.start.brake_torque_nm;
+            }
+        }
+        // The forces do not depend on how far the meshes give way.
+        let forces = matrix.solve(&right).unwrap();
+        for (mesh, load) in loads.iter().enumerate() {
+            right[n + mesh] = load.at_rest_m(forces[n + mesh].max(0.0));
+        }
+        matrix.solve(&right).unwrap().rows(0, n).into_owned()
+    }
+
+    /// Accelerations of all coordinates at the samples of the motion, by Newmark's method (γ = ½, β = ¼).
+    ///
+    /// The unknown is u less the rigid rotation at the nominal speed, whose forces are subtracted. The equations are the same; in u
+    /// itself rounding grows with the angle turned, which would hide what is compared. A step's change S, with `h = Δt/2`, obeys
+    /// `(M/h² + C/h + K) S + Σ g f(D) = F₁ + C v₀ + 2 M v₀/h + M a₀ − K u₀` with `D = gᵀ(u + τ v)` at its end. The forces are
+    /// piecewise linear: Newton's method has found them when the same flanks touch as before.
+    pub fn accelerations(&self) -> Vec<DVector<f64>> {
+        assert_eq!(self.time.first_simulated_sample, 0);
+        let machine = self.machine;
+        let h = self.time.step_s() / 2.0;
+        let mass = DMatrix::from_diagonal(&DVector::from_column_slice(&machine.mass));
+        let mass_inverse = mass.clone().try_inverse().unwrap();
+        let damping = self.modes.damping_matrix(machine);
+        let stiffness = machine.turn_back(&machine.stiffness());
+        let constant = &mass / (h * h) + &damping / h + &stiffness;
+        let revolutions: Vec<f64> = self.motion.iter().map(|motion| motion.revolutions).collect();
+        let loads_at = |sample: usize| -> Vec<Load> {
+            self.meshes
+                .iter()
+                .map(|mesh| mesh.load(&revolutions, sample, self.is_steady, self.time))
+                .collect()
+        };
+        let tau: Vec<f64> = self.meshes.iter().map(|mesh| mesh.mesh.damping_time_s).collect();
+        let acceleration = |sample: usize, loads: &[Load], u: &DVector<f64>, v: &DVector<f64>| {
+            let mut force = self.external(sample, &damping) - &damping * v - &stiffness * u;
+            for ((line, load), tau) in self.lines(loads).iter().zip(loads).zip(&tau) {
+                force -= line * load.force_n(line.dot(u) + tau * line.dot(v));
+            }
+            &mass_inverse * force
+        };
+        let rigid = &machine.rigid_rotation;
+        let loads = loads_at(0);
+        let mut u = self.displacement_at_rest(&stiffness, &loads);
+        let given =
+            |given: &[f64]| DVector::from_fn(rigid.len(), |n, _| given.get(n).copied().unwrap_or(0.0));
+        let mut v = self.start.velocity.map_or_else(|| rigid * self.start.motor_rad_per_s, given)
+            - rigid * self.start.nominal_rad_per_s;
+        let mut a = acceleration(0, &loads, &u, &v);
+        let mut accelerations = vec![a.clone()];
+        for sample in 1..self.motion.len() {
+            let loads = loads_at(sample);
+            let lines = self.lines(&loads);
+            let known = self.external(sample, &damping) + &damping * &v + &mass * (&v * (2.0 / h) + &a)
+                - &stiffness * &u;
+            // D is the free part and the part that goes with S.
+            let free: Vec<f64> =
+                lines.iter().zip(&tau).map(|(line, tau)| line.dot(&u) - tau * line.dot(&v)).collect();
+            let deflections = |change: &DVector<f64>| -> Vec<f64> {
+                (0..lines.len()).map(|n| free[n] + (1.0 + tau[n] / h) * lines[n].dot(change)).collect()
             };
-            let velocity_change = p * (2.0 / self.dt) - v * 2.0;
-            a += p * (4.0 / (self.dt * self.dt)) - v * (4.0 / self.dt) - a * 2.0;
-            v += velocity_change;
-            u += p;
-            force = self.mass * a + self.damping * v + self.stiffness(point) * u;
-            accelerations.push(a);
+            let straight = |deflections: Vec<f64>| -> Vec<[f64; 2]> {
+                loads.iter().zip(deflections).map(|(load, deflection)| load.straight(deflection)).collect()
+            };
+            let mut change = &v * (2.0 * h);
+            let mut touching = straight(deflections(&change));
+            for iteration in 0.. {
+                assert!(iteration < MOST_ITERATIONS, "sample {sample}: no end of the iterations");
+                let (mut matrix, mut right) = (constant.clone(), known.clone());
+                for (n, [slope, constant]) in touching.iter().enumerate() {
+                    matrix += &lines[n] * lines[n].transpose() * (slope * (1.0 + tau[n] / h));
+                    right -= &lines[n] * (slope * free[n] + constant);
+                }
+                change = matrix.lu().solve(&right).unwrap();
+                let now = straight(deflections(&change));
+                if now == touching {
+                    break;
+                }
+                touching = now;
+            }
+            u += &change;
+            v = change / h - v;
+            a = acceleration(sample, &loads, &u, &v);
+            accelerations.push(a.clone());
         }
         accelerations
     }

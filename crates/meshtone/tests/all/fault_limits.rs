@@ -8,7 +8,7 @@ use meshtone::scenario::*;
 use meshtone::simulate;
 
 // So many samples that the smallest damage spans several.
-const SAMPLING_RATE_HZ: f64 = 1e5;
+const SAMPLING_RATE_HZ: f64 = 4e5;
 
 fn scenario(damage: Option<Damage>) -> Scenario {
     sampled_scenario(damage, SAMPLING_RATE_HZ)
@@ -23,27 +23,35 @@ fn sampled_scenario(damage: Option<Damage>, sampling_rate_hz: f64) -> Scenario {
         ..GearPair::example()
     });
     scenario.model = Model::Linear;
+    // A chip within the chamfer would be none.
+    scenario.gears.tip_chamfer_mm = Some(0.0);
     scenario.solver.sampling_rate_hz = sampling_rate_hz;
     scenario.faults = damage.map(Fault::on_first_gear_tooth).into_iter().collect();
     scenario
 }
 
-/// (mean relative change of the pair's stiffness, rms of the change of the vertical acceleration over its rms)
-fn effect(healthy: &[f64], damage: Damage) -> [f64; 2] {
+/// (mean relative change of the pair's stiffness, mean of the flanks' separation in m, rms of the change of the vertical acceleration
+/// over its rms)
+fn effect(healthy: &[f64], damage: Damage) -> [f64; 3] {
     let simulation = simulate(&scenario(Some(damage))).unwrap();
     // On a grid of its own, finer than the time loop's.
-    let mesh = simulation.stages.pair_mesh(NonZeroUsize::new(5_000).unwrap()).unwrap();
-    let [sound, damaged] = sound_and_damaged(&mesh);
-    let stiffness = damaged.stiffness_n_per_m.iter().zip(&sound.stiffness_n_per_m);
-    let change: Vec<f64> = stiffness.map(|(f, h)| deviation(*f, *h).abs()).collect();
+    let mesh = &simulation.stages.meshes_at(NonZeroUsize::new(5_000).unwrap()).unwrap()[0];
+    let [sound, damaged] = sound_and_damaged(mesh);
+    let on_path =
+        || damaged.states.iter().zip(&sound.states).filter(|(_, sound)| sound.stiffness_n_per_m > 0.0);
+    let change: Vec<f64> = on_path()
+        .map(|(damaged, sound)| deviation(damaged.stiffness_n_per_m, sound.stiffness_n_per_m).abs())
+        .collect();
+    let separation_m: Vec<f64> = on_path().map(|(damaged, _)| damaged.separation_m).collect();
     let signal = &simulation.channels.vertical_g;
     let difference: Vec<f64> = signal.iter().zip(healthy).map(|(f, h)| f - h).collect();
-    [mean(&change), rms(&difference) / rms(healthy)]
+    [mean(&change), mean(&separation_m), rms(&difference) / rms(healthy)]
 }
 
 /// What is left at 1, 1/2, …, 1/32 of a fault's size.
 struct Vanishing {
     stiffness: Vec<f64>,
+    separation: Vec<f64>,
     acceleration: Vec<f64>,
 }
 
@@ -52,9 +60,9 @@ const SIZES: [f64; 6] = [1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125];
 impl Vanishing {
     fn of(name: &str, damage: impl Fn(f64) -> Damage) -> Self {
         let healthy = simulate(&scenario(None)).unwrap().channels.vertical_g;
-        let effects: Vec<[f64; 2]> = SIZES.iter().map(|&size| effect(&healthy, damage(size))).collect();
+        let effects: Vec<[f64; 3]> = SIZES.iter().map(|&size| effect(&healthy, damage(size))).collect();
         let column = |k: usize| effects.iter().map(|effect| effect[k]).collect::<Vec<f64>>();
-        let vanishing = Self { stiffness: column(0), acceleration: column(1) };
+        let vanishing = Self { stiffness: column(0), separation: column(1), acceleration: column(2) };
         println!(
             "{name}: stiffness {:.1e} to {:.1e}, order {:.2}; acceleration {:.1e} to {:.1e}, order {:.2}",
             vanishing.stiffness[0],
@@ -101,19 +109,20 @@ fn a_vanishing_crack_is_no_crack() {
 }
 
 // The mean change is the missing part of the face: of first order in a chip's width, and in its height too where that
-// shrinks with it, hence 2. Its acceleration follows.
+// shrinks with it, hence 2. Its acceleration follows: that of a force of first order that lasts for a time of first has an rms of
+// order 3/2, and less while it lasts longer than the mesh rings.
 #[test]
 fn a_vanishing_chip_is_no_chip() {
     let width = Vanishing::of("chip, width", |s| chip(5.0, 10.0 * s));
     assert!((order(&width.stiffness) - 1.0).abs() < 0.05 && (order(&width.acceleration) - 1.0).abs() < 0.05);
     let both = Vanishing::of("chip, height and width", |s| chip(5.0 * s, 10.0 * s));
     assert!((order(&both.stiffness) - 2.0).abs() < 0.1);
-    assert!(both.acceleration[5] < 0.01 * both.acceleration[0]);
+    assert!((1.0..1.5).contains(&order(&both.acceleration)));
 }
 
 #[test]
 fn a_vanishing_partial_pit_is_no_pit() {
-    let width = Vanishing::of("partial pit, width", |s| partial(5.0 * s, pit(0.5, 0.5)));
+    let width = Vanishing::of("partial pit, width", |s| partial(2.5 * s, pit(0.5, 0.5)));
     assert!((order(&width.stiffness) - 1.0).abs() < 0.05 && (order(&width.acceleration) - 1.0).abs() < 0.05);
     // The step in width at the pit's ends stays: it rings the mesh until the pit has passed much faster than the ring.
     let length = Vanishing::of("partial pit, length", |s| partial(5.0, pit(0.5 * s, 0.5)));
@@ -130,46 +139,52 @@ fn a_vanishing_partial_pit_is_no_pit() {
     assert!((order - 1.0).abs() < 0.15);
 }
 
-// In this model a pit, however shallow, carries no load: its depth only weakens the section. So depth does not lead
-// to the healthy tooth; the limit is a face that is narrower by the pit.
+// A pit over part of the face, however shallow, carries no load: its depth only weakens the section. So depth does not lead
+// to the healthy tooth; the limit is a face that is narrower by the pit. The circle of a pit over the whole face becomes its chord: a
+// flank that is ground along it.
 #[test]
 fn a_shallow_pit_still_carries_nothing() {
     let depth = Vanishing::of("partial pit, depth", |s| partial(5.0, pit(0.5, 0.5 * s)));
     assert!(depth.stiffness[5] > 0.95 * depth.stiffness[0] && depth.stiffness[5] < depth.stiffness[0]);
-    let through = |s: f64| Damage::ThroughFace(ThroughFace { pit: pit(0.5, 0.5 * s) });
-    let depth = Vanishing::of("through pit, depth", through);
-    assert!(depth.stiffness[5] > 0.5 * depth.stiffness[0]);
+    let healthy = simulate(&scenario(None)).unwrap().channels.vertical_g;
+    let shallow = effect(&healthy, ThroughFace { pit: pit(0.5, 1e-3) }.into());
+    let line = DestructionLine::End(0.8);
+    let chord = ToothDestruction { start: 0.3, line, offset_mm: 0.0, noise_mm: 0.0 };
+    assert_close("shallow pit and its chord", 0.05, shallow.into_iter().zip(effect(&healthy, chord.into())));
 }
 
-// The mate's dip is the flanks' sagitta and its turning the square root's change over the pit: second order, and so is
-// the acceleration that they excite.
+// The flanks' sagitta over the pit is of second order, and lasts for a length of first: 3. The pair is loaded at the pit's edges, off
+// by as much as it is long: its stiffness changes by first order over a length of first, 2, and by the depth of the section. A force
+// of second order for a time of first accelerates with an rms of order 2 + 1/2.
 #[test]
 fn a_vanishing_through_pit_is_no_pit() {
-    let through = |s: f64| Damage::ThroughFace(ThroughFace { pit: pit(0.5 * s, 0.5) });
+    let through = |s: f64| Damage::ThroughFace(ThroughFace { pit: pit(0.125 * s, 0.5) });
     let length = Vanishing::of("through pit, length", through);
-    assert!((order(&length.stiffness) - 2.0).abs() < 0.3 && (order(&length.acceleration) - 2.0).abs() < 0.3);
+    assert!((order(&length.stiffness) - 2.0).abs() < 0.3 && (order(&length.separation) - 3.0).abs() < 0.1);
+    assert!((order(&length.acceleration) - 2.5).abs() < 0.3);
 }
 
-// A line between two points of the flank cuts it by its sagitta, of second order, over a length of first: 3.
+// The same of a line between two points of the flank.
 #[test]
 fn a_vanishing_destruction_is_no_destruction() {
     let destruction = |s: f64| {
-        let line = DestructionLine::End(0.2 + 0.7 * s);
+        let line = DestructionLine::End(0.2 + 0.175 * s);
         Damage::ToothDestruction(ToothDestruction { start: 0.2, line, offset_mm: 0.0, noise_mm: 0.0 })
     };
     let length = Vanishing::of("destruction, length", destruction);
-    assert!((order(&length.stiffness) - 3.0).abs() < 0.15);
+    assert!((order(&length.stiffness) - 2.0).abs() < 0.1 && (order(&length.separation) - 3.0).abs() < 0.1);
     assert!(length.acceleration[5] < 2e-3 * length.acceleration[0]);
 }
 
 // A missing tooth is the other end: its pair carries nothing, and so does one whose whole tip is lost.
 #[test]
 fn a_missing_tooth_carries_nothing() {
-    let pair = |damage: Damage| {
+    let carries = |damage: Damage| {
         let stages = meshtone::stages(&scenario(Some(damage))).unwrap();
-        sound_and_damaged(pairs(&stages))[1].stiffness_n_per_m.clone()
+        sound_and_damaged(mesh(&stages))[1].states.iter().any(|state| state.stiffness_n_per_m > 0.0)
     };
-    assert!(pair(MissingTooth.into()).iter().all(|k| *k == 0.0));
+    assert!(!carries(MissingTooth.into()));
     let lost = ToothBreakage { chip_height_mm: 1.0, chip_width_mm: 1.0, tip_loss_mm: 6.0 };
-    assert!(pair(Damage::ToothBreakage(lost)).iter().all(|k| *k == 0.0));
+    assert!(!carries(lost.into()));
+    assert!(carries(chip(5.0, 10.0)));
 }

@@ -1,9 +1,11 @@
 //! Damage on any tooth of either wheel, and several damages at once, under `linear`.
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
+use std::f64::consts::PI;
+use std::num::NonZeroUsize;
+
 use crate::physics::*;
-use meshtone::damage::{DamageDescription, damaged_teeth};
-use meshtone::mesh::PairKind;
+use meshtone::damage::damaged_teeth;
 use meshtone::scenario::*;
 use meshtone::stiffness::{FlankLoad, LoadedFlank, hertz_compliance_mm_per_n};
 use meshtone::wheel::FlankPoint;
@@ -11,7 +13,8 @@ use meshtone::{Simulation, simulate, stages};
 
 /// Ideal wheels of 17 and 38 teeth.
 fn pair(faults: Vec<Fault>) -> Scenario {
-    let mut scenario = Scenario::new(GearPair { brake_torque_nm: 60.0, ..GearPair::example() });
+    let mut scenario =
+        Scenario::new(GearPair { pinion_speed_hz: 25.0, brake_torque_nm: 60.0, ..GearPair::example() });
     scenario.model = Model::Linear;
     scenario.gears.points_per_tooth = 2_000;
     scenario.solver.sampling_rate_hz = 2e4;
@@ -98,7 +101,7 @@ fn a_damaged_tooth_repeats_at_its_own_shaft_s_order() {
             assert!(off(signal, signal, turn * pitch) > 0.1, "{}, {turn} pitches", wheel.name());
         }
         // Where it is in contact the mesh is softer; a revolution of its wheel is a whole number of pitches.
-        let mesh = pairs(&simulation.stages);
+        let mesh = mesh(&simulation.stages);
         let (per_pitch, healthy) = (mesh.points_per_pitch, mesh.healthy_stiffness_n_per_mm());
         let cycle = mesh.stiffness_n_per_mm(0..17 * 38);
         for (pitch, points) in cycle.chunks(per_pitch).enumerate() {
@@ -116,7 +119,7 @@ fn faults_on_different_teeth_are_each_its_own() {
     let meshes =
         [vec![], vec![one.clone()], vec![two.clone()], vec![one.clone(), two.clone()]].map(|faults| {
             let stages = stages(&pair(faults)).unwrap();
-            (stages.damaged.len(), pairs(&stages).stiffness_n_per_mm(0..17 * 38))
+            (stages.damaged.len(), mesh(&stages).stiffness_n_per_mm(0..17 * 38))
         });
     assert_eq!(meshes.each_ref().map(|(damaged, _)| *damaged), [0, 1, 1, 2]);
     let [(_, sound), (_, of_one), (_, of_two), (_, of_both)] = &meshes;
@@ -150,7 +153,7 @@ fn teeth_that_are_alike_make_one_class() {
     let of = |faults: Vec<Fault>| {
         let stages = stages(&pair(faults)).unwrap();
         let teeth: Vec<Vec<usize>> = stages.damaged.iter().map(|tooth| tooth.teeth.clone()).collect();
-        let mesh = pairs(&stages);
+        let mesh = mesh(&stages);
         (teeth, mesh.classes.len(), mesh.stiffness_n_per_mm(0..17 * 38))
     };
     // Two pairs of neighbouring teeth are in contact at once.
@@ -192,21 +195,25 @@ fn a_tooth_may_be_broken_and_ground() {
     ];
     let [tooth] = &both.damaged[..] else { panic!("one tooth") };
     assert_eq!((tooth.wheel, &tooth.teeth[..]), (WheelName::Gear, &[4][..]));
-    assert!(matches!(
-        tooth.descriptions[..],
-        [DamageDescription::ToothBreakage { .. }, DamageDescription::ToothDestruction { .. }]
-    ));
+    let kinds = tooth.descriptions.iter().map(|damage| damage.kind);
+    assert_eq!(kinds.collect::<Vec<_>>(), ["tooth-breakage", "tooth-destruction"]);
     assert_eq!(tooth.missing_width_mm, broken.damaged[0].missing_width_mm);
     assert_eq!(tooth.flank_y_mm, flat.damaged[0].flank_y_mm);
-    assert_eq!(tooth.deviation_mm, flat.damaged[0].deviation_mm);
-    let [broken, flat, both] = [&broken, &flat, &both].map(|stages| sound_and_damaged(pairs(stages))[1]);
-    assert_eq!(both.deviation_m, flat.deviation_m);
-    assert_eq!(both.load, broken.load);
-    let of_each = broken.stiffness_n_per_m.iter().zip(&flat.stiffness_n_per_m);
+    let [set_back, of_both] = [&flat, &both].map(|stages| &sound_and_damaged(mesh(stages))[1].states);
+    for (both, flat) in of_both.iter().zip(set_back).filter(|(both, _)| both.stiffness_n_per_m > 0.0) {
+        assert_eq!(both.separation_m, flat.separation_m);
+    }
+    let kind = sound_and_damaged(mesh(&both))[1].kind;
+    let [broken, flat, both] = [&broken, &flat, &both].map(|stages| {
+        let (pairs, ratio) = (stages.pairs(), stages.teeth.path.contact_ratio);
+        (0..=500).map(|k| pairs.at(&kind, ratio * f64::from(k) / 500.0)).collect::<Vec<_>>()
+    });
     let mut softer = 0;
-    for (both, (broken, flat)) in both.stiffness_n_per_m.iter().zip(of_each) {
-        assert!(*both <= broken.min(*flat) * (1.0 + 1e-12), "{both}, {broken} and {flat}");
-        softer += usize::from(*both < 0.999 * broken.min(*flat));
+    for (both, (broken, flat)) in both.iter().zip(broken.iter().zip(&flat)) {
+        let least = broken.stiffness_n_per_mm.min(flat.stiffness_n_per_mm);
+        assert!(both.stiffness_n_per_mm <= least * (1.0 + 1e-12), "{both:?}, {broken:?} and {flat:?}");
+        assert_eq!(both.face_centre_m, broken.face_centre_m);
+        softer += usize::from(both.stiffness_n_per_mm < 0.999 * least);
     }
     assert!(softer > 10, "{softer}");
 }
@@ -251,67 +258,90 @@ fn a_ground_flank_ends_before_the_point_where_the_line_meets_it() {
         let ground = ToothDestruction { start: -0.6 / 14.0, line, offset_mm: 0.0, noise_mm: 0.0 };
         scenario.faults = vec![Fault::on_first_gear_tooth(ground)];
         let tooth = &stages(&scenario).unwrap().damaged[0];
-        let [DamageDescription::ToothDestruction { start_index, end_index, .. }] = tooth.descriptions[..]
-        else {
-            panic!("a destruction")
-        };
-        assert_eq!((start_index, end_index), (2507, 9587), "{model:?}");
+        assert_eq!(tooth.descriptions[0].numbers("indices"), [2815.0, 9587.0], "{model:?}");
     }
 }
 
-// The path of equal wheels read from its other end is the path with the wheels exchanged, and a pinion's pit a gear's.
+// The path of equal wheels read from its other end is the path with the wheels exchanged, and what damage on the gear does on the way
+// out, the same damage on the pinion does on the way in. The centre distance makes the path so many base pitches long that its points
+// are the same from either end: it is the sum of what both tips reach beyond their base circles' tangents, `√(Ra² − Rb²)` each,
+// less the tangents' length, `√(a² − 4Rb²)`.
 #[test]
-fn a_pit_of_the_pinion_is_the_gear_s_on_the_path_turned_round() {
-    let of = |wheel| {
-        let mut scenario = pair(vec![Fault::new(wheel, 1, ThroughFace { pit: pit(0.2, 0.8) })]);
-        scenario.gears.gear_teeth = 17;
-        scenario
-    };
-    let [on_pinion, on_gear] = [WheelName::Pinion, WheelName::Gear].map(|wheel| stages(&of(wheel)).unwrap());
-    let kind = |pinion, gear| PairKind { pinion, gear, pairs_per_cycle: 1 };
-    let [pinion_pairs, gear_pairs] = [on_pinion.pairs(), on_gear.pairs()];
-    let ratio = on_gear.teeth.path.contact_ratio;
-    for step in 1..200 {
-        let position = ratio * f64::from(step) / 200.0 + 1e-5;
-        let gear = gear_pairs.at(&kind(None, Some(0)), position);
-        let pinion = pinion_pairs.at(&kind(Some(0), None), ratio - position);
-        assert_close("pinion and gear", 1e-6, [(pinion.stiffness_n_per_mm, gear.stiffness_n_per_mm)]);
-        assert!((pinion.deviation_mm - gear.deviation_mm).abs() < 1e-9);
-        assert!((pinion.load.pressure_angle_rad - gear.load.pressure_angle_rad).abs() < 1e-9);
+fn damage_on_either_of_two_equal_wheels_is_mirrored() {
+    for (teeth, ratio) in [(17, 1.5), (31, 1.625)] {
+        let (pitch_mm, tip_mm) = (1.5 * f64::from(teeth), 1.5 * f64::from(teeth) + 3.0);
+        let base_mm = pitch_mm * 20f64.to_radians().cos();
+        let reach_mm = (tip_mm * tip_mm - base_mm * base_mm).sqrt();
+        let line_mm = 2.0 * reach_mm - ratio * 2.0 * PI * base_mm / f64::from(teeth);
+        for damage in damages() {
+            let faults = [(WheelName::Pinion, 2), (WheelName::Gear, 3)];
+            let mut scenario =
+                pair(faults.map(|(wheel, tooth)| Fault::new(wheel, tooth, damage.clone())).to_vec());
+            (scenario.gears.pinion_teeth, scenario.gears.gear_teeth) = (teeth, teeth);
+            scenario.gears.centre_distance_mm = Some(line_mm.hypot(2.0 * base_mm));
+            let stages = stages(&scenario).unwrap();
+            let mesh = &stages.meshes_at(NonZeroUsize::new(400).unwrap()).unwrap()[0];
+            let [sound, of_gear, of_pinion] = &mesh.classes[..] else { panic!("three classes") };
+            assert_eq!([of_pinion.kind.pinion, of_gear.kind.gear], [Some(0), Some(1)]);
+            let on_path = mesh.points_before..=mesh.points_before + (ratio * 400.0) as usize;
+            let mirrored: Vec<_> = on_path
+                .clone()
+                .zip(on_path.rev())
+                .map(|(at, from_the_end)| (of_pinion.states[at], of_gear.states[from_the_end]))
+                .collect();
+            let carrying = mirrored.iter().filter(|(_, gear)| gear.stiffness_n_per_m > 0.0);
+            let stiffness = carrying.map(|(pinion, gear)| (pinion.stiffness_n_per_m, gear.stiffness_n_per_m));
+            if damage != MissingTooth.into() {
+                assert_close(&format!("{} on either wheel", damage.kind()), 1e-9, stiffness);
+            }
+            for (pinion, gear) in &mirrored {
+                assert!((pinion.separation_m - gear.separation_m).abs() < 1e-12, "{pinion:?} {gear:?}");
+                assert!((pinion.face_centre_m - gear.face_centre_m).abs() < 1e-15, "{pinion:?} {gear:?}");
+            }
+            // Each is felt: in the stiffness, or, where little material is missing, as a separation.
+            let is_softer = of_gear
+                .states
+                .iter()
+                .zip(&sound.states)
+                .any(|(gear, sound)| gear.stiffness_n_per_m < 0.99 * sound.stiffness_n_per_m);
+            let farthest = largest(of_gear.states.iter().map(|state| state.separation_m));
+            assert!(is_softer || farthest > 1e-5, "{}", damage.kind());
+        }
     }
 }
 
-// While the mate turns about the pit's edge its own point of contact stays, and so does the load's direction on it, which is its
-// normal there. The pitted tooth turns on under a line of action that turns too.
+// Over a pit the mate is loaded, and loads the pitted tooth, at the pit's nearer edge, and the flanks' curvature keeps them apart:
+// `x²/(2ρ*)` with the distance x of the edge along the flank.
 #[test]
-fn the_mate_of_a_pit_is_loaded_along_its_own_normal() {
-    let scenario = pair(vec![Fault::on_first_gear_tooth(ThroughFace { pit: pit(0.2, 0.8) })]);
+fn the_mate_of_a_pit_touches_its_edges() {
+    let mut scenario = pair(vec![Fault::on_first_gear_tooth(ThroughFace { pit: pit(0.2, 0.8) })]);
+    scenario.gears.points_per_tooth = 20_000;
     let stages = stages(&scenario).unwrap();
     let damaged = &damaged_teeth(&scenario.faults, &stages.teeth, 1).unwrap()[0];
-    let (path, pit) = (stages.teeth.path, &damaged.rolling[0]);
+    let (path, width_mm) = (stages.teeth.path, scenario.gears.face_width_mm);
     let (gear, pinion) = (stages.teeth.flank(WheelName::Gear), stages.teeth.flank(WheelName::Pinion));
-    let sound = |flank| LoadedFlank::new(flank, None, Material::Steel, &scenario.gears.foundation);
+    let sound = LoadedFlank::new(pinion, None, Material::Steel, &scenario.gears.foundation);
     let pitted = LoadedFlank::new(gear, Some(damaged), Material::Steel, &scenario.gears.foundation);
-    let edge_mm = gear.curvature_mm(pit.end_index);
-    let edge = gear.at_curvature(edge_mm);
-    let mate = pinion.at_curvature(path.line_mm - edge_mm);
-    let width_mm = scenario.gears.face_width_mm;
-    let load = |point: FlankPoint, [sin, cos]: [f64; 2]| FlankLoad { point, sin, cos, z_mm: 0.0, width_mm };
-    let pairs = stages.pairs();
-    for part in [0.6, 0.75, 0.9] {
-        let [low, high] = [pit.start_index, pit.end_index].map(|index| gear.curvature_mm(index));
-        let rho_mm = low + part * (high - low);
-        // The angle of the pitted tooth's load: where it would touch, and what the line of action has turned by.
-        let turn = (rho_mm - edge_mm) / stages.teeth.pinion.base_radius_mm;
-        let nominal = gear.at_curvature(rho_mm);
-        let angle = nominal.load_sin.atan2(nominal.load_cos) + turn;
-        let own = [mate.load_sin, mate.load_cos];
-        let compliance = sound(pinion).compliance_mm_per_n(&load(mate, own))
-            + pitted.compliance_mm_per_n(&load(edge, [angle.sin(), angle.cos()]))
+    let compliance = |flank: &LoadedFlank, point: FlankPoint| {
+        let (sin, cos) = (point.load_sin, point.load_cos);
+        flank.compliance_mm_per_n(&FlankLoad { point, sin, cos, z_mm: 0.0, width_mm })
+    };
+    let mesh = &stages.meshes_at(NonZeroUsize::new(5_000).unwrap()).unwrap()[0];
+    let [_, damaged_pair] = sound_and_damaged(mesh);
+    let [low, high] = damaged.descriptions[0].range;
+    for (part, edge) in [(0.1, low), (0.3, low), (0.7, high), (0.9, high)] {
+        let [low_mm, high_mm, edge_mm] = [low, high, edge].map(|index| gear.curvature_mm(index));
+        let rho_mm = low_mm + part * (high_mm - low_mm);
+        let own = compliance(&sound, pinion.at_curvature(path.line_mm - edge_mm));
+        let expected = own
+            + compliance(&pitted, gear.at_curvature(edge_mm))
             + hertz_compliance_mm_per_n(Material::Steel, width_mm);
-        let kind = PairKind { pinion: None, gear: Some(0), pairs_per_cycle: 1 };
-        let state = pairs.at(&kind, path.position(WheelName::Gear, rho_mm));
-        assert_close("pair over a pit", 1e-9, [(state.stiffness_n_per_mm, 1.0 / compliance)]);
+        let away_mm = (rho_mm * rho_mm - edge_mm * edge_mm) / (2.0 * stages.teeth.gear.base_radius_mm);
+        let gap_mm = away_mm * away_mm / (2.0 * rho_mm * (path.line_mm - rho_mm) / path.line_mm);
+        let position = path.position(WheelName::Gear, rho_mm);
+        let state = damaged_pair.states[mesh.points_before + (position * 5_000.0).round() as usize];
+        assert_close("stiffness over a pit", 1e-3, [(state.stiffness_n_per_m * 1e-3, 1.0 / expected)]);
+        assert!((state.separation_m * 1e3 - gap_mm).abs() < 2e-4, "{state:?} {gap_mm}");
     }
 }
 
@@ -338,13 +368,10 @@ fn two_ground_lines_have_their_own_roughness() {
     let scenario = pair(faults);
     let stages = stages(&scenario).unwrap();
     let damaged = &damaged_teeth(&scenario.faults, &stages.teeth, 1).unwrap()[0];
-    let cuts = damaged.descriptions.iter().map(|damage| match damage {
-        DamageDescription::ToothDestruction { start_index, end_index, .. } => *start_index..*end_index,
-        other => panic!("{other:?}"),
-    });
+    let cuts = damaged.descriptions.iter().map(|damage| damage.numbers("indices"));
     let [first, second] = cuts
-        .map(|range| {
-            let flank = &damaged.flank_y_mm[range];
+        .map(|indices| {
+            let flank = &damaged.flank_y_mm[indices[0] as usize..indices[1] as usize];
             // Roughness is what differs from point to point; the lines are straight.
             flank.windows(3).map(|y| y[0] - 2.0 * y[1] + y[2]).take(100).collect::<Vec<f64>>()
         })

@@ -34,7 +34,7 @@ fn moments_of_a_mixture_are_those_of_the_mixed_signal() {
     let windows = WindowMoments::new(&signals[1], &signals[0], 0.3).unwrap();
     for alpha in [0.3, 1.0, 2.7] {
         let mixed = change_fault_to_harmonics_ratio(&signals[1], &signals[0], alpha).unwrap();
-        let moments = windows.at_width(1.0).mixed(alpha);
+        let moments = windows.at_duration(1.0).mixed(alpha);
         assert!((moments.rms() / rms(&mixed) - 1.0).abs() < 1e-12);
         assert!((moments.kurtosis() / kurtosis(&mixed).unwrap() - 1.0).abs() < 1e-11);
         assert!((moments.skewness() - skewness(&mixed).unwrap()).abs() < 1e-11);
@@ -50,7 +50,7 @@ fn moments_of_a_window_are_those_of_the_stretched_signal() {
         let enhancement = Enhancement { width_ratio, fault_to_harmonics_ratio: 1.7, noise_level: 0.0 };
         let enhanced = enhancement.without_noise(&signals[1], &signals[0], 0.3).unwrap();
         let windows = WindowMoments::new(&signals[1], &signals[0], 0.3).unwrap();
-        let moments = windows.at_width(width_ratio).mixed(1.7);
+        let moments = windows.at_duration(width_ratio).mixed(1.7);
         // Between the values the signal is interpolated; shrunk, it loses some.
         assert!((moments.rms() / rms(&enhanced.signal) - 1.0).abs() < 0.02, "{width_ratio}");
         assert!(
@@ -216,7 +216,7 @@ fn difference_signals_of_any_speed_and_rate() {
             scenario.operation.speed_profile_hz = Some(constant);
         }
         let own_hz = simulate(&scenario).unwrap().channels.sampling_rate_hz;
-        let rate_hz = 25_000.0;
+        let rate_hz = 50_000.0;
         let beside_hz = own_hz / 50_021.0 * (rate_hz * 50_021.0 / own_hz).round();
         let at = |rate_hz: f64| {
             difference_signals(vec![scenario.clone()], &DifferenceChain::new(rate_hz)).unwrap().remove(0)

@@ -3,9 +3,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use meshtone::scenario::{
-    DampingRatio, Fault, GearPair, MissingTooth, Model, Scenario, ToothBreakage, WheelName,
-};
+use meshtone::scenario::{Fault, GearPair, MissingTooth, Model, Scenario, ToothBreakage, WheelName};
 use meshtone::tuning::*;
 
 const HIDDEN: Enhancement =
@@ -47,7 +45,7 @@ fn transmitted(signal: &[f64], echoes: &[(usize, f64)]) -> Vec<f64> {
 /// What the rig's sensor would show.
 fn measured(echoes: &[(usize, f64)]) -> Measurements {
     let mut rig = base();
-    rig.rig.damping_ratio = DampingRatio::Uniform(HIDDEN_DAMPING);
+    rig.rig.mesh_damping_ratio = HIDDEN_DAMPING;
     let scenarios = cases().into_iter().map(|case| rig.clone().with_faults(case.faults)).collect();
     let signals = difference_signals(scenarios, &DifferenceChain::new(25e3)).unwrap();
     let simulated = SimulatedCases::new(signals.clone()).unwrap();
@@ -85,7 +83,7 @@ fn run(measured: Measurements, keys: Vec<TunedKey>, candidates: usize) -> Experi
 
 fn damping() -> Vec<TunedKey> {
     let range = KeyRange::Between { least: 0.02, largest: 0.3, logarithmic: true };
-    vec![TunedKey { key: "rig.damping_ratio".into(), range }]
+    vec![TunedKey { key: "rig.mesh_damping_ratio".into(), range }]
 }
 
 fn holds(tuning: &Tuning) -> [bool; 3] {

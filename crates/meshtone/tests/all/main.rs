@@ -50,5 +50,6 @@ mod signal_scipy;
 mod signal_simulated;
 mod support;
 mod tooth_shape;
+mod trains;
 mod unbounded;
 mod wear;

@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
 use meshtone::Stages;
-use meshtone::mesh::{PairKind, PairMesh, PairTable, Pairs};
-use meshtone::scenario::{FoundationCoefficients, Gears, Model};
+use meshtone::mesh::{Mesh, PairKind, PairTable, Pairs};
+use meshtone::scenario::{FoundationCoefficients, Gears};
 use meshtone::wheel::{Teeth, teeth};
 
 /// Deviation of `value` from `exact`, relative to `exact`.
@@ -55,14 +55,14 @@ pub fn plain_gears(module_mm: f64, pinion_teeth: u32, gear_teeth: u32, width_mm:
     gears
 }
 
-/// Healthy teeth of wheels on shafts of the given diameter.
+/// Healthy teeth of wheels on shafts of the given diameter, whose flanks are conjugate.
 pub fn linear_teeth(gears: &Gears, bore_diameter_mm: f64) -> Teeth {
-    teeth(gears, [bore_diameter_mm / 2.0; 2], Model::Linear)
+    teeth(gears, [bore_diameter_mm / 2.0; 2])
 }
 
 /// The same as the published code has them: the pinion's profile resampled, pairs that are not conjugate.
 pub fn published_teeth(gears: &Gears, bore_diameter_mm: f64) -> Teeth {
-    teeth(gears, [bore_diameter_mm / 2.0; 2], Model::Published)
+    meshtone::published::teeth(gears, [bore_diameter_mm / 2.0; 2])
 }
 
 /// The class of two sound teeth.
@@ -73,15 +73,20 @@ pub fn sound_pairs<'a>(gears: &Gears, teeth: &'a Teeth) -> Pairs<'a> {
     Pairs::new(teeth, &[], gears.material, &gears.foundation)
 }
 
-/// The mesh's pairs of a scenario under `linear`.
-pub fn pairs(stages: &Stages) -> &PairMesh {
-    stages.mesh.pairs().unwrap()
+/// The mesh of a simulation that has one.
+pub fn mesh(stages: &Stages) -> &Mesh {
+    &stages.meshes[0]
 }
 
-/// Pairs of two sound teeth, and those of the first damaged tooth with sound mates, over their path.
-pub fn sound_and_damaged(mesh: &PairMesh) -> [&PairTable; 2] {
+/// Pairs of two sound teeth, and those of the first damaged tooth with sound mates.
+pub fn sound_and_damaged(mesh: &Mesh) -> [&PairTable; 2] {
     let [sound, damaged, ..] = &mesh.classes[..] else { panic!("no damaged tooth") };
     [sound, damaged]
+}
+
+/// (N/m) Stiffness of a class of pairs, point by point.
+pub fn stiffness_n_per_m(pairs: &PairTable) -> Vec<f64> {
+    pairs.states.iter().map(|state| state.stiffness_n_per_m).collect()
 }
 
 /// A wheel's body that does not give way.

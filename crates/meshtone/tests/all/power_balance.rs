@@ -1,48 +1,47 @@
 //! What goes in comes out: torques and mesh force of ideal wheels over whole revolutions.
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::panic)]
 
+use std::f64::consts::TAU;
+
+use crate::dense::outputs_from;
 use crate::physics::*;
-use meshtone::machine::coordinates::{COORDINATES, THETA_BRAKE, THETA_GEAR, THETA_PINION};
+use meshtone::Equations;
+use meshtone::published::machine::coordinates::{THETA_BRAKE, THETA_GEAR, THETA_PINION};
 use meshtone::scenario::{Fault, GearPair, Model, Scenario, ToothBreakage};
-use meshtone::solver::{Block, Output, Recorder};
-
-/// The kept part of each output.
-#[derive(Default)]
-struct Kept {
-    outputs: [Vec<f64>; 3],
-}
-
-impl Recorder for Kept {
-    fn record(&mut self, block: &Block) {
-        for (n, kept) in self.outputs.iter_mut().enumerate() {
-            kept.extend_from_slice(block.output(n));
-        }
-    }
-}
+use meshtone::solver::Output;
 
 /// (N m, N m, N) Mean motor torque, mean torque of the brake's shaft and mean mesh force.
 fn means(scenario: &Scenario) -> [f64; 3] {
     let stages = meshtone::stages(scenario).unwrap();
-    let displacement = |terms: &[(usize, f64)]| {
-        let mut weights = vec![0.0; COORDINATES];
-        terms.iter().for_each(|&(coordinate, weight)| weights[coordinate] = weight);
-        Output::Displacement(weights)
-    };
-    let outputs = [
-        displacement(&[(THETA_PINION, 1.0)]),
-        displacement(&[(THETA_BRAKE, 1.0), (THETA_GEAR, -1.0)]),
-        Output::MeshForce,
-    ];
+    // The rig's coordinates have the numbers that the published ones have.
+    let angle = |number| Output::Coordinate { number, derivative: 0 };
+    let outputs = [angle(THETA_PINION), angle(THETA_BRAKE), angle(THETA_GEAR), Output::MeshForce { mesh: 0 }];
     let first = stages.time.first_kept_sample;
-    let mut kept = Kept::default();
-    stages.integrate(&stages.reduced_model(), &outputs, first, &mut kept).unwrap();
-    let [pinion_rad, brake_torsion_rad, force_n] = kept.outputs;
+    let [pinion_rad, brake_rad, gear_rad, force_n] =
+        outputs_from(first, &stages, &outputs).try_into().unwrap();
     assert_eq!(pinion_rad.len(), stages.time.kept_samples());
-    let motor_rad = stages.excitation().skip(first).map(|excitation| excitation.motor_angle_rad);
-    let motor_torsion_rad: Vec<f64> =
-        motor_rad.zip(&pinion_rad).map(|(motor, pinion)| motor - pinion).collect();
-    let [motor, brake] = stages.system.shaft_stiffness_nm_per_rad;
-    [motor * mean(&motor_torsion_rad), brake * mean(&brake_torsion_rad), mean(&force_n)]
+    let (motor_rad, [motor, brake]): (Vec<f64>, _) = match &stages.equations {
+        Equations::Machine(train, _) => (
+            scenario
+                .motion(&stages.time)
+                .map(|motion| TAU * motion.revolutions)
+                .take(stages.time.samples)
+                .collect(),
+            train.shaft_stiffness_nm_per_rad,
+        ),
+        Equations::Published(published) => (
+            published.forcing().map(|forcing| forcing.motor_angle_rad).take(stages.time.samples).collect(),
+            published.machine.shaft_stiffness_nm_per_rad,
+        ),
+    };
+    let mean_twist_rad = |end: &[f64], start: &[f64]| {
+        mean(&end.iter().zip(start).map(|(end, start)| end - start).collect::<Vec<f64>>())
+    };
+    [
+        motor * mean_twist_rad(&motor_rad[first..], &pinion_rad),
+        brake * mean_twist_rad(&brake_rad, &gear_rad),
+        mean(&force_n),
+    ]
 }
 
 /// (N m, N m, N) What the load asks for.
@@ -109,8 +108,10 @@ fn published_damping_takes_power_from_the_rigid_rotation() {
     scenario.model = Model::Published;
     let [motor, brake, force] = means(&scenario);
     println!("published: motor {motor:.3} N m, brake {brake:.3} N m, mesh {force:.2} N");
-    let system = meshtone::stages(&scenario).unwrap().system;
-    let damping = system.damping_matrix() * system.rigid_rotation() * (std::f64::consts::TAU * 40.0);
+    let stages = meshtone::stages(&scenario).unwrap();
+    let Equations::Published(published) = &stages.equations else { panic!("not published") };
+    let machine = &published.machine;
+    let damping = machine.damping_matrix() * machine.rigid_rotation() * (TAU * 40.0);
     let cos = 20f64.to_radians().cos();
     let (base_pinion, base_gear) = (0.0255 * cos, 0.057 * cos);
     assert_close(

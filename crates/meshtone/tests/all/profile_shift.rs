@@ -6,8 +6,7 @@ use std::f64::consts::PI;
 
 use crate::physics::*;
 use crate::support::{assert_refused, gears as with_keys};
-use meshtone::machine::WheelBody;
-use meshtone::machine::coordinates::{COORDINATES, THETA_BRAKE, THETA_GEAR, X_GEAR, Y_GEAR};
+use meshtone::machine::{Supports, Train, WheelBody};
 use meshtone::scenario::{GearPair, Gears, Material, Model, Scenario, WheelName};
 use meshtone::solver::{Block, Output, Recorder};
 use meshtone::wheel::{Mounting, Teeth, ToothProfile};
@@ -150,7 +149,7 @@ fn a_disc_of_the_v_circle_has_the_wheels_mass() {
                 })
                 .sum();
             let area = PI * root * root + 2.0 * f64::from(wheel.teeth) * above;
-            let body = WheelBody::new(wheel, Material::Steel, &Default::default(), Model::Linear);
+            let body = WheelBody::new(wheel, Material::Steel, &Default::default());
             let mass = area * 15.0 * 1e-9 * Material::Steel.density_kg_per_m3();
             let off = deviation(body.mass_kg, mass);
             println!("{} teeth, x {}: {:+.2} %", wheel.teeth, wheel.profile_shift, 100.0 * off);
@@ -171,7 +170,7 @@ fn scenario(model: Model) -> Scenario {
 
 #[derive(Default)]
 struct Kept {
-    outputs: [Vec<f64>; 4],
+    outputs: [Vec<f64>; 5],
 }
 
 impl Recorder for Kept {
@@ -186,24 +185,25 @@ impl Recorder for Kept {
 // bearing being as stiff in x as in y. The force is the torque over the base radius, which no shift changes.
 #[test]
 fn the_mesh_pushes_at_the_working_pressure_angle() {
-    let unit = |terms: &[(usize, f64)]| {
-        let mut weights = vec![0.0; COORDINATES];
-        terms.iter().for_each(|&(coordinate, weight)| weights[coordinate] = weight);
-        Output::Displacement(weights)
-    };
     let stages = meshtone::stages(&scenario(Model::Linear)).unwrap();
+    let train = Train::new(&stages.scenario.gears, &stages.scenario.rig, &stages.teeth, Supports::Held);
+    let coordinate = |name: &str| {
+        let number = train.machine.names.iter().position(|other| *other == name).unwrap();
+        Output::Coordinate { number, derivative: 0 }
+    };
     let outputs = [
-        unit(&[(X_GEAR, 1.0)]),
-        unit(&[(Y_GEAR, 1.0)]),
-        unit(&[(THETA_BRAKE, 1.0), (THETA_GEAR, -1.0)]),
-        Output::MeshForce,
+        coordinate("x_g"),
+        coordinate("y_g"),
+        coordinate("theta_b"),
+        coordinate("theta_g"),
+        Output::MeshForce { mesh: 0 },
     ];
     let mut kept = Kept::default();
-    stages.integrate(&stages.reduced_model(), &outputs, stages.time.first_kept_sample, &mut kept).unwrap();
-    let [x, y, torsion, force] = kept.outputs.map(|values| mean(&values));
+    stages.integrate(&outputs, stages.time.first_kept_sample, &mut kept).unwrap();
+    let [x, y, brake, gear, force] = kept.outputs.map(|values| mean(&values));
     let angle = (x / y).abs().atan().to_degrees();
     assert!((angle - 22.50252).abs() < 1e-3, "{angle}");
-    let torque = torsion * stages.system.shaft_stiffness_nm_per_rad[1];
+    let torque = (brake - gear) * train.shaft_stiffness_nm_per_rad[1];
     let base_radius_m = 0.057 * 20f64.to_radians().cos();
     assert!(deviation(torque, 10.0).abs() < 1e-3, "{torque}");
     assert!(deviation(force, 10.0 / base_radius_m).abs() < 1e-3, "{force}");

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout)]
 
 use crate::published_model::{Reference, for_each_scenario, reference, scenario};
-use meshtone::machine::coordinates::*;
+use meshtone::published::machine::coordinates::*;
 use meshtone::trace_at;
 use ndarray::ArrayD;
 

@@ -43,7 +43,7 @@ fn gears_out_of_range() {
     assert_refused(&pointed, "gears.pressure_angle_deg", 6, &["6 teeth", "pointed", "more teeth"]);
     // A default that does not fit is told at the section, unless the model has no use for it.
     assert_refused(
-        &format!("model = \"linear\"\n{}", replaced("3.0", "0.4")),
+        &format!("model = \"published\"\n{}", replaced("3.0", "0.4")),
         "gears.tip_relief.length_mm",
         2,
         &["less than 0.8000 mm", "default"],

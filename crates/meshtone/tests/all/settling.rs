@@ -80,7 +80,6 @@ fn what_does_not_repeat_settles_for_long() {
     assert_eq!(start(&|scenario| scenario.model = Model::Published), 0);
     assert_eq!(start(&|scenario| scenario.operation.torque_fluctuation_nm = 1.0), 0);
     assert_eq!(start(&|scenario| scenario.operation.speed_fluctuation_hz = 1.0), 0);
-    assert_eq!(start(&|scenario| scenario.solver.initial_displacement = Some([0.0; 13])), 0);
     assert_eq!(start(&|scenario| scenario.solver.initial_velocity = Some([0.0; 13])), 0);
     assert_eq!(start(&|scenario| scenario.rig.damping_ratio = DampingRatio::Uniform(0.0)), 0);
 }

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use crate::signal::{largest_difference, noise, relative_rms, wave};
-use meshtone::scenario::{GearPair, Model, Profile, Scenario};
+use meshtone::scenario::{DampingRatio, GearPair, Model, Profile, Scenario};
 use meshtone::signal::*;
 use meshtone::simulate;
 
@@ -216,6 +216,7 @@ fn a_run_up_has_mesh_lines_one_bin_wide() {
     let mut scenario = Scenario::new(GearPair::example());
     scenario.model = Model::Linear;
     scenario.solver.sampling_rate_hz = 5e4;
+    scenario.rig.damping_ratio = DampingRatio::Uniform(0.2);
     let profile = Profile { time_s: vec![0.0, 1.0, 3.0], value: vec![20.0, 20.0, 60.0] };
     scenario.operation.speed_profile_hz = Some(profile);
     let simulation = simulate(&scenario).unwrap();

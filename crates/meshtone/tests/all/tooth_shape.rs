@@ -5,7 +5,6 @@ use std::f64::consts::PI;
 
 use crate::physics::*;
 use meshtone::interpolation::{NaturalSpline, NotAKnotSpline, Pchip, UniformLinear};
-use meshtone::scenario::Model;
 use meshtone::wheel::{ToothProfile, Wheel, WheelName, contact_ratio, tooth_profile};
 
 fn involute(angle: f64) -> f64 {
@@ -27,7 +26,7 @@ fn wheels() -> impl Iterator<Item = Wheel> {
 }
 
 fn profile(wheel: &Wheel) -> ToothProfile {
-    tooth_profile(wheel, 1_000, 0.0, None, Model::Linear)
+    tooth_profile(wheel, 1_000, 0.0, None, None)
 }
 
 /// (rad) Polar angle of the involute's foot.

@@ -12,7 +12,7 @@ fn contact_that_is_lost() {
     let mut scenario = Scenario::new(GearPair {
         pinion_teeth: 10,
         gear_teeth: 11,
-        pinion_speed_hz: 150.0,
+        pinion_speed_hz: 170.0,
         ..GearPair::example()
     });
     scenario.model = Model::Linear;
@@ -22,6 +22,7 @@ fn contact_that_is_lost() {
     scenario.solver.sampling_rate_hz = 2e4;
     scenario.gears.points_per_tooth = 2000;
     scenario.rig.damping_ratio = DampingRatio::Uniform(0.0005);
+    scenario.rig.mesh_damping_ratio = 0.0;
     let error = simulate(&scenario).map(drop).unwrap_err();
     assert!(
         matches!(&error, Error::Diverged { damping_ratios, .. } if *damping_ratios == [0.0005; 13]),
@@ -39,26 +40,22 @@ fn contact_that_is_lost() {
 #[test]
 fn neighbours_that_are_missing_are_named() {
     let pair = GearPair::example();
-    for (model, together) in [(Model::Contact, 20), (Model::Linear, 30)] {
-        let mut scenario = Scenario::new(pair);
-        scenario.model = model;
-        // Over the last tooth, too.
-        scenario.faults = vec![
-            Fault::new(WheelName::Gear, (1..together).collect::<Vec<_>>(), MissingTooth),
-            Fault::new(WheelName::Pinion, 1, Wear { depth_um: 1.0 }),
-            Fault::new(WheelName::Gear, 38, MissingTooth),
-        ];
-        let error = simulate(&scenario).map(drop).unwrap_err();
-        let text = error.to_string();
-        assert!(
-            text.contains(&format!(
-                "{together} neighbouring teeth of the gear are missing (fault[0], fault[2])"
-            )) && text.contains("grows without bound within"),
-            "{}: {text}",
-            model.name()
-        );
-        assert!(error.help().unwrap().contains("remove some of these faults"));
-    }
+    let together = 20;
+    let mut scenario = Scenario::new(pair);
+    // Over the last tooth, too.
+    scenario.faults = vec![
+        Fault::new(WheelName::Gear, (1..together).collect::<Vec<_>>(), MissingTooth),
+        Fault::new(WheelName::Pinion, 1, Wear { depth_um: 1.0 }),
+        Fault::new(WheelName::Gear, 38, MissingTooth),
+    ];
+    let error = simulate(&scenario).map(drop).unwrap_err();
+    let text = error.to_string();
+    assert!(
+        text.contains(&format!("{together} neighbouring teeth of the gear are missing (fault[0], fault[2])"))
+            && text.contains("grows without bound within"),
+        "{text}"
+    );
+    assert!(error.help().unwrap().contains("remove some of these faults"));
     let mut none = Scenario::new(pair);
     none.model = Model::Contact;
     none.faults = vec![Fault::new(WheelName::Gear, FaultyTeeth::All, MissingTooth)];

@@ -5,12 +5,11 @@ use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
 use super::super::split::largest_remainder;
 use super::super::{Class, Severity};
-use super::{growth, rule};
-use crate::expression::Expression;
+use super::{given, growth, rule};
 
 const MOST_RECORDS: u64 = 1 << 40;
 
-/// How many records a class has.
+/// The number of a class's records, or its part of all records.
 #[derive(Clone, Copy)]
 enum Share {
     Count(u64),
@@ -18,7 +17,6 @@ enum Share {
 }
 
 pub(super) fn read_all(root: &TomlTable<'_>) -> ReadResult<Vec<Class>> {
-    let records = root.optional("records");
     let listed = root.required("class", "the classes, [[class]] each")?;
     let values = listed.array()?;
     if values.is_empty() {
@@ -34,58 +32,37 @@ pub(super) fn read_all(root: &TomlTable<'_>) -> ReadResult<Vec<Class>> {
         classes.push(class);
         shares.push(share);
     }
-    let counts = counts(root, records.as_ref(), &values, &shares)?;
+    let counts = counts(root, &values, &shares)?;
     classes.iter_mut().zip(counts).for_each(|(class, count)| class.count = count);
     Ok(classes)
 }
 
-fn counts(
-    root: &TomlTable<'_>,
-    records: Option<&TomlValue<'_>>,
-    classes: &[TomlValue<'_>],
-    shares: &[Share],
-) -> ReadResult<Vec<u64>> {
-    let records = match records {
-        Some(value) => Some((value, value.integer(1..=MOST_RECORDS)?)),
-        None => None,
-    };
-    let weights: Vec<f64> = shares
-        .iter()
-        .filter_map(|share| match share {
-            Share::Weight(weight) => Some(*weight),
-            _ => None,
-        })
-        .collect();
-    let counts: Vec<u64> = shares
-        .iter()
-        .filter_map(|share| match share {
-            Share::Count(count) => Some(*count),
-            _ => None,
-        })
-        .collect();
-    let both = !weights.is_empty() && !counts.is_empty();
-    if both {
-        let first = shares.iter().position(|share| matches!(share, Share::Weight(_))).unwrap_or(0);
-        let problem = "has a weight where another class has a count; must be all of one kind";
-        return Err(classes[first].error(problem));
-    }
-    let Some((value, records)) = records else {
-        if !weights.is_empty() {
-            // Also where a misspelt key stands in its place.
-            root.required("records", "how many records there are, where classes have weights")?;
+/// The number of records of each class: all classes have counts, or all have weights.
+fn counts(root: &TomlTable<'_>, classes: &[TomlValue<'_>], shares: &[Share]) -> ReadResult<Vec<u64>> {
+    let (mut counts, mut weights) = (Vec::new(), Vec::new());
+    for (share, class) in shares.iter().zip(classes) {
+        match *share {
+            Share::Count(count) => counts.push(count),
+            Share::Weight(weight) => weights.push((weight, class)),
         }
-        return Ok(counts);
-    };
+    }
     if weights.is_empty() {
         let sum: u64 = counts.iter().sum();
-        if sum != records {
-            return Err(
-                value.error(format!("the classes' counts add up to {sum}; must be the same, or left out"))
-            );
+        if let Some(value) = root.optional("records")
+            && value.integer(1..=MOST_RECORDS)? != sum
+        {
+            let problem = format!("the classes' counts add up to {sum}; must be the same, or left out");
+            return Err(value.error(problem));
         }
         return Ok(counts);
     }
-    let counts = largest_remainder(&weights, records);
+    if !counts.is_empty() {
+        let problem = "has a weight where another class has a count; must be all of one kind";
+        return Err(weights[0].1.error(problem));
+    }
+    let records = root.required("records", "how many records there are, where classes have weights")?;
+    let weights: Vec<f64> = weights.into_iter().map(|(weight, _)| weight).collect();
+    let counts = largest_remainder(&weights, records.integer(1..=MOST_RECORDS)?);
     if let Some(empty) = counts.iter().position(|&count| count == 0) {
         return Err(classes[empty].error("has so small a weight that no record is left for it"));
     }
@@ -113,7 +90,7 @@ fn class(table: &TomlTable<'_>) -> ReadResult<(Class, Share)> {
         (Some(_), Some(_)) => return Err(table.error("weight", "given beside count; give one of the two")),
     };
     let rules = rule::read_all(table)?;
-    let growth = table.optional("growth").map(|value| growth::read(&value, &faults)).transpose()?;
+    let growth = given(table, "growth", |value| growth::read(value, &faults))?;
     Ok((Class { label: name.to_owned(), faults, count: 0, severity, rules, growth }, share))
 }
 
@@ -135,8 +112,6 @@ fn severity(table: &TomlTable<'_>, faulty: bool) -> ReadResult<Severity> {
         if limits.is_empty() || limits.len() > 200 || limits.windows(2).any(|pair| pair[1] <= pair[0]) {
             return Err(breaks.error("must be one to 200 numbers, each larger than the one before"));
         }
-        let expression = Expression::parse(measure.string()?);
-        let expression = expression.map_err(|problem| measure.error(format!("the expression {problem}")))?;
-        Ok(Severity::Measured { measure: expression, breaks: limits })
+        Ok(Severity::Measured { measure: rule::expression(&measure)?, breaks: limits })
     })
 }

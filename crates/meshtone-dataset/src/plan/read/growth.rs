@@ -5,6 +5,7 @@ use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
 use super::super::{Distribution, Growth, Law};
 use super::rule::distribution;
+use super::{fraction, given};
 
 /// Of ductile steels, for Paris's law: 2 to 4.
 const PARIS_EXPONENT: f64 = 3.0;
@@ -28,25 +29,27 @@ fn growth(table: &TomlTable<'_>) -> ReadResult<Growth> {
     let names = Law::NAMES.map(|name| (name, name));
     let law = table.required("law", "how the damage grows: paris, archard or pits")?.choice(&names)?;
     let exponent = |default: f64| -> ReadResult<f64> {
-        let Some(value) = table.optional("exponent") else { return Ok(default) };
-        let number = value.number()?;
-        let allowed = number > 0.0 && number <= LARGEST_EXPONENT;
-        if allowed { Ok(number) } else { Err(value.error("must be more than 0 and at most 10")) }
+        let exponent = given(table, "exponent", |value| {
+            let number = value.number()?;
+            let allowed = number > 0.0 && number <= LARGEST_EXPONENT;
+            if allowed { Ok(number) } else { Err(value.error("must be more than 0 and at most 10")) }
+        })?;
+        Ok(exponent.unwrap_or(default))
     };
     let law = match law {
         "paris" => Law::Paris { exponent: exponent(PARIS_EXPONENT)? },
         "pits" => {
-            let count = table.optional("count").map(|value| value.integer(1..=100_000)).transpose()?;
-            let count = count.map_or(PITS, |count| count as u32);
-            Law::Pits { count, exponent: exponent(PITS_EXPONENT)? }
+            let count = given(table, "count", |value| value.integer(1..=100_000))?;
+            Law::Pits { count: count.map_or(PITS, |count| count as u32), exponent: exponent(PITS_EXPONENT)? }
         }
         _ => Law::Archard,
     };
-    let start = part(table, "start")?.unwrap_or(0.02);
+    let part = |key| given(table, key, |value| fraction(value, "must be from 0 to 1"));
+    let start = part("start")?.unwrap_or(0.02);
     if start == 0.0 && matches!(law, Law::Paris { .. }) {
         return Err(table.error("start", "is 0; a crack grows by Paris's law from more than that"));
     }
-    let failure = part(table, "failure")?.unwrap_or(1.0);
+    let failure = part("failure")?.unwrap_or(1.0);
     if failure <= start {
         let problem = format!("must be more than start, {start:?}: the severity at which it has failed");
         return Err(table.error("failure", problem));
@@ -59,25 +62,12 @@ fn growth(table: &TomlTable<'_>) -> ReadResult<Growth> {
         value if value.is_table() => value.table()?.read(|table| distribution(table, 1))?,
         value => Distribution::Fixed(value.number()?),
     };
-    let least = match &life_rev {
-        Distribution::Grid(_) => {
-            return Err(life.error("is a grid; every run has a life of its own, drawn: write choice instead"));
-        }
-        Distribution::Choice { rows, .. } => rows.iter().map(|row| row[0]).fold(f64::INFINITY, f64::min),
-        Distribution::Fixed(value) => *value,
-        Distribution::Uniform([least, _]) | Distribution::LogUniform([least, _]) => *least,
-        Distribution::Normal { within: [least, _], .. } => *least,
-    };
-    if least.is_nan() || least <= 0.0 {
+    if matches!(life_rev, Distribution::Grid(_)) {
+        return Err(life.error("is a grid; every run has a life of its own, drawn: write choice instead"));
+    }
+    if life_rev.range()[0] <= 0.0 {
         return Err(life.error("must be more than 0 revolutions"));
     }
-    let censored = part(table, "censored")?.unwrap_or(0.0);
+    let censored = part("censored")?.unwrap_or(0.0);
     Ok(Growth { law, start, failure, life_rev, censored })
-}
-
-/// A number from 0 to 1.
-fn part(table: &TomlTable<'_>, key: &'static str) -> ReadResult<Option<f64>> {
-    let Some(value) = table.optional(key) else { return Ok(None) };
-    let number = value.number()?;
-    if (0.0..=1.0).contains(&number) { Ok(Some(number)) } else { Err(value.error("must be from 0 to 1")) }
 }

@@ -5,9 +5,10 @@ use meshtone::sensor::{Channel, ChannelKind};
 use meshtone_io::channel_name::{accelerations, read_channel};
 use meshtone_io::experiment::Tuned;
 use meshtone_io::wheel_name::read_wheel;
-use meshtone_toml::{ReadResult, TomlTable};
+use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
 use super::super::{Keep, MOST_SHARD_RECORDS, OverAngle};
+use super::given;
 
 const RATE_HZ: f64 = 25e3;
 const LARGEST_RATE_HZ: f64 = 1e7;
@@ -15,70 +16,58 @@ const MOST_POINTS: u64 = 1 << 20;
 const MOST_REVOLUTIONS: u64 = 1 << 20;
 
 pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>) -> ReadResult<Keep> {
-    let default_rate =
-        tuned.map_or(RATE_HZ.min(base.solver.sampling_rate_hz), |tuned| tuned.sampling_rate_hz);
-    let rate = table.optional("sampling_rate_hz");
-    let sampling_rate_hz = rate.as_ref().map(|value| value.number()).transpose()?.unwrap_or(default_rate);
-    if let Some(value) = rate.filter(|_| !(sampling_rate_hz > 0.0 && sampling_rate_hz <= LARGEST_RATE_HZ)) {
-        return Err(value.error(format!("must be more than 0 and at most {LARGEST_RATE_HZ:e} S/s")));
-    }
-    if sampling_rate_hz > base.solver.sampling_rate_hz {
-        let simulated = base.solver.sampling_rate_hz;
+    let simulated_hz = base.solver.sampling_rate_hz;
+    let default_hz = tuned.map_or(RATE_HZ.min(simulated_hz), |tuned| tuned.sampling_rate_hz);
+    let given_hz = given(table, "sampling_rate_hz", |value| {
+        let rate_hz = value.number()?;
+        let allowed = rate_hz > 0.0 && rate_hz <= LARGEST_RATE_HZ;
+        let problem = || format!("must be more than 0 and at most {LARGEST_RATE_HZ:e} S/s");
+        if allowed { Ok(rate_hz) } else { Err(value.error(problem())) }
+    })?;
+    let sampling_rate_hz = given_hz.unwrap_or(default_hz);
+    if sampling_rate_hz > simulated_hz {
         let problem =
-            format!("is more than solver.sampling_rate_hz, {simulated:?} S/s, of the base scenario");
+            format!("is more than solver.sampling_rate_hz, {simulated_hz:?} S/s, of the base scenario");
         return Err(table.error("sampling_rate_hz", problem).with_help("raise solver.sampling_rate_hz"));
     }
-    let channels = match table.optional("channels") {
-        None => default_channels(base),
-        Some(value) => {
-            let chosen = value
-                .array()?
-                .iter()
-                .map(|value| read_channel(value, &Channel::all(&base.sensors)))
-                .collect::<ReadResult<Vec<_>>>()?;
-            if let Some(twice) = (1..chosen.len()).find(|&n| chosen[..n].contains(&chosen[n])) {
-                return Err(value.array()?[twice].error("is named twice"));
+    let channels = given(table, "channels", |value| {
+        let mut chosen = Vec::new();
+        for value in value.array()? {
+            let channel = read_channel(&value, &Channel::all(&base.sensors))?;
+            if chosen.contains(&channel) {
+                return Err(value.error("is named twice"));
             }
-            chosen
+            chosen.push(channel);
         }
-    };
-    let duration_s = table.optional("duration_s");
-    if let Some(value) =
-        duration_s.as_ref().filter(|value| value.number().is_ok_and(|seconds| seconds <= 0.0))
-    {
-        return Err(value.error("must be more than 0 s"));
-    }
-    let flag =
-        |key| -> ReadResult<Option<bool>> { table.optional(key).map(|value| value.boolean()).transpose() };
-    let wheel = table.optional("wheel").map(|value| read_wheel(&value)).transpose()?;
-    let wheel = wheel.or(tuned.map(|tuned| tuned.wheel)).unwrap_or_default();
+        Ok(chosen)
+    })?;
+    let duration_s = given(table, "duration_s", |value| {
+        let duration_s = value.number()?;
+        if duration_s > 0.0 { Ok(duration_s) } else { Err(value.error("must be more than 0 s")) }
+    })?;
+    let wheel = given(table, "wheel", read_wheel)?.or(tuned.map(|tuned| tuned.wheel)).unwrap_or_default();
     let teeth = u64::from(base.gears.teeth(wheel));
-    let analysed = table
-        .optional("analysed")
-        .map(|value| read_channel(&value, &accelerations(&base.sensors)))
-        .transpose()?;
-    let sidebands = table
-        .optional("sidebands")
-        .map(|value| value.integer(0..=teeth.saturating_sub(2) / 2))
-        .transpose()?;
-    let orders = table.optional("shaft_orders").map(|value| value.integer(0..=teeth - 1)).transpose()?;
-    let shard = table.optional("records_per_shard");
-    let shard = shard.map(|value| value.integer(1..=MOST_SHARD_RECORDS)).transpose()?;
+    let analysed = given(table, "analysed", |value| read_channel(value, &accelerations(&base.sensors)))?;
+    let integer = |key, allowed| given(table, key, |value| value.integer(allowed));
+    let sidebands = integer("sidebands", 0..=teeth.saturating_sub(2) / 2)?;
+    let orders = integer("shaft_orders", 0..=teeth - 1)?;
+    let flag =
+        |key, default| -> ReadResult<bool> { Ok(given(table, key, TomlValue::boolean)?.unwrap_or(default)) };
     let keep = Keep {
         sampling_rate_hz,
-        duration_s: duration_s.map(|value| value.number()).transpose()?,
+        duration_s,
         over_angle: over_angle(table)?,
-        channels,
+        channels: channels.unwrap_or_else(|| default_channels(base)),
         wheel,
         analysed: analysed
             .unwrap_or_else(|| tuned.map_or(Channel::leading(&base.sensors), |tuned| tuned.channel.clone())),
         sidebands: sidebands.map_or(tuned.map_or(2, |tuned| tuned.sidebands), |count| count as usize),
         shaft_orders: orders.map_or(tuned.map_or(7, |tuned| tuned.shaft_orders), |last| last as usize),
-        average: flag("average")?.unwrap_or(true),
-        difference: flag("difference")?.unwrap_or(true),
-        indicators: flag("indicators")?.unwrap_or(true),
-        aligned: flag("aligned")?.unwrap_or(false),
-        records_per_shard: shard,
+        average: flag("average", true)?,
+        difference: flag("difference", true)?,
+        indicators: flag("indicators", true)?,
+        aligned: flag("aligned", false)?,
+        records_per_shard: integer("records_per_shard", 1..=MOST_SHARD_RECORDS)?,
     };
     if keep.channels.is_empty() && !keep.is_analysed() {
         return Err(table.error(

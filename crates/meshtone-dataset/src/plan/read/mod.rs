@@ -14,7 +14,7 @@ use meshtone_io::experiment::{Tuned, read_tuned};
 use meshtone_io::scenario_file::{FileKind, ReadScenarioError, read_text};
 use meshtone_toml::{ReadResult, TomlDocument, TomlError, TomlTable, TomlValue};
 
-use super::{About, Class, Content, Plan, PlanFile, Question, Splits, check};
+use super::{About, Class, Content, Plan, PlanFile, Question, check};
 use crate::expression::Condition;
 use crate::sampling::Design;
 
@@ -102,61 +102,52 @@ impl Reading<'_> {
     }
 }
 
+/// The value of a key that may be left out.
+fn given<'a, T>(
+    table: &TomlTable<'a>,
+    key: &'static str,
+    read: impl FnOnce(&TomlValue<'a>) -> ReadResult<T>,
+) -> ReadResult<Option<T>> {
+    table.optional(key).map(|value| read(&value)).transpose()
+}
+
 fn plan(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Plan> {
-    let text = |key| root.optional(key).map(|value| value.string()).transpose();
+    let text = |key, default: &str| -> ReadResult<String> {
+        Ok(given(root, key, TomlValue::string)?.unwrap_or(default).to_owned())
+    };
     let about = About {
-        title: text("title")?.unwrap_or("Spur gear vibration").to_owned(),
-        description: text("description")?.unwrap_or_default().to_owned(),
-        licence: text("licence")?.unwrap_or(LICENCE).to_owned(),
-        version: root
-            .optional("version")
-            .map(|value| version(&value))
-            .transpose()?
-            .unwrap_or(VERSION)
-            .to_owned(),
-        published: root.optional("published").map(|value| date(&value)).transpose()?.map(str::to_owned),
-        citation: text("citation")?.map(str::to_owned),
+        title: text("title", "Spur gear vibration")?,
+        description: text("description", "")?,
+        licence: text("licence", LICENCE)?,
+        version: given(root, "version", version)?.unwrap_or(VERSION).to_owned(),
+        published: given(root, "published", date)?.map(str::to_owned),
+        citation: given(root, "citation", TomlValue::string)?.map(str::to_owned),
         questions: Vec::new(),
     };
-    let seed = root.optional("seed").map(|value| value.integer(0..=u64::MAX)).transpose()?;
-    let design = root.optional("design").map(|value| value.choice(&Design::NAMES)).transpose()?;
-    let base = base::read(root, reading)?;
-    let tuned = root.optional("tuned").map(|value| tuned(&value, reading)).transpose()?;
-    let base = match &tuned {
-        Some((value, tuned)) => base::tuned(&base, tuned, value)?,
-        None => base,
-    };
-    let tuned = tuned.map(|(_, tuned)| tuned);
+    let seed = given(root, "seed", |value| value.integer(0..=u64::MAX))?;
+    let design = given(root, "design", |value| value.choice(&Design::NAMES))?;
+    let mut base = base::read(root, reading)?;
+    let tuned = given(root, "tuned", |value| {
+        let tuned = tuned(value, reading)?;
+        base = base::tuned(&base, &tuned, value)?;
+        Ok(tuned)
+    })?;
     let units = root.required("units", "how many units, that is pairs of wheels, share the records")?;
-    let units = units.integer(1..=MOST_UNITS)?;
-    let mountings = root.optional("mountings").map(|value| value.integer(1..=MOST_MOUNTINGS)).transpose()?;
-    let keep = root.table_or_empty("keep")?.read(|table| keep::read(table, &base, tuned.as_ref()))?;
-    let classes = class::read_all(root)?;
-    let rules = rule::read_all(root)?;
-    let constraints = match root.optional("constraints") {
-        None => Vec::new(),
-        Some(value) => conditions(&value)?,
-    };
-    let splits = match root.optional("split") {
-        None => Splits::default(),
-        Some(value) => value.table()?.read(split::read)?,
-    };
     let content = Content {
         seed: seed.unwrap_or(1),
-        base,
-        units,
-        mountings: mountings.unwrap_or(1),
+        units: units.integer(1..=MOST_UNITS)?,
+        mountings: given(root, "mountings", |value| value.integer(1..=MOST_MOUNTINGS))?.unwrap_or(1),
         design: design.unwrap_or_default(),
-        rules,
-        constraints,
-        classes,
-        splits,
-        keep,
+        keep: root.table_or_empty("keep")?.read(|table| keep::read(table, &base, tuned.as_ref()))?,
+        classes: class::read_all(root)?,
+        rules: rule::read_all(root)?,
+        constraints: given(root, "constraints", conditions)?.unwrap_or_default(),
+        splits: given(root, "split", |value| value.table()?.read(split::read))?.unwrap_or_default(),
+        base,
         tuned,
     };
     check::check(&content, root)?;
-    let questions =
-        root.optional("questions").map(|value| questions(&value, &content.classes)).transpose()?;
+    let questions = given(root, "questions", |value| questions(value, &content.classes))?;
     Ok(Plan {
         about: About { questions: questions.unwrap_or_default(), ..about },
         content,
@@ -165,7 +156,13 @@ fn plan(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Plan> {
     })
 }
 
-/// Three numbers with points between.
+/// A number from 0 to 1.
+fn fraction(value: &TomlValue<'_>, otherwise: &str) -> ReadResult<f64> {
+    let number = value.number()?;
+    if (0.0..=1.0).contains(&number) { Ok(number) } else { Err(value.error(otherwise)) }
+}
+
+/// Three whole numbers with points between.
 fn version<'a>(value: &TomlValue<'a>) -> ReadResult<&'a str> {
     let text = value.string()?;
     let is_number = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
@@ -188,36 +185,29 @@ fn date<'a>(value: &TomlValue<'a>) -> ReadResult<&'a str> {
     }
 }
 
-/// What the data set asks.
+/// The questions that the data set asks.
 fn questions(value: &TomlValue<'_>, classes: &[Class]) -> ReadResult<Vec<Question>> {
-    let one = |value: &TomlValue<'_>| {
+    let mut questions = Vec::new();
+    for value in value.array()? {
         let question = value.choice(&Question::NAMES)?;
-        match question.obstacle(classes) {
-            None => Ok(question),
-            Some(obstacle) => {
-                Err(value.error(obstacle).with_help("add such a class, or leave the question out"))
-            }
+        if let Some(obstacle) = question.obstacle(classes) {
+            return Err(value.error(obstacle).with_help("add such a class, or leave the question out"));
         }
-    };
-    let listed = value.array()?;
-    let questions: Vec<Question> = listed.iter().map(one).collect::<ReadResult<_>>()?;
-    match (1..questions.len()).find(|&n| questions[..n].contains(&questions[n])) {
-        Some(twice) => Err(listed[twice].error("is asked twice")),
-        None => Ok(questions),
+        if questions.contains(&question) {
+            return Err(value.error("is asked twice"));
+        }
+        questions.push(question);
     }
+    Ok(questions)
 }
 
-fn tuned<'a>(value: &TomlValue<'a>, reading: &mut Reading) -> ReadResult<(TomlValue<'a>, Tuned)> {
+fn tuned(value: &TomlValue<'_>, reading: &mut Reading) -> ReadResult<Tuned> {
     let path = reading.path_of(value.string()?, PlanFile::NAMES[2]);
     let read = read_text(&path).and_then(|text| Ok((text, read_tuned(&path)?)));
-    match read {
-        Ok((text, tuned)) => {
-            reading.sources.push(path);
-            reading.files.push(PlanFile { name: PlanFile::NAMES[2], text });
-            Ok((value.clone(), tuned))
-        }
-        Err(error) => Err(in_another_file(value, error, reading)),
-    }
+    let (text, tuned) = read.map_err(|error| in_another_file(value, error, reading))?;
+    reading.sources.push(path);
+    reading.files.push(PlanFile { name: PlanFile::NAMES[2], text });
+    Ok(tuned)
 }
 
 /// An error in a file that the plan names.

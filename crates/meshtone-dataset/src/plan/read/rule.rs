@@ -3,6 +3,7 @@
 use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
 use super::super::{Distribution, Level, Rule};
+use super::given;
 use crate::expression::Expression;
 
 const DISTRIBUTIONS: &str = "fixed, grid, choice, uniform, log_uniform or normal";
@@ -26,10 +27,10 @@ const KEYS: [&str; 13] = [
 ];
 
 pub(super) fn read_all(table: &TomlTable<'_>) -> ReadResult<Vec<Rule>> {
-    match table.optional("vary") {
-        None => Ok(Vec::new()),
-        Some(value) => value.array()?.iter().map(|value| value.table()?.read(rule)).collect(),
-    }
+    let rules = given(table, "vary", |value| {
+        value.array()?.iter().map(|value| value.table()?.read(rule)).collect::<ReadResult<Vec<Rule>>>()
+    })?;
+    Ok(rules.unwrap_or_default())
 }
 
 fn rule(table: &TomlTable<'_>) -> ReadResult<Rule> {
@@ -37,8 +38,8 @@ fn rule(table: &TomlTable<'_>) -> ReadResult<Rule> {
     table.refuse_unknown(&KEYS)?;
     let keys = keys(table)?;
     let distribution = distribution(table, keys.len())?;
-    let (times, plus) = (expression(table, "times")?, expression(table, "plus")?);
-    let fraction_of = expression(table, "fraction_of")?;
+    let term = |key| given(table, key, expression);
+    let (times, plus, fraction_of) = (term("times")?, term("plus")?, term("fraction_of")?);
     if keys.len() > 1 && (times.is_some() || plus.is_some() || fraction_of.is_some()) {
         let problem = "names several keys beside times, fraction_of or plus; these are for a single key";
         return Err(table.error("keys", problem));
@@ -51,7 +52,7 @@ fn rule(table: &TomlTable<'_>) -> ReadResult<Rule> {
     }
     let unit = OF_A_UNIT.iter().any(|section| keys[0].starts_with(&format!("{section}.")));
     let default = if unit { Level::Unit } else { Level::Record };
-    let level = table.optional("per").map(|value| value.choice(&Level::NAMES)).transpose()?;
+    let level = given(table, "per", |value| value.choice(&Level::NAMES))?;
     Ok(Rule { keys, level: level.unwrap_or(default), distribution, times: times.or(fraction_of), plus })
 }
 
@@ -74,10 +75,8 @@ fn keys(table: &TomlTable<'_>) -> ReadResult<Vec<String>> {
     }
 }
 
-fn expression(table: &TomlTable<'_>, key: &'static str) -> ReadResult<Option<Expression>> {
-    let Some(value) = table.optional(key) else { return Ok(None) };
-    let text = value.string()?;
-    Expression::parse(text).map(Some).map_err(|problem| value.error(format!("the expression {problem}")))
+pub(super) fn expression(value: &TomlValue<'_>) -> ReadResult<Expression> {
+    Expression::parse(value.string()?).map_err(|problem| value.error(format!("the expression {problem}")))
 }
 
 pub(super) fn distribution(table: &TomlTable<'_>, keys: usize) -> ReadResult<Distribution> {
@@ -168,12 +167,8 @@ fn steps(table: &TomlTable<'_>) -> ReadResult<Vec<Vec<f64>>> {
     let least = table.required("least", "the first value")?.number()?;
     let largest = table.required("largest", "the last value")?;
     let steps = table.required("values", "how many values")?.integer(2..=MOST_STEPS)?;
-    let logarithmic =
-        table.optional("logarithmic").map(|value| value.boolean()).transpose()?.unwrap_or(false);
-    let last = largest.number()?;
-    if last <= least {
-        return Err(largest.error(format!("must be more than least, {least:?}")));
-    }
+    let logarithmic = given(table, "logarithmic", TomlValue::boolean)?.unwrap_or(false);
+    let last = more_than(least, &largest)?;
     if logarithmic && least <= 0.0 {
         return Err(table.error("least", "must be more than 0 for equal ratios"));
     }
@@ -182,6 +177,16 @@ fn steps(table: &TomlTable<'_>) -> ReadResult<Vec<Vec<f64>>> {
         part => least + part * (last - least),
     };
     Ok((0..steps).map(|i| vec![if i + 1 == steps { last } else { value(i) }]).collect())
+}
+
+/// The number at the key `largest`.
+fn more_than(least: f64, largest: &TomlValue<'_>) -> ReadResult<f64> {
+    let number = largest.number()?;
+    if number > least {
+        Ok(number)
+    } else {
+        Err(largest.error(format!("must be more than least, {least:?}")))
+    }
 }
 
 fn normal(table: &TomlTable<'_>, whole: &TomlValue<'_>) -> ReadResult<Distribution> {
@@ -193,10 +198,7 @@ fn normal(table: &TomlTable<'_>, whole: &TomlValue<'_>) -> ReadResult<Distributi
     if standard_deviation <= 0.0 {
         return Err(deviation.error("must be more than 0"));
     }
-    let last = largest.number()?;
-    if last <= least {
-        return Err(largest.error(format!("must be more than least, {least:?}")));
-    }
+    let last = more_than(least, &largest)?;
     // Beyond, nothing of the distribution is left to draw from.
     const FARTHEST: f64 = 30.0;
     if least > mean + FARTHEST * standard_deviation || last < mean - FARTHEST * standard_deviation {
@@ -209,17 +211,7 @@ fn normal(table: &TomlTable<'_>, whole: &TomlValue<'_>) -> ReadResult<Distributi
 
 /// A fraction is from 0 to 1.
 fn check_fractions(table: &TomlTable<'_>, distribution: &Distribution) -> ReadResult<()> {
-    let ends = match distribution {
-        Distribution::Fixed(value) => [*value, *value],
-        Distribution::Grid(rows) | Distribution::Choice { rows, .. } => {
-            let values = || rows.iter().map(|row| row[0]);
-            [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
-        }
-        Distribution::Uniform(range)
-        | Distribution::LogUniform(range)
-        | Distribution::Normal { within: range, .. } => *range,
-    };
-    let outside = ends.into_iter().find(|end| !(0.0..=1.0).contains(end));
+    let outside = distribution.range().into_iter().find(|end| !(0.0..=1.0).contains(end));
     match outside {
         None => Ok(()),
         Some(end) => Err(table

@@ -3,52 +3,40 @@
 use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
 use super::super::{Shift, SplitBy, Splits};
-use super::conditions;
+use super::{conditions, fraction, given};
 
 /// Deviation of a sum of parts from 1 that is rounding.
 const ROUNDING: f64 = 1e-9;
 
 pub(super) fn read(table: &TomlTable<'_>) -> ReadResult<Splits> {
-    let by = table.optional("by").map(|value| value.choice(&SplitBy::NAMES)).transpose()?.unwrap_or_default();
+    let by = given(table, "by", |value| value.choice(&SplitBy::NAMES))?.unwrap_or_default();
     let parts = Splits::ALIKE.map(|name| table.optional(name));
-    let shifts = match table.optional("shift") {
-        None => Vec::new(),
-        Some(value) => shifts(&value)?,
-    };
+    let shifts = given(table, "shift", shifts)?.unwrap_or_default();
     let mut numbers = [0.0; 3];
-    for (number, part) in numbers.iter_mut().zip(&parts) {
-        if let Some(value) = part {
-            *number = fraction(value)?;
-        }
+    for (number, value) in numbers.iter_mut().zip(&parts) {
+        *number = value.as_ref().map_or(Ok(0.0), part)?;
     }
-    let given: f64 = numbers.iter().sum::<f64>() + shifts.iter().map(|shift| shift.part).sum::<f64>();
+    let sum: f64 = numbers.iter().sum::<f64>() + shifts.iter().map(|shift| shift.part).sum::<f64>();
     let where_told = parts.iter().rposition(Option::is_some).map_or("shift", |last| Splits::ALIKE[last]);
-    if given > 1.0 + ROUNDING {
-        let problem = format!("the parts of all splits add up to {given}; must be 1");
-        return Err(table
-            .error(where_told, problem)
-            .with_help("parts are fractions of what `by` names: units, or mountings"));
+    let refuse = |help: &str| {
+        let problem = format!("the parts of all splits add up to {sum}; must be 1");
+        Err(table.error(where_told, problem).with_help(help))
+    };
+    if sum > 1.0 + ROUNDING {
+        return refuse("parts are fractions of what `by` names: units, or mountings");
     }
     if parts[2].is_none() {
-        // What is left.
-        numbers[2] = (1.0 - given).max(0.0);
-        if numbers[2] < ROUNDING {
-            numbers[2] = 0.0;
-        }
-    } else if given < 1.0 - ROUNDING {
-        let problem = format!("the parts of all splits add up to {given}; must be 1");
-        return Err(table.error(where_told, problem).with_help("leave out test: it is then what is left"));
+        // The test gets what is left.
+        let left = 1.0 - sum;
+        numbers[2] = if left < ROUNDING { 0.0 } else { left };
+    } else if sum < 1.0 - ROUNDING {
+        return refuse("leave out test: it is then what is left");
     }
     Ok(Splits { by, parts: numbers, shifts })
 }
 
-fn fraction(value: &TomlValue<'_>) -> ReadResult<f64> {
-    let number = value.number()?;
-    if (0.0..=1.0).contains(&number) {
-        Ok(number)
-    } else {
-        Err(value.error("must be from 0 to 1, a part of the units or mountings"))
-    }
+fn part(value: &TomlValue<'_>) -> ReadResult<f64> {
+    fraction(value, "must be from 0 to 1, a part of the units or mountings")
 }
 
 fn shifts(listed: &TomlValue<'_>) -> ReadResult<Vec<Shift>> {
@@ -65,10 +53,11 @@ fn shifts(listed: &TomlValue<'_>) -> ReadResult<Vec<Shift>> {
             if taken {
                 return Err(name.error("is the name of another split"));
             }
-            let part = table.required("part", "the part of the units, or mountings, that is this split's")?;
-            let number = fraction(&part)?;
+            let share =
+                table.required("part", "the part of the units, or mountings, that is this split's")?;
+            let number = part(&share)?;
             if number == 0.0 {
-                return Err(part.error("must be more than 0"));
+                return Err(share.error("must be more than 0"));
             }
             let when = table.required("when", "what holds for its records and for no other: a condition")?;
             let when_read = conditions(&when)?;

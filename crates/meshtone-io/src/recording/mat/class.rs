@@ -5,6 +5,10 @@ use std::io;
 use super::super::number::NumberKind;
 use super::source::invalid;
 
+/// The classes of numbers, from the sixth class on.
+const NUMBER_CLASSES: [&str; 10] =
+    ["double", "single", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64"];
+
 /// What an array holds.
 pub(super) enum Class {
     Cell,
@@ -25,16 +29,7 @@ impl Class {
             3 => Class::Object,
             4 => Class::Text,
             5 => Class::Sparse,
-            6 => Class::Numbers("double"),
-            7 => Class::Numbers("single"),
-            8 => Class::Numbers("int8"),
-            9 => Class::Numbers("uint8"),
-            10 => Class::Numbers("int16"),
-            11 => Class::Numbers("uint16"),
-            12 => Class::Numbers("int32"),
-            13 => Class::Numbers("uint32"),
-            14 => Class::Numbers("int64"),
-            15 => Class::Numbers("uint64"),
+            6..=15 => Class::Numbers(NUMBER_CLASSES[number as usize - 6]),
             16 => Class::Function,
             17 => Class::Opaque,
             other => return Err(invalid(format!("an array of class {other}, which does not exist"))),

@@ -12,19 +12,14 @@ mod walk;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, Read};
-use std::path::Path;
 
 use self::source::{Source, Variable, invalid, padding};
-use self::walk::{MATRIX, Place, Walk};
+use self::walk::{ArrayLocation, MATRIX, Walk};
 use super::array::read_channels;
-use super::assemble::{Parts, assemble};
-use super::catalogue::{ArrayEntry, Catalogue};
-use super::error::{broken, read_failed, unreadable};
-use super::label::Label;
-use super::selection::{Selection, select};
-use super::{ReadRecordingError, Recording, RecordingOptions, RecordingWarning, memory_need};
+use super::catalogue::{ArrayEntry, read_arrays};
+use super::error::Problem;
+use super::{Recording, RecordingOptions};
 
-const FORMAT: &str = "MAT";
 const HEADER_BYTES: u64 = 128;
 const TAG_BYTES: u64 = 8;
 /// The type of an element that is a compressed array.
@@ -34,43 +29,27 @@ const COMPRESSED: u32 = 15;
 const USUAL_COMPRESSION: u64 = 16;
 
 /// Reads a recording from a MAT-file.
-pub(super) fn read(
-    path: &Path,
-    file: File,
-    options: &RecordingOptions,
-) -> Result<Recording, ReadRecordingError> {
-    let file_bytes = file.metadata().map_err(|source| unreadable(path, source))?.len();
-    let failed = |error: io::Error| read_failed(path, FORMAT, error);
-    let walk = walk(path, &file, file_bytes)?;
-    let big_endian = walk.big_endian;
-    let (mut entries, places): (Vec<ArrayEntry>, Vec<Place>) = walk.arrays.into_iter().unzip();
-    mark_zero_twins(&file, big_endian, &mut entries, &places).map_err(failed)?;
-    let catalogue = Catalogue::new(path, &entries, options, false)?;
-    let selection = select(path, &catalogue.labels, options)?;
-    let wanted = selection.wanted();
-    memory_need::check(path, options, &selection, catalogue.samples(&wanted, &entries), 0)?;
+pub(super) fn read(file: File, options: &RecordingOptions) -> Result<Recording, Problem> {
+    let Walk { big_endian, arrays, .. } = walk(&file)?;
+    let (mut entries, places): (Vec<ArrayEntry>, Vec<ArrayLocation>) = arrays.into_iter().unzip();
+    mark_zero_twins(&file, big_endian, &mut entries, &places)?;
     let mut open: Option<(Variable, Source)> = None;
-    let samples = catalogue.read(&wanted, &entries, |index, layout, numbers, channels| {
-        let Place { variable, offset, bytes } = places[index];
+    let recording = read_arrays(&entries, options, false, |index, layout, numbers, channels| {
+        let ArrayLocation { variable, offset, bytes } = places[index];
         let mut source = match open.take() {
             Some((same, source)) if same == variable && source.at <= offset => source,
             other => {
-                other.map_or(Ok(()), |(_, done)| done.finish()).map_err(failed)?;
-                Source::open(&file, variable, big_endian).map_err(failed)?
+                other.map_or(Ok(()), |(_, done)| done.finish())?;
+                Source::open(&file, variable, big_endian)?
             }
         };
-        source.skip_to(offset).map_err(failed)?;
+        source.skip_to(offset)?;
         let present = if variable.compressed { bytes.min(USUAL_COMPRESSION * variable.bytes) } else { bytes };
-        let samples = read_channels(&mut source, layout, numbers.kind, numbers.big_endian, channels, present)
-            .map_err(failed)?;
+        let samples = read_channels(&mut source, layout, numbers, channels, present)?;
         open = Some((variable, source));
         Ok(samples)
     })?;
-    open.map_or(Ok(()), |(_, done)| done.finish()).map_err(failed)?;
-    let stated = &catalogue.stated;
-    let labels = &catalogue.labels;
-    let mut recording = assemble(Parts { path, labels, selection: &selection, samples, stated }, options)?;
-    recording.warnings.extend(left_out(labels, &selection));
+    open.map_or(Ok(()), |(_, done)| done.finish())?;
     Ok(recording)
 }
 
@@ -82,14 +61,14 @@ fn mark_zero_twins(
     file: &File,
     big_endian: bool,
     entries: &mut [ArrayEntry],
-    places: &[Place],
+    places: &[ArrayLocation],
 ) -> io::Result<()> {
     let mut by_name: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (index, entry) in entries.iter().enumerate().filter(|(_, entry)| entry.numbers.is_ok()) {
         by_name.entry(&entry.name).or_default().push(index);
     }
     let mut zero = Vec::new();
-    // Each is inflated from its variable's start: of more no one chooses by number.
+    // Each is decompressed from its variable's start, and a user hardly chooses among more by number.
     for twins in by_name.values().filter(|twins| (2..=MOST_TWINS).contains(&twins.len())) {
         let zeros = twins.iter().map(|&twin| Ok((twin, is_zero(file, big_endian, places[twin])?)));
         let zeros: Vec<(usize, bool)> = zeros.collect::<io::Result<_>>()?;
@@ -102,7 +81,11 @@ fn mark_zero_twins(
 }
 
 /// Whether an array's numbers are all 0, of which every byte is 0 then; read only as far as they are.
-fn is_zero(file: &File, big_endian: bool, Place { variable, offset, bytes }: Place) -> io::Result<bool> {
+fn is_zero(
+    file: &File,
+    big_endian: bool,
+    ArrayLocation { variable, offset, bytes }: ArrayLocation,
+) -> io::Result<bool> {
     let mut source = Source::open(file, variable, big_endian)?;
     source.skip_to(offset)?;
     let mut block = [0; 1 << 12];
@@ -118,49 +101,38 @@ fn is_zero(file: &File, big_endian: bool, Place { variable, offset, bytes }: Pla
     Ok(bytes > 0)
 }
 
-/// Zero twins of what was read.
-fn left_out(labels: &[Label], selection: &Selection) -> Vec<RecordingWarning> {
-    let is_read = |name: &str| selection.channels.iter().any(|&index| labels[index].raw == name);
-    let told = |(index, label): (usize, &Label)| {
-        let left_out = label.is_zero_twin && !selection.channels.contains(&index) && is_read(&label.raw);
-        left_out.then(|| RecordingWarning::ZeroTwin { name: label.raw.clone(), number: index + 1 })
-    };
-    labels.iter().enumerate().filter_map(told).collect()
-}
-
 /// Finds all arrays of the file.
-fn walk(path: &Path, mut file: &File, file_bytes: u64) -> Result<Walk, ReadRecordingError> {
+fn walk(mut file: &File) -> Result<Walk, Problem> {
     let mut header = [0; HEADER_BYTES as usize];
-    file.read_exact(&mut header).map_err(|error| read_failed(path, FORMAT, error))?;
+    file.read_exact(&mut header)?;
     let big_endian = match header {
         [.., 0, 1, b'I', b'M'] => false,
         [.., 1, 0, b'M', b'I'] => true,
         _ => {
-            let what = "a MATLAB file of another version than 5 (version 4, perhaps)".to_string();
-            let how = "save it again in MATLAB with `s = load('FILE.mat'); save('FILE7.mat', '-struct', 's', '-v7')`, \
-                       or in Python with scipy.io.savemat(…, format='5')";
-            return Err(ReadRecordingError::Convert { path: path.to_path_buf(), what, how: how.to_string() });
+            return Err(Problem::convert(
+                "a MATLAB file of another version than 5 (version 4, perhaps)",
+                "save it again in MATLAB with `s = load('FILE.mat'); save('FILE7.mat', '-struct', 's', '-v7')`, or in Python with \
+                 scipy.io.savemat(…, format='5')",
+            ));
         }
     };
     let mut walk = Walk::new(big_endian);
+    let file_bytes = file.metadata()?.len();
     let mut at = HEADER_BYTES;
     while at < file_bytes {
-        let length = element(&mut walk, file, at, file_bytes - at).map_err(|error| match error.kind() {
-            io::ErrorKind::UnexpectedEof => broken(
-                path,
-                FORMAT,
-                format!("the variable at byte {at} ends too early; is the file cut off?"),
-            ),
+        let broken = |problem: String| {
+            Problem::Broken(format!("the variable at byte {at}{problem}; is the file cut off?"))
+        };
+        at += element(&mut walk, file, at, file_bytes - at).map_err(|error| match error.kind() {
+            io::ErrorKind::UnexpectedEof => broken(" ends too early".to_owned()),
             io::ErrorKind::InvalidData | io::ErrorKind::InvalidInput | io::ErrorKind::Other => {
-                broken(path, FORMAT, format!("the variable at byte {at}: {error}; is the file cut off?"))
+                broken(format!(": {error}"))
             }
-            _ => unreadable(path, error),
+            _ => Problem::Io(error),
         })?;
-        at += length;
     }
     if walk.arrays.is_empty() {
-        let problem = "holds no variable".to_string();
-        return Err(ReadRecordingError::Empty { path: path.to_path_buf(), problem });
+        return Err(Problem::Refused("holds no variable".to_string()));
     }
     Ok(walk)
 }

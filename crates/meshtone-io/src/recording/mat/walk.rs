@@ -2,8 +2,8 @@
 
 use std::io;
 
-use super::super::array::read_one;
-use super::super::catalogue::{ArrayEntry, MAX_ARRAYS, Numbers};
+use super::super::catalogue::{ArrayEntry, MAX_ARRAYS};
+use super::super::number::Numbers;
 use super::class::{Class, stored_kind};
 use super::source::{Source, Variable, invalid, padding};
 
@@ -23,7 +23,7 @@ const COMPLEX: u32 = 0x0800;
 
 /// Where an array's real numbers are.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Place {
+pub(super) struct ArrayLocation {
     pub variable: Variable,
     /// Bytes of the variable before the numbers.
     pub offset: u64,
@@ -33,7 +33,7 @@ pub(super) struct Place {
 /// Collects the arrays of a file.
 pub(super) struct Walk {
     pub big_endian: bool,
-    pub arrays: Vec<(ArrayEntry, Place)>,
+    pub arrays: Vec<(ArrayEntry, ArrayLocation)>,
     names_bytes: usize,
 }
 
@@ -43,6 +43,9 @@ impl Walk {
     }
 
     /// Collects the arrays of one array element, which stands behind its tag.
+    ///
+    /// An element has flags, dimensions and a name, and then what its class prescribes: numbers, or other arrays, which are collected
+    /// in the same way. An array inside another has the path to it as its name.
     ///
     /// # Arguments
     /// * `source` - the variable's elements
@@ -77,7 +80,7 @@ impl Walk {
         let name = name.unwrap_or_else(|| text(&own));
         // MATLAB keeps data of its own in a variable without a name.
         if !name.is_empty() {
-            let inside = Inside { variable, end, name, depth };
+            let inside = ArrayHeader { variable, end, name, depth };
             match class {
                 Class::Cell => self.cells(source, inside)?,
                 Class::Struct => self.fields(source, inside, &shape)?,
@@ -86,22 +89,21 @@ impl Walk {
                     self.fields(source, inside, &shape)?;
                 }
                 Class::Numbers(type_name) => self.numbers(source, inside, shape, type_name, flags)?,
-                Class::Text => self.push(inside, shape, "char", Err("text".to_string()), None, (0, 0))?,
+                Class::Text => self.others(inside, shape, "char", "text")?,
                 Class::Sparse => {
-                    let problem = "a sparse array; save it with full(…)".to_string();
-                    self.push(inside, shape, "sparse", Err(problem), None, (0, 0))?;
+                    self.others(inside, shape, "sparse", "a sparse array; save it with full(…)")?
                 }
                 Class::Opaque | Class::Function => {
-                    let problem = "a MATLAB object (table, timetable, string, function or alike); save its columns \
-                                   as arrays, for instance with s = table2struct(t, 'ToScalar', true)";
-                    self.push(inside, shape, "object", Err(problem.to_string()), None, (0, 0))?;
+                    let what = "a MATLAB object (table, timetable, string, function or alike); save its columns as arrays, for \
+                                instance with s = table2struct(t, 'ToScalar', true)";
+                    self.others(inside, shape, "object", what)?;
                 }
             }
         }
         leave(source, end, depth)
     }
 
-    fn cells(&mut self, source: &mut Source, inside: Inside) -> io::Result<()> {
+    fn cells(&mut self, source: &mut Source, inside: ArrayHeader) -> io::Result<()> {
         let mut number = 1_u64;
         while source.at < inside.end {
             let name = format!("{}{{{number}}}", inside.name);
@@ -111,7 +113,7 @@ impl Walk {
         Ok(())
     }
 
-    fn fields(&mut self, source: &mut Source, inside: Inside, shape: &[u64]) -> io::Result<()> {
+    fn fields(&mut self, source: &mut Source, inside: ArrayHeader, shape: &[u64]) -> io::Result<()> {
         let length = source.u32_data("a length of field names", 1, inside.end)?.first().copied();
         let length = length.filter(|length| (1..=MAX_NAME_BYTES as u32).contains(length));
         let length = length.ok_or_else(|| invalid("a struct whose field names have no possible length"))?;
@@ -134,7 +136,7 @@ impl Walk {
         Ok(())
     }
 
-    fn child(&mut self, source: &mut Source, inside: &Inside, name: String) -> io::Result<()> {
+    fn child(&mut self, source: &mut Source, inside: &ArrayHeader, name: String) -> io::Result<()> {
         let tag = source.tag(inside.end)?;
         if tag.kind != MATRIX || tag.inline.is_some() {
             return Err(invalid(format!("{name} is an element of type {}; must be an array", tag.kind)));
@@ -145,7 +147,7 @@ impl Walk {
     fn numbers(
         &mut self,
         source: &mut Source,
-        inside: Inside,
+        inside: ArrayHeader,
         shape: Vec<u64>,
         type_name: &'static str,
         flags: u32,
@@ -163,19 +165,17 @@ impl Walk {
                 kind.name()
             )));
         }
-        let numbers = Numbers { kind, big_endian: self.big_endian };
+        let numbers = Numbers::plain(kind, self.big_endian);
         // Few bytes stand in the tag itself, the last four of its eight.
         let offset = source.at - if tag.inline.is_some() { 4 } else { 0 };
         let single = match (count, tag.inline) {
-            (1, Some(data)) => Some(read_one(&mut &data[..], numbers)?),
-            (1, None) => Some(read_one(source, numbers)?),
+            (1, Some(data)) => Some(numbers.read_one(&mut &data[..])?),
+            (1, None) => Some(numbers.read_one(source)?),
             _ => None,
         };
-        let (numbers, single) = if flags & COMPLEX != 0 {
-            (Err("complex numbers".to_string()), None)
-        } else {
-            (Ok(numbers), single)
-        };
+        let is_complex = flags & COMPLEX != 0;
+        let numbers = if is_complex { Err("complex numbers".to_string()) } else { Ok(numbers) };
+        let single = single.filter(|_| !is_complex);
         if tag.inline.is_none() {
             let data_end = offset + tag.bytes;
             leave(source, (data_end + padding(tag.bytes)).min(inside.end), inside.depth)?;
@@ -183,9 +183,20 @@ impl Walk {
         self.push(inside, shape, type_name, numbers, single, (offset, tag.bytes))
     }
 
+    /// Collects an array of no numbers.
+    fn others(
+        &mut self,
+        inside: ArrayHeader,
+        shape: Vec<u64>,
+        type_name: &str,
+        what: &str,
+    ) -> io::Result<()> {
+        self.push(inside, shape, type_name, Err(what.to_string()), None, (0, 0))
+    }
+
     fn push(
         &mut self,
-        inside: Inside,
+        inside: ArrayHeader,
         shape: Vec<u64>,
         type_name: &str,
         numbers: Result<Numbers, String>,
@@ -196,18 +207,16 @@ impl Walk {
         if self.arrays.len() >= MAX_ARRAYS || self.names_bytes > MAX_NAMES_BYTES {
             return Err(invalid(format!("it holds more than {MAX_ARRAYS} arrays, or very long names")));
         }
-        let name = inside.name;
-        let type_name = type_name.to_string();
         let entry = ArrayEntry {
-            name,
+            name: inside.name,
             shape,
             first_runs_fastest: true,
             numbers,
-            type_name,
+            type_name: type_name.to_string(),
             single,
             is_zero_twin: false,
         };
-        self.arrays.push((entry, Place { variable: inside.variable, offset, bytes }));
+        self.arrays.push((entry, ArrayLocation { variable: inside.variable, offset, bytes }));
         Ok(())
     }
 }
@@ -220,7 +229,7 @@ fn leave(source: &mut Source, end: u64, depth: usize) -> io::Result<()> {
 }
 
 /// What is known about an array before its content.
-struct Inside {
+struct ArrayHeader {
     variable: Variable,
     end: u64,
     name: String,

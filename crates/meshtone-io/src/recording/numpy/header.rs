@@ -2,9 +2,9 @@
 
 use std::io::{self, Read};
 
-use super::element::element;
-use super::literal::Literal;
-use crate::recording::catalogue::Numbers;
+use serde_json::Value;
+
+use crate::recording::number::{NumberKind, Numbers};
 
 /// Longest header that is read; NumPy itself warns beyond 10 000 bytes.
 const MAX_HEADER_BYTES: u32 = 1 << 20;
@@ -22,14 +22,13 @@ pub(crate) struct NpyHeader {
     pub record: u64,
 }
 
-/// A number within an element.
+/// A part of an element.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Field {
     pub name: String,
     pub type_name: String,
+    /// Where its numbers stand in each element; what it holds instead, if those are not real numbers.
     pub numbers: Result<Numbers, String>,
-    /// Bytes of the element before it.
-    pub offset: u64,
 }
 
 impl NpyHeader {
@@ -40,42 +39,53 @@ impl NpyHeader {
         if !start.starts_with(b"\x93NUMPY") {
             return Err(invalid("it does not begin as NumPy's arrays do"));
         }
-        let (text_length, before) = if start[6] == 1 {
-            let mut length = [0; 2];
-            from.read_exact(&mut length)?;
-            (u32::from(u16::from_le_bytes(length)), 10)
-        } else {
-            let mut length = [0; 4];
-            from.read_exact(&mut length)?;
-            (u32::from_le_bytes(length), 12)
-        };
+        // The length of the header has two bytes in version 1, four in later ones.
+        let mut length = [0; 4];
+        let length_bytes = if start[6] == 1 { 2 } else { 4 };
+        from.read_exact(&mut length[..length_bytes])?;
+        let text_length = u32::from_le_bytes(length);
         if text_length > MAX_HEADER_BYTES {
             return Err(invalid("its header is longer than any of NumPy's"));
         }
         let mut text = vec![0; text_length as usize];
         from.read_exact(&mut text)?;
-        let text = String::from_utf8_lossy(&text);
-        let header = Literal::parse(&text).and_then(|literal| NpyHeader::from_literal(&literal));
-        let mut header = header.ok_or_else(|| invalid("its header is not as NumPy writes it"))?;
-        header.length = before + u64::from(text_length);
-        Ok(header)
+        let description = json_of(&String::from_utf8_lossy(&text));
+        let description = description.and_then(|json| serde_json::from_str(&json).ok());
+        let header = description.and_then(|description| NpyHeader::from_description(&description));
+        let header = header.ok_or_else(|| invalid("its header is not as NumPy writes it"))?;
+        Ok(NpyHeader { length: (start.len() + length_bytes) as u64 + u64::from(text_length), ..header })
     }
 
-    fn from_literal(literal: &Literal) -> Option<NpyHeader> {
-        let Literal::Truth(first_runs_fastest) = literal.get("fortran_order")? else { return None };
-        let Literal::Sequence(lengths) = literal.get("shape")? else { return None };
-        let length = |length: &Literal| match length {
-            Literal::Number(length) => Some(*length),
-            _ => None,
+    fn from_description(description: &Value) -> Option<NpyHeader> {
+        let first_runs_fastest = description.get("fortran_order")?.as_bool()?;
+        let shape = description.get("shape")?.as_array()?;
+        let shape = shape.iter().map(Value::as_u64).collect::<Option<_>>()?;
+        let (fields, record) = match description.get("descr")? {
+            Value::String(code) => {
+                let (numbers, size) = element(code);
+                (vec![Field::new("", code, numbers)], size.unwrap_or(0))
+            }
+            Value::Array(parts) => fields(parts)?,
+            _ => return None,
         };
-        let shape = lengths.iter().map(length).collect::<Option<_>>()?;
-        let (fields, record) = fields(literal.get("descr")?)?;
-        Some(NpyHeader { length: 0, shape, first_runs_fastest: *first_runs_fastest, fields, record })
+        Some(NpyHeader { length: 0, shape, first_runs_fastest, fields, record })
     }
 
     /// Elements, if a file can hold so many.
     pub(crate) fn elements(&self) -> Option<u64> {
         self.shape.iter().try_fold(1_u64, |product, length| product.checked_mul(*length))
+    }
+
+    /// (bytes) What the header and the numbers take, if a file can hold so many.
+    pub(crate) fn file_bytes(&self) -> Option<u64> {
+        self.elements()?.checked_mul(self.record)?.checked_add(self.length)
+    }
+}
+
+impl Field {
+    fn new(name: &str, code: &str, numbers: Result<Numbers, String>) -> Self {
+        let type_name = numbers.as_ref().map_or(code, |numbers| numbers.kind.name()).to_string();
+        Self { name: name.to_string(), type_name, numbers }
     }
 }
 
@@ -83,68 +93,127 @@ fn invalid(problem: &str) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, problem)
 }
 
-/// The fields of an element and its bytes.
-fn fields(description: &Literal) -> Option<(Vec<Field>, u64)> {
-    let parts = match description {
-        Literal::Text(code) => {
-            let (numbers, size) = element(code);
-            let field =
-                Field { name: String::new(), type_name: type_name(code, &numbers), numbers, offset: 0 };
-            return Some((vec![field], size.unwrap_or(0)));
-        }
-        Literal::Sequence(parts) => parts,
-        _ => return None,
-    };
+/// The JSON of a Python literal, as far as NumPy writes it: its text, whole numbers, truth values, tuples and lists become strings,
+/// numbers, truth values and arrays; its dictionary becomes an object.
+fn json_of(literal: &str) -> Option<String> {
+    let mut json = String::new();
+    let mut rest = literal.trim();
+    while let Some(first) = rest.chars().next() {
+        let behind = &rest[first.len_utf8()..];
+        rest = match first {
+            '\'' | '"' => {
+                let (text, behind) = behind.split_once(first).filter(|(text, _)| !text.contains('\\'))?;
+                json += &Value::from(text).to_string();
+                behind
+            }
+            // Python allows a comma behind the last item.
+            ',' if behind.trim_start().starts_with([')', ']', '}']) => behind,
+            '(' | '[' => {
+                json.push('[');
+                behind
+            }
+            ')' | ']' => {
+                json.push(']');
+                behind
+            }
+            _ if first.is_ascii_alphanumeric() => {
+                let end = rest.find(|c: char| !c.is_ascii_alphanumeric()).unwrap_or(rest.len());
+                let (word, behind) = rest.split_at(end);
+                // Python 2 wrote long integers with an L.
+                json += word.to_lowercase().trim_end_matches('l');
+                behind
+            }
+            other => {
+                json.push(other);
+                behind
+            }
+        };
+    }
+    Some(json)
+}
+
+/// The fields of a record and its bytes.
+fn fields(parts: &[Value]) -> Option<(Vec<Field>, u64)> {
     let mut fields = Vec::new();
     let mut offset: u64 = 0;
     for part in parts {
-        let Literal::Sequence(part) = part else { return None };
-        let [name, Literal::Text(code), shape @ ..] = &part[..] else { return None };
+        let [name, Value::String(code), shape @ ..] = &part.as_array()?[..] else { return None };
         let name = match name {
-            Literal::Text(name) => name,
             // A title and a name.
-            Literal::Sequence(names) => match &names[..] {
-                [_, Literal::Text(name)] => name,
-                _ => return None,
-            },
-            _ => return None,
+            Value::Array(names) if names.len() == 2 => names[1].as_str()?,
+            name => name.as_str()?,
         };
-        let (mut numbers, size) = element(code);
-        if !shape.is_empty() {
-            numbers = Err("arrays within an array; must be one number".to_string());
-        }
+        let (numbers, size) = element(code);
+        let before = offset;
+        offset = offset.checked_add(size?.checked_mul(product(shape)?)?)?;
+        let numbers = match shape {
+            [] => numbers.map(|numbers| Numbers { before: before as usize, ..numbers }),
+            _ => Err("arrays within an array; must be one number".to_string()),
+        };
         // Padding has no name.
         if !name.is_empty() {
-            let type_name = type_name(code, &numbers);
-            fields.push(Field { name: name.clone(), type_name, numbers, offset });
+            fields.push(Field::new(name, code, numbers));
         }
-        offset = offset.checked_add(size?.checked_mul(product(shape)?)?)?;
+    }
+    for numbers in fields.iter_mut().filter_map(|field| field.numbers.as_mut().ok()) {
+        numbers.behind = offset as usize - numbers.element_bytes();
     }
     (!fields.is_empty()).then_some((fields, offset))
 }
 
-fn product(shape: &[Literal]) -> Option<u64> {
+/// The product of all lengths of a field's shape.
+fn product(shape: &[Value]) -> Option<u64> {
     let mut product: u64 = 1;
     for lengths in shape {
-        let lengths = match lengths {
-            Literal::Sequence(lengths) => lengths,
-            single => std::slice::from_ref(single),
-        };
-        for length in lengths {
-            let Literal::Number(length) = length else { return None };
-            product = product.checked_mul(*length)?;
+        for length in lengths.as_array().map_or(std::slice::from_ref(lengths), Vec::as_slice) {
+            product = product.checked_mul(length.as_u64()?)?;
         }
     }
     Some(product)
 }
 
-fn type_name(code: &str, numbers: &Result<Numbers, String>) -> String {
-    numbers.as_ref().map_or_else(|_| code.to_string(), |numbers| numbers.kind.name().to_string())
+/// An element's type, such as `<f8`, and its bytes, where they are known.
+fn element(code: &str) -> (Result<Numbers, String>, Option<u64>) {
+    let kind = match code.get(1..) {
+        Some("f8") => NumberKind::F64,
+        Some("f4") => NumberKind::F32,
+        Some("i8") => NumberKind::I64,
+        Some("i4") => NumberKind::I32,
+        Some("i2") => NumberKind::I16,
+        Some("i1") => NumberKind::I8,
+        Some("u8") => NumberKind::U64,
+        Some("u4") => NumberKind::U32,
+        Some("u2") => NumberKind::U16,
+        Some("u1" | "b1") => NumberKind::U8,
+        _ => return other_element(code),
+    };
+    if !code.starts_with(['<', '>', '|', '=']) {
+        return other_element(code);
+    }
+    (Ok(Numbers::plain(kind, code.starts_with('>'))), Some(kind.size() as u64))
+}
+
+fn other_element(code: &str) -> (Result<Numbers, String>, Option<u64>) {
+    let letter = code.chars().nth(1).unwrap_or_default();
+    let what = match letter {
+        'c' => "complex numbers",
+        'f' => "floating-point numbers of an unusual size",
+        'U' | 'S' | 'a' => "text",
+        'O' => "Python objects",
+        'M' => "dates",
+        'm' => "durations as integers",
+        _ => "elements",
+    };
+    let digits = code.get(2..).unwrap_or_default();
+    let digits = digits.split('[').next().unwrap_or_default();
+    let count: Option<u64> = digits.parse().ok();
+    let size = count.and_then(|count| if letter == 'U' { count.checked_mul(4) } else { Some(count) });
+    (Err(format!("{what} ({code})")), size.filter(|_| letter != 'O'))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::NpyHeader;
+    use super::{Field, NpyHeader};
     use crate::recording::number::NumberKind;
 
     fn header(text: &str) -> Option<NpyHeader> {
@@ -165,14 +234,36 @@ mod tests {
         );
         let record = record.unwrap();
         assert_eq!(record.record, 28);
-        let offsets: Vec<(&str, u64)> =
-            record.fields.iter().map(|field| (&field.name[..], field.offset)).collect();
-        assert_eq!(offsets, [("t", 0), ("n", 12), ("a", 24)]);
-        assert!(record.fields[1].numbers.is_err());
+        let place =
+            |field: &Field| field.numbers.as_ref().map(|numbers| (numbers.before, numbers.behind)).ok();
+        let places: Vec<_> = record.fields.iter().map(|field| (&field.name[..], place(field))).collect();
+        assert_eq!(places, [("t", Some((0, 20))), ("n", None), ("a", Some((24, 0)))]);
+    }
+
+    #[test]
+    fn long_integers_and_names_with_brackets_are_read() {
+        let header = header(
+            "{'descr': [('a (x, y)', '<f8'), (('title', 'b'), '<i2', (3,))], 'fortran_order': False, 'shape': (10L, 2), }   \n",
+        );
+        let header = header.unwrap();
+        assert_eq!((header.shape, header.record), (vec![10, 2], 14));
+        let names: Vec<&str> = header.fields.iter().map(|field| &field.name[..]).collect();
+        assert_eq!(names, ["a (x, y)", "b"]);
     }
 
     #[test]
     fn broken_headers_are_refused() {
+        for broken in ["", "{", "{'a'}", "(1 2)", "'open", "((((((((((1))))))))))", "ä"] {
+            assert!(header(broken).is_none(), "{broken}");
+        }
+        let shape =
+            |shape: &str| header(&format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}}}"));
+        assert!(shape("(3,)").is_some());
+        for broken in
+            ["(1 2)", "(1,,)", "(1,) x", "(99999999999999999999,)", "((1,),)", "(-1,)", "(1.5,)", "('1',)"]
+        {
+            assert!(shape(broken).is_none(), "{broken}");
+        }
         assert!(header("{'descr': '<f8', 'fortran_order': 0, 'shape': (1,)}").is_none());
         assert!(header("{'descr': '<f8', 'fortran_order': False, 'shape': 1}").is_none());
         assert!(

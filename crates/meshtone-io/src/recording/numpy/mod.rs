@@ -3,225 +3,162 @@
 //! `ndarray-npy` takes memory for whatever a header announces, and cannot read a part of an array; so the
 //! headers are read here, and the numbers as they come.
 
-mod element;
 pub(crate) mod header;
-mod literal;
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
-use std::path::Path;
 
 use zip::ZipArchive;
 use zip::result::ZipError;
 
 use self::header::{Field, NpyHeader};
-use super::array::{ArrayLayout, read_channels, read_records, shape_text};
-use super::assemble::{Parts, assemble};
-use super::catalogue::{ArrayEntry, Catalogue, MAX_ARRAYS, Numbers};
-use super::error::{broken, read_failed, unreadable};
-use super::number::append_strided;
-use super::selection::select;
-use super::{ReadRecordingError, Recording, RecordingOptions, memory_need};
+use super::array::{ArrayLayout, read_channels, shape_text};
+use super::catalogue::{ArrayEntry, MAX_ARRAYS, read_arrays};
+use super::error::Problem;
+use super::{Recording, RecordingOptions};
 
-const NPY: &str = "NPY";
-const NPZ: &str = "NPZ";
 /// Bytes that a byte of a compressed file may well stand for; memory for more is taken only as they come.
 const USUAL_COMPRESSION: u64 = 16;
-/// Longest element of a structured array that is read.
+/// Longest record that is read: an element of each channel.
 const MAX_RECORD_BYTES: u64 = 1 << 20;
 
-/// An array or field in a file.
-struct Stored {
-    header: NpyHeader,
-    field: Field,
-    /// Its file in the archive.
-    file: usize,
-}
-
 /// Reads a file of one array; the fields of a structured array are its columns.
-pub(super) fn read_npy(
-    path: &Path,
-    file: File,
-    options: &RecordingOptions,
-) -> Result<Recording, ReadRecordingError> {
-    let file_bytes = file.metadata().map_err(|source| unreadable(path, source))?.len();
+pub(super) fn read_npy(file: File, options: &RecordingOptions) -> Result<Recording, Problem> {
+    let file_bytes = file.metadata()?.len();
     let mut from = BufReader::new(file);
-    let header = NpyHeader::read(&mut from).map_err(|error| read_failed(path, NPY, error))?;
-    check_size(path, NPY, &header, file_bytes)?;
-    let (entries, stored) = entries(vec![(String::new(), 0, header, None)]);
-    let catalogue = Catalogue::new(path, &entries, options, true)?;
-    let selection = select(path, &catalogue.labels, options)?;
-    let wanted = selection.wanted();
-    memory_need::check(path, options, &selection, catalogue.samples(&wanted, &entries), 0)?;
-    let samples = catalogue.read(&wanted, &entries, |index, layout, numbers, wanted| {
-        let stored = &stored[index];
-        let start = SeekFrom::Start(stored.header.length);
-        let there =
-            from.seek(start).and_then(|_| stored.read(&mut from, layout, numbers, wanted, file_bytes));
-        there.map_err(|error| read_failed(path, NPY, error))
-    })?;
-    let (labels, stated) = (&catalogue.labels, &catalogue.stated);
-    assemble(Parts { path, labels, selection: &selection, samples, stated }, options)
+    let header = NpyHeader::read(&mut from)?;
+    check_size(&header, file_bytes)?;
+    let entries: Vec<ArrayEntry> = entries("", &header, None).collect();
+    read_arrays(&entries, options, true, |_, layout, numbers, wanted| {
+        from.seek(SeekFrom::Start(header.length))?;
+        Ok(read_channels(&mut from, layout, numbers, wanted, file_bytes)?)
+    })
 }
 
 /// Reads an archive; its arrays' names are its columns'.
-pub(super) fn read_npz(
-    path: &Path,
-    file: File,
-    options: &RecordingOptions,
-) -> Result<Recording, ReadRecordingError> {
-    let file_bytes = file.metadata().map_err(|source| unreadable(path, source))?.len();
-    let mut archive = ZipArchive::new(BufReader::new(file)).map_err(|error| zip_failed(path, error))?;
-    let (entries, stored) = entries(survey(path, &mut archive)?);
-    let catalogue = Catalogue::new(path, &entries, options, true)?;
-    let selection = select(path, &catalogue.labels, options)?;
-    let wanted = selection.wanted();
-    memory_need::check(path, options, &selection, catalogue.samples(&wanted, &entries), 0)?;
-    let samples = catalogue.read(&wanted, &entries, |index, layout, numbers, wanted| {
-        let stored = &stored[index];
-        let mut from = archive.by_index(stored.file).map_err(|error| zip_failed(path, error))?;
-        check_size(path, NPZ, &stored.header, from.size())?;
+pub(super) fn read_npz(file: File, options: &RecordingOptions) -> Result<Recording, Problem> {
+    let file_bytes = file.metadata()?.len();
+    let mut archive = ZipArchive::new(BufReader::new(file)).map_err(zip_failed)?;
+    let arrays = arrays(&mut archive)?;
+    let (mut all, mut array_of) = (Vec::new(), Vec::new());
+    for (index, array) in arrays.iter().enumerate() {
+        all.extend(entries(&array.name, &array.header, array.single));
+        array_of.resize(all.len(), index);
+    }
+    read_arrays(&all, options, true, |index, layout, numbers, wanted| {
+        let array = &arrays[array_of[index]];
+        let mut from = archive.by_index(array.file).map_err(zip_failed)?;
+        check_size(&array.header, from.size())?;
         let present =
             from.compressed_size().min(file_bytes).saturating_mul(USUAL_COMPRESSION).min(from.size());
-        let header = NpyHeader::read(&mut from).map_err(|error| read_failed(path, NPZ, error))?;
-        if header != stored.header {
-            return Err(broken(path, NPZ, "it changes while it is read"));
+        if NpyHeader::read(&mut from)? != array.header {
+            return Err(Problem::broken("it changes while it is read"));
         }
-        let numbers = stored.read(&mut from, layout, numbers, wanted, present);
+        let samples = read_channels(&mut from, layout, numbers, wanted, present);
         // The checksum is compared at the end of the array.
-        let whole = numbers.and_then(|numbers| io::copy(&mut from, &mut io::sink()).map(|_| numbers));
-        whole.map_err(|error| in_array(path, &entries[index].name, error))
-    })?;
-    let (labels, stated) = (&catalogue.labels, &catalogue.stated);
-    assemble(Parts { path, labels, selection: &selection, samples, stated }, options)
+        let whole = samples.and_then(|samples| io::copy(&mut from, &mut io::sink()).map(|_| samples));
+        whole.map_err(|error| in_array(&array.name, error))
+    })
 }
 
-impl Stored {
-    fn read(
-        &self,
-        from: &mut dyn Read,
-        layout: ArrayLayout,
-        Numbers { kind, big_endian }: Numbers,
-        wanted: &[bool],
-        present_bytes: u64,
-    ) -> std::io::Result<Vec<Vec<f64>>> {
-        if self.header.record == kind.size() as u64 {
-            return read_channels(from, layout, kind, big_endian, wanted, present_bytes);
-        }
-        let (record, offset) = (self.header.record as usize, self.field.offset as usize);
-        let sure = present_bytes / self.header.record.max(1);
-        let mut column = Vec::with_capacity(layout.samples.min(sure) as usize);
-        read_records(from, record, layout.samples, |block| {
-            append_strided(block, record, offset, kind, big_endian, &mut column);
-        })?;
-        Ok(vec![column])
-    }
+/// An array of an archive.
+struct NpzArray {
+    name: String,
+    /// Its file in the archive.
+    file: usize,
+    header: NpyHeader,
+    /// Its number, if it holds only one.
+    single: Option<f64>,
 }
 
-type Surveyed = (String, usize, NpyHeader, Option<f64>);
-
-/// The headers of all arrays.
-fn survey(
-    path: &Path,
-    archive: &mut ZipArchive<BufReader<File>>,
-) -> Result<Vec<Surveyed>, ReadRecordingError> {
+/// The arrays of an archive, without their numbers.
+fn arrays(archive: &mut ZipArchive<BufReader<File>>) -> Result<Vec<NpzArray>, Problem> {
     if archive.len() > MAX_ARRAYS {
-        return Err(broken(path, NPZ, format!("it holds more than {MAX_ARRAYS} arrays")));
+        return Err(Problem::Broken(format!("it holds more than {MAX_ARRAYS} arrays")));
     }
-    let mut found = Vec::new();
+    let mut arrays = Vec::new();
     for index in 0..archive.len() {
-        let mut file = archive.by_index(index).map_err(|error| zip_failed(path, error))?;
-        let name = file.name().map_err(|error| zip_failed(path, error))?;
+        let mut file = archive.by_index(index).map_err(zip_failed)?;
+        let name = file.name().map_err(zip_failed)?;
         let Some(name) = name.strip_suffix(".npy").map(str::to_string) else { continue };
-        let header = NpyHeader::read(&mut file);
-        let header = header.map_err(|error| in_array(path, &name, error))?;
-        let single = single(&header, &mut file).map_err(|error| in_array(path, &name, error))?;
-        found.push((name, index, header, single));
+        let header = NpyHeader::read(&mut file).map_err(|error| in_array(&name, error))?;
+        let single = single(&header, &mut file).map_err(|error| in_array(&name, error))?;
+        arrays.push(NpzArray { name, file: index, header, single });
     }
-    if found.is_empty() {
+    if arrays.is_empty() {
         let problem = "is a ZIP archive, but holds no NumPy array (.npy); unpack it, or save it as CSV if it is a table of \
-                       Excel's (.xlsx)"
-            .to_string();
-        return Err(ReadRecordingError::Empty { path: path.to_path_buf(), problem });
+                       Excel's (.xlsx)";
+        return Err(Problem::Refused(problem.to_string()));
     }
-    Ok(found)
+    Ok(arrays)
 }
 
 /// The number of an array that holds only one.
-fn single(header: &NpyHeader, from: &mut dyn Read) -> std::io::Result<Option<f64>> {
-    let [Field { numbers: Ok(numbers), .. }] = &header.fields[..] else { return Ok(None) };
-    if header.elements() != Some(1) || header.record != numbers.kind.size() as u64 {
-        return Ok(None);
-    }
-    let layout = ArrayLayout { channels: 1, samples: 1, interleaved: false };
-    let read = read_channels(from, layout, numbers.kind, numbers.big_endian, &[true], 0)?;
-    Ok(read.first().and_then(|column| column.first().copied()))
-}
-
-/// Each field as an array of its own.
-fn entries(surveyed: Vec<Surveyed>) -> (Vec<ArrayEntry>, Vec<Stored>) {
-    let mut entries = Vec::new();
-    let mut stored = Vec::new();
-    for (array, file, header, single) in surveyed {
-        for field in &header.fields {
-            let name = match (array.as_str(), field.name.as_str()) {
-                (array, "") => array.to_string(),
-                ("", field) => field.to_string(),
-                (array, field) => format!("{array}.{field}"),
-            };
-            let long = header.record > MAX_RECORD_BYTES;
-            let wide = header.fields.len() > 1
-                && ArrayLayout::of_shape(&header.shape, false).is_ok_and(|layout| layout.channels > 1);
-            let records = format!(
-                "records of {} bytes in {}; must have one dimension and be short",
-                header.record,
-                shape_text(&header.shape)
-            );
-            entries.push(ArrayEntry {
-                name,
-                shape: header.shape.clone(),
-                first_runs_fastest: header.first_runs_fastest,
-                numbers: if wide || long { Err(records) } else { field.numbers.clone() },
-                type_name: field.type_name.clone(),
-                single,
-                is_zero_twin: false,
-            });
-            stored.push(Stored { header: header.clone(), field: field.clone(), file });
+fn single(header: &NpyHeader, from: &mut dyn Read) -> io::Result<Option<f64>> {
+    match &header.fields[..] {
+        [Field { numbers: Ok(numbers), .. }]
+            if header.elements() == Some(1) && header.record == numbers.kind.size() as u64 =>
+        {
+            numbers.read_one(from).map(Some)
         }
+        _ => Ok(None),
     }
-    (entries, stored)
 }
 
-/// Whether the numbers that a header announces are there.
-fn check_size(
-    path: &Path,
-    format: &'static str,
-    header: &NpyHeader,
-    bytes: u64,
-) -> Result<(), ReadRecordingError> {
-    let needed = header.elements().and_then(|elements| elements.checked_mul(header.record));
-    let there = bytes.saturating_sub(header.length);
-    if needed.is_some_and(|needed| needed <= there) {
+/// Each field of an array as an array of its own.
+fn entries<'a>(
+    array: &'a str,
+    header: &'a NpyHeader,
+    single: Option<f64>,
+) -> impl Iterator<Item = ArrayEntry> + 'a {
+    let channels = ArrayLayout::of_shape(&header.shape, false).map_or(1, |layout| layout.channels);
+    let record_bytes = header.record.saturating_mul(channels as u64);
+    header.fields.iter().map(move |field| ArrayEntry {
+        name: match (array, field.name.as_str()) {
+            (array, "") => array.to_string(),
+            ("", field) => field.to_string(),
+            (array, field) => format!("{array}.{field}"),
+        },
+        shape: header.shape.clone(),
+        first_runs_fastest: header.first_runs_fastest,
+        numbers: match record_bytes {
+            ..=MAX_RECORD_BYTES => field.numbers.clone(),
+            bytes => Err(format!("records of {bytes} bytes; must be of {MAX_RECORD_BYTES} bytes at most")),
+        },
+        type_name: field.type_name.clone(),
+        single,
+        is_zero_twin: false,
+    })
+}
+
+/// Checks that the numbers that a header announces are there.
+///
+/// # Arguments
+/// * `header` - of the array
+/// * `bytes` - of the array's file, header included
+fn check_size(header: &NpyHeader, bytes: u64) -> Result<(), Problem> {
+    if header.file_bytes().is_some_and(|needed| needed <= bytes) {
         return Ok(());
     }
-    let needed =
-        needed.map_or("more bytes than any file has".to_string(), |needed| format!("{needed} bytes"));
+    let needed = header.file_bytes().map(|needed| format!("{} bytes", needed - header.length));
+    let needed = needed.unwrap_or_else(|| "more bytes than any file has".to_string());
+    let there = bytes.saturating_sub(header.length);
     let shape = shape_text(&header.shape);
-    Err(broken(path, format, format!("an array of shape {shape} takes {needed}, but there are {there}")))
+    Err(Problem::Broken(format!("an array of shape {shape} takes {needed}, but there are {there}")))
 }
 
-fn in_array(path: &Path, name: &str, error: io::Error) -> ReadRecordingError {
+fn in_array(name: &str, error: io::Error) -> Problem {
     let problem = match error.kind() {
         io::ErrorKind::UnexpectedEof => "it ends too early".to_string(),
         _ => error.to_string(),
     };
-    broken(path, NPZ, format!("array {name}: {problem}"))
+    Problem::Broken(format!("array {name}: {problem}"))
 }
 
-fn zip_failed(path: &Path, error: ZipError) -> ReadRecordingError {
+fn zip_failed(error: ZipError) -> Problem {
     match error {
-        ZipError::Io(error) => read_failed(path, NPZ, error),
+        ZipError::Io(error) => Problem::Io(error),
         // Its table of contents stands at the end.
-        other => broken(path, NPZ, format!("{other}; is the file cut off?")),
+        other => Problem::Broken(format!("{other}; is the file cut off?")),
     }
 }

@@ -35,19 +35,12 @@ pub(super) fn best(content: &[Line], options: &TextOptions) -> Option<Candidate>
         Some(DecimalSign::Point) => &[false],
         Some(DecimalSign::Comma) => &[true],
     };
-    let mut best: Option<Candidate> = None;
-    for separator in separators {
-        for decimal_comma in decimals {
-            let candidate = Candidate::of(content, Dialect { separator, decimal_comma: *decimal_comma });
-            // The first of equals: the separators come in the order of their likelihood.
-            if let Some(candidate) = candidate
-                && best.as_ref().is_none_or(|best| candidate.score > best.score)
-            {
-                best = Some(candidate);
-            }
-        }
-    }
-    best
+    let dialects = separators.into_iter().flat_map(|separator| {
+        decimals.iter().map(move |&decimal_comma| Dialect { separator, decimal_comma })
+    });
+    let candidates = dialects.filter_map(|dialect| Candidate::of(content, dialect));
+    // The first of equals: the separators come in the order of their likelihood.
+    candidates.reduce(|best, candidate| if candidate.score > best.score { candidate } else { best })
 }
 
 impl Candidate {
@@ -67,14 +60,9 @@ impl Candidate {
         let trailing = all > 1 && rows.iter().all(ends_empty) && (first.len() < all || ends_empty(&first));
         let columns = all - usize::from(trailing);
         let kinds = rows.iter().flat_map(|row| row.iter().take(columns)).map(|cell| dialect.cell(cell));
-        let (mut numbers, mut texts) = (0, 0);
-        for kind in kinds {
-            match kind {
-                Cell::Number(_) => numbers += 1,
-                Cell::Text => texts += 1,
-                Cell::Empty => {}
-            }
-        }
+        let kinds: Vec<Cell> = kinds.collect();
+        let numbers = kinds.iter().filter(|kind| matches!(kind, Cell::Number(_))).count();
+        let is_all_numbers = !kinds.contains(&Cell::Text);
         let is_number = |row: &Vec<&[u8]>, column: usize| {
             row.get(column).is_some_and(|cell| matches!(dialect.cell(cell), Cell::Number(_)))
         };
@@ -83,52 +71,35 @@ impl Candidate {
             2 * numbers >= rows.len()
         });
         let numeric: Vec<bool> = numeric.collect();
-        let usable = if dialect.separator.is_none() { texts == 0 } else { columns > 1 };
+        let usable = if dialect.separator.is_none() { is_all_numbers } else { columns > 1 };
         let fits = first.len() == columns || (trailing && first.len() == all);
-        let score = (texts == 0, fits, numbers);
-        (usable && numeric.contains(&true)).then_some(Candidate {
-            dialect,
-            columns,
-            trailing,
-            numeric,
-            score,
-        })
+        let score = (is_all_numbers, fits, numbers);
+        let is_usable = usable && numeric.contains(&true);
+        is_usable.then_some(Candidate { dialect, columns, trailing, numeric, score })
     }
 
     /// The cells of a line, without the empty one behind a separator at the end.
     pub(super) fn cells<'l>(&self, line: &'l [u8]) -> Vec<&'l [u8]> {
-        let mut cells = self.dialect.cells(line);
-        if self.trailing
-            && cells.len() == self.columns + 1
-            && cells.last().is_some_and(|cell| cell.is_empty())
-        {
-            cells.pop();
-        }
-        cells
+        self.dialect.cells_of(line, self.columns, self.trailing)
     }
 
     /// Whether a line holds names: words, and at most whole numbers (of channels) behind the first.
     pub(super) fn is_header(&self, line: &[u8]) -> bool {
         let cells = self.cells(line);
-        let judged: Vec<&[u8]> = cells
-            .iter()
-            .enumerate()
-            .filter(|(column, _)| *self.numeric.get(*column).unwrap_or(&true))
-            .map(|(_, cell)| *cell)
-            .collect();
+        let is_numeric = |column: usize| *self.numeric.get(column).unwrap_or(&true);
+        let judged = cells.iter().enumerate().filter(|(column, _)| is_numeric(*column));
+        let judged: Vec<&[u8]> = judged.map(|(_, cell)| *cell).collect();
         let kinds: Vec<Cell> = judged.iter().map(|cell| self.dialect.cell(cell)).collect();
         let texts = kinds.iter().filter(|kind| **kind == Cell::Text).count();
-        let numbers = kinds.iter().filter(|kind| matches!(kind, Cell::Number(_))).count();
-        let only_counts = judged
-            .iter()
-            .zip(&kinds)
-            .all(|(cell, kind)| !matches!(kind, Cell::Number(_)) || cell.iter().all(u8::is_ascii_digit));
+        let is_number = |cell: &&&[u8]| matches!(self.dialect.cell(cell), Cell::Number(_));
+        let numbers = judged.iter().filter(is_number).count();
+        let only_counts = judged.iter().filter(is_number).all(|cell| cell.iter().all(u8::is_ascii_digit));
         // Names come in rows; a single cell that is nearly a number is a sample with a typing error in it.
-        let is_spoiled = texts == 1 && judged.iter().any(|cell| self.dialect.is_spoiled_number(cell));
+        let is_sample = texts == 1 && judged.iter().any(|cell| self.dialect.is_spoiled_number(cell));
         let all_missing = judged.iter().all(|cell| is_missing(cell));
         only_counts
             && texts > 0
-            && !is_spoiled
+            && !is_sample
             && !all_missing
             && (texts > numbers || kinds.first() == Some(&Cell::Text))
     }

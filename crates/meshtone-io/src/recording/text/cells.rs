@@ -33,6 +33,20 @@ impl Dialect {
         }
     }
 
+    /// The cells of a line of so many columns, without the empty one behind a separator at the end.
+    ///
+    /// # Arguments
+    /// * `line` - the line
+    /// * `columns` - its columns
+    /// * `trailing` - whether lines may end in a separator behind the last column
+    pub(super) fn cells_of<'l>(&self, line: &'l [u8], columns: usize, trailing: bool) -> Vec<&'l [u8]> {
+        let mut cells = self.cells(line);
+        if trailing && cells.len() == columns + 1 && cells.last().is_some_and(|cell| cell.is_empty()) {
+            cells.pop();
+        }
+        cells
+    }
+
     /// What a cell holds.
     pub(super) fn cell(&self, cell: &[u8]) -> Cell {
         if cell.is_empty() {

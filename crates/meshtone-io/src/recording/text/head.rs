@@ -3,10 +3,12 @@
 use super::candidate::best;
 use super::cells::{Dialect, decoded};
 use crate::recording::TextOptions;
+use crate::recording::error::Problem;
 use crate::recording::label::{Label, unit_of_cell};
 
 /// Lines that are looked at.
 const LINES: usize = 200;
+
 /// A line of the head.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Line<'h> {
@@ -31,41 +33,39 @@ pub(super) struct Head {
     pub line_bytes: f64,
 }
 
-/// Why the first lines do not tell.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) enum HeadError {
-    /// There are names, but no numbers.
-    NoSamples,
-    /// A comma may separate, or be the decimal sign.
-    Ambiguous,
-    /// No line looks like numbers.
-    NoNumbers,
-    /// The line of names has not as many cells as the numbers.
-    Ragged { line: u64, found: usize, expected: usize },
-}
-
 impl Head {
     /// Finds out what a file's first lines say.
+    ///
+    /// The dialect is chosen that reads most of the lines as numbers. The first line may then name the columns, and the second their
+    /// units. Lines that a decimal comma would make one column as well are refused unless the options decide.
     ///
     /// # Arguments
     /// * `lines` - the first whole lines, blank ones and comments included
     /// * `options` - what is known about them
-    pub(super) fn of(lines: &[Line], options: &TextOptions) -> Result<Head, HeadError> {
+    pub(super) fn of(lines: &[Line], options: &TextOptions) -> Result<Head, Problem> {
+        let no_samples = || Problem::Refused("holds no line of numbers".to_string());
         let content: Vec<Line> = lines.iter().filter(|line| !is_passed(line.text)).copied().collect();
         let content = &content[..content.len().min(LINES)];
-        let Some(first) = content.first() else { return Err(HeadError::NoSamples) };
+        let first = content.first().ok_or_else(no_samples)?;
         let Some(candidate) = best(content, options) else {
-            return Err(if content.len() <= 2 { HeadError::NoSamples } else { HeadError::NoNumbers });
+            return Err(if content.len() <= 2 { no_samples() } else { no_columns() });
         };
         let named = candidate.is_header(first.text);
         let names = if named { candidate.cells(first.text) } else { Vec::new() };
         if named && names.len() != candidate.columns {
-            let (found, expected) = (names.len(), candidate.columns);
-            return Err(HeadError::Ragged { line: first.number, found, expected });
+            return Err(Problem::Broken(format!(
+                "line {} has {} cells, but the numbers below have {}; if the line is no line of names, skip it (option \
+                 text.skip_lines) or begin it with #",
+                first.number,
+                names.len(),
+                candidate.columns
+            )));
         }
         let undecided = options.separator.is_none() && options.decimal_sign.is_none();
         if undecided && !named && content.iter().all(|line| candidate.may_be_one_number(line.text)) {
-            return Err(HeadError::Ambiguous);
+            let problem = "has lines such as `1,5`, which are two columns or one with a decimal comma; say which (option \
+                           text.separator or text.decimal_sign)";
+            return Err(Problem::Refused(problem.to_string()));
         }
         let mut labels = if named {
             names.iter().enumerate().map(|(index, name)| label(index, &decoded(name))).collect()
@@ -79,7 +79,7 @@ impl Head {
             }
         }
         let data = &content[usize::from(named) + usize::from(units.is_some())..];
-        let Some(data_start) = data.first() else { return Err(HeadError::NoSamples) };
+        let data_start = data.first().ok_or_else(no_samples)?;
         let bytes: usize = data.iter().map(|line| line.text.len()).sum();
         Ok(Head {
             dialect: candidate.dialect,
@@ -90,6 +90,14 @@ impl Head {
             line_bytes: bytes as f64 / data.len() as f64,
         })
     }
+}
+
+/// The problem of lines none of which looks like numbers.
+fn no_columns() -> Problem {
+    Problem::broken(
+        "its first lines hold no columns of numbers; if they are a head, skip them (option text.skip_lines) or begin them with #; if \
+         separator or decimal sign are unusual, say them (options text.separator and text.decimal_sign)",
+    )
 }
 
 /// Whether a line is passed over: blank, or a comment.

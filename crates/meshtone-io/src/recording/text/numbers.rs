@@ -3,18 +3,16 @@
 //! A line of plain numbers is read in one pass, without looking for its cells first. Where that meets anything
 //! else (quotes, an empty cell, text), the line is read again, cell by cell, and an error names the place.
 
-use std::path::{Path, PathBuf};
-
 use super::cells::{Cell, Dialect, byte_of, decoded};
 use super::head::{Head, is_passed};
-use crate::recording::{Position, ReadRecordingError, Separator};
+use crate::recording::Separator;
+use crate::recording::error::Problem;
 
 /// Stands for a point where the comma is the decimal sign, so that a point is not taken for one.
 const NOT_DECIMAL: u8 = 1;
 
 /// Reads lines of numbers.
 pub(super) struct Numbers<'h> {
-    path: PathBuf,
     head: &'h Head,
     /// For each column, where its samples go, if it is read.
     slots: Vec<Option<usize>>,
@@ -28,19 +26,18 @@ pub(super) struct Numbers<'h> {
 
 impl<'h> Numbers<'h> {
     /// # Arguments
-    /// * `path` - of the file
     /// * `head` - what its first lines say
     /// * `wanted` - the columns that are read, rising
     /// * `rows` - lines for which memory is taken at once
-    pub(super) fn new(path: &Path, head: &'h Head, wanted: &[usize], rows: usize) -> Numbers<'h> {
+    pub(super) fn new(head: &'h Head, wanted: &[usize], rows: usize) -> Numbers<'h> {
         let mut slots = vec![None; head.labels.len()];
         wanted.iter().enumerate().for_each(|(slot, column)| slots[*column] = Some(slot));
         let samples = wanted.iter().map(|_| Vec::with_capacity(rows)).collect();
-        Numbers { path: path.to_path_buf(), head, slots, samples, line: head.data_line, rows: 0, blank: None }
+        Numbers { head, slots, samples, line: head.data_line, rows: 0, blank: None }
     }
 
     /// Reads whole lines; the block is not the same afterwards.
-    pub(super) fn read(&mut self, block: &mut [u8]) -> Result<(), ReadRecordingError> {
+    pub(super) fn read(&mut self, block: &mut [u8]) -> Result<(), Problem> {
         if self.head.dialect.decimal_comma {
             swap(block, [(b'.', NOT_DECIMAL), (b',', b'.')]);
         }
@@ -79,16 +76,11 @@ impl<'h> Numbers<'h> {
     }
 
     /// The samples of each column, after the last line.
-    pub(super) fn finish(self) -> Result<Vec<Vec<f64>>, ReadRecordingError> {
+    pub(super) fn finish(self) -> Result<Vec<Vec<f64>>, Problem> {
         match self.blank {
             // In a single column, a blank line is an empty cell, if it is not below all numbers.
             Some((line, rows)) if self.rows > rows && self.slots == [Some(0)] => {
-                Err(ReadRecordingError::Gap {
-                    position: Position::Line(line),
-                    column: self.head.labels[0].raw.clone(),
-                    what: "empty".to_string(),
-                    path: self.path,
-                })
+                Err(Problem::gap(format!("line {line}"), &self.head.labels[0].raw, "empty"))
             }
             _ => Ok(self.samples),
         }
@@ -96,6 +88,9 @@ impl<'h> Numbers<'h> {
 
     /// Reads a line of plain numbers from its first byte on; gives where the next line begins. `None` if it is
     /// anything else.
+    ///
+    /// The line is not split into cells first, which would take as long as reading the numbers. A column that is not read is skipped
+    /// up to its separator. Numbers may have been pushed where `None` is given, and the caller removes them.
     #[inline]
     fn plain_line(&mut self, block: &[u8], mut at: usize) -> Option<usize> {
         let (separator, blanks) = match self.head.dialect.separator {
@@ -157,7 +152,7 @@ impl<'h> Numbers<'h> {
     }
 
     /// Reads a line cell by cell.
-    fn any_line(&mut self, line: &[u8]) -> Result<(), ReadRecordingError> {
+    fn any_line(&mut self, line: &[u8]) -> Result<(), Problem> {
         if is_passed(line) {
             let may_be_missing = self.head.labels.len() == 1 && line.trim_ascii().is_empty();
             if may_be_missing && self.blank.is_none() {
@@ -166,40 +161,34 @@ impl<'h> Numbers<'h> {
             return Ok(());
         }
         let Head { dialect, labels, trailing, .. } = self.head;
-        let mut cells = dialect.cells(line);
-        if *trailing && cells.len() == labels.len() + 1 && cells.last().is_some_and(|cell| cell.is_empty()) {
-            cells.pop();
-        }
+        let cells = dialect.cells_of(line, labels.len(), *trailing);
         if cells.len() != labels.len() {
-            return Err(ReadRecordingError::Ragged {
-                path: self.path.clone(),
-                line: self.line,
-                found: cells.len(),
-                expected: labels.len(),
-                help: "mend or remove it (if the file ends there, it is cut off)".to_string(),
-            });
+            return Err(Problem::Refused(format!(
+                "line {} has {} cells, but the lines above it have {}; mend or remove it (if the file ends there, it is cut off)",
+                self.line,
+                cells.len(),
+                labels.len()
+            )));
         }
         for ((cell, slot), label) in cells.iter().zip(&self.slots).zip(labels) {
             let Some(slot) = slot else { continue };
-            let gap = |what: &str| ReadRecordingError::Gap {
-                path: self.path.clone(),
-                position: Position::Line(self.line),
-                column: label.raw.clone(),
-                what: what.to_string(),
-            };
-            match dialect.cell(cell) {
-                Cell::Number(number) if number.is_finite() => self.samples[*slot].push(number),
-                Cell::Number(number) if number.is_nan() => return Err(gap("NaN")),
-                Cell::Number(_) => return Err(gap("infinite")),
-                Cell::Empty => return Err(gap("empty")),
+            let what = match dialect.cell(cell) {
+                Cell::Number(number) if number.is_finite() => {
+                    self.samples[*slot].push(number);
+                    continue;
+                }
+                Cell::Number(number) if number.is_nan() => "NaN",
+                Cell::Number(_) => "infinite",
+                Cell::Empty => "empty",
                 Cell::Text => return Err(self.not_a_number(&label.raw, cell, dialect)),
-            }
+            };
+            return Err(Problem::gap(format!("line {}", self.line), &label.raw, what));
         }
         self.rows += 1;
         Ok(())
     }
 
-    fn not_a_number(&self, column: &str, cell: &[u8], dialect: &Dialect) -> ReadRecordingError {
+    fn not_a_number(&self, column: &str, cell: &[u8], dialect: &Dialect) -> Problem {
         let text: String = decoded(cell).chars().take(40).collect();
         let (is, other) = if dialect.decimal_comma { ("comma", "point") } else { ("point", "comma") };
         let other_dialect = Dialect { decimal_comma: !dialect.decimal_comma, ..*dialect };
@@ -214,13 +203,7 @@ impl<'h> Numbers<'h> {
         } else {
             "mend it, or choose other columns (option channels)".to_string()
         };
-        ReadRecordingError::NotANumber {
-            path: self.path.clone(),
-            position: Position::Line(self.line),
-            column: column.to_string(),
-            text,
-            help,
-        }
+        Problem::Refused(format!("line {}, column {column}: `{text}` is no number; {help}", self.line))
     }
 }
 

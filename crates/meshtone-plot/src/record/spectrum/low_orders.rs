@@ -1,12 +1,8 @@
 //! The low orders, one line each, and what they are.
 
-use super::{Kind, REST, amplitude_axis, last_order};
-use crate::axes::{self, Area, Axes};
-use crate::canvas::Canvas;
-use crate::legend::{self, Entry, Sample};
+use super::{LineKind, REST, amplitude_axis, last_order};
+use crate::drawing::{Area, Axes, Canvas, Entry, Sample, Stroke, Ticks, colour};
 use crate::record::WheelView;
-use crate::style::{Stroke, colour};
-use crate::ticks::Ticks;
 
 const MESH: Stroke = Stroke::solid(colour::BLUE, 2.2);
 const SIDEBAND: Stroke = Stroke::solid(colour::PURPLE, 1.8);
@@ -44,9 +40,9 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, y: [f64; 2], wheel: &WheelVi
     let spectrum = &wheel.record.order_spectrum;
     for marked in [false, true] {
         for (order, &amplitude) in spectrum.iter().enumerate().take(last + 1).skip(1) {
-            let kind = Kind::of(order, wheel);
+            let kind = LineKind::of(order, wheel);
             let height = amplitude.log10().min(y[1]);
-            if (kind != Kind::Difference) == marked && height > y[0] {
+            if (kind != LineKind::Difference) == marked && height > y[0] {
                 let x = order as f64;
                 canvas.line(axes.at(x, y[0]), axes.at(x, height), stroke(kind));
             }
@@ -55,37 +51,31 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, y: [f64; 2], wheel: &WheelVi
     axes.frame(canvas);
 }
 
-fn stroke(kind: Kind) -> Stroke {
+fn stroke(kind: LineKind) -> Stroke {
     match kind {
-        Kind::Mesh => MESH,
-        Kind::Sideband => SIDEBAND,
-        Kind::Shaft => SHAFT,
-        Kind::Difference => REST,
+        LineKind::Mesh => MESH,
+        LineKind::Sideband => SIDEBAND,
+        LineKind::Shaft => SHAFT,
+        LineKind::Difference => REST,
     }
 }
 
 fn legend(canvas: &mut Canvas, axes: &Axes, wheel: &WheelView) {
     let sidebands = match wheel.sidebands {
-        0 => None,
-        1 => Some("±1 sideband".to_owned()),
-        count => Some(format!("±{count} sidebands")),
+        1 => "±1 sideband".to_owned(),
+        count => format!("±{count} sidebands"),
     };
     let shaft = match wheel.low_orders {
-        0 => None,
-        1 => Some("shaft order 1".to_owned()),
-        last => Some(format!("shaft orders 1–{last}")),
+        1 => "shaft order 1".to_owned(),
+        last => format!("shaft orders 1–{last}"),
     };
-    let texts = [
-        (Kind::Mesh, Some("mesh orders".to_owned())),
-        (Kind::Sideband, sidebands),
-        (Kind::Shaft, shaft),
-        (Kind::Difference, Some("difference".to_owned())),
+    let entries = [
+        (LineKind::Mesh, true, "mesh orders"),
+        (LineKind::Sideband, wheel.sidebands > 0, &sidebands),
+        (LineKind::Shaft, wheel.low_orders > 0, &shaft),
+        (LineKind::Difference, true, "difference"),
     ];
-    let entries: Vec<Entry> = texts
-        .iter()
-        .filter_map(|(kind, text)| {
-            Some(Entry { sample: Sample::Line(stroke(*kind)), text: text.as_deref()? })
-        })
-        .collect();
-    legend::row(canvas, (axes.area.right(), axes.area.top - axes::TITLE_ABOVE), &entries);
+    let shown = entries.into_iter().filter(|(_, is_there, _)| *is_there);
+    let shown: Vec<Entry> = shown.map(|(kind, _, text)| (Sample::Line(stroke(kind)), text)).collect();
+    axes.legend(canvas, &shown);
 }

@@ -4,12 +4,9 @@ mod low_orders;
 mod overview;
 
 use super::{NAME_LEFT, WheelView};
-use crate::axes::{self, Area, Axes};
-use crate::canvas::Canvas;
-use crate::style::{Anchor, Colour, Stroke, TextStyle};
-use crate::ticks::{Ticks, log_text};
+use crate::drawing::{Area, Axes, Canvas, Colour, Stroke, Ticks, axes};
 
-/// What belongs to the difference.
+/// Stroke of the difference.
 const REST: Stroke = Stroke::solid(Colour(0x9a_9a_9a), 1.0);
 /// (decades) What is shown below the largest amplitude, at least and at most.
 const DECADES: [f64; 2] = [2.0, 4.0];
@@ -55,16 +52,16 @@ fn last_order(wheel: &WheelView) -> usize {
     nyquist.min(wheel.record.order_spectrum.len().saturating_sub(1))
 }
 
-/// What an order is.
+/// Kind of an order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum LineKind {
     Mesh,
     Sideband,
     Shaft,
     Difference,
 }
 
-impl Kind {
+impl LineKind {
     fn of(order: usize, wheel: &WheelView) -> Self {
         let teeth = wheel.teeth.max(1) as usize;
         let off = order.min(order % teeth).min(teeth - order % teeth);
@@ -90,13 +87,6 @@ fn range(amplitudes: impl Iterator<Item = f64>) -> [f64; 2] {
 
 /// The logarithmic axis of the amplitudes, with at most `most` numbers.
 fn amplitude_axis(canvas: &mut Canvas, axes: &Axes, most: usize, unit: &str) {
-    let area = axes.area;
-    let decades = Ticks::every(1.0, axes.y[0], axes.y[1]).thinned(most);
-    axes.y_grid(canvas, &decades);
-    for &decade in &decades.values {
-        let style = TextStyle::TICK.anchored(Anchor::End);
-        canvas.text((area.left - 8.0, axes.py(decade) + 0.36 * style.size), &log_text(decade), style);
-    }
-    let middle = area.top + area.height / 2.0;
-    canvas.text((area.left - NAME_LEFT, middle), &format!("Amplitude ({unit})"), TextStyle::AXIS.upwards());
+    let decades = Ticks::decades(axes.y).thinned(most);
+    axes.y_axis(canvas, &decades, &format!("Amplitude ({unit})"), NAME_LEFT);
 }

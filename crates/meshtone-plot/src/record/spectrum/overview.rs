@@ -1,13 +1,8 @@
 //! All orders: the largest amplitude in each mesh spacing, so that nothing is off the chart.
 
-use super::{Kind, amplitude_axis, last_order, low_orders};
-use crate::axes::{self, Area, Axes};
-use crate::canvas::Canvas;
-use crate::legend::{self, Entry, Sample};
+use super::{LineKind, amplitude_axis, last_order, low_orders};
+use crate::drawing::{Area, Axes, Canvas, Colour, Fill, Sample, Stroke, TextStyle, Ticks, colour, number};
 use crate::record::WheelView;
-use crate::style::{Colour, Fill, Stroke, TextStyle, colour};
-use crate::text::fitted;
-use crate::ticks::{Ticks, number};
 
 /// Of the regular part.
 const REGULAR: Stroke = Stroke::solid(colour::BLUE, 1.2);
@@ -43,8 +38,8 @@ pub(super) fn bins(wheel: &WheelView, width_px: f64) -> Vec<Bin> {
         }
         if let Some(bin) = bins.last_mut() {
             bin.ends[1] = order as f64 + 0.5;
-            let largest = match Kind::of(order, wheel) {
-                Kind::Difference => &mut bin.difference,
+            let largest = match LineKind::of(order, wheel) {
+                LineKind::Difference => &mut bin.difference,
                 _ => &mut bin.regular,
             };
             *largest = largest.max(amplitude);
@@ -66,7 +61,7 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, y: [f64; 2], wheel: &WheelVi
         wheel.name,
         number(one * wheel.mean_speed_hz)
     );
-    axes.x_axis(canvas, &orders, &fitted(&name, TextStyle::AXIS, area.width));
+    axes.x_axis(canvas, &orders, &TextStyle::AXIS.fitted(&name, area.width));
     amplitude_axis(canvas, &axes, 3, unit);
     let height = |amplitude: f64| amplitude.log10().clamp(y[0], y[1]);
     let bins = bins(wheel, area.width);
@@ -74,17 +69,13 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, y: [f64; 2], wheel: &WheelVi
     canvas.rectangles(&bins.iter().map(bar).collect::<Vec<_>>(), DIFFERENCE);
     let steps = bins.iter().flat_map(|bin| bin.ends.map(|end| axes.at(end, height(bin.regular))));
     canvas.polyline(&steps.collect::<Vec<_>>(), REGULAR);
-    legend(canvas, &axes, &share(wheel, shown));
-    axes.frame(canvas);
-}
-
-fn legend(canvas: &mut Canvas, axes: &Axes, share: &str) {
     let entries = [
-        Entry { sample: Sample::Area(BELOW), text: &format!("shown below, {share} of the power") },
-        Entry { sample: Sample::Line(REGULAR), text: "regular part" },
-        Entry { sample: Sample::Area(DIFFERENCE), text: "difference" },
+        (Sample::Area(BELOW), &*format!("shown below, {} of the power", share(wheel, shown))),
+        (Sample::Line(REGULAR), "regular part"),
+        (Sample::Area(DIFFERENCE), "difference"),
     ];
-    legend::row(canvas, (axes.area.right(), axes.area.top - axes::TITLE_ABOVE), &entries);
+    axes.legend(canvas, &entries);
+    axes.frame(canvas);
 }
 
 /// The part of the average's mean square that the orders 1 to `last` hold.

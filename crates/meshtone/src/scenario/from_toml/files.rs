@@ -12,18 +12,18 @@ pub trait ScenarioFiles {
     /// * `name` - as written in the scenario file
     ///
     /// # Errors
-    /// What is wrong with the file. Shape and values are checked by
+    /// Problems of the file. Shape and values are checked by
     /// [`Scenario::validate`](crate::scenario::Scenario::validate).
     fn profile_errors(&self, name: &str) -> Result<ProfileErrors, FileProblem>;
 
-    /// What else the file named by `quality.errors_file` has of the pinion and of the gear: pitches, run-out, helix slope. Nothing
+    /// Other deviations in the file named by `quality.errors_file`, of the pinion and of the gear: pitches, run-out, helix slope. Nothing
     /// else unless this is implemented.
     ///
     /// # Arguments
     /// * `name` - as written in the scenario file
     ///
     /// # Errors
-    /// What is wrong with the file.
+    /// Problems of the file.
     fn wheel_deviations(&self, name: &str) -> Result<[WheelDeviations; 2], FileProblem> {
         let _ = name;
         Ok([WheelDeviations::default(), WheelDeviations::default()])
@@ -35,7 +35,7 @@ pub trait ScenarioFiles {
     /// * `name` - as written in the scenario file
     ///
     /// # Errors
-    /// What is wrong with the file. Order of times and values are checked by
+    /// Problems of the file. Order of times and values are checked by
     /// [`Scenario::validate`](crate::scenario::Scenario::validate).
     fn profile(&self, name: &str) -> Result<Profile, FileProblem>;
 
@@ -45,7 +45,7 @@ pub trait ScenarioFiles {
     /// * `name` - as written in the scenario file
     ///
     /// # Errors
-    /// What is wrong with the file. Order of frequencies and values are checked by
+    /// Problems of the file. Order of frequencies and values are checked by
     /// [`Scenario::validate`](crate::scenario::Scenario::validate).
     fn frequency_response(&self, name: &str) -> Result<FrequencyResponse, FileProblem> {
         Err(FileProblem::new(

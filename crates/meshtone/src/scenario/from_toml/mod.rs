@@ -51,12 +51,12 @@ impl Scenario {
     /// * `files` - loads the files that the text names
     ///
     /// # Errors
-    /// As [`Scenario::from_toml`], and what `files` reports, at the line that names the file.
+    /// Those of [`Scenario::from_toml`], and what `files` reports, at the line that names the file.
     pub fn from_toml_with_files(text: &str, files: &dyn ScenarioFiles) -> Result<Self, ScenarioError> {
         Self::from_toml_within(text, files, MemoryLimit::default())
     }
 
-    /// As [`Scenario::from_toml_with_files`], with another limit of memory.
+    /// Does what [`Scenario::from_toml_with_files`] does, with another limit of memory.
     ///
     /// # Arguments
     /// * `text` - the scenario file's text
@@ -64,7 +64,7 @@ impl Scenario {
     /// * `limit` - most that [`Scenario::memory_estimate_bytes`] may be
     ///
     /// # Errors
-    /// As [`Scenario::from_toml_with_files`].
+    /// Those of [`Scenario::from_toml_with_files`].
     pub fn from_toml_within(
         text: &str,
         files: &dyn ScenarioFiles,
@@ -93,7 +93,7 @@ impl Scenario {
 /// * `key` - dotted key, as in [`ScenarioError::key`]
 ///
 /// # Returns
-/// Where the text leaves the key at its default, the line of the nearest table around it; none
+/// Line of the key; where the text leaves it at its default, the line of the nearest table around it; none
 /// where it has neither, or is not TOML.
 ///
 /// ```

@@ -1,15 +1,11 @@
-//! How long a simulation is.
+//! Limits of the duration of a simulation.
 
-use super::super::{Model, Scenario, ScenarioError};
+use super::super::{Scenario, ScenarioError};
 use crate::keys::{Check, require};
 
 /// A speed profile sets the duration, which must outlast what is discarded.
 pub(super) fn check(scenario: &Scenario) -> Check {
     let operation = &scenario.operation;
-    if scenario.model == Model::Published {
-        // Model: the published code ignores the profile.
-        return Ok(());
-    }
     let Some(end) = operation.speed_profile_hz.as_ref().and_then(|profile| profile.time_s.last()) else {
         return Ok(());
     };

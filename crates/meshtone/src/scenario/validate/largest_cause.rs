@@ -1,4 +1,4 @@
-//! Which key makes a simulation too large.
+//! The key that makes a simulation too large.
 
 use super::super::{Scenario, ScenarioError, Solver};
 use crate::operation::least_common_multiple;

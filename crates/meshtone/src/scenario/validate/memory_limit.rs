@@ -1,4 +1,4 @@
-//! How much memory may be taken.
+//! The limit of memory.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -9,7 +9,7 @@ pub const MEMORY_LIMIT_BYTES: u64 = 8 << 30;
 /// (bytes) What was set for the whole program; 0 for nothing.
 static OF_PROGRAM: AtomicU64 = AtomicU64::new(0);
 
-/// How much memory a simulation, or what is read of a file, may take, and why no more.
+/// Limit of the memory for a simulation, or for what is read from a file, and its reason.
 ///
 /// ```
 /// use meshtone::scenario::{MEMORY_LIMIT_BYTES, MemoryLimit};
@@ -24,7 +24,7 @@ pub enum MemoryLimit {
         /// (bytes) The limit.
         bytes: u64,
     },
-    /// What is free on the machine that simulates, and at most [`MEMORY_LIMIT_BYTES`].
+    /// The free memory of the machine that simulates, at most [`MEMORY_LIMIT_BYTES`].
     Machine {
         /// (bytes) Free memory.
         free_bytes: u64,
@@ -62,7 +62,7 @@ impl MemoryLimit {
         (bytes > 0).then_some(Self::Given { bytes })
     }
 
-    /// What is wrong with something that takes more; none where it does not.
+    /// Objection to something that needs more; none where it does not.
     ///
     /// # Arguments
     /// * `needed_bytes` - (bytes) what it takes
@@ -87,7 +87,7 @@ impl MemoryLimit {
         }
     }
 
-    /// What is allowed, for a message about a simulation that needs more.
+    /// The limit, for a message about a simulation that needs more.
     pub(super) fn allows(self) -> String {
         let most = in_words(self.bytes());
         match self {

@@ -1,4 +1,4 @@
-//! How large a simulation is.
+//! The size of a simulation.
 
 use std::collections::BTreeSet;
 
@@ -72,7 +72,7 @@ impl Scenario {
 }
 
 impl Scenario {
-    /// How many kinds of damaged teeth the pinion and the gear have: teeth with the same faults are of one, and each tooth that
+    /// Number of kinds of damaged teeth of the pinion and of the gear: teeth with the same faults are of one, and each tooth that
     /// something is drawn for is of its own.
     fn damaged_kinds(&self) -> [usize; 2] {
         WheelName::BOTH.map(|wheel| {
@@ -92,7 +92,7 @@ impl Scenario {
         })
     }
 
-    /// How many classes of pairs they make at most, that of sound teeth included.
+    /// Largest number of classes of pairs that they make, that of sound teeth included.
     pub(super) fn pair_classes(&self) -> usize {
         let [pinion, gear] = self.damaged_kinds();
         let met = least_common_multiple(self.gears.pinion_teeth, self.gears.gear_teeth);

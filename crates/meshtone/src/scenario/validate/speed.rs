@@ -1,4 +1,4 @@
-//! How fast teeth can be meant to run.
+//! Limits of the speed of teeth.
 
 use std::f64::consts::PI;
 
@@ -37,7 +37,7 @@ pub(super) fn check(scenario: &Scenario) -> Check {
 
 /// Speeds that may be a typing error.
 pub(super) fn warnings(scenario: &Scenario) -> Vec<ScenarioWarning> {
-    [unusual(scenario), off_nominal(scenario)].into_iter().flatten().collect()
+    [unusual(scenario), far_from_nominal(scenario)].into_iter().flatten().collect()
 }
 
 fn unusual(scenario: &Scenario) -> Option<ScenarioWarning> {
@@ -53,7 +53,7 @@ fn unusual(scenario: &Scenario) -> Option<ScenarioWarning> {
 }
 
 /// A profile that never comes near the nominal speed, which the sampling rate and the settling are chosen for.
-fn off_nominal(scenario: &Scenario) -> Option<ScenarioWarning> {
+fn far_from_nominal(scenario: &Scenario) -> Option<ScenarioWarning> {
     let operation = &scenario.operation;
     let profile = operation.speed_profile_hz.as_ref()?;
     let (first_s, last_s) = (*profile.time_s.first()?, *profile.time_s.last()?);

@@ -111,7 +111,7 @@ pub fn energy_ratio(difference: &[f64], regular: &[f64]) -> Option<f64> {
 /// A sideband beyond the Nyquist order counts as 0. None where the average is constant.
 ///
 /// # Errors
-/// As [`fm0`].
+/// Those of [`fm0`].
 ///
 /// Source: P. Večeř, M. Kreidl, R. Šmíd, "Condition indicators for gearbox condition monitoring systems", Acta Polytechnica
 /// 45(6) (2005) 35–43.

@@ -84,7 +84,7 @@ impl Indicators {
         Self::of_record(average, parts, &order_spectrum(average)?, &envelope(&parts.difference)?, teeth)
     }
 
-    /// As [`Self::new`], with what a record holds anyway.
+    /// Does what [`Self::new`] does, with quantities that a record holds already.
     ///
     /// # Arguments
     /// * `average`, `parts`, `teeth` - as there

@@ -42,7 +42,7 @@ impl ShapeIndicators {
         }
     }
 
-    /// The same, of a signal that counts as constant if it varies by rounding only.
+    /// Shape indicators of a signal that counts as constant if it varies by rounding only.
     pub(super) fn above(signal: &[f64], rounding: f64) -> Self {
         let mut indicators = Self::new(signal);
         if peak(signal) <= rounding || standard_deviation(signal) <= rounding {

@@ -146,7 +146,7 @@ impl FineOrders {
             .max(largest(&self.lines[last * BLOCK..=to]))
     }
 
-    /// How far the multiples of an order stand out of what lies midway between them, in standard deviations of noise. None where
+    /// Height of the multiples of an order above the bins midway between them, in standard deviations of noise. None where
     /// they cannot be stated apart.
     ///
     /// # Arguments

@@ -103,12 +103,12 @@ impl Hypothesis {
         }
     }
 
-    /// Whether it moves the orders of both shafts.
+    /// Returns whether it moves the orders of both shafts.
     pub(super) fn moves_wheel(&self) -> bool {
         matches!(self.alternative, Alternative::PulsesPerRevolution { .. } | Alternative::ShaftSpeed { .. })
     }
 
-    /// Whether its mesh would be at a multiple of a mains frequency, whose hum has harmonics as a mesh has; known of a constant speed.
+    /// Returns whether its mesh would be at a multiple of a mains frequency, whose hum has harmonics as a mesh has; known of a constant speed.
     pub(super) fn is_of_mains(&self, stated: &StatedFacts, orders: &FineOrders) -> bool {
         let StatedTurning::ConstantSpeed { speed_hz } = stated.turning else { return false };
         if !matches!(self.alternative, Alternative::Teeth { .. } | Alternative::ShaftSpeed { .. }) {
@@ -141,7 +141,7 @@ impl Hypothesis {
         of_wheel.max(SIDEBANDS.min(0.6 * self.mesh_order))
     }
 
-    /// Whether so many mesh lines stand out that the orders are as steady as the mesh needs them.
+    /// Returns whether so many mesh lines stand out that the orders are as steady as the mesh needs them.
     pub(super) fn stands_out(&self, orders: &FineOrders) -> bool {
         const ENOUGH: usize = 2;
         self.mesh_lines(orders).filter(|(_, prominence)| *prominence > 0.0).count() >= ENOUGH
@@ -162,7 +162,7 @@ impl Hypothesis {
     }
 
     /// Sum of the prominences of its mesh lines that the other hypothesis does not have; none where the other has all of them.
-    pub(super) fn own_mesh(&self, other: &Self, orders: &FineOrders) -> Option<f64> {
+    pub(super) fn unshared_mesh(&self, other: &Self, orders: &FineOrders) -> Option<f64> {
         let is_own = |order: f64| {
             let harmonic = (order / other.mesh_order).round().max(1.0);
             (harmonic * other.mesh_order - order).abs() * orders.bins_per_order >= SAME_LINE

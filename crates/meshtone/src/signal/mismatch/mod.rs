@@ -36,7 +36,7 @@ const MOST_TEETH: u32 = 100_000;
 pub enum StatedTurning {
     /// Pulses, so many a revolution.
     Pulses {
-        /// How many.
+        /// The number.
         per_revolution: u32,
     },
     /// A constant speed.
@@ -65,12 +65,12 @@ pub struct StatedFacts {
 pub enum Alternative {
     /// Another number of teeth of the wheel on the shaft.
     Teeth {
-        /// How many.
+        /// The number.
         teeth: u32,
     },
     /// Another number of teeth of its mate.
     MateTeeth {
-        /// How many.
+        /// The number.
         teeth: u32,
         /// The stated number.
         stated: u32,
@@ -82,7 +82,7 @@ pub enum Alternative {
     },
     /// Another number of pulses in a revolution.
     PulsesPerRevolution {
-        /// How many.
+        /// The number.
         pulses: u32,
         /// The stated number.
         stated: u32,
@@ -182,7 +182,10 @@ pub fn find_mismatch(angular: &AngularSignal, stated: &StatedFacts) -> Option<Mi
     let likeliest = hypotheses::alternatives(stated, &orders)
         .filter(|hypothesis| !hypothesis.is_of_mains(stated, &orders))
         .filter_map(|hypothesis| {
-            Some((hypothesis, gained(&hypothesis, &as_stated, &stated_evidence, may_be_speed, &orders)?))
+            Some((
+                hypothesis,
+                evidence_if_better(&hypothesis, &as_stated, &stated_evidence, may_be_speed, &orders)?,
+            ))
         })
         .max_by(|(a, of_a), (b, of_b)| total(a, of_a).total_cmp(&total(b, of_b)));
     if let StatedTurning::ConstantSpeed { speed_hz } = stated.turning {
@@ -226,7 +229,7 @@ pub fn find_mismatch(angular: &AngularSignal, stated: &StatedFacts) -> Option<Mi
 ///
 /// # Arguments
 /// * `may_be_speed` - whether other teeth are stated from another speed by nothing
-fn gained(
+fn evidence_if_better(
     hypothesis: &Hypothesis,
     as_stated: &Hypothesis,
     stated: &Evidence,
@@ -234,8 +237,8 @@ fn gained(
     orders: &FineOrders,
 ) -> Option<Evidence> {
     let own = hypothesis.evidence(orders);
-    let new_mesh = hypothesis.own_mesh(as_stated, orders);
-    let lost_mesh = as_stated.own_mesh(hypothesis, orders).unwrap_or(0.0);
+    let new_mesh = hypothesis.unshared_mesh(as_stated, orders);
+    let lost_mesh = as_stated.unshared_mesh(hypothesis, orders).unwrap_or(0.0);
     let wheel_gain = gain(own.wheel_orders, stated.wheel_orders);
     let mate_gain = gain(own.mate_orders, stated.mate_orders);
     let mesh_gain = new_mesh.unwrap_or(0.0) - lost_mesh;

@@ -51,7 +51,7 @@ impl Harmonic {
         Self { order, turns: angular.values.chunks_exact(points).enumerate().map(turn).collect() }
     }
 
-    /// The same with each revolution weighted.
+    /// The harmonic with each revolution weighted.
     fn weighted(&self, weight: impl Fn(usize) -> f64) -> Self {
         let turns = self.turns.iter().enumerate().map(|(r, turn)| turn * weight(r)).collect();
         Self { order: self.order, turns }

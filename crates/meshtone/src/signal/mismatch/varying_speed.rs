@@ -54,7 +54,7 @@ fn tone_order(tone: &MeshTone) -> f64 {
     f64::from(tone.teeth * tone.harmonic)
 }
 
-/// How far a phase is from that of a constant speed.
+/// Deviation of a phase from that of a constant speed.
 struct PhaseDeviation {
     /// (rev) Rms deviation from the straight line through it.
     rms_rev: f64,

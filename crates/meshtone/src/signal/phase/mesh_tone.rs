@@ -21,7 +21,7 @@ pub struct MeshTone {
     pub teeth: u32,
     /// (Hz) The shaft's nominal speed.
     pub shaft_hz: f64,
-    /// Which harmonic of the mesh frequency: 1 is the mesh frequency itself, the safest. Higher ones give a finer phase
+    /// Number of the harmonic of the mesh frequency: 1 is the mesh frequency itself, the safest. Higher ones give a finer phase
     /// where they stand out.
     pub harmonic: u32,
     /// (Hz) Half width of the band that holds the tone at all times; by default half the shaft's speed, which leaves the
@@ -33,7 +33,7 @@ impl MeshTone {
     /// The mesh frequency in the default band.
     ///
     /// # Arguments
-    /// As the fields of the same names.
+    /// They are the fields of the same names.
     pub fn new(teeth: u32, shaft_hz: f64) -> Self {
         Self { teeth, shaft_hz, harmonic: 1, half_band_hz: None }
     }

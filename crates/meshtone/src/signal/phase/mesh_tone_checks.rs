@@ -1,4 +1,4 @@
-//! Whether a mesh tone can be followed.
+//! Checks that a mesh tone can be followed.
 
 use meshtone_fourier::Complex64;
 
@@ -19,7 +19,7 @@ const STANDS_OUT: f64 = 1.5;
 /// Part of the mean amplitude below which the phase is doubtful.
 const FADED: f64 = 0.1;
 
-/// Whether the tone and its band make sense for the recording.
+/// Checks whether the tone and its band make sense for the recording.
 pub(super) fn check(signal: &[f64], sampling_rate_hz: f64, tone: &MeshTone) -> Result<(), SignalError> {
     check_positive("sampling_rate_hz", sampling_rate_hz)?;
     check_positive("teeth", f64::from(tone.teeth))?;
@@ -48,7 +48,7 @@ pub(super) fn check(signal: &[f64], sampling_rate_hz: f64, tone: &MeshTone) -> R
     Ok(())
 }
 
-/// Whether there is a tone in the band, and none stronger beside it.
+/// Checks whether there is a tone in the band, and none stronger beside it.
 pub(super) fn check_tone(
     spectrum: &[Complex64],
     band: &Band,
@@ -91,7 +91,7 @@ pub(super) fn check_tone(
     Ok((ratio >= STRONGER && !is_ringing).then_some(warning).into_iter().collect())
 }
 
-/// Whether the tone nearly vanishes somewhere.
+/// Checks whether the tone nearly vanishes somewhere.
 pub(super) fn check_fading(
     baseband: &[Complex64],
     samples_per_point: f64,

@@ -1,4 +1,4 @@
-//! How far a shaft has turned at each sample.
+//! The angle of a shaft at each sample.
 
 mod constant;
 mod mesh_tone;
@@ -25,9 +25,9 @@ pub struct ShaftPhase {
     pub first_sample: usize,
     /// (rev) Angle at that sample and those after it.
     pub revolutions: Vec<f64>,
-    /// What angle 0 is.
+    /// Meaning of angle 0.
     pub zero: AngleZero,
-    /// What was doubtful while it was found.
+    /// Warnings from finding it.
     pub warnings: Vec<SignalWarning>,
 }
 
@@ -149,7 +149,7 @@ impl ShaftPhase {
         Ok(())
     }
 
-    /// The same from an angle 0 that is known.
+    /// The phase with a known angle 0.
     ///
     /// # Arguments
     /// * `zero` - what it is

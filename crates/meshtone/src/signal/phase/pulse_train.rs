@@ -3,7 +3,7 @@
 use crate::signal::check::check_finite;
 use crate::signal::{SignalError, SignalWarning};
 
-/// How many intervals on each side tell what an interval should be.
+/// Number of intervals on each side that show how long an interval should be.
 const NEIGHBOURS: usize = 4;
 /// An interval of less than this part of its neighbours' median is half of a doubled pulse.
 const DOUBLED: f64 = 0.5;
@@ -17,7 +17,7 @@ const MOST_MISSING: usize = 20;
 pub struct PulseTrain {
     /// (s) Times of the pulses; 0 is the recording's first sample.
     pub time_s: Vec<f64>,
-    /// What was put in or left out.
+    /// Warnings about pulses that were put in or left out.
     pub warnings: Vec<SignalWarning>,
 }
 

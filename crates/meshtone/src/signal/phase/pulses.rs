@@ -23,7 +23,7 @@ impl ShaftPhase {
     /// * `samples` - length of the recording
     ///
     /// # Errors
-    /// What [`repair_pulses`] refuses; a stated speed that is not theirs; no
+    /// Those of [`repair_pulses`]; a stated speed that is not theirs; no
     /// samples between the pulses.
     ///
     /// ```

@@ -9,7 +9,7 @@ const HIGH_LEVEL: f64 = 0.995;
 /// Default hysteresis, as a part of the distance of the levels.
 const HYSTERESIS: f64 = 0.2;
 
-/// Which side of a tachometer's pulse counts.
+/// Side of a tachometer's pulse that counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum PulseEdge {
     /// The waveform rises through the threshold.
@@ -19,7 +19,7 @@ pub enum PulseEdge {
     Falling,
 }
 
-/// How a tachometer's waveform is read.
+/// Settings by which a tachometer's waveform is read.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Tachometer {
     /// (the waveform's unit) Level that a pulse crosses; by default the middle between the levels that 0.5 % of the
@@ -28,7 +28,7 @@ pub struct Tachometer {
     /// (the waveform's unit) How far the waveform must have gone back beyond the threshold before another pulse counts;
     /// by default 0.2 of the distance of those levels.
     pub hysteresis: Option<f64>,
-    /// Which side of a pulse counts.
+    /// Side of a pulse that counts.
     pub edge: PulseEdge,
 }
 

@@ -1,13 +1,13 @@
-//! What angle 0 of a shaft is.
+//! The meaning of angle 0 of a shaft.
 
-/// What angle 0 of a shaft is: from there its teeth are counted.
+/// Meaning of angle 0 of a shaft, from which its teeth are counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum AngleZero {
-    /// That of angles that were given; whoever gave them knows.
+    /// Angle 0 of angles that the user gave.
     #[default]
     Given,
-    /// That of a simulation: tooth 1 enters contact.
+    /// Angle 0 of a simulation: tooth 1 enters contact.
     Simulated,
     /// Each pulse of one in a revolution of this shaft: the same place of the wheel in every recording.
     Pulse,
@@ -35,17 +35,17 @@ impl AngleZero {
         Self::NAMES[self as usize].0
     }
 
-    /// Whether teeth can be counted from it.
+    /// Returns whether teeth can be counted from it.
     pub fn counts_teeth(self) -> bool {
         self != Self::Chance
     }
 
-    /// Whether it is the same place of the wheel in every recording.
+    /// Returns whether it is the same place of the wheel in every recording.
     pub fn is_mark(self) -> bool {
         matches!(self, Self::Simulated | Self::Pulse)
     }
 
-    /// That of the shaft which this one drives or is driven by: only another pulse of its own would be a mark on it.
+    /// Angle 0 of the shaft that this one drives or is driven by: only another pulse of its own would be a mark on it.
     pub(super) fn of_mate(self) -> Self {
         match self {
             Self::Pulse => Self::FirstPulse,

@@ -8,7 +8,7 @@ use crate::error_table::ErrorTable;
 use crate::random::{Draws, Purpose};
 use crate::wheel::{Teeth, Wheel, WheelName};
 
-/// How the teeth of both wheels deviate.
+/// Deviations of the teeth of both wheels.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Deviations {
     /// Of each tooth's flank, its pitch deviation included; none for ideal ones.
@@ -100,7 +100,7 @@ struct Draw<'a> {
     seed: u64,
 }
 
-/// Which sequence of a wheel's draws: the teeth's own come after.
+/// Sequence of the draws that a whole wheel shares: those of its teeth come after.
 const COMMON: u64 = 0;
 const RUN_OUT: u64 = 1;
 const PITCH: u64 = 2;

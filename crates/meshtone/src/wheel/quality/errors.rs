@@ -12,7 +12,7 @@ use crate::wheel::WheelName;
 /// Number of radii at which a tooth's profile error is given.
 pub const ERROR_POINTS: usize = 100;
 
-/// How well the teeth are made.
+/// Manufacturing quality of the teeth.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Quality {
@@ -115,8 +115,7 @@ macro_rules! deviation_rows {
             )
             .otherwise("drawn, or none beside given profile errors or pitches, which have it in them")
             .range(Range::not_negative().implausible_above(1e4))
-            .alternative("0.0")
-            .ignored_by(&["linear", "published"]),
+            .alternative("0.0"),
             row(
                 phase,
                 "rad",
@@ -124,8 +123,7 @@ macro_rules! deviation_rows {
                 field!($field.run_out_phase_rad),
             )
             .otherwise("drawn, or 0 beside given profile errors")
-            .alternative("0.0")
-            .ignored_by(&["linear", "published"]),
+            .alternative("0.0"),
             row(
                 helix,
                 "µm",
@@ -134,8 +132,7 @@ macro_rules! deviation_rows {
             )
             .otherwise("drawn, or none beside given profile errors")
             .range(Range::from_to(-1e3, 1e3))
-            .alternative("0.0")
-            .ignored_by(&["linear", "published"]),
+            .alternative("0.0"),
         ]
     }};
 }
@@ -143,6 +140,8 @@ macro_rules! deviation_rows {
 const ERROR_KEYS: [&str; 2] = ["pinion_profile_errors_mm", "gear_profile_errors_mm"];
 
 impl Keys for Quality {
+    const SECTION: &str = "quality";
+
     fn start() -> Self {
         Self::default()
     }
@@ -174,8 +173,7 @@ impl Keys for Quality {
             )
             .range(Range::from_to(0.0, 11.0).message(
                 "must be a whole number from 0 to 11: a class of ISO 1328-1:2013, from 1 (best) to 11, or 0 for none",
-            ))
-            .ignored_by(&["linear", "published"]),
+            )),
             row(
                 "tooth_share",
                 "-",
@@ -183,27 +181,23 @@ impl Keys for Quality {
                  common to a wheel's teeth",
                 field!(tooth_share),
             )
-            .range(Range::from_to(0.0, 1.0))
-            .ignored_by(&["linear", "published"]),
+            .range(Range::from_to(0.0, 1.0)),
             row(
                 "pitch_share",
                 "-",
                 "a wheel's largest single pitch deviation over its tolerance f_p",
                 field!(pitch_share),
             )
-            .range(Range::from_to(0.0, 1.0))
-            .ignored_by(&["linear", "published"]),
+            .range(Range::from_to(0.0, 1.0)),
             row("run_out_share", "-", "a wheel's run-out over its tolerance F_r", field!(run_out_share))
-                .range(Range::from_to(0.0, 1.0))
-                .ignored_by(&["linear", "published"]),
+                .range(Range::from_to(0.0, 1.0)),
             row(
                 "helix_share",
                 "-",
                 "a wheel's largest helix slope deviation, of either sign, over its tolerance f_Hβ",
                 field!(helix_share),
             )
-            .range(Range::from_to(0.0, 1.0))
-            .ignored_by(&["linear", "published"]),
+            .range(Range::from_to(0.0, 1.0)),
             documented(
                 "errors_file",
                 "an .npz with the profile errors, instead of a draw, as `meshtone wheels` writes it; its entries are \

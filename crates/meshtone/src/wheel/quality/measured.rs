@@ -1,4 +1,4 @@
-//! What was measured of a wheel beside the profiles of its teeth.
+//! Measured deviations of a wheel besides the profiles of its teeth.
 
 use crate::wheel::WheelName;
 

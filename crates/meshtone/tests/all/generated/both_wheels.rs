@@ -15,7 +15,7 @@ pub fn of_both_wheels(keys: &[KeyDescription]) -> Vec<(&KeyDescription, Option<&
 
 fn are_alike(one: &KeyDescription, other: &KeyDescription) -> bool {
     let all_but_default = |key: &KeyDescription| {
-        (key.unit, key.meaning, key.required, key.allowed.clone(), key.kind.clone(), key.ignored_by)
+        (key.unit, key.meaning, key.required, key.allowed.clone(), key.kind.clone(), key.ignored_by.clone())
     };
     all_but_default(one) == all_but_default(other)
 }

@@ -1,0 +1,70 @@
+//! A check that several recordings are of one state.
+
+use crate::answer::HEALTHY;
+use crate::learn::{Learned, Question};
+use crate::observation::{Observation, WheelLines};
+
+/// (dB) How much louder one recording's difference signal may be than another's of the same state: loads and mounting move it less.
+const LOUDEST_DB: f64 = 6.0;
+/// (-) Probabilities of damage of which one says that it is there, the other that it is not.
+const DECIDED: [f64; 2] = [0.2, 0.8];
+
+/// Doubts that recordings are of one state.
+///
+/// # Arguments
+/// * `learned`, `question` - by what each recording is looked at alone
+pub(crate) fn doubts(learned: &Learned, question: &Question) -> Vec<String> {
+    let now =
+        much_louder_recording(question.now).map(|of| format!("the recordings are hardly of one state: {of}"));
+    let now = now.or_else(|| contradicting_states(learned, question));
+    let healthy = much_louder_recording(question.healthy)
+        .map(|of| format!("the healthy recordings are hardly of one state: {of}"));
+    now.into_iter().chain(healthy).collect()
+}
+
+/// The loudest of several recordings, where it is much louder than the quietest.
+fn much_louder_recording(recordings: &[Observation]) -> Option<String> {
+    let levels: Vec<f64> = recordings.iter().map(level_db).collect();
+    let by = |a: &usize, b: &usize| levels[*a].total_cmp(&levels[*b]);
+    let (quietest, loudest) = ((0..levels.len()).min_by(by)?, (0..levels.len()).max_by(by)?);
+    let apart_db = levels[loudest] - levels[quietest];
+    (apart_db > LOUDEST_DB).then(|| {
+        format!(
+            "the difference signal of number {} is {:.1} times that of number {}; ask about each state alone",
+            loudest + 1,
+            10f64.powf(apart_db / 20.0),
+            quietest + 1
+        )
+    })
+}
+
+/// (dB) Level of the larger difference signal of both wheels.
+fn level_db(asked: &Observation) -> f64 {
+    let energy = |wheel: &WheelLines| wheel.difference().iter().map(|line| line.norm_sqr()).sum::<f64>();
+    let most = asked.pinion.iter().chain([&asked.gear]).map(energy).fold(f64::MIN_POSITIVE, f64::max);
+    10.0 * most.log10()
+}
+
+/// Recordings of which one is damaged and another is not.
+fn contradicting_states(learned: &Learned, question: &Question) -> Option<String> {
+    if question.now.len() < 2 {
+        return None;
+    }
+    let damaged = |one: &Observation| {
+        let alone = Question { now: std::slice::from_ref(one), healthy: question.healthy };
+        let of_class = learned.probabilities(&learned.features(&learned.row(&alone)));
+        let of_damage = learned.classes.iter().zip(of_class).filter(|(class, _)| class.is_some());
+        of_damage.map(|(_, probability)| probability).sum::<f64>()
+    };
+    let damaged: Vec<f64> = question.now.iter().map(damaged).collect();
+    let least = (0..damaged.len()).find(|&at| damaged[at] < DECIDED[0])?;
+    let most = (0..damaged.len()).find(|&at| damaged[at] > DECIDED[1])?;
+    Some(format!(
+        "the recordings are hardly of one state: number {} alone is damaged with a probability of {:.0} %, number {} {HEALTHY} with \
+         {:.0} %; ask about each state alone",
+        most + 1,
+        100.0 * damaged[most],
+        least + 1,
+        100.0 * (1.0 - damaged[least])
+    ))
+}

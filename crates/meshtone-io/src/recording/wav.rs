@@ -1,0 +1,142 @@
+//! WAV: PCM of 8, 16, 24 and 32 bits, and floating point of 32 and 64 bits.
+//!
+//! The crate `hound` reads no floating point of 64 bits, which measured recordings come in; so the chunks are read here, and the
+//! samples as those of any other array.
+
+use std::fs::File;
+use std::io::{BufReader, Read};
+
+use super::array::{ArrayLayout, read_channels};
+use super::assemble::{Columns, assemble};
+use super::error::Problem;
+use super::label::Label;
+use super::number::{NumberKind, Numbers};
+use super::rate::StatedRate;
+use super::selection::select;
+use super::{Recording, RecordingOptions, memory_need};
+use crate::memory;
+
+/// Bytes that a format chunk always has, and those of one that states its format behind them.
+const FORMAT_BYTES: usize = 16;
+const EXTENSIBLE_BYTES: usize = 26;
+/// Codes of formats.
+const PCM: u16 = 1;
+const FLOATING_POINT: u16 = 3;
+const EXTENSIBLE: u16 = 0xfffe;
+
+/// What the format chunk says.
+#[derive(Debug, Clone, Copy)]
+struct Format {
+    channels: u16,
+    rate_hz: u32,
+    numbers: Numbers,
+    /// The stored number that means 0, and what is to be divided by so that full scale is 1.
+    zero: f64,
+    full_scale: f64,
+}
+
+/// Reads a recording from WAV. PCM is scaled so that full scale is 1.
+pub(super) fn read(file: File, options: &RecordingOptions) -> Result<Recording, Problem> {
+    let file_bytes = file.metadata()?.len();
+    let mut from = BufReader::new(file);
+    let (format, bytes) = find_samples(&mut from)?;
+    if bytes > file_bytes {
+        let problem = format!("it announces {bytes} bytes of samples, but ends after {file_bytes}");
+        return Err(Problem::Broken(problem));
+    }
+    let (channels, sample_bytes) = (usize::from(format.channels), format.numbers.element_bytes());
+    let record_bytes = (channels * sample_bytes) as u64;
+    if !bytes.is_multiple_of(record_bytes) {
+        return Err(Problem::Broken(format!(
+            "its {bytes} bytes of samples are no whole number of samples of {sample_bytes} bytes for each of {channels} channels"
+        )));
+    }
+    let layout = ArrayLayout { channels, samples: bytes / record_bytes, interleaved: channels > 1 };
+    let labels: Vec<Label> = (1..=channels).map(|number| Label::numbered("channel", number)).collect();
+    let selection = select(&labels, options)?;
+    memory_need::check(memory::limit(), options, &selection, |_| layout.samples, 0)?;
+    let wanted: Vec<bool> = (0..channels).map(|channel| selection.wanted.contains(&channel)).collect();
+    let mut samples = read_channels(&mut from, layout, format.numbers, &wanted, bytes)?;
+    if format.full_scale != 1.0 {
+        let scaled = samples.iter_mut().flatten();
+        scaled.for_each(|sample| *sample = (*sample - format.zero) / format.full_scale);
+    }
+    let stated = [StatedRate { by: "its header".to_string(), rate_hz: f64::from(format.rate_hz) }];
+    assemble(Columns { labels: &labels, selection: &selection, samples, stated: &stated }, options)
+}
+
+/// Goes to the samples, and gives their format and how many bytes they have.
+fn find_samples(from: &mut BufReader<File>) -> Result<(Format, u64), Problem> {
+    let mut riff = [0; 12];
+    from.read_exact(&mut riff)?;
+    if !(riff.starts_with(b"RIFF") && riff.ends_with(b"WAVE")) {
+        return Err(Problem::broken("it does not begin as WAV files do"));
+    }
+    let mut format = None;
+    loop {
+        let mut head = [0; 8];
+        from.read_exact(&mut head)?;
+        let [mark @ .., a, b, c, d] = head;
+        let length = u64::from(u32::from_le_bytes([a, b, c, d]));
+        let mut read = 0;
+        match (&mark, format) {
+            (b"fmt ", _) => {
+                let mut chunk = vec![0; (length as usize).min(EXTENSIBLE_BYTES)];
+                from.read_exact(&mut chunk)?;
+                read = chunk.len() as u64;
+                format = Some(format_of(&chunk)?);
+            }
+            (b"data", Some(format)) => return Ok((format, length)),
+            (b"data", None) => return Err(Problem::broken("it has samples, but no format before them")),
+            _ => {}
+        }
+        // Chunks have an even number of bytes.
+        from.seek_relative((length.next_multiple_of(2) - read) as i64)?;
+    }
+}
+
+fn format_of(chunk: &[u8]) -> Result<Format, Problem> {
+    if chunk.len() < FORMAT_BYTES {
+        return Err(Problem::broken("its format chunk is too short"));
+    }
+    // Absent numbers, behind the end of the chunk, are 0.
+    let short = |at: usize| chunk.get(at..at + 2).map_or(0, |bytes| u16::from_le_bytes([bytes[0], bytes[1]]));
+    let code = if short(0) == EXTENSIBLE { short(EXTENSIBLE_BYTES - 2) } else { short(0) };
+    let channels = short(2);
+    let rate_hz = u32::from(short(4)) | u32::from(short(6)) << 16;
+    let (record_bytes, stored_bits) = (short(12), short(FORMAT_BYTES - 2));
+    if channels == 0 {
+        return Err(Problem::broken("it has 0 channels"));
+    }
+    // An extensible chunk may say that fewer bits count than are stored.
+    let counting_bits = short(FORMAT_BYTES + 2);
+    let is_shortened = short(0) == EXTENSIBLE && counting_bits > 0;
+    let bits = if is_shortened { counting_bits } else { stored_bits };
+    let kind = match (code, bits) {
+        (PCM, 8) => NumberKind::U8,
+        (PCM, 16) => NumberKind::I16,
+        (PCM, 24) => NumberKind::I24,
+        (PCM, 32) => NumberKind::I32,
+        (FLOATING_POINT, 32) => NumberKind::F32,
+        (FLOATING_POINT, 64) => NumberKind::F64,
+        _ => return Err(unsupported()),
+    };
+    let numbers = Numbers {
+        // 24 bits may stand in four bytes, of which the last is empty.
+        behind: usize::from(kind == NumberKind::I24 && record_bytes / channels == 4),
+        ..Numbers::plain(kind, false)
+    };
+    if usize::from(record_bytes) != numbers.element_bytes() * usize::from(channels) {
+        return Err(unsupported());
+    }
+    let zero = if kind == NumberKind::U8 { 128.0 } else { 0.0 };
+    let full_scale = if code == PCM { f64::from(bits - 1).exp2() } else { 1.0 };
+    Ok(Format { channels, rate_hz, numbers, zero, full_scale })
+}
+
+fn unsupported() -> Problem {
+    Problem::broken(
+        "its samples are neither PCM of 8 to 32 bits nor floating point of 32 or 64 bits; convert it, for instance with \
+         `ffmpeg -i FILE.wav -c:a pcm_f32le NEW.wav`",
+    )
+}

@@ -1,0 +1,184 @@
+//! A machine as a list of parts: bodies, springs with their damping, lines of action, drives, and places where a sensor can sit.
+
+use nalgebra::{DMatrix, DVector};
+
+/// A machine without its meshes, in n coordinates.
+///
+/// The matrices and vectors are given in *turned* coordinates, `u = turn · u'`. A machine with one mesh turns the plane of its wheels
+/// until one axis lies along the line of action. Most entries are then exactly zero, and what the mesh does not reach stays out of the
+/// solution.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Machine {
+    /// Names of the coordinates.
+    pub names: Vec<&'static str>,
+    /// (kg, kg m²) Mass or moment of inertia that moves with each coordinate; the same in turned coordinates.
+    pub mass: Vec<f64>,
+    /// Columns: unit vectors of the turned coordinates.
+    pub turn: DMatrix<f64>,
+    /// The elastic parts.
+    pub springs: Vec<Spring>,
+    /// A line of action for each mesh.
+    pub lines: Vec<LineOfAction>,
+    /// Motors and brakes.
+    pub drives: Vec<Drive>,
+    /// Where something can be measured.
+    pub places: Vec<Place>,
+    /// Rotation of all shafts per unit rotation of the motor while nothing deforms, in the coordinates themselves.
+    pub rigid_rotation: DVector<f64>,
+}
+
+/// An elastic part of a machine, with its damping.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spring {
+    /// Its stiffness matrix.
+    pub stiffness: DMatrix<f64>,
+    /// (-) Damping over the critical damping of a mode in which only this part deforms.
+    pub damping_ratio: f64,
+}
+
+/// The line along which two wheels push one another, in turned coordinates: `g(z) = at_middle + z · per_m` at the axial position z.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LineOfAction {
+    /// At the middle of the face: the deflection of the mesh per unit of each coordinate.
+    pub at_middle: DVector<f64>,
+    /// (1/m) What is added per m along the face.
+    pub per_m: DVector<f64>,
+}
+
+/// What drives a shaft or brakes it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Drive {
+    /// A rotation that is prescribed behind the torsional stiffness of a shaft.
+    Motor {
+        /// Number of the coordinate that the shaft turns.
+        coordinate: usize,
+        /// (N m/rad) Torsional stiffness of the shaft.
+        stiffness_nm_per_rad: f64,
+        /// (-) Rotation of this motor over that of the input.
+        speed_ratio: f64,
+    },
+    /// A torque that is prescribed.
+    Brake {
+        /// Number of the coordinate on which it acts.
+        coordinate: usize,
+        /// (-) Its part of the nominal torque.
+        torque_share: f64,
+    },
+}
+
+/// A direction in which something is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Axis {
+    /// Horizontal, from shaft to shaft.
+    X,
+    /// Vertical.
+    Y,
+    /// Along the shafts.
+    Z,
+    /// The rotation about the shaft.
+    Rotation,
+}
+
+/// A named place where the motion can be measured: coordinates with their weights, for each axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Place {
+    /// Its name.
+    pub name: &'static str,
+    /// Number and weight of the coordinates that move it along an axis.
+    pub motion: Vec<(Axis, Vec<(usize, f64)>)>,
+}
+
+impl Spring {
+    /// A part that does not resist anything yet.
+    ///
+    /// # Arguments
+    /// * `coordinates` - number of coordinates of the machine
+    /// * `damping_ratio` - (-) of the part
+    pub fn new(coordinates: usize, damping_ratio: f64) -> Self {
+        Self { stiffness: DMatrix::zeros(coordinates, coordinates), damping_ratio }
+    }
+
+    /// Adds `k v vᵀ`: a spring that resists a combination of coordinates.
+    ///
+    /// # Arguments
+    /// * `stretch` - v, by the number of a coordinate and its weight
+    /// * `stiffness` - (N/m, N m/rad) k
+    pub fn resist(&mut self, stretch: &[(usize, f64)], stiffness: f64) {
+        self.couple(stretch, stretch, stiffness);
+    }
+
+    /// Adds `k v wᵀ`, a coupling of two combinations of coordinates; the caller adds its transpose where v and w differ.
+    ///
+    /// # Arguments
+    /// * `rows`, `columns` - v and w, by the number of a coordinate and its weight
+    /// * `stiffness` - (N/m, N, N m/rad) k
+    pub fn couple(&mut self, rows: &[(usize, f64)], columns: &[(usize, f64)], stiffness: f64) {
+        for &(row, of_row) in rows {
+            for &(column, of_column) in columns {
+                self.stiffness[(row, column)] += stiffness * of_row * of_column;
+            }
+        }
+    }
+
+    /// The part in turned coordinates, without the couplings that only rounding makes: coordinates that the part does not connect
+    /// stay apart.
+    ///
+    /// # Arguments
+    /// * `turn` - unit vectors of the turned coordinates
+    pub fn turned(&self, turn: &DMatrix<f64>) -> Self {
+        let turned = turn.transpose() * &self.stiffness * turn;
+        let stiffness = DMatrix::from_fn(turned.nrows(), turned.ncols(), |r, c| {
+            let both = (turned[(r, c)] + turned[(c, r)]) / 2.0;
+            let scale = (turned[(r, r)] * turned[(c, c)]).abs().sqrt();
+            if both.abs() <= ROUNDING * scale { 0.0 } else { both }
+        });
+        Self { stiffness, ..*self }
+    }
+}
+
+/// Part of the geometric mean of two diagonal entries below which what couples them is rounding.
+const ROUNDING: f64 = 1e-12;
+
+impl Machine {
+    /// Number of coordinates.
+    pub fn coordinates(&self) -> usize {
+        self.mass.len()
+    }
+
+    /// Stiffness matrix of all springs, in turned coordinates.
+    pub fn stiffness(&self) -> DMatrix<f64> {
+        let zeros = DMatrix::zeros(self.coordinates(), self.coordinates());
+        self.springs.iter().fold(zeros, |sum, spring| sum + &spring.stiffness)
+    }
+
+    /// Stiffness matrix with the meshes closed, in turned coordinates.
+    ///
+    /// # Arguments
+    /// * `mesh_stiffness_n_per_m` - (N/m) of each mesh along its line of action
+    pub fn closed_stiffness(&self, mesh_stiffness_n_per_m: &[f64]) -> DMatrix<f64> {
+        let meshes = self.lines.iter().zip(mesh_stiffness_n_per_m);
+        meshes.fold(self.stiffness(), |sum, (line, stiffness)| {
+            sum + &line.at_middle * line.at_middle.transpose() * *stiffness
+        })
+    }
+
+    /// A matrix in turned coordinates, in the coordinates themselves.
+    pub fn turn_back(&self, turned: &DMatrix<f64>) -> DMatrix<f64> {
+        &self.turn * turned * self.turn.transpose()
+    }
+
+    /// Weights of the coordinates in the motion of a place along an axis; all 0 where the place has no motion of that kind.
+    ///
+    /// # Arguments
+    /// * `place` - its name
+    /// * `axis` - the axis
+    pub fn weights(&self, place: &str, axis: Axis) -> DVector<f64> {
+        let mut weights = DVector::zeros(self.coordinates());
+        let place = self.places.iter().find(|other| other.name == place);
+        let motion = place.and_then(|place| place.motion.iter().find(|(other, _)| *other == axis));
+        for &(coordinate, weight) in motion.iter().flat_map(|(_, motion)| motion) {
+            weights[coordinate] = weight;
+        }
+        weights
+    }
+}

@@ -1,0 +1,572 @@
+//! The law of a mesh: `f = Σ k_n max(0, x_n + τ ẋ_n) − k̄ max(0, −j − (δ + τ δ̇))` with `x_n = δ + e_n − S_n`.
+//!
+//! Flanks push and never pull. Where they may pull, as in a linear mesh, every pair on its path carries `k_n (x_n + τ ẋ_n)` of either
+//! sign, and back flanks are out of reach.
+//!
+//! Stiffness, deviation and separation of every pair are known functions of the rotation, so a mesh has one unknown in a step, the
+//! deflection with its damping's lead, `D = δ + τ δ̇`. At the step's end `D = D₀ − Γ f(D)`, where D₀ is what it would be without
+//! the mesh's force: a rising, piecewise linear equation, solved exactly by Newton's method. The drive flanks' force is
+//! convex, so that from the first iterate on the method comes down to the solution, and ends when no pair leaves.
+//!
+//! Where two teeth meet at speed the force begins when `x + τ ẋ` crosses 0, which is earlier than x does by τ, a few
+//! microseconds: so the force has no jump, and the equation always a solution.
+
+use super::forcing::{PAIRS, PairsBlock};
+use crate::simd::{Instructions, Lanes};
+
+/// How two flanks touch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Contact {
+    /// They push, and never pull.
+    Unilateral,
+    /// They push and pull as long as they are on their path, as in a linear mesh.
+    Bilateral,
+}
+
+impl Contact {
+    /// (m) Penetration below which a pair carries nothing.
+    fn lets_go_at_m(self) -> f64 {
+        match self {
+            Self::Unilateral => 0.0,
+            Self::Bilateral => f64::NEG_INFINITY,
+        }
+    }
+
+    /// Whether a pair carries a force at a penetration.
+    ///
+    /// # Arguments
+    /// * `penetration_m` - (m) deflection less separation
+    pub(super) fn touches(self, penetration_m: f64) -> bool {
+        penetration_m > self.lets_go_at_m()
+    }
+}
+
+/// The pairs of a mesh at one sample.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PairsSample<const L: usize> {
+    /// (N/m) Stiffness of each pair; 0 where there is none.
+    pub(crate) stiffness: [Lanes<L>; PAIRS],
+    /// (m) What deviations, damage and separation add to the deflection, with the damping's lead: `o + τ ȯ`, `o = e − S`.
+    pub(crate) offset: [Lanes<L>; PAIRS],
+    /// (m) Where along the face the load acts.
+    pub(crate) face_centre: Lanes<L>,
+}
+
+impl<const L: usize> PairsSample<L> {
+    /// No pairs.
+    pub(crate) const NONE: Self = Self {
+        stiffness: [Lanes([0.0; L]); PAIRS],
+        offset: [Lanes([0.0; L]); PAIRS],
+        face_centre: Lanes([0.0; L]),
+    };
+
+    /// Lines the blocks of `L` simulations up, sample by sample: all lanes of a number lie in one line of the cache.
+    pub(crate) fn line_up(samples: &mut [Self], blocks: &[&PairsBlock; L]) {
+        for place in 0..PAIRS {
+            line_up(samples, blocks, |pairs| &pairs.stiffness[place], |sample| &mut sample.stiffness[place]);
+            line_up(samples, blocks, |pairs| &pairs.offset[place], |sample| &mut sample.offset[place]);
+        }
+        for (lane, pairs) in blocks.iter().enumerate() {
+            for (sample, z) in samples.iter_mut().zip(&pairs.face_centre) {
+                sample.face_centre.0[lane] = *z;
+            }
+        }
+    }
+}
+
+/// Samples that are lined up at once: so many numbers fill a line of the cache.
+const CHUNK: usize = 8;
+
+/// Lines one part of the blocks up.
+#[inline(always)]
+fn line_up<'a, const L: usize>(
+    samples: &mut [PairsSample<L>],
+    blocks: &[&'a PairsBlock; L],
+    of: impl Fn(&'a PairsBlock) -> &'a Vec<f64>,
+    set: impl Fn(&mut PairsSample<L>) -> &mut Lanes<L>,
+) {
+    let parts: [&[f64]; L] = std::array::from_fn(|lane| of(blocks[lane]).as_slice());
+    let length = parts.iter().map(|part| part.len()).min().unwrap_or(0).min(samples.len());
+    let (chunks, rest) = samples[..length].as_chunks_mut::<CHUNK>();
+    let whole = chunks.len() * CHUNK;
+    for (c, chunk) in chunks.iter_mut().enumerate() {
+        // Of fixed length, so that no index is checked within a chunk.
+        let columns: [&[f64; CHUNK]; L] = std::array::from_fn(|lane| &parts[lane].as_chunks().0[c]);
+        for (k, sample) in chunk.iter_mut().enumerate() {
+            *set(sample) = Lanes::from_fn(|lane| columns[lane][k]);
+        }
+    }
+    for (k, sample) in rest.iter_mut().enumerate() {
+        *set(sample) = Lanes::from_fn(|lane| parts[lane][whole + k]);
+    }
+}
+
+/// The law of a mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeshLaw {
+    /// How its flanks touch.
+    pub contact: Contact,
+    /// (s) τ, the contact's damping over its stiffness.
+    pub damping_time_s: f64,
+    /// (N/m) Stiffness of back flanks in contact.
+    pub back_stiffness_n_per_m: f64,
+    /// (m) Normal backlash; none where back flanks are out of reach.
+    pub backlash_m: Option<f64>,
+}
+
+/// (m) A backlash that no deflection reaches. It is finite, so that products with 0 stay numbers.
+const OUT_OF_REACH_M: f64 = 1e9;
+
+impl MeshLaw {
+    /// (m) Deflection at which the back flanks touch, `−j`.
+    fn back_touches_at_m(&self) -> f64 {
+        -self.backlash_m.unwrap_or(OUT_OF_REACH_M)
+    }
+
+    /// (-) Change of D per change of δ in a step, `1 + τ/h`.
+    ///
+    /// # Arguments
+    /// * `half_step_s` - (s) h, half of the time step
+    pub(crate) fn lead(&self, half_step_s: f64) -> f64 {
+        1.0 + self.damping_time_s / half_step_s
+    }
+
+    /// (N) The force that the flanks carry at a deflection.
+    ///
+    /// # Arguments
+    /// * `sample` - the pairs
+    /// * `lane` - which simulation
+    /// * `deflection_m` - (m) D
+    pub(crate) fn force_n<const L: usize>(
+        &self,
+        sample: &PairsSample<L>,
+        lane: usize,
+        deflection_m: f64,
+    ) -> f64 {
+        let pair = |n: usize| {
+            let penetration = deflection_m + sample.offset[n].0[lane];
+            if self.contact.touches(penetration) { sample.stiffness[n].0[lane] * penetration } else { 0.0 }
+        };
+        let back = self.back_stiffness_n_per_m * (self.back_touches_at_m() - deflection_m).max(0.0);
+        (0..PAIRS).map(pair).sum::<f64>() - back
+    }
+
+    /// (N/m) The slope of that force.
+    pub(crate) fn slope_n_per_m<const L: usize>(
+        &self,
+        sample: &PairsSample<L>,
+        lane: usize,
+        deflection_m: f64,
+    ) -> f64 {
+        let pair = |n: usize| {
+            if self.contact.touches(deflection_m + sample.offset[n].0[lane]) {
+                sample.stiffness[n].0[lane]
+            } else {
+                0.0
+            }
+        };
+        let back = if deflection_m < self.back_touches_at_m() { self.back_stiffness_n_per_m } else { 0.0 };
+        (0..PAIRS).map(pair).sum::<f64>() + back
+    }
+}
+
+/// The laws of one mesh in each of `L` simulations side by side.
+pub(crate) struct LawLanes<const L: usize> {
+    /// (N) Mesh force under the constant loads, which the forces on the modes are relative to.
+    static_force: Lanes<L>,
+    back_stiffness: Lanes<L>,
+    back_touches: Lanes<L>,
+    /// (m) Penetration below which a pair carries nothing.
+    lets_go: Lanes<L>,
+    /// (-) Change of D per change of δ in a step, `1 + τ/h`.
+    lead: Lanes<L>,
+}
+
+impl<const L: usize> LawLanes<L> {
+    /// Lines the laws of `L` simulations up.
+    ///
+    /// # Arguments
+    /// * `laws` - of each
+    /// * `static_force_n` - (N) mesh force of each under the constant loads
+    /// * `half_step_s` - (s) half of the time step of each
+    pub(crate) fn new(laws: [MeshLaw; L], static_force_n: [f64; L], half_step_s: [f64; L]) -> Self {
+        Self {
+            static_force: Lanes(static_force_n),
+            back_stiffness: Lanes::from_fn(|l| laws[l].back_stiffness_n_per_m),
+            back_touches: Lanes::from_fn(|l| laws[l].back_touches_at_m()),
+            lets_go: Lanes::from_fn(|l| laws[l].contact.lets_go_at_m()),
+            lead: Lanes::from_fn(|l| laws[l].lead(half_step_s[l])),
+        }
+    }
+
+    /// (N) The mesh's force on the modes at the end of a step, relative to the static one: the whole force, and where R is 2 its moment
+    /// about the middle of the face.
+    ///
+    /// The load acts in the one direction `g(z̄) = g₀ + z̄ g₁`, so that deflections and compliances in g₀ and g₁ come down to one
+    /// equation in D. It is solved for the drive flanks first; only where D would reach the back flanks, which is rare, they are added
+    /// and the equation is solved again.
+    ///
+    /// # Arguments
+    /// * `free` - (m) deflection with its damping's lead in g₀ and g₁ at the step's end, without the new force
+    /// * `compliance` - (m/N) deflection in each of them per new force in each
+    /// * `sample` - the pairs at the step's end
+    /// * `touching` - the pairs that touched at the step's start; set to those that do at its end
+    #[inline(always)]
+    pub(crate) fn force<I: Instructions, const R: usize>(
+        &self,
+        simd: I,
+        free: &[Lanes<L>; R],
+        compliance: &[[Lanes<L>; R]; R],
+        sample: &PairsSample<L>,
+        touching: &mut Touching<L>,
+    ) -> [Lanes<L>; R] {
+        let (z, gamma) = (sample.face_centre, compliance);
+        let (mut load, mut compliance) = (free[0], gamma[0][0]);
+        // What the static force, which acts midway, adds to the deflection.
+        let mut of_static = gamma[0][0];
+        if R > 1 {
+            load = z.mul_add(simd, free[1], load);
+            of_static = z.mul_add(simd, gamma[1][0], of_static);
+            let cross = gamma[0][1].add(simd, gamma[1][0]);
+            compliance = z.mul_add(simd, z.mul_add(simd, gamma[1][1], cross), compliance);
+        }
+        compliance = compliance.mul(simd, self.lead);
+        load = of_static.mul(simd, self.lead).mul_add(simd, self.static_force, load);
+        let one = Lanes::splat(1.0);
+        let before = *touching;
+        let (mut deflection, mut sums) = self.solve(simd, sample, [compliance, one, load], touching);
+        let zero = Lanes::splat(0.0);
+        let mut back = zero;
+        let mut is_back = false;
+        for l in 0..L {
+            is_back |= deflection.0[l] < self.back_touches.0[l];
+        }
+        if is_back {
+            let stiffness = self.back_stiffness.where_less(simd, deflection, self.back_touches, zero);
+            let pushed = compliance.mul(simd, stiffness);
+            let own = one.add(simd, pushed);
+            let loaded = pushed.mul_add(simd, self.back_touches, load);
+            // Where no back flank touches the solution is found again, from the same pairs on.
+            *touching = before;
+            (deflection, sums) = self.solve(simd, sample, [compliance, own, loaded], touching);
+            back = stiffness.mul(simd, self.back_touches.sub(simd, deflection));
+        }
+        let force = sums[0].mul_add(simd, deflection, sums[1]).sub(simd, back);
+        let mut result = [zero; R];
+        result[0] = self.static_force.sub(simd, force);
+        if R > 1 {
+            result[1] = z.mul(simd, force).neg(simd);
+        }
+        result
+    }
+
+    /// Solves `a D + Γ Σ k (D + o) = b` over the pairs that touch at D.
+    ///
+    /// Begins with the pairs that touched in the step before, which mostly are those of this one: then only `b` waits for that
+    /// step's force, and the division does not. Whichever pairs it begins with, no others together push harder than those that touch,
+    /// so that the first iterate does not lie below the solution, and the method comes down to it.
+    ///
+    /// # Arguments
+    /// * `sample`, `compliance`, `own`, `load` - the pairs, Γ, a and b
+    /// * `touching` - the pairs that may touch; set to those that do
+    #[inline(always)]
+    fn solve<I: Instructions>(
+        &self,
+        simd: I,
+        sample: &PairsSample<L>,
+        [compliance, own, load]: [Lanes<L>; 3],
+        touching: &mut Touching<L>,
+    ) -> (Lanes<L>, [Lanes<L>; 2]) {
+        let mut sums = sums_over(simd, sample, touching);
+        let mut deflection = load;
+        for _ in 0..MOST_ITERATIONS {
+            let share = Lanes::splat(1.0).div(simd, compliance.mul_add(simd, sums[0], own));
+            deflection = compliance.negative_mul_add(simd, sums[1], load).mul(simd, share);
+            let now = self.touching_at(simd, sample, deflection);
+            // All lanes are compared, without a branch for each.
+            let mut changed = false;
+            for l in 0..L {
+                changed |= now[l] != touching[l];
+            }
+            if !changed {
+                break;
+            }
+            *touching = now;
+            sums = sums_over(simd, sample, touching);
+        }
+        (deflection, sums)
+    }
+
+    /// The pairs that touch at a deflection.
+    #[inline(always)]
+    fn touching_at<I: Instructions>(
+        &self,
+        simd: I,
+        sample: &PairsSample<L>,
+        deflection: Lanes<L>,
+    ) -> Touching<L> {
+        let mut touching = [0; L];
+        for n in 0..PAIRS {
+            let penetration = deflection.add(simd, sample.offset[n]);
+            for l in 0..L {
+                touching[l] |= usize::from(penetration.0[l] > self.lets_go.0[l]) << n;
+            }
+        }
+        touching
+    }
+}
+
+/// Most iterations of a step: pairs that can leave, one after the other, and one that sees that none does.
+const MOST_ITERATIONS: usize = PAIRS + 2;
+
+/// Which pairs touch, of each simulation: a bit for each place.
+pub(crate) type Touching<const L: usize> = [usize; L];
+
+/// Sums over pairs: of k, and of k times the offset.
+#[inline(always)]
+fn sums_over<I: Instructions, const L: usize>(
+    simd: I,
+    sample: &PairsSample<L>,
+    touching: &Touching<L>,
+) -> [Lanes<L>; 2] {
+    let zero = Lanes::splat(0.0);
+    let mut sums = [zero; 2];
+    for n in 0..PAIRS {
+        let mut stiffness = zero;
+        for l in 0..L {
+            // All bits or none: unlike a choice it compiles to no branch.
+            let touches = ((touching[l] >> n & 1) as u64).wrapping_neg();
+            stiffness.0[l] = f64::from_bits(sample.stiffness[n].0[l].to_bits() & touches);
+        }
+        sums[0] = sums[0].add(simd, stiffness);
+        sums[1] = stiffness.mul_add(simd, sample.offset[n], sums[1]);
+    }
+    sums
+}
+
+/// (m) Deflection at which the pairs of one sample carry a force at rest. Where it is 0, the one at which the first would touch.
+///
+/// # Arguments
+/// * `contact` - how the flanks touch
+/// * `sample` - the pairs
+/// * `lane` - which simulation
+/// * `force_n` - (N) the force, 0 or more
+pub(crate) fn deflection_at_rest<const L: usize>(
+    contact: Contact,
+    sample: &PairsSample<L>,
+    lane: usize,
+    force_n: f64,
+) -> f64 {
+    let mut pairs: Vec<[f64; 2]> = (0..PAIRS)
+        .map(|n| [sample.stiffness[n].0[lane], sample.offset[n].0[lane]])
+        .filter(|[stiffness, _]| *stiffness > 0.0)
+        .collect();
+    // The one that touches first has the largest offset.
+    pairs.sort_by(|a, b| b[1].total_cmp(&a[1]));
+    let (mut stiffness, mut load) = (0.0, force_n);
+    let mut deflection = pairs.first().map_or(0.0, |[_, offset]| -offset);
+    for [k, offset] in pairs {
+        if stiffness > 0.0 && !contact.touches(deflection + offset) {
+            break;
+        }
+        stiffness += k;
+        load -= k * offset;
+        deflection = load / stiffness;
+    }
+    deflection
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::{InstructionSet, Task};
+
+    /// Flanks that push, without damping and with back flanks out of reach.
+    const UNDAMPED: MeshLaw = MeshLaw {
+        contact: Contact::Unilateral,
+        damping_time_s: 0.0,
+        back_stiffness_n_per_m: 0.0,
+        backlash_m: None,
+    };
+
+    /// One mass behind a law, `ẍ + 2ζẋ + force = load`, stepped by Newmark's method (γ = ½, β = ¼).
+    struct Oscillator<F> {
+        damping_ratio: f64,
+        half_step: f64,
+        steps: usize,
+        /// Stiffness, offset and load at each time.
+        at: F,
+        law: MeshLaw,
+    }
+
+    impl<F: Fn(f64) -> ([f64; PAIRS], [f64; PAIRS], f64)> Task for Oscillator<F> {
+        /// Displacement and acceleration.
+        type Output = Vec<[f64; 2]>;
+
+        #[inline(always)]
+        fn run<I: Instructions>(self, simd: I) -> Vec<[f64; 2]> {
+            let h = self.half_step;
+            let law = LawLanes::<1>::new([self.law], [0.0], [h]);
+            let e = 1.0 / (1.0 + 2.0 * self.damping_ratio * h);
+            let ([mut x, mut s, mut w], mut load) = ([0.0; 3], (self.at)(0.0).2);
+            let mut states = Vec::with_capacity(self.steps);
+            for step in 1..=self.steps {
+                let (stiffness, offset, now) = (self.at)(step as f64 * 2.0 * h);
+                let sample = PairsSample {
+                    stiffness: stiffness.map(Lanes::splat),
+                    offset: offset.map(Lanes::splat),
+                    face_centre: Lanes::splat(0.0),
+                };
+                let change = 2.0 * e * s + h * h * e * (w + load + now);
+                let (free, compliance) = ([Lanes([x + change])], [[Lanes([h * h * e])]]);
+                let [Lanes([new])] = law.force(simd, &free, &compliance, &sample, &mut [0]);
+                let change = change + h * h * e * new;
+                (x, s, w, load) = (x + change, change - s, new, now);
+                states.push([x, new + now - 2.0 * self.damping_ratio * s / h]);
+            }
+            states
+        }
+    }
+
+    /// The oscillator of Kahraman and Singh, Journal of Sound and Vibration 142 (1990), with three harmonics of stiffness and
+    /// error. The numbers are of an 8th-order Runge-Kutta solution at a tolerance of 1e-10.
+    #[test]
+    fn backlash_oscillator_as_solved_by_runge_kutta() {
+        let omega = 0.5;
+        let at = |t: f64| {
+            let stiffness = 1.0
+                - 0.2 * (omega * t).cos()
+                - 0.1 * (2.0 * omega * t).cos()
+                - 0.05 * (3.0 * omega * t).cos();
+            let errors = [0.01, 0.004, 0.002].iter().zip(1..).map(|(force, j)| {
+                let omega = f64::from(j) * omega;
+                force * omega * omega * (omega * t).cos()
+            });
+            ([stiffness, 0.0, 0.0], [-1.0, 0.0, 0.0], 0.1 + errors.sum::<f64>())
+        };
+        let period = std::f64::consts::TAU / omega;
+        let per_period = 20_000;
+        let oscillator = Oscillator {
+            damping_ratio: 0.05,
+            half_step: period / per_period as f64 / 2.0,
+            steps: 61 * per_period,
+            at,
+            law: MeshLaw { backlash_m: Some(1.0), back_stiffness_n_per_m: 1.0, ..UNDAMPED },
+        };
+        let states = InstructionSet::fastest().run(oscillator);
+        let last = &states[60 * per_period..];
+        let mean = |of: &dyn Fn(&[f64; 2]) -> f64| last.iter().map(of).sum::<f64>() / last.len() as f64;
+        let centre = mean(&|state| state[0]);
+        let rms = mean(&|state| (state[0] - centre).powi(2)).sqrt();
+        let acceleration = mean(&|state| state[1] * state[1]).sqrt();
+        let least = last.iter().map(|state| state[0]).fold(f64::INFINITY, f64::min);
+        let most = last.iter().map(|state| state[0]).fold(f64::NEG_INFINITY, f64::max);
+        for (found, expected) in [
+            (centre, 1.092_863),
+            (rms, 0.090_334),
+            (least, 0.951_038),
+            (most, 1.242_393),
+            (acceleration, 0.089_211),
+        ] {
+            assert!((found / expected - 1.0).abs() < 1e-5, "{found} {expected}");
+        }
+    }
+
+    /// A mass thrown between both flanks, without damping: its energy stays.
+    #[test]
+    fn back_flanks_push_back() {
+        let oscillator = |half_step: f64, steps: usize| Oscillator {
+            damping_ratio: 0.0,
+            half_step,
+            steps,
+            // A push to start with.
+            at: |t: f64| ([100.0, 0.0, 0.0], [0.0; PAIRS], if t < 0.1 { -1.0 } else { 0.0 }),
+            law: MeshLaw { backlash_m: Some(0.5), back_stiffness_n_per_m: 100.0, ..UNDAMPED },
+        };
+        let states = InstructionSet::fastest().run(oscillator(5e-4, 40_000));
+        let (least, most) = states.iter().fold((0.0f64, 0.0f64), |(a, b), s| (a.min(s[0]), b.max(s[0])));
+        // Speed 0.1 behind stiffness 100: 0.01 deep on either side.
+        assert!((least + 0.51).abs() < 2e-4 && (most - 0.01).abs() < 2e-4, "{least} {most}");
+    }
+
+    fn sample(stiffness: [f64; PAIRS], offset: [f64; PAIRS]) -> PairsSample<1> {
+        PairsSample {
+            stiffness: stiffness.map(Lanes::splat),
+            offset: offset.map(Lanes::splat),
+            face_centre: Lanes::splat(0.0),
+        }
+    }
+
+    #[test]
+    fn two_pairs_share_a_load_as_in_closed_form() {
+        let two = sample([2e8, 1e8, 0.0], [1e-6, -2e-6, 0.0]);
+        // Light: the first alone. Heavy: both, δ = (F − Σ k o)/Σ k.
+        let at_rest = |contact, load| deflection_at_rest(contact, &two, 0, load);
+        assert!((at_rest(Contact::Unilateral, 100.0) - (100.0 / 2e8 - 1e-6)).abs() < 1e-15);
+        assert!((at_rest(Contact::Unilateral, 3000.0) - 3000.0 / 3e8).abs() < 1e-15);
+        // Flanks that may pull share every load.
+        assert!((at_rest(Contact::Bilateral, 100.0) - 100.0 / 3e8).abs() < 1e-15);
+        for contact in [Contact::Unilateral, Contact::Bilateral] {
+            let law = MeshLaw { contact, ..UNDAMPED };
+            for load in [0.0, 100.0, 599.0, 601.0, 3000.0] {
+                let carried = law.force_n(&two, 0, at_rest(contact, load));
+                assert!((carried - load).abs() < 1e-9, "{carried} {load}");
+            }
+        }
+    }
+
+    /// Against bisection, over drawn pairs, compliances and free deflections: back flanks and jammed teeth too.
+    #[test]
+    fn a_step_is_solved_exactly() {
+        use crate::random::{Draws, Purpose};
+        struct Solve<'a> {
+            law: &'a LawLanes<1>,
+            free: f64,
+            compliance: f64,
+            pairs: &'a PairsSample<1>,
+        }
+        impl Task for Solve<'_> {
+            type Output = f64;
+            #[inline(always)]
+            fn run<I: Instructions>(self, simd: I) -> f64 {
+                let (free, compliance) = ([Lanes([self.free])], [[Lanes([self.compliance])]]);
+                self.law.force(simd, &free, &compliance, self.pairs, &mut [0])[0].0[0]
+            }
+        }
+        let mut draws = Draws::new(1, Purpose::Candidate, 0);
+        let mut touched = [0; 3];
+        for _ in 0..2000 {
+            let mut micrometre = |half: f64| draws.uniform(0.0, half) * 1e-6;
+            let offset = [micrometre(10.0), micrometre(10.0), micrometre(10.0)];
+            let (free, backlash) = (micrometre(30.0), micrometre(10.0).abs());
+            let compliance = draws.uniform(1e-9, 1e-9);
+            let stiffness = std::array::from_fn(|_| draws.uniform(2e8, 2e8));
+            let law = MeshLaw {
+                contact: Contact::Unilateral,
+                backlash_m: Some(backlash),
+                back_stiffness_n_per_m: 2e8,
+                damping_time_s: 2e-6,
+            };
+            let lanes = LawLanes::new([law], [300.0], [1e-6]);
+            let pairs = sample(stiffness, offset);
+            let solve = Solve { law: &lanes, free, compliance, pairs: &pairs };
+            let force = 300.0 - InstructionSet::fastest().run(solve);
+            let of = |d: f64| law.force_n(&pairs, 0, d);
+            let relative = |d: f64| 300.0 - of(d);
+            let (mut low, mut high) = (-1e-3, 1e-3);
+            for _ in 0..200 {
+                let middle = (low + high) / 2.0;
+                // The step's deflection under this force, 1 + τ/h = 3 times the compliance ahead.
+                if middle - 3.0 * compliance * relative(middle) < free {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            assert!((force - of(low)).abs() < 1e-8 * (1.0 + force.abs()), "{force} {}", of(low));
+            let which = [force.abs() < 1e-9, force >= 1e-9, force <= -1e-9];
+            touched.iter_mut().zip(which).for_each(|(count, is)| *count += usize::from(is));
+        }
+        assert!(touched.iter().all(|&count| count > 50), "{touched:?}");
+    }
+}

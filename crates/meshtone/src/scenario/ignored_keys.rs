@@ -1,0 +1,118 @@
+//! Keys that a model ignores.
+
+use super::{Model, Scenario, ScenarioWarning, Sensor, WarningKind};
+use crate::keys::Keys;
+
+impl Scenario {
+    /// The scenario with what its model does not honour at its default.
+    pub(crate) fn without_ignored_keys(&self) -> Self {
+        let mut honoured = self.clone();
+        reset_ignored(&mut honoured);
+        honoured
+    }
+
+    /// Keys that are not at their default although the scenario's model ignores them.
+    ///
+    /// ```
+    /// use meshtone::scenario::{GearPair, Model, Scenario};
+    ///
+    /// let mut scenario = Scenario::new(GearPair::example());
+    /// scenario.rig.eccentricity_mm = 0.02;
+    /// assert!(scenario.ignored_by_model().is_empty());
+    ///
+    /// scenario.model = Model::Published;
+    /// assert_eq!(scenario.ignored_by_model()[0].key, "rig.eccentricity_mm");
+    /// ```
+    pub fn ignored_by_model(&self) -> Vec<ScenarioWarning> {
+        let warning = |key: String| {
+            let message = format!(
+                "is ignored: the {} model does not honour it, and its default is simulated; remove it, or set another model",
+                self.model.name()
+            );
+            ScenarioWarning::new(WarningKind::IgnoredKey, key, message)
+        };
+        reset_ignored(&mut self.clone()).into_iter().map(warning).collect()
+    }
+}
+
+/// Gives every key that the scenario's model ignores its default.
+///
+/// # Returns
+/// The keys that were not at it.
+fn reset_ignored(scenario: &mut Scenario) -> Vec<String> {
+    let model = scenario.model;
+    let sections = [
+        reset(&mut scenario.gears, "gears", model),
+        reset(&mut scenario.operation, "operation", model),
+        reset(&mut scenario.quality, "quality", model),
+        reset(&mut scenario.rig, "rig", model),
+        reset(&mut scenario.solver, "solver", model),
+    ];
+    let sensors = scenario.sensors.len();
+    let of_sensor = |(index, sensor): (usize, &mut Sensor)| {
+        let name = if sensors > 1 { format!("sensor[{index}]") } else { "sensor".to_owned() };
+        reset_sensor(sensor, &name, model)
+    };
+    let sensors = scenario.sensors.iter_mut().enumerate().flat_map(of_sensor);
+    sections.concat().into_iter().chain(sensors.collect::<Vec<_>>()).collect()
+}
+
+/// Resets ignored keys of a sensor, which keeps its name though that may come of its place.
+fn reset_sensor(sensor: &mut Sensor, key: &str, model: Model) -> Vec<String> {
+    let name = sensor.name();
+    let changed = reset(sensor, key, model);
+    if sensor.name() != name {
+        sensor.name = Some(name);
+    }
+    changed
+}
+
+fn reset<S: Keys>(section: &mut S, name: &str, model: Model) -> Vec<String> {
+    let start = S::start();
+    let ignored =
+        S::rows().into_iter().filter(|row| model.ignores(&format!("{}.{}", S::SECTION, row.name())));
+    let changed = ignored.filter(|row| {
+        let before = section.clone();
+        row.copy(&start, section);
+        *section != before
+    });
+    changed.map(|row| format!("{name}.{}", row.name())).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::{GearPair, Profile};
+    use crate::wheel::TipRelief;
+
+    fn with_everything_ignored() -> Scenario {
+        let mut scenario = Scenario::new(GearPair::example());
+        scenario.gears.tip_relief = None;
+        scenario.gears.foundation.q[3] = 0.0;
+        scenario.operation.speed_profile_hz =
+            Some(Profile { time_s: vec![0.0, 2.0], value: vec![40.0, 41.0] });
+        scenario.rig.bearing_stiffness_n_per_m = 1e8;
+        scenario.rig.eccentricity_mm = 0.01;
+        scenario
+    }
+
+    #[test]
+    fn every_ignored_key_is_reset_and_warned_of() {
+        let mut scenario = with_everything_ignored();
+        scenario.model = Model::Linear;
+        let ignored = scenario.ignored_by_model();
+        assert_eq!(
+            ignored.iter().map(|warning| warning.key.as_str()).collect::<Vec<_>>(),
+            ["gears.tip_relief"]
+        );
+        scenario.gears.tip_relief = Some(TipRelief::default());
+        assert_eq!(scenario.without_ignored_keys(), scenario);
+        scenario = with_everything_ignored();
+        scenario.model = Model::Published;
+        let mut default = Scenario::new(GearPair::example());
+        default.model = Model::Published;
+        assert_eq!(scenario.without_ignored_keys(), default);
+        assert_eq!(default.ignored_by_model(), []);
+        assert_eq!(scenario.ignored_by_model().len(), 5);
+    }
+}

@@ -1,0 +1,417 @@
+//! Steps of a machine with several meshes: one scalar unknown a mesh, all coupled through the machine.
+//!
+//! In the notation of [`super::step`], the deflections with their damping's lead, `D_a` of mesh a, obey
+//! `D + G f(D) = D₀` with `G_ab = ℓ_a Σ_n B_na h²E_n B_nb`, `ℓ_a = 1 + τ_a/h`, and `f_a` a rising, piecewise linear function of `D_a`
+//! alone. With `z_a = D_a/ℓ_a` the equation says that a strictly convex function of z is at its minimum,
+//! `½ (z − z₀)ᵀ S⁻¹ (z − z₀) + Σ φ_a(z_a)` with S = Γ symmetric and positive definite and `dφ_a/dz_a = f_a`: there is one solution.
+//!
+//! Newton's method takes the pairs that touch at the last iterate and solves the linear equations that these make. It ends, exactly,
+//! when the same pairs touch at the new iterate. In theory it can go round in a circle; after [`MOST_PLAIN_ITERATIONS`] each iterate is
+//! the minimum of the convex function on the way to Newton's, and it cannot: the function falls, and there are finitely many sets of
+//! pairs.
+
+use super::integrate::{Block, Diverged, Problem, Recorder, is_bounded};
+use super::outputs::{EXTERNALS, OutputWeights, dot};
+use super::prepare::Prepared;
+use crate::mesh::{ForcingBlock, MeshLaw, PairsSample};
+
+/// Most meshes that one machine has.
+pub(crate) const MOST_MESHES: usize = 8;
+
+/// Samples that are forced and handed out at a time.
+const BLOCK: usize = 256;
+
+/// A number for each mesh.
+type OfMeshes = [f64; MOST_MESHES];
+/// A number for each pair of meshes.
+type Matrix = [OfMeshes; MOST_MESHES];
+
+/// Integrates a simulation of any number of meshes, up to [`MOST_MESHES`].
+///
+/// # Errors
+/// As [`super::integrate()`].
+pub(super) fn integrate(mut problem: Problem, recorder: &mut dyn Recorder) -> Result<(), Diverged> {
+    let prepared = Prepared::new(&problem);
+    let lines = &problem.machine.lines;
+    let meshes = CoupledMeshes::new(lines.iter().map(|line| line.columns.len()), &prepared);
+    let (start, end) = (problem.time.first_simulated_sample, problem.time.samples);
+    let mut block = ForcingBlock::default();
+    let mut samples = vec![PairsSample::<1>::NONE; lines.len()];
+    problem.forcing.next_block(1, &mut block);
+    take_sample(&block, 0, &mut samples);
+    let first = prepared.first_state(&problem.machine, &samples, 0);
+    let mut state = State {
+        displacement: first.displacement,
+        scaled_velocity: first.scaled_velocity,
+        force: first.force,
+        external: external(&block, 0),
+        deflection: [0.0; MOST_MESHES],
+    };
+    let mut outputs: Vec<Vec<f64>> = vec![Vec::with_capacity(BLOCK); prepared.outputs.len()];
+    let mut sample = start;
+    while sample < end && recorder.goes_on() {
+        let steps = BLOCK.min(end - sample);
+        problem.forcing.next_block(steps, &mut block);
+        outputs.iter_mut().for_each(Vec::clear);
+        let first_recorded = problem.first_sample.max(sample);
+        for step in 0..steps {
+            if sample + step >= first_recorded {
+                for (values, weights) in outputs.iter_mut().zip(&prepared.outputs) {
+                    values.push(state.output(weights, sample + step));
+                }
+            }
+            take_sample(&block, step, &mut samples);
+            state.step(&prepared, &meshes, &samples, external(&block, step));
+        }
+        if !state.displacement.iter().chain(&state.scaled_velocity).all(|mode| is_bounded(*mode)) {
+            return Err(Diverged { sample: sample + steps });
+        }
+        sample += steps;
+        if first_recorded < sample {
+            recorder.record(&Block::new(first_recorded, &outputs));
+        }
+    }
+    Ok(())
+}
+
+/// Takes the pairs of each mesh at one sample of a block.
+fn take_sample(block: &ForcingBlock, k: usize, samples: &mut [PairsSample<1>]) {
+    for (sample, pairs) in samples.iter_mut().zip(&block.meshes) {
+        for place in 0..pairs.stiffness.len() {
+            sample.stiffness[place].0[0] = pairs.stiffness[place][k];
+            sample.offset[place].0[0] = pairs.offset[place][k];
+        }
+        sample.face_centre.0[0] = pairs.face_centre.get(k).copied().unwrap_or(0.0);
+    }
+}
+
+/// Motor lead, torque deviation and speed deviation at one sample of a block; 0 while motor and brake are steady.
+fn external(block: &ForcingBlock, k: usize) -> [f64; EXTERNALS] {
+    block.external.parts().map(|part| part.get(k).copied().unwrap_or(0.0))
+}
+
+/// State of the modes.
+struct State {
+    displacement: Vec<f64>,
+    /// `s = h q̇`.
+    scaled_velocity: Vec<f64>,
+    /// (N) Mesh force on the modes, in each column of the lines of action.
+    force: Vec<f64>,
+    external: [f64; EXTERNALS],
+    /// (m) D of each mesh: where the next step begins its search.
+    deflection: OfMeshes,
+}
+
+impl State {
+    fn output(&self, weights: &OutputWeights, sample: usize) -> f64 {
+        weights.constant
+            + weights.per_sample * sample as f64
+            + dot(&weights.displacement, &self.displacement)
+            + dot(&weights.scaled_velocity, &self.scaled_velocity)
+            + dot(&weights.force, &self.force)
+            + dot(&weights.external, &self.external)
+    }
+
+    /// Moves on by one sample: first without the new forces of the meshes, then by these.
+    fn step(
+        &mut self,
+        prepared: &Prepared,
+        meshes: &CoupledMeshes,
+        samples: &[PairsSample<1>],
+        external: [f64; EXTERNALS],
+    ) {
+        let mut change: Vec<f64> = (0..self.displacement.len())
+            .map(|n| {
+                let old = prepared.columns.iter().zip(&self.force).map(|(column, force)| column.push[n] * force);
+                let driven = (0..EXTERNALS)
+                    .map(|x| prepared.external_push[x][n] * (self.external[x] + external[x]));
+                prepared.keep[n] * self.scaled_velocity[n] - prepared.restore[n] * self.displacement[n]
+                    + old.sum::<f64>()
+                    + driven.sum::<f64>()
+            })
+            .collect();
+        let free: Vec<f64> = (prepared.columns.iter().enumerate())
+            .map(|(r, column)| {
+                let both = |x: usize| column.of_external[x] * (self.external[x] + external[x]);
+                column.static_deflection
+                    + dot(&column.of_displacement, &self.displacement)
+                    + dot(&column.of_velocity, &self.scaled_velocity)
+                    + meshes.lead_of_column[r] * dot(&prepared.compliance[r], &self.force)
+                    + (0..EXTERNALS).map(both).sum::<f64>()
+            })
+            .collect();
+        self.force = meshes.forces(&free, &prepared.compliance, samples, &mut self.deflection);
+        for (n, change) in change.iter_mut().enumerate() {
+            let new = prepared.columns.iter().zip(&self.force).map(|(column, force)| column.push[n] * force);
+            *change += new.sum::<f64>();
+            self.displacement[n] += *change;
+            self.scaled_velocity[n] = *change - self.scaled_velocity[n];
+        }
+        self.external = external;
+    }
+}
+
+/// The laws of several meshes, and which columns of the lines of action are theirs.
+struct CoupledMeshes {
+    laws: Vec<MeshLaw>,
+    /// (N) Force of each mesh under the constant loads.
+    static_force_n: Vec<f64>,
+    /// (-) ℓ of each mesh.
+    lead: Vec<f64>,
+    /// (-) ℓ of the mesh of each column.
+    lead_of_column: Vec<f64>,
+    /// Number of each mesh's first column, and whether it has a second, for what is added per m along the face.
+    columns: Vec<(usize, bool)>,
+}
+
+impl CoupledMeshes {
+    fn new(columns_of_line: impl Iterator<Item = usize>, prepared: &Prepared) -> Self {
+        let lead: Vec<f64> =
+            prepared.laws.iter().map(|law| law.lead(prepared.half_step_s)).collect();
+        let (mut columns, mut lead_of_column) = (Vec::new(), Vec::new());
+        for (count, lead) in columns_of_line.zip(&lead) {
+            columns.push((lead_of_column.len(), count > 1));
+            lead_of_column.extend(std::iter::repeat_n(*lead, count));
+        }
+        let static_force_n = prepared.static_force_n.clone();
+        Self { laws: prepared.laws.clone(), static_force_n, lead, lead_of_column, columns }
+    }
+
+    /// (N) The forces of the meshes on the modes at the end of a step, in each column, relative to the static ones.
+    ///
+    /// # Arguments
+    /// * `free` - (m) deflection with its damping's lead in each column, without the new forces
+    /// * `compliance` - (m/N) Γ of the columns
+    /// * `samples` - the pairs of each mesh at the step's end
+    /// * `deflection` - (m) D of each mesh at the step's start; set to that at its end
+    fn forces(
+        &self,
+        free: &[f64],
+        compliance: &[Vec<f64>],
+        samples: &[PairsSample<1>],
+        deflection: &mut OfMeshes,
+    ) -> Vec<f64> {
+        let count = self.laws.len();
+        // Each load acts in the one direction g(z̄) = g₀ + z̄ g₁.
+        let weights = |mesh: usize| {
+            let (first, tilts) = self.columns[mesh];
+            let tilt = tilts.then(|| (first + 1, samples[mesh].face_centre.0[0]));
+            std::iter::once((first, 1.0)).chain(tilt)
+        };
+        let mut equations = Equations {
+            count,
+            compliance: [[0.0; MOST_MESHES]; MOST_MESHES],
+            lead: [1.0; MOST_MESHES],
+            free: [0.0; MOST_MESHES],
+        };
+        for a in 0..count {
+            equations.lead[a] = self.lead[a];
+            equations.free[a] = weights(a).map(|(r, of_r)| of_r * free[r]).sum();
+            for (b, static_force_n) in self.static_force_n.iter().enumerate() {
+                let from = self.columns[b].0;
+                for (r, of_r) in weights(a) {
+                    // The static force acts midway along the face.
+                    equations.free[a] += self.lead[a] * of_r * compliance[r][from] * static_force_n;
+                    for (s, of_s) in weights(b) {
+                        equations.compliance[a][b] += of_r * compliance[r][s] * of_s;
+                    }
+                }
+            }
+        }
+        let force_and_slope = |mesh: usize, deflection_m: f64| {
+            let (law, sample) = (&self.laws[mesh], &samples[mesh]);
+            [law.force_n(sample, 0, deflection_m), law.slope_n_per_m(sample, 0, deflection_m)]
+        };
+        equations.solve(&force_and_slope, deflection);
+        let mut forces = vec![0.0; free.len()];
+        for (mesh, static_force_n) in self.static_force_n.iter().enumerate() {
+            let [force, _] = force_and_slope(mesh, deflection[mesh]);
+            let (first, tilts) = self.columns[mesh];
+            forces[first] = static_force_n - force;
+            if tilts {
+                forces[first + 1] = -samples[mesh].face_centre.0[0] * force;
+            }
+        }
+        forces
+    }
+}
+
+/// Most of Newton's iterations without a search along the line. Of 2 000 random problems of up to eight meshes none needed more than 8.
+const MOST_PLAIN_ITERATIONS: usize = 12;
+/// Most iterations of all: beyond, rounding decides between two sets of pairs that are as good.
+const MOST_ITERATIONS: usize = 50;
+
+/// The equations of a step, `D + L S f(D) = D₀` with `L = diag ℓ`.
+struct Equations {
+    /// Number of meshes.
+    count: usize,
+    /// (m/N) S.
+    compliance: Matrix,
+    /// (-) ℓ.
+    lead: OfMeshes,
+    /// (m) D₀.
+    free: OfMeshes,
+}
+
+impl Equations {
+    /// Solves the equations.
+    ///
+    /// # Arguments
+    /// * `law` - force and slope of a mesh at a deflection; piecewise linear
+    /// * `deflection` - (m) where to begin; set to the solution
+    fn solve(&self, law: &dyn Fn(usize, f64) -> [f64; 2], deflection: &mut OfMeshes) {
+        for iteration in 0..MOST_ITERATIONS {
+            let (newton, slopes) = self.newton(law, deflection);
+            let same = (0..self.count).all(|a| law(a, newton[a])[1] == slopes[a]);
+            if same || iteration < MOST_PLAIN_ITERATIONS {
+                *deflection = newton;
+            } else {
+                self.go_to_minimum(law, deflection, &newton);
+            }
+            if same {
+                return;
+            }
+        }
+    }
+
+    /// The solution if the pairs that touch at `deflection` went on touching, `(1 + L S K) D = D₀ − L S (f − K D)`, and their slopes K.
+    fn newton(&self, law: &dyn Fn(usize, f64) -> [f64; 2], deflection: &OfMeshes) -> (OfMeshes, OfMeshes) {
+        let (mut matrix, mut right) = ([[0.0; MOST_MESHES]; MOST_MESHES], self.free);
+        let mut slopes = [0.0; MOST_MESHES];
+        for b in 0..self.count {
+            let [force, slope] = law(b, deflection[b]);
+            slopes[b] = slope;
+            for a in 0..self.count {
+                let share = self.lead[a] * self.compliance[a][b];
+                matrix[a][b] = share * slope + f64::from(a == b);
+                right[a] -= share * (force - slope * deflection[b]);
+            }
+        }
+        solve_linear(self.count, matrix, &mut right);
+        (right, slopes)
+    }
+
+    /// Goes from `from` towards `to` until the convex function is least: there its slope along the way,
+    /// `Δzᵀ (S⁻¹ (z − z₀) + f)`, is 0.
+    fn go_to_minimum(&self, law: &dyn Fn(usize, f64) -> [f64; 2], from: &mut OfMeshes, to: &OfMeshes) {
+        let start = *from;
+        let at = |t: f64| -> OfMeshes { std::array::from_fn(|a| start[a] + t * (to[a] - start[a])) };
+        let slope = |t: f64| {
+            let deflection = at(t);
+            let mut pull = std::array::from_fn(|a| (deflection[a] - self.free[a]) / self.lead[a]);
+            solve_linear(self.count, self.compliance, &mut pull);
+            let of_mesh = |a: usize| (to[a] - start[a]) / self.lead[a] * (pull[a] + law(a, deflection[a])[0]);
+            (0..self.count).map(of_mesh).sum::<f64>()
+        };
+        let (mut low, mut high) = (0.0, 1.0);
+        if slope(high) > 0.0 {
+            for _ in 0..HALVINGS {
+                let middle = (low + high) / 2.0;
+                if slope(middle) > 0.0 { high = middle } else { low = middle }
+            }
+        }
+        *from = at(high);
+    }
+}
+
+/// Halvings of an interval until only rounding is left.
+const HALVINGS: usize = 60;
+
+/// Solves a few linear equations by elimination with pivots from the column.
+///
+/// # Arguments
+/// * `count` - number of equations
+/// * `matrix` - by rows
+/// * `right` - the right-hand side; set to the solution
+fn solve_linear(count: usize, mut matrix: Matrix, right: &mut OfMeshes) {
+    for column in 0..count {
+        let pivot = (column..count)
+            .max_by(|&a, &b| matrix[a][column].abs().total_cmp(&matrix[b][column].abs()))
+            .unwrap_or(column);
+        matrix.swap(column, pivot);
+        right.swap(column, pivot);
+        for row in column + 1..count {
+            let factor = matrix[row][column] / matrix[column][column];
+            for k in column..count {
+                matrix[row][k] -= factor * matrix[column][k];
+            }
+            right[row] -= factor * right[column];
+        }
+    }
+    for row in (0..count).rev() {
+        let known: f64 = (row + 1..count).map(|k| matrix[row][k] * right[k]).sum();
+        right[row] = (right[row] - known) / matrix[row][row];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::{Draws, Purpose};
+
+    /// Springs that push from given deflections on, and back flanks: 2 000 drawn problems of one to eight meshes, also of such as are
+    /// coupled far more strongly than those of a machine. The solution obeys the equations, from wherever the search begins.
+    #[test]
+    fn drawn_equations_are_solved_exactly() {
+        let mut draws = Draws::new(3, Purpose::Candidate, 0);
+        for problem in 0..2_000 {
+            let count = 1 + problem % MOST_MESHES;
+            let strength = 10f64.powf(draws.uniform(0.0, 2.0));
+            let mut springs = [[[0.0; 2]; 4]; MOST_MESHES];
+            springs.iter_mut().flatten().for_each(|spring| {
+                *spring = [draws.uniform(1.0, 1.0), draws.uniform(0.0, 1.0)];
+            });
+            let law = |mesh: usize, deflection: f64| {
+                let touching = springs[mesh].iter().filter(|[_, offset]| deflection + offset > 0.0);
+                touching.fold([0.0; 2], |[force, slope], [k, offset]| {
+                    [force + k * (deflection + offset), slope + k]
+                })
+            };
+            // S = A Aᵀ.
+            let a: Matrix = std::array::from_fn(|_| std::array::from_fn(|_| draws.uniform(0.0, 1.0)));
+            let mut equations = Equations {
+                count,
+                compliance: [[0.0; MOST_MESHES]; MOST_MESHES],
+                lead: std::array::from_fn(|_| draws.uniform(2.0, 1.0)),
+                free: std::array::from_fn(|_| draws.uniform(0.0, 3.0)),
+            };
+            for row in 0..count {
+                for column in 0..count {
+                    equations.compliance[row][column] =
+                        strength * (0..MOST_MESHES).map(|k| a[row][k] * a[column][k]).sum::<f64>();
+                }
+            }
+            for start in [-10.0, 0.0, 10.0] {
+                let mut deflection = [start; MOST_MESHES];
+                equations.solve(&law, &mut deflection);
+                for row in 0..count {
+                    let pressed: f64 = (0..count)
+                        .map(|column| equations.compliance[row][column] * law(column, deflection[column])[0])
+                        .sum();
+                    let residual = deflection[row] + equations.lead[row] * pressed - equations.free[row];
+                    assert!(residual.abs() < 1e-9 * (1.0 + strength), "{problem}: {residual}");
+                }
+            }
+        }
+    }
+
+    /// The search along the line alone comes to the same solution.
+    #[test]
+    fn search_along_the_line_ends_at_the_minimum() {
+        let law = |_: usize, deflection: f64| if deflection > 0.0 { [3.0 * deflection, 3.0] } else { [0.0, 0.0] };
+        let mut compliance = [[0.0; MOST_MESHES]; MOST_MESHES];
+        compliance[0][..2].copy_from_slice(&[2.0, 0.9]);
+        compliance[1][..2].copy_from_slice(&[0.9, 1.0]);
+        let mut free = [0.0; MOST_MESHES];
+        free[..2].copy_from_slice(&[1.0, -0.2]);
+        let equations = Equations { count: 2, compliance, lead: [1.0; MOST_MESHES], free };
+        let mut exact = [0.0; MOST_MESHES];
+        equations.solve(&law, &mut exact);
+        let mut searched = [-4.0; MOST_MESHES];
+        for _ in 0..20 {
+            let (newton, _) = equations.newton(&law, &searched);
+            equations.go_to_minimum(&law, &mut searched, &newton);
+        }
+        assert!((searched[0] - exact[0]).abs() < 1e-12 && (searched[1] - exact[1]).abs() < 1e-12, "{searched:?}");
+    }
+}

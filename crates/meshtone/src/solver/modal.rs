@@ -1,0 +1,209 @@
+//! A machine in its modes, without what stays at rest.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::machine::{Drive, Machine, Modes};
+
+/// A machine without its meshes, in the modes that take part in the motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModalMachine {
+    /// Mass-normalised shapes of the active modes, in the machine's coordinates.
+    pub shapes: Vec<DVector<f64>>,
+    /// (1/s²) ω² of the active modes.
+    pub stiffness: Vec<f64>,
+    /// (1/s) 2ζω of the active modes.
+    pub damping: Vec<f64>,
+    /// The line of action of each mesh.
+    pub lines: Vec<ModalLine>,
+    /// Modal force per rad of motor angle.
+    pub motor: Vec<f64>,
+    /// Modal force per N m of brake torque.
+    pub brake: Vec<f64>,
+    /// Modal velocity of the rigid rotation at 1 rad/s.
+    pub rigid_velocity: Vec<f64>,
+    /// The rigid rotation in the machine's coordinates.
+    pub rigid_rotation: DVector<f64>,
+    /// (rad/s) Speed of the rigid rotation on top of which the modes move: the nominal one.
+    pub rotation_rad_per_s: f64,
+    /// Modal displacement under the constant loads: the nominal torque, and the static force of each mesh midway along its face.
+    pub static_displacement: Vec<f64>,
+    /// Modal velocity at the start, relative to the rigid rotation.
+    pub initial_velocity: Vec<f64>,
+    /// The machine's own description, of which outputs need the places.
+    pub machine: Machine,
+}
+
+/// The line of action of a mesh in the modes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModalLine {
+    /// At the middle of the face, and where the load moves along the face, what is added per m.
+    pub columns: Vec<Vec<f64>>,
+    /// (N) The mesh's force under the constant loads, which the displacements do not bring about: they are relative to it.
+    pub static_force_n: f64,
+}
+
+/// How a simulation starts.
+#[derive(Debug, Clone, Copy)]
+pub struct InitialMotion<'a> {
+    /// (rad/s) Nominal speed of the motor.
+    pub nominal_rad_per_s: f64,
+    /// (N m) Nominal torque of the brake.
+    pub brake_torque_nm: f64,
+    /// (rad/s) Speed of the motor at the start, at which all turns rigidly.
+    pub motor_rad_per_s: f64,
+    /// (m/s, rad/s) Velocity at the start in the machine's first coordinates; none for the rigid rotation.
+    pub velocity: Option<&'a [f64]>,
+}
+
+/// Below this part of the largest entry a modal entry is rounding.
+const ROUNDING: f64 = 1e-13;
+
+impl ModalMachine {
+    /// Leaves out the modes that nothing sets in motion.
+    ///
+    /// # Arguments
+    /// * `machine` - the machine
+    /// * `modes` - its modes without the meshes
+    /// * `tilts` - for each mesh, whether its load moves along the face
+    /// * `start` - how the simulation starts
+    pub fn new(machine: &Machine, modes: &Modes, tilts: &[bool], start: InitialMotion) -> Self {
+        let shapes = modes.shapes.transpose();
+        let mass = DVector::from_column_slice(&machine.mass);
+        let modal = |turned: &DVector<f64>| clean(&shapes * turned);
+        let modal_motion =
+            |motion: &DVector<f64>| modal(&(machine.turn.transpose() * motion).component_mul(&mass));
+        let [motor, brake] = drives(machine).map(|force| modal(&force));
+        let rigid = modal_motion(&machine.rigid_rotation);
+        let velocity = match start.velocity {
+            Some(given) => DVector::from_fn(machine.coordinates(), |n, _| given.get(n).copied().unwrap_or(0.0)),
+            None => &machine.rigid_rotation * start.motor_rad_per_s,
+        };
+        let velocity = modal_motion(&(velocity - &machine.rigid_rotation * start.nominal_rad_per_s));
+        let lines: Vec<Vec<DVector<f64>>> = (machine.lines.iter().zip(tilts))
+            .map(|(line, &tilts)| {
+                let columns = [Some(&line.at_middle), tilts.then_some(&line.per_m)];
+                columns.into_iter().flatten().map(modal).collect()
+            })
+            .collect();
+        let moved = |n: usize| {
+            [&motor, &brake, &rigid, &velocity].into_iter().chain(lines.iter().flatten()).any(|v| v[n] != 0.0)
+        };
+        let active: Vec<usize> = (0..machine.coordinates()).filter(|&n| moved(n)).collect();
+        let pick = |vector: &DVector<f64>| active.iter().map(|&n| vector[n]).collect::<Vec<f64>>();
+        let mut this = Self {
+            shapes: active.iter().map(|&n| &machine.turn * modes.shapes.column(n)).collect(),
+            stiffness: active.iter().map(|&n| modes.angular_frequencies[n].powi(2)).collect(),
+            damping: active.iter().map(|&n| modes.damping_per_s(n)).collect(),
+            lines: (lines.iter())
+                .map(|columns| ModalLine { columns: columns.iter().map(pick).collect(), static_force_n: 0.0 })
+                .collect(),
+            motor: pick(&motor),
+            brake: pick(&brake),
+            rigid_velocity: pick(&rigid),
+            rigid_rotation: machine.rigid_rotation.clone(),
+            rotation_rad_per_s: start.nominal_rad_per_s,
+            static_displacement: Vec::new(),
+            initial_velocity: pick(&velocity),
+            machine: machine.clone(),
+        };
+        this.balance(start.brake_torque_nm);
+        this
+    }
+
+    /// Finds the static forces of the meshes that hold the shafts that turn freely, and the displacement under these and the torque.
+    fn balance(&mut self, torque_nm: f64) {
+        let free = self.free_modes();
+        let torques = DVector::from_iterator(free.len(), free.iter().map(|&n| torque_nm * self.brake[n]));
+        let forces = solve(&self.line_entries(&free).transpose(), &torques);
+        for (line, force) in self.lines.iter_mut().zip(forces.iter()) {
+            line.static_force_n = *force;
+        }
+        self.static_displacement = (0..self.modes())
+            .map(|n| {
+                let meshes: f64 =
+                    self.lines.iter().map(|line| line.columns[0][n] * line.static_force_n).sum();
+                let load = self.brake[n] * torque_nm - meshes;
+                // What turns freely is in balance already.
+                if self.stiffness[n] == 0.0 { 0.0 } else { load / self.stiffness[n] }
+            })
+            .collect();
+    }
+
+    /// Modal displacement of the shafts that turn freely by which the meshes deflect as asked.
+    ///
+    /// # Arguments
+    /// * `deflection_m` - (m) of each mesh at the middle of its face
+    pub(super) fn turned_by(&self, deflection_m: &[f64]) -> Vec<f64> {
+        let free = self.free_modes();
+        let turned = solve(&self.line_entries(&free), &DVector::from_column_slice(deflection_m));
+        let mut displacement = vec![0.0; self.modes()];
+        for (&mode, turned) in free.iter().zip(turned.iter()) {
+            displacement[mode] = *turned;
+        }
+        displacement
+    }
+
+    /// Numbers of the modes that nothing but a mesh holds.
+    fn free_modes(&self) -> Vec<usize> {
+        (0..self.modes()).filter(|&n| self.stiffness[n] == 0.0).collect()
+    }
+
+    /// Entries of the lines of action in some modes: a row for each mesh.
+    fn line_entries(&self, modes: &[usize]) -> DMatrix<f64> {
+        DMatrix::from_fn(self.lines.len(), modes.len(), |line, mode| self.lines[line].columns[0][modes[mode]])
+    }
+
+    /// Number of active modes.
+    pub fn modes(&self) -> usize {
+        self.stiffness.len()
+    }
+
+    /// Weights of the modes in a combination of the machine's coordinates, and that combination per unit of the rigid rotation.
+    ///
+    /// # Arguments
+    /// * `weights` - of the coordinates
+    pub(super) fn of_coordinates(&self, weights: &DVector<f64>) -> (Vec<f64>, f64) {
+        let of_modes = self.shapes.iter().map(|shape| sum_or_zero(shape, weights)).collect();
+        (of_modes, self.rigid_rotation.dot(weights))
+    }
+}
+
+/// Forces of all motors per rad of the input's angle, and of all brakes per N m of the nominal torque, in turned coordinates: drives
+/// act on rotations, which are not turned.
+fn drives(machine: &Machine) -> [DVector<f64>; 2] {
+    let [mut motors, mut brakes] = [0, 1].map(|_| DVector::zeros(machine.coordinates()));
+    for drive in &machine.drives {
+        match *drive {
+            Drive::Motor { coordinate, stiffness_nm_per_rad, speed_ratio } => {
+                motors[coordinate] += stiffness_nm_per_rad * speed_ratio;
+            }
+            Drive::Brake { coordinate, torque_share } => brakes[coordinate] += torque_share,
+        }
+    }
+    [motors, brakes]
+}
+
+/// Solves `A x = b`; where there are more equations than unknowns or fewer, with the least squares.
+fn solve(matrix: &DMatrix<f64>, right: &DVector<f64>) -> DVector<f64> {
+    let exact = matrix.is_square().then(|| matrix.clone().lu().solve(right)).flatten();
+    exact.unwrap_or_else(|| {
+        let svd = matrix.clone().svd(true, true);
+        let rounding = ROUNDING * svd.singular_values.max();
+        // Both sets of singular vectors have been asked for.
+        svd.solve(right, rounding).unwrap_or_else(|_| DVector::zeros(matrix.ncols()))
+    })
+}
+
+/// A modal vector without the entries that only rounding makes.
+fn clean(vector: DVector<f64>) -> DVector<f64> {
+    let largest = vector.amax();
+    vector.map(|entry| if entry.abs() < ROUNDING * largest { 0.0 } else { entry })
+}
+
+/// `a·b`, or 0 where the terms cancel to rounding: wheels of equal mass move in opposition, and their sum is no signal.
+fn sum_or_zero(a: &DVector<f64>, b: &DVector<f64>) -> f64 {
+    const CANCELLED: f64 = 1e-12;
+    let terms = a.component_mul(b);
+    let sum = terms.sum();
+    if sum.abs() < CANCELLED * terms.abs().sum() { 0.0 } else { sum }
+}
