@@ -11,6 +11,7 @@ mod shaft_bending;
 mod train;
 
 pub use body::WheelBody;
+pub(crate) use modes::connected_groups;
 pub use modes::{ClosedMesh, DecayingMode, Modes};
 pub use parts::{Axis, Drive, Machine};
 #[cfg(feature = "internals")]

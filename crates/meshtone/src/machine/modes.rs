@@ -167,7 +167,7 @@ impl Machine {
 fn mass_normalised_modes(mass: &[f64], stiffness: &DMatrix<f64>) -> Vec<(f64, DVector<f64>)> {
     let scale: Vec<f64> = mass.iter().map(|m| 1.0 / m.sqrt()).collect();
     let mut modes: Vec<(f64, DVector<f64>)> = Vec::with_capacity(mass.len());
-    for group in connected_groups(stiffness) {
+    for group in connected_groups(mass.len(), |row, column| stiffness[(row, column)] != 0.0) {
         let n = group.len();
         let scaled = DMatrix::from_fn(n, n, |r, c| {
             stiffness[(group[r], group[c])] * scale[group[r]] * scale[group[c]]
@@ -186,11 +186,18 @@ fn mass_normalised_modes(mass: &[f64], stiffness: &DMatrix<f64>) -> Vec<(f64, DV
     modes
 }
 
-/// Groups of coordinates that are connected by non-zero entries.
-fn connected_groups(matrix: &DMatrix<f64>) -> Vec<Vec<usize>> {
-    let mut seen = vec![false; matrix.nrows()];
+/// Groups of coordinates that chains of stiffnesses connect.
+///
+/// # Arguments
+/// * `coordinates` - how many there are
+/// * `connects` - whether a stiffness connects two of them
+pub(crate) fn connected_groups(
+    coordinates: usize,
+    connects: impl Fn(usize, usize) -> bool,
+) -> Vec<Vec<usize>> {
+    let mut seen = vec![false; coordinates];
     let mut groups = Vec::new();
-    for first in 0..matrix.nrows() {
+    for first in 0..coordinates {
         if seen[first] {
             continue;
         }
@@ -200,8 +207,8 @@ fn connected_groups(matrix: &DMatrix<f64>) -> Vec<Vec<usize>> {
         while next < group.len() {
             let row = group[next];
             next += 1;
-            for column in 0..matrix.nrows() {
-                if !seen[column] && matrix[(row, column)] != 0.0 {
+            for column in 0..coordinates {
+                if !seen[column] && connects(row, column) {
                     seen[column] = true;
                     group.push(column);
                 }

@@ -9,10 +9,9 @@ use std::f64::consts::{PI, TAU};
 use body::wheel_body;
 use coordinates::*;
 pub use modes::Modes;
-use modes::connected_groups;
 
 use super::mesh::{LoadState, MeshLoad};
-use crate::machine::{DecayingMode, Rig, Shaft, WheelBody};
+use crate::machine::{DecayingMode, Rig, Shaft, WheelBody, connected_groups};
 use crate::wheel::{Gears, Teeth};
 
 /// What forces the equations of motion at one sample.
@@ -144,7 +143,7 @@ impl Machine {
 
     /// Groups of turned coordinates that move one another.
     pub(super) fn coupled_coordinates(&self) -> Vec<Vec<usize>> {
-        connected_groups(&self.mean_stiffness)
+        connected_groups(COORDINATES, |row, column| self.mean_stiffness[(row, column)] != 0.0)
     }
 
     /// A vector of the 13 coordinates in the turned ones.

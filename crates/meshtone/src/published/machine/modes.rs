@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::coordinates::{COORDINATES, CoordinateMatrix, CoordinateVector};
+use crate::machine::connected_groups;
 
 /// Natural frequencies and mass-normalised mode shapes, `Φᵀ M Φ = 1`, in rising order.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,7 +24,7 @@ impl Modes {
     pub(super) fn new(mass: &CoordinateVector, stiffness: &CoordinateMatrix) -> Self {
         let scale = mass.map(|mass| 1.0 / mass.sqrt());
         let mut modes: Vec<(f64, CoordinateVector)> = Vec::with_capacity(COORDINATES);
-        for group in connected_groups(stiffness) {
+        for group in connected_groups(COORDINATES, |row, column| stiffness[(row, column)] != 0.0) {
             let scaled = DMatrix::from_fn(group.len(), group.len(), |r, c| {
                 let (r, c) = (group[r], group[c]);
                 stiffness[(r, c)] * scale[r] * scale[c]
@@ -43,30 +44,4 @@ impl Modes {
             shapes: CoordinateMatrix::from_fn(|coordinate, n| modes[n].1[coordinate]),
         }
     }
-}
-
-/// Groups of coordinates that are connected by non-zero entries.
-pub(super) fn connected_groups(matrix: &CoordinateMatrix) -> Vec<Vec<usize>> {
-    let mut seen = [false; COORDINATES];
-    let mut groups = Vec::new();
-    for first in 0..COORDINATES {
-        if seen[first] {
-            continue;
-        }
-        seen[first] = true;
-        let mut group = vec![first];
-        let mut next = 0;
-        while next < group.len() {
-            let row = group[next];
-            next += 1;
-            for column in 0..COORDINATES {
-                if !seen[column] && matrix[(row, column)] != 0.0 {
-                    seen[column] = true;
-                    group.push(column);
-                }
-            }
-        }
-        groups.push(group);
-    }
-    groups
 }
