@@ -18,26 +18,6 @@ Profile = Mapping[str, Union[Sequence[float], npt.NDArray[np.float64]]]
 """``time_s`` and ``value``: speed or torque against time."""
 
 
-class TipRelief(TypedDict, total=False):
-    """A table of a scenario.
-
-    Attributes
-    ----------
-    shape : {'parabolic', 'linear'}
-        A parabola that leaves the flank smoothly, or a straight line.
-    length_mm : float
-        (mm) The length from the tip along the tooth's centre line. Allowed: > 0, less than 2 modules.
-    depth_mm : float
-        (mm) How far the tip ends below the flank point where the relief starts; less than the tooth itself thins from
-        there (0.54 mm on 1 mm for 17 teeth of module 3) would add metal, and is warned of. Allowed: ≥ 0; less than π/4
-        modules, half the tooth's thickness.
-    """
-
-    shape: Literal["parabolic", "linear"]
-    length_mm: float
-    depth_mm: float
-
-
 class FlankRelief(TypedDict, total=False):
     """A table of a scenario.
 
@@ -161,7 +141,6 @@ SECTION_OF_KEY: dict[str, str] = {
     "gear_dedendum": "gears",
     "centre_distance_mm": "gears",
     "material": "gears",
-    "tip_relief": "gears",
     "flank_relief": "gears",
     "tip_chamfer_mm": "gears",
     "backlash_mm": "gears",
@@ -244,7 +223,6 @@ class ScenarioChanges(TypedDict, total=False):
     gear_dedendum: Any
     centre_distance_mm: Any
     material: Any
-    tip_relief: Any
     flank_relief: Any
     tip_chamfer_mm: Any
     backlash_mm: Any
@@ -313,7 +291,6 @@ class ScenarioKeys:
     gear_dedendum: float
     centre_distance_mm: float | None
     material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"]
-    tip_relief: TipRelief | Literal[False]
     flank_relief: FlankRelief
     tip_chamfer_mm: float | None
     backlash_mm: float | None
@@ -380,7 +357,6 @@ class ScenarioKeys:
         gear_dedendum: float | None = None,
         centre_distance_mm: float | None = None,
         material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | None = None,
-        tip_relief: TipRelief | Literal[False] | None = None,
         flank_relief: FlankRelief | None = None,
         tip_chamfer_mm: float | None = None,
         backlash_mm: float | None = None,
@@ -471,9 +447,6 @@ class ScenarioKeys:
             that without backlash.
         material : {'steel', 'copper', 'aluminium', 'brass', 'cast-iron', 'bronze'}, optional
             The material of wheels and shafts. Default: "steel".
-        tip_relief : TipRelief or False, optional
-            The material removed near the tips, or ``false`` for none. Default: { shape = "parabolic", length_mm = 1.0,
-            depth_mm = 1.0 }. Ignored by linear, published, contact.
         flank_relief : FlankRelief, optional
             The relief of the flanks near the tips, as a gap in µm. Default: { shape = "parabolic", length_mm = 1.0,
             amount_um = 0.0 }. Ignored by published.
@@ -545,12 +518,12 @@ class ScenarioKeys:
             published.
         wheel_rotational_stiffness_nm_per_rad : float, optional
             (N m/rad) The stiffness of each wheel against tilting, about x and about y. Allowed: > 0, ≤ 1e15. Default:
-            1e8. Ignored by contact.
+            1e8. Ignored by contact. Taken by published alone: linear refuses it.
         brake_inertia_kgm2 : float, optional
             (kg m²) The inertia of the brake. Allowed: > 0, ≤ 1e9. Default: 0.0045.
         damping_ratio : float or sequence of 13 floats, optional
             (-) The modal damping ratio: one for all modes, or 13 by rising frequency. Allowed: ≥ 0, < 1. Default: 0.05.
-            Ignored by contact.
+            Ignored by contact. Several values are taken by published alone: linear refuses them.
         eccentricity_mm : float, optional
             (mm) The eccentricity of both wheels. Allowed: ≥ 0; less than the module. Default: 0.0. Ignored by
             published.
@@ -585,7 +558,7 @@ class ScenarioKeys:
         initial_displacement : sequence of 13 floats, optional
             (m, rad) The displacement at the start: x, y of the gear, x, y of the pinion, rotation of gear, pinion and
             brake, z of gear and pinion, tilt φ of both, tilt ψ of both. Default: the loaded mesh's equilibrium; zeros
-            under published. Ignored by contact.
+            under published. Ignored by contact. Taken by published alone: linear refuses it.
         initial_velocity : sequence of 13 floats, optional
             (m/s, rad/s) The velocity of the same at the start. Default: rigid rotation at the nominal speed.
 

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, _display
-from ._keys import KEY_IN_FILE, REQUIRED_KEYS, SECTION_OF_KEY, ScenarioChanges, ScenarioKeys, Shaft, TipRelief, WheelInertia
+from ._keys import KEY_IN_FILE, REQUIRED_KEYS, SECTION_OF_KEY, ScenarioChanges, ScenarioKeys, Shaft, WheelInertia
 from ._names import hint
 from ._sections import OTHER_ARGUMENTS, check_key, with_whole_numbers
 from .faults import Fault, from_section, to_section
@@ -21,7 +21,7 @@ from .sensors import Sensor, sections_of
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-__all__ = ["Scenario", "Shaft", "TipRelief", "WheelInertia", "template"]
+__all__ = ["Scenario", "Shaft", "WheelInertia", "template"]
 
 
 class Scenario(ScenarioKeys):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
@@ -118,7 +117,7 @@ class Simulation:
         self._scenario = scenario
         self._native = native
         self._fields: dict[str, Any] | None = None
-        for signal in (*(getattr(native, name) for name in CHANNELS), *dict(native.sensors).values()):
+        for signal in (*native.channels.values(), *native.sensors.values()):
             read_only(signal)
 
     @property
@@ -145,33 +144,33 @@ class Simulation:
     @property
     def horizontal_g(self) -> Array:
         """(g) Horizontal acceleration of the two supports, their mean; under ``linear`` and ``published`` the sum of both wheels'; shape (samples,)."""
-        return self._native.horizontal_g
+        return self._native.channels["horizontal_g"]
 
     @property
     def vertical_g(self) -> Array:
         """(g) Vertical acceleration of the two supports, their mean; under ``linear`` and ``published`` the sum of both wheels'; shape (samples,)."""
-        return self._native.vertical_g
+        return self._native.channels["vertical_g"]
 
     @property
     def axial_g(self) -> Array:
         """(g) Axial acceleration of the two wheels, summed; shape (samples,)."""
-        return self._native.axial_g
+        return self._native.channels["axial_g"]
 
     @property
     def pinion_shaft_speed_hz(self) -> Array:
         """(rev/s) Speed of the pinion; shape (samples,)."""
-        return self._native.pinion_shaft_speed_hz
+        return self._native.channels["pinion_shaft_speed_hz"]
 
     @property
     def gear_shaft_speed_hz(self) -> Array:
         """(rev/s) Speed of the gear; shape (samples,)."""
-        return self._native.gear_shaft_speed_hz
+        return self._native.channels["gear_shaft_speed_hz"]
 
     @property
     def mesh_force_n(self) -> Array:
         """(N) Force of the mesh along the line of action; shape (samples,). Under ``contact`` 0 while no teeth touch, negative while back
         flanks do."""
-        return self._native.mesh_force_n
+        return self._native.channels["mesh_force_n"]
 
     @property
     def sensors(self) -> dict[str, Array]:
@@ -656,9 +655,9 @@ def _process(
     teeth = scenario.gear_teeth if wheel == "gear" else scenario.pinion_teeth
     settings = separation_settings(teeth, sidebands, None)
     values = np.ascontiguousarray(signal, dtype=np.float64)
-    record = _core.process_simulated(scenario._native, values, wheel, start_s, settings)
-    warn(record.warnings)
-    return Record(record, teeth=teeth, name=channel)
+    parts = _core.process_simulated(scenario._native, values, wheel, start_s, settings)
+    warn(parts["warnings"])
+    return Record(parts, teeth=teeth, name=channel)
 
 
 def simulate(scenario: Scenario) -> Simulation:
@@ -811,11 +810,10 @@ def simulate_many(
     rate_hz = None if target_rate_hz is None else positive("target_rate_hz", target_rate_hz)
     scenarios = list(scenarios)
     ask = _progress.shown("simulations") if progress is True else (progress or None)
-    report = None if ask is None else functools.partial(_report, ask, len(scenarios))
     native = [native_scenario(scenario) for scenario in scenarios]
     most = None if threads is None else whole("threads", threads, 1)
     raises = on_error == "raise"
-    results = _core.simulate_many(native, list(channels), most, raises, report)
+    results = _core.simulate_many(native, list(channels), most, raises, ask)
     if raises:
         _raise_first(results)
     made = [_signals(scenario, result) for scenario, result in zip(scenarios, results)]
@@ -860,7 +858,3 @@ def _warn_of_many(made: list[Signals]) -> None:
         f"{len({number for number, _ in of_code})} of {len(made)} simulations, the first: {of_code[0][1]}" for of_code in of_codes.values()
     ]
     warn(messages, of_codes)
-
-
-def _report(ask: Callable[[int, int], None], total: int, finished: int) -> None:
-    ask(finished, total)

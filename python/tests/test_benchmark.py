@@ -46,7 +46,7 @@ def test_the_benchmark_is_fair(tmp_path: Path) -> None:
         command = [sys.executable, str(FOLDER / "score.py"), str(folder), "-o", str(tmp_path / "scores"), "--check", *arguments]
         return subprocess.run(command, capture_output=True, text=True, encoding="utf-8", env=surroundings)
 
-    # What is no data set is told, not thrown.
+    # What is no data set is reported in words, not thrown.
     nothing = score(tmp_path)
     assert nothing.returncode == 2 and "it holds no data set" in nothing.stderr, nothing.stderr
     assert not (tmp_path / "scores").exists()

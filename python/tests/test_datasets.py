@@ -238,9 +238,9 @@ def test_parts_and_interruption_change_nothing(gears: datasets.Dataset, tmp_path
 
     with pytest.raises(Enough):
         datasets.generate_dataset(plan, tmp_path / "set", jobs=1, progress=stop)
-    told: list[tuple[int, int]] = []
-    datasets.generate_dataset(plan, tmp_path / "set", progress=lambda done, of: told.append((done, of)))
-    assert told[-1][0] == told[-1][1]
+    reported: list[tuple[int, int]] = []
+    datasets.generate_dataset(plan, tmp_path / "set", progress=lambda done, of: reported.append((done, of)))
+    assert reported[-1][0] == reported[-1][1]
     assert digests(tmp_path / "set") == digests(gears.path)
     for number in (1, 2):
         datasets.generate_dataset(plan, tmp_path / f"part{number}", part=(number, 2))

@@ -26,14 +26,14 @@ RIG = mt.Scenario(
 
 @pytest.mark.filterwarnings("ignore::meshtone.MeshtoneWarning")
 def test_from_signals_to_an_answer(tmp_path: Path) -> None:
-    told: list[tuple[int, int]] = []
+    reported: list[tuple[int, int]] = []
     gone = mt.simulate(RIG.copy(fault=mt.MissingTooth(tooth=8)))
 
     def ask(recording: object, healthy: object = None, **options: object) -> mt.Diagnosis:
         return mt.diagnose(recording, RIG, healthy, reference=tmp_path, records=512, **options)  # type: ignore[arg-type]
 
-    found = ask(gone, mt.simulate(RIG), progress=lambda *counts: told.append(counts))
-    assert told[-1] == (512, 512)
+    found = ask(gone, mt.simulate(RIG), progress=lambda *counts: reported.append(counts))
+    assert reported[-1] == (512, 512)
     kind, said = next(iter(found.kinds.items()))
     assert kind in ("missing-tooth", "tooth-breakage", "tooth-destruction")
     assert (said["wheel"], said["tooth"], said["angle_deg"]) == ("gear", 8, 63.0)

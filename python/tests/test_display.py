@@ -72,19 +72,19 @@ def test_gaps_and_constants() -> None:
 
 
 def test_progress_in_a_file_is_its_end_alone(capsys: pytest.CaptureFixture[str]) -> None:
-    told = _progress.shown("records")
+    report = _progress.shown("records")
     for finished in range(1, 5):
-        told(finished, 4)
+        report(finished, 4)
     written = capsys.readouterr().err
     assert written.startswith("4 of 4 records") and written.count("\n") == 1 and "\r" not in written
 
 
 def test_progress_on_the_terminal(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    told = _progress.shown("records")
-    told(1, 2)
-    told(2, 2)
-    told(2, 2)
+    report = _progress.shown("records")
+    report(1, 2)
+    report(2, 2)
+    report(2, 2)
     written = capsys.readouterr().err
     assert written.count("\r") == 2
     assert written.endswith("\n")

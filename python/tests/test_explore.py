@@ -243,8 +243,8 @@ def test_every_control_can_be_moved(page: Page, explorer: mt.Explorer) -> None:
 
 def test_wrong_values_are_told_at_their_key(page: Page, explorer: mt.Explorer) -> None:
     assert page.enter("gears.module_mm", "-3") == "gears.module_mm = -3: must be more than 0 mm"
-    told = page.run("return document.getElementById('key-gears.module_mm-problem').textContent")
-    assert told == "must be more than 0 mm"
+    shown = page.run("return document.getElementById('key-gears.module_mm-problem').textContent")
+    assert shown == "must be more than 0 mm"
     assert page.run("return document.getElementById('key-gears.module_mm').getAttribute('aria-invalid')") == "true"
     assert page.enter("gears.module_mm", "three") == 'gears.module_mm = "three": must be a number, not text'
     assert explorer.scenario == fast()
@@ -267,8 +267,8 @@ def test_speed_over_time_is_a_table(page: Page, explorer: mt.Explorer) -> None:
         field.value = arguments[1];
         field.dispatchEvent(new Event('change'));
     """
-    told = page.settled(lambda: page.run(script, name, "-4"), "a wrong speed")
-    assert told == "operation.speed_profile_hz.value[1] = -4: must be more than 0 rev/s"
+    shown = page.settled(lambda: page.run(script, name, "-4"), "a wrong speed")
+    assert shown == "operation.speed_profile_hz.value[1] = -4: must be more than 0 rev/s"
     assert page.run("return document.querySelector('#controls [aria-invalid]').getAttribute('aria-label')") == name
     assert page.settled(lambda: page.run(script, name, "41"), "a speed") == ""
     assert explorer.scenario.speed_profile_hz == {**profile, "value": [40.0, 41.0, 40.0]}

@@ -44,9 +44,9 @@ def test_tune_and_enhance(tmp_path: Path) -> None:
         if name.name != TUNED.name:
             (tmp_path / name.name).symlink_to(name)
     alone.write_text("\n".join(kept) + "\n", encoding="utf-8")
-    told: list[tuple[int, int]] = []
-    tuning = hybrid.tune(alone, progress=lambda done, of: told.append((done, of)))
-    assert told[-1][0] == told[-1][1] > 0
+    reported: list[tuple[int, int]] = []
+    tuning = hybrid.tune(alone, progress=lambda done, of: reported.append((done, of)))
+    assert reported[-1][0] == reported[-1][1] > 0
     assert set(tuning.parameters) >= {"width_ratio", "fault_to_harmonics_ratio", "noise_level"}
     assert tuning.error["enhanced"] < 0.25 < tuning.error["original"]
     tuned = tmp_path / "tuned.toml"

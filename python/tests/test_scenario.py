@@ -17,7 +17,7 @@ from meshtone import Scenario, examples
 
 @pytest.mark.parametrize("fault", FAULTS.values())
 def test_round_trips(fault: meshtone.Fault | None) -> None:
-    scenario = Scenario(**PAIR, fault=fault, din_grade=6, damping_ratio=[0.04] * 13, tip_relief=False)
+    scenario = Scenario(**PAIR, fault=fault, din_grade=6, damping_ratio=[0.04] * 13)
     for same in (Scenario.from_toml(scenario.to_toml()), pickle.loads(pickle.dumps(scenario)), scenario.copy()):
         assert same == scenario
         assert hash(same) == hash(scenario)

@@ -86,9 +86,9 @@ def test_process(broken: meshtone.Simulation) -> None:
 def test_many_are_the_same_as_one(broken: meshtone.Simulation) -> None:
     healthy = examples.healthy()
     scenarios = [broken.scenario, healthy, healthy.copy(seed=2), examples.missing_tooth()]
-    told: list[tuple[int, int]] = []
-    results = simulate_many(scenarios, threads=2, progress=lambda done, of: told.append((done, of)))
-    assert told[-1] == (4, 4)
+    reported: list[tuple[int, int]] = []
+    results = simulate_many(scenarios, threads=2, progress=lambda done, of: reported.append((done, of)))
+    assert reported[-1] == (4, 4)
     for scenario, result in zip(scenarios, results):
         assert result.scenario == scenario
         alone = simulate(scenario)
@@ -121,10 +121,10 @@ def test_many_keep_the_errors_in_their_places() -> None:
     with pytest.raises(ValueError) as of_all:
         simulate_many([healthy, misses, misses])
     assert str(of_all.value) == f"scenarios[1]: {second}"
-    told: list[tuple[int, int]] = []
+    reported: list[tuple[int, int]] = []
     with pytest.raises(ValueError, match=r"^scenarios\[0\]: "):
-        simulate_many([misses, *[healthy] * 400], threads=1, progress=lambda done, of: told.append((done, of)))
-    assert told[-1][0] < told[-1][1] == 401
+        simulate_many([misses, *[healthy] * 400], threads=1, progress=lambda done, of: reported.append((done, of)))
+    assert reported[-1][0] < reported[-1][1] == 401
     with pytest.raises(ValueError, match="on_error = 'ignore': must be 'raise' or 'return'"):
         simulate_many([healthy], on_error="ignore")  # type: ignore[call-overload]
 
@@ -247,11 +247,11 @@ def test_warnings_are_those_of_the_program() -> None:
 
 
 def test_warnings_are_told_once_where_the_user_called() -> None:
-    with warnings.catch_warnings(record=True) as told:
+    with warnings.catch_warnings(record=True) as reported:
         warnings.simplefilter("always")
         simulation = meshtone.simulate(examples.healthy().copy(pinion_teeth=14, sampling_rate_hz=2e4, settle_fraction=0.02))
         simulation.plot()
-    of_meshtone = [warning for warning in told if isinstance(warning.message, meshtone.MeshtoneWarning)]
+    of_meshtone = [warning for warning in reported if isinstance(warning.message, meshtone.MeshtoneWarning)]
     assert [str(warning.message) for warning in of_meshtone] == simulation.warnings
     assert [warning.message.code for warning in of_meshtone] == simulation.warning_codes  # type: ignore[union-attr]
     assert simulation.warning_codes[0] == "undercut"
@@ -261,9 +261,9 @@ def test_warnings_are_told_once_where_the_user_called() -> None:
 
 def test_many_simulations_warn_once_a_code() -> None:
     healthy = examples.healthy().copy(sampling_rate_hz=2e4)
-    with pytest.warns(meshtone.MeshtoneWarning) as told:
+    with pytest.warns(meshtone.MeshtoneWarning) as reported:
         made = meshtone.simulate_many([healthy, *(healthy.copy(pinion_teeth=14, seed=seed) for seed in range(3))])
-    assert [str(warning.message).split(": ")[0] for warning in told if warning.message.code == "undercut"] == [  # type: ignore[union-attr]
+    assert [str(warning.message).split(": ")[0] for warning in reported if warning.message.code == "undercut"] == [  # type: ignore[union-attr]
         "3 of 4 simulations, the first"
     ]
     codes = [result.warning_codes for result in made]

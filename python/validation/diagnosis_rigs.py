@@ -34,9 +34,9 @@ def between(first: Any, second: Any, part: float) -> Any:
     return first if isinstance(first, str) else (1 - part) * first + part * second
 
 
-def states(told: dict[str, Any], rig: str) -> list[tuple[float, Any]]:
+def states(stated: dict[str, Any], rig: str) -> list[tuple[float, Any]]:
     """Places along the case list, with the faults there; 0 is healthy."""
-    faults = [case.get("fault") for case in told["case"]]
+    faults = [case.get("fault") for case in stated["case"]]
     severity = rig_with(rig, faults[1]).fault_severities[0]
     places = [(0.0, None)] + [(part, {"kind": faults[1]["kind"], "severity": part * severity}) for part in (0.25, 0.5, 0.75)]
     for number, fault in enumerate(faults[1:], 1):
@@ -124,15 +124,15 @@ def ask(
 figure, axes = plt.subplots(1, 3, figsize=(11, 3.8), layout="constrained")
 print("rig          case                       damaged  median  90 % interval  holds it")
 for ax, name in zip(axes, RIGS):
-    told, rig = experiment(name)
-    steps = states(told, rig)
+    stated, rig = experiment(name)
+    steps = states(stated, rig)
     places = [place for place, _ in steps]
     seen, scatter = related_to_healthy(measured(name))
-    simulations = simulated(rig, steps, told["signal"]["sampling_rate_hz"])
+    simulations = simulated(rig, steps, stated["signal"]["sampling_rate_hz"])
     answers = [ask(case, seen, scatter, places, simulations) for case in range(len(seen))]
     for case, (probability, (low, middle, high)) in enumerate(answers):
         held = "" if case == 0 else "yes" if low <= case <= high else "no"
-        print(f"{name:12s} {told['case'][case]['label']:26s} {probability:7.3f} {middle:7.2f}  {low:5.2f} – {high:4.2f}   {held}")
+        print(f"{name:12s} {stated['case'][case]['label']:26s} {probability:7.3f} {middle:7.2f}  {low:5.2f} – {high:4.2f}   {held}")
     expected = [probability * middle for probability, (_, middle, _) in answers]
     correlation = spearmanr(expected, np.arange(len(expected))).statistic
     holds = np.mean([low <= case <= high for case, (_, (low, _, high)) in enumerate(answers) if case])
@@ -144,7 +144,7 @@ for ax, name in zip(axes, RIGS):
     ax.errorbar(cases[1:], middles[1:], [(middles - lows)[1:], (highs - middles)[1:]], fmt="o", color=BLUE, label="median, 90 %")
     for at, value in zip(cases, said):
         ax.annotate(f"{value:.2f}", (at, -0.9), ha="center", fontsize=8, color=ORANGE)
-    labels = [case["label"].removeprefix("chipped, ").removesuffix(" destroyed") for case in told["case"]]
+    labels = [case["label"].removeprefix("chipped, ").removesuffix(" destroyed") for case in stated["case"]]
     ax.set_xticks(cases, labels, rotation=40, ha="right", rotation_mode="anchor", fontsize=9)
     ax.set_ylim(-1.2, places[-1] + 0.5)
     ax.set_title(f"{name.capitalize()}: rank correlation {correlation:.2f}", fontsize=10)

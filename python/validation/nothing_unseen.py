@@ -6,7 +6,7 @@ Every trial runs the program itself and looks at its exit code, its words, its t
 * recordings of every format with bytes changed, cut off or repeated: likewise;
 * the program ended at a moment drawn by chance, by SIGKILL, SIGTERM or SIGINT: the same command again gives every byte that it
   gives undisturbed, and nothing else stays behind; the latter two leave nothing behind themselves;
-* two programs that write to one folder at once: all is as one of them makes it alone, or one is told;
+* two programs that write to one folder at once: all is as one of them makes it alone, or one of them ends with an error;
 * data sets of which a file is changed, cut, lost, swapped or added: `dataset verify` says so, and the plan run again mends it.
 
 Also, from Python, scenarios drawn at random that are valid: they simulate, all numbers are finite, and the mean mesh force is that of
@@ -71,7 +71,7 @@ class Ended:
 
 
 @dataclass
-class Row:
+class TriedGroup:
     """A row of the table: what was tried, how often, and what happened."""
 
     tried: str
@@ -130,7 +130,7 @@ def judged(ended: Ended, left: set[str], place: str) -> tuple[str, str | None]:
         return f"at work after {LONGEST_S:.0f} s", None
     refused = ended.code in (1, 2) and "error" in ended.words.lower()
     if refused and MISSING in ended.words and any(name.endswith("manifest.json") for name in left):
-        return "made but for records that are told", None
+        return "made but for records that are named", None
     outcome = "carried out" if ended.code == 0 else "refused" if refused else f"ended with {ended.code}"
     if ended.code == 0 and "warning" in ended.words.lower():
         outcome = "carried out with a warning"
@@ -146,15 +146,15 @@ def judged(ended: Ended, left: set[str], place: str) -> tuple[str, str | None]:
     return outcome, None
 
 
-def all_of(row: Row, trials: Iterator[Callable[[], tuple[str, str | None]]]) -> Row:
+def all_of(row: TriedGroup, trials: Iterator[Callable[[], tuple[str, str | None]]]) -> TriedGroup:
     """Makes trials, as many at a time as there are processors."""
     with ThreadPoolExecutor(max_workers=os.cpu_count()) as pool:
         # Some at a time: every trial holds what it will write.
         while some := list(itertools.islice(trials, 64)):
             for outcome, defect in pool.map(lambda trial: trial(), some):
                 row.add(outcome, defect)
-                told = f"\r{row.tried}: {row.outcomes.total()}, {len(row.defects)} defects "
-                print(told, end="", file=sys.stderr, flush=True)
+                line = f"\r{row.tried}: {row.outcomes.total()}, {len(row.defects)} defects "
+                print(line, end="", file=sys.stderr, flush=True)
     print(file=sys.stderr)
     return row
 
@@ -236,7 +236,7 @@ KINDS = [
 ]
 
 
-def scenarios(program: str, number: int, seed: int) -> Row:
+def scenarios(program: str, number: int, seed: int) -> TriedGroup:
     """Spoilt scenarios."""
     texts = [path.read_text() for path in sorted(EXAMPLES.glob("*.toml"))]
     texts += [mt.template(kind) for kind in KINDS]
@@ -248,7 +248,7 @@ def scenarios(program: str, number: int, seed: int) -> Row:
             text = spoilt_text(draw.choice(texts), draw)
             yield written_trial([program, "simulate", "s.toml", "-o", "out", "--no-panel", "-q"], text, "s.toml", companions)
 
-    return all_of(Row("scenarios with one thing spoilt"), trials())
+    return all_of(TriedGroup("scenarios with one thing spoilt"), trials())
 
 
 SMALL_PLAN = """
@@ -286,7 +286,7 @@ test = 0.5
 """
 
 
-def plans(program: str, number: int, seed: int) -> Row:
+def plans(program: str, number: int, seed: int) -> TriedGroup:
     """Spoilt plans."""
     draw = Random(f"plans {seed}")
     companions = [EXAMPLES / "datasets" / "machine.toml"]
@@ -296,7 +296,7 @@ def plans(program: str, number: int, seed: int) -> Row:
             text = spoilt_text(SMALL_PLAN, draw)
             yield written_trial([program, "dataset", "plan.toml", "-o", "out", "-q"], text, "plan.toml", companions)
 
-    return all_of(Row("plans with one thing spoilt"), trials())
+    return all_of(TriedGroup("plans with one thing spoilt"), trials())
 
 
 # Recordings
@@ -359,7 +359,7 @@ def spoilt_bytes(whole: bytes, draw: Random, others: list[bytes]) -> bytes:
     return bytes(data)
 
 
-def recordings(program: str, number: int, seed: int) -> Row:
+def recordings(program: str, number: int, seed: int) -> TriedGroup:
     """Spoilt recordings."""
     draw = Random(f"recordings {seed}")
     with tempfile.TemporaryDirectory() as place:
@@ -371,8 +371,8 @@ def recordings(program: str, number: int, seed: int) -> Row:
     def command(name: str) -> list[str]:
         own = channel.get(name.split(".")[1], "bearing")
         rate = [] if name.endswith((".wav", ".csv", ".parquet", ".npz", ".mat")) else ["--sampling-rate-hz", "20000"]
-        told = ["--channel", own, "--teeth", "38", "--shaft-hz", "10", *rate, *variable.get(name, [])]
-        return [program, "indicators", name, *told, "--no-figure", "-q", "-o", "out"]
+        stated = ["--channel", own, "--teeth", "38", "--shaft-hz", "10", *rate, *variable.get(name, [])]
+        return [program, "indicators", name, *stated, "--no-figure", "-q", "-o", "out"]
 
     def trial_of(name: str, data: bytes) -> Callable[[], tuple[str, str | None]]:
         def trial() -> tuple[str, str | None]:
@@ -400,7 +400,7 @@ def recordings(program: str, number: int, seed: int) -> Row:
             name = draw.choice(sorted(whole))
             yield trial_of(name, spoilt_bytes(whole[name], draw, list(whole.values())))
 
-    return all_of(Row("recordings with bytes changed, of eleven files in six formats"), trials())
+    return all_of(TriedGroup("recordings with bytes changed, of eleven files in six formats"), trials())
 
 
 # Ends
@@ -433,16 +433,16 @@ def commands_to_end(program: str) -> list[tuple[list[str], dict[str, bytes]]]:
     csv = (Path(recording_folder.name) / "run.csv").read_bytes()
     recording_folder.cleanup()
     healthy = (EXAMPLES / "healthy.toml").read_bytes()
-    told = ["--channel", "bearing", "--teeth", "38", "--shaft-hz", "10"]
+    stated = ["--channel", "bearing", "--teeth", "38", "--shaft-hz", "10"]
     return [
         ([program, "dataset", "plan.toml", "-o", "out", "-q"], {"plan.toml": plan, "machine.toml": machine}),
         ([program, "simulate", "healthy.toml", "-o", "out", "-q"], {"healthy.toml": healthy}),
-        ([program, "indicators", "run.csv", *told, "-o", "out", "-q"], {"run.csv": csv}),
+        ([program, "indicators", "run.csv", *stated, "-o", "out", "-q"], {"run.csv": csv}),
         ([program, "wheels", "healthy.toml", "-o", "wheels.npz"], {"healthy.toml": healthy}),
     ]
 
 
-def ends(program: str, number: int, seed: int) -> Row:
+def ends(program: str, number: int, seed: int) -> TriedGroup:
     """Programs that are ended at some moment."""
     draw = Random(f"ends {seed}")
     made = [(command, inputs, *undisturbed(command, inputs)) for command, inputs in commands_to_end(program)]
@@ -482,10 +482,10 @@ def ends(program: str, number: int, seed: int) -> Row:
             which = draw.choice([0, 0, 0, 1, 2, 3])
             yield trial_of(which, draw.uniform(0, 1.0), draw.choice([signal.SIGKILL, signal.SIGTERM, signal.SIGINT]))
 
-    return all_of(Row("data sets, simulations, indicators and wheels ended at any moment"), trials())
+    return all_of(TriedGroup("data sets, simulations, indicators and wheels ended at any moment"), trials())
 
 
-def together(program: str, number: int, seed: int) -> Row:
+def together(program: str, number: int, seed: int) -> TriedGroup:
     """Two programs that write to one folder at once."""
     made = [(command, inputs, *undisturbed(command, inputs)) for command, inputs in commands_to_end(program)]
 
@@ -502,17 +502,17 @@ def together(program: str, number: int, seed: int) -> Row:
                 time.sleep(delay_s)
                 second = run(command, folder)
                 ended = [first.result(), second]
-            told = [one for one in ended if one.code != 0]
-            outcome = "both made the same" if not told else "the second was told"
-            if any(one.code not in (0, 1, 2) or "error" not in one.words.lower() for one in told):
-                return outcome, f"{told}"
-            if len(told) == 2:
-                return outcome, f"both failed: {told}"
+            failed = [one for one in ended if one.code != 0]
+            outcome = "both made the same" if not failed else "the second ended with an error"
+            if any(one.code not in (0, 1, 2) or "error" not in one.words.lower() for one in failed):
+                return outcome, f"{failed}"
+            if len(failed) == 2:
+                return outcome, f"both failed: {failed}"
             if comparable(folder) != whole:
                 return outcome, f"{command[1]}: {set(comparable(folder).items()) ^ set(whole.items())}"
             return outcome, None
 
-    return all_of(Row("two programs in one folder"), (partial(trial, i) for i in range(number)))
+    return all_of(TriedGroup("two programs in one folder"), (partial(trial, i) for i in range(number)))
 
 
 # Data sets that have changed
@@ -551,7 +551,7 @@ def spoil_folder(folder: Path, draw: Random) -> str:
             return f"{path.name} emptied"
 
 
-def rot(program: str, number: int, seed: int) -> Row:
+def rot(program: str, number: int, seed: int) -> TriedGroup:
     """Data sets of which something is changed."""
     draw = Random(f"rot {seed}")
     command, inputs = commands_to_end(program)[0]
@@ -585,7 +585,7 @@ def rot(program: str, number: int, seed: int) -> Row:
 
             return trial
 
-        return all_of(Row("data sets with a file changed"), (trial_of(Random(f"{seed} {i}")) for i in range(number)))
+        return all_of(TriedGroup("data sets with a file changed"), (trial_of(Random(f"{seed} {i}")) for i in range(number)))
 
 
 # Valid scenarios
@@ -650,13 +650,13 @@ def simulated_trial(draw: Random) -> tuple[str, str | None]:
     return outcome, None
 
 
-def valid(_program: str, number: int, seed: int) -> Row:
+def valid(_program: str, number: int, seed: int) -> TriedGroup:
     """Scenarios drawn at random from what engineers build."""
     draws = (Random(f"valid {seed} {i}") for i in range(number))
-    return all_of(Row("valid scenarios drawn at random"), (partial(simulated_trial, draw) for draw in draws))
+    return all_of(TriedGroup("valid scenarios drawn at random"), (partial(simulated_trial, draw) for draw in draws))
 
 
-PARTS: dict[str, tuple[Callable[[str, int, int], Row], int]] = {
+PARTS: dict[str, tuple[Callable[[str, int, int], TriedGroup], int]] = {
     "scenarios": (scenarios, 4000),
     "plans": (plans, 1000),
     "recordings": (recordings, 9200),

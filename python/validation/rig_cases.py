@@ -20,8 +20,8 @@ Values = npt.NDArray[np.float64]
 
 def experiment(name: str) -> tuple[dict[str, Any], str]:
     """An experiment's file, and the text of its rig's scenario."""
-    told = tomllib.loads((FOLDER / f"{name}_contact.toml").read_text())
-    return told, (FOLDER / told["scenario"]).read_text()
+    stated = tomllib.loads((FOLDER / f"{name}_contact.toml").read_text())
+    return stated, (FOLDER / stated["scenario"]).read_text()
 
 
 def rig_with(rig: str, fault: Any, changes: dict[str, Any] | None = None) -> mt.Scenario:

@@ -49,10 +49,10 @@ MODELS = {
 }
 
 
-def machine(told: dict[str, Any], draw: np.random.Generator) -> dict[str, Any]:
+def machine(stated: dict[str, Any], draw: np.random.Generator) -> dict[str, Any]:
     """What is not known of a rig: one draw of what its experiment file tunes."""
     drawn: dict[str, Any] = {}
-    for key in told["tune"]["key"]:
+    for key in stated["tune"]["key"]:
         if key["key"] == "seed":
             drawn["seed"] = int(draw.integers(1, 2**31))
         elif key.get("logarithmic"):
@@ -62,14 +62,14 @@ def machine(told: dict[str, Any], draw: np.random.Generator) -> dict[str, Any]:
     return drawn
 
 
-def simulated(told: dict[str, Any], rig: str) -> tuple[Values, Values]:
+def simulated(stated: dict[str, Any], rig: str) -> tuple[Values, Values]:
     """log10 of indicators over the machine's healthy ones: healthy (machine, record, indicator), and damaged (machine, case, indicator)."""
     draw = np.random.default_rng(17)
-    faults = [None] * (REFERENCE + HEALTHY) + [case["fault"] for case in told["case"][1:]]
+    faults = [None] * (REFERENCE + HEALTHY) + [case["fault"] for case in stated["case"][1:]]
     torque = rig_with(rig, None).brake_torque_nm
     scenarios, snr_db = [], []
     for _ in range(MACHINES):
-        own = machine(told, draw)
+        own = machine(stated, draw)
         for fault in faults:
             record = dict(own)
             record["operation.brake_torque_nm"] = torque * float(draw.uniform(*LOAD))
@@ -77,7 +77,7 @@ def simulated(told: dict[str, Any], rig: str) -> tuple[Values, Values]:
             scenarios.append(rig_with(rig, fault, record))
             snr_db.append(draw.uniform(*SNR_DB))
     values = []
-    results = mt.simulate_many(scenarios, channels=["vertical_g"], target_rate_hz=told["signal"]["sampling_rate_hz"], progress=True)
+    results = mt.simulate_many(scenarios, channels=["vertical_g"], target_rate_hz=stated["signal"]["sampling_rate_hz"], progress=True)
     for scenario, signals, ratio in zip(scenarios, results, snr_db):
         deviation = float(signals.vertical_g.std()) * 10 ** (-ratio / 20)
         noise = draw.normal(0.0, deviation, 2 * len(signals.vertical_g))
@@ -188,11 +188,11 @@ def shown(found: list[list[Values]], medians_only: bool) -> list[str]:
     """Scores with 90 % intervals; where medians are asked they are resampled already, and an area tells nothing."""
     draws = np.array([scores(found, np.random.default_rng([5, number])) for number in range(DRAWS)])
     ends = np.quantile(draws, [0.05, 0.95], axis=0)
-    told = [f"{value:.2f} ({low:.2f} to {high:.2f})" for value, low, high in zip(scores(found, None), *ends)]
-    return ["–", *told[1:]] if medians_only else told
+    texts = [f"{value:.2f} ({low:.2f} to {high:.2f})" for value, low, high in zip(scores(found, None), *ends)]
+    return ["–", *texts[1:]] if medians_only else texts
 
 
-def draw_rig(axes: Any, name: str, told: dict[str, Any], data: tuple[Values, Values], records: list[list[Values]]) -> None:
+def draw_rig(axes: Any, name: str, stated: dict[str, Any], data: tuple[Values, Values], records: list[list[Values]]) -> None:
     """Where simulated machines, those that are near, and measured medians lie, case by case."""
     medians = np.array([[np.median(values) for values in case] for case in records])
     healthy, damaged = data
@@ -207,7 +207,7 @@ def draw_rig(axes: Any, name: str, told: dict[str, Any], data: tuple[Values, Val
         axes[row].errorbar(range(len(records)), spread[1], np.abs(spread[[0, 2]] - spread[1]), fmt="o", color=ORANGE, label="measured, 90 %")
         axes[row].grid(alpha=0.3)
     axes[0].set_title(name.capitalize(), fontsize=10)
-    labels = [case["label"].removeprefix("chipped, ").removesuffix(" destroyed") for case in told["case"]]
+    labels = [case["label"].removeprefix("chipped, ").removesuffix(" destroyed") for case in stated["case"]]
     axes[1].set_xticks(range(len(labels)), labels, rotation=40, ha="right", rotation_mode="anchor", fontsize=8)
 
 
@@ -217,8 +217,8 @@ def main() -> None:
     print("|---|---|---|---|---|---|---|---|---|")
     by_case = []
     for column, name in enumerate(RIGS):
-        told, rig = experiment(name)
-        records, data = asked(name), simulated(told, rig)
+        stated, rig = experiment(name)
+        records, data = asked(name), simulated(stated, rig)
         for tuned in (False, True):
             learnt_from = "tuned" if tuned else "rig data only"
             for model in MODELS:
@@ -227,7 +227,7 @@ def main() -> None:
                     print(f"| {name} | {learnt_from} | {model} | {view} | {' | '.join(shown(found, view == 'both'))} |", flush=True)
                     hits = ", ".join(f"{np.mean(damaged > 0.5):.2f}" for _, damaged, _, _ in found)
                     by_case.append(f"{name}, {learnt_from}, {model}, {view}: {hits}")
-        draw_rig(axes[:, column], name, told, data, records)
+        draw_rig(axes[:, column], name, stated, data, records)
     print("\nPart of each damaged case's records, or of its resampled medians, that is called damaged:\n" + "\n".join(by_case))
     axes[0, 0].set_ylabel("log10 of rms over healthy (-)")
     axes[1, 0].set_ylabel("log10 of kurtosis over healthy (-)")

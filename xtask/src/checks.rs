@@ -23,13 +23,12 @@ struct Prepared {
 ///
 /// # Errors
 /// The exit code of what failed.
-pub fn quick(root: &Path) -> Result<(), u8> {
-    let row = StepRunner::at_terminal(root);
-    formatting(&row)?;
-    row.step("rooms check", || rooms::check(root))?;
-    lints(&row)?;
+pub fn quick(row: &StepRunner) -> Result<(), u8> {
+    formatting(row)?;
+    row.check("rooms check", rooms::problems)?;
+    lints(row)?;
     row.cargo(&[&["test", "--release", "--test", "all"], &CORE[..]].concat(), &[])?;
-    tests_of(&row, "meshtone", 0, &["--lib"], &[])
+    tests_of(row, "meshtone", 0, &["--lib"], &[])
 }
 
 /// The core, with the program, none of whose targets is built, so that the packages of others are those that it has built.
@@ -53,7 +52,7 @@ const BY_THEMSELVES: [&str; 4] = ["--exclude", "meshtone", "--exclude", READER];
 pub fn all(root: &Path) -> Result<(), u8> {
     let [rust, python] = StepRunner::pair(root, &root.join("target").join("checks").join("log"))?;
     formatting(&rust)?;
-    rust.step("rooms check", || rooms::check(root))?;
+    rust.check("rooms check", rooms::problems)?;
     let (ready, prepared) = channel();
     in_parallel(|| rust_row(&rust, &prepared), move || python_row(&python, &ready))
 }
@@ -61,7 +60,7 @@ pub fn all(root: &Path) -> Result<(), u8> {
 fn rust_row(row: &StepRunner, prepared: &Receiver<Prepared>) -> Result<(), u8> {
     lints(row)?;
     // All that the platform needs has been fetched for the lints.
-    row.step("dependencies check", || dependencies::check(row.root()))?;
+    row.check("dependencies check", dependencies::problems)?;
     // Nothing comes where that has failed, which has been said.
     let prepared = prepared.recv().map_err(|_| 1)?;
     let mut surroundings = unusual(row)?;
@@ -74,7 +73,7 @@ fn rust_row(row: &StepRunner, prepared: &Receiver<Prepared>) -> Result<(), u8> {
     unit_tests(row, &surroundings)?;
     features::object_stores(row, &surroundings)?;
     row.cargo(&[&["test", "--release", "--doc"], &TESTED[..]].concat(), &surroundings)?;
-    row.step("kernels check", || kernels::check(row.root()))?;
+    row.check("kernels check", kernels::problems)?;
     let program = dist::program(row)?;
     dist::try_program(row, &program)?;
     documentation(row)?;
@@ -137,5 +136,5 @@ fn lints(row: &StepRunner) -> Result<(), u8> {
 fn documentation(row: &StepRunner) -> Result<(), u8> {
     let arguments = ["doc", "--workspace", "--no-deps", "--release"];
     row.cargo(&arguments, &[("RUSTDOCFLAGS", "-D warnings".into())])?;
-    row.step("docs check", || docs::check_and_report(row.root()))
+    row.check("docs check", docs::problems)
 }

@@ -4,11 +4,12 @@
 //! are those of `Cargo.lock`, for all platforms; licences are those of the packages that this platform needs.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
 use toml::{Table, Value};
+
+use crate::files;
 
 /// A package of `Cargo.lock`.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -19,36 +20,22 @@ struct Package {
     source: Option<String>,
 }
 
-/// Checks all dependencies against `deny.toml`.
+/// The dependencies that `deny.toml` does not allow, and its exceptions that are not needed any more.
 ///
 /// # Arguments
 /// * `root` - folder of the workspace
 ///
 /// # Errors
-/// 1 where one is not allowed, where an exception is not needed any more, and where something cannot be read.
-pub fn check(root: &Path) -> Result<(), u8> {
-    let read = || {
-        let rules = read_table(&root.join("deny.toml"))?;
-        let packages = packages(&read_table(&root.join("Cargo.lock"))?);
-        Ok::<_, String>((rules, packages, licences(root)?))
-    };
-    let (rules, packages, licences) = read().map_err(|problem| {
-        eprintln!("error: {problem}");
-        1
-    })?;
-    let problems = [
-        foreign(&rules, &packages),
-        doubled(&rules, &packages),
-        unlisted(&rules, &packages),
-        refused(&rules, &licences),
-    ]
-    .concat();
-    problems.iter().for_each(|problem| eprintln!("error: {problem}"));
-    if problems.is_empty() { Ok(()) } else { Err(1) }
+/// Something that cannot be read.
+pub fn problems(root: &Path) -> Result<Vec<String>, String> {
+    let rules = read_table(&root.join("deny.toml"))?;
+    let packages = packages(&read_table(&root.join("Cargo.lock"))?);
+    let others = [foreign(&rules, &packages), doubled(&rules, &packages), unlisted(&rules, &packages)];
+    Ok([others.concat(), refused(&rules, &licences(root)?)].concat())
 }
 
 fn read_table(path: &Path) -> Result<Table, String> {
-    let text = fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let text = files::read(path).map_err(|error| error.to_string())?;
     text.parse().map_err(|error| format!("{}: {error}", path.display()))
 }
 
@@ -187,56 +174,26 @@ fn refused(rules: &Table, licences: &BTreeMap<String, String>) -> Vec<String> {
     refused.chain(unneeded).collect()
 }
 
-/// Returns whether an expression of licences can be satisfied by those that are allowed. What is no expression cannot.
+/// Stand for an expression in parentheses that cannot, or can, be satisfied.
+const DECIDED: [&str; 2] = ["REFUSED", "ALLOWED"];
+
+/// Returns whether an expression of licences can be satisfied by those that are allowed. A term that is no licence never is allowed.
 ///
 /// Source: SPDX specification 3.0, annex "SPDX license expressions"; `/` for OR is what packages wrote before.
 fn is_allowed(expression: &str, allowed: &[&str]) -> bool {
-    let spaced = expression.replace('(', " ( ").replace(')', " ) ").replace('/', " OR ");
-    let words: Vec<&str> = spaced.split_whitespace().collect();
-    let mut rest = words.as_slice();
-    any(&mut rest, allowed) == Some(true) && rest.is_empty()
+    let mut open = expression.replace('/', " OR ");
+    // The last parenthesis that opens is an innermost one.
+    while let Some((before, rest)) = open.rsplit_once('(') {
+        let Some((inside, after)) = rest.split_once(')') else { return false };
+        open = format!("{before}{}{after}", DECIDED[usize::from(is_flat_allowed(inside, allowed))]);
+    }
+    is_flat_allowed(&open, allowed)
 }
 
-/// Terms with OR between.
-fn any(words: &mut &[&str], allowed: &[&str]) -> Option<bool> {
-    let mut is_allowed = all(words, allowed)?;
-    while let ["OR", rest @ ..] = *words {
-        *words = rest;
-        is_allowed |= all(words, allowed)?;
-    }
-    Some(is_allowed)
-}
-
-/// Terms with AND between, which binds closer.
-fn all(words: &mut &[&str], allowed: &[&str]) -> Option<bool> {
-    let mut is_allowed = one(words, allowed)?;
-    while let ["AND", rest @ ..] = *words {
-        *words = rest;
-        is_allowed &= one(words, allowed)?;
-    }
-    Some(is_allowed)
-}
-
-/// A licence, one with an exception from it, or an expression in parentheses.
-fn one(words: &mut &[&str], allowed: &[&str]) -> Option<bool> {
-    match *words {
-        ["(", rest @ ..] => {
-            *words = rest;
-            let is_allowed = any(words, allowed)?;
-            let rest = words.strip_prefix(&[")"])?;
-            *words = rest;
-            Some(is_allowed)
-        }
-        [licence, "WITH", exception, rest @ ..] => {
-            *words = rest;
-            Some(allowed.contains(&format!("{licence} WITH {exception}").as_str()))
-        }
-        [licence, rest @ ..] if !["OR", "AND", "WITH", ")"].contains(licence) => {
-            *words = rest;
-            Some(allowed.contains(licence))
-        }
-        _ => None,
-    }
+/// The same of an expression without parentheses, in which AND binds closer than OR.
+fn is_flat_allowed(expression: &str, allowed: &[&str]) -> bool {
+    let is_licence = |text: &str| text == DECIDED[1] || allowed.contains(&text);
+    expression.split(" OR ").any(|all| all.split(" AND ").all(|licence| is_licence(licence.trim())))
 }
 
 #[cfg(test)]

@@ -64,11 +64,10 @@ pub fn pip_install(
     python: &Path,
     what: impl FnOnce(&mut Command) -> &mut Command,
 ) -> Result<(), u8> {
-    let mut command = Command::new(pip);
-    command.args(["-m", "pip", "--python"]).arg(python);
+    let mut command = quiet_pip(pip);
     // What is imported is compiled then; most is not.
-    let install = ["--quiet", "--disable-pip-version-check", "install", "--no-compile"];
-    row.program(what(command.args(install)))
+    command.arg("--python").arg(python).args(["install", "--no-compile"]);
+    row.program(what(&mut command))
 }
 
 /// Builds the wheel of a package from its sources, where there is nothing but what it says that it needs.
@@ -86,17 +85,14 @@ pub fn pip_wheel(
     folder: &Path,
     what: impl FnOnce(&mut Command) -> &mut Command,
 ) -> Result<(), u8> {
-    let mut command = Command::new(pip);
-    command.args([
-        "-m",
-        "pip",
-        "--quiet",
-        "--disable-pip-version-check",
-        "wheel",
-        "--no-deps",
-        "--wheel-dir",
-    ]);
-    row.program(what(command.arg(folder)))
+    let mut command = quiet_pip(pip);
+    row.program(what(command.args(["wheel", "--no-deps", "--wheel-dir"]).arg(folder)))
+}
+
+fn quiet_pip(python: &Path) -> Command {
+    let mut command = Command::new(python);
+    command.args(["-m", "pip", "--quiet", "--disable-pip-version-check"]);
+    command
 }
 
 /// The interpreter of a virtual environment.

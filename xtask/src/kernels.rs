@@ -15,35 +15,33 @@ const FUNCTIONS: [&str; 3] = ["RNv", "RINv", "ZN"];
 /// The crate of the kernels, as it stands in a mangled name.
 const KERNELS: &str = "8meshtone";
 
-/// Checks that no intrinsic is called as a function in the release build of the program, which must be there.
+/// The intrinsics that are called as functions in the release build of the program, which must be there.
 ///
 /// # Arguments
 /// * `root` - folder of the workspace
 ///
 /// # Errors
-/// 1 where one is, and where that cannot be told.
-pub fn check(root: &Path) -> Result<(), u8> {
+/// A program that cannot be read, or that holds no names of its functions.
+pub fn problems(root: &Path) -> Result<Vec<String>, String> {
     let file = format!("meshtone{}", std::env::consts::EXE_SUFFIX);
     let program = root.join("target").join("release").join(file);
-    let refused = |problem: &str| {
-        eprintln!("error: {}: {problem}", program.display());
-        1
-    };
-    let bytes = std::fs::read(&program).map_err(|error| refused(&error.to_string()))?;
+    let bytes = std::fs::read(&program).map_err(|error| format!("{}: {error}", program.display()))?;
     let is_function = |name: &&str| FUNCTIONS.iter().any(|start| name.starts_with(start));
     let functions: Vec<&str> = names(&bytes).filter(is_function).collect();
     if !functions.iter().any(|name| name.contains(KERNELS)) {
-        return Err(refused("holds no names of its functions"));
+        return Err(format!("{}: holds no names of its functions", program.display()));
     }
     let called: Vec<&str> = functions.into_iter().filter(|name| is_intrinsic(name)).collect();
-    if called.is_empty() {
-        return Ok(());
-    }
-    Err(refused(&format!(
-        "these intrinsics are functions that are called (`objdump -d` shows by whom); inline what calls them into what is \
-         compiled for the instruction set, with `#[inline(always)]` and no closure handed to a function that is not:\n  {}",
-        called.join("\n  ")
-    )))
+    let problem = || {
+        format!(
+            "{}: these intrinsics are functions that are called (`objdump -d` shows by whom); inline what calls them into \
+             what is compiled for the instruction set, with `#[inline(always)]` and no closure handed to a function that is \
+             not:\n  {}",
+            program.display(),
+            called.join("\n  ")
+        )
+    };
+    Ok((!called.is_empty()).then(problem).into_iter().collect())
 }
 
 /// Names in a program's table of symbols, without the underscores before them, and whatever else is text between two zeros.

@@ -8,6 +8,7 @@ mod dist;
 mod docs;
 mod environment;
 mod features;
+mod files;
 mod kernels;
 mod packages;
 mod python;
@@ -52,21 +53,18 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let root = workspace_root();
+    let row = StepRunner::at_terminal(root);
     let outcome = match words.as_slice() {
-        ["check"] => checks::quick(root),
+        ["check"] => checks::quick(&row),
         ["test"] => checks::all(root),
-        ["dist"] => dist::make(&StepRunner::at_terminal(root)),
-        ["fuzz", arguments @ ..] => {
-            StepRunner::at_terminal(root).cargo(&[&FUZZ[..], arguments].concat(), &[])
-        }
+        ["dist"] => dist::make(&row),
+        ["fuzz", arguments @ ..] => row.cargo(&[&FUZZ[..], arguments].concat(), &[]),
         ["docs"] => docs::build(root),
-        ["wheel"] => dist::make_wheel(&StepRunner::at_terminal(root)),
-        ["generate"] => checks::generate(&StepRunner::at_terminal(root)),
-        ["check-rooms"] => StepRunner::at_terminal(root).step("rooms check", || rooms::check(root)),
-        ["check-dependencies"] => {
-            StepRunner::at_terminal(root).step("dependencies check", || dependencies::check(root))
-        }
-        ["check-docs"] => StepRunner::at_terminal(root).step("docs check", || docs::check_and_report(root)),
+        ["wheel"] => dist::make_wheel(&row),
+        ["generate"] => checks::generate(&row),
+        ["check-rooms"] => row.check("rooms check", rooms::problems),
+        ["check-dependencies"] => row.check("dependencies check", dependencies::problems),
+        ["check-docs"] => row.check("docs check", docs::problems),
         ["help" | "-h" | "--help"] => {
             print!("{HELP}");
             Ok(())

@@ -10,6 +10,19 @@ use crate::surroundings::unusual;
 /// Programs that the tests of the page need to try it in a browser, each by one of its names.
 const BROWSER: [&[&str]; 2] = [&["chromium", "chromium-browser", "google-chrome"], &["chromedriver"]];
 
+/// Arguments of pytest for the examples in the package's documentation.
+const EXAMPLES: [&str; 5] =
+    ["--quiet", "--doctest-modules", "--doctest-ignore-import-errors", "--pyargs", "meshtone"];
+/// Arguments of mypy: what is typed.
+const TYPES: [&str; 6] = [
+    "--config-file=pyproject.toml",
+    "python/meshtone",
+    "python/tests",
+    "python/gallery",
+    "python/validation",
+    "python/benchmarks",
+];
+
 /// Returns whether a program is found by its name.
 fn is_installed(name: &str) -> bool {
     let path = std::env::var_os("PATH").unwrap_or_default();
@@ -30,40 +43,16 @@ pub fn test(row: &StepRunner, python: &Path, wheel: &Path) -> Result<(), u8> {
         pip_install(row, python, python, |pip| pip.args(["--force-reinstall", "--no-deps"]).arg(wheel))
     })?;
     let surroundings = unusual(row)?;
-    let run = |name: &str, arguments: &[&str]| {
-        row.step(name, || {
-            row.program(Command::new(python).args(arguments).envs(surroundings.iter().cloned()))
-        })
+    let run = |name: &str, module: &str, arguments: &[&str]| {
+        let mut program = Command::new(python);
+        program.args(["-m", module]).args(arguments).envs(surroundings.iter().cloned());
+        row.step(name, || row.program(&mut program))
     };
-    run("Python tests", &["-m", "pytest", "--quiet", "python/tests"])?;
+    run("Python tests", "pytest", &["--quiet", "python/tests"])?;
     if let Some(missing) = BROWSER.into_iter().find(|names| !names.iter().any(|name| is_installed(name))) {
         println!("    the page was not tried in a browser: {} is not installed", missing[0]);
     }
-    run(
-        "Python examples",
-        &[
-            "-m",
-            "pytest",
-            "--quiet",
-            "--doctest-modules",
-            "--doctest-ignore-import-errors",
-            "--pyargs",
-            "meshtone",
-        ],
-    )?;
-    run(
-        "Python types",
-        &[
-            "-m",
-            "mypy",
-            "--config-file",
-            "pyproject.toml",
-            "python/meshtone",
-            "python/tests",
-            "python/gallery",
-            "python/validation",
-            "python/benchmarks",
-        ],
-    )?;
-    run("Python stubs", &["-m", "mypy.stubtest", "meshtone._core"])
+    run("Python examples", "pytest", &EXAMPLES)?;
+    run("Python types", "mypy", &TYPES)?;
+    run("Python stubs", "mypy.stubtest", &["meshtone._core"])
 }

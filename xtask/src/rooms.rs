@@ -3,8 +3,10 @@
 //! Data flows down the list of rooms and never back, so a room may import only rooms of the floors above its own: no two of them
 //! import each other, and what a room depends on is found without a search.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::io;
+use std::path::Path;
+
+use crate::files;
 
 /// The rooms of `crates/meshtone/src`, floor by floor. A room imports rooms of earlier floors.
 const FLOORS: &[&[&str]] = &[
@@ -26,49 +28,24 @@ const FLOORS: &[&[&str]] = &[
     &["tuning"],
 ];
 
-/// Checks that every room imports rooms of earlier floors only.
+/// The imports of rooms that are not of earlier floors.
 ///
 /// # Arguments
 /// * `root` - folder of the workspace
 ///
 /// # Errors
-/// 1 where one does not, and where a source cannot be read.
-pub fn check(root: &Path) -> Result<(), u8> {
+/// A source that cannot be read.
+pub fn problems(root: &Path) -> io::Result<Vec<String>> {
     let library = root.join("crates").join("meshtone").join("src");
-    let mut sources = Vec::new();
-    collect(&library, &mut sources).map_err(|error| {
-        eprintln!("error: {}: {error}", library.display());
-        1
-    })?;
-    sources.sort();
-    let mut refused = 0;
-    for path in &sources {
-        let text = fs::read_to_string(path).map_err(|error| {
-            eprintln!("error: {}: {error}", path.display());
-            1
-        })?;
-        let room = room_of(path.strip_prefix(&library).unwrap_or(path));
-        for (line, imported) in imports(&text) {
-            if let Some(problem) = problem(&room, imported) {
-                eprintln!("error: {}:{line}: {problem}", path.strip_prefix(root).unwrap_or(path).display());
-                refused += 1;
-            }
+    let mut problems = Vec::new();
+    for path in files::below(&library, "rs")? {
+        let room = room_of(path.strip_prefix(&library).unwrap_or(&path));
+        let shown = path.strip_prefix(root).unwrap_or(&path).display();
+        for (line, imported) in imports(&files::read(&path)?) {
+            problems.extend(problem(&room, imported).map(|problem| format!("{shown}:{line}: {problem}")));
         }
     }
-    if refused == 0 { Ok(()) } else { Err(1) }
-}
-
-/// Every Rust file of a folder.
-fn collect(folder: &Path, sources: &mut Vec<PathBuf>) -> std::io::Result<()> {
-    for entry in fs::read_dir(folder)? {
-        let path = entry?.path();
-        if path.is_dir() {
-            collect(&path, sources)?;
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            sources.push(path);
-        }
-    }
-    Ok(())
+    Ok(problems)
 }
 
 /// The room that a file, relative to the library's sources, belongs to.

@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 use std::ffi::OsString;
+use std::fmt::Display;
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -85,6 +86,24 @@ impl StepRunner {
             }
         }
         outcome
+    }
+
+    /// Runs a check as a step, and says everything that it finds wrong.
+    ///
+    /// # Errors
+    /// 1 where something is wrong, and where that cannot be told.
+    pub fn check<E: Display>(
+        &self,
+        name: &str,
+        find: impl FnOnce(&Path) -> Result<Vec<String>, E>,
+    ) -> Result<(), u8> {
+        self.step(name, || {
+            let problems = find(&self.root).map_err(|error| self.fail(&error.to_string()))?;
+            for problem in &problems {
+                self.fail(problem);
+            }
+            if problems.is_empty() { Ok(()) } else { Err(1) }
+        })
     }
 
     /// Runs cargo in the workspace's folder as a step named after its arguments.

@@ -39,6 +39,15 @@ impl Failure {
         Self { exit_code: 2, message: message.into(), help: None, snippet: None }
     }
 
+    /// Refuses the user's input, with advice.
+    ///
+    /// # Arguments
+    /// * `problem` - what is wrong with it
+    /// * `help` - what the user can do
+    pub fn refuse<T>(problem: impl Into<String>, help: impl Into<String>) -> Result<T, Self> {
+        Err(Self::bad_input(problem).with_help(help))
+    }
+
     /// The input is good, but could not be carried out.
     pub fn failed(message: impl Into<String>) -> Self {
         Self { exit_code: 1, ..Self::bad_input(message) }
@@ -142,10 +151,8 @@ impl From<ReadResultsError> for Failure {
                     .with_help("name the directory that `meshtone simulate` wrote its results to")
             }
             ReadResultsError::Unreadable { source, .. } => Self::of_reading(source.kind(), error.to_string()),
-            ReadResultsError::Foreign { .. } | ReadResultsError::Scenario { .. } => {
-                Self::bad_input(error.to_string())
-                    .with_help("simulate again with this version: `meshtone simulate SCENARIO.toml -o DIR`")
-            }
+            ReadResultsError::Foreign { .. } => Self::bad_input(error.to_string())
+                .with_help("simulate again with this version: `meshtone simulate SCENARIO.toml -o DIR`"),
         }
     }
 }

@@ -4,6 +4,7 @@ use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use meshtone_io::recording::RecordingFormat;
 use meshtone_io::scenario_file::FileKind;
 
 use crate::failure::Failure;
@@ -79,9 +80,8 @@ fn sorted_entries(directory: &Path) -> Vec<PathBuf> {
 }
 
 fn is_recording(path: &Path) -> bool {
-    const ENDINGS: [&str; 10] = ["csv", "tsv", "txt", "dat", "asc", "parquet", "npy", "npz", "mat", "wav"];
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    path.join(SIGNALS).is_file() || path.is_file() && ENDINGS.contains(&ending.as_str())
+    path.join(SIGNALS).is_file() || path.is_file() && RecordingFormat::of_ending(&ending).is_some()
 }
 
 fn starts_as_parquet(path: &Path) -> bool {

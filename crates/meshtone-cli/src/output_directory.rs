@@ -15,7 +15,8 @@ use crate::same_file::is_same_file;
 /// something is in it.
 #[derive(Debug)]
 pub struct OutputDirectory {
-    path: PathBuf,
+    /// The directory.
+    pub path: PathBuf,
     // Given back before an empty directory can be removed.
     _claim: Claim,
     _created: Vec<NewDirectory>,
@@ -70,7 +71,7 @@ impl OutputDirectory {
         let mut results = names.iter().map(|name| path.join(name));
         if let Some(result) = results.find(|result| read.iter().any(|file| is_same_file(result, file))) {
             let problem = format!("the result {} would replace a file that is read", result.display());
-            return Err(Failure::bad_input(problem).with_help("name another directory with -o"));
+            return Failure::refuse(problem, "name another directory with -o");
         }
         if path.exists() && !path.is_dir() {
             return Err(refuse(Error::new(ErrorKind::NotADirectory, "it is a file")));
@@ -80,10 +81,5 @@ impl OutputDirectory {
         let claim = claim(path)?;
         names.iter().try_for_each(|name| check_target(&path.join(name)))?;
         Ok(Self { path: path.to_path_buf(), _claim: claim, _created: created })
-    }
-
-    /// The directory.
-    pub fn path(&self) -> &Path {
-        &self.path
     }
 }

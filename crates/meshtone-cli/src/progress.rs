@@ -1,8 +1,8 @@
 //! A sign of life while something takes long.
 
 use std::io::{self, IsTerminal};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::thread::{self, JoinHandle};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::thread;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -11,12 +11,23 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 const PATIENCE: Duration = Duration::from_secs(1);
 const TICK: Duration = Duration::from_millis(120);
 
-/// A bar on a terminal's standard error.
+/// Does what takes long, with a bar on a terminal's standard error.
 ///
 /// # Arguments
 /// * `counted` - what is counted, such as "simulations"
 /// * `wanted` - whether anything is to be shown
-pub fn bar(counted: &str, wanted: bool) -> ProgressBar {
+/// * `work` - what is done; it is given what shows how much is finished, out of how much
+pub fn with_bar<T>(counted: &str, wanted: bool, work: impl FnOnce(&(dyn Fn(u64, u64) + Sync)) -> T) -> T {
+    let bar = bar(counted, wanted);
+    let done = work(&|finished, all| {
+        bar.set_length(all);
+        bar.set_position(finished);
+    });
+    bar.finish_and_clear();
+    done
+}
+
+fn bar(counted: &str, wanted: bool) -> ProgressBar {
     let bar = match wanted {
         true => ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr()),
         false => ProgressBar::hidden(),
@@ -28,26 +39,24 @@ pub fn bar(counted: &str, wanted: bool) -> ProgressBar {
     }
 }
 
-/// A spinner on a terminal's standard error, from one second on until it is dropped.
-pub struct Progress {
-    running: Option<(Sender<()>, JoinHandle<()>)>,
-}
-
-impl Progress {
-    /// Starts waiting; nothing is ever shown where standard error is no terminal.
-    ///
-    /// # Arguments
-    /// * `message` - what is being done
-    /// * `wanted` - whether anything is to be shown
-    pub fn start(message: String, wanted: bool) -> Self {
-        if !wanted || !io::stderr().is_terminal() {
-            return Self { running: None };
-        }
-        let (stop, stopped) = channel();
-        Self { running: Some((stop, thread::spawn(move || show(message, &stopped)))) }
+/// Does what takes long, with a spinner on a terminal's standard error from one second on.
+///
+/// # Arguments
+/// * `message` - what is being done
+/// * `wanted` - whether anything is to be shown; nothing ever is where standard error is no terminal
+/// * `work` - what is done
+pub fn with_spinner<T>(message: String, wanted: bool, work: impl FnOnce() -> T) -> T {
+    if !wanted || !io::stderr().is_terminal() {
+        return work();
     }
+    thread::scope(|scope| {
+        let (_stop, stopped) = channel();
+        scope.spawn(move || show(message, &stopped));
+        work()
+    })
 }
 
+/// Shows the spinner until the sender is gone.
 fn show(message: String, stopped: &Receiver<()>) {
     if stopped.recv_timeout(PATIENCE) != Err(RecvTimeoutError::Timeout) {
         return;
@@ -59,13 +68,4 @@ fn show(message: String, stopped: &Receiver<()>) {
     spinner.enable_steady_tick(TICK);
     let _ = stopped.recv();
     spinner.finish_and_clear();
-}
-
-impl Drop for Progress {
-    fn drop(&mut self) {
-        if let Some((stop, thread)) = self.running.take() {
-            drop(stop);
-            let _ = thread.join();
-        }
-    }
 }

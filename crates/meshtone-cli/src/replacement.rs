@@ -55,7 +55,7 @@ pub fn replace(
     staged: Vec<StagedFile>,
     main: StagedFile,
 ) -> Result<(), WriteFileError> {
-    let has_successor = |path: &PathBuf| staged.iter().any(|file| file.path() == path);
+    let has_successor = |path: &PathBuf| staged.iter().any(|file| file.path == *path);
     let paths = names.iter().map(|name| directory.join(name));
     paths.filter(|path| !has_successor(path)).try_for_each(remove)?;
     staged.into_iter().chain([main]).try_for_each(StagedFile::commit)

@@ -1,6 +1,5 @@
 //! The files that a run writes.
 
-use std::io::{BufWriter, Write};
 use std::path::Path;
 use std::thread;
 
@@ -28,67 +27,52 @@ pub const PANEL: [&str; 2] = ["panel.svg", "panel.png"];
 /// All files that stand in a run's directory, the summary first.
 pub const RESULTS: [&str; 4] = [SUMMARY, SIGNALS, PANEL[0], PANEL[1]];
 
-/// Results that a run writes.
-pub struct Results<'r> {
-    /// Simulated scenario, as the user asked for it.
-    pub scenario: &'r Scenario,
-    /// Its results.
-    pub simulation: &'r Simulation,
-    /// Its main numbers.
-    pub summary: &'r Summary,
-    /// Every stage's output, and where to.
-    pub trace: Option<(&'r Trace, &'r Path)>,
-    /// Whether to draw the panel.
-    pub with_panel: bool,
-}
-
-impl Results<'_> {
-    /// Writes all files, each whole or not at all.
-    ///
-    /// All are complete beside their targets before the first takes its name. A panel that an earlier run left is
-    /// removed where this run draws none: it would show something else.
-    pub fn write(&self, directory: &Path) -> Result<(), Failure> {
-        let (panel, signals) = thread::scope(|scope| {
-            let panel = scope.spawn(|| match self.with_panel {
-                true => stage_panel(
-                    directory,
-                    self.summary.run,
-                    &self.simulation.stages,
-                    &self.simulation.channels,
-                ),
-                false => Ok(Vec::new()),
-            });
-            let signals = StagedFile::write(&directory.join(SIGNALS), |file| {
-                write_signals(file, self.scenario, &self.simulation.channels)
-            });
-            let panel = panel.join().unwrap_or_else(|_| Err(Failure::failed("cannot draw the panel")));
-            (panel, signals)
+/// Writes all files, each whole or not at all.
+///
+/// All are complete beside their targets before the first takes its name. A panel that an earlier run left is
+/// removed where this run draws none: it would show something else.
+///
+/// # Arguments
+/// * `directory` - where to
+/// * `scenario` - what was simulated, as the user asked for it
+/// * `simulation`, `summary` - its results, and their main numbers
+/// * `trace` - every stage's output, and where to
+/// * `with_panel` - whether to draw the panel
+pub fn write(
+    directory: &Path,
+    scenario: &Scenario,
+    simulation: &Simulation,
+    summary: &Summary,
+    trace: Option<(&Trace, &Path)>,
+    with_panel: bool,
+) -> Result<(), Failure> {
+    let (panel, signals) = thread::scope(|scope| {
+        let panel = scope.spawn(|| match with_panel {
+            true => stage_panel(directory, summary.run, &simulation.stages, &simulation.channels),
+            false => Ok(Vec::new()),
         });
-        let signals = signals?;
-        let trace = self
-            .trace
-            .map(|(trace, path)| StagedFile::write(path, |file| write_trace(file, self.summary.run, trace)));
-        let trace = trace.transpose()?;
-        let summary = StagedFile::write(&directory.join(SUMMARY), |file| {
-            let mut file = BufWriter::new(file);
-            self.summary.write_json(&mut file)?;
-            file.flush()
-        })?;
-        // What has been computed is kept even where the picture of it fails.
-        let (mut staged, drawn) = match panel {
-            Ok(panel) => (panel, Ok(())),
-            Err(failure) => {
-                (Vec::new(), Err(failure.with_help("the other results are written; see --no-panel")))
-            }
-        };
-        staged.push(signals);
-        // The trace may lie elsewhere; it carries the run's identity, as every file does.
-        trace.map(StagedFile::commit).transpose()?;
-        undisturbed(|| replace_earlier(directory, staged, summary))?;
-        drawn
-    }
+        let signals = StagedFile::write(&directory.join(SIGNALS), |file| {
+            write_signals(file, scenario, &simulation.channels)
+        });
+        let panel = panel.join().unwrap_or_else(|_| Err(Failure::failed("cannot draw the panel")));
+        (panel, signals)
+    });
+    let signals = signals?;
+    let trace =
+        trace.map(|(trace, path)| StagedFile::write(path, |file| write_trace(file, summary.run, trace)));
+    let trace = trace.transpose()?;
+    let staged_summary = StagedFile::write(&directory.join(SUMMARY), |file| summary.write_json(file))?;
+    // What has been computed is kept even where the picture of it fails.
+    let (mut staged, drawn) = match panel {
+        Ok(panel) => (panel, Ok(())),
+        Err(failure) => (Vec::new(), Err(failure.with_help("the other results are written; see --no-panel"))),
+    };
+    staged.push(signals);
+    // The trace may lie elsewhere; it carries the run's identity, as every file does.
+    trace.map(StagedFile::commit).transpose()?;
+    undisturbed(|| replace_earlier(directory, staged, staged_summary))?;
+    drawn
 }
-
 /// Draws the panel and writes its files, to be committed.
 pub fn stage_panel(
     directory: &Path,
@@ -110,11 +94,10 @@ fn replace_earlier(
 ) -> Result<(), WriteFileError> {
     earlier_results::keep(directory);
     let named = replace(directory, &RESULTS, staged, summary);
-    match named {
-        Ok(()) => earlier_results::forget(directory),
-        Err(_) => {
-            earlier_results::put_back(directory)?;
-        }
+    if named.is_ok() {
+        earlier_results::forget(directory);
+    } else {
+        earlier_results::put_back(directory)?;
     }
     named
 }

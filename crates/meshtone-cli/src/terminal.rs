@@ -16,6 +16,11 @@ pub fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
+/// As [`print`], unless the user wants to see nothing but warnings and errors.
+pub fn print_unless(is_quiet: bool, text: &str) -> Result<(), Failure> {
+    if is_quiet { Ok(()) } else { print(text) }
+}
+
 /// Writes a line to standard error; where even that fails, there is nowhere left to report.
 pub fn print_error_line(text: impl Display) {
     let _ = writeln!(io::stderr().lock(), "{text}");

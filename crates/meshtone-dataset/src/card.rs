@@ -1,7 +1,5 @@
 //! The data card: README.md.
 
-use std::fmt::{Result, Write};
-
 use meshtone::scenario::WarningKind;
 
 use crate::finish::Finished;
@@ -11,22 +9,19 @@ use crate::sampling::Design;
 use crate::shard::{Column, Topic, WARNINGS, column_name, varied_keys};
 use crate::words::counted;
 
-/// The data card's text.
+/// Writes the data card.
 pub(crate) fn card(set: &Finished) -> String {
-    let mut text = String::new();
-    for section in [head, counts, warnings, classes, draws, questions, columns, files] {
-        // Writing to a text cannot fail.
-        let _ = section(&mut text, set);
-    }
-    text + &loading(set)
+    let sections = [head, counts, warnings, classes, draws, questions, columns, files, loading];
+    sections.map(|section| section(set)).concat()
 }
 
-fn head(text: &mut String, set: &Finished) -> Result {
+fn head(set: &Finished) -> String {
     let (about, keep) = (&set.plan.about, &set.plan.content.keep);
-    writeln!(text, "# {}\n", about.title)?;
-    if !about.description.is_empty() {
-        writeln!(text, "{}\n", about.description.trim())?;
-    }
+    let title = format!("# {}\n\n", about.title);
+    let description = match about.description.as_str() {
+        "" => String::new(),
+        text => format!("{}\n\n", text.trim()),
+    };
     let rate = format!("{} S/s", keep.sampling_rate_hz);
     let channels = match (keep.over_angle, keep.duration_s) {
         (Some(angle), _) => format!(
@@ -42,45 +37,35 @@ fn head(text: &mut String, set: &Finished) -> Result {
     };
     let mountings = set.plan.content.mountings;
     let mounted = if mountings > 1 { format!(", each mounted {mountings} times") } else { String::new() };
-    writeln!(
-        text,
-        "{} of spur gear vibration from {} (pairs of wheels){mounted}, {channels}. \
-         Made with Meshtone {} from `{}`, which makes the same bytes again; the base scenario \
-         is `{}`.\n",
-        counted(set.records(), "simulated record"),
-        counted(set.plan.content.units, "unit"),
-        env!("CARGO_PKG_VERSION"),
-        PlanFile::NAMES[0],
-        PlanFile::NAMES[1]
-    )?;
-    writeln!(text, "**Licence of the data: {}.**\n", about.licence)?;
-    writeln!(
-        text,
-        "![Examples of each class, distributions of the keys, indicators by class]({})\n",
-        PREVIEW[1]
+    let records = counted(set.records(), "simulated record");
+    let units = counted(set.plan.content.units, "unit");
+    let ([plan, scenario, _], version) = (PlanFile::NAMES, env!("CARGO_PKG_VERSION"));
+    format!(
+        "{title}{description}{records} of spur gear vibration from {units} (pairs of wheels){mounted}, {channels}. Made with \
+         Meshtone {version} from `{plan}`, which makes the same bytes again; the base scenario is `{scenario}`.\n\n\
+         **Licence of the data: {}.**\n\n\
+         ![Examples of each class, distributions of the keys, indicators by class]({})\n\n",
+        about.licence, PREVIEW[1]
     )
 }
 
-fn counts(text: &mut String, set: &Finished) -> Result {
+fn counts(set: &Finished) -> String {
     let (plan, contents) = (set.plan, set.contents);
-    writeln!(text, "## What is in it\n")?;
     let units_of_split = plan.content.units_of_split();
     let splits = plan.content.splits.names_in(&units_of_split);
-    writeln!(text, "| class | {} | all |", splits.join(" | "))?;
-    writeln!(text, "|---|{}---:|", "---:|".repeat(splits.len()))?;
-    let count = |split: &str, label: &str| {
-        contents.counts.get(split).and_then(|labels| labels.get(label)).copied().unwrap_or(0)
-    };
-    let row = |name: &str, numbers: Vec<u64>| {
-        let all: u64 = numbers.iter().sum();
+    let row = |name: &str, number: &dyn Fn(&str) -> Option<u64>| {
+        let numbers: Vec<u64> = splits.iter().map(|split| number(split).unwrap_or(0)).collect();
         let cells: Vec<String> = numbers.iter().map(u64::to_string).collect();
-        format!("| {name} | {} | {all} |", cells.join(" | "))
+        format!("| {name} | {} | {} |\n", cells.join(" | "), numbers.iter().sum::<u64>())
     };
-    for class in &plan.content.classes {
-        let numbers = splits.iter().map(|split| count(split, &class.label)).collect();
-        writeln!(text, "{}", row(&class.label, numbers))?;
+    let mut text = format!(
+        "## What is in it\n\n| class | {} | all |\n|---|{}---:|\n",
+        splits.join(" | "),
+        "---:|".repeat(splits.len())
+    );
+    for Class { label, .. } in &plan.content.classes {
+        text += &row(label, &|split| contents.counts.get(split)?.get(label).copied());
     }
-    let units = splits.iter().map(|split| units_of_split.get(*split).copied().unwrap_or(0)).collect();
     let (divided, meaning) = match plan.content.splits.by {
         SplitBy::Unit => (
             "unit",
@@ -93,96 +78,95 @@ fn counts(text: &mut String, set: &Finished) -> Result {
              mounted anew: what was learned in training about particular wheels helps in the test, about a mounting it does not",
         ),
     };
-    writeln!(text, "{}\n", row(&format!("*{divided}s*"), units))?;
-    writeln!(text, "**Splits are by {divided}**: {meaning}.")?;
+    text += &row(&format!("*{divided}s*"), &|split| units_of_split.get(split).copied());
+    text += &format!("\n**Splits are by {divided}**: {meaning}.\n");
     for shift in &plan.content.splits.shifts {
         let when: Vec<String> = shift.when.iter().map(|condition| format!("`{condition}`")).collect();
-        writeln!(
-            text,
+        text += &format!(
             "The split `{}` is unlike the training: {} holds for its records and for no other ones, in every class that has \
-             such a number.",
+             such a number.\n",
             shift.name,
             when.join(" and ")
-        )?;
+        );
     }
-    writeln!(text)?;
+    text += "\n";
     if !contents.failures.is_empty() {
-        writeln!(
-            text,
-            "Of the plan's {} records {} could not be simulated and are missing; `manifest.json` lists them with the reasons.\n",
+        text += &format!(
+            "Of the plan's {} records {} could not be simulated and are missing; `manifest.json` lists them with the reasons.\n\n",
             plan.records(),
             contents.failures.len()
-        )?;
+        );
     }
-    Ok(())
+    text
 }
 
-/// What is doubtful, and of how many records.
-fn warnings(text: &mut String, set: &Finished) -> Result {
+/// Says what is doubtful, and of how many records.
+fn warnings(set: &Finished) -> String {
     let warnings = &set.contents.warnings;
     if warnings.is_empty() {
-        return Ok(());
+        return String::new();
     }
-    writeln!(
-        text,
-        "## Warnings\n\nWhat is doubtful about the simulations, by its code in the column `{WARNINGS}`, of {}.\n",
-        counted(set.records(), "record")
-    )?;
-    writeln!(text, "| code | records | meaning |\n|---|---:|---|")?;
-    for (code, count) in warnings {
+    let row = |(code, count): (&String, &u64)| {
         let meaning = WarningKind::of_code(code).map_or("", WarningKind::meaning);
-        writeln!(text, "| `{code}` | {count} | {meaning} |")?;
-    }
-    writeln!(text)
+        format!("| `{code}` | {count} | {meaning} |\n")
+    };
+    format!(
+        "## Warnings\n\nWhat is doubtful about the simulations, by its code in the column `{WARNINGS}`, of {}.\n\n\
+         | code | records | meaning |\n|---|---:|---|\n{}\n",
+        counted(set.records(), "record"),
+        warnings.iter().map(row).collect::<String>()
+    )
 }
 
-fn classes(text: &mut String, set: &Finished) -> Result {
-    writeln!(text, "## Classes\n\n| label | fault | severity |\n|---|---|---|")?;
-    for class in &set.plan.content.classes {
+fn classes(set: &Finished) -> String {
+    let row = |class: &Class| {
         let fault = kinds(&class.faults).unwrap_or_else(|| "none".to_owned());
         let grows = class.growth.as_ref().map(grows).unwrap_or_default();
-        writeln!(text, "| {} | {fault}{grows} | {} |", class.label, severity(class))?;
-    }
-    writeln!(text)
+        format!("| {} | {fault}{grows} | {} |\n", class.label, severity(class))
+    };
+    let rows: String = set.plan.content.classes.iter().map(row).collect();
+    format!("## Classes\n\n| label | fault | severity |\n|---|---|---|\n{rows}\n")
 }
 
-fn draws(text: &mut String, set: &Finished) -> Result {
+fn draws(set: &Finished) -> String {
     let design = match set.plan.content.design {
         Design::Independent => "independent draws",
         Design::LatinHypercube => "Latin hypercube",
         Design::Sobol => "scrambled Sobol sequence",
     };
-    writeln!(text, "## How it was drawn\n\nDesign: {design}. \n")?;
-    writeln!(text, "| column | key | for each | least | largest |\n|---|---|---|---:|---:|")?;
-    for (rule, key) in varied_keys(&set.plan.content) {
+    let rows = varied_keys(&set.plan.content).into_iter().map(|(rule, key)| {
         let name = column_name(key);
-        let [least, largest] = set.contents.summary.ranges.get(&name).copied().unwrap_or([f64::NAN; 2]);
-        let (level, least, largest) = (rule.level.name(), short(least), short(largest));
-        writeln!(text, "| `{name}` | `{key}` | {level} | {least} | {largest} |")?;
-    }
-    writeln!(text)
-}
-
-/// What the data set asks, and how answers are scored.
-fn questions(text: &mut String, set: &Finished) -> Result {
-    let questions = &set.plan.about.questions;
-    if questions.is_empty() {
-        return Ok(());
-    }
-    writeln!(text, "## Questions\n\n| question | to be told | score |\n|---|---|---|")?;
-    for question in questions {
-        let [target, score] = question.target_and_score();
-        writeln!(text, "| {} | {target} | {score} |", question.name())?;
-    }
-    writeln!(
-        text,
-        "\nFrom the signals, the indicators and what is known of a machine: teeth, module, face width, speed, load. Columns of the \
-         fault, seeds, numbers of records, units and mountings, and all that was drawn besides are not known of a real gear: they are \
-         there to see where an answer fails. Train on `train`, choose on `validation`.\n"
+        let ends = set.contents.summary.ranges.get(&name).copied().unwrap_or([f64::NAN; 2]);
+        let (level, [least, largest]) = (rule.level.name(), ends.map(short));
+        format!("| `{name}` | `{key}` | {level} | {least} | {largest} |\n")
+    });
+    format!(
+        "## How it was drawn\n\nDesign: {design}. \n\n| column | key | for each | least | largest |\n\
+         |---|---|---|---:|---:|\n{}\n",
+        rows.collect::<String>()
     )
 }
 
-/// How a damage grows, in words.
+/// Says what the data set asks, and how answers are scored.
+fn questions(set: &Finished) -> String {
+    let questions = &set.plan.about.questions;
+    if questions.is_empty() {
+        return String::new();
+    }
+    let rows = questions.iter().map(|question| {
+        let [target, score] = question.target_and_score();
+        format!("| {} | {target} | {score} |\n", question.name())
+    });
+    format!(
+        "## Questions\n\n| question | to be told | score |\n|---|---|---|\n{}\n\
+         From the signals, the indicators and what is known of a machine: teeth, module, face width, speed, load. Columns of the \
+         fault, seeds, numbers of records, units and mountings, and all that was drawn besides are not known of a real gear: they are \
+         there to see where an answer fails. Train on `train`, choose on `validation`.\n\n",
+        rows.collect::<String>()
+    )
+}
+
+/// Says in words how a damage grows.
 fn grows(growth: &Growth) -> String {
     let Growth { law, start, failure, censored, life_rev, .. } = growth;
     let name = law.name();
@@ -198,49 +182,47 @@ fn severity(class: &Class) -> String {
         _ if class.faults.is_empty() => "0".to_owned(),
         Severity::Grade(grade) => grade.to_string(),
         Severity::Measured { measure, breaks } => {
-            let breaks: Vec<String> = breaks.iter().map(|limit| format!("{limit}")).collect();
+            let breaks: Vec<String> = breaks.iter().map(f64::to_string).collect();
             format!("1 to {} by `{measure}`, next grade from {} on", breaks.len() + 1, breaks.join(", "))
         }
     }
 }
 
-fn columns(text: &mut String, set: &Finished) -> Result {
-    let is_indicator = |column: &Column| matches!(column.topic, Topic::Indicator(_));
-    writeln!(text, "## Columns\n\nOne row a record. Units and meanings stand in the files' metadata too.\n")?;
-    writeln!(text, "| column | unit | meaning |\n|---|---|---|")?;
-    for column in set.columns.iter().filter(|column| !is_indicator(column)) {
-        let constant =
-            set.contents.summary.ranges.get(&column.name).filter(|[least, largest]| least == largest);
+fn columns(set: &Finished) -> String {
+    let (indicators, others): (Vec<&Column>, Vec<&Column>) =
+        set.columns.iter().partition(|column| matches!(column.topic, Topic::Indicator(_)));
+    let row = |column: &Column| {
+        let range = set.contents.summary.ranges.get(&column.name);
+        let constant = range.filter(|[least, largest]| least == largest);
         let value = constant.map_or(String::new(), |[value, _]| format!(" (always {})", short(*value)));
         let kind = if column.is_signal() { "; list of 32-bit numbers" } else { "" };
-        writeln!(text, "| `{}` | {} | {}{kind}{value} |", column.name, column.unit, column.description)?;
-    }
-    let indicators = set.columns.iter().filter(|column| is_indicator(column));
-    let indicators: Vec<String> = indicators.map(|column| format!("`{}`", column.name)).collect();
+        format!("| `{}` | {} | {}{kind}{value} |\n", column.name, column.unit, column.description)
+    };
+    let mut text = format!(
+        "## Columns\n\nOne row a record. Units and meanings stand in the files' metadata too.\n\n\
+         | column | unit | meaning |\n|---|---|---|\n{}",
+        others.into_iter().map(row).collect::<String>()
+    );
     if !indicators.is_empty() {
-        writeln!(
-            text,
-            "\nIndicators of the analysed channel over the {}'s revolutions: {}.",
-            set.plan.content.keep.wheel.name(),
-            indicators.join(", ")
-        )?;
+        let names: Vec<String> = indicators.iter().map(|column| format!("`{}`", column.name)).collect();
+        let (wheel, names) = (set.plan.content.keep.wheel.name(), names.join(", "));
+        text += &format!("\nIndicators of the analysed channel over the {wheel}'s revolutions: {names}.\n");
     }
-    writeln!(text)
+    text + "\n"
 }
 
-fn files(text: &mut String, set: &Finished) -> Result {
+fn files(set: &Finished) -> String {
     let bytes: u64 = set.contents.files.values().map(|file| file.digest.bytes).sum();
-    writeln!(
-        text,
+    format!(
         "## Files\n\n{} in `data/`, {} each, {:.1} MB together. Records are in random order, so that every file \
-         is a mixture of all classes. `manifest.json` has counts, failures and the SHA-256 of every file.\n",
+         is a mixture of all classes. `manifest.json` has counts, failures and the SHA-256 of every file.\n\n",
         counted(set.contents.files.len() as u64, "Parquet file"),
         counted(set.shards.records_per_shard, "record"),
         bytes as f64 / 1e6
     )
 }
 
-/// How programs load the data set.
+/// Says how programs load the data set.
 fn loading(set: &Finished) -> String {
     let signal = set.columns.iter().find(|column| column.is_signal()).map_or("label", |column| &column.name);
     include_str!("loading.md")
@@ -249,7 +231,7 @@ fn loading(set: &Finished) -> String {
         .replace("{first}", &set.shards.name(0))
 }
 
-/// Four digits.
+/// Writes a number with four digits.
 fn short(value: f64) -> String {
     if !value.is_finite() {
         return String::new();

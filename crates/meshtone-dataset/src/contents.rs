@@ -12,7 +12,7 @@ use crate::manifest::ReadManifest;
 use crate::part_list::PartList;
 use crate::plan::Plan;
 use crate::shard::{BETWEEN_CODES, Column, FailedRecord, ReadShard, Shards, WARNINGS, Wanted};
-use crate::store::Destination;
+use crate::store::{Destination, Files};
 
 /// Largest number of records that a preview shows.
 const PREVIEWED: u64 = 4_000;
@@ -25,7 +25,7 @@ pub(crate) type Counts = BTreeMap<String, BTreeMap<String, u64>>;
 /// Number of records by the code of a warning.
 pub(crate) type WarningCounts = BTreeMap<String, u64>;
 
-/// What proves the file of a shard.
+/// The digest and the number of records that the file of a shard must have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct ShardFile {
     /// Digest of the file's bytes, computed while they were written.
@@ -35,7 +35,7 @@ pub(crate) struct ShardFile {
     pub rows: u64,
 }
 
-/// What a shard adds to the contents of its data set.
+/// The contribution of a shard to the contents of its data set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ShardContents {
     #[serde(flatten)]
@@ -165,10 +165,10 @@ impl Summary {
     }
 }
 
-/// What is known of the shards of a data set.
+/// Everything that is known about the shards of a data set.
 #[derive(Debug, Default)]
 pub(crate) struct Contents {
-    /// What proves the shards' files, by the shards' numbers.
+    /// The digests and record counts that the shards' files must have, by the shards' numbers.
     pub files: BTreeMap<u64, ShardFile>,
     /// Counts of all shards that are not in `uncounted`.
     pub counts: Counts,
@@ -178,14 +178,15 @@ pub(crate) struct Contents {
     pub failures: BTreeMap<u64, FailedRecord>,
     /// Summary of the same shards.
     pub summary: Summary,
-    /// Shards of which nothing is known but what proves their files.
+    /// Shards of which nothing is known but their entries in `files`.
     uncounted: BTreeSet<u64>,
     /// Other files that are listed of a shard: processors of different kinds write different bytes.
     conflicting: BTreeMap<u64, Vec<ShardFile>>,
 }
 
 impl Contents {
-    /// Adds what the manifest of a place and the lists of its parts say. Returns what proves the shards of that place.
+    /// Adds what the manifest of a place and the lists of its parts say. Returns the files that they list for the shards of that
+    /// place.
     ///
     /// # Arguments
     /// * `plan` - plan of the data set
@@ -196,7 +197,7 @@ impl Contents {
         &mut self,
         plan: &Plan,
         place: &Destination,
-        files: &BTreeMap<String, u64>,
+        files: &Files,
         manifest: Option<ReadManifest>,
     ) -> Result<BTreeMap<u64, ShardFile>, DatasetError> {
         let mut listed = BTreeMap::new();
@@ -265,14 +266,13 @@ impl Contents {
         shards: Shards,
         to: &Destination,
     ) -> Result<(), DatasetError> {
-        let uncounted: Vec<(u64, ShardFile)> =
-            self.uncounted.iter().filter_map(|shard| Some((*shard, *self.files.get(shard)?))).collect();
+        let uncounted: Vec<u64> = self.uncounted.iter().copied().collect();
         for some in uncounted.chunks(SHARDS_AT_A_TIME) {
-            let read = some.par_iter().map(|&(shard, file)| {
+            let read = some.par_iter().map(|&shard| {
                 let name = shards.name(shard);
                 let read = to.read_shard(&name, columns.wanted());
                 let read = read.map_err(DatasetError::read(to.name_of(&name)))?;
-                Ok((shard, columns.summarize(shard, read, file.digest)))
+                Ok((shard, columns.summarize(shard, read, self.files[&shard].digest)))
             });
             for (shard, (contents, summary)) in read.collect::<Result<Vec<_>, DatasetError>>()? {
                 self.add_shard(shard, contents);
@@ -287,7 +287,7 @@ impl Contents {
         self.files.values().map(|file| file.rows).sum()
     }
 
-    /// Why the file of a shard is not the one that is listed; none where it is.
+    /// Says why the file of a shard is not the one that is listed; none where it is.
     ///
     /// # Arguments
     /// * `shard` - number of the shard
@@ -314,10 +314,10 @@ impl Contents {
     }
 }
 
-/// What is wrong with a file whose SHA-256 differs.
+/// The problem of a file whose SHA-256 differs, in words.
 pub(crate) const WRONG_BYTES: &str = "its bytes are not those that were written: the SHA-256 differs";
 
-/// What is wrong with a file of another size.
+/// Says that a file has another size than the expected one.
 pub(crate) fn wrong_size(size: u64, expected: u64) -> String {
     format!("it has {size} bytes instead of {expected}")
 }

@@ -153,7 +153,7 @@ fn field(column: &Column) -> Value {
 }
 
 fn data_type(column: &Column) -> Value {
-    let cells = match column.cell_type() {
+    let cells = match column.cell_type {
         CellType::Int32 | CellType::Int64 => "sc:Integer",
         CellType::Float64 | CellType::Float32List => "sc:Float",
         CellType::Text => "sc:Text",

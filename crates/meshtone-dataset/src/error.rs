@@ -6,7 +6,7 @@ use meshtone_io::scenario_file::ReadScenarioError;
 
 use crate::shard::FailedRecord;
 
-/// Why a data set could not be made or read.
+/// The reason why a data set could not be made or read.
 #[derive(Debug, thiserror::Error)]
 pub enum DatasetError {
     /// The plan is wrong.

@@ -1,6 +1,6 @@
 //! Finishing a data set: its data card, preview, Croissant metadata and manifest.
 
-use meshtone_plot::dataset::{DatasetPreview, Example, Indicator, Key, dataset_figure};
+use meshtone_plot::dataset::{DatasetPreview, Example, PreviewColumn, dataset_figure};
 
 use crate::card;
 use crate::contents::{Contents, SampledRecord, SummaryColumns};
@@ -66,9 +66,7 @@ pub(crate) fn finish(
     let columns = shard::columns(plan);
     let summary_columns = SummaryColumns::new(&columns, shards);
     contents.count_all(&summary_columns, shards, to)?;
-    if contents.rows() == 0
-        && let Some(first) = contents.failures.values().next()
-    {
+    if let (0, Some(first)) = (contents.rows(), contents.failures.values().next()) {
         return Err(DatasetError::NoRecord { records: plan.records(), first: first.clone() });
     }
     let set = Finished { plan, shards, contents: &contents, columns: &columns };
@@ -96,9 +94,10 @@ pub(crate) fn finish(
 fn preview(set: &Finished, summary_columns: &SummaryColumns<'_>, to: &Destination) -> DatasetPreview {
     let Finished { plan, shards, contents, columns } = *set;
     let sampled: Vec<&SampledRecord> = contents.summary.sampled.values().collect();
-    let values_of = |column: &Column| {
-        let place = summary_columns.sampled.iter().position(|sampled| *sampled == column.name);
-        place.map_or_else(Vec::new, |place| sampled.iter().map(|record| record.values[place]).collect())
+    let shown_column = |column: &Column| {
+        let place = summary_columns.sampled.iter().position(|sampled| *sampled == column.name)?;
+        let values = sampled.iter().map(|record| record.values[place]).collect();
+        Some(PreviewColumn { name: words_of(&column.name), values })
     };
     let classes: Vec<String> = plan.content.classes.iter().map(|class| class.label.clone()).collect();
     let of_revolution = |name: &&str| {
@@ -118,7 +117,6 @@ fn preview(set: &Finished, summary_columns: &SummaryColumns<'_>, to: &Destinatio
         let range = contents.summary.ranges.get(&column.name);
         column.is_drawn() && range.is_some_and(|[least, largest]| least < largest)
     };
-    let keys = columns.iter().filter(varies);
     let indicators = columns.iter().filter(|column| column.is_previewed_indicator());
     DatasetPreview {
         title: plan.about.title.clone(),
@@ -136,10 +134,8 @@ fn preview(set: &Finished, summary_columns: &SummaryColumns<'_>, to: &Destinatio
         split_of: sampled.iter().map(|record| place(&splits, &record.split)).collect(),
         classes,
         splits,
-        keys: keys.map(|column| Key { name: words_of(&column.name), values: values_of(column) }).collect(),
-        indicators: indicators
-            .map(|column| Indicator { name: words_of(&column.name), values: values_of(column) })
-            .collect(),
+        keys: columns.iter().filter(varies).filter_map(shown_column).collect(),
+        indicators: indicators.filter_map(shown_column).collect(),
     }
 }
 

@@ -16,7 +16,7 @@ use crate::digest::Hashing;
 use crate::draw::Sampler;
 use crate::error::DatasetError;
 use crate::finish;
-use crate::manifest::{self, CARD, Document, MANIFEST, PREVIEW, ReadManifest};
+use crate::manifest::{self, CARD, MANIFEST, PREVIEW, ReadManifest};
 use crate::part_list::Listing;
 use crate::plan::Plan;
 use crate::record::{KeepRecords, Role};
@@ -39,7 +39,7 @@ impl Part {
     /// The whole data set.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
-    /// Whether a shard belongs to the part. Shards are dealt to the parts in turn.
+    /// Returns whether a shard belongs to the part. Shards are dealt to the parts in turn.
     ///
     /// # Arguments
     /// * `shard` - number of the shard
@@ -56,7 +56,7 @@ pub struct GenerateControl<'a> {
     pub cancelled: &'a AtomicBool,
 }
 
-/// What a run has done.
+/// The result of a run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Generated {
     /// Shards that were there already.
@@ -158,35 +158,26 @@ pub fn generate(
     let shards = Shards::new(plan, &sampler);
     let was_complete = manifest::check_place(plan, shards, to, &to.files()?, manifest::read(to)?.as_ref())?;
     // A data set that is called complete is examined all the same: a file may have been lost or damaged since.
-    let there = if was_complete { Some(PartContents::look(plan, shards, to, part)?) } else { None };
-    if let Some(there) = &there
-        && there.missing.is_empty()
-        && there.has_documents
-    {
-        return Ok(there.generated.clone());
+    let look = || PartContents::look(plan, shards, to, part);
+    let there = was_complete.then(look).transpose()?;
+    if let Some(found) = there.as_ref().filter(|found| found.missing.is_empty() && found.has_documents) {
+        return Ok(found.generated.clone());
     }
     if !was_complete {
         manifest::begin(plan, to)?;
     }
     let (number, of) = (part.number, part.of);
-    let _claimed = to.claim(
-        &format!("part-{number}-{of}"),
-        &if part == Part::WHOLE {
-            "is making a data set in".to_owned()
-        } else {
-            format!("is making part {number}/{of} in")
-        },
-    )?;
+    let making = if of == 1 { "a data set".to_owned() } else { format!("part {number}/{of}") };
+    let _claimed = to.claim(&format!("part-{number}-{of}"), &format!("is making {making} in"))?;
     to.remove_leftovers();
-    let PartContents { missing, mut generated, .. } =
-        there.map_or_else(|| PartContents::look(plan, shards, to, part), Ok)?;
+    let PartContents { missing, mut generated, .. } = there.map_or_else(look, Ok)?;
     let run = Run { plan, sampler: &sampler, shards, to, part, control };
     run.generate(&missing, &mut generated)?;
     generated.complete = finish::finish_if_complete(plan, shards, to)?;
     Ok(generated)
 }
 
-/// What is there of a part when a run begins.
+/// The files of a part that are there when a run begins.
 struct PartContents {
     /// The part's shards that are missing.
     missing: Vec<u64>,
@@ -201,9 +192,21 @@ impl PartContents {
     fn look(plan: &Plan, shards: Shards, to: &Destination, part: Part) -> Result<Self, DatasetError> {
         let files = to.files()?;
         let manifest = manifest::read(to)?;
-        let documents = manifest.as_ref().map(|manifest| manifest.documents.clone()).unwrap_or_default();
-        let columns = manifest.as_ref().map_or(Ok(()), |manifest| manifest.check_columns(to));
-        let is_whole = manifest.as_ref().is_none_or(|manifest| manifest.is_whole);
+        let mut generated = Generated { complete: true, ..Generated::default() };
+        // A data set that was finished by an earlier version has no other documents than those that its manifest lists.
+        let mut wanted: Vec<&str> = [CARD].into_iter().chain(PREVIEW).collect();
+        wanted.extend(plan.files.iter().map(|file| file.name));
+        let mut columns = Ok(());
+        if let Some(manifest) = &manifest {
+            columns = manifest.check_columns(to);
+            wanted.extend(manifest.documents.iter().map(|document| document.name.as_str()));
+            let changed = manifest.changed_documents(to, &files)?;
+            let wrong = changed.into_iter().chain((!manifest.is_whole).then_some(MANIFEST));
+            let remade = |file: &str| Remade { file: file.to_owned(), reason: WRONG_BYTES.to_owned() };
+            generated.remade.extend(wrong.map(remade));
+        }
+        let has_documents =
+            generated.remade.is_empty() && wanted.into_iter().all(|name| files.contains_key(name));
         let mut contents = Contents::default();
         contents.add_place(plan, to, &files, manifest.filter(ReadManifest::can_be_relied_on))?;
         let own = (0..shards.count()).into_par_iter().filter(|&shard| part.has(shard));
@@ -212,26 +215,8 @@ impl PartContents {
             let size = files.get(&name);
             (shard, size.map(|&size| contents.objection(shard, size, || to.digest(&name))))
         });
-        let objections: Vec<_> = objections.collect();
-        let mut generated = Generated { complete: true, ..Generated::default() };
-        let wrong = |file: &str| Remade { file: file.to_owned(), reason: WRONG_BYTES.to_owned() };
-        for Document { name, digest } in
-            documents.iter().filter(|document| files.contains_key(&document.name))
-        {
-            if to.digest(name)? != *digest {
-                generated.remade.push(wrong(name));
-            }
-        }
-        if !is_whole {
-            generated.remade.push(wrong(MANIFEST));
-        }
-        // A data set that was finished by an earlier version has no other documents than those that its manifest lists.
-        let copies = plan.files.iter().map(|file| file.name);
-        let listed = documents.iter().map(|document| document.name.as_str());
-        let mut wanted = [CARD].into_iter().chain(PREVIEW).chain(copies).chain(listed);
-        let has_documents = wanted.all(|name| files.contains_key(name)) && generated.remade.is_empty();
         let mut missing = Vec::new();
-        for (shard, objection) in objections {
+        for (shard, objection) in objections.collect::<Vec<_>>() {
             if let Some(None) = objection {
                 generated.kept_shards += 1;
                 let failures = contents.failures.range(shards.range(shard));
@@ -314,19 +299,14 @@ impl Run<'_> {
         simulate_many(scenarios, &keep, &control, |number, result| {
             let Some((role, failed)) = lock(&asked).roles.remove(&number) else { return };
             failed.into_iter().for_each(|failed| send(Item::Failed(failed)));
-            let reason = match result {
-                Ok(Ok(record)) => {
-                    return send(match role {
-                        Role::Record(_) => Item::Record(record),
-                        Role::HealthyTwin(..) => Item::HealthyTwin(record),
-                    });
+            match (result.map_err(|error| error.to_string()).flatten(), role) {
+                (Ok(record), Role::Record(_)) => send(Item::Record(record)),
+                (Ok(record), Role::HealthyTwin(..)) => send(Item::HealthyTwin(record)),
+                (Err(reason), Role::Record(drawn)) => {
+                    send(Item::Failed(FailedRecord { record: drawn.index, reason }));
                 }
-                Ok(Err(reason)) => reason,
-                Err(error) => error.to_string(),
-            };
-            // The failure of a twin is reported with its record, which needs the twin.
-            if let Role::Record(drawn) = role {
-                send(Item::Failed(FailedRecord { record: drawn.index, reason }));
+                // The failure of a twin is reported with its record, which needs the twin.
+                (Err(_), Role::HealthyTwin(..)) => {}
             }
         });
         let rest = std::mem::take(&mut lock(&asked).failed);
@@ -335,10 +315,9 @@ impl Run<'_> {
 
     /// Draws a record and asks for its simulations: a faulty record that is enhanced has its healthy twin before it.
     fn ask(&self, index: u64, asked: &Mutex<PendingSimulations>) -> Vec<Scenario> {
-        let record = self.sampler.record(index).map_err(|error| error.problem);
-        let drawn = record.and_then(|record| match self.sampler.scenario(&record) {
-            Ok(scenario) => Ok((record, scenario)),
-            Err(error) => Err(error.to_string()),
+        let drawn = self.sampler.record(index).map_err(|error| error.problem).and_then(|record| {
+            let scenario = self.sampler.scenario(&record).map_err(|error| error.to_string())?;
+            Ok((record, scenario))
         });
         // The lock is taken after drawing: other threads wait for it.
         let mut asked = lock(asked);
@@ -349,13 +328,12 @@ impl Run<'_> {
                 return Vec::new();
             }
         };
-        let mut scenarios = Vec::new();
-        if self.plan.content.tuned.is_some() && !scenario.faults.is_empty() {
-            asked.add(Role::HealthyTwin(record.clone(), scenario.faults.clone()));
-            scenarios.push(scenario.clone().with_faults(Vec::new()));
+        let mut scenarios = vec![scenario];
+        if self.plan.content.tuned.is_some() && !scenarios[0].faults.is_empty() {
+            asked.add(Role::HealthyTwin(record.clone(), scenarios[0].faults.clone()));
+            scenarios.insert(0, scenarios[0].clone().with_faults(Vec::new()));
         }
         asked.add(Role::Record(record));
-        scenarios.push(scenario);
         scenarios
     }
 

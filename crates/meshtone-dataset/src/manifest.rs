@@ -1,6 +1,5 @@
 //! The manifest: it says what a data set is and whether it is complete.
 
-use std::collections::BTreeMap;
 use std::io::{self, BufWriter, Write};
 
 use meshtone_io::scenario_file::ReadScenarioError;
@@ -16,7 +15,7 @@ use crate::part_list;
 use crate::plan::{Plan, PlanFile};
 use crate::sealed;
 use crate::shard::{FOLDER, FailedRecord, Shards};
-use crate::store::Destination;
+use crate::store::{Destination, Files};
 
 pub(crate) const MANIFEST: &str = "manifest.json";
 pub(crate) const CARD: &str = "README.md";
@@ -46,7 +45,7 @@ pub(crate) fn check_place(
     plan: &Plan,
     shards: Shards,
     to: &Destination,
-    there: &BTreeMap<String, u64>,
+    there: &Files,
     manifest: Option<&ReadManifest>,
 ) -> Result<bool, DatasetError> {
     if let Some(name) = there.keys().find(|name| !is_of_a_data_set(name)) {
@@ -58,22 +57,17 @@ pub(crate) fn check_place(
     }
     let Some(manifest) = manifest else {
         // A run that was killed between its first file and its manifest has left only files that it would write again.
-        let data = there.keys().find(|name| name.starts_with(FOLDER));
-        return match data {
-            None => Ok(false),
-            Some(name) => Err(DatasetError::refused(
-                format!("{to} has {name}, but no {MANIFEST}"),
-                "put it back from a copy, or name another directory with -o",
-            )),
-        };
+        let Some(data) = there.keys().find(|name| name.starts_with(FOLDER)) else { return Ok(false) };
+        let problem = format!("{to} has {data}, but no {MANIFEST}");
+        let help = "put it back from a copy, or name another directory with -o";
+        return Err(DatasetError::refused(problem, help));
     };
     check_same(plan, to, manifest)?;
     let foreign = |name: &&String| name.starts_with(FOLDER) && shards.number(name).is_none();
     if let Some(name) = there.keys().find(foreign) {
-        return Err(DatasetError::refused(
-            format!("{to} has a shard that is none of this data set: {name}"),
-            "move it elsewhere, or name another directory with -o",
-        ));
+        let problem = format!("{to} has a shard that is none of this data set: {name}");
+        let help = "move it elsewhere, or name another directory with -o";
+        return Err(DatasetError::refused(problem, help));
     }
     Ok(manifest.complete)
 }
@@ -85,10 +79,8 @@ fn check_same(plan: &Plan, to: &Destination, manifest: &ReadManifest) -> Result<
             "the data set in {to} was begun by version {} of Meshtone; this is {version}",
             manifest.version
         );
-        return Err(DatasetError::refused(
-            problem,
-            "go on with that version, or name another directory with -o",
-        ));
+        let help = "go on with that version, or name another directory with -o";
+        return Err(DatasetError::refused(problem, help));
     }
     if !manifest.complete {
         manifest.check_columns(to)?;
@@ -102,13 +94,13 @@ fn check_same(plan: &Plan, to: &Destination, manifest: &ReadManifest) -> Result<
     Ok(())
 }
 
-/// Whether a name is that of a file of a data set.
+/// Returns whether a name is that of a file of a data set.
 pub(crate) fn is_of_a_data_set(name: &str) -> bool {
     let known = [MANIFEST, CARD, CROISSANT].into_iter().chain(PREVIEW).chain(PlanFile::NAMES);
     known.into_iter().any(|known| known == name) || Shards::is_name(name) || part_list::is_list(name)
 }
 
-/// What a manifest says.
+/// The content of a manifest.
 #[derive(Debug, Deserialize)]
 pub(crate) struct ReadManifest {
     #[serde(rename = "format_version")]
@@ -140,10 +132,24 @@ fn unknown() -> String {
 }
 
 impl ReadManifest {
-    /// Whether what the manifest says about shards can be relied on. It can if the manifest is as it was written, or if only the hashes of
-    /// the shards are taken from it: nothing else proves which records failed and why.
+    /// Returns whether what the manifest says about shards can be relied on. It can if the manifest is as it was written, or if only
+    /// the hashes of the shards are taken from it: nothing else proves which records failed and why.
     pub fn can_be_relied_on(&self) -> bool {
         self.is_whole || self.failures.is_empty()
+    }
+
+    /// Names of those documents that are there but are not as they were written.
+    ///
+    /// # Arguments
+    /// * `place` - the place of the manifest
+    /// * `files` - the files of the place
+    pub fn changed_documents(&self, place: &Destination, files: &Files) -> Result<Vec<&str>, DatasetError> {
+        let there = self.documents.iter().filter(|document| files.contains_key(&document.name));
+        let changed = there.filter_map(|Document { name, digest }| match place.digest(name) {
+            Ok(found) => (found != *digest).then_some(Ok(name.as_str())),
+            Err(error) => Some(Err(error)),
+        });
+        changed.collect()
     }
 
     /// Refuses to add records to a data set whose records have other columns.
@@ -202,14 +208,12 @@ pub(crate) fn read_begun(place: &Destination) -> Result<ReadManifest, DatasetErr
 
 /// The error of a place that lacks a file of a data set.
 pub(crate) fn no_data_set(place: &Destination, file: &str) -> DatasetError {
-    DatasetError::refused(
-        format!("{place} is no data set: it has no {file}"),
-        "name a directory that `meshtone dataset` has written to",
-    )
+    let problem = format!("{place} is no data set: it has no {file}");
+    DatasetError::refused(problem, "name a directory that `meshtone dataset` has written to")
 }
 
 fn parse(text: &str, place: &Destination) -> Result<ReadManifest, DatasetError> {
-    /// What manifests of all formats have.
+    /// The entries that manifests of all formats have.
     #[derive(Deserialize)]
     struct AnyFormat {
         format_version: Option<u64>,
@@ -217,10 +221,8 @@ fn parse(text: &str, place: &Destination) -> Result<ReadManifest, DatasetError> 
         meshtone_version: String,
     }
     let damaged = |what: String| {
-        DatasetError::refused(
-            format!("{place}/{MANIFEST} is damaged, or not one of Meshtone: {what}"),
-            "put it back from a copy, or name another directory",
-        )
+        let problem = format!("{place}/{MANIFEST} is damaged, or not one of Meshtone: {what}");
+        DatasetError::refused(problem, "put it back from a copy, or name another directory")
     };
     let any: AnyFormat = serde_json::from_str(text).map_err(|error| damaged(error.to_string()))?;
     match any.format_version {

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use meshtone_io::own_file::Claim;
 use meshtone_io::scenario_file::ReadScenarioError;
 
 use crate::contents::{Contents, ShardFile};
@@ -13,7 +14,7 @@ use crate::generate::Generated;
 use crate::manifest::{self, MANIFEST, ReadManifest};
 use crate::plan::{Plan, PlanFile};
 use crate::shard::Shards;
-use crate::store::{Claimed, Destination};
+use crate::store::{Destination, Files};
 use crate::verify::Check;
 
 /// Merges the parts of a data set.
@@ -30,17 +31,14 @@ use crate::verify::Check;
 /// A place has no data set; the parts have different plans or versions; no part has an undamaged copy of some shard; another program is
 /// merging there; or a file cannot be read or written.
 pub fn merge(parts: &[Destination], to: &Destination, check: Check) -> Result<Generated, DatasetError> {
-    let Some(first) = parts.first() else {
-        return Err(DatasetError::refused(
-            "there are no parts to merge",
-            "name the directories of the parts",
-        ));
-    };
+    let nothing =
+        || DatasetError::refused("there are no parts to merge", "name the directories of the parts");
+    let first = parts.first().ok_or_else(nothing)?;
     let plan = plan_of(first)?;
     let sampler = Sampler::new(&plan.content).map_err(|error| manifest::plan_error(&plan, error))?;
     let shards = Shards::new(&plan, &sampler);
     // The place is claimed before it is examined, so that it has to be examined only once.
-    let claimed = if to.has(MANIFEST)? { Some(claim(to)?) } else { None };
+    let claimed = if to.text(MANIFEST)?.is_some() { Some(claim(to)?) } else { None };
     let mut contents = Contents::default();
     let mut places = Vec::with_capacity(parts.len());
     for part in parts {
@@ -62,14 +60,9 @@ pub fn merge(parts: &[Destination], to: &Destination, check: Check) -> Result<Ge
         complete: true,
         ..Generated::default()
     };
-    let elsewhere;
     let target = match places.iter().find(|place| is_same(place.at, to)) {
         Some(part) => part,
-        None => {
-            let manifest = manifest::read(to)?;
-            elsewhere = MergeSource::look(to, manifest, &plan, shards, &mut Contents::default())?;
-            &elsewhere
-        }
+        None => &MergeSource::look(to, manifest::read(to)?, &plan, shards, &mut Contents::default())?,
     };
     let was_complete = target.is_complete;
     if !was_complete {
@@ -79,7 +72,7 @@ pub fn merge(parts: &[Destination], to: &Destination, check: Check) -> Result<Ge
     to.remove_leftovers();
     for shard in 0..shards.count() {
         let name = shards.name(shard);
-        let of_parts: Vec<(&Destination, ShardFile)> =
+        let of_parts: Vec<Offer> =
             places.iter().filter_map(|place| Some((place.at, *place.shards.get(&shard)?))).collect();
         let file = match target.has(shard, &name, &of_parts, check)? {
             Some(file) => {
@@ -100,8 +93,11 @@ pub fn merge(parts: &[Destination], to: &Destination, check: Check) -> Result<Ge
     Ok(merged)
 }
 
+/// A place that lists a shard, and the file that it lists.
+type Offer<'p> = (&'p Destination, ShardFile);
+
 /// Claims the place of the whole data set for this program alone.
-fn claim(to: &Destination) -> Result<Claimed, DatasetError> {
+fn claim(to: &Destination) -> Result<Option<Claim>, DatasetError> {
     to.claim("merge", "is merging parts in")
 }
 
@@ -110,11 +106,7 @@ fn is_same(place: &Destination, other: &Destination) -> bool {
 }
 
 /// Copies a shard from the first part that has an undamaged copy.
-fn take_over(
-    name: &str,
-    of_parts: &[(&Destination, ShardFile)],
-    to: &Destination,
-) -> Result<ShardFile, DatasetError> {
+fn take_over(name: &str, of_parts: &[Offer], to: &Destination) -> Result<ShardFile, DatasetError> {
     for (at, file) in of_parts {
         // The copy in `to` has already been found missing or damaged.
         if !is_same(at, to) && to.take_over(at, name, &file.digest)? {
@@ -122,13 +114,10 @@ fn take_over(
         }
     }
     let places: Vec<String> = of_parts.iter().map(|(at, _)| at.to_string()).collect();
-    Err(DatasetError::refused(
-        format!(
-            "{name} is damaged in {}: its SHA-256 is not that of what was written",
-            places.join(" and in ")
-        ),
-        "make it again: run `meshtone dataset PLAN.toml -o DIR --part I/N` there",
-    ))
+    let places = places.join(" and in ");
+    let problem = format!("{name} is damaged in {places}: its SHA-256 is not that of what was written");
+    let help = "make it again: run `meshtone dataset PLAN.toml -o DIR --part I/N` there";
+    Err(DatasetError::refused(problem, help))
 }
 
 /// The place of a part, or of the whole data set, and the files that are there.
@@ -137,7 +126,7 @@ struct MergeSource<'p> {
     /// Whether the whole data set is there.
     is_complete: bool,
     /// All files, with their sizes.
-    files: BTreeMap<String, u64>,
+    files: Files,
     /// Shards that were made there and have the sizes that are listed.
     shards: BTreeMap<u64, ShardFile>,
     /// Other shards that are there.
@@ -173,7 +162,7 @@ impl<'p> MergeSource<'p> {
         &self,
         shard: u64,
         name: &str,
-        of_parts: &[(&Destination, ShardFile)],
+        of_parts: &[Offer],
         check: Check,
     ) -> Result<Option<ShardFile>, DatasetError> {
         let own = self.shards.get(&shard).copied();

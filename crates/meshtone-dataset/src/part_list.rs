@@ -14,7 +14,7 @@ use crate::error::DatasetError;
 use crate::generate::Part;
 use crate::manifest::FORMAT_VERSION;
 use crate::sealed;
-use crate::store::Destination;
+use crate::store::{Destination, Files};
 
 /// Folder of the lists.
 pub(crate) const FOLDER: &str = "parts";
@@ -51,7 +51,7 @@ struct ListedShard<C = ShardContents> {
 
 impl PartList {
     /// The names of the lists among the names of files.
-    pub fn names(files: &BTreeMap<String, u64>) -> impl Iterator<Item = &String> {
+    pub fn names(files: &Files) -> impl Iterator<Item = &String> {
         files.keys().filter(|name| is_list(name))
     }
 
@@ -71,10 +71,8 @@ impl PartList {
             return None;
         }
         let number = |text: &str| text.parse::<f64>().ok();
-        let ranges = list
-            .ranges
-            .into_iter()
-            .map(|(name, [least, largest])| Some((name, [number(&least)?, number(&largest)?])));
+        let ends = |[least, largest]: [String; 2]| Some([number(&least)?, number(&largest)?]);
+        let ranges = list.ranges.into_iter().map(|(name, range)| Some((name, ends(range)?)));
         let sampled = list.sampled.into_iter().map(|(record, label, split, values)| {
             let values = values.split_ascii_whitespace().map(number).collect::<Option<_>>()?;
             Some((record, SampledRecord { label, split, values }))
@@ -104,20 +102,14 @@ impl PartList {
             "ranges": ranges.collect::<Map<_, _>>(),
             "first": first,
         });
+        let sampled = sampled.iter().map(|(record, SampledRecord { label, split, values })| {
+            let values: Vec<String> = values.iter().map(f64::to_string).collect();
+            (record, label, split, values.join(" "))
+        });
+        let shards = self.shards.iter().map(|(&shard, contents)| ListedShard { shard, contents });
         sealed::write(to, &head, |to| {
-            write_lines(
-                to,
-                "sampled",
-                sampled.iter().map(|(record, SampledRecord { label, split, values })| {
-                    let values: Vec<String> = values.iter().map(f64::to_string).collect();
-                    (record, label, split, values.join(" "))
-                }),
-            )?;
-            write_lines(
-                to,
-                "shards",
-                self.shards.iter().map(|(&shard, contents)| ListedShard { shard, contents }),
-            )
+            write_lines(to, "sampled", sampled)?;
+            write_lines(to, "shards", shards)
         })
     }
 }
@@ -136,7 +128,7 @@ fn write_lines(
     write!(to, "\n  ]")
 }
 
-/// Whether a file name is that of a list.
+/// Returns whether a file name is that of a list.
 pub(crate) fn is_list(name: &str) -> bool {
     let number = || name.strip_prefix(FOLDER)?.strip_prefix('/')?.strip_suffix(".json");
     number().is_some_and(|number| number.split('-').count() == 4)

@@ -26,7 +26,7 @@ pub(crate) fn write<W: Write>(
     to.flush()
 }
 
-/// Whether a text is as it was written.
+/// Returns whether a text is as it was written.
 pub(crate) fn is_whole(text: &str) -> bool {
     let length = seal(&Digest::of(b"")).len();
     let place = text.len().checked_sub(length).filter(|&place| text.is_char_boundary(place));

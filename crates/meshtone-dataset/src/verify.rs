@@ -11,10 +11,13 @@ use crate::error::DatasetError;
 use crate::manifest::{self, CARD, Document, MANIFEST, PREVIEW, ReadManifest};
 use crate::part_list::PartList;
 use crate::shard::{FOLDER, Shards, Wanted};
-use crate::store::Destination;
+use crate::store::{Destination, Files};
 use crate::words::counted;
 
-/// How thoroughly files are checked.
+/// The shards that a manifest or the lists of parts name, by the names of their files.
+type ListedFiles = BTreeMap<String, ShardFile>;
+
+/// The thoroughness with which files are checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Check {
     /// Names, sizes and counts are compared.
@@ -67,12 +70,8 @@ pub fn verify(place: &Destination, check: Check) -> Result<Verified, DatasetErro
     verified.check_names(&files, &listed);
     let shards = verified.check_sizes(&files, &listed, &manifest);
     if check == Check::Bytes {
-        for Document { name, digest } in
-            manifest.documents.iter().filter(|file| files.contains_key(&file.name))
-        {
-            if place.digest(name)? != *digest {
-                verified.object(name, WRONG_BYTES);
-            }
+        for name in manifest.changed_documents(place, &files)? {
+            verified.object(name, WRONG_BYTES);
         }
         verified.check_shards(place, &shards, &manifest);
     }
@@ -80,7 +79,7 @@ pub fn verify(place: &Destination, check: Check) -> Result<Verified, DatasetErro
 }
 
 impl Verified {
-    /// Whether all files are there as they were written.
+    /// Returns whether all files are there as they were written.
     pub fn is_good(&self) -> bool {
         self.missing.is_empty() && self.problems.is_empty()
     }
@@ -110,9 +109,9 @@ impl Verified {
     fn read_lists(
         &mut self,
         place: &Destination,
-        files: &BTreeMap<String, u64>,
+        files: &Files,
         plan: &str,
-    ) -> Result<BTreeMap<String, ShardFile>, DatasetError> {
+    ) -> Result<ListedFiles, DatasetError> {
         let mut shards = BTreeMap::new();
         for name in PartList::names(files) {
             match PartList::read(place, name, plan)? {
@@ -122,13 +121,12 @@ impl Verified {
                 None => self.object(name, "it is not as it was written, or of another plan"),
             }
         }
-        let listed =
-            files.keys().filter_map(|name| Some((name.clone(), *shards.get(&Shards::number_of(name)?)?)));
-        Ok(listed.collect())
+        let listed = |name: &String| Some((name.clone(), *shards.get(&Shards::number_of(name)?)?));
+        Ok(files.keys().filter_map(listed).collect())
     }
 
     /// Checks that every shard is listed, and that a complete data set has its documents.
-    fn check_names(&mut self, files: &BTreeMap<String, u64>, listed: &BTreeMap<String, ShardFile>) {
+    fn check_names(&mut self, files: &Files, listed: &ListedFiles) {
         // Files beside the folders may be the user's own. In the folders, programs read every file that is there.
         let in_folder = |name: &&String| name.starts_with(FOLDER) && !listed.contains_key(*name);
         for name in files.keys().filter(in_folder) {
@@ -143,8 +141,8 @@ impl Verified {
     /// Checks the sizes of all files. Returns the shards that have the listed size.
     fn check_sizes<'l>(
         &mut self,
-        files: &BTreeMap<String, u64>,
-        listed: &'l BTreeMap<String, ShardFile>,
+        files: &Files,
+        listed: &'l ListedFiles,
         manifest: &ReadManifest,
     ) -> Vec<(&'l String, ShardFile)> {
         for Document { name, digest } in &manifest.documents {

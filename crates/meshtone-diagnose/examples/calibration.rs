@@ -14,15 +14,15 @@ use std::error::Error;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::fs;
-use std::sync::atomic::AtomicBool;
 
+use meshtone::batch::Control;
 use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::Scenario;
 use meshtone::signal::{AngleZero, AngularSettings, ShaftPhase, angular_resample};
 use meshtone::wheel::WheelName;
 use meshtone_diagnose::{
-    Answer, HEALTHY, Learned, Observation, Prior, Question, ReferenceControl, ReferenceRecord,
-    ReferenceStore, SignalKind, WheelLines, diagnose, refine,
+    Answer, HEALTHY, Learned, Observation, Prior, Question, ReferenceRecord, ReferenceStore, SignalKind,
+    WheelLines, diagnose, refine,
 };
 use meshtone_fourier::{from_real_spectrum, real_spectrum};
 
@@ -47,7 +47,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let has_healthy = healthy == "healthy";
     let prior = Prior::new(&Scenario::from_toml(&fs::read_to_string(rig)?)?);
     let store = ReferenceStore::new(std::env::temp_dir().join("meshtone-calibration"));
-    let control = ReferenceControl { progress: &|_| {}, cancelled: &AtomicBool::new(false) };
+    let control = Control::default();
     let mut reference = store.get(&prior, LEARNT, &control)?;
     let asked = store.get(&Prior { seed: ASKED_SEED, ..prior.clone() }, ASKED, &control)?;
     let name = |record: &ReferenceRecord| {
@@ -217,8 +217,9 @@ fn row(
     }
     let place = of_kind.and_then(|of| of.place);
     let said_wheel = place.map_or("", |place| place.wheel.name());
-    let said_tooth = place.and_then(|place| place.tooth).unwrap_or(0);
-    let sure = place.and_then(|place| place.tooth_probability).unwrap_or(f64::NAN);
+    let tooth = place.and_then(|place| place.tooth);
+    let said_tooth = tooth.map_or(0, |tooth| tooth.number);
+    let sure = tooth.map_or(f64::NAN, |tooth| tooth.probability);
     writeln!(table, ",{said_wheel},{said_tooth},{sure}")?;
     Ok(())
 }

@@ -34,12 +34,20 @@ pub struct PlaceAnswer {
     pub wheel_probability: f64,
     /// Whether such damage is on one tooth.
     pub is_on_one_tooth: bool,
-    /// Number of the damaged tooth, counted from 1; none of damage to several teeth, and where [`Answer::counted_from`] is none.
-    pub tooth: Option<u32>,
-    /// (°) Angle of its wheel at which it enters contact, likewise.
-    pub angle_deg: Option<f64>,
-    /// (-) Probability that the tooth is this one, given the kind and the wheel.
-    pub tooth_probability: Option<f64>,
+    /// The damaged tooth, its probability given the kind and the wheel; none of damage to several teeth, and where
+    /// [`Answer::counted_from`] is none.
+    pub tooth: Option<ToothAnswer>,
+}
+
+/// The tooth that a damage is on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ToothAnswer {
+    /// Its number, counted from 1.
+    pub number: u32,
+    /// (°) Angle of its wheel at which it enters contact.
+    pub angle_deg: f64,
+    /// (-) Probability that the tooth is this one.
+    pub probability: f64,
 }
 
 /// Answer about a damage, whatever its kind: over all kinds, each as probable as it is said to be.
@@ -53,12 +61,8 @@ pub struct AnyDamage {
     pub wheel_probability: f64,
     /// (-) Probability that it is of a kind that is on one tooth.
     pub one_tooth_probability: f64,
-    /// Number of the damaged tooth, as [`PlaceAnswer::tooth`].
-    pub tooth: Option<u32>,
-    /// (°) Angle of its wheel at which it enters contact.
-    pub angle_deg: Option<f64>,
-    /// (-) Probability that the tooth is this one, given the wheel.
-    pub tooth_probability: Option<f64>,
+    /// The damaged tooth, as [`PlaceAnswer::tooth`], its probability given the wheel.
+    pub tooth: Option<ToothAnswer>,
 }
 
 /// Answer about one kind of damage.

@@ -2,7 +2,7 @@
 
 use meshtone::wheel::WheelName;
 
-use crate::answer::{AnyDamage, HEALTHY, KindAnswer};
+use crate::answer::{AnyDamage, HEALTHY, KindAnswer, ToothAnswer};
 use crate::quantile::interval;
 
 /// (-) Probability of damage from which on it is said to be there, and below which it is not seen.
@@ -34,44 +34,35 @@ impl AnyDamage {
         let part = |of: &dyn Fn(&KindAnswer) -> f64| {
             damaged().map(|kind| kind.probability * of(kind)).sum::<f64>() / total
         };
-        let of_wheel = |wheel: WheelName| {
-            part(&|kind| {
-                kind.place.map_or(0.0, |place| {
-                    if place.wheel == wheel { place.wheel_probability } else { 1.0 - place.wheel_probability }
-                })
-            })
-        };
-        let of_gear = of_wheel(WheelName::Gear);
+        let of_gear = part(&|kind| match kind.place {
+            Some(place) if place.wheel == WheelName::Gear => place.wheel_probability,
+            Some(place) => 1.0 - place.wheel_probability,
+            None => 0.0,
+        });
         let (wheel, wheel_probability) =
             if of_gear >= 0.5 { (WheelName::Gear, of_gear) } else { (WheelName::Pinion, 1.0 - of_gear) };
-        let places =
-            || damaged().filter_map(|kind| Some((kind, kind.place.filter(|place| place.wheel == wheel)?)));
-        // Each kind's tooth with its share; of the tooth, given the wheel.
-        let mut teeth: Vec<(u32, f64, f64)> = Vec::new();
-        for (kind, place) in places() {
-            let (Some(tooth), Some(angle), Some(sure)) =
-                (place.tooth, place.angle_deg, place.tooth_probability)
-            else {
-                continue;
-            };
-            let share = kind.probability * place.wheel_probability * sure;
-            match teeth.iter_mut().find(|(known, ..)| *known == tooth) {
-                Some((.., sum)) => *sum += share,
-                None => teeth.push((tooth, angle, share)),
+        // The kinds' teeth on this wheel, each with the sum of its shares.
+        let mut teeth: Vec<ToothAnswer> = Vec::new();
+        for kind in damaged() {
+            let Some(place) = kind.place.filter(|place| place.wheel == wheel) else { continue };
+            let Some(tooth) = place.tooth else { continue };
+            let share = kind.probability * place.wheel_probability * tooth.probability;
+            match teeth.iter_mut().find(|known| known.number == tooth.number) {
+                Some(known) => known.probability += share,
+                None => teeth.push(ToothAnswer { probability: share, ..tooth }),
             }
         }
-        let likeliest = teeth.into_iter().max_by(|a, b| a.2.total_cmp(&b.2));
-        let of_the_wheel = total * wheel_probability;
+        let is_on_one_tooth = |kind: &KindAnswer| kind.place.is_some_and(|place| place.is_on_one_tooth);
+        let one_tooth_probability = part(&|kind| f64::from(u8::from(is_on_one_tooth(kind))));
+        let likeliest = teeth.into_iter().max_by(|a, b| a.probability.total_cmp(&b.probability));
+        let given_wheel = |share: f64| (share / (total * wheel_probability)).min(1.0);
         Some(Self {
             severity: interval(&draws),
             wheel,
             wheel_probability,
-            one_tooth_probability: part(&|kind| {
-                f64::from(u8::from(kind.place.is_some_and(|place| place.is_on_one_tooth)))
-            }),
-            tooth: likeliest.map(|(tooth, ..)| tooth),
-            angle_deg: likeliest.map(|(_, angle, _)| angle),
-            tooth_probability: likeliest.map(|(.., share)| (share / of_the_wheel).min(1.0)),
+            one_tooth_probability,
+            tooth: likeliest
+                .map(|tooth| ToothAnswer { probability: given_wheel(tooth.probability), ..tooth }),
         })
     }
 
@@ -92,15 +83,16 @@ impl AnyDamage {
             return "look at both wheels".to_owned();
         }
         let wheel = self.wheel.name();
-        match (self.tooth, self.tooth_probability) {
-            // Likelier all of them.
-            _ if self.one_tooth_probability < 0.5 => format!("look at every tooth of the {wheel}"),
-            (Some(tooth), Some(sure)) if sure >= NAMED => format!("look at tooth {tooth} of the {wheel}"),
-            (Some(tooth), Some(_)) => format!("look at the {wheel}, from tooth {tooth} on"),
-            _ if self.one_tooth_probability >= NAMED => {
+        // All teeth may be likelier than one.
+        match self.tooth.filter(|_| self.one_tooth_probability >= 0.5) {
+            Some(ToothAnswer { number, probability, .. }) if probability >= NAMED => {
+                format!("look at tooth {number} of the {wheel}")
+            }
+            Some(tooth) => format!("look at the {wheel}, from tooth {} on", tooth.number),
+            None if self.one_tooth_probability >= NAMED => {
                 format!("look at every tooth of the {wheel}: one is damaged")
             }
-            _ => format!("look at every tooth of the {wheel}"),
+            None => format!("look at every tooth of the {wheel}"),
         }
     }
 }
@@ -143,9 +135,7 @@ mod tests {
             wheel,
             wheel_probability: 0.9,
             is_on_one_tooth: true,
-            tooth,
-            angle_deg: tooth.map(f64::from),
-            tooth_probability: tooth.map(|_| 1.0),
+            tooth: tooth.map(|number| ToothAnswer { number, angle_deg: f64::from(number), probability: 1.0 }),
         };
         let place = (label != HEALTHY).then_some(place);
         KindAnswer { label, probability, severity: None, sizes: Vec::new(), place }
@@ -161,10 +151,11 @@ mod tests {
         ];
         let draws = [("missing-tooth", vec![(1.0, 5.0)]), ("pits", vec![(0.2, 0.5), (0.4, 0.5)])];
         let any = AnyDamage::over(&kinds, &draws).unwrap();
-        assert_eq!((any.wheel, any.tooth), (WheelName::Gear, Some(8)));
+        let tooth = any.tooth.unwrap();
+        assert_eq!((any.wheel, tooth.number), (WheelName::Gear, 8));
         assert!((any.wheel_probability - (0.75 * 0.9 + 0.25 * 0.1)).abs() < 1e-12);
         // Of the gear's 0.7: all of the missing tooth's 0.75 × 0.9.
-        assert!((any.tooth_probability.unwrap() - 0.675 / 0.7).abs() < 1e-12);
+        assert!((tooth.probability - 0.675 / 0.7).abs() < 1e-12);
         assert!(any.severity.median > 0.8 && any.severity.within_90[0] < 0.3, "{:?}", any.severity);
         assert!(AnyDamage::over(&kinds[1..2], &draws).is_none());
     }

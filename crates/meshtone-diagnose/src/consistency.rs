@@ -14,12 +14,11 @@ const DECIDED: [f64; 2] = [0.2, 0.8];
 /// # Arguments
 /// * `learned`, `question` - by what each recording is looked at alone
 pub(crate) fn doubts(learned: &Learned, question: &Question) -> Vec<String> {
-    let now =
-        much_louder_recording(question.now).map(|of| format!("the recordings are hardly of one state: {of}"));
-    let now = now.or_else(|| contradicting_states(learned, question));
-    let healthy = much_louder_recording(question.healthy)
-        .map(|of| format!("the healthy recordings are hardly of one state: {of}"));
-    now.into_iter().chain(healthy).collect()
+    let hardly = |which: &str, recordings: &[Observation]| {
+        Some(format!("the {which} are hardly of one state: {}", much_louder_recording(recordings)?))
+    };
+    let now = hardly("recordings", question.now).or_else(|| contradicting_states(learned, question));
+    now.into_iter().chain(hardly("healthy recordings", question.healthy)).collect()
 }
 
 /// The loudest of several recordings, where it is much louder than the quietest.

@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 
 use crate::answer::{Answer, AnyDamage, Explanation, Interval, KindAnswer};
 
-/// Of the layout of what is written; another one where a key changes its meaning.
+/// Version of the layout; it is raised where a key changes its meaning.
 const FORMAT_VERSION: u32 = 1;
 
 impl Answer {
@@ -37,16 +37,17 @@ fn any_damage(any: &AnyDamage) -> Value {
         "wheel": any.wheel.name(),
         "wheel_probability": any.wheel_probability,
         "one_tooth_probability": any.one_tooth_probability,
-        "tooth": any.tooth,
-        "tooth_probability": any.tooth_probability,
-        "angle_deg": any.angle_deg,
+        "tooth": any.tooth.map(|tooth| tooth.number),
+        "tooth_probability": any.tooth.map(|tooth| tooth.probability),
+        "angle_deg": any.tooth.map(|tooth| tooth.angle_deg),
     })
 }
 
 fn kind_json(kind: &KindAnswer) -> Value {
     let sizes: Map<String, Value> =
         kind.sizes.iter().map(|size| (size.key.to_owned(), interval(&size.interval))).collect();
-    let place = kind.place.as_ref();
+    let place = kind.place;
+    let tooth = place.and_then(|place| place.tooth);
     json!({
         "probability": kind.probability,
         "severity": kind.severity.as_ref().map(interval),
@@ -54,9 +55,9 @@ fn kind_json(kind: &KindAnswer) -> Value {
         "wheel": place.map(|place| place.wheel.name()),
         "wheel_probability": place.map(|place| place.wheel_probability),
         "is_on_one_tooth": place.map(|place| place.is_on_one_tooth),
-        "tooth": place.and_then(|place| place.tooth),
-        "tooth_probability": place.and_then(|place| place.tooth_probability),
-        "angle_deg": place.and_then(|place| place.angle_deg),
+        "tooth": tooth.map(|tooth| tooth.number),
+        "tooth_probability": tooth.map(|tooth| tooth.probability),
+        "angle_deg": tooth.map(|tooth| tooth.angle_deg),
     })
 }
 

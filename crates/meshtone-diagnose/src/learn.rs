@@ -10,12 +10,12 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::DiagnoseError;
-use crate::features::{WheelFeatures, wheel_features};
+use crate::features::wheel_features;
 use crate::healthy::beyond_healthy;
 use crate::matrix::{FOLDS, RandomFeatures, Standardisation, ridge};
 use crate::observation::{Observation, SignalKind, WheelLines};
 use crate::outlier_test::OutlierTest;
-use crate::prior::{DrawnFault, RECORDS_PER_UNIT};
+use crate::prior::{DrawnFault, Focus, RECORDS_PER_UNIT};
 use crate::reference::{ReferenceRecord, ReferenceSet};
 use crate::severity::SizeModel;
 use crate::softmax::Softmax;
@@ -42,6 +42,13 @@ pub struct Question<'a> {
     pub healthy: &'a [Observation],
 }
 
+impl Question<'_> {
+    /// All recordings, those in question first.
+    pub(crate) fn all(&self) -> impl Iterator<Item = &Observation> {
+        self.now.iter().chain(self.healthy)
+    }
+}
+
 /// A class: what is damaged; none where nothing is.
 pub(crate) type Class = Option<(usize, WheelName)>;
 
@@ -50,7 +57,6 @@ pub struct Learned<'a> {
     pub(crate) reference: &'a ReferenceSet,
     pub(crate) kinds: Vec<DamageKind>,
     pub(crate) layout: Layout,
-    appearance: SimulatedAppearance,
     /// The records that it was learnt from.
     pub(crate) records: Vec<&'a ReferenceRecord>,
     pub(crate) rows: Vec<FeatureRow>,
@@ -71,49 +77,19 @@ pub struct Learned<'a> {
 /// Severity and sizes of a class's damages, by their places among the sizes; none of the severity.
 pub(crate) type SizeModels = Result<Vec<(Option<usize>, SizeModel)>, DiagnoseError>;
 
-/// The features that are compared.
+/// The features that are compared, of the question and of simulations in recordings like those of the question.
 #[derive(Debug, Clone)]
 pub(crate) struct Layout {
     pub signal: SignalKind,
     pub has_healthy: bool,
     /// The last order that is whole everywhere, of the pinion and of the gear.
     pub last: [usize; 2],
-}
-
-/// Features of a simulation in recordings like those of the question.
-struct SimulatedAppearance {
-    layout: Layout,
     /// (g) Noise in the lines of the recordings that are asked about, and of the healthy ones.
     noises: [[Vec<f64>; 2]; 2],
     /// (Hz) The rig's speed of the pinion.
     nominal_hz: f64,
     /// Whether the recordings' speed is known.
     knows_speed: bool,
-}
-
-impl SimulatedAppearance {
-    /// Of the healthy recordings alone.
-    fn of_healthy(&self) -> Self {
-        let layout = Layout { has_healthy: false, ..self.layout.clone() };
-        let noises = [self.noises[1].clone(), Default::default()];
-        Self { layout, noises, nominal_hz: self.nominal_hz, knows_speed: self.knows_speed }
-    }
-
-    /// Features of a simulation.
-    ///
-    /// # Arguments
-    /// * `record` - the simulation
-    /// * `healthy` - of the same pair of wheels, where it is compared with one
-    /// * `seed` - of the noise
-    fn row(&self, record: &ReferenceRecord, healthy: Option<&ReferenceRecord>, seed: u64) -> FeatureRow {
-        let [now, before] = &self.noises;
-        let noisy = |record, noise| with_noise(record, &self.layout, noise, seed);
-        let (now, before) = (noisy(record, now), healthy.map(|healthy| noisy(healthy, before)));
-        let speed = if self.knows_speed { (record.pinion_speed_hz / self.nominal_hz).ln() } else { 0.0 };
-        let signal = self.layout.signal;
-        let before = before.as_ref().map_or([None, None], |wheels| shown(signal, wheels));
-        self.layout.row(shown(signal, &now), before, speed)
-    }
 }
 
 /// The wheels that a signal shows.
@@ -134,43 +110,62 @@ impl Layout {
         let first = question.now.first().ok_or(DiagnoseError::NoRecording)?;
         let gears = &reference.prior.base.gears;
         let expected = [gears.pinion_teeth, gears.gear_teeth];
-        for asked in question.now.iter().chain(question.healthy) {
+        for asked in question.all() {
             let pinion = asked.pinion.as_ref().map_or(expected[0], |wheel| wheel.teeth);
             let given = [pinion, asked.gear.teeth];
             if given != expected {
                 return Err(DiagnoseError::OtherWheels { given, expected });
             }
             if let Some(value) = asked.pinion_speed_hz.filter(|hz| !hz.is_finite() || *hz <= 0.0) {
-                return Err(DiagnoseError::NotFinite {
-                    what: "speed (Hz)",
-                    value,
-                    beside: " and more than 0",
-                });
+                let (what, beside) = ("speed (Hz)", " and more than 0");
+                return Err(DiagnoseError::NotFinite { what, value, beside });
             }
-            let lines = asked.gear.lines.iter().chain(asked.pinion.iter().flat_map(|wheel| &wheel.lines));
-            if let Some(line) = lines.into_iter().find(|line| !line.norm().is_finite()) {
-                return Err(DiagnoseError::NotFinite { what: "average", value: line.norm(), beside: "" });
+            let lines = asked.wheels().into_iter().flatten().flat_map(|wheel| &wheel.lines);
+            if let Some(value) = lines.map(|line| line.norm()).find(|norm| !norm.is_finite()) {
+                return Err(DiagnoseError::NotFinite { what: "average", value, beside: "" });
             }
             if asked.signal != first.signal {
                 let (healthy, asked) = (asked.signal.name(), first.signal.name());
                 return Err(DiagnoseError::OtherSignal { healthy, asked });
             }
         }
-        let last_of = |wheel: usize| {
-            let of_reference = reference.records.iter().map(|record| record.wheels[wheel].last());
-            let of_observation =
-                question.now.iter().chain(question.healthy).filter_map(|asked| match wheel {
-                    0 => asked.pinion.as_ref().map(WheelLines::last),
-                    _ => Some(asked.gear.last()),
-                });
-            of_reference.chain(of_observation).min().unwrap_or(0)
-        };
-        let last = [last_of(0), last_of(1)];
+        let last = [0, 1].map(|wheel| {
+            let simulated = reference.records.iter().map(|record| &record.wheels[wheel]);
+            let observed = question.all().filter_map(|asked| asked.wheels()[wheel]);
+            simulated.chain(observed).map(WheelLines::last).min().unwrap_or(0)
+        });
         let needed = FEWEST_MESH_ORDERS * expected[1] as usize + expected[1] as usize / 2;
         if last[1] < needed {
             return Err(DiagnoseError::TooFewOrders { of: first.signal.name(), last: last[1], needed });
         }
-        Ok(Self { signal: first.signal, has_healthy: !question.healthy.is_empty(), last })
+        Ok(Self {
+            signal: first.signal,
+            has_healthy: !question.healthy.is_empty(),
+            last,
+            noises: [question.now, question.healthy].map(noise_of),
+            nominal_hz: reference.prior.base.operation.pinion_speed_hz,
+            knows_speed: question.now.iter().any(|asked| asked.pinion_speed_hz.is_some()),
+        })
+    }
+
+    /// Features of a simulation.
+    ///
+    /// # Arguments
+    /// * `record` - the simulation
+    /// * `healthy` - of the same pair of wheels, where it is compared with one
+    /// * `seed` - of the noise
+    fn simulation(
+        &self,
+        record: &ReferenceRecord,
+        healthy: Option<&ReferenceRecord>,
+        seed: u64,
+    ) -> FeatureRow {
+        let [now, before] = &self.noises;
+        let noisy = |record, noise| with_noise(record, self, noise, seed);
+        let (now, before) = (noisy(record, now), healthy.map(|healthy| noisy(healthy, before)));
+        let speed = if self.knows_speed { (record.pinion_speed_hz / self.nominal_hz).ln() } else { 0.0 };
+        let before = before.as_ref().map_or([None, None], |wheels| shown(self.signal, wheels));
+        self.row(shown(self.signal, &now), before, speed)
     }
 
     /// Features of two states of one rig, or of one alone.
@@ -199,32 +194,22 @@ impl Layout {
                 row.values.extend(less(&plain.levels, &before.levels));
                 row.values.extend(less(&plain.shapes, &before.shapes));
                 row.values.extend(less(&beyond.levels, &before.levels));
-                let WheelFeatures { shapes, .. } = beyond;
-                row.values.extend(shapes);
+                row.values.extend(beyond.shapes);
             }
         }
         row
     }
 
     /// Features of the question: the mean over its recordings.
-    fn question(&self, question: &Question, reference: &ReferenceSet) -> FeatureRow {
-        let nominal = reference.prior.base.operation.pinion_speed_hz;
-        let lines = |of: &Observation| [of.pinion.clone(), Some(of.gear.clone())];
-        let healthy: Vec<[Option<WheelLines>; 2]> = match question.healthy {
+    fn question(&self, question: &Question) -> FeatureRow {
+        let healthy: Vec<[Option<&WheelLines>; 2]> = match question.healthy {
             [] => vec![[None, None]],
-            several => several.iter().map(lines).collect(),
+            several => several.iter().map(Observation::wheels).collect(),
         };
         let mut rows = Vec::new();
         for now in question.now {
-            let speed = now.pinion_speed_hz.map_or(0.0, |hz| (hz / nominal).ln());
-            for before in &healthy {
-                let of = lines(now);
-                rows.push(self.row(
-                    of.each_ref().map(Option::as_ref),
-                    before.each_ref().map(Option::as_ref),
-                    speed,
-                ));
-            }
+            let speed = now.pinion_speed_hz.map_or(0.0, |hz| (hz / self.nominal_hz).ln());
+            rows.extend(healthy.iter().map(|before| self.row(now.wheels(), *before, speed)));
         }
         let count = rows.len() as f64;
         let mut mean = rows[0].clone();
@@ -251,7 +236,6 @@ impl<'a> Learned<'a> {
     /// A recording of other wheels, or of too few orders; too few simulations.
     pub fn new(reference: &'a ReferenceSet, question: &Question) -> Result<Self, DiagnoseError> {
         let layout = Layout::of(question, reference)?;
-        let noises = [noise_of(question.now), noise_of(question.healthy)];
         let kinds = reference.prior.kinds();
         let is_asked = |record: &&ReferenceRecord| {
             let of_gear = record.fault.as_ref().is_none_or(|fault| fault.wheel == WheelName::Gear);
@@ -263,23 +247,17 @@ impl<'a> Learned<'a> {
         if records.len() < FEWEST_RECORDS {
             return Err(DiagnoseError::NoReference);
         }
-        let appearance = SimulatedAppearance {
-            layout: layout.clone(),
-            noises,
-            nominal_hz: reference.prior.base.operation.pinion_speed_hz,
-            knows_speed: question.now.iter().any(|asked| asked.pinion_speed_hz.is_some()),
-        };
         let row_of = |record: &&ReferenceRecord| {
             let before = reference.healthy_of(record).filter(|_| layout.has_healthy);
-            appearance.row(record, before, reference.prior.seed)
+            layout.simulation(record, before, reference.prior.seed)
         };
+        let unit_of = |record: &&ReferenceRecord| record.unit();
         let rows: Vec<FeatureRow> = records.par_iter().map(row_of).collect();
         let mut classes: Vec<Class> = records.iter().map(|record| class_of(record)).collect();
         classes.sort_unstable_by_key(|class| class.map(|(kind, wheel)| (kind, wheel as usize)));
         classes.dedup();
         let place = |record: &&ReferenceRecord| classes.iter().position(|class| *class == class_of(record));
         let class_of: Vec<usize> = records.iter().filter_map(place).collect();
-        let units: Vec<u64> = records.iter().map(|record| record.number / RECORDS_PER_UNIT).collect();
         let folds: Vec<usize> = records.iter().map(|record| fold_of(record)).collect();
         let weights = weights(&class_of, &classes);
         let values: Vec<Vec<f64>> = rows.iter().map(|row| row.values.clone()).collect();
@@ -288,26 +266,25 @@ impl<'a> Learned<'a> {
         let width = values.first().map_or(0, Vec::len);
         let random = RandomFeatures::new(width, RANDOM_FEATURES, reference.prior.seed);
         let features = random.of(&standardised);
-        let is_class = |class: usize, row: usize| if class_of[row] == class { 1.0 } else { 0.0 };
+        let is_class = |class: usize, row: usize| f64::from(u8::from(class_of[row] == class));
         let targets = DMatrix::from_fn(classes.len(), records.len(), is_class);
         let regression = ridge(&features, &targets, &weights, &folds, PENALTY)?;
         let softmax = Softmax::fit(&regression.out_of_fold, &class_of, &weights)?;
-        let outside = OutlierTest::new(&values, &units, &weights);
+        let outside = OutlierTest::new(&values, records.iter().map(unit_of).collect(), &weights);
         let healthy_outside = layout.has_healthy.then(|| {
-            let alone = appearance.of_healthy();
+            let alone = Layout { noises: [layout.noises[1].clone(), Default::default()], ..layout.clone() };
             let healthy: Vec<&ReferenceRecord> =
                 reference.records.iter().filter(|record| record.fault.is_none()).collect();
-            let row_of = |record: &&ReferenceRecord| alone.row(record, None, reference.prior.seed).values;
+            let row_of =
+                |record: &&ReferenceRecord| alone.simulation(record, None, reference.prior.seed).values;
             let rows: Vec<Vec<f64>> = healthy.par_iter().map(row_of).collect();
-            let units: Vec<u64> = healthy.iter().map(|record| record.number / RECORDS_PER_UNIT).collect();
-            OutlierTest::new(&rows, &units, &vec![1.0; rows.len()])
+            OutlierTest::new(&rows, healthy.iter().map(unit_of).collect(), &vec![1.0; rows.len()])
         });
         let size_models = classes.iter().map(|_| OnceLock::new()).collect();
         Ok(Self {
             reference,
             kinds,
             layout,
-            appearance,
             records,
             rows,
             classes,
@@ -326,13 +303,7 @@ impl<'a> Learned<'a> {
 
     /// Features of the question.
     pub(crate) fn row(&self, question: &Question) -> FeatureRow {
-        self.layout.question(question, self.reference)
-    }
-
-    /// Features of the healthy recordings alone.
-    pub(crate) fn healthy_row(&self, question: &Question) -> FeatureRow {
-        let alone = Layout { has_healthy: false, ..self.layout.clone() };
-        alone.question(&Question { now: question.healthy, healthy: &[] }, self.reference)
+        self.layout.question(question)
     }
 
     /// Features of a row as regressions use them.
@@ -342,12 +313,9 @@ impl<'a> Learned<'a> {
 
     /// (-) The probability of each class.
     pub(crate) fn probabilities(&self, features: &[f64]) -> Vec<f64> {
-        let scores: Vec<f64> = self
-            .coefficients
-            .column_iter()
-            .map(|column| column.iter().zip(features).map(|(a, b)| a * b).sum())
-            .collect();
-        self.softmax.probabilities(&scores)
+        let columns = self.coefficients.column_iter();
+        let scores = columns.map(|column| column.iter().zip(features).map(|(a, b)| a * b).sum());
+        self.softmax.probabilities(&scores.collect::<Vec<f64>>())
     }
 
     /// The rows of a class.
@@ -370,10 +338,12 @@ impl<'a> Learned<'a> {
     /// Does what [`Self::sizes`] does, by the simulations within a range of severities.
     ///
     /// # Arguments
-    /// * `refined` - the range, with more simulations in it; none: all severities, without more
-    pub(crate) fn fit_sizes(&self, class: usize, refined: Option<([f64; 2], &ReferenceSet)>) -> SizeModels {
+    /// * `refined` - more simulations in the range of their focus; none: all severities, without more
+    pub(crate) fn fit_sizes(&self, class: usize, refined: Option<&ReferenceSet>) -> SizeModels {
+        let focus = refined.and_then(|refined| refined.prior.focus.as_ref());
         let is_within = |fault: &DrawnFault| {
-            refined.is_none_or(|([least, most], _)| (least..=most).contains(&fault.severity))
+            focus
+                .is_none_or(|Focus { severity: [least, most], .. }| (least..=most).contains(&&fault.severity))
         };
         let (rows, mut faults): (Vec<usize>, Vec<&DrawnFault>) = self
             .rows_of(class)
@@ -382,7 +352,7 @@ impl<'a> Learned<'a> {
             .unzip();
         let mut folds: Vec<usize> = rows.iter().map(|&row| self.folds[row]).collect();
         let mut features = self.features.select_columns(&rows);
-        if let Some((_, refined)) = refined {
+        if let Some(refined) = refined {
             let more = self.refined_rows(refined);
             if more.len() < refined.records.len() / 2 {
                 return Err(DiagnoseError::NoReference);
@@ -422,7 +392,7 @@ impl<'a> Learned<'a> {
                 return None;
             }
             let healthy = healthy.filter(|_| self.layout.has_healthy);
-            Some((record, self.appearance.row(record, healthy, seed)))
+            Some((record, self.layout.simulation(record, healthy, seed)))
         };
         refined.records.par_iter().filter_map(row).collect()
     }
@@ -430,7 +400,7 @@ impl<'a> Learned<'a> {
 
 /// Part of the simulations to which a record belongs: pairs of wheels are not divided.
 fn fold_of(record: &ReferenceRecord) -> usize {
-    (record.number / RECORDS_PER_UNIT % FOLDS as u64) as usize
+    (record.unit() % FOLDS as u64) as usize
 }
 
 fn class_of(record: &ReferenceRecord) -> Class {
@@ -481,10 +451,7 @@ fn with_noise(
         let teeth = lines.teeth.max(1) as usize;
         for (order, line) in lines.lines.iter_mut().enumerate() {
             let known = &noise[wheel];
-            let deviation = match known.get((order + teeth / 2) / teeth).or(known.last()) {
-                Some(deviation) => *deviation,
-                None => unknown,
-            };
+            let deviation = known.get((order + teeth / 2) / teeth).or(known.last()).unwrap_or(&unknown);
             let [re, im] = draws.normals();
             *line += Complex64::new(re, im) * (deviation * std::f64::consts::FRAC_1_SQRT_2);
         }

@@ -2,7 +2,7 @@
 
 use crate::learn::{Learned, Question};
 use crate::observation::{Observation, WheelLines};
-use crate::quantile::quantile;
+use crate::quantile::quantiles;
 
 /// (dB) How far beyond nine in ten of the simulations a level must be: the sensor's path is among what was drawn for them.
 const BEYOND_DB: f64 = 10.0;
@@ -19,16 +19,14 @@ pub(crate) fn doubt(learned: &Learned, question: &Question) -> Option<String> {
         None => ("recording", of(question.now.first()?), false),
     };
     let counted = learned.reference.records.iter().filter(|record| !is_healthy || record.fault.is_none());
-    let mut levels: Vec<(f64, f64)> =
-        counted.map(|record| (level_db(learned, &record.wheels[1]), 1.0)).collect();
-    levels.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let [low, high] = [0.05, 0.95].map(|part| quantile(&levels, part));
+    let levels = counted.map(|record| (level_db(learned, &record.wheels[1]), 1.0)).collect();
+    let [low, median, high] = quantiles(levels, [0.05, 0.5, 0.95]);
     let is_within = (low - BEYOND_DB..=high + BEYOND_DB).contains(&asked);
     (!is_within).then(|| {
         format!(
             "the {name} is {:.3} times as loud as the simulations (median), more than a sensor's mounting explains: are its unit (1 g is \
              9.81 m/s²) and the sensitivity right?",
-            10f64.powf((asked - quantile(&levels, 0.5)) / 20.0)
+            10f64.powf((asked - median) / 20.0)
         )
     })
 }

@@ -31,13 +31,14 @@ mod synthetic;
 mod warnings;
 
 pub use answer::{
-    Answer, AnyDamage, Explanation, HEALTHY, Interval, KindAnswer, PlaceAnswer, SizeAnswer, p_in_words,
+    Answer, AnyDamage, Explanation, HEALTHY, Interval, KindAnswer, PlaceAnswer, SizeAnswer, ToothAnswer,
+    p_in_words,
 };
 pub use diagnose::{OUTSIDE, diagnose};
 pub use error::DiagnoseError;
 pub use learn::{Learned, Question};
 pub use observation::{Observation, SignalKind, WheelLines, other_teeth};
 pub use prior::{Drawn, DrawnFault, Focus, Prior, Spread};
-pub use reference::{ReferenceControl, ReferenceRecord, ReferenceSet, build_reference};
+pub use reference::{ReferenceRecord, ReferenceSet, build_reference};
 pub use refine::{REFINED_RECORDS, Refined, refine};
 pub use store::{ReferenceStore, StoreError};

@@ -9,7 +9,7 @@ use crate::DiagnoseError;
 /// Parts of the rows: each is predicted by a regression on the others.
 pub(crate) const FOLDS: usize = 5;
 
-/// Of a feature that is the same in all simulations: logarithms and shapes differ by more where they differ.
+/// The deviation of a feature that is the same in all simulations: logarithms and shapes differ by more where they differ.
 const LEAST_DEVIATION: f64 = 1e-3;
 
 /// Each feature less its mean, over its standard deviation, and within ± [`Self::MOST`].
@@ -143,29 +143,19 @@ pub(crate) fn ridge(
             (&f * &transposed, &f * t.transpose())
         })
         .collect();
-    let sum = |part: fn(&NormalEquations) -> &DMatrix<f64>, but: Option<usize>| {
-        let kept =
-            normal.iter().enumerate().filter(|(fold, _)| Some(*fold) != but).map(|(_, pair)| part(pair));
-        kept.fold(None, |sum: Option<DMatrix<f64>>, part| {
-            Some(sum.map_or_else(|| part.clone(), |sum| sum + part))
-        })
-    };
-    let solve = |but: Option<usize>| -> Result<DMatrix<f64>, DiagnoseError> {
-        let (Some(mut gram), Some(right)) = (sum(|pair| &pair.0, but), sum(|pair| &pair.1, but)) else {
-            return Err(DiagnoseError::NoReference);
-        };
+    // All parts but one; of as many as there are parts, all.
+    let solve = |but: usize| -> Result<DMatrix<f64>, DiagnoseError> {
+        let kept = normal.iter().enumerate().filter(|(fold, _)| *fold != but).map(|(_, pair)| pair.clone());
+        let sum = kept.reduce(|(gram, right), (more, more_right)| (gram + more, right + more_right));
+        let (mut gram, right) = sum.ok_or(DiagnoseError::NoReference)?;
         (0..width).for_each(|feature| gram[(feature, feature)] += penalty);
         Ok(Cholesky::new(gram).ok_or(DiagnoseError::NotSolved)?.solve(&right))
     };
-    let solved: Vec<DMatrix<f64>> = (0..=FOLDS)
-        .into_par_iter()
-        .map(|fold| solve((fold < FOLDS).then_some(fold)))
-        .collect::<Result<_, _>>()?;
+    let solved: Vec<DMatrix<f64>> = (0..=FOLDS).into_par_iter().map(solve).collect::<Result<_, _>>()?;
     let mut out_of_fold = DMatrix::zeros(targets.nrows(), targets.ncols());
     for (fold, coefficients) in solved.iter().take(FOLDS).enumerate() {
         let rows: Vec<usize> = (0..folds.len()).filter(|&row| folds[row] == fold).collect();
-        let chosen = DMatrix::from_fn(width, rows.len(), |i, j| features[(i, rows[j])]);
-        let predicted = coefficients.transpose() * &chosen;
+        let predicted = coefficients.transpose() * features.select_columns(&rows);
         for (place, &row) in rows.iter().enumerate() {
             out_of_fold.set_column(row, &predicted.column(place));
         }

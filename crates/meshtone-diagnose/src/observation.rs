@@ -1,5 +1,6 @@
 //! Features of the two wheels in a recording or a simulation.
 
+use meshtone::operation::greatest_common_divisor;
 use meshtone::signal::{
     Alternative, AngleZero, AngularSettings, AngularSignal, Mismatch, SeparationSettings, ShaftPhase,
     SignalError, StatedFacts, StatedTurning, SynchronousAverage, angular_resample, check_channel,
@@ -190,6 +191,11 @@ impl Observation {
         self
     }
 
+    /// The lines of the pinion, where they are known, and of the gear.
+    pub(crate) fn wheels(&self) -> [Option<&WheelLines>; 2] {
+        [self.pinion.as_ref(), Some(&self.gear)]
+    }
+
     /// Observes one revolution of the gear.
     ///
     /// # Arguments
@@ -255,8 +261,8 @@ const BEYOND: f64 = 0.7;
 /// Warning about values that are stated to be one revolution: those of many have their mesh orders as many times as high.
 fn beyond_a_revolution(values_g: &[f64], gear_teeth: u32) -> Option<String> {
     let squares: Vec<f64> = real_spectrum(values_g).iter().skip(1).map(Complex64::norm_sqr).collect();
-    let (inside, all) =
-        (squares.iter().take(WheelLines::most(gear_teeth)).sum::<f64>(), squares.iter().sum::<f64>());
+    let inside: f64 = squares.iter().take(WheelLines::most(gear_teeth)).sum();
+    let all: f64 = squares.iter().sum();
     (all - inside > BEYOND * all).then(|| {
         format!(
             "{:.0} % of the energy is beyond mesh order {MESH_ORDERS}: are these {} values one revolution of a gear with {gear_teeth} \
@@ -285,12 +291,8 @@ fn too_short(gear_revolutions: usize, [pinion, gear]: [u32; 2], gear_hz: f64) ->
             lasts(FEWEST_REVOLUTIONS)
         ));
     }
-    let (mut a, mut b) = (pinion, gear);
-    while b != 0 {
-        (a, b) = (b, a % b);
-    }
     // Revolutions of the gear after which the same teeth meet again.
-    let sequence = (pinion / a.max(1)) as usize;
+    let sequence = (pinion / greatest_common_divisor(pinion, gear)) as usize;
     let needed = SEQUENCES * sequence;
     // Over whole sequences each wheel's orders are lines of their own.
     (gear_revolutions < needed && !gear_revolutions.is_multiple_of(sequence)).then(|| {
@@ -353,15 +355,16 @@ fn noise(angular: &AngularSignal, teeth: u32, ratio: f64) -> Vec<f64> {
     let band = |mesh: usize| {
         let from = (mesh * per_mesh_order).saturating_sub(per_mesh_order / 2);
         let to = (mesh * per_mesh_order + per_mesh_order / 2).min(last).min(spectrum.len());
-        let mut squares: Vec<f64> =
-            (from..to).filter(|&line| beside[line]).map(|line| spectrum[line].norm_sqr()).collect();
-        if squares.is_empty() {
-            return None;
-        }
-        squares.sort_by(f64::total_cmp);
-        Some((squares[squares.len() / 2] / MEDIAN_OF_SQUARES / WINDOW_SQUARE).sqrt() / count)
+        let squares = (from..to).filter(|&line| beside[line]).map(|line| spectrum[line].norm_sqr());
+        Some((median(squares.collect())? / MEDIAN_OF_SQUARES / WINDOW_SQUARE).sqrt() / count)
     };
     (0..=MESH_ORDERS).map_while(band).collect()
+}
+
+/// The middle one of some values, of an even number the upper one; none of no values.
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
 }
 
 /// (-) Kurtosis of what belongs to neither shaft, from which on it is impulsive.
@@ -384,19 +387,14 @@ fn energy_off_both_shafts(gear: &AngularSignal, teeth: u32, ratio: f64) -> Optio
     let (mut spectrum, beside) = lines_off_both_shafts(gear, ratio);
     let passed = (PASSED * gear.nyquist_order) as usize * gear.revolutions();
     let energy: f64 = spectrum.iter().take(passed).skip(3).map(Complex64::norm_sqr).sum();
-    let lines: Vec<(usize, f64)> = (0..passed.min(spectrum.len()))
-        .filter(|&line| beside[line])
-        .map(|line| (line, spectrum[line].norm_sqr()))
-        .collect();
-    let tones: f64 = lines
-        .chunks(teeth as usize * gear.revolutions())
-        .flat_map(|band| {
-            let mut squares: Vec<f64> = band.iter().map(|(_, square)| *square).collect();
-            squares.sort_by(f64::total_cmp);
-            let median = squares[squares.len() / 2];
-            band.iter().map(|(_, square)| *square).filter(move |square| *square > TONE * median)
-        })
-        .sum();
+    let lines = (0..passed.min(spectrum.len())).filter(|&line| beside[line]);
+    let squares: Vec<f64> = lines.map(|line| spectrum[line].norm_sqr()).collect();
+    let bands = squares.chunks(teeth as usize * gear.revolutions());
+    let tones = bands.flat_map(|band| {
+        let median = median(band.to_vec()).unwrap_or(0.0);
+        band.iter().filter(move |square| **square > TONE * median)
+    });
+    let tones: f64 = tones.sum();
     for (line, value) in spectrum.iter_mut().enumerate() {
         if !beside[line] || line >= passed {
             *value = Complex64::default();

@@ -35,7 +35,7 @@ impl OutlierTest {
     /// * `rows` - features of the simulations
     /// * `units` - the pair of wheels of each
     /// * `weights` - how often each is to be expected
-    pub fn new(rows: &[Vec<f64>], units: &[u64], weights: &[f64]) -> Self {
+    pub fn new(rows: &[Vec<f64>], units: Vec<u64>, weights: &[f64]) -> Self {
         let standard = Standardisation::of(rows);
         let width = rows.first().map_or(0, Vec::len);
         let matrix: Vec<Vec<f64>> = rows.iter().map(|row| standard.apply(row)).collect();
@@ -56,14 +56,14 @@ impl OutlierTest {
             components,
             left,
             points: Vec::new(),
-            units: units.to_vec(),
+            units,
             weights: weights.to_vec(),
             scores: Vec::new(),
         };
         of.points = rows.par_iter().map(|row| of.point(row)).collect();
         of.scores = (0..rows.len())
             .into_par_iter()
-            .map(|row| of.distance(&of.points[row], Some(units[row])))
+            .map(|row| of.distance(&of.points[row], Some(of.units[row])))
             .collect();
         of
     }
@@ -71,20 +71,14 @@ impl OutlierTest {
     /// Coordinates of a signal among the simulations.
     pub fn point(&self, row: &[f64]) -> Vec<f64> {
         let standard = self.standard.within(row, FARTHEST);
-        let mut point: Vec<f64> = self
-            .components
-            .column_iter()
-            .map(|component| component.iter().zip(&standard).map(|(a, b)| a * b).sum())
-            .collect();
+        let components = || self.components.column_iter();
+        let places = components().map(|of| of.iter().zip(&standard).map(|(a, b)| a * b).sum());
+        let mut point: Vec<f64> = places.collect();
         // The components' part of the squares, in the units of the features.
-        let inside: f64 = self
-            .components
-            .column_iter()
-            .zip(&point)
-            .map(|(component, place)| {
-                (place / component.norm_squared().max(1e-30)).powi(2) * component.norm_squared()
-            })
-            .sum();
+        let inside = components().zip(&point).map(|(component, place)| {
+            (place / component.norm_squared().max(1e-30)).powi(2) * component.norm_squared()
+        });
+        let inside: f64 = inside.sum();
         let all: f64 = standard.iter().map(|value| value * value).sum();
         point.push(2.0 * (all - inside).max(0.0).sqrt() / self.left);
         point
@@ -100,7 +94,7 @@ impl OutlierTest {
         let mut nearest: Vec<(f64, usize)> = Vec::with_capacity(count + 1);
         for (row, other) in self.points.iter().enumerate().filter(|(row, _)| among(*row)) {
             let square: f64 = other.iter().zip(point).map(|(a, b)| (a - b) * (a - b)).sum();
-            if nearest.len() < count || square < nearest[nearest.len() - 1].0 {
+            if nearest.len() < count || nearest.last().is_some_and(|(farthest, _)| square < *farthest) {
                 let place = nearest.partition_point(|(known, _)| *known <= square);
                 nearest.insert(place, (square, row));
                 nearest.truncate(count);
@@ -138,7 +132,7 @@ mod tests {
         };
         let rows: Vec<Vec<f64>> = (0..600).map(|_| row()).collect();
         let units: Vec<u64> = (0..600).map(|number| number / 4).collect();
-        let outside = OutlierTest::new(&rows, &units, &[1.0; 600]);
+        let outside = OutlierTest::new(&rows, units, &[1.0; 600]);
         let mut values: Vec<f64> = (0..400).map(|_| outside.p_value(&row())).collect();
         values.sort_by(f64::total_cmp);
         // Kolmogorov and Smirnov: 1.63 / √400 is passed by one in a hundred.

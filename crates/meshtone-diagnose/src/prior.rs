@@ -51,7 +51,7 @@ pub struct Focus {
 pub struct Prior {
     /// The rig, healthy; its wheels are one draw of those that may be.
     pub base: Scenario,
-    /// Of what is not known well: stiffnesses, dampings, tip chamfer, backlash.
+    /// Spreads of what is not known well: stiffnesses, dampings, tip chamfer, backlash.
     pub spreads: Vec<Spread>,
     /// (-) Most by which the grade of the wheels is another; each step as likely as the next, within grades 1 to 12.
     pub grade_steps: u32,
@@ -90,7 +90,7 @@ pub struct DrawnFault {
 /// A record that was drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawn {
-    /// Colour of simulations.
+    /// The scenario that is simulated.
     pub scenario: Scenario,
     /// The damage; none of a healthy record.
     pub fault: Option<DrawnFault>,
@@ -173,10 +173,24 @@ impl Prior {
         self.draw_among(&self.kinds(), number)
     }
 
+    /// Finds the kind and the wheel that a record damages, each kind on each wheel in turn; none of a healthy record, and where there
+    /// are no kinds.
+    pub(crate) fn class(&self, kinds: &[DamageKind], number: u64) -> Option<(usize, WheelName)> {
+        match (&self.focus, number % RECORDS_PER_UNIT) {
+            (_, 0) | (None, 1) => None,
+            (Some(focus), _) => Some((focus.kind, focus.wheel)),
+            (None, place) => {
+                let turn = number / RECORDS_PER_UNIT * (RECORDS_PER_UNIT - 2) + place - 2;
+                let class = turn.checked_rem(2 * kinds.len() as u64)?;
+                let wheel = if class.is_multiple_of(2) { WheelName::Gear } else { WheelName::Pinion };
+                Some(((class / 2) as usize, wheel))
+            }
+        }
+    }
+
     /// Does what [`Self::draw`] does, where the kinds are known already: finding them takes a check of a scenario of each.
     pub(crate) fn draw_among(&self, kinds: &[DamageKind], number: u64) -> Result<Drawn, ScenarioError> {
-        let (unit, place) = (number / RECORDS_PER_UNIT, number % RECORDS_PER_UNIT);
-        let mut common = Draws::new(self.seed, Purpose::DiagnosisUnit, unit);
+        let mut common = Draws::new(self.seed, Purpose::DiagnosisUnit, number / RECORDS_PER_UNIT);
         let mut own = Draws::new(self.seed, Purpose::DiagnosisRecord, number);
         let mut numbers: Vec<(&str, f64)> = Vec::new();
         for spread in &self.spreads {
@@ -203,42 +217,26 @@ impl Prior {
         let mut scenario = self.base.with_known_numbers(&numbers)?.with_seed(seed);
         // Other wheels than those of the rig's own.
         scenario.quality.seed = None;
-        let fault = match (&self.focus, place) {
-            (_, 0) | (None, 1) => None,
-            (None, _) => {
-                let class = turn(kinds, unit * (RECORDS_PER_UNIT - 2) + place - 2);
-                damage(kinds, class, None, &mut scenario, &mut own)?
-            }
-            (Some(focus), _) => {
-                let class = (focus.kind, focus.wheel);
-                damage(kinds, Some(class), Some(focus.severity), &mut scenario, &mut own)?
-            }
-        };
+        let within = self.focus.as_ref().map(|focus| focus.severity);
+        let class = self.class(kinds, number);
+        let fault = class.map(|class| damage(kinds, class, within, &mut scenario, &mut own)).transpose()?;
         Ok(Drawn { scenario, fault, path_seed, gain_db })
     }
-}
-
-/// Each kind on each wheel in turn; none where there are no kinds.
-fn turn(kinds: &[DamageKind], number: u64) -> Option<(usize, WheelName)> {
-    let class = number.checked_rem(2 * kinds.len() as u64)?;
-    let wheel = if class.is_multiple_of(2) { WheelName::Gear } else { WheelName::Pinion };
-    Some(((class / 2) as usize, wheel))
 }
 
 /// Damages a pair.
 ///
 /// # Arguments
 /// * `kinds` - that the model knows
-/// * `class` - kind and wheel; none: nothing is damaged
+/// * `class` - kind and wheel
 /// * `within` - (-) severities that count, others are drawn again; none: all
 fn damage(
     kinds: &[DamageKind],
-    class: Option<(usize, WheelName)>,
+    (kind, wheel): (usize, WheelName),
     within: Option<[f64; 2]>,
     scenario: &mut Scenario,
     own: &mut Draws,
-) -> Result<Option<DrawnFault>, ScenarioError> {
-    let Some((kind, wheel)) = class else { return Ok(None) };
+) -> Result<DrawnFault, ScenarioError> {
     let of_kind = &kinds[kind];
     let usual = Fault::at_usual_place(of_kind.example.clone()).tooth;
     let tooth = 1 + (own.bits() % u64::from(scenario.gears.teeth(wheel))) as u32;
@@ -268,7 +266,7 @@ fn damage(
         }
         let sizes = keys.iter().map(|key| damaged.number(key).unwrap_or(f64::NAN)).collect();
         *scenario = damaged;
-        return Ok(Some(DrawnFault { kind, wheel, tooth, is_on_one_tooth, severity, sizes }));
+        return Ok(DrawnFault { kind, wheel, tooth, is_on_one_tooth, severity, sizes });
     }
     // A record that is counted as healthy because its damage cannot be would be wrong.
     let problem = "no damage of this kind that was drawn fits the tooth";

@@ -7,15 +7,21 @@ use crate::answer::Interval;
 /// # Arguments
 /// * `sample` - values and their weights, none of them negative; not empty
 pub(crate) fn interval(sample: &[(f64, f64)]) -> Interval {
-    let mut sorted = sample.to_vec();
-    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let [lowest, low, median, high, highest] =
-        [0.05, 0.25, 0.5, 0.75, 0.95].map(|part| quantile(&sorted, part));
+    let [lowest, low, median, high, highest] = quantiles(sample.to_vec(), [0.05, 0.25, 0.5, 0.75, 0.95]);
     Interval { median, within_50: [low, high], within_90: [lowest, highest] }
 }
 
-/// The value below which a part of the weight of a sorted sample lies, between its values along straight lines.
-pub(crate) fn quantile(sorted: &[(f64, f64)], part: f64) -> f64 {
+/// The values below which parts of the weight of a sample lie, between its values along straight lines.
+///
+/// # Arguments
+/// * `sample` - values and their weights, none of them negative
+/// * `parts` - (-) of the weight, from 0 to 1
+pub(crate) fn quantiles<const N: usize>(mut sample: Vec<(f64, f64)>, parts: [f64; N]) -> [f64; N] {
+    sample.sort_by(|a, b| a.0.total_cmp(&b.0));
+    parts.map(|part| quantile(&sample, part))
+}
+
+fn quantile(sorted: &[(f64, f64)], part: f64) -> f64 {
     let total: f64 = sorted.iter().map(|(_, weight)| weight).sum();
     let mut below = 0.0;
     let mut last: Option<(f64, f64)> = None;

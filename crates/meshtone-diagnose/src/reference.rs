@@ -1,12 +1,11 @@
 //! Simulations of what may be.
 
-use std::sync::atomic::AtomicBool;
-
 use meshtone::Stages;
 use meshtone::batch::{Control, Keep, KeepChannels, Output, SignalRecorder, Signals, simulate_many};
 use meshtone::scenario::{Scenario, ScenarioError};
 use meshtone::sensor::Channel;
-use meshtone::signal::{ChainSettings, Shaft, SignalError, SimulatedShafts};
+use meshtone::signal::{ChainSettings, SignalError, SimulatedShafts};
+use meshtone::wheel::WheelName;
 use meshtone_fourier::Complex64;
 
 use crate::observation::WheelLines;
@@ -25,6 +24,13 @@ pub struct ReferenceRecord {
     pub wheels: [WheelLines; 2],
 }
 
+impl ReferenceRecord {
+    /// Number of the record's pair of wheels.
+    pub(crate) fn unit(&self) -> u64 {
+        self.number / RECORDS_PER_UNIT
+    }
+}
+
 /// Simulations of what may be.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReferenceSet {
@@ -40,18 +46,10 @@ impl ReferenceSet {
     /// # Arguments
     /// * `record` - one of the set
     pub fn healthy_of(&self, record: &ReferenceRecord) -> Option<&ReferenceRecord> {
-        let number = record.number / RECORDS_PER_UNIT * RECORDS_PER_UNIT;
+        let number = record.unit() * RECORDS_PER_UNIT;
         let at = self.records.binary_search_by_key(&number, |other| other.number).ok()?;
         Some(&self.records[at])
     }
-}
-
-/// Progress and cancellation while a reference set is made.
-pub struct ReferenceControl<'a> {
-    /// Called with the number of finished simulations, from any thread.
-    pub progress: &'a (dyn Fn(usize) + Sync),
-    /// Set by the caller to stop.
-    pub cancelled: &'a AtomicBool,
 }
 
 /// Simulates records of a prior.
@@ -65,7 +63,7 @@ pub struct ReferenceControl<'a> {
 pub fn build_reference(
     prior: &Prior,
     numbers: std::ops::Range<u64>,
-    control: &ReferenceControl,
+    control: &Control,
 ) -> Vec<ReferenceRecord> {
     // A record that cannot be drawn is one that cannot be simulated: neither is in the set.
     let drawn: Vec<(u64, Drawn)> = {
@@ -76,9 +74,8 @@ pub fn build_reference(
     };
     let scenarios: Vec<Scenario> = drawn.iter().map(|(_, drawn)| drawn.scenario.clone()).collect();
     let keep = KeepWheels { channel: KeepChannels::new([Channel::leading(&prior.base.sensors)]) };
-    let batch = Control { progress: control.progress, cancelled: control.cancelled, ..Control::default() };
     let mut records = Vec::with_capacity(drawn.len());
-    simulate_many(scenarios, &keep, &batch, |index, kept| {
+    simulate_many(scenarios, &keep, control, |index, kept| {
         let (number, drawn) = &drawn[index];
         if let Ok(Ok(mut wheels)) = kept {
             let pinion_speed_hz = drawn.scenario.operation.pinion_speed_hz;
@@ -116,10 +113,10 @@ impl Keep for KeepWheels {
         let Signals { start_s, channels, .. } = recorder.finish(&stages);
         let signal: Vec<f64> = channels.into_iter().flatten().map(f64::from).collect();
         let shafts = SimulatedShafts::new(&stages.scenario, start_s, signal.len());
-        let lines = |shaft: Shaft| {
+        let lines = |shaft: WheelName| {
             let average = shafts.average(&signal, shaft, &ChainSettings::default())?;
             Ok(WheelLines::of_average(&average, shafts.teeth(shaft)))
         };
-        Ok([lines(Shaft::Pinion)?, lines(Shaft::Gear)?])
+        Ok([lines(WheelName::Pinion)?, lines(WheelName::Gear)?])
     }
 }

@@ -6,13 +6,13 @@
 
 use std::sync::atomic::Ordering;
 
-use meshtone::wheel::WheelName;
+use meshtone::batch::Control;
 
 use crate::DiagnoseError;
-use crate::learn::{Learned, Question, SizeModels};
+use crate::learn::{Learned, Question};
 use crate::prior::{Focus, Prior};
-use crate::quantile::quantile;
-use crate::reference::{ReferenceControl, ReferenceSet, build_reference};
+use crate::quantile::quantiles;
+use crate::reference::{ReferenceSet, build_reference};
 use crate::severity::SizeModel;
 
 /// (-) Probability of a kind on a wheel from which on it is looked at more closely.
@@ -40,17 +40,14 @@ pub const REFINED_RECORDS: u64 = 256;
 pub fn refine(
     learned: &Learned,
     question: &Question,
-    control: &ReferenceControl,
+    control: &Control,
 ) -> Result<Option<Refined>, DiagnoseError> {
-    let Some(prior) = learned.narrowed(question)? else { return Ok(None) };
+    let Some((class, prior)) = learned.narrowed(question)? else { return Ok(None) };
     let records = build_reference(&prior, 0..REFINED_RECORDS, control);
-    if control.cancelled.load(Ordering::Relaxed) {
+    if control.cancelled.load(Ordering::Relaxed) || (records.len() as u64) < REFINED_RECORDS / 2 {
         return Ok(None);
     }
-    if (records.len() as u64) < REFINED_RECORDS / 2 {
-        return Ok(None);
-    }
-    match learned.refined(&ReferenceSet { prior, records }) {
+    match Refined::new(learned, class, &ReferenceSet { prior, records }) {
         // Too few of them can be compared with the recording: the first round's answer stands.
         Err(DiagnoseError::NoReference) => Ok(None),
         refined => refined.map(Some),
@@ -66,59 +63,51 @@ pub struct Refined {
 }
 
 impl Learned<'_> {
-    /// Damage that a refined round for a question draws; none where the first answer is not sure enough of anything.
+    /// Finds the class that a refined round for a question looks at, and the prior of its damages; none where the first answer is
+    /// not sure enough of anything.
     ///
     /// # Arguments
     /// * `question` - the recordings
     ///
     /// # Errors
     /// Too few simulations of the kind.
-    fn narrowed(&self, question: &Question) -> Result<Option<Prior>, DiagnoseError> {
+    fn narrowed(&self, question: &Question) -> Result<Option<(usize, Prior)>, DiagnoseError> {
         let features = self.features(&self.row(question));
         let of_class = self.probabilities(&features);
-        let likeliest = (0..of_class.len()).filter(|&class| self.classes[class].is_some());
-        let Some(class) = likeliest.max_by(|&a, &b| of_class[a].total_cmp(&of_class[b])) else {
-            return Ok(None);
-        };
-        let Some((kind, wheel)) = self.classes[class] else { return Ok(None) };
+        let damaged = (0..of_class.len()).filter_map(|class| Some((class, self.classes[class]?)));
+        let likeliest = damaged.max_by(|(a, _), (b, _)| of_class[*a].total_cmp(&of_class[*b]));
+        let Some((class, (kind, wheel))) = likeliest else { return Ok(None) };
         if of_class[class] < LIKELY || self.kinds[kind].sizes.is_empty() {
             return Ok(None);
         }
         let Some((_, severity)) = self.sizes(class)?.iter().find(|(place, _)| place.is_none()) else {
             return Ok(None);
         };
-        let mut draws = severity.posterior(&features);
-        draws.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let [least, most] = LEFT_OUT.map(|part| quantile(&draws, part));
+        let [least, most] = quantiles(severity.posterior(&features), LEFT_OUT);
         let severity = [(least - MARGIN).max(0.0), (most + MARGIN).min(1.0)];
         if severity[1] - severity[0] > TOO_WIDE {
             return Ok(None);
         }
         let speeds: Vec<f64> = question.now.iter().filter_map(|asked| asked.pinion_speed_hz).collect();
         let speed_hz = (!speeds.is_empty()).then(|| speeds.iter().sum::<f64>() / speeds.len() as f64);
-        Ok(Some(self.reference.prior.narrowed(Focus { kind, wheel, severity }, speed_hz)))
-    }
-
-    /// Learns from a refined round.
-    ///
-    /// # Arguments
-    /// * `refined` - simulations of what [`Self::narrowed`] says
-    ///
-    /// # Errors
-    /// Simulations of no refined round; too few of them.
-    fn refined(&self, refined: &ReferenceSet) -> Result<Refined, DiagnoseError> {
-        let of_focus = |focus: &Focus| {
-            let class: (usize, WheelName) = (focus.kind, focus.wheel);
-            Some((self.classes.iter().position(|known| *known == Some(class))?, focus.severity))
-        };
-        let (class, severity) =
-            refined.prior.focus.as_ref().and_then(of_focus).ok_or(DiagnoseError::OtherQuestion)?;
-        let models: SizeModels = self.fit_sizes(class, Some((severity, refined)));
-        Ok(Refined { class, models: models?, records: refined.records.len() })
+        Ok(Some((class, self.reference.prior.narrowed(Focus { kind, wheel, severity }, speed_hz))))
     }
 }
 
 impl Refined {
+    /// Learns from a refined round.
+    ///
+    /// # Arguments
+    /// * `learned` - of the first round
+    /// * `class`, `refined` - simulations of what [`Learned::narrowed`] says
+    ///
+    /// # Errors
+    /// Too few simulations.
+    fn new(learned: &Learned, class: usize, refined: &ReferenceSet) -> Result<Self, DiagnoseError> {
+        let models = learned.fit_sizes(class, Some(refined))?;
+        Ok(Self { class, models, records: refined.records.len() })
+    }
+
     /// Numbers of a class as the refined round shows them, where it is the one that was looked at.
     pub(crate) fn of_class(&self, class: usize) -> Option<&[(Option<usize>, SizeModel)]> {
         (class == self.class).then_some(&self.models)
@@ -156,15 +145,16 @@ mod tests {
                 continue;
             }
             told += 1;
-            teeth += usize::from(likeliest.place.as_ref().unwrap().tooth == Some(fault.tooth));
+            let tooth = likeliest.place.as_ref().unwrap().tooth.map(|tooth| tooth.number);
+            teeth += usize::from(tooth == Some(fault.tooth));
             let within = |[low, high]: [f64; 2]| usize::from((low..=high).contains(&fault.severity));
             let severity = likeliest.severity.unwrap();
             held += within(severity.within_90);
             if refined_count == 12 {
                 continue;
             }
-            let Some(narrowed) = learned.narrowed(&question).unwrap() else { continue };
-            let refined = learned.refined(&reference(&narrowed, 256)).unwrap();
+            let Some((class, narrowed)) = learned.narrowed(&question).unwrap() else { continue };
+            let refined = Refined::new(&learned, class, &reference(&narrowed, 256)).unwrap();
             let answer = diagnose(&learned, &question, Some(&refined)).unwrap();
             let again = answer.likeliest_damage().unwrap().severity.unwrap();
             refined_count += 1;

@@ -27,7 +27,7 @@ pub(crate) struct SizeModel {
     values: Vec<f64>,
     /// Prediction for each record by those of other wheels.
     predicted: Vec<f64>,
-    /// Of the regression on the features.
+    /// Coefficients of the regression on the features.
     coefficients: Vec<f64>,
     /// The least and the largest value that was simulated.
     range: [f64; 2],
@@ -56,25 +56,19 @@ impl SizeModel {
         let targets = DMatrix::from_fn(numbers.len(), count, |target, row| {
             numbers[target][row] - mean(&numbers[target])
         });
-        let mut best: Vec<Option<(f64, Self)>> = numbers.iter().map(|_| None).collect();
-        for penalty in PENALTIES {
-            let Ridge { coefficients, out_of_fold } =
-                dual_ridge(features, &targets, folds, penalty * count as f64)?;
-            for (target, best) in best.iter_mut().enumerate() {
-                let (predicted, true_values) = (out_of_fold.row(target), targets.row(target));
-                let error = (predicted - true_values).norm_squared();
-                if best.as_ref().is_some_and(|(least, _)| *least <= error) {
-                    continue;
-                }
-                let values = numbers[target].clone();
-                let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-                let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-                let predicted = predicted.iter().copied().collect();
-                let coefficients = coefficients.column(target).iter().copied().collect();
-                *best = Some((error, Self { values, predicted, coefficients, range: [least, largest] }));
-            }
-        }
-        Ok(best.into_iter().flatten().map(|(_, model)| model).collect())
+        let fit = |penalty: f64| dual_ridge(features, &targets, folds, penalty * count as f64);
+        let fits: Vec<Ridge> = PENALTIES.into_iter().map(fit).collect::<Result<_, _>>()?;
+        let model = |(target, values): (usize, &Vec<f64>)| {
+            let error = |fit: &Ridge| (fit.out_of_fold.row(target) - targets.row(target)).norm_squared();
+            let best = fits.iter().min_by(|a, b| error(a).total_cmp(&error(b)))?;
+            Some(Self {
+                values: values.clone(),
+                predicted: best.out_of_fold.row(target).iter().copied().collect(),
+                coefficients: best.coefficients.column(target).iter().copied().collect(),
+                range: ends(values.iter().copied()),
+            })
+        };
+        Ok(numbers.iter().enumerate().filter_map(model).collect())
     }
 
     /// Posterior of the number: values with their weights.
@@ -101,14 +95,11 @@ impl SizeModel {
         distances.sort_by(|a, b| a.0.total_cmp(&b.0));
         let count = ((NEAR * self.values.len() as f64) as usize).max(FEWEST).min(distances.len());
         let width = distances[count - 1].0.max(f64::MIN_POSITIVE) * (1.0 + 1e-9);
-        let near: Vec<(f64, f64, f64)> = distances[..count]
-            .iter()
-            .map(|&(distance, row)| {
-                // Epanechnikov's kernel.
-                let weight = 1.0 - (distance / width).powi(2);
-                (self.predicted[row], self.values[row], weight)
-            })
-            .collect();
+        // The weights are those of Epanechnikov's kernel.
+        let weighted = |&(distance, row): &(f64, usize)| {
+            (self.predicted[row], self.values[row], 1.0 - (distance / width).powi(2))
+        };
+        let near: Vec<(f64, f64, f64)> = distances[..count].iter().map(weighted).collect();
         let total: f64 = near.iter().map(|(_, _, weight)| weight).sum();
         let mean =
             |of: fn(&(f64, f64, f64)) -> f64| near.iter().map(|row| of(row) * row.2).sum::<f64>() / total;
@@ -116,15 +107,19 @@ impl SizeModel {
         let across: f64 = near.iter().map(|row| row.2 * (row.0 - summary).powi(2)).sum();
         let along: f64 = near.iter().map(|row| row.2 * (row.0 - summary) * (row.1 - value)).sum();
         let slope = if across > 0.0 { (along / across).clamp(0.0, 2.0) } else { 0.0 };
-        let bounded = at.clamp(
-            near.iter().map(|row| row.0).fold(f64::INFINITY, f64::min),
-            near.iter().map(|row| row.0).fold(f64::NEG_INFINITY, f64::max),
-        );
+        let [lowest, highest] = ends(near.iter().map(|row| row.0));
+        let bounded = at.clamp(lowest, highest);
         let [least, largest] = self.range;
         let brought =
             |row: &(f64, f64, f64)| ((row.1 + slope * (bounded - row.0)).clamp(least, largest), row.2);
         near.iter().map(brought).collect()
     }
+}
+
+/// The least and the largest of some values.
+fn ends(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], value| [least.min(value), most.max(value)])
 }
 
 #[cfg(test)]

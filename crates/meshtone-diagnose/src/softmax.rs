@@ -14,7 +14,7 @@ const PENALTY: f64 = 1.0;
 const SCALE: f64 = 5.0;
 const MOST_ITERATIONS: u64 = 200;
 const MEMORY: usize = 10;
-/// Of the mean cost's slope, where the search ends.
+/// The slope of the mean cost at which the search ends.
 const TOLERANCE: f64 = 1e-6;
 /// Rows whose gradients are computed together.
 const CHUNK: usize = 512;

@@ -21,10 +21,14 @@ impl Question<'_> {
     /// A recording whose speed is far from those of the simulations.
     pub fn check(&self, prior: &Prior) -> Result<(), DiagnoseError> {
         let nominal_hz = prior.base.operation.pinion_speed_hz;
-        for speed_hz in self.now.iter().chain(self.healthy).filter_map(|asked| asked.pinion_speed_hz) {
+        for speed_hz in self.all().filter_map(|asked| asked.pinion_speed_hz) {
             let [least, most] = simulated_hz(prior);
             if speed_hz.is_finite() && (speed_hz > most * FARTHEST || speed_hz < least / FARTHEST) {
-                let reason = reason(speed_hz / nominal_hz, prior);
+                let reason = reason(speed_hz / nominal_hz, prior).unwrap_or_else(|| {
+                    "is it in Hz, not rpm, and of the shaft that was meant? Or has the scenario another speed \
+                     (operation.pinion_speed_hz)?"
+                        .to_owned()
+                });
                 return Err(DiagnoseError::OtherSpeed { speed_hz, nominal_hz, reason });
             }
         }
@@ -38,24 +42,24 @@ fn simulated_hz(prior: &Prior) -> [f64; 2] {
     [-1.0, 1.0].map(|sign: f64| nominal_hz * (sign * prior.speed_spread).exp())
 }
 
-/// Explanation why a recording is so many times as quick as the rig.
-fn reason(ratio: f64, prior: &Prior) -> String {
+/// Explanation why a recording is so many times as quick as the rig; none where nothing explains it.
+fn reason(ratio: f64, prior: &Prior) -> Option<String> {
     let [pinion, gear] = [prior.base.gears.pinion_teeth, prior.base.gears.gear_teeth].map(f64::from);
     let is = |other: f64| (ratio / other - 1.0).abs() < NEAR;
-    let of_gear = "the gear's shaft, not the pinion's: say so with the gear's teeth";
-    let of_pinion = "the pinion's shaft, not the gear's: say so with the pinion's teeth";
+    let of_shaft = |wheel: &str, mate: &str| {
+        format!(
+            "that is the ratio of the wheels: the speed may be of the {wheel}'s shaft, not the {mate}'s: say so with the \
+             {wheel}'s teeth"
+        )
+    };
     if is(SIXTY) {
-        "it is 60 times as quick: a speed in rpm that was given as Hz? 1 Hz are 60 rpm".to_owned()
+        Some("it is 60 times as quick: a speed in rpm that was given as Hz? 1 Hz are 60 rpm".to_owned())
     } else if is(1.0 / SIXTY) {
-        "it is 60 times as slow: has the scenario its speed in rpm? 1 Hz are 60 rpm".to_owned()
+        Some("it is 60 times as slow: has the scenario its speed in rpm? 1 Hz are 60 rpm".to_owned())
     } else if pinion != gear && is(pinion / gear) {
-        format!("that is the ratio of the wheels: the speed may be of {of_gear}")
-    } else if pinion != gear && is(gear / pinion) {
-        format!("that is the ratio of the wheels: the speed may be of {of_pinion}")
+        Some(of_shaft("gear", "pinion"))
     } else {
-        "is it in Hz, not rpm, and of the shaft that was meant? Or has the scenario another speed \
-         (operation.pinion_speed_hz)?"
-            .to_owned()
+        (pinion != gear && is(gear / pinion)).then(|| of_shaft("pinion", "gear"))
     }
 }
 
@@ -68,15 +72,10 @@ pub(crate) fn doubts(question: &Question, prior: &Prior) -> Vec<String> {
     let [least, most] = simulated_hz(prior);
     let nominal_hz = prior.base.operation.pinion_speed_hz;
     let mut doubts = Vec::new();
-    for speed_hz in question.now.iter().chain(question.healthy).filter_map(|asked| asked.pinion_speed_hz) {
-        if (least..=most).contains(&speed_hz) {
-            continue;
-        }
-        let ratio = speed_hz / nominal_hz;
-        let [pinion, gear] = [prior.base.gears.pinion_teeth, prior.base.gears.gear_teeth].map(f64::from);
-        let is_of_wheels =
-            [pinion / gear, gear / pinion].iter().any(|other| (ratio / other - 1.0).abs() < NEAR);
-        let reason = if is_of_wheels { format!("; {}", reason(ratio, prior)) } else { String::new() };
+    let beside = |speed_hz: &f64| !(least..=most).contains(speed_hz);
+    for speed_hz in question.all().filter_map(|asked| asked.pinion_speed_hz).filter(beside) {
+        let reason = reason(speed_hz / nominal_hz, prior);
+        let reason = reason.map_or_else(String::new, |reason| format!("; {reason}"));
         let doubt = format!(
             "the pinion turns at {speed_hz:.3} Hz, the simulations at {least:.3} to {most:.3} Hz: write the recording's speed into the \
              scenario (operation.pinion_speed_hz){reason}"

@@ -6,6 +6,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
+use meshtone::batch::Control;
 use meshtone::wheel::WheelName;
 use meshtone_fourier::Complex64;
 use meshtone_io::atomic_file::{WriteFileError, write_atomically};
@@ -14,7 +15,7 @@ use sha2::{Digest, Sha256};
 
 use crate::observation::{MESH_ORDERS, WheelLines};
 use crate::prior::{DrawnFault, Prior, RECORDS_PER_UNIT};
-use crate::reference::{ReferenceControl, ReferenceRecord, ReferenceSet, build_reference};
+use crate::reference::{ReferenceRecord, ReferenceSet, build_reference};
 
 /// Raised when a record of the same number becomes another one, or its file another.
 const FORMAT: u32 = 1;
@@ -33,7 +34,7 @@ pub enum StoreError {
     Folder {
         /// Name of the file or folder.
         path: PathBuf,
-        /// Why.
+        /// The system's error.
         source: io::Error,
     },
     /// A file that could not be written.
@@ -103,12 +104,7 @@ impl ReferenceStore {
     ///
     /// # Errors
     /// A folder that cannot be written; cancelled.
-    pub fn get(
-        &self,
-        prior: &Prior,
-        count: u64,
-        control: &ReferenceControl,
-    ) -> Result<ReferenceSet, StoreError> {
+    pub fn get(&self, prior: &Prior, count: u64, control: &Control) -> Result<ReferenceSet, StoreError> {
         let folder = self.folder_of(prior);
         let failed = |source| StoreError::Folder { path: folder.clone(), source };
         fs::create_dir_all(&folder).map_err(failed)?;
@@ -121,7 +117,7 @@ impl ReferenceStore {
                 Ok(of_batch) => of_batch,
                 Err(_) => {
                     let progress = |finished: usize| (control.progress)(before + finished);
-                    let own = ReferenceControl { progress: &progress, cancelled: control.cancelled };
+                    let own = Control { progress: &progress, ..*control };
                     let of_batch = build_reference(prior, batch * BATCH..(batch + 1) * BATCH, &own);
                     if control.cancelled.load(Ordering::Relaxed) {
                         return Err(StoreError::Cancelled);
@@ -160,13 +156,10 @@ fn write(file: &mut File, records: &[ReferenceRecord]) -> io::Result<()> {
     }
     archive.add("records", &[records.len(), COLUMNS + 1 + SIZES], &numbers)?;
     for (wheel, name) in ["pinion", "gear"].into_iter().enumerate() {
-        let lines = |record: &ReferenceRecord| record.wheels[wheel].lines.len();
-        let lengths: Vec<f64> = records.iter().map(|record| lines(record) as f64).collect();
+        let lines = || records.iter().map(|record| &record.wheels[wheel].lines);
+        let lengths: Vec<f64> = lines().map(|lines| lines.len() as f64).collect();
         archive.add(&format!("{name}_lengths"), &[records.len()], &lengths)?;
-        let parts = records
-            .iter()
-            .flat_map(|record| record.wheels[wheel].lines.iter().flat_map(|line| [line.re, line.im]));
-        let parts: Vec<f64> = parts.collect();
+        let parts: Vec<f64> = lines().flatten().flat_map(|line| [line.re, line.im]).collect();
         archive.add(&format!("{name}_lines"), &[parts.len() / 2, 2], &parts)?;
     }
     archive.finish()?;
@@ -177,30 +170,28 @@ fn read(path: &Path, prior: &Prior) -> io::Result<Vec<ReferenceRecord>> {
     let wrong = || io::Error::other("it is no batch of a reference set");
     let mut archive = NpzReader::new(File::open(path)?)?;
     let gears = &prior.base.gears;
-    let teeth = [gears.pinion_teeth, gears.gear_teeth];
     let width = COLUMNS + 1 + SIZES;
     let numbers = archive.floats("records", BATCH * width as u64)?.numbers;
     if !numbers.len().is_multiple_of(width) {
         return Err(wrong());
     }
-    let mut wheels: [Vec<WheelLines>; 2] = [Vec::new(), Vec::new()];
-    for (wheel, name) in ["pinion", "gear"].into_iter().enumerate() {
+    let mut wheels_of = |name: &str, teeth: u32| -> io::Result<Vec<WheelLines>> {
         let lengths = archive.floats(&format!("{name}_lengths"), BATCH)?.numbers;
-        let most = BATCH * 2 * (WheelLines::most(teeth[wheel]) as u64 + 1);
+        let most = BATCH * 2 * (WheelLines::most(teeth) as u64 + 1);
         let parts = archive.floats(&format!("{name}_lines"), most)?.numbers;
         let mut rest = &parts[..];
+        let mut wheels = Vec::new();
         for length in &lengths {
-            let (own, later) =
-                rest.split_at_checked((*length as usize).saturating_mul(2)).ok_or_else(wrong)?;
-            rest = later;
+            let count = (*length as usize).saturating_mul(2);
+            let own = rest.split_off(..count).ok_or_else(wrong)?;
             let lines = own.chunks_exact(2).map(|part| Complex64::new(part[0], part[1])).collect();
-            wheels[wheel].push(WheelLines { teeth: teeth[wheel], lines });
+            wheels.push(WheelLines { teeth, lines });
         }
-        if !rest.is_empty() || wheels[wheel].len() != numbers.len() / width {
-            return Err(wrong());
-        }
-    }
-    let [pinions, gears] = wheels;
+        let is_whole = rest.is_empty() && wheels.len() == numbers.len() / width;
+        if is_whole { Ok(wheels) } else { Err(wrong()) }
+    };
+    let pinions = wheels_of("pinion", gears.pinion_teeth)?;
+    let gears = wheels_of("gear", gears.gear_teeth)?;
     let record = |(row, wheels): (&[f64], [WheelLines; 2])| {
         let fault = row[1].is_finite().then(|| DrawnFault {
             kind: row[1] as usize,
@@ -243,7 +234,7 @@ mod tests {
         let path = store.folder_of(&prior).join("batch-0000.npz");
         fs::create_dir_all(store.folder_of(&prior)).unwrap();
         write_atomically(&path, |file| write(file, &of_batch)).unwrap();
-        let control = ReferenceControl { progress: &|_| {}, cancelled: &AtomicBool::new(true) };
+        let control = Control { cancelled: &AtomicBool::new(true), ..Control::default() };
         assert_eq!(store.get(&prior, 1, &control).unwrap().records, of_batch);
 
         // One that was cut off is made again.

@@ -1,13 +1,13 @@
 //! Reference sets that need no simulation, for tests.
 
 use meshtone::random::{Draws, Purpose};
-use meshtone::scenario::Scenario;
+use meshtone::scenario::{DamageKind, Scenario};
 use meshtone::signal::AngleZero;
 use meshtone::wheel::WheelName;
 use meshtone_fourier::Complex64;
 
 use crate::observation::{Observation, SignalKind, WheelLines};
-use crate::prior::{DrawnFault, Focus, Prior, RECORDS_PER_UNIT};
+use crate::prior::{DrawnFault, Prior, RECORDS_PER_UNIT};
 use crate::reference::{ReferenceRecord, ReferenceSet};
 
 const RIG: &str = "[gears]\nmodule_mm = 3\npinion_teeth = 17\ngear_teeth = 38\nface_width_mm = 15\n\
@@ -24,28 +24,24 @@ pub fn prior() -> Prior {
 /// is the kind's.
 pub fn records(prior: &Prior, count: u64) -> Vec<ReferenceRecord> {
     let kinds = prior.kinds();
-    (0..count).map(|number| record(prior, number, kinds.len(), &|kind| kinds[kind].sizes.len())).collect()
+    (0..count).map(|number| record(prior, number, &kinds)).collect()
 }
 
-fn record(prior: &Prior, number: u64, kinds: usize, sizes: &dyn Fn(usize) -> usize) -> ReferenceRecord {
-    let (unit, place) = (number / RECORDS_PER_UNIT, number % RECORDS_PER_UNIT);
+fn record(prior: &Prior, number: u64, kinds: &[DamageKind]) -> ReferenceRecord {
+    let unit = number / RECORDS_PER_UNIT;
     let mut own = Draws::new(prior.seed, Purpose::DiagnosisRecord, number);
-    let class = ((unit * (RECORDS_PER_UNIT - 2) + place.saturating_sub(2)) % (2 * kinds as u64)) as usize;
-    let (kind, wheel, [least, most]) = match &prior.focus {
-        Some(Focus { kind, wheel, severity }) => (*kind, *wheel, *severity),
-        None => (class / 2, [WheelName::Gear, WheelName::Pinion][class % 2], [0.0, 1.0]),
-    };
-    let is_damaged = place >= if prior.focus.is_some() { 1 } else { 2 };
-    let fault = is_damaged.then(|| {
+    let [least, most] = prior.focus.as_ref().map_or([0.0, 1.0], |focus| focus.severity);
+    let fault = prior.class(kinds, number).map(|(kind, wheel)| {
         let drawn = least + (most - least) * own.uniform(0.5, 0.5);
-        let severity = if sizes(kind) == 0 { 1.0 } else { drawn };
+        let sizes = kinds[kind].sizes.len();
+        let severity = if sizes == 0 { 1.0 } else { drawn };
         DrawnFault {
             kind,
             wheel,
             tooth: 1 + (own.bits() % u64::from(prior.base.gears.teeth(wheel))) as u32,
             is_on_one_tooth: true,
             severity,
-            sizes: vec![severity; sizes(kind)],
+            sizes: vec![severity; sizes],
         }
     });
     let wheels = [WheelName::Pinion, WheelName::Gear].map(|wheel| {
@@ -59,7 +55,7 @@ fn record(prior: &Prior, number: u64, kinds: usize, sizes: &dyn Fn(usize) -> usi
             .collect();
         if let Some(fault) = fault.as_ref().filter(|fault| fault.wheel == wheel) {
             let at = f64::from(fault.tooth - 1) / f64::from(teeth);
-            let middle = (1.5 + 4.0 * fault.kind as f64 / kinds as f64) * f64::from(teeth);
+            let middle = (1.5 + 4.0 * fault.kind as f64 / kinds.len() as f64) * f64::from(teeth);
             for (order, line) in lines.iter_mut().enumerate() {
                 let from_middle = (order as f64 - middle) / f64::from(teeth);
                 let size = 0.3 * fault.severity * (-2.0 * from_middle * from_middle).exp();

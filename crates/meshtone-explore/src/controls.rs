@@ -1,7 +1,7 @@
 //! The source of the page's controls: the same rows as the guide's tables, the commented files and Python's signatures.
 
 use meshtone::damage::{DamageKind, damage_kinds};
-use meshtone::scenario::{Fault, KeyDescription, KeyKind, Scenario, sections};
+use meshtone::scenario::{Fault, KeyDescription, KeyKind, Scenario, SectionDescription, sections};
 use serde_json::{Value, json};
 
 use crate::export::without_defaults;
@@ -9,14 +9,13 @@ use crate::presets::{Preset, presets};
 
 /// Sections and keys, kinds of damage, and scenarios to start from.
 pub fn controls() -> Value {
-    let section = |name: &str, keys: &[KeyDescription]| json!({ "name": name, "keys": keys.iter().map(key_json).collect::<Vec<_>>() });
-    let sections: Vec<Value> = sections().iter().map(|entry| section(entry.name, &entry.keys)).collect();
+    let section = |SectionDescription { name, keys, .. }: &SectionDescription| json!({ "name": name, "keys": keys.iter().map(key_json).collect::<Vec<_>>() });
     let preset = |Preset { name, title, toml }: Preset| {
         let scenario = Scenario::from_toml(toml).ok()?;
         Some(json!({ "name": name, "title": title, "scenario": Value::Object(without_defaults(&scenario)) }))
     };
     json!({
-        "sections": sections,
+        "sections": sections().iter().map(section).collect::<Vec<_>>(),
         "kinds": damage_kinds().iter().map(kind_json).collect::<Vec<_>>(),
         "presets": presets().into_iter().filter_map(preset).collect::<Vec<_>>(),
         "version": env!("CARGO_PKG_VERSION"),
@@ -31,7 +30,6 @@ fn key_json(key: &KeyDescription) -> Value {
         KeyKind::Name(names) => ("name", names.clone()),
         KeyKind::Numbers(_) | KeyKind::List | KeyKind::NumberOrNumbers(_) => ("numbers", Vec::new()),
         KeyKind::Table => ("table", Vec::new()),
-        KeyKind::TableOrFalse => ("table-or-false", Vec::new()),
         KeyKind::Text => ("text", Vec::new()),
         KeyKind::File => ("file", Vec::new()),
         KeyKind::Profile => ("profile", Vec::new()),

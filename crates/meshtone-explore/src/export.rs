@@ -1,7 +1,7 @@
 //! Files that the page offers for download: the scenario as TOML and as Python, the picture as SVG, the signals as Parquet.
 
 use meshtone::damage::damage_kinds;
-use meshtone::scenario::{GearPair, KeyDescription, Scenario, SectionDescription};
+use meshtone::scenario::{GearPair, KeyDescription, Scenario};
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::signals::write_signals;
 use serde_json::{Map, Value};
@@ -116,7 +116,10 @@ fn python(scenario: &Scenario) -> String {
     let mut own = without_defaults(scenario);
     let mut lines = Vec::new();
     // In the order of the scenario file, but for what is broken and what listens, which come last.
-    for section in described_sections() {
+    let of_lists = ["fault", "sensor"];
+    for section in
+        meshtone::scenario::sections().into_iter().filter(|section| !of_lists.contains(&section.name))
+    {
         let keys = match section.name {
             "" => own.clone(),
             name => own.remove(name).and_then(|keys| keys.as_object().cloned()).unwrap_or_default(),
@@ -132,12 +135,6 @@ fn python(scenario: &Scenario) -> String {
     }
     let lines: String = lines.iter().map(|line| format!("    {line},\n")).collect();
     format!("{head}scenario = mt.Scenario(\n{lines})\n{tail}")
-}
-
-/// The sections whose keys are arguments of a scenario.
-fn described_sections() -> Vec<SectionDescription> {
-    let is_list = |section: &SectionDescription| matches!(section.name, "fault" | "sensor");
-    meshtone::scenario::sections().into_iter().filter(|section| !is_list(section)).collect()
 }
 
 /// The entries that are described, in the order of the descriptions.

@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn what_the_page_sets_is_read_as_a_file_is() {
-        let gears = json!({ "module_mm": 3, "pinion_teeth": 17, "gear_teeth": 38, "face_width_mm": 15.5, "tip_relief": null });
+        let gears = json!({ "module_mm": 3, "pinion_teeth": 17, "gear_teeth": 38, "face_width_mm": 15.5, "backlash_mm": null });
         let operation = json!({ "pinion_speed_hz": 40.0, "brake_torque_nm": 10 });
         let read = scenario(&json!({ "scenario": { "gears": gears, "operation": operation } })).unwrap();
         assert_eq!((read.gears.module_mm, read.gears.face_width_mm), (3.0, 15.5));

@@ -3,7 +3,6 @@
 use meshtone::Error;
 use meshtone::scenario::{ErrorKind, ScenarioError};
 use meshtone::signal::SignalError;
-use meshtone_io::recording::ReadRecordingError;
 use serde_json::{Value, json};
 
 /// Why there is no answer.
@@ -91,12 +90,6 @@ impl From<Error> for Refusal {
 
 impl From<SignalError> for Refusal {
     fn from(error: SignalError) -> Self {
-        Self::unfit(error.to_string())
-    }
-}
-
-impl From<ReadRecordingError> for Refusal {
-    fn from(error: ReadRecordingError) -> Self {
         Self::unfit(error.to_string())
     }
 }

@@ -55,7 +55,8 @@ pub fn write_atomically(
 #[must_use = "a staged file disappears unless it is committed"]
 pub struct StagedFile {
     temporary: TemporaryFile,
-    path: PathBuf,
+    /// The name that it is to take.
+    pub path: PathBuf,
 }
 
 impl StagedFile {
@@ -73,20 +74,15 @@ impl StagedFile {
     ) -> Result<Self, WriteFileError> {
         let path = path.to_path_buf();
         let written = temporary_beside(&path).and_then(|mut temporary| {
-            write(temporary.file())?;
+            write(temporary.file.as_file_mut())?;
             // Without this a power failure after the rename could leave an empty file under the name.
-            temporary.file().sync_all()?;
+            temporary.file.as_file().sync_all()?;
             Ok(temporary)
         });
         match written {
             Ok(temporary) => Ok(Self { temporary, path }),
             Err(source) => Err(WriteFileError { path, source }),
         }
-    }
-
-    /// The name that it is to take.
-    pub fn path(&self) -> &Path {
-        &self.path
     }
 
     /// Gives the file its name, in place of the file that had it.
@@ -141,8 +137,9 @@ pub fn check_target(path: &Path) -> Result<(), WriteFileError> {
 /// # Errors
 /// Why files cannot be written.
 pub fn check_writable(directory: &Path) -> Result<(), WriteFileError> {
-    let tried = temporary_in(directory).map(drop);
-    tried.map_err(|source| WriteFileError { path: directory.to_path_buf(), source })
+    temporary_in(directory)
+        .map(drop)
+        .map_err(|source| WriteFileError { path: directory.to_path_buf(), source })
 }
 
 /// A temporary file that can take the name `path`.

@@ -14,18 +14,13 @@ const MEMORY_PER_BYTE_OF_TEXT: u64 = 64;
 /// there twice, one half as large as the other.
 pub(crate) const MEMORY_PER_BYTE_OF_NUMBERS: u64 = 12;
 /// Where systems keep what a shell hands over, as `/dev/stdin` and `/dev/fd/63`.
-#[cfg(unix)]
 const OF_THE_SHELL: [&str; 2] = ["/dev", "/proc"];
 
 /// Opens a file that is read at several places, so that only an ordinary one will do.
 pub(crate) fn open_ordinary(path: &Path) -> io::Result<File> {
-    match special(path.metadata()?.file_type()) {
-        None => File::open(path),
-        Some(what) => {
-            let problem = format!("it is {what}; must be an ordinary file: write its content into one first");
-            Err(io::Error::new(ErrorKind::InvalidInput, problem))
-        }
-    }
+    let Some(what) = special(path.metadata()?.file_type()) else { return File::open(path) };
+    let problem = format!("it is {what}; must be an ordinary file: write its content into one first");
+    Err(io::Error::new(ErrorKind::InvalidInput, problem))
 }
 
 /// Opens a file that is read from its start to its end: an ordinary one, or what a shell hands over.
@@ -44,13 +39,18 @@ pub(crate) fn open_stream(path: &Path, memory_per_byte: u64) -> io::Result<Limit
     let Some(what) = special(metadata.file_type()) else {
         let needed = metadata.len().saturating_mul(memory_per_byte);
         if let Some(objection) = limit.objection(needed) {
-            return Err(too_large(format!("its {} bytes of text {objection}", metadata.len())));
+            let problem = format!(
+                "its {} bytes of text {objection}; shorten it, or raise the memory limit",
+                metadata.len()
+            );
+            return Err(io::Error::new(ErrorKind::FileTooLarge, problem));
         }
         let problem =
             format!("it has more than {of_memory} bytes, which is all that the memory limit allows");
         return Ok(LimitedFile { from: File::open(path)?, left: of_memory, problem });
     };
-    if is_named_pipe(path, metadata.file_type()) {
+    // Opening a pipe with a name would wait until a program writes to it.
+    if what == NAMED_PIPE && !OF_THE_SHELL.iter().any(|folder| path.starts_with(folder)) {
         let problem = "it is a pipe with a name, to which perhaps nobody writes; write its content into an ordinary file first";
         return Err(io::Error::new(ErrorKind::InvalidInput, problem));
     }
@@ -64,11 +64,6 @@ pub(crate) fn read_document(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     open_stream(path, MEMORY_PER_BYTE_OF_TEXT)?.read_to_end(&mut bytes)?;
     Ok(bytes)
-}
-
-/// More than the memory that is allowed.
-fn too_large(problem: String) -> io::Error {
-    io::Error::new(ErrorKind::FileTooLarge, format!("{problem}; shorten it, or raise the memory limit"))
 }
 
 /// A file that is read up to a length; more is an error, unlike the end that [`Read::take`] makes of it.
@@ -94,38 +89,20 @@ impl<R: Read> Read for LimitedFile<R> {
     }
 }
 
+const NAMED_PIPE: &str = "a pipe";
+
 /// What a file is that is no ordinary one. A directory is left to the error of opening it.
 fn special(kind: FileType) -> Option<&'static str> {
-    if kind.is_file() || kind.is_dir() { None } else { Some(name_of(kind)) }
-}
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
 
-#[cfg(unix)]
-fn name_of(kind: FileType) -> &'static str {
-    use std::os::unix::fs::FileTypeExt;
-
-    if kind.is_fifo() {
-        "a pipe"
-    } else if kind.is_socket() {
-        "a socket"
-    } else {
-        "a device"
+        if kind.is_fifo() {
+            return Some(NAMED_PIPE);
+        }
+        if kind.is_socket() {
+            return Some("a socket");
+        }
     }
-}
-
-#[cfg(not(unix))]
-fn name_of(_: FileType) -> &'static str {
-    "a device"
-}
-
-/// Whether opening the file would wait until a program writes to it.
-#[cfg(unix)]
-fn is_named_pipe(path: &Path, kind: FileType) -> bool {
-    use std::os::unix::fs::FileTypeExt;
-
-    kind.is_fifo() && !OF_THE_SHELL.iter().any(|folder| path.starts_with(folder))
-}
-
-#[cfg(not(unix))]
-fn is_named_pipe(_: &Path, _: FileType) -> bool {
-    false
+    (!kind.is_file() && !kind.is_dir()).then_some("a device")
 }

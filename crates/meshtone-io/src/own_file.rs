@@ -46,8 +46,8 @@ pub(crate) type Persist = fn(NamedTempFile, &Path) -> Result<File, PersistError>
 /// A file under a temporary name. It disappears where it is dropped.
 #[derive(Debug)]
 pub(crate) struct TemporaryFile {
-    // Gone before it is taken from the list.
-    file: NamedTempFile,
+    /// The file, to be written to. It is gone before it is taken from the list.
+    pub(crate) file: NamedTempFile,
     own_path: OwnPath,
 }
 
@@ -66,16 +66,11 @@ impl TemporaryFile {
             drop(own);
             let own_path = OwnPath(file.path().to_path_buf());
             let begun = Self { file, own_path };
-            if lock(begun.file.as_file()) != Lock::Taken && begun.file.path().exists() {
+            if !is_taken(begun.file.as_file()) && begun.file.path().exists() {
                 return Ok(begun);
             }
         }
         Err(io::Error::other("another program removes what is begun there"))
-    }
-
-    /// The file, to be written to.
-    pub fn file(&mut self) -> &mut File {
-        self.file.as_file_mut()
     }
 
     /// Gives the file a name.
@@ -125,14 +120,12 @@ impl Claim {
     pub fn take(directory: &Path, what: &str) -> io::Result<Option<Self>> {
         let path = directory.join(format!("{PREFIX}{what}"));
         for _ in 0..TRIES {
-            let held = own();
+            let mut held = own();
             if held.contains(&path) {
                 return Ok(None);
             }
             let file = File::options().create(true).truncate(false).write(true).open(&path)?;
-            let locked = lock(&file);
-            if locked != Lock::Taken && is_at(&file, &path) {
-                let mut held = held;
+            if !is_taken(&file) && is_at(&file, &path) {
                 held.insert(path.clone());
                 return Ok(Some(Self { own_path: OwnPath(path), _file: file }));
             }
@@ -230,7 +223,7 @@ fn clear_up_once(directory: &Path) {
 fn remove_left(path: &Path) -> io::Result<()> {
     // Under its lock, so that no other program takes it meanwhile. Some network file systems lock only what may be written to.
     let file = File::options().write(true).open(path)?;
-    if lock(&file) == Lock::Ours { fs::remove_file(path) } else { Ok(()) }
+    if file.try_lock().is_ok() { fs::remove_file(path) } else { Ok(()) }
 }
 
 /// Removes all files of this program that have no name yet, and the new directories that are empty, and lets it neither begin nor
@@ -259,20 +252,9 @@ pub fn undisturbed<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Lock {
-    Ours,
-    Taken,
-    /// The file system has none.
-    Unknown,
-}
-
-fn lock(file: &File) -> Lock {
-    match file.try_lock() {
-        Ok(()) => Lock::Ours,
-        Err(TryLockError::WouldBlock) => Lock::Taken,
-        Err(TryLockError::Error(_)) => Lock::Unknown,
-    }
+/// Locks a file, where its file system has locks, unless another program has locked it. Returns whether one has.
+fn is_taken(file: &File) -> bool {
+    matches!(file.try_lock(), Err(TryLockError::WouldBlock))
 }
 
 /// Whether an open file is still the one of that name.
@@ -292,19 +274,10 @@ fn is_at(_: &File, path: &Path) -> bool {
 }
 
 /// Temporary files are private by default; a result is to have the permissions of any new file.
-#[cfg(unix)]
-fn builder() -> tempfile::Builder<'static, 'static> {
-    use std::fs::Permissions;
-    use std::os::unix::fs::PermissionsExt;
-
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(PREFIX).permissions(Permissions::from_mode(0o666));
-    builder
-}
-
-#[cfg(not(unix))]
 fn builder() -> tempfile::Builder<'static, 'static> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(PREFIX);
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder
 }

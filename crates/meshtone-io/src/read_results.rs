@@ -26,14 +26,6 @@ pub enum ReadResultsError {
         /// What is not as `meshtone simulate` writes it.
         problem: String,
     },
-    /// The scenario in the file is refused, perhaps because another version wrote it.
-    #[error("{}: the scenario in {SCENARIO_KEY} is refused: {error}", path.display())]
-    Scenario {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        error: Box<ScenarioError>,
-    },
 }
 
 impl ReadResultsError {
@@ -41,7 +33,21 @@ impl ReadResultsError {
         Self::Unreadable { path: path.to_path_buf(), source }
     }
 
-    pub(crate) fn foreign(path: &Path, problem: String) -> Self {
+    /// An error about what a file holds.
+    ///
+    /// # Arguments
+    /// * `path` - the file
+    /// * `problem` - what is not as `meshtone simulate` writes it
+    pub fn foreign(path: &Path, problem: String) -> Self {
         Self::Foreign { path: path.to_path_buf(), problem }
+    }
+
+    /// An error about the scenario in a file, which is refused, perhaps because another version wrote it.
+    ///
+    /// # Arguments
+    /// * `path` - the file
+    /// * `error` - what is wrong with the scenario
+    pub fn scenario(path: &Path, error: &ScenarioError) -> Self {
+        Self::foreign(path, format!("the scenario in {SCENARIO_KEY} is refused: {error}"))
     }
 }

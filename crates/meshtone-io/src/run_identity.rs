@@ -67,8 +67,11 @@ impl FromStr for RunIdentity {
 
 /// The hash FNV-1a of 64 bits: two runs are confused by chance once in 2⁶⁴, and a forged one is of no use.
 ///
+/// # Arguments
+/// * `bytes` - what is hashed
+///
 /// Source: G. Fowler, L. Noll, K.-P. Vo, D. Eastlake, "The FNV Non-Cryptographic Hash Algorithm", RFC 9923.
-pub(crate) fn fnv_1a(bytes: &[u8]) -> u64 {
+pub fn fnv_1a(bytes: &[u8]) -> u64 {
     const OFFSET_BASIS: u64 = 0xcbf2_9ce4_8422_2325;
     const PRIME: u64 = 0x0000_0100_0000_01b3;
     bytes.iter().fold(OFFSET_BASIS, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(PRIME))

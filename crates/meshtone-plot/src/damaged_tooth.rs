@@ -1,11 +1,13 @@
 //! The turns of the damaged teeth within a revolution of their wheel.
 
+use meshtone::Stages;
 use meshtone::damage::{Fault, ToothPart};
 use meshtone::wheel::WheelName;
 
-use crate::drawing::{Axes, Canvas, Entry, Fill, Sample, colour};
+use crate::drawing::{Axes, Canvas, Fill, colour};
 
-const TINT: Fill = Fill::tint(colour::VERMILLION, 0.22);
+/// The parts of a revolution in which damaged teeth are in contact.
+pub(crate) const TINT: Fill = Fill::tint(colour::VERMILLION, 0.22);
 /// Teeth of a wheel that a legend names one by one; of more it says how many they are.
 const MOST_NAMED: usize = 3;
 
@@ -45,10 +47,32 @@ impl DamagedTooth {
             numbers.map(move |tooth| Self { tooth, contact_pitches, is_missing })
         };
         let of_wheel = faults.iter().filter(|fault| fault.wheel == wheel && fault.severity != Some(0.0));
-        let mut damaged: Vec<Self> = of_wheel.flat_map(of_fault).collect();
-        damaged.sort_by_key(|tooth| tooth.tooth);
-        damaged.dedup_by_key(|tooth| tooth.tooth);
-        damaged
+        Self::in_order(of_wheel.flat_map(of_fault))
+    }
+
+    /// The teeth of a wheel that a simulation has damaged, each once and in the order of their numbers.
+    ///
+    /// # Arguments
+    /// * `stages` - what was simulated
+    /// * `wheel` - whose teeth
+    pub fn of_stages(stages: &Stages, wheel: WheelName) -> Vec<Self> {
+        let contact_pitches = stages.teeth.contact.contact_ratio;
+        let of_wheel = stages.damaged.iter().filter(|alike| alike.wheel == wheel);
+        Self::in_order(of_wheel.flat_map(|alike| {
+            let is_missing = alike.is_missing();
+            alike.teeth.iter().map(move |&index| Self {
+                tooth: index as u32 + 1,
+                contact_pitches,
+                is_missing,
+            })
+        }))
+    }
+
+    fn in_order(teeth: impl Iterator<Item = Self>) -> Vec<Self> {
+        let mut teeth: Vec<Self> = teeth.collect();
+        teeth.sort_by_key(|tooth| tooth.tooth);
+        teeth.dedup_by_key(|tooth| tooth.tooth);
+        teeth
     }
 }
 
@@ -63,18 +87,14 @@ pub(crate) fn tint(canvas: &mut Canvas, axes: &Axes, damaged: &[DamagedTooth], t
     let contact = damaged.first().map_or(0.0, |tooth| tooth.contact_pitches);
     let is_of_pair = |pair| is_of_pair(damaged, i64::from(teeth.max(1)), pair);
     for turn in turns([0.0, f64::from(teeth)], contact, is_of_pair) {
-        tint_turn(canvas, axes, turn.map(|pitches| pitches * pitch));
+        let [from, to] = turn.map(|pitches| pitches * pitch);
+        axes.band(canvas, from, to, TINT);
     }
 }
 
 /// Whether a damaged tooth of a wheel with so many teeth is of the pair that enters contact at a pitch.
 pub(crate) fn is_of_pair(damaged: &[DamagedTooth], teeth: i64, pair: i64) -> bool {
     damaged.iter().any(|damaged| i64::from(damaged.tooth) == pair.rem_euclid(teeth) + 1)
-}
-
-/// Tints one part of a revolution, in the unit of the horizontal axis.
-pub(crate) fn tint_turn(canvas: &mut Canvas, axes: &Axes, [from, to]: [f64; 2]) {
-    axes.band(canvas, from, to, TINT);
 }
 
 /// (pitches) The parts of a window in which damaged pairs are in contact; those that overlap are one.
@@ -94,11 +114,6 @@ pub(crate) fn turns([from, to]: [f64; 2], contact: f64, is_damaged: impl Fn(i64)
         }
     }
     turns
-}
-
-/// Legend of the tint, in the words of [`in_words`].
-pub(crate) fn legend_entry(text: &str) -> Entry<'_> {
-    (Sample::Area(TINT), text)
 }
 
 /// Meaning of the tint; empty where no tooth is damaged.

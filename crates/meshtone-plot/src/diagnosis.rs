@@ -102,10 +102,10 @@ pub fn draw(figure: &DiagnosisFigure) -> Figure {
     canvas.finish(figure.title, &format!("What may be wrong with a gear. {}.", figure.facts.join(", ")))
 }
 
-/// Axes over a revolution of the gear: tooth k is from k − 1 to k.
-fn revolution(area: Area, figure: &DiagnosisFigure, y: [f64; 2]) -> (Axes, Ticks) {
-    let axes = Axes::new(area, [0.0, f64::from(figure.gear_teeth)], y);
-    (axes, Ticks::whole(0.0, axes.x[1], 20))
+/// Range and ticks of a revolution of the gear: tooth k is from k − 1 to k.
+fn revolution(figure: &DiagnosisFigure) -> ([f64; 2], Ticks) {
+    let teeth = f64::from(figure.gear_teeth);
+    ([0.0, teeth], Ticks::whole(0.0, teeth, 20))
 }
 
 fn tooth(canvas: &mut Canvas, axes: &Axes, figure: &DiagnosisFigure) {
@@ -116,8 +116,9 @@ fn tooth(canvas: &mut Canvas, axes: &Axes, figure: &DiagnosisFigure) {
 
 fn recording(canvas: &mut Canvas, figure: &DiagnosisFigure) {
     let values = figure.difference_g.iter().chain(figure.band_g[0]).chain(figure.band_g[1]).copied();
-    let (axes, teeth) = revolution(SIGNALS, figure, axes::range(values, MARGIN));
-    axes.title(canvas, "Difference signal of the recording");
+    let (x, teeth) = revolution(figure);
+    let y = axes::range(values, MARGIN);
+    let axes = Axes::titled(canvas, SIGNALS, x, y, "Difference signal of the recording");
     let tooth_in_words = figure.damaged_tooth.map(|tooth| format!("tooth {tooth}"));
     let marked = tooth_in_words.as_deref().map(|text| (Sample::Area(DAMAGE), text));
     let others = [
@@ -142,21 +143,15 @@ fn probabilities(canvas: &mut Canvas, kinds: &[(&str, f64)]) {
     let others = format!("{} others", kinds.len() - shown.len());
     let more = (kinds.len() > shown.len()).then_some((others.as_str(), rest));
     let bars: Vec<(&str, f64)> = shown.iter().copied().chain(more).collect();
-    let axes = Axes::new(BARS, [0.0, 100.0], [bars.len().max(1) as f64, 0.0]);
-    axes.title(canvas, "Probability, given the scenario");
-    axes.x_axis(
-        canvas,
-        &Ticks::every(20.0, 0.0, 100.0),
-        "Probability (%); before: healthy 50, kinds of damage alike",
-    );
+    let y = [bars.len().max(1) as f64, 0.0];
+    let axes = Axes::titled(canvas, BARS, [0.0, 100.0], y, "Probability, given the scenario");
+    let name = "Probability (%); before: healthy 50, kinds of damage alike";
+    axes.x_axis(canvas, &Ticks::every(20.0, 0.0, 100.0), name);
     for (place, (label, probability)) in bars.iter().enumerate() {
         let place = place as f64;
         let fill = if *label == "healthy" { colour::BLUE } else { colour::VERMILLION };
-        canvas.rectangle(
-            axes.at(0.0, place + 0.2),
-            axes.at(100.0 * probability, place + 0.8),
-            Fill::solid(fill),
-        );
+        let [from, to] = [axes.at(0.0, place + 0.2), axes.at(100.0 * probability, place + 0.8)];
+        canvas.rectangle(from, to, Fill::solid(fill));
         let style = TextStyle::NOTE;
         let baseline = axes.py(place + 0.5) + 0.36 * style.size;
         canvas.text((axes.area.left - 8.0, baseline), label, style.anchored(Anchor::End));
@@ -181,12 +176,11 @@ fn severity(canvas: &mut Canvas, severity: Option<&SeverityView>) {
         counts[bin.min(BINS - 1)] += 100.0 / draws.len() as f64;
     }
     let highest = counts.iter().copied().fold(1.0, f64::max);
-    let axes = Axes::new(SEVERITY, [0.0, 1.0], [0.0, 1.12 * highest]);
     let title = severity.map_or_else(
         || "Severity".to_owned(),
         |severity| format!("Severity of {}, if it is that", severity.kind),
     );
-    axes.title(canvas, &title);
+    let axes = Axes::titled(canvas, SEVERITY, [0.0, 1.0], [0.0, 1.12 * highest], &title);
     axes.x_axis(canvas, &Ticks::nice(0.0, 1.0, 6), "Severity (–)");
     axes.y_axis(canvas, &Ticks::nice(0.0, axes.y[1], 5), "Part of the draws (%)", 48.0);
     let severity = match severity {
@@ -204,16 +198,12 @@ fn severity(canvas: &mut Canvas, severity: Option<&SeverityView>) {
     for ([from, to], opacity) in [(severity.within_90, 0.14), (severity.within_50, 0.2)] {
         axes.band(canvas, from, to, damage(opacity));
     }
-    let bars: Vec<_> = counts
-        .iter()
-        .enumerate()
-        .filter(|(_, count)| **count > 0.0)
-        .map(|(bin, count)| {
-            let [from, to] = [bin, bin + 1].map(|edge| edge as f64 / BINS as f64);
-            [axes.at(from, *count), axes.at(to, 0.0)]
-        })
-        .collect();
-    canvas.rectangles(&bars, damage(0.75));
+    let bar = |(bin, &count): (usize, &f64)| {
+        let [from, to] = [bin, bin + 1].map(|edge| edge as f64 / BINS as f64);
+        [axes.at(from, count), axes.at(to, 0.0)]
+    };
+    let filled = counts.iter().enumerate().filter(|(_, count)| **count > 0.0);
+    canvas.rectangles(&filled.map(bar).collect::<Vec<_>>(), damage(0.75));
     let median = Stroke::solid(colour::INK, 1.6);
     canvas.line(axes.at(severity.median, 0.0), axes.at(severity.median, axes.y[1]), median);
     let text = format!("median {:.2}", severity.median);
@@ -232,11 +222,12 @@ fn explanations(canvas: &mut Canvas, figure: &DiagnosisFigure) {
     let shown = &figure.explanations[..figure.explanations.len().min(MOST_EXPLANATIONS)];
     let values = shown.iter().flat_map(|(_, signal)| signal.iter()).chain(figure.difference_g).copied();
     let y = axes::range(values, MARGIN);
+    let (x, teeth) = revolution(figure);
     let areas = EXPLANATIONS.grid([1, shown.len()], [0.0, EXPLANATIONS_GAP], f64::INFINITY);
     for (row, ((words, signal), area)) in shown.iter().zip(areas).enumerate() {
-        let (axes, teeth) = revolution(area, figure, y);
         let title = format!("Simulation that resembles it: {words}");
-        axes.title(canvas, &TextStyle::AXES_TITLE.fitted(&title, 0.75 * area.width));
+        let title = TextStyle::AXES_TITLE.fitted(&title, 0.75 * area.width);
+        let axes = Axes::titled(canvas, area, x, y, &title);
         if row + 1 == shown.len() {
             axes.x_axis(canvas, &teeth, "Pitches that the gear has turned");
         } else {

@@ -22,17 +22,12 @@ fn face(bold: bool) -> Option<&'static Face<'static>> {
     FACES[usize::from(bold)].as_ref()
 }
 
-/// A character's shape and how far it moves the next one, in units of the font.
-struct Glyph {
-    id: GlyphId,
-    advance: u16,
-}
-
-/// The glyphs of a text, a box in the place of each character that the font does not have.
-fn glyphs<'t>(face: &'t Face, text: &'t str) -> impl Iterator<Item = Glyph> + 't {
+/// The glyphs of a text, a box in the place of each character that the font does not have, with how far each moves the next one, in
+/// units of the font.
+fn glyphs<'t>(face: &'t Face, text: &'t str) -> impl Iterator<Item = (GlyphId, u16)> + 't {
     text.nfc().filter(|&character| !is_invisible(character)).map(|character| {
         let id = face.glyph_index(character).unwrap_or_default();
-        Glyph { id, advance: face.glyph_hor_advance(id).unwrap_or_default() }
+        (id, face.glyph_hor_advance(id).unwrap_or_default())
     })
 }
 
@@ -49,7 +44,7 @@ fn scale(face: &Face, size_px: f64) -> f64 {
 /// (px) Width of `text` at `size_px`.
 pub(crate) fn text_width(text: &str, size_px: f64, bold: bool) -> f64 {
     let Some(face) = face(bold) else { return 0.6 * size_px * text.chars().count() as f64 };
-    let advances = glyphs(face, text).map(|glyph| u32::from(glyph.advance)).sum::<u32>();
+    let advances = glyphs(face, text).map(|(_, advance)| u32::from(advance)).sum::<u32>();
     scale(face, size_px) * f64::from(advances)
 }
 
@@ -62,7 +57,7 @@ pub(crate) fn text_width(text: &str, size_px: f64, bold: bool) -> f64 {
 pub(crate) fn outline(text: &str, size_px: f64, bold: bool) -> Option<Path> {
     let face = face(bold)?;
     let mut pen = Pen { path: PathBuilder::new(), left: 0.0 };
-    for Glyph { id, advance } in glyphs(face, text) {
+    for (id, advance) in glyphs(face, text) {
         face.outline_glyph(id, &mut pen);
         pen.left += f32::from(advance);
     }

@@ -27,8 +27,10 @@ mod scene;
 mod svg;
 pub mod trend;
 mod tuning;
+mod units;
 
 pub use damaged_tooth::DamagedTooth;
 pub use error::PlotError;
 pub use figure::{Figure, Label};
 pub use tuning::tuning_figure;
+pub use units::without_unit;

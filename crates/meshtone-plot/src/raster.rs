@@ -243,14 +243,9 @@ impl Coverage {
     /// Calls `f` for every pixel, given by its place in the window, and the part of it that is covered.
     fn for_each(&self, mut f: impl FnMut(usize, usize, f32)) {
         let (width, _) = self.rasterizer.dimensions();
-        let (mut x, mut y) = (0, 0);
-        self.rasterizer.for_each_pixel(|_, windings| {
+        self.rasterizer.for_each_pixel(|index, windings| {
             if windings > LEAST_COVERED {
-                f(x, y, windings.min(1.0));
-            }
-            x += 1;
-            if x == width {
-                (x, y) = (0, y + 1);
+                f(index % width, index / width, windings.min(1.0));
             }
         });
     }

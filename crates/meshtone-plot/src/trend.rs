@@ -118,8 +118,7 @@ pub fn draw(figure: &TrendFigure) -> Figure {
 fn indicator(canvas: &mut Canvas, area: Area, trend: &Trend, figure: &TrendFigure) {
     let y = axes::range(trend.values.iter().flatten().filter_map(|value| *value), MARGIN);
     let (x, ticks, along) = figure.along.axis();
-    let axes = Axes::new(area, x, y);
-    axes.title(canvas, &trend.name);
+    let axes = Axes::titled(canvas, area, x, y, &trend.name);
     axes.x_axis(canvas, &ticks, along);
     let name = if trend.unit.is_empty() { "(–)".to_owned() } else { format!("({})", trend.unit) };
     axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), &name, NAME_LEFT);

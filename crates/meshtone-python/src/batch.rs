@@ -1,6 +1,6 @@
 //! Many simulations.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::Ordering;
 
 use meshtone::batch::{Control, KeepObserved, ObservedSignals, simulate_many as simulate};
 use meshtone::sensor::{Channel, Sensor};
@@ -34,29 +34,21 @@ pub fn simulate_many<'py>(
         None => {}
     }
     let pool = pool.build().map_err(|error| PyOSError::new_err(error.to_string()))?;
-    let finished = AtomicUsize::new(0);
-    let progress = progress.map(Bound::unbind);
-    let results = interruptible(
-        py,
-        |cancelled| {
-            let progress = |count| finished.store(count, Ordering::Relaxed);
-            let control = Control { progress: &progress, cancelled, ..Control::default() };
-            let mut results = Vec::with_capacity(scenarios.len());
-            pool.install(|| {
-                simulate(scenarios, &KeepObserved::new(kept), &control, |_, result| {
-                    if stop_at_error && result.is_err() {
-                        cancelled.store(true, Ordering::Relaxed);
-                    }
-                    results.push(result);
-                });
+    let all = scenarios.len() as u64;
+    let results = interruptible(py, progress, all, |cancelled, report| {
+        let progress = |count| report(count as u64, all);
+        let control = Control { progress: &progress, cancelled, ..Control::default() };
+        let mut results = Vec::with_capacity(scenarios.len());
+        pool.install(|| {
+            simulate(scenarios, &KeepObserved::new(kept), &control, |_, result| {
+                if stop_at_error && result.is_err() {
+                    cancelled.store(true, Ordering::Relaxed);
+                }
+                results.push(result);
             });
-            results
-        },
-        |py| match &progress {
-            Some(progress) => progress.call1(py, (finished.load(Ordering::Relaxed),)).map(drop),
-            None => Ok(()),
-        },
-    )?;
+        });
+        results
+    })?;
     results.into_iter().map(|result| signals(py, &channels, result)).collect()
 }
 

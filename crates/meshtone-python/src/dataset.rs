@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use meshtone_dataset::DatasetError;
 use meshtone_dataset::generate::{self, GenerateControl, Part};
@@ -11,10 +10,10 @@ use meshtone_dataset::plan::{Plan, template};
 use meshtone_dataset::store::Destination;
 use meshtone_dataset::verify::{Check, verify};
 use pyo3::PyErr;
-use pyo3::exceptions::{PyBlockingIOError, PyKeyboardInterrupt, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyBlockingIOError, PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 
-use crate::error::{os_error, read_error, value_error};
+use crate::error::{os_error, read_error, value_error, with_help};
 use crate::interrupt::interruptible;
 
 /// The commented plan.
@@ -54,26 +53,10 @@ pub fn generate_dataset(
     let to = destination(to)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs.unwrap_or(0)).build();
     let pool = pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
-    let (finished, all) = (AtomicU64::new(0), AtomicU64::new(0));
-    let progress = progress.map(Bound::unbind);
-    let generated = interruptible(
-        py,
-        |cancelled| {
-            let progress = |done, of| {
-                finished.store(done, Ordering::Relaxed);
-                all.store(of, Ordering::Relaxed);
-            };
-            let control = GenerateControl { progress: &progress, cancelled };
-            pool.install(|| generate::generate(&read, &to, Part { number: part, of }, &control))
-        },
-        |py| match &progress {
-            Some(progress) => {
-                let (done, of) = (finished.load(Ordering::Relaxed), all.load(Ordering::Relaxed));
-                progress.call1(py, (done, of)).map(drop)
-            }
-            None => Ok(()),
-        },
-    )?;
+    let generated = interruptible(py, progress, 0, |cancelled, progress| {
+        let control = GenerateControl { progress, cancelled };
+        pool.install(|| generate::generate(&read, &to, Part { number: part, of }, &control))
+    })?;
     let remade = generated.map_err(dataset_error)?.remade.into_iter();
     Ok((remade.map(|remade| (remade.file, remade.reason)).collect(), doubts))
 }
@@ -108,9 +91,9 @@ fn destination(to: &str) -> PyResult<Destination> {
 fn dataset_error(error: DatasetError) -> PyErr {
     match error {
         DatasetError::Plan(error) => read_error(Path::new("."), &error),
-        DatasetError::Refused { problem, help } => PyValueError::new_err(format!("{problem}\n{help}")),
+        DatasetError::Refused { problem, help } => with_help(problem, Some(&help)),
         DatasetError::Stopped => PyKeyboardInterrupt::new_err("stopped"),
-        DatasetError::NoRecord { .. } => PyValueError::new_err(error.to_string()),
+        DatasetError::NoRecord { .. } => value_error(error),
         DatasetError::Busy { .. } => PyBlockingIOError::new_err(error.to_string()),
         DatasetError::File { doing, name, source } => os_error(doing, name, &source),
         DatasetError::Preview(_) => PyRuntimeError::new_err(error.to_string()),

@@ -1,23 +1,23 @@
 //! Diagnosis of a gear.
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+use meshtone::batch::Control;
 use meshtone::scenario;
 use meshtone::signal::{
-    AngleZero, AngularSettings, ChainSettings, Shaft, SignalError, SimulatedShafts, StatedFacts,
-    StatedTurning, angular_resample, find_mismatch,
+    AngleZero, AngularSettings, ChainSettings, SignalError, SimulatedShafts, StatedFacts, StatedTurning,
+    angular_resample, find_mismatch,
 };
+use meshtone::wheel::WheelName;
 use meshtone_diagnose::{
-    Answer, Learned, Observation as Observed, Prior, Question, ReferenceControl, ReferenceStore, SignalKind,
-    StoreError, other_teeth, refine,
+    Answer, Learned, Observation as Observed, Prior, Question, ReferenceStore, SignalKind, StoreError,
+    other_teeth, refine,
 };
 use meshtone_io::experiment::read_tuned;
-use numpy::PyArray1;
 use pyo3::exceptions::{PyOSError, PyRuntimeError};
 use pyo3::prelude::*;
 
-use crate::array::{Signal, array, samples};
+use crate::array::{Array, Signal, array, samples};
 use crate::error::{file_error, read_error, scenario_error, value_error};
 use crate::interrupt::interruptible;
 use crate::phase::ShaftPhase;
@@ -36,9 +36,10 @@ impl Observation {
         let observe = || {
             let shafts = SimulatedShafts::new(&scenario.0, start_s, signal.len());
             let over = |shaft| shafts.angular(signal, shaft, &ChainSettings::default());
-            let (pinion, gear) = (over(Shaft::Pinion)?, over(Shaft::Gear)?);
-            let teeth = Shaft::BOTH.map(|shaft| shafts.teeth(shaft));
-            let observed = Observed::of_recording(&pinion, &gear, teeth, shafts.mean_speed_hz(Shaft::Pinion));
+            let (pinion, gear) = (over(WheelName::Pinion)?, over(WheelName::Gear)?);
+            let teeth = WheelName::BOTH.map(|shaft| shafts.teeth(shaft));
+            let observed =
+                Observed::of_recording(&pinion, &gear, teeth, shafts.mean_speed_hz(WheelName::Pinion));
             observed.map(|observed| observed.with_zero([AngleZero::Simulated; 2]))
         };
         py.detach(observe).map(Self).map_err(value_error)
@@ -54,11 +55,7 @@ impl Observation {
         scenario: &Scenario,
     ) -> PyResult<Self> {
         let signal = samples(&signal)?;
-        let (gears, pinion_hz) = (&scenario.0.gears, scenario.0.operation.pinion_speed_hz);
-        let teeth = [gears.pinion_teeth, gears.gear_teeth];
-        py.detach(|| measured(signal, sampling_rate_hz, phase, teeth, pinion_hz))
-            .map(Self)
-            .map_err(value_error)
+        py.detach(|| measured(signal, sampling_rate_hz, phase, &scenario.0)).map(Self).map_err(value_error)
     }
 
     /// Of one revolution of the gear, in g.
@@ -77,9 +74,9 @@ fn measured(
     signal: &[f64],
     sampling_rate_hz: f64,
     phase: &ShaftPhase,
-    teeth: [u32; 2],
-    scenario_hz: f64,
+    scenario: &scenario::Scenario,
 ) -> Result<Observed, SignalError> {
+    let teeth = [scenario.gears.pinion_teeth, scenario.gears.gear_teeth];
     let settings = AngularSettings::default();
     let pinion = angular_resample(signal, &phase.0, &settings)?;
     let of_gear = phase.0.of_mate(teeth[0], teeth[1])?;
@@ -90,7 +87,9 @@ fn measured(
     let is_doubtful = phase.0.zero == AngleZero::Chance && !phase.0.warnings.is_empty();
     let against = match find_mismatch(&pinion, &stated) {
         // Another tone than the mesh's may have been followed.
-        None if is_doubtful => other_teeth(signal, sampling_rate_hz, teeth, scenario_hz)?,
+        None if is_doubtful => {
+            other_teeth(signal, sampling_rate_hz, teeth, scenario.operation.pinion_speed_hz)?
+        }
         against => against,
     };
     Ok(match against {
@@ -100,7 +99,7 @@ fn measured(
 }
 
 /// The text of the answer's JSON, the difference signal, and the predictive band's ends.
-type Diagnosed<'py> = (String, Bound<'py, PyArray1<f64>>, [Bound<'py, PyArray1<f64>>; 2]);
+type Diagnosed<'py> = (String, Array<'py>, [Array<'py>; 2]);
 
 /// Says what may be wrong.
 #[pyfunction]
@@ -123,21 +122,11 @@ pub fn diagnose<'py>(
         [now, healthy].map(|all| all.iter().map(|one| one.0.clone()).collect::<Vec<Observed>>());
     let prior = Prior::new(&rig);
     let store = ReferenceStore::new(folder);
-    let finished = AtomicUsize::new(0);
-    let progress = progress.map(Bound::unbind);
-    let answer = interruptible(
-        py,
-        |cancelled| {
-            answer(&store, &prior, records, &Question { now: &now, healthy: &healthy }, &finished, cancelled)
-        },
-        |py| match &progress {
-            Some(progress) => {
-                let finished = finished.load(Ordering::Relaxed) as u64;
-                progress.call1(py, (finished.min(records), records)).map(drop)
-            }
-            None => Ok(()),
-        },
-    )??;
+    let answer = interruptible(py, progress, records, |cancelled, report| {
+        let progress = |count| report((count as u64).min(records), records);
+        let control = Control { progress: &progress, cancelled, ..Control::default() };
+        answer(&store, &prior, records, &Question { now: &now, healthy: &healthy }, &control)
+    })??;
     let mut json = answer.to_json();
     json["reference"] = serde_json::json!({
         "asked": records,
@@ -155,13 +144,10 @@ fn answer(
     prior: &Prior,
     records: u64,
     question: &Question,
-    finished: &AtomicUsize,
-    cancelled: &AtomicBool,
+    control: &Control,
 ) -> PyResult<Answer> {
     question.check(prior).map_err(value_error)?;
-    let progress = |count| finished.store(count, Ordering::Relaxed);
-    let control = ReferenceControl { progress: &progress, cancelled };
-    let reference = store.get(prior, records, &control);
+    let reference = store.get(prior, records, control);
     let reference = reference.map_err(|error| match &error {
         StoreError::Folder { path, source } => file_error(path, Some(source), &error),
         StoreError::File(_) => PyOSError::new_err(error.to_string()),
@@ -169,7 +155,7 @@ fn answer(
     })?;
     let learned = Learned::new(&reference, question).map_err(value_error)?;
     // The caller's count of simulations is complete.
-    let control = ReferenceControl { progress: &|_| {}, ..control };
+    let control = Control { progress: &|_| {}, ..*control };
     let refined = refine(&learned, question, &control).map_err(value_error)?;
     meshtone_diagnose::diagnose(&learned, question, refined.as_ref()).map_err(value_error)
 }

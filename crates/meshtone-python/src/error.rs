@@ -17,29 +17,28 @@ pub fn value_error(error: impl Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// A scenario that cannot be simulated: the problem, and below it what to do about it.
-pub fn scenario_error(error: &ScenarioError) -> PyErr {
-    match &error.help {
-        Some(help) => PyValueError::new_err(format!("{error}\n{help}")),
+/// Bad input: the problem, and below it what to do about it.
+pub fn with_help(error: impl Display, help: Option<&str>) -> PyErr {
+    match help {
+        Some(help) => value_error(format!("{error}\n{help}")),
         None => value_error(error),
     }
 }
 
+/// A scenario that cannot be simulated.
+pub fn scenario_error(error: &ScenarioError) -> PyErr {
+    with_help(error, error.help.as_deref())
+}
+
 /// A scenario that gave no simulation, with the same words.
 pub fn simulation_error(error: &meshtone::Error) -> PyErr {
-    match error.help() {
-        Some(help) => PyValueError::new_err(format!("{error}\n{help}")),
-        None => value_error(error),
-    }
+    with_help(error, error.help())
 }
 
 /// A scenario, plan or experiment file that could not be read: the problem, and below it what to do about it.
 pub fn read_error(path: &Path, error: &ReadScenarioError) -> PyErr {
     match error {
-        ReadScenarioError::Invalid { error: invalid, .. } => match &invalid.help {
-            Some(help) => PyValueError::new_err(format!("{error}\n{help}")),
-            None => value_error(error),
-        },
+        ReadScenarioError::Invalid { error: invalid, .. } => with_help(error, invalid.help.as_deref()),
         ReadScenarioError::Unreadable { source, .. } => file_error(path, Some(source), error),
         _ => file_error(path, None, error),
     }

@@ -1,14 +1,13 @@
 //! The hybrid stage.
 
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use meshtone::tuning::{self, ExperimentControl};
 use meshtone_io::experiment::{self, Tuned, read_experiment, read_tuned, tuning_json, write_tuned};
-use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use numpy::PyArray2;
 use pyo3::prelude::*;
 
-use crate::array::{Signal, array, samples};
+use crate::array::{Array, Signal, array, matrix, samples};
 use crate::error::{read_error, scenario_error, value_error};
 use crate::interrupt::interruptible;
 use crate::scenario::Scenario;
@@ -20,7 +19,7 @@ pub fn change_duration<'py>(
     signal: Signal<'py>,
     width_ratio: f64,
     centre_rev: f64,
-) -> PyResult<Bound<'py, PyArray1<f64>>> {
+) -> PyResult<Array<'py>> {
     let changed = tuning::change_duration(samples(&signal)?, width_ratio, centre_rev).map_err(value_error)?;
     Ok(array(py, changed))
 }
@@ -32,7 +31,7 @@ pub fn change_fault_to_harmonics_ratio<'py>(
     signal: Signal<'py>,
     healthy: Signal<'py>,
     fault_to_harmonics_ratio: f64,
-) -> PyResult<Bound<'py, PyArray1<f64>>> {
+) -> PyResult<Array<'py>> {
     let (signal, healthy) = (samples(&signal)?, samples(&healthy)?);
     let changed = tuning::change_fault_to_harmonics_ratio(signal, healthy, fault_to_harmonics_ratio);
     Ok(array(py, changed.map_err(value_error)?))
@@ -47,7 +46,7 @@ pub fn add_noise<'py>(
     healthy_rms: f64,
     seed: u64,
     draw: u64,
-) -> PyResult<Bound<'py, PyArray1<f64>>> {
+) -> PyResult<Array<'py>> {
     let noisy =
         tuning::add_noise(samples(&signal)?, noise_level, healthy_rms, seed, draw).map_err(value_error)?;
     Ok(array(py, noisy))
@@ -58,25 +57,10 @@ pub fn add_noise<'py>(
 pub fn tune(py: Python<'_>, path: PathBuf, progress: Option<Bound<'_, PyAny>>) -> PyResult<(String, String)> {
     let file = py.detach(|| read_experiment(&path)).map_err(|error| read_error(&path, &error))?;
     let experiment = &file.experiment;
-    let (finished, all) = (AtomicUsize::new(0), AtomicUsize::new(0));
-    let progress = progress.map(Bound::unbind);
-    let result = interruptible(
-        py,
-        |cancelled| {
-            let progress = |done, of| {
-                finished.store(done, Ordering::Relaxed);
-                all.store(of, Ordering::Relaxed);
-            };
-            tuning::run_experiment(experiment, &ExperimentControl { progress: &progress, cancelled })
-        },
-        |py| match &progress {
-            Some(progress) => {
-                let (done, of) = (finished.load(Ordering::Relaxed), all.load(Ordering::Relaxed));
-                progress.call1(py, (done, of)).map(drop)
-            }
-            None => Ok(()),
-        },
-    )?;
+    let result = interruptible(py, progress, 0, |cancelled, report| {
+        let progress = |done, of| report(done as u64, of as u64);
+        tuning::run_experiment(experiment, &ExperimentControl { progress: &progress, cancelled })
+    })?;
     let result = result.map_err(|error| value_error(format!("{}: {error}", path.display())))?;
     let tuned = write_tuned(&Tuned::of(experiment, &result), &path.display().to_string());
     Ok((tuning_json(&file, &result), tuned))
@@ -99,5 +83,5 @@ pub fn enhance<'py>(
     let rows = enhanced.records.len();
     let values: Vec<f64> =
         enhanced.records.into_iter().flat_map(|record| record.relative_difference).collect();
-    Ok((array(py, values).reshape([rows, points]).map_err(value_error)?, enhanced.healthy_rms_g))
+    Ok((matrix(py, values, [rows, points])?, enhanced.healthy_rms_g))
 }

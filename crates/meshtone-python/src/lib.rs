@@ -28,32 +28,23 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _core {
     #[pymodule_export]
-    use crate::batch::simulate_many;
-    #[pymodule_export]
-    use crate::dataset::{check_plan, dataset_template, generate_dataset, merge_datasets, verify_dataset};
-    #[pymodule_export]
-    use crate::diagnose::{Observation, diagnose};
-    #[pymodule_export]
-    use crate::explore::ExploreServer;
-    #[pymodule_export]
-    use crate::hybrid::{add_noise, change_duration, change_fault_to_harmonics_ratio, enhance, tune};
-    #[pymodule_export]
-    use crate::memory::set_memory_limit;
-    #[pymodule_export]
-    use crate::phase::{ShaftPhase, repair_pulses, tachometer_pulses};
-    #[pymodule_export]
-    use crate::process::{Record, find_mismatch, process_channel, process_series};
-    #[pymodule_export]
-    use crate::recording::read_recording;
-    #[pymodule_export]
-    use crate::scenario::{Scenario, template};
-    #[pymodule_export]
-    use crate::signal::{
-        angular_resample, energy_ratio, envelope, envelope_spectrum, fm0, fm4, m6a, m8a, na4, order_spectrum,
-        resample, separate, sideband_level_factor, statistics, synchronous_average,
+    use crate::{
+        batch::simulate_many,
+        dataset::{check_plan, dataset_template, generate_dataset, merge_datasets, verify_dataset},
+        diagnose::{Observation, diagnose},
+        explore::ExploreServer,
+        hybrid::{add_noise, change_duration, change_fault_to_harmonics_ratio, enhance, tune},
+        memory::set_memory_limit,
+        phase::{ShaftPhase, repair_pulses, tachometer_pulses},
+        process::{find_mismatch, process_channel, process_series},
+        recording::read_recording,
+        scenario::{Scenario, template},
+        signal::{
+            angular_resample, energy_ratio, envelope, envelope_spectrum, fm0, fm4, m6a, m8a, na4,
+            order_spectrum, resample, separate, sideband_level_factor, statistics, synchronous_average,
+        },
+        simulation::{Simulation, process_simulated, simulate, trace},
     };
-    #[pymodule_export]
-    use crate::simulation::{Simulation, process_simulated, simulate, trace};
 
     use pyo3::prelude::*;
 

@@ -1,10 +1,9 @@
 //! The angle of a shaft.
 
 use meshtone::signal::{self, AngleZero, MeshTone, PulseEdge, Tachometer};
-use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::array::{Signal, array, samples};
+use crate::array::{Array, Signal, array, samples};
 use crate::error::value_error;
 
 /// Angle of a shaft at each sample.
@@ -110,7 +109,7 @@ impl ShaftPhase {
 
     /// (rev) Angle at each sample.
     #[getter]
-    fn revolutions<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+    fn revolutions<'py>(&self, py: Python<'py>) -> Array<'py> {
         array(py, self.0.revolutions.clone())
     }
 
@@ -135,7 +134,7 @@ pub fn tachometer_pulses<'py>(
     threshold: Option<f64>,
     hysteresis: Option<f64>,
     edge: &str,
-) -> PyResult<Bound<'py, PyArray1<f64>>> {
+) -> PyResult<Array<'py>> {
     let edge = match edge {
         "rising" => PulseEdge::Rising,
         "falling" => PulseEdge::Falling,
@@ -149,10 +148,7 @@ pub fn tachometer_pulses<'py>(
 
 /// Pulses with the missing ones put in and the doubled ones taken out, and what was found.
 #[pyfunction]
-pub fn repair_pulses<'py>(
-    py: Python<'py>,
-    time_s: Signal<'py>,
-) -> PyResult<(Bound<'py, PyArray1<f64>>, Vec<String>)> {
+pub fn repair_pulses<'py>(py: Python<'py>, time_s: Signal<'py>) -> PyResult<(Array<'py>, Vec<String>)> {
     let train = signal::repair_pulses(samples(&time_s)?).map_err(value_error)?;
     let warnings = train.warnings.iter().map(ToString::to_string).collect();
     Ok((array(py, train.time_s), warnings))

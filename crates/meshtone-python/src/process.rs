@@ -3,9 +3,8 @@
 use meshtone::signal::{
     self, Alternative, AngularSettings, ChainSettings, SeparationSettings, StatedFacts, StatedTurning,
 };
-use numpy::PyArray1;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{IntoPyDict, PyDict};
 
 use crate::array::{Signal, array, samples};
 use crate::error::value_error;
@@ -21,121 +20,74 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// The settings as the library has them.
-    pub fn chain(&self) -> PyResult<ChainSettings> {
-        let mut separation = SeparationSettings::new(self.teeth);
-        if let Some(sidebands) = self.sidebands {
-            separation.sidebands = sidebands;
-        }
-        if let Some(orders) = &self.shaft_orders {
-            separation.shaft_orders.clone_from(orders);
-        }
-        Ok(ChainSettings { separation: Some(separation), ..ChainSettings::default() })
+    /// The settings as the library has them; its defaults where Python gives none.
+    pub fn chain(given: Option<Self>) -> ChainSettings {
+        let separation = given.map(|given| separation(given.teeth, given.sidebands, given.shaft_orders));
+        ChainSettings { separation, ..ChainSettings::default() }
     }
 }
 
-/// Results of one channel for one wheel.
-#[pyclass(frozen, module = "meshtone._core")]
-pub struct Record(pub signal::Record);
-
-#[pymethods]
-impl Record {
-    /// Average over a revolution.
-    #[getter]
-    fn average<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        array(py, self.0.average.values.clone())
+/// What belongs to the regular part; the library's defaults where Python gives none.
+pub fn separation(
+    teeth: usize,
+    sidebands: Option<usize>,
+    shaft_orders: Option<Vec<usize>>,
+) -> SeparationSettings {
+    let defaults = SeparationSettings::new(teeth);
+    SeparationSettings {
+        sidebands: sidebands.unwrap_or(defaults.sidebands),
+        shaft_orders: shaft_orders.unwrap_or(defaults.shaft_orders),
+        ..defaults
     }
+}
 
-    /// Revolutions that were averaged.
-    #[getter]
-    fn revolutions(&self) -> usize {
-        self.0.average.revolutions
-    }
-
-    /// Highest order that the sampling rate shows.
-    #[getter]
-    fn nyquist_order(&self) -> f64 {
-        self.0.average.nyquist_order
-    }
-
-    /// Mesh harmonics and their sidebands.
-    #[getter]
-    fn regular<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        array(py, self.0.parts.regular.clone())
-    }
-
-    /// The average without the mesh harmonics.
-    #[getter]
-    fn residual<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        array(py, self.0.parts.residual.clone())
-    }
-
-    /// The average without the mesh harmonics and their sidebands.
-    #[getter]
-    fn difference<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        array(py, self.0.parts.difference.clone())
-    }
-
-    /// Envelope of the difference.
-    #[getter]
-    fn envelope<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        array(py, self.0.envelope.clone())
-    }
-
-    /// Amplitude at each order of the shaft.
-    #[getter]
-    fn order_spectrum<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        array(py, self.0.order_spectrum.clone())
-    }
-
-    /// Of the envelope.
-    #[getter]
-    fn envelope_spectrum<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        array(py, self.0.envelope_spectrum.clone())
-    }
-
-    /// Indicators by name; NaN where one is not defined.
-    #[getter]
-    fn indicators<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let all = PyDict::new(py);
-        for indicator in self.0.indicators.table("") {
-            all.set_item(indicator.name, indicator.value.unwrap_or(f64::NAN))?;
-        }
-        Ok(all)
-    }
-
-    /// Warnings.
-    #[getter]
-    fn warnings(&self) -> Vec<String> {
-        self.0.warnings.iter().map(ToString::to_string).collect()
-    }
+/// The results of one channel for one wheel, by the names of Python's properties; an indicator that is not defined is NaN.
+pub fn record_parts(py: Python<'_>, record: signal::Record) -> PyResult<Bound<'_, PyDict>> {
+    let indicators = record.indicators.table("").into_iter();
+    let indicators = indicators.map(|indicator| (indicator.name, indicator.value.unwrap_or(f64::NAN)));
+    let signals = [
+        ("average", record.average.values),
+        ("regular", record.parts.regular),
+        ("residual", record.parts.residual),
+        ("difference", record.parts.difference),
+        ("envelope", record.envelope),
+        ("order_spectrum", record.order_spectrum),
+        ("envelope_spectrum", record.envelope_spectrum),
+    ];
+    let parts = signals.map(|(name, values)| (name, array(py, values))).into_py_dict(py)?;
+    parts.set_item("revolutions", record.average.revolutions)?;
+    parts.set_item("nyquist_order", record.average.nyquist_order)?;
+    parts.set_item("indicators", indicators.into_py_dict(py)?)?;
+    parts.set_item("warnings", record.warnings.iter().map(ToString::to_string).collect::<Vec<_>>())?;
+    Ok(parts)
 }
 
 /// Takes one channel to its indicators.
 #[pyfunction]
 #[pyo3(signature = (signal, phase, teeth, settings=None))]
-pub fn process_channel(
-    py: Python<'_>,
-    signal: Signal<'_>,
+pub fn process_channel<'py>(
+    py: Python<'py>,
+    signal: Signal<'py>,
     phase: &ShaftPhase,
     teeth: u32,
     settings: Option<Settings>,
-) -> PyResult<Record> {
+) -> PyResult<Bound<'py, PyDict>> {
     let signal = samples(&signal)?;
-    let settings = settings.map_or_else(|| Ok(ChainSettings::default()), |settings| settings.chain())?;
-    py.detach(|| signal::process_channel(signal, &phase.0, teeth, &settings)).map(Record).map_err(value_error)
+    let settings = Settings::chain(settings);
+    let record = py.detach(|| signal::process_channel(signal, &phase.0, teeth, &settings));
+    record_parts(py, record.map_err(value_error)?)
 }
 
 /// Takes the recordings of a series to their indicators; NA4 knows the earlier ones.
 #[pyfunction]
 #[pyo3(signature = (signals, phases, teeth, settings=None))]
-pub fn process_series(
-    py: Python<'_>,
-    signals: Vec<Signal<'_>>,
-    phases: Vec<PyRef<'_, ShaftPhase>>,
+pub fn process_series<'py>(
+    py: Python<'py>,
+    signals: Vec<Signal<'py>>,
+    phases: Vec<PyRef<'py, ShaftPhase>>,
     teeth: u32,
     settings: Option<Settings>,
-) -> PyResult<Vec<Record>> {
+) -> PyResult<Vec<Bound<'py, PyDict>>> {
     if signals.len() != phases.len() {
         return Err(value_error(format!(
             "{} signals, but {} phases: give one of each",
@@ -143,14 +95,14 @@ pub fn process_series(
             phases.len()
         )));
     }
-    let settings = settings.map_or_else(|| Ok(ChainSettings::default()), |settings| settings.chain())?;
+    let settings = Settings::chain(settings);
     let recordings = signals
         .iter()
         .zip(&phases)
         .map(|(signal, phase)| Ok(signal::Recording { signal: samples(signal)?, phase: &phase.0 }))
         .collect::<PyResult<Vec<_>>>()?;
     let records = py.detach(|| signal::process_series(&recordings, teeth, &settings)).map_err(value_error)?;
-    Ok(records.into_iter().map(Record).collect())
+    records.into_iter().map(|record| record_parts(py, record)).collect()
 }
 
 /// Cause, better value, words, and how much more energy the average would hold.

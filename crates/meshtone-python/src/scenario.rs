@@ -7,15 +7,13 @@ use meshtone::sensor::Channel;
 use meshtone::wheel::ErrorTable;
 use meshtone_io::memory;
 use meshtone_io::scenario_file::read_scenario;
-use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
-use pyo3::exceptions::PyValueError;
+use numpy::{PyArray2, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use toml::Table;
 
-use crate::array::array;
+use crate::array::matrix;
 use crate::error::{read_error, scenario_error, value_error};
-use crate::value::{dictionary, table};
+use crate::value::table;
 
 /// A scenario as the library has it.
 #[pyclass(frozen, eq, module = "meshtone._core")]
@@ -37,14 +35,14 @@ impl Scenario {
         match (pinion_profile_errors_mm, gear_profile_errors_mm) {
             (Some(pinion), Some(gear)) => {
                 scenario.quality.profile_errors = Some(ProfileErrors {
-                    pinion_profile_errors_mm: matrix(&pinion),
-                    gear_profile_errors_mm: matrix(&gear),
+                    pinion_profile_errors_mm: error_table(&pinion),
+                    gear_profile_errors_mm: error_table(&gear),
                 });
                 scenario.validate().map_err(|error| scenario_error(&error))?;
             }
             (None, None) => {}
             _ => {
-                return Err(PyValueError::new_err(
+                return Err(value_error(
                     "pinion_profile_errors_mm and gear_profile_errors_mm belong together: give both or neither",
                 ));
             }
@@ -73,8 +71,9 @@ impl Scenario {
     fn sections<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let mut small = self.0.clone();
         small.quality.profile_errors = None;
-        let table: Table = small.to_toml().parse().map_err(value_error)?;
-        dictionary(py, &table)
+        // Python's reader of JSON makes all the values at once; the numbers stay what they are.
+        let json = serde_json::to_string(&small).map_err(value_error)?;
+        Ok(py.import("json")?.call_method1("loads", (json,))?.cast_into()?)
     }
 
     /// The names of its simulation's channels, sensors first.
@@ -109,10 +108,7 @@ impl Scenario {
 #[pyfunction]
 pub fn template(kind: &str) -> PyResult<String> {
     scenario::template(kind).ok_or_else(|| {
-        PyValueError::new_err(format!(
-            "kind = {kind}: must be one of {}",
-            scenario::template_kinds().join(", ")
-        ))
+        value_error(format!("kind = {kind}: must be one of {}", scenario::template_kinds().join(", ")))
     })
 }
 
@@ -121,7 +117,7 @@ fn without_line(error: ScenarioError) -> PyErr {
     scenario_error(&error.at_line(None))
 }
 
-fn matrix(array: &PyReadonlyArray2<'_, f64>) -> ErrorTable {
+fn error_table(array: &PyReadonlyArray2<'_, f64>) -> ErrorTable {
     let [rows, columns] = [array.shape()[0], array.shape()[1]];
     let view = array.as_array();
     ErrorTable::from_fn(rows, columns, |row, column| view[[row, column]])
@@ -139,5 +135,5 @@ pub fn both_wheels<'py>(py: Python<'py>, errors: &ProfileErrors) -> PyResult<Bot
 fn rows<'py>(py: Python<'py>, errors: &ErrorTable) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let (points, teeth) = (errors.points(), errors.teeth());
     let values: Vec<f64> = (0..points * teeth).map(|n| errors[(n / teeth, n % teeth)]).collect();
-    array(py, values).reshape([points, teeth]).map_err(value_error)
+    matrix(py, values, [points, teeth])
 }

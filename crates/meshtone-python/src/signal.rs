@@ -1,17 +1,13 @@
 //! The steps of the chain, one by one.
 
-use meshtone::signal::{
-    self as steps, AngularSettings, AngularSignal, Edge, Interpolation, SeparationSettings,
-};
-use numpy::PyArray1;
+use meshtone::signal::{self as steps, AngularSettings, AngularSignal, Edge, Interpolation};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{IntoPyDict, PyDict};
 
-use crate::array::{Signal, array, samples};
+use crate::array::{Array, Signal, array, samples};
 use crate::error::value_error;
 use crate::phase::ShaftPhase;
-
-type Array<'py> = Bound<'py, PyArray1<f64>>;
+use crate::process::separation;
 
 /// Another sampling rate.
 #[pyfunction]
@@ -82,9 +78,7 @@ pub fn separate<'py>(
     sidebands: Option<usize>,
     shaft_orders: Option<Vec<usize>>,
 ) -> PyResult<(Array<'py>, Array<'py>, Array<'py>)> {
-    let mut settings = SeparationSettings::new(teeth);
-    settings.sidebands = sidebands.unwrap_or(settings.sidebands);
-    settings.shaft_orders = shaft_orders.unwrap_or(settings.shaft_orders);
+    let settings = separation(teeth, sidebands, shaft_orders);
     let parts = steps::separate(samples(&average)?, &settings).map_err(value_error)?;
     Ok((array(py, parts.regular), array(py, parts.residual), array(py, parts.difference)))
 }
@@ -160,17 +154,14 @@ pub fn sideband_level_factor(average: Signal<'_>, teeth: usize) -> PyResult<f64>
 pub fn statistics<'py>(py: Python<'py>, signal: Signal<'py>) -> PyResult<Bound<'py, PyDict>> {
     let signal = samples(&signal)?;
     steps::check_channel(signal).map_err(value_error)?;
-    let all = PyDict::new(py);
-    for (name, value) in [
+    let all = [
         ("rms", Some(steps::rms(signal))),
         ("peak_to_peak", Some(steps::peak_to_peak(signal))),
         ("crest_factor", steps::crest_factor(signal)),
         ("skewness", steps::skewness(signal)),
         ("kurtosis", steps::kurtosis(signal)),
-    ] {
-        all.set_item(name, defined(value))?;
-    }
-    Ok(all)
+    ];
+    all.map(|(name, value)| (name, defined(value))).into_py_dict(py)
 }
 
 /// NaN where there is no value.

@@ -5,21 +5,21 @@ use std::num::NonZeroUsize;
 use meshtone::damage::{DamageDescription, DamagedTooth, ToothPart};
 use meshtone::scenario::ScenarioWarning;
 use meshtone::sensor::ContactFigures;
-use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
+use meshtone::signal::SimulatedShafts;
 use meshtone::wheel::{WheelDeviations, WheelName};
 use meshtone::{Stages, Trace};
 use meshtone_io::memory;
-use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use numpy::PyArray2;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{IntoPyDict, PyDict};
 
-use crate::array::{Signal, array, field, samples};
+use crate::array::{Array, Signal, array, field, matrix, samples};
 use crate::error::{scenario_error, simulation_error, value_error};
-use crate::process::Record;
+use crate::process::{Settings, record_parts};
 use crate::scenario::{BothWheels, Scenario, both_wheels};
 
 /// Deflection, number of the first pair and the forces of the pairs.
-type StaticMesh<'py> = (Bound<'py, PyArray1<f64>>, i64, Bound<'py, PyArray2<f64>>);
+type StaticMesh<'py> = (Array<'py>, i64, Bound<'py, PyArray2<f64>>);
 
 /// A simulation: every stage's results and the signals.
 #[pyclass(frozen, module = "meshtone._core")]
@@ -31,20 +31,12 @@ pub struct Simulation {
     /// (s) Of the first kept sample.
     #[pyo3(get)]
     start_s: f64,
+    /// The channels that every simulation has, by their names.
     #[pyo3(get)]
-    horizontal_g: Py<PyArray1<f64>>,
+    channels: Py<PyDict>,
+    /// (g) What the scenario's sensors show, by their names, in their order.
     #[pyo3(get)]
-    vertical_g: Py<PyArray1<f64>>,
-    #[pyo3(get)]
-    axial_g: Py<PyArray1<f64>>,
-    #[pyo3(get)]
-    pinion_shaft_speed_hz: Py<PyArray1<f64>>,
-    #[pyo3(get)]
-    gear_shaft_speed_hz: Py<PyArray1<f64>>,
-    #[pyo3(get)]
-    mesh_force_n: Py<PyArray1<f64>>,
-    /// (g) What the scenario's sensors show, by their names.
-    sensors: Vec<(String, Py<PyArray1<f64>>)>,
+    sensors: Py<PyDict>,
     /// (-) Part of the kept time in which the mesh force is negative.
     #[pyo3(get)]
     tension_fraction: f64,
@@ -73,7 +65,7 @@ pub fn simulate(py: Python<'_>, scenario: &Scenario) -> PyResult<Simulation> {
         Ok((simulation, warnings))
     });
     let (simulation, warnings) = simulated.map_err(|error| simulation_error(&error))?;
-    Ok(Simulation::new(py, simulation, &warnings))
+    Simulation::new(py, simulation, &warnings)
 }
 
 /// Simulates a scenario and gives every stage's output by name.
@@ -93,47 +85,44 @@ pub fn trace<'py>(
 }
 
 fn fields(py: Python<'_>, trace: Trace) -> PyResult<Bound<'_, PyDict>> {
-    let all = PyDict::new(py);
-    for entry in trace.fields {
-        let name = entry.name.clone();
-        all.set_item(name, field(py, entry)?)?;
-    }
-    Ok(all)
+    let named = trace.fields.into_iter().map(|entry| Ok((entry.name.clone(), field(py, entry)?)));
+    named.collect::<PyResult<Vec<_>>>()?.into_py_dict(py)
 }
 
 impl Simulation {
-    fn new(py: Python<'_>, simulation: meshtone::Simulation, warnings: &[ScenarioWarning]) -> Self {
-        let contact_figures = simulation.contact_figures().map(|figures| {
-            let ContactFigures { apart_fraction, back_flank_fraction, back_flank_hits, largest_force_n } =
-                figures;
-            (apart_fraction, back_flank_fraction, back_flank_hits, largest_force_n)
-        });
+    fn new(py: Python<'_>, simulation: meshtone::Simulation, warnings: &[ScenarioWarning]) -> PyResult<Self> {
+        let contact = |figures: ContactFigures| {
+            let ContactFigures { apart_fraction, back_flank_fraction, back_flank_hits, .. } = figures;
+            (apart_fraction, back_flank_fraction, back_flank_hits, figures.largest_force_n)
+        };
+        let contact_figures = simulation.contact_figures().map(contact);
         let channels = simulation.channels;
-        Self {
+        let tension_fraction = channels.tension_fraction();
+        let sensors = channels.sensors.into_iter().map(|sensor| (sensor.name, array(py, sensor.values_g)));
+        let named = [
+            ("horizontal_g", channels.horizontal_g),
+            ("vertical_g", channels.vertical_g),
+            ("axial_g", channels.axial_g),
+            ("pinion_shaft_speed_hz", channels.pinion_shaft_speed_hz),
+            ("gear_shaft_speed_hz", channels.gear_shaft_speed_hz),
+            ("mesh_force_n", channels.mesh_force_n),
+        ];
+        Ok(Self {
             contact_figures,
-            tension_fraction: channels.tension_fraction(),
+            tension_fraction,
             warnings: warnings.iter().map(ToString::to_string).collect(),
             warning_codes: warnings.iter().map(|warning| warning.kind.code()).collect(),
             sampling_rate_hz: channels.sampling_rate_hz,
             start_s: channels.start_s,
-            horizontal_g: array(py, channels.horizontal_g).unbind(),
-            vertical_g: array(py, channels.vertical_g).unbind(),
-            axial_g: array(py, channels.axial_g).unbind(),
-            pinion_shaft_speed_hz: array(py, channels.pinion_shaft_speed_hz).unbind(),
-            gear_shaft_speed_hz: array(py, channels.gear_shaft_speed_hz).unbind(),
-            mesh_force_n: array(py, channels.mesh_force_n).unbind(),
-            sensors: channels
-                .sensors
-                .into_iter()
-                .map(|sensor| (sensor.name, array(py, sensor.values_g).unbind()))
-                .collect(),
+            channels: named.map(|(name, values)| (name, array(py, values))).into_py_dict(py)?.unbind(),
+            sensors: sensors.into_py_dict(py)?.unbind(),
             computing_time_s: simulation
                 .timings
                 .iter()
                 .map(|stage| (stage.stage, stage.elapsed.as_secs_f64()))
                 .collect(),
             stages: simulation.stages,
-        }
+        })
     }
 }
 
@@ -143,12 +132,6 @@ impl Simulation {
     #[getter]
     fn scenario(&self) -> Scenario {
         Scenario(self.stages.scenario.clone())
-    }
-
-    /// (g) What the scenario's sensors show, by their names, in their order.
-    #[getter]
-    fn sensors<'py>(&self, py: Python<'py>) -> Vec<(String, Bound<'py, PyArray1<f64>>)> {
-        self.sensors.iter().map(|(name, signal)| (name.clone(), signal.bind(py).clone())).collect()
     }
 
     /// The fields of a trace that belong to the stages before the time loop.
@@ -162,7 +145,7 @@ impl Simulation {
         let shapes = self.stages.mode_shapes();
         let coordinates = shapes.first().map_or(0, Vec::len);
         let rows = (0..coordinates).flat_map(|coordinate| shapes.iter().map(move |shape| shape[coordinate]));
-        array(py, rows.collect()).reshape([coordinates, shapes.len()]).map_err(value_error)
+        matrix(py, rows.collect(), [coordinates, shapes.len()])
     }
 
     /// (N/mm) Mesh stiffness at every point of some pitches, on the grid of the published code under every model.
@@ -171,7 +154,7 @@ impl Simulation {
         py: Python<'py>,
         first_pitch: i64,
         pitches: i64,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    ) -> PyResult<Array<'py>> {
         let shown = first_pitch..first_pitch + pitches;
         let curves =
             self.stages.mesh_curves_on_coarse_grid(Some(shown)).map_err(|error| scenario_error(&error))?;
@@ -195,27 +178,19 @@ impl Simulation {
         let force_n = force_n.unwrap_or_else(|| self.stages.static_force_n());
         let at_rest = py.detach(|| mesh.at_rest(force_n, pitches.0..pitches.1));
         let (rows, columns) = (at_rest.pair_force_n.len(), at_rest.deflection_m.len());
-        let forces =
-            array(py, at_rest.pair_force_n.concat()).reshape([rows, columns]).map_err(value_error)?;
+        let forces = matrix(py, at_rest.pair_force_n.concat(), [rows, columns])?;
         Ok((array(py, at_rest.deflection_m), at_rest.first_pair, forces))
     }
 
     /// (mm) Profile of a wheel's tooth: x, y.
-    fn tooth_profile_mm<'py>(
-        &self,
-        py: Python<'py>,
-        wheel: &str,
-    ) -> PyResult<[Bound<'py, PyArray1<f64>>; 2]> {
+    fn tooth_profile_mm<'py>(&self, py: Python<'py>, wheel: &str) -> PyResult<[Array<'py>; 2]> {
         let profile = self.stages.teeth.profile(wheel_name(wheel)?);
         Ok([array(py, profile.x_mm.clone()), array(py, profile.y_mm.clone())])
     }
 
     /// (mm) The damaged teeth: wheel, number from 1, and y of the flank, where it is cut furthest back, at the profile's
     /// points.
-    fn damaged_teeth_mm<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> Vec<(&'static str, usize, Bound<'py, PyArray1<f64>>)> {
+    fn damaged_teeth_mm<'py>(&self, py: Python<'py>) -> Vec<(&'static str, usize, Array<'py>)> {
         let of_alike = |alike: &DamagedTooth| {
             let (wheel, flank) = (alike.wheel.name(), array(py, alike.outline_y_mm()));
             let of_tooth = |tooth: &usize| (wheel, tooth + 1, flank.clone());
@@ -271,28 +246,22 @@ impl Simulation {
 /// A simulated signal, taken to the average over a revolution of a wheel's shaft and to indicators.
 #[pyfunction]
 #[pyo3(signature = (scenario, signal, wheel, start_s, settings=None))]
-pub fn process_simulated(
-    py: Python<'_>,
+pub fn process_simulated<'py>(
+    py: Python<'py>,
     scenario: &Scenario,
-    signal: Signal<'_>,
+    signal: Signal<'py>,
     wheel: &str,
     start_s: f64,
-    settings: Option<crate::process::Settings>,
-) -> PyResult<Record> {
-    let shaft = shaft(wheel)?;
+    settings: Option<Settings>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let shaft = wheel_name(wheel)?;
     let signal = samples(&signal)?;
-    let settings = settings.map_or_else(|| Ok(ChainSettings::default()), |settings| settings.chain())?;
-    py.detach(|| {
+    let settings = Settings::chain(settings);
+    let record = py.detach(|| {
         let shafts = SimulatedShafts::new(&scenario.0, start_s, signal.len());
         shafts.process(signal, shaft, &settings)
-    })
-    .map(Record)
-    .map_err(value_error)
-}
-
-/// The shaft of a wheel.
-fn shaft(wheel: &str) -> PyResult<Shaft> {
-    Shaft::BOTH.into_iter().find(|shaft| shaft.wheel() == wheel).ok_or_else(|| no_wheel(wheel))
+    });
+    record_parts(py, record.map_err(value_error)?)
 }
 
 /// A wheel by its name.

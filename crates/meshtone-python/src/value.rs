@@ -1,4 +1,4 @@
-//! Python's values as TOML, and back.
+//! Python's values as TOML.
 
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -35,31 +35,4 @@ fn toml_value(value: &Bound<'_, PyAny>) -> PyResult<Value> {
     }
     let kind = value.get_type().name()?;
     Err(PyTypeError::new_err(format!("{value} is a {kind}: give a number, a string, a list or a dictionary")))
-}
-
-/// A table as a dictionary.
-pub fn dictionary<'py>(py: Python<'py>, table: &Table) -> PyResult<Bound<'py, PyDict>> {
-    let dictionary = PyDict::new(py);
-    for (key, value) in table {
-        dictionary.set_item(key, python_value(py, value)?)?;
-    }
-    Ok(dictionary)
-}
-
-fn python_value<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
-    Ok(match value {
-        Value::String(text) => PyString::new(py, text).into_any(),
-        Value::Integer(number) => number.into_pyobject(py)?.into_any(),
-        Value::Float(number) => PyFloat::new(py, *number).into_any(),
-        Value::Boolean(flag) => PyBool::new(py, *flag).to_owned().into_any(),
-        Value::Datetime(date) => PyString::new(py, &date.to_string()).into_any(),
-        Value::Array(items) => {
-            let list = PyList::empty(py);
-            for item in items {
-                list.append(python_value(py, item)?)?;
-            }
-            list.into_any()
-        }
-        Value::Table(inner) => dictionary(py, inner)?.into_any(),
-    })
 }

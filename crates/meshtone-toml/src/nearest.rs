@@ -33,31 +33,21 @@ pub(crate) fn is_misspelling(written: &str, name: &str) -> bool {
 /// `speed_hz`, not `gear_teeth` and `gear_width`.
 pub(crate) fn has_another_unit(written: &str, name: &str) -> bool {
     const LONGEST_UNIT: usize = 3;
-    match (written.rsplit_once('_'), name.rsplit_once('_')) {
-        (Some((written, unit)), Some((quantity, own))) => {
-            written == quantity && unit != own && unit.len().max(own.len()) <= LONGEST_UNIT
-        }
-        _ => false,
-    }
+    let both = written.rsplit_once('_').zip(name.rsplit_once('_'));
+    both.is_some_and(|((written, unit), (quantity, own))| {
+        written == quantity && unit != own && unit.len().max(own.len()) <= LONGEST_UNIT
+    })
 }
 
 /// Returns whether a name is of revolutions per minute and the other of the same per second: `rpm`, `speed_rpm` or `pinion_rpm` for
 /// `pinion_speed_hz`, not `gear_speed_rpm`.
 pub(crate) fn is_rpm_of(written: &str, name: &str) -> bool {
-    match (written.strip_suffix("rpm"), name.strip_suffix("_hz")) {
-        (Some(written), Some(quantity)) => {
-            let written = written.trim_end_matches('_');
-            let is_part = |rest: Option<&str>, at_end: bool| {
-                rest.is_some_and(|rest| {
-                    rest.is_empty() || if at_end { rest.ends_with('_') } else { rest.starts_with('_') }
-                })
-            };
-            is_part(quantity.strip_suffix(written), true)
-                || is_part(quantity.strip_prefix(written), false)
-                || written.is_empty()
-        }
-        _ => false,
-    }
+    let (Some(written), Some(quantity)) = (written.strip_suffix("rpm"), name.strip_suffix("_hz")) else {
+        return false;
+    };
+    let written = written.trim_end_matches('_');
+    let [quantity, words] = [quantity, written].map(|name| name.split('_').collect::<Vec<_>>());
+    quantity.starts_with(&words) || quantity.ends_with(&words) || written.is_empty()
 }
 
 fn similarity(written: &str, candidate: &str) -> f64 {

@@ -13,9 +13,9 @@ const MOST_OWNERS: usize = 3;
 
 /// One table of a TOML text, read key by key.
 ///
-/// It remembers which keys were asked for, so that [`TomlTable::finish`] can refuse the others.
+/// It remembers which keys were asked for, so that [`TomlTable::read`] can refuse the others.
 #[derive(Debug)]
-#[must_use = "call `finish` or `read`, so that unknown keys are refused"]
+#[must_use = "call `read`, so that unknown keys are refused"]
 pub struct TomlTable<'a> {
     text: &'a str,
     path: String,
@@ -105,18 +105,6 @@ impl<'a> TomlTable<'a> {
         self.optional(key).as_ref().map(read).transpose()
     }
 
-    /// A finite number, or its default.
-    ///
-    /// # Arguments
-    /// * `key` - its name in this table
-    /// * `default` - taken where the key is absent
-    ///
-    /// # Errors
-    /// The value is not a finite number.
-    pub fn number_or(&self, key: &'static str, default: f64) -> ReadResult<f64> {
-        Ok(self.number(key)?.unwrap_or(default))
-    }
-
     /// A table, or an empty one where it is absent, so that every key in it takes its default.
     ///
     /// # Arguments
@@ -168,25 +156,17 @@ impl<'a> TomlTable<'a> {
         entries.iter().map(named).collect()
     }
 
-    /// Reads the table and then refuses what was not asked for.
+    /// Reads the table and then refuses the first key that was not asked for.
     ///
     /// # Arguments
     /// * `read` - asks for every key that may be here
     ///
     /// # Errors
-    /// Those of `read`, then those of [`Self::finish`].
+    /// Those of `read`, then those of [`Self::refuse_unknown`].
     pub fn read<T>(self, read: impl FnOnce(&Self) -> ReadResult<T>) -> ReadResult<T> {
         let value = read(&self)?;
-        self.finish()?;
+        self.refuse_unknown(&[])?;
         Ok(value)
-    }
-
-    /// Refuses the first key that nobody asked for.
-    ///
-    /// # Errors
-    /// The unknown key, its line, the nearest right name and all the names allowed here.
-    pub fn finish(self) -> ReadResult<()> {
-        self.refuse_unknown(&[])
     }
 
     /// Refuses the first key that nobody has asked for, and nobody will: to be told before what is missing for it.
@@ -195,7 +175,7 @@ impl<'a> TomlTable<'a> {
     /// * `later` - keys that may be here and have not been asked for yet
     ///
     /// # Errors
-    /// Those of [`Self::finish`].
+    /// The unknown key, its line, the nearest right name and all the names allowed here.
     pub fn refuse_unknown(&self, later: &[&'static str]) -> ReadResult<()> {
         let mut allowed = self.asked.borrow().clone();
         allowed.extend(later.iter().filter(|key| !allowed.contains(key)).copied().collect::<Vec<_>>());

@@ -33,17 +33,12 @@ impl<'a> TomlValue<'a> {
         line_at(self.text, self.position)
     }
 
-    /// The value as written, shortened; empty for a section.
-    pub fn as_written(&self) -> String {
-        written(self.text, self.value)
-    }
-
     /// An error about this value.
     ///
     /// # Arguments
     /// * `problem` - what is wrong and what is allowed
     pub fn error(&self, problem: impl Into<String>) -> TomlError {
-        TomlError::new(&self.path, self.as_written(), problem).at_line(Some(self.line()))
+        TomlError::new(&self.path, written(self.text, self.value), problem).at_line(Some(self.line()))
     }
 
     /// Returns whether the value is a table.

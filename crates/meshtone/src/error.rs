@@ -252,7 +252,6 @@ macro_rules! warning_kinds {
 warning_kinds! {
     Undercut "undercut" "teeth are undercut, which their profile does not show";
     ThinTips "thin-tips" "tips are so thin that they could break off";
-    ReliefAddsMetal "relief-adds-metal" "a tip relief makes the tips thicker";
     IgnoredKey "ignored-key" "a key has no effect";
     FastTeeth "fast-teeth" "the pitch line is faster than spur gears run";
     SpeedProfileOff "speed-profile-off" "a speed profile never comes near the nominal speed";

@@ -31,78 +31,86 @@ impl Model {
     /// # Arguments
     /// * `key` - with its section
     pub(crate) fn ignores(self, key: &str) -> bool {
-        let ignored = match self {
-            Self::Contact => IGNORED_BY_CONTACT,
-            Self::Linear => IGNORED_BY_LINEAR,
-            Self::Published => IGNORED_BY_PUBLISHED,
-        };
-        ignored.contains(&key)
-    }
-
-    /// The name in the scenario file.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Contact => "contact",
-            Self::Linear => "linear",
-            Self::Published => "published",
-        }
+        models_ignoring(key).contains(&self.name())
     }
 }
 
-/// Keys that `contact` ignores, with their sections: its shafts bend instead of tilting on springs and have damping of their own, and it
-/// has no relief that thins the tips.
-const IGNORED_BY_CONTACT: &[&str] = &[
-    "gears.tip_relief",
-    "rig.wheel_rotational_stiffness_nm_per_rad",
-    "rig.damping_ratio",
-    "solver.initial_displacement",
-];
-
-/// Keys that `linear` ignores, with their sections: its flanks may pull, so that backlash and misalignment are out of reach, and its
-/// supports are held.
-const IGNORED_BY_LINEAR: &[&str] = &[
-    "gears.tip_relief",
-    "gears.backlash_mm",
-    "quality.helix_share",
-    "quality.pinion_helix_slope_um",
-    "quality.gear_helix_slope_um",
-    "rig.misalignment_um",
-    "rig.support",
-    "sensor.at",
-];
-
-/// Keys that the published model ignores, with their sections: their defaults are simulated.
-const IGNORED_BY_PUBLISHED: &[&str] = &[
-    "gears.tip_relief",
-    "gears.flank_relief",
-    "gears.tip_chamfer_mm",
-    "gears.backlash_mm",
-    "gears.foundation",
-    "operation.speed_profile_hz",
-    "quality.iso_class",
-    "quality.tooth_share",
-    "quality.pitch_share",
-    "quality.run_out_share",
-    "quality.helix_share",
-    "quality.pinion_run_out_um",
-    "quality.pinion_run_out_phase_rad",
-    "quality.pinion_helix_slope_um",
-    "quality.gear_run_out_um",
-    "quality.gear_run_out_phase_rad",
-    "quality.gear_helix_slope_um",
-    "rig.bearing_stiffness_n_per_m",
-    "rig.eccentricity_mm",
-    "rig.misalignment_um",
-    "rig.support",
-    "rig.mesh_damping_ratio",
-    "sensor.at",
+/// Which models ignore which keys, these with their sections: their defaults are simulated.
+///
+/// The shafts of `contact` bend instead of tilting on springs, and have damping of their own. The flanks of `linear` may pull, so that
+/// backlash and misalignment are out of reach, and its supports are held.
+static IGNORED_KEYS: [(&[&str], &[&str]); 3] = [
+    (
+        &["contact"],
+        &["rig.wheel_rotational_stiffness_nm_per_rad", "rig.damping_ratio", "solver.initial_displacement"],
+    ),
+    (
+        &["linear", "published"],
+        &[
+            "gears.backlash_mm",
+            "quality.helix_share",
+            "quality.pinion_helix_slope_um",
+            "quality.gear_helix_slope_um",
+            "rig.misalignment_um",
+            "rig.support",
+            "sensor.at",
+        ],
+    ),
+    (
+        &["published"],
+        &[
+            "gears.flank_relief",
+            "gears.tip_chamfer_mm",
+            "gears.foundation",
+            "operation.speed_profile_hz",
+            "quality.iso_class",
+            "quality.tooth_share",
+            "quality.pitch_share",
+            "quality.run_out_share",
+            "quality.pinion_run_out_um",
+            "quality.pinion_run_out_phase_rad",
+            "quality.gear_run_out_um",
+            "quality.gear_run_out_phase_rad",
+            "rig.bearing_stiffness_n_per_m",
+            "rig.eccentricity_mm",
+            "rig.mesh_damping_ratio",
+        ],
+    ),
 ];
 
 /// Names of the models that ignore a key.
 ///
 /// # Arguments
 /// * `key` - with its section
-pub(crate) fn models_ignoring(key: &str) -> Vec<&'static str> {
-    let models = [Model::Linear, Model::Published, Model::Contact];
-    models.into_iter().filter(|model| model.ignores(key)).map(Model::name).collect()
+pub(crate) fn models_ignoring(key: &str) -> &'static [&'static str] {
+    IGNORED_KEYS.iter().find(|(_, keys)| keys.contains(&key)).map_or(&[][..], |(models, _)| *models)
 }
+
+/// A key that the published model alone takes: of the others, those that do not ignore it refuse it.
+pub(crate) struct PublishedKey {
+    /// With its section.
+    pub(crate) key: &'static str,
+    /// Says so, in the words of the documentation.
+    pub(crate) words: &'static str,
+    /// Why the others cannot heed it.
+    pub(crate) why: &'static str,
+}
+
+/// These keys.
+pub(crate) static PUBLISHED_KEYS: [PublishedKey; 3] = [
+    PublishedKey {
+        key: "rig.wheel_rotational_stiffness_nm_per_rad",
+        words: "Taken by published alone: linear refuses it.",
+        why: "the wheels tilt with their shafts, which bend between their bearings",
+    },
+    PublishedKey {
+        key: "rig.damping_ratio",
+        words: "Several values are taken by published alone: linear refuses them.",
+        why: "the damping ratio is one for all modes",
+    },
+    PublishedKey {
+        key: "solver.initial_displacement",
+        words: "Taken by published alone: linear refuses it.",
+        why: "the simulation starts in the static equilibrium of the loaded mesh",
+    },
+];

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Sequence
-from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy.typing as npt
@@ -26,72 +25,76 @@ class Record:
     unit, over one revolution at equal angles; shape (points,); they cannot be written to.
     """
 
-    def __init__(self, native: _core.Record | _Remembered, *, teeth: int, name: str = "signal") -> None:
-        self._native = native
+    def __init__(self, parts: dict[str, Any], *, teeth: int, name: str = "signal") -> None:
+        self._parts = parts
         self.teeth = teeth
         """Teeth of the wheel."""
         self.name = name
         """Of the channel."""
 
+    def _signal(self, name: str) -> Array:
+        signal: Array = self._parts[name]
+        return read_only(signal)
+
     @property
     def average(self) -> Array:
         """Synchronous average."""
-        return read_only(self._native.average)
+        return self._signal("average")
 
     @property
     def revolutions(self) -> int:
         """Revolutions that were averaged."""
-        return self._native.revolutions
+        return int(self._parts["revolutions"])
 
     @property
     def nyquist_order(self) -> float:
         """(orders of the shaft) Highest order that the sampling rate shows."""
-        return self._native.nyquist_order
+        return float(self._parts["nyquist_order"])
 
     @property
     def regular(self) -> Array:
         """Mesh harmonics and their sidebands."""
-        return read_only(self._native.regular)
+        return self._signal("regular")
 
     @property
     def residual(self) -> Array:
         """What is left without the mesh harmonics."""
-        return read_only(self._native.residual)
+        return self._signal("residual")
 
     @property
     def difference(self) -> Array:
         """What is left without the mesh harmonics and their sidebands."""
-        return read_only(self._native.difference)
+        return self._signal("difference")
 
     @property
     def envelope(self) -> Array:
         """Envelope of the difference."""
-        return read_only(self._native.envelope)
+        return self._signal("envelope")
 
     @property
     def order_spectrum(self) -> Array:
         """Amplitude at each order of the shaft, in the channel's unit; the index is the order; shape (points // 2 + 1,)."""
-        return read_only(self._native.order_spectrum)
+        return self._signal("order_spectrum")
 
     @property
     def envelope_spectrum(self) -> Array:
         """The envelope's amplitude at each order, in the channel's unit; the index is the order; shape (points // 2 + 1,)."""
-        return read_only(self._native.envelope_spectrum)
+        return self._signal("envelope_spectrum")
 
     # Not a property, behind which notebooks do not look for keys.
     @functools.cached_property
     def indicators(self) -> Indicators:
         """Condition indicators by name, ``difference_kurtosis``, ``fm4`` and so on, with units, formulas and sources in
         :class:`~meshtone.signal.Indicators`; NaN where one is not defined."""
-        return Indicators(self._native.indicators)
+        return Indicators(self._parts["indicators"])
 
     @property
     def warnings(self) -> list[str]:
         """What is doubtful."""
-        return self._native.warnings
+        return list(self._parts["warnings"])
 
     def __reduce__(self) -> tuple[Callable[[dict[str, Any], int, str], Record], tuple[dict[str, Any], int, str]]:
-        return (_remembered, ({name: getattr(self._native, name) for name in _OF_RECORD}, self.teeth, self.name))
+        return (_remembered, (self._parts, self.teeth, self.name))
 
     def plot(self) -> Figure:
         """Average, order spectrum, difference with its envelope. See :func:`meshtone.plotting.plot_record`."""
@@ -115,40 +118,8 @@ class Record:
         return f"<Record of {self.name}: average of {self.revolutions} revolutions, {self.average.size} points>"
 
 
-_OF_RECORD = (
-    "average",
-    "revolutions",
-    "nyquist_order",
-    "regular",
-    "residual",
-    "difference",
-    "envelope",
-    "order_spectrum",
-    "envelope_spectrum",
-    "indicators",
-    "warnings",
-)
-"""What a record is made of."""
-
-
-class _Remembered(SimpleNamespace):
-    """What a pickled record was made of."""
-
-    average: Array
-    revolutions: int
-    nyquist_order: float
-    regular: Array
-    residual: Array
-    difference: Array
-    envelope: Array
-    order_spectrum: Array
-    envelope_spectrum: Array
-    indicators: dict[str, float]
-    warnings: list[str]
-
-
 def _remembered(parts: dict[str, Any], teeth: int, name: str) -> Record:
-    return Record(_Remembered(**parts), teeth=teeth, name=name)
+    return Record(parts, teeth=teeth, name=name)
 
 
 def process_channel(
@@ -187,9 +158,9 @@ def process_channel(
         NaN, a constant channel, fewer than two revolutions, a mesh order beyond the Nyquist order.
     """
     settings = separation_settings(teeth, sidebands, shaft_orders)
-    record = _core.process_channel(signal_array(signal), native_phase(phase), teeth_number(teeth), settings)
-    warn(record.warnings)
-    return Record(record, teeth=teeth, name=name)
+    parts = _core.process_channel(signal_array(signal), native_phase(phase), teeth_number(teeth), settings)
+    warn(parts["warnings"])
+    return Record(parts, teeth=teeth, name=name)
 
 
 def process_series(
@@ -226,5 +197,5 @@ def process_series(
         raise TypeError("phases: must be a list of one ShaftPhase for each signal, not one alone")
     native = [native_phase(phase) for phase in phases]
     records = _core.process_series([signal_array(signal) for signal in signals], native, teeth_number(teeth), settings)
-    warn(warning for record in records for warning in record.warnings)
-    return [Record(record, teeth=teeth, name=name) for record in records]
+    warn(warning for parts in records for warning in parts["warnings"])
+    return [Record(parts, teeth=teeth, name=name) for parts in records]

@@ -3,7 +3,8 @@
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
-use super::{Problem, markdown, read};
+use super::{Problem, markdown};
+use crate::files::read;
 
 /// A link or picture in a page.
 struct Link {
@@ -81,30 +82,23 @@ fn fault_of(target: &str, page: &Path, text: &str, book: Option<&Path>) -> io::R
 
 /// The links and pictures of a page, in Markdown (`[…](target)`) or HTML (`src=`, `href=`).
 fn links(text: &str) -> Vec<Link> {
-    let mut found = Vec::new();
-    for (index, line) in markdown::without_code(text).iter().enumerate() {
-        let targets = between(line, "](", ')')
-            .into_iter()
-            .chain(between(line, "src=\"", '"'))
-            .chain(between(line, "href=\"", '"'));
-        for target in targets {
-            // [text](target "title")
-            let target = target.split_whitespace().next().unwrap_or_default().to_owned();
-            found.push(Link { line: index + 1, target });
-        }
-    }
-    found
+    let of_line = |(index, line): (usize, &String)| {
+        let marks = [("](", ')'), ("src=\"", '"'), ("href=\"", '"')];
+        let targets = marks.into_iter().flat_map(|(open, close)| between(line, open, close));
+        // [text](target "title")
+        let target = |target: &str| target.split_whitespace().next().unwrap_or_default().to_owned();
+        targets.map(|text| Link { line: index + 1, target: target(text) }).collect::<Vec<_>>()
+    };
+    markdown::without_code(text).iter().enumerate().flat_map(of_line).collect()
 }
 
 /// The whole files that mdBook copies into a page, mostly into its code: `{{#include target}}`.
 fn includes(text: &str) -> Vec<Link> {
-    let mut found = Vec::new();
-    for (index, line) in text.lines().enumerate() {
-        for target in between(line, "{{#include ", '}') {
-            found.push(Link { line: index + 1, target: target.trim().to_owned() });
-        }
-    }
-    found
+    let of_line = |(index, line)| {
+        let targets = between(line, "{{#include ", '}').into_iter();
+        targets.map(move |target| Link { line: index + 1, target: target.trim().to_owned() })
+    };
+    text.lines().enumerate().flat_map(of_line).collect()
 }
 
 /// Every text in `line` between `open` and the next `close`.

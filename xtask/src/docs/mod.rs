@@ -4,10 +4,11 @@ mod links;
 mod markdown;
 mod math;
 
-use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+
+use crate::files;
 
 /// Markdown files outside the book whose links are checked too.
 const ROOT_PAGES: [&str; 3] = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md"];
@@ -23,62 +24,30 @@ pub struct Problem {
     pub message: String,
 }
 
-/// Checks the book and prints what is wrong.
+/// Everything wrong with the book and the pages at the root, in words.
 ///
 /// # Errors
-/// 1 where something is.
-pub fn check_and_report(root: &Path) -> Result<(), u8> {
-    let problems = check(root).map_err(|error| {
-        eprintln!("error: {error}");
-        1
-    })?;
-    for problem in &problems {
-        let file = problem.file.strip_prefix(root).unwrap_or(&problem.file);
-        eprintln!("{}:{}: {}", file.display(), problem.line, problem.message);
-    }
-    if problems.is_empty() { Ok(()) } else { Err(1) }
+/// A page that cannot be read.
+pub fn problems(root: &Path) -> io::Result<Vec<String>> {
+    let in_words = |Problem { file, line, message }: Problem| {
+        format!("{}:{line}: {message}", file.strip_prefix(root).unwrap_or(&file).display())
+    };
+    Ok(check(root)?.into_iter().map(in_words).collect())
 }
 
-/// Everything wrong with the book and the pages at the root.
 fn check(root: &Path) -> io::Result<Vec<Problem>> {
     let book = root.join("docs").join("src");
-    let mut pages = Vec::new();
-    markdown_files(&book, &mut pages)?;
-    pages.sort();
+    let pages = files::below(&book, "md")?;
     let mut problems = links::check_summary(&book, &pages)?;
     for page in &pages {
-        let text = read(page)?;
+        let text = files::read(page)?;
         problems.extend(links::check(page, &text, Some(&book))?);
         problems.extend(math::check(page, &text));
     }
     for page in ROOT_PAGES.map(|name| root.join(name)) {
-        problems.extend(links::check(&page, &read(&page)?, None)?);
+        problems.extend(links::check(&page, &files::read(&page)?, None)?);
     }
     Ok(problems)
-}
-
-/// Adds every Markdown file below `folder` to `found`.
-fn markdown_files(folder: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
-    let entries = fs::read_dir(folder).map_err(|error| about(folder, &error))?;
-    for entry in entries {
-        let path = entry?.path();
-        if path.is_dir() {
-            markdown_files(&path, found)?;
-        } else if path.extension().is_some_and(|extension| extension == "md") {
-            found.push(path);
-        }
-    }
-    Ok(())
-}
-
-/// The text of `path`, or an error that names it.
-fn read(path: &Path) -> io::Result<String> {
-    fs::read_to_string(path).map_err(|error| about(path, &error))
-}
-
-/// `error` with the file that it is about.
-fn about(path: &Path, error: &io::Error) -> io::Error {
-    io::Error::new(error.kind(), format!("{}: {error}", path.display()))
 }
 
 /// Builds the book with mdbook.

@@ -1,7 +1,6 @@
 //! `meshtone dataset`
 
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 use std::sync::atomic::AtomicBool;
 
 use clap::{Args, Subcommand};
@@ -17,8 +16,8 @@ use meshtone_io::scenario_file::FileKind;
 use crate::failure::Failure;
 use crate::other_kind::{MANIFEST, or_other_kind};
 use crate::output_directory::named_after;
-use crate::progress::bar;
-use crate::terminal::{print, print_error_line, warn};
+use crate::progress::with_bar;
+use crate::terminal::{print, print_error_line, print_unless, warn};
 
 /// Failed records that are reported one by one.
 const TOLD: usize = 3;
@@ -57,8 +56,8 @@ struct Make {
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// Only one part of the shards, such as 2/8; parts may be made at the same time, in one directory or apart
-    #[arg(long, value_name = "I/N")]
-    part: Option<PartArgument>,
+    #[arg(long, value_name = "I/N", value_parser = part)]
+    part: Option<Part>,
     /// Print no summary and no progress; warnings and errors are still printed
     #[arg(short, long)]
     quiet: bool,
@@ -118,19 +117,12 @@ Examples:
   meshtone dataset verify gears                          whether every byte is as it was written
   meshtone dataset scenario plan.toml 17 > record.toml   what record 17 is";
 
-/// `I/N`
-#[derive(Debug, Clone, Copy)]
-struct PartArgument(Part);
-
-impl FromStr for PartArgument {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let numbers = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
-        match numbers {
-            Some((number, of)) if number >= 1 && number <= of => Ok(Self(Part { number, of })),
-            _ => Err("must be I/N with I from 1 to N, such as 2/8".to_owned()),
-        }
+/// Reads `I/N`.
+fn part(text: &str) -> Result<Part, String> {
+    let numbers = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
+    match numbers {
+        Some((number, of)) if number >= 1 && number <= of => Ok(Part { number, of }),
+        _ => Err("must be I/N with I from 1 to N, such as 2/8".to_owned()),
     }
 }
 
@@ -141,7 +133,7 @@ impl Dataset {
             (Some(Action::Verify(arguments)), _) => arguments.run(),
             (Some(Action::Scenario(arguments)), _) => arguments.run(),
             (None, Some(arguments)) => arguments.run(),
-            (None, None) => Err(Failure::bad_input("name a plan").with_help("see meshtone dataset --help")),
+            (None, None) => Failure::refuse("name a plan", "see meshtone dataset --help"),
         }
     }
 }
@@ -151,23 +143,16 @@ impl Make {
         let plan = read_plan(&self.plan)?;
         warn_before_generating(&self.plan.display().to_string(), &plan);
         let to = self.destination()?;
-        let part = self.part.map_or(Part::WHOLE, |part| part.0);
+        let part = self.part.unwrap_or(Part::WHOLE);
         let threads = usize::from(self.jobs.unwrap_or(0));
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|error| Failure::failed(format!("cannot start threads: {error}")))?;
-        let bar = bar("records", !self.quiet);
-        let progress = |done: u64, all: u64| {
-            bar.set_length(all);
-            bar.set_position(done);
-        };
-        let control = GenerateControl { progress: &progress, cancelled: &AtomicBool::new(false) };
-        let generated = pool.install(|| generate(&plan, &to, part, &control));
-        bar.finish_and_clear();
-        let generated = generated?;
+        let generated = with_bar("records", !self.quiet, |progress| {
+            let control = GenerateControl { progress, cancelled: &AtomicBool::new(false) };
+            pool.install(|| generate(&plan, &to, part, &control))
+        })?;
         warn_after_generating(&generated);
-        if !self.quiet {
-            print(&summary(&plan, &generated, &to))?;
-        }
+        print_unless(self.quiet, &summary(&plan, &generated, &to))?;
         refuse_missing(&self.plan.display().to_string(), &generated)
     }
 
@@ -186,9 +171,7 @@ impl Merge {
         let to = Destination::parse(&self.output)?;
         let merged = merge(&parts, &to, if self.verify { Check::Bytes } else { Check::Sizes })?;
         let shards = counted(merged.kept_shards + merged.written_shards, "shard");
-        if !self.quiet {
-            print(&format!("  {shards}\n\n{to}\n"))?;
-        }
+        print_unless(self.quiet, &format!("  {shards}\n\n{to}\n"))?;
         refuse_missing(&to.to_string(), &merged)
     }
 }
@@ -215,7 +198,7 @@ impl Verify {
                  is missing or differs. Move elsewhere what no manifest names",
             ));
         }
-        if self.quiet { Ok(()) } else { print(&report(&found, &place, self.sizes_only)) }
+        print_unless(self.quiet, &report(&found, &place, self.sizes_only))
     }
 
     /// Of a path that is no data set, which command reads it.
@@ -327,9 +310,8 @@ fn refuse_missing(of: &str, generated: &Generated) -> Result<(), Failure> {
         counted(missing.len() as u64, "record"),
         numbers.join(", ")
     );
-    Err(Failure::bad_input(problem).with_help(
-        "manifest.json lists them with their reasons; narrow what the plan varies, or add a constraint, and none is missing",
-    ))
+    let help = "manifest.json lists them with their reasons; narrow what the plan varies, or add a constraint, and none is missing";
+    Failure::refuse(problem, help)
 }
 
 fn summary(plan: &Plan, generated: &Generated, to: &Destination) -> String {

@@ -2,33 +2,32 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use clap::Args;
+use meshtone::batch::Control;
 use meshtone::scenario::Scenario;
 use meshtone_diagnose::{
-    Answer, Learned, Observation, Prior, Question, REFINED_RECORDS, ReferenceControl, ReferenceSet,
-    ReferenceStore, Refined, SignalKind, diagnose, refine,
+    Answer, Learned, Observation, Prior, Question, REFINED_RECORDS, ReferenceSet, ReferenceStore, Refined,
+    SignalKind, diagnose, refine,
 };
 use meshtone_io::experiment::read_tuned;
 use meshtone_io::indicators::WarningEntry;
-use meshtone_io::memory;
 use meshtone_io::own_file::undisturbed;
 use meshtone_io::scenario_file::{FileKind, ScenarioFile};
 use serde_json::{Value, json};
 
 use crate::check::check;
 use crate::choice::{Choice, one_of};
-use crate::diagnose::observe::{Observed, Observer};
+use crate::diagnose::observe::Observer;
 use crate::diagnose::{figure, table};
 use crate::failure::Failure;
-use crate::indicators::figures::name;
+use crate::indicators::figures::several_names;
 use crate::indicators::options::{PhaseOptions, ReadingOptions};
 use crate::output_directory::{OutputDirectory, named_after};
-use crate::progress::bar;
+use crate::progress::with_bar;
 use crate::replacement::{replace, stage_figure, stage_text};
-use crate::terminal::{print, print_error_line, warn};
+use crate::terminal::{print_error_line, print_unless, warn};
 use crate::warnings;
 
 /// Most simulations that are learnt from: time and memory grow with their square; so many take 70 s and 0.7 GB.
@@ -121,17 +120,17 @@ impl Diagnose {
         let mut answer = diagnose(&learned, &question, refined.as_ref())?;
         answer.warnings.splice(0..0, warnings.iter().map(warnings::in_words));
         let json = self.json(&answer, &store.folder_of(&prior));
-        self.write(output.path(), &answer, &json, scenario.gears.gear_teeth)?;
+        self.write(&output.path, &answer, &json, scenario.gears.gear_teeth)?;
         answer.warnings.iter().for_each(warn);
-        if self.quiet {
-            return Ok(());
-        }
-        print(&format!("{} -> {}\n{}", self.title(), directory.display(), table::table(&answer)))
+        print_unless(
+            self.quiet,
+            &format!("{} -> {}\n{}", self.title(), directory.display(), table::table(&answer)),
+        )
     }
 
     /// The rig.
     fn scenario(&self) -> Result<Scenario, Failure> {
-        let file = ScenarioFile::read_within(&self.scenario, memory::limit())?;
+        let file = ScenarioFile::read(&self.scenario)?;
         let mut scenario = file.scenario.clone().with_faults(Vec::new());
         if let Some(path) = &self.tuned {
             let tuned = read_tuned(path).map_err(|error| Failure::of_file(FileKind::Tuned, error))?;
@@ -184,14 +183,12 @@ impl Diagnose {
     }
 
     /// Simulates with a progress bar.
-    fn with_bar<T>(&self, length: u64, counted: &str, simulate: impl FnOnce(&ReferenceControl) -> T) -> T {
-        let bar = bar(counted, !self.quiet);
-        bar.set_length(length);
-        let progress = |finished: usize| bar.set_position(finished as u64);
-        let simulated =
-            simulate(&ReferenceControl { progress: &progress, cancelled: &AtomicBool::new(false) });
-        bar.finish_and_clear();
-        simulated
+    fn with_bar<T>(&self, length: u64, counted: &str, simulate: impl FnOnce(&Control) -> T) -> T {
+        with_bar(counted, !self.quiet, |show| {
+            show(0, length);
+            let progress = |finished: usize| show(finished as u64, length);
+            simulate(&Control { progress: &progress, ..Control::default() })
+        })
     }
 
     fn json(&self, answer: &Answer, folder: &Path) -> Value {
@@ -221,22 +218,13 @@ impl Diagnose {
         Ok(undisturbed(|| replace(directory, &FILES, staged, json))?)
     }
 
-    /// `run01.csv … run12.csv`.
     fn title(&self) -> String {
-        match &self.recordings[..] {
-            [first, .., last] => format!("{} … {}", name(first), name(last)),
-            several => several.iter().map(|path| name(path)).collect(),
-        }
+        several_names(&self.recordings)
     }
 }
 
 fn observe(observer: &Observer, paths: &[PathBuf]) -> Result<(Vec<Observation>, Vec<WarningEntry>), Failure> {
-    let mut observations = Vec::new();
-    let mut all = Vec::new();
-    for path in paths {
-        let Observed { observation, warnings } = observer.observe(path)?;
-        observations.push(observation);
-        all.extend(warnings);
-    }
-    Ok((observations, all))
+    let observed = paths.iter().map(|path| observer.observe(path));
+    let (observations, warnings): (_, Vec<_>) = observed.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
+    Ok((observations, warnings.concat()))
 }

@@ -5,16 +5,13 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use meshtone::scenario::Scenario;
 use meshtone_io::atomic_file::write_atomically;
-use meshtone_io::experiment::{
-    EnhancedDraws, EnhancedHead, EnhancedRecord, Tuned, enhance, read_tuned, write_enhanced,
-};
-use meshtone_io::memory;
+use meshtone_io::experiment::{EnhancedRecord, Tuned, enhance, read_tuned, write_enhanced};
 use meshtone_io::scenario_file::{FileKind, ScenarioFile};
 
 use crate::check::check;
 use crate::failure::Failure;
 use crate::output_directory::{OutputDirectory, named_after};
-use crate::terminal::{print, warn};
+use crate::terminal::{print_unless, warn};
 use crate::warnings;
 
 const ENHANCED: &str = "enhanced.parquet";
@@ -54,7 +51,7 @@ Example:
 
 impl Enhance {
     pub fn run(&self) -> Result<(), Failure> {
-        let file = ScenarioFile::read_within(&self.scenario, memory::limit())?;
+        let file = ScenarioFile::read(&self.scenario)?;
         let tuned = read_tuned(&self.tuned).map_err(|error| Failure::of_file(FileKind::Tuned, error))?;
         let scenario = tuned
             .apply(&file.scenario)
@@ -67,26 +64,26 @@ impl Enhance {
         let directory = self.output.clone().unwrap_or_else(|| named_after(&self.scenario, "enhanced"));
         let read: Vec<&Path> = file.sources().chain([self.tuned.as_path()]).collect();
         let output = OutputDirectory::for_files(&directory, &[ENHANCED], &read)?;
-        self.write(&scenario, &tuned, &output.path().join(ENHANCED))
+        self.write(&scenario, &tuned, &output.path.join(ENHANCED))
     }
 
     fn write(&self, scenario: &Scenario, tuned: &Tuned, path: &Path) -> Result<(), Failure> {
-        let EnhancedDraws { healthy_rms_g, records } = enhance(scenario, tuned, self.seed, self.draws)
+        let draws = enhance(scenario, tuned, self.seed, self.draws)
             .map_err(|error| Failure::bad_input(format!("{}: {error}", self.scenario.display())))?;
-        let head = EnhancedHead { scenario, tuned, seed: self.seed, healthy_rms_g };
-        write_atomically(path, |file| write_enhanced(file, head, &records))?;
-        if self.quiet {
-            return Ok(());
-        }
+        write_atomically(path, |file| write_enhanced(file, scenario, tuned, self.seed, &draws))?;
+        let records = &draws.records;
         let mean =
             |of: &dyn Fn(&EnhancedRecord) -> f64| records.iter().map(of).sum::<f64>() / records.len() as f64;
-        print(&format!(
-            "  {} draws of {} values, mean rms {:.3} times the healthy one's, mean kurtosis {:.2}\n\n{}\n",
-            records.len(),
-            records[0].relative_difference.len(),
-            mean(&|record| record.relative_rms),
-            mean(&|record| record.kurtosis),
-            path.display()
-        ))
+        print_unless(
+            self.quiet,
+            &format!(
+                "  {} draws of {} values, mean rms {:.3} times the healthy one's, mean kurtosis {:.2}\n\n{}\n",
+                records.len(),
+                records[0].relative_difference.len(),
+                mean(&|record| record.relative_rms),
+                mean(&|record| record.kurtosis),
+                path.display()
+            ),
+        )
     }
 }

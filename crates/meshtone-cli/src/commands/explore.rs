@@ -7,7 +7,6 @@ use std::process::{Command, Stdio};
 use clap::Args;
 use meshtone::scenario::{Scenario, template};
 use meshtone_explore::{Embedding, Server, ServerSettings};
-use meshtone_io::memory;
 use meshtone_io::scenario_file::ScenarioFile;
 
 use crate::failure::Failure;
@@ -55,7 +54,7 @@ impl Explore {
 
     fn scenario(&self) -> Result<Scenario, Failure> {
         match &self.scenario {
-            Some(path) => Ok(ScenarioFile::read_within(path, memory::limit())?.scenario),
+            Some(path) => Ok(ScenarioFile::read(path)?.scenario),
             None => {
                 let healthy = template("healthy").unwrap_or_default();
                 Scenario::from_toml(&healthy).map_err(|error| Failure::failed(error.to_string()))

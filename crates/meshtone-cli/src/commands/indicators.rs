@@ -12,8 +12,8 @@ use crate::indicators::reading::Input;
 use crate::indicators::results::{Series, settings};
 use crate::indicators::{figures, files, table};
 use crate::output_directory::{OutputDirectory, named_after};
-use crate::progress::Progress;
-use crate::terminal::{print, warn};
+use crate::progress::with_spinner;
+use crate::terminal::{print_unless, warn};
 use crate::warnings::in_words;
 
 /// Warnings of one recording that are printed; the others are counted.
@@ -63,13 +63,13 @@ impl Indicators {
         let mut series = Series::default();
         for (number, path) in self.recordings.iter().enumerate() {
             let of = format!("({} of {})", number + 1, self.recordings.len());
-            let _progress = Progress::start(format!("{} {of}", path.display()), !self.quiet);
-            let input = Input::read(path, &self.reading, self.phase.channel())?;
-            let processed = process(&input, &self.phase, &self.processing).map_err(|failure| Failure {
-                help: self.reading.in_kilohertz().or(failure.help),
-                ..failure
+            with_spinner(format!("{} {of}", path.display()), !self.quiet, || {
+                let input = Input::read(path, &self.reading, self.phase.channel())?;
+                let processed = process(&input, &self.phase, &self.processing).map_err(|failure| {
+                    Failure { help: self.reading.in_kilohertz().or(failure.help), ..failure }
+                })?;
+                series.add(input, processed, self.processing.revolutions.is_some())
             })?;
-            series.add(input, processed, self.processing.revolutions.is_some())?;
         }
         series.finish()?;
         series.results.settings = settings(&self.phase, &self.processing);
@@ -79,16 +79,13 @@ impl Indicators {
         let read: Vec<&Path> =
             self.recordings.iter().map(PathBuf::as_path).chain(self.phase.files()).collect();
         let output = OutputDirectory::for_files(&directory, &files::FILES, &read)?;
-        self.write(output.path(), &series)?;
+        self.write(&output.path, &series)?;
         print_warnings(&series.results.warnings);
-        if self.quiet {
-            return Ok(());
-        }
         let from = match &self.recordings[..] {
             [only] => only.display().to_string(),
             several => format!("{} recordings", several.len()),
         };
-        print(&format!("{from} -> {}\n{}", directory.display(), table::table(&series)))
+        print_unless(self.quiet, &format!("{from} -> {}\n{}", directory.display(), table::table(&series)))
     }
 
     fn directory(&self) -> PathBuf {

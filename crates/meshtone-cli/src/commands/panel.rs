@@ -16,7 +16,7 @@ use crate::failure::Failure;
 use crate::other_kind::or_other_kind;
 use crate::output_directory::claim;
 use crate::results::{PANEL, SIGNALS, SUMMARY, stage_panel};
-use crate::terminal::{print, warn};
+use crate::terminal::{print_unless, warn};
 
 /// Description of the input of the panel.
 const WRITTEN: &str = "a directory that `meshtone simulate` wrote";
@@ -53,20 +53,18 @@ impl Panel {
             if is_there { error.into() } else { or_other_kind(&self.directory, WRITTEN, error.into()) }
         })?;
         self.check_summary(recorded.run)?;
-        let refuse = |problem: String| ReadResultsError::Foreign { path: path.clone(), problem };
         let stages = meshtone::stages(&recorded.scenario)
-            .map_err(|error| ReadResultsError::Scenario { path: path.clone(), error: Box::new(error) })?;
+            .map_err(|error| ReadResultsError::scenario(&path, &error))?;
         let (rate, expected) = (recorded.channels.sampling_rate_hz, stages.time.sampling_rate_hz);
         if rate != expected {
-            return Err(
-                refuse(format!("is sampled at {rate} S/s, but its scenario at {expected} S/s")).into()
-            );
+            let problem = format!("is sampled at {rate} S/s, but its scenario at {expected} S/s");
+            return Err(ReadResultsError::foreign(&path, problem).into());
         }
         self.warn_of_version(&recorded);
         let files = stage_panel(&self.directory, recorded.run, &stages, &recorded.channels)?;
         undisturbed(|| files.into_iter().try_for_each(StagedFile::commit))?;
         let [svg, png] = PANEL.map(|name| self.directory.join(name));
-        if self.quiet { Ok(()) } else { print(&format!("{}\n{}\n", svg.display(), png.display())) }
+        print_unless(self.quiet, &format!("{}\n{}\n", svg.display(), png.display()))
     }
 
     /// Signals without a summary can be drawn all the same; but a panel is not to make the files of two runs look like
@@ -81,7 +79,7 @@ impl Panel {
                     "{} is of the run {summary}, but {SIGNALS} beside it of the run {signals}",
                     path.display()
                 );
-                Err(Failure::bad_input(problem).with_help(HELP))
+                Failure::refuse(problem, HELP)
             }
             Err(ReadResultsError::Unreadable { source, .. }) if source.kind() == ErrorKind::NotFound => {
                 warn(format_args!(
@@ -92,7 +90,7 @@ impl Panel {
                 Ok(())
             }
             Err(error @ ReadResultsError::Unreadable { .. }) => Err(Failure::failed(error.to_string())),
-            Err(error) => Err(Failure::bad_input(error.to_string()).with_help(HELP)),
+            Err(error) => Failure::refuse(error.to_string(), HELP),
         }
     }
 

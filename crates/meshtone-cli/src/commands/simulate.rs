@@ -8,7 +8,6 @@ use meshtone::scenario::{Model, Quality, Scenario, ScenarioError, ScenarioFiles,
 use meshtone::{Simulation, StageTime, Stages, Trace};
 use meshtone_io::atomic_file::check_target;
 use meshtone_io::experiment::{Tuned, read_tuned};
-use meshtone_io::memory;
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::scenario_file::{FileKind, FilesBeside, ScenarioFile};
 use meshtone_io::summary::Summary;
@@ -17,11 +16,11 @@ use crate::check::check;
 use crate::choice::{Choice, one_of};
 use crate::failure::Failure;
 use crate::output_directory::{OutputDirectory, named_after};
-use crate::progress::Progress;
-use crate::results::{RESULTS, Results};
+use crate::progress::with_spinner;
+use crate::results::{self, RESULTS};
 use crate::same_file::is_same_file;
 use crate::table::table;
-use crate::terminal::{print, warn};
+use crate::terminal::{print_unless, warn};
 use crate::warnings;
 
 /// Simulate scenarios: signals, summary and results panel
@@ -93,8 +92,9 @@ impl Simulate {
     pub fn run(&self) -> Result<(), Failure> {
         if self.trace.is_some() && self.scenarios.len() > 1 {
             let given = self.scenarios.len();
-            return Err(Failure::bad_input(format!("--trace: {given} scenarios are given; must be one"))
-                .with_help("a trace is one file; run `meshtone simulate` once for each trace"));
+            let problem = format!("--trace: {given} scenarios are given; must be one");
+            let help = "a trace is one file; run `meshtone simulate` once for each trace";
+            return Failure::refuse(problem, help);
         }
         let directories = self.directories()?;
         let errors = self.errors_file.as_deref().map(read_errors).transpose()?;
@@ -137,9 +137,8 @@ impl Simulate {
                     path.display(),
                     directory.display()
                 );
-                return Err(Failure::bad_input(problem).with_help(
-                    "rename one of the files, or run them one after the other with different -o",
-                ));
+                let help = "rename one of the files, or run them one after the other with different -o";
+                return Failure::refuse(problem, help);
             }
             directories.push(directory);
         }
@@ -153,7 +152,7 @@ impl Simulate {
         errors: Option<&Quality>,
         tuned: Option<&Tuned>,
     ) -> Result<Run, Failure> {
-        let file = ScenarioFile::read_within(path, memory::limit())?;
+        let file = ScenarioFile::read(path)?;
         let mut scenario = file.scenario.clone();
         if let (Some(tuned), Some(tuned_path)) = (tuned, &self.tuned) {
             if let Some(warning) = tuned.warning_for(&scenario) {
@@ -191,28 +190,22 @@ impl Simulate {
     fn simulate(&self, run: Run, directory: &OutputDirectory, number: usize) -> Result<(), Failure> {
         warnings::print(&run.file, &run.warnings);
         let of = format!("({} of {})", number + 1, self.scenarios.len());
-        let progress = Progress::start(format!("{} {of}", run.file.path.display()), !self.quiet);
-        let (simulation, trace) = simulate(&run.scenario, run.stages, self.trace.is_some())
-            .map_err(|error| not_simulated(&run.file, error))?;
-        let by_signals = simulation.warnings_of_signals();
-        let all_warnings: Vec<_> = run.warnings.iter().chain(&by_signals).cloned().collect();
-        let summary = Summary::new(&simulation, RunIdentity::of(&run.scenario), &all_warnings);
-        let results = Results {
-            scenario: &run.scenario,
-            simulation: &simulation,
-            summary: &summary,
-            trace: trace.as_ref().zip(self.trace.as_deref()),
-            with_panel: !self.no_panel,
-        };
-        let written = results.write(directory.path());
-        drop(progress);
+        let message = format!("{} {of}", run.file.path.display());
+        let (summary, by_signals, written) = with_spinner(message, !self.quiet, || {
+            let (simulation, trace) = simulate(&run.scenario, run.stages, self.trace.is_some())
+                .map_err(|error| not_simulated(&run.file, error))?;
+            let by_signals = simulation.warnings_of_signals();
+            let all_warnings: Vec<_> = run.warnings.iter().chain(&by_signals).cloned().collect();
+            let summary = Summary::new(&simulation, RunIdentity::of(&run.scenario), &all_warnings);
+            let trace = trace.as_ref().zip(self.trace.as_deref());
+            let written =
+                results::write(&directory.path, &run.scenario, &simulation, &summary, trace, !self.no_panel);
+            Ok::<_, Failure>((summary, by_signals, written))
+        })?;
         warnings::print(&run.file, &by_signals);
         written?;
-        if self.quiet {
-            return Ok(());
-        }
-        let (from, to) = (run.file.path.display(), directory.path().display());
-        print(&format!("{from} -> {to}\n{}\n", table(&summary)))
+        let (from, to) = (run.file.path.display(), directory.path.display());
+        print_unless(self.quiet, &format!("{from} -> {to}\n{}\n", table(&summary)))
     }
 }
 
@@ -225,7 +218,7 @@ impl Simulate {
 fn check_trace(trace: &Path, directory: &Path, read: &[&Path]) -> Result<(), Failure> {
     let refuse = |problem: &str| {
         let problem = format!("--trace {}: {problem}; must be a file of its own", trace.display());
-        Err(Failure::bad_input(problem).with_help(TRACE_HELP))
+        Failure::refuse(problem, TRACE_HELP)
     };
     if RESULTS.iter().any(|name| is_same_file(trace, &directory.join(name))) {
         return refuse("is where the run writes another of its results");
@@ -243,9 +236,7 @@ fn check_trace(trace: &Path, directory: &Path, read: &[&Path]) -> Result<(), Fai
 fn read_errors(path: &Path) -> Result<Quality, Failure> {
     if !path.try_exists().unwrap_or(true) {
         let problem = format!("--errors-file: there is no file {}", path.display());
-        return Err(
-            Failure::bad_input(problem).with_help("check the name; it is relative to the current directory")
-        );
+        return Failure::refuse(problem, "check the name; it is relative to the current directory");
     }
     let (files, name) = (FilesBeside::new(""), path.to_string_lossy());
     let errors = files.profile_errors(&name);

@@ -13,9 +13,9 @@ use meshtone_plot::tuning_figure;
 use crate::failure::Failure;
 use crate::other_kind::TUNED;
 use crate::output_directory::{OutputDirectory, named_after};
-use crate::progress::bar;
+use crate::progress::with_bar;
 use crate::replacement::{cannot_draw, replace, stage_figure, stage_text};
-use crate::terminal::{print, warn};
+use crate::terminal::{print_unless, warn};
 
 const TUNING: &str = "tuning.json";
 const FIGURE: [&str; 2] = ["tuning.svg", "tuning.png"];
@@ -54,18 +54,16 @@ impl Tune {
         let directory = self.output.clone().unwrap_or_else(|| named_after(&self.experiment, "tuning"));
         let read: Vec<&Path> = file.sources.iter().map(PathBuf::as_path).collect();
         let output = OutputDirectory::for_files(&directory, &FILES, &read)?;
-        let bar = bar("simulations", !self.quiet);
-        let progress = |finished: usize, all: usize| {
-            bar.set_length(all as u64);
-            bar.set_position(finished as u64);
-        };
-        let control = ExperimentControl { progress: &progress, cancelled: &AtomicBool::new(false) };
-        let result = run_experiment(&file.experiment, &control)
-            .map_err(|error| Failure::bad_input(format!("{}: {error}", self.experiment.display())))?;
-        bar.finish_and_clear();
-        self.write(&file, &result, output.path())?;
+        let result = with_bar("simulations", !self.quiet, |show| {
+            let progress = |finished: usize, all: usize| show(finished as u64, all as u64);
+            let control = ExperimentControl { progress: &progress, cancelled: &AtomicBool::new(false) };
+            run_experiment(&file.experiment, &control)
+        });
+        let result =
+            result.map_err(|error| Failure::bad_input(format!("{}: {error}", self.experiment.display())))?;
+        self.write(&file, &result, &output.path)?;
         warnings(&file, &result).into_iter().for_each(warn);
-        if self.quiet { Ok(()) } else { print(&table(&file.experiment, &result, &directory)) }
+        print_unless(self.quiet, &table(&file.experiment, &result, &directory))
     }
 
     fn write(

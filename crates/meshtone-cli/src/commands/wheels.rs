@@ -38,7 +38,7 @@ impl Wheels {
         let file = ScenarioFile::read(&self.scenario)?;
         if is_same_file(&self.output, &self.scenario) {
             let problem = format!("-o {}: is the scenario file", self.output.display());
-            return Err(Failure::bad_input(problem).with_help("name another file with -o"));
+            return Failure::refuse(problem, "name another file with -o");
         }
         let mut scenario = file.scenario.clone();
         // The errors are those of the wheels before the damage.

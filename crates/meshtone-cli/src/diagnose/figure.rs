@@ -53,7 +53,7 @@ pub fn draw(answer: &Answer, title: &str, gear_teeth: u32) -> Figure {
         title,
         facts: &facts,
         gear_teeth,
-        damaged_tooth: on_gear.and_then(|place| place.tooth),
+        damaged_tooth: on_gear.and_then(|place| place.tooth).map(|tooth| tooth.number),
         difference_g: &answer.difference_g,
         band_g: [&answer.band_g[0], &answer.band_g[1]],
         kinds: &kinds,

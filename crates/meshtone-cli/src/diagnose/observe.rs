@@ -5,9 +5,10 @@ use std::path::Path;
 use meshtone::scenario::Scenario;
 use meshtone::sensor::GRAVITY_M_PER_S2;
 use meshtone::signal::{
-    AngleZero, AngularSettings, AngularSignal, ChainSettings, Shaft, ShaftPhase, SignalError,
-    angular_resample, find_mismatch,
+    AngleZero, AngularSettings, AngularSignal, ChainSettings, ShaftPhase, SignalError, angular_resample,
+    find_mismatch,
 };
+use meshtone::wheel::WheelName;
 use meshtone_diagnose::{Observation, SignalKind, other_teeth};
 use meshtone_io::indicators::WarningEntry;
 use meshtone_io::recording::Channel;
@@ -25,12 +26,7 @@ const MOST_OF_OWN: f64 = 1.5;
 const MOST_OF_STATED: f64 = 10.0;
 
 /// Features of one file, and warnings about it.
-pub struct Observed {
-    /// Its features.
-    pub observation: Observation,
-    /// Warnings.
-    pub warnings: Vec<WarningEntry>,
-}
+type Observed = (Observation, Vec<WarningEntry>);
 
 /// Reads what recordings of a rig show.
 pub struct Observer<'a> {
@@ -56,19 +52,14 @@ impl<'a> Observer<'a> {
         if signal != SignalKind::Recording && !stated.is_empty() {
             let problem =
                 format!("--signal {}: is one revolution of the gear, which needs no phase", signal.name());
-            return Err(
-                Failure::bad_input(problem).with_help("leave out --teeth and what says how the shaft turns")
-            );
+            return Failure::refuse(problem, "leave out --teeth and what says how the shaft turns");
         }
         Ok(Self { scenario, signal, reading, stated, phase: with_scenario(stated, scenario)? })
     }
 
     /// Observes a file.
     pub fn observe(&self, path: &Path) -> Result<Observed, Failure> {
-        match self.signal {
-            SignalKind::Recording => self.recording(path),
-            _ => self.revolution(path),
-        }
+        if self.signal == SignalKind::Recording { self.recording(path) } else { self.revolution(path) }
     }
 
     fn revolution(&self, path: &Path) -> Result<Observed, Failure> {
@@ -80,7 +71,7 @@ impl<'a> Observer<'a> {
         let observation = Observation::of_revolution(&channel.samples, gear_teeth, self.signal, last_order);
         let what = format!("channel {}", channel.name);
         let observation = observation.map_err(|error| refuse(path, &what, RefusedInput::Phase, &error))?;
-        Ok(Observed { observation, warnings })
+        Ok((observation, warnings))
     }
 
     /// Refuses a whole recording where one revolution is stated, by its own times or the stated rate.
@@ -97,7 +88,7 @@ impl<'a> Observer<'a> {
             path.display(),
             self.signal.name()
         );
-        Err(Failure::bad_input(problem).with_help("leave out --signal: a whole recording is averaged here"))
+        Failure::refuse(problem, "leave out --signal: a whole recording is averaged here")
     }
 
     fn recording(&self, path: &Path) -> Result<Observed, Failure> {
@@ -111,7 +102,7 @@ impl<'a> Observer<'a> {
 
     fn simulated(&self, input: &Input, scenario_toml: &str) -> Result<Observed, Failure> {
         let (_, shafts) = simulated(input, scenario_toml)?;
-        let teeth = Shaft::BOTH.map(|shaft| shafts.teeth(shaft));
+        let teeth = WheelName::BOTH.map(|shaft| shafts.teeth(shaft));
         let [pinion, gear] = teeth_of(self.scenario);
         if teeth != [pinion, gear] {
             let [here, mate] = teeth;
@@ -119,18 +110,16 @@ impl<'a> Observer<'a> {
                 "{}: is of wheels with {here} and {mate} teeth, but the scenario has {pinion} and {gear}",
                 input.source.display()
             );
-            return Err(
-                Failure::bad_input(problem).with_help("name the scenario of its own rig with --scenario")
-            );
+            return Failure::refuse(problem, "name the scenario of its own rig with --scenario");
         }
         let over = |shaft| shafts.angular(&input.channel.samples, shaft, &ChainSettings::default());
         let zero = [AngleZero::Simulated; 2];
-        let pinion_hz = shafts.mean_speed_hz(Shaft::Pinion);
-        let observe = || self.of_angles([over(Shaft::Pinion)?, over(Shaft::Gear)?], zero, pinion_hz);
+        let pinion_hz = shafts.mean_speed_hz(WheelName::Pinion);
+        let observe = || self.of_angles([over(WheelName::Pinion)?, over(WheelName::Gear)?], zero, pinion_hz);
         let what = format!("channel {}", input.channel.name);
         let observation =
             observe().map_err(|error| refuse(&input.source, &what, RefusedInput::Simulated, &error))?;
-        Ok(Observed { observation, warnings: input.warnings.clone() })
+        Ok((observation, input.warnings.clone()))
     }
 
     fn measured(&self, input: &Input) -> Result<Observed, Failure> {
@@ -142,7 +131,7 @@ impl<'a> Observer<'a> {
         let observation = observe().map_err(|error| refuse(&input.source, &what, subject, &error))?;
         let doubtful = shaft.warnings.iter().map(|warning| about(&input.source, warning));
         let warnings = input.warnings.iter().cloned().chain(of_phase).chain(doubtful).collect();
-        Ok(Observed { observation, warnings })
+        Ok((observation, warnings))
     }
 
     fn of_phase(&self, input: &Input, shaft: &ShaftPhase, speed_hz: f64) -> Result<Observation, SignalError> {
@@ -201,7 +190,7 @@ fn with_scenario(stated: &PhaseOptions, scenario: &Scenario) -> Result<PhaseOpti
     let [pinion, gear] = teeth_of(scenario);
     let refuse = |option: &str, given: u32, allowed: String| {
         let problem = format!("{option} {given}: is no wheel of the scenario; must be {allowed}");
-        Err(Failure::bad_input(problem).with_help("--teeth chooses the wheel that speed or pulses are of"))
+        Failure::refuse(problem, "--teeth chooses the wheel that speed or pulses are of")
     };
     let mut phase = stated.clone();
     let teeth = stated.teeth.unwrap_or(pinion);
@@ -238,9 +227,9 @@ fn to_g(channel: &mut Channel, path: &Path, is_calibrated: bool) -> Result<(), F
                 (false, _) => format!("is in {unit}"),
             };
             let problem = format!("{}: channel {} {is}; must be g or m/s²", path.display(), channel.name);
-            return Err(Failure::bad_input(problem).with_help(
-                "state what it is with --unit g or --unit m/s², of volts with --sensitivity-mv-per-unit too",
-            ));
+            let help =
+                "state what it is with --unit g or --unit m/s², of volts with --sensitivity-mv-per-unit too";
+            return Failure::refuse(problem, help);
         }
     };
     if in_g != 1.0 {

@@ -2,7 +2,7 @@
 
 use meshtone::signal::AngleZero;
 use meshtone::wheel::WheelName;
-use meshtone_diagnose::{Answer, OUTSIDE, PlaceAnswer, SignalKind, p_in_words};
+use meshtone_diagnose::{Answer, OUTSIDE, PlaceAnswer, SignalKind, ToothAnswer, p_in_words};
 
 /// Explanation of "probability", in few words.
 pub const PROBABILITY: &str =
@@ -57,10 +57,8 @@ pub fn learnt(answer: &Answer) -> String {
 /// `gear (99.0 %), tooth 12 at 104° (88.0 %)`.
 pub fn place(place: &PlaceAnswer) -> String {
     let mut text = format!("{} ({})", place.wheel.name(), percent(place.wheel_probability));
-    if let (Some(tooth), Some(angle), Some(probability)) =
-        (place.tooth, place.angle_deg, place.tooth_probability)
-    {
-        text += &format!(", tooth {tooth} at {angle:.0}° ({})", percent(probability));
+    if let Some(ToothAnswer { number, angle_deg, probability }) = place.tooth {
+        text += &format!(", tooth {number} at {angle_deg:.0}° ({})", percent(probability));
     } else if place.is_on_one_tooth {
         text += ", one tooth";
     }

@@ -1,6 +1,6 @@
 //! The figure of the last record, and that of the trend.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use meshtone_io::indicators::RecordEntry;
 use meshtone_plot::Figure;
@@ -63,14 +63,14 @@ pub fn of_record(
         start_s: latest.input.start_s,
         samples: &channel.samples,
     };
-    let title = title(&[name(&latest.input.source)], series);
+    let title = title(std::slice::from_ref(&latest.input.source), series);
     record::draw(&RecordFigure { title: &title, facts: &facts, signal, wheels: &wheels })
 }
 
 /// The figure of the indicators over the series.
 pub fn of_trend(series: &Series, phase: &PhaseOptions, processing: &ProcessingOptions) -> Figure {
-    let names: Vec<String> =
-        series.results.recordings.iter().map(|recording| name(&recording.source)).collect();
+    let paths: Vec<PathBuf> =
+        series.results.recordings.iter().map(|recording| recording.source.clone()).collect();
     let counted_records = match processing.revolutions {
         None => format!("{} recordings", counted(series)),
         Some(revolutions) => format!("{} segments of {revolutions} revolutions", counted(series)),
@@ -80,7 +80,7 @@ pub fn of_trend(series: &Series, phase: &PhaseOptions, processing: &ProcessingOp
         series.wheels.iter().map(|wheel| format!("{}, {} teeth", wheel.name, wheel.teeth)).collect();
     let (along, places) = places(series, processing.revolutions.is_some());
     let figure = TrendFigure {
-        title: &title(&names, series),
+        title: &title(&paths, series),
         facts: &facts,
         along,
         wheels: &wheels,
@@ -113,14 +113,17 @@ fn counted(series: &Series) -> usize {
     series.wheels.iter().map(|wheel| series.of(wheel).count()).max().unwrap_or(0)
 }
 
-/// `run01.csv … run12.csv: bearing`.
-fn title(names: &[String], series: &Series) -> String {
-    let channel = &series.results.channel;
-    match names {
-        [] => channel.clone(),
-        [only] => format!("{only}: {channel}"),
-        [first, .., last] => format!("{first} … {last}: {channel}"),
+/// `run01.csv … run12.csv`.
+pub fn several_names(paths: &[PathBuf]) -> String {
+    match paths {
+        [first, .., last] => format!("{} … {}", name(first), name(last)),
+        several => several.iter().map(|path| name(path)).collect(),
     }
+}
+
+/// `run01.csv … run12.csv: bearing`.
+fn title(paths: &[PathBuf], series: &Series) -> String {
+    format!("{}: {}", several_names(paths), series.results.channel)
 }
 
 fn trends(series: &Series) -> Vec<Trend> {

@@ -1,6 +1,5 @@
 //! The files that the indicators are written to.
 
-use std::io::{BufWriter, Write};
 use std::path::Path;
 use std::thread;
 
@@ -41,10 +40,6 @@ pub fn write(
     let mut staged = record?;
     staged.extend(trend?);
     staged.push(StagedFile::write(&directory.join(TABLE), |file| results.write_parquet(file))?);
-    let json = StagedFile::write(&directory.join(JSON), |file| {
-        let mut file = BufWriter::new(file);
-        results.write_json(&mut file)?;
-        file.flush()
-    })?;
+    let json = StagedFile::write(&directory.join(JSON), |file| results.write_json(file))?;
     Ok(undisturbed(|| replace(directory, &FILES, staged, json))?)
 }

@@ -9,7 +9,7 @@ use meshtone::signal::{
 use meshtone_io::indicators::WarningEntry;
 
 use super::options::PhaseOptions;
-use super::phase_files::{hertz, one_column, profile, times_s};
+use super::phase_files::{columns, hertz, times_s};
 use super::process::Wheel;
 use super::reading::Input;
 use super::refuse::{RefusedInput, refuse};
@@ -52,10 +52,9 @@ impl PhaseOptions {
     pub fn check(&self, input: &Input) -> Result<(), Failure> {
         let path = input.source.display();
         if self.teeth.is_none() {
-            return Err(Failure::bad_input(format!("{path}: the teeth of the wheel are not stated"))
-                .with_help(
-                    "state them with --teeth; only what `meshtone simulate` wrote tells them itself",
-                ));
+            let problem = format!("{path}: the teeth of the wheel are not stated");
+            let help = "state them with --teeth; only what `meshtone simulate` wrote tells them itself";
+            return Failure::refuse(problem, help);
         }
         if !self.states_shaft_angle() {
             let help = if input.scenario_toml.is_some() {
@@ -65,7 +64,7 @@ impl PhaseOptions {
                  --from-mesh-tone"
             };
             let problem = format!("{path}: nothing says how far the shaft has turned");
-            return Err(Failure::bad_input(problem).with_help(help));
+            return Failure::refuse(problem, help);
         }
         Ok(())
     }
@@ -125,13 +124,14 @@ impl PhaseOptions {
             ShaftPhase::from_pulses(times, self.pulses_per_rev, self.shaft_hz, rate_hz, samples)
         };
         if let Some(path) = &self.pulse_times {
-            let (times, warnings) = one_column(path)?;
+            let ([times], warnings) = columns(path, "--pulse-times", "one, the times of the pulses in s")?;
             let what = format!("--pulse-times {}", path.display());
             let phase = pulses(&times_s(times, input.start_s)).map_err(of(what, RefusedInput::PulseTimes))?;
             return Ok((phase, warnings));
         }
         if let Some(path) = &self.speed_profile {
-            let ([times, speeds], warnings) = profile(path)?;
+            let ([times, speeds], warnings) =
+                columns(path, "--speed-profile", "two, time in s and speed in Hz or rpm")?;
             let times = times_s(times, input.start_s);
             let phase = ShaftPhase::from_speed_profile(&times, &hertz(path, speeds)?, rate_hz, samples);
             let what = format!("--speed-profile {}", path.display());
@@ -184,8 +184,8 @@ pub fn simulated(input: &Input, scenario_toml: &str) -> Result<(Scenario, Simula
     if !input.has_own_time {
         let problem =
             format!("{path}: --sampling-rate-hz or --time-column is given, but the file says both itself");
-        return Err(Failure::bad_input(problem)
-            .with_help("leave them out, or state --teeth and the phase too, as of a measured recording"));
+        let help = "leave them out, or state --teeth and the phase too, as of a measured recording";
+        return Failure::refuse(problem, help);
     }
     let scenario = Scenario::from_toml(scenario_toml);
     let valid = scenario.and_then(|scenario| scenario.validate().map(|_| scenario));
@@ -196,7 +196,7 @@ pub fn simulated(input: &Input, scenario_toml: &str) -> Result<(Scenario, Simula
     let (rate, expected) = (input.sampling_rate_hz, shafts.sampling_rate_hz());
     if (rate / expected - 1.0).abs() > RATE_ROUNDING {
         let problem = format!("{path}: is sampled at {rate} S/s, but its scenario at {expected} S/s");
-        return Err(Failure::bad_input(problem).with_help(HELP));
+        return Failure::refuse(problem, HELP);
     }
     Ok((scenario, shafts))
 }

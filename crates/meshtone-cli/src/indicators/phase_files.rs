@@ -8,19 +8,13 @@ use meshtone_io::recording::{Channel, RecordingOptions, TimeColumn, read_recordi
 use super::reading::warnings_of;
 use crate::failure::Failure;
 
-/// The times of pulses, and what is doubtful about their file.
-pub fn one_column(path: &Path) -> Result<(Channel, Vec<WarningEntry>), Failure> {
-    let ([times], warnings) = columns(path, "--pulse-times", "one, the times of the pulses in s")?;
-    Ok((times, warnings))
-}
-
-/// The times and speeds of a speed profile, and what is doubtful about their file.
-pub fn profile(path: &Path) -> Result<([Channel; 2], Vec<WarningEntry>), Failure> {
-    columns(path, "--speed-profile", "two, time in s and speed in Hz or rpm")
-}
-
-/// A file of numbers that is no recording: it has no sampling rate.
-fn columns<const N: usize>(
+/// The columns of a file of numbers that is no recording, as it has no sampling rate, and what is doubtful about the file.
+///
+/// # Arguments
+/// * `path` - the file
+/// * `option` - the option that names it
+/// * `expected` - how many columns it must have, and what is in them
+pub fn columns<const N: usize>(
     path: &Path,
     option: &str,
     expected: &str,
@@ -61,9 +55,7 @@ pub fn hertz(path: &Path, speed: Channel) -> Result<Vec<f64>, Failure> {
         "rpm" | "1/min" | "min-1" | "rev/min" | "r/min" | "u/min" => 1.0 / 60.0,
         _ => {
             let problem = format!("{}: {} is in {unit}; must be Hz or rpm", path.display(), speed.name);
-            return Err(
-                Failure::bad_input(problem).with_help("name the unit in brackets behind the column's name")
-            );
+            return Failure::refuse(problem, "name the unit in brackets behind the column's name");
         }
     };
     Ok(speed.samples.into_iter().map(|value| value * in_hertz).collect())

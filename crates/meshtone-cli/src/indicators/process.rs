@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use meshtone::scenario::{Scenario, WheelName};
 use meshtone::signal::{
-    AngularSettings, ChainSettings, Record, SeparationSettings, Shaft, SignalError, SignalWarning,
-    angular_resample, check_channel, find_mismatch, process_angular, process_angular_segments,
+    AngularSettings, ChainSettings, Record, SeparationSettings, SignalError, SignalWarning, angular_resample,
+    check_channel, find_mismatch, process_angular, process_angular_segments,
 };
 use meshtone_io::indicators::WarningEntry;
 use meshtone_plot::DamagedTooth;
@@ -68,7 +68,7 @@ pub fn process(
     check_channel(&input.channel.samples)
         .map_err(|error| refuse(&input.source, &of_channel, subject, &error))?;
     let mut processed = Vec::new();
-    for (shaft, wheel) in Shaft::BOTH.into_iter().zip(&wheels) {
+    for (shaft, wheel) in WheelName::BOTH.into_iter().zip(&wheels) {
         let of_wheel = format!("{of_channel}, {} of {} teeth", wheel.name, wheel.teeth);
         let what = if wheels.len() > 1 { &of_wheel } else { &of_channel };
         let (of_wheel, doubt) = wheel_records(input, &turning, shaft, &wheels, phase, processing)
@@ -89,7 +89,7 @@ pub fn process(
 fn wheel_records(
     input: &Input,
     turning: &ShaftAngle,
-    shaft: Shaft,
+    shaft: WheelName,
     wheels: &[Wheel],
     options: &PhaseOptions,
     processing: &ProcessingOptions,
@@ -101,8 +101,8 @@ fn wheel_records(
     let (mean_speed_hz, records, middles_s) = match turning {
         ShaftAngle::Measured(phase) => {
             let phase = match shaft {
-                Shaft::Pinion => Cow::Borrowed(phase),
-                Shaft::Gear => Cow::Owned(phase.of_mate(wheels[0].teeth, wheel.teeth)?),
+                WheelName::Pinion => Cow::Borrowed(phase),
+                WheelName::Gear => Cow::Owned(phase.of_mate(wheels[0].teeth, wheel.teeth)?),
             };
             let angular = angular_resample(&input.channel.samples, &phase, &settings.angular)?;
             if wheel.is_on_shaft {
@@ -140,10 +140,10 @@ fn turning(
     match &input.scenario_toml {
         Some(toml) if phase.is_empty() => {
             let (scenario, shafts) = simulated(input, toml)?;
-            let wheels = Shaft::BOTH.map(|shaft| Wheel {
-                name: shaft.wheel(),
+            let wheels = WheelName::BOTH.map(|shaft| Wheel {
+                name: shaft.name(),
                 teeth: shafts.teeth(shaft),
-                is_on_shaft: shaft == Shaft::Pinion,
+                is_on_shaft: shaft == WheelName::Pinion,
                 damaged_teeth: damaged_teeth(&scenario, shaft),
             });
             Ok((ShaftAngle::Simulated(shafts), wheels.to_vec(), input.warnings.clone()))
@@ -161,11 +161,7 @@ fn turning(
 }
 
 /// The teeth on a shaft that the scenario damages.
-fn damaged_teeth(scenario: &Scenario, shaft: Shaft) -> Vec<DamagedTooth> {
-    let wheel = match shaft {
-        Shaft::Pinion => WheelName::Pinion,
-        Shaft::Gear => WheelName::Gear,
-    };
+fn damaged_teeth(scenario: &Scenario, wheel: WheelName) -> Vec<DamagedTooth> {
     let contact_pitches = scenario.gears.contact_ratio();
     DamagedTooth::of_wheel(&scenario.faults, wheel, scenario.gears.teeth(wheel), contact_pitches)
 }

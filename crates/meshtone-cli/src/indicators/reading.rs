@@ -6,7 +6,7 @@ use meshtone::scenario::Scenario;
 use meshtone::sensor::Channel as SimulatedChannel;
 use meshtone_io::indicators::WarningEntry;
 use meshtone_io::recording::{
-    Channel, ColumnChoice, Recording, RecordingOptions, TextOptions, TimeColumn, read_recording,
+    Channel, ColumnChoice, Recording, RecordingOptions, TextOptions, TimeColumn, names, read_recording,
 };
 
 use super::options::ReadingOptions;
@@ -165,9 +165,9 @@ fn check_turning(
         && read_one(path, options, "--channel", choice)?.0.samples == turning.samples
     {
         let problem = format!("{shown}: channel {name} is both processed and what tells the phase");
-        return Err(Failure::bad_input(problem).with_help(
-            "name the vibration with --channel, and tachometer or speed with --tach or --speed-channel",
-        ));
+        let help =
+            "name the vibration with --channel, and tachometer or speed with --tach or --speed-channel";
+        return Failure::refuse(problem, help);
     }
     let [of_turning, of_channel] = [turning, channel].map(|channel| channel.samples.len());
     if of_turning != of_channel {
@@ -181,7 +181,6 @@ fn check_turning(
 
 /// The only channel there is.
 fn one(path: &Path, mut channels: Vec<Channel>, choice: Option<&str>) -> Result<Channel, Failure> {
-    const SHOWN: usize = 30;
     let path = path.display();
     let count = channels.len();
     if count == 0 {
@@ -191,16 +190,12 @@ fn one(path: &Path, mut channels: Vec<Channel>, choice: Option<&str>) -> Result<
     if count == 1 {
         return Ok(channels.swap_remove(0));
     }
-    let names: Vec<&str> = channels.iter().take(SHOWN).map(|channel| channel.name.as_str()).collect();
-    let mut list = names.join(", ");
-    if count > SHOWN {
-        list += &format!(" and {} more", count - SHOWN);
-    }
+    let list = names(&channels.into_iter().map(|channel| channel.name).collect::<Vec<_>>());
     let (problem, help) = match choice {
         Some(choice) => (format!("channel `{choice}` is {count} columns"), "choose one of them"),
         None => (format!("has {count} channels"), "choose one with --channel NAME"),
     };
-    Err(Failure::bad_input(format!("{path}: {problem}: {list}")).with_help(help))
+    Failure::refuse(format!("{path}: {problem}: {list}"), help)
 }
 
 /// Options by which a column is read, or all columns.
@@ -232,7 +227,8 @@ fn calibrate(channel: &mut Channel, options: &ReadingOptions) -> Result<(), Fail
         let problem = format!("--sensitivity-mv-per-unit: is {wrong}; must be a finite number other than 0");
         return Err(Failure::bad_input(problem));
     }
-    Ok(channel.calibrate(sensitivity.map(|millivolts| millivolts / 1e3), options.unit.as_deref())?)
+    let sensitivity_v_per_unit = sensitivity.map(|millivolts| millivolts / 1e3);
+    channel.calibrate(sensitivity_v_per_unit, options.unit.as_deref()).map_err(Failure::bad_input)
 }
 
 /// Leaves out what is 0 throughout beside channels that are not, as of inputs that nothing was connected to. A warning names it.

@@ -56,11 +56,11 @@ pub fn unreadable(error: ReadRecordingError, option: &str) -> Failure {
             kind => Failure::of_reading(kind, error.to_string()),
         };
     }
+    let message = error.to_string();
     if let ReadRecordingError::UnknownFormat { path, .. } = &error {
-        return or_other_kind(path, RECORDING, Failure::bad_input(error.to_string()));
+        return or_other_kind(path, RECORDING, Failure::bad_input(message));
     }
-    let message =
-        OPTIONS.iter().fold(error.to_string(), |message, (option, flag)| message.replace(option, flag));
+    let message = OPTIONS.iter().fold(message, |message, (option, flag)| message.replace(option, flag));
     Failure::bad_input(message.replace(CHANNEL, option))
 }
 

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use meshtone::signal::{Record, na4};
-use meshtone_io::indicators::{IndicatorResults, RecordEntry, RecordingEntry, Setting};
+use meshtone_io::indicators::{IndicatorResults, RecordEntry, RecordingEntry};
+use serde_json::{Map, Value, json};
 
 use super::options::{EDGES, INTERPOLATIONS, PhaseOptions, ProcessingOptions};
 use super::process::{Processed, Wheel};
@@ -88,7 +89,7 @@ impl Series {
         let refuse = |of: &str, here: String, there: String| {
             let (path, first) = (input.source.display(), first.source.display());
             let problem = format!("{path}: {of} {here}, but {first} {there}; must be the same in a series");
-            Err(Failure::bad_input(problem).with_help("process them one by one, each with its own -o"))
+            Failure::refuse(problem, "process them one by one, each with its own -o")
         };
         let teeth = |wheels: &[Wheel]| -> Vec<String> {
             wheels.iter().map(|wheel| wheel.teeth.to_string()).collect()
@@ -138,31 +139,27 @@ impl Series {
 }
 
 /// Settings of the command line, with its defaults.
-pub fn settings(phase: &PhaseOptions, processing: &ProcessingOptions) -> Vec<(&'static str, Setting)> {
-    let number = |value: Option<f64>| value.map_or(Setting::Absent, Setting::Number);
-    let text = |value: Option<&str>| value.map_or(Setting::Absent, |value| Setting::Text(value.to_owned()));
-    let count = |value: Option<u32>| value.map_or(Setting::Absent, |value| Setting::Count(value as usize));
-    let file = |path: &Option<PathBuf>| {
-        path.as_ref().map_or(Setting::Absent, |path| Setting::Text(path.display().to_string()))
-    };
+pub fn settings(phase: &PhaseOptions, processing: &ProcessingOptions) -> Map<String, Value> {
+    let file = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
     let has_pulses = phase.tach.is_some() || phase.pulse_times.is_some();
     let edge = phase.tach.as_ref().and_then(|_| name_of(&EDGES, phase.edge));
-    vec![
-        ("phase", text(Some(phase.source()))),
-        ("teeth", count(phase.teeth)),
-        ("mate_teeth", count(phase.mate_teeth)),
-        ("shaft_hz", number(phase.shaft_hz)),
-        ("tach", text(phase.tach.as_deref())),
-        ("pulse_times", file(&phase.pulse_times)),
-        ("speed_channel", text(phase.speed_channel.as_deref())),
-        ("speed_profile", file(&phase.speed_profile)),
-        ("pulses_per_rev", count(has_pulses.then_some(phase.pulses_per_rev))),
-        ("threshold", number(phase.threshold)),
-        ("hysteresis", number(phase.hysteresis)),
-        ("edge", text(edge)),
-        ("sidebands", count(Some(processing.sidebands))),
-        ("low_orders", count(Some(processing.low_orders))),
-        ("revolutions_of_a_segment", count(processing.revolutions)),
-        ("interpolation", text(name_of(&INTERPOLATIONS, processing.interpolation))),
-    ]
+    let settings = [
+        ("phase", json!(phase.source())),
+        ("teeth", json!(phase.teeth)),
+        ("mate_teeth", json!(phase.mate_teeth)),
+        ("shaft_hz", json!(phase.shaft_hz)),
+        ("tach", json!(phase.tach)),
+        ("pulse_times", json!(file(&phase.pulse_times))),
+        ("speed_channel", json!(phase.speed_channel)),
+        ("speed_profile", json!(file(&phase.speed_profile))),
+        ("pulses_per_rev", json!(has_pulses.then_some(phase.pulses_per_rev))),
+        ("threshold", json!(phase.threshold)),
+        ("hysteresis", json!(phase.hysteresis)),
+        ("edge", json!(edge)),
+        ("sidebands", json!(processing.sidebands)),
+        ("low_orders", json!(processing.low_orders)),
+        ("revolutions_of_a_segment", json!(processing.revolutions)),
+        ("interpolation", json!(name_of(&INTERPOLATIONS, processing.interpolation))),
+    ];
+    settings.into_iter().map(|(name, setting)| (name.to_owned(), setting)).collect()
 }

@@ -1,37 +1,37 @@
 //! Checks the rules of a plan against each other and against the scenario, and puts them in the order in which they are drawn.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use meshtone::scenario::{Scenario, ScenarioNumber};
 use meshtone_toml::{ReadResult, TomlError, nearest_name};
 
 use super::values::{SEVERITY, fault_of_severity};
 use super::{FAULT_SEVERITY, NOISE_KEYS, PATH_KEYS, Sampler, is_of_plan, shift_key};
-use crate::expression::{Condition, derived_names, underlying};
-use crate::plan::{Content, Level, Rule, Severity, SplitBy, kinds};
+use crate::expression::{Condition, Expression, derived_names, underlying};
+use crate::plan::{Content, Level, Rule, Severity, SplitBy, kinds, refused};
 
 /// Keys that cannot be varied, and why.
 const OWN: [(&str, &str); 2] =
     [("seed", "every record has a seed of its own"), ("quality.seed", "every unit has wheels of its own")];
 
-/// What the records of a class are drawn by.
+/// The scenario and the rules by which the records of a class are drawn.
 #[derive(Debug, Clone)]
 pub(super) struct ClassRules<'a> {
     /// The base scenario with the class's faults.
     pub base: Scenario,
     /// All numbers of that scenario by their keys.
-    pub numbers: HashMap<String, f64>,
+    pub numbers: BTreeMap<String, f64>,
     /// Rules for records. Rules that others depend on come first.
     pub rules: Vec<&'a Rule>,
 }
 
 impl ClassRules<'_> {
-    /// Whether the scenarios of the class's records have a number at a key, or one that is computed from others.
+    /// Returns whether the scenarios of the class's records have a number at a key, or one that is computed from others.
     fn knows(&self, key: &str) -> bool {
         self.numbers.contains_key(key) || self.computes_severity(key)
     }
 
-    /// Whether a key is the severity of a fault that is given by its sizes or otherwise.
+    /// Returns whether a key is the severity of a fault that is given by its sizes or otherwise.
     fn computes_severity(&self, key: &str) -> bool {
         fault_of_severity(key, &self.base.faults).is_some()
     }
@@ -40,27 +40,31 @@ impl ClassRules<'_> {
 /// A rule and its key in the plan.
 type Placed<'a> = (&'a Rule, String);
 
-/// Checks the rules, constraints, shifts and severities of a plan, and prepares what its records are drawn by.
-pub(super) fn sampler(content: &Content) -> ReadResult<Sampler<'_>> {
-    let classes = (0..content.classes.len()).map(|class| class_rules(content, class));
-    let classes = classes.collect::<ReadResult<Vec<_>>>()?;
-    check_top(content, &classes)?;
-    let of_groups: Vec<Placed> =
-        content.top_rules().filter(|(rule, _)| rule.level != Level::Record).collect();
-    let group_rules = in_order(&of_groups, &content.base.numbers())?;
-    let level = |condition| level_of(condition, content);
-    let constraints = content.constraints.iter().map(|condition| (level(condition), condition)).collect();
-    let shift_levels: Vec<Vec<Level>> =
-        content.splits.shifts.iter().map(|shift| shift.when.iter().map(level).collect()).collect();
-    refuse_unit_shifts(content, &shift_levels)?;
-    check_conditions(content, &classes)?;
-    check_severities(content, &classes)?;
-    let ends = content.classes.iter().scan(0, |end, class| {
-        *end += class.count;
-        Some(*end)
-    });
-    let ends = ends.collect();
-    Ok(Sampler { content, group_rules, classes, ends, constraints, shift_levels })
+impl<'a> Sampler<'a> {
+    /// Checks the rules, constraints, shifts and severities of a plan, and prepares the drawing of its records.
+    ///
+    /// # Arguments
+    /// * `content` - of the plan
+    ///
+    /// # Errors
+    /// Rules that contradict each other or the scenario, by their keys in the plan.
+    pub fn new(content: &'a Content) -> ReadResult<Self> {
+        let classes = (0..content.classes.len()).map(|class| class_rules(content, class));
+        let classes = classes.collect::<ReadResult<Vec<_>>>()?;
+        check_top(content, &classes)?;
+        let of_groups = content.top_rules().filter(|(rule, _)| rule.level != Level::Record);
+        let group_rules = in_order(&of_groups.collect::<Vec<Placed>>(), &content.base.numbers())?;
+        let level = |condition| level_of(condition, content);
+        let constraints = content.constraints.iter().map(|condition| (level(condition), condition)).collect();
+        let shift_levels: Vec<Vec<Level>> =
+            content.splits.shifts.iter().map(|shift| shift.when.iter().map(level).collect()).collect();
+        refuse_unit_shifts(content, &shift_levels)?;
+        check_conditions(content, &classes)?;
+        check_severities(content, &classes)?;
+        let counts = || content.classes.iter().map(|class| class.count);
+        let ends = (1..=content.classes.len()).map(|last| counts().take(last).sum()).collect();
+        Ok(Self { content, group_rules, classes, ends, constraints, shift_levels })
+    }
 }
 
 /// Checks the rules that concern a class, and puts those for its records in order.
@@ -70,8 +74,7 @@ fn class_rules(content: &Content, class: usize) -> ReadResult<ClassRules<'_>> {
     let mut own = content.class_rules(class);
     if let Some((rule, place)) = own.find(|(rule, _)| rule.level != Level::Record) {
         let problem = format!("varies by {}; a rule of a class varies by record", rule.level.name());
-        return Err(TomlError::new(place, "", problem)
-            .with_help("move it to the top as [[vary]], or write per = \"record\""));
+        return Err(refused(place, problem, "move it to the top as [[vary]], or write per = \"record\""));
     }
     // A rule at the top concerns the classes whose faults have its keys.
     let has = |key: &String| is_of_plan(key) || find(&known, key).is_some();
@@ -93,7 +96,7 @@ fn keys(known: &[ScenarioNumber]) -> impl Iterator<Item = &str> {
     known.iter().map(|number| number.key.as_str())
 }
 
-/// Whether a key is a fault's: `fault.…`, or of several `fault[1].…`.
+/// Returns whether a key is a fault's: `fault.…`, or of several `fault[1].…`.
 fn is_of_fault(key: &str) -> bool {
     key.starts_with("fault.") || key.starts_with("fault[")
 }
@@ -104,7 +107,7 @@ fn refuse_key((rule, place): &Placed, key: &str, problem: impl Into<String>) -> 
     TomlError::new(format!("{place}.{named}"), format!("{key:?}"), problem)
 }
 
-/// All keys exist, are varied once each, and suit their level.
+/// Checks that all keys exist, are varied once each, and suit their level.
 fn check_keys(rules: &[Placed], known: &[ScenarioNumber], base: &Scenario) -> ReadResult<()> {
     let mut seen: Vec<(&str, &str)> = Vec::new();
     for placed in rules {
@@ -138,9 +141,8 @@ fn check_keys(rules: &[Placed], known: &[ScenarioNumber], base: &Scenario) -> Re
             if fixed_wheels && rule.level != Level::Unit {
                 let problem =
                     format!("`{key}` would differ between {level}s of one unit, which share their wheels");
-                return Err(
-                    refuse(key, problem).with_help("leave out per: it is \"unit\" for gears and quality")
-                );
+                let help = "leave out per: it is \"unit\" for gears and quality";
+                return Err(refuse(key, problem).with_help(help));
             }
             if is_of_fault(key) && rule.level != Level::Record {
                 let problem = format!("`{key}` varies by {level}; faults vary by record");
@@ -177,7 +179,7 @@ fn unknown(placed: &Placed, key: &str, known: &[ScenarioNumber], base: &Scenario
     })
 }
 
-/// Every rule at the top concerns some class.
+/// Checks that every rule at the top concerns some class.
 fn check_top(content: &Content, classes: &[ClassRules]) -> ReadResult<()> {
     for placed in content.top_rules() {
         let rule_keys = &placed.0.keys;
@@ -196,9 +198,10 @@ fn check_top(content: &Content, classes: &[ClassRules]) -> ReadResult<()> {
 
 /// Puts the rules in an order in which each comes after those that it depends on.
 fn in_order<'a>(rules: &[Placed<'a>], known: &[ScenarioNumber]) -> ReadResult<Vec<&'a Rule>> {
+    let keys_of = |term: &'a Option<Expression>| underlying(term.iter().flat_map(Expression::keys));
     for (rule, place) in rules {
         for (name, term) in [("times", &rule.times), ("plus", &rule.plus)] {
-            for key in underlying(term.iter().flat_map(|expression| expression.keys())) {
+            for key in keys_of(term) {
                 check_dependency(rule, &format!("{place}.{name}"), key, rules, known)?;
             }
         }
@@ -206,10 +209,9 @@ fn in_order<'a>(rules: &[Placed<'a>], known: &[ScenarioNumber]) -> ReadResult<Ve
     let mut waiting: Vec<&Placed> = rules.iter().collect();
     let mut ordered: Vec<&'a Rule> = Vec::with_capacity(rules.len());
     while !waiting.is_empty() {
-        let is_ready = |(rule, _): &&Placed| {
-            let terms = [&rule.times, &rule.plus].into_iter().flatten();
-            let depends_on = underlying(terms.flat_map(|expression| expression.keys()));
-            !depends_on.iter().any(|key| waiting.iter().any(|(other, _)| other.varies(key)))
+        let is_ready = |(rule, _): &&Placed<'a>| {
+            let mut depends_on = [&rule.times, &rule.plus].into_iter().flat_map(keys_of);
+            !depends_on.any(|key| waiting.iter().any(|(other, _)| other.varies(key)))
         };
         let Some(next) = waiting.iter().position(is_ready) else {
             let (rule, place) = waiting[0];
@@ -222,7 +224,7 @@ fn in_order<'a>(rules: &[Placed<'a>], known: &[ScenarioNumber]) -> ReadResult<Ve
     Ok(ordered)
 }
 
-/// A rule depends only on numbers that exist, and that are the same for all that it draws for.
+/// Checks that a rule depends only on numbers that exist, and that are the same for all that it draws for.
 fn check_dependency(
     rule: &Rule,
     place: &str,
@@ -251,12 +253,12 @@ fn meant(key: &str, nearest: &str) -> String {
 }
 
 fn no_such_number<'n>(place: &str, key: &str, known: impl Iterator<Item = &'n str>) -> TomlError {
-    let error = TomlError::new(place, "", format!("`{key}` is no number of the scenario"));
     let others = derived_names().chain([SEVERITY]).map(|name| -> &'n str { name });
-    match nearest_name(key, known.chain(others)) {
-        Some(nearest) => error.with_help(meant(key, nearest)),
-        None => error.with_help("sections are part of a key, as in `gears.module_mm`"),
-    }
+    let help = match nearest_name(key, known.chain(others)) {
+        Some(nearest) => &meant(key, nearest),
+        None => "sections are part of a key, as in `gears.module_mm`",
+    };
+    refused(place, format!("`{key}` is no number of the scenario"), help)
 }
 
 /// The level whose values decide a condition: a unit or a mounting, if all numbers in the condition are the same for all records of
@@ -266,12 +268,8 @@ fn level_of(condition: &Condition, content: &Content) -> Level {
         if key == SEVERITY || is_of_fault(key) {
             return Level::Record;
         }
-        content
-            .all_rules()
-            .filter(|rule| rule.varies(key))
-            .map(|rule| rule.level)
-            .max()
-            .unwrap_or(Level::Unit)
+        let rules = content.all_rules().filter(|rule| rule.varies(key));
+        rules.map(|rule| rule.level).max().unwrap_or(Level::Unit)
     };
     underlying(condition.keys()).into_iter().map(level).max().unwrap_or(Level::Unit)
 }
@@ -287,14 +285,14 @@ fn refuse_unit_shifts(content: &Content, shift_levels: &[Vec<Level>]) -> ReadRes
                 "`{}` is the same for all mountings of a unit, which are in several splits where split.by is \"mounting\"",
                 shift.when[of_unit]
             );
-            return Err(TomlError::new(shift_key(s), "", problem)
-                .with_help("leave out split.by, or vary its keys per mounting or record"));
+            let help = "leave out split.by, or vary its keys per mounting or record";
+            return Err(refused(shift_key(s), problem, help));
         }
     }
     Ok(())
 }
 
-/// A damage that grows is given by its severity, which nothing else varies.
+/// Checks that a damage that grows is given by its severity, which nothing else varies.
 fn check_growth(
     content: &Content,
     class: usize,
@@ -304,13 +302,12 @@ fn check_growth(
     if content.classes[class].growth.is_none() {
         return Ok(());
     }
-    let refuse = |problem: &str| TomlError::new(format!("class[{class}].growth"), "", problem);
+    let place = format!("class[{class}].growth");
     if find(known, FAULT_SEVERITY).is_none() {
         let problem =
             "is of a fault without a severity that can be set; must be given by its severity, which grows";
-        return Err(refuse(problem).with_help(
-            "write the class's fault as { kind = \"…\", severity = 0.5 }; a missing tooth cannot grow",
-        ));
+        let help = "write the class's fault as { kind = \"…\", severity = 0.5 }; a missing tooth cannot grow";
+        return Err(refused(place, problem, help));
     }
     let of_fault = rules.iter().find_map(|(rule, place)| {
         let key = rule.keys.iter().find(|key| is_of_fault(key) && *key != FAULT_SEVERITY)?;
@@ -318,8 +315,7 @@ fn check_growth(
     });
     if let Some((key, other)) = of_fault {
         let problem = format!("`{key}` would jump from record to record of a run, in which one damage grows");
-        return Err(TomlError::new(other, "", problem)
-            .with_help("give it in the class's fault, the same for all runs"));
+        return Err(refused(other, problem, "give it in the class's fault, the same for all runs"));
     }
     let of_severity = |condition: &&Condition| {
         underlying(condition.keys()).into_iter().any(|key| key == SEVERITY || key == FAULT_SEVERITY)
@@ -328,16 +324,16 @@ fn check_growth(
     if let Some(condition) = content.constraints.iter().chain(shifts).find(of_severity) {
         let problem =
             format!("has severities that `{condition}` would leave out; a run passes through all of them");
-        return Err(refuse(&problem).with_help("leave out the condition, or the growth"));
+        return Err(refused(place, problem, "leave out the condition, or the growth"));
     }
     if let Some((_, other)) = rules.iter().find(|(rule, _)| rule.varies(FAULT_SEVERITY)) {
         let problem = format!("sets `{FAULT_SEVERITY}`, which {other} varies too");
-        return Err(refuse(&problem).with_help("remove one of the two"));
+        return Err(refused(place, problem, "remove one of the two"));
     }
     Ok(())
 }
 
-/// Constraints and conditions of shifts are about numbers that some class has, and that vary.
+/// Checks that constraints and conditions of shifts are about numbers that some class has, and that vary.
 fn check_conditions(content: &Content, classes: &[ClassRules]) -> ReadResult<()> {
     let is_varied = |key: &str| content.all_rules().any(|rule| rule.varies(key));
     let constraints = content.constraints.iter().enumerate();
@@ -361,13 +357,13 @@ fn check_conditions(content: &Content, classes: &[ClassRules]) -> ReadResult<()>
         };
         if !keys.iter().any(|key| varies(key)) {
             let problem = format!("`{condition}` is about nothing that varies");
-            return Err(TomlError::new(place, "", problem).with_help("vary one of its keys, or remove it"));
+            return Err(refused(place, problem, "vary one of its keys, or remove it"));
         }
     }
     Ok(())
 }
 
-/// Every severity is measured by numbers that its class has.
+/// Checks that every severity is measured by numbers that its class has.
 fn check_severities(content: &Content, classes: &[ClassRules]) -> ReadResult<()> {
     for (c, (class, rules)) in content.classes.iter().zip(classes).enumerate() {
         let Severity::Measured { measure, .. } = &class.severity else { continue };

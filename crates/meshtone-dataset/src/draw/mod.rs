@@ -7,7 +7,7 @@ mod values;
 
 use meshtone::random::{Draws, Purpose};
 use meshtone::scenario::{Scenario, ScenarioError};
-use meshtone_toml::ReadResult;
+use meshtone_toml::{ReadResult, TomlError};
 
 use crate::expression::{Condition, Expression};
 use crate::plan::{Content, Distribution, Level, Rule, RunPosition, SplitBy};
@@ -29,7 +29,7 @@ pub const PATH_KEYS: [&str; 2] = ["path.gain_db", "path.ripple_db"];
 /// Beginning of the names of latent values, which occur only in terms and columns.
 const LATENT: &str = "latent.";
 
-/// Whether a key belongs to the plan alone and not to the scenario: noise, path, or a latent value such as `latent.load`.
+/// Returns whether a key belongs to the plan alone and not to the scenario: noise, path, or a latent value such as `latent.load`.
 ///
 /// # Arguments
 /// * `key` - as a rule names it
@@ -37,7 +37,7 @@ pub fn is_of_plan(key: &str) -> bool {
     NOISE_KEYS.contains(&key) || PATH_KEYS.contains(&key) || key.strip_prefix(LATENT).is_some_and(is_name)
 }
 
-/// Whether a text may be the name of a column: letters, digits and `_`, not starting with a digit.
+/// Returns whether a text may be the name of a column: letters, digits and `_`, not starting with a digit.
 fn is_name(text: &str) -> bool {
     let allowed = |c: char| c.is_ascii_alphanumeric() || c == '_';
     !text.is_empty() && text.chars().all(allowed) && !text.starts_with(|c: char| c.is_ascii_digit())
@@ -67,7 +67,7 @@ pub struct Sampler<'a> {
 }
 
 /// One record of a plan, before it is simulated.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct DrawnRecord {
     /// Its number.
     pub index: u64,
@@ -102,15 +102,6 @@ impl DrawnRecord {
     }
 }
 
-/// A record whose values could not be drawn.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DrawError {
-    /// Key in the plan of the condition that was broken most often.
-    pub key: String,
-    /// What could not be met.
-    pub problem: String,
-}
-
 /// Position of a record among the records of its class.
 struct UnitPosition {
     unit: u64,
@@ -120,7 +111,7 @@ struct UnitPosition {
     records_of_unit: u64,
 }
 
-/// What values are drawn for: a unit, a mounting or a record.
+/// The task of drawing values for a unit, a mounting or a record.
 struct Drawn {
     level: Level,
     /// The class whose scenario has the values that are not drawn. All classes have those of a unit or a mounting.
@@ -134,25 +125,7 @@ struct Drawn {
     before: Vec<(String, f64)>,
 }
 
-/// Values that meet all constraints and suit their split.
-struct SplitValues {
-    values: Vec<(String, f64)>,
-    severity: u8,
-    severity_measure: Option<f64>,
-}
-
-impl<'a> Sampler<'a> {
-    /// Prepares a plan.
-    ///
-    /// # Arguments
-    /// * `content` - of the plan
-    ///
-    /// # Errors
-    /// Rules that contradict each other or the scenario, by their keys in the plan.
-    pub fn new(content: &'a Content) -> ReadResult<Self> {
-        compile::sampler(content)
-    }
-
+impl Sampler<'_> {
     /// Number of records.
     pub fn records(&self) -> u64 {
         self.ends.last().copied().unwrap_or(0)
@@ -164,8 +137,8 @@ impl<'a> Sampler<'a> {
     /// * `index` - its number, below [`Self::records`]
     ///
     /// # Errors
-    /// No values were found that meet the constraints.
-    pub fn record(&self, index: u64) -> Result<DrawnRecord, DrawError> {
+    /// No values were found that meet the constraints: about the key in the plan of the condition that was broken most often.
+    pub fn record(&self, index: u64) -> ReadResult<DrawnRecord> {
         let place = permuted(index, self.records(), self.seed(ORDER));
         let class = self.ends.iter().position(|&end| place < end).unwrap_or(0);
         let start = class.checked_sub(1).map_or(0, |before| self.ends[before]);
@@ -181,7 +154,6 @@ impl<'a> Sampler<'a> {
         let (design, count) = (self.content.design, self.content.classes[class].count);
         let points = Points { design, seed: design_seed, purpose: Purpose::DatasetRecord, count };
         let drawn = Drawn { level: Level::Record, class, points, number, split: Some(split), before };
-        let SplitValues { values, severity, severity_measure } = self.suitable(drawn)?;
         Ok(DrawnRecord {
             index,
             class,
@@ -192,9 +164,7 @@ impl<'a> Sampler<'a> {
             seed: keyed(self.content.seed, Purpose::DatasetSeed, index),
             wheels_seed: keyed(self.content.seed, Purpose::DatasetWheels, place.unit),
             mounting_seed: keyed(self.content.seed, Purpose::DatasetMounting, place.mounting),
-            severity,
-            severity_measure,
-            values,
+            ..self.suitable(drawn)?
         })
     }
 
@@ -255,7 +225,7 @@ impl<'a> Sampler<'a> {
     }
 
     /// The values that the records of a mounting have in common: those of its unit, then its own.
-    fn mounting_values(&self, place: &UnitPosition, split: usize) -> Result<Vec<(String, f64)>, DrawError> {
+    fn mounting_values(&self, place: &UnitPosition, split: usize) -> ReadResult<Vec<(String, f64)>> {
         let Content { design, units, ref splits, .. } = *self.content;
         let points = |seed, purpose, count| Points { design, seed: self.seed(seed), purpose, count };
         let of_unit = self.suitable(Drawn {
@@ -266,19 +236,20 @@ impl<'a> Sampler<'a> {
             split: (splits.by == SplitBy::Unit).then_some(split),
             before: Vec::new(),
         })?;
-        let of_mounting = self.suitable(Drawn {
+        let of_mounting = Drawn {
             level: Level::Mounting,
             class: 0,
             points: points(MOUNTINGS, Purpose::DatasetMounting, self.content.all_mountings()),
             number: place.mounting,
             split: Some(split),
             before: of_unit.values,
-        })?;
-        Ok(of_mounting.values)
+        };
+        self.suitable(of_mounting).map(|mounted| mounted.values)
     }
 
-    /// Draws values until they meet the constraints and suit the split.
-    fn suitable(&self, drawn: Drawn) -> Result<SplitValues, DrawError> {
+    /// Draws values until they meet the constraints and suit the split. Returns a record that has nothing but its values and its
+    /// severity.
+    fn suitable(&self, drawn: Drawn) -> ReadResult<DrawnRecord> {
         let Drawn { level, class, points, number, split, before } = drawn;
         let ClassRules { base, numbers, rules, .. } = &self.classes[class];
         let of_level = self.group_rules.iter().filter(|rule| rule.level == level).copied().collect();
@@ -289,19 +260,16 @@ impl<'a> Sampler<'a> {
             let mut values = Values::new(base, numbers);
             before.iter().for_each(|(key, value)| values.set(key, *value));
             draw(rules, points, number, attempt, &mut values);
-            let (mut severity, mut severity_measure) = (u8::from(!class.faults.is_empty()), None);
-            if level == Level::Record {
-                let drawn = class.severity.of(&|key| values.number(key));
-                (severity, severity_measure) = drawn.unwrap_or((severity, None));
-                // A grade that is the same for a whole class can be held out by the class alone.
-                if severity_measure.is_some() {
-                    values.set_severity(severity);
-                }
-            }
+            let of_record = (level == Level::Record).then_some(&class.severity);
+            let drawn = of_record.and_then(|severity| severity.of(&|key| values.number(key)));
+            let (severity, severity_measure) = drawn.unwrap_or((u8::from(!class.faults.is_empty()), None));
+            // A grade that is the same for a whole class can be held out by the class alone.
+            values.severity = severity_measure.map(|_| f64::from(severity));
             if self.meets_constraints(level, &values, &mut obstacles)
                 && split.is_none_or(|split| self.suits(level, split, &values, &mut obstacles))
             {
-                return Ok(SplitValues { values: values.drawn(), severity, severity_measure });
+                let values = values.drawn;
+                return Ok(DrawnRecord { values, severity, severity_measure, ..DrawnRecord::default() });
             }
         }
         let split = split.map(|split| self.content.splits.names()[split]);
@@ -313,7 +281,7 @@ impl<'a> Sampler<'a> {
         }))
     }
 
-    /// Whether values meet the constraints that they decide.
+    /// Returns whether values meet the constraints that they decide.
     fn meets_constraints(&self, level: Level, values: &Values, obstacles: &mut Obstacles) -> bool {
         let mut decided = self.constraints.iter().filter(|(decided, _)| *decided == level);
         decided.all(|(_, constraint)| {
@@ -323,7 +291,7 @@ impl<'a> Sampler<'a> {
         })
     }
 
-    /// Whether values suit a split: they fulfil the conditions of the split, and not all conditions of another one, as far as they
+    /// Returns whether values suit a split: they fulfil the conditions of the split, and not all conditions of another one, as far as they
     /// decide them.
     fn suits(&self, level: Level, split: usize, values: &Values, obstacles: &mut Obstacles) -> bool {
         let number = |key: &str| values.number(key);
@@ -389,33 +357,26 @@ fn combination(points: Points, index: u64, attempt: u32) -> u64 {
     Draws::new(seed, points.purpose, u64::from(attempt)).bits() >> 1
 }
 
-/// The conditions that were not met, and how often.
+/// The conditions that were not met: the key of each, its words, and how often it was not met.
 #[derive(Default)]
-struct Obstacles {
-    counted: Vec<(String, String, u32)>,
-}
+struct Obstacles(Vec<(String, String, u32)>);
 
 impl Obstacles {
     /// Notes an obstacle; returns false.
     fn note(&mut self, key: String, what: String) -> bool {
-        match self.counted.iter_mut().find(|(_, other, _)| *other == what) {
+        match self.0.iter_mut().find(|(_, other, _)| *other == what) {
             Some((_, _, count)) => *count += 1,
-            None => self.counted.push((key, what, 1)),
+            None => self.0.push((key, what, 1)),
         }
         false
     }
 
-    fn error(mut self, of: &str) -> DrawError {
-        self.counted.sort_by_key(|(_, _, count)| std::cmp::Reverse(*count));
-        let key = self.counted.first().map(|(key, _, _)| key.clone()).unwrap_or_default();
-        let list: Vec<String> = self
-            .counted
-            .iter()
-            .take(3)
-            .map(|(_, what, count)| format!("{what} was not met by {count}"))
-            .collect();
-        let problem =
-            format!("{MOST_ATTEMPTS} draws for {of} met not all that is asked: {}", list.join(", "));
-        DrawError { key, problem }
+    fn error(mut self, of: &str) -> TomlError {
+        self.0.sort_by_key(|(_, _, count)| std::cmp::Reverse(*count));
+        let key = self.0.first().map(|(key, _, _)| key.clone()).unwrap_or_default();
+        let most = self.0.iter().take(3).map(|(_, what, count)| format!("{what} was not met by {count}"));
+        let most = most.collect::<Vec<_>>().join(", ");
+        let problem = format!("{MOST_ATTEMPTS} draws for {of} met not all that is asked: {most}");
+        TomlError::new(key, "", problem)
     }
 }

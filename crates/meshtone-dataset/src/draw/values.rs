@@ -1,7 +1,7 @@
 //! The values of keys while a record is drawn: drawn values take precedence over those of the base scenario.
 
 use std::cell::OnceCell;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use meshtone::scenario::Scenario;
 
@@ -13,10 +13,12 @@ pub(super) const SEVERITY: &str = "severity";
 
 pub(super) struct Values<'a> {
     base: &'a Scenario,
-    /// Those of `base`.
-    numbers: &'a HashMap<String, f64>,
-    drawn: Vec<(String, f64)>,
-    severity: Option<f64>,
+    /// The numbers of `base`.
+    numbers: &'a BTreeMap<String, f64>,
+    /// Keys and values that have been drawn so far.
+    pub drawn: Vec<(String, f64)>,
+    /// The grade of the severity in conditions; none where it is the same for the whole class.
+    pub severity: Option<f64>,
     /// Severities that follow from the faults' sizes as drawn so far, computed when they are needed.
     severities_by_sizes: OnceCell<Option<Vec<f64>>>,
 }
@@ -27,7 +29,7 @@ impl<'a> Values<'a> {
     /// # Arguments
     /// * `base` - the scenario
     /// * `numbers` - all its numbers, by their keys
-    pub fn new(base: &'a Scenario, numbers: &'a HashMap<String, f64>) -> Self {
+    pub fn new(base: &'a Scenario, numbers: &'a BTreeMap<String, f64>) -> Self {
         Self { base, numbers, drawn: Vec::new(), severity: None, severities_by_sizes: OnceCell::new() }
     }
 
@@ -53,14 +55,6 @@ impl<'a> Values<'a> {
         self.severities_by_sizes.take();
         self.drawn.push((key.to_owned(), value));
     }
-
-    pub fn set_severity(&mut self, grade: u8) {
-        self.severity = Some(f64::from(grade));
-    }
-
-    pub fn drawn(self) -> Vec<(String, f64)> {
-        self.drawn
-    }
 }
 
 /// The values at keys of the scenario.
@@ -69,7 +63,7 @@ pub(super) fn of_scenario(values: &[(String, f64)]) -> Vec<(&str, f64)> {
     of_scenario.map(|(key, value)| (key.as_str(), *value)).collect()
 }
 
-/// The number of the fault, from 0, whose severity a key is: `fault.severity`, or of several `fault[1].severity`.
+/// Finds the number of the fault, from 0, whose severity a key is: `fault.severity`, or of several `fault[1].severity`.
 pub(super) fn fault_of_severity(key: &str, faults: &[meshtone::scenario::Fault]) -> Option<usize> {
     let section = key.strip_suffix(".severity")?;
     let number = match (section, faults.len()) {

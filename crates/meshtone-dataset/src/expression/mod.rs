@@ -6,7 +6,7 @@
 mod parse;
 
 use std::fmt;
-use std::sync::OnceLock;
+use std::sync::LazyLock;
 
 /// A number computed from keys.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,7 +15,7 @@ pub struct Expression {
     root: Node,
 }
 
-/// Whether a comparison of two numbers holds.
+/// A comparison of two numbers, which holds or not.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Condition {
     text: String,
@@ -81,9 +81,7 @@ impl Expression {
 
     /// The keys that it depends on.
     pub fn keys(&self) -> Vec<&str> {
-        let mut keys = Vec::new();
-        self.root.collect_keys(&mut keys);
-        keys
+        self.root.keys()
     }
 }
 
@@ -109,7 +107,7 @@ impl Condition {
         Ok(Self { text: text.to_owned(), left, comparison, right })
     }
 
-    /// Whether it holds; none where a key has no number.
+    /// Returns whether it holds; none where a key has no number.
     ///
     /// # Arguments
     /// * `number` - the number at a key
@@ -127,10 +125,7 @@ impl Condition {
 
     /// The keys that it depends on.
     pub fn keys(&self) -> Vec<&str> {
-        let mut keys = Vec::new();
-        self.left.collect_keys(&mut keys);
-        self.right.collect_keys(&mut keys);
-        keys
+        [self.left.keys(), self.right.keys()].concat()
     }
 }
 
@@ -165,12 +160,12 @@ impl Node {
         })
     }
 
-    fn collect_keys<'a>(&'a self, keys: &mut Vec<&'a str>) {
+    fn keys(&self) -> Vec<&str> {
         match self {
-            Self::Number(_) => {}
-            Self::Key(key) => keys.push(key),
-            Self::Negative(node) => node.collect_keys(keys),
-            Self::Of(_, nodes) => nodes.iter().for_each(|node| node.collect_keys(keys)),
+            Self::Number(_) => Vec::new(),
+            Self::Key(key) => vec![key],
+            Self::Negative(node) => node.keys(),
+            Self::Of(_, nodes) => nodes.iter().flat_map(Self::keys).collect(),
         }
     }
 }
@@ -184,7 +179,7 @@ const DERIVED: [(&str, &str); 5] = [
     ("operation.mesh_frequency_hz", "operation.pinion_speed_hz * gears.pinion_teeth"),
 ];
 
-/// What a derived name stands for; none for another name.
+/// Returns the expression that a derived name stands for; none for another name.
 ///
 /// ```
 /// use meshtone_dataset::expression::derived;
@@ -193,11 +188,10 @@ const DERIVED: [(&str, &str); 5] = [
 /// assert!(derived("gears.module_mm").is_none());
 /// ```
 pub fn derived(name: &str) -> Option<&'static Expression> {
-    static PARSED: OnceLock<Vec<Option<Expression>>> = OnceLock::new();
-    let place = DERIVED.iter().position(|(derived, _)| *derived == name)?;
-    let parsed =
-        PARSED.get_or_init(|| DERIVED.iter().map(|(_, text)| Expression::parse(text).ok()).collect());
-    parsed[place].as_ref()
+    static PARSED: LazyLock<Vec<(&str, Expression)>> = LazyLock::new(|| {
+        DERIVED.iter().filter_map(|(name, text)| Some((*name, Expression::parse(text).ok()?))).collect()
+    });
+    PARSED.iter().find(|(derived, _)| *derived == name).map(|(_, expression)| expression)
 }
 
 /// All derived names.

@@ -2,12 +2,12 @@
 
 use std::collections::HashSet;
 
-use meshtone::scenario::{Scenario, ScenarioError, WheelName};
+use meshtone::scenario::{Scenario, ScenarioError, ScenarioWarning, WheelName};
 use meshtone_toml::{ReadResult, TomlError, TomlTable};
 
-use super::{Class, Content, Distribution, Level, OverAngle, Plan, Rule, SplitBy, Splits};
-use crate::draw::{DrawError, DrawnRecord, Sampler, is_of_plan};
-use crate::shard::{Column, FailedRecord};
+use super::{Class, Content, Distribution, Level, OverAngle, Plan, Rule, SplitBy, Splits, refused};
+use crate::draw::{DrawnRecord, Sampler, is_of_plan};
+use crate::shard::FailedRecord;
 
 /// Largest number of records that are drawn to check a plan.
 const DRAWN: u64 = 5_000;
@@ -46,8 +46,8 @@ pub(super) fn check(content: &Content, root: &TomlTable<'_>) -> ReadResult<()> {
     ] {
         if is_given {
             let problem = format!("cannot be given: {why}");
-            return Err(TomlError::new(format!("scenario.quality.{key}"), "", problem)
-                .with_help("remove it from the base scenario"));
+            let place = format!("scenario.quality.{key}");
+            return Err(refused(place, problem, "remove it from the base scenario"));
         }
     }
     let mut tuned = content.tuned.iter().flat_map(|tuned| &tuned.keys);
@@ -55,33 +55,27 @@ pub(super) fn check(content: &Content, root: &TomlTable<'_>) -> ReadResult<()> {
         let problem = format!("has the key `{key}`, which a rule varies; must be one of the two");
         return Err(root.error("tuned", problem));
     }
-    Sampler::new(content).map(|_| ())
+    Sampler::new(content).map(drop)
 }
 
 /// Checks that no two columns of the data set have the same name.
 pub(super) fn unique_columns(plan: &Plan) -> ReadResult<()> {
     let columns = crate::shard::columns(plan);
     let mut names = HashSet::new();
-    match columns.iter().find(|column| !names.insert(&column.name)) {
-        None => Ok(()),
-        Some(Column { name, .. }) => {
-            let problem = format!("two columns of the data set would be called `{name}`");
-            Err(TomlError::new("keep", "", problem).with_help("keep or vary one of the two"))
-        }
-    }
+    let Some(twice) = columns.iter().find(|column| !names.insert(&column.name)) else { return Ok(()) };
+    let problem = format!("two columns of the data set would be called `{}`", twice.name);
+    Err(refused("keep", problem, "keep or vary one of the two"))
 }
 
-/// What has been tried of a class.
+/// The records of a class that have been tried.
 #[derive(Default)]
 struct Tried {
     /// The first records.
     records: Vec<DrawnRecord>,
     /// How many of them were made.
     made: usize,
-    /// Whether one of them can be simulated.
-    can_be_simulated: bool,
-    /// Why the first one cannot be simulated.
-    error: Option<ScenarioError>,
+    /// Whether one of them can be simulated, or why the first one cannot; none where none was made.
+    simulated: Option<Result<(), ScenarioError>>,
 }
 
 /// Checks that the first records can be drawn, that one of each class can be simulated, and that every value of a choice is allowed.
@@ -90,28 +84,28 @@ pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
     let sampler = Sampler::new(content)?;
     let mut tried: Vec<Tried> = content.classes.iter().map(|_| Tried::default()).collect();
     for index in 0..plan.records().min(DRAWN) {
-        let record = sampler.record(index).map_err(|DrawError { key, problem }| {
-            TomlError::new(key, "", problem)
-                .with_help("widen the ranges of the keys that it is about, or the condition")
-        })?;
+        let help = "widen the ranges of the keys that it is about, or the condition";
+        let record = sampler.record(index).map_err(|error| error.with_help(help))?;
         refuse_severity(content, &record)?;
         let class = &mut tried[record.class];
-        if class.made < MADE && !class.can_be_simulated {
+        if class.made < MADE && !matches!(class.simulated, Some(Ok(()))) {
             class.made += 1;
             let result = sampler.scenario(&record).and_then(|scenario| {
                 refuse_ignored(&scenario, &record.values)?;
                 refuse_short(content, &scenario)?;
                 meshtone::stages(&scenario).map(drop)
             });
-            class.can_be_simulated = result.is_ok();
-            class.error = class.error.take().or(result.err());
+            if result.is_ok() || class.simulated.is_none() {
+                class.simulated = Some(result);
+            }
         }
         if class.records.len() < TRIED {
             class.records.push(record);
         }
     }
-    for (c, class) in tried.iter_mut().enumerate().filter(|(_, class)| !class.can_be_simulated) {
-        if let Some(error) = class.error.take().map(TomlError::from) {
+    for (c, class) in tried.iter_mut().enumerate() {
+        if let Some(Err(error)) = class.simulated.take() {
+            let error = TomlError::from(error);
             let label = &content.classes[c].label;
             let problem = format!("no record of the class \"{label}\" can be simulated; the first: {error}");
             return Err(with_help_of(TomlError::new(format!("class[{c}]"), "", problem), error));
@@ -133,37 +127,42 @@ fn refuse_severity(content: &Content, record: &DrawnRecord) -> ReadResult<()> {
     let class = &content.classes[record.class];
     let mut rules = content.class_rules(record.class).chain(content.top_rules());
     let rule = rules.find(|(rule, _)| rule.varies(key));
-    let place = rule.map(|(rule, place)| format!("{place}.{}", rule.distribution.name()));
+    let distribution = |(rule, place): (&Rule, String)| format!("{place}.{}", rule.distribution.name());
+    let place = rule.map_or_else(|| "vary".to_owned(), distribution);
     let problem = format!(
         "gives {key} = {value:.4} to record {} of the class \"{}\"; a severity must be from 0 to 1",
         record.index, class.label
     );
-    Err(TomlError::new(place.unwrap_or_else(|| "vary".to_owned()), "", problem).with_help(
-        "narrow what it draws, or add a constraint such as constraints = [\"fault.severity < 1\"]",
-    ))
+    let help = "narrow what it draws, or add a constraint such as constraints = [\"fault.severity < 1\"]";
+    Err(refused(place, problem, help))
 }
 
 fn is_severity(key: &str) -> bool {
     key.strip_suffix(".severity").is_some_and(|section| section.starts_with("fault"))
 }
 
-/// Those of the first records whose scenarios show that they cannot be simulated, before any profile is computed.
-pub(super) fn foreseen(plan: &Plan) -> ReadResult<Vec<FailedRecord>> {
-    let sampler = Sampler::new(&plan.content)?;
-    let cannot = |index: u64| {
-        let record = sampler.record(index).ok()?;
-        let scenario = sampler.scenario(&record).map_err(TomlError::from);
-        let refused = scenario.and_then(|scenario| refuse_short(&plan.content, &scenario)).err()?;
-        Some(FailedRecord { record: index, reason: refused.to_string() })
-    };
-    Ok((0..plan.records().min(DRAWN)).filter_map(cannot).collect())
-}
+impl Plan {
+    /// Those of the first 5000 records whose scenarios show that they cannot be simulated, for example because a draw is outside a
+    /// fault's limits or the hunting period is shorter than `keep.duration_s`. The data set will lack these records.
+    pub fn foreseen_failures(&self) -> Vec<FailedRecord> {
+        // A plan that was read has been checked, so that its records can be drawn.
+        let Ok(sampler) = Sampler::new(&self.content) else { return Vec::new() };
+        let cannot = |index: u64| {
+            let record = sampler.record(index).ok()?;
+            let scenario = sampler.scenario(&record).map_err(TomlError::from);
+            let refused = scenario.and_then(|scenario| refuse_short(&self.content, &scenario)).err()?;
+            Some(FailedRecord { record: index, reason: refused.to_string() })
+        };
+        (0..self.records().min(DRAWN)).filter_map(cannot).collect()
+    }
 
-/// Warnings about a plan whose records can be made.
-pub(super) fn doubts(plan: &Plan) -> ReadResult<Vec<String>> {
-    let units = plan.content.units;
-    let short = plan.content.classes.iter().filter_map(|class| short_runs(class, units));
-    Ok(short.chain(unlearned(plan)?).collect())
+    /// Warnings about what the plan asks for: runs to failure of only one or two records, and values of units or mountings that no
+    /// record of the training has.
+    pub fn warnings(&self) -> Vec<String> {
+        let units = self.content.units;
+        let short = self.content.classes.iter().filter_map(|class| short_runs(class, units));
+        short.chain(unlearned(self).unwrap_or_default()).collect()
+    }
 }
 
 /// A warning about runs to failure that are too short to show a damage grow.
@@ -197,10 +196,9 @@ fn unlearned(plan: &Plan) -> ReadResult<Vec<String>> {
         let Ok(record) = sampler.record(index) else { continue };
         groups.insert((record.unit, record.mounting));
         for (number, rule) in rules.iter().enumerate() {
-            let row: Option<Vec<f64>> = rule.keys.iter().map(|key| record.value(key)).collect();
-            if let Some(row) = row {
-                seen.insert((number, record.split, bits(&row)));
-            }
+            let row: Option<Vec<u64>> =
+                rule.keys.iter().map(|key| record.value(key).map(f64::to_bits)).collect();
+            seen.extend(row.map(|row| (number, record.split, row)));
         }
     }
     // Nothing is known about units that have not been drawn.
@@ -208,18 +206,19 @@ fn unlearned(plan: &Plan) -> ReadResult<Vec<String>> {
         return Ok(Vec::new());
     }
     let unlearned = |(number, rule): (usize, &&Rule)| {
-        let is_in = |split: usize, row: &[f64]| seen.contains(&(number, split, bits(row)));
+        let is_in = |split: usize, row: &[f64]| {
+            seen.contains(&(number, split, row.iter().map(|value| value.to_bits()).collect()))
+        };
+        let is_missing =
+            |row: &[f64]| !is_in(0, row) && (1..Splits::ALIKE.len()).any(|split| is_in(split, row));
         let rows = values_of(&rule.distribution).into_iter().map(|(_, row)| row);
-        let missing: Vec<&[f64]> = rows
-            .filter(|row| !is_in(0, row) && (1..Splits::ALIKE.len()).any(|split| is_in(split, row)))
-            .collect();
+        let missing: Vec<String> = rows.filter(|row| is_missing(row)).map(|row| joined(row, "/")).collect();
         (!missing.is_empty()).then(|| {
-            let row = |row: &&[f64]| row.iter().map(f64::to_string).collect::<Vec<_>>().join("/");
             format!(
                 "{} = {}: chosen once for a {group}, and in validation or test alone: nothing is learned of it in train; have more \
                  {group}s, or fewer values",
                 rule.keys.join("/"),
-                missing.iter().map(row).collect::<Vec<_>>().join(", "),
+                missing.join(", "),
                 group = rule.level.name(),
             )
         })
@@ -227,8 +226,8 @@ fn unlearned(plan: &Plan) -> ReadResult<Vec<String>> {
     Ok(rules.iter().enumerate().filter_map(unlearned).collect())
 }
 
-fn bits(row: &[f64]) -> Vec<u64> {
-    row.iter().map(|value| value.to_bits()).collect()
+fn joined(row: &[f64], between: &str) -> String {
+    row.iter().map(f64::to_string).collect::<Vec<_>>().join(between)
 }
 
 /// Checks that every value of a choice or a grid is allowed together with the other values of some record, as far as no profile is
@@ -244,12 +243,9 @@ fn every_choice(content: &Content, sampler: &Sampler, tried: &[Tried]) -> ReadRe
             for (key, row) in values_of(&rule.distribution).into_iter().take(left) {
                 left -= 1;
                 refuse_value(sampler, &tried.records, rule, row).map_err(|error| {
-                    let listed = row.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
-                    let problem = format!(
-                        "no record of the class \"{}\" can have {} = {listed}: {error}",
-                        class.label,
-                        rule.keys.join(", "),
-                    );
+                    let (label, keys, listed) = (&class.label, rule.keys.join(", "), joined(row, ", "));
+                    let problem =
+                        format!("no record of the class \"{label}\" can have {keys} = {listed}: {error}");
                     with_help_of(TomlError::new(format!("{place}.{key}"), listed, problem), error.into())
                 })?;
             }
@@ -323,8 +319,8 @@ fn refuse_turns(content: &Content, scenario: &Scenario, angle: OverAngle) -> Rea
         && operation.torque_fluctuation_nm == 0.0;
     if !is_steady {
         let problem = "is of a speed and a load that are constant within a record; the scenario's are not";
-        return Err(TomlError::new("keep.points_per_revolution", "", problem)
-            .with_help("leave it and revolutions out, or the profiles and fluctuations"));
+        let help = "leave it and revolutions out, or the profiles and fluctuations";
+        return Err(refused("keep.points_per_revolution", problem, help));
     }
     let time = scenario.time_grid();
     let turns = time.kept_samples() / time.samples_per_pinion_revolution.max(1);
@@ -347,9 +343,8 @@ fn refuse_turns(content: &Content, scenario: &Scenario, angle: OverAngle) -> Rea
 
 /// Refuses a varied key that the model ignores: it would be a label without effect.
 fn refuse_ignored(scenario: &Scenario, values: &[(String, f64)]) -> ReadResult<()> {
-    let ignored = scenario.ignored_by_model();
-    match ignored.iter().find(|warning| values.iter().any(|(key, _)| key.starts_with(&warning.key))) {
-        Some(warning) => Err(TomlError::new(&warning.key, "", warning.message.clone())),
-        None => Ok(()),
-    }
+    let mut ignored = scenario.ignored_by_model().into_iter();
+    let is_varied = |warning: &ScenarioWarning| values.iter().any(|(key, _)| key.starts_with(&warning.key));
+    let refused = ignored.find(is_varied).map(|warning| TomlError::new(warning.key, "", warning.message));
+    refused.map_or(Ok(()), Err)
 }

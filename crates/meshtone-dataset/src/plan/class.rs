@@ -28,7 +28,7 @@ pub(crate) fn kinds(faults: &[Fault]) -> Option<String> {
     (!kinds.is_empty()).then(|| kinds.join(" + "))
 }
 
-/// How severe a record's fault is: a grade, 0 for healthy ones.
+/// The rule for the severity of a record's fault: a grade, 0 for healthy ones.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Severity {
     /// The same for all records of the class.

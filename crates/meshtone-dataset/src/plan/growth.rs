@@ -4,7 +4,7 @@ use meshtone::random::{Draws, Purpose};
 
 use super::Distribution;
 
-/// How a damage grows from its first size to failure.
+/// The law by which a damage grows from its first size to failure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Law {
     /// A crack, by Paris: `da/dN = C ΔK^m`, with `ΔK` as the root of its depth.
@@ -23,7 +23,7 @@ pub enum Law {
     },
 }
 
-/// How the damage of a class's units grows to failure. All records of a unit in such a class are of one run, in one mounting.
+/// The growth of the damage of a class's units to failure. All records of a unit in such a class are of one run, in one mounting.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Growth {
     /// The law of growth.
@@ -69,7 +69,7 @@ impl Law {
 }
 
 impl Growth {
-    /// How severe the damage is at a part of its life.
+    /// Computes how severe the damage is at a part of its life.
     ///
     /// # Arguments
     /// * `part` - (-) of the life, 0 to 1
@@ -109,7 +109,7 @@ impl Growth {
         }
     }
 
-    /// Where a record is in the run of its unit: runs are looked at as often as they have records, once in each of as many equal
+    /// Computes where a record is in the run of its unit: runs are looked at as often as they have records, once in each of as many equal
     /// parts of the time that they are observed.
     ///
     /// # Arguments

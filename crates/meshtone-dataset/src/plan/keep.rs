@@ -6,7 +6,7 @@ use meshtone::sensor::Channel;
 /// Most records in a shard.
 pub const MOST_SHARD_RECORDS: u64 = 65_536;
 
-/// What is kept of each record.
+/// The signals and values that are kept of each record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Keep {
     /// (S/s) Sampling rate of the raw channels.
@@ -64,7 +64,7 @@ impl Keep {
         channels
     }
 
-    /// Whether anything is computed from the analysed channel.
+    /// Returns whether anything is computed from the analysed channel.
     pub fn is_analysed(&self) -> bool {
         self.average || self.difference || self.indicators
     }

@@ -4,42 +4,47 @@
 
 mod check;
 mod class;
-mod files;
 mod growth;
 mod keep;
 mod question;
 mod read;
 mod rule;
 mod split;
-mod template;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use meshtone::scenario::Scenario;
 use meshtone_io::experiment::Tuned;
+use meshtone_toml::TomlError;
 
 pub(crate) use class::kinds;
 pub use class::{Class, Severity};
-pub use files::PlanFile;
 pub use growth::{Growth, Law, RunPosition};
 pub use keep::{Keep, MOST_SHARD_RECORDS, OverAngle};
 pub use question::Question;
 pub use rule::{Distribution, Level, Rule};
 pub use split::{Shift, SplitBy, Splits};
-pub use template::template;
 
 use crate::digest::Digest;
 use crate::expression::Condition;
 use crate::sampling::Design;
-use crate::shard::FailedRecord;
 
-/// What a data set consists of.
+/// Makes an error about a key of a plan.
+///
+/// # Arguments
+/// * `place` - the key
+/// * `help` - what the user can do
+pub(crate) fn refused(place: impl Into<String>, problem: impl Into<String>, help: &str) -> TomlError {
+    TomlError::new(place, "", problem).with_help(help)
+}
+
+/// The plan of a data set.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
-    /// What the data card says about it.
+    /// The facts that the data card states about it.
     pub about: About,
-    /// What decides every byte of the records.
+    /// The settings that decide every byte of the records.
     pub content: Content,
     /// The plan's text and those of the files that it names, to be kept beside the data.
     pub files: Vec<PlanFile>,
@@ -47,7 +52,21 @@ pub struct Plan {
     pub sources: Vec<PathBuf>,
 }
 
-/// What the data card says about a data set.
+/// A text that belongs to a plan.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PlanFile {
+    /// Its name beside the data.
+    pub name: &'static str,
+    /// Its text.
+    pub text: String,
+}
+
+impl PlanFile {
+    /// Names that such files have: the plan, its base scenario, what was tuned.
+    pub const NAMES: [&'static str; 3] = ["plan.toml", "scenario.toml", "tuned.toml"];
+}
+
+/// The facts that the data card states about a data set.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct About {
     /// Title.
@@ -66,7 +85,7 @@ pub struct About {
     pub questions: Vec<Question>,
 }
 
-/// What decides every byte of the records.
+/// The settings that decide every byte of the records.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Content {
     /// Seed of all draws.
@@ -137,19 +156,6 @@ impl Plan {
         self.content.classes.iter().map(|class| class.count).sum()
     }
 
-    /// Those of the first 5000 records whose scenarios show that they cannot be simulated, for example because a draw is outside a
-    /// fault's limits or the hunting period is shorter than `keep.duration_s`. The data set will lack these records.
-    pub fn foreseen_failures(&self) -> Vec<FailedRecord> {
-        // A plan that was read has been checked, so that its records can be drawn.
-        check::foreseen(self).unwrap_or_default()
-    }
-
-    /// Warnings about what the plan asks for: runs to failure of only one or two records, and values of units or mountings that no
-    /// record of the training has.
-    pub fn warnings(&self) -> Vec<String> {
-        check::doubts(self).unwrap_or_default()
-    }
-
     /// The SHA-256 of the plan's content and the program's version, in hexadecimal digits. Plans that say the same have the same hash,
     /// whatever their layout, comments and description.
     ///
@@ -159,4 +165,18 @@ impl Plan {
         let text = format!("{}{:?}", env!("CARGO_PKG_VERSION"), self.content);
         Digest::of(text.as_bytes()).sha256.to_string()
     }
+}
+
+/// A commented plan: every key with its meaning.
+///
+/// ```
+/// use std::path::Path;
+/// use meshtone_dataset::plan::{Plan, template};
+///
+/// let plan = Plan::read_text(template().to_owned(), Path::new("plan.toml"))?;
+/// assert_eq!(plan.records(), 600);
+/// # Ok::<(), meshtone_io::scenario_file::ReadScenarioError>(())
+/// ```
+pub fn template() -> &'static str {
+    include_str!("template.toml")
 }

@@ -48,7 +48,7 @@ impl Question {
         }
     }
 
-    /// Why some classes do not allow the question; none if they do.
+    /// Says why some classes do not allow the question; none if they do.
     ///
     /// # Arguments
     /// * `classes` - of the plan

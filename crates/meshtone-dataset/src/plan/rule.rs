@@ -3,7 +3,7 @@
 use crate::expression::Expression;
 use crate::sampling::{normal_distribution, normal_quantile};
 
-/// What a value is drawn for: a unit, a mounting or a record.
+/// The group that a value is drawn for: a unit, a mounting or a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
     /// Once for all records of a unit.
@@ -25,7 +25,7 @@ impl Level {
     }
 }
 
-/// How one key, or several together, vary.
+/// A rule by which one key, or several together, vary.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rule {
     /// Dotted keys of the scenario file, or of the plan alone: [`crate::draw::is_of_plan`].
@@ -41,13 +41,13 @@ pub struct Rule {
 }
 
 impl Rule {
-    /// Whether the rule varies a key.
+    /// Returns whether the rule varies a key.
     pub(crate) fn varies(&self, key: &str) -> bool {
         self.keys.iter().any(|own| own == key)
     }
 }
 
-/// How a value is drawn. Rows hold one number for each of the rule's keys.
+/// The distribution that a value is drawn from. Rows hold one number for each of the rule's keys.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Distribution {
     /// One value.
@@ -109,7 +109,7 @@ impl Distribution {
         }
     }
 
-    /// Whether a coordinate of the design decides the value.
+    /// Returns whether a coordinate of the design decides the value.
     pub fn is_drawn(&self) -> bool {
         !matches!(self, Self::Fixed(_) | Self::Grid(_))
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::expression::Condition;
 use crate::sampling::permuted;
 
-/// What is divided into splits.
+/// The things that are divided into splits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SplitBy {
     /// Units: a pair of wheels is in one split, with all its mountings.
@@ -25,7 +25,7 @@ impl SplitBy {
     }
 }
 
-/// How units, or their mountings, are divided. Each is in one split, with all its records.
+/// The division of units, or of their mountings. Each is in one split, with all its records.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Splits {
     /// What is divided.
@@ -81,8 +81,8 @@ impl Splits {
         split.checked_sub(Self::ALIKE.len())
     }
 
-    /// How many units, or mountings, each split has: by largest remainder, and at least one where its part is more than 0 and there are
-    /// enough.
+    /// Counts the units, or mountings, that each split has: by largest remainder, and at least one where its part is more than 0
+    /// and there are enough.
     ///
     /// # Arguments
     /// * `units` - number of units of all splits
@@ -95,8 +95,8 @@ impl Splits {
     /// assert_eq!(splits.counts(3), [1, 1, 1]);
     /// ```
     pub fn counts(&self, units: u64) -> Vec<u64> {
-        let mut counts = largest_remainder(&self.all_parts(), units);
         let parts = self.all_parts();
+        let mut counts = largest_remainder(&parts, units);
         for (split, part) in parts.iter().enumerate() {
             if *part > 0.0 && counts[split] == 0 {
                 let most = (0..counts.len()).max_by_key(|&other| counts[other]);
@@ -117,14 +117,11 @@ impl Splits {
     pub fn split_of(&self, unit: u64, units: u64, seed: u64) -> usize {
         let place = permuted(unit, units, seed);
         let mut end = 0;
-        let counts = self.counts(units);
-        counts
-            .iter()
-            .position(|count| {
-                end += count;
-                place < end
-            })
-            .unwrap_or(0)
+        let has_unit = |count: u64| {
+            end += count;
+            place < end
+        };
+        self.counts(units).into_iter().position(has_unit).unwrap_or(0)
     }
 }
 

@@ -8,7 +8,7 @@ use std::error::Error;
 use meshtone::Stages;
 use meshtone::batch::ObservedSignals;
 use meshtone::damage::damages_of_fault;
-use meshtone::scenario::{Fault, Model, Scenario, ScenarioWarning, WarningKind, WheelName};
+use meshtone::scenario::{Fault, Model, WheelName};
 use meshtone::sensor::Channel;
 use meshtone::signal::{
     AngularSettings, AntiAliasing, ChainSettings, Edge, MeanPart, Record as Analysis, SeparationSettings,
@@ -39,17 +39,20 @@ pub(super) fn record(
     }
     let mut channels = view.at_rate(samples)?;
     let analysed = simulated.iter().position(|channel| *channel == keep.analysed);
-    let enhanced = content.tuned.is_some();
     let mut record = view.empty(drawn);
     let parts = stages.scenario.model == Model::Contact;
     record.slack_fraction = if parts { observed.apart_fraction } else { observed.tension_fraction };
-    record.warnings = kinds(&observed.warnings);
+    for warning in &observed.warnings {
+        if !record.warnings.contains(&warning.kind) {
+            record.warnings.push(warning.kind);
+        }
+    }
     for (kind, channel) in simulated.iter().zip(&mut channels) {
         if kind.is_acceleration() {
             path::pass(&record.drawn, &kind.name(), keep.sampling_rate_hz, channel);
         }
     }
-    if let (Some(analysed), true) = (analysed, enhanced) {
+    if let Some(analysed) = analysed {
         record.clean_difference = view.clean_difference(&channels[analysed], content)?;
     }
     for (number, (kind, channel)) in simulated.iter().zip(&mut channels).enumerate() {
@@ -84,17 +87,6 @@ pub(super) fn record(
     }
     record.channels = channels;
     Ok(record)
-}
-
-/// The kinds of some warnings, each once, in their order.
-fn kinds(warnings: &[ScenarioWarning]) -> Vec<WarningKind> {
-    let mut kinds = Vec::new();
-    for kind in warnings.iter().map(|warning| warning.kind) {
-        if !kinds.contains(&kind) {
-            kinds.push(kind);
-        }
-    }
-    kinds
 }
 
 /// Makes the record of a healthy twin, which has only the difference signal.
@@ -192,12 +184,8 @@ impl<'a> View<'a> {
         Self { keep, stages, start: Start { revolution, ..start }, offset }
     }
 
-    fn scenario(&self) -> &Scenario {
-        &self.stages.scenario
-    }
-
     fn empty(&self, drawn: DrawnRecord) -> Record {
-        let scenario = self.scenario();
+        let scenario = &self.stages.scenario;
         let fault = |(number, (fault, severity)): (usize, (&Fault, &f64))| RecordFault {
             kind: fault.damage.kind(),
             wheel: fault.wheel,
@@ -218,15 +206,7 @@ impl<'a> View<'a> {
             brake_torque_nm: scenario.operation.brake_torque_nm,
             sampling_rate_hz: self.keep.sampling_rate_hz,
             simulated_s: self.stages.time.kept_samples() as f64 * self.stages.time.step_s(),
-            warnings: Vec::new(),
-            slack_fraction: 0.0,
-            channels: Vec::new(),
-            average: Vec::new(),
-            difference: Vec::new(),
-            indicators: Vec::new(),
-            octaves: Vec::new(),
-            clean_difference: Vec::new(),
-            enhanced: Vec::new(),
+            ..Record::default()
         }
     }
 
@@ -271,7 +251,7 @@ impl<'a> View<'a> {
     /// Phase of the averaged wheel's shaft at the recording's samples.
     fn phase(&self, samples: usize) -> Result<ShaftPhase, SignalError> {
         let rate_hz = self.keep.sampling_rate_hz;
-        let gears = &self.scenario().gears;
+        let gears = &self.stages.scenario.gears;
         if self.offset.is_some() {
             return ShaftPhase::constant(self.shaft_hz(), rate_hz, samples);
         }
@@ -312,19 +292,19 @@ impl<'a> View<'a> {
             return Ok(Vec::new());
         }
         // The same settings as those of the signals that the enhancement was tuned with.
-        let angular = DifferenceChain::angular_settings(self.scenario().model);
+        let angular = DifferenceChain::angular_settings(self.stages.scenario.model);
         Ok(self.analyse(signal, angular, MeanPart::Removed)?.parts.difference)
     }
 
     /// Teeth of the averaged wheel.
     fn teeth(&self) -> u32 {
-        self.scenario().gears.teeth(self.keep.wheel)
+        self.stages.scenario.gears.teeth(self.keep.wheel)
     }
 
     /// (Hz) Nominal speed of the averaged wheel's shaft.
     fn shaft_hz(&self) -> f64 {
-        let gears = &self.scenario().gears;
-        let pinion_hz = self.scenario().operation.pinion_speed_hz;
+        let gears = &self.stages.scenario.gears;
+        let pinion_hz = self.stages.scenario.operation.pinion_speed_hz;
         match self.keep.wheel {
             WheelName::Pinion => pinion_hz,
             WheelName::Gear => pinion_hz * f64::from(gears.pinion_teeth) / f64::from(gears.gear_teeth),
@@ -336,32 +316,22 @@ impl<'a> View<'a> {
         let Some(angle) = self.keep.over_angle else {
             return Ok(values.iter().map(|&value| value as f32).collect());
         };
-        at_points(
-            values,
-            values.len(),
-            angle.points_per_revolution,
-            angle.points_per_revolution,
-            Edge::Periodic,
-        )
+        let points = angle.points_per_revolution;
+        at_points(values, values.len(), points, points, Edge::Periodic)
     }
 
     /// A channel over whole revolutions, from the mark on.
     fn over_angle(&self, signal: &[f32], angle: OverAngle) -> Result<Vec<f32>, SignalError> {
         // The chain refuses a constant channel.
-        if let Some(&first) = signal.first()
-            && signal.iter().all(|&x| x == first)
-        {
+        if let Some(&first) = signal.first().filter(|first| signal.iter().all(|x| x == *first)) {
             return Ok(vec![first; angle.values()]);
         }
         let double: Vec<f64> = signal.iter().map(|&x| f64::from(x)).collect();
         let angular = angular_resample(&double, &self.phase(signal.len())?, &AngularSettings::default())?;
         if angular.revolutions() < angle.revolutions {
             let what = "revolutions of a record for keep.revolutions";
-            return Err(SignalError::TooFew {
-                what,
-                given: angular.revolutions(),
-                needed: angle.revolutions,
-            });
+            let (given, needed) = (angular.revolutions(), angle.revolutions);
+            return Err(SignalError::TooFew { what, given, needed });
         }
         let (from, to) = (angular.points_per_revolution, angle.points_per_revolution);
         at_points(&angular.values, from, to, angle.values(), Edge::Reflect)

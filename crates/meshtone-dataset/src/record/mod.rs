@@ -16,8 +16,8 @@ use meshtone::{Stages, StepJudgement};
 use crate::draw::DrawnRecord;
 use crate::plan::Content;
 
-/// What is kept of one record.
-#[derive(Debug, Clone, PartialEq)]
+/// The signals and values that are kept of one record.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Record {
     /// The values and numbers that it was drawn with.
     pub drawn: DrawnRecord,
@@ -96,19 +96,12 @@ pub(crate) struct KeepRecords<'a, F> {
     pub role: F,
 }
 
-impl<F> KeepRecords<'_, F> {
-    /// The simulated channels, in single precision.
-    fn channels(&self) -> KeepObserved {
-        KeepObserved::new(self.content.keep.simulated())
-    }
-}
-
 impl<F: Fn(usize) -> Option<Role> + Sync> BatchKeep for KeepRecords<'_, F> {
     type Recorder = ObservedRecorder;
     type Kept = Result<Box<Record>, String>;
 
     fn outputs(&self, scenario: &Scenario) -> Result<Vec<Output>, ScenarioError> {
-        self.channels().outputs(scenario)
+        KeepObserved::new(self.content.keep.simulated()).outputs(scenario)
     }
 
     fn kept_bytes(&self, scenario: &Scenario) -> usize {
@@ -116,24 +109,22 @@ impl<F: Fn(usize) -> Option<Role> + Sync> BatchKeep for KeepRecords<'_, F> {
     }
 
     fn recorder(&self, stages: &Stages) -> ObservedRecorder {
-        self.channels().recorder(stages)
+        KeepObserved::new(self.content.keep.simulated()).recorder(stages)
     }
 
     fn keep(&self, index: usize, stages: Stages, recorder: ObservedRecorder) -> Self::Kept {
-        match (self.role)(index) {
-            Some(Role::Record(drawn)) => {
+        let record = match (self.role)(index).ok_or("it was not asked for")? {
+            Role::Record(drawn) => {
                 // The error is only estimated: simulating doubtful records again would triple the work.
                 let observed = recorder.finish(&stages, StepJudgement::Estimated);
-                chain::record(self.content, drawn, &stages, observed).map_err(|error| error.to_string())
+                chain::record(self.content, drawn, &stages, observed)
             }
-            Some(Role::HealthyTwin(drawn, faults)) => {
+            Role::HealthyTwin(drawn, faults) => {
                 let samples = recorder.signals(&stages).channels;
-                chain::twin(self.content, drawn, &faults, &stages, &samples)
-                    .map_err(|error| error.to_string())
+                chain::twin(self.content, drawn, &faults, &stages, &samples).map_err(Into::into)
             }
-            None => Err("it was not asked for".to_owned()),
-        }
-        .map(Box::new)
+        };
+        record.map(Box::new).map_err(|error| error.to_string())
     }
 }
 

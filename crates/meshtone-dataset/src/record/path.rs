@@ -2,6 +2,7 @@
 
 use meshtone::sensor::PathRipple;
 use meshtone_fourier::{from_real_spectrum, real_spectrum, shared_length};
+use meshtone_io::run_identity::fnv_1a;
 
 use crate::draw::{DrawnRecord, PATH_KEYS};
 
@@ -20,7 +21,7 @@ pub(super) fn pass(drawn: &DrawnRecord, channel: &str, rate_hz: f64, signal: &mu
     let [gain_db, ripple_db] = PATH_KEYS.map(|key| drawn.value(key));
     match ripple_db {
         Some(ripple_db) if ripple_db != 0.0 && signal.len() > 1 => {
-            let ripple = PathRipple::new(drawn.mounting_seed, number_of(channel), ripple_db);
+            let ripple = PathRipple::new(drawn.mounting_seed, fnv_1a(channel.as_bytes()), ripple_db);
             filter(signal, rate_hz, &ripple, factor(gain_db.unwrap_or(0.0)));
         }
         _ => {
@@ -34,12 +35,6 @@ pub(super) fn pass(drawn: &DrawnRecord, channel: &str, rate_hz: f64, signal: &mu
 
 fn factor(db: f64) -> f64 {
     libm::pow(10.0, db / 20.0)
-}
-
-/// A number that stands for a name: FNV-1a (RFC 9923).
-fn number_of(name: &str) -> u64 {
-    let step = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-    name.bytes().fold(0xcbf2_9ce4_8422_2325, step)
 }
 
 /// Multiplies the spectrum of a signal, mirrored at its ends: what the transform takes for periodic has no jump anywhere.

@@ -5,7 +5,7 @@ use meshtone::scenario::{Fault, Gears, WheelName};
 
 use crate::draw::DrawnRecord;
 
-/// Where a record begins: at the mark on its unit's gear, in some revolution of the hunting period.
+/// The start of a record: at the mark on its unit's gear, in some revolution of the hunting period.
 ///
 /// A rig's tachometer does not know the damaged tooth, so the mark is at any tooth, the same for all records of a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -10,7 +10,7 @@ pub use permutation::permuted;
 
 use meshtone::random::{Draws, Purpose};
 
-/// How points fill the cube.
+/// A way in which points fill the cube.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Design {
     /// Each point by itself.

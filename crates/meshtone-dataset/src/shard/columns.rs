@@ -4,11 +4,11 @@ use meshtone::damage::Damage;
 use meshtone::scenario::{Fault, Model};
 use meshtone::signal::OCTAVES;
 use meshtone_io::table::{CellType, Cells, TableColumn};
+use meshtone_plot::without_unit;
 
 use crate::draw::{NOISE_KEYS, PATH_KEYS, is_of_plan};
 use crate::plan::{Content, OverAngle, Plan, Rule};
 use crate::record::Record;
-use crate::words::unit_of;
 
 /// Name of the column of warnings' codes.
 pub(crate) const WARNINGS: &str = "warnings";
@@ -27,12 +27,17 @@ pub(crate) struct Column {
     pub description: String,
     /// What the column tells about a record.
     pub topic: Topic,
+    /// The type of the column's cells.
+    pub cell_type: CellType,
     /// Whether cells may be empty.
     nullable: bool,
-    values: Values,
+    /// Makes the column's cells of some records.
+    pub cells: CellsOf,
 }
 
-/// What a column tells about a record.
+type CellsOf = Box<dyn for<'r> Fn(&'r [Record]) -> Cells<'r>>;
+
+/// The topic of a column.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Topic {
     /// A value that the record was drawn with.
@@ -49,42 +54,46 @@ pub(crate) enum Topic {
     Other,
 }
 
-/// How the cells of a column follow from records.
-enum Values {
-    Int32(ValueOf<Option<u32>>),
-    Int64(ValueOf<u64>),
-    Float64(ValueOf<Option<f64>>),
-    Text(ValueOf<Option<String>>),
-    Signal(SignalOf),
-}
-
-type ValueOf<T> = Box<dyn Fn(&Record) -> T>;
-type SignalOf = Box<dyn Fn(&Record) -> &[f32]>;
-
 impl Column {
-    fn new(name: &str, unit: &str, values: Values) -> Self {
+    fn new(
+        name: &str,
+        unit: &str,
+        cell_type: CellType,
+        cells: impl Fn(&[Record]) -> Cells<'_> + 'static,
+    ) -> Self {
         let (name, unit, description) = (name.to_owned(), unit.to_owned(), String::new());
-        Self { name, unit, description, topic: Topic::Other, nullable: false, values }
+        let cells = Box::new(cells);
+        Self { name, unit, description, topic: Topic::Other, cell_type, nullable: false, cells }
     }
 
     fn int32(name: &str, value: impl Fn(&Record) -> Option<u32> + 'static) -> Self {
-        Self::new(name, "", Values::Int32(Box::new(value)))
+        let value = move |record: &Record| value(record).map(|value| value as i32);
+        Self::new(name, "", CellType::Int32, move |records| {
+            Cells::Int32(records.iter().map(&value).collect())
+        })
     }
 
     fn int64(name: &str, value: impl Fn(&Record) -> u64 + 'static) -> Self {
-        Self::new(name, "", Values::Int64(Box::new(value)))
+        let value = move |record: &Record| Some(value(record) as i64);
+        Self::new(name, "", CellType::Int64, move |records| {
+            Cells::Int64(records.iter().map(&value).collect())
+        })
     }
 
     fn float64(name: &str, unit: &str, value: impl Fn(&Record) -> Option<f64> + 'static) -> Self {
-        Self::new(name, unit, Values::Float64(Box::new(value)))
+        let cell_type = CellType::Float64;
+        Self::new(name, unit, cell_type, move |records| Cells::Float64(records.iter().map(&value).collect()))
     }
 
     fn text(name: &str, value: impl Fn(&Record) -> Option<String> + 'static) -> Self {
-        Self::new(name, "", Values::Text(Box::new(value)))
+        Self::new(name, "", CellType::Text, move |records| Cells::Text(records.iter().map(&value).collect()))
     }
 
     fn signal(name: &str, unit: &str, value: impl Fn(&Record) -> &[f32] + 'static) -> Self {
-        Self::new(name, unit, Values::Signal(Box::new(value))).about(Topic::Revolution)
+        let column = Self::new(name, unit, CellType::Float32List, move |records| {
+            Cells::Float32List(records.iter().map(&value).collect())
+        });
+        column.about(Topic::Revolution)
     }
 
     fn meaning(self, description: impl Into<String>) -> Self {
@@ -99,49 +108,24 @@ impl Column {
         Self { nullable: true, ..self }
     }
 
-    /// Whether the column holds a signal.
+    /// Returns whether the column holds a signal.
     pub fn is_signal(&self) -> bool {
-        matches!(self.values, Values::Signal(_))
+        self.cell_type == CellType::Float32List
     }
 
-    /// Whether the column is one of what a record is drawn with.
+    /// Returns whether the column is one of what a record is drawn with.
     pub fn is_drawn(&self) -> bool {
         matches!(self.topic, Topic::Drawn | Topic::Key(_))
     }
 
-    /// Whether the column holds one of the indicators that a preview shows.
+    /// Returns whether the column holds one of the indicators that a preview shows.
     pub fn is_previewed_indicator(&self) -> bool {
         matches!(&self.topic, Topic::Indicator(name) if PREVIEWED_INDICATORS.contains(&name.as_str()))
     }
 
-    /// Whether a preview shows the column, unless all records have the same value.
+    /// Returns whether a preview shows the column, unless all records have the same value.
     pub fn is_previewed(&self) -> bool {
         self.is_drawn() || self.is_previewed_indicator()
-    }
-
-    /// The type of the column's cells.
-    pub fn cell_type(&self) -> CellType {
-        match self.values {
-            Values::Int32(_) => CellType::Int32,
-            Values::Int64(_) => CellType::Int64,
-            Values::Float64(_) => CellType::Float64,
-            Values::Text(_) => CellType::Text,
-            Values::Signal(_) => CellType::Float32List,
-        }
-    }
-
-    /// The column's cells of some records.
-    pub fn cells<'r>(&self, records: &'r [Record]) -> Cells<'r> {
-        let records = records.iter();
-        match &self.values {
-            Values::Int32(value) => {
-                Cells::Int32(records.map(|record| value(record).map(|value| value as i32)).collect())
-            }
-            Values::Int64(value) => Cells::Int64(records.map(|record| Some(value(record) as i64)).collect()),
-            Values::Float64(value) => Cells::Float64(records.map(value).collect()),
-            Values::Text(value) => Cells::Text(records.map(value).collect()),
-            Values::Signal(value) => Cells::Float32List(records.map(value).collect()),
-        }
     }
 }
 
@@ -153,7 +137,7 @@ impl From<&Column> for TableColumn {
         }
         Self {
             name: column.name.clone(),
-            cells: column.cell_type(),
+            cells: column.cell_type,
             nullable: column.nullable,
             metadata: metadata.into_iter().map(|(key, value)| (key.to_owned(), value.clone())).collect(),
         }
@@ -213,7 +197,7 @@ pub(crate) fn columns(plan: &Plan) -> Vec<Column> {
     columns
 }
 
-/// What a record is, its faults and its machine.
+/// Lists the columns of what a record is, of its faults and of its machine.
 fn of_record(content: &Content) -> Vec<Column> {
     let splits: Vec<String> = content.splits.names().into_iter().map(str::to_owned).collect();
     let labels: Vec<String> = content.classes.iter().map(|class| class.label.clone()).collect();
@@ -272,7 +256,7 @@ fn of_record(content: &Content) -> Vec<Column> {
     columns
 }
 
-/// What the simulation of a record says about itself.
+/// Lists the columns of what the simulation of a record says about itself.
 fn of_simulation(model: Model) -> [Column; 3] {
     let (name, slack) = if model == Model::Contact {
         ("apart_fraction", "part of the simulated time in which no teeth touch")
@@ -294,7 +278,7 @@ fn of_simulation(model: Model) -> [Column; 3] {
     ]
 }
 
-/// Where a record is in its unit's run to failure.
+/// Lists the columns of where a record is in its unit's run to failure.
 fn of_run() -> [Column; 3] {
     let left = "turns of the damaged wheel to failure; where `censored` is 1 to the end of the run, at least so many were left";
     [
@@ -354,7 +338,7 @@ fn of_fault(number: usize) -> [Column; 4] {
     .map(Column::nullable)
 }
 
-/// What the columns of an entry of a list begin with: `fault`, and of further ones `fault_2` and so on.
+/// Returns what the names of the columns of an entry of a list begin with: `fault`, and of further ones `fault_2` and so on.
 fn name_in_list(list: &str, number: usize) -> String {
     if number == 0 { list.to_owned() } else { format!("{list}_{}", number + 1) }
 }
@@ -375,15 +359,15 @@ pub(crate) fn varied_keys(content: &Content) -> Vec<(&Rule, &str)> {
 /// The value of a varied key.
 fn of_key(key: &str) -> Column {
     let name = column_name(key);
-    let of_plan = NOISE_KEYS.iter().chain(&PATH_KEYS).position(|other| *other == key);
-    let description = match of_plan {
-        Some(0) => "signal-to-noise ratio of the added noise".to_owned(),
-        Some(1) => "standard deviation of the added noise".to_owned(),
-        Some(2) => "gain of the path to the sensor".to_owned(),
-        Some(_) => {
-            "standard deviation over frequency of the gain of the path to the sensor, its mounting's own"
-                .to_owned()
-        }
+    let meanings = [
+        "signal-to-noise ratio of the added noise",
+        "standard deviation of the added noise",
+        "gain of the path to the sensor",
+        "standard deviation over frequency of the gain of the path to the sensor, its mounting's own",
+    ];
+    let mut of_plan = NOISE_KEYS.iter().chain(&PATH_KEYS).zip(meanings);
+    let description = match of_plan.find(|(other, _)| **other == key) {
+        Some((_, meaning)) => meaning.to_owned(),
         None if is_of_plan(key) => format!("{key} of the plan, which other keys depend on"),
         None if is_tooth(key) => format!(
             "{key} of the scenario, from 1: the same tooth counted from where the scenario's first teeth meet, as the plan \
@@ -391,14 +375,13 @@ fn of_key(key: &str) -> Column {
         ),
         None => format!("{key} of the scenario"),
     };
-    let own_key = key.to_owned();
     let own_name = name.clone();
     let value = move |record: &Record| {
-        let values = &record.drawn.values;
-        let is_in_column = |other: &str| other == own_key || column_name(other) == own_name;
-        values.iter().find(|(other, _)| is_in_column(other)).map(|(_, value)| *value)
+        let of_column = record.drawn.values.iter().find(|(other, _)| column_name(other) == own_name);
+        of_column.map(|(_, value)| *value)
     };
-    let column = Column::float64(&name, unit_of(&name), value).meaning(description);
+    let unit = Some(without_unit(&name).1).filter(|unit| !unit.is_empty()).unwrap_or("-");
+    let column = Column::float64(&name, unit, value).meaning(description);
     column.about(Topic::Key(key.to_owned())).nullable()
 }
 
@@ -417,7 +400,7 @@ pub(crate) fn column_name(key: &str) -> String {
     if is_tooth(key) { format!("{name}_of_scenario") } else { name }
 }
 
-/// Whether a key is the number of a damaged tooth.
+/// Returns whether a key is the number of a damaged tooth.
 fn is_tooth(key: &str) -> bool {
     key.split_once('.').is_some_and(|(section, last)| {
         last == "tooth" && (section == "fault" || number_in(section, "fault").is_some())
@@ -468,7 +451,7 @@ mod tests {
             ("operation.brake_torque_nm", "brake_torque_nm", "N m"),
         ] {
             assert_eq!(column_name(key), name);
-            assert_eq!(unit_of(name), unit);
+            assert_eq!(of_key(key).unit, unit);
         }
     }
 

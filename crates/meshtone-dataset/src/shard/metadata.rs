@@ -57,7 +57,7 @@ impl ShardMetadata {
     }
 }
 
-/// What was read of a shard.
+/// The parts of a shard that were read.
 pub(crate) struct ReadShard {
     pub metadata: ShardMetadata,
     pub rows: u64,

@@ -21,7 +21,7 @@ const SHARD_BYTES: usize = 32 << 20;
 /// Number of records from which the size is estimated.
 const ESTIMATED_BY: u64 = 32;
 
-/// How a plan's records are divided into shards.
+/// The division of a plan's records into shards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shards {
     /// Records of all shards.
@@ -96,7 +96,7 @@ impl Shards {
         format!("{FOLDER}/{folder:0of_folder$}/{FILE}{shard:0digits$}{ENDING}")
     }
 
-    /// Whether all shards stand in one folder.
+    /// Returns whether all shards stand in one folder.
     pub fn is_flat(&self) -> bool {
         self.count() <= FOLDER_SHARDS
     }
@@ -120,7 +120,7 @@ impl Shards {
         number_in(name)?.parse().ok()
     }
 
-    /// Whether a shard of some data set may have a name.
+    /// Returns whether a shard of some data set may have a name.
     pub(crate) fn is_name(name: &str) -> bool {
         name.starts_with(FOLDER) && number_in(name).is_some()
     }

@@ -1,8 +1,9 @@
 //! Writing a shard.
 
+use std::fmt::Display;
 use std::io::{self, Write};
 
-use meshtone::tuning::SimulatedCases;
+use meshtone::tuning::{HybridError, SimulatedCases};
 use meshtone_io::experiment::Tuned;
 use meshtone_io::table::{TableColumn, TableWriter};
 use parquet::basic::{Compression, Encoding, ZstdLevel};
@@ -20,7 +21,7 @@ const GROUP_BYTES: usize = 8 << 20;
 /// (bytes) Size of a page; the default would make pages of signals too small.
 const PAGE_BYTES: usize = 1 << 20;
 
-/// What the simulations give to the writer, in the order of the records.
+/// An item that the simulations give to the writer, in the order of the records.
 pub(crate) enum Item {
     /// A record.
     Record(Box<Record>),
@@ -75,28 +76,16 @@ pub(crate) fn write(
             }
         }
         finished += 1;
-        if bytes >= GROUP_BYTES {
-            write_group(&mut table, columns, &mut records)?;
+        let is_last = finished == metadata.records.end;
+        if !records.is_empty() && (is_last || bytes >= GROUP_BYTES) {
+            table.write_rows(columns.iter().map(|column| (column.cells)(&records)).collect())?;
+            records.clear();
             bytes = 0;
         }
     }
-    write_group(&mut table, columns, &mut records)?;
     table.add_metadata(metadata.key_values()?);
     table.close()?;
     Ok(metadata)
-}
-
-fn write_group(
-    table: &mut TableWriter<impl Write + Send>,
-    columns: &[Column],
-    records: &mut Vec<Record>,
-) -> io::Result<()> {
-    if records.is_empty() {
-        return Ok(());
-    }
-    table.write_rows(columns.iter().map(|column| column.cells(records)).collect())?;
-    records.clear();
-    Ok(())
 }
 
 fn properties(columns: &[Column]) -> Result<WriterProperties, parquet::errors::ParquetError> {
@@ -123,15 +112,14 @@ fn enhanced(
     is_faulty: bool,
 ) -> Result<Vec<f32>, String> {
     let Some(tuned) = tuned else { return Ok(Vec::new()) };
+    let refuse = |why: &dyn Display| format!("it cannot be enhanced: {why}");
     if is_faulty && twin.is_none() {
-        return Err(
-            "it cannot be enhanced: the healthy pair of the same wheels could not be simulated".to_owned()
-        );
+        return Err(refuse(&"the healthy pair of the same wheels could not be simulated"));
     }
     let difference = &record.clean_difference;
     // A healthy record is its own twin.
     let healthy = twin.map_or(difference, |twin| &twin.clean_difference);
-    let signal = (|| {
+    let signal = || {
         let centre_rev = match twin {
             Some(_) => SimulatedCases::new(vec![healthy.clone(), difference.clone()])?.centre_rev(),
             None => tuned.centre_rev,
@@ -139,7 +127,7 @@ fn enhanced(
         let enhanced = tuned.enhancement.without_noise(difference, healthy, centre_rev)?;
         let rms = enhanced.healthy_rms * (1.0 + tuned.enhancement.noise_level.powi(2)).sqrt();
         let signal = enhanced.with_noise(record.drawn.seed, 0)?;
-        Ok::<_, meshtone::tuning::HybridError>(signal.iter().map(|value| (value / rms) as f32).collect())
-    })();
-    signal.map_err(|error| format!("it cannot be enhanced: {error}"))
+        Ok::<_, HybridError>(signal.iter().map(|value| (value / rms) as f32).collect())
+    };
+    signal().map_err(|error| refuse(&error))
 }

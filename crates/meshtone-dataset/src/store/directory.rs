@@ -1,6 +1,5 @@
 //! A data set in a directory.
 
-use std::collections::BTreeMap;
 use std::fmt;
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -9,7 +8,7 @@ use std::path::{Path, PathBuf};
 use meshtone_io::atomic_file;
 use meshtone_io::own_file::{self, PREFIX};
 
-use super::Place;
+use super::{Files, Place};
 use crate::part_list;
 use crate::shard::{self, ReadShard, Wanted};
 
@@ -21,8 +20,8 @@ pub(super) struct Directory {
 
 impl Place for Directory {
     /// Unfinished files are left out.
-    fn files(&self, folder: &str) -> io::Result<BTreeMap<String, u64>> {
-        let mut files = BTreeMap::new();
+    fn files(&self, folder: &str) -> io::Result<Files> {
+        let mut files = Files::new();
         let path = self.path.join(folder);
         if path.exists() {
             let before = if folder.is_empty() { String::new() } else { format!("{folder}/") };
@@ -68,7 +67,7 @@ impl fmt::Display for Directory {
     }
 }
 
-/// Whether a folder is one of a data set: those of its shards, and that of its parts' lists.
+/// Returns whether a folder is one of a data set: those of its shards, and that of its parts' lists.
 ///
 /// # Arguments
 /// * `before` - the folder that it is in, with a `/` at its end; empty for the data set's own directory
@@ -81,7 +80,7 @@ fn is_own_folder(before: &str, name: &str) -> bool {
     }
 }
 
-fn collect(directory: &Path, before: &str, files: &mut BTreeMap<String, u64>) -> io::Result<()> {
+fn collect(directory: &Path, before: &str, files: &mut Files) -> io::Result<()> {
     for entry in fs::read_dir(directory)? {
         let entry = entry?;
         let name = entry.file_name().to_string_lossy().into_owned();

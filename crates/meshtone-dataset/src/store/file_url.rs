@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use percent_encoding::percent_decode_str;
 
-/// Whether a text can stand before the `://` of a URL (RFC 3986, section 3.1).
+/// Returns whether a text can stand before the `://` of a URL (RFC 3986, section 3.1).
 pub(super) fn is_scheme(text: &str) -> bool {
     text.starts_with(|first: char| first.is_ascii_alphabetic())
         && text.chars().all(|c| c.is_ascii_alphanumeric() || "+-.".contains(c))

@@ -26,7 +26,10 @@ use directory::Directory;
 #[cfg(feature = "objects")]
 use object::Objects;
 
-/// Where a data set is written to.
+/// Names of files, with `/` between folders, and their sizes in bytes.
+pub(crate) type Files = BTreeMap<String, u64>;
+
+/// The place that a data set is written to.
 #[derive(Debug, Clone)]
 pub struct Destination {
     place: Arc<dyn Place>,
@@ -40,7 +43,7 @@ trait Place: fmt::Debug + fmt::Display + Send + Sync {
     ///
     /// # Arguments
     /// * `folder` - a folder of the data set; empty for the data set's own directory, with all folders
-    fn files(&self, folder: &str) -> io::Result<BTreeMap<String, u64>>;
+    fn files(&self, folder: &str) -> io::Result<Files>;
 
     /// Reads a file from its start.
     fn open(&self, name: &str) -> io::Result<Box<dyn Read + '_>>;
@@ -56,13 +59,6 @@ trait Place: fmt::Debug + fmt::Display + Send + Sync {
 
     /// The name of a file for messages.
     fn name_of(&self, name: &str) -> String;
-}
-
-/// Something of a place that this program has for itself until it is dropped. An object store has no claims.
-#[derive(Debug)]
-#[must_use = "a claim ends when it is dropped"]
-pub(crate) struct Claimed {
-    _claim: Option<Claim>,
 }
 
 /// (bytes) Size of the blocks in which a file is read to be hashed.
@@ -111,17 +107,16 @@ impl Destination {
     /// ```
     pub fn parse(text: &str) -> Result<Self, DatasetError> {
         let Some((scheme, rest)) = text.split_once("://") else { return Ok(Self::directory(text)) };
-        match scheme.to_ascii_lowercase().as_str() {
-            "file" => file_url::path(rest).map(Self::directory).ok_or_else(|| {
-                DatasetError::refused(format!("{text} names no directory of this machine"), HELP)
-            }),
-            "memory" => Err(DatasetError::refused(format!("{text} would be gone with the program"), HELP)),
-            scheme if file_url::is_scheme(scheme) => Self::remote(text),
-            _ => Err(DatasetError::refused(
-                format!("{text} is no URL: a letter, then letters, digits, +, - or . stand before ://"),
-                HELP,
-            )),
-        }
+        let problem = match scheme.to_ascii_lowercase().as_str() {
+            "file" => match file_url::path(rest) {
+                Some(path) => return Ok(Self::directory(path)),
+                None => "names no directory of this machine",
+            },
+            "memory" => "would be gone with the program",
+            scheme if file_url::is_scheme(scheme) => return Self::remote(text),
+            _ => "is no URL: a letter, then letters, digits, +, - or . stand before ://",
+        };
+        Err(DatasetError::refused(format!("{text} {problem}"), HELP))
     }
 
     #[cfg(feature = "objects")]
@@ -146,24 +141,13 @@ impl Destination {
 
     /// All files that are there: names from the data set's own directory, with `/` between folders, and sizes in bytes. There are none
     /// where the place does not exist.
-    pub(crate) fn files(&self) -> Result<BTreeMap<String, u64>, DatasetError> {
+    pub(crate) fn files(&self) -> Result<Files, DatasetError> {
         self.files_in("")
     }
 
     /// The files of one of the data set's folders, as [`Self::files`] gives them.
-    pub(crate) fn files_in(&self, folder: &str) -> Result<BTreeMap<String, u64>, DatasetError> {
+    pub(crate) fn files_in(&self, folder: &str) -> Result<Files, DatasetError> {
         self.place.files(folder).map_err(DatasetError::read(self.to_string()))
-    }
-
-    /// Whether there is a file with a name.
-    pub(crate) fn has(&self, name: &str) -> Result<bool, DatasetError> {
-        match self.place.open(name) {
-            Ok(_) => Ok(true),
-            Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => {
-                Ok(false)
-            }
-            Err(error) => Err(DatasetError::read(self.place.name_of(name))(error)),
-        }
     }
 
     /// The content of a small file; none where there is no such file.
@@ -251,16 +235,16 @@ impl Destination {
         }
     }
 
-    /// Claims something of the place for this program alone.
+    /// Claims something of the place for this program alone until the claim is dropped. An object store has no claims.
     ///
     /// # Arguments
     /// * `what` - a word for it
     /// * `in_words` - what another program does that has claimed it
-    pub(crate) fn claim(&self, what: &str, in_words: &str) -> Result<Claimed, DatasetError> {
-        let Some(path) = self.path() else { return Ok(Claimed { _claim: None }) };
+    pub(crate) fn claim(&self, what: &str, in_words: &str) -> Result<Option<Claim>, DatasetError> {
+        let Some(path) = self.path() else { return Ok(None) };
         let claim = Claim::take(path, what).map_err(DatasetError::write(self.to_string()))?;
         let busy = || DatasetError::Busy { place: self.to_string(), doing: in_words.to_owned() };
-        Ok(Claimed { _claim: Some(claim.ok_or_else(busy)?) })
+        claim.ok_or_else(busy).map(Some)
     }
 
     /// Removes what killed runs have left behind.

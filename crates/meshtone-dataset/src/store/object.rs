@@ -1,6 +1,5 @@
 //! A data set in an object store.
 
-use std::collections::BTreeMap;
 use std::fmt;
 use std::fs::File;
 use std::future::Future;
@@ -11,8 +10,8 @@ use futures::StreamExt;
 use object_store::path::Path;
 use object_store::{ObjectStore, ObjectStoreExt, PutPayload};
 
-use super::Place;
 use super::remote_file::RemoteFile;
+use super::{Files, Place};
 use crate::shard::{self, ReadShard, Wanted};
 
 /// (bytes) Objects that are larger are uploaded in parts of this size.
@@ -58,11 +57,11 @@ impl Objects {
 }
 
 impl Place for Objects {
-    fn files(&self, folder: &str) -> io::Result<BTreeMap<String, u64>> {
+    fn files(&self, folder: &str) -> io::Result<Files> {
         let folder = self.location(folder);
         wait(async {
             let mut listed = self.store.list(Some(&folder));
-            let mut files = BTreeMap::new();
+            let mut files = Files::new();
             while let Some(object) = listed.next().await {
                 let object = object?;
                 let parts = object.location.prefix_match(&self.prefix);

@@ -1,26 +1,21 @@
 //! The same gears without damage, to compare with.
 
 use meshtone::scenario::Scenario;
-use meshtone::signal::{ChainSettings, IndicatorValue, Shaft, SimulatedShafts};
+use meshtone::signal::IndicatorValue;
+use meshtone::wheel::WheelName;
 use serde_json::Value;
 
-use super::wheel_signals::{WheelSignals, indicators_json};
-use super::{AnswerOptions, chosen};
+use super::wheel_signals::indicators_json;
+use super::{AnswerOptions, wheel_signals};
 use crate::question::memory_limit;
 use crate::refusal::Refusal;
 
-/// Indicators of both wheels without damage.
-#[derive(Debug, Clone, PartialEq)]
-pub struct HealthyIndicators {
-    /// The pinion's and the gear's.
-    pub wheels: [Vec<IndicatorValue>; 2],
-}
+/// Indicators of the pinion and of the gear without damage.
+pub type HealthyIndicators = [Vec<IndicatorValue>; 2];
 
-impl HealthyIndicators {
-    /// As JSON.
-    pub fn json(&self) -> Value {
-        self.wheels.iter().map(|wheel| indicators_json(wheel)).collect()
-    }
+/// Indicators without damage as JSON.
+pub fn healthy_json(healthy: &HealthyIndicators) -> Value {
+    healthy.iter().map(|wheel| indicators_json(wheel)).collect()
 }
 
 /// Indicators of the same gears, on the same rig and under the same load, without damage.
@@ -38,13 +33,6 @@ pub fn healthy_indicators(
     let healthy = options.detail.of(scenario).with_faults(Vec::new());
     let stages = meshtone::stages_within(&healthy, memory_limit())?;
     let simulation = stages.simulate_while(is_wanted)?.ok_or(Refusal::Superseded)?;
-    let channels = &simulation.channels;
-    let channel = chosen(&channels.list(), options.channel.as_deref(), &channels.leading().0);
-    let signal = channels.signal(&channel).unwrap_or_default();
-    let shafts = SimulatedShafts::of_channels(&simulation.stages.scenario, channels);
-    let of_wheel = |shaft| {
-        let record = shafts.process(signal, shaft, &ChainSettings::default());
-        WheelSignals::new(record, shafts.teeth(shaft), Vec::new()).indicators(channel.unit())
-    };
-    Ok(HealthyIndicators { wheels: Shaft::BOTH.map(of_wheel) })
+    let (channel, of_wheel) = wheel_signals(&simulation, options.channel.as_deref());
+    Ok(WheelName::BOTH.map(|shaft| of_wheel(shaft).indicators(channel.unit())))
 }

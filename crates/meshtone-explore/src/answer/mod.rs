@@ -9,12 +9,13 @@ mod wheel_signals;
 
 use meshtone::scenario::{Fault, Model, Scenario, ScenarioWarning};
 use meshtone::sensor::Channel;
-use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
+use meshtone::signal::{ChainSettings, SimulatedShafts};
 use meshtone::wheel::WheelName;
-use meshtone::{Simulation, StageTime};
+use meshtone::{Simulation, StageTime, Stages};
+use meshtone_plot::DamagedTooth;
 use serde_json::{Map, Value, json};
 
-pub use healthy::{HealthyIndicators, healthy_indicators};
+pub use healthy::{HealthyIndicators, healthy_indicators, healthy_json};
 pub use mesh_cycle::MeshCycle;
 pub use recording::{RecordingQuestion, recording};
 pub use severity::severity_curve;
@@ -77,7 +78,7 @@ pub struct AnswerOptions {
 }
 
 /// Everything that the page draws of a scenario.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct State {
     /// What was asked for, whatever was shortened of it.
     pub scenario: Scenario,
@@ -85,30 +86,18 @@ pub struct State {
     pub detail: Detail,
     /// What is doubtful.
     pub warnings: Vec<ScenarioWarning>,
-    /// (-) How severe each fault is.
-    pub severities: Vec<f64>,
-    /// The faults by their sizes, those too that were given by their severity.
-    pub sized_faults: Vec<Fault>,
+    /// The simulation.
+    pub simulation: Simulation,
     /// Key figures: what, value, unit.
     pub figures: Vec<(&'static str, f64, &'static str)>,
     /// The teeth in their plane.
     pub teeth: TeethInPlane,
     /// Stiffness and forces over the mesh cycle.
     pub mesh: MeshCycle,
-    /// The channels that there are, and which of them is drawn.
-    pub channels: Vec<Channel>,
-    /// The one that is drawn.
+    /// The channel that is drawn.
     pub channel: Channel,
-    /// (unit of the channel) The signal.
-    pub signal: Vec<f64>,
-    /// (S/s) Its sampling rate.
-    pub sampling_rate_hz: f64,
-    /// (s) Time of its first sample.
-    pub start_s: f64,
-    /// What the signal shows of each wheel, the pinion first.
+    /// What its signal shows of each wheel, the pinion first.
     pub wheels: [WheelSignals; 2],
-    /// Time that each stage took.
-    pub timings: Vec<StageTime>,
 }
 
 /// Simulates a scenario and prepares all that the page draws.
@@ -128,7 +117,7 @@ pub struct State {
 /// let mut scenario = Scenario::from_toml(presets()[3].toml)?;
 /// scenario.solver.sampling_rate_hz = 2e4;
 /// let state = answer(&scenario, &AnswerOptions::default(), &|| true).unwrap();
-/// assert!(state.severities[0] > 0.0);
+/// assert!(state.simulation.stages.fault_severities[0] > 0.0);
 /// # Ok::<(), meshtone::scenario::ScenarioError>(())
 /// ```
 pub fn answer(
@@ -140,45 +129,27 @@ pub fn answer(
     let (stages, mut warnings) = meshtone::stages_and_warnings(&simulated, memory_limit())?;
     wanted(is_wanted)?;
     let simulation = stages.simulate_while(is_wanted)?.ok_or(Refusal::Superseded)?;
-    let Simulation { stages, channels, timings, .. } = &simulation;
-    let channel = chosen(&channels.list(), options.channel.as_deref(), &channels.leading().0);
-    let signal = channels.signal(&channel).unwrap_or_default();
-    let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
-    let of_wheel = |shaft: Shaft| {
-        let damaged = teeth::damaged_numbers(stages, wheel_of(shaft));
-        let record = shafts.process(signal, shaft, &ChainSettings::default());
-        WheelSignals::new(record, shafts.teeth(shaft), damaged)
-    };
+    let stages = &simulation.stages;
+    let (channel, of_wheel) = wheel_signals(&simulation, options.channel.as_deref());
     let of_signals = || match options.detail {
         Detail::Full => simulation.warnings_of_signals(),
         Detail::Coarse => Vec::new(),
     };
     // About as long as the wheels' signals.
     let of_rest = || (of_signals(), figures(&simulation), TeethInPlane::new(stages), MeshCycle::new(stages));
-    let ((of_signals, figures, teeth, mesh), wheels) = rayon::join(of_rest, || Shaft::BOTH.map(of_wheel));
+    let ((of_signals, figures, teeth, mesh), wheels) = rayon::join(of_rest, || WheelName::BOTH.map(of_wheel));
     warnings.extend(of_signals);
     wanted(is_wanted)?;
     Ok(State {
         scenario: scenario.clone(),
         detail: options.detail,
         warnings,
-        severities: stages.fault_severities.clone(),
-        sized_faults: stages
-            .scenario
-            .faults
-            .iter()
-            .map(|fault| Fault { severity: None, ..fault.clone() })
-            .collect(),
         figures,
         teeth,
         mesh,
-        channels: channels.list(),
-        signal: signal.to_vec(),
         channel,
-        sampling_rate_hz: channels.sampling_rate_hz,
-        start_s: channels.start_s,
         wheels,
-        timings: timings.clone(),
+        simulation,
     })
 }
 
@@ -187,16 +158,27 @@ fn wanted(is_wanted: &dyn Fn() -> bool) -> Result<(), Refusal> {
     if is_wanted() { Ok(()) } else { Err(Refusal::Superseded) }
 }
 
-fn chosen(all: &[Channel], name: Option<&str>, leading: &Channel) -> Channel {
-    let named = name.and_then(|name| all.iter().find(|channel| channel.name() == name));
-    named.unwrap_or(leading).clone()
+/// The channel of a name, or the leading one where there is none of it, and what its signal shows of the wheel on a shaft.
+fn wheel_signals(
+    simulation: &Simulation,
+    name: Option<&str>,
+) -> (Channel, impl Fn(WheelName) -> WheelSignals + Send) {
+    let Simulation { stages, channels, .. } = simulation;
+    let named = channels.list().into_iter().find(|channel| name == Some(&channel.name()));
+    let channel = named.unwrap_or_else(|| channels.leading().0);
+    let signal = channels.signal(&channel).unwrap_or_default();
+    let shafts = SimulatedShafts::of_channels(&stages.scenario, channels);
+    let of_wheel = move |shaft| {
+        let damaged = damaged_numbers(stages, shaft);
+        let record = shafts.process(signal, shaft, &ChainSettings::default());
+        WheelSignals { record, teeth: shafts.teeth(shaft), damaged }
+    };
+    (channel, of_wheel)
 }
 
-fn wheel_of(shaft: Shaft) -> WheelName {
-    match shaft {
-        Shaft::Pinion => WheelName::Pinion,
-        Shaft::Gear => WheelName::Gear,
-    }
+/// Numbers of a wheel's damaged teeth, from 1, rising.
+fn damaged_numbers(stages: &Stages, wheel: WheelName) -> Vec<usize> {
+    DamagedTooth::of_stages(stages, wheel).iter().map(|tooth| tooth.tooth as usize).collect()
 }
 
 /// Key figures of a simulation.
@@ -231,28 +213,29 @@ impl State {
     /// * `more` - what else is said beside it
     pub fn packet(&self, more: Map<String, Value>) -> Vec<u8> {
         let mut packet = Packet::default();
+        let Simulation { stages, channels, timings, .. } = &self.simulation;
+        let signal = channels.signal(&self.channel).unwrap_or_default();
         let timing = |stage: &StageTime| json!([stage.stage, stage.elapsed.as_secs_f64() * 1e3]);
         let warning = |warning: &ScenarioWarning| json!({ "key": warning.key, "message": warning.message });
-        let channels: Vec<Value> = self.channels.iter().map(channel_json).collect();
         let mut said = json!({
             "detail": if self.detail == Detail::Full { "full" } else { "coarse" },
             "toml": self.scenario.to_toml(),
             "scenario": serde_json::to_value(&self.scenario).unwrap_or_default(),
             "warnings": self.warnings.iter().map(warning).collect::<Vec<_>>(),
-            "severities": self.severities,
-            "sized_faults": faults_json(&self.scenario, &self.sized_faults),
+            "severities": stages.fault_severities,
+            "sized_faults": sized_faults(&stages.scenario),
             "figures": self.figures,
             "teeth": self.teeth.json(&mut packet),
             "mesh": self.mesh.json(&mut packet),
-            "channels": channels,
+            "channels": channels.list().iter().map(channel_json).collect::<Vec<_>>(),
             "signal": {
                 "channel": channel_json(&self.channel),
-                "sampling_rate_hz": self.sampling_rate_hz,
-                "start_s": self.start_s,
-                "values": packet.array(self.signal.iter().copied()),
+                "sampling_rate_hz": channels.sampling_rate_hz,
+                "start_s": channels.start_s,
+                "values": packet.array(signal.iter().copied()),
             },
             "wheels": self.wheels.each_ref().map(|wheel| wheel.json(self.channel.unit(), &mut packet)),
-            "timings_ms": self.timings.iter().map(timing).collect::<Vec<_>>(),
+            "timings_ms": timings.iter().map(timing).collect::<Vec<_>>(),
         });
         if let Value::Object(entries) = &mut said {
             entries.extend(more);
@@ -261,9 +244,10 @@ impl State {
     }
 }
 
-/// The sections of faults, always as a list.
-fn faults_json(scenario: &Scenario, faults: &[Fault]) -> Value {
-    let sections = serde_json::to_value(scenario.clone().with_faults(faults.to_vec())).unwrap_or_default();
+/// The sections of faults by their sizes, those too that were given by their severity; always a list.
+fn sized_faults(scenario: &Scenario) -> Value {
+    let sized = scenario.faults.iter().map(|fault| Fault { severity: None, ..fault.clone() }).collect();
+    let sections = serde_json::to_value(scenario.clone().with_faults(sized)).unwrap_or_default();
     match sections.get("fault") {
         Some(Value::Array(several)) => Value::Array(several.clone()),
         Some(single) => Value::Array(vec![single.clone()]),

@@ -6,9 +6,10 @@ use std::path::Path;
 use meshtone::scenario::Scenario;
 use meshtone::sensor::Channel as SimulatedChannel;
 use meshtone::signal::{
-    AngularSettings, ChainSettings, Shaft, ShaftPhase, SignalError, SimulatedShafts, Tachometer,
-    angular_resample, process_angular, tachometer_pulses,
+    AngularSettings, ChainSettings, ShaftPhase, SimulatedShafts, Tachometer, angular_resample,
+    process_angular, tachometer_pulses,
 };
+use meshtone::wheel::WheelName;
 use meshtone_io::recording::{Channel, Recording, RecordingOptions, read_recording};
 use serde_json::{Value, json};
 
@@ -37,40 +38,19 @@ impl RecordingQuestion {
     /// As the page says it.
     ///
     /// # Arguments
-    /// * `told` - the fields by their names
-    pub fn of(told: &Value) -> Self {
-        let text = |name: &str| told.get(name).and_then(Value::as_str).map(str::to_owned);
+    /// * `fields` - the fields by their names
+    pub fn of(fields: &Value) -> Self {
+        let text = |name: &str| fields.get(name).and_then(Value::as_str).map(str::to_owned);
         Self {
             name: text("name").unwrap_or_else(|| "the recording".to_owned()),
             channel: text("channel"),
-            sampling_rate_hz: told.get("sampling_rate_hz").and_then(Value::as_f64),
+            sampling_rate_hz: fields.get("sampling_rate_hz").and_then(Value::as_f64),
             tachometer: text("tachometer"),
         }
     }
 }
 
-/// What a recording shows of both wheels.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RecordingState {
-    /// Name of the file.
-    pub name: String,
-    /// Names of its channels.
-    pub channels: Vec<String>,
-    /// The channel that was processed.
-    pub channel: Channel,
-    /// (S/s) Sampling rate.
-    pub sampling_rate_hz: f64,
-    /// (s) Time of the first sample.
-    pub start_s: f64,
-    /// What tells how far the shaft has turned.
-    pub turning: &'static str,
-    /// What it shows of each wheel, the pinion first.
-    pub wheels: [WheelSignals; 2],
-    /// What is doubtful about the file.
-    pub warnings: Vec<String>,
-}
-
-/// Takes a recording through the chain, with the wheels and the speed of a scenario.
+/// The answer's bytes: what a recording shows of both wheels, through the chain with the wheels and the speed of a scenario.
 ///
 /// # Arguments
 /// * `bytes` - the file
@@ -86,28 +66,33 @@ pub fn recording(
     question: &RecordingQuestion,
     scenario: &Scenario,
     is_wanted: &dyn Fn() -> bool,
-) -> Result<RecordingState, Refusal> {
+) -> Result<Vec<u8>, Refusal> {
     let recording = read(bytes, question)?;
     wanted(is_wanted)?;
-    let names: Vec<String> = recording.channels.iter().map(|channel| channel.name.clone()).collect();
     let simulated = recording.scenario_toml.as_deref().and_then(|toml| Scenario::from_toml(toml).ok());
     let leading =
         simulated.as_ref().map(|scenario| SimulatedChannel::leading(&scenario.sensors).name().into_owned());
-    let channel = named(&recording, question.channel.as_deref().or(leading.as_deref()))?.clone();
+    let channel = named(&recording, question.channel.as_deref().or(leading.as_deref()))?;
     let (turning, wheels) = match (&simulated, &question.tachometer) {
-        (Some(simulated), None) => ("scenario", of_simulation(&recording, &channel, simulated)),
-        _ => of_measurement(&recording, &channel, question, scenario)?,
+        (Some(simulated), None) => ("scenario", of_simulation(&recording, channel, simulated)),
+        _ => of_measurement(&recording, channel, question, scenario)?,
     };
-    Ok(RecordingState {
-        name: question.name.clone(),
-        channels: names,
-        sampling_rate_hz: recording.sampling_rate_hz,
-        start_s: recording.start_s,
-        turning,
-        wheels,
-        warnings: recording.warnings.iter().map(ToString::to_string).collect(),
-        channel,
-    })
+    let mut packet = Packet::default();
+    let unit = channel.unit.as_deref().unwrap_or("");
+    let said = json!({
+        "name": question.name,
+        "channels": recording.channels.iter().map(|channel| &channel.name).collect::<Vec<_>>(),
+        "turning": turning,
+        "warnings": recording.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "signal": {
+            "channel": { "name": channel.name, "unit": unit },
+            "sampling_rate_hz": recording.sampling_rate_hz,
+            "start_s": recording.start_s,
+            "values": packet.array(channel.samples.iter().copied()),
+        },
+        "wheels": wheels.each_ref().map(|wheel| wheel.json(unit, &mut packet)),
+    });
+    Ok(packet.bytes(&said))
 }
 
 /// The file as it would be read from a folder, without the name of where it lay meanwhile in what is wrong with it.
@@ -146,9 +131,9 @@ fn of_simulation(recording: &Recording, channel: &Channel, scenario: &Scenario) 
     let shafts = SimulatedShafts::new(scenario, recording.start_s, recording.len());
     let of_wheel = |shaft| {
         let record = shafts.process(&channel.samples, shaft, &ChainSettings::default());
-        WheelSignals::new(record, shafts.teeth(shaft), Vec::new())
+        WheelSignals { record, teeth: shafts.teeth(shaft), damaged: Vec::new() }
     };
-    Shaft::BOTH.map(of_wheel)
+    WheelName::BOTH.map(of_wheel)
 }
 
 fn of_measurement(
@@ -173,30 +158,8 @@ fn of_measurement(
     let process = |phase: &ShaftPhase, teeth: u32| {
         let record = angular_resample(&channel.samples, phase, &AngularSettings::default())
             .and_then(|angular| process_angular(&angular, teeth, &settings));
-        WheelSignals::new(record, teeth, Vec::new())
+        WheelSignals { record, teeth, damaged: Vec::new() }
     };
-    let of_gear: Result<ShaftPhase, SignalError> = phase.of_mate(pinion_teeth, gear_teeth);
-    Ok((turning, [process(&phase, pinion_teeth), process(&of_gear?, gear_teeth)]))
-}
-
-impl RecordingState {
-    /// The answer's bytes.
-    pub fn packet(&self) -> Vec<u8> {
-        let mut packet = Packet::default();
-        let unit = self.channel.unit.as_deref().unwrap_or("");
-        let said: Value = json!({
-            "name": self.name,
-            "channels": self.channels,
-            "turning": self.turning,
-            "warnings": self.warnings,
-            "signal": {
-                "channel": { "name": self.channel.name, "unit": unit },
-                "sampling_rate_hz": self.sampling_rate_hz,
-                "start_s": self.start_s,
-                "values": packet.array(self.channel.samples.iter().copied()),
-            },
-            "wheels": self.wheels.each_ref().map(|wheel| wheel.json(unit, &mut packet)),
-        });
-        packet.bytes(&said)
-    }
+    let of_gear = phase.of_mate(pinion_teeth, gear_teeth)?;
+    Ok((turning, [process(&phase, pinion_teeth), process(&of_gear, gear_teeth)]))
 }

@@ -5,12 +5,10 @@ use std::sync::atomic::AtomicBool;
 use meshtone::batch::{Control, KeepSimulation, simulate_many};
 use meshtone::damage::damage_kinds;
 use meshtone::scenario::Scenario;
-use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
-use meshtone::wheel::WheelName;
+use meshtone::signal::IndicatorValue;
 use serde_json::{Value, json};
 
-use super::wheel_signals::WheelSignals;
-use super::{AnswerOptions, Detail, chosen};
+use super::{Detail, wheel_signals};
 use crate::packet::Packet;
 use crate::question::memory_limit;
 use crate::refusal::Refusal;
@@ -18,44 +16,15 @@ use crate::refusal::Refusal;
 /// Steps from a sound tooth to the most severe damage: as many simulations as are solved side by side, beside the sound one.
 const STEPS: u32 = 8;
 
-/// Indicators over the severity of a fault.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SeverityCurve {
-    /// Which of the scenario's faults.
-    pub fault: usize,
-    /// The wheel whose indicators they are: the damaged one.
-    pub wheel: WheelName,
-    /// (-) The severities.
-    pub severities: Vec<f64>,
-    /// Name and unit of each indicator, with its value at each severity, NaN where it has none.
-    pub indicators: Vec<(String, String, Vec<f64>)>,
-}
-
-impl SeverityCurve {
-    /// The answer's bytes.
-    pub fn packet(&self) -> Vec<u8> {
-        let mut packet = Packet::default();
-        let indicators: Vec<Value> = (self.indicators.iter())
-            .map(|(name, unit, values)| {
-                json!({ "name": name, "unit": unit, "values": packet.array(values.iter().copied()) })
-            })
-            .collect();
-        let severities = packet.array(self.severities.iter().copied());
-        packet.bytes(&json!({
-            "fault": self.fault,
-            "wheel": self.wheel.name(),
-            "severities": severities,
-            "indicators": indicators,
-        }))
-    }
-}
-
-/// Indicators over the severity of a fault, of simulations that are as short as those while a control moves.
+/// The answer's bytes: indicators over the severity of a fault, of simulations that are as short as those while a control moves.
+///
+/// All severities are simulated side by side, with the scenario's other faults as they are; of each simulation only the indicators
+/// of the damaged wheel are kept, by whose names the values are put together at the end, NaN where there is none.
 ///
 /// # Arguments
 /// * `scenario` - with the fault; those beside it stay
 /// * `fault` - which, from 0
-/// * `channel` - as of [`AnswerOptions`]
+/// * `channel` - as of [`super::AnswerOptions`]
 /// * `cancelled` - set to stop
 ///
 /// # Errors
@@ -65,7 +34,7 @@ pub fn severity_curve(
     fault: usize,
     channel: Option<&str>,
     cancelled: &AtomicBool,
-) -> Result<SeverityCurve, Refusal> {
+) -> Result<Vec<u8>, Refusal> {
     let chosen_fault = scenario.faults.get(fault).ok_or_else(|| {
         let faults = scenario.faults.len();
         Refusal::unfit(format!("fault {fault} is asked for; the scenario has {faults}, counted from 0"))
@@ -73,7 +42,6 @@ pub fn severity_curve(
     let short = Detail::Coarse.of(scenario);
     short.validate_within(memory_limit())?;
     let wheel = chosen_fault.wheel;
-    let shaft = if wheel == WheelName::Pinion { Shaft::Pinion } else { Shaft::Gear };
     let severities = severities(chosen_fault.damage.kind());
     let at = |severity: &f64| {
         let mut other = short.clone();
@@ -86,33 +54,33 @@ pub fn severity_curve(
         other
     };
     let scenarios: Vec<Scenario> = severities.iter().map(at).collect();
-    let options = AnswerOptions { channel: channel.map(str::to_owned), detail: Detail::Coarse };
     let mut tables = Vec::with_capacity(severities.len());
     let control = Control { cancelled, ..Control::default() };
     simulate_many(scenarios, &KeepSimulation, &control, |_, simulation| {
         tables.push(simulation.ok().map(|simulation| {
-            let channels = &simulation.channels;
-            let channel = chosen(&channels.list(), options.channel.as_deref(), &channels.leading().0);
-            let shafts = SimulatedShafts::of_channels(&simulation.stages.scenario, channels);
-            let signal = channels.signal(&channel).unwrap_or_default();
-            let record = shafts.process(signal, shaft, &ChainSettings::default());
-            WheelSignals::new(record, shafts.teeth(shaft), Vec::new()).indicators(channel.unit())
+            let (channel, of_wheel) = wheel_signals(&simulation, channel);
+            of_wheel(wheel).indicators(channel.unit())
         }));
     });
     if tables.len() < severities.len() {
         return Err(Refusal::Superseded);
     }
     let names = tables.iter().flatten().find(|table| !table.is_empty()).cloned().unwrap_or_default();
-    let values = |row: usize| {
-        let value = |table: &Option<Vec<_>>| {
-            let entry: Option<&meshtone::signal::IndicatorValue> = table.as_ref()?.get(row);
-            entry?.value
-        };
-        tables.iter().map(|table| value(table).unwrap_or(f64::NAN)).collect()
+    let value = |table: &Option<Vec<IndicatorValue>>, row: usize| table.as_ref()?.get(row)?.value;
+    let mut packet = Packet::default();
+    let indicator = |(row, IndicatorValue { name, unit, .. }): (usize, &IndicatorValue)| {
+        let values = tables.iter().map(|table| value(table, row).unwrap_or(f64::NAN));
+        json!({ "name": name, "unit": unit, "values": packet.array(values) })
     };
-    let indicators =
-        names.iter().enumerate().map(|(row, entry)| (entry.name.clone(), entry.unit.clone(), values(row)));
-    Ok(SeverityCurve { fault, wheel, indicators: indicators.collect(), severities })
+    let indicators: Vec<Value> = names.iter().enumerate().map(indicator).collect();
+    let severities = packet.array(severities);
+    let said = json!({
+        "fault": fault,
+        "wheel": wheel.name(),
+        "severities": severities,
+        "indicators": indicators,
+    });
+    Ok(packet.bytes(&said))
 }
 
 /// (-) From none to the largest; of a damage without a size, these two.

@@ -112,22 +112,14 @@ impl WheelInPlane {
     fn json(&self, packet: &mut Packet) -> Value {
         let [x_mm, y_mm] = self.flank_mm.each_ref().map(|values| packet.array(values.iter().copied()));
         let damaged: Vec<Value> = self.damaged.iter().map(|tooth| tooth.json(packet)).collect();
-        let Wheel {
-            teeth,
-            tip_radius_mm,
-            root_radius_mm,
-            base_radius_mm,
-            working_pitch_radius_mm,
-            bore_radius_mm,
-            ..
-        } = self.wheel;
+        let wheel = &self.wheel;
         json!({
-            "teeth": teeth,
-            "tip_radius_mm": tip_radius_mm,
-            "root_radius_mm": root_radius_mm,
-            "base_radius_mm": base_radius_mm,
-            "pitch_radius_mm": working_pitch_radius_mm,
-            "bore_radius_mm": bore_radius_mm,
+            "teeth": wheel.teeth,
+            "tip_radius_mm": wheel.tip_radius_mm,
+            "root_radius_mm": wheel.root_radius_mm,
+            "base_radius_mm": wheel.base_radius_mm,
+            "pitch_radius_mm": wheel.working_pitch_radius_mm,
+            "bore_radius_mm": wheel.bore_radius_mm,
             "first_tooth_rad": self.first_tooth_rad,
             "flank_x_mm": x_mm,
             "flank_y_mm": y_mm,
@@ -174,16 +166,6 @@ fn drawn_points(points: usize) -> Vec<usize> {
 
 fn at(values: &[f64], points: &[usize]) -> Vec<f64> {
     points.iter().map(|&index| values[index]).collect()
-}
-
-/// Numbers of a wheel's damaged teeth, from 1, rising.
-pub fn damaged_numbers(stages: &Stages, wheel: WheelName) -> Vec<usize> {
-    let of_wheel = stages.damaged.iter().filter(|tooth| tooth.wheel == wheel);
-    let mut numbers: Vec<usize> =
-        of_wheel.flat_map(|tooth| tooth.teeth.iter().map(|index| index + 1)).collect();
-    numbers.sort_unstable();
-    numbers.dedup();
-    numbers
 }
 
 #[cfg(test)]

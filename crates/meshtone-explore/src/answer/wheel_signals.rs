@@ -21,16 +21,6 @@ pub struct WheelSignals {
 }
 
 impl WheelSignals {
-    /// Of a signal that was processed.
-    ///
-    /// # Arguments
-    /// * `record` - what came of it
-    /// * `teeth` - of the wheel
-    /// * `damaged` - numbers of its damaged teeth, from 1
-    pub fn new(record: Result<Record, SignalError>, teeth: u32, damaged: Vec<usize>) -> Self {
-        Self { teeth, damaged, record }
-    }
-
     /// Its indicators; none where the signal could not be processed.
     ///
     /// # Arguments

@@ -363,7 +363,7 @@ export class Controls {
     this.#answer = answer;
     const entries = (list) => [list ?? []].flat();
     const full = { ...answer.scenario, fault: entries(answer.scenario.fault), sensor: entries(answer.scenario.sensor) };
-    const shape = JSON.stringify([full.fault.map(({ kind }) => kind), full.sensor.length, Boolean(full.gears.tip_relief)]);
+    const shape = JSON.stringify([full.fault.map(({ kind }) => kind), full.sensor.length]);
     if (shape !== this.#shape) this.#build(full);
     this.#shape = shape;
     for (const control of this.#controls.values()) control.show(this.#value(control.path, full), full.model);
@@ -403,23 +403,23 @@ export class Controls {
       this.#groups.set(section.name, group);
       if (section.name === "fault") group.append(...this.#faults(full.fault));
       else if (section.name === "sensor") group.append(...this.#sensors(full.sensor, told.keys));
-      else group.append(...this.#section(section, told.keys, full));
+      else group.append(...this.#section(section, told.keys));
       return group;
     }));
     if (focused) document.getElementById(focused)?.focus();
   }
 
-  #section(section, keys, full) {
+  #section(section, keys) {
     const base = section.name ? [section.name] : [];
     const more = element("details", { className: "more", open: false }, element("summary", {}, "More"));
     const first = section.first.map((name) => keys.find(({ key }) => key === name)).filter(Boolean);
     const rest = keys.filter((key) => !first.includes(key));
-    more.append(...this.#fields(base, rest, full));
-    return [...this.#fields(base, first, full), ...(rest.length ? [more] : [])];
+    more.append(...this.#fields(base, rest));
+    return [...this.#fields(base, first), ...(rest.length ? [more] : [])];
   }
 
   /** The controls of keys; those inside a table stand together. */
-  #fields(base, keys, full) {
+  #fields(base, keys) {
     const tables = new Map();
     const fields = [];
     for (const description of keys) {
@@ -430,31 +430,17 @@ export class Controls {
         fields.push(this.#add([...base, key], description, Profile));
         continue;
       }
-      if (kind === "table" || kind === "table-or-false") {
+      if (kind === "table") {
         const set = element("fieldset", { title: description.meaning }, element("legend", {}, words(key)));
-        if (kind === "table-or-false") set.firstChild.prepend(this.#switch([...base, key], keys, key, full), " ");
-        tables.set(key, { set, isOn: kind === "table" || Boolean(at(full, [...base, key])) });
+        tables.set(key, set);
         fields.push(set);
       } else if (inside.length && tables.has(table)) {
-        const { set, isOn } = tables.get(table);
-        if (isOn) set.append(this.#add([...base, table, ...inside], description));
+        tables.get(table).append(this.#add([...base, table, ...inside], description));
       } else {
         fields.push(this.#add([...base, ...key.split(".")], description));
       }
     }
     return fields.filter((field) => field.tagName !== "FIELDSET" || field.children.length > 1 || field.querySelector("input"));
-  }
-
-  /** Turns a table on, with the defaults of its keys, or off. */
-  #switch(path, keys, name, full) {
-    const box = element("input", { type: "checkbox", checked: Boolean(at(full, path)), "aria-label": words(name) });
-    box.addEventListener("change", () => {
-      const inside = keys.filter(({ key }) => key.startsWith(`${name}.`));
-      const value = ({ default: text }) => { try { return JSON.parse(text); } catch { return undefined; } };
-      const table = Object.fromEntries(inside.map((key) => [key.key.slice(name.length + 1), value(key)]));
-      this.set(path, box.checked ? table : false, "full");
-    });
-    return box;
   }
 
   #add(path, description, Kind = Control) {
@@ -484,7 +470,7 @@ export class Controls {
       const places = place.filter(({ key }) => kind.sizes.length || key !== "severity");
       return element("fieldset", {}, element("legend", {}, `Damage ${index + 1}`), element("div", { className: "row" }, choice, remove),
         element("p", { className: "note" }, kind.summary),
-        ...this.#fields(["fault", index], [...places, ...keys], { fault: faults }));
+        ...this.#fields(["fault", index], [...places, ...keys]));
     });
     const kinds = element("select", { "aria-label": "Kind of damage to add" },
       ...this.#told.kinds.map(({ name }) => element("option", { value: name }, words(name.replaceAll("-", "_")))));
@@ -506,7 +492,7 @@ export class Controls {
         this.tree.sensor.splice(index, 1);
         this.#changed("full");
       });
-      return element("fieldset", {}, element("legend", {}, `Sensor ${index + 1}`), remove, ...this.#fields(["sensor", index], keys, { sensor: sensors }));
+      return element("fieldset", {}, element("legend", {}, `Sensor ${index + 1}`), remove, ...this.#fields(["sensor", index], keys));
     });
     const add = element("button", { type: "button", id: "add-sensor" }, "Add sensor");
     add.addEventListener("click", () => {

@@ -58,7 +58,7 @@ impl Guard {
 async fn check(State(guard): State<Guard>, request: Request, next: Next) -> Response {
     let rules = &guard.0;
     let mut response = match rules.objection(request.method(), request.uri().path(), request.headers()) {
-        Some((status, words)) => (status, words).into_response(),
+        Some(words) => (StatusCode::FORBIDDEN, words).into_response(),
         None => next.run(request).await,
     };
     rules.add_headers(response.headers_mut());
@@ -66,32 +66,24 @@ async fn check(State(guard): State<Guard>, request: Request, next: Next) -> Resp
 }
 
 impl Rules {
-    fn objection(
-        &self,
-        method: &Method,
-        path: &str,
-        headers: &HeaderMap,
-    ) -> Option<(StatusCode, &'static str)> {
+    fn objection(&self, method: &Method, path: &str, headers: &HeaderMap) -> Option<&'static str> {
         let is_host = |text: &str| self.hosts.iter().any(|host| host == text);
         let text = |name: HeaderName| headers.get(name).map(|value| value.to_str().unwrap_or_default());
         // A name that leads to this machine, but that another page has chosen, is no name of it.
         if !text(header::HOST).is_some_and(is_host) {
-            return Some((
-                StatusCode::FORBIDDEN,
-                "this page answers to 127.0.0.1 and localhost at its own port only",
-            ));
+            return Some("this page answers to 127.0.0.1 and localhost at its own port only");
         }
         let is_own = |origin: &str| origin.strip_prefix("http://").is_some_and(is_host);
         let origin = text(header::ORIGIN);
         let is_reading = matches!(*method, Method::GET | Method::HEAD);
         if origin.map_or(!is_reading, |origin| !is_own(origin)) {
-            return Some((StatusCode::FORBIDDEN, "only this page itself may ask"));
+            return Some("only this page itself may ask");
         }
         let token = path.split('/').nth(1).unwrap_or_default();
         if !is_equal(token.as_bytes(), self.token.as_bytes()) {
-            let words =
-                "the address lacks the token of this run: open the address that was printed when it started";
-            return Some((StatusCode::FORBIDDEN, words));
+            return Some(
+                "the address lacks the token of this run: open the address that was printed when it started",
+            );
         }
         None
     }
@@ -123,31 +115,28 @@ pub(super) fn respond(status: StatusCode, media_type: &'static str, body: impl I
 mod tests {
     use super::*;
 
-    fn status(method: Method, path: &str, headers: &[(HeaderName, &'static str)]) -> Option<u16> {
+    fn is_refused(method: Method, path: &str, headers: &[(HeaderName, &'static str)]) -> bool {
         let guard = Guard::new(8000, "abc", Embedding::Refused);
         let headers =
             headers.iter().map(|(name, value)| (name.clone(), HeaderValue::from_static(value))).collect();
-        guard.0.objection(&method, path, &headers).map(|(status, _)| status.as_u16())
+        guard.0.objection(&method, path, &headers).is_some()
     }
 
     #[test]
     fn only_the_page_itself_may_ask() {
         let here = (header::HOST, "127.0.0.1:8000");
-        assert_eq!(status(Method::GET, "/abc/", std::slice::from_ref(&here)), None);
-        assert_eq!(status(Method::GET, "/abc/", &[(header::HOST, "localhost:8000")]), None);
-        assert_eq!(status(Method::GET, "/abc/", &[(header::HOST, "evil.example:8000")]), Some(403));
-        assert_eq!(status(Method::GET, "/abc/", &[]), Some(403));
-        assert_eq!(status(Method::GET, "/abd/", std::slice::from_ref(&here)), Some(403));
-        assert_eq!(status(Method::GET, "/", std::slice::from_ref(&here)), Some(403));
+        assert!(!is_refused(Method::GET, "/abc/", std::slice::from_ref(&here)));
+        assert!(!is_refused(Method::GET, "/abc/", &[(header::HOST, "localhost:8000")]));
+        assert!(is_refused(Method::GET, "/abc/", &[(header::HOST, "evil.example:8000")]));
+        assert!(is_refused(Method::GET, "/abc/", &[]));
+        assert!(is_refused(Method::GET, "/abd/", std::slice::from_ref(&here)));
+        assert!(is_refused(Method::GET, "/", std::slice::from_ref(&here)));
         let own = (header::ORIGIN, "http://127.0.0.1:8000");
-        assert_eq!(status(Method::POST, "/abc/answer", &[here.clone(), own]), None);
-        assert_eq!(status(Method::POST, "/abc/answer", std::slice::from_ref(&here)), Some(403));
+        assert!(!is_refused(Method::POST, "/abc/answer", &[here.clone(), own]));
+        assert!(is_refused(Method::POST, "/abc/answer", std::slice::from_ref(&here)));
         for other in ["http://evil.example", "https://127.0.0.1:8000", "null", "http://127.0.0.1:8001"] {
-            assert_eq!(
-                status(Method::POST, "/abc/answer", &[here.clone(), (header::ORIGIN, other)]),
-                Some(403)
-            );
-            assert_eq!(status(Method::GET, "/abc/", &[here.clone(), (header::ORIGIN, other)]), Some(403));
+            assert!(is_refused(Method::POST, "/abc/answer", &[here.clone(), (header::ORIGIN, other)]));
+            assert!(is_refused(Method::GET, "/abc/", &[here.clone(), (header::ORIGIN, other)]));
         }
     }
 }

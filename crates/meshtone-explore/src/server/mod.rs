@@ -71,12 +71,6 @@ struct Shared {
     healthy: Mutex<Option<(String, HealthyIndicators)>>,
 }
 
-impl Shared {
-    fn set_current(&self, scenario: &Scenario) {
-        self.current.lock().unwrap_or_else(PoisonError::into_inner).clone_from(scenario);
-    }
-}
-
 impl Server {
     /// Serves a page on 127.0.0.1, in a thread of its own.
     ///

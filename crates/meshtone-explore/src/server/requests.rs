@@ -16,7 +16,7 @@ use super::guard::respond;
 use super::latest::RequestTurn;
 use crate::answer::{
     AnswerOptions, Detail, HealthyIndicators, RecordingQuestion, State, answer, healthy_indicators,
-    recording, severity_curve,
+    healthy_json, recording, severity_curve,
 };
 use crate::controls::controls;
 use crate::export::{export, without_defaults};
@@ -27,6 +27,9 @@ use crate::refusal::Refusal;
 const MOST_OF_SCENARIO: usize = 8 << 20;
 /// (bytes) Largest recording.
 const MOST_OF_RECORDING: usize = 64 << 20;
+/// Media types of answers: JSON alone, and [`crate::Packet`]'s bytes.
+const JSON: &str = "application/json";
+const PACKET: &str = "application/octet-stream";
 /// Bytes of the length, little endian, that stands before what is said about a recording.
 const LENGTH_BYTES: usize = 4;
 
@@ -45,9 +48,9 @@ pub(super) fn router(shared: Arc<Shared>) -> Router {
         .with_state(shared)
 }
 
-/// Fields of a request besides the scenario.
+/// A request about a scenario, taken apart.
 #[derive(Debug)]
-struct RequestOptions {
+struct AskedRequest {
     /// Identity of the page.
     page: String,
     /// Number of the request: later ones are higher.
@@ -56,35 +59,41 @@ struct RequestOptions {
     options: AnswerOptions,
     /// Number of the fault whose severity is meant.
     fault: usize,
+    /// The request as it came.
+    fields: Value,
 }
 
-impl RequestOptions {
-    fn of(question: &Value) -> Self {
-        let text = |name: &str| question.get(name).and_then(Value::as_str);
-        let number = |name: &str| question.get(name).and_then(Value::as_u64).unwrap_or(0);
+impl AskedRequest {
+    fn of(body: &[u8]) -> Result<Self, Refusal> {
+        let fields: Value = serde_json::from_slice(body)
+            .map_err(|error| Refusal::unfit(format!("the request is not understood: {error}")))?;
+        let text = |name: &str| fields.get(name).and_then(Value::as_str);
+        let number = |name: &str| fields.get(name).and_then(Value::as_u64).unwrap_or(0);
         let detail = if text("detail") == Some("coarse") { Detail::Coarse } else { Detail::Full };
-        Self {
+        Ok(Self {
             page: text("page").unwrap_or_default().to_owned(),
             number: number("number"),
             options: AnswerOptions { detail, channel: text("channel").map(str::to_owned) },
             fault: usize::try_from(number("fault")).unwrap_or(usize::MAX),
-        }
+            fields,
+        })
     }
 }
 
-/// A request about a scenario, taken apart.
-fn parsed(body: &[u8]) -> Result<(RequestOptions, Value), Refusal> {
-    let wrong = |error: serde_json::Error| Refusal::unfit(format!("the request is not understood: {error}"));
-    let question: Value = serde_json::from_slice(body).map_err(wrong)?;
-    Ok((RequestOptions::of(&question), question))
-}
-
 /// Computes an answer beside the server's own thread, while somebody waits for it.
+///
+/// # Arguments
+/// * `purpose` - what is asked for: a later request of the same page for it takes the place of this one
+/// * `body` - the request
+/// * `work` - what is computed of the request, its scenario and its turn
 async fn compute<T: Send + 'static>(
     shared: &Arc<Shared>,
-    turn: RequestTurn,
-    work: impl FnOnce(&RequestTurn) -> Result<T, Refusal> + Send + 'static,
+    purpose: &str,
+    body: &[u8],
+    work: impl FnOnce(&AskedRequest, &Scenario, &RequestTurn) -> Result<T, Refusal> + Send + 'static,
 ) -> Result<T, Refusal> {
+    let asked = AskedRequest::of(body)?;
+    let turn = shared.latest.note(&format!("{purpose} {}", asked.page), asked.number);
     let _abandoned = turn.abandoned_on_drop();
     let failed = |what: &str| {
         Refusal::unfit(format!("the computation {what}")).with_help("reload the page; tell us what was set")
@@ -95,7 +104,8 @@ async fn compute<T: Send + 'static>(
     }
     let worked = tokio::task::spawn_blocking(move || {
         let _permit = permit;
-        work(&turn).map_err(|refusal| if turn.is_late() { too_long() } else { refusal })
+        let worked = question::scenario(&asked.fields).and_then(|scenario| work(&asked, &scenario, &turn));
+        worked.map_err(|refusal| if turn.is_late() { too_long() } else { refusal })
     });
     worked.await.map_err(|_| failed("broke off"))?
 }
@@ -110,45 +120,38 @@ fn too_long() -> Refusal {
 async fn start(Shares(shared): Shares<Arc<Shared>>) -> Response {
     let mut said = controls();
     said["scenario"] = Value::Object(without_defaults(&shared.start));
-    respond(StatusCode::OK, "application/json", said.to_string())
+    respond(StatusCode::OK, JSON, said.to_string())
 }
 
 /// Everything that is drawn.
 async fn of_answer(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Result<Response, Refusal> {
-    let (asked, question) = parsed(&body)?;
-    let turn = shared.latest.note(&format!("answer {}", asked.page), asked.number);
     let sharing = Arc::clone(&shared);
-    let bytes = compute(&shared, turn, move |turn| {
-        let scenario = question::scenario(&question)?;
-        let state = answer(&scenario, &asked.options, &|| turn.is_wanted())?;
+    let bytes = compute(&shared, "answer", &body, move |asked, scenario, turn| {
+        let state = answer(scenario, &asked.options, &|| turn.is_wanted())?;
         if asked.options.detail == Detail::Full {
-            sharing.set_current(&scenario);
+            sharing.current.lock().unwrap_or_else(PoisonError::into_inner).clone_from(scenario);
         }
         let mut more = Map::from_iter([
             ("number".to_owned(), asked.number.into()),
-            ("brief".to_owned(), Value::Object(without_defaults(&scenario))),
+            ("brief".to_owned(), Value::Object(without_defaults(scenario))),
         ]);
         if let Some(healthy) = known_healthy(&sharing, &state, &asked.options) {
-            more.insert("healthy".to_owned(), healthy.json());
+            more.insert("healthy".to_owned(), healthy_json(&healthy));
         }
         Ok(state.packet(more))
     });
-    Ok(respond(StatusCode::OK, "application/octet-stream", bytes.await?))
+    Ok(respond(StatusCode::OK, PACKET, bytes.await?))
 }
 
 /// Indicators of the gears without damage, where they are known already: where they have none, or the damage alone has changed.
 fn known_healthy(shared: &Shared, state: &State, options: &AnswerOptions) -> Option<HealthyIndicators> {
     if state.scenario.faults.is_empty() {
         let unit = state.channel.unit();
-        return Some(HealthyIndicators {
-            wheels: state.wheels.each_ref().map(|wheel| wheel.indicators(unit)),
-        });
+        return Some(state.wheels.each_ref().map(|wheel| wheel.indicators(unit)));
     }
     let known = shared.healthy.lock().unwrap_or_else(PoisonError::into_inner);
-    known
-        .as_ref()
-        .filter(|(key, _)| *key == key_of_healthy(&state.scenario, options))
-        .map(|(_, healthy)| healthy.clone())
+    let of_same = known.as_ref().filter(|(key, _)| *key == key_of_healthy(&state.scenario, options));
+    of_same.map(|(_, healthy)| healthy.clone())
 }
 
 fn key_of_healthy(scenario: &Scenario, options: &AnswerOptions) -> String {
@@ -157,31 +160,25 @@ fn key_of_healthy(scenario: &Scenario, options: &AnswerOptions) -> String {
 
 /// Indicators of the same gears without damage.
 async fn of_healthy(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Result<Response, Refusal> {
-    let (asked, question) = parsed(&body)?;
-    let turn = shared.latest.note(&format!("healthy {}", asked.page), asked.number);
     let sharing = Arc::clone(&shared);
-    let said = compute(&shared, turn, move |turn| {
-        let scenario = question::scenario(&question)?;
-        let healthy = healthy_indicators(&scenario, &asked.options, &|| turn.is_wanted())?;
-        let said = json!({ "number": asked.number, "healthy": healthy.json() });
-        let key = key_of_healthy(&scenario, &asked.options);
+    let said = compute(&shared, "healthy", &body, move |asked, scenario, turn| {
+        let healthy = healthy_indicators(scenario, &asked.options, &|| turn.is_wanted())?;
+        let said = json!({ "number": asked.number, "healthy": healthy_json(&healthy) });
+        let key = key_of_healthy(scenario, &asked.options);
         *sharing.healthy.lock().unwrap_or_else(PoisonError::into_inner) = Some((key, healthy));
         Ok(said.to_string())
     });
-    Ok(respond(StatusCode::OK, "application/json", said.await?))
+    Ok(respond(StatusCode::OK, JSON, said.await?))
 }
 
 /// Indicators against severity.
 async fn of_severity(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Result<Response, Refusal> {
-    let (asked, question) = parsed(&body)?;
-    let turn = shared.latest.note(&format!("severity {}", asked.page), asked.number);
-    let bytes = compute(&shared, turn, move |turn| {
-        let scenario = question::scenario(&question)?;
-        let curve =
-            severity_curve(&scenario, asked.fault, asked.options.channel.as_deref(), turn.abandoned())?;
-        if turn.is_wanted() { Ok(curve.packet()) } else { Err(Refusal::Superseded) }
+    let bytes = compute(&shared, "severity", &body, |asked, scenario, turn| {
+        let channel = asked.options.channel.as_deref();
+        let curve = severity_curve(scenario, asked.fault, channel, turn.abandoned())?;
+        if turn.is_wanted() { Ok(curve) } else { Err(Refusal::Superseded) }
     });
-    Ok(respond(StatusCode::OK, "application/octet-stream", bytes.await?))
+    Ok(respond(StatusCode::OK, PACKET, bytes.await?))
 }
 
 /// A recording that was dropped on the page: the file stands behind what is said about it, as an answer's numbers do.
@@ -189,14 +186,12 @@ async fn of_recording(Shares(shared): Shares<Arc<Shared>>, body: Bytes) -> Resul
     let cut = || Refusal::unfit("the request is not understood: it ends before the recording begins");
     let (length, rest) = body.split_at_checked(LENGTH_BYTES).ok_or_else(cut)?;
     let length = length.iter().rev().fold(0, |length, &byte| length << 8 | usize::from(byte));
-    let (asked, question) = parsed(rest.get(..length).ok_or_else(cut)?)?;
+    let said = rest.get(..length).ok_or_else(cut)?;
     let file = body.slice(LENGTH_BYTES + length..);
-    let turn = shared.latest.note(&format!("recording {}", asked.page), asked.number);
-    let bytes = compute(&shared, turn, move |turn| {
-        let scenario = question::scenario(&question)?;
-        Ok(recording(&file, &RecordingQuestion::of(&question), &scenario, &|| turn.is_wanted())?.packet())
+    let bytes = compute(&shared, "recording", said, move |asked, scenario, turn| {
+        recording(&file, &RecordingQuestion::of(&asked.fields), scenario, &|| turn.is_wanted())
     });
-    Ok(respond(StatusCode::OK, "application/octet-stream", bytes.await?))
+    Ok(respond(StatusCode::OK, PACKET, bytes.await?))
 }
 
 /// A file for the user.
@@ -205,10 +200,8 @@ async fn of_export(
     Path(form): Path<String>,
     body: Bytes,
 ) -> Result<Response, Refusal> {
-    let (asked, question) = parsed(&body)?;
-    let turn = shared.latest.note(&format!("export {}", asked.page), asked.number);
-    let file = compute(&shared, turn, move |turn| {
-        export(&form, &question::scenario(&question)?, &|| turn.is_wanted())
+    let file = compute(&shared, "export", &body, move |_, scenario, turn| {
+        export(&form, scenario, &|| turn.is_wanted())
     });
     let file = file.await?;
     let disposition = format!("attachment; filename=\"scenario.{}\"", file.ending);
@@ -225,6 +218,6 @@ impl IntoResponse for Refusal {
             Self::Superseded => StatusCode::CONFLICT,
             Self::Wrong(_) | Self::Unfit { .. } => StatusCode::UNPROCESSABLE_ENTITY,
         };
-        respond(status, "application/json", json!({ "error": self.json() }).to_string())
+        respond(status, JSON, json!({ "error": self.json() }).to_string())
     }
 }

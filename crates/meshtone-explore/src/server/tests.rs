@@ -89,6 +89,10 @@ fn the_page_comes_with_a_strict_policy_and_all_that_it_names() {
         assert_eq!(server.ask("GET", part, b"").status, 200, "{part}");
     }
     assert_eq!(server.ask("GET", "nothing.js", b"").status, 404);
+    let mut without_token = TcpStream::connect(server.address).unwrap();
+    let head = format!("GET / HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n", server.address);
+    without_token.write_all(head.as_bytes()).unwrap();
+    assert_eq!(answered(without_token).status, 403);
     assert_eq!(server.ask("GET", "start", b"").json()["scenario"]["gears"]["pinion_teeth"], 20);
 }
 

@@ -4,14 +4,10 @@ use std::io::{self, Write};
 
 use meshtone::scenario::{Fault, Scenario};
 use meshtone::tuning::{HybridError, SimulatedCases, TuningIndicator, difference_signals};
-use parquet::basic::{Compression, ZstdLevel};
-use parquet::file::properties::WriterProperties;
 
 use super::Tuned;
 use crate::run_identity::fnv_1a;
-use crate::table::{CellType, Cells, TableColumn, TableWriter};
-
-const COMPRESSION_LEVEL: i32 = 1;
+use crate::table::{CellType, Cells, TableColumn, write_compressed};
 
 /// One draw of an enhanced difference signal.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,40 +81,27 @@ pub fn enhance(
 
 /// The kinds of the faults, in their order.
 fn label(faults: &[Fault]) -> String {
-    if faults.is_empty() {
-        return "healthy".to_owned();
-    }
     let kinds: Vec<_> = faults.iter().map(|fault| fault.damage.kind()).collect();
-    kinds.join(" + ")
-}
-
-/// What all records of a file have in common.
-#[derive(Debug, Clone, Copy)]
-pub struct EnhancedHead<'a> {
-    /// What was simulated.
-    pub scenario: &'a Scenario,
-    /// How it was enhanced.
-    pub tuned: &'a Tuned,
-    /// Of the noise.
-    pub seed: u64,
-    /// (g) Rms of the simulated healthy signal, enhanced: what the records are divided by.
-    pub healthy_rms_g: f64,
+    if kinds.is_empty() { "healthy".to_owned() } else { kinds.join(" + ") }
 }
 
 /// Writes enhanced difference signals, one row a draw.
 ///
 /// # Arguments
 /// * `to` - where the file is written to; it needs no buffer
-/// * `head` - what they have in common; it goes into the file's metadata
-/// * `records` - the rows
+/// * `scenario`, `tuned`, `seed` - as of [`enhance`]; they go into the file's metadata
+/// * `draws` - the rows
 ///
 /// # Errors
 /// Those of `to`.
 pub fn write_enhanced(
     to: impl Write + Send,
-    head: EnhancedHead,
-    records: &[EnhancedRecord],
+    scenario: &Scenario,
+    tuned: &Tuned,
+    seed: u64,
+    draws: &EnhancedDraws,
 ) -> io::Result<()> {
+    let records = &draws.records;
     let columns = [
         ("label", CellType::Text),
         ("draw", CellType::Int64),
@@ -137,26 +120,18 @@ pub fn write_enhanced(
         Cells::Float32List(signals.iter().map(Vec::as_slice).collect()),
     ];
     let metadata = [
-        ("meshtone.scenario", head.scenario.to_toml()),
-        ("meshtone.tuned", super::write_tuned(head.tuned, "an experiment")),
+        ("meshtone.scenario", scenario.to_toml()),
+        ("meshtone.tuned", super::write_tuned(tuned, "an experiment")),
         ("meshtone.version", env!("CARGO_PKG_VERSION").to_owned()),
-        ("meshtone.seed", head.seed.to_string()),
-        ("meshtone.healthy_rms_g", format!("{:?}", head.healthy_rms_g)),
+        ("meshtone.seed", seed.to_string()),
+        ("meshtone.healthy_rms_g", format!("{:?}", draws.healthy_rms_g)),
         (
             "meshtone.relative_difference",
             format!(
                 "difference signal over one revolution of the {}, over the rms of the enhanced healthy signal, meshtone.healthy_rms_g",
-                head.tuned.wheel.name()
+                tuned.wheel.name()
             ),
         ),
     ];
-    let compression =
-        ZstdLevel::try_new(COMPRESSION_LEVEL).map(Compression::ZSTD).map_err(io::Error::other)?;
-    let properties = WriterProperties::builder().set_compression(compression).build();
-    let mut table = TableWriter::new(to, columns, properties)?;
-    table.add_metadata(metadata);
-    if !records.is_empty() {
-        table.write_rows(cells)?;
-    }
-    table.close()
+    write_compressed(to, columns, records.len(), cells, metadata)
 }

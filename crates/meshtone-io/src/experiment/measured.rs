@@ -10,56 +10,40 @@ use crate::recording::{RecordingOptions, TimeColumn, read_recording};
 
 /// Files of one case, with the key and line that name them.
 #[derive(Debug, Clone)]
-pub(super) struct CaseFiles {
-    pub(super) difference: Option<Named>,
-    pub(super) recordings: Vec<Named>,
+pub(super) struct CaseFiles<'a> {
+    pub(super) difference: Option<NamedFile<'a>>,
+    pub(super) recordings: Vec<NamedFile<'a>>,
     /// What an error about the case itself starts from.
     place: TomlError,
 }
 
-/// A file's name, and what an error about it starts from.
-#[derive(Debug, Clone)]
-pub(super) struct Named {
-    pub(super) name: String,
-    place: TomlError,
+/// A file's name, and the value that names it.
+pub(super) type NamedFile<'a> = (&'a str, TomlValue<'a>);
+
+fn named_file<'a>(value: &TomlValue<'a>) -> ReadResult<NamedFile<'a>> {
+    Ok((value.string()?, value.clone()))
 }
 
-impl Named {
-    fn read(value: &TomlValue<'_>) -> ReadResult<Self> {
-        Ok(Self { name: value.string()?.to_owned(), place: value.error("") })
-    }
-
-    pub(super) fn error(&self, problem: impl std::fmt::Display) -> TomlError {
-        with_problem(&self.place, problem.to_string())
-    }
-}
-
-impl CaseFiles {
-    pub(super) fn read(table: &TomlTable<'_>) -> ReadResult<Self> {
-        let difference = table.read_optional("difference_file", Named::read)?;
+impl<'a> CaseFiles<'a> {
+    pub(super) fn read(table: &TomlTable<'a>) -> ReadResult<Self> {
+        let difference = table.read_optional("difference_file", named_file)?;
         let recordings =
-            table.read_optional("recordings", |value| value.array()?.iter().map(Named::read).collect())?;
+            table.read_optional("recordings", |value| value.array()?.iter().map(named_file).collect())?;
         Ok(Self { difference, recordings: recordings.unwrap_or_default(), place: table.error("", "") })
     }
 
     /// An error about a case without the files that others have.
     pub(super) fn missing(&self, case: &Case, what: &str) -> TomlError {
-        let problem = format!("the case \"{}\" has no {what}, but others have", case.label);
-        with_problem(&self.place, problem)
+        let mut error = self.place.clone();
+        error.problem = format!("the case \"{}\" has no {what}, but others have", case.label);
+        error
     }
-}
-
-/// An error at a place.
-fn with_problem(place: &TomlError, problem: String) -> TomlError {
-    let mut error = place.clone();
-    error.problem = problem;
-    error
 }
 
 /// What measurements are read for.
 pub(super) struct Wanted<'a> {
     pub(super) cases: &'a [Case],
-    pub(super) files: &'a [CaseFiles],
+    pub(super) files: &'a [CaseFiles<'a>],
     pub(super) indicators: &'a [TuningIndicator],
     pub(super) chain: &'a DifferenceChain,
     pub(super) base: &'a Scenario,
@@ -107,9 +91,10 @@ fn difference_files(wanted: &Wanted, reading: &mut Reading) -> ReadResult<Measur
     };
     let mut signals = Vec::new();
     for (case, files) in wanted.cases.iter().zip(wanted.files) {
-        let named = files.difference.as_ref().ok_or_else(|| files.missing(case, "difference_file"))?;
-        let recording = read_recording(&reading.source(&named.name), &options);
-        let recording = recording.map_err(|error| named.error(error))?;
+        let named = files.difference.as_ref();
+        let (name, value) = named.ok_or_else(|| files.missing(case, "difference_file"))?;
+        let recording = read_recording(&reading.source(name), &options);
+        let recording = recording.map_err(|error| value.error(error.to_string()))?;
         signals.push(recording.channels.into_iter().map(|channel| channel.samples).collect());
     }
     from_differences(wanted, &signals)

@@ -27,10 +27,6 @@ const MOST_KILOHERTZ: f64 = 200.0;
 /// An experiment file that has been read, with everything that it names.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExperimentFile {
-    /// Where it was read from.
-    pub path: PathBuf,
-    /// Its text.
-    pub text: String,
     /// What it says.
     pub experiment: Experiment,
     /// All files that were read: this one, the scenario's, the measurements'.
@@ -54,12 +50,12 @@ pub fn read_experiment(path: &Path) -> Result<ExperimentFile, ReadScenarioError>
         document.root().read(|root| reading.experiment(root)).map_err(|error| document.locate(error))
     });
     let Reading { sources, warnings, scenario_error, .. } = reading;
-    let path = path.to_path_buf();
     match read {
-        Ok(experiment) => Ok(ExperimentFile { path, text, experiment, sources, warnings }),
+        Ok(experiment) => Ok(ExperimentFile { experiment, sources, warnings }),
         // An error in the scenario file is reported with that file's lines.
-        Err(error) => Err(scenario_error
-            .unwrap_or_else(|| ReadScenarioError::invalid(FileKind::Experiment, path, text, error))),
+        Err(error) => Err(scenario_error.unwrap_or_else(|| {
+            ReadScenarioError::invalid(FileKind::Experiment, path.to_path_buf(), text, error)
+        })),
     }
 }
 
@@ -142,10 +138,7 @@ impl Reading<'_> {
 /// An error about a tuned key, which is reported at its own line.
 fn key_error(number: usize, error: &HybridError) -> TomlError {
     let located = TomlError::new(format!("tune.key[{number}].key"), "", error.to_string());
-    let help = match error {
-        HybridError::Scenario(error) => error.help.clone(),
-        _ => None,
-    };
+    let help = if let HybridError::Scenario(error) = error { error.help.clone() } else { None };
     help.into_iter().fold(located, TomlError::with_help)
 }
 
@@ -167,7 +160,7 @@ fn check_cases(listed: &TomlValue<'_>, cases: &[Case]) -> ReadResult<()> {
     Ok(())
 }
 
-fn case(table: &TomlTable<'_>) -> ReadResult<(Case, CaseFiles)> {
+fn case<'a>(table: &TomlTable<'a>) -> ReadResult<(Case, CaseFiles<'a>)> {
     let label = table.required("label", "the case's name")?.string()?.to_owned();
     let severity = table.required("severity", "how severe the fault is, 0 for the healthy case")?.number()?;
     let faults = Fault::list_from_table(table)?;

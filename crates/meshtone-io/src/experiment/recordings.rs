@@ -44,10 +44,7 @@ pub(super) fn differences(
     let segment =
         table.read_optional("revolutions_per_record", |value| value.integer(2..=u64::from(u32::MAX)))?;
     let known = phase(table, wanted)?;
-    let tachometer = match known {
-        Phase::Tachometer { channel, .. } => Some(channel),
-        _ => None,
-    };
+    let tachometer = if let Phase::Tachometer { channel, .. } = known { Some(channel) } else { None };
     let channels = [Some(channel), tachometer].into_iter().flatten().map(ColumnChoice::parse).collect();
     let options = RecordingOptions { channels, sampling_rate_hz: rate, ..RecordingOptions::default() };
     let teeth = wanted.base.gears.teeth(wanted.chain.wheel);
@@ -59,21 +56,20 @@ pub(super) fn differences(
             return Err(files.missing(case, "recordings"));
         }
         let mut records = Vec::new();
-        for named in &files.recordings {
-            let recording = read_recording(&reading.source(&named.name), &options);
-            let recording = recording.map_err(|error| named.error(error))?;
-            let refuse = |error: SignalError| named.error(format!("{}: {error}", named.name));
+        for (name, value) in &files.recordings {
+            let recording = read_recording(&reading.source(name), &options);
+            let recording = recording.map_err(|error| value.error(error.to_string()))?;
+            let refuse = |error: SignalError| value.error(format!("{name}: {error}"));
             let (given, stated) = (recording.sampling_rate_hz, wanted.chain.sampling_rate_hz);
             if (given / stated - 1.0).abs() > RATE_TOLERANCE {
-                return Err(named.error(format!(
-                    "{} has {given} S/s, but signal.sampling_rate_hz, to which the simulated signals are brought, is {stated}",
-                    named.name
+                return Err(value.error(format!(
+                    "{name} has {given} S/s, but signal.sampling_rate_hz, to which the simulated signals are brought, is {stated}"
                 )));
             }
             let phase = shaft_phase(&recording, &known, wanted).map_err(refuse)?;
             let signal = &recording.channels[0].samples;
             let angular = angular_resample(signal, &phase, &settings.angular).map_err(refuse)?;
-            warnings.check(&named.name, wanted, &known, (&phase, &angular), given);
+            warnings.check(name, wanted, &known, (&phase, &angular), given);
             let found = match segment {
                 None => process_angular(&angular, teeth, &settings).map(|record| vec![record]),
                 Some(count) => process_angular_segments(&angular, teeth, &settings, count as usize),
@@ -89,16 +85,8 @@ pub(super) fn differences(
 /// Warnings about recordings. Of several recordings with a warning of one kind, the first one is named.
 #[derive(Default)]
 struct Warnings {
-    first_of_kind: Vec<Warning>,
-}
-
-struct Warning {
-    kind: WarningKind,
-    /// The first file that it is of.
-    file: String,
-    words: String,
-    /// Other files that the like could be said of.
-    more: usize,
+    /// The words about the first recording of each kind, and how many others the like could be said of.
+    first_of_kind: Vec<(WarningKind, String, usize)>,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -160,17 +148,17 @@ impl Warnings {
     }
 
     fn add(&mut self, kind: WarningKind, file: &str, words: String) {
-        match self.first_of_kind.iter_mut().find(|warning| warning.kind == kind) {
-            Some(warning) => warning.more += 1,
-            None => self.first_of_kind.push(Warning { kind, file: file.to_owned(), words, more: 0 }),
+        match self.first_of_kind.iter_mut().find(|(of_kind, ..)| *of_kind == kind) {
+            Some((.., more)) => *more += 1,
+            None => self.first_of_kind.push((kind, format!("{file}: {words}"), 0)),
         }
     }
 
     fn in_words(self) -> impl Iterator<Item = String> {
-        self.first_of_kind.into_iter().map(|Warning { file, words, more, .. }| match more {
-            0 => format!("{file}: {words}"),
-            1 => format!("{file}: {words} (likewise of another recording)"),
-            more => format!("{file}: {words} (likewise of {more} other recordings)"),
+        self.first_of_kind.into_iter().map(|(_, words, more)| match more {
+            0 => words,
+            1 => format!("{words} (likewise of another recording)"),
+            more => format!("{words} (likewise of {more} other recordings)"),
         })
     }
 }

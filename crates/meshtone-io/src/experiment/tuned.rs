@@ -206,7 +206,7 @@ fn tuned(root: &TomlTable<'_>) -> ReadResult<Tuned> {
             fault_to_harmonics_ratio: ratio.number()?,
             noise_level,
         };
-        Ok((enhancement, table.number_or("centre_rev", 0.0)?))
+        Ok((enhancement, table.number("centre_rev")?.unwrap_or(0.0)))
     })?;
     let keys =
         root.read_optional("key", |value| value.array()?.iter().map(key).collect())?.unwrap_or_default();

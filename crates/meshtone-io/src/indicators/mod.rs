@@ -7,9 +7,11 @@
 mod json;
 mod parquet_file;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use meshtone::signal::Indicators;
+use serde::{Serialize, Serializer};
+use serde_json::{Map, Value};
 
 /// Version of the JSON's format: it grows when a key changes its name or meaning.
 pub const FORMAT_VERSION: u32 = 1;
@@ -19,8 +21,9 @@ pub const SETTINGS_KEY: &str = "meshtone.settings";
 /// The indicators of one or several recordings.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct IndicatorResults {
-    /// How the recordings were processed, in the order in which it is written.
-    pub settings: Vec<(&'static str, Setting)>,
+    /// How the recordings were processed, in the order in which it is written; what was not given is null. The unit of a number
+    /// stands in the setting's name.
+    pub settings: Map<String, Value>,
     /// The channel that was processed.
     pub channel: String,
     /// Its unit, where it is known: the unit of every rms and peak to peak.
@@ -33,23 +36,11 @@ pub struct IndicatorResults {
     pub warnings: Vec<WarningEntry>,
 }
 
-/// The value of a setting.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Setting {
-    /// Words.
-    Text(String),
-    /// A number; its unit stands in the setting's name.
-    Number(f64),
-    /// A count.
-    Count(usize),
-    /// Not given.
-    Absent,
-}
-
 /// One recording.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RecordingEntry {
     /// The file that was read.
+    #[serde(rename = "file", serialize_with = "as_shown")]
     pub source: PathBuf,
     /// (S/s) Its sampling rate.
     pub sampling_rate_hz: f64,
@@ -60,7 +51,7 @@ pub struct RecordingEntry {
 }
 
 /// What one recording, or one segment of it, shows about one wheel.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RecordEntry {
     /// Number of the recording, from 1.
     pub recording: usize,
@@ -79,6 +70,7 @@ pub struct RecordEntry {
     /// (orders) Beyond this order of the shaft the recording holds nothing.
     pub nyquist_order: f64,
     /// The indicators.
+    #[serde(serialize_with = "json::indicators")]
     pub indicators: Indicators,
 }
 
@@ -89,4 +81,9 @@ pub struct WarningEntry {
     pub source: Option<PathBuf>,
     /// What it is.
     pub message: String,
+}
+
+/// A path as messages show it.
+fn as_shown<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(&path.display())
 }

@@ -3,12 +3,11 @@
 use std::io::{self, Write};
 
 use meshtone::signal::IndicatorValue;
-use parquet::basic::{Compression, ZstdLevel};
-use parquet::file::properties::WriterProperties;
+use serde_json::Value;
 
 use super::{IndicatorResults, RecordEntry, SETTINGS_KEY};
 use crate::signals::VERSION_KEY;
-use crate::table::{CellType, Cells, TableColumn, TableWriter};
+use crate::table::{CellType, Cells, TableColumn, write_compressed};
 
 /// A column and its cells.
 type Column = (TableColumn, Cells<'static>);
@@ -28,17 +27,11 @@ impl IndicatorResults {
     /// Those of `to`.
     pub fn write_parquet(&self, to: impl Write + Send) -> io::Result<()> {
         let (columns, cells) = self.circumstances().into_iter().chain(self.values()).unzip();
-        let compression = ZstdLevel::try_new(1).map(Compression::ZSTD).map_err(io::Error::other)?;
-        let properties = WriterProperties::builder().set_compression(compression).build();
-        let mut table = TableWriter::new(to, columns, properties)?;
-        table.add_metadata([
+        let metadata = [
             (VERSION_KEY, env!("CARGO_PKG_VERSION").to_string()),
-            (SETTINGS_KEY, self.settings_json().to_string()),
-        ]);
-        if !self.records.is_empty() {
-            table.write_rows(cells)?;
-        }
-        table.close()
+            (SETTINGS_KEY, Value::from(self.settings.clone()).to_string()),
+        ];
+        write_compressed(to, columns, self.records.len(), cells, metadata)
     }
 
     /// What each record is of.

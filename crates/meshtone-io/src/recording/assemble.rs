@@ -8,24 +8,26 @@ use super::rate::{self, StatedRate};
 use super::selection::{Selection, matching, present};
 use super::time::timing;
 use super::unit::volts_in;
-use super::{Channel, ReadRecordingError, Recording, RecordingOptions};
+use super::{Channel, Recording, RecordingOptions};
 
 /// Samples of a block that is checked as a whole.
 const CHECKED_TOGETHER: usize = 1024;
 
-/// What a reader gives.
-pub(super) struct Columns<'c> {
-    pub labels: &'c [Label],
-    pub selection: &'c Selection,
-    /// Samples of each column of [`Selection::wanted`].
-    pub samples: Vec<Vec<f64>>,
-    pub stated: &'c [StatedRate],
-}
-
-/// Checks and calibrates the samples, and finds the sampling rate. The path is added where the readers are called.
-pub(super) fn assemble(columns: Columns, options: &RecordingOptions) -> Result<Recording, Problem> {
-    check_lengths(&columns)?;
-    let Columns { labels, selection, mut samples, stated } = columns;
+/// Checks and calibrates what a reader gives, and finds the sampling rate. The path is added where the readers are called.
+///
+/// # Arguments
+/// * `labels`, `selection` - the columns, and which of them were read
+/// * `samples` - of each column of [`Selection::wanted`]
+/// * `stated` - rates that the file states
+/// * `options` - of the recording
+pub(super) fn assemble(
+    labels: &[Label],
+    selection: &Selection,
+    mut samples: Vec<Vec<f64>>,
+    stated: &[StatedRate],
+    options: &RecordingOptions,
+) -> Result<Recording, Problem> {
+    check_lengths(labels, selection, &samples)?;
     for (index, column) in selection.wanted.iter().zip(&samples) {
         check_finite(&labels[*index], column)?;
     }
@@ -56,7 +58,7 @@ pub(super) fn assemble(columns: Columns, options: &RecordingOptions) -> Result<R
     })
 }
 
-fn check_lengths(Columns { labels, selection, samples, .. }: &Columns) -> Result<(), Problem> {
+fn check_lengths(labels: &[Label], selection: &Selection, samples: &[Vec<f64>]) -> Result<(), Problem> {
     let length = samples.first().map_or(0, Vec::len);
     if samples.iter().any(|column| column.len() != length) {
         let columns = selection.wanted.iter().zip(samples);
@@ -100,7 +102,7 @@ fn calibrate(
                 )));
             };
             let (sensitivity, unit) = (calibration.sensitivity_v_per_unit, calibration.unit.as_deref());
-            channels[slot].set_meaning(sensitivity, unit).map_err(Problem::Option)?;
+            channels[slot].calibrate(sensitivity, unit).map_err(Problem::Option)?;
         }
     }
     Ok(())
@@ -114,23 +116,16 @@ impl Channel {
     /// * `unit` - of the samples, after the division
     ///
     /// # Errors
-    /// The unit of the channel is none of voltage, or the channel becomes infinite, where a sensitivity is given.
+    /// The unit of the channel is none of voltage, or the channel becomes infinite, where a sensitivity is given: what is wrong.
     pub fn calibrate(
         &mut self,
         sensitivity_v_per_unit: Option<f64>,
         unit: Option<&str>,
-    ) -> Result<(), ReadRecordingError> {
-        self.set_meaning(sensitivity_v_per_unit, unit)
-            .map_err(|problem| ReadRecordingError::Option { problem })
-    }
-
-    fn set_meaning(&mut self, sensitivity_v_per_unit: Option<f64>, unit: Option<&str>) -> Result<(), String> {
+    ) -> Result<(), String> {
         if let Some(sensitivity) = sensitivity_v_per_unit {
             self.divide(sensitivity)?;
         }
-        if let Some(unit) = unit {
-            self.unit = Some(unit.to_owned());
-        }
+        self.unit = unit.map(str::to_owned).or(self.unit.take());
         Ok(())
     }
 

@@ -3,7 +3,7 @@
 use meshtone_toml::nearest_name;
 
 use super::array::{ArrayLayout, shape_text};
-use super::assemble::{Columns, assemble};
+use super::assemble::assemble;
 use super::error::Problem;
 use super::label::Label;
 use super::number::Numbers;
@@ -69,7 +69,7 @@ pub(super) fn read_arrays(
     let samples = |column: usize| catalogue.layout(column).map_or(0, |layout| layout.samples);
     memory_need::check(memory::limit(), options, &selection, samples, 0)?;
     let samples = catalogue.read(&selection.wanted, read)?;
-    let mut recording = assemble(Columns { labels, selection: &selection, samples, stated }, options)?;
+    let mut recording = assemble(labels, &selection, samples, stated, options)?;
     recording.warnings.extend(zero_twins(labels, &selection));
     Ok(recording)
 }

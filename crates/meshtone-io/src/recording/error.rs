@@ -142,8 +142,11 @@ impl Problem {
     }
 }
 
-/// A list in words, shortened where it is long.
-pub(super) fn names(present: &[String]) -> String {
+/// A list of names in words, shortened where it is long.
+///
+/// # Arguments
+/// * `present` - the names
+pub fn names(present: &[String]) -> String {
     if present.is_empty() {
         return "none".to_string();
     }

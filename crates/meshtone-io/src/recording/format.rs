@@ -32,17 +32,65 @@ pub enum RecordingFormat {
     Wav,
 }
 
+/// Each format with its name in messages and the endings of its files.
+const FORMATS: [(RecordingFormat, &str, &[&str]); 6] = [
+    (RecordingFormat::Text, "text", &["csv", "tsv", "tab", "txt", "dat", "asc"]),
+    (RecordingFormat::Parquet, "Parquet", &["parquet", "pq"]),
+    (RecordingFormat::Npy, "NPY", &["npy"]),
+    (RecordingFormat::Npz, "NPZ", &["npz"]),
+    (RecordingFormat::Mat, "MAT", &["mat"]),
+    (RecordingFormat::Wav, "WAV", &["wav"]),
+];
+
+/// First bytes that only files of one format have.
+const MARKS: [(&[u8], RecordingFormat); 5] = [
+    (b"PAR1", RecordingFormat::Parquet),
+    (b"\x93NUMPY", RecordingFormat::Npy),
+    (b"PK\x03\x04", RecordingFormat::Npz),
+    (b"PK\x05\x06", RecordingFormat::Npz),
+    (b"RIFF", RecordingFormat::Wav),
+];
+
+/// First bytes of known formats that are not read: what they are, and how to convert them.
+const TO_CONVERT: [(&[&[u8]], &str, &str); 7] = [
+    (
+        &[b"MATLAB 7.3"],
+        "a MATLAB file of version 7.3 (HDF5)",
+        "save it again in MATLAB with `s = load('FILE.mat'); save('FILE7.mat', '-struct', 's', '-v7')`, or in Python \
+         with h5py and numpy.savez",
+    ),
+    (&[HDF5], "an HDF5 file", "save its data sets in Python with h5py and numpy.savez, as .npz"),
+    (
+        &[b"\xff\xfe", b"\xfe\xff"],
+        "text in UTF-16",
+        "save it as UTF-8, for instance with `iconv -f UTF-16 -t UTF-8`",
+    ),
+    (&[b"\x1f\x8b"], "a file compressed with gzip", "uncompress it with `gunzip`"),
+    (
+        &[b"RF64", b"riff"],
+        "a WAV file of more than 4 GiB (RF64 or Wave64)",
+        "cut it, for instance with `sox` or `ffmpeg`",
+    ),
+    (
+        &[b"TDSm"],
+        "a LabVIEW TDMS file",
+        "save it in Python with `nptdms.TdmsFile(…).as_dataframe().to_parquet(…)`",
+    ),
+    (&[b"\xd0\xcf\x11\xe0"], "an Excel file (.xls)", "save it as CSV"),
+];
+
 impl RecordingFormat {
     /// The name of the format in messages.
     pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Text => "text",
-            Self::Parquet => "Parquet",
-            Self::Npy => "NPY",
-            Self::Npz => "NPZ",
-            Self::Mat => "MAT",
-            Self::Wav => "WAV",
-        }
+        FORMATS[self as usize].1
+    }
+
+    /// The format whose files have an ending.
+    ///
+    /// # Arguments
+    /// * `ending` - in small letters, without a point
+    pub fn of_ending(ending: &str) -> Option<Self> {
+        FORMATS.iter().find(|(.., endings)| endings.contains(&ending)).map(|(format, ..)| *format)
     }
 }
 
@@ -66,13 +114,8 @@ pub(super) fn detect(
     }
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     let binary = head.contains(&0);
-    match ending.as_str() {
-        "csv" | "tsv" | "tab" | "txt" | "dat" | "asc" if !binary => Ok(RecordingFormat::Text),
-        "parquet" | "pq" => Ok(RecordingFormat::Parquet),
-        "npy" => Ok(RecordingFormat::Npy),
-        "npz" => Ok(RecordingFormat::Npz),
-        "mat" => Ok(RecordingFormat::Mat),
-        "wav" => Ok(RecordingFormat::Wav),
+    match RecordingFormat::of_ending(&ending) {
+        Some(format) if format != RecordingFormat::Text || !binary => Ok(format),
         _ => {
             let kind = if binary { "binary" } else { "text" };
             let first: Vec<String> = head.iter().take(4).map(|byte| format!("{byte:02x}")).collect();
@@ -98,19 +141,8 @@ fn file_kind(path: &Path, ending: &str) -> Option<FileKind> {
 }
 
 fn by_content(head: &[u8]) -> Option<RecordingFormat> {
-    if head.starts_with(b"PAR1") {
-        Some(RecordingFormat::Parquet)
-    } else if head.starts_with(b"\x93NUMPY") {
-        Some(RecordingFormat::Npy)
-    } else if head.starts_with(b"PK\x03\x04") || head.starts_with(b"PK\x05\x06") {
-        Some(RecordingFormat::Npz)
-    } else if head.starts_with(b"RIFF") {
-        Some(RecordingFormat::Wav)
-    } else if is_mat5(head) {
-        Some(RecordingFormat::Mat)
-    } else {
-        None
-    }
+    let marked = MARKS.iter().find(|(mark, _)| head.starts_with(mark)).map(|(_, format)| *format);
+    marked.or_else(|| is_mat5(head).then_some(RecordingFormat::Mat))
 }
 
 fn is_mat5(head: &[u8]) -> bool {
@@ -122,32 +154,9 @@ fn is_mat5(head: &[u8]) -> bool {
 
 /// Known formats that are not read: what they are, and how to convert them.
 fn to_convert(head: &[u8]) -> Option<(&'static str, &'static str)> {
-    let hdf5_behind = head.get(HDF5_OFFSET..).is_some_and(|behind| behind.starts_with(HDF5));
-    if head.starts_with(b"MATLAB 7.3") || hdf5_behind {
-        Some((
-            "a MATLAB file of version 7.3 (HDF5)",
-            "save it again in MATLAB with `s = load('FILE.mat'); save('FILE7.mat', '-struct', 's', '-v7')`, or in Python \
-             with h5py and numpy.savez",
-        ))
-    } else if head.starts_with(HDF5) {
-        Some(("an HDF5 file", "save its data sets in Python with h5py and numpy.savez, as .npz"))
-    } else if head.starts_with(&[0xff, 0xfe]) || head.starts_with(&[0xfe, 0xff]) {
-        Some(("text in UTF-16", "save it as UTF-8, for instance with `iconv -f UTF-16 -t UTF-8`"))
-    } else if head.starts_with(&[0x1f, 0x8b]) {
-        Some(("a file compressed with gzip", "uncompress it with `gunzip`"))
-    } else if head.starts_with(b"RF64") || head.starts_with(b"riff") {
-        Some((
-            "a WAV file of more than 4 GiB (RF64 or Wave64)",
-            "cut it, for instance with `sox` or `ffmpeg`",
-        ))
-    } else if head.starts_with(b"TDSm") {
-        Some((
-            "a LabVIEW TDMS file",
-            "save it in Python with `nptdms.TdmsFile(…).as_dataframe().to_parquet(…)`",
-        ))
-    } else if head.starts_with(&[0xd0, 0xcf, 0x11, 0xe0]) {
-        Some(("an Excel file (.xls)", "save it as CSV"))
-    } else {
-        None
-    }
+    let is_of_matlab = head.get(HDF5_OFFSET..).is_some_and(|behind| behind.starts_with(HDF5));
+    let is_known = |marks: &[&[u8]]| marks.iter().any(|mark| head.starts_with(mark));
+    let known =
+        if is_of_matlab { TO_CONVERT.first() } else { TO_CONVERT.iter().find(|(marks, ..)| is_known(marks)) };
+    known.map(|(_, what, how)| (*what, *how))
 }

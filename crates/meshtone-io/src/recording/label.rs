@@ -18,26 +18,6 @@ pub(super) struct Label {
     pub is_zero_twin: bool,
 }
 
-/// Names that mean time, in small letters, without unit.
-const TIME_NAMES: [&str; 17] = [
-    "time",
-    "times",
-    "t",
-    "zeit",
-    "temps",
-    "tempo",
-    "tiempo",
-    "tijd",
-    "tid",
-    "czas",
-    "timestamp",
-    "time_stamp",
-    "elapsed_time",
-    "seconds",
-    "sec",
-    "zeitstempel",
-    "relative_time",
-];
 /// Unit suffixes of a time's name.
 const TIME_SUFFIXES: [&str; 7] = ["s", "sec", "ms", "us", "µs", "ns", "min"];
 
@@ -64,8 +44,11 @@ impl Label {
     /// (s) One unit of the column's times, if its name says that it holds time.
     pub(super) fn time_unit_s(&self) -> Option<f64> {
         let (word, suffix) = self.time_word();
-        if !TIME_NAMES.contains(&word.as_str()) {
-            return None;
+        match word.as_str() {
+            "time" | "times" | "t" | "zeit" | "temps" | "tempo" | "tiempo" | "tijd" | "tid" | "czas"
+            | "timestamp" | "time_stamp" | "elapsed_time" | "seconds" | "sec" | "zeitstempel"
+            | "relative_time" => {}
+            _ => return None,
         }
         // `T` is rather a temperature or a torque.
         let capital = self.last_part() == "T" && self.unit.is_none();

@@ -34,7 +34,7 @@ mod wav;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-pub use error::ReadRecordingError;
+pub use error::{ReadRecordingError, names};
 pub use format::RecordingFormat;
 pub use options::{
     Calibration, ColumnChoice, DecimalSign, RecordingOptions, Separator, TextOptions, TimeColumn,
@@ -84,19 +84,6 @@ impl Recording {
     /// Whether there is no sample; [`read_recording`] never gives such a recording.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
-    }
-
-    /// (s) Duration, that of the last sample included.
-    pub fn duration_s(&self) -> f64 {
-        self.len() as f64 / self.sampling_rate_hz
-    }
-
-    /// (s) Time of a sample.
-    ///
-    /// # Arguments
-    /// * `index` - the sample, counted from 0
-    pub fn time_s(&self, index: usize) -> f64 {
-        self.start_s + index as f64 / self.sampling_rate_hz
     }
 
     /// The channel of a name, if there is one; the first of several.
@@ -185,6 +172,13 @@ pub fn read_recording(path: &Path, options: &RecordingOptions) -> Result<Recordi
 fn open(path: &Path, options: &RecordingOptions) -> Result<(File, RecordingFormat), Problem> {
     let mut file = open_ordinary(path)?;
     let format = format::detect(path, &mut file, options.format)?;
-    options.check_format(path, format)?;
-    Ok((file, format))
+    match &options.variable {
+        Some(variable) if !matches!(format, RecordingFormat::Npz | RecordingFormat::Mat) => {
+            let path = path.display();
+            let problem =
+                format!("{path}: variable `{variable}` is given, but only NPZ and MAT files hold variables");
+            Err(Problem::Option(problem))
+        }
+        _ => Ok((file, format)),
+    }
 }

@@ -18,32 +18,29 @@ pub(crate) enum NumberKind {
     F64,
 }
 
+/// Name and bytes of each kind, in their order.
+const NAMES_AND_SIZES: [(&str, usize); 11] = [
+    ("int8", 1),
+    ("uint8", 1),
+    ("int16", 2),
+    ("uint16", 2),
+    ("int24", 3),
+    ("int32", 4),
+    ("uint32", 4),
+    ("int64", 8),
+    ("uint64", 8),
+    ("float32", 4),
+    ("float64", 8),
+];
+
 impl NumberKind {
     /// Bytes of a number.
     pub(crate) fn size(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I24 => 3,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::I64 | Self::U64 | Self::F64 => 8,
-        }
+        NAMES_AND_SIZES[self as usize].1
     }
 
     pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::I8 => "int8",
-            Self::U8 => "uint8",
-            Self::I16 => "int16",
-            Self::U16 => "uint16",
-            Self::I24 => "int24",
-            Self::I32 => "int32",
-            Self::U32 => "uint32",
-            Self::I64 => "int64",
-            Self::U64 => "uint64",
-            Self::F32 => "float32",
-            Self::F64 => "float64",
-        }
+        NAMES_AND_SIZES[self as usize].0
     }
 }
 

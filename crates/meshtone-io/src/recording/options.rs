@@ -1,7 +1,5 @@
 //! What is to be read, and what the file does not say itself.
 
-use std::path::Path;
-
 use super::RecordingFormat;
 use super::error::Problem;
 
@@ -141,21 +139,6 @@ pub struct RecordingOptions {
 }
 
 impl RecordingOptions {
-    /// Checks what applies to some formats only.
-    ///
-    /// # Arguments
-    /// * `path`, `format` - of the recording
-    pub(super) fn check_format(&self, path: &Path, format: RecordingFormat) -> Result<(), Problem> {
-        let holds_variables = matches!(format, RecordingFormat::Npz | RecordingFormat::Mat);
-        match &self.variable {
-            Some(variable) if !holds_variables => Err(Problem::Option(format!(
-                "{}: variable `{variable}` is given, but only NPZ and MAT files hold variables",
-                path.display()
-            ))),
-            _ => Ok(()),
-        }
-    }
-
     /// Checks the numbers, which the types do not rule out.
     pub(super) fn check(&self) -> Result<(), Problem> {
         let positive = |rate: &f64| rate.is_finite() && *rate > 0.0;

@@ -6,7 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use parquet::basic::Compression;
 use parquet::file::metadata::{ColumnChunkMetaData, FileMetaData};
 
-use super::assemble::{Columns, assemble};
+use super::assemble::assemble;
 use super::error::Problem;
 use super::label::Label;
 use super::parquet_check::{check_depth, check_metadata};
@@ -54,16 +54,12 @@ fn decode(mut file: File, options: &RecordingOptions) -> Result<Recording, Probl
     let capacity = if is_usual { rows as usize } else { 0 };
     let read = |index: &usize| {
         let numbers = table.numbers(&table.columns()[*index], capacity).map_err(Problem::broken)?;
-        match numbers.first_empty {
-            None => Ok(numbers.values),
-            Some(row) => {
-                Err(Problem::gap(format!("sample {}", row + 1), &labels[*index].raw, "empty (null)"))
-            }
-        }
+        let gap = |row| Problem::gap(format!("sample {}", row + 1), &labels[*index].raw, "empty (null)");
+        numbers.first_empty.map_or(Ok(numbers.values), |row| Err(gap(row)))
     };
     let samples = selection.wanted.iter().map(read).collect::<Result<_, _>>()?;
-    let columns = Columns { labels: &labels, selection: &selection, samples, stated: &stated_rates(head) };
-    Ok(Recording { scenario_toml: scenario(head), ..assemble(columns, options)? })
+    let recording = assemble(&labels, &selection, samples, &stated_rates(head), options)?;
+    Ok(Recording { scenario_toml: table.text_of(SCENARIO_KEY).map(str::to_owned), ..recording })
 }
 
 fn label(column: &FoundColumn) -> Label {
@@ -107,9 +103,4 @@ fn stated_rates(metadata: &FileMetaData) -> Vec<StatedRate> {
         StatedRate::from_named(&entry.key, value)
     });
     named.map(|rate| StatedRate { by: format!("metadata {}", rate.by), ..rate }).collect()
-}
-
-fn scenario(metadata: &FileMetaData) -> Option<String> {
-    let mut entries = metadata.key_value_metadata().into_iter().flatten();
-    entries.find(|entry| entry.key == SCENARIO_KEY)?.value.clone()
 }

@@ -7,7 +7,7 @@ use std::fs::File;
 use std::io::{BufReader, Read};
 
 use super::array::{ArrayLayout, read_channels};
-use super::assemble::{Columns, assemble};
+use super::assemble::assemble;
 use super::error::Problem;
 use super::label::Label;
 use super::number::{NumberKind, Numbers};
@@ -62,7 +62,7 @@ pub(super) fn read(file: File, options: &RecordingOptions) -> Result<Recording, 
         scaled.for_each(|sample| *sample = (*sample - format.zero) / format.full_scale);
     }
     let stated = [StatedRate { by: "its header".to_string(), rate_hz: f64::from(format.rate_hz) }];
-    assemble(Columns { labels: &labels, selection: &selection, samples, stated: &stated }, options)
+    assemble(&labels, &selection, samples, &stated, options)
 }
 
 /// Goes to the samples, and gives their format and how many bytes they have.
@@ -119,7 +119,7 @@ fn format_of(chunk: &[u8]) -> Result<Format, Problem> {
         (PCM, 32) => NumberKind::I32,
         (FLOATING_POINT, 32) => NumberKind::F32,
         (FLOATING_POINT, 64) => NumberKind::F64,
-        _ => return Err(unsupported()),
+        _ => return Err(Problem::broken(UNSUPPORTED)),
     };
     let numbers = Numbers {
         // 24 bits may stand in four bytes, of which the last is empty.
@@ -127,16 +127,12 @@ fn format_of(chunk: &[u8]) -> Result<Format, Problem> {
         ..Numbers::plain(kind, false)
     };
     if usize::from(record_bytes) != numbers.element_bytes() * usize::from(channels) {
-        return Err(unsupported());
+        return Err(Problem::broken(UNSUPPORTED));
     }
     let zero = if kind == NumberKind::U8 { 128.0 } else { 0.0 };
     let full_scale = if code == PCM { f64::from(bits - 1).exp2() } else { 1.0 };
     Ok(Format { channels, rate_hz, numbers, zero, full_scale })
 }
 
-fn unsupported() -> Problem {
-    Problem::broken(
-        "its samples are neither PCM of 8 to 32 bits nor floating point of 32 or 64 bits; convert it, for instance with \
-         `ffmpeg -i FILE.wav -c:a pcm_f32le NEW.wav`",
-    )
-}
+const UNSUPPORTED: &str = "its samples are neither PCM of 8 to 32 bits nor floating point of 32 or 64 bits; convert it, for instance \
+                           with `ffmpeg -i FILE.wav -c:a pcm_f32le NEW.wav`";

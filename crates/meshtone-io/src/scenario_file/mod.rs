@@ -79,6 +79,7 @@ pub fn read_scenario(path: &Path) -> Result<Scenario, ReadScenarioError> {
 #[derive(Debug, Clone)]
 pub struct FilesBeside {
     directory: PathBuf,
+    /// The files that the scenario named, in the order of reading.
     named: RefCell<Vec<PathBuf>>,
 }
 
@@ -89,11 +90,6 @@ impl FilesBeside {
     /// * `directory` - where relative names start
     pub fn new(directory: impl Into<PathBuf>) -> Self {
         Self { directory: directory.into(), named: RefCell::default() }
-    }
-
-    /// The files that the scenario named, in the order of reading.
-    pub fn into_named(self) -> Vec<PathBuf> {
-        self.named.into_inner()
     }
 
     /// Where the file of a name is, which is kept among the named ones.

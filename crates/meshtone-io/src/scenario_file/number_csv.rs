@@ -11,8 +11,6 @@ use crate::input_file::{MEMORY_PER_BYTE_OF_NUMBERS, open_stream};
 /// A quantity against time.
 pub(super) const PROFILE: NumberCsv<2> = NumberCsv {
     names: ["time_s", "value"],
-    // The second column may have any name.
-    checked_names: 1,
     needs_names: false,
     help: "write two columns separated by a comma, time_s and value, with a point as decimal sign; the first line may name them",
 };
@@ -20,7 +18,6 @@ pub(super) const PROFILE: NumberCsv<2> = NumberCsv {
 /// A frequency response.
 pub(super) const FREQUENCY_RESPONSE: NumberCsv<3> = NumberCsv {
     names: ["frequency_hz", "magnitude", "phase_deg"],
-    checked_names: 3,
     // Real and imaginary parts, decibels or radians would otherwise be taken for magnitude and phase.
     needs_names: true,
     help: "write three columns separated by a comma, with a point as decimal sign; the first line must be \
@@ -31,9 +28,7 @@ pub(super) const FREQUENCY_RESPONSE: NumberCsv<3> = NumberCsv {
 pub(super) struct NumberCsv<const COLUMNS: usize> {
     /// Their names.
     pub(super) names: [&'static str; COLUMNS],
-    /// How many of the names, from the first one on, a line of names must have in their places.
-    pub(super) checked_names: usize,
-    /// Whether the first line must name the columns.
+    /// Whether the first line must name the columns. Otherwise it may, and the columns behind the first may have any names.
     pub(super) needs_names: bool,
     /// What the user can do.
     pub(super) help: &'static str,
@@ -74,7 +69,8 @@ impl<const COLUMNS: usize> NumberCsv<COLUMNS> {
     /// Columns in another order would otherwise be taken for wild numbers.
     fn check_names(&self, path: &Path, record: &StringRecord) -> Result<(), FileProblem> {
         const ORDINALS: [&str; 3] = ["first", "second", "third"];
-        for (place, (name, ordinal)) in self.names.iter().zip(ORDINALS).take(self.checked_names).enumerate() {
+        let checked = if self.needs_names { COLUMNS } else { 1 };
+        for (place, (name, ordinal)) in self.names.iter().zip(ORDINALS).take(checked).enumerate() {
             let found = record.get(place).unwrap_or_default();
             if found.trim_start_matches('\u{feff}') != *name {
                 let what = format!("names its {ordinal} column `{found}`; it must be {name}");

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use meshtone::scenario::{MemoryLimit, Scenario, ScenarioError};
+use meshtone::scenario::{Scenario, ScenarioError};
 use meshtone_toml::TomlDocument;
 
 use super::{FileKind, FilesBeside, ReadScenarioError};
@@ -31,23 +31,11 @@ impl ScenarioFile {
     /// # Errors
     /// As [`super::read_scenario`].
     pub fn read(path: &Path) -> Result<Self, ReadScenarioError> {
-        Self::read_within(path, memory::limit())
-    }
-
-    /// As [`Self::read`], with another limit of memory.
-    ///
-    /// # Arguments
-    /// * `path` - the scenario file
-    /// * `limit` - most that the simulation may need
-    ///
-    /// # Errors
-    /// As [`super::read_scenario`].
-    pub fn read_within(path: &Path, limit: MemoryLimit) -> Result<Self, ReadScenarioError> {
         let text = read_text(path)?;
         let files = FilesBeside::new(path.parent().unwrap_or(Path::new("")));
         let path = path.to_path_buf();
-        match Scenario::from_toml_within(&text, &files, limit) {
-            Ok(scenario) => Ok(Self { path, text, scenario, named_files: files.into_named() }),
+        match Scenario::from_toml_within(&text, &files, memory::limit()) {
+            Ok(scenario) => Ok(Self { path, text, scenario, named_files: files.named.into_inner() }),
             Err(error) => Err(ReadScenarioError::invalid(FileKind::Scenario, path, text, error.into())),
         }
     }

@@ -5,7 +5,6 @@ use std::path::Path;
 
 use meshtone::scenario::Scenario;
 use meshtone::sensor::{ChannelKind, Channels, SensorSignal};
-use parquet::file::metadata::FileMetaData;
 
 use crate::ReadResultsError;
 use crate::input_file::open_ordinary;
@@ -40,20 +39,22 @@ pub fn read_signals(path: &Path) -> Result<Recorded, ReadResultsError> {
     let foreign = |problem: String| ReadResultsError::foreign(path, problem);
     let broken = |error: &dyn std::fmt::Display| foreign(format!("is not a whole Parquet file: {error}"));
     let table = TableReader::new(file).map_err(|error| broken(&error))?;
-    let metadata = table.metadata().file_metadata();
-    let rows = u64::try_from(metadata.num_rows()).unwrap_or(u64::MAX);
+    let rows = u64::try_from(table.metadata().file_metadata().num_rows()).unwrap_or(u64::MAX);
     let needed = rows.saturating_mul((size_of::<f64>() * table.columns().len()) as u64);
     if let Some(objection) = memory::limit().objection(needed) {
         return Err(foreign(format!("its {rows} rows {objection}; raise the memory limit")));
     }
-    let text = text_of(metadata, SCENARIO_KEY).map_err(foreign)?;
-    let scenario = Scenario::from_toml(text)
-        .map_err(|error| ReadResultsError::Scenario { path: path.to_path_buf(), error: Box::new(error) })?;
-    let version = text_of(metadata, VERSION_KEY).map_err(foreign)?.to_string();
-    let run = text_of(metadata, RUN_KEY).map_err(foreign)?.parse::<RunIdentity>();
+    let text_of = |key: &str| {
+        let missing = || foreign(format!("has no metadata {key}, so `meshtone simulate` did not write it"));
+        table.text_of(key).ok_or_else(missing)
+    };
+    let scenario = Scenario::from_toml(text_of(SCENARIO_KEY)?)
+        .map_err(|error| ReadResultsError::scenario(path, &error))?;
+    let version = text_of(VERSION_KEY)?.to_string();
+    let run = text_of(RUN_KEY)?.parse::<RunIdentity>();
     let run = run.map_err(|error| foreign(format!("metadata {RUN_KEY}: {error}")))?;
     let mut channels = Channels::default();
-    channels.sampling_rate_hz = rate(metadata).map_err(foreign)?;
+    channels.sampling_rate_hz = rate(text_of(RATE_KEY)?).map_err(foreign)?;
     let numbers = |name: &str| numbers(&table, name).map_err(foreign);
     channels.start_s = numbers(TIME)?.first().copied().unwrap_or(0.0);
     for kind in ChannelKind::ALL {
@@ -65,16 +66,7 @@ pub fn read_signals(path: &Path) -> Result<Recorded, ReadResultsError> {
     Ok(Recorded { scenario, channels, version, run })
 }
 
-fn text_of<'m>(metadata: &'m FileMetaData, key: &str) -> Result<&'m str, String> {
-    let entries = metadata.key_value_metadata().into_iter().flatten();
-    entries
-        .filter(|entry| entry.key == key)
-        .find_map(|entry| entry.value.as_deref())
-        .ok_or_else(|| format!("has no metadata {key}, so `meshtone simulate` did not write it"))
-}
-
-fn rate(metadata: &FileMetaData) -> Result<f64, String> {
-    let text = text_of(metadata, RATE_KEY)?;
+fn rate(text: &str) -> Result<f64, String> {
     let rate = text.parse().ok().filter(|rate: &f64| rate.is_finite() && *rate > 0.0);
     rate.ok_or_else(|| format!("metadata {RATE_KEY} is `{text}`; must be a number above 0"))
 }

@@ -39,8 +39,8 @@ pub fn write_signals(to: impl Write + Send, scenario: &Scenario, channels: &Chan
     ]);
     for start in (0..channels.len()).step_by(GROUP_ROWS) {
         let rows = start..channels.len().min(start + GROUP_ROWS);
-        let time = |row: usize| channels.time_s(start + row);
-        let time = Cells::Sequence { rows: rows.len(), at: &time };
+        let times_s: Vec<f64> = rows.clone().map(|row| channels.time_s(row)).collect();
+        let time = Cells::Signal(&times_s);
         let signals = listed.iter().filter_map(|channel| channels.signal(channel));
         let signals = signals.map(|signal| Cells::Signal(&signal[rows.clone()]));
         table.write_rows(std::iter::once(time).chain(signals).collect())?;

@@ -4,31 +4,35 @@
 //! channel, is `null`.
 
 mod json;
-mod read;
 
+use std::path::Path;
 use std::time::Duration;
 
 use meshtone::damage::{QuantityValue, ToothPart, damages_of_fault};
 use meshtone::scenario::{Fault, FaultyTeeth, ScenarioWarning};
-use meshtone::signal::{ChainSettings, Indicators, Shaft, SimulatedShafts, kurtosis, peak, rms};
-use meshtone::{Simulation, Stages};
-
-use crate::run_identity::RunIdentity;
 use meshtone::sensor::{Channel, ContactFigures};
+use meshtone::signal::{ChainSettings, Indicators, SimulatedShafts, kurtosis, peak, rms};
+use meshtone::wheel::WheelName;
+use meshtone::{Simulation, Stages};
+use serde::Serialize;
+use serde_json::Value;
 
-pub use read::read_run;
+use crate::ReadResultsError;
+use crate::input_file::read_document;
+use crate::run_identity::RunIdentity;
 
 /// Version of the summary's format: it grows when a key changes its name or meaning.
 pub const FORMAT_VERSION: u32 = 2;
 
 /// The main numbers of a simulation.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
     /// [`FORMAT_VERSION`].
     pub format_version: u32,
     /// Version of Meshtone.
     pub meshtone_version: &'static str,
     /// Identity of the run, which all its files carry.
+    #[serde(serialize_with = "json::run")]
     pub run: RunIdentity,
     /// Model, by its name in the scenario file.
     pub model: &'static str,
@@ -55,30 +59,38 @@ pub struct Summary {
     /// Over the samples kept.
     pub mesh_force: MeshForce,
     /// Indicators of each signal, by the name of its column; listed sensors first.
+    #[serde(serialize_with = "json::channels")]
     pub channels: Vec<ChannelSummary>,
-    /// The signal that [`Self::indicators`] are of: the first sensor's, or the vertical acceleration where none is listed.
-    pub averaged: String,
     /// Indicators of that signal, synchronously averaged on the shafts of pinion and gear; none where the kept signal holds no
     /// average.
+    #[serde(serialize_with = "json::indicators")]
     pub indicators: [Option<Indicators>; 2],
     /// Time that each stage took.
+    #[serde(rename = "computing_time_ms", serialize_with = "json::times")]
     pub computing_time: Vec<(String, Duration)>,
     /// What deserves attention.
+    #[serde(serialize_with = "json::warnings")]
     pub warnings: Vec<ScenarioWarning>,
+    /// The signal that [`Self::indicators`] are of: the first sensor's. Of a simulation without listed sensors they are the
+    /// vertical acceleration's, as ever, and the file does not say so.
+    #[serde(rename = "indicators_of", skip_serializing_if = "json::is_vertical")]
+    pub averaged: String,
 }
 
 /// A fault: its kind and place, each as in the scenario file, and how severe it is.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FaultSummary {
     /// Kind of damage.
     pub kind: &'static str,
     /// The damaged wheel.
     pub wheel: &'static str,
     /// Which of its teeth, by their numbers from 1.
+    #[serde(serialize_with = "json::tooth")]
     pub tooth: FaultyTeeth,
     /// (-) How severe it is, from 0, none, to 1, the largest that the tooth allows.
     pub severity: f64,
     /// What it has done to each of its teeth; only of a fault that takes spots of their flanks.
+    #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "json::pitted_teeth")]
     pub pitted_teeth: Vec<PittedTooth>,
 }
 
@@ -105,7 +117,7 @@ impl FaultSummary {
 }
 
 /// Stiffness of the mesh over a revolution of the gear.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct MeshStiffness {
     /// (N/mm) Smallest.
     pub min_n_per_mm: f64,
@@ -116,7 +128,7 @@ pub struct MeshStiffness {
 }
 
 /// Force along the line of action.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct MeshForce {
     /// (N) Smallest; negative where the mesh pulls.
     pub min_n: f64,
@@ -125,8 +137,10 @@ pub struct MeshForce {
     /// (N) Largest.
     pub max_n: f64,
     /// (-) Part of the time in which the mesh pulls; none under `contact`, whose teeth never do.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub tension_fraction: Option<f64>,
     /// How the teeth touched; only under `contact`.
+    #[serde(flatten)]
     pub contact: Option<ContactFigures>,
 }
 
@@ -145,18 +159,6 @@ pub struct ChannelSummary {
     pub kurtosis: Option<f64>,
 }
 
-impl ChannelSummary {
-    fn of(channel: &Channel, signal: &[f64]) -> Self {
-        Self {
-            name: channel.name().into_owned(),
-            unit: channel.unit(),
-            rms: rms(signal),
-            peak: peak(signal),
-            kurtosis: kurtosis(signal),
-        }
-    }
-}
-
 impl Summary {
     /// Sums up a simulation.
     ///
@@ -173,6 +175,18 @@ impl Summary {
         let [min_n, mean_n, max_n] = extremes(&channels.mesh_force_n);
         let contact = simulation.contact_figures();
         let (leading, signal) = channels.leading();
+        let listed = channels.list();
+        let channel_summary = |channel: &Channel| {
+            let signal = channels.signal(channel)?;
+            let (rms, peak, kurtosis) = (rms(signal), peak(signal), kurtosis(signal));
+            Some(ChannelSummary {
+                name: channel.name().into_owned(),
+                unit: channel.unit(),
+                rms,
+                peak,
+                kurtosis,
+            })
+        };
         let stage_times = simulation.timings.iter().map(|time| (time.stage.to_string(), time.elapsed));
         Self {
             format_version: FORMAT_VERSION,
@@ -196,15 +210,9 @@ impl Summary {
                 tension_fraction: contact.is_none().then(|| channels.tension_fraction()),
                 contact,
             },
-            channels: channels
-                .list()
-                .iter()
-                .filter_map(|channel| {
-                    channels.signal(channel).map(|signal| ChannelSummary::of(channel, signal))
-                })
-                .collect(),
+            channels: listed.iter().filter_map(channel_summary).collect(),
             averaged: leading.name().into_owned(),
-            indicators: Shaft::BOTH.map(|shaft| {
+            indicators: WheelName::BOTH.map(|shaft| {
                 let record = shafts.process(signal, shaft, &ChainSettings::default());
                 Some(record.ok()?.indicators)
             }),
@@ -226,4 +234,32 @@ fn extremes(values: &[f64]) -> [f64; 3] {
         values.iter().sum::<f64>() / values.len() as f64,
         values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
     ]
+}
+
+/// The identity of the run that a summary is of.
+///
+/// # Arguments
+/// * `path` - what [`Summary::write_json`] wrote
+///
+/// # Errors
+/// The file cannot be read, or it is no summary.
+///
+/// ```
+/// use meshtone_io::summary::read_run;
+///
+/// let directory = tempfile::tempdir()?;
+/// let path = directory.path().join("summary.json");
+/// std::fs::write(&path, r#"{ "run": "00000000000000ff" }"#)?;
+/// assert_eq!(read_run(&path)?.number(), 255);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn read_run(path: &Path) -> Result<RunIdentity, ReadResultsError> {
+    let text = read_document(path).map_err(|source| ReadResultsError::unreadable(path, source))?;
+    let foreign = |problem: String| ReadResultsError::foreign(path, problem);
+    let summary: Value =
+        serde_json::from_slice(&text).map_err(|error| foreign(format!("is not whole JSON: {error}")))?;
+    let run = summary.get("run").and_then(Value::as_str);
+    let run =
+        run.ok_or_else(|| foreign("has no `run`, so `meshtone simulate` did not write it".to_string()))?;
+    run.parse().map_err(|error| foreign(format!("run: {error}")))
 }

@@ -21,45 +21,34 @@ const SCHEMA_MESSAGE: u8 = 1;
 /// The fifth version of Arrow's format, of all releases since 2020.
 const VERSION_5: i16 = 4;
 
-mod message {
-    pub const VERSION: usize = 0;
-    pub const HEADER_TYPE: usize = 1;
-    pub const HEADER: usize = 2;
-}
-mod schema {
-    pub const FIELDS: usize = 1;
-}
-mod field {
-    pub const NAME: usize = 0;
-    pub const NULLABLE: usize = 1;
-    pub const TYPE_CODE: usize = 2;
-    pub const TYPE: usize = 3;
-    pub const CHILDREN: usize = 5;
-    pub const METADATA: usize = 6;
-}
-mod key_value {
-    pub const KEY: usize = 0;
-    pub const VALUE: usize = 1;
-}
-mod integer {
-    pub const BITS: usize = 0;
-    pub const IS_SIGNED: usize = 1;
-}
-mod floating_point {
-    pub const PRECISION: usize = 0;
-    pub const SINGLE: i16 = 1;
-    pub const DOUBLE: i16 = 2;
-}
-mod type_code {
-    pub const INTEGER: u8 = 2;
-    pub const FLOATING_POINT: u8 = 3;
-    pub const TEXT: u8 = 5;
-    pub const DATE: u8 = 8;
-    pub const TIME: u8 = 9;
-    pub const TIMESTAMP: u8 = 10;
-    pub const LIST: u8 = 12;
-    pub const DURATION: u8 = 18;
-}
+/// Numbers of the fields of Arrow's tables.
+const MESSAGE_VERSION: usize = 0;
+const MESSAGE_HEADER_TYPE: usize = 1;
+const MESSAGE_HEADER: usize = 2;
+const SCHEMA_FIELDS: usize = 1;
+const FIELD_NAME: usize = 0;
+const FIELD_NULLABLE: usize = 1;
+const FIELD_TYPE_CODE: usize = 2;
+const FIELD_TYPE: usize = 3;
+const FIELD_CHILDREN: usize = 5;
+const FIELD_METADATA: usize = 6;
+const KEY_VALUE_KEY: usize = 0;
+const KEY_VALUE_VALUE: usize = 1;
+const INTEGER_BITS: usize = 0;
+const INTEGER_IS_SIGNED: usize = 1;
+const FLOATING_POINT_PRECISION: usize = 0;
+/// Precisions of floating point.
+const SINGLE_PRECISION: i16 = 1;
+const DOUBLE_PRECISION: i16 = 2;
+/// Codes of types.
+const TYPE_INTEGER: u8 = 2;
+const TYPE_FLOATING_POINT: u8 = 3;
+const TYPE_TEXT: u8 = 5;
+const TYPE_DATE: u8 = 8;
+const TYPE_TIME: u8 = 9;
+const TYPE_TIMESTAMP: u8 = 10;
+const TYPE_LIST: u8 = 12;
+const TYPE_DURATION: u8 = 18;
 /// The field of dates, times, timestamps and durations alike that says their unit.
 const UNIT: usize = 0;
 /// How many of each unit make a second.
@@ -82,12 +71,12 @@ pub(super) fn decode(text: &str) -> Option<Vec<ArrowField>> {
         None => &bytes,
     };
     let message = FlatTable::root(buffer)?;
-    if message.u8(message::HEADER_TYPE)? != SCHEMA_MESSAGE {
+    if message.u8(MESSAGE_HEADER_TYPE)? != SCHEMA_MESSAGE {
         return None;
     }
     // Places may be shared, so that a hostile buffer stands for far more than it holds.
     let mut left = buffer.len();
-    let fields = message.table(message::HEADER)?.tables(schema::FIELDS);
+    let fields = message.table(MESSAGE_HEADER)?.tables(SCHEMA_FIELDS);
     fields.map(|field| arrow_field(field, &mut left)).collect()
 }
 
@@ -99,13 +88,13 @@ fn arrow_field(table: FlatTable, left: &mut usize) -> Option<ArrowField> {
         *left = left.checked_sub(text.len() + 8)?;
         Some(text.to_owned())
     };
-    let entries = table.tables(field::METADATA);
+    let entries = table.tables(FIELD_METADATA);
     let metadata = entries
-        .map(|entry| Some((take(entry.text(key_value::KEY))?, take(entry.text(key_value::VALUE))?)))
+        .map(|entry| Some((take(entry.text(KEY_VALUE_KEY))?, take(entry.text(KEY_VALUE_VALUE))?)))
         .collect::<Option<_>>()?;
-    let name = take(table.text(field::NAME))?;
+    let name = take(table.text(FIELD_NAME))?;
     // Of a dictionary, the type is that of its values.
-    let kind = table.table(field::TYPE).zip(table.u8(field::TYPE_CODE));
+    let kind = table.table(FIELD_TYPE).zip(table.u8(FIELD_TYPE_CODE));
     Some(ArrowField { name, metadata, kind: kind.and_then(|(kind, code)| arrow_kind(kind, code)) })
 }
 
@@ -117,10 +106,10 @@ fn arrow_kind(kind: FlatTable, code: u8) -> Option<FoundType> {
         Some(FoundType::Moment { per_second })
     };
     match code {
-        type_code::TIMESTAMP => moment(0),
-        type_code::DURATION => moment(1),
-        type_code::TIME => Some(FoundType::Other("Time")),
-        type_code::DATE => Some(FoundType::Other("Date")),
+        TYPE_TIMESTAMP => moment(0),
+        TYPE_DURATION => moment(1),
+        TYPE_TIME => Some(FoundType::Other("Time")),
+        TYPE_DATE => Some(FoundType::Other("Date")),
         _ => None,
     }
 }
@@ -129,18 +118,17 @@ fn arrow_kind(kind: FlatTable, code: u8) -> Option<FoundType> {
 pub(super) fn encode(columns: &[TableColumn]) -> String {
     let mut buffer = FlatBufferBuilder::new();
     let put = |column: &TableColumn| {
-        let kind = ArrowType::of(column.cells);
-        put_field(&mut buffer, &column.name, kind, column.nullable, &column.metadata)
+        put_field(&mut buffer, &column.name, Some(column.cells), column.nullable, &column.metadata)
     };
     let fields: Vec<FlatField> = columns.iter().map(put).collect();
     let fields = buffer.create_vector(&fields);
     let start = buffer.start_table();
-    buffer.push_slot_always(offset(schema::FIELDS), fields);
+    buffer.push_slot_always(offset(SCHEMA_FIELDS), fields);
     let schema = buffer.end_table(start);
     let start = buffer.start_table();
-    buffer.push_slot_always(offset(message::VERSION), VERSION_5);
-    buffer.push_slot_always(offset(message::HEADER_TYPE), SCHEMA_MESSAGE);
-    buffer.push_slot_always(offset(message::HEADER), schema);
+    buffer.push_slot_always(offset(MESSAGE_VERSION), VERSION_5);
+    buffer.push_slot_always(offset(MESSAGE_HEADER_TYPE), SCHEMA_MESSAGE);
+    buffer.push_slot_always(offset(MESSAGE_HEADER), schema);
     let message = buffer.end_table(start);
     buffer.finish_minimal(message);
     let message = buffer.finished_data();
@@ -156,31 +144,11 @@ fn offset(field: usize) -> VOffsetT {
     (BEFORE_PLACES + 2 * field) as VOffsetT
 }
 
-/// The types that are written.
-#[derive(Clone, Copy)]
-enum ArrowType {
-    Integer { bits: i32 },
-    FloatingPoint { precision: i16 },
-    Text,
-    Float32List,
-}
-
-impl ArrowType {
-    fn of(cells: CellType) -> Self {
-        match cells {
-            CellType::Int32 => Self::Integer { bits: 32 },
-            CellType::Int64 => Self::Integer { bits: 64 },
-            CellType::Float64 => Self::FloatingPoint { precision: floating_point::DOUBLE },
-            CellType::Text => Self::Text,
-            CellType::Float32List => Self::Float32List,
-        }
-    }
-}
-
+/// Puts a column, or with no type of cells the numbers in single precision that a column of lists consists of.
 fn put_field(
     buffer: &mut FlatBufferBuilder,
     name: &str,
-    kind: ArrowType,
+    cells: Option<CellType>,
     nullable: bool,
     metadata: &[(String, String)],
 ) -> FlatField {
@@ -190,29 +158,24 @@ fn put_field(
         metadata.into_iter().map(|(key, value)| put_entry(buffer, key, value)).collect();
     let metadata = (!metadata.is_empty()).then(|| buffer.create_vector(&metadata));
     let name = buffer.create_string(name);
-    let children: Vec<FlatField> = match kind {
-        ArrowType::Float32List => {
-            let item = ArrowType::FloatingPoint { precision: floating_point::SINGLE };
-            vec![put_field(buffer, LIST_ITEM, item, false, &[])]
-        }
-        _ => Vec::new(),
-    };
+    let is_list = cells == Some(CellType::Float32List);
+    let item = is_list.then(|| put_field(buffer, LIST_ITEM, None, false, &[]));
+    let children: Vec<FlatField> = item.into_iter().collect();
     // Parts in the order of Arrow's own Rust library: then files are its files, byte by byte.
-    let ((code, parameters), children) = match kind {
-        ArrowType::Text | ArrowType::Float32List => (put_type(buffer, kind), buffer.create_vector(&children)),
-        ArrowType::Integer { .. } | ArrowType::FloatingPoint { .. } => {
-            let children = buffer.create_vector(&children);
-            (put_type(buffer, kind), children)
-        }
+    let ((code, parameters), children) = if is_list || cells == Some(CellType::Text) {
+        (put_type(buffer, cells), buffer.create_vector(&children))
+    } else {
+        let children = buffer.create_vector(&children);
+        (put_type(buffer, cells), children)
     };
     let start = buffer.start_table();
-    buffer.push_slot_always(offset(field::NAME), name);
-    buffer.push_slot_always(offset(field::TYPE_CODE), code);
-    buffer.push_slot(offset(field::NULLABLE), nullable, false);
-    buffer.push_slot_always(offset(field::CHILDREN), children);
-    buffer.push_slot_always(offset(field::TYPE), parameters);
+    buffer.push_slot_always(offset(FIELD_NAME), name);
+    buffer.push_slot_always(offset(FIELD_TYPE_CODE), code);
+    buffer.push_slot(offset(FIELD_NULLABLE), nullable, false);
+    buffer.push_slot_always(offset(FIELD_CHILDREN), children);
+    buffer.push_slot_always(offset(FIELD_TYPE), parameters);
     if let Some(metadata) = metadata {
-        buffer.push_slot_always(offset(field::METADATA), metadata);
+        buffer.push_slot_always(offset(FIELD_METADATA), metadata);
     }
     buffer.end_table(start)
 }
@@ -220,26 +183,28 @@ fn put_field(
 fn put_entry(buffer: &mut FlatBufferBuilder, key: &str, value: &str) -> FlatField {
     let (key, value) = (buffer.create_string(key), buffer.create_string(value));
     let start = buffer.start_table();
-    buffer.push_slot_always(offset(key_value::KEY), key);
-    buffer.push_slot_always(offset(key_value::VALUE), value);
+    buffer.push_slot_always(offset(KEY_VALUE_KEY), key);
+    buffer.push_slot_always(offset(KEY_VALUE_VALUE), value);
     buffer.end_table(start)
 }
 
-/// The code of a type, and the table of what it says besides.
-fn put_type(buffer: &mut FlatBufferBuilder, kind: ArrowType) -> (u8, FlatField) {
+/// The code of a type, and the table of what it says besides; with no type of cells those of numbers in single precision.
+fn put_type(buffer: &mut FlatBufferBuilder, cells: Option<CellType>) -> (u8, FlatField) {
     let start = buffer.start_table();
-    let code = match kind {
-        ArrowType::Integer { bits } => {
-            buffer.push_slot_always(offset(integer::IS_SIGNED), true);
-            buffer.push_slot_always(offset(integer::BITS), bits);
-            type_code::INTEGER
+    let code = match cells {
+        Some(CellType::Int32 | CellType::Int64) => {
+            let bits = if cells == Some(CellType::Int32) { 32 } else { 64 };
+            buffer.push_slot_always(offset(INTEGER_IS_SIGNED), true);
+            buffer.push_slot_always::<i32>(offset(INTEGER_BITS), bits);
+            TYPE_INTEGER
         }
-        ArrowType::FloatingPoint { precision } => {
-            buffer.push_slot_always(offset(floating_point::PRECISION), precision);
-            type_code::FLOATING_POINT
+        Some(CellType::Float64) | None => {
+            let precision = if cells.is_some() { DOUBLE_PRECISION } else { SINGLE_PRECISION };
+            buffer.push_slot_always(offset(FLOATING_POINT_PRECISION), precision);
+            TYPE_FLOATING_POINT
         }
-        ArrowType::Text => type_code::TEXT,
-        ArrowType::Float32List => type_code::LIST,
+        Some(CellType::Text) => TYPE_TEXT,
+        Some(CellType::Float32List) => TYPE_LIST,
     };
     (code, buffer.end_table(start))
 }

@@ -14,6 +14,7 @@ mod write;
 
 pub use found_type::{FoundType, NumberType};
 pub use read::{FoundColumn, Numbers, TableReader};
+pub(crate) use write::write_compressed;
 pub use write::{CellType, Cells, TableColumn, TableWriter};
 
 use std::io;

@@ -53,12 +53,19 @@ impl<R: ChunkReader + 'static> TableReader<R> {
     /// The file cannot be read, or is no Parquet file.
     pub fn new(file: R) -> Result<Self> {
         let file = SerializedFileReader::new(file)?;
-        let head = file.metadata().file_metadata();
-        let entries = head.key_value_metadata().into_iter().flatten();
-        let arrow =
-            entries.filter(|entry| entry.key == arrow_schema::KEY).find_map(|entry| entry.value.as_deref());
-        let columns = columns(head.schema(), &arrow.and_then(arrow_schema::decode).unwrap_or_default());
-        Ok(Self { file, columns })
+        let mut table = Self { file, columns: Vec::new() };
+        let arrow = table.text_of(arrow_schema::KEY).and_then(arrow_schema::decode).unwrap_or_default();
+        table.columns = columns(table.metadata().file_metadata().schema(), &arrow);
+        Ok(table)
+    }
+
+    /// What the file says about itself under a key.
+    ///
+    /// # Arguments
+    /// * `key` - the key
+    pub fn text_of(&self, key: &str) -> Option<&str> {
+        let entries = self.metadata().file_metadata().key_value_metadata().into_iter().flatten();
+        entries.filter(|entry| entry.key == key).find_map(|entry| entry.value.as_deref())
     }
 
     /// What the file says about itself.
@@ -99,33 +106,28 @@ impl<R: ChunkReader + 'static> TableReader<R> {
     pub fn numbers(&self, column: &FoundColumn, capacity: usize) -> Result<Numbers> {
         let mut numbers = Numbers { values: Vec::with_capacity(capacity), ..Numbers::default() };
         let mut first = None;
+        // An integer of the file, as one with sign and as one without.
+        let mut whole = |signed: i64, unsigned: u64| match column.kind {
+            FoundType::Moment { per_second } => seconds(signed, &mut first, per_second),
+            FoundType::Number(NumberType::UInt(_)) => unsigned as f64,
+            _ => signed as f64,
+        };
         self.each_group(column, |reader| match (reader, column.kind) {
+            (_, FoundType::Text | FoundType::Other(_)) => Err(holds(column)),
             (ColumnReader::DoubleColumnReader(reader), FoundType::Number(_)) => {
                 numbers.append(reader, column, |&number| number)
             }
             (ColumnReader::FloatColumnReader(reader), FoundType::Number(_)) => {
                 numbers.append(reader, column, |&number| f64::from(number))
             }
-            (ColumnReader::Int32ColumnReader(reader), FoundType::Number(NumberType::UInt(_))) => {
-                numbers.append(reader, column, |&number| f64::from(number.cast_unsigned()))
+            (ColumnReader::Int32ColumnReader(reader), _) => {
+                numbers.append(reader, column, |&number| whole(number.into(), number.cast_unsigned().into()))
             }
-            (ColumnReader::Int32ColumnReader(reader), FoundType::Number(_)) => {
-                numbers.append(reader, column, |&number| f64::from(number))
+            (ColumnReader::Int64ColumnReader(reader), _) => {
+                numbers.append(reader, column, |&number| whole(number, number.cast_unsigned()))
             }
-            (ColumnReader::Int64ColumnReader(reader), FoundType::Number(NumberType::UInt(_))) => {
-                numbers.append(reader, column, |&number| number.cast_unsigned() as f64)
-            }
-            (ColumnReader::Int64ColumnReader(reader), FoundType::Number(_)) => {
-                numbers.append(reader, column, |&number| number as f64)
-            }
-            (ColumnReader::Int32ColumnReader(reader), FoundType::Moment { per_second }) => {
-                numbers.append(reader, column, |&moment| seconds(moment.into(), &mut first, per_second))
-            }
-            (ColumnReader::Int64ColumnReader(reader), FoundType::Moment { per_second }) => {
-                numbers.append(reader, column, |&moment| seconds(moment, &mut first, per_second))
-            }
-            (ColumnReader::Int96ColumnReader(reader), FoundType::Moment { per_second }) => {
-                numbers.append(reader, column, |moment| seconds(moment.to_nanos(), &mut first, per_second))
+            (ColumnReader::Int96ColumnReader(reader), FoundType::Moment { .. }) => {
+                numbers.append(reader, column, |moment| whole(moment.to_nanos(), 0))
             }
             _ => Err(holds(column)),
         })?;

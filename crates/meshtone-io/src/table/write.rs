@@ -4,9 +4,9 @@ use std::collections::HashSet;
 use std::io::{self, Write};
 use std::sync::Arc;
 
-use parquet::basic::{LogicalType, Repetition, Type as Physical};
+use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical, ZstdLevel};
 use parquet::column::writer::{ColumnWriter, get_typed_column_writer_mut};
-use parquet::data_type::{self, ByteArray, DataType};
+use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, FloatType, Int32Type, Int64Type};
 use parquet::errors::{ParquetError, Result};
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
@@ -50,9 +50,6 @@ pub enum CellType {
     Float32List,
 }
 
-/// Cells of a sequence that are computed at a time.
-const SEQUENCE_BATCH: usize = 1024;
-
 /// The cells of a column in some rows.
 pub enum Cells<'c> {
     /// Of [`CellType::Int32`].
@@ -63,13 +60,6 @@ pub enum Cells<'c> {
     Float64(Vec<Option<f64>>),
     /// Of [`CellType::Float64`], none of them empty.
     Signal(&'c [f64]),
-    /// Of [`CellType::Float64`], none of them empty, computed when they are written.
-    Sequence {
-        /// How many.
-        rows: usize,
-        /// The cell of a row, counted from 0.
-        at: &'c dyn Fn(usize) -> f64,
-    },
     /// Of [`CellType::Text`].
     Text(Vec<Option<String>>),
     /// Of [`CellType::Float32List`].
@@ -233,35 +223,44 @@ impl<W: Write + Send> TableWriter<W> {
     }
 }
 
+/// Writes a whole table in one group of rows, compressed by Zstandard.
+///
+/// # Arguments
+/// * `to` - where the file is written to; it needs no buffer
+/// * `columns` - its columns
+/// * `rows`, `cells` - how many rows, and the cells of each column
+/// * `metadata` - keys and values that the file says about itself
+///
+/// # Errors
+/// As [`TableWriter::new`] and [`TableWriter::write_rows`].
+pub(crate) fn write_compressed(
+    to: impl Write + Send,
+    columns: Vec<TableColumn>,
+    rows: usize,
+    cells: Vec<Cells>,
+    metadata: impl IntoIterator<Item = (&'static str, String)>,
+) -> io::Result<()> {
+    let compression = ZstdLevel::try_new(1).map(Compression::ZSTD).map_err(io::Error::other)?;
+    let properties = WriterProperties::builder().set_compression(compression).build();
+    let mut table = TableWriter::new(to, columns, properties)?;
+    table.add_metadata(metadata);
+    if rows > 0 {
+        table.write_rows(cells)?;
+    }
+    table.close()
+}
+
 fn write_cells(writer: &mut ColumnWriter, column: &TableColumn, cells: Cells) -> Result<()> {
     match (column.cells, cells) {
-        (CellType::Int32, Cells::Int32(cells)) => {
-            write::<data_type::Int32Type>(writer, column, cells.into_iter())
-        }
-        (CellType::Int64, Cells::Int64(cells)) => {
-            write::<data_type::Int64Type>(writer, column, cells.into_iter())
-        }
-        (CellType::Float64, Cells::Float64(cells)) => {
-            write::<data_type::DoubleType>(writer, column, cells.into_iter())
-        }
+        (CellType::Int32, Cells::Int32(cells)) => write::<Int32Type>(writer, column, cells),
+        (CellType::Int64, Cells::Int64(cells)) => write::<Int64Type>(writer, column, cells),
+        (CellType::Float64, Cells::Float64(cells)) => write::<DoubleType>(writer, column, cells),
         (_, Cells::Signal(signal)) if column.holds_signals() => {
-            get_typed_column_writer_mut::<data_type::DoubleType>(writer)
-                .write_batch(signal, None, None)
-                .map(|_| ())
-        }
-        (_, Cells::Sequence { rows, at }) if column.holds_signals() => {
-            let writer = get_typed_column_writer_mut::<data_type::DoubleType>(writer);
-            let mut batch = Vec::with_capacity(SEQUENCE_BATCH);
-            for start in (0..rows).step_by(SEQUENCE_BATCH) {
-                batch.clear();
-                batch.extend((start..rows.min(start + SEQUENCE_BATCH)).map(at));
-                writer.write_batch(&batch, None, None)?;
-            }
-            Ok(())
+            get_typed_column_writer_mut::<DoubleType>(writer).write_batch(signal, None, None).map(drop)
         }
         (CellType::Text, Cells::Text(cells)) => {
             let texts = cells.into_iter().map(|cell| cell.map(|text| ByteArray::from(text.into_bytes())));
-            write::<data_type::ByteArrayType>(writer, column, texts)
+            write::<ByteArrayType>(writer, column, texts)
         }
         (CellType::Float32List, Cells::Float32List(lists)) if !column.nullable => write_lists(writer, &lists),
         _ => Err(ParquetError::General(format!("column {} holds {:?}", column.name, column.cells))),
@@ -271,7 +270,7 @@ fn write_cells(writer: &mut ColumnWriter, column: &TableColumn, cells: Cells) ->
 fn write<T: DataType>(
     writer: &mut ColumnWriter,
     column: &TableColumn,
-    cells: impl Iterator<Item = Option<T::T>>,
+    cells: impl IntoIterator<Item = Option<T::T>>,
 ) -> Result<()> {
     let (mut values, mut levels) = (Vec::new(), Vec::new());
     for cell in cells {
@@ -295,7 +294,7 @@ fn write_lists(writer: &mut ColumnWriter, lists: &[&[f32]]) -> Result<()> {
         repetitions.resize(definitions.len(), 1);
     }
     let values = lists.concat();
-    get_typed_column_writer_mut::<data_type::FloatType>(writer)
+    get_typed_column_writer_mut::<FloatType>(writer)
         .write_batch(&values, Some(&definitions), Some(&repetitions))
         .map(|_| ())
 }

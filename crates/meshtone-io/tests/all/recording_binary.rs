@@ -169,7 +169,7 @@ fn a_stated_rate_and_a_time_array_must_agree() {
     };
     let recording = read("a.npz", &with_rate(1000.0), &defaults()).unwrap();
     assert_eq!((recording.sampling_rate_hz, recording.start_s, names(&recording)), (1000.0, 3.0, vec!["a"]));
-    assert_eq!((recording.duration_s(), recording.time_s(10)), (0.1, 3.01));
+    assert_eq!(recording.len(), 100);
     let message = refused("a.npz", &with_rate(2000.0), &defaults());
     assert!(message.contains("sampling_rate_khz says a sampling rate of 2000 S/s"), "{message}");
     assert!(message.contains("time column t says 1000 S/s; give the sampling rate"), "{message}");

@@ -45,7 +45,7 @@ fn channels() -> Channels {
 fn refused(path: &std::path::Path, metadata: Vec<KeyValue>, words: &str) {
     fs::write(path, parquet(vec![("time_s", Plain::Single(vec![Some(1.0)]))], metadata)).unwrap();
     let error = read_signals(path).unwrap_err();
-    assert!(matches!(error, ReadResultsError::Foreign { .. } | ReadResultsError::Scenario { .. }));
+    assert!(matches!(error, ReadResultsError::Foreign { .. }));
     assert!(error.to_string().contains(words), "{error}");
 }
 
@@ -124,7 +124,7 @@ fn signal_file(to: impl Write + Send, cells: Cells, statistics: EnabledStatistic
     table.close()
 }
 
-/// Single cells go through the library's encoder, signals and sequences through our own.
+/// Single cells go through the library's encoder, signals through our own.
 #[test]
 fn signals_are_split_as_the_library_splits_them() {
     let wave = |row: usize| (row as f64).sin() + if row.is_multiple_of(1000) { f64::NAN } else { 0.0 };
@@ -141,7 +141,6 @@ fn signals_are_split_as_the_library_splits_them() {
                 file
             };
             let library = written(Cells::Float64((0..rows).map(|row| Some(at(row))).collect()));
-            assert!(library == written(Cells::Sequence { rows, at }), "{rows} rows, {statistics:?}");
             let signal: Vec<f64> = (0..rows).map(at).collect();
             assert!(library == written(Cells::Signal(&signal)), "{rows} rows, {statistics:?}");
         }

@@ -19,9 +19,8 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, preview: &DatasetPreview) {
     for (place, (example, plot)) in preview.examples.iter().zip(plots).enumerate() {
         let largest = axes::largest(&example.signal);
         let half = if largest > 0.0 { MARGIN * largest } else { 1.0 };
-        let axes = Axes::new(plot, [0.0, 1.0], [-half, half]);
         let label = TextStyle::AXES_TITLE.fitted(&example.label, 0.45 * area.width);
-        axes.title(canvas, &label);
+        let axes = Axes::titled(canvas, plot, [0.0, 1.0], [-half, half], &label);
         let after = TextStyle::AXES_TITLE.width(&label) + 12.0;
         let conditions = TextStyle::NOTE.fitted(&example.conditions, area.width - after);
         let at = (plot.left + after, plot.top - axes::TITLE_ABOVE);

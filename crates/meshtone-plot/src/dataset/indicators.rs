@@ -33,8 +33,7 @@ fn one(canvas: &mut Canvas, area: Area, name: &str, values: &[f64], preview: &Da
     let logarithms: Vec<f64> = values.iter().map(|value| value.log10()).collect();
     let classes = preview.classes.len().max(1);
     let y = axes::range(without_extremes(&logarithms).into_iter(), 0.06);
-    let axes = Axes::new(area, [0.0, classes as f64], y);
-    axes.title(canvas, name);
+    let axes = Axes::titled(canvas, area, [0.0, classes as f64], y, name);
     axes.y_axis(canvas, &Ticks::of_logarithms(y[0], y[1]).thinned(6), "", NAME_LEFT);
     for class in 0..classes {
         let mut of_class: Vec<f64> = logarithms

@@ -57,8 +57,8 @@ fn histogram(canvas: &mut Canvas, area: Area, name: &str, values: &[f64], previe
         .map(|split| shares(&values, &preview.split_of, split, range, bins))
         .collect();
     let highest = shares.iter().flatten().copied().fold(0.0f64, f64::max);
-    let axes = Axes::new(area, range, [0.0, 1.08 * if highest > 0.0 { highest } else { 1.0 }]);
-    axes.title(canvas, &TextStyle::AXES_TITLE.fitted(name, area.width));
+    let y = [0.0, 1.08 * if highest > 0.0 { highest } else { 1.0 }];
+    let axes = Axes::titled(canvas, area, range, y, &TextStyle::AXES_TITLE.fitted(name, area.width));
     let ticks = match logarithmic {
         true => Ticks::of_logarithms(range[0], range[1]).thinned(6),
         false if are_few && distinct.iter().all(|value| value.fract() == 0.0) => {

@@ -47,9 +47,9 @@ pub struct DatasetPreview {
     /// Number of each record's split.
     pub split_of: Vec<usize>,
     /// Varied keys.
-    pub keys: Vec<Key>,
+    pub keys: Vec<PreviewColumn>,
     /// Indicators.
-    pub indicators: Vec<Indicator>,
+    pub indicators: Vec<PreviewColumn>,
 }
 
 /// A record of one class.
@@ -63,18 +63,9 @@ pub struct Example {
     pub signal: Vec<f64>,
 }
 
-/// A varied key.
+/// A varied key or an indicator.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Key {
-    /// Its name, with its unit: `pinion speed (Hz)`.
-    pub name: String,
-    /// Its value in each record; NaN where it has none.
-    pub values: Vec<f64>,
-}
-
-/// An indicator.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Indicator {
+pub struct PreviewColumn {
     /// Its name, with its unit: `pinion speed (Hz)`.
     pub name: String,
     /// Its value in each record; NaN where it has none.

@@ -125,6 +125,17 @@ impl Axes {
         Self { area, x, y }
     }
 
+    /// Axes whose title is drawn.
+    pub(crate) fn titled(canvas: &mut Canvas, area: Area, x: [f64; 2], y: [f64; 2], title: &str) -> Self {
+        let axes = Self::new(area, x, y);
+        axes.title(canvas, title);
+        axes
+    }
+
+    pub(crate) fn title(&self, canvas: &mut Canvas, text: &str) {
+        canvas.text((self.area.left, self.area.top - TITLE_ABOVE), text, TextStyle::AXES_TITLE);
+    }
+
     pub(crate) fn px(&self, x: f64) -> f64 {
         self.area.left + (x - self.x[0]) / (self.x[1] - self.x[0]) * self.area.width
     }
@@ -143,10 +154,6 @@ impl Axes {
         let (right, bottom) = (self.area.right(), self.area.bottom());
         let corners = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
         canvas.polyline(&corners, FRAME);
-    }
-
-    pub(crate) fn title(&self, canvas: &mut Canvas, text: &str) {
-        canvas.text((self.area.left, self.area.top - TITLE_ABOVE), text, TextStyle::AXES_TITLE);
     }
 
     /// A legend in the title's line, at the right end of the axes.
@@ -254,11 +261,8 @@ impl Axes {
         let (x, y) = self.area.middle();
         let style = TextStyle::NOTE.coloured(colour::MUTED).anchored(Anchor::Middle);
         let half = style.width(text) / 2.0 + 3.0;
-        canvas.rectangle(
-            (x - half, y - style.size),
-            (x + half, y + 0.4 * style.size),
-            Fill::solid(colour::WHITE),
-        );
+        let [from, to] = [(x - half, y - style.size), (x + half, y + 0.4 * style.size)];
+        canvas.rectangle(from, to, Fill::solid(colour::WHITE));
         canvas.text((x, y), text, style);
     }
 }

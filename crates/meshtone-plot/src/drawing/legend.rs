@@ -35,11 +35,8 @@ pub(crate) fn row(canvas: &mut Canvas, end: Pixel, entries: &[Entry]) {
 pub(crate) fn column(canvas: &mut Canvas, start: Pixel, entries: &[Entry]) {
     let widest = entries.iter().map(width).fold(0.0, f64::max);
     let bottom = start.1 + ROW * (entries.len() as f64 - 1.0) + 5.0;
-    canvas.rectangle(
-        (start.0 - 3.0, start.1 - 14.0),
-        (start.0 + widest + 3.0, bottom),
-        Fill::tint(colour::WHITE, 0.85),
-    );
+    let [from, to] = [(start.0 - 3.0, start.1 - 14.0), (start.0 + widest + 3.0, bottom)];
+    canvas.rectangle(from, to, Fill::tint(colour::WHITE, 0.85));
     for (number, entry) in entries.iter().enumerate() {
         draw(canvas, (start.0, start.1 + ROW * number as f64), entry);
     }

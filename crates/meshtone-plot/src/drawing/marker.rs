@@ -3,18 +3,16 @@
 use super::canvas::{Canvas, Pixel};
 use super::style::{Fill, Stroke};
 
-/// Its outline.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Shape {
-    Square,
-    Diamond,
-    Triangle,
-}
+/// Outlines: corners in parts of the radius.
+pub(crate) const SQUARE: &[Pixel] = &[(-0.85, -0.85), (0.85, -0.85), (0.85, 0.85), (-0.85, 0.85)];
+pub(crate) const DIAMOND: &[Pixel] = &[(0.0, -1.2), (1.0, 0.0), (0.0, 1.2), (-1.0, 0.0)];
+pub(crate) const TRIANGLE: &[Pixel] = &[(0.0, -1.1), (1.05, 0.8), (-1.05, 0.8)];
 
 /// A symbol.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Marker {
-    pub(crate) shape: Shape,
+    /// Its outline.
+    pub(crate) corners: &'static [Pixel],
     /// (px) Half of its size.
     pub(crate) radius: f64,
     pub(crate) stroke: Stroke,
@@ -24,12 +22,7 @@ pub(crate) struct Marker {
 impl Marker {
     pub(crate) fn draw(&self, canvas: &mut Canvas, (x, y): Pixel) {
         let r = self.radius;
-        let corners: &[Pixel] = match self.shape {
-            Shape::Square => &[(-0.85, -0.85), (0.85, -0.85), (0.85, 0.85), (-0.85, 0.85)],
-            Shape::Diamond => &[(0.0, -1.2), (1.0, 0.0), (0.0, 1.2), (-1.0, 0.0)],
-            Shape::Triangle => &[(0.0, -1.1), (1.05, 0.8), (-1.05, 0.8)],
-        };
-        let corners: Vec<Pixel> = corners.iter().map(|(dx, dy)| (x + r * dx, y + r * dy)).collect();
+        let corners: Vec<Pixel> = self.corners.iter().map(|(dx, dy)| (x + r * dx, y + r * dy)).collect();
         canvas.outlined(&corners, self.stroke, self.fill);
     }
 }

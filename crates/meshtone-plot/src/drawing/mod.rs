@@ -12,7 +12,7 @@ mod ticks;
 pub(crate) use axes::{Area, Axes, over};
 pub(crate) use canvas::{BETWEEN_FACTS, Canvas, Pixel};
 pub(crate) use legend::{Entry, Sample};
-pub(crate) use marker::{Marker, Shape};
+pub(crate) use marker::{DIAMOND, Marker, SQUARE, TRIANGLE};
 pub(crate) use style::{
     Anchor, Colour, DOT_RADIUS, Fill, HALO_WIDTH, HATCH_ANGLE_DEG, HATCH_PITCH, HATCH_WIDTH, Stroke,
     TextStyle, colour,

@@ -2,11 +2,11 @@
 
 use meshtone::Stages;
 use meshtone::sensor::{Channel, Channels};
-use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
+use meshtone::signal::{ChainSettings, SimulatedShafts};
 use meshtone::wheel::WheelName;
 
 use super::damage;
-use crate::damaged_tooth;
+use crate::damaged_tooth::{self, DamagedTooth};
 use crate::drawing::{Area, Axes, Canvas, Sample, Stroke, Ticks, axes, capitalised, colour, over};
 
 pub(super) const CURVE: Stroke = Stroke::solid(colour::BLUE, 1.2);
@@ -24,23 +24,22 @@ pub(super) fn draw(canvas: &mut Canvas, areas: [Area; 2], stages: &Stages, chann
     let quantity = quantity(&channels.leading().0);
     // Where there is no whole revolution there is no average.
     let average = |shaft| shafts.average(channels.leading().1, shaft, &ChainSettings::default()).ok();
-    let averages = Shaft::BOTH
+    let averages = WheelName::BOTH
         .map(|shaft| average(shaft).map_or_else(Default::default, |of| (of.values, of.revolutions)));
     let values = averages.iter().flat_map(|(values, _)| values.iter().copied());
     let y = axes::range(values, MARGIN);
     for (column, (values, revolutions)) in averages.iter().enumerate() {
-        let axes = Axes::new(areas[column], [0.0, 360.0], y);
         let wheel = WheelName::BOTH[column];
-        let damaged = damage::damaged_teeth(stages, wheel);
+        let damaged = DamagedTooth::of_stages(stages, wheel);
         let name = wheel.name();
         let title = match revolutions {
             0 => format!("Average over the {name}’s revolutions"),
             1 => format!("One revolution of the {name}"),
             count => format!("Average of {count} {name} revolutions"),
         };
-        axes.title(canvas, &title);
+        let axes = Axes::titled(canvas, areas[column], [0.0, 360.0], y, &title);
         if let Some(text) = damaged_tooth::in_words(&[(name, &damaged)]) {
-            axes.legend(canvas, &[damaged_tooth::legend_entry(&text)]);
+            axes.legend(canvas, &[(Sample::Area(damaged_tooth::TINT), &text)]);
         }
         let teeth = stages.teeth.wheel(wheel).teeth;
         damaged_tooth::tint(canvas, &axes, &damaged, teeth, 360.0 / f64::from(teeth.max(1)));
@@ -103,8 +102,7 @@ fn signals(
     curves: &[(&[f64], Stroke)],
 ) -> Axes {
     let y = axes::range(curves.iter().flat_map(|(values, _)| values.iter().copied()), MARGIN);
-    let axes = Axes::new(area, time, y);
-    axes.title(canvas, title);
+    let axes = Axes::titled(canvas, area, time, y, title);
     axes.x_axis(canvas, &Ticks::nice(time[0], time[1], 10), "Time since the start of the simulation (s)");
     axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), name, super::NAME_LEFT);
     for (values, stroke) in curves {

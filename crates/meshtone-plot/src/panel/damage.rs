@@ -2,8 +2,8 @@
 
 use meshtone::Stages;
 use meshtone::damage::{DamageDescription, Fault, damages_of_fault};
-use meshtone::wheel::WheelName;
 
+use crate::DamagedTooth;
 use crate::drawing::capitalised;
 
 /// The damages in words: what they are, where they are not on the gear's tooth 1, and, as far as there is room, their sizes.
@@ -44,22 +44,10 @@ fn damages(stages: &Stages) -> Vec<(&Fault, &DamageDescription)> {
 ///
 /// # Arguments
 /// * `damaged` - the wheel's damaged teeth
-pub(super) fn start_of_revolution(damaged: &[crate::DamagedTooth]) -> &'static str {
+pub(super) fn start_of_revolution(damaged: &[DamagedTooth]) -> &'static str {
     match damaged {
-        [crate::DamagedTooth { tooth: 1, is_missing: true, .. }] => "missing tooth would enter contact",
-        [crate::DamagedTooth { tooth: 1, .. }] => "damaged tooth enters contact",
+        [DamagedTooth { tooth: 1, is_missing: true, .. }] => "missing tooth would enter contact",
+        [DamagedTooth { tooth: 1, .. }] => "damaged tooth enters contact",
         _ => "first tooth enters contact",
     }
-}
-
-/// The damaged teeth of a wheel, to be marked.
-pub(super) fn damaged_teeth(stages: &Stages, wheel: WheelName) -> Vec<crate::DamagedTooth> {
-    let contact_pitches = stages.teeth.contact.contact_ratio;
-    let of_wheel = stages.damaged.iter().filter(|alike| alike.wheel == wheel);
-    let each =
-        of_wheel.flat_map(|alike| alike.teeth.iter().map(|index| (*index as u32 + 1, alike.is_missing())));
-    let mut damaged: Vec<_> =
-        each.map(|(tooth, is_missing)| crate::DamagedTooth { tooth, contact_pitches, is_missing }).collect();
-    damaged.sort_by_key(|tooth| tooth.tooth);
-    damaged
 }

@@ -13,8 +13,7 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, along: [f64; 2], side: &Side
     let errors = side.errors_mm.filter(|errors| errors.points() > 1 && errors.teeth() > side.tooth_index());
     let largest = 1e3 * axes::largest(errors.into_iter().flat_map(ErrorTable::each_tooth).flatten());
     let half = if largest > 0.0 { 1.15 * largest } else { 10.0 };
-    let axes = Axes::new(area, [-half, half], along);
-    axes.title(canvas, "Profile errors");
+    let axes = Axes::titled(canvas, area, [-half, half], along, "Profile errors");
     axes.x_axis(canvas, &Ticks::about_zero(half), "Error (µm)");
     axes.y_grid(canvas, &Ticks::nice(along[0], along[1], 8));
     let zero = [side.contact_x_mm(), side.profile.tip_x_mm()].map(|x| axes.at(0.0, x));
@@ -53,9 +52,7 @@ fn curves(canvas: &mut Canvas, axes: &Axes, side: &Side, errors: &ErrorTable) {
         return;
     }
     let tooth = side.tooth_index();
-    canvas.polyline(
-        &axes.along_y((0..rows).map(|place| (1e3 * errors[(row(place), tooth)], x_mm[place]))),
-        THIS,
-    );
+    let own = (0..rows).map(|place| (1e3 * errors[(row(place), tooth)], x_mm[place]));
+    canvas.polyline(&axes.along_y(own), THIS);
     legend::column(canvas, start, &[(Sample::Line(THIS), &side.tooth_name()), all]);
 }

@@ -28,8 +28,7 @@ const EDGE: Stroke = Stroke::solid(colour::VERMILLION, 1.8);
 /// Draws the face; `along` is the tooth's own range.
 pub(super) fn draw(canvas: &mut Canvas, area: Area, along: [f64; 2], side: &Side) {
     let half = side.wheel.face_width_mm / 2.0;
-    let axes = Axes::new(area, [-1.12 * half, 1.12 * half], along);
-    axes.title(canvas, "Tooth face");
+    let axes = Axes::titled(canvas, area, [-1.12 * half, 1.12 * half], along, "Tooth face");
     axes.x_axis(canvas, &Ticks::about_zero(half), "Face width, z (mm)");
     axes.y_grid(canvas, &Ticks::nice(along[0], along[1], 8));
     let (root, tip) = (side.profile.x_mm[0], side.profile.tip_x_mm());

@@ -3,10 +3,8 @@
 use meshtone::Stages;
 use meshtone::damage::DamagedTooth;
 use meshtone::scenario::Model;
-use meshtone::wheel::ErrorTable;
-use meshtone::wheel::{ToothProfile, Wheel, WheelName};
+use meshtone::wheel::{ErrorTable, TipRelief, ToothProfile, Wheel, WheelName};
 
-use super::damage;
 use crate::PlotError;
 use crate::drawing::Area;
 
@@ -54,7 +52,7 @@ impl<'a> Side<'a> {
             contact_index,
             tip_shapes: tip_shapes(stages, profile),
             tooth: damaged.min_by_key(|tooth| tooth.first_tooth()),
-            damaged: damage::damaged_teeth(stages, name),
+            damaged: crate::DamagedTooth::of_stages(stages, name),
             errors_mm,
             errors_from_tip: name == WheelName::Gear,
         })
@@ -123,15 +121,10 @@ impl<'a> Side<'a> {
 /// resampling.
 fn tip_shapes(stages: &Stages, profile: &ToothProfile) -> Vec<(f64, &'static str)> {
     let gears = &stages.scenario.gears;
+    let relief_mm = if gears.flank_relief.amount_um > 0.0 { gears.flank_relief.length_mm } else { 0.0 };
     let of_model = match stages.scenario.model {
-        Model::Contact => vec![
-            (gears.chamfer_mm(), "chamfer"),
-            (
-                if gears.flank_relief.amount_um > 0.0 { gears.flank_relief.length_mm } else { 0.0 },
-                "tip relief",
-            ),
-        ],
-        _ => gears.tip_relief.iter().map(|relief| (relief.length_mm, "tip relief")).collect(),
+        Model::Published => [(TipRelief::PUBLISHED.length_mm, "tip relief"), (0.0, "")],
+        _ => [(gears.chamfer_mm(), "chamfer"), (relief_mm, "tip relief")],
     };
     let shown = of_model.into_iter().filter(|(length_mm, _)| *length_mm > 0.0 && profile.len() > 1);
     shown.map(|(length_mm, name)| (profile.tip_x_mm() - length_mm, name)).collect()

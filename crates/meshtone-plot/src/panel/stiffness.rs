@@ -25,17 +25,13 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, stages: &Stages) {
     let mesh = Mesh::new(stages, revolution.start.min(around.start)..revolution.end.max(around.end));
     let y = axes::range(mesh.values(), 0.07);
     let ticks = Ticks::nice(y[0], y[1], 5);
-    let x = |pitches: &Range<i64>| [pitches.start as f64, pitches.end as f64];
-    let whole = Axes::new(
-        Area::new(area.left, area.top, area.width - ENLARGED_WIDTH - GAP, area.height),
-        x(&revolution),
-        y,
-    );
-    let enlarged =
-        Axes::new(Area::new(whole.area.right() + GAP, area.top, ENLARGED_WIDTH, area.height), x(&around), y);
+    let whole = Area { width: area.width - ENLARGED_WIDTH - GAP, ..area };
+    let enlarged = Area { left: whole.right() + GAP, width: ENLARGED_WIDTH, ..area };
+    let [whole, enlarged] = [(whole, &revolution), (enlarged, &around)]
+        .map(|(area, pitches)| Axes::new(area, [pitches.start as f64, pitches.end as f64], y));
     for axes in [&whole, &enlarged] {
-        for turn in damage.turns(axes.x) {
-            damaged_tooth::tint_turn(canvas, axes, turn);
+        for [from, to] in damage.turns(axes.x) {
+            axes.band(canvas, from, to, damaged_tooth::TINT);
         }
     }
     whole.title(canvas, "Mesh stiffness over a gear revolution");
@@ -65,7 +61,7 @@ impl DamagedPairs {
     fn new(stages: &Stages) -> Self {
         let wheels = WheelName::BOTH.map(|wheel| {
             let teeth = i64::from(stages.teeth.wheel(wheel).teeth.max(1));
-            (teeth, damage::damaged_teeth(stages, wheel))
+            (teeth, DamagedTooth::of_stages(stages, wheel))
         });
         let damaged = wheels.iter().flat_map(|(_, damaged)| damaged);
         let first = damaged.map(|tooth| i64::from(tooth.tooth) - 1).min().unwrap_or(0);
@@ -112,7 +108,7 @@ impl DamagedPairs {
         let entries = [
             (Sample::Line(MESH), this),
             (Sample::Line(HEALTHY), healthy),
-            damaged_tooth::legend_entry(&text),
+            (Sample::Area(damaged_tooth::TINT), &text),
         ];
         axes.legend(canvas, &entries);
     }

@@ -20,15 +20,10 @@ pub(super) const PARTLY_LOST: Fill = Fill::hatch(colour::VERMILLION);
 
 /// Draws the tooth; `across` and `along` have the same scale.
 pub(super) fn draw(canvas: &mut Canvas, area: Area, across: [f64; 2], along: [f64; 2], side: &Side) {
-    let axes = Axes::new(area, across, along);
-    axes.title(canvas, &title(side));
+    let axes = Axes::titled(canvas, area, across, along, &title(side));
     axes.x_axis(canvas, &Ticks::nice(across[0], across[1], 9), "Across the tooth, y (mm)");
-    axes.y_axis(
-        canvas,
-        &Ticks::nice(along[0], along[1], 8),
-        "From the wheel’s centre, x (mm)",
-        super::NAME_LEFT,
-    );
+    let ticks = Ticks::nice(along[0], along[1], 8);
+    axes.y_axis(canvas, &ticks, "From the wheel’s centre, x (mm)", super::NAME_LEFT);
     let tooth = Drawing { axes, side };
     tooth.body(canvas);
     tooth.circles(canvas);
@@ -92,12 +87,11 @@ impl Drawing<'_> {
             }
         }
         outline.extend(self.space(1.0));
-        let rim = [self.space(-1.0), self.space(1.0)];
         let (bottom, left, right) = (self.axes.area.bottom(), self.axes.area.left, self.axes.area.right());
         outline.extend([(right, bottom), (left, bottom)]);
         canvas.polygon(&outline, Fill::solid(colour::STEEL));
-        for rim in rim {
-            canvas.polyline(&rim, BACK);
+        for sign in [-1.0, 1.0] {
+            canvas.polyline(&self.space(sign), BACK);
         }
         if side.is_missing() {
             canvas.polyline(&self.root_gap(), BACK);

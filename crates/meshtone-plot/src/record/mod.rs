@@ -153,7 +153,6 @@ fn signal(canvas: &mut Canvas, signal: &SignalView, unit: &str) {
     let duration_s = samples.len() as f64 / sampling_rate_hz;
     let time = axes::time_range([start_s, start_s + duration_s]);
     let y = axes::range(samples.iter().copied(), MARGIN);
-    let axes = Axes::new(SIGNAL, time, y);
     let title = format!(
         "{}: {} s, {} samples at {} S/s",
         TextStyle::AXES_TITLE.fitted(quantity, 0.5 * SIGNAL.width),
@@ -161,7 +160,7 @@ fn signal(canvas: &mut Canvas, signal: &SignalView, unit: &str) {
         samples.len(),
         number(sampling_rate_hz)
     );
-    axes.title(canvas, &title);
+    let axes = Axes::titled(canvas, SIGNAL, time, y, &title);
     axes.x_axis(canvas, &Ticks::nice(time[0], time[1], 12), "Time (s)");
     axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 4), &format!("Signal ({unit})"), NAME_LEFT);
     axes.line(canvas, axes::over(time, samples), CURVE);

@@ -27,11 +27,10 @@ pub(super) fn draw(
     wheel: &WheelView,
     curves: &[Curve],
 ) {
-    let axes = Axes::new(area, [0.0, f64::from(wheel.teeth)], y);
-    axes.title(canvas, title);
+    let axes = Axes::titled(canvas, area, [0.0, f64::from(wheel.teeth)], y, title);
     let damaged = damaged_tooth::in_words(&[(wheel.name, wheel.damaged_teeth)]);
     let named = curves.iter().filter_map(|(name, _, stroke)| Some((Sample::Line(*stroke), (*name)?)));
-    let damaged = damaged.as_deref().map(damaged_tooth::legend_entry);
+    let damaged = damaged.as_deref().map(|text| (Sample::Area(damaged_tooth::TINT), text));
     axes.legend(canvas, &damaged.into_iter().chain(named).collect::<Vec<Entry>>());
     teeth_axis(canvas, &axes, wheel);
     axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), &format!("Amplitude ({unit})"), NAME_LEFT);

@@ -3,12 +3,9 @@
 use meshtone::tuning::{Case, TuningIndicator};
 
 use super::data::{DRAWS, Data};
-use super::symbols::{
-    ENHANCED, ENHANCED_MARKER, LEFT_OUT, LEFT_OUT_MARKER, MEDIAN, ORIGINAL, ORIGINAL_MARKER, RECORDS,
-};
+use super::symbols::{ENHANCED, LEFT_OUT, MEDIAN, ORIGINAL, RECORDS, Symbol};
 use crate::drawing::{
-    Anchor, Area, Axes, Canvas, DOT_RADIUS, Fill, Marker, Sample, Stroke, TextStyle, Ticks, axes, colour,
-    legend,
+    Anchor, Area, Axes, Canvas, DOT_RADIUS, Fill, Sample, Stroke, TextStyle, Ticks, axes, colour, legend,
 };
 
 const MARGIN: f64 = 0.08;
@@ -49,8 +46,7 @@ struct Series {
     values: Vec<f64>,
     /// (cases) Where its markers stand beside the middle of a case.
     at: f64,
-    stroke: Stroke,
-    marker: Marker,
+    symbol: Symbol,
 }
 
 /// A plot over the cases.
@@ -62,8 +58,7 @@ struct CasesPlot {
 impl CasesPlot {
     /// Draws title, vertical axis and a line between neighbouring cases.
     fn new(canvas: &mut Canvas, area: Area, cases: usize, y: [f64; 2], title: &str, unit: &str) -> Self {
-        let axes = axes_of(area, cases, y);
-        axes.title(canvas, title);
+        let axes = Axes::titled(canvas, area, range_of(cases), y, title);
         let numbers = (area.height / PER_NUMBER) as usize;
         let most = (area.height / LEAST_PER_NUMBER) as usize;
         let ticks = Ticks::nice(y[0], y[1], numbers.clamp(2, 6)).thinned(most);
@@ -89,12 +84,12 @@ impl CasesPlot {
 
     /// Lines from case to case, in the order in which the series are given.
     fn connected(&self, canvas: &mut Canvas, series: &[Series]) {
-        series.iter().for_each(|series| self.axes.line(canvas, self.places(series), series.stroke));
+        series.iter().for_each(|series| self.axes.line(canvas, self.places(series), series.symbol.stroke));
     }
 
     fn markers(&self, canvas: &mut Canvas, series: &[Series]) {
         for series in series {
-            self.places(series).for_each(|(x, y)| series.marker.draw(canvas, self.axes.at(x, y)));
+            self.places(series).for_each(|(x, y)| series.symbol.marker.draw(canvas, self.axes.at(x, y)));
         }
     }
 
@@ -107,9 +102,9 @@ impl CasesPlot {
 
     fn whisker(&self, canvas: &mut Canvas, x: f64, ends: [f64; 2]) {
         let [low, high] = ends.map(|y| self.axes.at(x, y));
-        canvas.line(low, high, ENHANCED);
+        canvas.line(low, high, ENHANCED.stroke);
         for (x, y) in [low, high] {
-            canvas.line((x - 4.0, y), (x + 4.0, y), ENHANCED);
+            canvas.line((x - 4.0, y), (x + 4.0, y), ENHANCED.stroke);
         }
     }
 
@@ -126,26 +121,17 @@ impl CasesPlot {
     }
 }
 
-fn axes_of(area: Area, cases: usize, y: [f64; 2]) -> Axes {
-    Axes::new(area, [-0.5, cases as f64 - 0.5], y)
+/// Range of the horizontal axis: each case is 1 wide.
+fn range_of(cases: usize) -> [f64; 2] {
+    [-0.5, cases as f64 - 0.5]
 }
 
 fn indicator(canvas: &mut Canvas, area: Area, data: &Data, j: usize, indicator: TuningIndicator) {
     let (cases, measured) = (data.cases(), data.measured());
     let of_cases = |values: &[Vec<f64>]| values.iter().map(|of_case| of_case[j]).collect();
     let series = [
-        Series {
-            values: of_cases(&data.tuning.original),
-            at: ORIGINAL_AT,
-            stroke: ORIGINAL,
-            marker: ORIGINAL_MARKER,
-        },
-        Series {
-            values: of_cases(&data.tuning.enhanced),
-            at: ENHANCED_AT,
-            stroke: ENHANCED,
-            marker: ENHANCED_MARKER,
-        },
+        Series { values: of_cases(&data.tuning.original), at: ORIGINAL_AT, symbol: ORIGINAL },
+        Series { values: of_cases(&data.tuning.enhanced), at: ENHANCED_AT, symbol: ENHANCED },
     ];
     let simulated = series.iter().flat_map(|series| series.values.iter());
     let spread = data.spread.iter().flat_map(|of_case| &of_case[j]);
@@ -173,11 +159,10 @@ fn error(canvas: &mut Canvas, area: Area, data: &Data) {
         (0..cases).map(|case| measured.case_error(case, &predicted[case])).collect::<Vec<f64>>()
     };
     let series = [
-        (errors(&tuning.original), ORIGINAL, ORIGINAL_MARKER),
-        (tuning.leave_one_out_error.clone(), LEFT_OUT, LEFT_OUT_MARKER),
-        (errors(&tuning.enhanced), ENHANCED, ENHANCED_MARKER),
-    ]
-    .map(|(values, stroke, marker)| Series { values, at: 0.0, stroke, marker });
+        Series { values: errors(&tuning.original), at: 0.0, symbol: ORIGINAL },
+        Series { values: tuning.leave_one_out_error.clone(), at: 0.0, symbol: LEFT_OUT },
+        Series { values: errors(&tuning.enhanced), at: 0.0, symbol: ENHANCED },
+    ];
     let [_, high] = axes::range(series.iter().flat_map(|series| series.values.iter().copied()), MARGIN);
     let plot = CasesPlot::new(canvas, area, cases, [0.0, high], "Mean error of the case", "(σ)");
     plot.connected(canvas, &series);
@@ -188,7 +173,7 @@ fn error(canvas: &mut Canvas, area: Area, data: &Data) {
     plot.axes.frame(canvas);
     let entries = [
         (Sample::Line(MEDIAN), "measurements’ own scatter"),
-        (Sample::Marker(Some(LEFT_OUT), LEFT_OUT_MARKER), "predicted by a fit to the other cases"),
+        (LEFT_OUT.sample(), "predicted by a fit to the other cases"),
     ];
     plot.axes.legend(canvas, &entries);
 }
@@ -208,15 +193,15 @@ fn legend(canvas: &mut Canvas, baseline: f64, data: &Data) {
     let entries = [
         (Sample::Dots(Fill { opacity: 0.6, ..RECORDS }), records.as_str()),
         (Sample::Line(MEDIAN), "their median"),
-        (Sample::Marker(Some(ORIGINAL), ORIGINAL_MARKER), "original simulation"),
-        (Sample::Marker(Some(ENHANCED), ENHANCED_MARKER), enhanced.as_str()),
+        (ORIGINAL.sample(), "original simulation"),
+        (ENHANCED.sample(), enhanced.as_str()),
     ];
     legend::row(canvas, (super::LEFT + super::CASES_WIDTH, baseline), &entries);
 }
 
 /// Names of the cases, below the lowest plot.
 fn labels(canvas: &mut Canvas, area: Area, data: &Data) {
-    let axes = axes_of(area, data.cases(), [0.0, 1.0]);
+    let axes = Axes::new(area, range_of(data.cases()), [0.0, 1.0]);
     let style = TextStyle::NOTE.anchored(Anchor::Middle);
     for (case, lines) in label_lines(area.width, data).iter().enumerate() {
         for (number, line) in lines.iter().enumerate() {

@@ -11,8 +11,6 @@ use crate::PlotError;
 pub(super) const DRAWS: u64 = 20;
 /// Cases whose difference signals there is room for.
 const MOST_SIGNALS: usize = 9;
-/// Indicators that there is room for: as many as there are.
-const MOST_INDICATORS: usize = TuningIndicator::ALL.len();
 
 pub(super) struct Data<'a> {
     pub(super) experiment: &'a Experiment,
@@ -57,9 +55,10 @@ impl<'a> Data<'a> {
         })
     }
 
+    /// The measured indicators that there is room for: as many as there are kinds.
     pub(super) fn indicators(&self) -> &[TuningIndicator] {
         let all = self.measured().indicators();
-        &all[..all.len().min(MOST_INDICATORS)]
+        &all[..all.len().min(TuningIndicator::ALL.len())]
     }
 
     pub(super) fn measured(&self) -> &Measurements {

@@ -1,31 +1,10 @@
 //! Keys of the scenario file in words and units.
 
 use crate::drawing::number;
+use crate::without_unit;
 
 /// Sections whose name says nothing beside that of the key.
 const SECTIONS: [&str; 6] = ["fault", "gears", "operation", "quality", "rig", "solver"];
-/// Endings of the names of keys, and their units; the longer ones first.
-const UNITS: [(&str, &str); 19] = [
-    ("_g_per_rthz", "g/√Hz"),
-    ("_nm_per_rad", "N m/rad"),
-    ("_n_per_m", "N/m"),
-    ("_kgm2", "kg m²"),
-    ("_mpa", "MPa"),
-    ("_deg", "°"),
-    ("_rad", "rad"),
-    ("_rev", "rev"),
-    ("_gpa", "GPa"),
-    ("_mm", "mm"),
-    ("_um", "µm"),
-    ("_nm", "N m"),
-    ("_hz", "Hz"),
-    ("_kg", "kg"),
-    ("_db", "dB"),
-    ("_s", "s"),
-    ("_n", "N"),
-    ("_g", "g"),
-    ("_m", "m"),
-];
 
 /// A key and its value: `rig.support.stiffness_n_per_m` and 8e7 are `support stiffness 8.00e7 N/m`.
 ///
@@ -38,8 +17,7 @@ pub(super) fn in_words(key: &str, value: f64) -> String {
     }
     let section = SECTIONS.iter().find_map(|section| key.strip_prefix(section)?.strip_prefix('.'));
     let name = section.unwrap_or(key);
-    let with_unit = UNITS.iter().find_map(|(ending, unit)| Some((name.strip_suffix(ending)?, *unit)));
-    let (name, unit) = with_unit.unwrap_or((name, ""));
+    let (name, unit) = without_unit(name);
     let words = name.replace(['.', '_'], " ");
     let gap = if unit.is_empty() || unit == "°" { "" } else { " " };
     format!("{words} {}{gap}{unit}", number(value))

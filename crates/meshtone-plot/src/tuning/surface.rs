@@ -4,7 +4,7 @@ use meshtone::tuning::{Enhancement, HybridError};
 
 use super::data::Data;
 use super::heading::short;
-use super::symbols::ENHANCED_MARKER;
+use super::symbols::ENHANCED;
 use crate::drawing::{
     Anchor, Area, Axes, Canvas, Colour, Fill, Pixel, Sample, Stroke, TextStyle, Ticks, axes, colour, legend,
 };
@@ -12,17 +12,9 @@ use crate::drawing::{
 /// Ends of the bands, over the best error. Narrow at first: the valley is flat.
 const BANDS: [f64; 9] = [1.02, 1.05, 1.1, 1.2, 1.35, 1.6, 2.0, 3.0, 5.0];
 /// From the best to the worst: one hue, darker and darker, so that it reads in grey as well.
-const COLOURS: [Colour; 10] = [
-    Colour(0xff_ff_ff),
-    Colour(0xea_f2_f8),
-    Colour(0xd3_e4_f0),
-    Colour(0xb9_d3_e7),
-    Colour(0x9c_c0_db),
-    Colour(0x7d_aa_cd),
-    Colour(0x5f_92_bb),
-    Colour(0x44_79_a6),
-    Colour(0x2d_5f_8c),
-    Colour(0x19_45_6e),
+const COLOURS: [u32; 10] = [
+    0xff_ff_ff, 0xea_f2_f8, 0xd3_e4_f0, 0xb9_d3_e7, 0x9c_c0_db, 0x7d_aa_cd, 0x5f_92_bb, 0x44_79_a6,
+    0x2d_5f_8c, 0x19_45_6e,
 ];
 /// Errors below this count as this much for the bands.
 const LEAST_BASE: f64 = 0.005;
@@ -48,21 +40,21 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, data: &Data) -> Result<(), H
     let x =
         range(fault_to_harmonics_ratio, intervals.fault_to_harmonics_ratio, bounds.fault_to_harmonics_ratio);
     let y = range(noise_level, intervals.noise_level, bounds.noise_level);
-    let axes = Axes::new(area, x, y);
-    axes.title(canvas, &format!("Mean error at the width ratio {}", short(width_ratio)));
+    let title = format!("Mean error at the width ratio {}", short(width_ratio));
+    let axes = Axes::titled(canvas, area, x, y, &title);
     axes.x_axis(canvas, &Ticks::of_logarithms(x[0], x[1]), "Fault-to-harmonics ratio α (–)");
     axes.y_axis(canvas, &Ticks::of_logarithms(y[0], y[1]), "Noise level ν (–)", super::NAME_LEFT);
     let grid = Grid::new(data, &axes)?;
     let base = data.tuning.enhanced_error.max(LEAST_BASE);
-    canvas.rectangle((area.left, area.top), (area.right(), area.bottom()), Fill::solid(COLOURS[0]));
+    canvas.rectangle((area.left, area.top), (area.right(), area.bottom()), Fill::solid(Colour(COLOURS[0])));
     for (band, factor) in BANDS.iter().enumerate() {
-        canvas.rectangles(&grid.above(area, factor * base), Fill::solid(COLOURS[band + 1]));
+        canvas.rectangles(&grid.above(area, factor * base), Fill::solid(Colour(COLOURS[band + 1])));
     }
     marks(canvas, &axes, data);
     axes.frame(canvas);
     bar(canvas, area, base);
     let entries = [
-        (Sample::Marker(None, ENHANCED_MARKER), "chosen"),
+        (Sample::Marker(None, ENHANCED.marker), "chosen"),
         (Sample::Line(INTERVAL), "95 % intervals"),
         (Sample::Line(UNIT_RATIO), "α = 1"),
     ];
@@ -163,7 +155,7 @@ fn marks(canvas: &mut Canvas, axes: &Axes, data: &Data) {
     canvas.polyline(&corners, INTERVAL);
     let Enhancement { fault_to_harmonics_ratio, noise_level, .. } = data.tuning.enhancement;
     let best = axes.at(clamped(fault_to_harmonics_ratio, axes.x), clamped(noise_level, axes.y));
-    ENHANCED_MARKER.draw(canvas, best);
+    ENHANCED.marker.draw(canvas, best);
 }
 
 /// The bands' colours and the errors between them.
@@ -172,7 +164,7 @@ fn bar(canvas: &mut Canvas, area: Area, base: f64) {
     let height = area.height / COLOURS.len() as f64;
     for (band, &colour) in COLOURS.iter().enumerate() {
         let bottom = area.bottom() - band as f64 * height;
-        canvas.rectangle((left, bottom), (left + BAR_WIDTH, bottom - height), Fill::solid(colour));
+        canvas.rectangle((left, bottom), (left + BAR_WIDTH, bottom - height), Fill::solid(Colour(colour)));
         if let Some(factor) = BANDS.get(band) {
             let style = TextStyle::TICK.anchored(Anchor::Start);
             canvas.text((left + BAR_WIDTH + 6.0, bottom - height + 4.5), &short(factor * base), style);

@@ -6,14 +6,13 @@ use meshtone::tuning::{Enhancement, EnhancementBounds, HybridError, fit};
 
 use super::data::Data;
 use super::surface::logarithms;
-use super::symbols::{ENHANCED, ENHANCED_MARKER, MEDIAN};
+use super::symbols::{ENHANCED, MEDIAN};
 use crate::drawing::{Area, Axes, Canvas, Fill, Sample, Stroke, TextStyle, Ticks, axes, colour, legend};
 
 const PLACES: usize = 160;
 /// Width ratios at which the other parameters are searched anew.
 const FITS: usize = 33;
 const MARGIN: f64 = 0.06;
-const HELD: Stroke = ENHANCED;
 const ADJUSTED: Stroke = Stroke::dashed(colour::BLUE, 1.6, &[7.0, 3.0]);
 const FLOOR: Stroke = Stroke { width: 1.6, ..MEDIAN };
 const INTERVAL: Fill = Fill::tint(colour::MUTED, 0.16);
@@ -40,9 +39,9 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, data: &Data) -> Result<(), H
     axes.y_axis(canvas, &Ticks::nice(0.0, most, 6), "Mean error (σ)", super::NAME_LEFT);
     axes.horizontal(canvas, data.tuning.scatter, FLOOR);
     axes.line(canvas, adjusted.iter().copied(), ADJUSTED);
-    axes.line(canvas, held.iter().copied(), HELD);
+    axes.line(canvas, held.iter().copied(), ENHANCED.stroke);
     let chosen = axes.at(best.log10().clamp(x[0], x[1]), data.tuning.enhanced_error);
-    ENHANCED_MARKER.draw(canvas, chosen);
+    ENHANCED.marker.draw(canvas, chosen);
     axes.frame(canvas);
     key(canvas, area);
     Ok(())
@@ -65,10 +64,7 @@ fn curve(
 fn key(canvas: &mut Canvas, area: Area) {
     let title = (area.left, area.top - axes::TITLE_ABOVE - 2.0 * LEGEND_ROW);
     canvas.text(title, "Mean error against the width ratio", TextStyle::AXES_TITLE);
-    let curves = [
-        (Sample::Marker(Some(HELD), ENHANCED_MARKER), "α and ν as chosen"),
-        (Sample::Line(ADJUSTED), "α and ν adjusted"),
-    ];
+    let curves = [(ENHANCED.sample(), "α and ν as chosen"), (Sample::Line(ADJUSTED), "α and ν adjusted")];
     let limits =
         [(Sample::Area(INTERVAL), "95 % interval"), (Sample::Line(FLOOR), "measurements’ own scatter")];
     for (row, entries) in [curves, limits].into_iter().enumerate() {

@@ -18,13 +18,13 @@ fn preview(classes: &[&str], keys: &[&str], records: usize) -> DatasetPreview {
         conditions: "17/38 teeth, 31.9 Hz, 4.4 N m, severity 2".to_owned(),
         signal: (0..2048).map(|i| (i as f64 * 0.7).sin() * 300.0 * spread(i, 0.31)).collect(),
     };
-    let key = |(k, name): (usize, &&str)| Key {
+    let key = |(k, name): (usize, &&str)| PreviewColumn {
         name: (*name).to_owned(),
         values: (0..records)
             .map(|i| if k == 3 { f64::NAN } else { 10f64.powf(2.0 * spread(i, 0.618 + k as f64)) })
             .collect(),
     };
-    let indicator = |name: &&str| Indicator {
+    let indicator = |name: &&str| PreviewColumn {
         name: (*name).to_owned(),
         // One record is far away from all others.
         values: (0..records).map(|i| if i == 7 { 1e9 } else { 10f64.powf(2.0 * spread(i, 0.414)) }).collect(),

@@ -172,7 +172,7 @@ fn small_and_large_wheels() {
 }
 
 #[test]
-fn small_and_large_modules_and_no_relief() {
+fn small_and_large_modules() {
     for module in [0.2, 50.0] {
         let mut scenario = Scenario::new(GearPair {
             module_mm: module,
@@ -182,7 +182,6 @@ fn small_and_large_modules_and_no_relief() {
         });
         scenario.rig.pinion_shaft.radius_mm = 5.0 * module;
         scenario.rig.gear_shaft.radius_mm = 5.0 * module;
-        scenario.gears.tip_relief = None;
         scenario.quality.din_grade = if module < 1.0 { 12 } else { 1 };
         scenario.faults = vec![Fault::on_first_gear_tooth(ToothBreakage {
             chip_height_mm: 1.5 * module,
@@ -226,7 +225,7 @@ fn damage_is_at_the_end_from_which_the_load_moves_away() {
         let simulation = simulated(&scenario);
         assert_shows(
             &panel::draw(&simulation.stages, &simulation.channels).unwrap(),
-            &["tip relief", "linear model"],
+            &["chamfer", "linear model"],
         );
         let states = &simulation.stages.meshes[0].classes[1].states;
         assert!(

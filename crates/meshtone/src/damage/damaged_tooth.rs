@@ -4,7 +4,7 @@ use super::kind::Kind;
 use super::{Crack, DamageDescription, Fault, FlankPits, ToothPart};
 use crate::error::ScenarioError;
 use crate::random::{Draws, Purpose};
-use crate::wheel::{Flank, PathOfContact, Teeth, ToothProfile, Wheel, WheelName};
+use crate::wheel::{Flank, Teeth, ToothProfile, Wheel, WheelName};
 
 /// What is left of one tooth, or of each of several that are alike.
 ///
@@ -38,8 +38,10 @@ pub struct DamagedTooth {
 
 /// The healthy tooth that a damage is done to.
 pub(crate) struct HealthyTooth<'a> {
-    teeth: &'a Teeth,
-    name: WheelName,
+    /// Both healthy teeth.
+    pub(super) teeth: &'a Teeth,
+    /// Whose tooth it is.
+    pub(super) name: WheelName,
     tooth: usize,
     seed: u64,
 }
@@ -48,21 +50,6 @@ impl<'a> HealthyTooth<'a> {
     /// The gear's first tooth.
     pub(crate) fn first_of_gear(teeth: &'a Teeth, seed: u64) -> Self {
         Self { teeth, name: WheelName::Gear, tooth: 0, seed }
-    }
-
-    /// Whose tooth it is.
-    pub(super) fn name(&self) -> WheelName {
-        self.name
-    }
-
-    /// Both healthy teeth.
-    pub(super) fn teeth(&self) -> &'a Teeth {
-        self.teeth
-    }
-
-    /// The path along which it touches its mate.
-    pub(super) fn path(&self) -> &'a PathOfContact {
-        &self.teeth.path
     }
 
     pub(super) fn wheel(&self) -> &'a Wheel {

@@ -3,10 +3,10 @@
 use meshtone_toml::{ReadResult, TomlTable};
 
 use super::severity::SoundTooth;
-use super::{Damage, FaultyTeeth};
+use super::{Damage, FaultyTeeth, MissingTooth};
 use crate::error::ScenarioError;
 use crate::keys::{
-    Check, KeyDescription, Keys, NoFiles, Range, Row, check_keys, commented_from, describe, describe_from,
+    Check, KeyDescription, Keys, NoFiles, Range, Row, check_keys, commented_rows, describe, describe_from,
     field, read_keys, require, row, write_keys,
 };
 use crate::wheel::{Gears, Teeth, WheelName};
@@ -109,8 +109,7 @@ impl Fault {
     /// * `damage` - what is wrong
     pub fn at_usual_place(damage: impl Into<Damage>) -> Self {
         let damage = damage.into();
-        let Place { wheel, tooth, severity } = Place::of(&damage);
-        Self { wheel, tooth, damage, severity }
+        Self::new(WheelName::default(), damage.usual_teeth(), damage)
     }
 
     /// Index from 0 of the damaged tooth, of several of the first.
@@ -119,24 +118,10 @@ impl Fault {
     }
 }
 
-/// Where a damage is: the keys that every fault has beside `kind`.
-#[derive(Debug, Clone, PartialEq)]
-struct Place {
-    wheel: WheelName,
-    tooth: FaultyTeeth,
-    severity: Option<f64>,
-}
-
-impl Place {
-    /// Where a damage is without its keys.
-    fn of(damage: &Damage) -> Self {
-        Self { tooth: damage.usual_teeth(), ..Self::start() }
-    }
-}
-
-impl Keys for Place {
+/// The keys that every fault has beside `kind`, which say where a damage is; those of the damage itself are its kind's.
+impl Keys for Fault {
     fn start() -> Self {
-        Self { wheel: WheelName::default(), tooth: FaultyTeeth::One(1), severity: None }
+        Self::on_first_gear_tooth(MissingTooth)
     }
 
     fn rows() -> Vec<Row<Self>> {
@@ -177,26 +162,20 @@ impl Fault {
     }
 
     fn from_table(table: &TomlTable<'_>) -> ReadResult<Self> {
-        let mut damage = Damage::start_of(table)?;
-        let mut place = Place::of(&damage);
-        read_keys(&mut place, table, &NoFiles)?;
-        let Place { wheel, tooth, severity } = place;
-        if severity.is_none() {
-            damage.read(table)?;
-            return Ok(Self { wheel, tooth, damage, severity });
-        }
-        let sizes = damage.sizes();
+        let mut fault = Self::at_usual_place(Damage::start_of(table)?);
+        read_keys(&mut fault, table, &NoFiles)?;
+        let Some(severity) = fault.severity else {
+            fault.damage.read(table)?;
+            return Ok(fault);
+        };
+        let sizes = fault.damage.sizes();
         if let Some(size) = sizes.iter().find(|size| table.optional(size).is_some()) {
             let problem = "given beside severity, which the sizes follow from";
             let keys = sizes.join(", ");
             return Err(table.error(size, problem).with_help(format!("remove severity, or all of {keys}")));
         }
-        damage.read_but_sizes(table)?;
-        Ok(Self { wheel, tooth, damage: damage.without_sizes(), severity })
-    }
-
-    fn place(&self) -> Place {
-        Place { wheel: self.wheel, tooth: self.tooth.clone(), severity: self.severity }
+        fault.damage.read_but_sizes(table)?;
+        Ok(fault.with_severity(severity))
     }
 
     /// Names of the damage's keys that are not written: those that a severity stands in place of.
@@ -207,19 +186,19 @@ impl Fault {
     /// The lines of its section, without the header.
     pub(crate) fn write(&self) -> String {
         let keys = self.damage.write(self.left_out());
-        format!("{}kind = \"{}\"\n{keys}", write_keys(&self.place()), self.damage.kind())
+        format!("{}kind = \"{}\"\n{keys}", write_keys(self), self.damage.kind())
     }
 
     /// The lines of its section with a comment for every key, without the header.
     pub(crate) fn commented(&self) -> String {
         let kind = format!("# {}\nkind = \"{}\"\n", self.damage.summary(), self.damage.kind());
         let keys = self.damage.commented(self.left_out());
-        [kind, keys, commented_from(&self.place(), &Place::of(&self.damage))].concat()
+        [kind, keys, commented_rows(&Self::rows(), self, &Self::at_usual_place(self.damage.clone()))].concat()
     }
 
     /// Whether it can be, as far as no profile is needed; its keys are named `fault.…`.
     fn check(&self, gears: &Gears) -> Check {
-        check_keys(&self.place(), "fault")?;
+        check_keys(self, "fault")?;
         self.tooth.check(gears.teeth(self.wheel), self.wheel.name())?;
         match self.severity {
             None => self.damage.check(gears),
@@ -237,12 +216,12 @@ impl Fault {
 
 /// The keys that every fault has beside `kind`.
 pub fn keys_of_every_fault() -> Vec<KeyDescription> {
-    describe::<Place>()
+    describe::<Fault>()
 }
 
 /// The same with the defaults of a damage.
-pub(super) fn keys_of_place(damage: &Damage) -> Vec<KeyDescription> {
-    describe_from(&Place::of(damage))
+pub(super) fn keys_of_place(damage: Damage) -> Vec<KeyDescription> {
+    describe_from(&Fault::at_usual_place(damage))
 }
 
 /// Whether every fault can be, alone and beside those on the same tooth.

@@ -89,16 +89,20 @@ impl FlankPits {
     /// (%) Part of the flank's contact part, over the whole face, that some pits take together.
     pub(super) fn area_percent(&self) -> f64 {
         let step = self.length_mm() / STEPS as f64;
-        let width = |along_mm: f64| self.gone(along_mm).iter().map(|[from, to]| to - from).sum::<f64>();
-        let area: f64 = (0..STEPS).map(|k| width((k as f64 + 0.5) * step) * step).sum();
+        let area: f64 = (0..STEPS).map(|k| self.gone_width_mm((k as f64 + 0.5) * step) * step).sum();
         100.0 * area / (self.length_mm() * self.face_width_mm)
     }
 
     /// (mm) The least that is left of the face at any length along the flank's contact part.
     pub(super) fn least_left_mm(&self) -> f64 {
         let step = self.length_mm() / STEPS as f64;
-        let gone = |along_mm: f64| self.gone(along_mm).iter().map(|[from, to]| to - from).sum::<f64>();
-        (0..=STEPS).map(|k| self.face_width_mm - gone(k as f64 * step)).fold(f64::INFINITY, f64::min)
+        let left = |k: usize| self.face_width_mm - self.gone_width_mm(k as f64 * step);
+        (0..=STEPS).map(left).fold(f64::INFINITY, f64::min)
+    }
+
+    /// (mm) Width of the face that is gone at a length along the flank.
+    fn gone_width_mm(&self, along_mm: f64) -> f64 {
+        self.gone(along_mm).iter().map(|[from, to]| to - from).sum()
     }
 }
 

@@ -48,8 +48,8 @@ pub use wear::{Wear, load_share, slide_factor};
 use meshtone_toml::{ReadResult, TomlTable};
 
 use crate::keys::{
-    Check, KeyDescription, Keys, NoFiles, check_rows, commented_rows, describe, read_keys, read_rows,
-    rows_but, write_rows,
+    Check, KeyDescription, Keys, NoFiles, check_rows, commented_rows, describe, read_keys, rows_but,
+    write_rows,
 };
 use crate::wheel::Gears;
 use severity::SoundTooth;
@@ -126,7 +126,7 @@ macro_rules! kinds {
             /// Reads the keys that may stand beside a severity.
             fn read_but_sizes(&mut self, table: &TomlTable<'_>) -> ReadResult<()> {
                 match self {
-                    $(Self::$kind(damage) => read_rows(&rows_but($kind::SIZES), damage, table, &NoFiles),)+
+                    $(Self::$kind(damage) => rows_but($kind::SIZES).iter().try_for_each(|row| row.read(damage, table, &NoFiles)),)+
                 }
             }
 
@@ -140,7 +140,7 @@ macro_rules! kinds {
             /// The same with a comment for every key.
             fn commented(&self, left_out: &[&str]) -> String {
                 match self {
-                    $(Self::$kind(damage) => commented_rows(&rows_but(left_out), damage),)+
+                    $(Self::$kind(damage) => commented_rows(&rows_but(left_out), damage, &$kind::start()),)+
                 }
             }
 
@@ -198,7 +198,7 @@ macro_rules! kinds {
                 type_name: stringify!($kind),
                 summary: $summary.trim_ascii(),
                 keys: describe::<$kind>(),
-                place: fault::keys_of_place(&Damage::$kind($kind::start())),
+                place: fault::keys_of_place(Damage::$kind($kind::start())),
                 start: Damage::$kind($kind::start()),
                 example: Damage::$kind($kind::example()),
                 sizes: $kind::SIZES,

@@ -166,9 +166,9 @@ pub(crate) struct Pit {
     pub(crate) length_mm: f64,
     /// (-) `length_mm` over the chord of the flank's contact part.
     pub(crate) length_fraction: f64,
-    /// (rev) Position at which the pit enters contact (its `end_index`).
+    /// (rev) Position at which the pit enters contact.
     pub(crate) start_rev: f64,
-    /// (rev) Position at which it leaves contact (its `start_index`).
+    /// (rev) Position at which it leaves contact.
     pub(crate) end_rev: f64,
 }
 
@@ -210,20 +210,6 @@ impl Pit {
     }
 }
 
-/// Where a pit lies on the flank, and the flank with the pit cut into it.
-pub(crate) struct CutFlank {
-    /// First profile index inside the pit.
-    pub(crate) start_index: usize,
-    /// Last profile index inside it.
-    pub(crate) end_index: usize,
-    /// (mm) Chord between the pit's edges.
-    pub(crate) length_mm: f64,
-    /// (-) `length_mm` over the chord of the flank's contact part.
-    pub(crate) length_fraction: f64,
-    /// (mm) The flank, over the profile points.
-    pub(crate) flank_y_mm: Vec<f64>,
-}
-
 struct Circle {
     x_mm: f64,
     y_mm: f64,
@@ -248,6 +234,10 @@ const CIRCLE_SAMPLES: usize = 10_000;
 /// * `first_contact` - profile index where contact starts at the root side
 /// * `edge_samples` - which samples of the lower half circle are the pit's edges, the root side's first, by their heights above
 ///   the flank
+/// * `position_rev` - (rev) position of a profile point in contact
+///
+/// # Returns
+/// Where the pit lies, and (mm) the flank with it, over the profile points.
 ///
 /// # Errors
 /// A circle that does not cut the contact part of the flank in two points, or reaches through the tooth.
@@ -256,7 +246,8 @@ pub(crate) fn cut_flank(
     profile: &ToothProfile,
     first_contact: usize,
     edge_samples: impl Fn(&[f64]) -> (usize, usize),
-) -> Result<CutFlank, ScenarioError> {
+    position_rev: impl Fn(usize) -> f64,
+) -> Result<(Pit, Vec<f64>), ScenarioError> {
     let (key, value) = match given {
         PitCircle::Fractions { start, end, depth } => {
             ("fault", format!("start {start}, end {end}, depth {depth}"))
@@ -299,13 +290,18 @@ pub(crate) fn cut_flank(
     let chord =
         |a: usize, b: usize| (profile.x_mm[a] - profile.x_mm[b]).hypot(profile.y_mm[a] - profile.y_mm[b]);
     let length_mm = chord(start, end);
-    Ok(CutFlank {
+    // A driving tooth enters contact at its root side, a driven one at its tip.
+    let positions_rev = [start, end].map(position_rev);
+    let pit = Pit {
         start_index: start,
+        mid_index: (start + end) / 2,
         end_index: end,
         length_mm,
         length_fraction: length_mm / chord(first_contact, profile.len() - 1),
-        flank_y_mm,
-    })
+        start_rev: positions_rev[0].min(positions_rev[1]),
+        end_rev: positions_rev[0].max(positions_rev[1]),
+    };
+    Ok((pit, flank_y_mm))
 }
 
 fn misses_flank(profile: &ToothProfile, initial_contact: usize) -> String {
@@ -410,17 +406,7 @@ impl HealthyTooth<'_> {
     /// # Errors
     /// As [`cut_flank`].
     pub(super) fn cut(&self, circle: &PitCircle) -> Result<(Pit, Vec<f64>), ScenarioError> {
-        let cut = cut_flank(circle, self.profile(), self.first_contact(), nearest_on_either_side)?;
-        let positions = [cut.start_index, cut.end_index].map(|index| self.position_rev(index));
-        let pit = Pit {
-            start_index: cut.start_index,
-            mid_index: (cut.start_index + cut.end_index) / 2,
-            end_index: cut.end_index,
-            length_mm: cut.length_mm,
-            length_fraction: cut.length_fraction,
-            start_rev: positions[0].min(positions[1]),
-            end_rev: positions[0].max(positions[1]),
-        };
-        Ok((pit, cut.flank_y_mm))
+        let position_rev = |index| self.position_rev(index);
+        cut_flank(circle, self.profile(), self.first_contact(), nearest_on_either_side, position_rev)
     }
 }

@@ -80,6 +80,8 @@ impl Keys for Pits {
 
     fn rows() -> Vec<Row<Self>> {
         let listed = |row: Row<Self>| row.required_unless(&["random", "severity"]);
+        let drawn =
+            |name, unit, meaning, field, range| row(name, unit, meaning, field).required().range(range);
         vec![
             listed(row(
                 "at",
@@ -118,48 +120,43 @@ impl Keys for Pits {
                 "random",
                 "pits that are drawn for each tooth from the seed, instead of a list",
                 vec![
-                    row(
+                    drawn(
                         "density_per_cm2",
                         "1/cm²",
                         "the mean number of pits in a square centimetre of flank; Poisson",
                         field!(Self::Drawn, density_per_cm2),
+                        Range::not_negative(),
                     )
-                    .required()
-                    .range(Range::not_negative())
                     .rule("at most 1000 a tooth"),
-                    row(
+                    drawn(
                         "spread",
                         "-",
                         "the standard deviation of their centres about the working pitch circle, a fraction of the \
                          contact part; normal",
                         field!(Self::Drawn, spread),
-                    )
-                    .required()
-                    .range(Range::from_to(0.0, 1.0)),
-                    row(
+                        Range::from_to(0.0, 1.0),
+                    ),
+                    drawn(
                         "radius_mm",
                         "mm",
                         "the median of their radii; lognormal",
                         field!(Self::Drawn, radius_mm),
-                    )
-                    .required()
-                    .range(Range::positive()),
-                    row(
+                        Range::positive(),
+                    ),
+                    drawn(
                         "radius_spread",
                         "-",
                         "the standard deviation of the radii's natural logarithm",
                         field!(Self::Drawn, radius_spread),
-                    )
-                    .required()
-                    .range(Range::from_to(0.0, 2.0)),
-                    row(
+                        Range::from_to(0.0, 2.0),
+                    ),
+                    drawn(
                         "depth_mm",
                         "mm",
                         "the depth of all, along the flank's normal",
                         field!(Self::Drawn, depth_mm),
-                    )
-                    .required()
-                    .range(Range::not_negative()),
+                        Range::not_negative(),
+                    ),
                 ],
             )
             .otherwise("none")
@@ -177,14 +174,8 @@ impl Keys for Pits {
                 .error("random", format!("given beside {key}; pits are listed or drawn"))
                 .with_help("remove random, or the list; pits of both make two faults on one tooth")),
             (true, None) => {
-                let nan = f64::NAN;
-                *self = Self::Drawn {
-                    density_per_cm2: nan,
-                    spread: nan,
-                    radius_mm: nan,
-                    radius_spread: nan,
-                    depth_mm: nan,
-                };
+                let [density_per_cm2, spread, radius_mm, radius_spread, depth_mm] = [f64::NAN; 5];
+                *self = Self::Drawn { density_per_cm2, spread, radius_mm, radius_spread, depth_mm };
                 Ok(())
             }
             (false, Some(_)) => Ok(()),
@@ -282,12 +273,8 @@ impl Kind for Pits {
     fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> DamageResult {
         let face_width_mm = healthy.wheel().face_width_mm;
         let none = FlankPits::none(healthy);
-        let pits = match self {
-            Self::Listed { .. } => self.listed(healthy, &none),
-            Self::Drawn { .. } => {
-                self.drawn(healthy, &none, healthy.draws(Purpose::Pits, tooth.count_of::<Self>()))?
-            }
-        };
+        let draws = healthy.draws(Purpose::Pits, tooth.count_of::<Self>());
+        let pits = self.on_flank(healthy, &none, draws)?;
         let own = FlankPits { pits: pits.clone(), ..none.clone() };
         let on_flank = tooth.pits.get_or_insert(none);
         on_flank.pits.extend(&pits);
@@ -366,34 +353,33 @@ impl FlankPits {
 const LEAST_LEFT: f64 = 0.02;
 
 impl Pits {
-    /// The listed pits on a tooth; none where they are drawn.
-    fn listed(&self, healthy: &HealthyTooth, flank: &FlankPits) -> Vec<FlankPit> {
-        let Self::Listed { at, z_mm, radius_mm, face_radius_mm, depth_mm } = self else { return Vec::new() };
-        let face_radius_mm = face_radius_mm.as_ref().unwrap_or(radius_mm);
-        (0..at.len())
-            .map(|n| FlankPit {
-                at: at[n],
-                along_mm: along_mm(at[n], healthy, flank),
-                z_mm: z_mm[n],
-                radius_mm: radius_mm[n],
-                face_radius_mm: face_radius_mm[n],
-                depth_mm: depth_mm[n],
-            })
-            .collect()
-    }
-
-    /// Draws the pits of a tooth.
+    /// The pits of a tooth, listed or drawn.
     ///
     /// # Errors
     /// More pits than can be meant.
-    fn drawn(
+    fn on_flank(
         &self,
         healthy: &HealthyTooth,
         flank: &FlankPits,
         mut draws: Draws,
     ) -> Result<Vec<FlankPit>, ScenarioError> {
-        let Self::Drawn { density_per_cm2, spread, radius_mm, radius_spread, depth_mm } = *self else {
-            return Ok(Vec::new());
+        let along_mm = |at: f64| flank.along_mm[flank_index(at, healthy.profile(), healthy.first_contact())];
+        let (density_per_cm2, spread, radius_mm, radius_spread, depth_mm) = match self {
+            Self::Listed { at, z_mm, radius_mm, face_radius_mm, depth_mm } => {
+                let face_radius_mm = face_radius_mm.as_ref().unwrap_or(radius_mm);
+                let pit = |n: usize| FlankPit {
+                    at: at[n],
+                    along_mm: along_mm(at[n]),
+                    z_mm: z_mm[n],
+                    radius_mm: radius_mm[n],
+                    face_radius_mm: face_radius_mm[n],
+                    depth_mm: depth_mm[n],
+                };
+                return Ok((0..at.len()).map(pit).collect());
+            }
+            Self::Drawn { density_per_cm2, spread, radius_mm, radius_spread, depth_mm } => {
+                (*density_per_cm2, *spread, *radius_mm, *radius_spread, *depth_mm)
+            }
         };
         let area_cm2 = flank.length_mm() * flank.face_width_mm * 1e-2;
         let mean = density_per_cm2 * area_cm2;
@@ -409,8 +395,7 @@ impl Pits {
             let at = places.find(on_flank).unwrap_or(pitch_circle);
             let z_mm = draws.uniform(0.0, flank.face_width_mm / 2.0);
             let radius_mm = radius_mm * (radius_spread * draws.normal()).exp();
-            let along_mm = along_mm(at, healthy, flank);
-            FlankPit { at, along_mm, z_mm, radius_mm, face_radius_mm: radius_mm, depth_mm }
+            FlankPit { at, along_mm: along_mm(at), z_mm, radius_mm, face_radius_mm: radius_mm, depth_mm }
         };
         let count = poisson(mean, &mut draws);
         Ok((0..count).map(|_| pit(&mut draws)).collect())
@@ -437,11 +422,6 @@ impl Pits {
         }
         Ok(())
     }
-}
-
-/// (mm) Length along the flank of a fraction of its contact part.
-fn along_mm(at: f64, healthy: &HealthyTooth, flank: &FlankPits) -> f64 {
-    flank.along_mm[flank_index(at, healthy.profile(), healthy.first_contact())]
 }
 
 /// A number of events that come at random with a mean of `mean`: as many exponential gaps as fit.

@@ -137,7 +137,8 @@ impl Kind for ToothDestruction {
     /// The flank's chord up to the tip, the longer the more severe.
     fn of_severity(&self, severity: f64, tooth: &SoundTooth) -> Option<Self> {
         let ground = Self { start: 1.0 - severity, line: DestructionLine::End(1.0), offset_mm: 0.0, ..*self };
-        (tooth.shows(severity) && ground.last_below(tooth).is_some()).then_some(ground)
+        (tooth.shows(severity) && ground.last_below(tooth.profile, tooth.first_contact).is_some())
+            .then_some(ground)
     }
 
     /// The part of the flank's length in contact that is ground.
@@ -146,7 +147,7 @@ impl Kind for ToothDestruction {
             return end - self.start.max(0.0);
         }
         let start = flank_index(self.start, tooth.profile, tooth.first_contact).max(tooth.first_contact);
-        let last = self.last_below(tooth).unwrap_or(start);
+        let last = self.last_below(tooth.profile, tooth.first_contact).unwrap_or(start);
         last.saturating_sub(start) as f64 / tooth.contact_steps()
     }
 
@@ -238,10 +239,12 @@ const ROUNDING: f64 = 1e-12;
 
 impl ToothDestruction {
     /// Last profile index at which the line lies below the flank; none where there is no such point beyond its start.
-    fn last_below(&self, tooth: &SoundTooth) -> Option<usize> {
-        let ToothProfile { x_mm, y_mm, .. } = tooth.profile;
-        let line = self.line(tooth.profile, tooth.first_contact)?;
-        let first = line.start_index.max(tooth.first_contact);
+    fn last_below(&self, profile: &ToothProfile, first_contact: usize) -> Option<usize> {
+        let ToothProfile { x_mm, y_mm, .. } = profile;
+        let line = self.line(profile, first_contact)?;
+        let first = line.start_index.max(first_contact);
+        // Without an offset the line meets the flank at the end's own point: there it does not lie below the flank, whichever
+        // way the last bit is rounded.
         (first + 1..x_mm.len()).rev().find(|&i| line.y_mm(x_mm[i]) < y_mm[i] * (1.0 - ROUNDING))
     }
 
@@ -289,49 +292,36 @@ impl ToothDestruction {
             return Err(ScenarioError::new("fault.end", "", "must lie beyond the start of the line"));
         };
         let GroundLine { start_index: start, tangent, .. } = ground_line;
-        let line = |x: f64| ground_line.y_mm(x);
         let first = start.max(first_contact);
-        // Without an offset the line meets the flank at the end's own point: there it does not lie below the flank, whichever
-        // way the last bit is rounded.
-        let last = (first..profile.len())
-            .rev()
-            .find(|&i| line(profile.x_mm[i]) < profile.y_mm[i] * (1.0 - ROUNDING))
-            .filter(|&last| last > first)
-            .ok_or_else(|| {
-                ScenarioError::new(
-                    "fault.start",
-                    self.start,
-                    "the line must cut the flank: nowhere beyond its start does it lie below the flank",
-                )
-                .with_help("increase fault.offset_mm, or the slope or the distance from start to end")
-            })?;
+        let Some(last) = self.last_below(profile, first_contact) else {
+            let problem = "the line must cut the flank: nowhere beyond its start does it lie below the flank";
+            return Err(ScenarioError::new("fault.start", self.start, problem)
+                .with_help("increase fault.offset_mm, or the slope or the distance from start to end"));
+        };
 
         let mut flank_y_mm = profile.y_mm.clone();
         for i in first..=last {
-            let ground = line(profile.x_mm[i]) + roughness.uniform(0.0, self.noise_mm);
+            let ground = ground_line.y_mm(profile.x_mm[i]) + roughness.uniform(0.0, self.noise_mm);
             flank_y_mm[i] = left_y_mm(ground, profile.y_mm[i]);
             if flank_y_mm[i] <= -profile.y_mm[i] {
-                return Err(ScenarioError::new(
-                    "fault",
-                    format!("offset_mm = {}, slope {:.3}°", self.offset_mm, tangent.atan().to_degrees()),
-                    format!(
-                        "must leave some of the tooth, which is {:.3} mm thick at x = {:.3} mm",
-                        2.0 * profile.y_mm[i],
-                        profile.x_mm[i]
-                    ),
-                ));
+                let slope_deg = tangent.atan().to_degrees();
+                let value = format!("offset_mm = {}, slope {slope_deg:.3}°", self.offset_mm);
+                let (thickness, x) = (2.0 * profile.y_mm[i], profile.x_mm[i]);
+                let problem = format!(
+                    "must leave some of the tooth, which is {thickness:.3} mm thick at x = {x:.3} mm"
+                );
+                return Err(ScenarioError::new("fault", value, problem));
             }
         }
 
         let slope_rad = tangent.atan();
-        let flank_angle = |i: usize| {
-            let before = i.checked_sub(1)?;
+        let flank_angle = |i: usize, before: usize| {
             let (dx, dy) = (profile.x_mm[i] - profile.x_mm[before], profile.y_mm[i] - profile.y_mm[before]);
-            Some((dy / dx).atan().abs())
+            (dy / dx).atan().abs()
         };
         let deviation_mm = (0..profile.len())
             .map(|i| {
-                let angle = flank_angle(i).unwrap_or(0.0);
+                let angle = if i == 0 { 0.0 } else { flank_angle(i, i - 1) };
                 -(profile.y_mm[i] - flank_y_mm[i]) * slope_rad.cos() / (angle + slope_rad).cos()
             })
             .collect();

@@ -76,7 +76,7 @@ impl<S> Cell<S> for SubTable<S> {
     }
 
     fn inside(&self, section: &S) -> Vec<KeyDescription> {
-        self.0.iter().flat_map(|row| row.describe(section, Vec::new())).collect()
+        self.0.iter().flat_map(|row| row.describe(section, "")).collect()
     }
 }
 

@@ -1,11 +1,13 @@
 //! The description of a key of the scenario file, for documentation.
 
+use crate::model::{PUBLISHED_KEYS, models_ignoring};
+
 /// Description of a key of the scenario file, from which the guide's tables, the commented files of `meshtone init` and Python's signatures
 /// are made.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct KeyDescription {
-    /// Dotted key within its section, for example `tip_relief.depth_mm`.
+    /// Dotted key within its section, for example `flank_relief.amount_um`.
     pub key: String,
     /// Unit of its numbers; empty where there is none.
     pub unit: &'static str,
@@ -24,18 +26,19 @@ pub struct KeyDescription {
     pub kind: KeyKind,
     /// Names of the models that simulate its default whatever it says.
     pub ignored_by: Vec<&'static str>,
+    /// A sentence that names the models that ignore or refuse it; empty where all heed it.
+    pub ignored_in_words: String,
 }
 
-impl KeyDescription {
-    /// A sentence that names the models that ignore it; empty where all heed it.
-    pub fn ignored_in_words(&self) -> String {
-        ignored_in_words(&self.ignored_by)
-    }
-}
-
-/// A sentence that names the models that ignore a key.
-pub(super) fn ignored_in_words(models: &[&str]) -> String {
-    if models.is_empty() { String::new() } else { format!("Ignored by {}.", models.join(", ")) }
+/// A sentence that names the models that ignore or refuse a key, empty where all heed it.
+///
+/// # Arguments
+/// * `key` - with its section
+pub(super) fn ignored_in_words(key: &str) -> String {
+    let models = models_ignoring(key);
+    let ignored = (!models.is_empty()).then(|| format!("Ignored by {}.", models.join(", ")));
+    let refused = PUBLISHED_KEYS.iter().find(|of_published| of_published.key == key);
+    ignored.into_iter().chain(refused.map(|refused| refused.words.to_owned())).collect::<Vec<_>>().join(" ")
 }
 
 /// Kind of the value of a key.
@@ -58,8 +61,6 @@ pub enum KeyKind {
     NumberOrNumbers(usize),
     /// A table, whose keys are described too.
     Table,
-    /// A table, whose keys are described too, or `false`.
-    TableOrFalse,
     /// A table of the arrays `time_s` and `value`, or of a `file`.
     Profile,
     /// A table of the arrays `frequency_hz`, `magnitude` and `phase_deg`, or of a `file`.

@@ -1,6 +1,7 @@
 //! The range of numbers that a key may have.
 
 use std::ops::Bound::{self, Excluded, Included, Unbounded};
+use std::ops::RangeBounds;
 
 use super::check::{Check, refuse};
 use crate::error::ScenarioError;
@@ -74,17 +75,7 @@ impl Range {
         if !value.is_finite() {
             return Err(refuse(key, value, "must be a finite number"));
         }
-        let above = match self.least {
-            Unbounded => true,
-            Included(least) => value >= least,
-            Excluded(least) => value > least,
-        };
-        let below = match self.most {
-            Unbounded => true,
-            Included(most) => value <= most,
-            Excluded(most) => value < most,
-        };
-        if !(above && below) {
+        if !(self.least, self.most).contains(&value) {
             let error = refused(self.message.map_or_else(|| self.must(unit), str::to_string));
             return Err(match self.help {
                 Some(help) => error.with_help(help),

@@ -9,10 +9,11 @@ use super::files::NumberFiles;
 use super::range::Range;
 use super::text::short_number;
 use super::value::{KeyValue, Written};
+use crate::model::models_ignoring;
 
 /// One key of a section: everything about it that does not depend on other keys.
 pub(crate) struct Row<S> {
-    name: &'static str,
+    pub(crate) name: &'static str,
     unit: &'static str,
     meaning: &'static str,
     absent: Absent,
@@ -140,16 +141,12 @@ impl<S> Row<S> {
         Row { name, unit, meaning, absent, range, rule, shown, cell }
     }
 
-    pub(crate) fn name(&self) -> &'static str {
-        self.name
-    }
-
     /// Sets the key in one section to its value in another.
     pub(crate) fn copy(&self, from: &S, to: &mut S) {
         self.cell.copy(from, to);
     }
 
-    pub(super) fn read(
+    pub(crate) fn read(
         &self,
         section: &mut S,
         table: &TomlTable<'_>,
@@ -192,36 +189,35 @@ impl<S> Row<S> {
         self.cell.check(section, &dotted(path, self.name), &self.range, self.unit)
     }
 
+    /// The unit before other words; nothing where there is none.
+    fn unit_before(&self) -> String {
+        if self.unit.is_empty() { String::new() } else { format!("({}) ", self.unit) }
+    }
+
     /// Unit and meaning: `(mm) the module`.
     fn with_unit(&self) -> String {
-        let unit = if self.unit.is_empty() { String::new() } else { format!("({}) ", self.unit) };
         let unless = match self.absent {
             Absent::RefusedUnless(others) => format!("; required, unless {} is given", others.join(" or ")),
             _ => String::new(),
         };
-        format!("{unit}{}{unless}", self.meaning)
+        format!("{}{}{unless}", self.unit_before(), self.meaning)
     }
 
     /// Describes the key, and then the keys inside it.
     ///
     /// # Arguments
     /// * `start` - the section with its defaults
-    /// * `ignored_by` - names of the models that ignore it
-    pub(super) fn describe(&self, start: &S, ignored_by: Vec<&'static str>) -> Vec<KeyDescription> {
+    /// * `section` - its name; empty for other tables
+    pub(super) fn describe(&self, start: &S, section: &str) -> Vec<KeyDescription> {
         let kind = self.cell.kind();
-        let mut allowed = Vec::new();
-        match &kind {
-            KeyKind::Name(names) => {
-                allowed.push(names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", "));
-            }
-            KeyKind::Whole | KeyKind::Teeth => {
-                allowed.push(format!("whole number {}", self.range.in_short()))
-            }
-            _ => allowed.push(self.range.in_short()),
-        }
-        allowed.push(self.rule.to_string());
+        let path = dotted(section, self.name);
+        let numbers = match &kind {
+            KeyKind::Name(names) => quoted(names),
+            KeyKind::Whole | KeyKind::Teeth => format!("whole number {}", self.range.in_short()),
+            _ => self.range.in_short(),
+        };
         let allowed: Vec<_> =
-            allowed.iter().map(|words| words.trim()).filter(|words| !words.is_empty()).collect();
+            [numbers.trim(), self.rule].into_iter().filter(|words| !words.is_empty()).collect();
         let own = KeyDescription {
             key: self.name.to_string(),
             unit: self.unit,
@@ -239,7 +235,8 @@ impl<S> Row<S> {
             allowed: allowed.join("; "),
             bounds: self.range.bounds(),
             kind,
-            ignored_by,
+            ignored_by: models_ignoring(&path).to_vec(),
+            ignored_in_words: ignored_in_words(&path),
         };
         let inside = self
             .cell
@@ -261,8 +258,8 @@ impl<S> Row<S> {
         }
     }
 
-    /// The key in a commented file: what it is, and a line that sets it.
-    pub(super) fn commented(&self, section: &S, start: &S, ignored_by: &[&str]) -> String {
+    /// The key in a commented file, in a section of a name: what it is, and a line that sets it.
+    pub(super) fn commented(&self, section: &S, start: &S, name: &str) -> String {
         let written = self.cell.write(section).unwrap_or(Written::Nothing);
         let is_default = self.cell.write(start).is_some_and(|default| default == written);
         let is_set = written != Written::Nothing && (self.is_required() || !is_default);
@@ -282,7 +279,7 @@ impl<S> Row<S> {
             }
             (Written::Nothing, CommentedForm::Default) => Vec::new(),
         };
-        let mut text = comment(&self.sentences(start, ignored_by));
+        let mut text = comment(&self.sentences(start, name));
         for line in lines {
             text.extend([line.as_str(), "\n"]);
         }
@@ -290,14 +287,11 @@ impl<S> Row<S> {
     }
 
     /// Meaning and default, in sentences.
-    fn sentences(&self, start: &S, ignored_by: &[&str]) -> String {
-        let unit = if self.unit.is_empty() { String::new() } else { format!("({}) ", self.unit) };
+    fn sentences(&self, start: &S, section: &str) -> String {
         let mut letters = self.meaning.chars();
         let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
         let names = match self.cell.kind() {
-            KeyKind::Name(names) => {
-                format!(": {}", names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", "))
-            }
+            KeyKind::Name(names) => format!(": {}", quoted(&names)),
             _ => String::new(),
         };
         let absent = match self.absent {
@@ -309,8 +303,8 @@ impl<S> Row<S> {
                 _ => "Default as here.".to_string(),
             },
         };
-        let ignored = ignored_in_words(ignored_by);
-        format!("{unit}{first}{}{names}. {absent} {ignored}", letters.as_str())
+        let ignored = ignored_in_words(&dotted(section, self.name));
+        format!("{}{first}{}{names}. {absent} {ignored}", self.unit_before(), letters.as_str())
     }
 }
 
@@ -323,6 +317,11 @@ fn with_short_numbers(text: &str) -> String {
         large.map_or(word.to_owned(), |value| short_number(value) + comma)
     };
     text.split(' ').map(short).collect::<Vec<_>>().join(" ")
+}
+
+/// Names as a file has them, one after the other.
+fn quoted(names: &[&str]) -> String {
+    names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
 }
 
 pub(super) fn dotted(path: &str, name: &str) -> String {

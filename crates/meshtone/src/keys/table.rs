@@ -5,9 +5,8 @@ use meshtone_toml::{ReadResult, TomlTable};
 use super::check::Check;
 use super::description::KeyDescription;
 use super::files::NumberFiles;
-use super::row::{Row, dotted};
+use super::row::Row;
 use super::value::Written;
-use crate::model::models_ignoring;
 
 /// Parameters that stand in one table of the scenario file.
 pub(crate) trait Keys: Clone + PartialEq + 'static {
@@ -40,36 +39,21 @@ pub(crate) fn read_keys<S: Keys>(
     files: &dyn NumberFiles,
 ) -> ReadResult<()> {
     section.choose(table, files)?;
-    read_rows(&S::rows(), section, table, files)
-}
-
-/// Reads some keys of a table over what the section has.
-pub(crate) fn read_rows<S: Keys>(
-    rows: &[Row<S>],
-    section: &mut S,
-    table: &TomlTable<'_>,
-    files: &dyn NumberFiles,
-) -> ReadResult<()> {
-    rows.iter().try_for_each(|row| row.read(section, table, files))
+    S::rows().iter().try_for_each(|row| row.read(section, table, files))
 }
 
 /// The rows of a section but for some, by their names.
 pub(crate) fn rows_but<S: Keys>(names: &[&str]) -> Vec<Row<S>> {
-    S::rows().into_iter().filter(|row| !names.contains(&row.name())).collect()
-}
-
-/// The keys and values of a section.
-pub(super) fn write_pairs<S: Keys>(section: &S) -> Vec<(String, String)> {
-    written_pairs(&S::rows(), section)
+    S::rows().into_iter().filter(|row| !names.contains(&row.name)).collect()
 }
 
 /// The keys and values of some rows.
 pub(super) fn written_pairs<S>(rows: &[Row<S>], section: &S) -> Vec<(String, String)> {
     let pairs = |row: &Row<S>| match row.write(section) {
         Written::Nothing => Vec::new(),
-        Written::Value(value) => vec![(row.name().to_string(), value)],
+        Written::Value(value) => vec![(row.name.to_string(), value)],
         Written::Lines(pairs) => {
-            pairs.into_iter().map(|(key, value)| (format!("{}.{key}", row.name()), value)).collect()
+            pairs.into_iter().map(|(key, value)| (format!("{}.{key}", row.name), value)).collect()
         }
     };
     rows.iter().flat_map(pairs).collect()
@@ -106,29 +90,15 @@ pub(crate) fn describe<S: Keys>() -> Vec<KeyDescription> {
 
 /// Describes the keys of a section, with what `start` has as defaults.
 pub(crate) fn describe_from<S: Keys>(start: &S) -> Vec<KeyDescription> {
-    S::rows().iter().flat_map(|row| row.describe(start, ignoring::<S>(row))).collect()
+    S::rows().iter().flat_map(|row| row.describe(start, S::SECTION)).collect()
 }
 
 /// The lines of a section with a comment for every key, without its header.
 pub(crate) fn commented<S: Keys>(section: &S) -> String {
-    commented_from(section, &S::start())
+    commented_rows(&S::rows(), section, &S::start())
 }
 
-/// Writes a commented section, with what `start` has as defaults.
-pub(crate) fn commented_from<S: Keys>(section: &S, start: &S) -> String {
-    commented_of(&S::rows(), section, start)
-}
-
-/// The lines of some keys of a section, likewise.
-pub(crate) fn commented_rows<S: Keys>(rows: &[Row<S>], section: &S) -> String {
-    commented_of(rows, section, &S::start())
-}
-
-fn commented_of<S: Keys>(rows: &[Row<S>], section: &S, start: &S) -> String {
-    rows.iter().map(|row| row.commented(section, start, &ignoring::<S>(row))).collect()
-}
-
-/// Names of the models that ignore a key.
-fn ignoring<S: Keys>(row: &Row<S>) -> Vec<&'static str> {
-    models_ignoring(&dotted(S::SECTION, row.name()))
+/// The lines of some keys of a section, likewise, with what `start` has as defaults.
+pub(crate) fn commented_rows<S: Keys>(rows: &[Row<S>], section: &S, start: &S) -> String {
+    rows.iter().map(|row| row.commented(section, start, S::SECTION)).collect()
 }

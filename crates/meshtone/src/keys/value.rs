@@ -6,7 +6,7 @@ use super::check::Check;
 use super::description::{KeyDescription, KeyKind};
 use super::files::NumberFiles;
 use super::range::Range;
-use super::table::{Keys, check_keys, describe_from, read_keys, write_pairs};
+use super::table::{Keys, check_keys, describe_from, read_keys, written_pairs};
 use super::text::{array, inline_table, number};
 
 /// Written form of a key's value.
@@ -178,7 +178,7 @@ impl<S: Keys> KeyValue for S {
     }
 
     fn write(&self) -> Written {
-        match write_pairs(self) {
+        match written_pairs(&S::rows(), self) {
             pairs if pairs.is_empty() => Written::Nothing,
             pairs if S::IN_LINES => Written::Lines(pairs),
             pairs => Written::Value(inline_table(&pairs)),

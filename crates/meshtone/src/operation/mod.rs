@@ -134,7 +134,14 @@ impl CycleGrid {
 }
 
 /// Greatest common divisor of two tooth counts.
-pub(crate) fn greatest_common_divisor(a: u32, b: u32) -> u32 {
+///
+/// # Arguments
+/// * `a`, `b` - the counts, not both 0
+///
+/// ```
+/// assert_eq!(meshtone::operation::greatest_common_divisor(18, 42), 6);
+/// ```
+pub fn greatest_common_divisor(a: u32, b: u32) -> u32 {
     let (mut x, mut y) = (a, b);
     while y != 0 {
         (x, y) = (y, x % y);

@@ -13,6 +13,8 @@ mod newmark;
 mod teeth;
 mod trace;
 
+#[cfg(feature = "internals")]
+pub use teeth::relieved_teeth;
 pub use teeth::teeth;
 
 use std::f64::consts::TAU;
@@ -20,7 +22,7 @@ use std::ops::Range;
 
 use machine::coordinates::{COORDINATES, CoordinateVector, THETA_BRAKE, THETA_PINION};
 use machine::{Forcing, Machine};
-use mesh::{PairCurve, PublishedMesh};
+use mesh::{ErrorForce, PairCurve, PublishedMesh};
 
 use crate::damage::DamagedTooth;
 use crate::error::ScenarioError;
@@ -170,7 +172,7 @@ impl Published {
 
     /// What forces the equations of motion, sample by sample from the start and without end.
     pub fn forcing(&self) -> impl Iterator<Item = Forcing> {
-        let errors = self.mesh.error_force(self.profile_errors.as_ref());
+        let errors = ErrorForce::new(&self.mesh, self.profile_errors.as_ref());
         motion::motion(&self.scenario, &self.time).map(move |motion| Forcing {
             motor_angle_rad: TAU * motion.revolutions,
             brake_torque_nm: motion.torque_nm,

@@ -107,11 +107,13 @@ struct State<const N: usize> {
 
 /// An output as a combination of the coordinates.
 enum Row<const N: usize> {
-    /// With the rigid rotation's part per rad of the motor.
-    Displacement(Vector<N>, f64),
-    /// Likewise per rad/s.
-    Velocity(Vector<N>, f64),
-    Acceleration(Vector<N>),
+    /// Of displacements, or of that derivative of them.
+    Motion {
+        derivative: usize,
+        weights: Vector<N>,
+        /// The rigid rotation's part, per rad or rad/s of the motor.
+        rigid: f64,
+    },
     MeshForce,
 }
 
@@ -313,11 +315,13 @@ impl<'a, const N: usize> Newmark<'a, N> {
 
     fn output(&self, row: &Row<N>, state: &State<N>, sample: usize, error_force_n: f64) -> f64 {
         match row {
-            Row::Displacement(weights, rigid) => {
+            Row::Motion { derivative: 0, weights, rigid } => {
                 dot(weights, &state.displacement) + rigid * self.rotation_rad(sample)
             }
-            Row::Velocity(weights, rigid) => dot(weights, &state.velocity) + rigid * self.speed_rad_per_s,
-            Row::Acceleration(weights) => dot(weights, &state.acceleration),
+            Row::Motion { derivative: 1, weights, rigid } => {
+                dot(weights, &state.velocity) + rigid * self.speed_rad_per_s
+            }
+            Row::Motion { weights, .. } => dot(weights, &state.acceleration),
             Row::MeshForce => {
                 let stiffness = self.mesh.load.stiffness_n_per_m[state.solved_point];
                 self.line(state.solved_point).force(stiffness, &state.displacement)[0] + error_force_n
@@ -341,7 +345,7 @@ impl<const N: usize> Line<N> {
 /// An output in the picked coordinates. There are no supports that move: every sensor shows the sum of both wheels' accelerations.
 fn row<const N: usize>(published: &Published, output: &Output, coordinates: &[usize; N]) -> Row<N> {
     let machine = &published.machine;
-    let picked = |terms: &[(usize, f64)]| -> (Vector<N>, f64) {
+    let motion = |derivative: usize, terms: &[(usize, f64)]| {
         let mut weights = CoordinateVector::zeros();
         terms.iter().for_each(|&(coordinate, weight)| weights[coordinate] = weight);
         let mut turned = machine.turned(&weights);
@@ -353,7 +357,8 @@ fn row<const N: usize>(published: &Published, output: &Output, coordinates: &[us
                 }
             }
         }
-        (coordinates.map(|n| turned[n]), machine.rigid_rotation().dot(&weights))
+        let rigid = machine.rigid_rotation().dot(&weights);
+        Row::Motion { derivative, weights: coordinates.map(|n| turned[n]), rigid }
     };
     match *output {
         Output::Acceleration { axis, factor, .. } => {
@@ -363,22 +368,12 @@ fn row<const N: usize>(published: &Published, output: &Output, coordinates: &[us
                 Axis::Z => [Z_GEAR, Z_PINION],
                 Axis::Rotation => [THETA_GEAR, THETA_PINION],
             };
-            Row::Acceleration(picked(&wheels.map(|wheel| (wheel, factor))).0)
+            motion(2, &wheels.map(|wheel| (wheel, factor)))
         }
-        Output::Velocity { place, factor, .. } => {
-            // The gear turns backwards.
-            let rotation = if place == GEAR { (THETA_GEAR, -factor) } else { (THETA_PINION, factor) };
-            let (weights, rigid) = picked(&[rotation]);
-            Row::Velocity(weights, rigid)
-        }
-        Output::Coordinate { number, derivative } => {
-            let (weights, rigid) = picked(&[(number, 1.0)]);
-            match derivative {
-                0 => Row::Displacement(weights, rigid),
-                1 => Row::Velocity(weights, rigid),
-                _ => Row::Acceleration(weights),
-            }
-        }
+        // The gear turns backwards.
+        Output::Velocity { place: GEAR, factor, .. } => motion(1, &[(THETA_GEAR, -factor)]),
+        Output::Velocity { factor, .. } => motion(1, &[(THETA_PINION, factor)]),
+        Output::Coordinate { number, derivative } => motion(derivative, &[(number, 1.0)]),
         Output::MeshForce { .. } => Row::MeshForce,
     }
 }

@@ -2,8 +2,17 @@
 
 use crate::interpolation::{NaturalSpline, Pchip};
 use crate::wheel::{
-    ContactLine, Gears, PathOfContact, Teeth, ToothProfile, Wheel, WheelName, contact_line, tooth_profile,
+    ContactLine, Gears, PathOfContact, Teeth, TipRelief, ToothProfile, Wheel, WheelName, contact_line,
+    tooth_profile,
 };
+
+/// The healthy teeth of both wheels, with the relief of the published code.
+///
+/// # Arguments
+/// They are those of [`relieved_teeth`].
+pub fn teeth(gears: &Gears, bore_radii_mm: [f64; 2]) -> Teeth {
+    relieved_teeth(gears, bore_radii_mm, Some(TipRelief::PUBLISHED))
+}
 
 /// The healthy teeth of both wheels. The published code samples both flanks' contact parts uniformly in x and resamples the
 /// pinion's, so that index `N − 1 + i_c − i` meets index `i` of the gear. The pairs are not conjugate.
@@ -11,12 +20,12 @@ use crate::wheel::{
 /// # Arguments
 /// * `gears` - geometry of the pair
 /// * `bore_radii_mm` - (mm) radii of the pinion's and of the gear's bore
-pub fn teeth(gears: &Gears, bore_radii_mm: [f64; 2]) -> Teeth {
+/// * `relief` - of all teeth, if any
+pub fn relieved_teeth(gears: &Gears, bore_radii_mm: [f64; 2], relief: Option<TipRelief>) -> Teeth {
     let pinion = Wheel::new(gears, WheelName::Pinion, bore_radii_mm[0]);
     let gear = Wheel::new(gears, WheelName::Gear, bore_radii_mm[1]);
-    let profile = |wheel| {
-        tooth_profile(wheel, gears.points_per_tooth, gears.crowning_mm, gears.tip_relief, joint(wheel))
-    };
+    let profile =
+        |wheel| tooth_profile(wheel, gears.points_per_tooth, gears.crowning_mm, relief, joint(wheel));
     let (own_profile, gear_profile) = (profile(&pinion), profile(&gear));
     let contact = contact_line(&pinion, &own_profile, &gear, &gear_profile);
     let pinion_profile = resampled(&own_profile, &contact);

@@ -48,7 +48,7 @@ impl Scenario {
     /// assert_eq!(scenario.number("fault.chip_width_mm"), None); // it is healthy
     /// ```
     pub fn number(&self, key: &str) -> Option<f64> {
-        match at(&self.table().ok()?, key)? {
+        match at_mut(&mut self.table().ok()?, key)? {
             Value::Float(number) => Some(*number),
             Value::Integer(number) => Some(*number as f64),
             _ => None,
@@ -187,19 +187,7 @@ impl Scenario {
     }
 }
 
-fn at<'a>(table: &'a Table, key: &str) -> Option<&'a Value> {
-    let (segment, rest) = key.split_once('.').map_or((key, None), |(segment, rest)| (segment, Some(rest)));
-    let (name, index) = name_and_index(segment)?;
-    let value = match index {
-        Some(index) => table.get(name)?.as_array()?.get(index)?,
-        None => table.get(name)?,
-    };
-    match rest {
-        Some(rest) => at(value.as_table()?, rest),
-        None => Some(value),
-    }
-}
-
+/// The value at a dotted key, if there is one.
 fn at_mut<'a>(table: &'a mut Table, key: &str) -> Option<&'a mut Value> {
     let (segment, rest) = key.split_once('.').map_or((key, None), |(segment, rest)| (segment, Some(rest)));
     let (name, index) = name_and_index(segment)?;

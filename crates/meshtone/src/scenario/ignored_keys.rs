@@ -69,25 +69,23 @@ fn reset_sensor(sensor: &mut Sensor, key: &str, model: Model) -> Vec<String> {
 
 fn reset<S: Keys>(section: &mut S, name: &str, model: Model) -> Vec<String> {
     let start = S::start();
-    let ignored =
-        S::rows().into_iter().filter(|row| model.ignores(&format!("{}.{}", S::SECTION, row.name())));
+    let ignored = S::rows().into_iter().filter(|row| model.ignores(&format!("{}.{}", S::SECTION, row.name)));
     let changed = ignored.filter(|row| {
         let before = section.clone();
         row.copy(&start, section);
         *section != before
     });
-    changed.map(|row| format!("{name}.{}", row.name())).collect()
+    changed.map(|row| format!("{name}.{}", row.name)).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scenario::{GearPair, Profile};
-    use crate::wheel::TipRelief;
 
     fn with_everything_ignored() -> Scenario {
         let mut scenario = Scenario::new(GearPair::example());
-        scenario.gears.tip_relief = None;
+        scenario.gears.backlash_mm = Some(0.2);
         scenario.gears.foundation.q[3] = 0.0;
         scenario.operation.speed_profile_hz =
             Some(Profile { time_s: vec![0.0, 2.0], value: vec![40.0, 41.0] });
@@ -103,9 +101,9 @@ mod tests {
         let ignored = scenario.ignored_by_model();
         assert_eq!(
             ignored.iter().map(|warning| warning.key.as_str()).collect::<Vec<_>>(),
-            ["gears.tip_relief"]
+            ["gears.backlash_mm"]
         );
-        scenario.gears.tip_relief = Some(TipRelief::default());
+        scenario.gears.backlash_mm = None;
         assert_eq!(scenario.without_ignored_keys(), scenario);
         scenario = with_everything_ignored();
         scenario.model = Model::Published;

@@ -24,15 +24,17 @@ pub use crate::operation::{Operation, Profile, Solver};
 pub use crate::sensor::{FrequencyResponse, ResponseInput, Sensor, SensorDirection, SensorPlace};
 pub use crate::wheel::{
     ERROR_POINTS, FlankRelief, FoundationCoefficients, Gears, Material, ProfileErrors, Quality, ReliefShape,
-    TipRelief, WheelDeviations, WheelName,
+    WheelDeviations, WheelName,
 };
 pub use edit::ScenarioNumber;
 pub use from_toml::{ScenarioFiles, line_of_key};
 pub use meshtone_toml::ErrorKind;
 pub use sections::{SectionDescription, sections};
 pub use template::{template, template_kinds};
+pub(crate) use validate::unknown_kind;
 pub use validate::{MEMORY_LIMIT_BYTES, MemoryLimit};
 
+use crate::keys::Keys;
 use crate::operation::{Motion, TimeGrid};
 
 /// Everything that one simulation depends on.
@@ -118,15 +120,9 @@ impl Scenario {
         let GearPair { module_mm, pinion_teeth, gear_teeth, face_width_mm, pinion_speed_hz, brake_torque_nm } =
             pair;
         Self {
-            model: Model::default(),
-            seed: 1,
             gears: Gears::new(module_mm, pinion_teeth, gear_teeth, face_width_mm),
             operation: Operation::new(pinion_speed_hz, brake_torque_nm),
-            quality: Quality::default(),
-            faults: Vec::new(),
-            rig: Rig::default(),
-            sensors: Vec::new(),
-            solver: Solver::default(),
+            ..Self::start()
         }
     }
 

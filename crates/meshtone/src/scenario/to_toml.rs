@@ -54,9 +54,13 @@ pub(super) trait Style {
     /// Header above an entry of a list.
     fn entry_header(&self, name: &str, entries: usize) -> String;
     /// Text in place of faults, where nothing is broken.
-    fn without_faults(&self) -> Option<String>;
+    fn without_faults(&self) -> Option<String> {
+        None
+    }
     /// Text in place of sensors, where none is listed.
-    fn without_sensors(&self) -> Option<String>;
+    fn without_sensors(&self) -> Option<String> {
+        None
+    }
 }
 
 /// Every key with its value.
@@ -74,13 +78,5 @@ impl Style for Plain {
     /// A single one is a section like others, with keys without a number.
     fn entry_header(&self, name: &str, entries: usize) -> String {
         if entries > 1 { format!("[[{name}]]") } else { format!("[{name}]") }
-    }
-
-    fn without_faults(&self) -> Option<String> {
-        None
-    }
-
-    fn without_sensors(&self) -> Option<String> {
-        None
     }
 }

@@ -33,6 +33,13 @@ pub struct UnknownChannel {
     pub known: Vec<String>,
 }
 
+impl UnknownChannel {
+    fn among(name: &str, known: &[Channel]) -> Self {
+        let known = known.iter().map(|channel| channel.name().into_owned()).collect();
+        Self { name: name.to_owned(), known }
+    }
+}
+
 impl Channel {
     /// The channels of a simulation, sensors first.
     ///
@@ -88,10 +95,8 @@ impl Channel {
     /// There is none of that name; the error lists those that there are.
     pub fn of(name: &str, sensors: &[Sensor]) -> Result<Self, UnknownChannel> {
         let all = Self::all(sensors);
-        all.iter().find(|channel| channel.name() == name).cloned().ok_or_else(|| UnknownChannel {
-            name: name.to_owned(),
-            known: all.iter().map(|channel| channel.name().into_owned()).collect(),
-        })
+        let of_name = all.iter().find(|channel| channel.name() == name).cloned();
+        of_name.ok_or_else(|| UnknownChannel::among(name, &all))
     }
 
     /// Name with the unit at its end, the same wherever a channel is named.
@@ -138,16 +143,13 @@ impl Channel {
             Self::Fixed(kind) => Ok(kind.output()),
             Self::Sensor(name) => match sensors.iter().find(|sensor| sensor.name() == *name) {
                 Some(sensor) => Ok(sensor.output()),
-                None => Err(self.unknown_among(sensors)),
+                None => {
+                    let unknown = UnknownChannel::among(&self.name(), &Self::all(sensors));
+                    Err(ScenarioError::new("sensor", "", unknown.to_string())
+                        .with_help("list the sensor, or name a channel that is there"))
+                }
             },
         }
-    }
-
-    fn unknown_among(&self, sensors: &[Sensor]) -> ScenarioError {
-        let known = Self::all(sensors).iter().map(|channel| channel.name().into_owned()).collect();
-        let unknown = UnknownChannel { name: self.name().into_owned(), known };
-        ScenarioError::new("sensor", "", unknown.to_string())
-            .with_help("list the sensor, or name a channel that is there")
     }
 }
 

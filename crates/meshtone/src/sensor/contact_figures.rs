@@ -1,9 +1,11 @@
 //! Contact of the teeth, by the force between them.
 
+use serde::Serialize;
+
 use super::Channels;
 
 /// Contact of the teeth of a mesh over the kept time.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct ContactFigures {
     /// (-) Part of the time in which no teeth touched.
     pub apart_fraction: f64,
@@ -12,6 +14,7 @@ pub struct ContactFigures {
     /// Number of hits of back flanks.
     pub back_flank_hits: usize,
     /// (N) Largest force, of either sign.
+    #[serde(rename = "largest_n")]
     pub largest_force_n: f64,
 }
 

@@ -250,12 +250,9 @@ impl Sensor {
         if let Some(name) = &self.name {
             check_name(name)?;
         }
-        let on_support = self.at != SensorPlace::Wheels;
-        if model == Model::Contact
-            && on_support
-            && self.reads_its_place()
-            && self.direction == SensorDirection::Axial
-        {
+        // Where the place is ignored, every sensor sits on the wheels.
+        let on_support = self.at != SensorPlace::Wheels && !model.ignores("sensor.at");
+        if on_support && self.reads_its_place() && self.direction == SensorDirection::Axial {
             let problem = "cannot be felt at a support, which moves across the shafts alone";
             return Err(ScenarioError::new("sensor.direction", "\"axial\"", problem)
                 .with_help("write sensor.at = \"wheels\", or take another direction"));

@@ -1,6 +1,6 @@
 //! A signal over the angle of a shaft instead of over time.
 
-use super::check::check_channel;
+use super::check::{check_channel, check_length};
 use super::interpolate::{band_limited, pchip};
 use super::{Edge, ShaftPhase, SignalError};
 
@@ -185,10 +185,7 @@ fn whole_revolutions(phase: &ShaftPhase, points: usize) -> Result<Revolutions, S
 
 fn whole_recording(signal: &[f64], phase: &ShaftPhase) -> Result<Revolutions, SignalError> {
     let revolutions = &phase.revolutions;
-    if revolutions.len() != signal.len() {
-        let what = "phase of a recording that is continued periodically";
-        return Err(SignalError::LengthMismatch { what, given: revolutions.len(), expected: signal.len() });
-    }
+    check_length("phase of a recording that is continued periodically", revolutions.len(), signal.len())?;
     let step = phase.last() - revolutions[revolutions.len() - 2];
     let span = phase.span_rev() + step;
     let count = span.round();

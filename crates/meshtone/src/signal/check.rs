@@ -17,12 +17,32 @@ use super::SignalError;
 /// assert_eq!(check_channel(&[2.0; 9]), Err(SignalError::Constant { value: 2.0, samples: 9 }));
 /// ```
 pub fn check_channel(signal: &[f64]) -> Result<(), SignalError> {
-    if signal.len() < 2 {
-        return Err(SignalError::TooFew { what: "samples", given: signal.len(), needed: 2 });
-    }
+    check_count("samples", signal.len(), 2)?;
     check_finite(signal)?;
     if signal.iter().all(|&x| x == signal[0]) {
         return Err(SignalError::Constant { value: signal[0], samples: signal.len() });
+    }
+    Ok(())
+}
+
+/// Checks that there are enough of something.
+pub(super) fn check_count(what: &'static str, given: usize, needed: usize) -> Result<(), SignalError> {
+    if given < needed { Err(SignalError::TooFew { what, given, needed }) } else { Ok(()) }
+}
+
+/// Checks that something is as long as it must be.
+pub(super) fn check_length(what: &'static str, given: usize, expected: usize) -> Result<(), SignalError> {
+    if given == expected { Ok(()) } else { Err(SignalError::LengthMismatch { what, given, expected }) }
+}
+
+/// Checks that there are teeth, and that the mesh order is not beyond the Nyquist order.
+pub(super) fn check_mesh_order(teeth: usize, nyquist_order: f64) -> Result<(), SignalError> {
+    let mesh_order = teeth as f64;
+    if teeth == 0 {
+        return Err(SignalError::parameter("teeth", 0.0, "at least 1"));
+    }
+    if mesh_order > nyquist_order {
+        return Err(SignalError::MeshOrderBeyondNyquist { mesh_order, nyquist_order });
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 use meshtone_fourier::{Complex64, inverse_complex, real_spectrum};
 
 use super::SignalError;
-use super::check::check_finite;
+use super::check::{check_count, check_finite};
 use super::order_spectrum;
 
 /// Analytic signal: the signal and, as its imaginary part, its Hilbert transform.
@@ -27,9 +27,7 @@ use super::order_spectrum;
 /// # Ok::<(), meshtone::signal::SignalError>(())
 /// ```
 pub fn analytic_signal(signal: &[f64]) -> Result<Vec<Complex64>, SignalError> {
-    if signal.is_empty() {
-        return Err(SignalError::TooFew { what: "samples", given: 0, needed: 1 });
-    }
+    check_count("samples", signal.len(), 1)?;
     check_finite(signal)?;
     let len = signal.len();
     let mut spectrum = real_spectrum(signal);

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use super::check::check_finite;
+use super::check::{check_count, check_finite};
 use super::filter_bank::{BankPosition, FilterBank, SincCurve};
 use super::{Edge, SignalError};
 use crate::interpolation::Pchip;
@@ -42,9 +42,7 @@ const PCHIP_REACH: isize = 2;
 /// # Ok::<(), meshtone::signal::SignalError>(())
 /// ```
 pub fn interpolate_pchip(signal: &[f64], places: &[f64], edge: Edge) -> Result<Vec<f64>, SignalError> {
-    if signal.len() < 2 {
-        return Err(SignalError::TooFew { what: "samples", given: signal.len(), needed: 2 });
-    }
+    check_count("samples", signal.len(), 2)?;
     check_places(places)?;
     Ok(pchip(signal, places.iter().copied(), edge))
 }
@@ -91,9 +89,7 @@ pub(super) fn pchip(signal: &[f64], places: impl Iterator<Item = f64>, edge: Edg
 /// # Ok::<(), meshtone::signal::SignalError>(())
 /// ```
 pub fn interpolate_band_limited(signal: &[f64], places: &[f64], edge: Edge) -> Result<Vec<f64>, SignalError> {
-    if signal.is_empty() {
-        return Err(SignalError::TooFew { what: "samples", given: 0, needed: 1 });
-    }
+    check_count("samples", signal.len(), 1)?;
     check_places(places)?;
     Ok(band_limited(signal, places.iter().copied(), edge))
 }

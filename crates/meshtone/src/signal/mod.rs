@@ -60,7 +60,7 @@ pub use record::{
 pub(crate) use resample::whole_ratio;
 pub use resample::{resample, resample_to, resample_with, resampling_ratio, resampling_taps};
 pub use separation::{MeanPart, Separation, SeparationSettings, separate};
-pub use simulated::{Shaft, SimulatedShafts};
+pub use simulated::SimulatedShafts;
 pub use spectrum::order_spectrum;
 pub use statistics::{
     central_moment, crest_factor, kurtosis, peak, peak_to_peak, rms, skewness, standard_deviation,

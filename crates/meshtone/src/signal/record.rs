@@ -1,5 +1,6 @@
 //! From a recording to its indicators.
 
+use super::check::check_mesh_order;
 use super::*;
 
 /// Settings by which a channel is processed.
@@ -193,17 +194,11 @@ pub fn process_average(
     settings: &ChainSettings,
 ) -> Result<Record, SignalError> {
     let teeth = teeth as usize;
-    if teeth as f64 > average.nyquist_order {
-        let nyquist_order = average.nyquist_order;
-        return Err(SignalError::MeshOrderBeyondNyquist { mesh_order: teeth as f64, nyquist_order });
-    }
+    let (mesh_order, nyquist_order) = (teeth as f64, average.nyquist_order);
+    check_mesh_order(teeth, nyquist_order)?;
     let passed = settings.angular.interpolation.passed();
-    let near = SignalWarning::MeshOrderNearNyquist {
-        mesh_order: teeth as f64,
-        nyquist_order: average.nyquist_order,
-        passed,
-    };
-    let doubtful = teeth as f64 > passed * average.nyquist_order;
+    let near = SignalWarning::MeshOrderNearNyquist { mesh_order, nyquist_order, passed };
+    let doubtful = mesh_order > passed * nyquist_order;
     let separation = settings.separation.clone().unwrap_or_else(|| SeparationSettings::new(teeth));
     let parts = separate(&average.values, &separation)?;
     let envelope = envelope(&parts.difference)?;

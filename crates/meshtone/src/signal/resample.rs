@@ -1,7 +1,7 @@
 //! Another sampling rate.
 
 use super::anti_aliasing::AntiAliasing;
-use super::check::check_positive;
+use super::check::{check_count, check_positive};
 use super::filter_bank::{BankPosition, FilterBank};
 use super::kaiser::windowed_sinc;
 use super::{Edge, SignalError};
@@ -45,9 +45,7 @@ pub fn resample_to(signal: &[f64], from_hz: f64, to_hz: f64, edge: Edge) -> Resu
     if let Some((up, down)) = whole_ratio(from_hz, to_hz)? {
         return resample(signal, up, down, edge);
     }
-    if signal.is_empty() {
-        return Err(SignalError::TooFew { what: "samples", given: 0, needed: 1 });
-    }
+    check_count("samples", signal.len(), 1)?;
     let step = from_hz / to_hz;
     let samples = (signal.len() as f64 / step).ceil() as usize;
     let places = (0..samples).map(|m| m as f64 * step);
@@ -119,9 +117,7 @@ pub fn resample_with(
     edge: Edge,
 ) -> Result<Vec<f64>, SignalError> {
     check_factors(up, down)?;
-    if signal.is_empty() {
-        return Err(SignalError::TooFew { what: "samples", given: 0, needed: 1 });
-    }
+    check_count("samples", signal.len(), 1)?;
     if taps.len().is_multiple_of(2) {
         return Err(SignalError::parameter("number of taps", taps.len() as f64, "odd"));
     }

@@ -3,6 +3,7 @@
 use meshtone_fourier::{Complex64, from_real_spectrum, real_spectrum};
 
 use super::SignalError;
+use super::check::{check_finite, check_mesh_order};
 
 /// The orders that belong to the regular part.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -82,7 +83,7 @@ pub struct Separation {
 /// # Ok::<(), meshtone::signal::SignalError>(())
 /// ```
 pub fn separate(average: &[f64], settings: &SeparationSettings) -> Result<Separation, SignalError> {
-    super::check::check_finite(average)?;
+    check_finite(average)?;
     check_settings(average.len(), settings)?;
     let spectrum = real_spectrum(average);
     let last = average.len() / 2;
@@ -111,22 +112,11 @@ pub fn separate(average: &[f64], settings: &SeparationSettings) -> Result<Separa
 
 fn check_settings(points: usize, settings: &SeparationSettings) -> Result<(), SignalError> {
     let SeparationSettings { teeth, sidebands, .. } = *settings;
-    if teeth == 0 {
-        return Err(SignalError::parameter("teeth", 0.0, "at least 1"));
-    }
-    if teeth > points / 2 {
-        return Err(SignalError::MeshOrderBeyondNyquist {
-            mesh_order: teeth as f64,
-            nyquist_order: points as f64 / 2.0,
-        });
-    }
+    check_mesh_order(teeth, points as f64 / 2.0)?;
     // All orders would be regular.
     if sidebands.saturating_mul(2).saturating_add(1) >= teeth {
-        return Err(SignalError::parameter(
-            "sidebands",
-            sidebands as f64,
-            "less than half the teeth minus one",
-        ));
+        let allowed = "less than half the teeth minus one";
+        return Err(SignalError::parameter("sidebands", sidebands as f64, allowed));
     }
     Ok(())
 }

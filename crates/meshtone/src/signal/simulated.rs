@@ -1,34 +1,13 @@
 //! The chain for what was simulated: the scenario says how far the shafts have turned.
 
-use super::check::check_channel;
+use super::check::{check_channel, check_length};
 use super::{
     AngularSignal, ChainSettings, Interpolation, Record, ShaftPhase, SignalError, SynchronousAverage,
     angular_resample, process_angular_segments, process_average, revolution_average,
 };
 use crate::scenario::Scenario;
 use crate::sensor::Channels;
-
-/// A shaft of the simulated pair.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Shaft {
-    /// The driving one, with the pinion.
-    Pinion,
-    /// The driven one, with the gear, whose first tooth is the damaged one.
-    Gear,
-}
-
-impl Shaft {
-    /// Both, the driving one first.
-    pub const BOTH: [Self; 2] = [Self::Pinion, Self::Gear];
-
-    /// Name of its wheel.
-    pub fn wheel(self) -> &'static str {
-        match self {
-            Self::Pinion => "pinion",
-            Self::Gear => "gear",
-        }
-    }
-}
+use crate::wheel::WheelName;
 
 /// Angles of the shafts of a simulated pair at its kept samples. At whole revolutions the wheel's first tooth
 /// enters contact.
@@ -94,16 +73,16 @@ impl SimulatedShafts {
     /// Teeth of a shaft's wheel.
     ///
     /// # Arguments
-    /// * `shaft` - which
-    pub fn teeth(&self, shaft: Shaft) -> u32 {
+    /// * `shaft` - that of which wheel
+    pub fn teeth(&self, shaft: WheelName) -> u32 {
         self.teeth[shaft as usize]
     }
 
     /// (Hz) Mean speed of a shaft.
     ///
     /// # Arguments
-    /// * `shaft` - which
-    pub fn mean_speed_hz(&self, shaft: Shaft) -> f64 {
+    /// * `shaft` - that of which wheel
+    pub fn mean_speed_hz(&self, shaft: WheelName) -> f64 {
         let pinion_hz = match &self.turning {
             SimulatedAngle::Steady { samples_per_pinion_revolution, .. } => {
                 self.sampling_rate_hz / *samples_per_pinion_revolution as f64
@@ -123,7 +102,7 @@ impl SimulatedShafts {
     ///
     /// # Arguments
     /// * `signal` - one of the kept signals
-    /// * `shaft` - which
+    /// * `shaft` - that of which wheel
     /// * `settings` - how it is resampled where the speed varies
     ///
     /// # Errors
@@ -131,26 +110,24 @@ impl SimulatedShafts {
     ///
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};
-    /// use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
+    /// use meshtone::signal::{ChainSettings, SimulatedShafts};
+    /// use meshtone::wheel::WheelName;
     ///
     /// let mut scenario = Scenario::new(GearPair { pinion_teeth: 20, gear_teeth: 40, ..GearPair::example() });
     /// scenario.solver.sampling_rate_hz = 1e4;
     /// let channels = meshtone::simulate(&scenario)?.channels;
     /// let shafts = SimulatedShafts::of_channels(&scenario, &channels);
-    /// let angular = shafts.angular(&channels.vertical_g, Shaft::Gear, &ChainSettings::default())?;
+    /// let angular = shafts.angular(&channels.vertical_g, WheelName::Gear, &ChainSettings::default())?;
     /// assert_eq!((angular.start_rev, angular.revolutions()), (0.0, 20));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn angular(
         &self,
         signal: &[f64],
-        shaft: Shaft,
+        shaft: WheelName,
         settings: &ChainSettings,
     ) -> Result<AngularSignal, SignalError> {
-        if signal.len() != self.samples {
-            let what = "samples of a simulated signal";
-            return Err(SignalError::LengthMismatch { what, given: signal.len(), expected: self.samples });
-        }
+        check_length("samples of a simulated signal", signal.len(), self.samples)?;
         match &self.turning {
             SimulatedAngle::Steady { start, .. } => {
                 let points = self.samples_per_revolution(shaft).unwrap_or(1);
@@ -159,8 +136,8 @@ impl SimulatedShafts {
             SimulatedAngle::Varying(angles) => {
                 let pinion = ShaftPhase::new(0, angles.clone())?;
                 let phase = match shaft {
-                    Shaft::Pinion => pinion,
-                    Shaft::Gear => pinion.of_mate(self.teeth[0], self.teeth[1])?,
+                    WheelName::Pinion => pinion,
+                    WheelName::Gear => pinion.of_mate(self.teeth[0], self.teeth[1])?,
                 };
                 angular_resample(signal, &phase, &settings.angular)
             }
@@ -177,20 +154,21 @@ impl SimulatedShafts {
     ///
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};
-    /// use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts};
+    /// use meshtone::signal::{ChainSettings, SimulatedShafts};
+    /// use meshtone::wheel::WheelName;
     ///
     /// let mut scenario = Scenario::new(GearPair { pinion_teeth: 20, gear_teeth: 40, ..GearPair::example() });
     /// scenario.solver.sampling_rate_hz = 1e4;
     /// let channels = meshtone::simulate(&scenario)?.channels;
     /// let shafts = SimulatedShafts::of_channels(&scenario, &channels);
-    /// let average = shafts.average(&channels.vertical_g, Shaft::Gear, &ChainSettings::default())?;
+    /// let average = shafts.average(&channels.vertical_g, WheelName::Gear, &ChainSettings::default())?;
     /// assert_eq!(average.revolutions, 20);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn average(
         &self,
         signal: &[f64],
-        shaft: Shaft,
+        shaft: WheelName,
         settings: &ChainSettings,
     ) -> Result<SynchronousAverage, SignalError> {
         if let (SimulatedAngle::Steady { start, .. }, true) = (&self.turning, signal.len() == self.samples) {
@@ -208,13 +186,11 @@ impl SimulatedShafts {
         })
     }
 
-    fn samples_per_revolution(&self, shaft: Shaft) -> Option<usize> {
+    fn samples_per_revolution(&self, shaft: WheelName) -> Option<usize> {
         let SimulatedAngle::Steady { samples_per_pinion_revolution, .. } = self.turning else { return None };
         let [pinion, gear] = self.teeth.map(|teeth| teeth.max(1) as usize);
-        Some(match shaft {
-            Shaft::Pinion => samples_per_pinion_revolution,
-            Shaft::Gear => samples_per_pinion_revolution / pinion * gear,
-        })
+        let of_gear = samples_per_pinion_revolution / pinion * gear;
+        Some(shaft.choose(samples_per_pinion_revolution, of_gear))
     }
 
     /// Does what [`super::process_channel`] does, for one wheel of a simulated pair.
@@ -229,7 +205,7 @@ impl SimulatedShafts {
     pub fn process(
         &self,
         signal: &[f64],
-        shaft: Shaft,
+        shaft: WheelName,
         settings: &ChainSettings,
     ) -> Result<Record, SignalError> {
         check_channel(signal)?;
@@ -248,7 +224,7 @@ impl SimulatedShafts {
     pub fn process_segments(
         &self,
         signal: &[f64],
-        shaft: Shaft,
+        shaft: WheelName,
         settings: &ChainSettings,
         revolutions: usize,
     ) -> Result<Vec<Record>, SignalError> {

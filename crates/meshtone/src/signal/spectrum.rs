@@ -1,7 +1,7 @@
 //! Amplitudes of the orders of a shaft.
 
 use super::SignalError;
-use super::check::check_finite;
+use super::check::{check_count, check_finite};
 use meshtone_fourier::real_spectrum;
 
 /// Single-sided amplitude spectrum of one revolution: the amplitude of every order.
@@ -24,9 +24,7 @@ use meshtone_fourier::real_spectrum;
 /// # Ok::<(), meshtone::signal::SignalError>(())
 /// ```
 pub fn order_spectrum(average: &[f64]) -> Result<Vec<f64>, SignalError> {
-    if average.is_empty() {
-        return Err(SignalError::TooFew { what: "values of an average", given: 0, needed: 1 });
-    }
+    check_count("values of an average", average.len(), 1)?;
     check_finite(average)?;
     let len = average.len();
     let amplitude = |(order, line): (usize, &meshtone_fourier::Complex64)| {

@@ -5,6 +5,7 @@
 //! `U = ∫ (M_z² Iy − 2 M_z M_y Iyz + M_y² Iz)/(2E (Iy Iz − Iyz²)) + F_s² s/G + F_a²/(2EA) dx` from the root to x_i. Everything
 //! that depends on the load is moved out of the integrals (paper, Eq. 2 → 3): they are evaluated once for all loads.
 
+use super::energy::{Energy, bending_energy, bending_integrands, cumulative};
 use super::foundation::{Foundation, LoadDirection};
 use crate::damage::{DamagedTooth, Section};
 use crate::wheel::{Flank, FlankPoint, FoundationCoefficients, Material};
@@ -36,22 +37,12 @@ pub struct LoadedFlank<'a> {
 enum Integrals {
     /// Of a sound tooth, whose sections' centres lie on its centre line.
     Sound(Vec<[f64; SOUND]>),
-    /// Of a damaged one.
-    Damaged(Vec<[f64; DAMAGED]>),
+    /// Of a damaged one: bending about both axes, then shear and compression.
+    Damaged(Vec<[f64; 15]>, Vec<[f64; 2]>),
 }
 
 /// `w (x², x, 1)` with `w = 1/(2E Iz)`, `1/(2E Iy)`, shear and compression.
 const SOUND: usize = 6;
-/// The nine moments of the main bending, the cross terms and the bending about y, then shear and compression.
-const DAMAGED: usize = 17;
-
-/// Doubled energy of a unit load: `F_s² ss + F_s F_a sa + F_a² aa`.
-#[derive(Default)]
-struct Energy {
-    ss: f64,
-    sa: f64,
-    aa: f64,
-}
 
 impl<'a> LoadedFlank<'a> {
     /// The integrals of a tooth.
@@ -86,33 +77,17 @@ impl<'a> LoadedFlank<'a> {
                     [w * x * x, w * x, w, of_iy * inverse, of_shear * inverse, of_area * inverse]
                 }))
             }
-            Some(damage) => Integrals::Damaged(cumulative(&profile.x_mm, |i| {
-                let section = Section::damaged(damage, profile, width, i);
-                let Section { yc_mm: yc, zc_mm: zc, iy_mm4: iy, iz_mm4: iz, iyz_mm4: iyz, .. } = section;
-                let per_determinant = bending / (iy * iz - iyz * iyz);
-                let (main, cross, side) =
-                    (iy * per_determinant, -iyz * per_determinant, iz * per_determinant);
-                let x = depth(i);
-                [
-                    main * x * x,
-                    main * x,
-                    main,
-                    main * x * yc,
-                    main * yc,
-                    main * yc * yc,
-                    cross,
-                    cross * x,
-                    cross * yc,
-                    cross * zc,
-                    cross * x * zc,
-                    cross * yc * zc,
-                    side,
-                    side * zc,
-                    side * zc * zc,
-                    shear * section.shear_per_mm2,
-                    bending / section.area_mm2,
-                ]
-            })),
+            Some(damage) => {
+                let section = |i: usize| Section::damaged(damage, profile, width, i);
+                let sections: Vec<Section> = (0..profile.len()).map(section).collect();
+                let bent = |i: usize| {
+                    let Section { yc_mm, zc_mm, iy_mm4, iz_mm4, iyz_mm4, .. } = sections[i];
+                    bending_integrands(bending, depth(i), [yc_mm, zc_mm], [iy_mm4, iz_mm4, iyz_mm4])
+                };
+                let others =
+                    |i: usize| [shear * sections[i].shear_per_mm2, bending / sections[i].area_mm2];
+                Integrals::Damaged(cumulative(&profile.x_mm, bent), cumulative(&profile.x_mm, others))
+            }
         };
         Self {
             foundation: Foundation::new(flank.wheel, profile, foundation),
@@ -127,11 +102,9 @@ impl<'a> LoadedFlank<'a> {
     /// # Arguments
     /// * `load` - where and how it acts
     pub fn compliance_mm_per_n(&self, load: &FlankLoad) -> f64 {
-        let (fs, fa) = (load.cos, load.sin);
-        let Energy { ss, sa, aa } = self.energy(load);
         let direction = LoadDirection { sin: load.sin, cos: load.cos, tan: load.sin / load.cos };
         let place = (load.point.x_mm, load.point.y_mm);
-        2.0 * (fs * fs * ss + fs * fa * sa + fa * fa * aa)
+        self.energy(load).compliance(direction)
             + self.foundation.compliance(place, direction, load.width_mm, self.youngs_modulus_mpa)
     }
 
@@ -147,40 +120,13 @@ impl<'a> LoadedFlank<'a> {
                     aa: y_i * y_i * one + z_i * z_i * side + axial,
                 }
             }
-            Integrals::Damaged(integrals) => {
-                let [xx, x, one, xyc, yc, ycyc, c, cx, cy, cz, cxz, cyz, s, sz, szz, shear, axial] =
-                    at(integrals, &load.point);
-                Energy {
-                    ss: xx - 2.0 * x_i * x + x_i * x_i * one + shear,
-                    sa: 2.0 * (y_i * (x - x_i * one) - (xyc - x_i * yc))
-                        + 2.0 * (z_i * (cx - x_i * c) - (cxz - x_i * cz)),
-                    aa: y_i * y_i * one - 2.0 * y_i * yc
-                        + ycyc
-                        + 2.0 * (y_i * z_i * c - y_i * cz - z_i * cy + cyz)
-                        + (z_i * z_i * s - 2.0 * z_i * sz + szz)
-                        + axial,
-                }
+            Integrals::Damaged(bent, others) => {
+                let Energy { ss, sa, aa } = bending_energy(&at(bent, &load.point), [x_i, y_i, z_i]);
+                let [shear, axial] = at(others, &load.point);
+                Energy { ss: ss + shear, sa, aa: aa + axial }
             }
         }
     }
-}
-
-/// Cumulative trapezoids along x.
-fn cumulative<const N: usize>(x: &[f64], integrand: impl Fn(usize) -> [f64; N]) -> Vec<[f64; N]> {
-    let mut integral = [0.0; N];
-    let mut before = integrand(0);
-    let mut all = Vec::with_capacity(x.len());
-    all.push(integral);
-    for i in 1..x.len() {
-        let here = integrand(i);
-        let half_step = 0.5 * (x[i] - x[i - 1]);
-        for n in 0..N {
-            integral[n] += half_step * (before[n] + here[n]);
-        }
-        before = here;
-        all.push(integral);
-    }
-    all
 }
 
 /// Values between two profile points.

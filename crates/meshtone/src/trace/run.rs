@@ -1,5 +1,7 @@
 //! Fields of the time loop.
 
+use std::ops::Range;
+
 use web_time::Instant;
 
 use super::average::average;
@@ -65,19 +67,24 @@ fn state_outputs(coordinates: usize) -> impl Iterator<Item = Output> {
     [2, 1, 0].into_iter().flat_map(of_all)
 }
 
+/// States of some samples, under the name of their field.
+struct Window {
+    name: &'static str,
+    /// Which derivative of the coordinates: 2 is the acceleration.
+    derivative: usize,
+    samples: Range<usize>,
+    /// One a sample.
+    states: Vec<Vec<f64>>,
+}
+
 /// Records channels and, in windows, the state in all coordinates.
 struct StateRecorder {
     channels: Channels,
     /// Number of the first output that is one of the state.
     first_state: usize,
     coordinates: usize,
-    kept: usize,
-    samples: usize,
-    acceleration: Vec<Vec<f64>>,
-    velocity: Vec<Vec<f64>>,
-    displacement: Vec<Vec<f64>>,
-    last_acceleration: Vec<Vec<f64>>,
-    last_displacement: Vec<Vec<f64>>,
+    kept: Range<usize>,
+    windows: [Window; 5],
     square_sum: Vec<f64>,
     velocity_sum: Vec<f64>,
 }
@@ -85,33 +92,35 @@ struct StateRecorder {
 impl StateRecorder {
     fn new(stages: &Stages) -> Self {
         let coordinates = stages.coordinates();
+        let kept = stages.time.first_kept_sample..stages.time.samples;
+        let window = |name, derivative, samples| Window { name, derivative, samples, states: Vec::new() };
+        let first = |count: usize| kept.start..kept.start + count;
+        let last = |count: usize| kept.end.saturating_sub(count)..kept.end;
         Self {
             channels: stages.channels(),
             first_state: stages.channel_outputs().len(),
             coordinates,
-            kept: stages.time.first_kept_sample,
-            samples: stages.time.samples,
-            acceleration: Vec::new(),
-            velocity: Vec::new(),
-            displacement: Vec::new(),
-            last_acceleration: Vec::new(),
-            last_displacement: Vec::new(),
+            windows: [
+                window("acceleration", 2, first(ACCELERATIONS)),
+                window("velocity", 1, first(STATES)),
+                window("displacement", 0, first(STATES)),
+                window("acceleration_last_200", 2, last(LAST_ACCELERATIONS)),
+                window("displacement_last_20", 0, last(LAST_DISPLACEMENTS)),
+            ],
+            kept,
             square_sum: vec![0.0; coordinates],
             velocity_sum: vec![0.0; coordinates],
         }
     }
 
     fn finish(self, trace: &mut Trace) -> Channels {
-        let states = |trace: &mut Trace, name: &str, rows: &[Vec<f64>]| {
-            trace.matrix(name, rows.len(), self.coordinates, |sample, coordinate| rows[sample][coordinate]);
-        };
-        let count = (self.samples - self.kept) as f64;
+        let count = self.kept.len() as f64;
         let rms = |values: &[f64]| (values.iter().map(|v| v * v).sum::<f64>() / count).sqrt();
-        states(trace, "acceleration", &self.acceleration);
-        states(trace, "velocity", &self.velocity);
-        states(trace, "displacement", &self.displacement);
-        states(trace, "acceleration_last_200", &self.last_acceleration);
-        states(trace, "displacement_last_20", &self.last_displacement);
+        for Window { name, states, .. } in &self.windows {
+            trace.matrix(name, states.len(), self.coordinates, |sample, coordinate| {
+                states[sample][coordinate]
+            });
+        }
         trace.vector("acceleration_rms", self.square_sum.iter().map(|sum| (sum / count).sqrt()));
         trace.vector("velocity_mean", self.velocity_sum.iter().map(|sum| sum / count));
         let channels = self.channels;
@@ -128,28 +137,17 @@ impl Recorder for StateRecorder {
         self.channels.record(block);
         for k in 0..block.len() {
             let sample = block.first_sample + k;
-            let (since, until) = (sample - self.kept, self.samples - sample);
-            let all = |kind: usize| -> Vec<f64> {
-                let first = self.first_state + kind * self.coordinates;
+            // In the order of `state_outputs`.
+            let all = |derivative: usize| -> Vec<f64> {
+                let first = self.first_state + (2 - derivative) * self.coordinates;
                 (first..first + self.coordinates).map(|output| block.output(output)[k]).collect()
             };
-            let (acceleration, velocity) = (all(0), all(1));
-            for coordinate in 0..self.coordinates {
-                self.square_sum[coordinate] += acceleration[coordinate] * acceleration[coordinate];
-                self.velocity_sum[coordinate] += velocity[coordinate];
+            for (sum, acceleration) in self.square_sum.iter_mut().zip(all(2)) {
+                *sum += acceleration * acceleration;
             }
-            if since < STATES {
-                self.velocity.push(velocity);
-                self.displacement.push(all(2));
-            }
-            if until <= LAST_DISPLACEMENTS {
-                self.last_displacement.push(all(2));
-            }
-            if since < ACCELERATIONS {
-                self.acceleration.push(acceleration.clone());
-            }
-            if until <= LAST_ACCELERATIONS {
-                self.last_acceleration.push(acceleration);
+            self.velocity_sum.iter_mut().zip(all(1)).for_each(|(sum, velocity)| *sum += velocity);
+            for window in self.windows.iter_mut().filter(|window| window.samples.contains(&sample)) {
+                window.states.push(all(window.derivative));
             }
         }
     }

@@ -5,7 +5,7 @@ use crate::damage::QuantityValue;
 use crate::mesh::MeshCurve;
 use crate::simulate::{Equations, Stages};
 use crate::trace_fields::FAULT_STRIDE;
-use crate::wheel::{Mounting, ToothProfile, Wheel};
+use crate::wheel::{Mounting, WheelName};
 
 /// Every how many points a profile, a flank and a section are given.
 const PROFILE_STRIDE: usize = 50;
@@ -41,11 +41,8 @@ pub(crate) fn static_stages(trace: &mut Trace, stages: &Stages) {
 
 fn wheels(trace: &mut Trace, stages: &Stages) {
     let teeth = &stages.teeth;
-    let wheel = |trace: &mut Trace,
-                 name: &str,
-                 wheel: &Wheel,
-                 profile: &ToothProfile,
-                 (contact_index, contact_radius): (usize, f64)| {
+    for which in WheelName::BOTH {
+        let (name, wheel, profile) = (which.name(), teeth.wheel(which), teeth.profile(which));
         let every = |values: &[f64]| values.iter().copied().step_by(PROFILE_STRIDE).collect::<Vec<_>>();
         let last = profile.len() - 1;
         trace.vector(&format!("{name}_profile_x_mm"), every(&profile.x_mm));
@@ -58,29 +55,15 @@ fn wheels(trace: &mut Trace, stages: &Stages) {
                 wheel.tip_radius_mm,
                 wheel.root_radius_mm,
                 wheel.base_radius_mm,
-                contact_radius,
+                teeth.initial_contact_radius_mm(which),
             ],
         );
         if let Some(index) = profile.tip_relief_index {
             trace.scalar(&format!("{name}_tip_relief_index"), (index + FIRST_INDEX) as f64);
         }
-        trace.scalar(&format!("{name}_initial_contact_index"), (contact_index + FIRST_INDEX) as f64);
-    };
-    let contact = &teeth.contact;
-    wheel(
-        trace,
-        "pinion",
-        &teeth.pinion,
-        &teeth.pinion_profile,
-        (contact.pinion_initial_contact_index, contact.pinion_initial_radius_mm),
-    );
-    wheel(
-        trace,
-        "gear",
-        &teeth.gear,
-        &teeth.gear_profile,
-        (contact.initial_contact_index, contact.gear_initial_radius_mm),
-    );
+        let contact_index = teeth.initial_contact_index(which) + FIRST_INDEX;
+        trace.scalar(&format!("{name}_initial_contact_index"), contact_index as f64);
+    }
     if let Some(errors) = &stages.profile_errors {
         for (name, table) in
             [("pinion", &errors.pinion_profile_errors_mm), ("gear", &errors.gear_profile_errors_mm)]
@@ -94,7 +77,7 @@ fn wheels(trace: &mut Trace, stages: &Stages) {
 
 /// The wheels' bodies and the shafts.
 fn bodies(trace: &mut Trace, stages: &Stages) {
-    for (name, body) in ["pinion", "gear"].into_iter().zip(stages.wheel_bodies()) {
+    for (name, body) in WheelName::BOTH.map(WheelName::name).into_iter().zip(stages.wheel_bodies()) {
         trace.scalar(&format!("{name}_mass_kg"), body.mass_kg);
         trace.scalar(&format!("{name}_transverse_inertia_kgm2"), body.transverse_kgm2);
         trace.scalar(&format!("{name}_polar_inertia_kgm2"), body.polar_kgm2);

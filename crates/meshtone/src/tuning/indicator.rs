@@ -50,14 +50,6 @@ impl TuningIndicator {
         }
     }
 
-    /// The indicator of this name, if there is one.
-    ///
-    /// # Arguments
-    /// * `name` - as of [`Self::name`]
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|indicator| indicator.name() == name)
-    }
-
     /// Returns whether the healthy state's rms is divided out.
     pub fn is_relative(self) -> bool {
         matches!(self, Self::Rms | Self::EnvelopeRms)

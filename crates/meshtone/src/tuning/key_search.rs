@@ -22,11 +22,8 @@ struct Candidate {
     differences: Arc<Differences>,
 }
 
-/// The best fit to all cases but one.
-struct LeftOutFit {
-    fit: Fit,
-    differences: Arc<Differences>,
-}
+/// The best fit to all cases but one, and the signals that it is of.
+type LeftOutFit = (Fit, Arc<Differences>);
 
 /// The fits to a combination's simulations.
 struct Fits {
@@ -59,8 +56,8 @@ impl<'a> KeySearch<'a> {
         original: &SimulatedCases,
     ) -> Result<Self, HybridError> {
         let differences = Arc::new(original.differences().to_vec());
-        let fold = |fit| LeftOutFit { fit, differences: differences.clone() };
-        let grid = Grid::new(original, common.measured, common.bounds, common.cancelled)?;
+        let fold = |fit| (fit, differences.clone());
+        let grid = Grid::new(original, common.target)?;
         let folds = left_out(&grid, experiment.cases.len())?.into_iter().map(fold).collect();
         Ok(Self {
             experiment,
@@ -93,11 +90,8 @@ impl<'a> KeySearch<'a> {
             .iter()
             .map(|candidate| SimulatedCases::new(candidate.differences.to_vec()))
             .collect::<Result<_, _>>()?;
-        let good: Vec<(&SimulatedCases, Fit)> = simulated
-            .iter()
-            .zip(&self.best)
-            .map(|(simulated, candidate)| (simulated, candidate.fit))
-            .collect();
+        let fits = self.best.iter().map(|candidate| candidate.fit);
+        let good: Vec<(&SimulatedCases, Fit)> = simulated.iter().zip(fits).collect();
         let Some(best) = self.best.first() else {
             let first_failure = self.first_failure.unwrap_or_default();
             return Err(HybridError::NoCandidate { first_failure });
@@ -164,8 +158,8 @@ impl<'a> KeySearch<'a> {
         let Fits { differences, all: fit, left_out } = fits;
         self.candidates += 1;
         for (fold, fit) in self.folds.iter_mut().zip(left_out) {
-            if fit.error < fold.fit.error {
-                *fold = LeftOutFit { fit, differences: differences.clone() };
+            if fit.error < fold.0.error {
+                *fold = (fit, differences.clone());
             }
         }
         // Of equals the one that was drawn first.
@@ -178,9 +172,8 @@ impl<'a> KeySearch<'a> {
 
     /// Error of each case, predicted by what fits the others best.
     fn leave_one_out_error(&self) -> Result<Vec<f64>, HybridError> {
-        threads::try_map(self.folds.iter().enumerate(), |(case, fold)| {
-            let simulated = SimulatedCases::new(fold.differences.to_vec())?;
-            self.common.left_out_error(&simulated, fold.fit, case)
+        threads::try_map(self.folds.iter().enumerate(), |(case, (fit, differences))| {
+            self.common.left_out_error(&SimulatedCases::new(differences.to_vec())?, *fit, case)
         })
     }
 }
@@ -192,9 +185,9 @@ fn left_out(grid: &Grid, cases: usize) -> Result<Vec<Fit>, HybridError> {
 
 fn fits(common: &TuningInputs, differences: Differences, leave_out: bool) -> Result<Fits, HybridError> {
     let simulated = SimulatedCases::new(differences)?;
-    let grid = Grid::new(&simulated, common.measured, common.bounds, common.cancelled)?;
+    let grid = Grid::new(&simulated, common.target)?;
     let all = grid.fit(None)?;
-    let cases = if leave_out { common.measured.cases() } else { 0 };
+    let cases = if leave_out { common.target.measured.cases() } else { 0 };
     let left_out = left_out(&grid, cases)?;
     Ok(Fits { all, left_out, differences: Arc::new(simulated.into_differences()) })
 }

@@ -35,9 +35,7 @@ use crate::signal::{Edge, interpolate_band_limited, rms};
 pub fn change_duration(signal: &[f64], width_ratio: f64, centre_rev: f64) -> Result<Vec<f64>, HybridError> {
     check_cycle("signal", signal)?;
     check_width_ratio(width_ratio)?;
-    if !centre_rev.is_finite() {
-        return Err(HybridError::parameter("centre_rev", centre_rev, "a finite number"));
-    }
+    check_number("centre_rev", centre_rev, true, "a finite number")?;
     let points = signal.len() as f64;
     // Of the middle of each new value, from the centre on, in old values.
     let offset = |i: usize| ((i as f64 + 0.5) / points - 0.5) * width_ratio * points;
@@ -212,23 +210,19 @@ pub(super) fn check_cycle(what: &'static str, values: &[f64]) -> Result<(), Hybr
     }
 }
 
+/// Checks that a parameter is finite, and that what else it must be holds.
+fn check_number(name: &str, value: f64, holds: bool, allowed: &str) -> Result<(), HybridError> {
+    if holds && value.is_finite() { Ok(()) } else { Err(HybridError::parameter(name, value, allowed)) }
+}
+
 fn check_width_ratio(value: f64) -> Result<(), HybridError> {
-    if value > 0.0 && value.is_finite() {
-        return Ok(());
-    }
-    Err(HybridError::parameter("width_ratio", value, "above 0"))
+    check_number("width_ratio", value, value > 0.0, "above 0")
 }
 
 fn check_ratio(value: f64) -> Result<(), HybridError> {
-    if value.is_finite() {
-        return Ok(());
-    }
-    Err(HybridError::parameter("fault_to_harmonics_ratio", value, "a finite number"))
+    check_number("fault_to_harmonics_ratio", value, true, "a finite number")
 }
 
 fn check_not_negative(name: &str, value: f64) -> Result<(), HybridError> {
-    if value >= 0.0 && value.is_finite() {
-        return Ok(());
-    }
-    Err(HybridError::parameter(name, value, "0 or more"))
+    check_number(name, value, value >= 0.0, "0 or more")
 }

@@ -3,6 +3,7 @@
 use std::sync::atomic::AtomicBool;
 
 use super::key_search::KeySearch;
+use super::search::Target;
 use super::simulations::Simulations;
 use super::tune::TuningInputs;
 use super::{Case, Enhancement, Experiment, HybridError, SimulatedCases, Tuning, TuningWarning, tune};
@@ -83,7 +84,8 @@ pub fn run_experiment(
     let mut with_keys = None;
     if !experiment.keys.is_empty() {
         let predicted = original.predict(measured.indicators(), &Enhancement::default())?;
-        let common = TuningInputs { measured, bounds, seed: *seed, cancelled, original: &predicted };
+        let target = Target { measured, bounds, cancelled };
+        let common = TuningInputs { target, seed: *seed, original: &predicted };
         let keys = KeySearch::new(experiment, &simulations, common, &original)?.run()?;
         with_keys = kept(keys, &mut enhancement_alone);
     }

@@ -18,7 +18,7 @@ const MOST_ITERATIONS: u64 = 120;
 /// Of the simplex's errors, where the refinement ends.
 const TOLERANCE: f64 = 1e-6;
 
-/// Bounds of the three parameters in the search.
+/// A range of each of the three parameters, such as the bounds of the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EnhancementBounds {
     /// (-) Least and largest width ratio.
@@ -88,15 +88,22 @@ pub struct Fit {
     pub error: f64,
 }
 
+/// What simulated cases are fitted to.
+#[derive(Clone, Copy)]
+pub(super) struct Target<'a> {
+    pub(super) measured: &'a Measurements,
+    pub(super) bounds: &'a EnhancementBounds,
+    /// Set by the caller to stop.
+    pub(super) cancelled: &'a AtomicBool,
+}
+
 /// The objective that is minimised: the mean error over the cases.
 #[derive(Clone, Copy)]
 pub(super) struct Objective<'a> {
     pub(super) simulated: &'a SimulatedCases,
-    pub(super) measured: &'a Measurements,
+    pub(super) target: Target<'a>,
     /// Weights of the cases.
     pub(super) weights: &'a [f64],
-    /// Set by the caller to stop.
-    pub(super) cancelled: &'a AtomicBool,
 }
 
 /// Every case weighs the same, but for one that is left out.
@@ -106,10 +113,11 @@ pub(super) fn equal_weights(cases: usize, left_out: Option<usize>) -> Vec<f64> {
 
 impl Objective<'_> {
     pub(super) fn at(&self, point: Point) -> Result<f64, HybridError> {
-        stop_where(self.cancelled)?;
+        let measured = self.target.measured;
+        stop_where(self.target.cancelled)?;
         let enhancement = enhancement(point);
-        let at_duration = self.simulated.at_duration(self.measured.indicators(), enhancement.width_ratio);
-        Ok(weighted_mean(self.weights, |case| case_error(self.measured, &at_duration, case, &enhancement)))
+        let at_duration = self.simulated.at_duration(measured.indicators(), enhancement.width_ratio);
+        Ok(weighted_mean(self.weights, |case| case_error(measured, &at_duration, case, &enhancement)))
     }
 }
 
@@ -138,21 +146,15 @@ fn weighted_mean(weights: &[f64], of_case: impl Fn(usize) -> f64) -> f64 {
 /// Errors of all cases over a grid of the parameters: whichever case is left out, they are the same.
 pub(super) struct Grid<'a> {
     simulated: &'a SimulatedCases,
-    measured: &'a Measurements,
-    bounds: &'a EnhancementBounds,
-    cancelled: &'a AtomicBool,
+    target: Target<'a>,
     points: Vec<Point>,
     /// By point and case.
     errors: Vec<f64>,
 }
 
 impl<'a> Grid<'a> {
-    pub(super) fn new(
-        simulated: &'a SimulatedCases,
-        measured: &'a Measurements,
-        bounds: &'a EnhancementBounds,
-        cancelled: &'a AtomicBool,
-    ) -> Result<Self, HybridError> {
+    pub(super) fn new(simulated: &'a SimulatedCases, target: Target<'a>) -> Result<Self, HybridError> {
+        let Target { measured, bounds, cancelled } = target;
         bounds.check()?;
         let cases = simulated.differences().len();
         if cases != measured.cases() {
@@ -182,7 +184,7 @@ impl<'a> Grid<'a> {
                 }
             }
         }
-        Ok(Self { simulated, measured, bounds, cancelled, points, errors })
+        Ok(Self { simulated, target, points, errors })
     }
 
     /// The best enhancement: refined from the grid's best points.
@@ -190,10 +192,9 @@ impl<'a> Grid<'a> {
     /// # Arguments
     /// * `left_out` - number of a case that does not count, if any
     pub(super) fn fit(&self, left_out: Option<usize>) -> Result<Fit, HybridError> {
-        let weights = equal_weights(self.measured.cases(), left_out);
-        let Self { simulated, measured, cancelled, .. } = *self;
-        let objective = Objective { simulated, measured, weights: &weights, cancelled };
-        let ranges = self.bounds.logarithms();
+        let weights = equal_weights(self.target.measured.cases(), left_out);
+        let objective = Objective { simulated: self.simulated, target: self.target, weights: &weights };
+        let ranges = self.target.bounds.logarithms();
         let steps: [f64; 3] = std::array::from_fn(|d| (ranges[d][1] - ranges[d][0]) / GRID[d] as f64);
         let mut best: Option<(f64, Point)> = None;
         for (error, start) in self.best(&weights) {
@@ -241,7 +242,7 @@ pub fn fit(
     left_out: Option<usize>,
     cancelled: &AtomicBool,
 ) -> Result<Fit, HybridError> {
-    Grid::new(simulated, measured, bounds, cancelled)?.fit(left_out)
+    Grid::new(simulated, Target { measured, bounds, cancelled })?.fit(left_out)
 }
 
 /// Nelder and Mead's search from a point, within ranges; a range of no width holds its parameter.

@@ -2,7 +2,9 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::search::{Grid, Objective, Point, enhancement, equal_weights, point, refine};
+use thiserror::Error;
+
+use super::search::{Grid, Objective, Point, Target, enhancement, equal_weights, point, refine};
 use super::{Enhancement, EnhancementBounds, Fit, HybridError, Measurements, SimulatedCases};
 use crate::threads;
 use crate::wheel::WheelName;
@@ -22,17 +24,6 @@ const UNKNOWN: f64 = 4.0;
 /// Records per case below which intervals mean little.
 const FEW_RECORDS: usize = 5;
 
-/// A range of each parameter.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct EnhancementIntervals {
-    /// (-) Of the width ratio.
-    pub width_ratio: [f64; 2],
-    /// (-) Of the fault-to-harmonics ratio.
-    pub fault_to_harmonics_ratio: [f64; 2],
-    /// (-) Of the noise level.
-    pub noise_level: [f64; 2],
-}
-
 /// The result of tuning the three parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tuning {
@@ -44,7 +35,7 @@ pub struct Tuning {
     /// All values whose error, with everything else adjusted, exceeds the least by no more than the chosen
     /// parameters' error exceeds the least one in 95 % of the bootstrap samples. Drawing the cases, too, lets what the model
     /// cannot follow in some of them widen the intervals.
-    pub intervals: EnhancementIntervals,
+    pub intervals: EnhancementBounds,
     /// Mean error (Eq. 7) of the original simulation, before anything was tuned.
     pub original_error: f64,
     /// Mean error after the enhancement.
@@ -69,10 +60,14 @@ impl Tuning {
 }
 
 /// Why a tuning is doubtful.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum TuningWarning {
     /// The measurements hardly limit a parameter.
+    #[error(
+        "the measurements do not determine {parameter}: everything from {:.3} to {:.3} fits as well",
+        interval[0], interval[1]
+    )]
     Unknown {
         /// Its name.
         parameter: &'static str,
@@ -80,6 +75,9 @@ pub enum TuningWarning {
         interval: [f64; 2],
     },
     /// A parameter lies at the end of the range in which it was searched.
+    #[error(
+        "{parameter} = {value:.3} lies at the end of the range in which it was searched; widen the range"
+    )]
     AtBound {
         /// Its name.
         parameter: &'static str,
@@ -87,6 +85,9 @@ pub enum TuningWarning {
         value: f64,
     },
     /// A case has few records.
+    #[error(
+        "case {case} has only {records} records, too few for the intervals to mean much (5 or more would do)"
+    )]
     FewRecords {
         /// Number of the case, the healthy one is 0.
         case: usize,
@@ -94,6 +95,10 @@ pub enum TuningWarning {
         records: usize,
     },
     /// The faults of a case are on the mate of the wheel over whose revolutions the signals are averaged.
+    #[error(
+        "case {case} is damaged on the {} alone, but its signals are averaged over revolutions of the {}, in which \
+         that damage fades", averaged.mate().name(), averaged.name()
+    )]
     OtherWheel {
         /// Number of the case.
         case: usize,
@@ -101,10 +106,18 @@ pub enum TuningWarning {
         averaged: WheelName,
     },
     /// The enhancement is no better than the simulation was.
+    #[error("the enhanced signals resemble the measured ones no better")]
     NoBetter,
     /// No combination of the keys' values that was tried is better than the scenario as it is, which was kept.
+    #[error(
+        "no values of the keys that were tried are better than the scenario's own, which are kept; try more candidates"
+    )]
     KeysDoNotHelp,
     /// With the keys the cases that are left out are predicted worse than without.
+    #[error(
+        "left out, the cases are predicted worse with the keys ({together:.3}) than by the three parameters alone \
+         ({alone:.3}): the keys may have learned the cases instead of the rig"
+    )]
     KeysPredictWorse {
         /// Leave-one-out error of the three parameters alone.
         alone: f64,
@@ -112,6 +125,10 @@ pub enum TuningWarning {
         together: f64,
     },
     /// Cases that are left out are predicted worse than they were before anything was tuned.
+    #[error(
+        "left out, the cases are predicted worse ({left_out:.3}) than by the simulation before it was tuned ({original:.3}): \
+         do not rely on it for damage that was not measured; measure more cases, or tune fewer numbers"
+    )]
     PredictsWorse {
         /// Mean error of the simulation as it was.
         original: f64,
@@ -119,6 +136,10 @@ pub enum TuningWarning {
         left_out: f64,
     },
     /// No more numbers were measured than are tuned.
+    #[error(
+        "{tuned} numbers are tuned to {measured} measured ones (cases times indicators), which they can follow whatever was \
+         measured: measure more cases, name more indicators, or hold numbers"
+    )]
     FewNumbers {
         /// Cases times indicators.
         measured: usize,
@@ -126,63 +147,13 @@ pub enum TuningWarning {
         tuned: usize,
     },
     /// Combinations of the keys' values that could not be simulated.
+    #[error("{failed} combinations of the keys' values could not be simulated; the first: {first}")]
     Failed {
         /// The number.
         failed: usize,
         /// Reason of the first.
         first: String,
     },
-}
-
-impl std::fmt::Display for TuningWarning {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter) -> std::fmt::Result {
-        match self {
-            Self::Unknown { parameter, interval: [least, largest] } => write!(
-                formatter,
-                "the measurements do not determine {parameter}: everything from {least:.3} to {largest:.3} fits as well"
-            ),
-            Self::AtBound { parameter, value } => write!(
-                formatter,
-                "{parameter} = {value:.3} lies at the end of the range in which it was searched; widen the range"
-            ),
-            Self::FewRecords { case, records } => write!(
-                formatter,
-                "case {case} has only {records} records, too few for the intervals to mean much (5 or more would do)"
-            ),
-            Self::OtherWheel { case, averaged } => write!(
-                formatter,
-                "case {case} is damaged on the {} alone, but its signals are averaged over revolutions of the {}, in which \
-                 that damage fades",
-                averaged.mate().name(),
-                averaged.name()
-            ),
-            Self::KeysDoNotHelp => formatter.write_str(
-                "no values of the keys that were tried are better than the scenario's own, which are kept; try more candidates",
-            ),
-            Self::KeysPredictWorse { alone, together } => write!(
-                formatter,
-                "left out, the cases are predicted worse with the keys ({together:.3}) than by the three parameters alone \
-                 ({alone:.3}): the keys may have learned the cases instead of the rig"
-            ),
-            Self::PredictsWorse { original, left_out } => write!(
-                formatter,
-                "left out, the cases are predicted worse ({left_out:.3}) than by the simulation before it was tuned ({original:.3}): \
-                 do not rely on it for damage that was not measured; measure more cases, or tune fewer numbers"
-            ),
-            Self::FewNumbers { measured, tuned } => write!(
-                formatter,
-                "{tuned} numbers are tuned to {measured} measured ones (cases times indicators), which they can follow whatever was \
-                 measured: measure more cases, name more indicators, or hold numbers"
-            ),
-            Self::Failed { failed, first } => write!(
-                formatter,
-                "{failed} combinations of the keys' values could not be simulated; the first: {first}"
-            ),
-            Self::NoBetter => {
-                formatter.write_str("the enhanced signals resemble the measured ones no better")
-            }
-        }
-    }
 }
 
 /// Tunes the three parameters.
@@ -205,10 +176,11 @@ pub fn tune(
     seed: u64,
     cancelled: &AtomicBool,
 ) -> Result<Tuning, HybridError> {
-    let grid = Grid::new(simulated, measured, bounds, cancelled)?;
+    let target = Target { measured, bounds, cancelled };
+    let grid = Grid::new(simulated, target)?;
     let best = grid.fit(None)?;
     let original = simulated.predict(measured.indicators(), &Enhancement::default())?;
-    let common = TuningInputs { measured, bounds, seed, cancelled, original: &original };
+    let common = TuningInputs { target, seed, original: &original };
     let mut tuning = tune_among(&[(simulated, best)], &common)?;
     tuning.leave_one_out_error = threads::try_map(0..measured.cases(), |case| {
         common.left_out_error(simulated, grid.fit(Some(case))?, case)
@@ -219,11 +191,9 @@ pub fn tune(
 /// The inputs of tuning besides simulations.
 #[derive(Clone, Copy)]
 pub(super) struct TuningInputs<'a> {
-    pub(super) measured: &'a Measurements,
-    pub(super) bounds: &'a EnhancementBounds,
+    pub(super) target: Target<'a>,
     /// Of the bootstrap.
     pub(super) seed: u64,
-    pub(super) cancelled: &'a AtomicBool,
     /// Indicators of the original simulation.
     pub(super) original: &'a [Vec<f64>],
 }
@@ -239,10 +209,10 @@ impl TuningInputs<'_> {
         best: Fit,
         case: usize,
     ) -> Result<f64, HybridError> {
-        let Self { measured, cancelled, .. } = *self;
+        let measured = self.target.measured;
         let weights = equal_weights(measured.cases(), Some(case));
-        let objective = Objective { simulated, measured, weights: &weights, cancelled };
-        let chosen = nearest_to_unit_ratio(&objective, self.bounds, best)?;
+        let objective = Objective { simulated, target: self.target, weights: &weights };
+        let chosen = nearest_to_unit_ratio(&objective, best)?;
         let predicted = simulated.predict(measured.indicators(), &chosen.enhancement)?;
         Ok(measured.case_error(case, &predicted[case]))
     }
@@ -254,12 +224,13 @@ pub(super) fn tune_among(
     candidates: &[(&SimulatedCases, Fit)],
     common: &TuningInputs,
 ) -> Result<Tuning, HybridError> {
-    let TuningInputs { measured, bounds, seed, cancelled, original } = *common;
+    let TuningInputs { target, seed, original } = *common;
+    let Target { measured, bounds, .. } = target;
     let weights = equal_weights(measured.cases(), None);
     let (simulated, best) = candidates.first().copied().ok_or(HybridError::NoFit)?;
-    let objective = Objective { simulated, measured, weights: &weights, cancelled };
-    let chosen = nearest_to_unit_ratio(&objective, bounds, best)?;
-    let intervals = intervals(candidates, &objective, bounds, &chosen, seed)?;
+    let objective = Objective { simulated, target, weights: &weights };
+    let chosen = nearest_to_unit_ratio(&objective, best)?;
+    let intervals = intervals(candidates, &objective, &chosen, seed)?;
     let original_error = measured.mean_error(original);
     Ok(Tuning {
         enhancement: chosen.enhancement,
@@ -275,12 +246,8 @@ pub(super) fn tune_among(
 }
 
 /// Along the valley in which α and the noise level rise together, the solution nearest to α = 1.
-fn nearest_to_unit_ratio(
-    objective: &Objective,
-    bounds: &EnhancementBounds,
-    best: Fit,
-) -> Result<Fit, HybridError> {
-    let ranges = bounds.logarithms();
+fn nearest_to_unit_ratio(objective: &Objective, best: Fit) -> Result<Fit, HybridError> {
+    let ranges = objective.target.bounds.logarithms();
     let limit = best.error * (1.0 + VALLEY);
     let from = point(&best.enhancement);
     let goal = 0.0_f64.clamp(ranges[1][0], ranges[1][1]);
@@ -313,15 +280,15 @@ fn nearest_to_unit_ratio(
 fn intervals(
     candidates: &[(&SimulatedCases, Fit)],
     objective: &Objective,
-    bounds: &EnhancementBounds,
     chosen: &Fit,
     seed: u64,
-) -> Result<EnhancementIntervals, HybridError> {
-    let ranges = bounds.logarithms();
+) -> Result<EnhancementBounds, HybridError> {
+    let ranges = objective.target.bounds.logarithms();
     let centre = point(&chosen.enhancement);
     let mut excesses = threads::try_map(0..BOOTSTRAP_SAMPLES, |sample| -> Result<f64, HybridError> {
-        let (measured, weights) = objective.measured.resampled(seed, sample);
-        let again = |simulated| Objective { simulated, measured: &measured, weights: &weights, ..*objective };
+        let (measured, weights) = objective.target.measured.resampled(seed, sample);
+        let target = Target { measured: &measured, ..objective.target };
+        let again = |simulated| Objective { simulated, target, weights: &weights };
         let here = again(objective.simulated).at(centre)?;
         let mut least = here;
         for (simulated, fit) in candidates {
@@ -353,7 +320,7 @@ fn intervals(
         let least = ends.iter().map(|ends| ends[d][0]).fold(f64::INFINITY, f64::min);
         [least, ends.iter().map(|ends| ends[d][1]).fold(0.0, f64::max)]
     };
-    Ok(EnhancementIntervals {
+    Ok(EnhancementBounds {
         width_ratio: widest(0),
         fault_to_harmonics_ratio: widest(1),
         noise_level: widest(2),
@@ -420,13 +387,13 @@ fn warnings(
     measured: &Measurements,
     bounds: &EnhancementBounds,
     chosen: &Fit,
-    intervals: &EnhancementIntervals,
+    intervals: &EnhancementBounds,
     original_error: f64,
 ) -> Vec<TuningWarning> {
     let mut warnings = Vec::new();
     let values = point(&chosen.enhancement).map(f64::exp);
-    let intervals = [intervals.width_ratio, intervals.fault_to_harmonics_ratio, intervals.noise_level];
-    for (((parameter, range), value), interval) in bounds.all().into_iter().zip(values).zip(intervals) {
+    let searched = bounds.all().into_iter().zip(values);
+    for (((parameter, range), value), (_, interval)) in searched.zip(intervals.all()) {
         if range[0] < range[1] && range.iter().any(|end| (value / end - 1.0).abs() < 1e-3) {
             warnings.push(TuningWarning::AtBound { parameter, value });
         }

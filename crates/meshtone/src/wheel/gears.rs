@@ -1,13 +1,7 @@
 //! The two wheels of the pair.
 
-use meshtone_toml::{ReadResult, TomlValue};
-
-use super::rules::NO_RELIEF;
 use super::{FlankRelief, Material, WheelName};
-use crate::keys::{
-    Check, KeyDescription, KeyKind, KeyValue, Keys, NumberFiles, Range, Row, Written, by_name, check_keys,
-    describe, field, row,
-};
+use crate::keys::{Keys, Range, Row, by_name, field, row};
 
 /// Geometry and material of the two wheels.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,8 +33,6 @@ pub struct Gears {
     pub centre_distance_mm: Option<f64>,
     /// Material of wheels and shafts. Default steel.
     pub material: Material,
-    /// Relief of the flank near the tip; `None` for none. Default parabolic, 1 mm × 1 mm.
-    pub tip_relief: Option<TipRelief>,
     /// Relief of the flank near the tip, as a gap. Default none.
     pub flank_relief: FlankRelief,
     /// (mm) Height of the chamfer or rounding of all tips, which the flank ends below; none for 0.2 modules.
@@ -82,7 +74,6 @@ impl Gears {
             gear_dedendum: STANDARD_DEDENDUM,
             centre_distance_mm: None,
             material: Material::default(),
-            tip_relief: Some(TipRelief::default()),
             flank_relief: FlankRelief::default(),
             tip_chamfer_mm: None,
             backlash_mm: None,
@@ -106,16 +97,33 @@ impl Keys for Gears {
             Range::from_to(-2.0, 2.0).help("usual shifts are −0.5 to 1; in mm they are x times the module");
         const ADDENDUM: Range = Range::from_to(0.3, 2.0).help("the standard basic rack has 1");
         const DEDENDUM: Range = Range::from_to(0.5, 2.5).help("the standard basic rack has 1.25");
+        let teeth = |name, field| {
+            row(name, "", "the tooth count", field)
+                .required()
+                .range(TEETH)
+                .rule("contact ratio at least 1; undercut (fewer than 17 at 20°) is left out, with a warning")
+        };
+        let shift = |name, field| {
+            row(name, "-", "the profile shift coefficient x, in modules", field)
+                .range(SHIFT)
+                .rule("no undercut, no pointed tip")
+        };
+        let addendum = |name, field| {
+            row(name, "-", "the addendum coefficient of the basic rack, in modules", field)
+                .range(ADDENDUM)
+                .rule("tips not pointed, clear of the mate's fillets")
+        };
+        let dedendum = |name, field| {
+            row(name, "-", "the dedendum coefficient of the basic rack, in modules", field)
+                .range(DEDENDUM)
+                .rule("roots clear of the mate's tips")
+        };
         vec![
             row("module_mm", "mm", "the module of both wheels", field!(module_mm))
                 .required()
                 .range(Range::positive().implausible_above(100.0)),
-            row("pinion_teeth", "", "the tooth count", field!(pinion_teeth)).required().range(TEETH).rule(
-                "contact ratio at least 1; undercut (fewer than 17 at 20°) is left out, with a warning",
-            ),
-            row("gear_teeth", "", "the tooth count", field!(gear_teeth)).required().range(TEETH).rule(
-                "contact ratio at least 1; undercut (fewer than 17 at 20°) is left out, with a warning",
-            ),
+            teeth("pinion_teeth", field!(pinion_teeth)),
+            teeth("gear_teeth", field!(gear_teeth)),
             row("face_width_mm", "mm", "the face width of both wheels", field!(face_width_mm))
                 .required()
                 .range(Range::positive().implausible_above(10_000.0)),
@@ -127,66 +135,18 @@ impl Keys for Gears {
             )
             .range(Range::from_to(10.0, 35.0).help("usual pressure angles are 14.5°, 20° and 25°"))
             .rule("no teeth pointed below full height"),
-            row(
-                "pinion_profile_shift",
-                "-",
-                "the profile shift coefficient x, in modules",
-                field!(pinion_profile_shift),
-            )
-            .range(SHIFT)
-            .rule("no undercut, no pointed tip"),
-            row(
-                "gear_profile_shift",
-                "-",
-                "the profile shift coefficient x, in modules",
-                field!(gear_profile_shift),
-            )
-            .range(SHIFT)
-            .rule("no undercut, no pointed tip"),
-            row(
-                "pinion_addendum",
-                "-",
-                "the addendum coefficient of the basic rack, in modules",
-                field!(pinion_addendum),
-            )
-            .range(ADDENDUM)
-            .rule("tips not pointed, clear of the mate's fillets"),
-            row(
-                "gear_addendum",
-                "-",
-                "the addendum coefficient of the basic rack, in modules",
-                field!(gear_addendum),
-            )
-            .range(ADDENDUM)
-            .rule("tips not pointed, clear of the mate's fillets"),
-            row(
-                "pinion_dedendum",
-                "-",
-                "the dedendum coefficient of the basic rack, in modules",
-                field!(pinion_dedendum),
-            )
-            .range(DEDENDUM)
-            .rule("roots clear of the mate's tips"),
-            row(
-                "gear_dedendum",
-                "-",
-                "the dedendum coefficient of the basic rack, in modules",
-                field!(gear_dedendum),
-            )
-            .range(DEDENDUM)
-            .rule("roots clear of the mate's tips"),
+            shift("pinion_profile_shift", field!(pinion_profile_shift)),
+            shift("gear_profile_shift", field!(gear_profile_shift)),
+            addendum("pinion_addendum", field!(pinion_addendum)),
+            addendum("gear_addendum", field!(gear_addendum)),
+            dedendum("pinion_dedendum", field!(pinion_dedendum)),
+            dedendum("gear_dedendum", field!(gear_dedendum)),
             row("centre_distance_mm", "mm", "the distance between the axes", field!(centre_distance_mm))
                 .otherwise("that without backlash")
                 .range(Range::positive())
                 .rule("at least the default; contact ratio at least 1")
                 .alternative("83.0"),
             row("material", "", "the material of wheels and shafts", field!(material)),
-            row(
-                "tip_relief",
-                "",
-                "the material removed near the tips, or `false` for none",
-                field!(tip_relief),
-            ),
             row(
                 "flank_relief",
                 "",
@@ -240,10 +200,7 @@ impl Gears {
     /// # Arguments
     /// * `wheel` - which of the two
     pub fn teeth(&self, wheel: WheelName) -> u32 {
-        match wheel {
-            WheelName::Pinion => self.pinion_teeth,
-            WheelName::Gear => self.gear_teeth,
-        }
+        wheel.choose(self.pinion_teeth, self.gear_teeth)
     }
 }
 
@@ -274,83 +231,7 @@ pub enum ReliefShape {
     Linear,
 }
 
-/// Material removed from the flank near the tip so that teeth enter contact softly.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TipRelief {
-    /// Line or parabola.
-    pub shape: ReliefShape,
-    /// (mm) Length along the tooth's centre line, from the tip inwards.
-    pub length_mm: f64,
-    /// (mm) How far the tip lies below the flank point where the relief starts.
-    pub depth_mm: f64,
-}
-
 by_name!(ReliefShape, ["parabolic" => ReliefShape::Parabolic, "linear" => ReliefShape::Linear]);
-
-impl Keys for TipRelief {
-    fn start() -> Self {
-        Self::default()
-    }
-
-    fn rows() -> Vec<Row<Self>> {
-        vec![
-            row("shape", "", "a parabola that leaves the flank smoothly, or a straight line", field!(shape)),
-            row("length_mm", "mm", "the length from the tip along the tooth's centre line", field!(length_mm))
-                .rule("> 0, less than 2 modules"),
-            row(
-                "depth_mm",
-                "mm",
-                "how far the tip ends below the flank point where the relief starts; less than the tooth itself \
-                 thins from there (0.54 mm on 1 mm for 17 teeth of module 3) would add metal, and is warned of",
-                field!(depth_mm),
-            )
-            .range(Range::not_negative().help(NO_RELIEF))
-            .rule("less than π/4 modules, half the tooth's thickness"),
-        ]
-    }
-}
-
-/// A table, or `false` for none.
-impl KeyValue for Option<TipRelief> {
-    fn read(&mut self, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
-        const TABLE: &str = "a table { shape = …, length_mm = …, depth_mm = … }, or false";
-        if value.is_table() {
-            return self.insert(TipRelief::default()).read(value, files);
-        }
-        match value.boolean() {
-            Ok(false) => {
-                *self = None;
-                Ok(())
-            }
-            Ok(true) => Err(value
-                .error(format!("must be {TABLE} for no relief"))
-                .with_help("remove the line for the default relief: parabolic, 1 mm × 1 mm")),
-            Err(_) => Err(value.wrong_type(TABLE)),
-        }
-    }
-
-    fn write(&self) -> Written {
-        self.as_ref().map_or_else(|| Written::Value("false".to_string()), KeyValue::write)
-    }
-
-    fn check(&self, key: &str, _range: &Range, _unit: &str) -> Check {
-        self.as_ref().map_or(Ok(()), |relief| check_keys(relief, key))
-    }
-
-    fn kind() -> KeyKind {
-        KeyKind::TableOrFalse
-    }
-
-    fn inside(&self) -> Vec<KeyDescription> {
-        describe::<TipRelief>()
-    }
-}
-
-impl Default for TipRelief {
-    fn default() -> Self {
-        Self { shape: ReliefShape::Parabolic, length_mm: 1.0, depth_mm: 1.0 }
-    }
-}
 
 /// Coefficients `A…F` of the four polynomials `L, M, P, Q` of the fillet foundation's compliance,
 /// `X = A/θ_f² + B h² + C h/θ_f + D/θ_f + E h + F`.

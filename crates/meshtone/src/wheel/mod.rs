@@ -18,13 +18,13 @@ mod undercut;
 pub use contact::{ContactLine, contact_line, contact_ratio};
 pub use flank::{Flank, FlankPoint};
 pub use flank_relief::FlankRelief;
-pub use gears::{FoundationCoefficients, Gears, ReliefShape, TipRelief};
+pub use gears::{FoundationCoefficients, Gears, ReliefShape};
 pub use material::Material;
 pub use mounting::Mounting;
 pub use name::WheelName;
 pub use path::PathOfContact;
 pub(crate) use profile::first_minimum;
-pub use profile::{ToothProfile, tooth_profile};
+pub use profile::{TipRelief, ToothProfile, tooth_profile};
 pub use quality::{
     Deviations, ERROR_POINTS, ErrorTable, ProfileErrors, Quality, RunOut, Tolerances, WheelDeviations,
 };
@@ -54,10 +54,7 @@ impl Teeth {
     /// # Arguments
     /// * `wheel` - which
     pub fn wheel(&self, wheel: WheelName) -> &Wheel {
-        match wheel {
-            WheelName::Pinion => &self.pinion,
-            WheelName::Gear => &self.gear,
-        }
+        wheel.choose(&self.pinion, &self.gear)
     }
 
     /// Profile of a healthy tooth of one of the two wheels.
@@ -65,10 +62,7 @@ impl Teeth {
     /// # Arguments
     /// * `wheel` - which
     pub fn profile(&self, wheel: WheelName) -> &ToothProfile {
-        match wheel {
-            WheelName::Pinion => &self.pinion_profile,
-            WheelName::Gear => &self.gear_profile,
-        }
+        wheel.choose(&self.pinion_profile, &self.gear_profile)
     }
 
     /// Working flank of a healthy tooth of one of the two wheels.
@@ -84,10 +78,12 @@ impl Teeth {
     /// # Arguments
     /// * `wheel` - which of the two
     pub fn initial_contact_index(&self, wheel: WheelName) -> usize {
-        match wheel {
-            WheelName::Pinion => self.contact.pinion_initial_contact_index,
-            WheelName::Gear => self.contact.initial_contact_index,
-        }
+        wheel.choose(self.contact.pinion_initial_contact_index, self.contact.initial_contact_index)
+    }
+
+    /// (mm) Radius of a wheel where contact starts at its root side.
+    pub(crate) fn initial_contact_radius_mm(&self, wheel: WheelName) -> f64 {
+        wheel.choose(self.contact.pinion_initial_radius_mm, self.contact.gear_initial_radius_mm)
     }
 }
 

@@ -104,10 +104,7 @@ impl Gears {
     /// # Arguments
     /// * `wheel` - which of the two
     pub fn profile_shift(&self, wheel: WheelName) -> f64 {
-        match wheel {
-            WheelName::Pinion => self.pinion_profile_shift,
-            WheelName::Gear => self.gear_profile_shift,
-        }
+        wheel.choose(self.pinion_profile_shift, self.gear_profile_shift)
     }
 
     /// (-) Addendum coefficient of a wheel's basic rack.
@@ -115,10 +112,7 @@ impl Gears {
     /// # Arguments
     /// * `wheel` - which of the two
     pub fn addendum(&self, wheel: WheelName) -> f64 {
-        match wheel {
-            WheelName::Pinion => self.pinion_addendum,
-            WheelName::Gear => self.gear_addendum,
-        }
+        wheel.choose(self.pinion_addendum, self.gear_addendum)
     }
 
     /// (-) Dedendum coefficient of a wheel's basic rack.
@@ -126,10 +120,7 @@ impl Gears {
     /// # Arguments
     /// * `wheel` - which of the two
     pub fn dedendum(&self, wheel: WheelName) -> f64 {
-        match wheel {
-            WheelName::Pinion => self.pinion_dedendum,
-            WheelName::Gear => self.gear_dedendum,
-        }
+        wheel.choose(self.pinion_dedendum, self.gear_dedendum)
     }
 }
 

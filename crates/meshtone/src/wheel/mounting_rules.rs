@@ -279,12 +279,11 @@ impl Coefficient {
 
     fn of(self, gears: &mut Gears) -> &mut f64 {
         match self {
-            Self::Shift(WheelName::Pinion) => &mut gears.pinion_profile_shift,
-            Self::Shift(WheelName::Gear) => &mut gears.gear_profile_shift,
-            Self::Addendum(WheelName::Pinion) => &mut gears.pinion_addendum,
-            Self::Addendum(WheelName::Gear) => &mut gears.gear_addendum,
-            Self::Dedendum(WheelName::Pinion) => &mut gears.pinion_dedendum,
-            Self::Dedendum(WheelName::Gear) => &mut gears.gear_dedendum,
+            Self::Shift(wheel) => {
+                wheel.choose(&mut gears.pinion_profile_shift, &mut gears.gear_profile_shift)
+            }
+            Self::Addendum(wheel) => wheel.choose(&mut gears.pinion_addendum, &mut gears.gear_addendum),
+            Self::Dedendum(wheel) => wheel.choose(&mut gears.pinion_dedendum, &mut gears.gear_dedendum),
         }
     }
 

@@ -20,9 +20,14 @@ impl WheelName {
 
     /// The other wheel.
     pub fn mate(self) -> Self {
+        self.choose(Self::Gear, Self::Pinion)
+    }
+
+    /// This wheel's one of what there is of both.
+    pub(crate) fn choose<T>(self, pinion: T, gear: T) -> T {
         match self {
-            Self::Pinion => Self::Gear,
-            Self::Gear => Self::Pinion,
+            Self::Pinion => pinion,
+            Self::Gear => gear,
         }
     }
 }

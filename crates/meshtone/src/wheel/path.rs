@@ -65,10 +65,7 @@ impl PathOfContact {
     /// * `position` - (base pitches) since the start of the path
     pub fn curvature_mm(&self, wheel: WheelName, position: f64) -> f64 {
         let gear = self.gear_tip_curvature_mm - position * self.base_pitch_mm;
-        match wheel {
-            WheelName::Gear => gear,
-            WheelName::Pinion => self.line_mm - gear,
-        }
+        wheel.choose(self.line_mm - gear, gear)
     }
 
     /// (base pitches) Position at which a flank touches its mate where its radius of curvature is `curvature_mm`.
@@ -77,21 +74,7 @@ impl PathOfContact {
     /// * `wheel` - whose flank it is
     /// * `curvature_mm` - (mm) its radius of curvature there
     pub fn position(&self, wheel: WheelName, curvature_mm: f64) -> f64 {
-        let gear = match wheel {
-            WheelName::Gear => curvature_mm,
-            WheelName::Pinion => self.line_mm - curvature_mm,
-        };
+        let gear = wheel.choose(self.line_mm - curvature_mm, curvature_mm);
         (self.gear_tip_curvature_mm - gear) / self.base_pitch_mm
-    }
-
-    /// (mm) Least radius of curvature of a wheel's flank on the path: where its mate's tip touches it.
-    ///
-    /// # Arguments
-    /// * `wheel` - which of the two
-    pub fn least_curvature_mm(&self, wheel: WheelName) -> f64 {
-        match wheel {
-            WheelName::Gear => self.line_mm - self.pinion_tip_curvature_mm,
-            WheelName::Pinion => self.line_mm - self.gear_tip_curvature_mm,
-        }
     }
 }

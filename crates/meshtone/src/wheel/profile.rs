@@ -2,7 +2,6 @@
 
 use super::radii::Wheel;
 use crate::interpolation::NaturalSpline;
-use crate::wheel::{ReliefShape, TipRelief};
 
 /// Working flank of a tooth in its own plane: x along the tooth's centre line from the wheel's
 /// centre, y towards the flank. Points are uniform in x from root to tip.
@@ -181,7 +180,7 @@ impl Curve {
         let mut y = 0.0;
         for _ in 0..MAX_NEWTON_STEPS {
             let u = squared.sqrt();
-            let (sin, cos) = roll.sin_cos(self.foot_angle_rad - u);
+            let (sin, cos) = roll.turned.sin_cos(self.foot_angle_rad - u);
             let step = 2.0 * (x / self.base_radius_mm - (cos - u * sin)) / cos;
             squared = (squared + step).max(0.0);
             // y at the end of the step, to first order.
@@ -248,10 +247,6 @@ impl RollAngle {
         if self.known < 3 { c } else { (3.0 * (c - b) + a).max(0.0) }
     }
 
-    fn sin_cos(&mut self, angle_rad: f64) -> (f64, f64) {
-        self.turned.sin_cos(angle_rad)
-    }
-
     fn remember(&mut self, squared: f64) {
         self.squared = [self.squared[1], self.squared[2], squared];
         self.known += 1;
@@ -285,6 +280,20 @@ impl Fillet {
     }
 }
 
+/// Material removed near the tip along a parabola that leaves the flank with the flank's own slope.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TipRelief {
+    /// (mm) Length along the tooth's centre line, from the tip inwards.
+    pub length_mm: f64,
+    /// (mm) How far the tip lies below the flank point where the relief starts.
+    pub depth_mm: f64,
+}
+
+impl TipRelief {
+    /// The relief that the published code gives all teeth, whatever their module; the other models have none that thins the tooth.
+    pub const PUBLISHED: Self = Self { length_mm: 1.0, depth_mm: 1.0 };
+}
+
 fn relieve_tip(profile: &mut ToothProfile, relief: TipRelief) {
     let tip = profile.tip_x_mm();
     let edge = profile.nearest_to_x(tip - relief.length_mm);
@@ -292,13 +301,10 @@ fn relieve_tip(profile: &mut ToothProfile, relief: TipRelief) {
     let slope =
         if edge == 0 { 0.0 } else { (y_edge - profile.y_mm[edge - 1]) / (x_edge - profile.x_mm[edge - 1]) };
     let reach = tip - x_edge;
-    let (linear, quadratic) = match relief.shape {
-        ReliefShape::Linear => (-relief.depth_mm / relief.length_mm, 0.0),
-        ReliefShape::Parabolic => (slope, (-relief.depth_mm - slope * reach) / (reach * reach)),
-    };
+    let quadratic = (-relief.depth_mm - slope * reach) / (reach * reach);
     for (x, y) in profile.x_mm.iter().zip(&mut profile.y_mm).skip(edge) {
         let dx = x - x_edge;
-        *y = y_edge + dx * (linear + quadratic * dx);
+        *y = y_edge + dx * (slope + quadratic * dx);
     }
     profile.tip_relief_index = Some(edge);
 }

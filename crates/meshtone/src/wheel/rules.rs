@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::contact::contact_ratio_of;
 use super::mounting_rules::{self, fewer_than_limit, least_shift, thin_tips, touched_curvature_mm};
-use super::{Gears, TipRelief, Wheel, WheelName};
+use super::{Gears, Wheel, WheelName};
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 use crate::keys::{Check, below, check_keys, refuse, require};
 
@@ -34,7 +34,6 @@ impl Gears {
         pressure_angle(self)?;
         contact_ratio(self)?;
         let thinner_mm = self.half_thicknesses_mm().into_iter().fold(f64::INFINITY, f64::min);
-        self.tip_relief.map_or(Ok(()), |relief| tip_relief(&relief, self.module_mm, thinner_mm))?;
         below("gears.crowning_mm", self.crowning_mm, thinner_mm, HALF_THICKNESS)?;
         let relief = &self.flank_relief;
         if relief.amount_um > 0.0 {
@@ -50,7 +49,7 @@ impl Gears {
 
     /// Warnings about wheels that can be simulated.
     pub(crate) fn warnings(&self) -> Vec<ScenarioWarning> {
-        undercut(self).chain(thin_tips(self)).chain(flared_tip(self)).collect()
+        undercut(self).chain(thin_tips(self)).collect()
     }
 
     /// (mm) Half a tooth's thickness at the pitch circle, of the wheel whose teeth are thicker there.
@@ -63,6 +62,12 @@ impl Gears {
         let tan = self.pressure_angle_deg.to_radians().tan();
         WheelName::BOTH
             .map(|wheel| PI * self.module_mm / 4.0 + self.module_mm * self.profile_shift(wheel) * tan)
+    }
+
+    /// (mm) Half the thickness of a tooth at a distance from its tip, of the wheel whose teeth are thinner there.
+    pub(crate) fn half_thickness_below_tip_mm(&self, below_tip_mm: f64) -> f64 {
+        let of_both = self.wheels().map(|wheel| half_thickness_below_tip_mm(&wheel, below_tip_mm));
+        of_both.into_iter().fold(f64::INFINITY, f64::min)
     }
 
     /// (mm) Height of a tooth from root to tip, of the wheel whose teeth are higher.
@@ -97,27 +102,6 @@ fn undercut(gears: &Gears) -> impl Iterator<Item = ScenarioWarning> {
     })
 }
 
-/// The relief is measured from the tooth's thickness where it starts, so that little of it thickens the tip.
-fn flared_tip(gears: &Gears) -> Option<ScenarioWarning> {
-    let relief = gears.tip_relief?;
-    let least = gears
-        .wheels()
-        .map(|wheel| {
-            let half_thickness = |below_tip_mm| half_thickness_below_tip_mm(&wheel, below_tip_mm);
-            half_thickness(relief.length_mm) - half_thickness(0.0)
-        })
-        .into_iter()
-        .fold(0.0, f64::max);
-    (relief.depth_mm < least).then(|| {
-        let message = format!(
-            "adds metal to the tip: the depth is that from the thickness {} mm below the tip, and the tooth itself \
-             thins by up to {least:.4} mm from there on; use at least that, plus the relief itself",
-            relief.length_mm
-        );
-        ScenarioWarning::new(WarningKind::ReliefAddsMetal, "gears.tip_relief.depth_mm", message)
-    })
-}
-
 /// Returns whether the mate's tip reaches beyond the point where the line of action touches the wheel's base circle.
 fn interferes(wheel: &Wheel, mate: &Wheel) -> bool {
     touched_curvature_mm(wheel, mate) < 0.0
@@ -148,47 +132,14 @@ fn contact_ratio(gears: &Gears) -> Check {
         .with_help("raise gears.pinion_teeth or gears.gear_teeth, or lower gears.pressure_angle_deg"))
 }
 
-fn tip_relief(relief: &TipRelief, module_mm: f64, half_thickness_mm: f64) -> Check {
-    let longest = 2.0 * module_mm;
-    require(
-        "gears.tip_relief.length_mm",
-        relief.length_mm,
-        relief.length_mm > 0.0 && relief.length_mm < longest,
-        format!("must be more than 0 and less than {longest:.4} mm, the height of the working flank"),
-    )
-    .and_then(|()| below("gears.tip_relief.depth_mm", relief.depth_mm, half_thickness_mm, HALF_THICKNESS))
-    .map_err(|error| error.with_help(NO_RELIEF))
-}
-
-/// Advice where a relief is refused.
-pub(super) const NO_RELIEF: &str = "for no relief, write tip_relief = false; its default is 1 mm × 1 mm";
-
-/// Relief and crowning must leave some of the tip: the compliances take what is beyond the tooth's centre line for a
-/// negative thickness.
+/// Crowning must leave some of the tip: the compliances take what is beyond the tooth's centre line for a negative thickness.
 fn tip_thickness(gears: &Gears) -> Check {
-    let (length, depth) = gears.tip_relief.map_or((0.0, 0.0), |relief| (relief.length_mm, relief.depth_mm));
-    let left = gears
-        .wheels()
-        .map(|wheel| half_thickness_below_tip_mm(&wheel, length))
-        .into_iter()
-        .fold(f64::INFINITY, f64::min);
-    let removed = depth + gears.crowning_mm;
-    if removed < left {
-        return Ok(());
-    }
-    let with_crowning = if gears.crowning_mm > 0.0 { "with gears.crowning_mm, " } else { "" };
+    let left = gears.half_thickness_below_tip_mm(0.0);
+    let removed = gears.crowning_mm;
     let problem = format!(
-        "{with_crowning}{removed:?} mm is removed where the tooth is only {left:.4} mm thick from its \
-         centre line, {length:?} mm below the tip; must leave some of the tip"
+        "{removed:?} mm is removed where the tooth is only {left:.4} mm thick from its centre line, at the tip; must leave some of the tip"
     );
-    let (key, value) = match gears.tip_relief {
-        Some(relief) => ("gears.tip_relief.depth_mm", relief.depth_mm),
-        None => ("gears.crowning_mm", gears.crowning_mm),
-    };
-    Err(refuse(key, value, problem).with_help(
-        "lower gears.tip_relief.depth_mm (the default relief, 1 mm × 1 mm, is for modules above 1.5 mm), or write \
-         tip_relief = false for none",
-    ))
+    require("gears.crowning_mm", removed, removed < left, problem)
 }
 
 /// (mm) Half thickness of an unrelieved tooth, `below_tip_mm` from the tip along its centre line; of its foot on the

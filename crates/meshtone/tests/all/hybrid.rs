@@ -147,7 +147,7 @@ fn hidden_parameters_lie_in_their_intervals() {
             tune(&simulated, &records(&hidden, &sizes, 40), &EnhancementBounds::default(), 1, &NEVER)
                 .unwrap();
         println!("{hidden:.3?}\n{:.3?}\n{:.3?}", tuning.enhancement, tuning.intervals);
-        let EnhancementIntervals { width_ratio, fault_to_harmonics_ratio, noise_level } = tuning.intervals;
+        let EnhancementBounds { width_ratio, fault_to_harmonics_ratio, noise_level } = tuning.intervals;
         assert!(holds(width_ratio, hidden.width_ratio));
         assert!(holds(fault_to_harmonics_ratio, hidden.fault_to_harmonics_ratio));
         assert!(holds(noise_level, hidden.noise_level));

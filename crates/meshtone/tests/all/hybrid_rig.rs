@@ -87,7 +87,7 @@ fn damping() -> Vec<TunedKey> {
 }
 
 fn holds(tuning: &Tuning) -> [bool; 3] {
-    let EnhancementIntervals { width_ratio, fault_to_harmonics_ratio, noise_level } = tuning.intervals;
+    let EnhancementBounds { width_ratio, fault_to_harmonics_ratio, noise_level } = tuning.intervals;
     let holds = |[least, largest]: [f64; 2], value: f64| (least..=largest).contains(&value);
     [
         holds(width_ratio, HIDDEN.width_ratio),

@@ -201,7 +201,7 @@ const ROSS: [(u32, u32, f64, f64, [f64; 3]); 3] = [
 #[test]
 fn mesh_with_fillet_and_foundation() {
     for (z1, z2, bore, ratio, means) in ROSS {
-        let gears = plain_gears(2.0, z1, z2, 20.0);
+        let gears = Gears::new(2.0, z1, z2, 20.0);
         let teeth = linear_teeth(&gears, bore);
         assert!((teeth.contact.contact_ratio - ratio).abs() < 5e-5);
         let own = compare(&format!("{z1}/{z2}"), &library_mesh(&gears, &teeth, 206.0), means);
@@ -220,7 +220,7 @@ fn mesh_with_fillet_and_foundation() {
 // trapezoid on 10 000 points is as good, hence 1e-4. The foundation's S_f and u are the other program's own: 15 %.
 #[test]
 fn one_tooth_part_by_part() {
-    let gears = plain_gears(2.0, 62, 62, 20.0);
+    let gears = Gears::new(2.0, 62, 62, 20.0);
     let wheel = Wheel::new(&gears, WheelName::Gear, 17.5);
     let scale = 1e3 * 206.0 / 210.0;
     let own = linear_teeth(&gears, 35.0).gear_profile;
@@ -283,7 +283,7 @@ const CLASSIC: [(Classic, f64); 3] = [
 #[test]
 fn classic_potential_energy() {
     for ((z1, z2, module, width, e, expected), cycle) in CLASSIC {
-        let gears = plain_gears(module, z1, z2, width);
+        let gears = Gears::new(module, z1, z2, width);
         let means = [expected[2], expected[5], cycle];
         let clamped = |turned: bool| {
             conjugate_mesh(&gears, e, 20.0, |wheel| {
@@ -349,7 +349,7 @@ fn iso_single_stiffness() {
     ] {
         let iso = iso_theoretical([f64::from(z1), f64::from(z2)], [0.0; 2]);
         assert_close("ISO", 3e-6, [(iso, theoretical)]);
-        let gears = plain_gears(2.0, z1, z2, 20.0);
+        let gears = Gears::new(2.0, z1, z2, 20.0);
         let smallest_ratio = 2.0 * (f64::from(z1) - 2.5) / 1.4;
         let mut before = f64::INFINITY;
         for bore in [smallest_ratio, if z1 > 50 { 35.0 } else { 20.0 }] {

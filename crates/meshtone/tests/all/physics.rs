@@ -48,21 +48,14 @@ pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
 }
 
-/// Wheels without tip relief.
-pub fn plain_gears(module_mm: f64, pinion_teeth: u32, gear_teeth: u32, width_mm: f64) -> Gears {
-    let mut gears = Gears::new(module_mm, pinion_teeth, gear_teeth, width_mm);
-    gears.tip_relief = None;
-    gears
-}
-
 /// Healthy teeth of wheels on shafts of the given diameter, whose flanks are conjugate.
 pub fn linear_teeth(gears: &Gears, bore_diameter_mm: f64) -> Teeth {
     teeth(gears, [bore_diameter_mm / 2.0; 2])
 }
 
-/// The same as the published code has them: the pinion's profile resampled, pairs that are not conjugate.
+/// The same as the published code has them, but without its tip relief: the pinion's profile resampled, pairs that are not conjugate.
 pub fn published_teeth(gears: &Gears, bore_diameter_mm: f64) -> Teeth {
-    meshtone::published::teeth(gears, [bore_diameter_mm / 2.0; 2])
+    meshtone::published::relieved_teeth(gears, [bore_diameter_mm / 2.0; 2], None)
 }
 
 /// The class of two sound teeth.

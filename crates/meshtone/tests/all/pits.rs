@@ -13,7 +13,7 @@ const DAMAGED_GEAR: PairKind = PairKind { pinion: None, gear: Some(0), pairs_per
 
 /// Wheels of 17 and 38 teeth, with bores of 10 mm radius.
 fn wheels() -> (Gears, Teeth) {
-    let gears = plain_gears(3.0, 17, 38, WIDTH_MM);
+    let gears = Gears::new(3.0, 17, 38, WIDTH_MM);
     let teeth = linear_teeth(&gears, 20.0);
     (gears, teeth)
 }

@@ -12,7 +12,7 @@ use meshtone::solver::{Block, Output, Recorder};
 use meshtone::wheel::{Mounting, Teeth, ToothProfile};
 
 fn shifted(pinion_teeth: u32, gear_teeth: u32, shifts: [f64; 2]) -> Gears {
-    let mut gears = plain_gears(3.0, pinion_teeth, gear_teeth, 15.0);
+    let mut gears = Gears::new(3.0, pinion_teeth, gear_teeth, 15.0);
     [gears.pinion_profile_shift, gears.gear_profile_shift] = shifts;
     gears
 }
@@ -161,7 +161,6 @@ fn a_disc_of_the_v_circle_has_the_wheels_mass() {
 fn scenario(model: Model) -> Scenario {
     let mut scenario = Scenario::new(GearPair::example());
     scenario.model = model;
-    scenario.gears.tip_relief = None;
     scenario.gears.points_per_tooth = 2_000;
     (scenario.gears.pinion_profile_shift, scenario.gears.gear_profile_shift) = (0.3, 0.2);
     scenario.solver.sampling_rate_hz = 2e4;
@@ -368,8 +367,7 @@ fn keys_out_of_range() {
 #[test]
 fn small_wheels_without_shift_are_warned_of_with_the_shift_that_helps() {
     let warnings = |shift: f64| {
-        let mut gears = shifted(12, 38, [shift, 0.0]);
-        gears.tip_relief = None;
+        let gears = shifted(12, 38, [shift, 0.0]);
         let mut scenario = scenario(Model::Linear);
         scenario.gears = gears;
         scenario

@@ -16,7 +16,7 @@ fn relief_leaves_some_of_the_tip() {
             scenario.rig.pinion_shaft.radius_mm = 4.0;
             scenario.model = Model::Published;
             let refused = scenario.validate().err().map(|error| error.key);
-            let expected = (module <= 1.5).then(|| "gears.tip_relief.depth_mm".to_owned());
+            let expected = (module <= 1.5).then(|| "gears.module_mm".to_owned());
             assert_eq!(refused, expected, "module {module}, {teeth} teeth");
             scenario.model = Model::Linear;
             let stages = meshtone::stages(&scenario).unwrap();

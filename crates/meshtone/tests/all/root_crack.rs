@@ -17,7 +17,7 @@ fn crack(depth_mm: f64, length_mm: Option<f64>) -> RootCrack {
 
 /// Wheels of 17 and 38 teeth, with bores of 10 mm radius.
 fn wheels() -> (Gears, Teeth) {
-    let gears = plain_gears(3.0, 17, 38, WIDTH_MM);
+    let gears = Gears::new(3.0, 17, 38, WIDTH_MM);
     let teeth = linear_teeth(&gears, 20.0);
     (gears, teeth)
 }
@@ -73,7 +73,7 @@ fn losses_of_stiffness_are_those_of_the_table() {
 #[test]
 fn a_crack_without_depth_is_none() {
     for teeth in [(17, 38), (9, 12), (45, 80)] {
-        let gears = plain_gears(3.0, teeth.0, teeth.1, WIDTH_MM);
+        let gears = Gears::new(3.0, teeth.0, teeth.1, WIDTH_MM);
         let teeth = linear_teeth(&gears, 20.0);
         for length_mm in [None, Some(9.0), Some(WIDTH_MM)] {
             for depth_mm in [0.0, 1e-13] {
@@ -88,7 +88,7 @@ fn a_crack_without_depth_is_none() {
 #[test]
 fn stiffness_falls_with_depth_and_length() {
     for (z_pinion, z_gear) in [(17, 38), (25, 60)] {
-        let gears = plain_gears(3.0, z_pinion, z_gear, WIDTH_MM);
+        let gears = Gears::new(3.0, z_pinion, z_gear, WIDTH_MM);
         let teeth = linear_teeth(&gears, 20.0);
         let ratio = teeth.path.contact_ratio;
         let positions: [f64; 21] = std::array::from_fn(|k| ratio * k as f64 / 20.0);

@@ -4,8 +4,8 @@
 use crate::support::{REQUIRED, appended, assert_refused, gears, replaced};
 use meshtone::scenario::{
     Damage, DampingRatio, DestructionLine, Fault, FileProblem, FoundationCoefficients, GearPair, Material,
-    MissingTooth, Model, PartialFace, PitCircle, Profile, ProfileErrors, ReliefShape, RootCrack, Scenario,
-    ScenarioFiles, Shaft, ThroughFace, TipRelief, ToothBreakage, ToothDestruction, Wear,
+    MissingTooth, Model, PartialFace, PitCircle, Profile, ProfileErrors, RootCrack, Scenario, ScenarioFiles,
+    Shaft, ThroughFace, ToothBreakage, ToothDestruction, Wear,
 };
 use meshtone::wheel::ErrorTable;
 
@@ -19,7 +19,6 @@ gear_teeth = 41
 face_width_mm = 12.5
 pressure_angle_deg = 22.5
 material = "cast-iron"
-tip_relief = { shape = "linear", length_mm = 0.5, depth_mm = 0.25 }
 crowning_mm = 0.01
 points_per_tooth = 2000
 foundation = { L = [1, 2, 3, 4, 5, 6], M = [7, 8, 9, 10, 11, 12], Q = [0.5, 0, 0, 0, 0, 0] }
@@ -70,8 +69,6 @@ fn every_key_is_read() {
     expected.seed = u64::MAX;
     expected.gears.pressure_angle_deg = 22.5;
     expected.gears.material = Material::CastIron;
-    expected.gears.tip_relief =
-        Some(TipRelief { shape: ReliefShape::Linear, length_mm: 0.5, depth_mm: 0.25 });
     expected.gears.crowning_mm = 0.01;
     expected.gears.points_per_tooth = 2000;
     expected.gears.foundation = FoundationCoefficients {
@@ -162,12 +159,12 @@ fn every_fault_is_read() {
     }
 }
 
+/// No model heeds it: the published one always has the same, as its code.
 #[test]
-fn relief_may_be_switched_off() {
-    assert_eq!(Scenario::from_toml(&gears("tip_relief = false")).unwrap().gears.tip_relief, None);
-    let table = ["a table { shape", "or false"];
-    assert_refused(&gears("tip_relief = true"), "gears.tip_relief", 6, &table);
-    assert_refused(&gears("tip_relief = 1.0"), "gears.tip_relief", 6, &table);
+fn a_relief_that_thins_the_tips_is_no_key() {
+    for value in ["false", "{ length_mm = 0.5, depth_mm = 0.25 }"] {
+        assert_refused(&gears(&format!("tip_relief = {value}")), "gears.tip_relief", 6, &["flank_relief"]);
+    }
 }
 
 #[test]

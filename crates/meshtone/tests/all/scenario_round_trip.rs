@@ -3,8 +3,8 @@
 use meshtone::scenario::{
     Damage, DampingRatio, DestructionLine, Fault, FaultyTeeth, FlankRelief, FoundationCoefficients, GearPair,
     Gears, Material, MissingTooth, Model, Operation, PartialFace, PitCircle, Pits, Profile, ProfileErrors,
-    Quality, ReliefShape, Rig, RootCrack, Scenario, Shaft, Solver, Support, ThroughFace, TipRelief,
-    ToothBreakage, ToothDestruction, Wear, WheelInertia, WheelName,
+    Quality, ReliefShape, Rig, RootCrack, Scenario, Shaft, Solver, Support, ThroughFace, ToothBreakage,
+    ToothDestruction, Wear, WheelInertia, WheelName,
 };
 use meshtone::wheel::{ErrorTable, WheelDeviations};
 use proptest::array::{uniform4, uniform6, uniform13};
@@ -12,28 +12,18 @@ use proptest::option;
 use proptest::prelude::*;
 
 fn gears() -> impl Strategy<Value = Gears> {
-    let relief = option::of((any::<bool>(), 0.01..1.9, 0.0..0.05).prop_map(|(parabolic, length, depth)| {
-        let shape = if parabolic { ReliefShape::Parabolic } else { ReliefShape::Linear };
-        TipRelief { shape, length_mm: length, depth_mm: depth }
-    }));
     let foundation =
         uniform4(uniform6(-1e3..1e3)).prop_map(|[l, m, p, q]| FoundationCoefficients { l, m, p, q });
     let wheels = (1.0..10.0, 17u32..80, 17u32..80, 1.0..100.0, 15.0..30.0);
-    let rest = (0usize..6, relief, 0.0..0.05, 500usize..100_000, foundation);
+    let rest = (0usize..6, 0.0..0.05, 500usize..100_000, foundation);
     let contact = (any::<bool>(), 0.01..1.9, 0.0..50.0, option::of(0.0..0.3), option::of(0.0..0.5));
     (wheels, rest, contact).prop_map(
-        |(wheels, (material, relief, crowning_mm, points_per_tooth, foundation), contact)| {
+        |(wheels, (material, crowning_mm, points_per_tooth, foundation), contact)| {
             let (parabolic, length, amount_um, chamfer, backlash) = contact;
             let (module_mm, pinion_teeth, gear_teeth, face_width_mm, pressure_angle_deg) = wheels;
-            let scaled = |relief: TipRelief| TipRelief {
-                length_mm: relief.length_mm * module_mm,
-                depth_mm: relief.depth_mm * module_mm,
-                ..relief
-            };
             let mut gears = Gears::new(module_mm, pinion_teeth, gear_teeth, face_width_mm);
             gears.pressure_angle_deg = pressure_angle_deg;
             gears.material = Material::ALL[material];
-            gears.tip_relief = relief.map(scaled);
             gears.crowning_mm = crowning_mm;
             gears.points_per_tooth = points_per_tooth;
             gears.foundation = foundation;

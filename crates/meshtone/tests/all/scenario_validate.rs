@@ -28,25 +28,17 @@ fn gears_out_of_range() {
         ("crowning_mm = 3", "gears.crowning_mm", "less than 2.3562 mm, half the tooth's thickness"),
         ("points_per_tooth = 499", "gears.points_per_tooth", "from 500 to 1000000"),
         ("points_per_tooth = 1000001", "gears.points_per_tooth", "from 500 to 1000000"),
-        (
-            "tip_relief = { length_mm = 0 }",
-            "gears.tip_relief.length_mm",
-            "more than 0 and less than 6.0000 mm",
-        ),
-        ("tip_relief = { length_mm = 6 }", "gears.tip_relief.length_mm", "tip_relief = false"),
-        ("tip_relief = { depth_mm = -1 }", "gears.tip_relief.depth_mm", "must be 0 mm or more"),
-        ("tip_relief = { depth_mm = 2.4 }", "gears.tip_relief.depth_mm", "less than 2.3562 mm"),
     ] {
         assert_refused(&gears(keys), key, 6, &[words]);
     }
     let pointed = replaced("= 17", "= 6").replace("[operation]", "pressure_angle_deg = 35\n[operation]");
     assert_refused(&pointed, "gears.pressure_angle_deg", 6, &["6 teeth", "pointed", "more teeth"]);
-    // A default that does not fit is told at the section, unless the model has no use for it.
+    // The published model's relief does not fit small teeth.
     assert_refused(
         &format!("model = \"published\"\n{}", replaced("3.0", "0.4")),
-        "gears.tip_relief.length_mm",
-        2,
-        &["less than 0.8000 mm", "default"],
+        "gears.module_mm",
+        3,
+        &["thins all tips by 1 mm", "a larger module, or another model"],
     );
 }
 

@@ -5,9 +5,10 @@
 use meshtone::scenario::{Fault, GearPair, MissingTooth, Scenario};
 use meshtone::sensor::Channels;
 use meshtone::signal::{
-    ChainSettings, Shaft, ShaftPhase, SignalError, SimulatedShafts, process_channel, process_segments,
+    ChainSettings, ShaftPhase, SignalError, SimulatedShafts, process_channel, process_segments,
     revolution_average,
 };
+use meshtone::wheel::WheelName;
 
 fn faulty() -> Scenario {
     let mut scenario = Scenario::new(GearPair {
@@ -36,8 +37,8 @@ fn the_average_is_that_of_the_samples() {
     let channels = channels(&scenario);
     let shafts = SimulatedShafts::of_channels(&scenario, &channels);
     assert_eq!(shafts.sampling_rate_hz(), channels.sampling_rate_hz);
-    assert_eq!(shafts.mean_speed_hz(Shaft::Gear), 20.0);
-    for shaft in Shaft::BOTH {
+    assert_eq!(shafts.mean_speed_hz(WheelName::Gear), 20.0);
+    for shaft in WheelName::BOTH {
         let per_revolution = (channels.sampling_rate_hz / shafts.mean_speed_hz(shaft)).round() as usize;
         let record = shafts.process(&channels.vertical_g, shaft, &ChainSettings::default()).unwrap();
         let mut expected = revolution_average(&channels.vertical_g, per_revolution);
@@ -57,14 +58,14 @@ fn as_measured_at_constant_speed() {
     let shafts = SimulatedShafts::of_channels(&scenario, &channels);
     let phase = ShaftPhase::constant(20.0, channels.sampling_rate_hz, channels.len()).unwrap();
     let (signal, settings) = (&channels.vertical_g, ChainSettings::default());
-    let simulated = shafts.process(signal, Shaft::Gear, &settings).unwrap();
+    let simulated = shafts.process(signal, WheelName::Gear, &settings).unwrap();
     let measured = process_channel(signal, &phase, 40, &settings).unwrap();
     for (a, b) in simulated.indicators.table("g").iter().zip(measured.indicators.table("g")) {
         if a.name.ends_with("rms") || a.name == "fm4" {
             close(a.value.unwrap(), b.value.unwrap(), 0.01);
         }
     }
-    let simulated = shafts.process_segments(signal, Shaft::Gear, &settings, 5).unwrap();
+    let simulated = shafts.process_segments(signal, WheelName::Gear, &settings, 5).unwrap();
     let measured = process_segments(signal, &phase, 40, &settings, 5).unwrap();
     assert_eq!((simulated.len(), measured.len()), (4, 3));
     close(simulated[1].indicators.na4.unwrap(), measured[1].indicators.na4.unwrap(), 0.01);
@@ -75,14 +76,14 @@ fn a_speed_that_varies() {
     let steady = faulty();
     let still = channels(&steady);
     let expected = SimulatedShafts::of_channels(&steady, &still);
-    let expected = expected.process(&still.vertical_g, Shaft::Gear, &ChainSettings::default()).unwrap();
+    let expected = expected.process(&still.vertical_g, WheelName::Gear, &ChainSettings::default()).unwrap();
     let mut fluctuating = faulty();
     fluctuating.operation.speed_fluctuation_hz = 1e-6;
     let channels = channels(&fluctuating);
     let shafts = SimulatedShafts::of_channels(&fluctuating, &channels);
     assert!(!shafts.is_steady());
-    close(shafts.mean_speed_hz(Shaft::Pinion), 40.0, 1e-6);
-    let found = shafts.process(&channels.vertical_g, Shaft::Gear, &ChainSettings::default()).unwrap();
+    close(shafts.mean_speed_hz(WheelName::Pinion), 40.0, 1e-6);
+    let found = shafts.process(&channels.vertical_g, WheelName::Gear, &ChainSettings::default()).unwrap();
     close(found.indicators.difference.rms, expected.indicators.difference.rms, 0.01);
     close(found.indicators.fm4.unwrap(), expected.indicators.fm4.unwrap(), 0.01);
     // The burst of the missing tooth is at the same angle.
@@ -100,10 +101,10 @@ fn what_is_refused() {
     let shafts = SimulatedShafts::new(&scenario, 0.0, 4000);
     let settings = ChainSettings::default();
     let wave: Vec<f64> = (0..4000).map(|i| f64::from(i % 7)).collect();
-    let too_few = shafts.process(&wave, Shaft::Gear, &settings);
+    let too_few = shafts.process(&wave, WheelName::Gear, &settings);
     assert!(matches!(too_few, Err(SignalError::TooFewRevolutions { .. })));
-    assert!(shafts.process(&wave[1..], Shaft::Gear, &settings).is_err());
-    let constant = shafts.process(&[0.0; 4000], Shaft::Gear, &settings);
+    assert!(shafts.process(&wave[1..], WheelName::Gear, &settings).is_err());
+    let constant = shafts.process(&[0.0; 4000], WheelName::Gear, &settings);
     assert!(matches!(constant, Err(SignalError::Constant { .. })));
     // A start far beyond the simulation does not take for ever.
     let mut fluctuating = faulty();

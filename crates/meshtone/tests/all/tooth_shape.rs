@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use crate::physics::*;
 use meshtone::interpolation::{NaturalSpline, NotAKnotSpline, Pchip, UniformLinear};
-use meshtone::wheel::{ToothProfile, Wheel, WheelName, contact_ratio, tooth_profile};
+use meshtone::wheel::{Gears, ToothProfile, Wheel, WheelName, contact_ratio, tooth_profile};
 
 fn involute(angle: f64) -> f64 {
     angle.tan() - angle
@@ -15,7 +15,7 @@ fn involute(angle: f64) -> f64 {
 fn wheels() -> impl Iterator<Item = Wheel> {
     [14.5, 20.0, 25.0].into_iter().flat_map(|angle| {
         (6..=120).filter_map(move |teeth| {
-            let mut gears = plain_gears(3.0, teeth, teeth, 15.0);
+            let mut gears = Gears::new(3.0, teeth, teeth, 15.0);
             gears.pressure_angle_deg = angle;
             let wheel = Wheel::new(&gears, WheelName::Gear, 2.0);
             let at_tip = (wheel.base_radius_mm / wheel.tip_radius_mm).acos();
@@ -158,7 +158,7 @@ fn contact_ratio_is_the_path_over_the_base_pitch() {
         ],
     );
     for (z1, z2, angle) in [(17, 38, 20.0), (80, 90, 14.5), (24, 25, 25.0)] {
-        let mut gears = plain_gears(2.5, z1, z2, 10.0);
+        let mut gears = Gears::new(2.5, z1, z2, 10.0);
         gears.pressure_angle_deg = angle;
         gears.points_per_tooth = 500;
         let teeth = linear_teeth(&gears, 10.0);

@@ -5,13 +5,14 @@ use crate::physics::*;
 use meshtone::damage::{damaged_teeth, load_share, slide_factor};
 use meshtone::mesh::{PairKind, Pairs};
 use meshtone::scenario::*;
-use meshtone::signal::{ChainSettings, Shaft, SimulatedShafts, kurtosis, rms as rms_of};
+use meshtone::signal::{ChainSettings, SimulatedShafts, kurtosis, rms as rms_of};
+use meshtone::wheel::WheelName;
 use meshtone::wheel::{Mounting, Teeth};
 use meshtone::{simulate, stages};
 
 /// Wheels of 17 and 38 teeth, with bores of 10 mm radius.
 fn wheels(pinion_teeth: u32, gear_teeth: u32) -> (Gears, Teeth) {
-    let gears = plain_gears(3.0, pinion_teeth, gear_teeth, 15.0);
+    let gears = Gears::new(3.0, pinion_teeth, gear_teeth, 15.0);
     let teeth = linear_teeth(&gears, 20.0);
     (gears, teeth)
 }
@@ -50,7 +51,7 @@ fn slide_factors_are_those_that_are_known() {
 #[test]
 fn shifted_wheels_roll_on_their_working_pitch_circles() {
     for (shifts, apart_mm) in [([0.3, 0.2], 0.0), ([0.4, -0.4], 0.0), ([0.3, 0.2], 0.5)] {
-        let mut gears = plain_gears(3.0, 17, 38, 15.0);
+        let mut gears = Gears::new(3.0, 17, 38, 15.0);
         [gears.pinion_profile_shift, gears.gear_profile_shift] = shifts;
         gears.centre_distance_mm = Some(Mounting::new(&gears).centre_distance_mm + apart_mm);
         let teeth = linear_teeth(&gears, 20.0);
@@ -209,7 +210,7 @@ fn indicators(scenario: &Scenario) -> [f64; 3] {
     let simulation = simulate(scenario).unwrap();
     let shafts = SimulatedShafts::of_channels(scenario, &simulation.channels);
     let signal = &simulation.channels.vertical_g;
-    let record = shafts.process(signal, Shaft::Gear, &ChainSettings::default()).unwrap();
+    let record = shafts.process(signal, WheelName::Gear, &ChainSettings::default()).unwrap();
     let mesh: f64 =
         record.order_spectrum.iter().skip(38).step_by(38).take(10).map(|order| order * order / 2.0).sum();
     let difference = &record.parts.difference;
@@ -341,7 +342,7 @@ fn what_cannot_be_is_refused() {
     let (key, text) = refused(Model::Published, vec![worn(WheelName::Gear, 1, 5.0)]);
     assert!(key == "fault.kind" && text.contains("is not known to the published model"), "{text}");
     let mut small = scenario(Model::Linear, 40.0, 0, vec![worn(WheelName::Gear, 1, 99.0)]);
-    small.gears = plain_gears(0.05, 17, 38, 0.25);
+    small.gears = Gears::new(0.05, 17, 38, 0.25);
     small.rig.pinion_shaft.radius_mm = 0.1;
     small.rig.gear_shaft.radius_mm = 0.1;
     let error = stages(&small).unwrap_err();

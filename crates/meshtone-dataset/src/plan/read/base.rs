@@ -5,6 +5,7 @@ use meshtone_io::experiment::Tuned;
 use meshtone_io::scenario_file::{FilesBeside, ScenarioFile};
 use meshtone_toml::{ReadResult, TomlError, TomlTable, TomlValue};
 
+use super::super::refused;
 use super::{PlanFile, Reading, in_another_file};
 
 /// Key of the base scenario.
@@ -16,17 +17,18 @@ pub(super) fn read(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Sc
     let scenario = if value.is_table() && !reading.is_copy {
         let files = FilesBeside::new(reading.directory);
         let scenario = value.table()?.read(|table| Scenario::from_table(table, &files))?;
-        scenario.validate().map_err(|error| within(error.into()))?;
+        scenario.validate().map_err(|error| {
+            let error = TomlError::from(error);
+            let key = format!("{KEY}.{}", error.key);
+            error.with_key(key)
+        })?;
         scenario
     } else {
         let name = if value.is_table() { "" } else { value.string()? };
-        match ScenarioFile::read(&reading.path_of(name, PlanFile::NAMES[1])) {
-            Ok(file) => {
-                reading.sources.extend(file.sources().map(std::path::Path::to_path_buf));
-                file.scenario
-            }
-            Err(error) => return Err(in_another_file(&value, error, reading)),
-        }
+        let file = ScenarioFile::read(&reading.path_of(name, PlanFile::NAMES[1]));
+        let file = file.map_err(|error| in_another_file(&value, error, reading))?;
+        reading.sources.extend(file.sources().map(std::path::Path::to_path_buf));
+        file.scenario
     };
     // Also of one that is written in the plan: it may name files.
     reading.files.push(PlanFile { name: PlanFile::NAMES[1], text: scenario.to_toml() });
@@ -35,8 +37,8 @@ pub(super) fn read(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Sc
     }
     if !scenario.faults.is_empty() {
         let problem = "the base scenario has a fault; must be healthy";
-        return Err(TomlError::new(format!("{KEY}.fault"), "", problem)
-            .with_help("faults belong to the classes: [[class]] with fault = { kind = … }"));
+        let help = "faults belong to the classes: [[class]] with fault = { kind = … }";
+        return Err(refused(format!("{KEY}.fault"), problem, help));
     }
     Ok(scenario)
 }
@@ -47,10 +49,4 @@ pub(super) fn tuned(base: &Scenario, tuned: &Tuned, value: &TomlValue<'_>) -> Re
         return Err(value.error(warning));
     }
     tuned.apply(base).map_err(|error| value.error(error.to_string()))
-}
-
-/// An error about a key of the scenario within the plan.
-fn within(error: TomlError) -> TomlError {
-    let key = format!("{KEY}.{}", error.key);
-    error.with_key(key)
 }

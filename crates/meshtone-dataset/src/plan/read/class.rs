@@ -5,7 +5,7 @@ use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
 use super::super::split::largest_remainder;
 use super::super::{Class, Severity};
-use super::{given, growth, rule};
+use super::{growth, over_zero, rule};
 
 const MOST_RECORDS: u64 = 1 << 40;
 
@@ -79,18 +79,12 @@ fn class(table: &TomlTable<'_>) -> ReadResult<(Class, Share)> {
     let severity = severity(table, !faults.is_empty())?;
     let share = match (table.optional("count"), table.optional("weight")) {
         (Some(count), None) => Share::Count(count.integer(1..=MOST_RECORDS)?),
-        (None, Some(weight)) => {
-            let number = weight.number()?;
-            if number <= 0.0 {
-                return Err(weight.error("must be more than 0"));
-            }
-            Share::Weight(number)
-        }
+        (None, Some(weight)) => Share::Weight(over_zero(&weight, "must be more than 0")?),
         (None, None) => Share::Weight(1.0),
         (Some(_), Some(_)) => return Err(table.error("weight", "given beside count; give one of the two")),
     };
     let rules = rule::read_all(table)?;
-    let growth = given(table, "growth", |value| growth::read(value, &faults))?;
+    let growth = table.read_optional("growth", |value| growth::read(value, &faults))?;
     Ok((Class { label: name.to_owned(), faults, count: 0, severity, rules, growth }, share))
 }
 

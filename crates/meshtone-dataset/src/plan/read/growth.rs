@@ -5,14 +5,14 @@ use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
 use super::super::{Distribution, Growth, Law};
 use super::rule::distribution;
-use super::{fraction, given};
+use super::{fraction, number_where};
 
-/// Of ductile steels, for Paris's law: 2 to 4.
+/// The exponent of Paris's law; ductile steels have 2 to 4.
 const PARIS_EXPONENT: f64 = 3.0;
 const PITS_EXPONENT: f64 = 2.0;
 const PITS: u32 = 40;
 const LARGEST_EXPONENT: f64 = 10.0;
-/// Of all laws.
+/// The keys of all laws.
 const KEYS: [&str; 7] = ["law", "exponent", "count", "start", "failure", "life_rev", "censored"];
 
 pub(super) fn read(value: &TomlValue<'_>, faults: &[Fault]) -> ReadResult<Growth> {
@@ -29,22 +29,19 @@ fn growth(table: &TomlTable<'_>) -> ReadResult<Growth> {
     let names = Law::NAMES.map(|name| (name, name));
     let law = table.required("law", "how the damage grows: paris, archard or pits")?.choice(&names)?;
     let exponent = |default: f64| -> ReadResult<f64> {
-        let exponent = given(table, "exponent", |value| {
-            let number = value.number()?;
-            let allowed = number > 0.0 && number <= LARGEST_EXPONENT;
-            if allowed { Ok(number) } else { Err(value.error("must be more than 0 and at most 10")) }
-        })?;
-        Ok(exponent.unwrap_or(default))
+        let is_allowed = |number| number > 0.0 && number <= LARGEST_EXPONENT;
+        let read = |value: &_| number_where(value, is_allowed, "must be more than 0 and at most 10");
+        Ok(table.read_optional("exponent", read)?.unwrap_or(default))
     };
     let law = match law {
         "paris" => Law::Paris { exponent: exponent(PARIS_EXPONENT)? },
         "pits" => {
-            let count = given(table, "count", |value| value.integer(1..=100_000))?;
+            let count = table.read_optional("count", |value| value.integer(1..=100_000))?;
             Law::Pits { count: count.map_or(PITS, |count| count as u32), exponent: exponent(PITS_EXPONENT)? }
         }
         _ => Law::Archard,
     };
-    let part = |key| given(table, key, |value| fraction(value, "must be from 0 to 1"));
+    let part = |key| table.read_optional(key, |value| fraction(value, "must be from 0 to 1"));
     let start = part("start")?.unwrap_or(0.02);
     if start == 0.0 && matches!(law, Law::Paris { .. }) {
         return Err(table.error("start", "is 0; a crack grows by Paris's law from more than that"));

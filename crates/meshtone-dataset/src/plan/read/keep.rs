@@ -8,7 +8,7 @@ use meshtone_io::wheel_name::read_wheel;
 use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
 use super::super::{Keep, MOST_SHARD_RECORDS, OverAngle};
-use super::given;
+use super::{number_where, over_zero};
 
 const RATE_HZ: f64 = 25e3;
 const LARGEST_RATE_HZ: f64 = 1e7;
@@ -18,11 +18,9 @@ const MOST_REVOLUTIONS: u64 = 1 << 20;
 pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>) -> ReadResult<Keep> {
     let simulated_hz = base.solver.sampling_rate_hz;
     let default_hz = tuned.map_or(RATE_HZ.min(simulated_hz), |tuned| tuned.sampling_rate_hz);
-    let given_hz = given(table, "sampling_rate_hz", |value| {
-        let rate_hz = value.number()?;
-        let allowed = rate_hz > 0.0 && rate_hz <= LARGEST_RATE_HZ;
-        let problem = || format!("must be more than 0 and at most {LARGEST_RATE_HZ:e} S/s");
-        if allowed { Ok(rate_hz) } else { Err(value.error(problem())) }
+    let given_hz = table.read_optional("sampling_rate_hz", |value| {
+        let otherwise = format!("must be more than 0 and at most {LARGEST_RATE_HZ:e} S/s");
+        number_where(value, |rate_hz| rate_hz > 0.0 && rate_hz <= LARGEST_RATE_HZ, &otherwise)
     })?;
     let sampling_rate_hz = given_hz.unwrap_or(default_hz);
     if sampling_rate_hz > simulated_hz {
@@ -30,7 +28,7 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
             format!("is more than solver.sampling_rate_hz, {simulated_hz:?} S/s, of the base scenario");
         return Err(table.error("sampling_rate_hz", problem).with_help("raise solver.sampling_rate_hz"));
     }
-    let channels = given(table, "channels", |value| {
+    let channels = table.read_optional("channels", |value| {
         let mut chosen = Vec::new();
         for value in value.array()? {
             let channel = read_channel(&value, &Channel::all(&base.sensors))?;
@@ -41,18 +39,18 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
         }
         Ok(chosen)
     })?;
-    let duration_s = given(table, "duration_s", |value| {
-        let duration_s = value.number()?;
-        if duration_s > 0.0 { Ok(duration_s) } else { Err(value.error("must be more than 0 s")) }
-    })?;
-    let wheel = given(table, "wheel", read_wheel)?.or(tuned.map(|tuned| tuned.wheel)).unwrap_or_default();
+    let duration_s = table.read_optional("duration_s", |value| over_zero(value, "must be more than 0 s"))?;
+    let wheel =
+        table.read_optional("wheel", read_wheel)?.or(tuned.map(|tuned| tuned.wheel)).unwrap_or_default();
     let teeth = u64::from(base.gears.teeth(wheel));
-    let analysed = given(table, "analysed", |value| read_channel(value, &accelerations(&base.sensors)))?;
-    let integer = |key, allowed| given(table, key, |value| value.integer(allowed));
+    let analysed =
+        table.read_optional("analysed", |value| read_channel(value, &accelerations(&base.sensors)))?;
+    let integer = |key, allowed| table.read_optional(key, |value| value.integer(allowed));
     let sidebands = integer("sidebands", 0..=teeth.saturating_sub(2) / 2)?;
     let orders = integer("shaft_orders", 0..=teeth - 1)?;
-    let flag =
-        |key, default| -> ReadResult<bool> { Ok(given(table, key, TomlValue::boolean)?.unwrap_or(default)) };
+    let flag = |key, default| -> ReadResult<bool> {
+        Ok(table.read_optional(key, TomlValue::boolean)?.unwrap_or(default))
+    };
     let keep = Keep {
         sampling_rate_hz,
         duration_s,
@@ -70,10 +68,8 @@ pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>
         records_per_shard: integer("records_per_shard", 1..=MOST_SHARD_RECORDS)?,
     };
     if keep.channels.is_empty() && !keep.is_analysed() {
-        return Err(table.error(
-            "channels",
-            "is empty, and average, difference and indicators are false: nothing is kept",
-        ));
+        let problem = "is empty, and average, difference and indicators are false: nothing is kept";
+        return Err(table.error("channels", problem));
     }
     agree(table, &keep, tuned)?;
     Ok(keep)
@@ -126,9 +122,8 @@ fn agree(table: &TomlTable<'_>, keep: &Keep, tuned: Option<&Tuned>) -> ReadResul
     ] {
         if !same {
             let problem = "is not what the enhancement was tuned to";
-            return Err(table
-                .error(key, problem)
-                .with_help("leave it out: it is then that of the file `tuned`"));
+            let help = "leave it out: it is then that of the file `tuned`";
+            return Err(table.error(key, problem).with_help(help));
         }
     }
     Ok(())

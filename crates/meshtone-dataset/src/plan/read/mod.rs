@@ -23,14 +23,14 @@ const MOST_MOUNTINGS: u64 = 1 << 20;
 const LICENCE: &str = "CC-BY-4.0";
 const VERSION: &str = "1.0.0";
 
-/// Where a plan is, and what was read on the way.
+/// The place of a plan, and the files that were read on the way.
 struct Reading<'a> {
     directory: &'a Path,
     /// Whether it is a copy beside its data, where the files that it names have names of their own.
     is_copy: bool,
     files: Vec<PlanFile>,
     sources: Vec<PathBuf>,
-    /// What is wrong in another file is told with that file's lines.
+    /// The problem of another file, if that file has one: it is told with that file's lines.
     elsewhere: Option<ReadScenarioError>,
 }
 
@@ -96,38 +96,29 @@ fn read(text: String, path: &Path, is_copy: bool) -> Result<Plan, ReadScenarioEr
 }
 
 impl Reading<'_> {
-    /// Where a file that the plan names is.
+    /// Returns the path of a file that the plan names.
     fn path_of(&self, name: &str, copy: &str) -> PathBuf {
         self.directory.join(if self.is_copy { copy } else { name })
     }
 }
 
-/// The value of a key that may be left out.
-fn given<'a, T>(
-    table: &TomlTable<'a>,
-    key: &'static str,
-    read: impl FnOnce(&TomlValue<'a>) -> ReadResult<T>,
-) -> ReadResult<Option<T>> {
-    table.optional(key).map(|value| read(&value)).transpose()
-}
-
 fn plan(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Plan> {
     let text = |key, default: &str| -> ReadResult<String> {
-        Ok(given(root, key, TomlValue::string)?.unwrap_or(default).to_owned())
+        Ok(root.read_optional(key, TomlValue::string)?.unwrap_or(default).to_owned())
     };
     let about = About {
         title: text("title", "Spur gear vibration")?,
         description: text("description", "")?,
         licence: text("licence", LICENCE)?,
-        version: given(root, "version", version)?.unwrap_or(VERSION).to_owned(),
-        published: given(root, "published", date)?.map(str::to_owned),
-        citation: given(root, "citation", TomlValue::string)?.map(str::to_owned),
+        version: root.read_optional("version", version)?.unwrap_or(VERSION).to_owned(),
+        published: root.read_optional("published", date)?.map(str::to_owned),
+        citation: root.read_optional("citation", TomlValue::string)?.map(str::to_owned),
         questions: Vec::new(),
     };
-    let seed = given(root, "seed", |value| value.integer(0..=u64::MAX))?;
-    let design = given(root, "design", |value| value.choice(&Design::NAMES))?;
+    let seed = root.read_optional("seed", |value| value.integer(0..=u64::MAX))?;
+    let design = root.read_optional("design", |value| value.choice(&Design::NAMES))?;
     let mut base = base::read(root, reading)?;
-    let tuned = given(root, "tuned", |value| {
+    let tuned = root.read_optional("tuned", |value| {
         let tuned = tuned(value, reading)?;
         base = base::tuned(&base, &tuned, value)?;
         Ok(tuned)
@@ -136,18 +127,18 @@ fn plan(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Plan> {
     let content = Content {
         seed: seed.unwrap_or(1),
         units: units.integer(1..=MOST_UNITS)?,
-        mountings: given(root, "mountings", |value| value.integer(1..=MOST_MOUNTINGS))?.unwrap_or(1),
+        mountings: root.read_optional("mountings", |value| value.integer(1..=MOST_MOUNTINGS))?.unwrap_or(1),
         design: design.unwrap_or_default(),
         keep: root.table_or_empty("keep")?.read(|table| keep::read(table, &base, tuned.as_ref()))?,
         classes: class::read_all(root)?,
         rules: rule::read_all(root)?,
-        constraints: given(root, "constraints", conditions)?.unwrap_or_default(),
-        splits: given(root, "split", |value| value.table()?.read(split::read))?.unwrap_or_default(),
+        constraints: root.read_optional("constraints", conditions)?.unwrap_or_default(),
+        splits: root.read_optional("split", |value| value.table()?.read(split::read))?.unwrap_or_default(),
         base,
         tuned,
     };
     check::check(&content, root)?;
-    let questions = given(root, "questions", |value| questions(value, &content.classes))?;
+    let questions = root.read_optional("questions", |value| questions(value, &content.classes))?;
     Ok(Plan {
         about: About { questions: questions.unwrap_or_default(), ..about },
         content,
@@ -156,10 +147,23 @@ fn plan(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Plan> {
     })
 }
 
-/// A number from 0 to 1.
-fn fraction(value: &TomlValue<'_>, otherwise: &str) -> ReadResult<f64> {
+/// Reads a number that must meet a condition.
+///
+/// # Arguments
+/// * `otherwise` - the problem of a number that does not meet it
+fn number_where(value: &TomlValue<'_>, is_allowed: fn(f64) -> bool, otherwise: &str) -> ReadResult<f64> {
     let number = value.number()?;
-    if (0.0..=1.0).contains(&number) { Ok(number) } else { Err(value.error(otherwise)) }
+    if is_allowed(number) { Ok(number) } else { Err(value.error(otherwise)) }
+}
+
+/// Reads a number from 0 to 1.
+fn fraction(value: &TomlValue<'_>, otherwise: &str) -> ReadResult<f64> {
+    number_where(value, |number| (0.0..=1.0).contains(&number), otherwise)
+}
+
+/// Reads a number above 0.
+fn over_zero(value: &TomlValue<'_>, otherwise: &str) -> ReadResult<f64> {
+    number_where(value, |number| number > 0.0, otherwise)
 }
 
 /// Three whole numbers with points between.

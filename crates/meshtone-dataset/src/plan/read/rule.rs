@@ -3,31 +3,19 @@
 use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
 use super::super::{Distribution, Level, Rule};
-use super::given;
+use super::over_zero;
 use crate::expression::Expression;
 
-const DISTRIBUTIONS: &str = "fixed, grid, choice, uniform, log_uniform or normal";
+/// The keys that say how a value is drawn, of which a rule has one.
+const DISTRIBUTIONS: [&str; 6] = ["fixed", "grid", "choice", "uniform", "log_uniform", "normal"];
 /// Sections whose keys make the wheels and the rig, which a unit's records share unless said otherwise.
 const OF_A_UNIT: [&str; 3] = ["gears", "quality", "rig"];
 const MOST_STEPS: u64 = 100_000;
-const KEYS: [&str; 13] = [
-    "key",
-    "keys",
-    "fixed",
-    "grid",
-    "choice",
-    "weights",
-    "uniform",
-    "log_uniform",
-    "normal",
-    "times",
-    "plus",
-    "fraction_of",
-    "per",
-];
+/// The other keys of a rule.
+const OTHER_KEYS: [&str; 5] = ["weights", "times", "plus", "fraction_of", "per"];
 
 pub(super) fn read_all(table: &TomlTable<'_>) -> ReadResult<Vec<Rule>> {
-    let rules = given(table, "vary", |value| {
+    let rules = table.read_optional("vary", |value| {
         value.array()?.iter().map(|value| value.table()?.read(rule)).collect::<ReadResult<Vec<Rule>>>()
     })?;
     Ok(rules.unwrap_or_default())
@@ -35,10 +23,10 @@ pub(super) fn read_all(table: &TomlTable<'_>) -> ReadResult<Vec<Rule>> {
 
 fn rule(table: &TomlTable<'_>) -> ReadResult<Rule> {
     // Told before what is missing for it.
-    table.refuse_unknown(&KEYS)?;
+    table.refuse_unknown(&[&["key", "keys"][..], &DISTRIBUTIONS, &OTHER_KEYS].concat())?;
     let keys = keys(table)?;
     let distribution = distribution(table, keys.len())?;
-    let term = |key| given(table, key, expression);
+    let term = |key| table.read_optional(key, expression);
     let (times, plus, fraction_of) = (term("times")?, term("plus")?, term("fraction_of")?);
     if keys.len() > 1 && (times.is_some() || plus.is_some() || fraction_of.is_some()) {
         let problem = "names several keys beside times, fraction_of or plus; these are for a single key";
@@ -52,7 +40,7 @@ fn rule(table: &TomlTable<'_>) -> ReadResult<Rule> {
     }
     let unit = OF_A_UNIT.iter().any(|section| keys[0].starts_with(&format!("{section}.")));
     let default = if unit { Level::Unit } else { Level::Record };
-    let level = given(table, "per", |value| value.choice(&Level::NAMES))?;
+    let level = table.read_optional("per", |value| value.choice(&Level::NAMES))?;
     Ok(Rule { keys, level: level.unwrap_or(default), distribution, times: times.or(fraction_of), plus })
 }
 
@@ -61,12 +49,10 @@ fn keys(table: &TomlTable<'_>) -> ReadResult<Vec<String>> {
         (Some(key), None) => Ok(vec![key.string()?.to_owned()]),
         (None, Some(keys)) => {
             let names = keys.array()?;
-            let names: Vec<String> =
-                names.iter().map(|name| Ok(name.string()?.to_owned())).collect::<ReadResult<_>>()?;
             if names.len() < 2 {
                 return Err(keys.error("must name two or more keys; for a single one write key = \"…\""));
             }
-            Ok(names)
+            names.iter().map(|name| Ok(name.string()?.to_owned())).collect()
         }
         (Some(_), Some(_)) => Err(table.error("keys", "given beside key; give one of the two")),
         (None, None) => {
@@ -80,23 +66,26 @@ pub(super) fn expression(value: &TomlValue<'_>) -> ReadResult<Expression> {
 }
 
 pub(super) fn distribution(table: &TomlTable<'_>, keys: usize) -> ReadResult<Distribution> {
-    let names = ["fixed", "grid", "choice", "uniform", "log_uniform", "normal"];
-    let given = names.map(|name| table.optional(name));
     let weights = table.optional("weights");
-    let mut there = given.iter().enumerate().filter_map(|(i, value)| value.as_ref().map(|value| (i, value)));
-    let Some((which, value)) = there.next() else {
-        return Err(table.error("key", format!("says not how it varies; give one of {DISTRIBUTIONS}")));
+    let given: Vec<_> =
+        DISTRIBUTIONS.into_iter().filter_map(|name| Some((name, table.optional(name)?))).collect();
+    let (name, value) = match &given[..] {
+        [] => {
+            let names = "fixed, grid, choice, uniform, log_uniform or normal";
+            return Err(table.error("key", format!("says not how it varies; give one of {names}")));
+        }
+        [(name, _), (other, _), ..] => {
+            return Err(table.error(other, format!("given beside {name}; give one of the two")));
+        }
+        [(name, value)] => (*name, value),
     };
-    if let Some((other, _)) = there.next() {
-        return Err(table.error(names[other], format!("given beside {}; give one of the two", names[which])));
+    if let (Some(weights), true) = (&weights, name != "choice") {
+        return Err(weights.error(format!("given beside {name}; weights are those of a choice")));
     }
-    if let (Some(weights), false) = (&weights, names[which] == "choice") {
-        return Err(weights.error(format!("given beside {}; weights are those of a choice", names[which])));
-    }
-    if keys > 1 && !["grid", "choice"].contains(&names[which]) {
+    if keys > 1 && !["grid", "choice"].contains(&name) {
         return Err(value.error("is for a single key; several keys vary together by choice or grid"));
     }
-    match names[which] {
+    match name {
         "fixed" => Ok(Distribution::Fixed(value.number()?)),
         "grid" if value.is_table() => Ok(Distribution::Grid(value.table()?.read(steps)?)),
         "grid" => Ok(Distribution::Grid(rows(value, keys)?)),
@@ -155,19 +144,18 @@ fn range(value: &TomlValue<'_>) -> ReadResult<[f64; 2]> {
     if least < largest {
         return Ok([least, largest]);
     }
-    let error = value.error("must be [least, largest], the second larger than the first");
-    Err(if least > largest {
-        error.with_help(format!("write [{largest:?}, {least:?}]"))
-    } else {
-        error.with_help(format!("for one value write fixed = {least:?}"))
-    })
+    let help = match least > largest {
+        true => format!("write [{largest:?}, {least:?}]"),
+        false => format!("for one value write fixed = {least:?}"),
+    };
+    Err(value.error("must be [least, largest], the second larger than the first").with_help(help))
 }
 
 fn steps(table: &TomlTable<'_>) -> ReadResult<Vec<Vec<f64>>> {
     let least = table.required("least", "the first value")?.number()?;
     let largest = table.required("largest", "the last value")?;
     let steps = table.required("values", "how many values")?.integer(2..=MOST_STEPS)?;
-    let logarithmic = given(table, "logarithmic", TomlValue::boolean)?.unwrap_or(false);
+    let logarithmic = table.read_optional("logarithmic", TomlValue::boolean)?.unwrap_or(false);
     let last = more_than(least, &largest)?;
     if logarithmic && least <= 0.0 {
         return Err(table.error("least", "must be more than 0 for equal ratios"));
@@ -182,11 +170,8 @@ fn steps(table: &TomlTable<'_>) -> ReadResult<Vec<Vec<f64>>> {
 /// The number at the key `largest`.
 fn more_than(least: f64, largest: &TomlValue<'_>) -> ReadResult<f64> {
     let number = largest.number()?;
-    if number > least {
-        Ok(number)
-    } else {
-        Err(largest.error(format!("must be more than least, {least:?}")))
-    }
+    let problem = || largest.error(format!("must be more than least, {least:?}"));
+    if number > least { Ok(number) } else { Err(problem()) }
 }
 
 fn normal(table: &TomlTable<'_>, whole: &TomlValue<'_>) -> ReadResult<Distribution> {
@@ -194,17 +179,13 @@ fn normal(table: &TomlTable<'_>, whole: &TomlValue<'_>) -> ReadResult<Distributi
     let deviation = table.required("standard_deviation", "likewise")?;
     let least = table.required("least", "the least value that is drawn")?.number()?;
     let largest = table.required("largest", "the largest value that is drawn")?;
-    let standard_deviation = deviation.number()?;
-    if standard_deviation <= 0.0 {
-        return Err(deviation.error("must be more than 0"));
-    }
+    let standard_deviation = over_zero(&deviation, "must be more than 0")?;
     let last = more_than(least, &largest)?;
     // Beyond, nothing of the distribution is left to draw from.
     const FARTHEST: f64 = 30.0;
     if least > mean + FARTHEST * standard_deviation || last < mean - FARTHEST * standard_deviation {
-        return Err(
-            whole.error("has nothing between least and largest: they are 30 standard deviations away")
-        );
+        let problem = "has nothing between least and largest: they are 30 standard deviations away";
+        return Err(whole.error(problem));
     }
     Ok(Distribution::Normal { mean, standard_deviation, within: [least, last] })
 }

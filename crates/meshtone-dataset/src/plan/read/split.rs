@@ -3,15 +3,15 @@
 use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
 use super::super::{Shift, SplitBy, Splits};
-use super::{conditions, fraction, given};
+use super::{conditions, fraction, over_zero};
 
 /// Deviation of a sum of parts from 1 that is rounding.
 const ROUNDING: f64 = 1e-9;
 
 pub(super) fn read(table: &TomlTable<'_>) -> ReadResult<Splits> {
-    let by = given(table, "by", |value| value.choice(&SplitBy::NAMES))?.unwrap_or_default();
+    let by = table.read_optional("by", |value| value.choice(&SplitBy::NAMES))?.unwrap_or_default();
     let parts = Splits::ALIKE.map(|name| table.optional(name));
-    let shifts = given(table, "shift", shifts)?.unwrap_or_default();
+    let shifts = table.read_optional("shift", shifts)?.unwrap_or_default();
     let mut numbers = [0.0; 3];
     for (number, value) in numbers.iter_mut().zip(&parts) {
         *number = value.as_ref().map_or(Ok(0.0), part)?;
@@ -49,16 +49,12 @@ fn shifts(listed: &TomlValue<'_>) -> ReadResult<Vec<Shift>> {
             if text.is_empty() || !text.chars().all(allowed) {
                 return Err(name.error("must be letters, digits, - and _"));
             }
-            let taken = Splits::ALIKE.contains(&text) || shifts.iter().any(|shift| shift.name == text);
-            if taken {
+            if Splits::ALIKE.contains(&text) || shifts.iter().any(|shift| shift.name == text) {
                 return Err(name.error("is the name of another split"));
             }
             let share =
                 table.required("part", "the part of the units, or mountings, that is this split's")?;
-            let number = part(&share)?;
-            if number == 0.0 {
-                return Err(share.error("must be more than 0"));
-            }
+            let number = part(&share).and_then(|_| over_zero(&share, "must be more than 0"))?;
             let when = table.required("when", "what holds for its records and for no other: a condition")?;
             let when_read = conditions(&when)?;
             if when_read.is_empty() {

@@ -5,7 +5,6 @@
 //! the names, shapes and places of all arrays, then for the samples of those that are wanted, so that nothing
 //! else is ever held in memory.
 
-mod class;
 mod source;
 mod walk;
 

@@ -5,6 +5,8 @@ use std::io::{self, BufReader, Read, Seek, SeekFrom, Take};
 
 use flate2::bufread::ZlibDecoder;
 
+use crate::recording::array::skip;
+
 /// Bytes that are read from the file at once.
 const BUFFER_BYTES: usize = 1 << 16;
 /// Bytes that a compressed byte may at most stand for: the limit of deflate.
@@ -113,12 +115,7 @@ impl<'f> Source<'f> {
         };
         match &mut self.bytes {
             Bytes::Plain(file) => file.seek_relative(i64::try_from(bytes).unwrap_or(i64::MAX))?,
-            Bytes::Compressed(packed) => {
-                let skipped = io::copy(&mut packed.take(bytes), &mut io::sink())?;
-                if skipped < bytes {
-                    return Err(io::ErrorKind::UnexpectedEof.into());
-                }
-            }
+            Bytes::Compressed(packed) => skip(packed, bytes)?,
         }
         self.at = place;
         Ok(())

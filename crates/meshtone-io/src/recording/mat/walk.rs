@@ -3,8 +3,7 @@
 use std::io;
 
 use super::super::catalogue::{ArrayEntry, MAX_ARRAYS};
-use super::super::number::Numbers;
-use super::class::{Class, stored_kind};
+use super::super::number::{NumberKind, Numbers};
 use super::source::{Source, Variable, invalid, padding};
 
 /// The type of an element that is an array.
@@ -20,6 +19,24 @@ const MAX_NAMES_BYTES: usize = 1 << 24;
 /// Bytes that are not looked through before they are wanted.
 const MIN_SAMPLES_BYTES: u64 = 1 << 16;
 const COMPLEX: u32 = 0x0800;
+/// MATLAB's classes of arrays, from class 1 on.
+const CLASSES: [&str; 17] = [
+    "cell", "struct", "object", "char", "sparse", "double", "single", "int8", "uint8", "int16", "uint16",
+    "int32", "uint32", "int64", "uint64", "function", "opaque",
+];
+/// The types that numbers are stored in, with their codes: the smallest one that holds them, whatever the array's class.
+const STORED: [(u32, NumberKind); 10] = [
+    (1, NumberKind::I8),
+    (2, NumberKind::U8),
+    (3, NumberKind::I16),
+    (4, NumberKind::U16),
+    (5, NumberKind::I32),
+    (6, NumberKind::U32),
+    (7, NumberKind::F32),
+    (9, NumberKind::F64),
+    (12, NumberKind::I64),
+    (13, NumberKind::U64),
+];
 
 /// Where an array's real numbers are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,8 +86,12 @@ impl Walk {
         let end = source.at + bytes;
         let flags = source.u32_data("array flags", 2, end)?.first().copied();
         let flags = flags.ok_or_else(|| invalid("an array without flags"))?;
-        let class = Class::of(flags & 0xff)?;
-        let shape = if matches!(class, Class::Opaque) {
+        let class = flags & 0xff;
+        let class = class
+            .checked_sub(1)
+            .and_then(|index| CLASSES.get(index as usize))
+            .ok_or_else(|| invalid(format!("an array of class {class}, which does not exist")))?;
+        let shape = if *class == "opaque" {
             vec![0]
         } else {
             let lengths = source.u32_data("array dimensions", MAX_DIMENSIONS, end)?;
@@ -81,23 +102,24 @@ impl Walk {
         // MATLAB keeps data of its own in a variable without a name.
         if !name.is_empty() {
             let inside = ArrayHeader { variable, end, name, depth };
-            match class {
-                Class::Cell => self.cells(source, inside)?,
-                Class::Struct => self.fields(source, inside, &shape)?,
-                Class::Object => {
+            match *class {
+                "cell" => self.cells(source, inside)?,
+                "struct" => self.fields(source, inside, &shape)?,
+                "object" => {
                     source.data("a class name", MAX_NAME_BYTES, end)?;
                     self.fields(source, inside, &shape)?;
                 }
-                Class::Numbers(type_name) => self.numbers(source, inside, shape, type_name, flags)?,
-                Class::Text => self.others(inside, shape, "char", "text")?,
-                Class::Sparse => {
-                    self.others(inside, shape, "sparse", "a sparse array; save it with full(…)")?
+                "char" => self.push(inside, shape, "char", Err("text"), None, (0, 0))?,
+                "sparse" => {
+                    let what = "a sparse array; save it with full(…)";
+                    self.push(inside, shape, "sparse", Err(what), None, (0, 0))?;
                 }
-                Class::Opaque | Class::Function => {
+                "function" | "opaque" => {
                     let what = "a MATLAB object (table, timetable, string, function or alike); save its columns as arrays, for \
                                 instance with s = table2struct(t, 'ToScalar', true)";
-                    self.others(inside, shape, "object", what)?;
+                    self.push(inside, shape, "object", Err(what), None, (0, 0))?;
                 }
+                of_numbers => self.numbers(source, inside, shape, of_numbers, flags)?,
             }
         }
         leave(source, end, depth)
@@ -153,7 +175,8 @@ impl Walk {
         flags: u32,
     ) -> io::Result<()> {
         let tag = source.tag(inside.end)?;
-        let kind = stored_kind(tag.kind).ok_or_else(|| {
+        let stored = STORED.iter().find(|(code, _)| *code == tag.kind);
+        let (_, kind) = *stored.ok_or_else(|| {
             invalid(format!("{} holds elements of type {}; must be numbers", inside.name, tag.kind))
         })?;
         let count = shape.iter().fold(1_u128, |count, length| count.saturating_mul(u128::from(*length)));
@@ -174,7 +197,7 @@ impl Walk {
             _ => None,
         };
         let is_complex = flags & COMPLEX != 0;
-        let numbers = if is_complex { Err("complex numbers".to_string()) } else { Ok(numbers) };
+        let numbers = if is_complex { Err("complex numbers") } else { Ok(numbers) };
         let single = single.filter(|_| !is_complex);
         if tag.inline.is_none() {
             let data_end = offset + tag.bytes;
@@ -183,23 +206,12 @@ impl Walk {
         self.push(inside, shape, type_name, numbers, single, (offset, tag.bytes))
     }
 
-    /// Collects an array of no numbers.
-    fn others(
-        &mut self,
-        inside: ArrayHeader,
-        shape: Vec<u64>,
-        type_name: &str,
-        what: &str,
-    ) -> io::Result<()> {
-        self.push(inside, shape, type_name, Err(what.to_string()), None, (0, 0))
-    }
-
     fn push(
         &mut self,
         inside: ArrayHeader,
         shape: Vec<u64>,
         type_name: &str,
-        numbers: Result<Numbers, String>,
+        numbers: Result<Numbers, &str>,
         single: Option<f64>,
         (offset, bytes): (u64, u64),
     ) -> io::Result<()> {
@@ -211,7 +223,7 @@ impl Walk {
             name: inside.name,
             shape,
             first_runs_fastest: true,
-            numbers,
+            numbers: numbers.map_err(str::to_owned),
             type_name: type_name.to_string(),
             single,
             is_zero_twin: false,

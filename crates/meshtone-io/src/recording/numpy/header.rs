@@ -174,22 +174,20 @@ fn product(shape: &[Value]) -> Option<u64> {
 
 /// An element's type, such as `<f8`, and its bytes, where they are known.
 fn element(code: &str) -> (Result<Numbers, String>, Option<u64>) {
-    let kind = match code.get(1..) {
-        Some("f8") => NumberKind::F64,
-        Some("f4") => NumberKind::F32,
-        Some("i8") => NumberKind::I64,
-        Some("i4") => NumberKind::I32,
-        Some("i2") => NumberKind::I16,
-        Some("i1") => NumberKind::I8,
-        Some("u8") => NumberKind::U64,
-        Some("u4") => NumberKind::U32,
-        Some("u2") => NumberKind::U16,
-        Some("u1" | "b1") => NumberKind::U8,
-        _ => return other_element(code),
-    };
-    if !code.starts_with(['<', '>', '|', '=']) {
-        return other_element(code);
-    }
+    let kind = code.strip_prefix(['<', '>', '|', '=']).and_then(|kind| match kind {
+        "f8" => Some(NumberKind::F64),
+        "f4" => Some(NumberKind::F32),
+        "i8" => Some(NumberKind::I64),
+        "i4" => Some(NumberKind::I32),
+        "i2" => Some(NumberKind::I16),
+        "i1" => Some(NumberKind::I8),
+        "u8" => Some(NumberKind::U64),
+        "u4" => Some(NumberKind::U32),
+        "u2" => Some(NumberKind::U16),
+        "u1" | "b1" => Some(NumberKind::U8),
+        _ => None,
+    });
+    let Some(kind) = kind else { return other_element(code) };
     (Ok(Numbers::plain(kind, code.starts_with('>'))), Some(kind.size() as u64))
 }
 

@@ -11,59 +11,40 @@ const MAX_LINE_BYTES: usize = 1 << 24;
 pub(super) struct Blocks<R> {
     from: R,
     buffer: Vec<u8>,
-    /// Bytes at the start of the buffer that were handed over, and those behind that were read.
+    /// Bytes that the buffer is filled with.
+    block_bytes: usize,
+    /// Bytes at the start of the buffer that were handed over.
     handed: usize,
-    filled: usize,
 }
 
 impl<R: Read> Blocks<R> {
     pub(super) fn new(from: R) -> Blocks<R> {
-        Blocks { from, buffer: vec![0; BLOCK_BYTES], handed: 0, filled: 0 }
+        Blocks { from, buffer: Vec::with_capacity(BLOCK_BYTES), block_bytes: BLOCK_BYTES, handed: 0 }
     }
 
     /// The next lines; empty at the end of the file. The last line may have no end.
     pub(super) fn next(&mut self) -> io::Result<&mut [u8]> {
-        self.buffer.copy_within(self.handed..self.filled, 0);
-        self.filled -= self.handed;
-        self.handed = 0;
+        self.buffer.drain(..self.handed);
         loop {
-            let searched = self.filled;
-            let read = read_some(&mut self.from, &mut self.buffer[searched..])?;
-            self.filled += read;
-            if read == 0 && self.filled < self.buffer.len() {
-                self.handed = self.filled;
-                break;
-            }
-            if let Some(end) = self.buffer[searched..self.filled].iter().rposition(|byte| *byte == b'\n') {
+            let searched = self.buffer.len();
+            let room = self.block_bytes - searched;
+            let read = self.from.by_ref().take(room as u64).read_to_end(&mut self.buffer)?;
+            if let Some(end) = self.buffer[searched..].iter().rposition(|byte| *byte == b'\n') {
                 self.handed = searched + end + 1;
                 break;
             }
-            if self.filled == self.buffer.len() {
-                if self.buffer.len() >= MAX_LINE_BYTES {
-                    return Err(io::Error::new(
-                        io::ErrorKind::InvalidData,
-                        "it has a line of more than 16 MiB",
-                    ));
-                }
-                self.buffer.resize(2 * self.buffer.len(), 0);
+            if read < room {
+                self.handed = self.buffer.len();
+                break;
             }
+            if self.block_bytes >= MAX_LINE_BYTES {
+                let problem = "it has a line of more than 16 MiB";
+                return Err(io::Error::new(io::ErrorKind::InvalidData, problem));
+            }
+            self.block_bytes *= 2;
         }
         Ok(&mut self.buffer[..self.handed])
     }
-}
-
-/// Fills as much as there is; less only at the end of the file.
-fn read_some(from: &mut impl Read, to: &mut [u8]) -> io::Result<usize> {
-    let mut filled = 0;
-    while filled < to.len() {
-        match from.read(&mut to[filled..]) {
-            Ok(0) => break,
-            Ok(read) => filled += read,
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-            Err(error) => return Err(error),
-        }
-    }
-    Ok(filled)
 }
 
 #[cfg(test)]

@@ -63,11 +63,9 @@ impl Candidate {
         let kinds: Vec<Cell> = kinds.collect();
         let numbers = kinds.iter().filter(|kind| matches!(kind, Cell::Number(_))).count();
         let is_all_numbers = !kinds.contains(&Cell::Text);
-        let is_number = |row: &Vec<&[u8]>, column: usize| {
-            row.get(column).is_some_and(|cell| matches!(dialect.cell(cell), Cell::Number(_)))
-        };
         let numeric = (0..columns).map(|column| {
-            let numbers = rows.iter().filter(|row| is_number(row, column)).count();
+            let cells = rows.iter().filter_map(|row| row.get(column));
+            let numbers = cells.filter(|cell| dialect.is_number(cell)).count();
             2 * numbers >= rows.len()
         });
         let numeric: Vec<bool> = numeric.collect();
@@ -91,7 +89,7 @@ impl Candidate {
         let judged: Vec<&[u8]> = judged.map(|(_, cell)| *cell).collect();
         let kinds: Vec<Cell> = judged.iter().map(|cell| self.dialect.cell(cell)).collect();
         let texts = kinds.iter().filter(|kind| **kind == Cell::Text).count();
-        let is_number = |cell: &&&[u8]| matches!(self.dialect.cell(cell), Cell::Number(_));
+        let is_number = |cell: &&&[u8]| self.dialect.is_number(cell);
         let numbers = judged.iter().filter(is_number).count();
         let only_counts = judged.iter().filter(is_number).all(|cell| cell.iter().all(u8::is_ascii_digit));
         // Names come in rows; a single cell that is nearly a number is a sample with a typing error in it.
@@ -109,13 +107,13 @@ impl Candidate {
         let line = line.trim_ascii();
         let one = Dialect { separator: None, decimal_comma: true };
         let commas = self.dialect.separator == Some(Separator::Comma) && self.columns == 2;
-        commas && line.contains(&b',') && matches!(one.cell(line), Cell::Number(_))
+        commas && line.contains(&b',') && one.is_number(line)
     }
 
     /// Whether the line behind the names holds units: no numbers, but 1 for no unit.
     pub(super) fn is_unit_row(&self, line: &[u8]) -> bool {
         let cells = self.cells(line);
-        let is_number = |cell: &[u8]| matches!(self.dialect.cell(cell), Cell::Number(_)) && !is_missing(cell);
+        let is_number = |cell: &[u8]| self.dialect.is_number(cell) && !is_missing(cell);
         let says_something = |cell: &[u8]| !is_missing(cell) && self.dialect.cell(cell) == Cell::Text;
         cells.len() == self.columns
             && cells.iter().any(|cell| says_something(cell))

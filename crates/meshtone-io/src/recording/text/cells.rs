@@ -62,6 +62,11 @@ impl Dialect {
         fast_float2::parse(with_point).map_or(Cell::Text, Cell::Number)
     }
 
+    /// Whether a cell holds a number.
+    pub(super) fn is_number(&self, cell: &[u8]) -> bool {
+        matches!(self.cell(cell), Cell::Number(_))
+    }
+
     /// Whether a cell is a number with a typing error in it, such as `0.1x2`, `1..5` or `2.5e`, and no name such as `0.5Hz`, `1X` or a date.
     pub(super) fn is_spoiled_number(&self, cell: &[u8]) -> bool {
         let sign = if self.decimal_comma { b',' } else { b'.' };

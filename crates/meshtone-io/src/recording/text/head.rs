@@ -48,7 +48,7 @@ impl Head {
         let content = &content[..content.len().min(LINES)];
         let first = content.first().ok_or_else(no_samples)?;
         let Some(candidate) = best(content, options) else {
-            return Err(if content.len() <= 2 { no_samples() } else { no_columns() });
+            return Err(if content.len() <= 2 { no_samples() } else { Problem::broken(NO_COLUMNS) });
         };
         let named = candidate.is_header(first.text);
         let names = if named { candidate.cells(first.text) } else { Vec::new() };
@@ -93,12 +93,9 @@ impl Head {
 }
 
 /// The problem of lines none of which looks like numbers.
-fn no_columns() -> Problem {
-    Problem::broken(
-        "its first lines hold no columns of numbers; if they are a head, skip them (option text.skip_lines) or begin them with #; if \
-         separator or decimal sign are unusual, say them (options text.separator and text.decimal_sign)",
-    )
-}
+const NO_COLUMNS: &str = "its first lines hold no columns of numbers; if they are a head, skip them (option text.skip_lines) or begin \
+                          them with #; if separator or decimal sign are unusual, say them (options text.separator and \
+                          text.decimal_sign)";
 
 /// Whether a line is passed over: blank, or a comment.
 pub(super) fn is_passed(line: &[u8]) -> bool {

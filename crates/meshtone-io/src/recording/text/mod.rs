@@ -18,7 +18,7 @@ use self::blocks::Blocks;
 use self::end::doubtful_end;
 use self::head::{Head, Line};
 use self::numbers::Numbers;
-use super::assemble::{Columns, assemble};
+use super::assemble::assemble;
 use super::error::Problem;
 use super::selection::select;
 use super::{Recording, RecordingOptions, memory_need};
@@ -48,12 +48,11 @@ pub(super) fn read(mut file: File, options: &RecordingOptions) -> Result<Recordi
             break;
         }
         numbers.read(block)?;
-        check(numbers.rows())?;
+        check(numbers.rows)?;
     }
-    let last_line = numbers.last_line();
+    let last_line = numbers.line - 1;
     let samples = numbers.finish()?;
-    let columns = Columns { labels: &head.labels, selection: &selection, samples, stated: &[] };
-    let recording = assemble(columns, options)?;
+    let recording = assemble(&head.labels, &selection, samples, &[], options)?;
     let reads_last = selection.wanted.last().is_some_and(|column| column + 1 == head.labels.len());
     let doubtful = if reads_last { doubtful_end(&mut file, &head, last_line)? } else { None };
     Ok(Recording { warnings: doubtful.into_iter().collect(), ..recording })

@@ -18,8 +18,9 @@ pub(super) struct Numbers<'h> {
     slots: Vec<Option<usize>>,
     samples: Vec<Vec<f64>>,
     /// The next line, counted from 1.
-    line: u64,
-    rows: usize,
+    pub(super) line: u64,
+    /// Lines of numbers that were read.
+    pub(super) rows: usize,
     /// The first blank line and the rows above it, where a blank line may be a missing sample.
     blank: Option<(u64, usize)>,
 }
@@ -63,16 +64,6 @@ impl<'h> Numbers<'h> {
             self.line += 1;
         }
         Ok(())
-    }
-
-    /// Lines of numbers that were read.
-    pub(super) fn rows(&self) -> usize {
-        self.rows
-    }
-
-    /// The last line that was read, counted from 1.
-    pub(super) fn last_line(&self) -> u64 {
-        self.line - 1
     }
 
     /// The samples of each column, after the last line.
@@ -210,12 +201,10 @@ impl<'h> Numbers<'h> {
 /// Replaces bytes: the first of each pair by the second.
 fn swap(block: &mut [u8], [(a, new_a), (b, new_b)]: [(u8, u8); 2]) {
     for byte in block {
-        *byte = if *byte == a {
-            new_a
-        } else if *byte == b {
-            new_b
-        } else {
-            *byte
+        *byte = match *byte {
+            old if old == a => new_a,
+            old if old == b => new_b,
+            other => other,
         };
     }
 }

@@ -26,10 +26,9 @@ pub(super) fn amplitudes<'w>(wheel: &'w WheelView, width_px: f64) -> impl Iterat
 
 pub(super) fn draw(canvas: &mut Canvas, area: Area, y: [f64; 2], wheel: &WheelView, unit: &str) {
     let last = last(wheel, area.width);
-    let axes = Axes::new(area, [0.0, last as f64 + 0.5], y);
     let title =
         if last < last_order(wheel) { format!("Orders 1 to {last}") } else { "Order spectrum".to_owned() };
-    axes.title(canvas, &title);
+    let axes = Axes::titled(canvas, area, [0.0, last as f64 + 0.5], y, &title);
     legend(canvas, &axes, wheel);
     let teeth = wheel.teeth.max(1);
     let mesh_orders = Ticks::every(f64::from(teeth), 0.0, last as f64);

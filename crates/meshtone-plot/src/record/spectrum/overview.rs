@@ -50,8 +50,8 @@ pub(super) fn bins(wheel: &WheelView, width_px: f64) -> Vec<Bin> {
 
 pub(super) fn draw(canvas: &mut Canvas, area: Area, y: [f64; 2], wheel: &WheelView, unit: &str) {
     let last = last_order(wheel);
-    let axes = Axes::new(area, [0.0, last as f64 + 0.5], y);
-    axes.title(canvas, &format!("Order spectrum, all {last} orders"));
+    let title = format!("Order spectrum, all {last} orders");
+    let axes = Axes::titled(canvas, area, [0.0, last as f64 + 0.5], y, &title);
     let shown = low_orders::last(wheel, area.width);
     axes.band(canvas, 0.0, shown as f64 + 0.5, BELOW);
     let orders = Ticks::nice(0.0, last as f64, 10);

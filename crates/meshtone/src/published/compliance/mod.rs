@@ -1,15 +1,13 @@
-//! The compliances of one tooth, one file each: displacement along the line of action under a unit force there, at each point of
+//! The compliances of one tooth: displacement along the line of action under a unit force there, at each point of
 //! contact.
 
-mod axial;
 mod bending;
 mod energy;
-mod shear;
 
-use energy::{EnergyCoefficients, LoadedTooth};
+use energy::LoadedTooth;
 
 use super::damage::ToothSection;
-use crate::stiffness::{Foundation, LoadDirection};
+use crate::stiffness::{Energy, Foundation, LoadDirection};
 use crate::wheel::{FoundationCoefficients, Material};
 use crate::wheel::{ToothProfile, Wheel};
 
@@ -60,15 +58,27 @@ impl ToothCompliance {
             _ => i,
         };
         let foundation_point = |i: usize| section.pivot.map_or(i, |pivot| pivot.loaded_point(i));
-        let compliance = |energies: Vec<EnergyCoefficients>| {
+        let compliance = |energies: Vec<Energy>| {
             (first_contact..profile.len())
                 .map(|i| energies[energy_point(i) - first_contact].compliance(direction(i)))
                 .collect()
         };
         let body = Foundation::new(wheel, profile, foundation);
+        // Axial compression: `U_a = F_a² ∫ dx/(2 E A)`.
+        let per_area = 1.0 / (2.0 * tooth.youngs_modulus_mpa);
+        let axial = tooth.integrate(
+            |i| [per_area / section.area_mm2[i]],
+            |_, &[aa]| Energy { aa, ..Default::default() },
+        );
+        // Shear: `U_s = F_s² ∫ s/G dx`, with s = 0.6/A for a rectangular section.
+        let per_shear = 1.0 / tooth.shear_modulus_mpa;
+        let shear = tooth.integrate(
+            |i| [per_shear * section.shear_per_mm2[i]],
+            |_, &[ss]| Energy { ss, ..Default::default() },
+        );
         Self {
-            axial_mm_per_n: compliance(axial::energy(&tooth)),
-            shear_mm_per_n: compliance(shear::energy(&tooth)),
+            axial_mm_per_n: compliance(axial),
+            shear_mm_per_n: compliance(shear),
             bending_mm_per_n: compliance(bending::energy(&tooth)),
             foundation_mm_per_n: (first_contact..profile.len())
                 .map(|i| {

@@ -10,20 +10,10 @@ use crate::wheel::Teeth;
 /// As [`cut_flank`].
 pub(super) fn pit_on_gear(given: &PitCircle, teeth: &Teeth) -> Result<(Pit, Vec<f64>), ScenarioError> {
     let (profile, contact) = (&teeth.gear_profile, &teeth.contact);
-    let cut = cut_flank(given, profile, contact.initial_contact_index, two_nearest)?;
     // The published positions are uniform in x.
     let (x_contact, x_tip) = (profile.x_mm[contact.initial_contact_index], profile.tip_x_mm());
     let position = |i: usize| contact.span_rev * (profile.x_mm[i] - x_tip) / (x_contact - x_tip);
-    let pit = Pit {
-        start_index: cut.start_index,
-        mid_index: (cut.start_index + cut.end_index) / 2,
-        end_index: cut.end_index,
-        length_mm: cut.length_mm,
-        length_fraction: cut.length_fraction,
-        start_rev: position(cut.end_index),
-        end_rev: position(cut.start_index),
-    };
-    Ok((pit, cut.flank_y_mm))
+    cut_flank(given, profile, contact.initial_contact_index, two_nearest, position)
 }
 
 /// The two samples of the half circle that are nearest to the flank. Where the second directly follows the first, the published code

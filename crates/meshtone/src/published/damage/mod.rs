@@ -5,15 +5,15 @@
 //! not touch, over which width, at which pressure angle and with which displacement.
 
 mod face_circle;
-mod missing_tooth;
 mod partial_face;
 mod section;
 mod through_face;
 mod tooth_breakage;
 mod tooth_destruction;
 
-use crate::damage::{Damage, DamageDescription, DamagedTooth};
+use crate::damage::{Damage, DamageDescription, DamagedTooth, HealthyTooth, MissingTooth};
 use crate::error::ScenarioError;
+use crate::scenario::unknown_kind;
 pub use section::{LateralBending, Pivot, ToothSection};
 pub use through_face::{Half, RollingAngle};
 
@@ -41,6 +41,23 @@ pub struct FaultGeometry {
 }
 
 impl FaultGeometry {
+    /// A pair that touches at all points over the whole width.
+    ///
+    /// # Arguments
+    /// * `teeth` - both healthy teeth
+    /// * `description` - numbers that describe the damage
+    fn of_sound_pair(teeth: &Teeth, description: DamageDescription) -> Self {
+        Self {
+            gear: ToothSection::sound(&teeth.gear, &teeth.gear_profile),
+            pinion: ToothSection::sound(&teeth.pinion, &teeth.pinion_profile),
+            no_contact: 0..0,
+            contact_width: ContactWidth::Whole,
+            displacement: Displacement::None,
+            flank_y_mm: teeth.gear_profile.y_mm.clone(),
+            description,
+        }
+    }
+
     /// What is left of the gear's first tooth.
     ///
     /// # Arguments
@@ -131,18 +148,15 @@ pub enum Displacement {
 /// line that leaves no tooth; a kind that the published model does not know.
 pub fn geometry(damage: &Damage, teeth: &Teeth, seed: u64) -> Result<FaultGeometry, ScenarioError> {
     match damage {
-        Damage::MissingTooth(_) => Ok(missing_tooth::geometry(teeth)),
+        Damage::MissingTooth(_) => {
+            let description = MissingTooth::describe(&HealthyTooth::first_of_gear(teeth, 0));
+            let no_contact = 0..teeth.gear_profile.len();
+            Ok(FaultGeometry { no_contact, ..FaultGeometry::of_sound_pair(teeth, description) })
+        }
         Damage::ToothBreakage(breakage) => tooth_breakage::geometry(breakage, teeth),
         Damage::PartialFace(pit) => partial_face::geometry(pit, teeth),
         Damage::ThroughFace(pit) => through_face::geometry(pit, teeth),
         Damage::ToothDestruction(destruction) => tooth_destruction::geometry(destruction, teeth, seed),
         Damage::RootCrack(_) | Damage::Pits(_) | Damage::Wear(_) => Err(unknown_kind(damage)),
     }
-}
-
-
-/// The refusal of a kind that the published model does not know.
-pub(super) fn unknown_kind(damage: &Damage) -> ScenarioError {
-    ScenarioError::new("fault.kind", format!("\"{}\"", damage.kind()), "is not known to the published model")
-        .with_help("write model = \"linear\" or model = \"contact\"")
 }

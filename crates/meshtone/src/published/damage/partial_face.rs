@@ -2,7 +2,7 @@
 
 use super::face_circle::pit_on_gear;
 use super::section::mate_range;
-use super::{ContactWidth, Displacement, FaultGeometry, LateralBending, Pivot, ToothSection};
+use super::{ContactWidth, FaultGeometry, LateralBending, Pivot, ToothSection};
 use crate::damage::{HealthyTooth, PartialFace, shear_flexibility};
 use crate::error::ScenarioError;
 use crate::wheel::Teeth;
@@ -11,14 +11,11 @@ pub(super) fn geometry(fault: &PartialFace, teeth: &Teeth) -> Result<FaultGeomet
     let (pit, flank_y_mm) = pit_on_gear(&fault.pit, teeth)?;
     let face_width = teeth.gear.face_width_mm;
     let inside = pit.start_index..=pit.end_index;
-    let mut gear = ToothSection::sound(&teeth.gear, &teeth.gear_profile);
-    cut_corner(&mut gear, face_width, fault.width_mm, &teeth.gear_profile.y_mm, &flank_y_mm, inside.clone());
-    if let Some(lateral) = &mut gear.lateral {
-        // Model: the published coupling has the sign of a pit on the other side, with the load left where it is.
-        lateral.published_coupling = true;
-    }
-
-    let mut pinion = ToothSection::sound(&teeth.pinion, &teeth.pinion_profile);
+    let healthy = HealthyTooth::first_of_gear(teeth, 0);
+    let description = pit.describe::<PartialFace>(fault.width_mm, &flank_y_mm, &healthy);
+    let mut geometry = FaultGeometry::of_sound_pair(teeth, description);
+    let FaultGeometry { gear, pinion, .. } = &mut geometry;
+    cut_corner(gear, face_width, fault.width_mm, &teeth.gear_profile.y_mm, &flank_y_mm, inside.clone());
     let left = (face_width - fault.width_mm) / face_width;
     let met = mate_range(inside, |i| teeth.contact.mate_index(i));
     for i in met {
@@ -33,23 +30,9 @@ pub(super) fn geometry(fault: &PartialFace, teeth: &Teeth) -> Result<FaultGeomet
     let (gear_pivot, pinion_pivot) = Pivot::over_pit(&pit, &teeth.contact, false);
     gear.pivot = Some(gear_pivot);
     pinion.pivot = Some(pinion_pivot);
-    Ok(FaultGeometry {
-        gear,
-        pinion,
-        no_contact: 0..0,
-        contact_width: ContactWidth::Pit {
-            width_mm: fault.width_mm,
-            start_rev: pit.start_rev,
-            end_rev: pit.end_rev,
-        },
-        displacement: Displacement::None,
-        description: pit.describe::<PartialFace>(
-            fault.width_mm,
-            &flank_y_mm,
-            &HealthyTooth::first_of_gear(teeth, 0),
-        ),
-        flank_y_mm,
-    })
+    let contact_width =
+        ContactWidth::Pit { width_mm: fault.width_mm, start_rev: pit.start_rev, end_rev: pit.end_rev };
+    Ok(FaultGeometry { contact_width, flank_y_mm, ..geometry })
 }
 
 /// Removes the rectangle `pit_width × (Y − Y_def)` from the upper corner of each section inside the pit.
@@ -63,13 +46,8 @@ fn cut_corner(
 ) {
     let points = y_mm.len();
     let mut yc_mm = vec![0.0; points];
-    let mut lateral = LateralBending {
-        iy_mm4: y_mm.iter().map(|y| 2.0 * y * face_width.powi(3) / 12.0).collect(),
-        iyz_mm4: vec![0.0; points],
-        zc_mm: vec![0.0; points],
-        load_z_mm: vec![0.0; points],
-        published_coupling: false,
-    };
+    let iy_mm4 = y_mm.iter().map(|y| 2.0 * y * face_width.powi(3) / 12.0).collect();
+    let mut lateral = LateralBending::of_rectangles(iy_mm4, vec![0.0; points], vec![0.0; points]);
     for i in inside {
         let (y, cut_y) = (y_mm[i], flank_y_mm[i]);
         let whole = 2.0 * y * face_width;

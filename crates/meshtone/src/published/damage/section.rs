@@ -44,9 +44,13 @@ pub struct LateralBending {
     pub zc_mm: Vec<f64>,
     /// (mm) z of the load when the mate touches the point.
     pub load_z_mm: Vec<f64>,
-    /// Whether the term that couples the two bendings has the published sign, which is that of the section's mirror
-    /// image.
-    pub published_coupling: bool,
+}
+
+impl LateralBending {
+    /// Bending of rectangles, which is not coupled to that about z.
+    pub(super) fn of_rectangles(iy_mm4: Vec<f64>, zc_mm: Vec<f64>, load_z_mm: Vec<f64>) -> Self {
+        Self { iyz_mm4: vec![0.0; iy_mm4.len()], iy_mm4, zc_mm, load_z_mm }
+    }
 }
 
 /// Range of profile points over which the mate turns about the range's two ends.

@@ -1,7 +1,7 @@
 //! A pit over the whole face width: while the mate passes it, it turns about the pit's two edges.
 
 use super::face_circle::pit_on_gear;
-use super::{ContactWidth, Displacement, FaultGeometry, Pivot, ToothSection};
+use super::{Displacement, FaultGeometry, Pivot, ToothSection};
 use crate::damage::{HealthyTooth, ThroughFace};
 use crate::error::ScenarioError;
 use crate::wheel::{Teeth, ToothProfile};
@@ -95,28 +95,17 @@ pub(super) fn geometry(fault: &ThroughFace, teeth: &Teeth) -> Result<FaultGeomet
     let (gear_pivot, pinion_pivot) = Pivot::over_pit(&pit, contact, true);
     gear.pivot = Some(gear_pivot);
 
-    let mut pinion = ToothSection::sound(&teeth.pinion, &teeth.pinion_profile);
     let mut pinion_angle = vec![rolling.nominal_rad; teeth.pinion_profile.len()];
     for i in pit.start_index..=pit.end_index {
         pinion_angle[contact.mate_index(i)] = gear_angle[i];
     }
-    pinion.pivot = Some(pinion_pivot);
     gear.pressure_angle_rad = Some(gear_angle);
-    pinion.pressure_angle_rad = Some(pinion_angle);
-
-    Ok(FaultGeometry {
-        gear,
-        pinion,
-        no_contact: 0..0,
-        contact_width: ContactWidth::Whole,
-        displacement: Displacement::Rolling(rolling),
-        description: pit.describe::<ThroughFace>(
-            teeth.gear.face_width_mm,
-            &flank_y_mm,
-            &HealthyTooth::first_of_gear(teeth, 0),
-        ),
-        flank_y_mm,
-    })
+    let healthy = HealthyTooth::first_of_gear(teeth, 0);
+    let description = pit.describe::<ThroughFace>(teeth.gear.face_width_mm, &flank_y_mm, &healthy);
+    let mut fault = FaultGeometry::of_sound_pair(teeth, description);
+    fault.pinion.pivot = Some(pinion_pivot);
+    fault.pinion.pressure_angle_rad = Some(pinion_angle);
+    Ok(FaultGeometry { gear, displacement: Displacement::Rolling(rolling), flank_y_mm, ..fault })
 }
 
 /// (mm) Largest distance, across the chord, of the flank from the chord between two of its points.

@@ -1,6 +1,6 @@
 //! A corner of the tooth that has chipped off, and a tip that is lost over the whole width.
 
-use super::{ContactWidth, Displacement, FaultGeometry, LateralBending, ToothSection};
+use super::{ContactWidth, FaultGeometry, LateralBending, ToothSection};
 use crate::damage::{HealthyTooth, ToothBreakage};
 use crate::error::ScenarioError;
 use crate::wheel::Teeth;
@@ -19,28 +19,17 @@ pub(super) fn geometry(fault: &ToothBreakage, teeth: &Teeth) -> Result<FaultGeom
     let met_width: Vec<f64> = (0..points)
         .map(|i| if i < contact.initial_contact_index { 0.0 } else { missing_width[contact.mate_index(i)] })
         .collect();
-    let mut pinion = ToothSection::sound(&teeth.pinion, &teeth.pinion_profile);
-    let whole = |power: i32| {
-        let width = face_width.powi(power);
-        teeth.pinion_profile.y_mm.iter().map(move |y| 2.0 * y * width / 12.0).collect()
-    };
-    pinion.lateral = Some(LateralBending {
-        iy_mm4: whole(3),
-        iyz_mm4: vec![0.0; points],
-        zc_mm: vec![0.0; points],
-        load_z_mm: met_width.iter().map(|width| width / 2.0).collect(),
-        published_coupling: false,
-    });
-    pinion.foundation_width_mm = met_width.iter().map(|width| face_width - width).collect();
-
+    let description = fault.describe(&chip, exit_rev, &HealthyTooth::first_of_gear(teeth, 0));
+    let mut geometry = FaultGeometry::of_sound_pair(teeth, description);
+    let iy_mm4 = teeth.pinion_profile.y_mm.iter().map(|y| 2.0 * y * face_width.powi(3) / 12.0).collect();
+    let load_z_mm = met_width.iter().map(|width| width / 2.0).collect();
+    geometry.pinion.lateral = Some(LateralBending::of_rectangles(iy_mm4, vec![0.0; points], load_z_mm));
+    geometry.pinion.foundation_width_mm = met_width.iter().map(|width| face_width - width).collect();
     Ok(FaultGeometry {
         gear,
-        pinion,
         no_contact: chip.lost_from_index..points,
         contact_width: ContactWidth::Chip { width_mm: fault.chip_width_mm, exit_rev },
-        displacement: Displacement::None,
-        flank_y_mm: profile.y_mm.clone(),
-        description: fault.describe(&chip, exit_rev, &HealthyTooth::first_of_gear(teeth, 0)),
+        ..geometry
     })
 }
 
@@ -48,6 +37,7 @@ pub(super) fn geometry(fault: &ToothBreakage, teeth: &Teeth) -> Result<FaultGeom
 fn chipped(face_width: f64, y_mm: &[f64], missing_width: &[f64]) -> ToothSection {
     let widths: Vec<f64> = missing_width.iter().map(|missing| face_width - missing).collect();
     let rows = || widths.iter().zip(y_mm);
+    let iy_mm4 = rows().map(|(width, y)| 2.0 * y * width.powi(3) / 12.0).collect();
     let area_mm2: Vec<f64> = rows().map(|(width, y)| width * 2.0 * y).collect();
     let centre: Vec<f64> = missing_width.iter().map(|missing| missing / 2.0).collect();
     ToothSection {
@@ -55,13 +45,7 @@ fn chipped(face_width: f64, y_mm: &[f64], missing_width: &[f64]) -> ToothSection
         area_mm2,
         iz_mm4: rows().map(|(width, y)| width * (2.0 * y).powi(3) / 12.0).collect(),
         yc_mm: None,
-        lateral: Some(LateralBending {
-            iy_mm4: rows().map(|(width, y)| 2.0 * y * width.powi(3) / 12.0).collect(),
-            iyz_mm4: vec![0.0; y_mm.len()],
-            zc_mm: centre.clone(),
-            load_z_mm: centre,
-            published_coupling: false,
-        }),
+        lateral: Some(LateralBending::of_rectangles(iy_mm4, centre.clone(), centre)),
         foundation_width_mm: widths.clone(),
         contact_width_mm: widths,
         pressure_angle_rad: None,

@@ -1,6 +1,6 @@
 //! A working flank that has been ground down along a straight line.
 
-use super::{ContactWidth, Displacement, FaultGeometry, ToothSection};
+use super::{Displacement, FaultGeometry, ToothSection};
 use crate::damage::{HealthyTooth, ToothDestruction};
 use crate::error::ScenarioError;
 use crate::random::{Draws, Purpose};
@@ -18,13 +18,11 @@ pub(super) fn geometry(
     let ground = fault.grind(profile, first_contact, roughness, |ground, _| ground)?;
     // In the order of contact: the gear's tooth enters at its tip.
     let displacement_mm = ground.deviation_mm[first_contact..].iter().rev().copied().collect();
+    let description = ground.describe(&HealthyTooth::first_of_gear(teeth, seed));
     Ok(FaultGeometry {
         gear: ToothSection::cut_flank(teeth.gear.face_width_mm, profile, &ground.flank_y_mm),
-        pinion: ToothSection::sound(&teeth.pinion, &teeth.pinion_profile),
-        no_contact: 0..0,
-        contact_width: ContactWidth::Whole,
         displacement: Displacement::Pair { displacement_mm },
-        description: ground.describe(&HealthyTooth::first_of_gear(teeth, seed)),
         flank_y_mm: ground.flank_y_mm,
+        ..FaultGeometry::of_sound_pair(teeth, description)
     })
 }

@@ -14,7 +14,7 @@ use super::cycle::remainder;
 use super::damage::{ContactWidth, FaultGeometry};
 use crate::error::ScenarioError;
 use crate::operation::CycleGrid;
-use crate::wheel::{Gears, ProfileErrors, Teeth};
+use crate::wheel::{Gears, Teeth};
 
 /// The published mesh over its cycle.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,11 +54,6 @@ impl PublishedMesh {
         let stiffness = MeshStiffness::new(&pair, &grid);
         let load = MeshLoad::new(&stiffness, fault.as_ref(), &grid, teeth);
         Ok(Self { grid, fault, pair, stiffness, load, teeth: [gears.pinion_teeth, gears.gear_teeth] })
-    }
-
-    /// Force of the flanks' deviations.
-    pub(super) fn error_force<'a>(&'a self, errors: Option<&'a ProfileErrors>) -> ErrorForce<'a> {
-        ErrorForce::new(self, errors)
     }
 
     /// The coarse point of the cycle nearest to an angle of the pinion or the motor.

@@ -8,17 +8,18 @@ mod size;
 mod speed;
 
 pub use memory_limit::{MEMORY_LIMIT_BYTES, MemoryLimit};
+pub(crate) use model::unknown_kind;
 
-use super::{Gears, Scenario, ScenarioError, ScenarioWarning};
+use super::{Scenario, ScenarioError, ScenarioWarning};
 use crate::damage::check_faults;
-use crate::keys::{Keys, check_keys};
+use crate::keys::check_keys;
 use crate::sensor::check_sensors;
 
 impl Scenario {
     /// Checks every value, alone and against the others, as far as no tooth geometry is needed.
     ///
     /// # Returns
-    /// Warnings about a scenario that can be simulated: teeth that are undercut, a tip relief that adds metal, a speed that few
+    /// Warnings about a scenario that can be simulated: teeth that are undercut, tips that are thin, a speed that few
     /// spur gears reach.
     ///
     /// # Errors
@@ -70,7 +71,7 @@ impl Scenario {
         duration::check(&honoured)?;
         size::check(&honoured, limit)?;
         speed::check(&honoured)?;
-        let mut warnings = gears_of_model(&honoured).warnings();
+        let mut warnings = honoured.gears.warnings();
         warnings.extend(speed::warnings(&honoured));
         warnings.extend(honoured.quality.warnings());
         Ok(warnings)
@@ -79,7 +80,7 @@ impl Scenario {
 
 /// Every value, whether or not the model honours it.
 fn check_values(scenario: &Scenario) -> Result<(), ScenarioError> {
-    gears_of_model(scenario).check()?;
+    scenario.gears.check()?;
     scenario.operation.check()?;
     scenario.quality.check(&scenario.gears)?;
     check_faults(&scenario.faults, &scenario.gears)?;
@@ -87,14 +88,4 @@ fn check_values(scenario: &Scenario) -> Result<(), ScenarioError> {
     scenario.rig.check(&scenario.gears)?;
     check_sensors(&scenario.sensors, scenario.model)?;
     check_keys(&scenario.solver, "solver")
-}
-
-/// The wheels as the model has them: only the published one has the relief that thins the tips, and its default need not fit the others.
-fn gears_of_model(scenario: &Scenario) -> Gears {
-    let mut gears = scenario.gears.clone();
-    let default = Gears::start().tip_relief;
-    if scenario.model.has_meshes() && gears.tip_relief == default {
-        gears.tip_relief = None;
-    }
-    gears
 }

@@ -1,55 +1,59 @@
 //! Scenarios that a model cannot simulate, although other models can.
 
-use crate::damage::Fault;
+use crate::damage::Damage;
 use crate::error::ScenarioError;
-use crate::keys::{Check, Keys};
+use crate::keys::{Check, Keys, require};
 use crate::machine::{DampingRatio, Rig};
-use crate::model::Model;
+use crate::model::{Model, PUBLISHED_KEYS, PublishedKey};
 use crate::scenario::Scenario;
-use crate::wheel::WheelName;
+use crate::wheel::{Gears, TipRelief, WheelName};
 
 /// Refuses keys that have no meaning under the scenario's model and whose defaults cannot stand for them.
 pub(super) fn check(scenario: &Scenario) -> Check {
-    match scenario.model {
-        Model::Contact => Ok(()),
-        Model::Linear => refuse_keys_of_published(scenario),
-        Model::Published => refuse_unknown_to_published(scenario),
+    if scenario.model.has_meshes() {
+        refuse_keys_of_published(scenario)
+    } else {
+        refuse_unknown_to_published(scenario)
     }
 }
 
 /// An error about a default that the model always has, with what to do instead.
 pub(super) fn with_help(model: Model, error: ScenarioError) -> ScenarioError {
-    if model == Model::Published { error.with_help(OTHER_MODELS_HELP) } else { error }
+    if model.has_meshes() { error } else { error.with_help(OTHER_MODELS_HELP) }
 }
 
 /// The kinds of damage that the published model knows.
 const KINDS_OF_PUBLISHED: [&str; 5] =
     ["missing-tooth", "tooth-breakage", "partial-face", "through-face", "tooth-destruction"];
 
-fn unknown_kind(fault: &Fault) -> ScenarioError {
-    let kind = format!("\"{}\"", fault.damage.kind());
+/// The refusal of a kind that the published model does not know.
+pub(crate) fn unknown_kind(damage: &Damage) -> ScenarioError {
+    let kind = format!("\"{}\"", damage.kind());
     ScenarioError::new("fault.kind", kind, "is not known to the published model")
         .with_help("write model = \"linear\" or model = \"contact\"")
 }
 
 /// Refuses keys that only a machine has whose wheels tilt on springs and whose modes are those of the closed mean mesh.
 fn refuse_keys_of_published(scenario: &Scenario) -> Check {
-    let (rig, default) = (&scenario.rig, Rig::start());
+    let (rig, model) = (&scenario.rig, scenario.model);
     let stiffness = rig.wheel_rotational_stiffness_nm_per_rad;
-    let (key, value, what) = if stiffness != default.wheel_rotational_stiffness_nm_per_rad {
-        let what = "the wheels tilt with their shafts, which bend between their bearings";
-        ("rig.wheel_rotational_stiffness_nm_per_rad", format!("{stiffness:?}"), what)
-    } else if let DampingRatio::PerMode(ratios) = rig.damping_ratio {
-        let what = "the damping ratio is one for all modes";
-        ("rig.damping_ratio", format!("{ratios:?}"), what)
-    } else if let Some(given) = scenario.solver.initial_displacement {
-        let what = "the simulation starts in the static equilibrium of the loaded mesh";
-        ("solver.initial_displacement", format!("{given:?}"), what)
-    } else {
-        return Ok(());
+    let is_given = stiffness != Rig::start().wheel_rotational_stiffness_nm_per_rad;
+    let ratios = match rig.damping_ratio {
+        DampingRatio::PerMode(ratios) => Some(format!("{ratios:?}")),
+        _ => None,
     };
-    let problem = format!("concerns the published model alone: under \"linear\" {what}");
-    Err(ScenarioError::new(key, value, problem).with_help("remove the key, or set model = \"published\""))
+    let displacement = scenario.solver.initial_displacement.map(|given| format!("{given:?}"));
+    let values = [is_given.then(|| format!("{stiffness:?}")), ratios, displacement];
+    let mut given =
+        PUBLISHED_KEYS.iter().zip(values).filter(|(of_published, _)| !model.ignores(of_published.key));
+    match given.find_map(|(of_published, value)| Some((of_published, value?))) {
+        None => Ok(()),
+        Some((PublishedKey { key, why, .. }, value)) => {
+            let problem = format!("concerns the published model alone: under \"{}\" {why}", model.name());
+            let help = "remove the key, or set model = \"published\"";
+            Err(ScenarioError::new(*key, value, problem).with_help(help))
+        }
+    }
 }
 
 /// What a refused scenario may do instead.
@@ -60,15 +64,18 @@ const STANDARD_HELP: &str =
     "set model = \"linear\" or \"contact\" (or leave --model out), which have any; or remove the key";
 const ONE_PLACE: &str = "the published model knows only one fault, on the gear's first tooth";
 
-/// Refuses other wheels than standard ones and other faults than one, always on the same tooth.
+/// Refuses other wheels than standard ones, those whose tips the relief takes away, and other faults than one, always on the same tooth.
 fn refuse_unknown_to_published(scenario: &Scenario) -> Check {
     if let Some((key, value)) = scenario.gears.beyond_standard().first() {
         return Err(ScenarioError::new(*key, format!("{value:?}"), ONLY_STANDARD).with_help(STANDARD_HELP));
     }
+    relief_leaves_tips(&scenario.gears)?;
     let error = match scenario.faults.as_slice() {
         [] => return Ok(()),
         // Before its place, which the file may not say.
-        [fault] if !KINDS_OF_PUBLISHED.contains(&fault.damage.kind()) => return Err(unknown_kind(fault)),
+        [fault] if !KINDS_OF_PUBLISHED.contains(&fault.damage.kind()) => {
+            return Err(unknown_kind(&fault.damage));
+        }
         [fault] if fault.wheel != WheelName::Gear => {
             ScenarioError::new("fault.wheel", format!("\"{}\"", fault.wheel.name()), ONE_PLACE)
         }
@@ -81,4 +88,17 @@ fn refuse_unknown_to_published(scenario: &Scenario) -> Check {
         }
     };
     Err(error.with_help(OTHER_MODELS_HELP))
+}
+
+/// The relief that all wheels have under the published model must leave some of the tip: the compliances take what is beyond the tooth's
+/// centre line for a negative thickness.
+fn relief_leaves_tips(gears: &Gears) -> Check {
+    let TipRelief { length_mm, depth_mm } = TipRelief::PUBLISHED;
+    let left_mm = gears.half_thickness_below_tip_mm(length_mm);
+    let problem = format!(
+        "the published model thins all tips by {depth_mm} mm, which with gears.crowning_mm must be less than the {left_mm:.4} mm that the \
+         tooth is thick from its centre line, {length_mm} mm below the tip"
+    );
+    require("gears.module_mm", gears.module_mm, depth_mm + gears.crowning_mm < left_mm, problem)
+        .map_err(|error| error.with_help("take a larger module, or another model"))
 }

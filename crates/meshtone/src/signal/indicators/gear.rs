@@ -1,5 +1,6 @@
 //! The gear metrics, by their usual names.
 
+use crate::signal::check::check_mesh_order;
 use crate::signal::{SignalError, peak_to_peak, standard_deviation, standardised_moment};
 
 /// FM0: peak to peak of the average over the sum of the mesh harmonics' amplitudes, `(max x − min x)/Σ_h A(hz)`, h from 1
@@ -29,7 +30,7 @@ use crate::signal::{SignalError, peak_to_peak, standard_deviation, standardised_
 /// # Ok::<(), meshtone::signal::SignalError>(())
 /// ```
 pub fn fm0(average: &[f64], spectrum: &[f64], teeth: usize) -> Result<Option<f64>, SignalError> {
-    check_mesh_order(spectrum, teeth)?;
+    check_mesh_order(teeth, spectrum.len().saturating_sub(1) as f64)?;
     let mesh: f64 = spectrum.iter().skip(teeth).step_by(teeth).sum();
     Ok(ratio(peak_to_peak(average), mesh))
 }
@@ -130,24 +131,11 @@ pub fn sideband_level_factor(
     spectrum: &[f64],
     teeth: usize,
 ) -> Result<Option<f64>, SignalError> {
-    check_mesh_order(spectrum, teeth)?;
+    check_mesh_order(teeth, spectrum.len().saturating_sub(1) as f64)?;
     let amplitude = |order: usize| spectrum.get(order).copied().unwrap_or(0.0);
     Ok(ratio(amplitude(teeth - 1) + amplitude(teeth + 1), standard_deviation(average)))
 }
 
 fn ratio(numerator: f64, denominator: f64) -> Option<f64> {
     (denominator > 0.0).then(|| numerator / denominator)
-}
-
-fn check_mesh_order(spectrum: &[f64], teeth: usize) -> Result<(), SignalError> {
-    if teeth == 0 {
-        return Err(SignalError::parameter("teeth", 0.0, "at least 1"));
-    }
-    if teeth >= spectrum.len() {
-        return Err(SignalError::MeshOrderBeyondNyquist {
-            mesh_order: teeth as f64,
-            nyquist_order: spectrum.len().saturating_sub(1) as f64,
-        });
-    }
-    Ok(())
 }

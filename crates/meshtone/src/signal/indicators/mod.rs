@@ -8,6 +8,7 @@ pub use gear::{energy_ratio, fm0, fm4, m6a, m8a, sideband_level_factor};
 pub use na4::na4;
 pub use shape::ShapeIndicators;
 
+use super::check::check_length;
 use super::{Separation, SignalError, envelope, order_spectrum, peak};
 
 /// Part of the average's peak below which a part of it is the transforms' rounding.
@@ -102,9 +103,7 @@ impl Indicators {
             ("residual", &parts.residual),
             ("difference", &parts.difference),
         ] {
-            if part.len() != average.len() {
-                return Err(SignalError::LengthMismatch { what, given: part.len(), expected: average.len() });
-            }
+            check_length(what, part.len(), average.len())?;
         }
         let rounding = ROUNDING * peak(average);
         let zeros = vec![0.0; average.len()];

@@ -2,7 +2,7 @@
 
 use crate::signal::SignalError;
 use crate::signal::central_moment;
-use crate::signal::check::check_finite;
+use crate::signal::check::{check_count, check_finite};
 
 /// NA4 of a series of records: the residual's fourth moment over the square of its variance's mean so far,
 /// `NA4_j = µ₄(r_j)/((µ₂(r_1) + … + µ₂(r_j))/j)²`.
@@ -28,15 +28,11 @@ use crate::signal::check::check_finite;
 /// # Ok::<(), meshtone::signal::SignalError>(())
 /// ```
 pub fn na4<R: AsRef<[f64]>>(residuals: &[R]) -> Result<Vec<Option<f64>>, SignalError> {
-    if residuals.is_empty() {
-        return Err(SignalError::TooFew { what: "records", given: 0, needed: 1 });
-    }
+    check_count("records", residuals.len(), 1)?;
     let mut sum = 0.0;
     let mut value = |(record, residual): (usize, &R)| {
         let residual = residual.as_ref();
-        if residual.is_empty() {
-            return Err(SignalError::TooFew { what: "values of a residual", given: 0, needed: 1 });
-        }
+        check_count("values of a residual", residual.len(), 1)?;
         check_finite(residual)?;
         sum += central_moment(residual, 2);
         let mean: f64 = sum / (record + 1) as f64;

@@ -174,6 +174,13 @@ pub fn find_mismatch(angular: &AngularSignal, stated: &StatedFacts) -> Option<Mi
     let orders = FineOrders::of(angular)?;
     let as_stated = Hypothesis::as_stated(stated);
     let stated_evidence = as_stated.evidence(&orders);
+    let mismatch = |alternative, evidence, energy_ratio| Mismatch {
+        stated: *stated,
+        stated_evidence,
+        alternative,
+        evidence,
+        energy_ratio,
+    };
     // Where the shaft's own orders are not seen, a mesh frequency is as well of another speed as of other teeth.
     let may_be_speed = matches!(stated.turning, StatedTurning::ConstantSpeed { .. })
         && stated_evidence.wheel_orders.is_none_or(|score| score < POOR_COMB);
@@ -182,10 +189,9 @@ pub fn find_mismatch(angular: &AngularSignal, stated: &StatedFacts) -> Option<Mi
     let likeliest = hypotheses::alternatives(stated, &orders)
         .filter(|hypothesis| !hypothesis.is_of_mains(stated, &orders))
         .filter_map(|hypothesis| {
-            Some((
-                hypothesis,
-                evidence_if_better(&hypothesis, &as_stated, &stated_evidence, may_be_speed, &orders)?,
-            ))
+            let better =
+                evidence_if_better(&hypothesis, &as_stated, &stated_evidence, may_be_speed, &orders)?;
+            Some((hypothesis, better))
         })
         .max_by(|(a, of_a), (b, of_b)| total(a, of_a).total_cmp(&total(b, of_b)));
     if let StatedTurning::ConstantSpeed { speed_hz } = stated.turning {
@@ -200,29 +206,15 @@ pub fn find_mismatch(angular: &AngularSignal, stated: &StatedFacts) -> Option<Mi
             if is_doubtful { varying_speed(angular, &orders, &as_stated, stated.teeth) } else { None };
         if let Some(variation) = variation {
             let alternative = Alternative::VaryingSpeed { variation, stated_hz: speed_hz };
-            let evidence = stated_evidence;
-            return Some(Mismatch {
-                stated: *stated,
-                stated_evidence,
-                alternative,
-                evidence,
-                energy_ratio: None,
-            });
+            return Some(mismatch(alternative, stated_evidence, None));
         }
         if let Some(SteadierSpeed { factor, energy_ratio }) = steadier {
             let alternative = Alternative::ShaftSpeed { speed_hz: speed_hz * factor, stated_hz: speed_hz };
-            let energy_ratio = Some(energy_ratio);
-            return Some(Mismatch { stated: *stated, stated_evidence, alternative, evidence, energy_ratio });
+            return Some(mismatch(alternative, evidence, Some(energy_ratio)));
         }
     }
     let (hypothesis, evidence) = likeliest?;
-    Some(Mismatch {
-        stated: *stated,
-        stated_evidence,
-        alternative: hypothesis.alternative,
-        evidence,
-        energy_ratio: None,
-    })
+    Some(mismatch(hypothesis.alternative, evidence, None))
 }
 
 /// The evidence for a hypothesis, where it is clearly more than that for the stated facts.

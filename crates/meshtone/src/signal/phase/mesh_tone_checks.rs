@@ -3,7 +3,7 @@
 use meshtone_fourier::Complex64;
 
 use super::mesh_tone::{Band, MeshTone};
-use crate::signal::check::{check_channel, check_positive};
+use crate::signal::check::{check_channel, check_count, check_positive};
 use crate::signal::{SignalError, SignalWarning};
 
 /// Least mean power in the band over the median around it.
@@ -38,14 +38,7 @@ pub(super) fn check(signal: &[f64], sampling_rate_hz: f64, tone: &MeshTone) -> R
     }
     check_channel(signal)?;
     let needed = (4.0 * sampling_rate_hz / half_band_hz).ceil() as usize;
-    if signal.len() < needed {
-        return Err(SignalError::TooFew {
-            what: "samples for a band so narrow",
-            given: signal.len(),
-            needed,
-        });
-    }
-    Ok(())
+    check_count("samples for a band so narrow", signal.len(), needed)
 }
 
 /// Checks whether there is a tone in the band, and none stronger beside it.

@@ -14,6 +14,7 @@ pub use pulse_train::{PulseTrain, repair_pulses};
 pub use tachometer::{PulseEdge, Tachometer, tachometer_pulses};
 pub use zero::AngleZero;
 
+use super::check::{check_count, check_finite};
 use super::{SignalError, SignalWarning};
 
 /// The angle of a shaft over the samples of a recording, in revolutions, always rising.
@@ -127,26 +128,20 @@ impl ShaftPhase {
     /// Checks that the shaft turns forwards: the fields are open to everyone.
     pub(super) fn check(&self) -> Result<(), SignalError> {
         let revolutions = &self.revolutions;
-        if revolutions.len() < 2 {
-            return Err(SignalError::TooFew {
-                what: "samples with a phase",
-                given: revolutions.len(),
-                needed: 2,
-            });
-        }
-        super::check::check_finite(revolutions)?;
+        check_count("samples with a phase", revolutions.len(), 2)?;
+        check_finite(revolutions)?;
         // All of them first, many at a time: hardly any phase has to be searched.
         if revolutions.windows(2).fold(true, |rising, pair| rising & (pair[1] > pair[0])) {
             return Ok(());
         }
-        if let Some(i) = revolutions.windows(2).position(|pair| pair[1] <= pair[0]) {
-            return Err(SignalError::NotForwards {
+        match revolutions.windows(2).position(|pair| pair[1] <= pair[0]) {
+            None => Ok(()),
+            Some(i) => Err(SignalError::NotForwards {
                 sample: self.first_sample.saturating_add(i + 1),
                 from_rev: revolutions[i],
                 to_rev: revolutions[i + 1],
-            });
+            }),
         }
-        Ok(())
     }
 
     /// The phase with a known angle 0.

@@ -1,6 +1,6 @@
 //! Pulses in order, with none missing and none doubled.
 
-use crate::signal::check::check_finite;
+use crate::signal::check::{check_count, check_finite};
 use crate::signal::{SignalError, SignalWarning};
 
 /// Number of intervals on each side that show how long an interval should be.
@@ -86,9 +86,7 @@ fn usual(intervals: &[f64], index: usize) -> f64 {
 }
 
 fn check_order(time_s: &[f64]) -> Result<(), SignalError> {
-    if time_s.len() < 3 {
-        return Err(SignalError::TooFew { what: "tachometer pulses", given: time_s.len(), needed: 3 });
-    }
+    check_count("tachometer pulses", time_s.len(), 3)?;
     check_finite(time_s)?;
     for index in 1..time_s.len() {
         let (previous_s, time_s) = (time_s[index - 1], time_s[index]);

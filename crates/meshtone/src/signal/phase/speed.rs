@@ -1,7 +1,7 @@
 //! Phase by integration of the speed.
 
 use super::{AngleZero, ShaftPhase};
-use crate::signal::check::{check_finite, check_positive};
+use crate::signal::check::{check_count, check_finite, check_length, check_positive};
 use crate::signal::{SignalError, SignalWarning};
 
 impl ShaftPhase {
@@ -97,20 +97,8 @@ impl ShaftPhase {
 }
 
 fn check_profile(time_s: &[f64], speed_hz: &[f64]) -> Result<(), SignalError> {
-    if time_s.len() != speed_hz.len() {
-        return Err(SignalError::LengthMismatch {
-            what: "speeds of the profile",
-            given: speed_hz.len(),
-            expected: time_s.len(),
-        });
-    }
-    if time_s.len() < 2 {
-        return Err(SignalError::TooFew {
-            what: "points of the speed profile",
-            given: time_s.len(),
-            needed: 2,
-        });
-    }
+    check_length("speeds of the profile", speed_hz.len(), time_s.len())?;
+    check_count("points of the speed profile", time_s.len(), 2)?;
     check_finite(time_s)?;
     check_finite(speed_hz)?;
     for &speed in speed_hz {

@@ -110,10 +110,7 @@ const HELIX: u64 = u64::MAX;
 
 impl Draw<'_> {
     fn draws(&self, index: u64) -> Draws {
-        let purpose = match self.name {
-            WheelName::Pinion => Purpose::PinionDeviations,
-            WheelName::Gear => Purpose::GearDeviations,
-        };
+        let purpose = self.name.choose(Purpose::PinionDeviations, Purpose::GearDeviations);
         Draws::new(self.seed, purpose, index)
     }
 
@@ -155,10 +152,7 @@ impl Draw<'_> {
 
     fn flanks(&self) -> ErrorTable {
         let wheel = self.teeth.wheel(self.name);
-        let first = match self.name {
-            WheelName::Pinion => self.teeth.contact.pinion_initial_radius_mm,
-            WheelName::Gear => self.teeth.contact.gear_initial_radius_mm,
-        };
+        let first = self.teeth.initial_contact_radius_mm(self.name);
         let share = self.quality.tooth_share;
         let (slope_mm, form_mm) =
             (self.tolerances.profile_slope_um * 1e-3, self.tolerances.profile_form_um * 1e-3);
@@ -182,7 +176,7 @@ impl Draw<'_> {
             for k in 0..ERROR_POINTS {
                 let s = along(k);
                 let wave = |phase: f64| (TAU * WAVES * s + phase).sin() / 2.0;
-                let row = if self.name == WheelName::Pinion { k } else { ERROR_POINTS - 1 - k };
+                let row = self.name.choose(k, ERROR_POINTS - 1 - k);
                 errors[(row, tooth)] = pitch
                     + slope_mm * (common_slope + own_slope) * (s - 0.5)
                     + form_mm * (common_form * wave(phase) + own_form * wave(own_phase));

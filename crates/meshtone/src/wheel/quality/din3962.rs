@@ -5,8 +5,7 @@
 
 use crate::error_table::ErrorTable;
 use crate::random::{Draws, Purpose};
-use crate::wheel::ERROR_POINTS;
-use crate::wheel::Wheel;
+use crate::wheel::{ERROR_POINTS, Teeth, WheelName};
 
 /// (µm) f_Hα of grades 1 to 12.
 const ANGLE_DEVIATION_UM: [f64; 12] = [1.0, 1.5, 2.0, 3.0, 4.5, 6.0, 9.0, 12.0, 18.0, 28.0, 45.0, 71.0];
@@ -27,15 +26,6 @@ pub(super) struct Grade {
     roughness_mm: f64,
 }
 
-/// Direction in which a tooth passes through contact.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Order {
-    /// The driving wheel's teeth.
-    RootToTip,
-    /// The driven wheel's teeth.
-    TipToRoot,
-}
-
 impl Grade {
     /// The tolerances of grade 1 to 12; none for 0 (ideal).
     pub(super) fn new(grade: u8) -> Option<Self> {
@@ -47,22 +37,12 @@ impl Grade {
         })
     }
 
-    /// (mm) Errors of every tooth of `wheel`, 100 × teeth.
-    pub(super) fn draw(
-        &self,
-        wheel: &Wheel,
-        initial_contact_radius_mm: f64,
-        seed: u64,
-        purpose: Purpose,
-        order: Order,
-    ) -> ErrorTable {
-        let base = wheel.base_radius_mm;
+    /// (mm) Errors of every tooth of a wheel, 100 × teeth.
+    pub(super) fn draw(&self, teeth: &Teeth, name: WheelName, seed: u64) -> ErrorTable {
+        let (wheel, first) = (teeth.wheel(name), teeth.initial_contact_radius_mm(name));
+        let purpose = name.choose(Purpose::PinionProfileErrors, Purpose::GearProfileErrors);
         let last = (ERROR_POINTS - 1) as f64;
-        let path = |k: usize| {
-            let radius = initial_contact_radius_mm
-                + (wheel.tip_radius_mm - initial_contact_radius_mm) * k as f64 / last;
-            (radius * radius - base * base).max(0.0).sqrt()
-        };
+        let path = |k: usize| wheel.curvature_mm(first + (wheel.tip_radius_mm - first) * k as f64 / last);
         let (path_start, path_end) = (path(0), path(ERROR_POINTS - 1));
         let waves = if wheel.teeth < 20 { WAVES[0] } else { WAVES[1] };
         let mut errors = ErrorTable::filled(ERROR_POINTS, wheel.teeth as usize, 0.0);
@@ -76,7 +56,8 @@ impl Grade {
             for k in 0..ERROR_POINTS {
                 let s = (path(k) - path_start) / (path_end - path_start);
                 let wave = (2.0 * std::f64::consts::PI * waves * s + phase).sin();
-                let row = if order == Order::RootToTip { k } else { ERROR_POINTS - 1 - k };
+                // The driving wheel's teeth pass through contact from root to tip, the driven one's from tip to root.
+                let row = name.choose(k, ERROR_POINTS - 1 - k);
                 errors[(row, tooth)] =
                     angle_deviation * s + 0.5 * form_deviation * wave + draws.uniform(0.0, self.roughness_mm);
             }

@@ -85,10 +85,7 @@ impl Quality {
 
     /// Other deviations of a wheel that are given instead of drawn.
     pub(crate) fn given(&self, wheel: WheelName) -> &WheelDeviations {
-        match wheel {
-            WheelName::Pinion => &self.pinion_deviations,
-            WheelName::Gear => &self.gear_deviations,
-        }
+        wheel.choose(&self.pinion_deviations, &self.gear_deviations)
     }
 }
 
@@ -147,6 +144,13 @@ impl Keys for Quality {
     }
 
     fn rows() -> Vec<Row<Self>> {
+        let share = |name, meaning, field| row(name, "-", meaning, field).range(Range::from_to(0.0, 1.0));
+        let errors_row = |name, field| {
+            row(name, "mm", "the profile errors, instead of a draw: 100 rows of one number a tooth", field)
+                .otherwise("none")
+                .rule("100 × teeth, each below the module")
+                .alternative("[ 100 rows of one number a tooth ]")
+        };
         vec![
             row(
                 "din_grade",
@@ -174,30 +178,23 @@ impl Keys for Quality {
             .range(Range::from_to(0.0, 11.0).message(
                 "must be a whole number from 0 to 11: a class of ISO 1328-1:2013, from 1 (best) to 11, or 0 for none",
             )),
-            row(
+            share(
                 "tooth_share",
-                "-",
                 "the part of the tolerances of profile slope and form that each tooth has of its own; the rest is \
                  common to a wheel's teeth",
                 field!(tooth_share),
-            )
-            .range(Range::from_to(0.0, 1.0)),
-            row(
+            ),
+            share(
                 "pitch_share",
-                "-",
                 "a wheel's largest single pitch deviation over its tolerance f_p",
                 field!(pitch_share),
-            )
-            .range(Range::from_to(0.0, 1.0)),
-            row("run_out_share", "-", "a wheel's run-out over its tolerance F_r", field!(run_out_share))
-                .range(Range::from_to(0.0, 1.0)),
-            row(
+            ),
+            share("run_out_share", "a wheel's run-out over its tolerance F_r", field!(run_out_share)),
+            share(
                 "helix_share",
-                "-",
                 "a wheel's largest helix slope deviation, of either sign, over its tolerance f_Hβ",
                 field!(helix_share),
-            )
-            .range(Range::from_to(0.0, 1.0)),
+            ),
             documented(
                 "errors_file",
                 "an .npz with the profile errors, instead of a draw, as `meshtone wheels` writes it; its entries are \
@@ -206,30 +203,20 @@ impl Keys for Quality {
             )
             .otherwise("none")
             .alternative("\"wheels.npz\""),
-            row(
+            errors_row(
                 ERROR_KEYS[0],
-                "mm",
-                "the profile errors, instead of a draw: 100 rows of one number a tooth",
                 Field::new(
                     |quality: &Self| quality.profile_errors.as_ref().map(|errors| &errors.pinion_profile_errors_mm),
                     |quality| quality.profile_errors.as_mut().map(|errors| &mut errors.pinion_profile_errors_mm),
                 ),
-            )
-            .otherwise("none")
-            .rule("100 × teeth, each below the module")
-            .alternative("[ 100 rows of one number a tooth ]"),
-            row(
+            ),
+            errors_row(
                 ERROR_KEYS[1],
-                "mm",
-                "the profile errors, instead of a draw: 100 rows of one number a tooth",
                 Field::new(
                     |quality: &Self| quality.profile_errors.as_ref().map(|errors| &errors.gear_profile_errors_mm),
                     |quality| quality.profile_errors.as_mut().map(|errors| &mut errors.gear_profile_errors_mm),
                 ),
-            )
-            .otherwise("none")
-            .rule("100 × teeth, each below the module")
-            .alternative("[ 100 rows of one number a tooth ]"),
+            ),
         ]
         .into_iter()
         .chain(deviation_rows!(pinion_deviations, DEVIATION_KEYS[0]))

@@ -14,7 +14,6 @@ pub use measured::WheelDeviations;
 pub use tolerances::Tolerances;
 
 use super::{Teeth, Wheel, WheelName};
-use crate::random::Purpose;
 
 /// The profile errors of both wheels: those given by the user, or a draw by DIN 3962 grade; and given pitch deviations.
 ///
@@ -64,22 +63,8 @@ fn given_pitches_mm(quality: &Quality, wheel: &Wheel, name: WheelName) -> Option
 fn drawn_profiles(quality: &Quality, teeth: &Teeth, seed: u64) -> Option<ProfileErrors> {
     let grade = din3962::Grade::new(quality.din_grade)?;
     let seed = quality.seed.unwrap_or(seed);
-    let pinion_radius = teeth.contact.pinion_initial_radius_mm;
-    let gear_radius = teeth.contact.gear_initial_radius_mm;
     Some(ProfileErrors {
-        pinion_profile_errors_mm: grade.draw(
-            &teeth.pinion,
-            pinion_radius,
-            seed,
-            Purpose::PinionProfileErrors,
-            din3962::Order::RootToTip,
-        ),
-        gear_profile_errors_mm: grade.draw(
-            &teeth.gear,
-            gear_radius,
-            seed,
-            Purpose::GearProfileErrors,
-            din3962::Order::TipToRoot,
-        ),
+        pinion_profile_errors_mm: grade.draw(teeth, WheelName::Pinion, seed),
+        gear_profile_errors_mm: grade.draw(teeth, WheelName::Gear, seed),
     })
 }

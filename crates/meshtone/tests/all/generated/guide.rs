@@ -52,7 +52,7 @@ fn rows(keys: &[KeyDescription], first: &str) -> String {
             defaults.push(default(of_gear, keys));
             defaults.dedup();
         }
-        let ignored = key.ignored_in_words();
+        let ignored = key.ignored_in_words.clone();
         let ignored = if ignored.is_empty() { ignored } else { format!(". *{ignored}*") };
         let KeyDescription { meaning, unit, allowed, .. } = key;
         let default = defaults.join(", ");

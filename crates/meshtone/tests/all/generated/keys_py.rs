@@ -44,7 +44,7 @@ fn tables() -> String {
     for section in sections().iter().filter(|section| !LISTS.contains(&section.name)) {
         for table in &section.keys {
             let name = class_name(&table.key);
-            let is_table = matches!(table.kind, KeyKind::Table | KeyKind::TableOrFalse);
+            let is_table = table.kind == KeyKind::Table;
             if !is_table || known.contains(&name) {
                 continue;
             }

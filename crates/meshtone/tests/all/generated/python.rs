@@ -47,7 +47,6 @@ pub fn argument_type(key: &KeyDescription) -> String {
         KeyKind::Numbers(_) | KeyKind::List => "Sequence[float]".into(),
         KeyKind::NumberOrNumbers(_) => "float | Sequence[float]".into(),
         KeyKind::Table => class_name(&key.key),
-        KeyKind::TableOrFalse => format!("{} | Literal[False]", class_name(&key.key)),
         KeyKind::Profile => "Profile".into(),
         KeyKind::FrequencyResponse => "Mapping[str, Any]".into(),
         KeyKind::Text => "str".into(),
@@ -85,7 +84,6 @@ pub fn parameter(indent: &str, key: &KeyDescription, name: &str, optional: bool)
         KeyKind::List => "sequence of floats".into(),
         KeyKind::Teeth => "int, sequence of ints or 'all'".into(),
         KeyKind::NumberOrNumbers(count) => format!("float or sequence of {count} floats"),
-        KeyKind::TableOrFalse => format!("{} or False", class_name(&key.key)),
         KeyKind::Profile => "dict of time_s and value".into(),
         KeyKind::FrequencyResponse => "dict of frequency_hz, magnitude and phase_deg".into(),
         KeyKind::Matrix => "array of float64, shape (100, teeth)".into(),
@@ -111,7 +109,7 @@ pub fn sentences(key: &KeyDescription) -> String {
     } else {
         format!(" Default: {}.", key.default.replace('`', "``"))
     };
-    let ignored = key.ignored_in_words();
+    let ignored = &key.ignored_in_words;
     format!("{meaning}{allowed}{default}{}{ignored}", if ignored.is_empty() { "" } else { " " })
 }
 
