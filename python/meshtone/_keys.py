@@ -546,8 +546,8 @@ class ScenarioKeys:
             (-) The damping of teeth in contact over the critical one of the wheels' rotation on the mean mesh
             stiffness. Allowed: ≥ 0, < 1. Default: 0.15. Ignored by published.
         sampling_rate_hz : float, optional
-            (S/s) The nominal sampling rate; the actual one is higher, so that both wheels turn whole numbers of
-            samples. Allowed: > 0. Default: 1e5.
+            (S/s) The nominal sampling rate; the actual one is the next at which a whole number of samples passes from
+            one pair of teeth to the next. Allowed: > 0. Default: 1e5.
         settle_fraction : float, optional
             (-) The part of the time that is discarded from the start, while the vibration settles. Allowed: ≥ 0, < 1.
             Default: 0.5.

@@ -18,8 +18,8 @@ import numpy.typing as npt
 import meshtone as mt
 
 DRAWS = range(1, 17)
-RATES = (1e5, 3.5e5)
-"""(S/s) Nominal: 258 400 and 516 800 samples are made in a second, a whole number in a tooth pitch of either shaft."""
+RATES = (2.584e5, 5.168e5)
+"""(S/s) 380 and 760 samples in a tooth pitch."""
 
 INDICATORS = {
     "rms": "difference_rms",

@@ -597,14 +597,14 @@ impl Stages {
     pub(crate) fn modal_machine(&self, train: &Train, modes: &Modes) -> ModalMachine {
         let operation = &self.scenario.operation;
         let first_speed = operation.speed_profile_hz.as_ref().map(|profile| profile.value[0]);
-        let tilts: Vec<bool> = self.meshes.iter().map(Mesh::tilts).collect();
+        let face_reach_m: Vec<f64> = self.meshes.iter().map(Mesh::face_reach_m).collect();
         let start = InitialMotion {
             nominal_rad_per_s: TAU * operation.pinion_speed_hz,
             brake_torque_nm: operation.brake_torque_nm,
             motor_rad_per_s: TAU * first_speed.unwrap_or(operation.pinion_speed_hz),
             velocity: self.scenario.solver.initial_velocity.as_ref().map(|given| given.as_slice()),
         };
-        ModalMachine::new(&train.machine, modes, &tilts, start)
+        ModalMachine::new(&train.machine, modes, &face_reach_m, start)
     }
 
     /// The error that a solution without bound is.

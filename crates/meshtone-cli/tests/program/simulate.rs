@@ -118,12 +118,7 @@ fn summary_of_a_healthy_pair() {
     assert_eq!(channels["axial_g"]["rms_g"], 0.0);
     assert_eq!(channels["axial_g"]["kurtosis"], Value::Null);
     assert!(summary["computing_time_ms"]["time_integration"].is_f64());
-    // So coarse a step shifts the resonance of the mesh; an ordinary one does not.
-    assert_eq!(summary["warnings"].as_array().unwrap().len(), 1);
-    assert_eq!(summary["warnings"][0]["key"], "solver.sampling_rate_hz");
-    workplace.write("fine.toml", fast_with("sampling_rate_hz", "sampling_rate_hz = 1e5"));
-    workplace.succeeds(&["simulate", "fine.toml", "-o", "fine", "--no-panel"]);
-    assert_eq!(self::summary(&workplace, "fine")["warnings"], Value::Array(Vec::new()));
+    assert_eq!(summary["warnings"], Value::Array(Vec::new()));
 }
 
 #[test]

@@ -13,7 +13,7 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_meshtone");
 /// `[gears]` is line 1; `[quality]` and its grade are the last two lines, 10 and 11.
 pub const FAST: &str = "[gears]\nmodule_mm = 3.0\npinion_teeth = 20\ngear_teeth = 40\nface_width_mm = 15.0\n\
                         [operation]\npinion_speed_hz = 40.0\nbrake_torque_nm = 200.0\n\
-                        [solver]\nsampling_rate_hz = 1000.0\n";
+                        [solver]\nsampling_rate_hz = 11200.0\n";
 
 /// A directory with `fast.toml` in it, in which the program runs.
 pub struct Workplace {

@@ -333,7 +333,7 @@ const FAULTS: [&str; 3] = [
 
 fn rig(fault: &str, seed: u64) -> Scenario {
     // Finer than the base scenario of the experiment.
-    let fine = FAST.replace("sampling_rate_hz = 1000.0", "sampling_rate_hz = 40e3");
+    let fine = FAST.replace("sampling_rate_hz = 11200.0", "sampling_rate_hz = 40e3");
     Scenario::from_toml(&format!(
         "model = \"contact\"\nseed = {seed}\n{fine}[quality]\ndin_grade = 8\n{fault}"
     ))

@@ -285,7 +285,7 @@ impl<'a> MeshForcing<'a> {
         let [pinion, gear] = FlankErrors::of_both(deviations);
         let lead = mesh.damping_time_s / step_s;
         let eccentricity = Eccentricity::of(deviations);
-        let tilts = mesh.tilts();
+        let tilts = mesh.face_reach_m() > 0.0;
         let tables = every_sample_is_a_point
             .then(|| TabulatedPairs::new(mesh, [&pinion, &gear], eccentricity.as_ref(), tilts, lead));
         let before = [(i64::MIN, [0.0; 2]); PAIRS];

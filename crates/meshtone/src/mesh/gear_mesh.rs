@@ -7,7 +7,7 @@ use super::face_load::{FaceLoad, FaceSlope};
 use super::forcing::{PAIRS, Turning};
 use super::law::{Contact, MeshLaw, PairsSample, deflection_at_rest};
 use super::pair::Pairs;
-use super::path_table::{PairState, PairTables, TipShape};
+use super::path_table::{PairState, PairTables, TipShape, share_on_path};
 use super::sequence::{PairKind, PairSequence};
 use crate::machine::ClosedMesh;
 use crate::simd::Lanes;
@@ -128,13 +128,13 @@ impl Mesh {
             .map(|&kind| PairTable { kind, states: tables.tabulate(&kind, &positions, 1.0 / per_pitch) })
             .collect();
         let mean_stiffness = |classes: &[PairTable]| {
-            let on_path = |at: f64| match contact {
-                Contact::Unilateral => (begins..=ends).contains(&at),
-                // Beyond the path nothing is stiff.
-                Contact::Bilateral => true,
+            let share = |at: f64| match contact {
+                Contact::Unilateral => share_on_path(at, 1.0 / per_pitch, [begins, ends]),
+                // The stiffness ends with the path.
+                Contact::Bilateral => 1.0,
             };
-            let states = classes[0].states.iter().zip(&positions).filter(|(_, at)| on_path(**at));
-            states.map(|(state, _)| state.stiffness_n_per_m).sum::<f64>() / per_pitch
+            let states = classes[0].states.iter().zip(&positions);
+            states.map(|(state, at)| share(*at) * state.stiffness_n_per_m).sum::<f64>() / per_pitch
         };
         let mut mean_stiffness_n_per_m = mean_stiffness(&classes);
         let mut face_load_factor = 1.0;
@@ -180,9 +180,10 @@ impl Mesh {
         (point as f64 - self.points_before as f64) / self.points_per_pitch as f64
     }
 
-    /// Whether the load of some pair lies off the middle of the face, so that the wheels tilt.
-    pub fn tilts(&self) -> bool {
-        self.classes.iter().flat_map(|class| &class.states).any(|state| state.face_centre_m != 0.0)
+    /// (m) How far from the middle of the face the load of a pair acts at most; 0 where no load tilts the wheels.
+    pub fn face_reach_m(&self) -> f64 {
+        let states = self.classes.iter().flat_map(|class| &class.states);
+        states.map(|state| state.face_centre_m.abs()).fold(0.0, f64::max)
     }
 
     /// The mesh as if it were closed always, with its mean stiffness.

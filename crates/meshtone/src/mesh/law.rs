@@ -123,12 +123,9 @@ impl MeshLaw {
         -self.backlash_m.unwrap_or(OUT_OF_REACH_M)
     }
 
-    /// (-) Change of D per change of δ in a step, `1 + τ/h`.
-    ///
-    /// # Arguments
-    /// * `half_step_s` - (s) h, half of the time step
-    pub(crate) fn lead(&self, half_step_s: f64) -> f64 {
-        1.0 + self.damping_time_s / half_step_s
+    /// (N/m) A stiffness that no pairs of the mesh reach together: there is at most one more of them than in the mean.
+    pub(crate) fn most_stiffness_n_per_m(&self) -> f64 {
+        2.0 * self.back_stiffness_n_per_m
     }
 
     /// (N) The force that the flanks carry at a deflection.
@@ -178,8 +175,6 @@ pub(crate) struct LawLanes<const L: usize> {
     back_touches: Lanes<L>,
     /// (m) Penetration below which a pair carries nothing.
     lets_go: Lanes<L>,
-    /// (-) Change of D per change of δ in a step, `1 + τ/h`.
-    lead: Lanes<L>,
 }
 
 impl<const L: usize> LawLanes<L> {
@@ -188,14 +183,12 @@ impl<const L: usize> LawLanes<L> {
     /// # Arguments
     /// * `laws` - of each
     /// * `static_force_n` - (N) mesh force of each under the constant loads
-    /// * `half_step_s` - (s) half of the time step of each
-    pub(crate) fn new(laws: [MeshLaw; L], static_force_n: [f64; L], half_step_s: [f64; L]) -> Self {
+    pub(crate) fn new(laws: [MeshLaw; L], static_force_n: [f64; L]) -> Self {
         Self {
             static_force: Lanes(static_force_n),
             back_stiffness: Lanes::from_fn(|l| laws[l].back_stiffness_n_per_m),
             back_touches: Lanes::from_fn(|l| laws[l].back_touches_at_m()),
             lets_go: Lanes::from_fn(|l| laws[l].contact.lets_go_at_m()),
-            lead: Lanes::from_fn(|l| laws[l].lead(half_step_s[l])),
         }
     }
 
@@ -208,7 +201,7 @@ impl<const L: usize> LawLanes<L> {
     ///
     /// # Arguments
     /// * `free` - (m) deflection with its damping's lead in g₀ and g₁ at the step's end, without the new force
-    /// * `compliance` - (m/N) deflection in each of them per new force in each
+    /// * `compliance` - (m/N) the same deflection in each of them per new force in each
     /// * `sample` - the pairs at the step's end
     /// * `touching` - the pairs that touched at the step's start; set to those that do at its end
     #[inline(always)]
@@ -230,8 +223,7 @@ impl<const L: usize> LawLanes<L> {
             let cross = gamma[0][1].add(simd, gamma[1][0]);
             compliance = z.mul_add(simd, z.mul_add(simd, gamma[1][1], cross), compliance);
         }
-        compliance = compliance.mul(simd, self.lead);
-        load = of_static.mul(simd, self.lead).mul_add(simd, self.static_force, load);
+        load = of_static.mul_add(simd, self.static_force, load);
         let one = Lanes::splat(1.0);
         let before = *touching;
         let (mut deflection, mut sums) = self.solve(simd, sample, [compliance, one, load], touching);
@@ -406,7 +398,7 @@ mod tests {
         #[inline(always)]
         fn run<I: Instructions>(self, simd: I) -> Vec<[f64; 2]> {
             let h = self.half_step;
-            let law = LawLanes::<1>::new([self.law], [0.0], [h]);
+            let law = LawLanes::<1>::new([self.law], [0.0]);
             let e = 1.0 / (1.0 + 2.0 * self.damping_ratio * h);
             let ([mut x, mut s, mut w], mut load) = ([0.0; 3], (self.at)(0.0).2);
             let mut states = Vec::with_capacity(self.steps);
@@ -547,7 +539,7 @@ mod tests {
                 back_stiffness_n_per_m: 2e8,
                 damping_time_s: 2e-6,
             };
-            let lanes = LawLanes::new([law], [300.0], [1e-6]);
+            let lanes = LawLanes::new([law], [300.0]);
             let pairs = sample(stiffness, offset);
             let solve = Solve { law: &lanes, free, compliance, pairs: &pairs };
             let force = 300.0 - InstructionSet::fastest().run(solve);
@@ -556,8 +548,7 @@ mod tests {
             let (mut low, mut high) = (-1e-3, 1e-3);
             for _ in 0..200 {
                 let middle = (low + high) / 2.0;
-                // The step's deflection under this force, 1 + τ/h = 3 times the compliance ahead.
-                if middle - 3.0 * compliance * relative(middle) < free {
+                if middle - compliance * relative(middle) < free {
                     low = middle;
                 } else {
                     high = middle;

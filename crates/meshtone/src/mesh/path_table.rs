@@ -168,7 +168,7 @@ impl<'a> PairTables<'a> {
 
 /// (-) Part of the interval around a position, half a step to either side, that lies on a path: so a pair whose stiffness ends with its
 /// path is in contact as long as the path is.
-fn share_on_path(position: f64, step: f64, [begins, ends]: [f64; 2]) -> f64 {
+pub(super) fn share_on_path(position: f64, step: f64, [begins, ends]: [f64; 2]) -> f64 {
     let on_path = (position + step / 2.0).min(ends) - (position - step / 2.0).max(begins);
     (on_path / step).clamp(0.0, 1.0)
 }

@@ -34,18 +34,21 @@ pub struct TimeGrid {
 impl TimeGrid {
     /// The division of time for a pair in operation; all values are valid.
     ///
-    /// `f_s = ⌈f_nom/(L f_p) + 6⌉ L f_p`, with `L` the least common multiple of the tooth counts and
-    /// `f_p` the nominal pinion speed. Without a speed profile `2 z_g` pinion revolutions are
-    /// simulated; with one, the time that it spans.
+    /// Without a speed profile `2 z_g` pinion revolutions are simulated; with one, the time that it spans.
     ///
     /// # Arguments
     /// * `gears` - for the tooth counts
     /// * `operation` - nominal speed, and the profile that may replace it
-    /// * `solver` - nominal sampling rate and settling
-    pub fn new(gears: &Gears, operation: &Operation, solver: &Solver) -> Self {
+    /// * `solver` - settling
+    /// * `samples_per_pitch` - number of samples from one pair of teeth to the next at the nominal speed
+    pub(crate) fn new(
+        gears: &Gears,
+        operation: &Operation,
+        solver: &Solver,
+        samples_per_pitch: usize,
+    ) -> Self {
         let speed = operation.pinion_speed_hz;
-        let multiple = least_common_multiple(gears.pinion_teeth, gears.gear_teeth);
-        let samples_per_pinion_revolution = samples_per_pinion_revolution(solver, multiple, speed);
+        let samples_per_pinion_revolution = samples_per_pitch.saturating_mul(gears.pinion_teeth as usize);
         let sampling_rate_hz = samples_per_pinion_revolution as f64 * speed;
         let revolutions = nominal_revolutions(gears.gear_teeth) as usize;
         // Saturating: a scenario may ask for more than any machine holds, and is then refused.
@@ -78,9 +81,14 @@ impl TimeGrid {
     }
 }
 
-fn samples_per_pinion_revolution(solver: &Solver, multiple: u32, pinion_speed_hz: f64) -> usize {
-    let per_multiple = (solver.sampling_rate_hz / (f64::from(multiple) * pinion_speed_hz) + 6.0).ceil();
-    (per_multiple as usize).saturating_mul(multiple as usize)
+/// Number of samples from one pair of teeth to the next with which a nominal rate is met or just exceeded.
+///
+/// # Arguments
+/// * `sampling_rate_hz` - (S/s) the nominal rate
+/// * `pinion_teeth`, `pinion_speed_hz` - tooth count and (rev/s) nominal speed of the pinion
+pub(crate) fn samples_per_pitch(sampling_rate_hz: f64, pinion_teeth: u32, pinion_speed_hz: f64) -> usize {
+    // Without the part by which rounding exceeds a whole number.
+    (sampling_rate_hz / (f64::from(pinion_teeth) * pinion_speed_hz) * (1.0 - 1e-12)).ceil() as usize
 }
 
 /// Division of the mesh cycle (one gear revolution), in fractions of a pinion revolution.

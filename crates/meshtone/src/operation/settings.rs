@@ -6,8 +6,9 @@ use crate::keys::{Keys, Range, Row, field, row};
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Solver {
-    /// (S/s) Nominal sampling rate; the actual one is the next that divides both shafts'
-    /// revolutions. Default 1e5.
+    /// (S/s) Nominal sampling rate; the actual one is the next with a whole number of samples from one pair of teeth to the next.
+    /// Default 1e5: the acceleration below 10 kHz of the healthy pair and of damaged ones whose teeth do not bounce is then within 1 % of
+    /// that at 2 MS/s.
     pub sampling_rate_hz: f64,
     /// (-) Part of `2 z_g` pinion revolutions that is simulated first and discarded. Default 0.5.
     pub settle_fraction: f64,
@@ -46,8 +47,8 @@ impl Keys for Solver {
             row(
                 "sampling_rate_hz",
                 "S/s",
-                "the nominal sampling rate; the actual one is higher, so that both wheels turn whole numbers of \
-                 samples",
+                "the nominal sampling rate; the actual one is the next at which a whole number of samples passes from one pair \
+                 of teeth to the next",
                 field!(sampling_rate_hz),
             )
             .range(Range::positive()),

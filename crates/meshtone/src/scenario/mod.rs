@@ -35,7 +35,8 @@ pub(crate) use validate::unknown_kind;
 pub use validate::{MEMORY_LIMIT_BYTES, MemoryLimit};
 
 use crate::keys::Keys;
-use crate::operation::{Motion, TimeGrid};
+use crate::operation::{Motion, TimeGrid, samples_per_pitch};
+use crate::published;
 
 /// Everything that one simulation depends on.
 ///
@@ -160,7 +161,13 @@ impl Scenario {
 
     /// Division of time: sampling, length, what is discarded.
     pub fn time_grid(&self) -> TimeGrid {
-        TimeGrid::new(&self.gears, &self.operation, &self.solver)
+        let Self { gears, operation, solver, .. } = self;
+        let samples_per_pitch = if self.model.has_meshes() {
+            samples_per_pitch(solver.sampling_rate_hz, gears.pinion_teeth, operation.pinion_speed_hz)
+        } else {
+            published::samples_per_pitch(self)
+        };
+        TimeGrid::new(gears, operation, solver, samples_per_pitch)
     }
 
     /// Motion of motor and brake, sample by sample from the start of the simulation.

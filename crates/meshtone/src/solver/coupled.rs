@@ -1,18 +1,15 @@
 //! Steps of a machine with several meshes: one scalar unknown a mesh, all coupled through the machine.
 //!
-//! In the notation of [`super::step`], the deflections with their damping's lead, `D_a` of mesh a, obey
-//! `D + G f(D) = D₀` with `G_ab = ℓ_a Σ_n B_na h²E_n B_nb`, `ℓ_a = 1 + τ_a/h`, and `f_a` a rising, piecewise linear function of `D_a`
-//! alone. With `z_a = D_a/ℓ_a` the equation says that a strictly convex function of z is at its minimum,
-//! `½ (z − z₀)ᵀ S⁻¹ (z − z₀) + Σ φ_a(z_a)` with S = Γ symmetric and positive definite and `dφ_a/dz_a = f_a`: there is one solution.
+//! In the notation of [`super::step`], the deflections with their damping's lead, `D_a` of mesh a, obey `D + G f(D) = D₀` with
+//! `G_ab = Σ_n B_na (β_n + ½ τ_a/Δt) Δt²E_n B_nb`, and `f_a` a rising, piecewise linear function of `D_a` alone.
 //!
 //! Newton's method takes the pairs that touch at the last iterate and solves the linear equations that these make. It ends, exactly,
-//! when the same pairs touch at the new iterate. In theory it can go round in a circle; after [`MOST_PLAIN_ITERATIONS`] each iterate is
-//! the minimum of the convex function on the way to Newton's, and it cannot: the function falls, and there are finitely many sets of
-//! pairs.
+//! when the same pairs touch at the new iterate. In theory it can go round in a circle; after [`MOST_PLAIN_ITERATIONS`] each iterate goes
+//! only as far towards Newton's as makes the residual smaller.
 
 use super::integrate::{Block, Diverged, Problem, Recorder, is_bounded};
 use super::outputs::{EXTERNALS, OutputWeights, dot};
-use super::prepare::Prepared;
+use super::prepare::{FirstState, Prepared};
 use crate::mesh::{ForcingBlock, MeshLaw, PairsSample};
 
 /// Most meshes that one machine has.
@@ -39,14 +36,8 @@ pub(super) fn integrate(mut problem: Problem, recorder: &mut dyn Recorder) -> Re
     let mut samples = vec![PairsSample::<1>::NONE; lines.len()];
     problem.forcing.next_block(1, &mut block);
     take_sample(&block, 0, &mut samples);
-    let first = prepared.first_state(&problem.machine, &samples, 0);
-    let mut state = State {
-        displacement: first.displacement,
-        scaled_velocity: first.scaled_velocity,
-        force: first.force,
-        external: external(&block, 0),
-        deflection: [0.0; MOST_MESHES],
-    };
+    let first = prepared.first_state(&problem.machine, &samples, 0, external(&block, 0));
+    let mut state = State { sample: first, deflection: [0.0; MOST_MESHES] };
     let mut outputs: Vec<Vec<f64>> = vec![Vec::with_capacity(BLOCK); prepared.outputs.len()];
     let mut sample = start;
     while sample < end && recorder.goes_on() {
@@ -63,7 +54,7 @@ pub(super) fn integrate(mut problem: Problem, recorder: &mut dyn Recorder) -> Re
             take_sample(&block, step, &mut samples);
             state.step(&prepared, &meshes, &samples, external(&block, step));
         }
-        if !state.displacement.iter().chain(&state.scaled_velocity).all(|mode| is_bounded(*mode)) {
+        if !state.sample.displacement.iter().chain(&state.sample.velocity).all(|mode| is_bounded(*mode)) {
             return Err(Diverged { sample: sample + steps });
         }
         sample += steps;
@@ -90,15 +81,10 @@ fn external(block: &ForcingBlock, k: usize) -> [f64; EXTERNALS] {
     block.external.parts().map(|part| part.get(k).copied().unwrap_or(0.0))
 }
 
-/// State of the modes.
+/// The state of the modes, and where the next step begins its search.
 struct State {
-    displacement: Vec<f64>,
-    /// `s = h q̇`.
-    scaled_velocity: Vec<f64>,
-    /// (N) Mesh force on the modes, in each column of the lines of action.
-    force: Vec<f64>,
-    external: [f64; EXTERNALS],
-    /// (m) D of each mesh: where the next step begins its search.
+    sample: FirstState,
+    /// (m) D of each mesh.
     deflection: OfMeshes,
 }
 
@@ -106,10 +92,10 @@ impl State {
     fn output(&self, weights: &OutputWeights, sample: usize) -> f64 {
         weights.constant
             + weights.per_sample * sample as f64
-            + dot(&weights.displacement, &self.displacement)
-            + dot(&weights.scaled_velocity, &self.scaled_velocity)
-            + dot(&weights.force, &self.force)
-            + dot(&weights.external, &self.external)
+            + dot(&weights.displacement, &self.sample.displacement)
+            + dot(&weights.velocity, &self.sample.velocity)
+            + dot(&weights.acceleration, &self.sample.acceleration)
+            + dot(&weights.force, &self.sample.force)
     }
 
     /// Moves on by one sample: first without the new forces of the meshes, then by these.
@@ -120,34 +106,25 @@ impl State {
         samples: &[PairsSample<1>],
         external: [f64; EXTERNALS],
     ) {
-        let mut change: Vec<f64> = (0..self.displacement.len())
-            .map(|n| {
-                let old = prepared.columns.iter().zip(&self.force).map(|(column, force)| column.push[n] * force);
-                let driven = (0..EXTERNALS)
-                    .map(|x| prepared.external_push[x][n] * (self.external[x] + external[x]));
-                prepared.keep[n] * self.scaled_velocity[n] - prepared.restore[n] * self.displacement[n]
-                    + old.sum::<f64>()
-                    + driven.sum::<f64>()
-            })
-            .collect();
-        let free: Vec<f64> = (prepared.columns.iter().enumerate())
-            .map(|(r, column)| {
-                let both = |x: usize| column.of_external[x] * (self.external[x] + external[x]);
-                column.static_deflection
-                    + dot(&column.of_displacement, &self.displacement)
-                    + dot(&column.of_velocity, &self.scaled_velocity)
-                    + meshes.lead_of_column[r] * dot(&prepared.compliance[r], &self.force)
-                    + (0..EXTERNALS).map(both).sum::<f64>()
-            })
-            .collect();
-        self.force = meshes.forces(&free, &prepared.compliance, samples, &mut self.deflection);
-        for (n, change) in change.iter_mut().enumerate() {
-            let new = prepared.columns.iter().zip(&self.force).map(|(column, force)| column.push[n] * force);
-            *change += new.sum::<f64>();
-            self.displacement[n] += *change;
-            self.scaled_velocity[n] = *change - self.scaled_velocity[n];
+        let FirstState { displacement, velocity, acceleration, force } = &mut self.sample;
+        for n in 0..displacement.len() {
+            velocity[n] += acceleration[n];
+            displacement[n] += velocity[n];
+            let driven: f64 = (0..EXTERNALS).map(|x| prepared.external_push[x][n] * external[x]).sum();
+            acceleration[n] = prepared.restore[n] * displacement[n] + prepared.damp[n] * velocity[n] + driven;
         }
-        self.external = external;
+        let free: Vec<f64> = (prepared.columns.iter())
+            .map(|column| {
+                column.static_deflection
+                    + dot(&column.of_displacement, displacement)
+                    + dot(&column.of_velocity, velocity)
+                    + dot(&column.of_external, &external)
+            })
+            .collect();
+        *force = meshes.forces(&free, &prepared.compliance, samples, &mut self.deflection);
+        for (column, force) in prepared.columns.iter().zip(force) {
+            acceleration.iter_mut().zip(&column.push).for_each(|(acceleration, push)| *acceleration += push * *force);
+        }
     }
 }
 
@@ -156,32 +133,27 @@ struct CoupledMeshes {
     laws: Vec<MeshLaw>,
     /// (N) Force of each mesh under the constant loads.
     static_force_n: Vec<f64>,
-    /// (-) ℓ of each mesh.
-    lead: Vec<f64>,
-    /// (-) ℓ of the mesh of each column.
-    lead_of_column: Vec<f64>,
     /// Number of each mesh's first column, and whether it has a second, for what is added per m along the face.
     columns: Vec<(usize, bool)>,
 }
 
 impl CoupledMeshes {
     fn new(columns_of_line: impl Iterator<Item = usize>, prepared: &Prepared) -> Self {
-        let lead: Vec<f64> =
-            prepared.laws.iter().map(|law| law.lead(prepared.half_step_s)).collect();
-        let (mut columns, mut lead_of_column) = (Vec::new(), Vec::new());
-        for (count, lead) in columns_of_line.zip(&lead) {
-            columns.push((lead_of_column.len(), count > 1));
-            lead_of_column.extend(std::iter::repeat_n(*lead, count));
-        }
-        let static_force_n = prepared.static_force_n.clone();
-        Self { laws: prepared.laws.clone(), static_force_n, lead, lead_of_column, columns }
+        let mut next = 0;
+        let columns = columns_of_line
+            .map(|count| {
+                next += count;
+                (next - count, count > 1)
+            })
+            .collect();
+        Self { laws: prepared.laws.clone(), static_force_n: prepared.static_force_n.clone(), columns }
     }
 
     /// (N) The forces of the meshes on the modes at the end of a step, in each column, relative to the static ones.
     ///
     /// # Arguments
     /// * `free` - (m) deflection with its damping's lead in each column, without the new forces
-    /// * `compliance` - (m/N) Γ of the columns
+    /// * `compliance` - (m/N) G of the columns
     /// * `samples` - the pairs of each mesh at the step's end
     /// * `deflection` - (m) D of each mesh at the step's start; set to that at its end
     fn forces(
@@ -201,17 +173,15 @@ impl CoupledMeshes {
         let mut equations = Equations {
             count,
             compliance: [[0.0; MOST_MESHES]; MOST_MESHES],
-            lead: [1.0; MOST_MESHES],
             free: [0.0; MOST_MESHES],
         };
         for a in 0..count {
-            equations.lead[a] = self.lead[a];
             equations.free[a] = weights(a).map(|(r, of_r)| of_r * free[r]).sum();
             for (b, static_force_n) in self.static_force_n.iter().enumerate() {
                 let from = self.columns[b].0;
                 for (r, of_r) in weights(a) {
                     // The static force acts midway along the face.
-                    equations.free[a] += self.lead[a] * of_r * compliance[r][from] * static_force_n;
+                    equations.free[a] += of_r * compliance[r][from] * static_force_n;
                     for (s, of_s) in weights(b) {
                         equations.compliance[a][b] += of_r * compliance[r][s] * of_s;
                     }
@@ -241,14 +211,12 @@ const MOST_PLAIN_ITERATIONS: usize = 12;
 /// Most iterations of all: beyond, rounding decides between two sets of pairs that are as good.
 const MOST_ITERATIONS: usize = 50;
 
-/// The equations of a step, `D + L S f(D) = D₀` with `L = diag ℓ`.
+/// The equations of a step, `D + G f(D) = D₀`.
 struct Equations {
     /// Number of meshes.
     count: usize,
-    /// (m/N) S.
+    /// (m/N) G.
     compliance: Matrix,
-    /// (-) ℓ.
-    lead: OfMeshes,
     /// (m) D₀.
     free: OfMeshes,
 }
@@ -266,7 +234,7 @@ impl Equations {
             if same || iteration < MOST_PLAIN_ITERATIONS {
                 *deflection = newton;
             } else {
-                self.go_to_minimum(law, deflection, &newton);
+                self.go_towards(law, deflection, &newton);
             }
             if same {
                 return;
@@ -274,7 +242,7 @@ impl Equations {
         }
     }
 
-    /// The solution if the pairs that touch at `deflection` went on touching, `(1 + L S K) D = D₀ − L S (f − K D)`, and their slopes K.
+    /// The solution if the pairs that touch at `deflection` went on touching, `(1 + G K) D = D₀ − G (f − K D)`, and their slopes K.
     fn newton(&self, law: &dyn Fn(usize, f64) -> [f64; 2], deflection: &OfMeshes) -> (OfMeshes, OfMeshes) {
         let (mut matrix, mut right) = ([[0.0; MOST_MESHES]; MOST_MESHES], self.free);
         let mut slopes = [0.0; MOST_MESHES];
@@ -282,7 +250,7 @@ impl Equations {
             let [force, slope] = law(b, deflection[b]);
             slopes[b] = slope;
             for a in 0..self.count {
-                let share = self.lead[a] * self.compliance[a][b];
+                let share = self.compliance[a][b];
                 matrix[a][b] = share * slope + f64::from(a == b);
                 right[a] -= share * (force - slope * deflection[b]);
             }
@@ -291,30 +259,29 @@ impl Equations {
         (right, slopes)
     }
 
-    /// Goes from `from` towards `to` until the convex function is least: there its slope along the way,
-    /// `Δzᵀ (S⁻¹ (z − z₀) + f)`, is 0.
-    fn go_to_minimum(&self, law: &dyn Fn(usize, f64) -> [f64; 2], from: &mut OfMeshes, to: &OfMeshes) {
-        let start = *from;
-        let at = |t: f64| -> OfMeshes { std::array::from_fn(|a| start[a] + t * (to[a] - start[a])) };
-        let slope = |t: f64| {
-            let deflection = at(t);
-            let mut pull = std::array::from_fn(|a| (deflection[a] - self.free[a]) / self.lead[a]);
-            solve_linear(self.count, self.compliance, &mut pull);
-            let of_mesh = |a: usize| (to[a] - start[a]) / self.lead[a] * (pull[a] + law(a, deflection[a])[0]);
+    /// Goes from `from` towards `to`, Newton's iterate, as far as makes the residual smaller: up to the next pair that touches or leaves the
+    /// residual falls in proportion.
+    fn go_towards(&self, law: &dyn Fn(usize, f64) -> [f64; 2], from: &mut OfMeshes, to: &OfMeshes) {
+        let residual = |deflection: &OfMeshes| {
+            let of_mesh = |a: usize| {
+                let pressed = (0..self.count).map(|b| self.compliance[a][b] * law(b, deflection[b])[0]);
+                (deflection[a] + pressed.sum::<f64>() - self.free[a]).powi(2)
+            };
             (0..self.count).map(of_mesh).sum::<f64>()
         };
-        let (mut low, mut high) = (0.0, 1.0);
-        if slope(high) > 0.0 {
-            for _ in 0..HALVINGS {
-                let middle = (low + high) / 2.0;
-                if slope(middle) > 0.0 { high = middle } else { low = middle }
+        let (start, before) = (*from, residual(from));
+        let mut part = 1.0;
+        for _ in 0..HALVINGS {
+            *from = std::array::from_fn(|a| start[a] + part * (to[a] - start[a]));
+            if residual(from) < before {
+                return;
             }
+            part /= 2.0;
         }
-        *from = at(high);
     }
 }
 
-/// Halvings of an interval until only rounding is left.
+/// Halvings of the way until only rounding is left of it.
 const HALVINGS: usize = 60;
 
 /// Solves a few linear equations by elimination with pivots from the column.
@@ -372,7 +339,6 @@ mod tests {
             let mut equations = Equations {
                 count,
                 compliance: [[0.0; MOST_MESHES]; MOST_MESHES],
-                lead: std::array::from_fn(|_| draws.uniform(2.0, 1.0)),
                 free: std::array::from_fn(|_| draws.uniform(0.0, 3.0)),
             };
             for row in 0..count {
@@ -388,7 +354,7 @@ mod tests {
                     let pressed: f64 = (0..count)
                         .map(|column| equations.compliance[row][column] * law(column, deflection[column])[0])
                         .sum();
-                    let residual = deflection[row] + equations.lead[row] * pressed - equations.free[row];
+                    let residual = deflection[row] + pressed - equations.free[row];
                     assert!(residual.abs() < 1e-9 * (1.0 + strength), "{problem}: {residual}");
                 }
             }
@@ -397,20 +363,20 @@ mod tests {
 
     /// The search along the line alone comes to the same solution.
     #[test]
-    fn search_along_the_line_ends_at_the_minimum() {
+    fn search_along_the_line_ends_at_the_solution() {
         let law = |_: usize, deflection: f64| if deflection > 0.0 { [3.0 * deflection, 3.0] } else { [0.0, 0.0] };
         let mut compliance = [[0.0; MOST_MESHES]; MOST_MESHES];
         compliance[0][..2].copy_from_slice(&[2.0, 0.9]);
         compliance[1][..2].copy_from_slice(&[0.9, 1.0]);
         let mut free = [0.0; MOST_MESHES];
         free[..2].copy_from_slice(&[1.0, -0.2]);
-        let equations = Equations { count: 2, compliance, lead: [1.0; MOST_MESHES], free };
+        let equations = Equations { count: 2, compliance, free };
         let mut exact = [0.0; MOST_MESHES];
         equations.solve(&law, &mut exact);
         let mut searched = [-4.0; MOST_MESHES];
         for _ in 0..20 {
             let (newton, _) = equations.newton(&law, &searched);
-            equations.go_to_minimum(&law, &mut searched, &newton);
+            equations.go_towards(&law, &mut searched, &newton);
         }
         assert!((searched[0] - exact[0]).abs() < 1e-12 && (searched[1] - exact[1]).abs() < 1e-12, "{searched:?}");
     }

@@ -1,6 +1,6 @@
 //! States of one block of samples, and what is read off them.
 
-use super::outputs::{EXTERNALS, OutputWeights};
+use super::outputs::OutputWeights;
 use super::step::State;
 use crate::simd::{InstructionSet, Instructions, Lanes, Task};
 
@@ -17,18 +17,18 @@ struct Aligned<T>(T);
 /// States of one block of samples, variable by variable, so that outputs are computed for many samples at once.
 pub(super) struct History<const L: usize, const N: usize, const R: usize> {
     displacement: Columns<L, N>,
-    scaled_velocity: Columns<L, N>,
+    velocity: Columns<L, N>,
+    acceleration: Columns<L, N>,
     force: Columns<L, R>,
-    external: Columns<L, EXTERNALS>,
 }
 
 impl<const L: usize, const N: usize, const R: usize> History<L, N, R> {
     pub(super) fn new() -> Self {
         Self {
             displacement: Columns::new(),
-            scaled_velocity: Columns::new(),
+            velocity: Columns::new(),
+            acceleration: Columns::new(),
             force: Columns::new(),
-            external: Columns::new(),
         }
     }
 
@@ -39,23 +39,18 @@ impl<const L: usize, const N: usize, const R: usize> History<L, N, R> {
         let k = k % BLOCK;
         for n in 0..N {
             self.displacement.0.0[n][k] = state.displacement[n];
-            self.scaled_velocity.0.0[n][k] = state.scaled_velocity[n];
+            self.velocity.0.0[n][k] = state.velocity[n];
+            self.acceleration.0.0[n][k] = state.acceleration[n];
         }
         for r in 0..R {
             self.force.0.0[r][k] = state.force[r];
         }
-        // Where motor and brake are steady, this is known when it is compiled, and externals stay 0.
-        if !State::<L, N, R>::STEADY {
-            for x in 0..EXTERNALS {
-                self.external.0.0[x][k] = state.external[x];
-            }
-        }
     }
 
-    /// Variable `index`: displacements first, then scaled velocities, forces and externals.
+    /// Variable `index`: displacements first, then velocities, accelerations and forces.
     fn variable(&self, index: usize) -> &[Lanes<L>] {
-        let all = self.displacement.iter().chain(self.scaled_velocity.iter());
-        all.chain(self.force.iter()).chain(self.external.iter()).nth(index).map_or(&[], |column| column)
+        let all = self.displacement.iter().chain(self.velocity.iter()).chain(self.acceleration.iter());
+        all.chain(self.force.iter()).nth(index).map_or(&[], |column| column)
     }
 }
 
@@ -94,12 +89,12 @@ impl<const L: usize> OutputTerms<L> {
             let value = |values: &[f64], index: usize| values.get(index).copied().unwrap_or(0.0);
             lanes(&|output| match variable {
                 _ if variable < N => value(&output.displacement, variable),
-                _ if variable < 2 * N => value(&output.scaled_velocity, variable - N),
-                _ if variable < 2 * N + R => value(&output.force, variable - 2 * N),
-                _ => output.external[variable - 2 * N - R],
+                _ if variable < 2 * N => value(&output.velocity, variable - N),
+                _ if variable < 3 * N => value(&output.acceleration, variable - 2 * N),
+                _ => value(&output.force, variable - 3 * N),
             })
         };
-        let all = (0..2 * N + R + EXTERNALS).map(|variable| (variable, weight(variable)));
+        let all = (0..3 * N + R).map(|variable| (variable, weight(variable)));
         Self {
             weights: all.filter(|(_, weight)| weight.0 != [0.0; L]).collect(),
             constant: lanes(&|output| output.constant),

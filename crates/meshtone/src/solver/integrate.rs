@@ -160,8 +160,11 @@ fn run<const L: usize, const N: usize, const R: usize>(
     let mut out = LaneOutputs::new(problems.each_ref(), outputs, BLOCK, recorders);
     let mut forcing = LaneForcing::new();
     forcing.fill(&mut problems, 1);
-    let first = std::array::from_fn(|l| prepared[l].first_state(&problems[l].machine, &forcing.pairs[..1], l));
-    let mut state: State<L, N, R> = coefficients.first_state(&first, forcing.external[0]);
+    let first = std::array::from_fn(|l| {
+        let external = forcing.external[0].map(|external| external.0[l]);
+        prepared[l].first_state(&problems[l].machine, &forcing.pairs[..1], l, external)
+    });
+    let mut state: State<L, N, R> = coefficients.first_state(&first);
     let mut history = History::<L, N, R>::new();
     let mut done = 0;
     while done < out.most_steps {

@@ -38,8 +38,23 @@ pub struct ModalMachine {
 pub struct ModalLine {
     /// At the middle of the face, and where the load moves along the face, what is added per m.
     pub columns: Vec<Vec<f64>>,
+    /// (m) Farthest from the middle of the face that the load acts.
+    pub face_reach_m: f64,
     /// (N) The mesh's force under the constant loads, which the displacements do not bring about: they are relative to it.
     pub static_force_n: f64,
+}
+
+impl ModalLine {
+    /// The line of action where the load acts farthest from the middle of the face, on either side.
+    pub(super) fn extremes(&self) -> [Vec<f64>; 2] {
+        [-1.0, 1.0].map(|side| {
+            let mut line = self.columns[0].clone();
+            for column in &self.columns[1..] {
+                line.iter_mut().zip(column).for_each(|(line, per_m)| *line += side * self.face_reach_m * per_m);
+            }
+            line
+        })
+    }
 }
 
 /// How a simulation starts.
@@ -64,9 +79,9 @@ impl ModalMachine {
     /// # Arguments
     /// * `machine` - the machine
     /// * `modes` - its modes without the meshes
-    /// * `tilts` - for each mesh, whether its load moves along the face
+    /// * `face_reach_m` - (m) for each mesh, how far from the middle of its face the load acts at most; 0 where it always acts there
     /// * `start` - how the simulation starts
-    pub fn new(machine: &Machine, modes: &Modes, tilts: &[bool], start: InitialMotion) -> Self {
+    pub fn new(machine: &Machine, modes: &Modes, face_reach_m: &[f64], start: InitialMotion) -> Self {
         let shapes = modes.shapes.transpose();
         let mass = DVector::from_column_slice(&machine.mass);
         let modal = |turned: &DVector<f64>| clean(&shapes * turned);
@@ -79,9 +94,9 @@ impl ModalMachine {
             None => &machine.rigid_rotation * start.motor_rad_per_s,
         };
         let velocity = modal_motion(&(velocity - &machine.rigid_rotation * start.nominal_rad_per_s));
-        let lines: Vec<Vec<DVector<f64>>> = (machine.lines.iter().zip(tilts))
-            .map(|(line, &tilts)| {
-                let columns = [Some(&line.at_middle), tilts.then_some(&line.per_m)];
+        let lines: Vec<Vec<DVector<f64>>> = (machine.lines.iter().zip(face_reach_m))
+            .map(|(line, &reach_m)| {
+                let columns = [Some(&line.at_middle), (reach_m > 0.0).then_some(&line.per_m)];
                 columns.into_iter().flatten().map(modal).collect()
             })
             .collect();
@@ -94,8 +109,12 @@ impl ModalMachine {
             shapes: active.iter().map(|&n| &machine.turn * modes.shapes.column(n)).collect(),
             stiffness: active.iter().map(|&n| modes.angular_frequencies[n].powi(2)).collect(),
             damping: active.iter().map(|&n| modes.damping_per_s(n)).collect(),
-            lines: (lines.iter())
-                .map(|columns| ModalLine { columns: columns.iter().map(pick).collect(), static_force_n: 0.0 })
+            lines: (lines.iter().zip(face_reach_m))
+                .map(|(columns, &face_reach_m)| ModalLine {
+                    columns: columns.iter().map(pick).collect(),
+                    face_reach_m,
+                    static_force_n: 0.0,
+                })
                 .collect(),
             motor: pick(&motor),
             brake: pick(&brake),

@@ -3,6 +3,7 @@
 use nalgebra::DVector;
 
 use super::modal::ModalMachine;
+use super::mode_step::StepOfMode;
 use crate::machine::Axis;
 
 /// A signal that is read off the solution.
@@ -41,15 +42,18 @@ pub enum Output {
     },
 }
 
-/// A linear combination of the step's own variables: `constant + sample·per_sample + u·displacement + s·velocity +
-/// w·force + x·external`. An empty list stands for zeros.
+/// A linear combination of what a step has of a sample ([`State`](super::step::State)): `constant + sample·per_sample + Σ weights`. An
+/// empty list stands for zeros.
 #[derive(Debug, Clone, Default)]
 pub(super) struct OutputWeights {
+    /// Of the predicted displacements.
     pub(super) displacement: Vec<f64>,
-    pub(super) scaled_velocity: Vec<f64>,
+    /// Of the predicted velocities times Δt.
+    pub(super) velocity: Vec<f64>,
+    /// Of the accelerations times Δt².
+    pub(super) acceleration: Vec<f64>,
     /// Of the force in each column of each mesh's line of action, mesh by mesh.
     pub(super) force: Vec<f64>,
-    pub(super) external: [f64; EXTERNALS],
     pub(super) constant: f64,
     pub(super) per_sample: f64,
 }
@@ -64,69 +68,58 @@ pub(super) fn external_forces(model: &ModalMachine) -> [Vec<f64>; EXTERNALS] {
 }
 
 impl Output {
-    /// The output in the variables of a step of `2 half_step_s`.
-    pub(super) fn weights(&self, model: &ModalMachine, half_step_s: f64) -> OutputWeights {
-        match *self {
-            Self::Acceleration { place, axis, factor } => {
-                let (weights, _) = model.of_coordinates(&(model.machine.weights(place, axis) * factor));
-                acceleration(&weights, model, half_step_s)
-            }
-            Self::Velocity { place, axis, factor } => {
-                let (weights, rigid) = model.of_coordinates(&(model.machine.weights(place, axis) * factor));
-                velocity(&weights, rigid, model, half_step_s)
-            }
+    /// The output in what a step has of a sample.
+    ///
+    /// # Arguments
+    /// * `model` - the machine
+    /// * `steps` - how each of its modes is stepped
+    /// * `step_s` - (s) Δt
+    pub(super) fn weights(&self, model: &ModalMachine, steps: &[StepOfMode], step_s: f64) -> OutputWeights {
+        let of_place = |place, axis, factor: f64| model.machine.weights(place, axis) * factor;
+        let (weights, derivative) = match *self {
+            Self::Acceleration { place, axis, factor } => (of_place(place, axis, factor), 2),
+            Self::Velocity { place, axis, factor } => (of_place(place, axis, factor), 1),
             Self::Coordinate { number, derivative } => {
-                let unit = DVector::from_fn(model.machine.coordinates(), |n, _| f64::from(n == number));
-                let (weights, rigid) = model.of_coordinates(&unit);
-                match derivative {
-                    0 => displacement(weights, rigid, model, half_step_s),
-                    1 => velocity(&weights, rigid, model, half_step_s),
-                    _ => acceleration(&weights, model, half_step_s),
-                }
+                let unit = |n: usize, _| f64::from(n == number);
+                (DVector::from_fn(model.machine.coordinates(), unit), derivative)
             }
-            Self::MeshForce { mesh } => {
-                let columns = model.lines.iter().enumerate().flat_map(|(number, line)| {
-                    // The force at the middle of the face is the whole force.
-                    (0..line.columns.len())
-                        .map(move |column| if (number, column) == (mesh, 0) { -1.0 } else { 0.0 })
-                });
-                OutputWeights {
-                    force: columns.collect(),
-                    constant: model.lines.get(mesh).map_or(0.0, |line| line.static_force_n),
-                    ..OutputWeights::default()
-                }
-            }
+            Self::MeshForce { mesh } => return mesh_force(model, mesh),
+        };
+        let (weights, rigid) = model.of_coordinates(&weights);
+        let scaled = |of: &dyn Fn(&StepOfMode) -> f64| -> Vec<f64> {
+            weights.iter().zip(steps).map(|(weight, step)| weight * of(step)).collect()
+        };
+        match derivative {
+            0 => OutputWeights {
+                constant: dot(&weights, &model.static_displacement),
+                per_sample: rigid * model.rotation_rad_per_s * step_s,
+                acceleration: scaled(&|step| step.beta),
+                displacement: weights,
+                ..OutputWeights::default()
+            },
+            1 => OutputWeights {
+                constant: rigid * model.rotation_rad_per_s,
+                velocity: scaled(&|_| 1.0 / step_s),
+                acceleration: scaled(&|_| 0.5 / step_s),
+                ..OutputWeights::default()
+            },
+            // What is stepped is the force's part of it; the factor stands for the mode's inertia.
+            _ => OutputWeights {
+                acceleration: scaled(&|step| 1.0 / (step.force_factor * step_s * step_s)),
+                ..OutputWeights::default()
+            },
         }
     }
 }
 
-fn displacement(weights: Vec<f64>, rigid: f64, model: &ModalMachine, half_step_s: f64) -> OutputWeights {
+/// The whole force of a mesh: that in the column at the middle of its face.
+fn mesh_force(model: &ModalMachine, mesh: usize) -> OutputWeights {
+    let columns = model.lines.iter().enumerate().flat_map(|(number, line)| {
+        (0..line.columns.len()).map(move |column| if (number, column) == (mesh, 0) { -1.0 } else { 0.0 })
+    });
     OutputWeights {
-        constant: dot(&weights, &model.static_displacement),
-        per_sample: rigid * model.rotation_rad_per_s * 2.0 * half_step_s,
-        displacement: weights,
-        ..OutputWeights::default()
-    }
-}
-
-fn velocity(weights: &[f64], rigid: f64, model: &ModalMachine, half_step_s: f64) -> OutputWeights {
-    OutputWeights {
-        scaled_velocity: weights.iter().map(|weight| weight / half_step_s).collect(),
-        constant: rigid * model.rotation_rad_per_s,
-        ..OutputWeights::default()
-    }
-}
-
-/// By the equation of motion: `q̈ = B w + external − 2ζω q̇ − ω² q`, relative to the constant loads.
-fn acceleration(weights: &[f64], model: &ModalMachine, half_step_s: f64) -> OutputWeights {
-    let columns = model.lines.iter().flat_map(|line| &line.columns);
-    OutputWeights {
-        displacement: weights.iter().zip(&model.stiffness).map(|(weight, k)| -weight * k).collect(),
-        scaled_velocity: (weights.iter().zip(&model.damping))
-            .map(|(weight, damping)| -weight * damping / half_step_s)
-            .collect(),
-        force: columns.map(|column| dot(weights, column)).collect(),
-        external: external_forces(model).map(|force| dot(weights, &force)),
+        force: columns.collect(),
+        constant: model.lines.get(mesh).map_or(0.0, |line| line.static_force_n),
         ..OutputWeights::default()
     }
 }

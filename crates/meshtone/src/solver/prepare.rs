@@ -2,22 +2,25 @@
 
 use super::integrate::Problem;
 use super::modal::ModalMachine;
+use super::mode_step::StepOfMode;
 use super::outputs::{EXTERNALS, OutputWeights, dot, external_forces};
 use crate::mesh::{MeshLaw, PairsSample, deflection_at_rest};
 
 /// The constants of one simulation's steps; the columns of all lines of action are counted through, mesh by mesh.
 pub(super) struct Prepared {
-    /// (s) h, half of the time step.
-    pub(super) half_step_s: f64,
-    /// (-) `2E` of each mode, `E = 1/(1 + 2ζω h + ω² h²)`.
-    pub(super) keep: Vec<f64>,
-    /// (-) `2 h² ω² E`.
+    /// (s) Δt.
+    step_s: f64,
+    /// How each mode is stepped.
+    steps: Vec<StepOfMode>,
+    /// (-) Change of `Δt² q̈` per predicted displacement of each mode.
     pub(super) restore: Vec<f64>,
-    /// `h² E` times the modal force of each external.
+    /// (-) The same per predicted `Δt q̇`.
+    pub(super) damp: Vec<f64>,
+    /// `Δt² q̈` per unit of each external.
     pub(super) external_push: [Vec<f64>; EXTERNALS],
     /// Each column of the lines of action.
     pub(super) columns: Vec<Column>,
-    /// (m/N) Γ: deflection in each column per force of the step in each.
+    /// (m/N) G: deflection, with its damping's lead, in each column per force of the step in each.
     pub(super) compliance: Vec<Vec<f64>>,
     /// The outputs.
     pub(super) outputs: Vec<OutputWeights>,
@@ -27,31 +30,35 @@ pub(super) struct Prepared {
     pub(super) static_force_n: Vec<f64>,
 }
 
-/// One column of a line of action, and what the deflection in it at the end of a step, with its damping's lead ℓ = 1 + τ/h, is without
-/// the step's own force.
+/// One column of a line of action, and what the deflection in it at the end of a step, with its damping's lead, is without the step's
+/// own force.
 ///
-/// With the step's change S it is `D = B·(q₀ + ℓ S − (ℓ − 1) s₀)`, hence a sum over the modes of the state before. That state but
-/// for its own force's share is known a step earlier. So the sum over the modes is made while that force is sought, and when it is
+/// It is `D = B·(q + ℓ Δt q̇)` with ℓ = τ/Δt, hence a sum over what is predicted for the step's end. That but for the share of the
+/// force at the step's start is known a step earlier. So the sum over the modes is made while that force is sought, and when it is
 /// found only its product with one number is left: without that a step of a single simulation waits most of its time.
 pub(super) struct Column {
-    /// `h² E B`: a force's displacement in each mode.
+    /// `Δt² q̈` of each mode per force.
     pub(super) push: Vec<f64>,
     /// (m) Deflection under the constant loads.
     pub(super) static_deflection: f64,
-    /// `B (1 − 2ℓh²ω²E)`.
+    /// `B (1 − (β + ℓ/2) e_y)`, per predicted displacement.
     pub(super) of_displacement: Vec<f64>,
-    /// `B (2ℓE − ℓ + 1)`.
+    /// `B (ℓ − (β + ℓ/2) e_v)`, per predicted `Δt q̇`.
     pub(super) of_velocity: Vec<f64>,
-    /// (m/N) Per force at the step's start in each column: its share in the state there, and `ℓ Γ`.
+    /// (m/N) Per force at the step's start in each column.
     pub(super) of_force: Vec<f64>,
-    /// Per sum of an external at both ends of the step.
+    /// Per external at the step's end.
     pub(super) of_external: [f64; EXTERNALS],
 }
 
-/// State of the modes at the first sample.
+/// What a step has of the first sample.
 pub(super) struct FirstState {
+    /// Predicted displacements.
     pub(super) displacement: Vec<f64>,
-    pub(super) scaled_velocity: Vec<f64>,
+    /// Predicted `Δt q̇`.
+    pub(super) velocity: Vec<f64>,
+    /// `Δt² q̈`.
+    pub(super) acceleration: Vec<f64>,
     /// (N) Force in each column.
     pub(super) force: Vec<f64>,
 }
@@ -63,53 +70,49 @@ impl Prepared {
     /// lines of action.
     pub(super) fn new(problem: &Problem) -> Self {
         let model = &problem.machine;
-        let h = problem.time.step_s() / 2.0;
-        let modes = model.modes();
-        let e: Vec<f64> =
-            (0..modes).map(|n| 1.0 / (1.0 + h * model.damping[n] + h * h * model.stiffness[n])).collect();
-        let keep: Vec<f64> = e.iter().map(|e| 2.0 * e).collect();
-        let restore: Vec<f64> = (0..modes).map(|n| 2.0 * h * h * model.stiffness[n] * e[n]).collect();
-        let share: Vec<f64> = e.iter().map(|e| h * h * e).collect();
-        let shared = |force: &[f64]| share.iter().zip(force).map(|(s, f)| s * f).collect::<Vec<f64>>();
-        let external_push = external_forces(model).map(|force| shared(&force));
+        let step_s = problem.time.step_s();
+        let steps = model.steps(&problem.laws, step_s);
+        let of_steps = |of: fn(&StepOfMode) -> f64| steps.iter().map(of).collect::<Vec<f64>>();
+        let (restore, damp) = (of_steps(StepOfMode::of_displacement), of_steps(StepOfMode::of_velocity));
+        let yielding =
+            |(step, force): (&StepOfMode, &f64)| step_s * step_s * step.force_factor * step.yielding() * force;
+        let pushed = |force: &[f64]| steps.iter().zip(force).map(yielding).collect::<Vec<f64>>();
+        let external_push = external_forces(model).map(|force| pushed(&force));
+        // (-) ℓ of the mesh of each column.
         let lines: Vec<(&[f64], f64)> = (model.lines.iter().zip(&problem.laws))
-            .flat_map(|(line, law)| line.columns.iter().map(|column| (column.as_slice(), law.lead(h))))
-            .collect();
-        let pushes: Vec<Vec<f64>> = lines.iter().map(|(line, _)| shared(line)).collect();
-        let compliance: Vec<Vec<f64>> = lines
-            .iter()
-            .map(|(line, _)| {
-                let weighted: Vec<f64> = line.iter().zip(&share).map(|(line, share)| line * share).collect();
-                lines.iter().map(|(other, _)| nalgebra_dot(&weighted, other)).collect()
+            .flat_map(|(line, law)| {
+                line.columns.iter().map(|column| (column.as_slice(), law.damping_time_s / step_s))
             })
             .collect();
-        let column = |r: usize| {
-            let (line, lead) = lines[r];
-            let of_modes = |f: &dyn Fn(usize) -> f64| (0..modes).map(|n| line[n] * f(n)).collect::<Vec<f64>>();
-            let of_displacement = of_modes(&|n| 1.0 - lead * restore[n]);
-            let of_velocity = of_modes(&|n| lead * keep[n] - (lead - 1.0));
-            let of_force = pushes.iter().zip(&compliance[r]).map(|(push, compliance)| {
-                dot(&of_displacement, push) + dot(&of_velocity, push) + lead * compliance
-            });
-            Column {
-                push: pushes[r].clone(),
+        let pushes: Vec<Vec<f64>> = lines.iter().map(|(line, _)| pushed(line)).collect();
+        let column = |(line, lead): &(&[f64], f64)| {
+            let of_modes = |of: &dyn Fn(usize) -> f64| (0..steps.len()).map(|n| line[n] * of(n)).collect::<Vec<f64>>();
+            let of_acceleration = of_modes(&|n| steps[n].beta + lead / 2.0);
+            let of_displacement = of_modes(&|n| 1.0 + (steps[n].beta + lead / 2.0) * restore[n]);
+            let of_velocity = of_modes(&|n| lead + (steps[n].beta + lead / 2.0) * damp[n]);
+            let compliance: Vec<f64> = pushes.iter().map(|push| dot(&of_acceleration, push)).collect();
+            let column = Column {
+                push: pushed(line),
                 static_deflection: dot(line, &model.static_displacement),
-                of_force: of_force.collect(),
-                of_external: external_push.each_ref().map(|push| lead * dot(line, push)),
+                of_force: pushes.iter().map(|push| dot(&of_displacement, push) + dot(&of_velocity, push)).collect(),
+                of_external: external_push.each_ref().map(|push| dot(&of_acceleration, push)),
                 of_displacement,
                 of_velocity,
-            }
+            };
+            (column, compliance)
         };
+        let (columns, compliance) = lines.iter().map(column).unzip();
         Self {
-            half_step_s: h,
-            columns: (0..lines.len()).map(column).collect(),
-            outputs: problem.outputs.iter().map(|output| output.weights(model, h)).collect(),
-            keep,
-            restore,
-            external_push,
+            step_s,
+            columns,
             compliance,
+            outputs: problem.outputs.iter().map(|output| output.weights(model, &steps, step_s)).collect(),
+            restore,
+            damp,
+            external_push,
             laws: problem.laws.clone(),
             static_force_n: model.lines.iter().map(|line| line.static_force_n).collect(),
+            steps,
         }
     }
 
@@ -119,14 +122,14 @@ impl Prepared {
     /// # Arguments
     /// * `model` - the machine
     /// * `samples`, `lane` - the pairs of each mesh at that sample
+    /// * `external` - the externals at that sample
     pub(super) fn first_state<const L: usize>(
         &self,
         model: &ModalMachine,
         samples: &[PairsSample<L>],
         lane: usize,
+        external: [f64; EXTERNALS],
     ) -> FirstState {
-        let scaled_velocity: Vec<f64> =
-            model.initial_velocity.iter().map(|velocity| velocity * self.half_step_s).collect();
         // Column numbers of the lines of action of each mesh.
         let mut next = 0;
         let columns: Vec<std::ops::Range<usize>> = (model.lines.iter())
@@ -156,18 +159,30 @@ impl Prepared {
             let (deflection, tilted) = at_face_centre(mesh, &|column| {
                 self.columns[column].static_deflection + dot(lines[column], &displacement)
             });
-            let lead = law.damping_time_s / self.half_step_s * dot(lines[columns[mesh].start], &scaled_velocity);
+            let lead = law.damping_time_s * dot(lines[columns[mesh].start], &model.initial_velocity);
             let carried = law.force_n(&samples[mesh], lane, deflection + tilted + lead);
             let whole = self.static_force_n[mesh] - carried;
             force.push(whole);
             let z = samples[mesh].face_centre.0[lane];
             force.extend(columns[mesh].clone().skip(1).map(|_| z * (whole - self.static_force_n[mesh])));
         }
-        FirstState { displacement, scaled_velocity, force }
+        let acceleration: Vec<f64> = (self.steps.iter().enumerate())
+            .map(|(n, step)| {
+                let meshes: f64 = self.columns.iter().zip(&force).map(|(column, force)| column.push[n] * force).sum();
+                let driven: f64 = self.external_push.iter().zip(external).map(|(push, external)| push[n] * external).sum();
+                let scaled_force = (meshes + driven) / step.yielding();
+                step.acceleration(displacement[n], model.initial_velocity[n] * self.step_s, scaled_force)
+            })
+            .collect();
+        FirstState {
+            displacement: (0..displacement.len())
+                .map(|n| displacement[n] - self.steps[n].beta * acceleration[n])
+                .collect(),
+            velocity: (0..displacement.len())
+                .map(|n| model.initial_velocity[n] * self.step_s - acceleration[n] / 2.0)
+                .collect(),
+            acceleration,
+            force,
+        }
     }
-}
-
-/// `Σ a_n b_n` in the order in which nalgebra sums.
-fn nalgebra_dot(a: &[f64], b: &[f64]) -> f64 {
-    nalgebra::DVectorView::from_slice(a, a.len()).dot(&nalgebra::DVectorView::from_slice(b, b.len()))
 }

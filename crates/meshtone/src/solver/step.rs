@@ -1,9 +1,15 @@
-//! One step of Newmark's method (γ = ½, β = ¼) for a machine with one mesh, for several simulations side by side.
+//! One step of the time integration for a machine with one mesh, for several simulations side by side.
 //!
-//! Each mode obeys `q̈ + 2ζω q̇ + ω² q = p`, with `p = B w + external` the modal force. Over a step of `2h`, with
-//! `E = 1/(1 + 2ζω h + ω² h²)` and `s = h q̇`, the method reads
-//! `S = 2E s₀ − 2h²ω²E q₀ + h²E (p₀ + p₁)`, `q₁ = q₀ + S`, `s₁ = S − s₀`. It is implicit only through the mesh's
-//! force `w₁`, which is found by the mesh's law: [`LawLanes`].
+//! Each mode obeys `q̈ + c q̇ + k q = p`, with `p = B w + external` the modal force. The method is Newmark's with γ = ½ and a β of each
+//! mode ([`StepOfMode`](super::mode_step::StepOfMode)). With `A = Δt² q̈` it reads
+//!
+//! ```text
+//! q₁ = q₀ + Δt q̇₀ + (½ − β) A₀ + β A₁,   Δt q̇₁ = Δt q̇₀ + ½ (A₀ + A₁),   A₁ = Δt² (p₁ − c q̇₁ − k q₁)
+//! ```
+//!
+//! What is stepped are the predictions that Newmark's method makes of a sample before its force is known, `v = Δt q̇ − ½ A` and
+//! `y = q − β A`. In these a step is the same whatever β is: `v₁ = v₀ + A₀`, `y₁ = y₀ + v₁`, `A₁ = push·w₁ − e_v v₁ − e_y y₁`. It is
+//! implicit only through the mesh's force `w₁`, which is found by the mesh's law: [`LawLanes`].
 //!
 //! `q` is taken relative to the rigid rotation at the nominal speed, in which the mesh does not deflect, and to the
 //! displacement under the constant loads.
@@ -22,22 +28,16 @@ use crate::simd::{Instructions, Lanes, Task, dot};
 pub(super) const MOST_STEADY_MODES: usize = 12;
 
 /// Constants of one simulation (`L` = 1) or of several side by side: `N` modes, and `R` columns of the mesh's line of action, one at the
-/// middle of the face, and one for what is added per m along it.
+/// middle of the face, and one for what is added per m along it. What they mean is said at [`Prepared`].
 ///
 /// Aligned so that eight numbers side by side never straddle two cache lines; likewise [`State`].
 #[repr(align(64))]
 pub(super) struct Coefficients<const L: usize, const N: usize, const R: usize> {
-    /// (-) `2E`.
-    keep: [Lanes<L>; N],
-    /// (-) `2 h² ω² E`.
     restore: [Lanes<L>; N],
-    /// `h² E B`.
+    damp: [Lanes<L>; N],
     push: [[Lanes<L>; N]; R],
-    /// `h² E` times the modal force of each external.
     external_push: [[Lanes<L>; N]; EXTERNALS],
-    /// (m/N) Γ: deflection in each column per force of the step in each.
     compliance: [[Lanes<L>; R]; R],
-    /// Deflection under the constant loads.
     static_deflection: [Lanes<L>; R],
     /// The deflection at a step's end from the state at its start: see [`Column`](super::prepare::Column).
     prediction: Prediction<L, N, R>,
@@ -51,35 +51,35 @@ struct Prediction<const L: usize, const N: usize, const R: usize> {
     of_external: [[Lanes<L>; EXTERNALS]; R],
 }
 
-/// State of the modes.
+/// What a step has of a sample.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(super) struct State<const L: usize, const N: usize, const R: usize> {
+    /// Displacements as they were predicted, `q − β Δt² q̈`.
     pub(super) displacement: [Lanes<L>; N],
-    /// `s = h q̇`.
-    pub(super) scaled_velocity: [Lanes<L>; N],
+    /// Velocities as they were predicted, times Δt: `Δt q̇ − ½ Δt² q̈`.
+    pub(super) velocity: [Lanes<L>; N],
+    /// `Δt² q̈`.
+    pub(super) acceleration: [Lanes<L>; N],
     /// (N) Mesh force on the modes, `w`.
     pub(super) force: [Lanes<L>; R],
-    pub(super) external: [Lanes<L>; EXTERNALS],
-    /// (m) The deflection that [`Prediction`] makes of the state, but for the share of the state's own force.
+    /// (m) The next deflection that [`Prediction`] makes of the state, but for the share of the state's own force.
     predicted: [Lanes<L>; R],
     /// The pairs that touch.
     touching: Touching<L>,
 }
 
-impl<const L: usize, const N: usize, const R: usize> State<L, N, R> {
-    /// Whether motor and brake are steady, so that externals are 0 and are not read.
-    pub(super) const STEADY: bool = N <= MOST_STEADY_MODES;
-}
-
 impl<const L: usize, const N: usize, const R: usize> Coefficients<L, N, R> {
+    /// Whether motor and brake are steady, so that externals are 0 and are not read.
+    const STEADY: bool = N <= MOST_STEADY_MODES;
+
     /// Lines the constants of `L` simulations up. Modes and columns that a simulation has not got are 0.
     pub(super) fn new(prepared: &[Prepared; L]) -> Self {
         let modes = |of: &dyn Fn(&Prepared) -> &[f64]| items(&|l, n| at(of(&prepared[l]), n));
         let column = |r: usize, l: usize| prepared[l].columns.get(r);
         Self {
-            keep: modes(&|prepared| &prepared.keep),
             restore: modes(&|prepared| &prepared.restore),
+            damp: modes(&|prepared| &prepared.damp),
             push: rows(&|l, r, n| column(r, l).map_or(0.0, |column| at(&column.push, n))),
             external_push: rows(&|l, x, n| at(&prepared[l].external_push[x], n)),
             compliance: rows(&|l, r, c| prepared[l].compliance.get(r).map_or(0.0, |row| at(row, c))),
@@ -99,43 +99,35 @@ impl<const L: usize, const N: usize, const R: usize> Coefficients<L, N, R> {
     ///
     /// # Arguments
     /// * `first` - of each
-    /// * `external` - externals at the first sample
-    pub(super) fn first_state(
-        &self,
-        first: &[FirstState; L],
-        external: [Lanes<L>; EXTERNALS],
-    ) -> State<L, N, R> {
+    pub(super) fn first_state(&self, first: &[FirstState; L]) -> State<L, N, R> {
         let displacement = items(&|l, n| at(&first[l].displacement, n));
-        let scaled_velocity = items(&|l, n| at(&first[l].scaled_velocity, n));
+        let velocity = items(&|l, n| at(&first[l].velocity, n));
+        let acceleration = items(&|l, n| at(&first[l].acceleration, n));
         let force = items(&|l, r| at(&first[l].force, r));
         let predicted = |l: usize, r: usize| {
             let mut predicted = self.static_deflection[r].0[l];
             for n in 0..N {
                 let share: f64 = (0..R).map(|s| self.push[s][n].0[l] * force[s].0[l]).sum();
-                predicted += self.prediction.of_displacement[r][n].0[l] * (displacement[n].0[l] - share);
-                predicted += self.prediction.of_velocity[r][n].0[l] * (scaled_velocity[n].0[l] - share);
+                let next_velocity = velocity[n].0[l] + acceleration[n].0[l] - share;
+                let next_displacement = displacement[n].0[l] + next_velocity;
+                predicted += self.prediction.of_displacement[r][n].0[l] * next_displacement;
+                predicted += self.prediction.of_velocity[r][n].0[l] * next_velocity;
             }
             predicted
         };
-        State {
-            predicted: items(&predicted),
-            displacement,
-            scaled_velocity,
-            force,
-            external,
-            touching: [0; L],
-        }
+        State { predicted: items(&predicted), displacement, velocity, acceleration, force, touching: [0; L] }
     }
 
     /// Whether the motion of lane `l` is bounded.
     pub(super) fn is_sound(&self, state: &State<L, N, R>, l: usize) -> bool {
-        state.displacement.iter().chain(&state.scaled_velocity).all(|mode| is_bounded(mode.0[l]))
+        state.displacement.iter().chain(&state.velocity).all(|mode| is_bounded(mode.0[l]))
     }
 
     /// Makes a step.
     ///
-    /// The step without the mesh's new force comes first; the deflection that it leads to is known but for the last step's force
-    /// ([`Prediction`]), so that the law can begin. Its force is then added to every mode.
+    /// The acceleration without the mesh's new force comes first, and the deflection that it leads to a step later. The deflection of
+    /// this step is known but for the last step's force ([`Prediction`]), so that the law can begin. Its force is then added to every
+    /// mode.
     ///
     /// # Arguments
     /// * `law` - the mesh
@@ -151,53 +143,45 @@ impl<const L: usize, const N: usize, const R: usize> Coefficients<L, N, R> {
         external: &[Lanes<L>; EXTERNALS],
     ) {
         let zero = Lanes::splat(0.0);
-        let (mut change, mut displacement, mut scaled_velocity) = ([zero; N], [zero; N], [zero; N]);
+        let (mut next_displacement, mut next_velocity) = ([zero; N], [zero; N]);
         for n in 0..N {
-            change[n] = self.keep[n].mul(simd, state.scaled_velocity[n]);
-            change[n] = self.restore[n].negative_mul_add(simd, state.displacement[n], change[n]);
-            for r in 0..R {
-                change[n] = self.push[r][n].mul_add(simd, state.force[r], change[n]);
-            }
-            if !State::<L, N, R>::STEADY {
+            state.velocity[n] = state.velocity[n].add(simd, state.acceleration[n]);
+            state.displacement[n] = state.displacement[n].add(simd, state.velocity[n]);
+            let damped = self.damp[n].mul(simd, state.velocity[n]);
+            let mut acceleration = self.restore[n].mul_add(simd, state.displacement[n], damped);
+            if !Self::STEADY {
                 for x in 0..EXTERNALS {
-                    let both = state.external[x].add(simd, external[x]);
-                    change[n] = self.external_push[x][n].mul_add(simd, both, change[n]);
+                    acceleration = self.external_push[x][n].mul_add(simd, external[x], acceleration);
                 }
             }
-            displacement[n] = state.displacement[n].add(simd, change[n]);
+            state.acceleration[n] = acceleration;
+            next_velocity[n] = state.velocity[n].add(simd, acceleration);
+            next_displacement[n] = state.displacement[n].add(simd, next_velocity[n]);
         }
-        for n in 0..N {
-            scaled_velocity[n] = change[n].sub(simd, state.scaled_velocity[n]);
-        }
-        let predicted = self.predict(simd, &displacement, &scaled_velocity);
         let deflection = self.free_deflection(simd, state, external);
+        let predicted = self.predict(simd, &next_displacement, &next_velocity);
         let force = law.force(simd, &deflection, &self.compliance, pairs, &mut state.touching);
         for n in 0..N {
             for r in 0..R {
-                change[n] = self.push[r][n].mul_add(simd, force[r], change[n]);
+                state.acceleration[n] = self.push[r][n].mul_add(simd, force[r], state.acceleration[n]);
             }
-            state.displacement[n] = state.displacement[n].add(simd, change[n]);
-            state.scaled_velocity[n] = change[n].sub(simd, state.scaled_velocity[n]);
         }
         state.force = force;
         state.predicted = predicted;
-        if !State::<L, N, R>::STEADY {
-            state.external = *external;
-        }
     }
 
-    /// What [`Prediction`] makes of a state without its own force's share.
+    /// What [`Prediction`] makes of predictions without the share of the last force.
     #[inline(always)]
     fn predict<I: Instructions>(
         &self,
         simd: I,
         displacement: &[Lanes<L>; N],
-        scaled_velocity: &[Lanes<L>; N],
+        velocity: &[Lanes<L>; N],
     ) -> [Lanes<L>; R] {
         let mut predicted = self.static_deflection;
         for r in 0..R {
             predicted[r] = dot(simd, predicted[r], &self.prediction.of_displacement[r], displacement);
-            predicted[r] = dot(simd, predicted[r], &self.prediction.of_velocity[r], scaled_velocity);
+            predicted[r] = dot(simd, predicted[r], &self.prediction.of_velocity[r], velocity);
         }
         predicted
     }
@@ -212,10 +196,9 @@ impl<const L: usize, const N: usize, const R: usize> Coefficients<L, N, R> {
     ) -> [Lanes<L>; R] {
         let mut deflection = state.predicted;
         for r in 0..R {
-            if !State::<L, N, R>::STEADY {
+            if !Self::STEADY {
                 for x in 0..EXTERNALS {
-                    let both = state.external[x].add(simd, external[x]);
-                    deflection[r] = self.prediction.of_external[r][x].mul_add(simd, both, deflection[r]);
+                    deflection[r] = self.prediction.of_external[r][x].mul_add(simd, external[x], deflection[r]);
                 }
             }
             for s in 0..R {
@@ -261,7 +244,6 @@ pub(super) fn law_lanes<const L: usize>(prepared: &[Prepared; L]) -> LawLanes<L>
     LawLanes::new(
         prepared.each_ref().map(|of| of.laws[0]),
         prepared.each_ref().map(|of| of.static_force_n[0]),
-        prepared.each_ref().map(|of| of.half_step_s),
     )
 }
 

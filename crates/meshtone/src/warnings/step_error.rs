@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::error::Error;
-use crate::operation::{greatest_common_divisor, least_common_multiple};
+use crate::operation::greatest_common_divisor;
 use crate::sensor::ChannelKind;
 use crate::simulate::{Equations, Stages, stages_within};
 use crate::solver::{Block, MeanMachine, Recorder};
@@ -63,7 +63,7 @@ pub(super) fn step_error(
         return None;
     }
     let mut scenario = stages.scenario.clone();
-    scenario.solver.sampling_rate_hz = nominal_rate_of_half_step_hz(stages);
+    scenario.solver.sampling_rate_hz = 2.0 * stages.time.sampling_rate_hz;
     let finer = stages_within(&scenario, stages.memory_limit).map_err(Error::from);
     let Ok((finer_rate_hz, [finer_acceleration, finer_force])) = finer.and_then(|finer| rms_of(&finer))
     else {
@@ -104,27 +104,17 @@ impl Recorder for SquareSums {
     }
 }
 
-/// (S/s) The nominal rate whose actual one is twice that of a simulation: [`TimeGrid::new`](crate::operation::TimeGrid::new)
-/// rounds it up to a multiple, and adds six of these.
-fn nominal_rate_of_half_step_hz(stages: &Stages) -> f64 {
-    let multiple = least_common_multiple(stages.teeth.pinion.teeth, stages.teeth.gear.teeth);
-    let unit_hz = f64::from(multiple) * stages.scenario.operation.pinion_speed_hz;
-    // Half a unit below, so that rounding up is safe.
-    (2.0 * stages.time.sampling_rate_hz - 6.5 * unit_hz).max(0.5 * unit_hz)
-}
-
 /// (-) How far the step may falsify the rms, without a second simulation.
 ///
 /// Every sine of the signal that repeats with a wheel's turn is as large as the machine's answer at the frequency that the step
 /// makes of its own, [`MeanMachine::squared_growth`]; what does not repeat, as the ringing after a hit, only changes its pitch. Of teeth
 /// that part it says nothing: their motion has no resonance that lasts.
 fn estimate(stages: &Stages, acceleration: &WheelTurnSums, force: &WheelTurnSums) -> f64 {
-    let (Equations::Machine(train, modes), [mesh]) = (&stages.equations, &stages.closed_meshes()[..]) else {
+    let (Equations::Machine(train, modes), [mesh]) = (&stages.equations, &stages.meshes[..]) else {
         return 0.0;
     };
     let model = stages.modal_machine(train, modes);
-    let machine = MeanMachine::new(&model, *mesh);
-    let step_s = stages.time.step_s();
+    let machine = MeanMachine::new(&model, mesh.law(), stages.time.step_s());
     let error = |(answer, signal): (usize, &WheelTurnSums)| {
         let power = signal.rms().powi(2);
         if power < ROUNDING * ROUNDING {
@@ -132,7 +122,7 @@ fn estimate(stages: &Stages, acceleration: &WheelTurnSums, force: &WheelTurnSums
         }
         let gain = |line: Line| {
             let at = |shift: f64| TAU * line.frequency_hz * (1.0 + shift);
-            let gains = SHIFTS.map(|shift| (machine.squared_growth(at(shift), step_s)[answer] - 1.0).abs());
+            let gains = SHIFTS.map(|shift| (machine.squared_growth(at(shift))[answer] - 1.0).abs());
             line.power * gains.into_iter().fold(0.0, f64::max)
         };
         let lines = lines(stages, signal).filter(|line| line.power > LEAST_PART * power);

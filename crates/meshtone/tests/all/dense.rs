@@ -11,7 +11,7 @@ use meshtone::operation::{MotionSample, TimeGrid};
 use meshtone::solver::{Block, InitialMotion, Output, Recorder};
 use meshtone::wheel::WheelName;
 use meshtone::{Equations, Stages};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector};
 
 /// Pairs that can touch at once.
 const PAIRS: i64 = 3;
@@ -312,21 +312,21 @@ impl<'a> Dense<'a> {
         matrix.solve(&right).unwrap().rows(0, n).into_owned()
     }
 
-    /// Accelerations of all coordinates at the samples of the motion, by Newmark's method (γ = ½, β = ¼).
+    /// Accelerations of all coordinates at the samples of the motion, by Newmark's method with γ = ½ and a β of each mode.
     ///
     /// The unknown is u less the rigid rotation at the nominal speed, whose forces are subtracted. The equations are the same; in u
-    /// itself rounding grows with the angle turned, which would hide what is compared. A step's change S, with `h = Δt/2`, obeys
-    /// `(M/h² + C/h + K) S + Σ g f(D) = F₁ + C v₀ + 2 M v₀/h + M a₀ − K u₀` with `D = gᵀ(u + τ v)` at its end. The forces are
-    /// piecewise linear: Newton's method has found them when the same flanks touch as before.
+    /// itself rounding grows with the angle turned, which would hide what is compared. With the predictions ũ and ṽ, the acceleration a
+    /// at a step's end obeys `(M + ½ Δt C + Δt² K β) a + Σ g f(D) = F − C ṽ − K ũ` with `D = gᵀ (ũ + τ ṽ + (Δt² β + ½ Δt τ) a)`, where M, C
+    /// and β are the matrices of [`DenseSteps`]. The forces are piecewise linear: Newton's method has found them when the same flanks
+    /// touch as before.
     pub fn accelerations(&self) -> Vec<DVector<f64>> {
         assert_eq!(self.time.first_simulated_sample, 0);
         let machine = self.machine;
-        let h = self.time.step_s() / 2.0;
-        let mass = DMatrix::from_diagonal(&DVector::from_column_slice(&machine.mass));
-        let mass_inverse = mass.clone().try_inverse().unwrap();
-        let damping = self.modes.damping_matrix(machine);
+        let dt = self.time.step_s();
+        let steps = self.steps();
+        let own_damping = self.modes.damping_matrix(machine);
         let stiffness = machine.turn_back(&machine.stiffness());
-        let constant = &mass / (h * h) + &damping / h + &stiffness;
+        let implicit = &steps.mass + &steps.damping * (dt / 2.0) + &stiffness * &steps.beta * (dt * dt);
         let revolutions: Vec<f64> = self.motion.iter().map(|motion| motion.revolutions).collect();
         let loads_at = |sample: usize| -> Vec<Load> {
             self.meshes
@@ -335,13 +335,6 @@ impl<'a> Dense<'a> {
                 .collect()
         };
         let tau: Vec<f64> = self.meshes.iter().map(|mesh| mesh.mesh.damping_time_s).collect();
-        let acceleration = |sample: usize, loads: &[Load], u: &DVector<f64>, v: &DVector<f64>| {
-            let mut force = self.external(sample, &damping) - &damping * v - &stiffness * u;
-            for ((line, load), tau) in self.lines(loads).iter().zip(loads).zip(&tau) {
-                force -= line * load.force_n(line.dot(u) + tau * line.dot(v));
-            }
-            &mass_inverse * force
-        };
         let rigid = &machine.rigid_rotation;
         let loads = loads_at(0);
         let mut u = self.displacement_at_rest(&stiffness, &loads);
@@ -349,43 +342,132 @@ impl<'a> Dense<'a> {
             |given: &[f64]| DVector::from_fn(rigid.len(), |n, _| given.get(n).copied().unwrap_or(0.0));
         let mut v = self.start.velocity.map_or_else(|| rigid * self.start.motor_rad_per_s, given)
             - rigid * self.start.nominal_rad_per_s;
-        let mut a = acceleration(0, &loads, &u, &v);
-        let mut accelerations = vec![a.clone()];
+        let mut force = self.external(0, &own_damping) - &steps.damping * &v - &stiffness * &u;
+        for ((line, load), tau) in self.lines(&loads).iter().zip(&loads).zip(&tau) {
+            force -= line * load.force_n(line.dot(&u) + tau * line.dot(&v));
+        }
+        let mut a = steps.mass.clone().lu().solve(&force).unwrap();
+        // What is stepped is an acceleration of the changed mass: the machine's own has the same force.
+        let own =
+            |a: &DVector<f64>| (&steps.mass * a).component_div(&DVector::from_column_slice(&machine.mass));
+        let mut accelerations = vec![own(&a)];
         for sample in 1..self.motion.len() {
             let loads = loads_at(sample);
             let lines = self.lines(&loads);
-            let known = self.external(sample, &damping) + &damping * &v + &mass * (&v * (2.0 / h) + &a)
-                - &stiffness * &u;
-            // D is the free part and the part that goes with S.
-            let free: Vec<f64> =
-                lines.iter().zip(&tau).map(|(line, tau)| line.dot(&u) - tau * line.dot(&v)).collect();
-            let deflections = |change: &DVector<f64>| -> Vec<f64> {
-                (0..lines.len()).map(|n| free[n] + (1.0 + tau[n] / h) * lines[n].dot(change)).collect()
+            let predicted_u = &u + &v * dt + (&a * 0.5 - &steps.beta * &a) * (dt * dt);
+            let predicted_v = &v + &a * (dt / 2.0);
+            let known = self.external(sample, &own_damping)
+                - &steps.damping * &predicted_v
+                - &stiffness * &predicted_u;
+            // D is the free part and the part that goes with the acceleration.
+            let free: Vec<f64> = lines
+                .iter()
+                .zip(&tau)
+                .map(|(line, tau)| line.dot(&predicted_u) + tau * line.dot(&predicted_v))
+                .collect();
+            let with_a: Vec<DVector<f64>> = lines
+                .iter()
+                .zip(&tau)
+                .map(|(line, tau)| steps.beta.tr_mul(line) * (dt * dt) + line * (tau * dt / 2.0))
+                .collect();
+            let straight = |a: &DVector<f64>| -> Vec<[f64; 2]> {
+                (0..lines.len()).map(|n| loads[n].straight(free[n] + with_a[n].dot(a))).collect()
             };
-            let straight = |deflections: Vec<f64>| -> Vec<[f64; 2]> {
-                loads.iter().zip(deflections).map(|(load, deflection)| load.straight(deflection)).collect()
-            };
-            let mut change = &v * (2.0 * h);
-            let mut touching = straight(deflections(&change));
+            let mut touching = straight(&a);
             for iteration in 0.. {
                 assert!(iteration < MOST_ITERATIONS, "sample {sample}: no end of the iterations");
-                let (mut matrix, mut right) = (constant.clone(), known.clone());
+                let (mut matrix, mut right) = (implicit.clone(), known.clone());
                 for (n, [slope, constant]) in touching.iter().enumerate() {
-                    matrix += &lines[n] * lines[n].transpose() * (slope * (1.0 + tau[n] / h));
+                    matrix += &lines[n] * with_a[n].transpose() * *slope;
                     right -= &lines[n] * (slope * free[n] + constant);
                 }
-                change = matrix.lu().solve(&right).unwrap();
-                let now = straight(deflections(&change));
+                a = matrix.lu().solve(&right).unwrap();
+                let now = straight(&a);
                 if now == touching {
                     break;
                 }
                 touching = now;
             }
-            u += &change;
-            v = change / h - v;
-            a = acceleration(sample, &loads, &u, &v);
-            accelerations.push(a.clone());
+            u = predicted_u + &steps.beta * &a * (dt * dt);
+            v = predicted_v + &a * (dt / 2.0);
+            accelerations.push(own(&a));
         }
         accelerations
     }
+
+    /// How the modes are stepped: β = 1/12, or ¼ for those that turn by more than 2.4 in a step, and for all that a mesh
+    /// reaches whose closing would make them unstable otherwise.
+    pub fn steps(&self) -> DenseSteps {
+        let (machine, dt) = (self.machine, self.time.step_s());
+        let n = machine.coordinates();
+        let shapes = &machine.turn * &self.modes.shapes;
+        let omega = &self.modes.angular_frequencies;
+        let resolved = |mode: usize| omega[mode] * dt < 2.4;
+        let of = |mode: usize, beta: f64| {
+            let (k, c) = (omega[mode] * omega[mode] * dt * dt, self.modes.damping_per_s(mode) * dt);
+            if resolved(mode) && k > 0.0 { exact_steps(k, c, beta) } else { [k, c] }
+        };
+        let mut betas: Vec<f64> = (0..n).map(|mode| if resolved(mode) { 1.0 / 12.0 } else { 0.25 }).collect();
+        for (line, mesh) in machine.lines.iter().zip(&self.meshes) {
+            let states = mesh.mesh.classes.iter().flat_map(|class| &class.states);
+            let reach_m = states.map(|state| state.face_centre_m.abs()).fold(0.0, f64::max);
+            let lines = [-1.0, 1.0].map(|side| {
+                shapes.tr_mul(&(&machine.turn * (&line.at_middle + &line.per_m * (side * reach_m))))
+            });
+            // What only rounding reaches stays at rest.
+            let reached = |mode: usize| lines.iter().any(|line| line[mode].abs() > 1e-12 * line.amax());
+            let used_up = |line: &DVector<f64>| -> f64 {
+                let stepped = (0..n).filter(|&mode| betas[mode] < 0.25);
+                let term = |mode: usize| {
+                    let k = omega[mode] * omega[mode] * dt * dt;
+                    let stepped_k = of(mode, betas[mode])[0];
+                    let factor = if k > 0.0 { stepped_k / k } else { 1.0 };
+                    let mesh_n_per_m = 2.0 * mesh.mesh.mean_stiffness_n_per_m;
+                    mesh_n_per_m * dt * dt * factor * line[mode].powi(2) / (6.0 - stepped_k)
+                };
+                stepped.map(term).sum()
+            };
+            if lines.iter().any(|line| used_up(line) > 0.8) {
+                (0..n).filter(|&mode| reached(mode)).for_each(|mode| betas[mode] = 0.25);
+            }
+        }
+        let mass = DMatrix::from_diagonal(&DVector::from_column_slice(&machine.mass));
+        let to_modes = shapes.transpose() * &mass;
+        let matrix = |of_mode: &dyn Fn(usize) -> f64| {
+            let diagonal = DMatrix::from_diagonal(&DVector::from_fn(n, |mode, _| of_mode(mode)));
+            &shapes * diagonal * &to_modes
+        };
+        let inertia = |mode: usize| {
+            let k = omega[mode] * omega[mode] * dt * dt;
+            if k > 0.0 { k / of(mode, betas[mode])[0] } else { 1.0 }
+        };
+        DenseSteps {
+            mass: &mass * matrix(&inertia),
+            damping: &mass * matrix(&|mode| inertia(mode) * of(mode, betas[mode])[1] / dt),
+            beta: matrix(&|mode| betas[mode]),
+        }
+    }
+}
+
+/// The matrices of a step in the machine's coordinates.
+pub struct DenseSteps {
+    /// (kg, kg m²) With the factor of each mode's inertia.
+    pub mass: DMatrix<f64>,
+    pub damping: DMatrix<f64>,
+    /// (-) β of each mode.
+    pub beta: DMatrix<f64>,
+}
+
+/// `Δt² k` and `Δt c` with which the steps of a free mode are exact: a root `z = exp(λ Δt)` of the mode is one of
+/// `z² − 2z + 1 + K (β z² + (1 − 2β) z + β) + ½ C (z² − 1)`. In real and imaginary parts these are two linear equations.
+fn exact_steps(k: f64, c: f64, beta: f64) -> [f64; 2] {
+    let root = Complex::new(-c / 2.0, (k - c * c / 4.0).sqrt()).exp();
+    let of_k = root * root * beta + root * (1.0 - 2.0 * beta) + beta;
+    let of_c = (root * root - 1.0) / 2.0;
+    let right = -(root * root - root * 2.0 + 1.0);
+    let determinant = of_k.re * of_c.im - of_k.im * of_c.re;
+    [
+        (right.re * of_c.im - right.im * of_c.re) / determinant,
+        (of_k.re * right.im - of_k.im * right.re) / determinant,
+    ]
 }

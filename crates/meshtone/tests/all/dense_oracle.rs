@@ -97,7 +97,8 @@ fn modal_and_dense_solutions_agree() {
                 scenario.gears.points_per_tooth = 2000;
                 scenario.quality.din_grade = random(0.0, 10.0) as u8;
                 scenario.rig.damping_ratio = DampingRatio::Uniform(random(0.01, 0.1));
-                scenario.solver.sampling_rate_hz = 2e4;
+                // Coarser steps let teeth that part bounce so wildly that rounding grows to be seen.
+                scenario.solver.sampling_rate_hz = 4e4;
                 // From the start on, where nothing has settled.
                 scenario.solver.settle_tolerance = 0.0;
                 scenario.gears.pressure_angle_deg = [20.0, 22.5, 18.0][round as usize];

@@ -16,7 +16,7 @@ fn pair() -> Scenario {
     });
     scenario.model = Model::Linear;
     scenario.gears.points_per_tooth = 2_000;
-    scenario.solver.sampling_rate_hz = 2e4;
+    scenario.solver.sampling_rate_hz = 1e5;
     scenario
 }
 

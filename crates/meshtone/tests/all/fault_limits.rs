@@ -8,7 +8,7 @@ use meshtone::scenario::*;
 use meshtone::simulate;
 
 // So many samples that the smallest damage spans several.
-const SAMPLING_RATE_HZ: f64 = 4e5;
+const SAMPLING_RATE_HZ: f64 = 8e5;
 
 fn scenario(damage: Option<Damage>) -> Scenario {
     sampled_scenario(damage, SAMPLING_RATE_HZ)
@@ -154,14 +154,15 @@ fn a_shallow_pit_still_carries_nothing() {
 }
 
 // The flanks' sagitta over the pit is of second order, and lasts for a length of first: 3. The pair is loaded at the pit's edges, off
-// by as much as it is long: its stiffness changes by first order over a length of first, 2, and by the depth of the section. A force
-// of second order for a time of first accelerates with an rms of order 2 + 1/2.
+// by as much as it is long: its stiffness changes by first order over a length of first, 2. The force of the sagitta, of second order
+// for a time of first, accelerates with an rms of order 2 + 1/2; that of the stiffness with 1 + 1/2, which outlasts it. With these sizes
+// the order is on the way from one to the other: 2.2, also at four times the rate.
 #[test]
 fn a_vanishing_through_pit_is_no_pit() {
     let through = |s: f64| Damage::ThroughFace(ThroughFace { pit: pit(0.125 * s, 0.5) });
     let length = Vanishing::of("through pit, length", through);
     assert!((order(&length.stiffness) - 2.0).abs() < 0.3 && (order(&length.separation) - 3.0).abs() < 0.1);
-    assert!((order(&length.acceleration) - 2.5).abs() < 0.3);
+    assert!((order(&length.acceleration) - 2.2).abs() < 0.1);
 }
 
 // The same of a line between two points of the flank.

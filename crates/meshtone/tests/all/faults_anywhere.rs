@@ -17,7 +17,7 @@ fn pair(faults: Vec<Fault>) -> Scenario {
         Scenario::new(GearPair { pinion_speed_hz: 25.0, brake_torque_nm: 60.0, ..GearPair::example() });
     scenario.model = Model::Linear;
     scenario.gears.points_per_tooth = 2_000;
-    scenario.solver.sampling_rate_hz = 2e4;
+    scenario.solver.sampling_rate_hz = 1e5;
     // Nothing of the start is left.
     scenario.solver.settle_tolerance = 0.0;
     scenario.faults = faults;

@@ -15,7 +15,7 @@ fn base() -> Scenario {
     let mut scenario = Scenario::new(GearPair::example());
     scenario.model = Model::Linear;
     scenario.quality.din_grade = 7;
-    scenario.solver.sampling_rate_hz = 6e4;
+    scenario.solver.sampling_rate_hz = 1e5;
     scenario.gears.points_per_tooth = 2000;
     scenario
 }
@@ -111,7 +111,7 @@ fn on_the_pinion(tooth: u32) -> Vec<Case> {
 /// What an experiment with damage on the pinion is, its signals averaged over the revolutions of a wheel.
 fn experiment_on_the_pinion(tooth: u32, wheel: WheelName) -> Experiment {
     let mut base = base();
-    base.solver.sampling_rate_hz = 25e3;
+    base.solver.sampling_rate_hz = 1e5;
     base.gears.points_per_tooth = 1000;
     let chain = DifferenceChain { wheel, ..DifferenceChain::new(25e3) };
     let scenarios = on_the_pinion(tooth).into_iter();

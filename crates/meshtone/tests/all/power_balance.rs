@@ -65,7 +65,7 @@ fn pair(module: f64, z1: u32, z2: u32, width: f64, speed: f64, torque: f64) -> S
     });
     scenario.model = Model::Linear;
     scenario.gears.points_per_tooth = 2_000;
-    scenario.solver.sampling_rate_hz = 2e4;
+    scenario.solver.sampling_rate_hz = 1e5;
     scenario
 }
 

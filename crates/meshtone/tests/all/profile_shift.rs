@@ -163,7 +163,7 @@ fn scenario(model: Model) -> Scenario {
     scenario.model = model;
     scenario.gears.points_per_tooth = 2_000;
     (scenario.gears.pinion_profile_shift, scenario.gears.gear_profile_shift) = (0.3, 0.2);
-    scenario.solver.sampling_rate_hz = 2e4;
+    scenario.solver.sampling_rate_hz = 1e5;
     scenario
 }
 

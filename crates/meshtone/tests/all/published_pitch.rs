@@ -125,7 +125,7 @@ fn any_teeth_can_be_simulated() {
         for damage in damages {
             let mut scenario = published(teeth, 30.0, damage);
             scenario.quality.din_grade = 7;
-            scenario.solver.sampling_rate_hz = 2e4;
+            scenario.solver.sampling_rate_hz = 1e5;
             let simulation = meshtone::simulate(&scenario).unwrap();
             let force_n = &simulation.channels.mesh_force_n;
             assert!(

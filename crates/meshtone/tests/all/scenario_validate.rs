@@ -2,8 +2,8 @@
 
 use crate::support::{REQUIRED, appended, assert_refused, gears, replaced};
 use meshtone::scenario::{
-    DampingRatio, DestructionLine, Fault, GearPair, MEMORY_LIMIT_BYTES, MemoryLimit, Profile, ProfileErrors,
-    Scenario, ToothDestruction,
+    DampingRatio, DestructionLine, Fault, GearPair, MEMORY_LIMIT_BYTES, MemoryLimit, Model, Profile,
+    ProfileErrors, Scenario, ToothDestruction,
 };
 use meshtone::wheel::ErrorTable;
 
@@ -261,7 +261,7 @@ fn transposed_profile_errors_are_recognised() {
 }
 
 #[test]
-fn sampling_rates_of_the_published_model() {
+fn sampling_rates() {
     let healthy = Scenario::new(GearPair::example());
     let destruction = Scenario::new(GearPair {
         module_mm: 3.0,
@@ -271,8 +271,15 @@ fn sampling_rates_of_the_published_model() {
         pinion_speed_hz: 45.0,
         brake_torque_nm: 15.0,
     });
-    assert_eq!(healthy.actual_sampling_rate_hz(), 258_400.0);
-    assert_eq!(destruction.actual_sampling_rate_hz(), 283_500.0);
+    // A whole number of samples for a pitch: 148 and 124.
+    assert_eq!(healthy.actual_sampling_rate_hz(), 100_640.0);
+    assert_eq!(destruction.actual_sampling_rate_hz(), 100_440.0);
+    let published = |mut scenario: Scenario| {
+        scenario.model = Model::Published;
+        scenario
+    };
+    assert_eq!(published(healthy).actual_sampling_rate_hz(), 258_400.0);
+    assert_eq!(published(destruction).actual_sampling_rate_hz(), 283_500.0);
 }
 
 #[test]
@@ -283,12 +290,12 @@ fn simulations_too_large_for_memory() {
 
     let scenario = Scenario::from_toml(REQUIRED).unwrap();
     let needed = scenario.memory_estimate_bytes();
-    // 245 480 kept samples of 8 signals are 15.7 MB; nothing else is much larger.
-    assert!((15_700_000..60_000_000).contains(&needed), "{needed}");
+    // 95 608 kept samples of 8 signals are 6.1 MB; nothing else is much larger.
+    assert!((6_100_000..60_000_000).contains(&needed), "{needed}");
     assert!(needed < MEMORY_LIMIT_BYTES);
     assert!(scenario.validate_within(MemoryLimit::Given { bytes: needed }).is_ok());
     let error = scenario.validate_within(MemoryLimit::Given { bytes: needed - 1 }).unwrap_err();
-    assert!(error.problem.contains("would need 37."), "{error}");
+    assert!(error.problem.contains("would need 24."), "{error}");
 }
 
 /// The key that is blamed is one that stands in the file, and the one that helps most.

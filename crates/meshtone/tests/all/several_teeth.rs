@@ -13,7 +13,7 @@ fn pair(model: Model, faults: Vec<Fault>) -> Scenario {
     let mut scenario = Scenario::new(GearPair { brake_torque_nm: 60.0, ..GearPair::example() });
     scenario.model = model;
     scenario.gears.points_per_tooth = 2_000;
-    scenario.solver.sampling_rate_hz = 2e4;
+    scenario.solver.sampling_rate_hz = 1e5;
     scenario.solver.settle_tolerance = 1e-9;
     scenario.faults = faults;
     scenario

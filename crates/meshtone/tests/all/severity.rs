@@ -102,7 +102,7 @@ fn relative(value: f64, expected: f64) -> f64 {
 fn quick(model: Model, teeth: [u32; 2]) -> Scenario {
     let mut scenario = pair(model, 3.0, teeth);
     scenario.quality.din_grade = 7;
-    scenario.solver.sampling_rate_hz = 2e4;
+    scenario.solver.sampling_rate_hz = 1e5;
     scenario
 }
 

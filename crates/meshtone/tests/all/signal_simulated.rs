@@ -98,13 +98,13 @@ fn a_speed_that_varies() {
 #[test]
 fn what_is_refused() {
     let scenario = faulty();
-    let shafts = SimulatedShafts::new(&scenario, 0.0, 4000);
+    let shafts = SimulatedShafts::new(&scenario, 0.0, 2000);
     let settings = ChainSettings::default();
-    let wave: Vec<f64> = (0..4000).map(|i| f64::from(i % 7)).collect();
+    let wave: Vec<f64> = (0..2000).map(|i| f64::from(i % 7)).collect();
     let too_few = shafts.process(&wave, WheelName::Gear, &settings);
     assert!(matches!(too_few, Err(SignalError::TooFewRevolutions { .. })));
     assert!(shafts.process(&wave[1..], WheelName::Gear, &settings).is_err());
-    let constant = shafts.process(&[0.0; 4000], WheelName::Gear, &settings);
+    let constant = shafts.process(&[0.0; 2000], WheelName::Gear, &settings);
     assert!(matches!(constant, Err(SignalError::Constant { .. })));
     // A start far beyond the simulation does not take for ever.
     let mut fluctuating = faulty();

@@ -28,10 +28,10 @@ fn solve(
 ) -> Vec<Vec<f64>> {
     let outputs = outputs(machine);
     let mut signals = Recorded(vec![Vec::new(); outputs.len()]);
-    let tilts: Vec<bool> = meshes.iter().map(Mesh::tilts).collect();
+    let face_reach_m: Vec<f64> = meshes.iter().map(Mesh::face_reach_m).collect();
     let problem = Problem {
         time,
-        machine: ModalMachine::new(machine, &Modes::damped_by_springs(machine), &tilts, start),
+        machine: ModalMachine::new(machine, &Modes::damped_by_springs(machine), &face_reach_m, start),
         laws: meshes.iter().map(Mesh::law).collect(),
         forcing,
         is_steady,
@@ -199,7 +199,7 @@ fn check_pairs_side_by_side(scenarios: &[Scenario; 2], first_pitch: [f64; 2]) ->
         println!("pair {pair}: {difference:.1e}");
         assert!(difference < 1e-9, "pair {pair}: {difference:.2e}");
     }
-    let mut tilts = meshes.iter().map(Mesh::tilts);
+    let mut tilts = meshes.iter().map(|mesh| mesh.face_reach_m() > 0.0);
     alone.map(|mut signals| (tilts.next().unwrap(), signals.pop().unwrap()))
 }
 
@@ -417,7 +417,7 @@ fn static_mesh_forces_balance_the_torque_through_the_ratios() {
     let [_, r2, r3, r4] = TWO_STAGES.map(base_radius_m);
     let second_n = BRAKE_NM / r4;
     let first_n = second_n * r3 / r2;
-    let modal = ModalMachine::new(&machine, &modes, &[false; 2], start(None));
+    let modal = ModalMachine::new(&machine, &modes, &[0.0; 2], start(None));
     for (line, expected_n) in modal.lines.iter().zip([first_n, second_n]) {
         assert!((line.static_force_n / expected_n - 1.0).abs() < 1e-9, "{} N", line.static_force_n);
     }

@@ -19,7 +19,7 @@ fn contact_that_is_lost() {
     scenario.rig.pinion_shaft.radius_mm = 4.2;
     scenario.rig.gear_shaft.radius_mm = 4.2;
     scenario.faults = vec![Fault::on_first_gear_tooth(MissingTooth)];
-    scenario.solver.sampling_rate_hz = 2e4;
+    scenario.solver.sampling_rate_hz = 1e5;
     scenario.gears.points_per_tooth = 2000;
     scenario.rig.damping_ratio = DampingRatio::Uniform(0.0005);
     scenario.rig.mesh_damping_ratio = 0.0;

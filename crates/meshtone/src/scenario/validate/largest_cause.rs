@@ -86,8 +86,8 @@ fn teeth(scenario: &Scenario) -> Candidate {
     let gears = &scenario.gears;
     let multiple = least_common_multiple(gears.pinion_teeth, gears.gear_teeth);
     let help = format!(
-        "use tooth counts with a common factor, or fewer teeth: a revolution of the pinion has at least 7 samples for each unit of \
-         the counts' least common multiple, here {multiple}, and twice as many revolutions as the gear has teeth are simulated"
+        "use tooth counts with a common factor, or fewer teeth: the cycle is divided by the counts' least common multiple, here \
+         {multiple}, and twice as many revolutions as the gear has teeth are simulated"
     );
     Candidate::new(scenario, "gears.gear_teeth", gears.gear_teeth.to_string(), help, |ordinary| {
         ordinary.gears.pinion_teeth = gears.gear_teeth;

@@ -28,15 +28,15 @@ const PAIR_PITCHES: f64 = 3.0;
 const BYTES_PER_NUMBER: f64 = 8.0;
 
 impl Scenario {
-    /// (S/s) The actual sampling rate `⌈f_nom/(L f_p) + 6⌉ L f_p`, with `L` the least common
-    /// multiple of the tooth counts: a whole number of samples for each revolution of either shaft
-    /// and each tooth.
+    /// (S/s) The actual sampling rate: the nominal one, or just above it, so that a whole number of samples passes from one pair of
+    /// teeth to the next, and so in a revolution of either shaft. Under the published model `⌈f_nom/(L f_p) + 6⌉ L f_p`, with `L` the
+    /// least common multiple of the tooth counts.
     ///
     /// ```
     /// use meshtone::scenario::{GearPair, Scenario};
     ///
     /// let scenario = Scenario::new(GearPair::example());
-    /// assert_eq!(scenario.actual_sampling_rate_hz(), 258_400.0);
+    /// assert_eq!(scenario.actual_sampling_rate_hz(), 100_640.0);
     /// ```
     pub fn actual_sampling_rate_hz(&self) -> f64 {
         self.time_grid().sampling_rate_hz
@@ -52,7 +52,7 @@ impl Scenario {
     /// use meshtone::scenario::{GearPair, Scenario};
     ///
     /// let scenario = Scenario::new(GearPair::example());
-    /// assert_eq!(scenario.memory_estimate_bytes() / 1_000_000, 39);
+    /// assert_eq!(scenario.memory_estimate_bytes() / 1_000_000, 25);
     /// ```
     pub fn memory_estimate_bytes(&self) -> u64 {
         let time = self.time_grid();
