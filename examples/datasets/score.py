@@ -44,7 +44,7 @@ GEAR = ["fm0", "fm4", "m6a", "m8a", "na4", "energy_ratio", "sideband_level_facto
 QUANTILES = np.arange(0.1, 0.95, 0.1)
 DRAWS = 400
 
-# The question is fair where a method can win on merit: neither hopeless nor solved, and nothing but the vibration tells.
+# The question is fair where a method can win on merit: neither hopeless nor solved, and nothing but the vibration shows it.
 BOUNDS = {"detection": (0.85, 0.97), "diagnosis": (0.6, 0.9), "kind at its largest severity": (0.75, 1.0)}
 
 
@@ -67,8 +67,8 @@ class Records:
 def records(dataset: mt.Dataset) -> tuple[Records, Records]:
     plain = [name for name in dataset.scalar_columns if name.startswith(PARTS) or name in GEAR]
     # Octaves beyond half the sampling rate are null in all records.
-    told = dataset.split("train").to_pandas(plain).notna().any()
-    indicators = [name for name in plain if told[name]]
+    present = dataset.split("train").to_pandas(plain).notna().any()
+    indicators = [name for name in plain if present[name]]
 
     def of(split: str) -> Records:
         part = dataset.split(split)
@@ -228,7 +228,7 @@ def detection(test: Records, runs: list[np.ndarray]) -> dict[str, object]:
     healthy = test.damaged == 0
     alarms = [np.quantile(run[healthy], 0.95) for run in runs]
 
-    def told(chosen: np.ndarray) -> list[Callable[[np.ndarray], float]]:
+    def scores_of(chosen: np.ndarray) -> list[Callable[[np.ndarray], float]]:
         return [lambda i, run=run: auc(test.damaged[i][chosen[i]], run[i][chosen[i]]) for run in runs]
 
     kinds = {}
@@ -238,13 +238,13 @@ def detection(test: Records, runs: list[np.ndarray]) -> dict[str, object]:
         by_grade, limit = {}, None
         for grade in np.unique(test.grades[of_kind]):
             graded = of_kind & (test.grades == grade)
-            by_grade[str(grade)] = round(float(np.mean([score(everything) for score in told(healthy | graded)])), 3)
+            by_grade[str(grade)] = round(float(np.mean([score(everything) for score in scores_of(healthy | graded)])), 3)
             found = np.mean([run[graded] > alarm for run, alarm in zip(runs, alarms, strict=True)])
             if limit is None and found >= 0.9:
                 limit = round(float(test.severity[graded].min()), 2)
-        kinds[label] = {"auc": interval(told(healthy | of_kind), test.units), "auc by grade": by_grade, "found from severity": limit}
-    by_noise = {name: interval(told(chosen), test.units) for name, chosen in noise_levels(test).items()}
-    return {"auc": interval(told(np.ones(len(test.labels), bool)), test.units), "auc by noise": by_noise, "kinds": kinds}
+        kinds[label] = {"auc": interval(scores_of(healthy | of_kind), test.units), "auc by grade": by_grade, "found from severity": limit}
+    by_noise = {name: interval(scores_of(chosen), test.units) for name, chosen in noise_levels(test).items()}
+    return {"auc": interval(scores_of(np.ones(len(test.labels), bool)), test.units), "auc by noise": by_noise, "kinds": kinds}
 
 
 def noise_levels(test: Records) -> dict[str, np.ndarray]:
@@ -274,7 +274,7 @@ def severity(train: Records, test: Records, model: str) -> list[float]:
 
 
 def shortcuts(train: Records, test: Records) -> dict[str, list[float]]:
-    """What tells damage where a data set is posed badly: conditions, lengths, and how far a record is from a healthy one of its unit,
+    """What reveals damage where a data set is posed badly: conditions, lengths, and how far a record is from a healthy one of its unit,
     which are twins where only noise is between them. None may be better than chance, 0.5, by more than its interval.
     """
     def by(inputs: Callable[[Records], np.ndarray]) -> list[float]:
@@ -308,34 +308,34 @@ def answers(name: str, seed: int, train: Records, test: Records, kept: Path) -> 
     file = kept / f"{name.replace(' ', '-')}-{seed}.npz"
     if file.exists():
         try:
-            told = dict(np.load(file))
+            earlier = dict(np.load(file))
             print(f"{name}, seed {seed}: as kept in {file}", file=sys.stderr)
-            return told
+            return earlier
         except (EOFError, OSError, ValueError, zipfile.BadZipFile):
             print(f"{name}, seed {seed}: {file} cannot be read and is made anew", file=sys.stderr)
     print(f"{name}, seed {seed}", file=sys.stderr)
     model, _ = MODELS[name]
     labels, numbers = np.unique(train.labels, return_inverse=True)
-    told = {
+    trained = {
         "damaged": model.probabilities(train, train.damaged, test, seed)[:, 1],
         "label": labels[np.argmax(model.probabilities(train, numbers, test, seed), axis=1)],
     }
     kept.mkdir(parents=True, exist_ok=True)
     unfinished = file.with_suffix(f".{os.getpid()}.npz")
-    np.savez(unfinished, **told)
+    np.savez(unfinished, **trained)
     unfinished.replace(file)
-    return told
+    return trained
 
 
 def surroundings(dataset: mt.Dataset) -> dict[str, str]:
     """What an answer depends on: the data set, this script, the libraries."""
-    told = {"data set": dataset.manifest["sha256"], "script": hashlib.sha256(Path(__file__).read_bytes()).hexdigest()}
+    versions = {"data set": dataset.manifest["sha256"], "script": hashlib.sha256(Path(__file__).read_bytes()).hexdigest()}
     for name in ("meshtone", "numpy", "scikit-learn", "aeon", "torch"):
         try:
-            told[name] = version(name)
+            versions[name] = version(name)
         except PackageNotFoundError:
             continue
-    return told
+    return versions
 
 
 def scores(train: Records, test: Records, models: list[str], seeds: int, kept: Path) -> tuple[dict, dict]:
@@ -378,8 +378,8 @@ def broken(result: dict) -> list[str]:
         if not least <= value <= most:
             found.append(f"best {key} {value} is not from {least} to {most}")
     name = max(result["models"], key=lambda name: result["models"][name]["detection"]["auc"][0])
-    for kind, told in result["models"][name]["detection"]["kinds"].items():
-        grades = list(told["auc by grade"].values())
+    for kind, scores in result["models"][name]["detection"]["kinds"].items():
+        grades = list(scores["auc by grade"].values())
         if grades[-1] < BOUNDS["kind at its largest severity"][0]:
             found.append(f"{kind} at its largest severity: {grades[-1]}")
         # So much is within what the records of a grade say.
@@ -398,10 +398,10 @@ def table(result: dict) -> str:
         lines.append(f"| {name} | {shown.format(model['detection']['auc'])} | {shown.format(model['diagnosis'])} |")
     best = max(result["models"], key=lambda name: result["models"][name]["detection"]["auc"][0])
     lines += ["", f"Of {best}:", "", "| kind | AUC | by grade of severity | 90 % found from | named rightly |", "|---|---:|---|---:|---:|"]
-    for kind, told in result["models"][best]["detection"]["kinds"].items():
-        grades = ", ".join(f"{value:.2f}" for value in told["auc by grade"].values())
-        limit = "-" if told["found from severity"] is None else told["found from severity"]
-        lines.append(f"| {kind} | {shown.format(told['auc'])} | {grades} | {limit} | {result['models'][best]['recall'][kind]:.2f} |")
+    for kind, scores in result["models"][best]["detection"]["kinds"].items():
+        grades = ", ".join(f"{value:.2f}" for value in scores["auc by grade"].values())
+        limit = "-" if scores["found from severity"] is None else scores["found from severity"]
+        lines.append(f"| {kind} | {shown.format(scores['auc'])} | {grades} | {limit} | {result['models'][best]['recall'][kind]:.2f} |")
     if by_noise := result["models"][best]["detection"]["auc by noise"]:
         lines += ["", "| signal to noise | AUC |", "|---|---:|"]
         lines += [f"| {name} | {shown.format(value)} |" for name, value in by_noise.items()]
@@ -456,9 +456,9 @@ def figures(test: Records, result: dict, probabilities: dict, folder: Path) -> N
         record = of_kind[np.argmax(test.severity[of_kind])]
         difference = test.signals[record, 1]
         axes.plot(np.linspace(0, 360, len(difference), endpoint=False), difference, lw=0.6, color=colours.get(label, "black"))
-        told = "" if label == "healthy" else f", severity {test.severity[record]:.2f}"
+        severity = "" if label == "healthy" else f", severity {test.severity[record]:.2f}"
         speed, load = test.table.iloc[record][["pinion_speed_hz", "brake_torque_nm"]]
-        axes.set_title(f"{label}{told}, {speed:.0f} Hz, {load:.0f} N m", fontsize=8, loc="left", pad=2)
+        axes.set_title(f"{label}{severity}, {speed:.0f} Hz, {load:.0f} N m", fontsize=8, loc="left", pad=2)
         axes.margins(x=0)
     axes.set_xlabel("angle of the gear, °")
     figure.supylabel("difference signal, g", fontsize=9)
@@ -467,7 +467,7 @@ def figures(test: Records, result: dict, probabilities: dict, folder: Path) -> N
 
 
 def opened(path: Path, refuse: Callable[[str], NoReturn]) -> tuple[mt.Dataset, Records, Records]:
-    """A data set with what is learnt from and what is asked; `refuse` tells what keeps one from being scored."""
+    """A data set with what is learnt from and what is asked; `refuse` reports what keeps one from being scored."""
     try:
         dataset = mt.load_dataset(path)
     except (OSError, ValueError) as error:
@@ -482,7 +482,7 @@ def opened(path: Path, refuse: Callable[[str], NoReturn]) -> tuple[mt.Dataset, R
         refuse(f"{error}\nmodels take `average_g` and `difference_g` of one length: `points_per_revolution` in the plan's [keep]")
     for split, part in (("train", train), ("test", test)):
         if len(set(part.damaged)) < 2:
-            refuse(f"split `{split}` of {path} needs healthy and damaged records to tell them apart")
+            refuse(f"split `{split}` of {path} needs healthy and damaged records to distinguish them")
     return dataset, train, test
 
 

@@ -1,7 +1,7 @@
 """Order tracking of a run-up.
 
 A pair of ideal teeth speeds up from 20 to 60 rev/s. Every harmonic of the mesh sweeps over a factor of three in frequency, and the
-spectrum shows no more than the natural frequencies that are passed. Over the angle of the pinion, which the speed signal tells, the
+spectrum shows no more than the natural frequencies that are passed. Over the angle of the pinion, which the speed signal gives, the
 harmonics are lines again: at multiples of its 17 teeth.
 """
 

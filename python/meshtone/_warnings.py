@@ -16,7 +16,7 @@ class MeshtoneWarning(UserWarning):
     Attributes
     ----------
     code : str or None
-        What it is about, for programs to tell apart, such as ``"step-error"``; of what a simulation tells.
+        What it is about, for programs to distinguish, such as ``"step-error"``; of the warnings of a simulation.
 
     Examples
     --------
@@ -38,7 +38,7 @@ class MeshtoneWarning(UserWarning):
 
 
 def warn(messages: Iterable[str], codes: Iterable[str] | None = None) -> None:
-    """Tell the user's own code, wherever in the package it was noticed.
+    """Warn the user's own code, wherever in the package it was noticed.
 
     Parameters
     ----------

@@ -277,7 +277,7 @@ def _open(path: str | PathLike[str], verify: bool = False) -> Dataset:
         name, what = next(iter(wrong.items()))
         more = f", and {len(wrong) - 1} more files" if len(wrong) > 1 else ""
         raise ValueError(
-            f"{place} is not as it was written: {name}: {what}{more}; verify_dataset tells all of them, generate_dataset makes them again"
+            f"{place} is not as it was written: {name}: {what}{more}; verify_dataset reports all of them, generate_dataset makes them again"
         )
     if names:
         filesystem, folder = _filesystem(place)
@@ -316,7 +316,7 @@ def _check_place(path: str | PathLike[str], file: str) -> None:
     """Refuse a place without a data set, of which `file` is a part."""
     name = fspath(path)
     if is_url(name):
-        # An object store, which tells for itself.
+        # An object store, which reports it by itself.
         return
     if not stat.S_ISDIR(os.stat(name).st_mode):
         raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR), name)

@@ -40,7 +40,7 @@ __all__ = [
 ]
 
 BLUE, ORANGE, GREY = "#0072b2", "#d55e00", "#8c8c8c"
-"""Colours that also readers with colour blindness can tell apart (Okabe and Ito)."""
+"""Colours that also readers with colour blindness can distinguish (Okabe and Ito)."""
 
 LINES = ((BLUE, "o"), (ORANGE, "s"), ("#009e73", "^"), ("#cc79a7", "D"), ("#56b4e9", "v"), ("#e69f00", "P"))
 """Colour and marker of each line where there are several; from the seventh on they come again, dashed."""

@@ -195,7 +195,7 @@ class Simulation:
 
     @property
     def warning_codes(self) -> list[str]:
-        """What each of :attr:`warnings` is about, for programs to tell apart: ``"step-error"``, ``"mesh-pulls"``, and so on."""
+        """What each of :attr:`warnings` is about, for programs to distinguish: ``"step-error"``, ``"mesh-pulls"``, and so on."""
         return self._native.warning_codes
 
     @property

@@ -248,7 +248,7 @@ def test_parts_and_interruption_change_nothing(gears: datasets.Dataset, tmp_path
     assert digests(whole.path) == digests(gears.path)
 
 
-def test_a_lost_file_is_told_and_made_again(gears: datasets.Dataset, tmp_path: Path) -> None:
+def test_a_lost_file_is_reported_and_made_again(gears: datasets.Dataset, tmp_path: Path) -> None:
     path = tmp_path / "set"
     shutil.copytree(gears.path, path)
     (path / "data" / "records-000001.parquet").unlink()

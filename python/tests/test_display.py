@@ -38,7 +38,7 @@ def test_pages_are_light() -> None:
         assert len(pictures(page)) == (0 if shown is scenario else 2)
     page = simulation._repr_html_()
     assert "tooth-breakage" in page
-    # What has a unit shows it, also what the channel's name does not tell the unit of.
+    # What has a unit shows it, also what the channel's name does not state the unit of.
     assert re.search(r"difference_rms</td><td[^>]*>[\d.]+ g<", page) and re.search(r"difference_kurtosis</td><td[^>]*>[\d.]+<", page)
     assert re.search(r"average_rms</td><td[^>]*>[\d.]+ g<", simulation.process()._repr_html_())
     bearing = mt.process_channel(simulation.vertical_g, mt.ShaftPhase.constant(40, simulation.sampling_rate_hz, 245480), 17, name="bearing")

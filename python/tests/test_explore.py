@@ -74,7 +74,7 @@ def test_a_notebook_shows_the_page(explorer: mt.Explorer) -> None:
     assert f'<iframe src="{explorer.url}"' in explorer._repr_html_()
 
 
-def test_a_port_that_is_taken_is_told(explorer: mt.Explorer) -> None:
+def test_a_port_that_is_taken_is_reported(explorer: mt.Explorer) -> None:
     assert explorer.url is not None
     port = int(explorer.url.split(":")[2].split("/")[0])
     with pytest.raises(OSError, match=f"port = {port}: cannot serve"):
@@ -241,7 +241,7 @@ def test_every_control_can_be_moved(page: Page, explorer: mt.Explorer) -> None:
     assert explorer.scenario.pinion_speed_hz == 42
 
 
-def test_wrong_values_are_told_at_their_key(page: Page, explorer: mt.Explorer) -> None:
+def test_wrong_values_are_reported_at_their_key(page: Page, explorer: mt.Explorer) -> None:
     assert page.enter("gears.module_mm", "-3") == "gears.module_mm = -3: must be more than 0 mm"
     shown = page.run("return document.getElementById('key-gears.module_mm-problem').textContent")
     assert shown == "must be more than 0 mm"

@@ -84,7 +84,7 @@ def test_a_run_up_is_not_drawn_as_a_constant_speed() -> None:
         run_up.plot_signal(revolutions=0)
 
 
-def test_what_is_lost_is_told_in_the_tooth() -> None:
+def test_what_is_lost_is_stated_in_the_tooth() -> None:
     crack = meshtone.simulate(meshtone.examples.root_crack()).plot_tooth()
     (line,) = crack.get_lines()
     assert line.get_label() == "crack 3 mm deep, over the whole face"

@@ -192,7 +192,7 @@ def test_warnings() -> None:
     assert examples.healthy().warnings == []
     ignored = examples.healthy().copy(model="published", eccentricity_mm=0.1)
     assert all(isinstance(warning, str) for warning in ignored.warnings)
-    # Before simulating, all that the program tells then: also what the stages show.
+    # Before simulating, all that the program reports then: also what the stages show.
     unsettled = examples.healthy().copy(settle_fraction=0.001)
     assert ["solver.settle_fraction" in warning for warning in unsettled.warnings] == [True]
 

@@ -246,7 +246,7 @@ def test_warnings_are_those_of_the_program() -> None:
     assert simulation.tension_fraction == np.mean(simulation.mesh_force_n < 0)
 
 
-def test_warnings_are_told_once_where_the_user_called() -> None:
+def test_warnings_are_given_once_where_the_user_called() -> None:
     with warnings.catch_warnings(record=True) as reported:
         warnings.simplefilter("always")
         simulation = meshtone.simulate(examples.healthy().copy(pinion_teeth=14, sampling_rate_hz=2e4, settle_fraction=0.02))
@@ -302,7 +302,7 @@ def test_a_target_rate_is_met() -> None:
         own.at_rate("10 kHz")  # type: ignore[arg-type]
 
 
-def test_a_rate_below_the_mesh_is_told() -> None:
+def test_a_rate_below_the_mesh_is_warned_of() -> None:
     # 17 teeth at 40 Hz: 680 Hz.
     scenario = examples.healthy().copy(sampling_rate_hz=2e4)
     with warnings.catch_warnings():
@@ -336,7 +336,7 @@ def test_a_memory_limit_that_is_refused() -> None:
         ("distributed", "dask", "from meshtone import dask; dask.generate('plan.toml', 'gears', None)"),
     ],
 )
-def test_what_is_not_installed_is_told_with_its_extra(missing: str, extra: str, use: str) -> None:
+def test_what_is_not_installed_is_named_with_its_extra(missing: str, extra: str, use: str) -> None:
     program = f"import sys; sys.modules['{missing}'] = None\nimport meshtone\n{use}"
     done = subprocess.run([sys.executable, "-W", "ignore", "-c", program], capture_output=True, text=True, check=False)
     assert f"ModuleNotFoundError: {missing} is not installed: pip install 'meshtone[{extra}]'" in done.stderr

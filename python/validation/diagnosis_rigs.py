@@ -1,4 +1,4 @@
-"""What the paper's three rigs tell about their damage, by two indicators, each case left out in turn.
+"""What the paper's three rigs show about their damage, by two indicators, each case left out in turn.
 
 Rms and kurtosis of the gear's difference signal were measured in every state of each rig (Figure 6 of arXiv:2410.05073). For every case
 the simulations are brought to the rig by what the rig's *other* cases measured above them: their mean, and how far they scatter.

@@ -185,7 +185,7 @@ def scores(found: list[list[Values]], draw: np.random.Generator | None) -> list[
 
 
 def shown(found: list[list[Values]], medians_only: bool) -> list[str]:
-    """Scores with 90 % intervals; where medians are asked they are resampled already, and an area tells nothing."""
+    """Scores with 90 % intervals; where medians are asked they are resampled already, and an area means nothing."""
     draws = np.array([scores(found, np.random.default_rng([5, number])) for number in range(DRAWS)])
     ends = np.quantile(draws, [0.05, 0.95], axis=0)
     texts = [f"{value:.2f} ({low:.2f} to {high:.2f})" for value, low, high in zip(scores(found, None), *ends)]

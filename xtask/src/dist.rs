@@ -158,7 +158,7 @@ pub fn try_source(row: &StepRunner, python: &Path, source: &Path) -> Result<(), 
     row.step("Source distribution, in an empty environment", || {
         let content = std::fs::read(source).map_err(|error| row.fail_at(source, &error))?;
         // All files of a source distribution have the same old date, by which cargo would take what was built of another
-        // one for fresh: a setting that nothing depends on, but which follows from the content, tells them apart.
+        // one for fresh: a setting that nothing depends on, but which follows from the content, distinguishes them.
         let units = LEAST_UNITS + BuildHasherDefault::<DefaultHasher>::default().hash_one(&content) % UNITS;
         // The source distribution has not all packages, which cargo only remarks.
         let unoptimised: Vec<String> = packages::names(row)?

@@ -67,7 +67,7 @@ mod tests {
     use super::{is_intrinsic, names};
 
     #[test]
-    fn intrinsics_are_told_from_functions_with_their_types() {
+    fn intrinsics_are_distinguished_from_functions_with_their_types() {
         assert!(is_intrinsic("RNvNtNtNtCsgEmfK2I1SDS_4core9core_arch3x863fma15__mm256_fmadd_pd"));
         assert!(is_intrinsic("RINvNtNtNtCsgEmfK2I1SDS_4core9core_arch3x863avx17__mm256_permute_pdKl5_E"));
         assert!(is_intrinsic("ZN4core9core_arch3x863avx13_mm256_add_pd17h0123456789abcdefE"));
@@ -78,7 +78,7 @@ mod tests {
             "RNvXs2_NtNtCsgEmfK2I1SDS_4core9core_arch3x86NtB5_7___m256dNtNtB9_3fmt5Debug3fmt"
         ));
         assert!(!is_intrinsic("RNvNtCsgEmfK2I1SDS_4core3mem4swap"));
-        // What tells which processor it is.
+        // What detects which processor it is.
         assert!(!is_intrinsic("RNvNtNtNtCsgEmfK2I1SDS_4core9core_arch3x865xsave7__xgetbv"));
     }
 

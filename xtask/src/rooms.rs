@@ -84,7 +84,7 @@ fn problem(room: &str, imported: &str) -> Option<String> {
     let floor = |room: &str| FLOORS.iter().position(|rooms| rooms.contains(&room));
     match (floor(room), floor(imported)) {
         (None, _) => Some(format!("`{room}` has no floor: give it one in xtask/src/rooms.rs")),
-        // A name of the library's own root, such as `crate::Error`, is told by its room.
+        // A name of the library's own root, such as `crate::Error`, is judged by its room.
         (_, None) => Some(format!("names `crate::{imported}`, which is no room: name it by its room")),
         (Some(own), Some(other)) if other < own => None,
         _ => Some(format!(

@@ -91,7 +91,7 @@ impl StepRunner {
     /// Runs a check as a step, and says everything that it finds wrong.
     ///
     /// # Errors
-    /// 1 where something is wrong, and where that cannot be told.
+    /// 1 where something is wrong, and where that cannot be found out.
     pub fn check<E: Display>(
         &self,
         name: &str,
@@ -115,7 +115,7 @@ impl StepRunner {
     /// # Errors
     /// Cargo's exit code, or 1 where it could not be started or was killed.
     pub fn cargo(&self, arguments: &[&str], environment: &[(&str, OsString)]) -> Result<(), u8> {
-        // Cargo tells the programs that it runs which cargo it is.
+        // Cargo informs the programs that it runs which cargo it is.
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"));
         self.step(&format!("cargo {}", arguments.join(" ")), || {
             self.program(Command::new(&cargo).args(arguments).envs(environment.iter().cloned()))

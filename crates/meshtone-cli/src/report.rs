@@ -13,7 +13,7 @@ const LONGEST_LINE: usize = 160;
 /// Advice of the library about its limit, and the advice of this program.
 const MEMORY_LIMIT: [&str; 2] = ["raise the memory limit", "raise --memory-limit"];
 
-/// Tells the user what went wrong.
+/// Shows the user what went wrong.
 pub fn print(mut failure: Failure) {
     let [of_library, option] = MEMORY_LIMIT;
     failure.message = failure.message.replace(of_library, option);

@@ -49,6 +49,10 @@ fn head(set: &Finished) -> String {
     )
 }
 
+/// Says what is in the data set: a table of records by class and split, and what the splits mean.
+///
+/// Whether the splits divide units or mountings decides what a test result means, so that it is said in words beside the numbers, as are
+/// the splits that are unlike the training and the records that are missing.
 fn counts(set: &Finished) -> String {
     let (plan, contents) = (set.plan, set.contents);
     let units_of_split = plan.content.units_of_split();
@@ -158,7 +162,7 @@ fn questions(set: &Finished) -> String {
         format!("| {} | {target} | {score} |\n", question.name())
     });
     format!(
-        "## Questions\n\n| question | to be told | score |\n|---|---|---|\n{}\n\
+        "## Questions\n\n| question | target | score |\n|---|---|---|\n{}\n\
          From the signals, the indicators and what is known of a machine: teeth, module, face width, speed, load. Columns of the \
          fault, seeds, numbers of records, units and mountings, and all that was drawn besides are not known of a real gear: they are \
          there to see where an answer fails. Train on `train`, choose on `validation`.\n\n",

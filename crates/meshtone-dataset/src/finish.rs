@@ -91,6 +91,11 @@ pub(crate) fn finish(
     PartList::names(&to.files_in(part_list::FOLDER)?).try_for_each(|name| to.remove(name))
 }
 
+/// What the preview of a data set shows: an example of each class, the keys that vary, and the indicators.
+///
+/// Keys and indicators are those of a sample of the records, which the summary has kept while the records were made; only the examples are
+/// read from shards. An example's signal is the difference signal or else the average, in which damage is seen best, and a raw signal where
+/// neither is kept.
 fn preview(set: &Finished, summary_columns: &SummaryColumns<'_>, to: &Destination) -> DatasetPreview {
     let Finished { plan, shards, contents, columns } = *set;
     let sampled: Vec<&SampledRecord> = contents.summary.sampled.values().collect();

@@ -189,6 +189,9 @@ struct PartContents {
 
 impl PartContents {
     /// Reads all files of a part that are there, and compares them with what the manifest and the lists say about them.
+    ///
+    /// Shards that are as they were written are kept; all others are missing, and those that were damaged are listed with the reason. A
+    /// data set whose records have other columns than the plan's is refused only where something is to be added to it.
     fn look(plan: &Plan, shards: Shards, to: &Destination, part: Part) -> Result<Self, DatasetError> {
         let files = to.files()?;
         let manifest = manifest::read(to)?;

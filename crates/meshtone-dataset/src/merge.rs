@@ -19,6 +19,10 @@ use crate::verify::Check;
 
 /// Merges the parts of a data set.
 ///
+/// First all parts are examined, and no data are written where a shard is missing in all of them. Then the shards that the target
+/// lacks are copied, and the documents are made for the whole. The manifest comes last, so that a merge that is interrupted can be
+/// run again.
+///
 /// # Arguments
 /// * `parts` - the places of the parts, which have the same plan
 /// * `to` - the place of the whole data set, which may be that of a part

@@ -146,7 +146,7 @@ impl Answer {
     }
 }
 
-/// A p-value for reading: `p = 0.748`, or that it is less than can be told.
+/// A p-value for reading: `p = 0.748`, or that it is less than the simulations resolve.
 ///
 /// # Arguments
 /// * `p` - (-) of [`Answer::outside_model`] or [`Answer::healthy_outside_model`]

@@ -15,6 +15,10 @@ const NAMED: f64 = 0.8;
 impl AnyDamage {
     /// Over all kinds, each as probable as it is said to be.
     ///
+    /// Severities are mixed by their kinds' probabilities. The wheel is the likelier one over all kinds, and the tooth is the likeliest one
+    /// of that wheel, given that wheel. It is none where no kind is possible, or where the draws of one are missing, which would leave the
+    /// mixture incomplete.
+    ///
     /// # Arguments
     /// * `kinds` - what is said of each
     /// * `severities` - draws of each damage's severity with their weights, by its label

@@ -31,6 +31,10 @@ type Draws = Vec<(f64, f64)>;
 
 /// Says what is wrong with a gear pair.
 ///
+/// A question that needs other features than those that were learnt is refused, since its values would stand in the wrong columns. Then
+/// follow the answers of the kinds, the likeliest first, the tests whether the recordings are like any simulation, and what is shown.
+/// Warnings and summary come last, because they read the answer.
+///
 /// # Arguments
 /// * `learned` - of the reference set, for a question like this one
 /// * `question` - the recordings
@@ -44,10 +48,10 @@ pub fn diagnose(
     refined: Option<&Refined>,
 ) -> Result<Answer, DiagnoseError> {
     question.check(&learned.reference.prior)?;
-    let asked = Layout::of(question, learned.reference)?;
+    let layout = Layout::of(question, learned.reference)?;
     let known = &learned.layout;
-    let is_shorter = asked.last.iter().zip(known.last).any(|(asked, known)| *asked < known);
-    if asked.signal != known.signal || asked.has_healthy != known.has_healthy || is_shorter {
+    let is_shorter = layout.last.iter().zip(known.last).any(|(asked, known)| *asked < known);
+    if layout.signal != known.signal || layout.has_healthy != known.has_healthy || is_shorter {
         return Err(DiagnoseError::OtherQuestion);
     }
     let row = learned.row(question);
@@ -57,53 +61,15 @@ pub fn diagnose(
     let probability = healthy.map(|(_, probability)| probability).sum();
     let mut kinds =
         vec![KindAnswer { label: HEALTHY, probability, severity: None, sizes: Vec::new(), place: None }];
+    let asked = Asked { learned, question, refined, row, features, of_class };
     let mut draws_of: Vec<(&'static str, Draws)> = Vec::new();
-    for (kind, described) in learned.kinds.iter().enumerate() {
-        let wheel_of = |class: usize| learned.classes[class].filter(|(of, _)| *of == kind).map(|of| of.1);
-        let classes =
-            (0..of_class.len()).filter_map(|class| Some((class, wheel_of(class)?, of_class[class])));
-        let classes: Vec<(usize, WheelName, f64)> = classes.collect();
-        let Some(&(likeliest, wheel, of_wheel)) = classes.iter().max_by(|a, b| a.2.total_cmp(&b.2)) else {
-            continue;
-        };
-        let probability: f64 = classes.iter().map(|(_, _, part)| part).sum();
-        let share = |part: f64| part / probability.max(f64::MIN_POSITIVE);
-        // The severity, then the sizes that vary.
-        let mut numbers: Vec<(Option<usize>, Draws)> = Vec::new();
-        if described.sizes.is_empty() {
-            numbers.push((None, vec![(1.0, 1.0)]));
+    for kind in 0..learned.kinds.len() {
+        if let Some((answer, severity)) = asked.kind_answer(kind)? {
+            draws_of.push((answer.label, severity));
+            kinds.push(answer);
         }
-        for (class, _, part) in classes.into_iter().filter(|_| !described.sizes.is_empty()) {
-            if class != likeliest && part <= NEGLIGIBLE * probability {
-                continue;
-            }
-            let models = match refined.and_then(|refined| refined.of_class(class)) {
-                Some(models) => models,
-                None => learned.sizes(class)?,
-            };
-            for (number, model) in models {
-                let draws = model.posterior(&features);
-                let total: f64 = draws.iter().map(|(_, weight)| weight).sum();
-                let draws = draws.into_iter().map(|(value, weight)| (value, share(part) * weight / total));
-                match numbers.iter_mut().find(|(known, _)| known == number) {
-                    Some((_, all)) => all.extend(draws),
-                    None => numbers.push((*number, draws.collect())),
-                }
-            }
-        }
-        let severity = numbers.remove(0).1;
-        let size = |(place, draws): &(Option<usize>, Draws)| {
-            Some(SizeAnswer { key: described.sizes[(*place)?], interval: interval(draws) })
-        };
-        kinds.push(KindAnswer {
-            label: described.name,
-            probability,
-            severity: Some(interval(&severity)),
-            sizes: numbers.iter().filter_map(size).collect(),
-            place: Some(place(learned, question, &row, likeliest, wheel, share(of_wheel))),
-        });
-        draws_of.push((described.name, severity));
     }
+    let Asked { row, of_class, .. } = asked;
     kinds.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     // No simulation has what speaks against a recording.
     let least = 1.0 / (learned.records.len() + 1) as f64;
@@ -142,6 +108,85 @@ pub fn diagnose(
     let is_outside = [Some(outside_model), healthy_outside_model].into_iter().flatten().any(|p| p < OUTSIDE);
     answer.summary = sentence(answer.damaged(), answer.any_damage.as_ref(), is_outside);
     Ok(answer)
+}
+
+/// A question beside what was learnt for it.
+struct Asked<'a> {
+    learned: &'a Learned<'a>,
+    question: &'a Question<'a>,
+    refined: Option<&'a Refined>,
+    row: FeatureRow,
+    /// Features of the row as regressions use them.
+    features: Vec<f64>,
+    /// (-) Probability of each class.
+    of_class: Vec<f64>,
+}
+
+impl Asked<'_> {
+    /// The answer about a kind of damage, with the draws of its severity; none where no simulation is of that kind.
+    ///
+    /// A kind has a class for each wheel. Its severity and sizes are those of both, weighted by probability; its place is the likelier
+    /// wheel's, since a tooth is one of one wheel.
+    fn kind_answer(&self, kind: usize) -> Result<Option<(KindAnswer, Draws)>, DiagnoseError> {
+        let learned = self.learned;
+        let described = &learned.kinds[kind];
+        let wheel_of = |class: usize| learned.classes[class].filter(|(of, _)| *of == kind).map(|of| of.1);
+        let classes = (0..self.of_class.len())
+            .filter_map(|class| Some((class, wheel_of(class)?, self.of_class[class])))
+            .collect::<Vec<(usize, WheelName, f64)>>();
+        let Some(&(likeliest, wheel, of_wheel)) = classes.iter().max_by(|a, b| a.2.total_cmp(&b.2)) else {
+            return Ok(None);
+        };
+        let probability: f64 = classes.iter().map(|(_, _, part)| part).sum();
+        let share = |part: f64| part / probability.max(f64::MIN_POSITIVE);
+        // The severity, then the sizes that vary.
+        let mut numbers: Vec<(Option<usize>, Draws)> = Vec::new();
+        if described.sizes.is_empty() {
+            numbers.push((None, vec![(1.0, 1.0)]));
+        } else {
+            for (class, _, part) in classes {
+                if class != likeliest && part <= NEGLIGIBLE * probability {
+                    continue;
+                }
+                self.add_draws(class, share(part), &mut numbers)?;
+            }
+        }
+        let severity = numbers.remove(0).1;
+        let size = |(place, draws): &(Option<usize>, Draws)| {
+            Some(SizeAnswer { key: described.sizes[(*place)?], interval: interval(draws) })
+        };
+        let answer = KindAnswer {
+            label: described.name,
+            probability,
+            severity: Some(interval(&severity)),
+            sizes: numbers.iter().filter_map(size).collect(),
+            place: Some(place(learned, self.question, &self.row, likeliest, wheel, share(of_wheel))),
+        };
+        Ok(Some((answer, severity)))
+    }
+
+    /// Adds the draws of a class's severity and sizes, whose weights add up to its share.
+    fn add_draws(
+        &self,
+        class: usize,
+        share: f64,
+        numbers: &mut Vec<(Option<usize>, Draws)>,
+    ) -> Result<(), DiagnoseError> {
+        let models = match self.refined.and_then(|refined| refined.of_class(class)) {
+            Some(models) => models,
+            None => self.learned.sizes(class)?,
+        };
+        for (number, model) in models {
+            let draws = model.posterior(&self.features);
+            let total: f64 = draws.iter().map(|(_, weight)| weight).sum();
+            let draws = draws.into_iter().map(|(value, weight)| (value, share * weight / total));
+            match numbers.iter_mut().find(|(known, _)| known == number) {
+                Some((_, all)) => all.extend(draws),
+                None => numbers.push((*number, draws.collect())),
+            }
+        }
+        Ok(())
+    }
 }
 
 /// A weighted sample as one without weights.

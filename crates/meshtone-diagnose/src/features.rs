@@ -1,4 +1,4 @@
-//! Numbers that tell what a wheel's average shows.
+//! Numbers that state what a wheel's average shows.
 //!
 //! *Levels* are logarithms of amplitudes: a path to the sensor adds to them, and those of a healthy recording of the same rig can
 //! be taken away. *Shapes* do not depend on the amplitude.
@@ -38,30 +38,41 @@ pub(crate) struct WheelFeatures {
 
 /// Features of the lines of an average.
 ///
+/// All but the levels of the regular part are of the difference signal, in which damage stands out. The burst, where the energy over
+/// one tooth is largest, is found first: what is around it is compared there, since the damaged tooth may be any.
+///
 /// # Arguments
 /// * `view` - the lines
 /// * `last` - the last order that is whole in everything that is compared
 /// * `has_regular_part` - whether the mesh harmonics are in it
 pub(crate) fn wheel_features(view: &WheelLines, last: usize, has_regular_part: bool) -> WheelFeatures {
-    let teeth = view.teeth as usize;
     let last = last.min(view.last());
-    let difference: Vec<Complex64> = view.difference().into_iter().take(last + 1).collect();
+    let lines: Vec<Complex64> = view.difference().into_iter().take(last + 1).collect();
     let points = (2 * last + 1).next_power_of_two().max(64);
-    let mut levels = Vec::new();
-    let mut shapes = Vec::new();
+    let difference = Difference { teeth: view.teeth as usize, values: revolution(&lines, points), lines };
+    let energy = energy_over_tooth(&difference.values, difference.teeth);
+    let at = largest_at(&energy);
+    let mut shapes = difference.shapes();
+    shapes.extend(difference.energy_around_burst(&energy, at));
+    shapes.extend(difference.spectrum_around_burst(at, last));
+    shapes.extend(difference.waveform_around_burst(at));
+    WheelFeatures {
+        levels: levels(view, &difference, last, has_regular_part),
+        shapes,
+        burst_rev: at as f64 / points as f64,
+    }
+}
 
-    // Levels over mesh orders: each band from half a mesh order below to half above.
-    let band = |lines: &[Complex64], from: f64, to: f64| {
-        let order = |mesh: f64| ((mesh * teeth as f64) as usize).min(lines.len());
-        let energy: f64 = lines[order(from)..order(to)].iter().map(|line| 2.0 * line.norm_sqr()).sum();
-        energy.sqrt()
-    };
+/// (log10 g) Levels over mesh orders, each band from half a mesh order below to half above; with the regular part also of the mesh
+/// harmonics, of what is beside them and of the lowest orders.
+fn levels(view: &WheelLines, difference: &Difference, last: usize, has_regular_part: bool) -> Vec<f64> {
+    let teeth = difference.teeth;
     let bands = last / teeth.max(1);
-    let whole = revolution(&difference, points);
-    let scale = rms(&whole).max(f64::MIN_POSITIVE);
+    let scale = rms(&difference.values).max(f64::MIN_POSITIVE);
     let level = |value: f64| value.max(FLOOR * scale).log10();
-    levels.push(level(scale));
-    levels.extend((0..bands).map(|mesh| level(band(&difference, mesh as f64 + 0.5, mesh as f64 + 1.5))));
+    let mut levels = vec![level(scale)];
+    let of_band = |mesh: usize| band(&difference.lines, teeth, mesh as f64 + 0.5, mesh as f64 + 1.5);
+    levels.extend((0..bands).map(|mesh| level(of_band(mesh))));
     if has_regular_part {
         let tone =
             |order: usize| view.lines.get(order).filter(|_| order <= last).map_or(0.0, |line| line.norm());
@@ -76,63 +87,101 @@ pub(crate) fn wheel_features(view: &WheelLines, last: usize, has_regular_part: b
         let low: f64 = (1..=7).map(|order| tone(order).powi(2)).sum();
         levels.push(level(low.sqrt()));
     }
+    levels
+}
 
+/// (g) Rms of the lines between two mesh orders.
+fn band(lines: &[Complex64], teeth: usize, from: f64, to: f64) -> f64 {
+    let order = |mesh: f64| ((mesh * teeth as f64) as usize).min(lines.len());
+    let energy: f64 = lines[order(from)..order(to)].iter().map(|line| 2.0 * line.norm_sqr()).sum();
+    energy.sqrt()
+}
+
+/// (-) Logarithms of kurtosis and crest factor.
+fn shape(values: &[f64]) -> [f64; 2] {
     let of_finite = |value: f64| if value.is_finite() { value } else { 0.0 };
-    let shape = |values: &[f64]| {
-        let crest = peak(values) / rms(values).max(f64::MIN_POSITIVE);
-        [kurtosis(values).unwrap_or(1.0).max(1.0).ln(), crest.max(1.0).ln()].map(of_finite)
-    };
-    shapes.extend(shape(&whole));
-    for part in PARTS.windows(2) {
-        let inside = |(order, &line): (usize, &Complex64)| {
-            let mesh = order as f64 / teeth as f64;
-            if mesh >= part[0] && mesh < part[1] { line } else { Complex64::default() }
-        };
-        let lines: Vec<Complex64> = difference.iter().enumerate().map(inside).collect();
-        shapes.extend(shape(&revolution(&lines, points)));
+    let crest = peak(values) / rms(values).max(f64::MIN_POSITIVE);
+    [kurtosis(values).unwrap_or(1.0).max(1.0).ln(), crest.max(1.0).ln()].map(of_finite)
+}
+
+/// The difference signal of a wheel of so many teeth over one revolution, as lines and as values.
+struct Difference {
+    teeth: usize,
+    lines: Vec<Complex64>,
+    values: Vec<f64>,
+}
+
+impl Difference {
+    fn points(&self) -> usize {
+        self.values.len()
     }
 
-    // The burst: where the envelope's energy over one tooth is largest.
-    let pitch = points as f64 / teeth as f64;
-    let smooth = energy_over_tooth(&whole, teeth);
-    let at = largest_at(&smooth);
-    let total = smooth.iter().sum::<f64>().max(f64::MIN_POSITIVE) / points as f64;
-    let around = |teeth_on: f64| smooth[wrapped(at as f64 + teeth_on * pitch, points)] / total;
-    shapes.extend(WINDOWS.iter().map(|&on| around(on).max(1e-4).ln()));
-    let elsewhere = (0..points).filter(|&point| distance(point, at, points) > 3.0 * pitch);
-    let second = elsewhere.map(|point| smooth[point]).fold(0.0, f64::max);
-    shapes.push((second / smooth[at].max(f64::MIN_POSITIVE)).max(1e-4).ln());
-    let half = smooth.iter().filter(|&&value| value > 0.25 * smooth[at]).count();
-    shapes.push((half as f64 / points as f64).ln());
-    let mut teeths: Vec<f64> =
-        (0..teeth).map(|tooth| smooth[wrapped(tooth as f64 * pitch, points)] / total).collect();
-    teeths.sort_by(f64::total_cmp);
-    shapes.extend([0.1, 0.5, 0.9].map(|part| teeths[(part * (teeth - 1) as f64) as usize].max(1e-4).ln()));
+    fn pitch(&self) -> f64 {
+        self.points() as f64 / self.teeth as f64
+    }
 
-    // The spectrum around the burst.
-    let window = |point: usize| {
-        let from = wrapped_difference(point, at, points) / pitch;
-        if from.abs() < 3.0 { 0.5 + 0.5 * (std::f64::consts::PI * from / 3.0).cos() } else { 0.0 }
-    };
-    let cut: Vec<f64> = whole.iter().enumerate().map(|(point, value)| value * window(point)).collect();
-    let local = WheelLines::of_values(&cut, view.teeth, last);
-    let energy = band(&local.lines, 0.0, 16.5).max(f64::MIN_POSITIVE);
-    shapes.extend(
-        LOCAL_BANDS
-            .windows(2)
-            .map(|limits| (band(&local.lines, limits[0], limits[1]) / energy).max(1e-3).ln()),
-    );
+    /// Shapes of the whole signal and of its parts over mesh orders.
+    fn shapes(&self) -> Vec<f64> {
+        let mut shapes = shape(&self.values).to_vec();
+        for part in PARTS.windows(2) {
+            let inside = |(order, &line): (usize, &Complex64)| {
+                let mesh = order as f64 / self.teeth as f64;
+                if mesh >= part[0] && mesh < part[1] { line } else { Complex64::default() }
+            };
+            let lines: Vec<Complex64> = self.lines.iter().enumerate().map(inside).collect();
+            shapes.extend(shape(&revolution(&lines, self.points())));
+        }
+        shapes
+    }
 
-    // The waveform around the burst, its fine structure left out.
-    let low: Vec<Complex64> = difference.iter().take(LOCAL_ORDERS * teeth + teeth / 2).copied().collect();
-    let low = revolution(&low, points);
-    let step = (LOCAL_TEETH[1] - LOCAL_TEETH[0]) / (LOCAL_POINTS - 1) as f64;
-    let wave: Vec<f64> = (0..LOCAL_POINTS)
-        .map(|index| low[wrapped(at as f64 + (LOCAL_TEETH[0] + index as f64 * step) * pitch, points)])
-        .collect();
-    let largest = wave.iter().fold(f64::MIN_POSITIVE, |most, value| most.max(value.abs()));
-    shapes.extend(wave.iter().map(|value| value / largest));
-    WheelFeatures { levels, shapes, burst_rev: at as f64 / points as f64 }
+    /// How the energy over one tooth is spread: in windows around the burst, at the next largest burst, and over all teeth.
+    ///
+    /// # Arguments
+    /// * `energy` - over one tooth around each point
+    /// * `at` - point of the burst
+    fn energy_around_burst(&self, energy: &[f64], at: usize) -> Vec<f64> {
+        let (points, pitch) = (self.points(), self.pitch());
+        let total = energy.iter().sum::<f64>().max(f64::MIN_POSITIVE) / points as f64;
+        let around = |teeth_on: f64| energy[wrapped(at as f64 + teeth_on * pitch, points)] / total;
+        let mut shapes: Vec<f64> = WINDOWS.iter().map(|&on| around(on).max(1e-4).ln()).collect();
+        let elsewhere = (0..points).filter(|&point| distance(point, at, points) > 3.0 * pitch);
+        let second = elsewhere.map(|point| energy[point]).fold(0.0, f64::max);
+        shapes.push((second / energy[at].max(f64::MIN_POSITIVE)).max(1e-4).ln());
+        let half = energy.iter().filter(|&&value| value > 0.25 * energy[at]).count();
+        shapes.push((half as f64 / points as f64).ln());
+        let of_tooth = |tooth: usize| energy[wrapped(tooth as f64 * pitch, points)] / total;
+        let mut of_teeth: Vec<f64> = (0..self.teeth).map(of_tooth).collect();
+        of_teeth.sort_by(f64::total_cmp);
+        let ranked = |part: f64| of_teeth[(part * (self.teeth - 1) as f64) as usize];
+        shapes.extend([0.1, 0.5, 0.9].map(|part| ranked(part).max(1e-4).ln()));
+        shapes
+    }
+
+    /// Shares of the bands in the spectrum of what is within three teeth of the burst.
+    fn spectrum_around_burst(&self, at: usize, last: usize) -> impl Iterator<Item = f64> {
+        let window = |point: usize| {
+            let from = wrapped_difference(point, at, self.points()) / self.pitch();
+            if from.abs() < 3.0 { 0.5 + 0.5 * (std::f64::consts::PI * from / 3.0).cos() } else { 0.0 }
+        };
+        let cut = self.values.iter().enumerate().map(|(point, value)| value * window(point));
+        let local = WheelLines::of_values(&cut.collect::<Vec<f64>>(), self.teeth as u32, last);
+        let of = move |from, to| band(&local.lines, self.teeth, from, to);
+        let energy = of(0.0, 16.5).max(f64::MIN_POSITIVE);
+        LOCAL_BANDS.windows(2).map(move |limits| (of(limits[0], limits[1]) / energy).max(1e-3).ln())
+    }
+
+    /// The waveform around the burst over its largest value, its fine structure left out.
+    fn waveform_around_burst(&self, at: usize) -> impl Iterator<Item = f64> {
+        let orders = LOCAL_ORDERS * self.teeth + self.teeth / 2;
+        let low: Vec<Complex64> = self.lines.iter().take(orders).copied().collect();
+        let low = revolution(&low, self.points());
+        let step = (LOCAL_TEETH[1] - LOCAL_TEETH[0]) / (LOCAL_POINTS - 1) as f64;
+        let on = |index: usize| (LOCAL_TEETH[0] + index as f64 * step) * self.pitch();
+        let wave: Vec<f64> =
+            (0..LOCAL_POINTS).map(|index| low[wrapped(at as f64 + on(index), self.points())]).collect();
+        let largest = wave.iter().fold(f64::MIN_POSITIVE, |most, value| most.max(value.abs()));
+        wave.into_iter().map(move |value| value / largest)
+    }
 }
 
 /// (rev) Where the burst of a difference signal is: where its envelope's energy over one tooth is largest.

@@ -106,6 +106,11 @@ pub(crate) struct FeatureRow {
 }
 
 impl Layout {
+    /// What is compared for a question.
+    ///
+    /// Recordings that cannot be compared, of other wheels, values that are not finite, or a signal of another kind, are refused here,
+    /// before any simulation is looked at. The orders reach as far as the shortest of all averages, since features over other orders would
+    /// differ without any damage.
     pub(crate) fn of(question: &Question, reference: &ReferenceSet) -> Result<Self, DiagnoseError> {
         let first = question.now.first().ok_or(DiagnoseError::NoRecording)?;
         let gears = &reference.prior.base.gears;
@@ -225,8 +230,23 @@ fn less(now: &[f64], before: &[f64]) -> Vec<f64> {
     now.iter().zip(before).map(|(now, before)| now - before).collect()
 }
 
+/// The test whether a healthy recording is like the healthy simulations, in its own noise and without another recording beside it.
+fn healthy_test(layout: &Layout, reference: &ReferenceSet) -> OutlierTest {
+    let alone = Layout { noises: [layout.noises[1].clone(), Default::default()], ..layout.clone() };
+    let healthy: Vec<&ReferenceRecord> =
+        reference.records.iter().filter(|record| record.fault.is_none()).collect();
+    let row_of = |record: &&ReferenceRecord| alone.simulation(record, None, reference.prior.seed).values;
+    let rows: Vec<Vec<f64>> = healthy.par_iter().map(row_of).collect();
+    let units = healthy.iter().map(|record| record.unit()).collect();
+    OutlierTest::new(&rows, units, &vec![1.0; rows.len()])
+}
+
 impl<'a> Learned<'a> {
     /// Learns what a question needs.
+    ///
+    /// Simulations that the question cannot resemble are left out first. The features of the others, made with the question's noise
+    /// and orders, are standardised and regressed on the classes. The probabilities are fitted to predictions for simulations that the
+    /// regression has not seen: to its own ones it would be too certain. The models of sizes are fitted once they are needed.
     ///
     /// # Arguments
     /// * `reference` - simulations of what may be
@@ -251,7 +271,6 @@ impl<'a> Learned<'a> {
             let before = reference.healthy_of(record).filter(|_| layout.has_healthy);
             layout.simulation(record, before, reference.prior.seed)
         };
-        let unit_of = |record: &&ReferenceRecord| record.unit();
         let rows: Vec<FeatureRow> = records.par_iter().map(row_of).collect();
         let mut classes: Vec<Class> = records.iter().map(|record| class_of(record)).collect();
         classes.sort_unstable_by_key(|class| class.map(|(kind, wheel)| (kind, wheel as usize)));
@@ -270,16 +289,9 @@ impl<'a> Learned<'a> {
         let targets = DMatrix::from_fn(classes.len(), records.len(), is_class);
         let regression = ridge(&features, &targets, &weights, &folds, PENALTY)?;
         let softmax = Softmax::fit(&regression.out_of_fold, &class_of, &weights)?;
-        let outside = OutlierTest::new(&values, records.iter().map(unit_of).collect(), &weights);
-        let healthy_outside = layout.has_healthy.then(|| {
-            let alone = Layout { noises: [layout.noises[1].clone(), Default::default()], ..layout.clone() };
-            let healthy: Vec<&ReferenceRecord> =
-                reference.records.iter().filter(|record| record.fault.is_none()).collect();
-            let row_of =
-                |record: &&ReferenceRecord| alone.simulation(record, None, reference.prior.seed).values;
-            let rows: Vec<Vec<f64>> = healthy.par_iter().map(row_of).collect();
-            OutlierTest::new(&rows, healthy.iter().map(unit_of).collect(), &vec![1.0; rows.len()])
-        });
+        let outside =
+            OutlierTest::new(&values, records.iter().map(|record| record.unit()).collect(), &weights);
+        let healthy_outside = layout.has_healthy.then(|| healthy_test(&layout, reference));
         let size_models = classes.iter().map(|_| OnceLock::new()).collect();
         Ok(Self {
             reference,

@@ -113,6 +113,9 @@ pub(crate) struct Ridge {
 
 /// Fits targets to features by weighted least squares with a penalty.
 ///
+/// The normal equations are set up for each fold once. Their sum over all folds gives the coefficients, and the sums without one fold
+/// predict the rows of that fold, which so had no part in their own prediction.
+///
 /// # Arguments
 /// * `features` - a column for each row of data
 /// * `targets` - likewise

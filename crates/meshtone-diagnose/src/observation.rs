@@ -286,7 +286,7 @@ fn too_short(gear_revolutions: usize, [pinion, gear]: [u32; 2], gear_hz: f64) ->
     };
     if gear_revolutions < FEWEST_REVOLUTIONS {
         return Some(format!(
-            "the recording is short ({}): to tell noise from what the wheels repeat, at least {} are needed",
+            "the recording is short ({}): to distinguish noise from what the wheels repeat, at least {} are needed",
             lasts(gear_revolutions),
             lasts(FEWEST_REVOLUTIONS)
         ));
@@ -307,7 +307,7 @@ fn too_short(gear_revolutions: usize, [pinion, gear]: [u32; 2], gear_hz: f64) ->
 
 /// Times that the same teeth should meet in a recording.
 const SEQUENCES: usize = 3;
-/// Revolutions below which noise is not told from what repeats.
+/// Revolutions below which noise is not distinguished from what repeats.
 const FEWEST_REVOLUTIONS: usize = 6;
 /// (-) Median over mean of the squared magnitude of normal noise.
 const MEDIAN_OF_SQUARES: f64 = std::f64::consts::LN_2;
@@ -377,8 +377,11 @@ const TONE: f64 = 30.0;
 /// (-) Part of the energy in tones of neither shaft from which on they count, likewise.
 const TONES_COUNT: f64 = 0.2;
 
-/// Evidence against the recording where the orders of the two shafts do not explain it: impulses, or tones, that repeat with
-/// neither.
+/// Evidence against the recording where the orders of the two shafts do not explain it: impulses, or tones, that repeat with neither.
+///
+/// The lines of both shafts are left out of the spectrum of the whole recording. Of the others, those that stand out of their band are
+/// tones; and what they make over time is impulsive where something strikes. Impulses are looked for first, since their lines may stand out
+/// like tones.
 fn energy_off_both_shafts(gear: &AngularSignal, teeth: u32, ratio: f64) -> Option<String> {
     if gear.revolutions() < FEWEST_REVOLUTIONS {
         return None;
@@ -415,7 +418,7 @@ fn energy_off_both_shafts(gear: &AngularSignal, teeth: u32, ratio: f64) -> Optio
     (tones > TONES_COUNT * energy).then(|| {
         format!(
             "tones at no order of either shaft make {:.0} % of the recording's energy: another machine, or teeth or speed that are not \
-             as told",
+             as stated",
             100.0 * tones / energy
         )
     })
@@ -451,7 +454,7 @@ mod tests {
 
     // The variance of a mean over revolutions, and of a line of it: the sample's over their number and that of the points.
     #[test]
-    fn noise_is_told_from_both_shafts_tones() {
+    fn noise_is_distinguished_from_both_shafts_tones() {
         let mut draws = Draws::new(1, Purpose::DiagnosisNoise, 0);
         let [pinion, gear] = views(&mut |rev| tones(rev) + 0.5 * draws.normal(), 34);
         let observed = Observation::of_recording(&pinion, &gear, TEETH, 40.0).unwrap();
@@ -465,7 +468,7 @@ mod tests {
     }
 
     #[test]
-    fn impulses_of_neither_shaft_are_told() {
+    fn impulses_of_neither_shaft_are_reported() {
         // Every 0.2713 revolutions: no order of either shaft.
         let mut struck = |rev: f64| {
             let since = rev % 0.2713;

@@ -226,6 +226,9 @@ impl Prior {
 
 /// Damages a pair.
 ///
+/// Severity and sizes are drawn until they fit the tooth: not every severity can be had with every scenario, and the sizes vary about those
+/// of the severity. The last attempt takes exactly the sizes of its severity. The severity that counts is that of the sizes in the end.
+///
 /// # Arguments
 /// * `kinds` - that the model knows
 /// * `class` - kind and wheel

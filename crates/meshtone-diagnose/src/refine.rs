@@ -130,7 +130,7 @@ mod tests {
         let first = [observed(&asked.records[2])];
         let healthy = [observed(&asked.records[0])];
         let learned = Learned::new(&set, &Question { now: &first, healthy: &healthy }).unwrap();
-        let (mut told, mut held, mut teeth, mut damaged) = (0, 0, 0, 0);
+        let (mut found, mut held, mut teeth, mut damaged) = (0, 0, 0, 0);
         let (mut refined_held, mut refined_count) = (0, 0);
         let [mut width, mut refined_width] = [0.0; 2];
         for record in &asked.records {
@@ -144,7 +144,7 @@ mod tests {
             if likeliest.label != prior.kinds()[fault.kind].name {
                 continue;
             }
-            told += 1;
+            found += 1;
             let tooth = likeliest.place.as_ref().unwrap().tooth.map(|tooth| tooth.number);
             teeth += usize::from(tooth == Some(fault.tooth));
             let within = |[low, high]: [f64; 2]| usize::from((low..=high).contains(&fault.severity));
@@ -162,9 +162,9 @@ mod tests {
             width += severity.within_90[1] - severity.within_90[0];
             refined_width += again.within_90[1] - again.within_90[0];
         }
-        assert!(told == damaged && teeth == told && damaged == 50, "{told} {teeth} of {damaged}");
+        assert!(found == damaged && teeth == found && damaged == 50, "{found} {teeth} of {damaged}");
         // Of 50 at 0.9, below 38 once in a thousand.
-        assert!(held >= 38, "{held} of {told}");
+        assert!(held >= 38, "{held} of {found}");
         assert!(refined_held >= 9 && refined_count == 12, "{refined_held} of {refined_count}");
         assert!(refined_width < 0.7 * width, "{refined_width} of {width}");
     }

@@ -166,6 +166,10 @@ fn write(file: &mut File, records: &[ReferenceRecord]) -> io::Result<()> {
     Ok(())
 }
 
+/// Reads a batch of the reference set that was kept.
+///
+/// The file is in the user's cache, where anything may have happened to it. Sizes are limited before they are read, and every number that
+/// is an index later is checked, so that a damaged batch is an error, upon which it is simulated again, and never a wrong answer.
 fn read(path: &Path, prior: &Prior) -> io::Result<Vec<ReferenceRecord>> {
     let wrong = || io::Error::other("it is no batch of a reference set");
     let mut archive = NpzReader::new(File::open(path)?)?;

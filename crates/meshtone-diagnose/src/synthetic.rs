@@ -1,7 +1,7 @@
 //! Reference sets that need no simulation, for tests.
 
 use meshtone::random::{Draws, Purpose};
-use meshtone::scenario::{DamageKind, Scenario};
+use meshtone::scenario::{DamageKind, GearPair, Scenario};
 use meshtone::signal::AngleZero;
 use meshtone::wheel::WheelName;
 use meshtone_fourier::Complex64;
@@ -10,14 +10,14 @@ use crate::observation::{Observation, SignalKind, WheelLines};
 use crate::prior::{DrawnFault, Prior, RECORDS_PER_UNIT};
 use crate::reference::{ReferenceRecord, ReferenceSet};
 
-const RIG: &str = "[gears]\nmodule_mm = 3\npinion_teeth = 17\ngear_teeth = 38\nface_width_mm = 15\n\
-    [operation]\npinion_speed_hz = 40\nbrake_torque_nm = 20\n[quality]\ndin_grade = 7\n";
 /// Mesh orders of the lines.
 const LAST_MESH: u32 = 6;
 
-/// The prior of a rig.
+/// The prior of a rig: the example's pair of grade 7 under 20 N m.
 pub fn prior() -> Prior {
-    Prior::new(&Scenario::from_toml(RIG).unwrap())
+    let mut rig = Scenario::new(GearPair { brake_torque_nm: 20.0, ..GearPair::example() });
+    rig.quality.din_grade = 7;
+    Prior::new(&rig)
 }
 
 /// Records of a prior: deviations of the wheels' own, and of a damage a ringing on its tooth as large as it is severe, whose order

@@ -42,7 +42,7 @@ pub(crate) fn warnings(answer: &Answer, learned: &Learned, question: &Question) 
     }
     if !answer.has_healthy {
         warnings.push(
-            "without a recording of the same rig when it was healthy, small damage is not told from the wheels' own deviations and the sensor's path".to_owned(),
+            "without a recording of the same rig when it was healthy, small damage is not distinguished from the wheels' own deviations and the sensor's path".to_owned(),
         );
     }
     warnings.extend(level::doubt(learned, question));

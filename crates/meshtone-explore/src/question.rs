@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_values_are_told_as_of_a_file() {
+    fn wrong_values_are_refused_as_in_a_file() {
         let wrong = json!({ "scenario": { "gears": { "module_mm": "three" } } });
         let Err(Refusal::Wrong(error)) = scenario(&wrong) else { panic!("it is refused") };
         assert_eq!((error.key.as_str(), error.line), ("gears.module_mm", None));

@@ -267,7 +267,7 @@ fn is_at(file: &File, path: &Path) -> bool {
     here.is_some() && here == there
 }
 
-/// Whether an open file is still the one of that name: without a number to tell by, whether there is one.
+/// Whether an open file is still the one of that name: without a number to compare, whether there is one.
 #[cfg(not(unix))]
 fn is_at(_: &File, path: &Path) -> bool {
     path.exists()

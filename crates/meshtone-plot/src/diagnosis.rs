@@ -168,6 +168,10 @@ fn probabilities(canvas: &mut Canvas, kinds: &[(&str, f64)]) {
     axes.frame(canvas);
 }
 
+/// Draws the distribution of a damage's severity with its median and intervals.
+///
+/// The axes are drawn in any case, so that the figure keeps its layout; a note stands in them where no damage, or only one severity, is
+/// known. Bands lie below the bars, and the legend on the side with more room.
 fn severity(canvas: &mut Canvas, severity: Option<&SeverityView>) {
     let mut counts = [0.0f64; BINS];
     let draws = severity.map_or(&[][..], |severity| severity.draws);

@@ -69,7 +69,7 @@ pub fn os_error(doing: &str, name: String, source: &io::Error) -> PyErr {
     match source.raw_os_error() {
         Some(number) => {
             let reason = source.to_string();
-            // Python tells the number by itself.
+            // Python names the number by itself.
             let words = reason.strip_suffix(&format!(" (os error {number})")).unwrap_or(&reason);
             PyOSError::new_err((number, format!("cannot {doing}: {words}"), name))
         }

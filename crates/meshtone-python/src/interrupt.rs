@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 /// Interval at which Python is asked whether Ctrl-C was pressed.
 const INTERVAL: Duration = Duration::from_millis(50);
 
-/// What the work tells of its progress: how much is finished, and of how much.
+/// What the work reports of its progress: how much is finished, and of how much.
 pub type Report<'a> = &'a (dyn Fn(u64, u64) + Sync);
 
 /// Does long work in a thread of its own, without the interpreter's lock, and stops it when Python is interrupted.
@@ -20,8 +20,8 @@ pub type Report<'a> = &'a (dyn Fn(u64, u64) + Sync);
 ///
 /// # Arguments
 /// * `progress` - Python's function of what is finished and of how much, if it wants to know
-/// * `total` - how much there is to do, as far as it is known before the work tells it, else 0
-/// * `work` - given what is set when it shall stop, and what it tells its progress
+/// * `total` - how much there is to do, as far as it is known before the work reports it, else 0
+/// * `work` - given what is set when it shall stop, and what it reports its progress to
 ///
 /// # Errors
 /// The exception that interrupted Python, or that `progress` raised: the work has then been stopped.

@@ -28,6 +28,9 @@ impl From<Column> for ColumnChoice {
 }
 
 /// Reads a recording: a dictionary of its parts.
+///
+/// Python's arguments become the options of the library, which checks them. The file is read without the interpreter's lock, so that other
+/// threads go on meanwhile.
 #[pyfunction]
 pub fn read_recording<'py>(
     py: Python<'py>,

@@ -146,16 +146,16 @@ mod tests {
 
     #[test]
     fn entries_of_lists_are_counted_as_people_do() {
-        let told = |key: &str, value: &str| TomlError::new(key, value, "no").to_string();
-        assert_eq!(told("fault[1].tooth", "39"), "fault[1].tooth = 39 (the 2nd fault): no");
-        assert_eq!(told("fault[0]", ""), "fault[0] (the 1st fault): no");
+        let message = |key: &str, value: &str| TomlError::new(key, value, "no").to_string();
+        assert_eq!(message("fault[1].tooth", "39"), "fault[1].tooth = 39 (the 2nd fault): no");
+        assert_eq!(message("fault[0]", ""), "fault[0] (the 1st fault): no");
         assert_eq!(
-            told("class[2].vary[11].key", ""),
+            message("class[2].vary[11].key", ""),
             "class[2].vary[11].key (the 12th vary of the 3rd class): no"
         );
-        assert_eq!(told("constraints[22]", ""), "constraints[22] (the 23rd constraint): no");
+        assert_eq!(message("constraints[22]", ""), "constraints[22] (the 23rd constraint): no");
         // A number in a list is no place.
-        assert_eq!(told("rig.damping_ratio[2]", "0.5"), "rig.damping_ratio[2] = 0.5: no");
-        assert_eq!(told("gears.module_mm", "0"), "gears.module_mm = 0: no");
+        assert_eq!(message("rig.damping_ratio[2]", "0.5"), "rig.damping_ratio[2] = 0.5: no");
+        assert_eq!(message("gears.module_mm", "0"), "gears.module_mm = 0: no");
     }
 }

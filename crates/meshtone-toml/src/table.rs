@@ -64,7 +64,7 @@ impl<'a> TomlTable<'a> {
     ///
     /// # Arguments
     /// * `key` - its name in this table
-    /// * `meaning` - unit and meaning, told to a user who left it out
+    /// * `meaning` - unit and meaning, for the message to a user who left it out
     ///
     /// # Errors
     /// The key is missing; where another key looks like it misspelt, that key is named instead.
@@ -169,7 +169,7 @@ impl<'a> TomlTable<'a> {
         Ok(value)
     }
 
-    /// Refuses the first key that nobody has asked for, and nobody will: to be told before what is missing for it.
+    /// Refuses the first key that nobody has asked for, and nobody will: it is reported before what is missing because of it.
     ///
     /// # Arguments
     /// * `later` - keys that may be here and have not been asked for yet

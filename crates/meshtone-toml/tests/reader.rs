@@ -177,7 +177,7 @@ fn keys_are_found_inside_tables_and_arrays() {
 }
 
 #[test]
-fn a_table_that_becomes_a_list_is_told_how() {
+fn how_a_table_becomes_a_list_is_stated() {
     let error = TomlDocument::parse("[fault]\ntooth = 1\n[[fault]]\ntooth = 2\n").map(drop).unwrap_err();
     assert_eq!(error.line, Some(3));
     assert!(error.help.unwrap().contains("double brackets"));
@@ -222,7 +222,7 @@ fn keys_that_will_be_asked_for_are_known() {
 }
 
 #[test]
-fn errors_are_told_apart_by_their_kind() {
+fn errors_are_distinguished_by_their_kind() {
     let kind = |text: &str| {
         let speed = |root: &TomlTable<'_>| root.required("speed_hz", "(rev/s) speed")?.number();
         TomlDocument::parse(text).and_then(|document| document.root().read(speed)).unwrap_err().kind

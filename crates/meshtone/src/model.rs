@@ -21,8 +21,14 @@ impl Model {
     /// All models, the default first.
     pub const ALL: [Self; 3] = [Self::Contact, Self::Linear, Self::Published];
 
-    /// Whether the model is a machine around meshes; the published one is not.
-    pub(crate) fn has_meshes(self) -> bool {
+    /// Whether teeth part that are pulled, as real ones do; a linear mesh pulls.
+    pub fn teeth_part(self) -> bool {
+        self == Self::Contact
+    }
+
+    /// Whether the model is a machine around meshes, which starts in equilibrium, so that no more is simulated than settles; the
+    /// published one is not, and simulates all from the start.
+    pub fn has_meshes(self) -> bool {
         self != Self::Published
     }
 
@@ -30,7 +36,7 @@ impl Model {
     ///
     /// # Arguments
     /// * `key` - with its section
-    pub(crate) fn ignores(self, key: &str) -> bool {
+    pub fn ignores(self, key: &str) -> bool {
         models_ignoring(key).contains(&self.name())
     }
 }

@@ -1,32 +1,34 @@
 //! The eight stages, in order.
 
 mod curves;
+mod equations;
 mod measured;
+mod options;
 mod severities;
 
-use std::f64::consts::TAU;
 use std::fmt::{self, Debug, Formatter};
 use std::num::NonZeroUsize;
 use std::time::Duration;
 
 use web_time::Instant;
 
+pub use equations::Equations;
+use options::MachineOptions;
+
 use crate::damage::{DamagedTooth, ToothPart, damaged_teeth};
 use crate::error::{Error, ScenarioError, ScenarioWarning};
-use crate::machine::{ClosedMesh, DecayingMode, Modes, Supports, Train, WheelBody};
+use crate::machine::Train;
 use crate::mesh::{
-    Contact, FaceSlope, Forcing, Mesh, MeshParameters, PairDeviations, PairSequence, PairTable, Pairs,
-    TipShape, Turning,
+    Contact, FaceSlope, Mesh, MeshParameters, PairSequence, PairTable, Pairs, TipShape, Turning,
 };
-use crate::model::Model;
 use crate::operation::{CycleGrid, Solver, TimeGrid};
 use crate::published::{self, Published};
 use crate::scenario::{MemoryLimit, Scenario};
 use crate::sensor::{Channels, ContactFigures};
 use crate::simd::InstructionSet;
-use crate::solver::{Block, Diverged, InitialMotion, ModalMachine, Output, Problem, Recorder, integrate};
+use crate::solver::{Block, Diverged, Output, Recorder};
 use crate::wheel::quality::{deviations, profile_errors};
-use crate::wheel::{Deviations, ProfileErrors, RunOut, Teeth, WheelDeviations, WheelName, teeth};
+use crate::wheel::{Deviations, ProfileErrors, RunOut, Teeth, TipRelief, WheelDeviations, WheelName, teeth};
 
 /// Results of every stage before the time loop.
 #[derive(Clone, PartialEq)]
@@ -53,25 +55,18 @@ pub struct Stages {
     pub fault_severities: Vec<f64>,
     /// Stage 5: the meshes; none under the published model, which has one of its own.
     pub meshes: Vec<Mesh>,
-    /// Stage 6: the equations of motion; for the project's own tests.
+    /// Stage 6: the equations of motion, of a type that is public only for the project's own tests and benchmarks.
+    #[cfg(feature = "internals")]
     #[doc(hidden)]
     pub equations: Equations,
+    #[cfg(not(feature = "internals"))]
+    pub(crate) equations: Equations,
     /// Time that each stage took.
     pub timings: Vec<StageTime>,
     /// Stage 1: what is doubtful by the scenario alone.
     pub(crate) warnings_of_scenario: Vec<ScenarioWarning>,
     /// Most memory that the simulation may need, and one that repeats it.
     pub(crate) memory_limit: MemoryLimit,
-}
-
-/// The equations of motion.
-#[doc(hidden)]
-#[derive(Clone, PartialEq)]
-pub enum Equations {
-    /// A machine around meshes, and its modes without these.
-    Machine(Box<Train>, Modes),
-    /// Those of the published model, with its mesh.
-    Published(Box<Published>),
 }
 
 /// Time that a stage took.
@@ -151,9 +146,9 @@ pub fn stages_within(scenario: &Scenario, limit: MemoryLimit) -> Result<Stages, 
     let mut warnings = scenario.validate_within(limit)?;
     warnings.extend(scenario.ignored_by_model());
     let honoured = scenario.without_ignored_keys();
-    let mut stages = match scenario.model {
-        Model::Published => published_stages(honoured, clock)?,
-        Model::Linear | Model::Contact => machine_stages(honoured, clock)?,
+    let mut stages = match MachineOptions::of(scenario.model) {
+        Some(options) => machine_stages(honoured, &options, clock)?,
+        None => published_stages(honoured, clock)?,
     };
     stages.warnings_of_scenario = warnings;
     stages.memory_limit = limit;
@@ -165,13 +160,13 @@ pub fn stages_within(scenario: &Scenario, limit: MemoryLimit) -> Result<Stages, 
     Ok(stages)
 }
 
-/// Stages 1 to 6 of a machine around one mesh.
-///
-/// A linear mesh may pull, and its supports are held: so it has neither backlash nor sensors on supports, and its damping is one ratio
-/// for all modes. All else is as in contact.
-fn machine_stages(scenario: Scenario, mut clock: Clock) -> Result<Stages, ScenarioError> {
+/// Stages 1 to 6 of a machine around one mesh. The models that have one differ in nothing but its options.
+fn machine_stages(
+    scenario: Scenario,
+    options: &MachineOptions,
+    mut clock: Clock,
+) -> Result<Stages, ScenarioError> {
     let (gears, rig) = (&scenario.gears, &scenario.rig);
-    let contact = contact_of(scenario.model);
     let time = scenario.time_grid();
     let cycle = CycleGrid::new(gears.pinion_teeth, gears.gear_teeth, time.sampling_rate_hz);
     clock.lap("scenario");
@@ -182,13 +177,8 @@ fn machine_stages(scenario: Scenario, mut clock: Clock) -> Result<Stages, Scenar
     clock.lap("profile errors");
     let damaged = damaged_teeth(&scenario.faults, &teeth, scenario.seed)?;
     clock.lap("fault");
-    let supports = if contact == Contact::Unilateral { Supports::Moving } else { Supports::Held };
-    let train = Train::new(gears, rig, &teeth, supports);
-    let modes = match contact {
-        Contact::Unilateral => Modes::damped_by_springs(&train.machine),
-        Contact::Bilateral => Modes::damped_alike(&train.machine, rig.damping_ratio.of_all_modes()),
-    };
-    let points_per_pitch = points_per_pitch(&scenario, &time, &cycle);
+    let train = Train::new(gears, rig, &teeth, options.supports);
+    let modes = (options.modes)(&train.machine, rig);
     let mut stages = Stages {
         time,
         cycle,
@@ -206,7 +196,7 @@ fn machine_stages(scenario: Scenario, mut clock: Clock) -> Result<Stages, Scenar
         scenario,
     };
     clock.lap("equations of motion");
-    stages.meshes = stages.meshes_at(points_per_pitch)?;
+    stages.meshes = stages.meshes_at(stages.points_per_pitch())?;
     stages.meshes.iter().try_for_each(check_mesh)?;
     clock.lap("mesh stiffness");
     stages.timings = clock.laps;
@@ -224,7 +214,7 @@ fn published_stages(scenario: Scenario, mut clock: Clock) -> Result<Stages, Scen
     let published = Published::new(&scenario, &time, &teeth, profile_errors.as_ref())?;
     clock.lap("mesh stiffness");
     Ok(Stages {
-        cycle: published.cycle(),
+        cycle: published.mesh.grid,
         damaged: published.damaged_tooth(&teeth).into_iter().collect(),
         time,
         teeth,
@@ -251,11 +241,6 @@ fn healthy_teeth(scenario: &Scenario) -> Teeth {
     if model.has_meshes() { teeth(gears, bore_radii_mm) } else { published::teeth(gears, bore_radii_mm) }
 }
 
-/// How the flanks of a model's meshes touch.
-fn contact_of(model: Model) -> Contact {
-    if model == Model::Linear { Contact::Bilateral } else { Contact::Unilateral }
-}
-
 /// Refuses a mesh that carries nothing, and one of more pairs at once than a step looks at.
 fn check_mesh(mesh: &Mesh) -> Result<(), ScenarioError> {
     if mesh.mean_stiffness_n_per_m.is_nan() || mesh.mean_stiffness_n_per_m <= 0.0 {
@@ -266,17 +251,6 @@ fn check_mesh(mesh: &Mesh) -> Result<(), ScenarioError> {
     }
     let meets = |table: &PairTable| table.kind.pairs_per_cycle > 0 && table.can_touch();
     if mesh.classes.iter().any(meets) { Ok(()) } else { Err(ScenarioError::nothing_left()) }
-}
-
-/// Points from one pair to the next: while motor and brake are steady every sample is one, else the coarse points of the cycle.
-fn points_per_pitch(scenario: &Scenario, time: &TimeGrid, cycle: &CycleGrid) -> NonZeroUsize {
-    let motion = scenario.motion(time);
-    let points = if motion.is_steady() && motion.has_constant_torque() {
-        time.samples_per_pinion_revolution / scenario.gears.pinion_teeth as usize
-    } else {
-        cycle.points_per_pitch
-    };
-    NonZeroUsize::new(points).unwrap_or(NonZeroUsize::MIN)
 }
 
 impl Simulation {
@@ -292,57 +266,6 @@ impl Stages {
         self.meshes.iter().any(|mesh| mesh.contact == Contact::Unilateral)
     }
 
-    /// Number of the coordinates in which the equations of motion are written.
-    pub(crate) fn coordinates(&self) -> usize {
-        match &self.equations {
-            Equations::Machine(train, _) => train.machine.coordinates(),
-            Equations::Published(published) => published.coordinates(),
-        }
-    }
-
-    /// Mass and inertias of the pinion and of the gear.
-    pub(crate) fn wheel_bodies(&self) -> [WheelBody; 2] {
-        match &self.equations {
-            Equations::Machine(train, _) => train.wheels,
-            Equations::Published(published) => [published.machine.pinion, published.machine.gear],
-        }
-    }
-
-    /// (N m/rad) Torsional stiffness of the pinion's and of the gear's shaft.
-    pub(crate) fn shaft_stiffness_nm_per_rad(&self) -> [f64; 2] {
-        match &self.equations {
-            Equations::Machine(train, _) => train.shaft_stiffness_nm_per_rad,
-            Equations::Published(published) => published.machine.shaft_stiffness_nm_per_rad,
-        }
-    }
-
-    /// (Hz) Natural frequencies, rising: of the mean meshes, closed.
-    pub fn natural_frequencies_hz(&self) -> Vec<f64> {
-        match &self.equations {
-            Equations::Machine(train, _) => train.machine.closed_modes(&self.mean_stiffness_n_per_m()).0,
-            Equations::Published(published) => published.natural_frequencies_hz(),
-        }
-    }
-
-    /// Mode shapes in the order of [`Self::natural_frequencies_hz`], of unit modal mass: for each mode a number for each coordinate.
-    pub fn mode_shapes(&self) -> Vec<Vec<f64>> {
-        match &self.equations {
-            Equations::Machine(train, _) => {
-                let (_, shapes) = train.machine.closed_modes(&self.mean_stiffness_n_per_m());
-                shapes.column_iter().map(|shape| shape.iter().copied().collect()).collect()
-            }
-            Equations::Published(published) => published.mode_shapes(),
-        }
-    }
-
-    /// (N/m) Mean stiffness of each mesh.
-    pub(crate) fn mean_stiffness_n_per_m(&self) -> Vec<f64> {
-        match &self.equations {
-            Equations::Machine(..) => self.meshes.iter().map(|mesh| mesh.mean_stiffness_n_per_m).collect(),
-            Equations::Published(published) => vec![published.mean_stiffness_n_per_m()],
-        }
-    }
-
     /// The tooth pairs, at any position of their path; not under the published model, whose flanks are not conjugate.
     pub fn pairs(&self) -> Pairs<'_> {
         Pairs::new(&self.teeth, &self.damaged, self.scenario.gears.material, &self.scenario.gears.foundation)
@@ -356,15 +279,17 @@ impl Stages {
     /// # Errors
     /// Damaged teeth that were put beyond a wheel's last one, misaligned shafts without a load.
     pub fn meshes_at(&self, points_per_pitch: NonZeroUsize) -> Result<Vec<Mesh>, ScenarioError> {
-        let Equations::Machine(train, modes) = &self.equations else { return Ok(Vec::new()) };
+        let (Some((train, modes)), Some(options)) = (self.train(), MachineOptions::of(self.scenario.model))
+        else {
+            return Ok(Vec::new());
+        };
         let Scenario { gears, rig, .. } = &self.scenario;
         let sequence = PairSequence::new(gears.pinion_teeth, gears.gear_teeth, &self.damaged)?;
-        let contact = contact_of(self.scenario.model);
         let static_force_n = self.static_force_n();
-        // Flanks that may pull bear on the whole face.
-        let closer_um = match contact {
-            Contact::Unilateral => rig.misalignment_um + self.helix_slope_um.iter().sum::<f64>(),
-            Contact::Bilateral => 0.0,
+        let closer_um = if options.feels_misalignment {
+            rig.misalignment_um + self.helix_slope_um.iter().sum::<f64>()
+        } else {
+            0.0
         };
         if closer_um != 0.0 && static_force_n <= 0.0 {
             return Err(ScenarioError::no_load_along_the_face());
@@ -376,7 +301,7 @@ impl Stages {
             tilt_rad_per_m: modes.tilt_rad_per_nm(&train.machine, 0) * static_force_n,
         };
         let parameters = MeshParameters {
-            contact,
+            contact: options.contact,
             turning: Turning { pitches_per_revolution: f64::from(gears.pinion_teeth), first_pitch: 0.0 },
             damping_ratio: rig.mesh_damping_ratio,
             mesh_mass_kg: train.mesh_mass_kg,
@@ -401,6 +326,16 @@ impl Stages {
         if self.scenario.model.has_meshes() { [of_wheel(0), of_wheel(1)] } else { none }
     }
 
+    /// (mm) How far the tips' chamfers and their relief reach inwards from the tip; 0 where there is none.
+    pub fn tip_lengths_mm(&self) -> [f64; 2] {
+        let gears = &self.scenario.gears;
+        if !self.scenario.model.has_meshes() {
+            return [0.0, TipRelief::PUBLISHED.length_mm];
+        }
+        let relief = &gears.flank_relief;
+        [gears.chamfer_mm(), if relief.amount_um > 0.0 { relief.length_mm } else { 0.0 }]
+    }
+
     /// (N) Force along the line of action that balances the brake's nominal torque.
     pub fn static_force_n(&self) -> f64 {
         self.force_of_torque_n(self.scenario.operation.brake_torque_nm)
@@ -411,23 +346,18 @@ impl Stages {
         torque_nm / (self.teeth.gear.base_radius_mm * 1e-3)
     }
 
+    /// Points from one pair to the next: while motor and brake are steady every sample is one, else the coarse points of the cycle.
+    fn points_per_pitch(&self) -> NonZeroUsize {
+        let Self { time, teeth, cycle, .. } = self;
+        let samples = time.samples_per_pinion_revolution / teeth.pinion.teeth as usize;
+        let points = if self.is_steady() { samples } else { cycle.points_per_pitch };
+        NonZeroUsize::new(points).unwrap_or(NonZeroUsize::MIN)
+    }
+
     /// Whether motor speed and brake torque are constant.
     pub fn is_steady(&self) -> bool {
         let motion = self.scenario.motion(&self.time);
         motion.is_steady() && motion.has_constant_torque()
-    }
-
-    /// The slowest mode in motion, with the mean meshes closed.
-    pub(crate) fn slowest_mode(&self) -> DecayingMode {
-        match &self.equations {
-            Equations::Machine(train, modes) => modes.slowest_closed(&train.machine, &self.closed_meshes()),
-            Equations::Published(published) => published.slowest_mode(),
-        }
-    }
-
-    /// The meshes as if they were closed always.
-    pub(crate) fn closed_meshes(&self) -> Vec<ClosedMesh> {
-        self.meshes.iter().map(Mesh::closed).collect()
     }
 
     /// First sample that must be simulated, so that the slowest mode's transient has decayed to the settling tolerance where
@@ -535,92 +465,13 @@ impl Stages {
         self.integrate_with(InstructionSet::fastest(), outputs, first_sample, recorder)
     }
 
-    /// As [`Self::integrate`], with given vector instructions.
-    pub(crate) fn integrate_with(
-        &self,
-        instructions: InstructionSet,
-        outputs: &[Output],
-        first_sample: usize,
-        recorder: &mut dyn Recorder,
-    ) -> Result<(), Error> {
-        let result = match &self.equations {
-            Equations::Machine(train, modes) => {
-                integrate(self.problem(train, modes, outputs, first_sample), instructions, recorder)
-            }
-            Equations::Published(published) => published.integrate(outputs, first_sample, recorder),
-        };
-        result.map_err(|diverged| self.divergence(diverged))
-    }
-
-    /// The simulation as it is solved side by side with others; none under the published model, which is solved alone.
-    ///
-    /// # Arguments
-    /// * `outputs` - what is read off the solution, of the kept samples
-    pub(crate) fn lane<'a>(&'a self, outputs: &'a [Output]) -> Option<Problem<'a>> {
-        let Equations::Machine(train, modes) = &self.equations else { return None };
-        Some(self.problem(train, modes, outputs, self.time.first_kept_sample))
-    }
-
-    /// The simulation as the solver sees it.
-    fn problem<'a>(
-        &'a self,
-        train: &Train,
-        modes: &Modes,
-        outputs: &'a [Output],
-        first_sample: usize,
-    ) -> Problem<'a> {
-        let operation = &self.scenario.operation;
-        let deviations = || PairDeviations {
-            teeth: &self.teeth,
-            errors: self.profile_errors.as_ref(),
-            eccentricity_m: self.scenario.rig.eccentricity_mm * 1e-3,
-            run_out: self.run_out,
-        };
-        Problem {
-            time: &self.time,
-            machine: self.modal_machine(train, modes),
-            laws: self.meshes.iter().map(Mesh::law).collect(),
-            forcing: Forcing::new(
-                self.scenario.motion(&self.time),
-                &self.time,
-                [operation.pinion_speed_hz, operation.brake_torque_nm],
-                self.time.first_simulated_sample,
-                self.meshes.iter().map(|mesh| (mesh, deviations())),
-            ),
-            is_steady: self.is_steady(),
-            outputs,
-            first_sample,
-        }
-    }
-
-    /// The machine in the modes that take part in the motion.
-    pub(crate) fn modal_machine(&self, train: &Train, modes: &Modes) -> ModalMachine {
-        let operation = &self.scenario.operation;
-        let first_speed = operation.speed_profile_hz.as_ref().map(|profile| profile.value[0]);
-        let face_reach_m: Vec<f64> = self.meshes.iter().map(Mesh::face_reach_m).collect();
-        let start = InitialMotion {
-            nominal_rad_per_s: TAU * operation.pinion_speed_hz,
-            brake_torque_nm: operation.brake_torque_nm,
-            motor_rad_per_s: TAU * first_speed.unwrap_or(operation.pinion_speed_hz),
-            velocity: self.scenario.solver.initial_velocity.as_ref().map(|given| given.as_slice()),
-        };
-        ModalMachine::new(&train.machine, modes, &face_reach_m, start)
-    }
-
     /// The error that a solution without bound is.
     pub(crate) fn divergence(&self, diverged: Diverged) -> Error {
         let time_s = diverged.sample as f64 * self.time.step_s();
         if let Some(error) = WheelName::BOTH.into_iter().find_map(|wheel| self.gap(wheel, time_s)) {
             return error.into();
         }
-        let rig = &self.scenario.rig;
-        let (key, damping_ratios) = match &self.equations {
-            // The shafts' as well.
-            Equations::Machine(_, modes) if self.teeth_part() => {
-                ("rig.support.damping_ratio", modes.damping_ratio.clone())
-            }
-            _ => ("rig.damping_ratio", rig.damping_ratio.per_mode().to_vec()),
-        };
+        let (key, damping_ratios) = self.damping();
         Error::Diverged { time_s, key, damping_ratios }
     }
 

@@ -20,7 +20,7 @@ use crate::progress::with_bar;
 use crate::terminal::{print, print_error_line, print_unless, warn};
 
 /// Failed records that are reported one by one.
-const TOLD: usize = 3;
+const REPORTED: usize = 3;
 /// Failed records whose numbers are listed.
 const NAMED: usize = 20;
 
@@ -280,8 +280,8 @@ fn warn_after_generating(generated: &Generated) {
 
 /// Prints the first warnings, and how many more there are.
 fn warn_of_first(warnings: impl ExactSizeIterator<Item = String>, more: &str, what: &str) {
-    let rest = warnings.len().saturating_sub(TOLD);
-    warnings.take(TOLD).for_each(warn);
+    let rest = warnings.len().saturating_sub(REPORTED);
+    warnings.take(REPORTED).for_each(warn);
     if rest > 0 {
         warn(format_args!("{} {what}", counted(rest as u64, more)));
     }

@@ -9,6 +9,9 @@ use super::words::{outside, percent};
 
 /// Draws a diagnosis.
 ///
+/// The severity is that of the likeliest damage even where healthy is likelier; a tooth is marked in the gear's signal only where damage is
+/// the likeliest answer, and on the gear.
+///
 /// # Arguments
 /// * `answer` - what is drawn
 /// * `title` - names of what was recorded

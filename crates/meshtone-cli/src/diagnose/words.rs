@@ -8,7 +8,7 @@ use meshtone_diagnose::{Answer, OUTSIDE, PlaceAnswer, SignalKind, ToothAnswer, p
 pub const PROBABILITY: &str =
     "probabilities are given the scenario; before the recording: healthy one half, all kinds of damage alike";
 
-/// `82 %`, and nothing more certain than a hundred simulations could tell.
+/// `82 %`, and nothing more certain than a hundred simulations could show.
 pub fn percent(probability: f64) -> String {
     match probability {
         p if p < 0.001 => "< 0.1 %".to_owned(),
@@ -34,9 +34,9 @@ pub fn counted_from(answer: &Answer) -> Option<String> {
         Some(AngleZero::Simulated) => "teeth are counted as in the simulation".to_owned(),
         Some(zero) => format!("tooth 1 is the one in mesh at the {}", zero.name()),
         None if answer.recordings > 1 => {
-            "which tooth is not told: nothing marks the same tooth in all recordings; pulses once a revolution would".to_owned()
+            "which tooth it is remains unknown: nothing marks the same tooth in all recordings; pulses once a revolution would mark it".to_owned()
         }
-        None => "which tooth is not told: the mesh tone has no mark; pulses (--tach), or an exact --shaft-hz, would tell".to_owned(),
+        None => "which tooth it is remains unknown: the mesh tone has no mark; pulses (--tach), or an exact --shaft-hz, would show it".to_owned(),
     })
 }
 

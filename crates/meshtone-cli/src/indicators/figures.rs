@@ -19,6 +19,9 @@ pub fn name(path: &Path) -> String {
 }
 
 /// The figure of the last record.
+///
+/// The facts below its title say how its signals were made, the source of the phase and what was removed from the average, because the
+/// signals cannot be compared with others without that.
 pub fn of_record(
     series: &Series,
     latest: &LatestRecords,

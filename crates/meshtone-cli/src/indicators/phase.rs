@@ -53,7 +53,7 @@ impl PhaseOptions {
         let path = input.source.display();
         if self.teeth.is_none() {
             let problem = format!("{path}: the teeth of the wheel are not stated");
-            let help = "state them with --teeth; only what `meshtone simulate` wrote tells them itself";
+            let help = "state them with --teeth; only what `meshtone simulate` wrote states them itself";
             return Failure::refuse(problem, help);
         }
         if !self.states_shaft_angle() {
@@ -117,6 +117,9 @@ impl PhaseOptions {
     }
 
     /// The phase of the shaft, as measured, and what is doubtful about the file that it is from.
+    ///
+    /// Files that the user names for the phase come before channels of the recording, and these before a constant speed or the mesh tone,
+    /// which need nothing but the vibration. Every error names the option or the channel that the phase is from.
     pub fn measured(&self, input: &Input) -> Result<(ShaftPhase, Vec<WarningEntry>), Failure> {
         let (rate_hz, samples) = (input.sampling_rate_hz, input.channel.samples.len());
         let of = |what: String, subject| move |error| refuse(&input.source, &what, subject, &error);

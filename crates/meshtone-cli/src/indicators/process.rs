@@ -86,6 +86,9 @@ pub fn process(
 }
 
 /// The records of the wheel on a shaft, the first of `wheels` on the pinion's, and what does not fit.
+///
+/// A measured recording is resampled over the angle of the wheel's own shaft, and only the wheel whose shaft the phase is of is checked
+/// against the stated facts, since the other one's angle follows from the tooth counts. A simulation knows the angles of both shafts.
 fn wheel_records(
     input: &Input,
     turning: &ShaftAngle,

@@ -24,7 +24,7 @@ fn leading_of(scenario_toml: &str) -> String {
     SimulatedChannel::leading(&sensors).name().into_owned()
 }
 
-/// A recording with the channel that is processed and the one that tells the phase.
+/// A recording with the channel that is processed and the one that gives the phase.
 #[derive(Debug)]
 pub struct Input {
     /// The file that was read.
@@ -51,7 +51,7 @@ impl Input {
     /// # Arguments
     /// * `path` - a file, or a directory that `meshtone simulate` wrote
     /// * `options` - what is read
-    /// * `turning` - name or number of the channel that tells the phase, behind the option that says so
+    /// * `turning` - name or number of the channel that gives the phase, behind the option that says so
     pub fn read(
         path: &Path,
         options: &ReadingOptions,
@@ -151,7 +151,7 @@ fn read_one(
     Ok((one(path, recording.channels, Some(choice))?, warnings))
 }
 
-/// Refuses a channel that tells the phase and is the vibration too, or has another number of samples.
+/// Refuses a channel that gives the phase and is the vibration too, or has another number of samples.
 fn check_turning(
     path: &Path,
     options: &ReadingOptions,
@@ -164,7 +164,7 @@ fn check_turning(
         && turning.name == *name
         && read_one(path, options, "--channel", choice)?.0.samples == turning.samples
     {
-        let problem = format!("{shown}: channel {name} is both processed and what tells the phase");
+        let problem = format!("{shown}: channel {name} is both processed and what gives the phase");
         let help =
             "name the vibration with --channel, and tachometer or speed with --tach or --speed-channel";
         return Failure::refuse(problem, help);
@@ -184,7 +184,7 @@ fn one(path: &Path, mut channels: Vec<Channel>, choice: Option<&str>) -> Result<
     let path = path.display();
     let count = channels.len();
     if count == 0 {
-        let problem = format!("{path}: has no channel besides the one that tells the phase");
+        let problem = format!("{path}: has no channel besides the one that gives the phase");
         return Err(Failure::bad_input(problem));
     }
     if count == 1 {

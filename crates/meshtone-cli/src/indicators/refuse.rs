@@ -96,6 +96,10 @@ pub fn refuse(path: &Path, what: &str, subject: RefusedInput, error: &SignalErro
     Failure { help: help(subject, error), ..Failure::bad_input(message) }
 }
 
+/// What a user may do about an error; none where the error says it.
+///
+/// The same error of a signal has another cause in a tachometer, in pulse times, in a simulation and in a measured channel, so that the
+/// help depends on both. It names options of the program, which the library's errors cannot.
 fn help(subject: RefusedInput, error: &SignalError) -> Option<String> {
     use RefusedInput::{Measured, PulseTimes, Simulated, Tachometer};
     use SignalError::{Constant, MeshOrderBeyondNyquist, PulseGap, SpeedMismatch, TooFew, TooFewRevolutions};

@@ -119,7 +119,7 @@ fn more_memory_than_there_is() {
     refused(slow, &["line 7", "operation.pinion_speed_hz = 1e-6", "GiB of memory", "raise it"]);
     let long = fast_and("[operation.speed_profile_hz]\ntime_s = [0.0, 1e9]\nvalue = [40.0, 41.0]");
     refused(long, &["line 11", "operation.speed_profile_hz", "GiB of memory", "shorten the profile"]);
-    // Where the system tells how much is free, so does the message.
+    // Where the system reports how much is free, so does the message.
     #[cfg(target_os = "linux")]
     refused(greedy, &["GiB", "free on this machine"]);
 }

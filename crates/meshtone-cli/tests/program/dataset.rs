@@ -102,9 +102,9 @@ fn a_data_set_and_what_is_said_about_it() {
     workplace.succeeds(&["dataset", "plan.toml", "-o", "quiet", "--quiet"]).stdout("");
 }
 
-/// Where only the draw shows that two faults meet on one tooth, what is missing is told, and by the exit code too.
+/// Where only the draw shows that two faults meet on one tooth, what is missing is reported, and by the exit code too.
 #[test]
-fn missing_records_are_told_every_time() {
+fn missing_records_are_reported_every_time() {
     let workplace = workplace();
     let chip = "fault = { kind = \"tooth-breakage\", chip_height_mm = 3.0, chip_width_mm = 8.0 }";
     let two = "fault = [{ kind = \"missing-tooth\" }, { kind = \"missing-tooth\", tooth = 2 }]
@@ -125,13 +125,13 @@ fn missing_records_are_told_every_time() {
         assert_eq!(command.status.code(), Some(2));
         [command.stdout, command.stderr].map(|text| String::from_utf8(text).unwrap())
     };
-    let [_, told] = run(&["plan.toml"]);
-    assert!(told.contains("error: plan.toml: ") && told.contains("fault[0] already"), "{told}");
-    let numbers = told.split(" missing: ").nth(1).and_then(|rest| rest.split(';').next()).unwrap();
+    let [_, message] = run(&["plan.toml"]);
+    assert!(message.contains("error: plan.toml: ") && message.contains("fault[0] already"), "{message}");
+    let numbers = message.split(" missing: ").nth(1).and_then(|rest| rest.split(';').next()).unwrap();
     let missing =
         numbers.matches(|c: char| c.is_ascii_digit() || c == ',').collect::<String>().split(',').count();
-    assert!(missing > 0 && missing < 20, "{told}");
-    assert!(told.contains(&format!("{missing} record")), "{told}");
+    assert!(missing > 0 && missing < 20, "{message}");
+    assert!(message.contains(&format!("{missing} record")), "{message}");
     // What is there is complete, and says so; and the next time too.
     let manifest = String::from_utf8(workplace.read("plan_dataset/manifest.json")).unwrap();
     assert_eq!(manifest.matches("\"reason\"").count(), missing);
@@ -142,7 +142,7 @@ fn missing_records_are_told_every_time() {
     }
     let [said, quiet] = run(&["plan.toml", "--quiet"]);
     assert!(said.is_empty() && quiet.contains(numbers), "{said}{quiet}");
-    // A tooth that there is not is told before anything is made.
+    // A tooth that there is not is reported before anything is made.
     workplace.write("plan.toml", plan.replacen("5, 6]", "5, 41]", 1));
     workplace.fails(
         2,
@@ -333,7 +333,7 @@ fn a_data_set_is_verified() {
     std::fs::remove_file(workplace.path("set/data/records-000007.parquet")).unwrap();
     std::fs::remove_file(workplace.path("set/README.md")).unwrap();
     let output = workplace.command(&["dataset", "verify", "set"]).assert().code(1).stdout("");
-    let told = crate::support::stderr(&output);
+    let message = crate::support::stderr(&output);
     for words in [
         "data/records-000004.parquet: its bytes are not those that were written: the SHA-256 differs",
         "data/records-000007.parquet: it is missing",
@@ -341,16 +341,16 @@ fn a_data_set_is_verified() {
         "error: set: 3 files are not as written",
         "help: put the files back",
     ] {
-        assert!(told.contains(words), "`{words}` is not in: {told}");
+        assert!(message.contains(words), "`{words}` is not in: {message}");
     }
     // Without reading, what is missing is seen, and what is damaged is not.
     let output = workplace.command(&["dataset", "verify", "set", "--sizes-only"]).assert().code(1);
     assert!(crate::support::stderr(&output).contains("error: set: 2 files are not as written"));
     let again = workplace.succeeds(&["dataset", "plan.toml", "-o", "set"]);
-    let told = crate::support::stderr(&again);
+    let message = crate::support::stderr(&again);
     assert!(
-        told.contains("warning: data/records-000004.parquet was made again: its bytes are not those"),
-        "{told}"
+        message.contains("warning: data/records-000004.parquet was made again: its bytes are not those"),
+        "{message}"
     );
     assert!(stdout(&again).contains("16 records in 2 shards written, 10 shards were there already"));
     assert!(bytes(&workplace.path("set")) == whole);
@@ -359,13 +359,13 @@ fn a_data_set_is_verified() {
     workplace.write("set/data/notes.txt", "mine");
     let words = ["set has another file in it: data/notes.txt", "move that file elsewhere"];
     workplace.fails(2, &["dataset", "plan.toml", "-o", "set"], &words);
-    // A manifest that is damaged itself is told first: what it says of the others may be wrong.
+    // A manifest that is damaged itself is reported first: what it says of the others may be wrong.
     let manifest = String::from_utf8(workplace.read("set/manifest.json")).unwrap();
     workplace.write("set/manifest.json", manifest.replacen("000004", "000044", 1));
     let output = workplace.command(&["dataset", "verify", "set"]).assert().code(1);
-    let told = crate::support::stderr(&output);
-    assert!(told.starts_with("manifest.json: it is not as it was written"), "{told}");
-    assert!(told.contains("data/notes.txt: no manifest or list of a part names it"), "{told}");
+    let message = crate::support::stderr(&output);
+    assert!(message.starts_with("manifest.json: it is not as it was written"), "{message}");
+    assert!(message.contains("data/notes.txt: no manifest or list of a part names it"), "{message}");
 }
 
 #[test]
@@ -375,15 +375,15 @@ fn a_data_set_without_a_record_is_a_failure() {
     workplace.write("plan.toml", PLAN.replace("[keep]", "[keep]\nsampling_rate_hz = 100.0"));
     for _ in 0..2 {
         let output = workplace.command(&["dataset", "plan.toml", "-o", "set"]).assert().code(2).stdout("");
-        let told = crate::support::stderr(&output);
+        let message = crate::support::stderr(&output);
         assert!(
-            told.contains("error: none of the plan's 96 records could be simulated; record 0: "),
-            "{told}"
+            message.contains("error: none of the plan's 96 records could be simulated; record 0: "),
+            "{message}"
         );
     }
 }
 
-/// What a program is told to end with leaves nothing unfinished; killed, it leaves what the next one removes.
+/// The signal by which a program is asked to end leaves nothing unfinished; killed, it leaves what the next one removes.
 #[cfg(unix)]
 #[test]
 fn nothing_unfinished_stays() {
@@ -427,7 +427,7 @@ fn nothing_unfinished_stays() {
     workplace.succeeds(&["dataset", "verify", "set"]);
 }
 
-/// Four programs that all want to make the same: one does, the others are told; nothing is lost. Four parts work side by side.
+/// Four programs that all want to make the same: one does, the others report it; nothing is lost. Four parts work side by side.
 #[test]
 fn several_at_once() {
     let workplace = workplace();
@@ -448,11 +448,13 @@ fn several_at_once() {
         let mut made = 0;
         for child in all {
             let output = child.wait_with_output().unwrap();
-            let told = String::from_utf8(output.stderr).unwrap();
+            let message = String::from_utf8(output.stderr).unwrap();
             match output.status.code() {
                 Some(0) => made += 1,
-                Some(1) => assert!(told.contains("another program is making a data set in same_"), "{told}"),
-                _ => panic!("{:?}: {told}", output.status),
+                Some(1) => {
+                    assert!(message.contains("another program is making a data set in same_"), "{message}")
+                }
+                _ => panic!("{:?}: {message}", output.status),
             }
         }
         assert!(made > 0);

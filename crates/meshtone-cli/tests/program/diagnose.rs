@@ -47,7 +47,7 @@ fn likeliest(answer: &Value) -> (String, Value) {
 #[test]
 fn from_recordings_to_an_answer() {
     let workplace = workplace();
-    let told = ["--scenario", "rig.toml", "--records", FEW, "--reference", "kept"];
+    let shared_arguments = ["--scenario", "rig.toml", "--records", FEW, "--reference", "kept"];
 
     // What is finished stays where the program is killed, and the next question goes on with it.
     let mut child = program()
@@ -77,7 +77,7 @@ fn from_recordings_to_an_answer() {
     let first = batches()[0].clone();
     let made = fs::metadata(&first).unwrap().modified().unwrap();
 
-    let diagnose = |of: &[&str]| workplace.succeeds(&[&["diagnose"], of, &told].concat());
+    let diagnose = |of: &[&str]| workplace.succeeds(&[&["diagnose"], of, &shared_arguments].concat());
     let assert = diagnose(&["gone", "--healthy", "sound"]);
     assert_eq!(fs::metadata(&first).unwrap().modified().unwrap(), made, "it was made again");
     assert_eq!(workplace.names("gone_diagnosis"), [DATA, FIGURES[0], FIGURES[1]]);
@@ -133,7 +133,7 @@ fn from_recordings_to_an_answer() {
     workplace.write("figure.csv", text);
     let answers = ["1", "2"].map(|threads| {
         let arguments = ["diagnose", "figure.csv", "--signal", "difference", "--no-figure", "-q"];
-        let mut command = workplace.command(&[&arguments[..], &told].concat());
+        let mut command = workplace.command(&[&arguments[..], &shared_arguments].concat());
         let assert = command.env("RAYON_NUM_THREADS", threads).assert().success().stdout("");
         assert!(stderr(&assert).contains("when it was healthy"), "{}", stderr(&assert));
         answer(&workplace, "figure_diagnosis")

@@ -25,7 +25,7 @@ fn a_scenario_is_served_at_the_address_that_is_printed() {
 }
 
 #[test]
-fn what_cannot_be_served_is_told() {
+fn what_cannot_be_served_is_reported() {
     let workplace = Workplace::new();
     workplace.fails(2, &["explore", "absent.toml"], &["absent.toml"]);
     workplace.write("wrong.toml", "[gears]\nmodul_mm = 3.0\n");

@@ -227,15 +227,15 @@ fn the_only_channel_that_is_alive_needs_no_name() {
     let constant = ["--teeth", "19", "--shaft-hz", "20", "--sampling-rate-hz", "5000", "--no-figure"];
     let of = |file: &str, named: &[&str]| {
         let all = [&["indicators", file, "-o", "out"], named, &calibrated, &constant].concat();
-        let told = stderr(&workplace.succeeds(&all));
-        (results(&workplace, "out"), told)
+        let warnings = stderr(&workplace.succeeds(&all));
+        (results(&workplace, "out"), warnings)
     };
     let (named, _) = of("one.csv", &["-c", "left"]);
-    let (unnamed, told) = of("one.csv", &[]);
-    assert_eq!((&unnamed["records"], told.as_str()), (&named["records"], ""));
+    let (unnamed, warnings) = of("one.csv", &[]);
+    assert_eq!((&unnamed["records"], warnings.as_str()), (&named["records"], ""));
     assert!(unnamed.to_string().contains("m/s²"));
-    let (beside_a_dead_one, told) = of("two.csv", &[]);
-    assert!(told.contains("two.csv: right is 0 throughout and left out"), "{told}");
+    let (beside_a_dead_one, warnings) = of("two.csv", &[]);
+    assert!(warnings.contains("two.csv: right is 0 throughout and left out"), "{warnings}");
     assert_eq!(beside_a_dead_one["records"][0]["indicators"], named["records"][0]["indicators"]);
 }
 

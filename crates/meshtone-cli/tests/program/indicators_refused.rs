@@ -154,7 +154,7 @@ fn pulses() {
         refused(
             &workplace,
             &same,
-            &["channel tacho is both processed and what tells the phase", "--channel"],
+            &["channel tacho is both processed and what gives the phase", "--channel"],
         );
     }
     let mut waveform = csv(RATE_HZ, &vibration(5000, 1.0), tacho(20.0, RATE_HZ));

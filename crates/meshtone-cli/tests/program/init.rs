@@ -15,7 +15,7 @@ fn every_kind_is_printed_and_can_be_read() {
     }
 }
 
-/// A file handed to the command of another kind is told what it is and what reads it.
+/// A file handed to the command of another kind is refused with what it is and what reads it.
 #[test]
 fn files_of_other_kinds_are_named() {
     let workplace = Workplace::new();
@@ -47,7 +47,7 @@ fn files_of_other_kinds_are_named() {
 
 /// Nor are what `meshtone tune` found, other formats and directories.
 #[test]
-fn what_is_no_scenario_is_told_what_reads_it() {
+fn what_is_no_scenario_is_refused_with_what_reads_it() {
     let workplace = Workplace::new();
     workplace.write("tuned.toml", "[enhancement]\nwidth_ratio = 0.2\n");
     std::fs::create_dir(workplace.path("found")).unwrap();

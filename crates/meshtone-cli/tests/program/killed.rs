@@ -135,10 +135,10 @@ fn killed_while_it_names_its_files() {
     }
 }
 
-/// Told to end, a run leaves neither unfinished files nor an empty directory.
+/// Asked to end, a run leaves neither unfinished files nor an empty directory.
 #[cfg(unix)]
 #[test]
-fn told_to_end() {
+fn asked_to_end() {
     let workplace = Workplace::new();
     workplace.write("long.toml", fast_with("sampling_rate_hz", "sampling_rate_hz = 1e5"));
     let mut ended = 0;
@@ -166,7 +166,7 @@ fn told_to_end() {
     assert!(ended > 0);
 }
 
-/// What a killed run has left is removed by the next one, and a run into the same directory is told of the first.
+/// What a killed run has left is removed by the next one, and a run into the same directory is refused because of the first.
 #[test]
 fn two_at_once_and_what_the_killed_left() {
     let workplace = Workplace::new();
@@ -180,8 +180,8 @@ fn two_at_once_and_what_the_killed_left() {
         .unwrap();
     while !workplace.path("out/.meshtone-results").exists() && child.try_wait().unwrap().is_none() {}
     for arguments in [["simulate", "fast.toml", "-o", "out"].as_slice(), &["panel", "out"]] {
-        let told = stderr(&workplace.command(arguments).assert().code(1).stdout(""));
-        assert!(told.contains("another program is writing results to the directory out"), "{told}");
+        let message = stderr(&workplace.command(arguments).assert().code(1).stdout(""));
+        assert!(message.contains("another program is writing results to the directory out"), "{message}");
     }
     child.kill().unwrap();
     child.wait().unwrap();

@@ -15,10 +15,10 @@ const SENSORS: &str =
 fn sensors_come_first() {
     let workplace = Workplace::new();
     workplace.write("sensed.toml", fast_and(SENSORS));
-    let told = stdout(&workplace.succeeds(&["simulate", "sensed.toml", "-o", "out"]));
-    let place = |words: &str| told.find(words).unwrap_or(usize::MAX);
-    assert!(place("casing, g") < place("support vertical, g"), "{told}");
-    assert!(place("support vertical, g") < place("horizontal, g"), "{told}");
+    let printed = stdout(&workplace.succeeds(&["simulate", "sensed.toml", "-o", "out"]));
+    let place = |words: &str| printed.find(words).unwrap_or(usize::MAX);
+    assert!(place("casing, g") < place("support vertical, g"), "{printed}");
+    assert!(place("support vertical, g") < place("horizontal, g"), "{printed}");
     let table = TableReader::new(File::open(workplace.path("out/signals.parquet")).unwrap()).unwrap();
     let names: Vec<&str> = table.columns().iter().map(|column| column.name.as_str()).collect();
     assert_eq!(names[..4], ["time_s", "casing_g", "support_vertical_g", "horizontal_g"]);
@@ -31,8 +31,8 @@ fn sensors_come_first() {
     // The panel is drawn again from the files, and the indicators of the first sensor are the summary's.
     workplace.succeeds(&["panel", "out"]);
     assert_eq!(String::from_utf8(workplace.read("out/panel.svg")).unwrap(), panel);
-    let told = stdout(&workplace.succeeds(&["indicators", "out", "-o", "found"]));
-    assert!(told.contains("casing_g, g"), "{told}");
+    let printed = stdout(&workplace.succeeds(&["indicators", "out", "-o", "found"]));
+    assert!(printed.contains("casing_g, g"), "{printed}");
 
     // Without sensors nothing of this is there.
     workplace.succeeds(&["simulate", "fast.toml", "-o", "plain", "--no-panel"]);
@@ -41,7 +41,7 @@ fn sensors_come_first() {
 }
 
 #[test]
-fn sensor_that_cannot_be_is_told_with_its_line() {
+fn sensor_that_cannot_be_is_refused_with_its_line() {
     let workplace = Workplace::new();
     workplace.write("wrong.toml", fast_and("[[sensor]]\nname = \"axial\""));
     workplace.fails(2, &["simulate", "wrong.toml"], &["sensor.name = \"axial\"", "axial_g", "another name"]);

@@ -146,18 +146,18 @@ impl Trial<'_> {
         fs::write(&kept, input).expect("the finding can be written");
         let again =
             format!("cargo xtask fuzz --seed {} --reader {} --number {number}", self.seed, reader.name);
-        let told = format!("{}: {problem}\n  input: {}\n  again: {again}\n", reader.name, kept.display());
-        fs::write(kept.with_extension("txt"), &told).expect("the finding can be written");
-        eprint!("{told}");
+        let report = format!("{}: {problem}\n  input: {}\n  again: {again}\n", reader.name, kept.display());
+        fs::write(kept.with_extension("txt"), &report).expect("the finding can be written");
+        eprint!("{report}");
     }
 }
 
 /// Panics print nothing, but are remembered.
 fn remember_panics() -> Arc<Mutex<String>> {
     let last = Arc::new(Mutex::new(String::new()));
-    let told = Arc::clone(&last);
+    let noted = Arc::clone(&last);
     std::panic::set_hook(Box::new(move |panic| {
-        if let Ok(mut last) = told.lock() {
+        if let Ok(mut last) = noted.lock() {
             *last = panic.to_string();
         }
     }));

@@ -108,6 +108,9 @@ fn refuse_key((rule, place): &Placed, key: &str, problem: impl Into<String>) -> 
 }
 
 /// Checks that all keys exist, are varied once each, and suit their level.
+///
+/// A key that is varied twice would have two values, and one that differs within a unit would give one pair of wheels several shapes. The
+/// first problem is reported at its rule, so that a user finds it in the plan.
 fn check_keys(rules: &[Placed], known: &[ScenarioNumber], base: &Scenario) -> ReadResult<()> {
     let mut seen: Vec<(&str, &str)> = Vec::new();
     for placed in rules {
@@ -244,7 +247,7 @@ fn check_dependency(
     Ok(())
 }
 
-/// Proposes the key that is meant. A user who writes revolutions per minute is told how to convert the values.
+/// Proposes the key that is meant. To a user who writes revolutions per minute it says how to convert the values.
 fn meant(key: &str, nearest: &str) -> String {
     let by_minute = key.ends_with("rpm") && nearest.ends_with("_hz");
     let unit =

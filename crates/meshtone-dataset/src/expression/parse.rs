@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_understood_is_told() {
+    fn what_cannot_be_understood_is_reported() {
         for (text, words) in [
             ("", "ends where a number"),
             ("2 *", "ends where a number"),

@@ -180,6 +180,9 @@ fn short_runs(class: &Class, units: u64) -> Option<String> {
 }
 
 /// A warning about values of units or mountings that occur in validation or test but not in the training.
+///
+/// Which values come into which split is chance and known only after drawing, so that the plan's first records are drawn as they would be
+/// generated. Where these do not include all units nothing is said, because the missing values may still come.
 fn unlearned(plan: &Plan) -> ReadResult<Vec<String>> {
     let content = &plan.content;
     let is_chosen = |rule: &&Rule| {

@@ -8,7 +8,7 @@ use std::error::Error;
 use meshtone::Stages;
 use meshtone::batch::ObservedSignals;
 use meshtone::damage::damages_of_fault;
-use meshtone::scenario::{Fault, Model, WheelName};
+use meshtone::scenario::{Fault, WheelName};
 use meshtone::sensor::Channel;
 use meshtone::signal::{
     AngularSettings, AntiAliasing, ChainSettings, Edge, MeanPart, Record as Analysis, SeparationSettings,
@@ -40,7 +40,7 @@ pub(super) fn record(
     let mut channels = view.at_rate(samples)?;
     let analysed = simulated.iter().position(|channel| *channel == keep.analysed);
     let mut record = view.empty(drawn);
-    let parts = stages.scenario.model == Model::Contact;
+    let parts = stages.scenario.model.teeth_part();
     record.slack_fraction = if parts { observed.apart_fraction } else { observed.tension_fraction };
     for warning in &observed.warnings {
         if !record.warnings.contains(&warning.kind) {

@@ -1,6 +1,5 @@
 //! The columns of a data set: names, units, meanings, and the cells of each record.
 
-use meshtone::damage::Damage;
 use meshtone::scenario::{Fault, Model};
 use meshtone::signal::OCTAVES;
 use meshtone_io::table::{CellType, Cells, TableColumn};
@@ -25,7 +24,7 @@ pub(crate) struct Column {
     pub unit: String,
     /// Meaning.
     pub description: String,
-    /// What the column tells about a record.
+    /// What the column states about a record.
     pub topic: Topic,
     /// The type of the column's cells.
     pub cell_type: CellType,
@@ -146,6 +145,9 @@ impl From<&Column> for TableColumn {
 
 /// The columns of a plan's data set: what a record is, its varied keys, its indicators, its signals.
 ///
+/// They follow from the plan alone, so that all shards of all parts have the same ones in the same order. A varied key that is a column
+/// already, such as the speed, gets no second one.
+///
 /// # Arguments
 /// * `plan` - the plan
 pub(crate) fn columns(plan: &Plan) -> Vec<Column> {
@@ -198,6 +200,9 @@ pub(crate) fn columns(plan: &Plan) -> Vec<Column> {
 }
 
 /// Lists the columns of what a record is, of its faults and of its machine.
+///
+/// A class may have several faults, and a record of a class with fewer has no values in the columns of the others. The pits' area has a
+/// column only where some class has pits in that place.
 fn of_record(content: &Content) -> Vec<Column> {
     let splits: Vec<String> = content.splits.names().into_iter().map(str::to_owned).collect();
     let labels: Vec<String> = content.classes.iter().map(|class| class.label.clone()).collect();
@@ -222,8 +227,8 @@ fn of_record(content: &Content) -> Vec<Column> {
     let most_faults = content.classes.iter().map(|class| class.faults.len()).max().unwrap_or(0);
     for number in 0..most_faults.max(1) {
         columns.extend(of_fault(number));
-        let is_pits = |fault: &Fault| matches!(fault.damage, Damage::Pits(_));
-        if content.classes.iter().any(|class| class.faults.get(number).is_some_and(is_pits)) {
+        let has_area = |fault: &Fault| fault.damage.has_area();
+        if content.classes.iter().any(|class| class.faults.get(number).is_some_and(has_area)) {
             let name = format!("{}_area_percent", name_in_list("fault", number));
             let column = Column::float64(&name, "%", move |r| r.faults.get(number)?.area_percent);
             let meaning = "part of the flank's contact part that the pits take, of the worst tooth";
@@ -258,7 +263,7 @@ fn of_record(content: &Content) -> Vec<Column> {
 
 /// Lists the columns of what the simulation of a record says about itself.
 fn of_simulation(model: Model) -> [Column; 3] {
-    let (name, slack) = if model == Model::Contact {
+    let (name, slack) = if model.teeth_part() {
         ("apart_fraction", "part of the simulated time in which no teeth touch")
     } else {
         (

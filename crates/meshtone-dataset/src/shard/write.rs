@@ -33,6 +33,10 @@ pub(crate) enum Item {
 
 /// Writes a shard.
 ///
+/// Records are written in groups of limited size, so that memory does not grow with the shard. A healthy twin comes right before its
+/// record, whose enhanced signal is made with it, and is dropped then. Failed records have no row; the metadata, which is written at the
+/// end, lists them.
+///
 /// # Arguments
 /// * `to` - where it is written to; it needs no buffer
 /// * `content` - of the plan

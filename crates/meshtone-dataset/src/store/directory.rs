@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use meshtone_io::atomic_file;
 use meshtone_io::own_file::{self, PREFIX};
 
-use super::{Files, Place};
+use super::{Files, Storage};
 use crate::part_list;
 use crate::shard::{self, ReadShard, Wanted};
 
@@ -18,7 +18,7 @@ pub(super) struct Directory {
     pub path: PathBuf,
 }
 
-impl Place for Directory {
+impl Storage for Directory {
     /// Unfinished files are left out.
     fn files(&self, folder: &str) -> io::Result<Files> {
         let mut files = Files::new();

@@ -32,13 +32,13 @@ pub(crate) type Files = BTreeMap<String, u64>;
 /// The place that a data set is written to.
 #[derive(Debug, Clone)]
 pub struct Destination {
-    place: Arc<dyn Place>,
-    /// The directory, if the place is one.
+    storage: Arc<dyn Storage>,
+    /// The directory, if the data set is in one.
     directory: Option<PathBuf>,
 }
 
-/// Files by their names, with `/` between folders. A place is displayed as users name it.
-trait Place: fmt::Debug + fmt::Display + Send + Sync {
+/// Files by their names, with `/` between folders. A storage is displayed as users name it.
+trait Storage: fmt::Debug + fmt::Display + Send + Sync {
     /// The names of all files in a folder with their sizes in bytes; none where the folder does not exist.
     ///
     /// # Arguments
@@ -73,7 +73,7 @@ impl Destination {
     /// * `path` - the directory
     pub fn directory(path: impl Into<PathBuf>) -> Self {
         let path = path.into();
-        Self { place: Arc::new(Directory { path: path.clone() }), directory: Some(path) }
+        Self { storage: Arc::new(Directory { path: path.clone() }), directory: Some(path) }
     }
 
     /// A place in an object store.
@@ -84,7 +84,7 @@ impl Destination {
     #[cfg(feature = "objects")]
     pub fn objects(store: Arc<dyn object_store::ObjectStore>, prefix: &str) -> Self {
         let prefix = prefix.into();
-        Self { place: Arc::new(Objects { store, prefix }), directory: None }
+        Self { storage: Arc::new(Objects { store, prefix }), directory: None }
     }
 
     /// A directory's name or a URL: `file:`, and with the feature `cloud` `s3:`, `gs:`, `az:` and `https:`.
@@ -125,7 +125,7 @@ impl Destination {
             .map_err(|error| DatasetError::refused(format!("{url} is no URL: {error}"), HELP))?;
         match object_store::parse_url_opts(&parsed, std::env::vars()) {
             Ok((store, prefix)) => {
-                Ok(Self { place: Arc::new(Objects { store: store.into(), prefix }), directory: None })
+                Ok(Self { storage: Arc::new(Objects { store: store.into(), prefix }), directory: None })
             }
             Err(error) if cfg!(feature = "cloud") => {
                 Err(DatasetError::refused(format!("cannot write to {url}: {error}"), HELP))
@@ -147,16 +147,16 @@ impl Destination {
 
     /// The files of one of the data set's folders, as [`Self::files`] gives them.
     pub(crate) fn files_in(&self, folder: &str) -> Result<Files, DatasetError> {
-        self.place.files(folder).map_err(DatasetError::read(self.to_string()))
+        self.storage.files(folder).map_err(DatasetError::read(self.to_string()))
     }
 
     /// The content of a small file; none where there is no such file.
     fn bytes(&self, name: &str) -> Result<Option<Vec<u8>>, DatasetError> {
         let mut content = Vec::new();
-        match self.place.open(name).and_then(|mut file| file.read_to_end(&mut content)) {
+        match self.storage.open(name).and_then(|mut file| file.read_to_end(&mut content)) {
             Ok(_) => Ok(Some(content)),
             Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-            Err(error) => Err(DatasetError::read(self.place.name_of(name))(error)),
+            Err(error) => Err(DatasetError::read(self.storage.name_of(name))(error)),
         }
     }
 
@@ -167,15 +167,15 @@ impl Destination {
 
     /// Reads the metadata of a shard and some of its values.
     pub(crate) fn read_shard(&self, name: &str, wanted: Wanted) -> io::Result<ReadShard> {
-        self.place.shard(name, wanted)
+        self.storage.shard(name, wanted)
     }
 
     /// The digest of a file.
     pub(crate) fn digest(&self, name: &str) -> Result<Digest, DatasetError> {
         let mut hashing = Hashing::new(io::sink());
-        let mut reader = self.place.open(name).map_err(DatasetError::read(self.place.name_of(name)))?;
+        let mut reader = self.storage.open(name).map_err(DatasetError::read(self.storage.name_of(name)))?;
         let read = io::copy(&mut BufReader::with_capacity(READ_BYTES, &mut reader), &mut hashing);
-        read.map_err(DatasetError::read(self.place.name_of(name)))?;
+        read.map_err(DatasetError::read(self.storage.name_of(name)))?;
         Ok(hashing.digest())
     }
 
@@ -187,13 +187,13 @@ impl Destination {
     ) -> Result<T, DatasetError> {
         let mut write = Some(write);
         let mut result = None;
-        let written = self.place.write(name, &mut |file| {
+        let written = self.storage.write(name, &mut |file| {
             result = write.take().map(|write| write(file)).transpose()?;
             Ok(())
         });
         written
             .and_then(|()| result.ok_or_else(|| io::Error::other("nothing was written")))
-            .map_err(DatasetError::write(self.place.name_of(name)))
+            .map_err(DatasetError::write(self.storage.name_of(name)))
     }
 
     /// Writes a small file, unless a file with the same content is there.
@@ -208,7 +208,7 @@ impl Destination {
 
     /// Copies a file from another place if it has the expected digest. Returns whether it has.
     pub(crate) fn take_over(&self, other: &Self, name: &str, digest: &Digest) -> Result<bool, DatasetError> {
-        let mut reader = other.place.open(name).map_err(DatasetError::read(other.place.name_of(name)))?;
+        let mut reader = other.storage.open(name).map_err(DatasetError::read(other.storage.name_of(name)))?;
         let mut differs = false;
         let written = self.write(name, |file| {
             let mut hashing = Hashing::new(file);
@@ -222,14 +222,14 @@ impl Destination {
 
     /// The name of a file for messages.
     pub(crate) fn name_of(&self, name: &str) -> String {
-        self.place.name_of(name)
+        self.storage.name_of(name)
     }
 
     /// Removes a file if it is there.
     pub(crate) fn remove(&self, name: &str) -> Result<(), DatasetError> {
-        match self.place.remove(name) {
+        match self.storage.remove(name) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => {
-                Err(DatasetError::write(self.place.name_of(name))(error))
+                Err(DatasetError::write(self.storage.name_of(name))(error))
             }
             _ => Ok(()),
         }
@@ -260,7 +260,7 @@ impl Destination {
         checked.map_err(DatasetError::write(self.to_string()))
     }
 
-    /// The directory, if the place is one.
+    /// The directory, if the data set is in one.
     pub fn path(&self) -> Option<&Path> {
         self.directory.as_deref()
     }
@@ -268,7 +268,7 @@ impl Destination {
 
 impl fmt::Display for Destination {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.place.fmt(formatter)
+        self.storage.fmt(formatter)
     }
 }
 

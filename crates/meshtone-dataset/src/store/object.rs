@@ -11,7 +11,7 @@ use object_store::path::Path;
 use object_store::{ObjectStore, ObjectStoreExt, PutPayload};
 
 use super::remote_file::RemoteFile;
-use super::{Files, Place};
+use super::{Files, Storage};
 use crate::shard::{self, ReadShard, Wanted};
 
 /// (bytes) Objects that are larger are uploaded in parts of this size.
@@ -56,7 +56,7 @@ impl Objects {
     }
 }
 
-impl Place for Objects {
+impl Storage for Objects {
     fn files(&self, folder: &str) -> io::Result<Files> {
         let folder = self.location(folder);
         wait(async {

@@ -167,8 +167,6 @@ fn warnings_are_columns_and_are_counted() {
     }
 }
 
-/// Of a record the step is judged by an estimate alone. It is a bound: of what it tells of a step that is far too long, a second
-/// simulation with half the step confirms most, and of a step that is short enough it tells nothing.
 /// A linear mesh that hardly anything damps.
 const RESONANT: &str = r#"[scenario]
 model = "linear"
@@ -177,8 +175,10 @@ damping_ratio = 0.005
 mesh_damping_ratio = 0.005
 [scenario.gears]"#;
 
+/// Of a record the step is judged by an estimate alone. It is a bound: of what it reports of a step that is far too long, a second
+/// simulation with half the step confirms most, and of a step that is short enough it reports nothing.
 #[test]
-fn a_step_too_long_is_told_without_a_second_simulation() {
+fn a_step_too_long_is_warned_of_without_a_second_simulation() {
     for (rate, expected) in [("2e4", 10..=12), ("1e5", 0..=0)] {
         let plan = plan(
             &FAST
@@ -187,19 +187,19 @@ fn a_step_too_long_is_told_without_a_second_simulation() {
                 .replace("[scenario.gears]", RESONANT),
         );
         let (made, sampler) = (made(&plan), Sampler::new(&plan.content).unwrap());
-        let told: Vec<usize> = (0..12)
+        let warned: Vec<usize> = (0..12)
             .filter(|row| made.text("warnings", *row).split(';').any(|code| code == "step-error"))
             .collect();
-        assert!(expected.contains(&told.len()), "{rate}: {told:?}");
+        assert!(expected.contains(&warned.len()), "{rate}: {warned:?}");
         let is_confirmed = |row: &&usize| {
             let scenario = sampler.scenario(&sampler.record(**row as u64).unwrap()).unwrap();
             let (stages, _) = meshtone::stages_and_warnings(&scenario, MemoryLimit::default()).unwrap();
             let repeated = stages.simulate().unwrap().warnings_of_signals();
             repeated.iter().any(|warning| warning.kind.code() == "step-error")
         };
-        let confirmed = told.iter().filter(is_confirmed).count();
-        println!("{rate} S/s: told of {}, confirmed of {confirmed}", told.len());
-        assert!(4 * confirmed >= 3 * told.len(), "{rate}: {confirmed} of {told:?}");
+        let confirmed = warned.iter().filter(is_confirmed).count();
+        println!("{rate} S/s: warned of {}, confirmed of {confirmed}", warned.len());
+        assert!(4 * confirmed >= 3 * warned.len(), "{rate}: {confirmed} of {warned:?}");
     }
 }
 
@@ -370,7 +370,7 @@ fn several_faults_of_a_record() {
 
 /// A drawn tooth has a column beside that of the same tooth counted from the record's start.
 #[test]
-fn a_drawn_tooth_is_told_twice() {
+fn a_drawn_tooth_is_stated_twice() {
     let missing = "fault = { kind = \"missing-tooth\" }\nseverity = 4";
     let drawn = format!("{missing}\n[[class.vary]]\nkey = \"fault.tooth\"\nchoice = [3, 17]");
     let plan = plan(
@@ -392,7 +392,7 @@ fn a_drawn_tooth_is_told_twice() {
 
 /// Every fault has a severity, however it was given.
 #[test]
-fn a_severity_is_told_of_every_fault() {
+fn a_severity_is_stated_of_every_fault() {
     let missing = "fault = { kind = \"missing-tooth\" }\nseverity = 4";
     let crack = "fault = [{ kind = \"root-crack\", severity = 0.0 }, { kind = \"missing-tooth\", tooth = 9 }]\n\
                  [[class.vary]]\nkey = \"fault[0].severity\"\nchoice = [0.0, 0.4]";
@@ -414,7 +414,7 @@ fn a_severity_is_told_of_every_fault() {
     assert!([0.0, 0.4, 1.0].iter().all(|severity| seen.contains(severity)), "{seen:?}");
 }
 
-/// A fault on several teeth is on none that could be counted; its wheel and kind are told.
+/// A fault on several teeth is on none that could be counted; its wheel and kind are stated.
 #[test]
 fn a_fault_on_several_teeth_has_no_number() {
     let missing = "fault = { kind = \"missing-tooth\" }";
@@ -750,8 +750,8 @@ fn runs_to_failure_and_ripples_of_paths_are_written() {
             let [age, left, severity] =
                 ["age_rev", "remaining_rev", "fault_severity"].map(|name| rippled.number(name, row));
             let censored = rippled.whole("censored", row) as f64;
-            let told = [age, left, censored, severity];
-            runs.entry(rippled.whole("unit", row)).or_default().push(told);
+            let answers = [age, left, censored, severity];
+            runs.entry(rippled.whole("unit", row)).or_default().push(answers);
         } else {
             assert!(
                 ["age_rev", "remaining_rev", "censored"]

@@ -44,18 +44,18 @@ fn empty_and_unfinished() {
 #[test]
 fn versions_and_days() {
     for version in ["1.0", "1.0.0.0", "v1.0.0", "1..0"] {
-        let told = format!("version = \"{version}\": must be three whole numbers");
-        refused(&format!("version = \"{version}\"\n{FAST}"), &[&told]);
+        let message = format!("version = \"{version}\": must be three whole numbers");
+        refused(&format!("version = \"{version}\"\n{FAST}"), &[&message]);
     }
     for day in ["2026-13-01", "2026-1-01", "26-01-01", "2026-01-32", "2026-01", "+026-01-01", "tomorrow"] {
-        let told = format!("published = \"{day}\": must be a day, as \"2026-11-22\"");
-        refused(&format!("published = \"{day}\"\n{FAST}"), &[&told]);
+        let message = format!("published = \"{day}\": must be a day, as \"2026-11-22\"");
+        refused(&format!("published = \"{day}\"\n{FAST}"), &[&message]);
     }
     let about = plan(&format!("version = \"2.0.1\"\npublished = \"2026-02-28\"\n{FAST}")).about;
     assert_eq!((&*about.version, about.published.as_deref()), ("2.0.1", Some("2026-02-28")));
 }
 
-/// Told from the plan, rather than by records that are missing in the end.
+/// This is reported from the plan, rather than by records that are missing in the end.
 #[test]
 fn severities_beyond_the_worst_damage() {
     let cracked = "fault = { kind = \"root-crack\", severity = 0.5 }\nseverity = 4\n[[class.vary]]\n\
@@ -236,7 +236,7 @@ fn more_than_is_simulated() {
     assert!(some.iter().all(|failed| failed.reason.contains("fault.chip_height_mm")), "{some:?}");
 }
 
-/// A value of a choice that no other value can save is told before anything is made.
+/// A value of a choice that no other value can save is reported before anything is made.
 #[test]
 fn choices_that_are_impossible() {
     let missing = "fault = { kind = \"missing-tooth\" }\nseverity = 4";

@@ -35,7 +35,7 @@ fn bytes_of(place: &Destination) -> Verified {
 #[track_caller]
 fn assert_only(found: &Verified, name: &str, problem: &str) {
     assert_eq!((found.problems.len(), found.missing.len()), (1, 0), "{found:?}");
-    assert!(found.problems.get(name).is_some_and(|told| told.contains(problem)), "{found:?}");
+    assert!(found.problems.get(name).is_some_and(|text| text.contains(problem)), "{found:?}");
 }
 
 #[test]
@@ -125,8 +125,8 @@ fn names_and_sizes_are_always_looked_at() {
 
     let whole = fs::read(path(first)).unwrap();
     fs::write(path(first), &whole[1..]).unwrap();
-    let told = format!("it has {} bytes instead of {}", whole.len() - 1, whole.len());
-    assert_only(&verify(&to, Check::Sizes).unwrap(), first, &told);
+    let problem = format!("it has {} bytes instead of {}", whole.len() - 1, whole.len());
+    assert_only(&verify(&to, Check::Sizes).unwrap(), first, &problem);
     fs::remove_file(path(first)).unwrap();
     let found = verify(&to, Check::Sizes).unwrap();
     assert!(found.problems.is_empty() && found.missing == [first] && found.shards.len() == 7, "{found:?}");
@@ -263,23 +263,27 @@ fn merging_takes_what_is_as_it_was_written() {
 }
 
 #[test]
-fn another_generator_in_the_same_place_is_told() {
+fn another_generator_in_the_same_place_is_reported() {
     let plan = plan(FAST);
     let directory = tempfile::tempdir().unwrap();
     let to = Destination::directory(directory.path());
-    let told = std::sync::Mutex::new(Vec::new());
+    let refusals = std::sync::Mutex::new(Vec::new());
     let progress = |done: u64, _: u64| {
         if done == 9 {
             // Another part may be made at the same time.
             assert!(!run(&plan, &to, Part { number: 1, of: 8 }, 1).unwrap().complete);
-            told.lock().unwrap().push(run(&plan, &to, Part::WHOLE, 1).unwrap_err());
+            refusals.lock().unwrap().push(run(&plan, &to, Part::WHOLE, 1).unwrap_err());
         }
     };
     let control = GenerateControl { progress: &progress, cancelled: &AtomicBool::new(false) };
     assert!(generate(&plan, &to, Part::WHOLE, &control).unwrap().complete);
-    let told = told.into_inner().unwrap();
-    assert!(matches!(told[..], [DatasetError::Busy { .. }]), "{told:?}");
-    assert!(told[0].to_string().starts_with("another program is making a data set in "), "{}", told[0]);
+    let refusals = refusals.into_inner().unwrap();
+    assert!(matches!(refusals[..], [DatasetError::Busy { .. }]), "{refusals:?}");
+    assert!(
+        refusals[0].to_string().starts_with("another program is making a data set in "),
+        "{}",
+        refusals[0]
+    );
     assert!(bytes_of(&to).is_good());
 }
 

@@ -7,7 +7,7 @@ mod severity;
 mod teeth;
 mod wheel_signals;
 
-use meshtone::scenario::{Fault, Model, Scenario, ScenarioWarning};
+use meshtone::scenario::{Fault, Scenario, ScenarioWarning};
 use meshtone::sensor::Channel;
 use meshtone::signal::{ChainSettings, SimulatedShafts};
 use meshtone::wheel::WheelName;
@@ -58,7 +58,7 @@ const SHORT_TOLERANCE: f64 = 1e-3;
 /// speed varies, or the published model simulates all of it, nothing is gained and the scenario stays as it is.
 fn shortened(scenario: &Scenario) -> Scenario {
     let mut short = scenario.clone();
-    if scenario.model != Model::Published && scenario.operation.speed_profile_hz.is_none() {
+    if scenario.model.has_meshes() && scenario.operation.speed_profile_hz.is_none() {
         // 2 z_g revolutions of the pinion are 2 z_p of the gear.
         let kept = SHORT_REVOLUTIONS / f64::from(2 * scenario.gears.pinion_teeth);
         short.solver.settle_fraction = scenario.solver.settle_fraction.max(1.0 - kept);

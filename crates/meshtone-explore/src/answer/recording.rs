@@ -24,7 +24,7 @@ const NUMBERS_BESIDE_EACH_SAMPLE: u64 = 8;
 /// What the file does not say itself.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordingQuestion {
-    /// Name of the file: its ending tells text from other formats.
+    /// Name of the file: its ending distinguishes text from other formats.
     pub name: String,
     /// The channel that is processed; the only one, or the first, where none is named.
     pub channel: Option<String>,

@@ -6,9 +6,9 @@ let numbered = 0;
 
 /** A refusal by the program, in its own words. */
 export class Refusal extends Error {
-  constructor(told) {
-    super(told.text ?? "the program refused, without saying why");
-    this.told = told;
+  constructor(details) {
+    super(details.text ?? "the program refused, without saying why");
+    this.details = details;
   }
 }
 
@@ -72,7 +72,7 @@ export class Newest {
       const buffer = await response.arrayBuffer();
       return this.#abort === abort ? buffer : null;
     } catch (error) {
-      if (abort.signal.aborted || error.told?.kind === "superseded") return null;
+      if (abort.signal.aborted || error.details?.kind === "superseded") return null;
       throw error instanceof Refusal ? error : new Refusal({ kind: "gone", text: "the program no longer answers: was it ended?" });
     }
   }

@@ -111,15 +111,15 @@ class Control {
     const id = `key-${key}`;
     const label = words(String(path[path.length - 1]));
     const unit = description.unit === "-" ? "" : description.unit;
-    const told = [description.meaning + (unit ? `, in ${unit}` : ""), description.allowed && `Allowed: ${description.allowed}.`,
+    const explanation = [description.meaning + (unit ? `, in ${unit}` : ""), description.allowed && `Allowed: ${description.allowed}.`,
       description.default && `Default: ${description.default}.`].filter(Boolean).join(". ").replace("..", ".");
     this.field = this.#field(id);
     this.problem = element("p", { className: "problem", id: `${id}-problem`, hidden: true });
-    this.field.setAttribute("aria-describedby", `${id}-told ${id}-problem`);
-    this.row = element("div", { className: "control", title: told },
+    this.field.setAttribute("aria-describedby", `${id}-explanation ${id}-problem`);
+    this.row = element("div", { className: "control", title: explanation },
       element("div", { className: "row" }, element("label", { htmlFor: id }, label),
         element("span", {}, this.field, element("span", { className: "unit" }, unit ? ` ${unit}` : ""))),
-      element("span", { id: `${id}-told`, className: "hidden" }, told));
+      element("span", { id: `${id}-explanation`, className: "hidden" }, explanation));
     this.row.dataset.key = key;
     if (["number", "whole"].includes(description.kind)) {
       const change = (detail) => (value) => {
@@ -284,7 +284,7 @@ class Profile {
 
 export class Controls {
   #form;
-  #told;
+  #catalogue;
   #changed;
   #controls = new Map();
   #groups = new Map();
@@ -293,10 +293,13 @@ export class Controls {
   #refused = null;
   tree = {};
 
-  /** @param changed called with "coarse" while a control moves and with "full" once it is set */
-  constructor(form, told, changed) {
+  /**
+   * @param catalogue the sections of a scenario with their keys, and the kinds of damage with an example each
+   * @param changed called with "coarse" while a control moves and with "full" once it is set
+   */
+  constructor(form, catalogue, changed) {
     this.#form = form;
-    this.#told = told;
+    this.#catalogue = catalogue;
     this.#changed = changed;
     form.addEventListener("submit", (event) => event.preventDefault());
   }
@@ -355,7 +358,7 @@ export class Controls {
   }
 
   #kind(fault) {
-    return this.#told.kinds.find(({ name }) => name === fault.kind) ?? this.#told.kinds[0];
+    return this.#catalogue.kinds.find(({ name }) => name === fault.kind) ?? this.#catalogue.kinds[0];
   }
 
   /** Shows the values of an answer. */
@@ -378,15 +381,15 @@ export class Controls {
   }
 
   /** Shows a refusal at the key that it is about. @returns whether it has a place here */
-  refuse(told) {
+  refuse(details) {
     this.#refused?.refuse(null);
     this.#refused = null;
-    if (!told?.key) return false;
-    const key = told.key.replace(/^(fault|sensor)(?=\.|$)/, "$1[0]");
+    if (!details?.key) return false;
+    const key = details.key.replace(/^(fault|sensor)(?=\.|$)/, "$1[0]");
     const keys = [...this.#controls.keys()].filter((known) => key === known || key.startsWith(`${known}[`) || key.startsWith(`${known}.`));
     const found = this.#controls.get(keys.sort((a, b) => b.length - a.length)[0]);
     this.#refused = found;
-    found?.refuse([told.problem, told.help].filter(Boolean).join("; "), told.key);
+    found?.refuse([details.problem, details.help].filter(Boolean).join("; "), details.key);
     for (let around = found?.row.closest("details"); around; around = around.parentElement.closest("details")) around.open = true;
     return Boolean(found);
   }
@@ -397,13 +400,13 @@ export class Controls {
     this.#controls.clear();
     this.#groups.clear();
     this.#form.replaceChildren(...SECTIONS.map((section) => {
-      const told = this.#told.sections.find(({ name }) => name === section.name);
+      const listed = this.#catalogue.sections.find(({ name }) => name === section.name);
       const group = element("details", { className: "group", open: open.get(section.name) ?? Boolean(section.open) },
         element("summary", {}, section.title));
       this.#groups.set(section.name, group);
       if (section.name === "fault") group.append(...this.#faults(full.fault));
-      else if (section.name === "sensor") group.append(...this.#sensors(full.sensor, told.keys));
-      else group.append(...this.#section(section, told.keys));
+      else if (section.name === "sensor") group.append(...this.#sensors(full.sensor, listed.keys));
+      else group.append(...this.#section(section, listed.keys));
       return group;
     }));
     if (focused) document.getElementById(focused)?.focus();
@@ -450,14 +453,16 @@ export class Controls {
   }
 
   #faults(faults) {
-    const place = this.#told.sections.find(({ name }) => name === "fault").keys;
+    const place = this.#catalogue.sections.find(({ name }) => name === "fault").keys;
     const sets = faults.map((fault, index) => {
       const kind = this.#kind(fault);
       const choice = element("select", { "aria-label": `Kind of damage ${index + 1}` },
-        ...this.#told.kinds.map(({ name }) => element("option", { value: name, selected: name === fault.kind }, words(name.replaceAll("-", "_")))));
+        ...this.#catalogue.kinds.map(({ name }) => element("option", { value: name, selected: name === fault.kind }, words(name.replaceAll("-", "_")))));
       choice.addEventListener("change", () => {
-        const example = this.#told.kinds.find(({ name }) => name === choice.value).example;
-        this.tree.fault[index] = { ...example, wheel: fault.wheel, tooth: choice.value === "wear" ? example.tooth : fault.tooth };
+        const example = this.#catalogue.kinds.find(({ name }) => name === choice.value).example;
+        // Teeth that nobody chose are those that the new kind is usually on: wear is on all, other damage on one.
+        const usual = JSON.stringify(fault.tooth) === JSON.stringify(kind.example.tooth);
+        this.tree.fault[index] = { ...example, wheel: fault.wheel, tooth: usual ? example.tooth : fault.tooth };
         this.#changed("full");
       });
       const remove = element("button", { type: "button", "aria-label": `Remove damage ${index + 1}` }, "Remove");
@@ -473,10 +478,10 @@ export class Controls {
         ...this.#fields(["fault", index], [...places, ...keys]));
     });
     const kinds = element("select", { "aria-label": "Kind of damage to add" },
-      ...this.#told.kinds.map(({ name }) => element("option", { value: name }, words(name.replaceAll("-", "_")))));
+      ...this.#catalogue.kinds.map(({ name }) => element("option", { value: name }, words(name.replaceAll("-", "_")))));
     const add = element("button", { type: "button", id: "add-fault" }, "Add damage");
     add.addEventListener("click", () => {
-      const example = structuredClone(this.#told.kinds.find(({ name }) => name === kinds.value).example);
+      const example = structuredClone(this.#catalogue.kinds.find(({ name }) => name === kinds.value).example);
       // Beside what there is, where a tooth has room for one alone.
       if (example.tooth === 1) example.tooth = 1 + this.tree.fault.length;
       this.tree.fault.push(example);

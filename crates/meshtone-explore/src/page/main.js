@@ -19,7 +19,7 @@ const healthy = new Newest("healthy");
 const severity = new Newest("severity");
 const recordings = new Newest("recording");
 
-/** For tests and measurements: how many pictures were drawn, and what the last one was; each is told by the event `drawn`. */
+/** For tests and measurements: how many pictures were drawn, and what the last one was; each is announced by the event `drawn`. */
 window.meshtone = { drawn: 0, coarse: 0, last: null };
 
 const question = (detail) => ({ scenario: controls.scenario, detail, channel });
@@ -40,7 +40,7 @@ function status(text) {
 function show(answer, asked) {
   controls.show(answer);
   views.show(answer);
-  tell(null);
+  showProblem(null);
   const now = performance.now();
   const isFull = answer.detail === "full";
   status(isFull ? `${shown(now - asked, 3)} ms` : `${shown(now - asked, 3)} ms, three revolutions`);
@@ -68,20 +68,20 @@ async function compare(answer) {
       if (buffer) views.setSeverity(unpacked(buffer));
     }
   } catch (error) {
-    tell(error);
+    showProblem(error);
   }
 }
 
 /** Says what is wrong: at its key, and in a line above all. */
-function tell(error) {
+function showProblem(error) {
   const problem = byId("problem");
   problem.hidden = !error;
-  byId("views").classList.toggle("stale", Boolean(error?.told?.key));
+  byId("views").classList.toggle("stale", Boolean(error?.details?.key));
   if (!error) return;
   if (!(error instanceof Refusal)) throw error;
-  const { told } = error;
-  controls.refuse(told);
-  problem.textContent = [told.text, told.help].filter(Boolean).join("; ");
+  const { details } = error;
+  controls.refuse(details);
+  problem.textContent = [details.text, details.help].filter(Boolean).join("; ");
   status("not computed");
 }
 
@@ -99,7 +99,7 @@ async function openText(toml) {
     return null;
   } catch (error) {
     if (!(error instanceof Refusal)) throw error;
-    return error.told;
+    return error.details;
   }
 }
 
@@ -117,7 +117,7 @@ function ofAddress() {
     const bytes = Uint8Array.from(atob(location.hash.slice(1).replaceAll("-", "+").replaceAll("_", "/")), (letter) => letter.charCodeAt(0));
     return JSON.parse(new TextDecoder().decode(bytes));
   } catch {
-    tell(new Refusal({ kind: "unfit", text: "what follows # in the address is no scenario of this page: was it cut off?" }));
+    showProblem(new Refusal({ kind: "unfit", text: "what follows # in the address is no scenario of this page: was it cut off?" }));
     return null;
   }
 }
@@ -140,7 +140,7 @@ async function save(form) {
     setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
     status(`${name} saved`);
   } catch (error) {
-    tell(error);
+    showProblem(error);
   }
 }
 
@@ -149,10 +149,10 @@ async function take(file) {
   if (!file) return;
   if (file.name.endsWith(".toml")) {
     const refused = await openText(await file.text());
-    if (refused) tell(new Refusal({ ...refused, text: `${file.name}: ${refused.text}`, key: null }));
+    if (refused) showProblem(new Refusal({ ...refused, text: `${file.name}: ${refused.text}`, key: null }));
     return;
   }
-  recording = { file, told: { name: file.name } };
+  recording = { file, settings: { name: file.name } };
   await process();
 }
 
@@ -160,22 +160,22 @@ async function process() {
   if (!recording) return;
   status("reading…");
   try {
-    const buffer = await recordings.ask({ ...question("full"), channel: recording.told.channel, ...recording.told }, recording.file);
+    const buffer = await recordings.ask({ ...question("full"), channel: recording.settings.channel, ...recording.settings }, recording.file);
     if (!buffer) return;
-    const told = unpacked(buffer);
-    views.setRecording(told);
-    showRecording(told);
-    tell(null);
-    status(`${told.name}: ${told.warnings.length ? told.warnings.join("; ") : "read"}`);
+    const processed = unpacked(buffer);
+    views.setRecording(processed);
+    showRecording(processed);
+    showProblem(null);
+    status(`${processed.name}: ${processed.warnings.length ? processed.warnings.join("; ") : "read"}`);
   } catch (error) {
     // What was there before stays; this file was none.
     if (!byId("recording").childElementCount) recording = null;
-    tell(error);
+    showProblem(error);
   }
 }
 
 /** What can be said about a recording. */
-function showRecording(told) {
+function showRecording(processed) {
   const box = byId("recording");
   const choice = (label, names, chosen, set) => {
     const select = document.createElement("select");
@@ -187,7 +187,7 @@ function showRecording(told) {
   };
   const constant = "constant speed";
   const set = (key) => (value) => {
-    recording.told[key] = value === constant ? undefined : value;
+    recording.settings[key] = value === constant ? undefined : value;
     process();
   };
   const remove = Object.assign(document.createElement("button"), { textContent: "Remove recording" });
@@ -197,9 +197,9 @@ function showRecording(told) {
     box.hidden = true;
     views.setRecording(null);
   });
-  const name = Object.assign(document.createElement("span"), { textContent: `Recording ${told.name}, by ${told.turning}` });
-  box.replaceChildren(name, choice("channel", told.channels, told.signal.channel.name, set("channel")),
-    choice("tachometer", [constant, ...told.channels], recording.told.tachometer ?? constant, set("tachometer")), remove);
+  const name = Object.assign(document.createElement("span"), { textContent: `Recording ${processed.name}, by ${processed.turning}` });
+  box.replaceChildren(name, choice("channel", processed.channels, processed.signal.channel.name, set("channel")),
+    choice("tachometer", [constant, ...processed.channels], recording.settings.tachometer ?? constant, set("tachometer")), remove);
   box.hidden = false;
 }
 
@@ -216,10 +216,10 @@ function setTheme(theme) {
   views?.repaint();
 }
 
-function listen(told) {
-  byId("preset").append(new Option("begin with…", ""), ...told.presets.map(({ name, title }) => new Option(title, name)));
+function listen(catalogue) {
+  byId("preset").append(new Option("begin with…", ""), ...catalogue.presets.map(({ name, title }) => new Option(title, name)));
   byId("preset").addEventListener("change", ({ target }) => {
-    const preset = told.presets.find(({ name }) => name === target.value);
+    const preset = catalogue.presets.find(({ name }) => name === target.value);
     if (preset) open(preset.scenario);
   });
   byId("hold").addEventListener("click", hold);
@@ -272,12 +272,12 @@ function selectLine(number) {
 
 setTheme(matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
 try {
-  const told = await start();
-  controls = new Controls(byId("controls"), told, change);
+  const catalogue = await start();
+  controls = new Controls(byId("controls"), catalogue, change);
   views = new Views(() => views.now && compare(views.now));
-  answers = new Answers(show, tell);
-  listen(told);
-  open(ofAddress() ?? told.scenario);
+  answers = new Answers(show, showProblem);
+  listen(catalogue);
+  open(ofAddress() ?? catalogue.scenario);
 } catch (error) {
   byId("problem").hidden = false;
   byId("problem").textContent = error.message;

@@ -6,7 +6,7 @@
 const HEIGHT = 190;
 /** Of lines, in pixels: a browser without a graphics card strokes wider ones many times slower. */
 const WIDTH = 1;
-/** Letters of a title before the rest is told by pointing at it. */
+/** Letters of a title that are shown; the rest appears only while the pointer is on it. */
 const LONGEST_TITLE = 60;
 
 const colours = new Map();

@@ -34,14 +34,14 @@ function outline(flankX, flankY, workingY, end, halfPitch) {
 }
 
 class Wheel {
-  constructor(told, centreX, sign) {
-    Object.assign(this, { told, centreX, sign });
-    this.pitch = TAU / told.teeth;
-    const x = told.flank_x_mm;
-    const y = told.flank_y_mm;
+  constructor(geometry, centreX, sign) {
+    Object.assign(this, { geometry, centreX, sign });
+    this.pitch = TAU / geometry.teeth;
+    const x = geometry.flank_x_mm;
+    const y = geometry.flank_y_mm;
     this.sound = outline(x, y, y, Infinity, this.pitch / 2);
     this.damaged = new Map();
-    for (const tooth of told.damaged) {
+    for (const tooth of geometry.damaged) {
       const points = outline(x, y, tooth.flank_y_mm, tooth.end_x_mm, this.pitch / 2);
       for (const number of tooth.numbers) this.damaged.set(number, { ...tooth, points });
     }
@@ -49,12 +49,12 @@ class Wheel {
 
   /** Direction of a tooth's centre line, the wheel having turned by so many pitches. */
   direction(index, turned) {
-    return this.told.first_tooth_rad + this.sign * this.pitch * (turned - index);
+    return this.geometry.first_tooth_rad + this.sign * this.pitch * (turned - index);
   }
 
   /** The wheel's teeth that come within a distance of the pitch point, as the first one's index and their number: counter-clockwise. */
   near(turned, distance) {
-    const { teeth, pitch_radius_mm: radius } = this.told;
+    const { teeth, pitch_radius_mm: radius } = this.geometry;
     if (distance >= radius) return [0, teeth];
     // A ray from the centre passes the pitch point at this distance.
     const half = Math.asin(distance / radius) / this.pitch;
@@ -66,7 +66,7 @@ class Wheel {
 
   /** Number of the tooth that stands so many places counter-clockwise of the first one. */
   numberAt(place) {
-    const { teeth } = this.told;
+    const { teeth } = this.geometry;
     return ((((this.sign > 0 ? -place : place) % teeth) + teeth) % teeth) + 1;
   }
 
@@ -84,13 +84,13 @@ class Wheel {
         edge[isFirst ? "moveTo" : "lineTo"](this.centreX + x * cos - y * sin, x * sin + y * cos);
       }
     }
-    const isWhole = count === this.told.teeth;
+    const isWhole = count === this.geometry.teeth;
     if (isWhole) edge.closePath();
     const body = new Path2D(edge);
     // Out of sight, where it is not the whole.
     if (!isWhole) body.lineTo(this.centreX, 0);
     body.closePath();
-    const { bore_radius_mm: bore } = this.told;
+    const { bore_radius_mm: bore } = this.geometry;
     for (const path of [edge, body]) {
       path.moveTo(this.centreX + bore, 0);
       path.arc(this.centreX, 0, bore, 0, TAU);
@@ -102,7 +102,7 @@ class Wheel {
 export class Teeth {
   #canvas;
   #note;
-  #told = null;
+  #geometry = null;
   #wheels = [];
   #mesh = null;
   #turned = 0;
@@ -160,9 +160,9 @@ export class Teeth {
 
   set(teeth, mesh) {
     this.#stillUntil = 0;
-    this.#told = teeth;
+    this.#geometry = teeth;
     this.#mesh = mesh;
-    this.#wheels = teeth.wheels.map((told, index) => new Wheel(told, index * teeth.centre_distance_mm, index ? -1 : 1));
+    this.#wheels = teeth.wheels.map((wheel, index) => new Wheel(wheel, index * teeth.centre_distance_mm, index ? -1 : 1));
     const [from, to] = this.span;
     if (this.#turned < from || this.#turned > to) this.#turned = from;
     this.draw();
@@ -183,7 +183,7 @@ export class Teeth {
       const passed = Math.min(now - this.#last, 100) / 1000;
       this.#last = now;
       const [from, to] = this.span;
-      if (this.#told && this.#isSeen && now > this.#stillUntil) {
+      if (this.#geometry && this.#isSeen && now > this.#stillUntil) {
         const on = this.#turned + SPEED * passed;
         this.turnTo(on > to ? from : on);
       }
@@ -202,7 +202,7 @@ export class Teeth {
 
   /** The pairs on their path, and where. */
   #contacts() {
-    const { contact_ratio: ratio, path_start_mm: start, path_per_pitch_mm: step } = this.#told;
+    const { contact_ratio: ratio, path_start_mm: start, path_per_pitch_mm: step } = this.#geometry;
     const contacts = [];
     for (let pair = Math.floor(this.#turned); this.#turned - pair <= ratio; pair--) {
       const place = this.#turned - pair;
@@ -213,9 +213,9 @@ export class Teeth {
   }
 
   draw() {
-    const told = this.#told;
+    const geometry = this.#geometry;
     const [width, height] = this.#size;
-    if (!told || !this.#isSeen || !width) return;
+    if (!geometry || !this.#isSeen || !width) return;
     const canvas = this.#canvas;
     const ratio = devicePixelRatio || 1;
     if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
@@ -225,11 +225,11 @@ export class Teeth {
     const context = canvas.getContext("2d");
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.clearRect(0, 0, canvas.width, canvas.height);
-    const [pinion, gear] = told.wheels;
+    const [pinion, gear] = geometry.wheels;
     const module = gear.tip_radius_mm / (gear.teeth / 2 + 1);
     const view = this.whole
-      ? { x: (told.centre_distance_mm + gear.tip_radius_mm - pinion.tip_radius_mm) / 2, y: 0,
-          w: told.centre_distance_mm + gear.tip_radius_mm + pinion.tip_radius_mm, h: 2 * Math.max(gear.tip_radius_mm, pinion.tip_radius_mm) }
+      ? { x: (geometry.centre_distance_mm + gear.tip_radius_mm - pinion.tip_radius_mm) / 2, y: 0,
+          w: geometry.centre_distance_mm + gear.tip_radius_mm + pinion.tip_radius_mm, h: 2 * Math.max(gear.tip_radius_mm, pinion.tip_radius_mm) }
       : { x: pinion.pitch_radius_mm, y: 0, w: 9 * module, h: 9 * module };
     const scale = Math.min(width / view.w, height / view.h) * 0.96;
     context.setTransform(ratio * scale, 0, 0, -ratio * scale, (ratio * width) / 2 - ratio * scale * view.x, (ratio * height) / 2 + ratio * scale * view.y);
@@ -252,7 +252,7 @@ export class Teeth {
 
   /** What is lost of the damaged teeth, and their cracks. */
   #drawDamage(context, wheel, [first, count], pixel) {
-    const { flank_x_mm: x, flank_y_mm: y } = wheel.told;
+    const { flank_x_mm: x, flank_y_mm: y } = wheel.geometry;
     for (let place = first; place < first + count; place++) {
       const number = wheel.numberAt(place);
       const tooth = wheel.damaged.get(number);
@@ -295,7 +295,7 @@ export class Teeth {
 
   /** The path of contact and the pitch circles. */
   #drawLine(context, seen, pixel) {
-    const { path_start_mm: start, path_per_pitch_mm: step, contact_ratio: ratio, wheels, centre_distance_mm: distance } = this.#told;
+    const { path_start_mm: start, path_per_pitch_mm: step, contact_ratio: ratio, wheels, centre_distance_mm: distance } = this.#geometry;
     context.strokeStyle = colour("second");
     context.lineWidth = 1.6 * pixel;
     context.beginPath();
@@ -318,7 +318,7 @@ export class Teeth {
 
   #drawContacts(context, pixel, module) {
     const contacts = this.#contacts();
-    const step = this.#told.path_per_pitch_mm;
+    const step = this.#geometry.path_per_pitch_mm;
     const length = Math.hypot(...step);
     const whole = contacts.reduce((sum, { force }) => sum + (force ?? 0), 0);
     for (const { at, force } of contacts) {
@@ -350,7 +350,7 @@ export class Teeth {
     if (this.#playing && now - this.#noted < NOTE) return;
     this.#noted = now;
     const words = contacts.filter(({ force }) => force !== 0).map(({ pair, force }) => {
-      const numbers = this.#told.wheels.map(({ teeth }) => (((pair % teeth) + teeth) % teeth) + 1);
+      const numbers = this.#geometry.wheels.map(({ teeth }) => (((pair % teeth) + teeth) % teeth) + 1);
       return `pinion tooth ${numbers[0]} on gear tooth ${numbers[1]}${force === null ? "" : `: ${shown(force, 3)} N`}`;
     });
     this.#note.textContent = words.length ? words.join("; ") : "no teeth touch";

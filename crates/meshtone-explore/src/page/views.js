@@ -152,10 +152,10 @@ export class Views {
     }
     this.#figureNames = names;
     figures.forEach(([, value, unit], index) => setText(list.children[index].lastChild.firstChild, `${shown(value)}${unit ? ` ${unit}` : ""}`));
-    const told = warnings.map(({ key, message }) => `${key}: ${message}`);
-    if (told.join("\n") === this.#warned) return;
-    this.#warned = told.join("\n");
-    byId("warnings").replaceChildren(...told.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
+    const messages = warnings.map(({ key, message }) => `${key}: ${message}`);
+    if (messages.join("\n") === this.#warned) return;
+    this.#warned = messages.join("\n");
+    byId("warnings").replaceChildren(...messages.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
   }
 
   #mesh() {
@@ -195,7 +195,7 @@ export class Views {
       byId("channel").replaceChildren(...channels.map(({ name, meaning }) => Object.assign(document.createElement("option"), { value: name, textContent: name, title: meaning })));
     }
     byId("channel").value = signal.channel.name;
-    const of = (label, told, look, from = told.start_s) => line(label, told.values, from, 1 / told.sampling_rate_hz, look);
+    const of = (label, drawn, look, from = drawn.start_s) => line(label, drawn.values, from, 1 / drawn.sampling_rate_hz, look);
     const end = signal.start_s + signal.values.length / signal.sampling_rate_hz;
     const revolution = scenario.gears.gear_teeth / (scenario.gears.pinion_teeth * scenario.operation.pinion_speed_hz);
     const start = Math.max(this.#now.detail === "full" ? signal.start_s : 0, end - SEEN_REVOLUTIONS * revolution);
@@ -213,21 +213,21 @@ export class Views {
     const now = this.#now.wheels[wheel];
     const others = [["held", this.#held?.wheels[wheel], "held"], ["recording", this.#recording?.wheels[wheel], "recorded"]];
     const unit = this.#now.signal.channel.unit;
-    const all = [...others.slice(0, 1), ["now", now, "now"], ...others.slice(1)].filter(([, told]) => told?.average);
+    const all = [...others.slice(0, 1), ["now", now, "now"], ...others.slice(1)].filter(([, drawn]) => drawn?.average);
     const ratio = this.#now.teeth.contact_ratio;
     const few = now.damaged.length < now.teeth;
     const bands = few ? now.damaged.flatMap((number) => {
       const [from, to] = [number - 1, number - 1 + ratio].map((pitches) => (360 * pitches) / now.teeth);
       return to > 360 ? [[from, 360], [0, to - 360]] : [[from, to]];
     }) : [];
-    const over = (key, look) => all.map(([label, told, own]) => line(label, told[key], 0, 360 / told[key].length, look ?? own));
+    const over = (key, look) => all.map(([label, drawn, own]) => line(label, drawn[key], 0, 360 / drawn[key].length, look ?? own));
     const empty = now.problem ?? "";
     const degrees = [0, 360];
     this.#plots.average.set(over("average"), { bands, range: degrees, y: unit, empty,
       title: now.revolutions ? `Average of ${now.revolutions} ${name} revolutions` : "Average" });
     const envelopes = now.envelope ? [line("envelope", now.envelope, 0, 360 / now.envelope.length, "second")] : [];
     this.#plots.difference.set([...over("difference"), ...envelopes], { bands, range: degrees, y: unit, empty });
-    const orders = (key) => all.map(([label, told, look]) => line(label, told[key].subarray(1), 1, 1, look));
+    const orders = (key) => all.map(([label, drawn, look]) => line(label, drawn[key].subarray(1), 1, 1, look));
     const last = (key, most) => [0, Math.min(most, now[key]?.length ?? most)];
     this.#plots.spectrum.set(orders("spectrum"), { range: last("spectrum", SEEN_HARMONICS * now.teeth), y: unit, empty });
     this.#plots.envelopeSpectrum.set(orders("envelope_spectrum"), { range: last("envelope_spectrum", 2 * now.teeth), y: unit, empty });

@@ -105,7 +105,7 @@ impl Server {
         });
         let guard = Guard::new(address.port(), &token, embedding);
         let router = guard.protect(requests::router(Arc::clone(&shared)).merge(files::router()));
-        // What needs the runtime is made before the thread, so that its failure is told.
+        // What needs the runtime is made before the thread, so that its failure is reported.
         let runtime = tokio::runtime::Builder::new_current_thread()
             .enable_all()
             .max_blocking_threads(2 * AT_ONCE)

@@ -116,7 +116,7 @@ fn an_answer_has_all_that_is_drawn() {
 }
 
 #[test]
-fn wrong_values_are_told_in_the_programs_words() {
+fn wrong_values_are_refused_in_the_programs_words() {
     let server = server();
     let mut wrong = question(&fast(), 1);
     wrong["scenario"]["gears"]["module_mm"] = json!(-3);
@@ -193,21 +193,21 @@ fn a_recording_goes_through_the_same_chain() {
         .chain((0..4000).map(|i| format!("{:.4}", wave(i))))
         .collect::<Vec<_>>()
         .join("\n");
-    let told = |name: &str| {
-        let mut told = question(&fast(), 1);
-        told["name"] = json!(name);
-        told["sampling_rate_hz"] = json!(8000.0);
-        told.to_string().into_bytes()
+    let of_file = |name: &str| {
+        let mut asked = question(&fast(), 1);
+        asked["name"] = json!(name);
+        asked["sampling_rate_hz"] = json!(8000.0);
+        asked.to_string().into_bytes()
     };
     let framed = |said: Vec<u8>, file: &[u8]| [&(said.len() as u32).to_le_bytes()[..], &said, file].concat();
-    let answered = server.ask("POST", "recording", &framed(told("run.csv"), csv.as_bytes()));
+    let answered = server.ask("POST", "recording", &framed(of_file("run.csv"), csv.as_bytes()));
     let (said, _) = answered.packet();
     assert_eq!(
         (&said["signal"]["channel"]["name"], &said["turning"]),
         (&json!("acceleration"), &json!("constant speed"))
     );
     assert_eq!(said["wheels"][0]["revolutions"], 19);
-    let refused = server.ask("POST", "recording", &framed(told("run.wav"), b"no sound")).json();
+    let refused = server.ask("POST", "recording", &framed(of_file("run.wav"), b"no sound")).json();
     let text = refused["error"]["text"].as_str().unwrap().to_owned();
     assert!(text.starts_with("run.wav"), "{text}");
     assert_eq!(server.ask("POST", "recording", &[9, 0]).status, 422);

@@ -87,6 +87,9 @@ fn label(faults: &[Fault]) -> String {
 
 /// Writes enhanced difference signals, one row a draw.
 ///
+/// The metadata holds everything that the draws depend on, the scenario, the tuned parameters, the version and the seed, so that the file
+/// can be made again from itself. Signals are stored in single precision, which halves the file.
+///
 /// # Arguments
 /// * `to` - where the file is written to; it needs no buffer
 /// * `scenario`, `tuned`, `seed` - as of [`enhance`]; they go into the file's metadata

@@ -100,6 +100,11 @@ enum WarningKind {
 }
 
 impl Warnings {
+    /// Adds what speaks against a recording: doubts about its phase, another speed than the simulations', or teeth that do not fit.
+    ///
+    /// Where the speed differs, the teeth are not looked at: the mesh orders are then elsewhere for that reason alone. The shaft that is
+    /// stated depends on how the phase is known; only what the reader has stated can be reported as mistaken.
+    ///
     /// # Arguments
     /// * `file` - the recording's name
     /// * `known` - how its phase is known
@@ -123,7 +128,7 @@ impl Warnings {
             return;
         }
         let gears = &wanted.base.gears;
-        let told = StatedFacts {
+        let stated = StatedFacts {
             teeth: gears.teeth(wheel),
             mate_teeth: Some(gears.teeth(wheel.mate())),
             turning: match *known {
@@ -137,11 +142,11 @@ impl Warnings {
                 Phase::Tachometer { .. } | Phase::MeshTone { .. } => StatedTurning::Other,
             },
         };
-        if let Some(find_mismatch) = find_mismatch(angular, &told) {
+        if let Some(find_mismatch) = find_mismatch(angular, &stated) {
             let words = format!(
                 "over the revolutions of the {}, {} teeth: {find_mismatch}",
                 wheel.name(),
-                told.teeth
+                stated.teeth
             );
             self.add(WarningKind::Misfit, file, words);
         }

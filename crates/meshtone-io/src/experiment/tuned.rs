@@ -185,7 +185,10 @@ pub fn read_tuned(path: &Path) -> Result<Tuned, ReadScenarioError> {
     read.map_err(|error| ReadScenarioError::invalid(FileKind::Tuned, path.to_path_buf(), text, error))
 }
 
-/// Reads the content of the file. Every value is checked where it is read, so that an error names its key and line.
+/// Reads the content of the file.
+///
+/// Every value is checked where it is read, so that an error names its key and line. What a user may leave out in a file written by hand
+/// takes the defaults of an experiment.
 fn tuned(root: &TomlTable<'_>) -> ReadResult<Tuned> {
     let models = Model::ALL.map(|model| (model.name(), model));
     let model = root.read_optional("model", |value| value.choice(&models))?;

@@ -46,6 +46,8 @@ pub fn warnings(file: &ExperimentFile, result: &ExperimentResult) -> Vec<String>
 }
 
 /// The numbers of one tuning: parameters with their intervals, errors, and the indicators of every case as measured and as simulated.
+///
+/// Each indicator stands with its own error before and after, so that a reader sees which of them the tuning improves.
 fn tuning(experiment: &Experiment, tuning: &Tuning) -> Value {
     let parameters = tuning.enhancement;
     let intervals = tuning.intervals;

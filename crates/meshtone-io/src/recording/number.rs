@@ -83,38 +83,38 @@ impl Numbers {
     /// * `element` - the one of a record whose number is appended
     /// * `to` - what the numbers are appended to
     pub(crate) fn append(self, bytes: &[u8], elements: usize, element: usize, to: &mut Vec<f64>) {
-        let place = Place {
+        let position = NumberPosition {
             record: elements * self.element_bytes(),
             offset: element * self.element_bytes() + self.before,
             big_endian: self.big_endian,
         };
         match self.kind {
-            NumberKind::I8 => place.append(bytes, to, |number| i8::from_le_bytes(number).into()),
-            NumberKind::U8 => place.append(bytes, to, |number| u8::from_le_bytes(number).into()),
-            NumberKind::I16 => place.append(bytes, to, |number| i16::from_le_bytes(number).into()),
-            NumberKind::U16 => place.append(bytes, to, |number| u16::from_le_bytes(number).into()),
+            NumberKind::I8 => position.append(bytes, to, |number| i8::from_le_bytes(number).into()),
+            NumberKind::U8 => position.append(bytes, to, |number| u8::from_le_bytes(number).into()),
+            NumberKind::I16 => position.append(bytes, to, |number| i16::from_le_bytes(number).into()),
+            NumberKind::U16 => position.append(bytes, to, |number| u16::from_le_bytes(number).into()),
             // As the upper bytes of 32 bits, so that the sign is that of the number.
             NumberKind::I24 => {
-                place.append(bytes, to, |[a, b, c]| (i32::from_le_bytes([0, a, b, c]) >> 8).into());
+                position.append(bytes, to, |[a, b, c]| (i32::from_le_bytes([0, a, b, c]) >> 8).into());
             }
-            NumberKind::I32 => place.append(bytes, to, |number| i32::from_le_bytes(number).into()),
-            NumberKind::U32 => place.append(bytes, to, |number| u32::from_le_bytes(number).into()),
-            NumberKind::I64 => place.append(bytes, to, |number| i64::from_le_bytes(number) as f64),
-            NumberKind::U64 => place.append(bytes, to, |number| u64::from_le_bytes(number) as f64),
-            NumberKind::F32 => place.append(bytes, to, |number| f32::from_le_bytes(number).into()),
-            NumberKind::F64 => place.append(bytes, to, f64::from_le_bytes),
+            NumberKind::I32 => position.append(bytes, to, |number| i32::from_le_bytes(number).into()),
+            NumberKind::U32 => position.append(bytes, to, |number| u32::from_le_bytes(number).into()),
+            NumberKind::I64 => position.append(bytes, to, |number| i64::from_le_bytes(number) as f64),
+            NumberKind::U64 => position.append(bytes, to, |number| u64::from_le_bytes(number) as f64),
+            NumberKind::F32 => position.append(bytes, to, |number| f32::from_le_bytes(number).into()),
+            NumberKind::F64 => position.append(bytes, to, f64::from_le_bytes),
         }
     }
 }
 
 /// Where a number stands in each record.
-struct Place {
+struct NumberPosition {
     record: usize,
     offset: usize,
     big_endian: bool,
 }
 
-impl Place {
+impl NumberPosition {
     /// * `number` - reads a number whose lowest byte is the first
     #[inline]
     fn append<const SIZE: usize>(&self, bytes: &[u8], to: &mut Vec<f64>, number: impl Fn([u8; SIZE]) -> f64) {

@@ -13,7 +13,7 @@ const JITTER: f64 = 0.01;
 const MAX_UNCERTAINTY: f64 = 1e-3;
 /// Decimals of a time beyond which it counts as exact; the number of digits in double precision is the limit.
 const MAX_DECIMALS: i32 = 15;
-/// Largest whole number up to which a double has digits to spare for telling it from its neighbours.
+/// Largest whole number up to which a double has digits to spare for distinguishing it from its neighbours.
 const MAX_WHOLE: f64 = (1_u64 << 46) as f64;
 /// To this, no double below [`MAX_WHOLE`] can be added without being rounded to a whole number.
 const NO_DECIMALS: f64 = 1.5 * (1_u64 << 52) as f64;

@@ -52,7 +52,7 @@ mod tests {
     use super::is_unit;
 
     #[test]
-    fn units_are_told_from_remarks() {
+    fn units_are_distinguished_from_remarks() {
         for unit in
             ["g", "m/s²", "m/s^2", "mV", "V", "°", "rpm", "N·m", "Nm", "kHz", "%", "µm", "s", "1/s", "m s-2"]
         {

@@ -26,6 +26,7 @@ pub const FORMAT_VERSION: u32 = 2;
 
 /// The main numbers of a simulation.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Summary {
     /// [`FORMAT_VERSION`].
     pub format_version: u32,
@@ -79,6 +80,7 @@ pub struct Summary {
 
 /// A fault: its kind and place, each as in the scenario file, and how severe it is.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct FaultSummary {
     /// Kind of damage.
     pub kind: &'static str,
@@ -118,6 +120,7 @@ impl FaultSummary {
 
 /// Stiffness of the mesh over a revolution of the gear.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct MeshStiffness {
     /// (N/mm) Smallest.
     pub min_n_per_mm: f64,
@@ -129,6 +132,7 @@ pub struct MeshStiffness {
 
 /// Force along the line of action.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct MeshForce {
     /// (N) Smallest; negative where the mesh pulls.
     pub min_n: f64,
@@ -146,6 +150,7 @@ pub struct MeshForce {
 
 /// Indicators of one signal.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct ChannelSummary {
     /// The signal's column.
     pub name: String,
@@ -161,6 +166,10 @@ pub struct ChannelSummary {
 
 impl Summary {
     /// Sums up a simulation.
+    ///
+    /// What can be computed from the signals is taken from them as they are written, not from the simulation's inner state, so that a
+    /// reader of the files finds the same numbers. Indicators are those of the leading channel; they are none where the signal is too short
+    /// for an average.
     ///
     /// # Arguments
     /// * `simulation` - its stages and signals

@@ -17,14 +17,7 @@ use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use tempfile::tempdir;
 
 fn scenario() -> Scenario {
-    Scenario::new(GearPair {
-        module_mm: 3.0,
-        pinion_teeth: 20,
-        gear_teeth: 40,
-        face_width_mm: 15.0,
-        pinion_speed_hz: 40.0,
-        brake_torque_nm: 10.0,
-    })
+    Scenario::new(GearPair { pinion_teeth: 20, gear_teeth: 40, ..GearPair::example() })
 }
 
 /// More rows than are written at once, with numbers that only exact writing keeps.
@@ -164,7 +157,7 @@ impl Write for Full {
 }
 
 #[test]
-fn a_full_disk_is_told_wherever_it_happens() {
+fn a_full_disk_is_reported_wherever_it_happens() {
     let signal = vec![1.0; 30_000];
     let mut file = Vec::new();
     let write =

@@ -26,7 +26,7 @@ fn channel_may_be_a_sensors() {
     assert_eq!(read_tuned(&path).unwrap(), tuned);
     for name in ["casing", "mesh_force_n", "1_g"] {
         std::fs::write(&path, text.replace("\"casing_g\"", &format!("\"{name}\""))).unwrap();
-        let told = read_tuned(&path).unwrap_err().to_string();
-        assert!(told.contains("signal.channel") && told.contains("\"vertical_g\""), "{told}");
+        let message = read_tuned(&path).unwrap_err().to_string();
+        assert!(message.contains("signal.channel") && message.contains("\"vertical_g\""), "{message}");
     }
 }

@@ -32,6 +32,11 @@ pub(super) fn draw(canvas: &mut Canvas, area: Area, preview: &DatasetPreview) {
     }
 }
 
+/// Draws the distribution of a key's values in each split.
+///
+/// Values that spread over decades, most of them small, are shown by their logarithms. Where there are few different values, each has a bin
+/// of its own; otherwise bins of equal width divide the range. All splits have the same bins and the same scale, so that they can be
+/// compared.
 fn histogram(canvas: &mut Canvas, area: Area, name: &str, values: &[f64], preview: &DatasetPreview) {
     let sorted = finite_and_sorted(values);
     let (Some(&low), Some(&high)) = (sorted.first(), sorted.last()) else { return };

@@ -72,7 +72,7 @@ pub struct PreviewColumn {
     pub values: Vec<f64>,
 }
 
-/// Colours of the splits; of more, the order tells which is which.
+/// Colours of the splits; of more, the order shows which is which.
 const SPLIT_COLOURS: [Colour; 7] = [
     colour::BLUE,
     colour::INK,
@@ -82,7 +82,7 @@ const SPLIT_COLOURS: [Colour; 7] = [
     colour::MUTED,
     colour::ORANGE,
 ];
-/// Splits whose outlines can be told apart when they are drawn over each other.
+/// Splits whose outlines can be distinguished when they are drawn over each other.
 const MOST_OUTLINES: usize = 3;
 
 fn split_colour(split: usize) -> Colour {

@@ -1,4 +1,4 @@
-//! Symbols at single values, told apart by shape as well as by colour.
+//! Symbols at single values, distinguished by shape as well as by colour.
 
 use super::canvas::{Canvas, Pixel};
 use super::style::{Fill, Stroke};

@@ -29,7 +29,7 @@ impl fmt::Display for Colour {
     }
 }
 
-/// Colours that colour-blind readers can tell apart.
+/// Colours that colour-blind readers can distinguish.
 ///
 /// Source: M. Okabe, K. Ito, "Color universal design", 2008.
 pub(crate) mod colour {

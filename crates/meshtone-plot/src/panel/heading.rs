@@ -1,7 +1,7 @@
 //! Title, key facts and the columns' headings.
 
 use meshtone::Stages;
-use meshtone::scenario::{Gears, Model, Scenario};
+use meshtone::scenario::{Gears, Scenario};
 
 use super::damage;
 use super::side::Side;
@@ -53,9 +53,9 @@ fn facts(scenario: &Scenario) -> Vec<String> {
         format!("pinion speed {} Hz", extent(operation.pinion_speed_hz, speeds_hz)),
         format!("brake torque {} N·m", extent(operation.brake_torque_nm, torques_nm)),
         quality(scenario),
-        match scenario.model {
-            Model::Published => "model as published".to_owned(),
-            other => format!("{} model", other.name()),
+        match scenario.model.has_meshes() {
+            true => format!("{} model", scenario.model.name()),
+            false => "model as published".to_owned(),
         },
     ];
     wheels.into_iter().chain(mounting(gears)).chain(run).collect()
@@ -92,12 +92,12 @@ fn extent(constant: f64, profile: Option<&[f64]>) -> String {
 
 fn quality(scenario: &Scenario) -> String {
     let quality = &scenario.quality;
-    let contact = scenario.model == Model::Contact;
+    let has_class = !scenario.model.ignores("quality.iso_class");
     match (&quality.profile_errors, quality.iso_class, quality.din_grade) {
         (Some(_), ..) => "given profile errors".to_owned(),
-        (None, class @ 1.., _) if contact => format!("ISO 1328-1 class {class}"),
+        (None, class @ 1.., _) if has_class => format!("ISO 1328-1 class {class}"),
         (None, _, 0) => "ideal teeth".to_owned(),
-        (None, _, grade) if contact => format!("DIN 3961 grade {grade}"),
+        (None, _, grade) if has_class => format!("DIN 3961 grade {grade}"),
         (None, _, grade) => format!("DIN 3962 grade {grade}"),
     }
 }

@@ -2,8 +2,7 @@
 
 use meshtone::Stages;
 use meshtone::damage::DamagedTooth;
-use meshtone::scenario::Model;
-use meshtone::wheel::{ErrorTable, TipRelief, ToothProfile, Wheel, WheelName};
+use meshtone::wheel::{ErrorTable, ToothProfile, Wheel, WheelName};
 
 use crate::PlotError;
 use crate::drawing::Area;
@@ -120,12 +119,7 @@ impl<'a> Side<'a> {
 /// From the tip inwards, as the scenario says: the resampled pinion profile's own index is that of the profile before
 /// resampling.
 fn tip_shapes(stages: &Stages, profile: &ToothProfile) -> Vec<(f64, &'static str)> {
-    let gears = &stages.scenario.gears;
-    let relief_mm = if gears.flank_relief.amount_um > 0.0 { gears.flank_relief.length_mm } else { 0.0 };
-    let of_model = match stages.scenario.model {
-        Model::Published => [(TipRelief::PUBLISHED.length_mm, "tip relief"), (0.0, "")],
-        _ => [(gears.chamfer_mm(), "chamfer"), (relief_mm, "tip relief")],
-    };
-    let shown = of_model.into_iter().filter(|(length_mm, _)| *length_mm > 0.0 && profile.len() > 1);
+    let named = stages.tip_lengths_mm().into_iter().zip(["chamfer", "tip relief"]);
+    let shown = named.filter(|(length_mm, _)| *length_mm > 0.0 && profile.len() > 1);
     shown.map(|(length_mm, name)| (profile.tip_x_mm() - length_mm, name)).collect()
 }

@@ -180,6 +180,10 @@ impl Drawing<'_> {
         canvas.text(at, "missing", style);
     }
 
+    /// Draws a damaged tooth: what is lost, what is left of its outline, and the edges of the damage.
+    ///
+    /// Areas are filled before lines are drawn, so that no fill hides a line. Of the flank that works, the sound pieces are drawn between
+    /// the cuts, and each cut closes the outline to both of its neighbours.
     fn damaged(&self, canvas: &mut Canvas, tooth: &DamagedTooth) {
         let last = self.side.last();
         let top = tooth.gone_from_index.min(last);

@@ -43,7 +43,7 @@ mod tests {
     }
 
     #[test]
-    fn every_key_with_a_unit_is_told_with_one() {
+    fn every_key_with_a_unit_is_named_with_one() {
         let mut tested = 0;
         for section in sections() {
             for key in section.keys.iter().filter(|key| !["", "-"].contains(&key.unit)) {

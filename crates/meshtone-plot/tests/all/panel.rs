@@ -139,6 +139,12 @@ fn the_same_panel_twice_is_the_same() {
     assert_eq!(drawn(&scenario), drawn(&scenario));
 }
 
+/// The example's pair with one damage of the gear's first tooth, or none.
+fn of_example(damage: Option<Damage>) -> Scenario {
+    let GearPair { pinion_teeth, gear_teeth, .. } = GearPair::example();
+    with_teeth(pinion_teeth, gear_teeth, damage)
+}
+
 fn with_teeth(pinion: u32, gear: u32, damage: Option<Damage>) -> Scenario {
     let mut scenario =
         Scenario::new(GearPair { pinion_teeth: pinion, gear_teeth: gear, ..GearPair::example() });
@@ -194,18 +200,18 @@ fn small_and_large_modules() {
 
 #[test]
 fn ideal_teeth_say_so() {
-    assert_shows(&drawn(&with_teeth(17, 38, None)), &["ideal teeth"]);
+    assert_shows(&drawn(&of_example(None)), &["ideal teeth"]);
 }
 
 #[test]
-fn base_circles_that_are_not_seen_are_told_of() {
-    let told =
+fn base_circles_that_are_not_seen_are_mentioned() {
+    let mentioned =
         |figure: &Figure| figure.labels().iter().filter(|l| l.text == "base circle below the root").count();
     let named = |figure: &Figure| figure.labels().iter().filter(|l| l.text == "base").count();
     for (pinion, gear, seen) in [(17, 38, 2), (38, 45, 2), (45, 60, 1), (60, 200, 0)] {
         for damage in [None, Some(partial_face())] {
             let figure = drawn(&with_teeth(pinion, gear, damage));
-            assert_eq!((named(&figure), told(&figure)), (seen, 2 - seen), "{pinion} and {gear}");
+            assert_eq!((named(&figure), mentioned(&figure)), (seen, 2 - seen), "{pinion} and {gear}");
         }
     }
 }
@@ -220,7 +226,7 @@ fn partial_face() -> Damage {
 fn damage_is_at_the_end_from_which_the_load_moves_away() {
     let chip = ToothBreakage { chip_height_mm: 4.0, chip_width_mm: 6.0, tip_loss_mm: 0.0 };
     for damage in [partial_face(), chip.into()] {
-        let mut scenario = with_teeth(17, 38, Some(damage));
+        let mut scenario = of_example(Some(damage));
         scenario.model = Model::Linear;
         let simulation = simulated(&scenario);
         assert_shows(
@@ -272,7 +278,7 @@ fn published_model_and_given_errors() {
 
 #[test]
 fn a_changing_speed_is_drawn_over_time() {
-    let mut scenario = with_teeth(17, 38, Some(MissingTooth.into()));
+    let mut scenario = of_example(Some(MissingTooth.into()));
     let profile = Profile { time_s: vec![0.0, 1.0, 1.6], value: vec![20.0, 40.0, 30.0] };
     scenario.operation.speed_profile_hz = Some(profile);
     scenario.operation.torque_profile_nm = Some(Profile { time_s: vec![0.0, 1.0], value: vec![5.0, 12.0] });
@@ -289,7 +295,7 @@ fn a_changing_speed_is_drawn_over_time() {
 #[test]
 fn kept_signals_that_start_within_a_revolution() {
     // The impact must stay where the tooth is, wherever the kept signal starts.
-    let mut scenario = with_teeth(17, 38, Some(MissingTooth.into()));
+    let mut scenario = of_example(Some(MissingTooth.into()));
     scenario.solver.settle_fraction = 0.33;
     let Simulation { stages, channels, .. } = simulated(&scenario);
     let per_gear = stages.time.samples_per_pinion_revolution * 38 / 17;
@@ -299,7 +305,7 @@ fn kept_signals_that_start_within_a_revolution() {
 
 #[test]
 fn awkward_signals() {
-    let Simulation { stages, channels, .. } = simulated(&with_teeth(17, 38, None));
+    let Simulation { stages, channels, .. } = simulated(&of_example(None));
     let length = channels.len();
     let like = |values: Vec<f64>| {
         let mut like = channels.clone();
@@ -324,7 +330,7 @@ fn awkward_signals() {
 
 #[test]
 fn signals_of_another_rate_are_refused() {
-    let Simulation { stages, mut channels, .. } = simulated(&with_teeth(17, 38, None));
+    let Simulation { stages, mut channels, .. } = simulated(&of_example(None));
     channels.sampling_rate_hz /= 2.0;
     let error = panel::draw(&stages, &channels).unwrap_err();
     assert!(matches!(error, PlotError::SamplingRate { .. }), "{error}");
@@ -332,7 +338,7 @@ fn signals_of_another_rate_are_refused() {
 
 #[test]
 fn no_samples_at_changing_speed() {
-    let mut scenario = with_teeth(17, 38, None);
+    let mut scenario = of_example(None);
     scenario.operation.speed_profile_hz = Some(Profile { time_s: vec![0.0, 1.5], value: vec![20.0, 40.0] });
     let simulation = simulated(&scenario);
     let figure = panel::draw(&simulation.stages, &Channels::default()).unwrap();
@@ -356,7 +362,7 @@ fn tinted(figure: &Figure) -> Vec<[f64; 2]> {
 
 #[test]
 fn damaged_teeth_are_marked_and_named_wherever_they_are() {
-    let mut scenario = with_teeth(17, 38, None);
+    let mut scenario = of_example(None);
     scenario.faults = vec![Fault::new(WheelName::Gear, 6, partial_face())];
     let gear = drawn(&scenario);
     assert_shows(
@@ -407,7 +413,7 @@ fn damaged_teeth_are_marked_and_named_wherever_they_are() {
 
 #[test]
 fn of_several_damaged_teeth_the_one_that_is_drawn_is_named_and_so_are_the_others() {
-    let mut scenario = with_teeth(17, 38, None);
+    let mut scenario = of_example(None);
     let pits = |teeth: &[u32]| {
         teeth.iter().map(|&tooth| Fault::new(WheelName::Gear, tooth, partial_face())).collect()
     };
@@ -419,7 +425,7 @@ fn of_several_damaged_teeth_the_one_that_is_drawn_is_named_and_so_are_the_others
 
 #[test]
 fn the_edge_of_a_pit_does_not_cross_the_name_of_the_contact_start() {
-    let mut scenario = with_teeth(17, 38, None);
+    let mut scenario = of_example(None);
     let names = |figure: &Figure| {
         let names = figure.labels().iter().filter(|label| label.text == "contact start");
         names.map(|label| label.top).collect::<Vec<_>>()
@@ -437,7 +443,7 @@ fn the_edge_of_a_pit_does_not_cross_the_name_of_the_contact_start() {
 #[test]
 fn a_damaged_tooth_turns_at_its_own_angle() {
     let contact = |tooth: u32| {
-        let mut scenario = with_teeth(17, 38, None);
+        let mut scenario = of_example(None);
         scenario.faults = vec![Fault::new(WheelName::Gear, tooth, partial_face())];
         let figure = drawn(&scenario);
         let tints = tinted(&figure);

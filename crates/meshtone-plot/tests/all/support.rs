@@ -26,12 +26,12 @@ pub fn gallery() -> Vec<(&'static str, Scenario)> {
     };
     let crack = RootCrack { depth_mm: 3.0, angle_deg: 45.0, length_mm: None };
     let mut destruction = Scenario::new(GearPair {
-        module_mm: 3.0,
         pinion_teeth: 18,
         gear_teeth: 35,
         face_width_mm: 30.0,
         pinion_speed_hz: 45.0,
         brake_torque_nm: 15.0,
+        ..GearPair::example()
     });
     destruction.quality.din_grade = 8;
     destruction.faults = vec![Fault::on_first_gear_tooth(ToothDestruction {

@@ -153,7 +153,7 @@ fn every_indicator() {
 }
 
 #[test]
-fn tuned_keys_are_told() {
+fn tuned_keys_are_listed() {
     let mut experiment = experiment(&LABELS[..4], &TWO);
     let range = KeyRange::Between { least: 0.01, largest: 0.3, logarithmic: true };
     experiment.keys = vec![TunedKey { key: "rig.damping_ratio".into(), range }];

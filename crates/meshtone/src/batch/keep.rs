@@ -92,6 +92,7 @@ impl Default for KeepChannels {
 
 /// Signals of one simulation, in single precision.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Signals {
     /// (S/s) Sampling rate.
     pub sampling_rate_hz: f64,

@@ -11,6 +11,7 @@ mod observed;
 mod plan;
 mod run;
 
+pub use crate::machine::Axis;
 pub use crate::solver::{Block, Output, Recorder};
 pub use keep::{Keep, KeepChannels, KeepSimulation, SignalRecorder, Signals};
 pub use observed::{KeepObserved, ObservedRecorder, ObservedSignals};

@@ -8,7 +8,7 @@ use crate::simulate::Stages;
 use crate::solver::{Block, Output, Recorder};
 use crate::warnings::{Observer, StepJudgement};
 
-/// Keeps some of the channels, as [`KeepChannels`] does, and what deserves attention, as [`crate::simulate`]'s user is told.
+/// Keeps some of the channels, as [`KeepChannels`] does, and the warnings that a user of [`crate::simulate`] gets.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KeepObserved {
     kept: KeepChannels,
@@ -37,6 +37,7 @@ impl KeepObserved {
 
 /// Signals of one simulation, and what is doubtful about it.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct ObservedSignals {
     /// The kept signals.
     pub signals: Signals,

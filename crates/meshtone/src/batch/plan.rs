@@ -1,7 +1,6 @@
 //! Which scenarios are simulated side by side.
 
 use super::group::Numbered;
-use crate::damage::MeshEffect;
 use crate::scenario::Scenario;
 use crate::solver::LANES;
 
@@ -12,8 +11,8 @@ struct Cost {
     alone: bool,
     /// Whether motor or brake vary: the step is compiled apart for it, and costs too much to mix with the rest.
     varies: bool,
-    /// Whether some damage tilts the wheels.
-    tilts: bool,
+    /// Whether some damage moves the forces of its pairs.
+    moves_forces: bool,
 }
 
 impl Cost {
@@ -26,7 +25,7 @@ impl Cost {
         Self {
             alone: !scenario.model.has_meshes(),
             varies: !steady || scenario.solver.initial_velocity.is_some(),
-            tilts: scenario.faults.iter().any(|fault| fault.damage.effect() > MeshEffect::Flat),
+            moves_forces: scenario.faults.iter().any(|fault| fault.damage.moves_forces()),
         }
     }
 

@@ -11,6 +11,7 @@ use crate::wheel::{Flank, Teeth, ToothProfile, Wheel, WheelName};
 /// Vectors run over the points of the tooth's profile. Widths are missing from one end of the face, the same for all
 /// damages and for both wheels.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct DamagedTooth {
     /// Whose tooth it is.
     pub wheel: WheelName,
@@ -99,7 +100,12 @@ impl<'a> HealthyTooth<'a> {
 
 impl DamagedTooth {
     /// Teeth of which nothing is missing.
-    pub(crate) fn sound(name: WheelName, teeth: Vec<usize>, profile: &ToothProfile) -> Self {
+    ///
+    /// # Arguments
+    /// * `name` - whose teeth they are
+    /// * `teeth` - their indices, from 0, rising
+    /// * `profile` - of the healthy tooth
+    pub fn sound(name: WheelName, teeth: Vec<usize>, profile: &ToothProfile) -> Self {
         let points = profile.len();
         Self {
             wheel: name,

@@ -17,11 +17,15 @@ pub(crate) trait Kind: Keys {
     /// What it is called in a title.
     const TITLE: &str;
 
-    /// What it makes of the mesh.
-    const EFFECT: MeshEffect;
+    /// Whether its pairs' forces act beside the middle of the face or at another angle than the nominal one, which makes a step of
+    /// the solver cost more.
+    const MOVES_FORCES: bool = false;
 
     /// What it takes of a tooth.
     const PART: ToothPart;
+
+    /// Whether its quantities have `area_percent`, the part of the flank that it takes.
+    const HAS_AREA: bool = false;
 
     /// The teeth that it is on where none are named.
     const TEETH: FaultyTeeth = FaultyTeeth::One(1);
@@ -66,17 +70,6 @@ pub(crate) trait Kind: Keys {
     /// # Errors
     /// A damage that does not fit the tooth. Its keys are named `fault.…`.
     fn damage(&self, tooth: &mut DamagedTooth, healthy: &HealthyTooth) -> DamageResult;
-}
-
-/// What a damage makes of the forces of its pairs, in the order of what a step of the solver costs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum MeshEffect {
-    /// They act in the middle of the face and at the nominal angle.
-    Flat,
-    /// They act beside the middle of the face, which tilts the wheels.
-    Tilting,
-    /// They act at another angle.
-    Rolling,
 }
 
 /// The rigs of the paper's experiments.

@@ -1,7 +1,6 @@
 //! A tooth that is gone.
 
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
-use super::kind::MeshEffect;
 use super::severity::SoundTooth;
 use super::{DamageDescription, DamageResult, FacePatch, Kind, ToothPart};
 use crate::keys::{Check, Keys, Row};
@@ -24,7 +23,6 @@ impl Keys for MissingTooth {
 impl Kind for MissingTooth {
     const NAME: &str = "missing-tooth";
     const TITLE: &str = "missing tooth";
-    const EFFECT: MeshEffect = MeshEffect::Flat;
     const PART: ToothPart = ToothPart::Whole;
     const SIZES: &[&str] = &[];
 

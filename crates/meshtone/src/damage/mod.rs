@@ -30,20 +30,16 @@ pub use fault::{Fault, keys_of_every_fault};
 pub use faulty_teeth::FaultyTeeth;
 pub use flank_pits::FlankPits;
 pub(crate) use flank_pits::united;
-pub(crate) use kind::{Kind, MeshEffect, PaperRig};
-pub use missing_tooth::MissingTooth;
+pub(crate) use kind::{Kind, PaperRig};
 pub use part::ToothPart;
-pub use partial_face::PartialFace;
 pub use pit_circle::PitCircle;
 pub(crate) use pit_circle::{Pit, cut_flank};
-pub use pits::{FlankPit, Pits};
-pub use root_crack::{Crack, RootCrack};
+pub use pits::FlankPit;
+pub use root_crack::Crack;
 pub use section::Section;
 pub(crate) use section::shear_flexibility;
-pub use through_face::ThroughFace;
-pub use tooth_breakage::ToothBreakage;
-pub use tooth_destruction::{DestructionLine, ToothDestruction};
-pub use wear::{Wear, load_share, slide_factor};
+pub use tooth_destruction::DestructionLine;
+pub use wear::{load_share, slide_factor};
 
 use meshtone_toml::{ReadResult, TomlTable};
 
@@ -54,9 +50,9 @@ use crate::keys::{
 use crate::wheel::Gears;
 use severity::SoundTooth;
 
-/// The kinds of damage, each with what it is in a sentence: a struct of its name, in a file of its own, implements [`Kind`].
+/// The kinds of damage, each with what it is in a sentence: in a file of its own, a struct implements [`Kind`].
 macro_rules! kinds {
-    ($(#[doc = $summary:literal] $kind:ident,)+) => {
+    ($(#[doc = $summary:literal] $file:ident::$kind:ident,)+) => {
         /// What is wrong with a tooth.
         #[derive(Debug, Clone, PartialEq)]
         #[non_exhaustive]
@@ -66,8 +62,10 @@ macro_rules! kinds {
 
         /// The parameters of each kind.
         pub(crate) mod kinds {
-            pub use super::{$($kind),+};
+            $(pub use super::$file::$kind;)+
         }
+
+        pub use kinds::*;
 
         $(impl From<$kind> for Damage {
             fn from(damage: $kind) -> Self {
@@ -177,10 +175,17 @@ macro_rules! kinds {
                 }
             }
 
-            /// What it makes of the mesh.
-            pub(crate) fn effect(&self) -> MeshEffect {
+            /// Whether its quantities have `area_percent`, the part of the flank that it takes.
+            pub fn has_area(&self) -> bool {
                 match self {
-                    $(Self::$kind(_) => $kind::EFFECT,)+
+                    $(Self::$kind(_) => $kind::HAS_AREA,)+
+                }
+            }
+
+            /// Whether its pairs' forces act beside the middle of the face or at another angle than the nominal one.
+            pub(crate) fn moves_forces(&self) -> bool {
+                match self {
+                    $(Self::$kind(_) => $kind::MOVES_FORCES,)+
                 }
             }
 
@@ -210,21 +215,21 @@ macro_rules! kinds {
 
 kinds! {
     /// The tooth is gone.
-    MissingTooth,
+    missing_tooth::MissingTooth,
     /// A corner of the tooth has chipped off.
-    ToothBreakage,
+    tooth_breakage::ToothBreakage,
     /// The root is cracked on the side of the working flank.
-    RootCrack,
+    root_crack::RootCrack,
     /// A pit in the flank, over a part of the face width, from one side.
-    PartialFace,
+    partial_face::PartialFace,
     /// A pit in the flank, over the whole face width.
-    ThroughFace,
+    through_face::ThroughFace,
     /// Pits in the working flank, any number of them.
-    Pits,
+    pits::Pits,
     /// The working flank is ground down along a straight line.
-    ToothDestruction,
+    tooth_destruction::ToothDestruction,
     /// The working flanks are worn by sliding.
-    Wear,
+    wear::Wear,
 }
 
 /// A kind of damage, for documentation.

@@ -1,6 +1,5 @@
 //! A pit over a part of the face width, from one side.
 
-use super::kind::MeshEffect;
 use super::severity::{LARGEST, SoundTooth};
 use meshtone_toml::{ReadResult, TomlTable};
 
@@ -40,7 +39,7 @@ impl Keys for PartialFace {
 impl Kind for PartialFace {
     const NAME: &str = "partial-face";
     const TITLE: &str = "pit over part of the face";
-    const EFFECT: MeshEffect = MeshEffect::Tilting;
+    const MOVES_FORCES: bool = true;
     const PART: ToothPart = ToothPart::FlankLength;
     const SIZES: &[&str] = &["width_mm", "start", "end", "depth", "circle"];
 

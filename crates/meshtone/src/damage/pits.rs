@@ -6,7 +6,6 @@ use meshtone_toml::{ReadResult, TomlTable};
 
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
 use super::description::tenths;
-use super::kind::MeshEffect;
 use super::pit_circle::flank_index;
 use super::severity::{LARGEST, SoundTooth};
 use super::{DamageDescription, DamageResult, FacePatch, FlankPits, Kind, QuantityValue, ToothPart};
@@ -189,7 +188,8 @@ impl Keys for Pits {
 impl Kind for Pits {
     const NAME: &str = "pits";
     const TITLE: &str = "pits";
-    const EFFECT: MeshEffect = MeshEffect::Tilting;
+    const MOVES_FORCES: bool = true;
+    const HAS_AREA: bool = true;
     const PART: ToothPart = ToothPart::FlankSpots;
     const SIZES: &[&str] = &["at", "z_mm", "radius_mm", "face_radius_mm", "depth_mm", "random"];
 

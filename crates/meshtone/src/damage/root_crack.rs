@@ -5,7 +5,6 @@ use std::ops::Bound::{Excluded, Included};
 
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
 use super::description::{hundredths, tenths};
-use super::kind::MeshEffect;
 use super::severity::{LARGEST, SoundTooth};
 use super::{DamageDescription, DamageResult, FacePatch, Kind, QuantityValue, ToothPart};
 use crate::error::ScenarioError;
@@ -59,7 +58,6 @@ impl Keys for RootCrack {
 impl Kind for RootCrack {
     const NAME: &str = "root-crack";
     const TITLE: &str = "root crack";
-    const EFFECT: MeshEffect = MeshEffect::Flat;
     const PART: ToothPart = ToothPart::Root;
     const SIZES: &[&str] = &["depth_mm", "length_mm"];
 

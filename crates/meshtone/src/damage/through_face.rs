@@ -1,6 +1,5 @@
 //! A pit over the whole face width: while the mate passes it, it turns about the pit's two edges.
 
-use super::kind::MeshEffect;
 use super::severity::{LARGEST, SoundTooth};
 use meshtone_toml::{ReadResult, TomlTable};
 
@@ -33,7 +32,7 @@ impl Keys for ThroughFace {
 impl Kind for ThroughFace {
     const NAME: &str = "through-face";
     const TITLE: &str = "pit over the whole face";
-    const EFFECT: MeshEffect = MeshEffect::Rolling;
+    const MOVES_FORCES: bool = true;
     const PART: ToothPart = ToothPart::FlankLength;
     const SIZES: &[&str] = &["start", "end", "depth", "circle"];
 

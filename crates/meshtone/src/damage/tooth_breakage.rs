@@ -2,7 +2,6 @@
 
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
 use super::description::hundredths;
-use super::kind::MeshEffect;
 use super::severity::SoundTooth;
 use super::{DamageDescription, DamageResult, FacePatch, Kind, QuantityValue, ToothPart};
 use crate::error::ScenarioError;
@@ -56,7 +55,7 @@ impl Keys for ToothBreakage {
 impl Kind for ToothBreakage {
     const NAME: &str = "tooth-breakage";
     const TITLE: &str = "tooth breakage";
-    const EFFECT: MeshEffect = MeshEffect::Tilting;
+    const MOVES_FORCES: bool = true;
     const PART: ToothPart = ToothPart::Tip;
     const SIZES: &[&str] = &["chip_height_mm", "chip_width_mm", "tip_loss_mm"];
 

@@ -1,6 +1,5 @@
 //! A working flank that has been ground down along a straight line.
 
-use super::kind::MeshEffect;
 use super::severity::SoundTooth;
 use std::ops::Bound::Excluded;
 
@@ -126,7 +125,6 @@ impl Kind for ToothDestruction {
     const NAME: &str = "tooth-destruction";
     const RIG: PaperRig = PaperRig::Destruction;
     const TITLE: &str = "tooth destruction";
-    const EFFECT: MeshEffect = MeshEffect::Flat;
     const PART: ToothPart = ToothPart::FlankLength;
     const SIZES: &[&str] = &["start", "end", "slope_deg", "offset_mm"];
 

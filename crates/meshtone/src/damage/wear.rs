@@ -2,7 +2,6 @@
 
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
 use super::description::hundredths;
-use super::kind::MeshEffect;
 use super::severity::SoundTooth;
 use super::{DamageDescription, DamageResult, FacePatch, FaultyTeeth, Kind, QuantityValue, ToothPart};
 use crate::error::ScenarioError;
@@ -44,7 +43,6 @@ impl Keys for Wear {
 impl Kind for Wear {
     const NAME: &str = "wear";
     const TITLE: &str = "wear";
-    const EFFECT: MeshEffect = MeshEffect::Flat;
     const PART: ToothPart = ToothPart::FlankSurface;
     const TEETH: FaultyTeeth = FaultyTeeth::All;
     const SIZES: &[&str] = &["depth_um"];

@@ -163,7 +163,7 @@ impl<S> Row<S> {
         };
         match value {
             Some(value) => self.cell.read(section, &value, files).map_err(|error| self.as_below_range(error)),
-            // A misspelt table would be told with a list of keys that has nothing like it.
+            // The message about a misspelt table would list keys of which none is like it.
             None if self.cell.kind() == KeyKind::Table => table.refuse_misspelling_of(self.name),
             None => Ok(()),
         }

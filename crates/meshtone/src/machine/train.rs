@@ -79,6 +79,9 @@ pub struct Train {
 impl Train {
     /// Assembles the rig of one gear pair.
     ///
+    /// Springs and supports are first written in vertical and horizontal coordinates, as a rig's numbers are given, and then turned to
+    /// the line of action, in which the mesh acts on one coordinate of each wheel.
+    ///
     /// # Arguments
     /// * `gears` - for the material
     /// * `rig` - shafts, bearings, supports, brake
@@ -94,20 +97,6 @@ impl Train {
         let torsion =
             [torsional_stiffness(&rig.pinion_shaft, gears), torsional_stiffness(&rig.gear_shaft, gears)];
         let turn = turn(teeth.gear.working_pressure_angle_rad, coordinates);
-        let spring = |damping_ratio| Spring::new(coordinates, damping_ratio);
-        let mut gear_torsion = spring(rig.gear_shaft.damping_ratio);
-        gear_torsion.resist(&[(THETA_GEAR, 1.0), (THETA_BRAKE, -1.0)], torsion[1]);
-        let mut pinion_torsion = spring(rig.pinion_shaft.damping_ratio);
-        pinion_torsion.resist(&[(THETA_PINION, 1.0)], torsion[0]);
-        let mut springs = vec![
-            bent_shaft(WheelName::Gear, rig, gears, coordinates),
-            bent_shaft(WheelName::Pinion, rig, gears, coordinates),
-            gear_torsion,
-            pinion_torsion,
-        ];
-        if supports == Supports::Moving {
-            springs.push(support_springs(rig));
-        }
         let ratio = f64::from(gears.gear_teeth) / f64::from(gears.pinion_teeth);
         let mut rigid_rotation = DVector::zeros(coordinates);
         rigid_rotation[THETA_GEAR] = -1.0 / ratio;
@@ -122,7 +111,10 @@ impl Train {
             machine: Machine {
                 names: NAMES[..coordinates].to_vec(),
                 mass: masses(&pinion, &gear, rig, coordinates),
-                springs: springs.iter().map(|spring| spring.turned(&turn)).collect(),
+                springs: springs(gears, rig, torsion, supports, coordinates)
+                    .iter()
+                    .map(|spring| spring.turned(&turn))
+                    .collect(),
                 turn,
                 lines: vec![line_of_action(teeth, coordinates)],
                 drives: vec![
@@ -240,6 +232,28 @@ pub fn torsional_stiffness(shaft: &Shaft, gears: &Gears) -> f64 {
     PI * radius.powi(4) * gears.material.shear_modulus_mpa() * 1e6 / (2.0 * length)
 }
 
+/// All springs: shafts and bearings, the shafts' torsion, and the supports where they move.
+///
+/// # Arguments
+/// * `torsion` - (N m/rad) stiffness of the pinion's and of the gear's shaft
+fn springs(gears: &Gears, rig: &Rig, torsion: [f64; 2], supports: Supports, coordinates: usize) -> Vec<Spring> {
+    let spring = |damping_ratio| Spring::new(coordinates, damping_ratio);
+    let mut gear_torsion = spring(rig.gear_shaft.damping_ratio);
+    gear_torsion.resist(&[(THETA_GEAR, 1.0), (THETA_BRAKE, -1.0)], torsion[1]);
+    let mut pinion_torsion = spring(rig.pinion_shaft.damping_ratio);
+    pinion_torsion.resist(&[(THETA_PINION, 1.0)], torsion[0]);
+    let mut springs = vec![
+        bent_shaft(WheelName::Gear, rig, gears, coordinates),
+        bent_shaft(WheelName::Pinion, rig, gears, coordinates),
+        gear_torsion,
+        pinion_torsion,
+    ];
+    if supports == Supports::Moving {
+        springs.push(support_springs(rig));
+    }
+    springs
+}
+
 /// The shaft and bearings of a wheel: deflection relative to its support (to the base, where the support is held), slope, and the
 /// axial stiffness.
 ///
@@ -290,10 +304,11 @@ fn support_springs(rig: &Rig) -> Spring {
 mod tests {
     use super::*;
     use crate::machine::{Modes, Support};
+    use crate::scenario::{GearPair, Scenario};
     use crate::wheel::teeth;
 
     fn machine(rig: &Rig) -> Machine {
-        let gears = Gears::new(3.0, 17, 38, 15.0);
+        let gears = Scenario::new(GearPair::example()).gears;
         Train::new(&gears, rig, &teeth(&gears, [10.0; 2]), Supports::Moving).machine
     }
 

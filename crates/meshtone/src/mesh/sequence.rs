@@ -36,6 +36,10 @@ pub struct PairKind {
 impl PairSequence {
     /// The sequence of two wheels.
     ///
+    /// Every pair has the damages of its two teeth, and pairs of equal damages make a class. How many pairs of a class there are in a cycle
+    /// is counted by residues instead of going through the cycle, which has as many pairs as the product of the tooth counts. Classes
+    /// without a pair are left out, so that nothing is computed for them.
+    ///
     /// # Arguments
     /// * `pinion_teeth`, `gear_teeth` - tooth counts
     /// * `damaged` - the damaged teeth, each named once; those that are alike may be named together and make one class
@@ -190,8 +194,8 @@ mod tests {
             for pair in 0..sequence.cycle() {
                 counts[sequence.class(pair as i64)] += 1;
             }
-            let told: Vec<usize> = sequence.classes().iter().map(|kind| kind.pairs_per_cycle).collect();
-            assert_eq!(counts, told, "{z_p}/{z_g}");
+            let stated: Vec<usize> = sequence.classes().iter().map(|kind| kind.pairs_per_cycle).collect();
+            assert_eq!(counts, stated, "{z_p}/{z_g}");
             let error = PairSequence::new(z_p, 5, &damaged).unwrap_err();
             assert_eq!(error.to_string(), "fault.tooth = 6: is beyond the last tooth of the gear");
         }

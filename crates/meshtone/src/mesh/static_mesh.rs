@@ -7,6 +7,7 @@ use super::path_table::PairState;
 
 /// A mesh at rest, point by point.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct StaticMesh {
     /// (m) Deflection along the line of action at each point: the static transmission error. NaN where no pair can touch.
     pub deflection_m: Vec<f64>,

@@ -17,11 +17,12 @@ pub(crate) use cycle::samples_per_pitch;
 #[cfg(feature = "internals")]
 pub use teeth::relieved_teeth;
 pub use teeth::teeth;
+pub(crate) use newmark::integrate;
 
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use machine::coordinates::{COORDINATES, CoordinateVector, THETA_BRAKE, THETA_PINION};
+use machine::coordinates::{CoordinateVector, THETA_BRAKE, THETA_PINION};
 use machine::{Forcing, Machine};
 use mesh::{ErrorForce, PairCurve, PublishedMesh};
 
@@ -30,9 +31,8 @@ use crate::error::ScenarioError;
 use crate::machine::DecayingMode;
 use crate::mesh::MeshCurve;
 use crate::mesh::curve::in_cycle;
-use crate::operation::{CycleGrid, TimeGrid};
+use crate::operation::TimeGrid;
 use crate::scenario::Scenario;
-use crate::solver::{Diverged, Output, Recorder};
 use crate::wheel::{ProfileErrors, Teeth};
 
 /// A simulation by the published model, before its time loop.
@@ -70,11 +70,6 @@ impl Published {
         let machine = Machine::new(&scenario.gears, &scenario.rig, teeth, &mesh.load);
         let (scenario, profile_errors) = (scenario.clone(), profile_errors.cloned());
         Ok(Self { mesh, machine, scenario, time: *time, profile_errors })
-    }
-
-    /// Division of the cycle.
-    pub(crate) fn cycle(&self) -> CycleGrid {
-        self.mesh.grid
     }
 
     /// What is left of the gear's first tooth, where it is damaged.
@@ -123,11 +118,6 @@ impl Published {
     /// Mode shapes in the same order, of unit modal mass.
     pub(crate) fn mode_shapes(&self) -> Vec<Vec<f64>> {
         self.machine.mode_shapes().column_iter().map(|shape| shape.iter().copied().collect()).collect()
-    }
-
-    /// Number of coordinates.
-    pub(crate) fn coordinates(&self) -> usize {
-        COORDINATES
     }
 
     /// The mode in motion that decays most slowly.
@@ -185,23 +175,5 @@ impl Published {
     /// (N, N m; N) Force in the 13 coordinates and the deviations' force in it, sample by sample.
     pub(crate) fn forces(&self) -> impl Iterator<Item = (CoordinateVector, f64)> {
         self.forcing().map(|forcing| (self.machine.force(&forcing), forcing.error_force_n))
-    }
-
-    /// Stage 7: solves the equations of motion and hands the outputs of every sample to `recorder`.
-    ///
-    /// # Arguments
-    /// * `outputs` - what is read off the solution
-    /// * `first_sample` - first sample that is recorded
-    /// * `recorder` - takes the outputs
-    ///
-    /// # Errors
-    /// A motion that grows without bound.
-    pub(crate) fn integrate(
-        &self,
-        outputs: &[Output],
-        first_sample: usize,
-        recorder: &mut dyn Recorder,
-    ) -> Result<(), Diverged> {
-        newmark::integrate(self, outputs, first_sample, recorder)
     }
 }

@@ -25,7 +25,7 @@ const BLOCK: usize = 512;
 type Vector<const N: usize> = [f64; N];
 type Matrix<const N: usize> = [[f64; N]; N];
 
-/// Integrates the equations of motion of a simulation from its start.
+/// Stage 7: integrates the equations of motion of a simulation from its start.
 ///
 /// # Arguments
 /// * `published` - the simulation
@@ -35,7 +35,7 @@ type Matrix<const N: usize> = [[f64; N]; N];
 ///
 /// # Errors
 /// A solution that grows without bound; nothing is recorded of the block in which that happens.
-pub(super) fn integrate(
+pub(crate) fn integrate(
     published: &Published,
     outputs: &[Output],
     first_sample: usize,

@@ -6,6 +6,7 @@ use super::Channels;
 
 /// Contact of the teeth of a mesh over the kept time.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[non_exhaustive]
 pub struct ContactFigures {
     /// (-) Part of the time in which no teeth touched.
     pub apart_fraction: f64,

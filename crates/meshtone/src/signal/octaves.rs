@@ -13,6 +13,7 @@ pub const OCTAVES: [(&str, f64); 7] =
 
 /// Content of a signal in an octave of mesh orders.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct OctaveBand {
     /// (mesh orders) Its middle: it reaches from `1/√2` to `√2` of it.
     pub middle: f64,

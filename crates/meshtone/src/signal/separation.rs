@@ -40,6 +40,7 @@ impl SeparationSettings {
 
 /// An average, taken apart.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Separation {
     /// Shaft orders and mesh harmonics with their sidebands: what a sound wheel shows.
     pub regular: Vec<f64>,

@@ -3,7 +3,7 @@
 use std::num::NonZeroUsize;
 use std::ops::Range;
 
-use super::{Equations, Stages};
+use super::Stages;
 use crate::error::ScenarioError;
 use crate::mesh::{Mesh, MeshCurve, PairKind};
 
@@ -46,24 +46,12 @@ impl Stages {
         Ok(self.curves_of(&self.meshes_at(points)?, pitches))
     }
 
-    fn curves_of(&self, meshes: &[Mesh], pitches: Option<Range<i64>>) -> Vec<MeshCurve> {
-        match &self.equations {
-            Equations::Machine(..) => meshes.iter().map(|mesh| mesh.curve(pitches.clone())).collect(),
-            Equations::Published(published) => vec![published.mesh_curve(pitches)],
-        }
-    }
-
-    /// (N/mm) Stiffness of a sound pair of teeth, and of the first damaged tooth with a sound mate, where there is one.
+    /// (N/mm) Stiffness of a sound pair of teeth of the first mesh, and of the first damaged tooth with a sound mate, where there is one.
     ///
     /// # Arguments
     /// * `positions_rev` - (rev) pinion revolutions since the pair entered contact
-    pub(crate) fn pair_stiffness_n_per_mm(&self, positions_rev: &[f64]) -> [Option<Vec<f64>>; 2] {
-        let Some(mesh) = self.meshes.first() else {
-            return match &self.equations {
-                Equations::Machine(..) => [None, None],
-                Equations::Published(published) => published.pair_stiffness_n_per_mm(positions_rev),
-            };
-        };
+    pub(super) fn mesh_pair_stiffness_n_per_mm(&self, positions_rev: &[f64]) -> [Option<Vec<f64>>; 2] {
+        let Some(mesh) = self.meshes.first() else { return [None, None] };
         let (pairs, pitches) = (self.pairs(), f64::from(self.teeth.pinion.teeth));
         let is_first =
             |kind: &&PairKind| matches!((kind.pinion, kind.gear), (Some(0), None) | (None, Some(0)));

@@ -47,6 +47,10 @@ const SOUND: usize = 6;
 impl<'a> LoadedFlank<'a> {
     /// The integrals of a tooth.
     ///
+    /// They are summed once along the profile, so that each load afterwards takes two values of each and no loop. A sound tooth is
+    /// symmetric: its integrands have no product of inertia and follow from one division a point, which is most of the time of a healthy
+    /// wheel.
+    ///
     /// # Arguments
     /// * `flank` - the sound tooth
     /// * `damage` - what is left of it, where it is damaged

@@ -3,7 +3,7 @@
 use super::Trace;
 use crate::damage::QuantityValue;
 use crate::mesh::MeshCurve;
-use crate::simulate::{Equations, Stages};
+use crate::simulate::Stages;
 use crate::trace_fields::FAULT_STRIDE;
 use crate::wheel::{Mounting, WheelName};
 
@@ -32,11 +32,10 @@ pub(crate) fn static_stages(trace: &mut Trace, stages: &Stages) {
     trace.scalar("normal_backlash_mm", stages.scenario.gears.normal_backlash_mm());
     bodies(trace, stages);
     stiffness(trace, stages);
-    matrices(trace, stages);
+    trace.vector("natural_frequencies_hz", stages.natural_frequencies_hz());
+    stages.trace_matrices(trace);
     damages(trace, stages);
-    if let Equations::Published(published) = &stages.equations {
-        published.trace(trace);
-    }
+    stages.trace_of_published(trace);
 }
 
 fn wheels(trace: &mut Trace, stages: &Stages) {
@@ -100,27 +99,17 @@ fn stiffness(trace: &mut Trace, stages: &Stages) {
         }
     }
     trace.scalar("pair_stiffness_len", points as f64);
-    for MeshCurve { stiffness_n_per_mm, .. } in meshes {
-        trace.scalar("mesh_stiffness_len", stiffness_n_per_mm.len() as f64);
-        trace.vector("mesh_stiffness_n_per_mm", stiffness_n_per_mm.into_iter().step_by(MESH_STRIDE));
+    for (number, MeshCurve { stiffness_n_per_mm, .. }) in meshes.into_iter().enumerate() {
+        let prefix = numbered("mesh", number);
+        trace.scalar(&format!("{prefix}_stiffness_len"), stiffness_n_per_mm.len() as f64);
+        let shown = stiffness_n_per_mm.into_iter().step_by(MESH_STRIDE);
+        trace.vector(&format!("{prefix}_stiffness_n_per_mm"), shown);
     }
 }
 
-/// The machine without the meshes, and with the mean ones closed.
-fn matrices(trace: &mut Trace, stages: &Stages) {
-    trace.vector("natural_frequencies_hz", stages.natural_frequencies_hz());
-    let Equations::Machine(train, modes) = &stages.equations else { return };
-    let machine = &train.machine;
-    let size = machine.coordinates();
-    trace.vector("mass_diagonal", machine.mass.iter().copied());
-    let mean = machine.closed_stiffness(&stages.mean_stiffness_n_per_m());
-    for (name, matrix) in [
-        ("damping_matrix", modes.damping_matrix(machine)),
-        ("stiffness_matrix_open", machine.turn_back(&machine.stiffness())),
-        ("stiffness_matrix_mean", machine.turn_back(&mean)),
-    ] {
-        trace.matrix(name, size, size, |r, c| matrix[(r, c)]);
-    }
+/// A name of several fields: `mesh` of the first, `mesh_2` of the next.
+fn numbered(name: &str, number: usize) -> String {
+    if number == 0 { name.to_owned() } else { format!("{name}_{}", number + 1) }
 }
 
 /// What the damages are: fields `fault_…` of the first, `fault_2_…` of the next.
@@ -128,7 +117,7 @@ fn damages(trace: &mut Trace, stages: &Stages) {
     let all =
         stages.damaged.iter().flat_map(|tooth| tooth.descriptions.iter().map(move |damage| (tooth, damage)));
     for (number, (tooth, damage)) in all.enumerate() {
-        let prefix = if number == 0 { "fault".to_string() } else { format!("fault_{}", number + 1) };
+        let prefix = numbered("fault", number);
         for (name, value) in &damage.quantities {
             let name = format!("{prefix}_{name}");
             match value {

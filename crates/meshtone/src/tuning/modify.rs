@@ -177,6 +177,7 @@ impl Enhancement {
 
 /// A modified difference signal, before noise is drawn.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Enhanced {
     /// One cycle.
     pub signal: Vec<f64>,

@@ -11,6 +11,7 @@ use crate::scenario::Scenario;
 
 /// Result of an experiment.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct ExperimentResult {
     /// The original simulation: difference signals of the scenario as it is, before anything was tuned.
     pub original: SimulatedCases,
@@ -127,7 +128,7 @@ fn predicts_worse(tuning: &Tuning) -> Option<TuningWarning> {
     (left_out > original).then_some(TuningWarning::PredictsWorse { original, left_out })
 }
 
-/// The tuned keys, where they are better than the scenario as it is; what is doubtful is told to whichever is reported.
+/// The tuned keys, where they are better than the scenario as it is; a doubt is added to whichever of both is reported.
 fn kept(mut keys: TunedKeys, alone: &mut Tuning) -> Option<TunedKeys> {
     let help = keys.tuning.enhanced_error < alone.enhanced_error;
     let reported = if help { &mut keys.tuning } else { &mut *alone };

@@ -246,6 +246,9 @@ pub fn fit(
 }
 
 /// Nelder and Mead's search from a point, within ranges; a range of no width holds its parameter.
+///
+/// Only the free parameters make the simplex, since one with a held parameter would be flat. The method knows no limits: a vertex beyond
+/// them costs what the nearest point within costs, and more the farther it is, which leads the simplex back.
 pub(super) fn refine(
     objective: &Objective,
     ranges: [[f64; 2]; 3],

@@ -26,6 +26,7 @@ const FEW_RECORDS: usize = 5;
 
 /// The result of tuning the three parameters.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Tuning {
     /// The parameters: of all solutions that are as good as the best, to half a per cent of its error, the one with the
     /// fault-to-harmonics ratio nearest to 1.
@@ -277,6 +278,11 @@ fn nearest_to_unit_ratio(objective: &Objective, best: Fit) -> Result<Fit, Hybrid
     Ok(chosen)
 }
 
+/// Intervals of the parameters of the enhancement, from a bootstrap of the measured records.
+///
+/// Of each resampled set it is found by how much the chosen parameters miss its own best fit. The excess that is exceeded in few of them
+/// limits the error, and an interval holds all values of a parameter with which the error, the others adjusted, stays below that limit.
+/// Every candidate that is below it is a start of its own, since the fits may have several minima.
 fn intervals(
     candidates: &[(&SimulatedCases, Fit)],
     objective: &Objective,
@@ -328,6 +334,9 @@ fn intervals(
 }
 
 /// Value of a parameter at which the error, the others adjusted, exceeds a limit.
+///
+/// It goes outwards from the fit in growing steps until the error is above the limit, and halves the last step. Each adjustment starts from
+/// the last one that was good and from the fit itself, and the better of both counts: the search finds local minima only.
 fn end_of_profile(
     objective: &Objective,
     ranges: [[f64; 2]; 3],

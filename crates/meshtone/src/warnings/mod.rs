@@ -11,17 +11,15 @@ use std::f64::consts::TAU;
 
 use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 use crate::machine::{DecayingMode, Shaft, WheelBody};
-use crate::mesh::Mesh;
 use crate::scenario::{MemoryLimit, Scenario};
-use crate::simulate::{Equations, Stages, stages_within};
-use crate::wheel::WheelName;
+use crate::simulate::{Stages, stages_within};
 
 /// (-) Part of the starting transient that may be left where the kept signal starts.
 const TOLERATED_TRANSIENT: f64 = 0.01;
 /// (-) Part of the module by which the nominal load may press the teeth together without a warning.
 const TOLERATED_DEFLECTION: f64 = 0.1;
 
-/// Runs stages 1 to 6, as [`stages_within`] does, and tells all that deserves attention before the time loop.
+/// Runs stages 1 to 6, as [`stages_within`] does, and reports all that deserves attention before the time loop.
 ///
 /// # Arguments
 /// * `scenario` - what is simulated
@@ -84,13 +82,7 @@ impl Stages {
         if self.damaged.is_empty() || self.teeth_part() {
             return None;
         }
-        // Of the wheel that has more teeth: every tooth of both has met another by then.
-        let pitches = WheelName::BOTH.map(|wheel| self.teeth.wheel(wheel).teeth as usize).into_iter().max();
-        let of_mesh = |mesh: &Mesh| mesh.stiffness_n_per_mm(0..pitches.unwrap_or(0));
-        let stiffness: Vec<f64> = match &self.equations {
-            Equations::Machine(..) => self.meshes.iter().flat_map(of_mesh).collect(),
-            Equations::Published(published) => published.mesh_curve(None).stiffness_n_per_mm,
-        };
+        let stiffness = self.stiffness_over_a_turn_n_per_mm();
         let bare = stiffness.iter().filter(|&&stiffness| stiffness <= 0.0).count();
         (bare > 0).then(|| {
             let message = format!(
@@ -109,7 +101,9 @@ impl Stages {
     }
 
     fn equal_wheels(&self) -> Option<ScenarioWarning> {
-        let Equations::Machine(train, _) = &self.equations else { return None };
+        if !self.scenario.model.has_meshes() {
+            return None;
+        }
         let rig = &self.scenario.rig;
         let side = |body: &WheelBody, shaft: &Shaft| {
             let bearing = shaft.bearing_stiffness_n_per_m.unwrap_or(rig.bearing_stiffness_n_per_m);
@@ -117,8 +111,8 @@ impl Stages {
                 [shaft.radius_mm, shaft.bearing_span_mm, shaft.wheel_at, shaft.damping_ratio, bearing];
             (body.mass_kg, body.transverse_kgm2, bends)
         };
-        let [pinion, gear] = &train.wheels;
-        if side(pinion, &rig.pinion_shaft) != side(gear, &rig.gear_shaft) {
+        let [pinion, gear] = self.wheel_bodies();
+        if side(&pinion, &rig.pinion_shaft) != side(&gear, &rig.gear_shaft) {
             return None;
         }
         let (moving, channels) = if self.teeth_part() {

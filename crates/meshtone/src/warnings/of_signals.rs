@@ -130,7 +130,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_mesh_that_pulls_is_told_with_what_mends_it() {
+    fn a_mesh_that_pulls_is_reported_with_what_mends_it() {
         let of = |least_n: f64, pulling: usize, is_damaged: bool| {
             let mut mesh_force_n = vec![200.0; 100];
             mesh_force_n[..pulling].fill(least_n);
@@ -140,12 +140,12 @@ mod tests {
             tension(&force, is_damaged).map(|warning| warning.message).unwrap_or_default()
         };
         assert_eq!(of(-50.0, 1, true), "");
-        let told = of(-50.0, 2, true);
-        assert!(told.starts_with(
+        let message = of(-50.0, 2, true);
+        assert!(message.starts_with(
             "the mesh force is negative for 2.0 % of the time, down to -50 N at a mean of 195 N"
         ));
-        assert!(told.ends_with("a heavier load or better teeth bring it down"), "{told}");
-        assert_eq!(of(-4000.0, 2, false).rsplit("; ").next(), told.rsplit("; ").next());
+        assert!(message.ends_with("a heavier load or better teeth bring it down"), "{message}");
+        assert_eq!(of(-4000.0, 2, false).rsplit("; ").next(), message.rsplit("; ").next());
         let damage = of(-4000.0, 2, true);
         assert!(damage.ends_with("hold these teeth together; less damage brings it down"), "{damage}");
     }

@@ -33,6 +33,7 @@ pub(crate) use rules::HALF_THICKNESS;
 
 /// Stage 2's result: both wheels with their teeth, ready to mesh.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Teeth {
     /// The driving wheel.
     pub pinion: Wheel,

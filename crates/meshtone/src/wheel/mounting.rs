@@ -12,6 +12,7 @@ use super::{Gears, WheelName};
 
 /// A pair of wheels on its two axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Mounting {
     /// (rad) Working pressure angle: the angle between the line of action and the tangent of the pitch circles in mesh.
     pub working_pressure_angle_rad: f64,
@@ -152,10 +153,11 @@ const MAX_NEWTON_STEPS: usize = 60;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scenario::{GearPair, Scenario};
     use crate::wheel::Wheel;
 
     fn shifted(pinion: f64, gear: f64) -> Gears {
-        let mut gears = Gears::new(3.0, 17, 38, 15.0);
+        let mut gears = Scenario::new(GearPair::example()).gears;
         (gears.pinion_profile_shift, gears.gear_profile_shift) = (pinion, gear);
         gears
     }

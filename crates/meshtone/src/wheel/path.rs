@@ -13,6 +13,7 @@ use super::{Wheel, WheelName};
 /// Source: any textbook of involute gears, for example F. L. Litvin, A. Fuentes, *Gear Geometry and Applied Theory*,
 /// 2nd edition (2004), chapter 10.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct PathOfContact {
     /// (mm) Base pitch, `π m cos α`.
     pub base_pitch_mm: f64,

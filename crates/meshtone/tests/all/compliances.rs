@@ -20,6 +20,13 @@ const E: f64 = 210e3;
 const G: f64 = E / 2.6;
 const WIDTH: f64 = 15.0;
 
+/// The example's wheels with profiles of as many points.
+fn example_with_points(points_per_tooth: usize) -> Gears {
+    let mut gears = example_gears();
+    gears.points_per_tooth = points_per_tooth;
+    gears
+}
+
 /// A bar along x, `length` long, whose half thickness is `half(x − x_0)`, with its wheel.
 fn bar(points: usize, length: f64, alpha_deg: f64, half: impl Fn(f64) -> f64) -> (Wheel, ToothProfile) {
     let depth = |i: usize| length * i as f64 / (points - 1) as f64;
@@ -68,20 +75,7 @@ fn damaged_tooth(teeth: &Teeth, faults: &[Fault]) -> DamagedTooth {
 
 /// A tooth of which nothing is missing, but that is taken for a damaged one.
 fn untouched(wheel: WheelName, profile: &ToothProfile) -> DamagedTooth {
-    let points = profile.len();
-    DamagedTooth {
-        wheel,
-        teeth: vec![0],
-        flank_y_mm: profile.y_mm.clone(),
-        missing_width_mm: vec![0.0; points],
-        corner_width_mm: vec![0.0; points],
-        corner_y_mm: profile.y_mm.clone(),
-        gone_from_index: points,
-        upper_edges: Vec::new(),
-        crack: None,
-        pits: None,
-        descriptions: Vec::new(),
-    }
+    DamagedTooth::sound(wheel, vec![0], profile)
 }
 
 // Steel: ν 0.3. The trapezoidal rule is exact for the linear and constant integrands; that of bending is quadratic,
@@ -257,8 +251,7 @@ fn partial_pit(width_mm: f64) -> Damage {
 // The integrands are polynomials of degree 4 at most, for which five Gauss points are exact: rounding only.
 #[test]
 fn section_of_a_partial_pit_by_quadrature() {
-    let mut gears = Gears::new(3.0, 17, 38, WIDTH);
-    gears.points_per_tooth = 2_000;
+    let gears = example_with_points(2_000);
     let teeth = published_teeth(&gears, 20.0);
     let width_mm = 6.0;
     let fault = geometry(&partial_pit(width_mm), &teeth, 1).unwrap();
@@ -284,8 +277,7 @@ fn section_of_a_partial_pit_by_quadrature() {
 
 #[test]
 fn section_of_a_damaged_tooth_by_quadrature() {
-    let mut gears = Gears::new(3.0, 17, 38, WIDTH);
-    gears.points_per_tooth = 2_000;
+    let gears = example_with_points(2_000);
     let teeth = linear_teeth(&gears, 20.0);
     for (wheel, width_mm) in [(WheelName::Gear, 6.0), (WheelName::Pinion, 2.5)] {
         let tooth = damaged_tooth(&teeth, &[Fault::new(wheel, 3, partial_pit(width_mm))]);
@@ -357,7 +349,7 @@ fn unsymmetric_bending_from_equilibrium() {
     assert_close("unsymmetric bending", 1e-11, [(value(-1.0), exact + trapezoid)]);
     let difference = deviation(value(1.0), exact + trapezoid);
     println!("unsymmetric bending with the published sign of the coupling: {:.1} %", 100.0 * difference);
-    assert!(difference.abs() > 0.01, "the section is asymmetric enough to tell the two signs apart");
+    assert!(difference.abs() > 0.01, "the section is asymmetric enough to distinguish the two signs");
 }
 
 #[test]
@@ -386,8 +378,7 @@ fn unsymmetric_bending_of_a_damaged_tooth_from_equilibrium() {
 // What misses one end of its whole height is a narrower tooth, if it is loaded in the middle of what is left.
 #[test]
 fn a_tooth_without_one_end_is_a_narrower_one() {
-    let mut gears = Gears::new(3.0, 17, 38, WIDTH);
-    gears.points_per_tooth = 2_000;
+    let gears = example_with_points(2_000);
     let missing_mm = 4.5;
     let mut narrow = gears.clone();
     narrow.face_width_mm = WIDTH - missing_mm;
@@ -454,8 +445,7 @@ fn pairs_touch_on_the_line_of_action() {
 // evaluated on its own by the same trapezoid: only rounding remains, enlarged by what cancels in the expansion.
 #[test]
 fn expanded_integrals_equal_the_direct_ones() {
-    let mut gears = Gears::new(3.0, 17, 38, WIDTH);
-    gears.points_per_tooth = 2_000;
+    let gears = example_with_points(2_000);
     let teeth = linear_teeth(&gears, 20.0);
     let (wheel, profile) = (&teeth.pinion, &teeth.pinion_profile);
     let tooth = compliance(wheel, profile, &ToothSection::sound(wheel, profile));
@@ -524,8 +514,7 @@ fn foundation_at_a_known_point() {
 // A pair is two teeth and a contact in series: with rigid bodies and a stubby tooth little but the contact remains.
 #[test]
 fn pair_is_its_parts_in_series() {
-    let mut gears = Gears::new(3.0, 17, 38, WIDTH);
-    gears.points_per_tooth = 1_000;
+    let gears = example_with_points(1_000);
     let teeth = published_teeth(&gears, 20.0);
     let pair = PairStiffness::new(&gears, &teeth, None).unwrap();
     let first = teeth.contact.initial_contact_index;
@@ -548,8 +537,7 @@ fn pair_is_its_parts_in_series() {
 
 #[test]
 fn pair_of_conjugate_teeth_is_its_parts_in_series() {
-    let mut gears = Gears::new(3.0, 17, 38, WIDTH);
-    gears.points_per_tooth = 1_000;
+    let gears = example_with_points(1_000);
     let teeth = linear_teeth(&gears, 20.0);
     let pairs = sound_pairs(&gears, &teeth);
     assert_close(
@@ -576,8 +564,7 @@ fn pair_of_conjugate_teeth_is_its_parts_in_series() {
 #[test]
 fn conjugate_pair_s_stiffness_converges_with_the_points_of_the_profile() {
     let pair = |points: usize| -> Vec<f64> {
-        let mut gears = Gears::new(3.0, 17, 38, WIDTH);
-        gears.points_per_tooth = points;
+        let gears = example_with_points(points);
         let teeth = linear_teeth(&gears, 20.0);
         let pairs = sound_pairs(&gears, &teeth);
         let at = |k: i32| teeth.path.contact_ratio * f64::from(k) / 500.0;
@@ -596,8 +583,7 @@ fn conjugate_pair_s_stiffness_converges_with_the_points_of_the_profile() {
 #[test]
 fn pair_stiffness_converges_with_the_points_of_the_profile() {
     let pair = |points: usize| {
-        let mut gears = Gears::new(3.0, 17, 38, WIDTH);
-        gears.points_per_tooth = points;
+        let gears = example_with_points(points);
         PairStiffness::new(&gears, &published_teeth(&gears, 20.0), None).unwrap()
     };
     let exact = pair(160_000);

@@ -10,20 +10,14 @@ use meshtone::solver::Output;
 use meshtone::{simulate, stages};
 use nalgebra::DVector;
 
-fn pair(module_mm: f64, pinion_teeth: u32, gear_teeth: u32, brake_torque_nm: f64) -> Scenario {
-    let mut scenario = Scenario::new(GearPair {
-        module_mm,
-        pinion_teeth,
-        gear_teeth,
-        brake_torque_nm,
-        ..GearPair::example()
-    });
+fn pair(brake_torque_nm: f64) -> Scenario {
+    let mut scenario = Scenario::new(GearPair { brake_torque_nm, ..GearPair::example() });
     scenario.model = Model::Contact;
     scenario
 }
 
 fn of_rig(din_grade: u8) -> Scenario {
-    let mut scenario = pair(3.0, 17, 38, 10.0);
+    let mut scenario = pair(10.0);
     scenario.quality.din_grade = din_grade;
     scenario
 }
@@ -66,7 +60,7 @@ fn closed_pairs_are_the_linear_model() {
 }
 
 fn compare_closed_pairs(name: &str, deviates: bool, expected: &[(usize, f64)]) {
-    let mut linear = pair(3.0, 17, 38, 200.0);
+    let mut linear = pair(200.0);
     linear.model = Model::Linear;
     // Undamped, the mesh's own variation makes it ring ever more; so slow that it takes a while.
     linear.operation.pinion_speed_hz = 5.0;
@@ -235,7 +229,7 @@ fn small_damages_are_small() {
 // The mesh's stiffness without chamfer, while only pairs on their path count, is that of the linear model.
 #[test]
 fn mesh_stiffness_is_the_linear_one() {
-    let mut scenario = pair(3.0, 17, 38, 10.0);
+    let mut scenario = pair(10.0);
     scenario.gears.tip_chamfer_mm = Some(0.0);
     let mean = |scenario: &Scenario| stages(scenario).unwrap().mesh_curves()[0].mean_stiffness_n_per_mm;
     let contact = mean(&scenario);

@@ -143,7 +143,7 @@ fn keys_that_do_not_help_are_not_taken() {
 }
 
 #[test]
-fn a_parameter_at_its_bound_is_told() {
+fn a_parameter_at_its_bound_is_reported() {
     let mut experiment = experiment(&[]);
     experiment.bounds.width_ratio = [0.8, 2.0];
     let result = run(&experiment).unwrap();

@@ -7,9 +7,9 @@ use crate::physics::*;
 use meshtone::scenario::{GearPair, Model, Scenario};
 use meshtone::{simulate, stages};
 
-fn pair(module_mm: f64, pinion_teeth: u32, gear_teeth: u32, face_width_mm: f64) -> Scenario {
-    let mut scenario =
-        Scenario::new(GearPair { module_mm, pinion_teeth, gear_teeth, face_width_mm, ..GearPair::example() });
+/// The example's pair on thin shafts.
+fn pair() -> Scenario {
+    let mut scenario = Scenario::new(GearPair::example());
     scenario.model = Model::Linear;
     scenario.gears.tip_chamfer_mm = Some(0.0);
     scenario.rig.pinion_shaft.radius_mm = 10.0;
@@ -21,7 +21,7 @@ fn pair(module_mm: f64, pinion_teeth: u32, gear_teeth: u32, face_width_mm: f64) 
 #[test]
 fn mesh_stiffness_of_a_trial() {
     let points = NonZeroUsize::new(4_000).unwrap();
-    let meshes = stages(&pair(3.0, 17, 38, 15.0)).unwrap().meshes_at(points).unwrap();
+    let meshes = stages(&pair()).unwrap().meshes_at(points).unwrap();
     let mesh = meshes[0].healthy_stiffness_n_per_mm();
     let least = mesh.iter().copied().fold(f64::INFINITY, f64::min);
     assert_close(
@@ -35,7 +35,7 @@ fn mesh_stiffness_of_a_trial() {
 // position and not of the number of points, but for those within which a pair enters or leaves: they hold it in part.
 #[test]
 fn mesh_stiffness_does_not_depend_on_the_points() {
-    let stages = stages(&pair(3.0, 17, 38, 15.0)).unwrap();
+    let stages = stages(&pair()).unwrap();
     let curve = &stages.mesh_curves()[0];
     let own = &curve.healthy_stiffness_n_per_mm;
     assert_eq!(curve.points_per_pitch * 17, stages.time.samples_per_pinion_revolution);
@@ -57,21 +57,21 @@ fn mesh_stiffness_does_not_depend_on_the_points() {
 // is 0.4 % above ours, its ends of contact counted otherwise; ours is held to 1e-6 by the published stages.
 #[test]
 fn conjugate_flanks_are_stiffer_than_published_ones() {
-    let mut published = pair(3.0, 17, 38, 15.0);
+    let mut published = pair();
     published.model = Model::Published;
     let mesh = &stages(&published).unwrap().mesh_curves()[0].healthy_stiffness_n_per_mm;
     let least = mesh.iter().copied().fold(f64::INFINITY, f64::min);
     let most = largest(mesh.iter().copied());
     assert_close("published mesh stiffness", 1e-3, [(least, 141.3e3), (most, 261.9e3)]);
     assert_close("published mean", 4e-3, [(mean(mesh), 214.3e3)]);
-    let linear = stages(&pair(3.0, 17, 38, 15.0)).unwrap();
+    let linear = stages(&pair()).unwrap();
     assert!(linear.mesh_curves()[0].mean_stiffness_n_per_mm > 1.09 * mean(mesh));
 }
 
 // 10 µm more on all of a wheel's teeth turn the driven side a little further, and no signal knows.
 #[test]
 fn a_deviation_of_all_teeth_is_a_rotation() {
-    let mut scenario = pair(3.0, 17, 38, 15.0);
+    let mut scenario = pair();
     scenario.quality.din_grade = 7;
     scenario.quality.run_out_share = 0.0;
     let drawn = simulate(&scenario).unwrap();

@@ -3,8 +3,13 @@
 
 use meshtone::Stages;
 use meshtone::mesh::{Mesh, PairKind, PairTable, Pairs};
-use meshtone::scenario::{FoundationCoefficients, Gears};
+use meshtone::scenario::{FoundationCoefficients, GearPair, Gears, Scenario};
 use meshtone::wheel::{Teeth, teeth};
+
+/// The wheels of [`GearPair::example`]: 17 and 38 teeth of module 3 mm, 15 mm wide.
+pub fn example_gears() -> Gears {
+    Scenario::new(GearPair::example()).gears
+}
 
 /// Deviation of `value` from `exact`, relative to `exact`.
 pub fn deviation(value: f64, exact: f64) -> f64 {

@@ -11,9 +11,9 @@ use meshtone::{simulate, stages};
 const WIDTH_MM: f64 = 15.0;
 const DAMAGED_GEAR: PairKind = PairKind { pinion: None, gear: Some(0), pairs_per_cycle: 1 };
 
-/// Wheels of 17 and 38 teeth, with bores of 10 mm radius.
+/// The example's wheels, with bores of 10 mm radius.
 fn wheels() -> (Gears, Teeth) {
-    let gears = Gears::new(3.0, 17, 38, WIDTH_MM);
+    let gears = example_gears();
     let teeth = linear_teeth(&gears, 20.0);
     (gears, teeth)
 }

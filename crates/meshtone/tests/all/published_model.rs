@@ -54,12 +54,12 @@ pub fn reference(name: &str) -> Reference {
 pub fn scenario(name: &str, reference: &Reference) -> Scenario {
     let mut scenario = if name.starts_with("destruction") {
         Scenario::new(GearPair {
-            module_mm: 3.0,
             pinion_teeth: 18,
             gear_teeth: 35,
             face_width_mm: 30.0,
             pinion_speed_hz: 45.0,
             brake_torque_nm: 15.0,
+            ..GearPair::example()
         })
     } else {
         Scenario::new(GearPair::example())

@@ -15,9 +15,9 @@ fn crack(depth_mm: f64, length_mm: Option<f64>) -> RootCrack {
     RootCrack { depth_mm, angle_deg: 45.0, length_mm }
 }
 
-/// Wheels of 17 and 38 teeth, with bores of 10 mm radius.
+/// The example's wheels, with bores of 10 mm radius.
 fn wheels() -> (Gears, Teeth) {
-    let gears = Gears::new(3.0, 17, 38, WIDTH_MM);
+    let gears = example_gears();
     let teeth = linear_teeth(&gears, 20.0);
     (gears, teeth)
 }

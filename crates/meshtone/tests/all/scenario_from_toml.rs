@@ -331,7 +331,7 @@ fn the_content_of_files_becomes_part_of_the_scenario() {
 }
 
 #[test]
-fn problems_of_files_are_told_at_the_key_that_names_them() {
+fn problems_of_files_are_reported_at_the_key_that_names_them() {
     let refused = |text: &str, shelf: &Shelf| Scenario::from_toml_with_files(text, shelf).unwrap_err();
     let missing = refused(&appended("[quality]\nerrors_file = \"other.npz\""), &shelf());
     assert_eq!((missing.key.as_str(), missing.line), ("quality.errors_file", Some(10)));

@@ -243,9 +243,9 @@ fn sensors_show_the_same_bits_in_any_company() {
                         assert_eq!(result.unwrap().channels, expected, "{n}");
                     }
                     None => {
-                        let told = result.unwrap_err().to_string();
+                        let message = result.unwrap_err().to_string();
                         for word in ["`a_g`", "vertical_g", "mesh_force_n"] {
-                            assert!(told.contains(word), "{told}");
+                            assert!(message.contains(word), "{message}");
                         }
                     }
                 }
@@ -284,14 +284,14 @@ fn noise_is_keyed_by_seed_and_place_in_the_list() {
 }
 
 #[test]
-fn unknown_channel_is_told_with_those_that_there_are() {
+fn unknown_channel_is_refused_with_those_that_there_are() {
     let sensors = [Sensor::default()];
     assert_eq!(Channel::of("support_vertical_g", &sensors), Ok(Channel::Sensor("support_vertical".into())));
     assert_eq!(Channel::of("vertical_g", &sensors), Ok(ChannelKind::Vertical.into()));
-    let told = Channel::of("gear_g", &sensors).unwrap_err().to_string();
+    let message = Channel::of("gear_g", &sensors).unwrap_err().to_string();
     assert!(
-        told.starts_with("there is no channel `gear_g`; there are support_vertical_g, horizontal_g"),
-        "{told}"
+        message.starts_with("there is no channel `gear_g`; there are support_vertical_g, horizontal_g"),
+        "{message}"
     );
 }
 
@@ -308,6 +308,6 @@ fn difference_signals_of_a_sensor() {
         [Channel::Sensor("support_vertical".into()), ChannelKind::Vertical.into()].map(of);
     assert_eq!(plain.unwrap(), vertical.unwrap());
     assert!(of(Channel::Sensor("a".into())).is_ok());
-    let told = of(Channel::Sensor("b".into())).unwrap_err().to_string();
-    assert!(told.contains("`b_g`") && told.contains("support_vertical_g"), "{told}");
+    let message = of(Channel::Sensor("b".into())).unwrap_err().to_string();
+    assert!(message.contains("`b_g`") && message.contains("support_vertical_g"), "{message}");
 }

@@ -593,7 +593,7 @@ fn a_speed_that_is_hardly_off_is_found_in_a_long_recording() {
 
 // Nothing but noise; too short for the mate's orders.
 #[test]
-fn nothing_is_said_where_nothing_can_be_told() {
+fn nothing_is_said_where_nothing_can_be_concluded() {
     let turned: Vec<f64> = (0..40_960).map(|i| 20.0 * i as f64 / RATE_HZ).collect();
     for (signal, teeth, mate_teeth) in
         [(noise(5, turned.len()), 24, 38), (meshing(TEETH, &turned[..2500]), TEETH[0], 39)]
@@ -612,7 +612,7 @@ fn nothing_is_said_where_nothing_can_be_told() {
 }
 
 #[test]
-fn simulated_recordings_are_told_right() {
+fn mistakes_about_simulated_recordings_are_found() {
     let machines: Vec<Machine> = (0..3).map(machine).collect();
     let mistakes =
         [Mistake::None, Mistake::NoneAtConstantSpeed, Mistake::Teeth, Mistake::Pulses, Mistake::Speed];

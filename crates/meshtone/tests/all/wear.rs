@@ -10,9 +10,16 @@ use meshtone::wheel::WheelName;
 use meshtone::wheel::{Mounting, Teeth};
 use meshtone::{simulate, stages};
 
-/// Wheels of 17 and 38 teeth, with bores of 10 mm radius.
+/// The example's wheels, with bores of 10 mm radius.
+fn example_wheels() -> (Gears, Teeth) {
+    let GearPair { pinion_teeth, gear_teeth, .. } = GearPair::example();
+    wheels(pinion_teeth, gear_teeth)
+}
+
+/// The example's wheels with other tooth counts, with bores of 10 mm radius.
 fn wheels(pinion_teeth: u32, gear_teeth: u32) -> (Gears, Teeth) {
-    let gears = Gears::new(3.0, pinion_teeth, gear_teeth, 15.0);
+    let mut gears = example_gears();
+    (gears.pinion_teeth, gears.gear_teeth) = (pinion_teeth, gear_teeth);
     let teeth = linear_teeth(&gears, 20.0);
     (gears, teeth)
 }
@@ -37,7 +44,7 @@ fn pitch_point(teeth: &Teeth) -> f64 {
 // The numbers of another program.
 #[test]
 fn slide_factors_are_those_that_are_known() {
-    let (_, teeth) = wheels(17, 38);
+    let (_, teeth) = example_wheels();
     let at = |position| WheelName::BOTH.map(|wheel| slide_factor(&teeth, wheel, position));
     let (start, end) = (at(0.0), at(teeth.path.contact_ratio));
     println!("start {start:.4?}, end {end:.4?}");
@@ -51,7 +58,7 @@ fn slide_factors_are_those_that_are_known() {
 #[test]
 fn shifted_wheels_roll_on_their_working_pitch_circles() {
     for (shifts, apart_mm) in [([0.3, 0.2], 0.0), ([0.4, -0.4], 0.0), ([0.3, 0.2], 0.5)] {
-        let mut gears = Gears::new(3.0, 17, 38, 15.0);
+        let mut gears = example_gears();
         [gears.pinion_profile_shift, gears.gear_profile_shift] = shifts;
         gears.centre_distance_mm = Some(Mounting::new(&gears).centre_distance_mm + apart_mm);
         let teeth = linear_teeth(&gears, 20.0);
@@ -91,7 +98,7 @@ fn the_load_share_is_near_that_of_the_stiffness() {
 
 #[test]
 fn the_depth_is_archards_scaled_to_its_largest() {
-    let (_, teeth) = wheels(17, 38);
+    let (_, teeth) = example_wheels();
     let ratio = teeth.path.contact_ratio;
     for wheel in WheelName::BOTH {
         let damaged = damaged_teeth(&[worn(wheel, FaultyTeeth::All, 80.0)], &teeth, 1).unwrap();
@@ -119,7 +126,7 @@ fn the_depth_is_archards_scaled_to_its_largest() {
 // The deepest point of either wheel is where its flank is touched first from its root, not at its tip.
 #[test]
 fn both_wheels_wear_most_near_their_roots() {
-    let (_, teeth) = wheels(17, 38);
+    let (_, teeth) = example_wheels();
     for (tooth, tip_over_root) in
         damaged_teeth(&all_worn(50.0, 50.0), &teeth, 1).unwrap().iter().zip([0.629 / 9.264, 0.903 / 1.697])
     {
@@ -188,7 +195,7 @@ fn wear_without_depth_is_none() {
 // What has worn is missing in the tooth's sections.
 #[test]
 fn stiffness_falls_a_little_with_the_depth() {
-    let (gears, teeth) = wheels(17, 38);
+    let (gears, teeth) = example_wheels();
     let ratio = teeth.path.contact_ratio;
     let stiffness = |depth_um: f64| -> Vec<f64> {
         let damaged = damaged_teeth(&all_worn(depth_um, depth_um), &teeth, 1).unwrap();
@@ -342,7 +349,7 @@ fn what_cannot_be_is_refused() {
     let (key, text) = refused(Model::Published, vec![worn(WheelName::Gear, 1, 5.0)]);
     assert!(key == "fault.kind" && text.contains("is not known to the published model"), "{text}");
     let mut small = scenario(Model::Linear, 40.0, 0, vec![worn(WheelName::Gear, 1, 99.0)]);
-    small.gears = Gears::new(0.05, 17, 38, 0.25);
+    (small.gears.module_mm, small.gears.face_width_mm) = (0.05, 0.25);
     small.rig.pinion_shaft.radius_mm = 0.1;
     small.rig.gear_shaft.radius_mm = 0.1;
     let error = stages(&small).unwrap_err();

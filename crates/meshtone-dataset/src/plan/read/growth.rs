@@ -23,8 +23,12 @@ pub(super) fn read(value: &TomlValue<'_>, faults: &[Fault]) -> ReadResult<Growth
     value.table()?.read(growth)
 }
 
+/// Reads how a damage grows.
+///
+/// The law is read first, because the keys that it has and their defaults depend on it. Start and failure are checked against each other
+/// and against the law: a crack does not grow from nothing, and a life that starts beyond its end would have no records.
 fn growth(table: &TomlTable<'_>) -> ReadResult<Growth> {
-    // Told before what is missing for it.
+    // An unknown key is reported before the key that is missing because of it.
     table.refuse_unknown(&KEYS)?;
     let names = Law::NAMES.map(|name| (name, name));
     let law = table.required("law", "how the damage grows: paris, archard or pits")?.choice(&names)?;

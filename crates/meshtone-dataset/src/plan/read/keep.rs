@@ -15,6 +15,11 @@ const LARGEST_RATE_HZ: f64 = 1e7;
 const MOST_POINTS: u64 = 1 << 20;
 const MOST_REVOLUTIONS: u64 = 1 << 20;
 
+/// Reads what is kept of each record.
+///
+/// Absent keys take their values from a tuning, where the plan names one, so that the records are processed as the recordings were, and
+/// else from the base scenario. The checks of several keys against each other come after all of them have been read, because any of them
+/// may be missing.
 pub(super) fn read(table: &TomlTable<'_>, base: &Scenario, tuned: Option<&Tuned>) -> ReadResult<Keep> {
     let simulated_hz = base.solver.sampling_rate_hz;
     let default_hz = tuned.map_or(RATE_HZ.min(simulated_hz), |tuned| tuned.sampling_rate_hz);

@@ -30,7 +30,7 @@ struct Reading<'a> {
     is_copy: bool,
     files: Vec<PlanFile>,
     sources: Vec<PathBuf>,
-    /// The problem of another file, if that file has one: it is told with that file's lines.
+    /// The problem of another file, if that file has one: it is reported with that file's lines.
     elsewhere: Option<ReadScenarioError>,
 }
 
@@ -102,6 +102,10 @@ impl Reading<'_> {
     }
 }
 
+/// Reads the whole plan.
+///
+/// The base scenario is read first and the tuned keys are put into it, because classes, rules and what is kept are read against it. The
+/// questions are read last: they name classes, and a plan whose classes do not fit each other shall be refused for that.
 fn plan(root: &TomlTable<'_>, reading: &mut Reading) -> ReadResult<Plan> {
     let text = |key, default: &str| -> ReadResult<String> {
         Ok(root.read_optional(key, TomlValue::string)?.unwrap_or(default).to_owned())
@@ -216,12 +220,12 @@ fn tuned(value: &TomlValue<'_>, reading: &mut Reading) -> ReadResult<Tuned> {
 
 /// An error in a file that the plan names.
 fn in_another_file(value: &TomlValue<'_>, error: ReadScenarioError, reading: &mut Reading) -> TomlError {
-    let told = value.error(error.to_string());
+    let problem = value.error(error.to_string());
     // A name that leads nowhere is the plan's mistake.
     if !matches!(error, ReadScenarioError::Unreadable { .. }) {
         reading.elsewhere = Some(error);
     }
-    told
+    problem
 }
 
 /// One condition, or an array of them.

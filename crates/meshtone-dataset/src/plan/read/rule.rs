@@ -22,7 +22,7 @@ pub(super) fn read_all(table: &TomlTable<'_>) -> ReadResult<Vec<Rule>> {
 }
 
 fn rule(table: &TomlTable<'_>) -> ReadResult<Rule> {
-    // Told before what is missing for it.
+    // An unknown key is reported before the key that is missing because of it.
     table.refuse_unknown(&[&["key", "keys"][..], &DISTRIBUTIONS, &OTHER_KEYS].concat())?;
     let keys = keys(table)?;
     let distribution = distribution(table, keys.len())?;

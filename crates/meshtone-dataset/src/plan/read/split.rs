@@ -17,10 +17,10 @@ pub(super) fn read(table: &TomlTable<'_>) -> ReadResult<Splits> {
         *number = value.as_ref().map_or(Ok(0.0), part)?;
     }
     let sum: f64 = numbers.iter().sum::<f64>() + shifts.iter().map(|shift| shift.part).sum::<f64>();
-    let where_told = parts.iter().rposition(Option::is_some).map_or("shift", |last| Splits::ALIKE[last]);
+    let where_reported = parts.iter().rposition(Option::is_some).map_or("shift", |last| Splits::ALIKE[last]);
     let refuse = |help: &str| {
         let problem = format!("the parts of all splits add up to {sum}; must be 1");
-        Err(table.error(where_told, problem).with_help(help))
+        Err(table.error(where_reported, problem).with_help(help))
     };
     if sum > 1.0 + ROUNDING {
         return refuse("parts are fractions of what `by` names: units, or mountings");

@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_told_from_text() {
+    fn numbers_are_distinguished_from_text() {
         let (point, comma) = (dialect(Separator::Semicolon, false), dialect(Separator::Semicolon, true));
         assert_eq!(point.cell(b"-1.5e-3"), Cell::Number(-1.5e-3));
         assert_eq!(point.cell(b"+2"), Cell::Number(2.0));

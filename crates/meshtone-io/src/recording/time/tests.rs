@@ -1,4 +1,4 @@
-//! Times as files have them, and the rates they tell.
+//! Times as files have them, and the rates that follow from them.
 
 use super::super::error::Problem;
 use super::{Timing, timing};

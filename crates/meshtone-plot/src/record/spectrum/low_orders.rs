@@ -12,7 +12,7 @@ const BETWEEN_ORDERS: f64 = 3.2;
 /// Fewest mesh orders that are shown.
 const FEWEST: f64 = 2.0;
 
-/// The last one: as far as orders can be told apart, but always some mesh orders.
+/// The last one: as far as orders can be distinguished, but always some mesh orders.
 pub(super) fn last(wheel: &WheelView, width_px: f64) -> usize {
     let room = width_px / BETWEEN_ORDERS;
     let teeth = f64::from(wheel.teeth);

@@ -1,4 +1,4 @@
-//! The order spectrum on a logarithmic scale: all orders, and below them the low ones, which can be told apart.
+//! The order spectrum on a logarithmic scale: all orders, and below them the low ones, which can be distinguished.
 
 mod low_orders;
 mod overview;

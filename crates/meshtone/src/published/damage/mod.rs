@@ -157,6 +157,25 @@ pub fn geometry(damage: &Damage, teeth: &Teeth, seed: u64) -> Result<FaultGeomet
         Damage::PartialFace(pit) => partial_face::geometry(pit, teeth),
         Damage::ThroughFace(pit) => through_face::geometry(pit, teeth),
         Damage::ToothDestruction(destruction) => tooth_destruction::geometry(destruction, teeth, seed),
-        Damage::RootCrack(_) | Damage::Pits(_) | Damage::Wear(_) => Err(unknown_kind(damage)),
+        _ => Err(unknown_kind(damage)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Model;
+    use crate::scenario::{Fault, GearPair, Scenario, damage_kinds};
+
+    #[test]
+    fn exactly_the_kinds_that_validation_lets_through_have_a_geometry() {
+        for kind in damage_kinds() {
+            let mut scenario = Scenario::new(GearPair::example());
+            scenario.model = Model::Published;
+            scenario.faults = vec![Fault::on_first_gear_tooth(kind.example.clone())];
+            let teeth = crate::published::teeth(&scenario.gears, [10.0; 2]);
+            let (checked, made) = (scenario.validate(), geometry(&kind.example, &teeth, 0));
+            assert_eq!(checked.err().map(|error| error.key), made.err().map(|error| error.key), "{}", kind.name);
+        }
     }
 }

@@ -46,6 +46,7 @@ pub struct Indicators {
 
 /// One line of a table of indicators.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct IndicatorValue {
     /// Name, as the path of fields: `difference_kurtosis`, `fm4`.
     pub name: String,

@@ -5,6 +5,7 @@ use crate::signal::{crest_factor, kurtosis, peak, peak_to_peak, rms, skewness, s
 
 /// Size and shape of a signal; `µ_k = Σ(x − x̄)ᵏ/n`.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct ShapeIndicators {
     /// (the signal's unit) Root mean square, `√(Σx²/n)`, mean included.
     pub rms: f64,

@@ -219,6 +219,10 @@ pub fn find_mismatch(angular: &AngularSignal, stated: &StatedFacts) -> Option<Mi
 
 /// The evidence for a hypothesis, where it is clearly more than that for the stated facts.
 ///
+/// Mesh orders that both have in common say nothing and are left out. Each kind of hypothesis then needs the evidence that a mistake of its
+/// kind would leave, of the mesh, of the wheel's or of the mate's orders; and in sum it must have clearly more than the stated facts,
+/// because a wrong warning is worse than none.
+///
 /// # Arguments
 /// * `may_be_speed` - whether other teeth are stated from another speed by nothing
 fn evidence_if_better(

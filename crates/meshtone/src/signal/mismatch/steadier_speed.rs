@@ -98,6 +98,9 @@ fn amplitude(values: &[f64], wave: &[Complex64]) -> Complex64 {
 
 /// The speed near that of a hypothesis at which the mesh harmonics are steadiest.
 ///
+/// Few harmonics that stand out are followed. An approximation that is quick to compute is looked at over the whole range, the exact
+/// measure only about its best place, and a parabola through three values gives the place between the steps.
+///
 /// None where no harmonic stands out, or none is steady.
 pub(super) fn steadier_speed(
     angular: &AngularSignal,

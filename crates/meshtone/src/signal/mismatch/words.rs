@@ -8,6 +8,10 @@ use super::{Alternative, Mismatch, StatedTurning};
 const SAME_COUNT: f64 = 0.01;
 
 impl Display for Mismatch {
+    /// Says which facts would fit the recording, and what to check.
+    ///
+    /// Each alternative ends in what to check or to state. Where another speed means another whole tooth count as well, the count is
+    /// mentioned, since the mesh frequency alone does not distinguish the two.
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         let teeth = self.stated.teeth;
         match self.alternative {
@@ -53,7 +57,7 @@ impl Display for Mismatch {
                     write!(f, ": the average then holds {ratio:.1} times the energy at the mesh orders")?;
                 }
                 write!(f, "; state that speed, or follow the mesh tone")?;
-                // The mesh frequency alone does not tell a speed from a tooth count.
+                // The mesh frequency alone does not distinguish a speed from a tooth count.
                 let count = f64::from(teeth) * speed_hz / stated_hz;
                 if count.round() != f64::from(teeth) && (count - count.round()).abs() < SAME_COUNT {
                     write!(f, ". Or the wheel has {count:.0} teeth and the speed is right")?;

@@ -42,6 +42,9 @@ pub(super) fn check(signal: &[f64], sampling_rate_hz: f64, tone: &MeshTone) -> R
 }
 
 /// Checks whether there is a tone in the band, and none stronger beside it.
+///
+/// Without a tone the phase of the band would be that of noise, which is an error. A stronger tone near by is the mesh at another speed
+/// than was stated, perhaps, and a warning; unless many lines beside it are as strong, as where a resonance rings.
 pub(super) fn check_tone(
     spectrum: &[Complex64],
     band: &Band,

@@ -2,7 +2,7 @@
 
 use meshtone::scenario::KeyDescription;
 
-/// Every key, that of the pinion with that of the gear where nothing but name and default tells them apart; the gear's then has
+/// Every key, that of the pinion with that of the gear where nothing but name and default distinguishes them; the gear's then has
 /// no place of its own.
 pub fn of_both_wheels(keys: &[KeyDescription]) -> Vec<(&KeyDescription, Option<&KeyDescription>)> {
     let mate = |key: &KeyDescription, of: &str, mates: &str| {
