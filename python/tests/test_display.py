@@ -41,7 +41,7 @@ def test_pages_are_light() -> None:
     # What has a unit shows it, also what the channel's name does not state the unit of.
     assert re.search(r"difference_rms</td><td[^>]*>[\d.]+ g<", page) and re.search(r"difference_kurtosis</td><td[^>]*>[\d.]+<", page)
     assert re.search(r"average_rms</td><td[^>]*>[\d.]+ g<", simulation.process()._repr_html_())
-    bearing = mt.process_channel(simulation.vertical_g, mt.ShaftPhase.constant(40, simulation.sampling_rate_hz, 245480), 17, name="bearing")
+    bearing = mt.process_channel(simulation.vertical_g, mt.ShaftPhase.constant(40, simulation.sampling_rate_hz, 95608), 17, name="bearing")
     assert re.search(r"average_rms</td><td[^>]*>[\d.]+<", bearing._repr_html_()) and "(g)" not in bearing._repr_html_()
 
 

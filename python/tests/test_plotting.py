@@ -23,7 +23,7 @@ def test_axes_of_ones_own(broken: meshtone.Simulation) -> None:
     figure, ax = plt.subplots()
     assert broken.plot_signal("horizontal_g", revolutions=1, ax=ax) is ax
     [line] = ax.lines
-    assert np.size(line.get_xdata()) == 14440
+    assert np.size(line.get_xdata()) == 5624
     assert ax.get_ylabel() == "Horizontal acceleration (g)"
     plt.close(figure)
 

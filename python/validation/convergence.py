@@ -1,6 +1,6 @@
 """What half the step changes under the model of contact, by indicator.
 
-The healthy example and damages of its gear, sixteen draws of the wheels each, at the default step of 1/258400 s and at half of it. For
+The healthy example and damages of its gear, sixteen draws of the wheels each, at a step of 1/258400 s and at half of it. For
 every indicator of the gear's difference signal, and for the mesh force: the change of the mean over the draws, and in brackets the largest
 change of a draw, in per cent. Before that, how a motion's sensitivity shows: two simulations whose loads differ by 1e-9. Last, such a
 motion: no step repeats it, and what can be compared are means over many draws, and the draws' scatter beside that of the 1e-9.

@@ -13,7 +13,7 @@
 //! let chip = ToothBreakage { chip_height_mm: 5.0, chip_width_mm: 12.0, tip_loss_mm: 0.0 };
 //! scenario.faults = vec![Fault::on_first_gear_tooth(chip)];
 //! let simulation = meshtone::simulate(&scenario)?;
-//! assert_eq!(simulation.channels.vertical_g.len(), 245_480);
+//! assert_eq!(simulation.channels.vertical_g.len(), 95_608);
 //! # Ok::<(), meshtone::Error>(())
 //! ```
 //!

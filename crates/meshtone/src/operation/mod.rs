@@ -91,6 +91,23 @@ pub(crate) fn samples_per_pitch(sampling_rate_hz: f64, pinion_teeth: u32, pinion
     (sampling_rate_hz / (f64::from(pinion_teeth) * pinion_speed_hz) * (1.0 - 1e-12)).ceil() as usize
 }
 
+/// The same by the rule of the published model, with a multiple of the least common multiple `L` of the tooth counts in a revolution of
+/// the pinion: the rate is `⌈f/(L f_p) + 6⌉ L f_p`.
+///
+/// # Arguments
+/// * `sampling_rate_hz` - (S/s) the nominal rate
+/// * `teeth` - of the pinion and of the gear
+/// * `pinion_speed_hz` - (rev/s) nominal speed
+pub(crate) fn samples_per_pitch_of_published(
+    sampling_rate_hz: f64,
+    teeth: [u32; 2],
+    pinion_speed_hz: f64,
+) -> usize {
+    let multiple = least_common_multiple(teeth[0], teeth[1]);
+    let per_multiple = (sampling_rate_hz / (f64::from(multiple) * pinion_speed_hz) + 6.0).ceil();
+    (per_multiple as usize).saturating_mul((multiple / teeth[0]) as usize)
+}
+
 /// Division of the mesh cycle (one gear revolution), in fractions of a pinion revolution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CycleGrid {

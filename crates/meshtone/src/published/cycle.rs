@@ -1,6 +1,6 @@
 //! The cycle's grid, and positions in it, in the floating-point arithmetic of the published code.
 
-use crate::operation::{CycleGrid, FINE_PER_COARSE, least_common_multiple};
+use crate::operation::{CycleGrid, FINE_PER_COARSE};
 use crate::scenario::Scenario;
 
 /// The division of the cycle, which follows the nominal sampling rate. A pitch has `⌈(1/z_p)/d_f⌉` fine points: where that quotient is
@@ -17,16 +17,6 @@ pub(super) fn grid(scenario: &Scenario) -> CycleGrid {
             .div_ceil(FINE_PER_COARSE),
         ..grid
     }
-}
-
-/// Number of samples from one pair of teeth to the next: the sampling rate is `⌈f/(L f_p) + 6⌉ L f_p`, with `L` the least common multiple
-/// of the tooth counts, `f` the nominal rate and `f_p` the pinion's speed.
-pub(crate) fn samples_per_pitch(scenario: &Scenario) -> usize {
-    let [pinion_teeth, gear_teeth] = [scenario.gears.pinion_teeth, scenario.gears.gear_teeth];
-    let multiple = least_common_multiple(pinion_teeth, gear_teeth);
-    let multiple_hz = f64::from(multiple) * scenario.operation.pinion_speed_hz;
-    let per_multiple = (scenario.solver.sampling_rate_hz / multiple_hz + 6.0).ceil();
-    (per_multiple as usize).saturating_mul((multiple / pinion_teeth) as usize)
 }
 
 /// Octave's remainder of a division by a number that need not be whole: 0 where the quotient is whole but for a rounding error.

@@ -13,7 +13,6 @@ mod newmark;
 mod teeth;
 mod trace;
 
-pub(crate) use cycle::samples_per_pitch;
 #[cfg(feature = "internals")]
 pub use teeth::relieved_teeth;
 pub use teeth::teeth;

@@ -35,8 +35,7 @@ pub(crate) use validate::unknown_kind;
 pub use validate::{MEMORY_LIMIT_BYTES, MemoryLimit};
 
 use crate::keys::Keys;
-use crate::operation::{Motion, TimeGrid, samples_per_pitch};
-use crate::published;
+use crate::operation::{Motion, TimeGrid, samples_per_pitch, samples_per_pitch_of_published};
 
 /// Everything that one simulation depends on.
 ///
@@ -162,10 +161,11 @@ impl Scenario {
     /// Division of time: sampling, length, what is discarded.
     pub fn time_grid(&self) -> TimeGrid {
         let Self { gears, operation, solver, .. } = self;
+        let (rate_hz, speed_hz) = (solver.sampling_rate_hz, operation.pinion_speed_hz);
         let samples_per_pitch = if self.model.has_meshes() {
-            samples_per_pitch(solver.sampling_rate_hz, gears.pinion_teeth, operation.pinion_speed_hz)
+            samples_per_pitch(rate_hz, gears.pinion_teeth, speed_hz)
         } else {
-            published::samples_per_pitch(self)
+            samples_per_pitch_of_published(rate_hz, [gears.pinion_teeth, gears.gear_teeth], speed_hz)
         };
         TimeGrid::new(gears, operation, solver, samples_per_pitch)
     }

@@ -169,13 +169,15 @@ impl Stages {
         result.map_err(|diverged| self.divergence(diverged))
     }
 
-    /// The simulation as it is solved side by side with others; none under the published model, which is solved alone.
+    /// The simulation as it is solved side by side with others; none where it is solved alone: under the published model,
+    /// and machines of several meshes.
     ///
     /// # Arguments
     /// * `outputs` - what is read off the solution, of the kept samples
     pub(crate) fn lane<'a>(&'a self, outputs: &'a [Output]) -> Option<Problem<'a>> {
         let (train, modes) = self.train()?;
-        Some(self.problem(train, modes, outputs, self.time.first_kept_sample))
+        let problem = self.problem(train, modes, outputs, self.time.first_kept_sample);
+        problem.fits_a_lane().then_some(problem)
     }
 
     /// The simulation as the solver sees it.

@@ -6,7 +6,7 @@ use super::lane_outputs::LaneOutputs;
 use super::modal::ModalMachine;
 use super::outputs::{EXTERNALS, Output};
 use super::prepare::Prepared;
-use super::step::{Coefficients, Size, State, StepBlock, law_lanes};
+use super::step::{Coefficients, MOST_MODES, Size, State, StepBlock, law_lanes};
 use crate::mesh::{Forcing, ForcingBlock, MeshLaw, PairsSample};
 use crate::operation::TimeGrid;
 use crate::simd::{InstructionSet, Lanes};
@@ -75,6 +75,13 @@ pub struct Problem<'a> {
     pub first_sample: usize,
 }
 
+impl Problem<'_> {
+    /// Whether the steps that are compiled for simulations side by side hold it: one mesh, and no more modes than the largest has.
+    pub(crate) fn fits_a_lane(&self) -> bool {
+        self.machine.lines.len() == 1 && self.machine.modes() <= MOST_MODES
+    }
+}
+
 /// (m √kg) Displacement of a mode, with a modal mass of 1 kg, that no machine has: a motion that reaches it grows without bound.
 const LARGEST_DISPLACEMENT: f64 = 1e12;
 
@@ -102,7 +109,7 @@ pub fn integrate(
     instructions: InstructionSet,
     recorder: &mut dyn Recorder,
 ) -> Result<(), Diverged> {
-    if problem.machine.lines.len() != 1 {
+    if !problem.fits_a_lane() {
         return coupled::integrate(problem, recorder);
     }
     let size = Size::of(&problem);
@@ -136,7 +143,7 @@ fn of_size<const L: usize>(
     match size {
         Size::Flat => run::<L, 8, 1>(problems, instructions, recorders),
         Size::Tilting => run::<L, 12, 2>(problems, instructions, recorders),
-        Size::General => run::<L, 17, 2>(problems, instructions, recorders),
+        Size::General => run::<L, MOST_MODES, 2>(problems, instructions, recorders),
     }
 }
 

@@ -27,6 +27,9 @@ use crate::simd::{Instructions, Lanes, Task, dot};
 /// Number of modes above which a step is compiled for any motion of motor and brake; below, both are steady.
 pub(super) const MOST_STEADY_MODES: usize = 12;
 
+/// Number of modes of the largest machine that a step is compiled for; larger ones are stepped by [`super::coupled`].
+pub(super) const MOST_MODES: usize = 17;
+
 /// Constants of one simulation (`L` = 1) or of several side by side: `N` modes, and `R` columns of the mesh's line of action, one at the
 /// middle of the face, and one for what is added per m along it. What they mean is said at [`Prepared`].
 ///
@@ -255,7 +258,7 @@ pub(super) enum Size {
     Flat,
     /// The load moves along the face and tilts the wheels: 12 modes.
     Tilting,
-    /// Any motion of motor and brake, or any initial velocity: 17 modes.
+    /// Any motion of motor and brake, or any initial velocity: [`MOST_MODES`].
     General,
 }
 
