@@ -39,7 +39,7 @@ def spectra(scenario: mt.Scenario, rate_hz: float) -> tuple[np.ndarray, np.ndarr
 def error_percent(coarse: np.ndarray, fine: np.ndarray) -> float:
     """Rms of the difference over the rms, in per cent."""
     count = min(len(coarse), len(fine))
-    return 100 * np.linalg.norm(coarse[:count] - fine[:count]) / np.linalg.norm(fine[:count])
+    return float(100 * np.linalg.norm(coarse[:count] - fine[:count]) / np.linalg.norm(fine[:count]))
 
 
 for pinion_teeth, gear_teeth, torque_nm, speed_hz in PAIRS:

@@ -86,7 +86,9 @@ fn check_same(plan: &Plan, to: &Destination, manifest: &ReadManifest) -> Result<
         manifest.check_columns(to)?;
     }
     if manifest.plan != plan.hash() {
-        let problem = format!("the data set in {to} was begun with another plan");
+        let problem = format!(
+            "the data set in {to} was begun with another plan, or by a Meshtone whose simulations gave other numbers"
+        );
         let help =
             format!("{} there is that plan; name another directory for this one with -o", PlanFile::NAMES[0]);
         return Err(DatasetError::refused(problem, help));

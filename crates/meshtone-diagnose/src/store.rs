@@ -6,6 +6,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
+use meshtone::PHYSICS_VERSION;
 use meshtone::batch::Control;
 use meshtone::wheel::WheelName;
 use meshtone_fourier::Complex64;
@@ -87,7 +88,7 @@ impl ReferenceStore {
         let mut hash = Sha256::new();
         hash.update(env!("CARGO_PKG_VERSION"));
         // Every field is plain data, and numbers are written so that they are read back exactly.
-        hash.update(format!("{FORMAT} {RECORDS_PER_UNIT} {MESH_ORDERS} {prior:?}"));
+        hash.update(format!("{PHYSICS_VERSION} {FORMAT} {RECORDS_PER_UNIT} {MESH_ORDERS} {prior:?}"));
         for kind in prior.kinds() {
             hash.update(format!("{} {:?};", kind.name, kind.sizes));
         }

@@ -38,8 +38,9 @@ impl RunIdentity {
     /// # Arguments
     /// * `scenario` - what is simulated, as the user asked for it
     pub fn of(scenario: &Scenario) -> Self {
-        // No text of a scenario contains the byte 0, which keeps the two apart.
-        let text = [env!("CARGO_PKG_VERSION"), &scenario.to_toml()].join("\0");
+        // No text of a scenario contains the byte 0, which keeps them apart.
+        let physics = meshtone::PHYSICS_VERSION.to_string();
+        let text = [env!("CARGO_PKG_VERSION"), &physics, &scenario.to_toml()].join("\0");
         Self(fnv_1a(text.as_bytes()))
     }
 

@@ -156,13 +156,13 @@ impl Plan {
         self.content.classes.iter().map(|class| class.count).sum()
     }
 
-    /// The SHA-256 of the plan's content and the program's version, in hexadecimal digits. Plans that say the same have the same hash,
+    /// The SHA-256 of the plan's content and of the versions of the program and of its numbers, in hexadecimal digits. Plans that say the same have the same hash,
     /// whatever their layout, comments and description.
     ///
     /// Another version of the program may compute other numbers, and therefore gives another hash.
     pub fn hash(&self) -> String {
         // Every field is plain data, and numbers are written so that they are read back exactly.
-        let text = format!("{}{:?}", env!("CARGO_PKG_VERSION"), self.content);
+        let text = format!("{}{}{:?}", env!("CARGO_PKG_VERSION"), meshtone::PHYSICS_VERSION, self.content);
         Digest::of(text.as_bytes()).sha256.to_string()
     }
 }
