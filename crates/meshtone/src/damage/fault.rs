@@ -6,7 +6,7 @@ use super::severity::SoundTooth;
 use super::{Damage, FaultyTeeth, MissingTooth};
 use crate::error::ScenarioError;
 use crate::keys::{
-    Check, KeyDescription, Keys, NoFiles, Range, Row, check_keys, commented_rows, describe, describe_from,
+    Check, KeyDescription, KeyRow, Keys, NoFiles, Range, check_keys, commented_rows, describe, describe_from,
     field, read_keys, require, row, write_keys,
 };
 use crate::wheel::{Gears, Teeth, WheelName};
@@ -124,7 +124,7 @@ impl Keys for Fault {
         Self::on_first_gear_tooth(MissingTooth)
     }
 
-    fn rows() -> Vec<Row<Self>> {
+    fn rows() -> Vec<KeyRow<Self>> {
         vec![
             row("wheel", "", "the damaged wheel", field!(wheel)),
             row(

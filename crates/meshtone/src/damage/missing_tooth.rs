@@ -3,7 +3,7 @@
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
 use super::severity::SoundTooth;
 use super::{DamageDescription, DamageResult, FacePatch, Kind, ToothPart};
-use crate::keys::{Check, Keys, Row};
+use crate::keys::{Check, KeyRow, Keys};
 use crate::wheel::Gears;
 
 /// A tooth that is gone: it carries nothing.
@@ -15,7 +15,7 @@ impl Keys for MissingTooth {
         Self
     }
 
-    fn rows() -> Vec<Row<Self>> {
+    fn rows() -> Vec<KeyRow<Self>> {
         Vec::new()
     }
 }

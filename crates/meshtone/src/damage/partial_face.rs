@@ -5,7 +5,7 @@ use meshtone_toml::{ReadResult, TomlTable};
 
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
 use super::{DamageResult, Kind, PitCircle, ToothPart};
-use crate::keys::{Check, Keys, NumberFiles, Range, Row, check_keys, field, flatten, require, row};
+use crate::keys::{Check, KeyRow, Keys, NumberFiles, Range, check_keys, field, flatten, require, row};
 use crate::wheel::Gears;
 
 /// A pit over a part of the face width, from one side.
@@ -22,7 +22,7 @@ impl Keys for PartialFace {
         Self { width_mm: f64::NAN, pit: PitCircle::start() }
     }
 
-    fn rows() -> Vec<Row<Self>> {
+    fn rows() -> Vec<KeyRow<Self>> {
         let width =
             row("width_mm", "mm", "the width of the pit along the face, from one side", field!(width_mm))
                 .required_unless(&["severity"])

@@ -11,7 +11,7 @@ use super::severity::SoundTooth;
 use super::{DamageDescription, FacePatch, Kind, QuantityValue};
 use crate::error::ScenarioError;
 use crate::interpolation::UniformLinear;
-use crate::keys::{Check, Keys, NumberFiles, Range, Row, field, row, sub_table};
+use crate::keys::{Check, KeyRow, Keys, NumberFiles, Range, field, row, sub_table};
 use crate::wheel::{ToothProfile, first_minimum};
 use std::f64::consts::PI;
 
@@ -44,7 +44,7 @@ impl Keys for PitCircle {
         Self::Fractions { start: f64::NAN, end: f64::NAN, depth: f64::NAN }
     }
 
-    fn rows() -> Vec<Row<Self>> {
+    fn rows() -> Vec<KeyRow<Self>> {
         vec![
             row(
                 "start",

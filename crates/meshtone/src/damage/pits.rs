@@ -10,7 +10,7 @@ use super::pit_circle::flank_index;
 use super::severity::{LARGEST, SoundTooth};
 use super::{DamageDescription, DamageResult, FacePatch, FlankPits, Kind, QuantityValue, ToothPart};
 use crate::error::ScenarioError;
-use crate::keys::{Check, Keys, NumberFiles, Range, Row, check_keys, field, require, row, sub_table};
+use crate::keys::{Check, KeyRow, Keys, NumberFiles, Range, check_keys, field, require, row, sub_table};
 use crate::random::{Draws, Purpose};
 use crate::wheel::{Gears, ToothProfile};
 
@@ -77,8 +77,8 @@ impl Keys for Pits {
         Self::Listed { at: none(), z_mm: none(), radius_mm: none(), face_radius_mm: None, depth_mm: none() }
     }
 
-    fn rows() -> Vec<Row<Self>> {
-        let listed = |row: Row<Self>| row.required_unless(&["random", "severity"]);
+    fn rows() -> Vec<KeyRow<Self>> {
+        let listed = |row: KeyRow<Self>| row.required_unless(&["random", "severity"]);
         let drawn =
             |name, unit, meaning, field, range| row(name, unit, meaning, field).required().range(range);
         vec![

@@ -8,7 +8,7 @@ use super::description::{hundredths, tenths};
 use super::severity::{LARGEST, SoundTooth};
 use super::{DamageDescription, DamageResult, FacePatch, Kind, QuantityValue, ToothPart};
 use crate::error::ScenarioError;
-use crate::keys::{Check, Keys, Range, Row, below, check_keys, field, require, row};
+use crate::keys::{Check, KeyRow, Keys, Range, below, check_keys, field, require, row};
 use crate::wheel::{Gears, ToothProfile};
 
 /// A crack from the fillet of the working flank into the tooth.
@@ -28,7 +28,7 @@ impl Keys for RootCrack {
         Self { depth_mm: f64::NAN, angle_deg: 45.0, length_mm: None }
     }
 
-    fn rows() -> Vec<Row<Self>> {
+    fn rows() -> Vec<KeyRow<Self>> {
         vec![
             row(
                 "depth_mm",

@@ -5,7 +5,7 @@ use meshtone_toml::{ReadResult, TomlTable};
 
 use super::damaged_tooth::{DamagedTooth, HealthyTooth};
 use super::{DamageResult, Kind, PitCircle, ToothPart};
-use crate::keys::{Check, Keys, NumberFiles, Row, check_keys, field, flatten};
+use crate::keys::{Check, KeyRow, Keys, NumberFiles, check_keys, field, flatten};
 use crate::wheel::Gears;
 
 /// A pit over the whole face width.
@@ -20,7 +20,7 @@ impl Keys for ThroughFace {
         Self { pit: PitCircle::start() }
     }
 
-    fn rows() -> Vec<Row<Self>> {
+    fn rows() -> Vec<KeyRow<Self>> {
         flatten(field!(pit)).collect()
     }
 

@@ -5,7 +5,7 @@ use super::description::hundredths;
 use super::severity::SoundTooth;
 use super::{DamageDescription, DamageResult, FacePatch, Kind, QuantityValue, ToothPart};
 use crate::error::ScenarioError;
-use crate::keys::{Check, Keys, Range, Row, below, check_keys, field, require, row};
+use crate::keys::{Check, KeyRow, Keys, Range, below, check_keys, field, require, row};
 use crate::wheel::Gears;
 use crate::wheel::ToothProfile;
 
@@ -25,7 +25,7 @@ impl Keys for ToothBreakage {
         Self { chip_height_mm: f64::NAN, chip_width_mm: f64::NAN, tip_loss_mm: 0.0 }
     }
 
-    fn rows() -> Vec<Row<Self>> {
+    fn rows() -> Vec<KeyRow<Self>> {
         vec![
             row(
                 "chip_height_mm",

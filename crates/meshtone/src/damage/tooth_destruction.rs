@@ -11,7 +11,7 @@ use super::fault::end_after;
 use super::pit_circle::flank_index;
 use super::{DamageDescription, DamageResult, FacePatch, Kind, PaperRig, QuantityValue, ToothPart};
 use crate::error::ScenarioError;
-use crate::keys::{Check, Keys, NumberFiles, Range, Row, below, check_keys, field, flatten, row};
+use crate::keys::{Check, KeyRow, Keys, NumberFiles, Range, below, check_keys, field, flatten, row};
 use crate::random::{Draws, Purpose};
 use crate::wheel::ToothProfile;
 use crate::wheel::{Gears, HALF_THICKNESS};
@@ -44,7 +44,7 @@ impl Keys for ToothDestruction {
         Self { start: f64::NAN, line: DestructionLine::start(), offset_mm: 0.0, noise_mm: 0.0 }
     }
 
-    fn rows() -> Vec<Row<Self>> {
+    fn rows() -> Vec<KeyRow<Self>> {
         let start = row(
             "start",
             "-",
@@ -82,7 +82,7 @@ impl Keys for DestructionLine {
         Self::End(f64::NAN)
     }
 
-    fn rows() -> Vec<Row<Self>> {
+    fn rows() -> Vec<KeyRow<Self>> {
         vec![
             row(
                 "end",

@@ -5,7 +5,7 @@ use super::description::hundredths;
 use super::severity::SoundTooth;
 use super::{DamageDescription, DamageResult, FacePatch, FaultyTeeth, Kind, QuantityValue, ToothPart};
 use crate::error::ScenarioError;
-use crate::keys::{Check, Keys, Range, Row, check_keys, field, row};
+use crate::keys::{Check, KeyRow, Keys, Range, check_keys, field, row};
 use crate::wheel::{Gears, Teeth, WheelName};
 
 /// Worn working flanks: the sliding wear of Archard's law, scaled to its largest depth.
@@ -28,7 +28,7 @@ impl Keys for Wear {
         Self { depth_um: f64::NAN }
     }
 
-    fn rows() -> Vec<Row<Self>> {
+    fn rows() -> Vec<KeyRow<Self>> {
         vec![
             row("depth_um", "µm", "the largest depth of wear, along the flank's normal", field!(depth_um))
                 .required_unless(&["severity"])

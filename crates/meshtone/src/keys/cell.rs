@@ -6,7 +6,7 @@ use super::check::Check;
 use super::description::{KeyDescription, KeyKind};
 use super::files::NumberFiles;
 use super::range::Range;
-use super::row::Row;
+use super::row::KeyRow;
 use super::table::{Keys, written_pairs};
 use super::text::inline_table;
 use super::value::{KeyValue, Written};
@@ -51,7 +51,7 @@ impl<S> Cell<S> for ReadElsewhere {
 }
 
 /// A table inside a section whose values are the section's own.
-pub(super) struct SubTable<S>(pub(super) Vec<Row<S>>);
+pub(super) struct SubTable<S>(pub(super) Vec<KeyRow<S>>);
 
 impl<S> Cell<S> for SubTable<S> {
     fn read(&self, section: &mut S, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
@@ -156,7 +156,7 @@ impl<S, P> Cell<S> for PartCell<S, P> {
 }
 
 /// The rows of a part of a section, whose keys stand among the section's own rather than in a table of theirs.
-pub(crate) fn flatten<S: 'static, P: Keys>(part: Field<S, P>) -> impl Iterator<Item = Row<S>> {
+pub(crate) fn flatten<S: 'static, P: Keys>(part: Field<S, P>) -> impl Iterator<Item = KeyRow<S>> {
     let Field { get, get_mut } = part;
     P::rows().into_iter().map(move |row| row.moved(|cell| Box::new(PartCell { get, get_mut, cell })))
 }

@@ -11,7 +11,7 @@
 //!         Shaft { length_mm: 200.0, radius_mm: 10.0 }
 //!     }
 //!
-//!     fn rows() -> Vec<Row<Self>> {
+//!     fn rows() -> Vec<KeyRow<Self>> {
 //!         vec![
 //!             row("length_mm", "mm", "length between wheel and motor or brake", field!(length_mm))
 //!                 .range(Range::positive().implausible_above(1e6)),
@@ -42,7 +42,7 @@ pub use files::FileProblem;
 pub(crate) use files::{NoFiles, NumberFiles, load};
 pub(crate) use names::by_name;
 pub(crate) use range::Range;
-pub(crate) use row::{Row, comment, documented, row, sub_table};
+pub(crate) use row::{KeyRow, comment, documented, row, sub_table};
 pub(crate) use table::{
     Keys, check_keys, check_rows, commented, commented_rows, describe, describe_from, read_keys, rows_but,
     write_keys, write_rows,

@@ -12,7 +12,7 @@ use super::value::{KeyValue, Written};
 use crate::model::models_ignoring;
 
 /// One key of a section: everything about it that does not depend on other keys.
-pub(crate) struct Row<S> {
+pub(crate) struct KeyRow<S> {
     pub(crate) name: &'static str,
     unit: &'static str,
     meaning: &'static str,
@@ -57,8 +57,8 @@ pub(crate) fn row<S: 'static, V: KeyValue>(
     unit: &'static str,
     meaning: &'static str,
     field: Field<S, V>,
-) -> Row<S> {
-    Row::new(name, unit, meaning, Box::new(field))
+) -> KeyRow<S> {
+    KeyRow::new(name, unit, meaning, Box::new(field))
 }
 
 /// A row of a table inside the section whose keys are values of the section itself.
@@ -67,8 +67,12 @@ pub(crate) fn row<S: 'static, V: KeyValue>(
 /// * `name` - the key
 /// * `meaning` - what it says
 /// * `rows` - the keys inside it
-pub(crate) fn sub_table<S: 'static>(name: &'static str, meaning: &'static str, rows: Vec<Row<S>>) -> Row<S> {
-    Row::new(name, "", meaning, Box::new(SubTable(rows)))
+pub(crate) fn sub_table<S: 'static>(
+    name: &'static str,
+    meaning: &'static str,
+    rows: Vec<KeyRow<S>>,
+) -> KeyRow<S> {
+    KeyRow::new(name, "", meaning, Box::new(SubTable(rows)))
 }
 
 /// A row that is read together with others, in [`Keys::choose`](super::Keys::choose).
@@ -77,11 +81,11 @@ pub(crate) fn sub_table<S: 'static>(name: &'static str, meaning: &'static str, r
 /// * `name` - the key
 /// * `meaning` - what it says
 /// * `kind` - of its value
-pub(crate) fn documented<S>(name: &'static str, meaning: &'static str, kind: KeyKind) -> Row<S> {
-    Row::new(name, "", meaning, Box::new(ReadElsewhere(kind)))
+pub(crate) fn documented<S>(name: &'static str, meaning: &'static str, kind: KeyKind) -> KeyRow<S> {
+    KeyRow::new(name, "", meaning, Box::new(ReadElsewhere(kind)))
 }
 
-impl<S> Row<S> {
+impl<S> KeyRow<S> {
     fn new(name: &'static str, unit: &'static str, meaning: &'static str, cell: Box<dyn Cell<S>>) -> Self {
         Self {
             name,
@@ -135,10 +139,10 @@ impl<S> Row<S> {
     }
 
     /// Moves the row to another section, with the value elsewhere.
-    pub(super) fn moved<T>(self, move_cell: impl FnOnce(Box<dyn Cell<S>>) -> Box<dyn Cell<T>>) -> Row<T> {
+    pub(super) fn moved<T>(self, move_cell: impl FnOnce(Box<dyn Cell<S>>) -> Box<dyn Cell<T>>) -> KeyRow<T> {
         let Self { name, unit, meaning, absent, range, rule, shown, cell } = self;
         let cell = move_cell(cell);
-        Row { name, unit, meaning, absent, range, rule, shown, cell }
+        KeyRow { name, unit, meaning, absent, range, rule, shown, cell }
     }
 
     /// Sets the key in one section to its value in another.

@@ -5,7 +5,7 @@ use meshtone_toml::{ReadResult, TomlTable};
 use super::check::Check;
 use super::description::KeyDescription;
 use super::files::NumberFiles;
-use super::row::Row;
+use super::row::KeyRow;
 use super::value::Written;
 
 /// Parameters that stand in one table of the scenario file.
@@ -20,7 +20,7 @@ pub(crate) trait Keys: Clone + PartialEq + 'static {
     fn start() -> Self;
 
     /// Lists the keys in the order in which they are read and written.
-    fn rows() -> Vec<Row<Self>>;
+    fn rows() -> Vec<KeyRow<Self>>;
 
     /// Chooses one of several forms of the table, for parameters that can be given in several ways; the form's keys are read
     /// afterwards.
@@ -43,13 +43,13 @@ pub(crate) fn read_keys<S: Keys>(
 }
 
 /// The rows of a section but for some, by their names.
-pub(crate) fn rows_but<S: Keys>(names: &[&str]) -> Vec<Row<S>> {
+pub(crate) fn rows_but<S: Keys>(names: &[&str]) -> Vec<KeyRow<S>> {
     S::rows().into_iter().filter(|row| !names.contains(&row.name)).collect()
 }
 
 /// The keys and values of some rows.
-pub(super) fn written_pairs<S>(rows: &[Row<S>], section: &S) -> Vec<(String, String)> {
-    let pairs = |row: &Row<S>| match row.write(section) {
+pub(super) fn written_pairs<S>(rows: &[KeyRow<S>], section: &S) -> Vec<(String, String)> {
+    let pairs = |row: &KeyRow<S>| match row.write(section) {
         Written::Nothing => Vec::new(),
         Written::Value(value) => vec![(row.name.to_string(), value)],
         Written::Lines(pairs) => {
@@ -65,7 +65,7 @@ pub(crate) fn write_keys<S: Keys>(section: &S) -> String {
 }
 
 /// The lines of some keys of a section.
-pub(crate) fn write_rows<S: Keys>(rows: &[Row<S>], section: &S) -> String {
+pub(crate) fn write_rows<S: Keys>(rows: &[KeyRow<S>], section: &S) -> String {
     written_pairs(rows, section).iter().map(|(key, value)| format!("{key} = {value}\n")).collect()
 }
 
@@ -79,7 +79,7 @@ pub(crate) fn check_keys<S: Keys>(section: &S, path: &str) -> Check {
 }
 
 /// Some keys alone.
-pub(crate) fn check_rows<S: Keys>(rows: &[Row<S>], section: &S, path: &str) -> Check {
+pub(crate) fn check_rows<S: Keys>(rows: &[KeyRow<S>], section: &S, path: &str) -> Check {
     rows.iter().try_for_each(|row| row.check(section, path))
 }
 
@@ -99,6 +99,6 @@ pub(crate) fn commented<S: Keys>(section: &S) -> String {
 }
 
 /// The lines of some keys of a section, likewise, with what `start` has as defaults.
-pub(crate) fn commented_rows<S: Keys>(rows: &[Row<S>], section: &S, start: &S) -> String {
+pub(crate) fn commented_rows<S: Keys>(rows: &[KeyRow<S>], section: &S, start: &S) -> String {
     rows.iter().map(|row| row.commented(section, start, S::SECTION)).collect()
 }

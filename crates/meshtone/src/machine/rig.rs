@@ -5,7 +5,7 @@ use std::ops::Bound::Excluded;
 use meshtone_toml::{ReadResult, TomlValue};
 
 use crate::keys::{
-    Check, KeyKind, KeyValue, Keys, NumberFiles, Range, Row, Written, below, check_keys, field, row,
+    Check, KeyKind, KeyValue, Keys, NumberFiles, Range, KeyRow, Written, below, check_keys, field, row,
 };
 use crate::wheel::{Gears, WheelName};
 
@@ -70,7 +70,7 @@ impl Keys for Rig {
         Self::default()
     }
 
-    fn rows() -> Vec<Row<Self>> {
+    fn rows() -> Vec<KeyRow<Self>> {
         const DISC: &str = "those of a solid disc of pitch radius";
         vec![
             row(
@@ -200,7 +200,7 @@ impl Keys for Support {
         Self::default()
     }
 
-    fn rows() -> Vec<Row<Self>> {
+    fn rows() -> Vec<KeyRow<Self>> {
         vec![
             row("mass_kg", "kg", "the mass of each support", field!(mass_kg)).range(MASS),
             row(
@@ -321,7 +321,7 @@ impl Keys for Shaft {
         Self::new(f64::NAN, f64::NAN)
     }
 
-    fn rows() -> Vec<Row<Self>> {
+    fn rows() -> Vec<KeyRow<Self>> {
         vec![
             row("length_mm", "mm", "the length from the wheel to motor or brake", field!(length_mm))
                 .range(Range::positive().implausible_above(1e6)),
@@ -374,7 +374,7 @@ impl Keys for WheelInertia {
         Self::default()
     }
 
-    fn rows() -> Vec<Row<Self>> {
+    fn rows() -> Vec<KeyRow<Self>> {
         const DISC: &str = "the disc's";
         vec![
             row("mass_kg", "kg", "the mass", field!(mass_kg)).otherwise(DISC).range(MASS),

@@ -3,7 +3,7 @@
 use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 
 use crate::keys::{
-    Check, KeyKind, KeyValue, Keys, NumberFiles, Range, Row, Written, array, field, load, row,
+    Check, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, Written, array, field, load, row,
 };
 
 /// Drive and load of the pair.
@@ -49,7 +49,7 @@ impl Keys for Operation {
         Self::new(f64::NAN, f64::NAN)
     }
 
-    fn rows() -> Vec<Row<Self>> {
+    fn rows() -> Vec<KeyRow<Self>> {
         vec![
             row(
                 "pinion_speed_hz",

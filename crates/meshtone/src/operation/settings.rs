@@ -1,6 +1,6 @@
 //! Sampling, length, settling and initial state.
 
-use crate::keys::{Keys, Range, Row, field, row};
+use crate::keys::{KeyRow, Keys, Range, field, row};
 
 /// Settings of the solver of the equations of motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,7 +42,7 @@ impl Keys for Solver {
         Self::default()
     }
 
-    fn rows() -> Vec<Row<Self>> {
+    fn rows() -> Vec<KeyRow<Self>> {
         vec![
             row(
                 "sampling_rate_hz",

@@ -75,7 +75,7 @@ struct Newmark<'a, const N: usize> {
     drag: Vector<N>,
     /// The directions in which the deviations' force acts.
     nominal_line: [Vector<N>; 2],
-    outputs: Vec<Row<N>>,
+    outputs: Vec<OutputRow<N>>,
 }
 
 /// The mesh's line of action: how a unit of mesh stiffness couples the coordinates.
@@ -106,7 +106,7 @@ struct State<const N: usize> {
 }
 
 /// An output as a combination of the coordinates.
-enum Row<const N: usize> {
+enum OutputRow<const N: usize> {
     /// Of displacements, or of that derivative of them.
     Motion {
         derivative: usize,
@@ -313,16 +313,16 @@ impl<'a, const N: usize> Newmark<'a, N> {
         self.speed_rad_per_s * (sample as f64 * self.step_s)
     }
 
-    fn output(&self, row: &Row<N>, state: &State<N>, sample: usize, error_force_n: f64) -> f64 {
+    fn output(&self, row: &OutputRow<N>, state: &State<N>, sample: usize, error_force_n: f64) -> f64 {
         match row {
-            Row::Motion { derivative: 0, weights, rigid } => {
+            OutputRow::Motion { derivative: 0, weights, rigid } => {
                 dot(weights, &state.displacement) + rigid * self.rotation_rad(sample)
             }
-            Row::Motion { derivative: 1, weights, rigid } => {
+            OutputRow::Motion { derivative: 1, weights, rigid } => {
                 dot(weights, &state.velocity) + rigid * self.speed_rad_per_s
             }
-            Row::Motion { weights, .. } => dot(weights, &state.acceleration),
-            Row::MeshForce => {
+            OutputRow::Motion { weights, .. } => dot(weights, &state.acceleration),
+            OutputRow::MeshForce => {
                 let stiffness = self.mesh.load.stiffness_n_per_m[state.solved_point];
                 self.line(state.solved_point).force(stiffness, &state.displacement)[0] + error_force_n
             }
@@ -343,7 +343,7 @@ impl<const N: usize> Line<N> {
 }
 
 /// An output in the picked coordinates. There are no supports that move: every sensor shows the sum of both wheels' accelerations.
-fn row<const N: usize>(published: &Published, output: &Output, coordinates: &[usize; N]) -> Row<N> {
+fn row<const N: usize>(published: &Published, output: &Output, coordinates: &[usize; N]) -> OutputRow<N> {
     let machine = &published.machine;
     let motion = |derivative: usize, terms: &[(usize, f64)]| {
         let mut weights = CoordinateVector::zeros();
@@ -358,7 +358,7 @@ fn row<const N: usize>(published: &Published, output: &Output, coordinates: &[us
             }
         }
         let rigid = machine.rigid_rotation().dot(&weights);
-        Row::Motion { derivative, weights: coordinates.map(|n| turned[n]), rigid }
+        OutputRow::Motion { derivative, weights: coordinates.map(|n| turned[n]), rigid }
     };
     match *output {
         Output::Acceleration { axis, factor, .. } => {
@@ -374,7 +374,7 @@ fn row<const N: usize>(published: &Published, output: &Output, coordinates: &[us
         Output::Velocity { place: GEAR, factor, .. } => motion(1, &[(THETA_GEAR, -factor)]),
         Output::Velocity { factor, .. } => motion(1, &[(THETA_PINION, factor)]),
         Output::Coordinate { number, derivative } => motion(derivative, &[(number, 1.0)]),
-        Output::MeshForce { .. } => Row::MeshForce,
+        Output::MeshForce { .. } => OutputRow::MeshForce,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Gears, Model, Operation, Quality, Rig, Scenario, Sensor, Solver};
 use crate::damage::keys_of_every_fault;
-use crate::keys::{KeyDescription, Keys, Row, describe, field, row};
+use crate::keys::{KeyDescription, KeyRow, Keys, describe, field, row};
 
 /// The keys at the top level, above the sections.
 impl Keys for Scenario {
@@ -20,7 +20,7 @@ impl Keys for Scenario {
         }
     }
 
-    fn rows() -> Vec<Row<Self>> {
+    fn rows() -> Vec<KeyRow<Self>> {
         vec![
             row(
                 "model",

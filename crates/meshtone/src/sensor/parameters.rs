@@ -6,7 +6,7 @@ use super::ChannelKind;
 use super::frequency_response::FrequencyResponse;
 use crate::error::ScenarioError;
 use crate::keys::{
-    Check, Keys, NumberFiles, Range, Row, by_name, check_keys, field, read_keys, require, row,
+    Check, KeyRow, Keys, NumberFiles, Range, by_name, check_keys, field, read_keys, require, row,
 };
 use crate::model::Model;
 
@@ -130,7 +130,7 @@ impl Keys for Sensor {
         Self::default()
     }
 
-    fn rows() -> Vec<Row<Self>> {
+    fn rows() -> Vec<KeyRow<Self>> {
         vec![
             row("name", "", "the sensor's name; its signal is the channel `NAME_g`", field!(name))
                 .otherwise("place and direction, such as `gear_support_vertical`")

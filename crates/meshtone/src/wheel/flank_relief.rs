@@ -1,7 +1,7 @@
 //! Relief of the flank near the tip, as a gap of some micrometres.
 
 use super::{ReliefShape, Wheel};
-use crate::keys::{Keys, Range, Row, field, row};
+use crate::keys::{KeyRow, Keys, Range, field, row};
 
 /// Material removed from the flank near the tip, so that loaded teeth enter and leave contact softly.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,7 +42,7 @@ impl Keys for FlankRelief {
         Self::default()
     }
 
-    fn rows() -> Vec<Row<Self>> {
+    fn rows() -> Vec<KeyRow<Self>> {
         vec![
             row("shape", "", "a parabola that leaves the flank smoothly, or a straight line", field!(shape)),
             row(

@@ -1,7 +1,7 @@
 //! The two wheels of the pair.
 
 use super::{FlankRelief, Material, WheelName};
-use crate::keys::{Keys, Range, Row, by_name, field, row};
+use crate::keys::{KeyRow, Keys, Range, by_name, field, row};
 
 /// Geometry and material of the two wheels.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,7 +91,7 @@ impl Keys for Gears {
         Self::new(f64::NAN, 0, 0, f64::NAN)
     }
 
-    fn rows() -> Vec<Row<Self>> {
+    fn rows() -> Vec<KeyRow<Self>> {
         const TEETH: Range = Range::from_to(6.0, 10_000.0).message("must be from 6 to 10000 teeth");
         const SHIFT: Range =
             Range::from_to(-2.0, 2.0).help("usual shifts are −0.5 to 1; in mm they are x times the module");
@@ -268,7 +268,7 @@ impl Keys for FoundationCoefficients {
         Self::default()
     }
 
-    fn rows() -> Vec<Row<Self>> {
+    fn rows() -> Vec<KeyRow<Self>> {
         vec![
             row("L", "", "A to F of L, the factor of u²", field!(l)),
             row("M", "", "A to F of M, the factor of u", field!(m)),

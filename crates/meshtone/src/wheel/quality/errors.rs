@@ -5,7 +5,7 @@ use meshtone_toml::{ReadResult, TomlTable, TomlValue};
 use super::measured::{DEVIATION_KEYS, WheelDeviations};
 use crate::error_table::ErrorTable;
 use crate::keys::{
-    Field, KeyKind, KeyValue, Keys, NumberFiles, Range, Row, Written, array, documented, field, load, row,
+    Field, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, Written, array, documented, field, load, row,
 };
 use crate::wheel::WheelName;
 
@@ -143,7 +143,7 @@ impl Keys for Quality {
         Self::default()
     }
 
-    fn rows() -> Vec<Row<Self>> {
+    fn rows() -> Vec<KeyRow<Self>> {
         let share = |name, meaning, field| row(name, "-", meaning, field).range(Range::from_to(0.0, 1.0));
         let errors_row = |name, field| {
             row(name, "mm", "the profile errors, instead of a draw: 100 rows of one number a tooth", field)
