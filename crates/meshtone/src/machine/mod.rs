@@ -17,4 +17,5 @@ pub use parts::{Axis, Drive, Machine};
 #[cfg(feature = "internals")]
 pub use parts::{LineOfAction, Place, Spring};
 pub use rig::{DampingRatio, Rig, Shaft, Support, WheelInertia};
+pub(crate) use train::turn_planes;
 pub use train::{GEAR, GEAR_SUPPORT, PINION, PINION_SUPPORT, SENSOR, Supports, Train, WHEELS};

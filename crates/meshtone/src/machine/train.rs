@@ -5,6 +5,7 @@
 //! supports stand on the base and hold one another.
 
 use std::f64::consts::PI;
+use std::ops::IndexMut;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -153,7 +154,6 @@ fn masses(pinion: &WheelBody, gear: &WheelBody, rig: &Rig, coordinates: usize) -
 /// action, and the tilts the one that moves the flank along the line of action and the other. The bearings are as stiff in every
 /// direction, so that the machine looks the same in them.
 fn turn(pressure_angle_rad: f64, coordinates: usize) -> DMatrix<f64> {
-    let (sin, cos) = pressure_angle_rad.sin_cos();
     let mut turn = DMatrix::identity(coordinates, coordinates);
     let planes = [
         (X_GEAR, Y_GEAR),
@@ -161,19 +161,37 @@ fn turn(pressure_angle_rad: f64, coordinates: usize) -> DMatrix<f64> {
         (X_GEAR_SUPPORT, Y_GEAR_SUPPORT),
         (X_PINION_SUPPORT, Y_PINION_SUPPORT),
     ];
-    for (x, y) in planes.into_iter().filter(|(x, _)| *x < coordinates) {
+    let planes = planes.into_iter().filter(|(x, _)| *x < coordinates);
+    turn_planes(&mut turn, pressure_angle_rad, planes, [(PHI_GEAR, PSI_GEAR), (PHI_PINION, PSI_PINION)]);
+    turn
+}
+
+/// Turns planes of translations and of tilts along and across the line of action.
+///
+/// # Arguments
+/// * `turn` - the identity; set to the turned unit vectors, in columns
+/// * `pressure_angle_rad` - (rad) direction of the line of action
+/// * `planes` - numbers of x and y of each body
+/// * `tilts` - numbers of φ and ψ of each wheel
+pub(crate) fn turn_planes(
+    turn: &mut impl IndexMut<(usize, usize), Output = f64>,
+    pressure_angle_rad: f64,
+    planes: impl IntoIterator<Item = (usize, usize)>,
+    tilts: impl IntoIterator<Item = (usize, usize)>,
+) {
+    let (sin, cos) = pressure_angle_rad.sin_cos();
+    for (x, y) in planes {
         turn[(x, x)] = sin;
         turn[(y, x)] = cos;
         turn[(x, y)] = cos;
         turn[(y, y)] = -sin;
     }
-    for (phi, psi) in [(PHI_GEAR, PSI_GEAR), (PHI_PINION, PSI_PINION)] {
+    for (phi, psi) in tilts {
         turn[(phi, phi)] = -cos;
         turn[(psi, phi)] = sin;
         turn[(phi, psi)] = sin;
         turn[(psi, psi)] = cos;
     }
-    turn
 }
 
 /// The line of action in turned coordinates. At the axial position z it is `g = g0 + z g1` with

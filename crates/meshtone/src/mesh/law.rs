@@ -128,42 +128,29 @@ impl MeshLaw {
         2.0 * self.back_stiffness_n_per_m
     }
 
-    /// (N) The force that the flanks carry at a deflection.
+    /// (N, N/m) The force that the flanks carry at a deflection, and its slope.
     ///
     /// # Arguments
     /// * `sample` - the pairs
     /// * `lane` - which simulation
     /// * `deflection_m` - (m) D
-    pub(crate) fn force_n<const L: usize>(
+    pub(crate) fn force_and_slope<const L: usize>(
         &self,
         sample: &PairsSample<L>,
         lane: usize,
         deflection_m: f64,
-    ) -> f64 {
+    ) -> [f64; 2] {
         let pair = |n: usize| {
             let penetration = deflection_m + sample.offset[n].0[lane];
-            if self.contact.touches(penetration) { sample.stiffness[n].0[lane] * penetration } else { 0.0 }
+            let touches = self.contact.touches(penetration);
+            let stiffness = if touches { sample.stiffness[n].0[lane] } else { 0.0 };
+            [if touches { stiffness * penetration } else { 0.0 }, stiffness]
         };
-        let back = self.back_stiffness_n_per_m * (self.back_touches_at_m() - deflection_m).max(0.0);
-        (0..PAIRS).map(pair).sum::<f64>() - back
-    }
-
-    /// (N/m) The slope of that force.
-    pub(crate) fn slope_n_per_m<const L: usize>(
-        &self,
-        sample: &PairsSample<L>,
-        lane: usize,
-        deflection_m: f64,
-    ) -> f64 {
-        let pair = |n: usize| {
-            if self.contact.touches(deflection_m + sample.offset[n].0[lane]) {
-                sample.stiffness[n].0[lane]
-            } else {
-                0.0
-            }
-        };
-        let back = if deflection_m < self.back_touches_at_m() { self.back_stiffness_n_per_m } else { 0.0 };
-        (0..PAIRS).map(pair).sum::<f64>() + back
+        let [force, slope] =
+            (0..PAIRS).map(pair).fold([0.0; 2], |[force, slope], [f, k]| [force + f, slope + k]);
+        let back_m = self.back_touches_at_m() - deflection_m;
+        let back = if back_m > 0.0 { self.back_stiffness_n_per_m } else { 0.0 };
+        [force - back * back_m.max(0.0), slope + back]
     }
 }
 
@@ -501,7 +488,7 @@ mod tests {
         for contact in [Contact::Unilateral, Contact::Bilateral] {
             let law = MeshLaw { contact, ..UNDAMPED };
             for load in [0.0, 100.0, 599.0, 601.0, 3000.0] {
-                let carried = law.force_n(&two, 0, at_rest(contact, load));
+                let [carried, _] = law.force_and_slope(&two, 0, at_rest(contact, load));
                 assert!((carried - load).abs() < 1e-9, "{carried} {load}");
             }
         }
@@ -543,7 +530,7 @@ mod tests {
             let pairs = sample(stiffness, offset);
             let solve = Solve { law: &lanes, free, compliance, pairs: &pairs };
             let force = 300.0 - InstructionSet::fastest().run(solve);
-            let of = |d: f64| law.force_n(&pairs, 0, d);
+            let of = |d: f64| law.force_and_slope(&pairs, 0, d)[0];
             let relative = |d: f64| 300.0 - of(d);
             let (mut low, mut high) = (-1e-3, 1e-3);
             for _ in 0..200 {

@@ -10,7 +10,7 @@
 use super::integrate::{Block, Diverged, Problem, Recorder, is_bounded};
 use super::outputs::{EXTERNALS, OutputWeights, dot};
 use super::prepare::{FirstState, Prepared};
-use crate::mesh::{ForcingBlock, MeshLaw, PairsSample};
+use crate::mesh::{ForcingBlock, PairsSample};
 
 /// Most meshes that one machine has.
 pub(crate) const MOST_MESHES: usize = 8;
@@ -29,11 +29,9 @@ type Matrix = [OfMeshes; MOST_MESHES];
 /// As [`super::integrate()`].
 pub(super) fn integrate(mut problem: Problem, recorder: &mut dyn Recorder) -> Result<(), Diverged> {
     let prepared = Prepared::new(&problem);
-    let lines = &problem.machine.lines;
-    let meshes = CoupledMeshes::new(lines.iter().map(|line| line.columns.len()), &prepared);
     let (start, end) = (problem.time.first_simulated_sample, problem.time.samples);
     let mut block = ForcingBlock::default();
-    let mut samples = vec![PairsSample::<1>::NONE; lines.len()];
+    let mut samples = vec![PairsSample::<1>::NONE; prepared.laws.len()];
     problem.forcing.next_block(1, &mut block);
     take_sample(&block, 0, &mut samples);
     let first = prepared.first_state(&problem.machine, &samples, 0, external(&block, 0));
@@ -52,7 +50,7 @@ pub(super) fn integrate(mut problem: Problem, recorder: &mut dyn Recorder) -> Re
                 }
             }
             take_sample(&block, step, &mut samples);
-            state.step(&prepared, &meshes, &samples, external(&block, step));
+            state.step(&prepared, &samples, external(&block, step));
         }
         if !state.sample.displacement.iter().chain(&state.sample.velocity).all(|mode| is_bounded(*mode)) {
             return Err(Diverged { sample: sample + steps });
@@ -102,7 +100,6 @@ impl State {
     fn step(
         &mut self,
         prepared: &Prepared,
-        meshes: &CoupledMeshes,
         samples: &[PairsSample<1>],
         external: [f64; EXTERNALS],
     ) {
@@ -121,54 +118,32 @@ impl State {
                     + dot(&column.of_external, &external)
             })
             .collect();
-        *force = meshes.forces(&free, &prepared.compliance, samples, &mut self.deflection);
+        *force = prepared.mesh_forces(&free, samples, &mut self.deflection);
         for (column, force) in prepared.columns.iter().zip(force) {
             acceleration.iter_mut().zip(&column.push).for_each(|(acceleration, push)| *acceleration += push * *force);
         }
     }
 }
 
-/// The laws of several meshes, and which columns of the lines of action are theirs.
-struct CoupledMeshes {
-    laws: Vec<MeshLaw>,
-    /// (N) Force of each mesh under the constant loads.
-    static_force_n: Vec<f64>,
-    /// Number of each mesh's first column, and whether it has a second, for what is added per m along the face.
-    columns: Vec<(usize, bool)>,
-}
-
-impl CoupledMeshes {
-    fn new(columns_of_line: impl Iterator<Item = usize>, prepared: &Prepared) -> Self {
-        let mut next = 0;
-        let columns = columns_of_line
-            .map(|count| {
-                next += count;
-                (next - count, count > 1)
-            })
-            .collect();
-        Self { laws: prepared.laws.clone(), static_force_n: prepared.static_force_n.clone(), columns }
-    }
-
+impl Prepared {
     /// (N) The forces of the meshes on the modes at the end of a step, in each column, relative to the static ones.
     ///
     /// # Arguments
     /// * `free` - (m) deflection with its damping's lead in each column, without the new forces
-    /// * `compliance` - (m/N) G of the columns
     /// * `samples` - the pairs of each mesh at the step's end
     /// * `deflection` - (m) D of each mesh at the step's start; set to that at its end
-    fn forces(
+    fn mesh_forces(
         &self,
         free: &[f64],
-        compliance: &[Vec<f64>],
         samples: &[PairsSample<1>],
         deflection: &mut OfMeshes,
     ) -> Vec<f64> {
         let count = self.laws.len();
         // Each load acts in the one direction g(z̄) = g₀ + z̄ g₁.
         let weights = |mesh: usize| {
-            let (first, tilts) = self.columns[mesh];
-            let tilt = tilts.then(|| (first + 1, samples[mesh].face_centre.0[0]));
-            std::iter::once((first, 1.0)).chain(tilt)
+            let mut columns = self.columns_of_mesh[mesh].clone();
+            let middle = columns.next().map(|first| (first, 1.0));
+            middle.into_iter().chain(columns.map(move |tilt| (tilt, samples[mesh].face_centre.0[0])))
         };
         let mut equations = Equations {
             count,
@@ -178,29 +153,27 @@ impl CoupledMeshes {
         for a in 0..count {
             equations.free[a] = weights(a).map(|(r, of_r)| of_r * free[r]).sum();
             for (b, static_force_n) in self.static_force_n.iter().enumerate() {
-                let from = self.columns[b].0;
+                let from = self.columns_of_mesh[b].start;
                 for (r, of_r) in weights(a) {
                     // The static force acts midway along the face.
-                    equations.free[a] += of_r * compliance[r][from] * static_force_n;
+                    equations.free[a] += of_r * self.compliance[r][from] * static_force_n;
                     for (s, of_s) in weights(b) {
-                        equations.compliance[a][b] += of_r * compliance[r][s] * of_s;
+                        equations.compliance[a][b] += of_r * self.compliance[r][s] * of_s;
                     }
                 }
             }
         }
-        let force_and_slope = |mesh: usize, deflection_m: f64| {
-            let (law, sample) = (&self.laws[mesh], &samples[mesh]);
-            [law.force_n(sample, 0, deflection_m), law.slope_n_per_m(sample, 0, deflection_m)]
-        };
+        let force_and_slope =
+            |mesh: usize, deflection_m: f64| self.laws[mesh].force_and_slope(&samples[mesh], 0, deflection_m);
         equations.solve(&force_and_slope, deflection);
         let mut forces = vec![0.0; free.len()];
         for (mesh, static_force_n) in self.static_force_n.iter().enumerate() {
             let [force, _] = force_and_slope(mesh, deflection[mesh]);
-            let (first, tilts) = self.columns[mesh];
-            forces[first] = static_force_n - force;
-            if tilts {
-                forces[first + 1] = -samples[mesh].face_centre.0[0] * force;
+            for (column, weight) in weights(mesh) {
+                forces[column] = -weight * force;
             }
+            // The static force acts midway along the face.
+            forces[self.columns_of_mesh[mesh].start] += static_force_n;
         }
         forces
     }

@@ -1,5 +1,7 @@
 //! Everything about a simulation that does not change from step to step, and its first state.
 
+use std::ops::Range;
+
 use super::integrate::Problem;
 use super::modal::ModalMachine;
 use super::mode_step::StepOfMode;
@@ -20,6 +22,8 @@ pub(super) struct Prepared {
     pub(super) external_push: [Vec<f64>; EXTERNALS],
     /// Each column of the lines of action.
     pub(super) columns: Vec<Column>,
+    /// Numbers of the columns of each mesh.
+    pub(super) columns_of_mesh: Vec<Range<usize>>,
     /// (m/N) G: deflection, with its damping's lead, in each column per force of the step in each.
     pub(super) compliance: Vec<Vec<f64>>,
     /// The outputs.
@@ -85,14 +89,15 @@ impl Prepared {
             })
             .collect();
         let pushes: Vec<Vec<f64>> = lines.iter().map(|(line, _)| pushed(line)).collect();
-        let column = |(line, lead): &(&[f64], f64)| {
+        let column = |((line, lead), push): (&(&[f64], f64), &Vec<f64>)| {
             let of_modes = |of: &dyn Fn(usize) -> f64| (0..steps.len()).map(|n| line[n] * of(n)).collect::<Vec<f64>>();
-            let of_acceleration = of_modes(&|n| steps[n].beta + lead / 2.0);
-            let of_displacement = of_modes(&|n| 1.0 + (steps[n].beta + lead / 2.0) * restore[n]);
-            let of_velocity = of_modes(&|n| lead + (steps[n].beta + lead / 2.0) * damp[n]);
+            let ahead = |n: usize| steps[n].beta + lead / 2.0;
+            let of_acceleration = of_modes(&ahead);
+            let of_displacement = of_modes(&|n| 1.0 + ahead(n) * restore[n]);
+            let of_velocity = of_modes(&|n| lead + ahead(n) * damp[n]);
             let compliance: Vec<f64> = pushes.iter().map(|push| dot(&of_acceleration, push)).collect();
             let column = Column {
-                push: pushed(line),
+                push: push.clone(),
                 static_deflection: dot(line, &model.static_displacement),
                 of_force: pushes.iter().map(|push| dot(&of_displacement, push) + dot(&of_velocity, push)).collect(),
                 of_external: external_push.each_ref().map(|push| dot(&of_acceleration, push)),
@@ -101,10 +106,18 @@ impl Prepared {
             };
             (column, compliance)
         };
-        let (columns, compliance) = lines.iter().map(column).unzip();
+        let (columns, compliance) = lines.iter().zip(&pushes).map(column).unzip();
+        let mut next = 0;
+        let columns_of_mesh = (model.lines.iter())
+            .map(|line| {
+                next += line.columns.len();
+                next - line.columns.len()..next
+            })
+            .collect();
         Self {
             step_s,
             columns,
+            columns_of_mesh,
             compliance,
             outputs: problem.outputs.iter().map(|output| output.weights(model, &steps, step_s)).collect(),
             restore,
@@ -130,14 +143,7 @@ impl Prepared {
         lane: usize,
         external: [f64; EXTERNALS],
     ) -> FirstState {
-        // Column numbers of the lines of action of each mesh.
-        let mut next = 0;
-        let columns: Vec<std::ops::Range<usize>> = (model.lines.iter())
-            .map(|line| {
-                next += line.columns.len();
-                next - line.columns.len()..next
-            })
-            .collect();
+        let columns = &self.columns_of_mesh;
         let at_face_centre = |mesh: usize, of: &dyn Fn(usize) -> f64| {
             let z = samples[mesh].face_centre.0[lane];
             let tilted: f64 = columns[mesh].clone().skip(1).map(|column| z * of(column)).sum();
@@ -160,7 +166,7 @@ impl Prepared {
                 self.columns[column].static_deflection + dot(lines[column], &displacement)
             });
             let lead = law.damping_time_s * dot(lines[columns[mesh].start], &model.initial_velocity);
-            let carried = law.force_n(&samples[mesh], lane, deflection + tilted + lead);
+            let [carried, _] = law.force_and_slope(&samples[mesh], lane, deflection + tilted + lead);
             let whole = self.static_force_n[mesh] - carried;
             force.push(whole);
             let z = samples[mesh].face_centre.0[lane];

@@ -11,7 +11,7 @@ use coordinates::*;
 pub use modes::Modes;
 
 use super::mesh::{LoadState, MeshLoad};
-use crate::machine::{DecayingMode, Rig, Shaft, WheelBody, connected_groups};
+use crate::machine::{DecayingMode, Rig, Shaft, WheelBody, connected_groups, turn_planes};
 use crate::wheel::{Gears, Teeth};
 
 /// What forces the equations of motion at one sample.
@@ -226,20 +226,9 @@ impl Machine {
 /// The turned coordinates: (x, y) along and across the nominal line of action, (φ, ψ) the tilt that moves the flank along it and the
 /// other.
 fn turn(pressure_angle_rad: f64) -> CoordinateMatrix {
-    let (sin, cos) = pressure_angle_rad.sin_cos();
     let mut turn = CoordinateMatrix::identity();
-    for (x, y) in [(X_GEAR, Y_GEAR), (X_PINION, Y_PINION)] {
-        turn[(x, x)] = sin;
-        turn[(y, x)] = cos;
-        turn[(x, y)] = cos;
-        turn[(y, y)] = -sin;
-    }
-    for (phi, psi) in [(PHI_GEAR, PSI_GEAR), (PHI_PINION, PSI_PINION)] {
-        turn[(phi, phi)] = -cos;
-        turn[(psi, phi)] = sin;
-        turn[(phi, psi)] = sin;
-        turn[(psi, psi)] = cos;
-    }
+    let tilts = [(PHI_GEAR, PSI_GEAR), (PHI_PINION, PSI_PINION)];
+    turn_planes(&mut turn, pressure_angle_rad, [(X_GEAR, Y_GEAR), (X_PINION, Y_PINION)], tilts);
     turn
 }
 
