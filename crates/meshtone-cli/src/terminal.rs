@@ -16,7 +16,7 @@ pub fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// As [`print`], unless the user wants to see nothing but warnings and errors.
+/// Prints as [`print`] does, unless the user has asked for warnings and errors only.
 pub fn print_unless(is_quiet: bool, text: &str) -> Result<(), Failure> {
     if is_quiet { Ok(()) } else { print(text) }
 }

@@ -1,4 +1,4 @@
-//! What can be simulated or processed but deserves the user's attention.
+//! Warnings: they concern input that can be simulated or processed but deserves the user's attention.
 
 use std::fmt::Display;
 use std::path::Path;

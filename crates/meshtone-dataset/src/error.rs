@@ -33,7 +33,7 @@ pub enum DatasetError {
     /// Another program is doing the same in the same place.
     #[error("another program {doing} {place}")]
     Busy {
-        /// What the other program is doing.
+        /// This says what the other program is doing.
         doing: String,
         /// The place.
         place: String,

@@ -96,7 +96,7 @@ pub fn refuse(path: &Path, what: &str, subject: RefusedInput, error: &SignalErro
     Failure { help: help(subject, error), ..Failure::bad_input(message) }
 }
 
-/// What a user may do about an error; none where the error says it.
+/// Returns what a user may do about an error, or nothing where the error already says it.
 ///
 /// The same error of a signal has another cause in a tachometer, in pulse times, in a simulation and in a measured channel, so that the
 /// help depends on both. It names options of the program, which the library's errors cannot.
