@@ -10,10 +10,5 @@ use meshtone_io::memory;
 /// Returns what deserves attention, and the stages that were computed to know it.
 pub fn check(scenario: &Scenario) -> Result<(Vec<ScenarioWarning>, Stages), ScenarioError> {
     let (stages, warnings) = meshtone::stages_and_warnings(scenario, memory::limit())?;
-    if stages.time.kept_samples() == 0 {
-        let settle = format!("{:?}", stages.scenario.solver.settle_fraction);
-        let problem = "leaves no sample to keep; must be smaller";
-        return Err(ScenarioError::new("solver.settle_fraction", settle, problem));
-    }
     Ok((warnings, stages))
 }

@@ -19,7 +19,7 @@ use crate::finish;
 use crate::manifest::{self, CARD, MANIFEST, PREVIEW, ReadManifest};
 use crate::part_list::Listing;
 use crate::plan::Plan;
-use crate::record::{KeepRecords, Role};
+use crate::record::{KeepRecords, Role, simulated_scenario};
 use crate::shard::{self, Column, FailedRecord, Item, ShardMetadata, Shards};
 use crate::store::Destination;
 
@@ -320,7 +320,8 @@ impl Run<'_> {
     fn ask(&self, index: u64, asked: &Mutex<PendingSimulations>) -> Vec<Scenario> {
         let drawn = self.sampler.record(index).map_err(|error| error.problem).and_then(|record| {
             let scenario = self.sampler.scenario(&record).map_err(|error| error.to_string())?;
-            Ok((record, scenario))
+            let scenario = simulated_scenario(&self.plan.content.keep, &record, scenario);
+            Ok((record, scenario.map_err(|error| error.to_string())?))
         });
         // The lock is taken after drawing: other threads wait for it.
         let mut asked = lock(asked);

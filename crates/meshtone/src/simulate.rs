@@ -356,8 +356,7 @@ impl Stages {
 
     /// Whether motor speed and brake torque are constant.
     pub fn is_steady(&self) -> bool {
-        let motion = self.scenario.motion(&self.time);
-        motion.is_steady() && motion.has_constant_torque()
+        self.scenario.operation.is_steady()
     }
 
     /// First sample that must be simulated, so that the slowest mode's transient has decayed to the settling tolerance where

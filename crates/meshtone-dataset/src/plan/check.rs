@@ -2,10 +2,10 @@
 
 use std::collections::HashSet;
 
-use meshtone::scenario::{Scenario, ScenarioError, ScenarioWarning, WheelName};
+use meshtone::scenario::{Scenario, ScenarioError, ScenarioWarning};
 use meshtone_toml::{ReadResult, TomlError, TomlTable};
 
-use super::{Class, Content, Distribution, Level, OverAngle, Plan, Rule, SplitBy, Splits, refused};
+use super::{Class, Content, Distribution, Keep, Level, Plan, Rule, SplitBy, Splits, refused};
 use crate::draw::{DrawnRecord, Sampler, is_of_plan};
 use crate::shard::FailedRecord;
 
@@ -92,7 +92,7 @@ pub(super) fn first_records(plan: &Plan) -> ReadResult<()> {
             class.made += 1;
             let result = sampler.scenario(&record).and_then(|scenario| {
                 refuse_ignored(&scenario, &record.values)?;
-                refuse_short(content, &scenario)?;
+                refuse_length(content, &scenario)?;
                 meshtone::stages(&scenario).map(drop)
             });
             if result.is_ok() || class.simulated.is_none() {
@@ -150,7 +150,7 @@ impl Plan {
         let cannot = |index: u64| {
             let record = sampler.record(index).ok()?;
             let scenario = sampler.scenario(&record).map_err(TomlError::from);
-            let refused = scenario.and_then(|scenario| refuse_short(&self.content, &scenario)).err()?;
+            let refused = scenario.and_then(|scenario| refuse_length(&self.content, &scenario)).err()?;
             Some(FailedRecord { record: index, reason: refused.to_string() })
         };
         (0..self.records().min(DRAWN)).filter_map(cannot).collect()
@@ -295,53 +295,33 @@ fn refuse_value(
     refused
 }
 
-/// Refuses a record length that exceeds the simulated hunting period.
-fn refuse_short(content: &Content, scenario: &Scenario) -> ReadResult<()> {
-    if let Some(angle) = content.keep.over_angle {
-        refuse_turns(content, scenario, angle)?;
-    }
-    let Some(duration_s) = content.keep.duration_s else { return Ok(()) };
-    let time = scenario.time_grid();
-    let period_s = time.kept_samples() as f64 / time.sampling_rate_hz;
-    let rate_hz = content.keep.sampling_rate_hz;
-    if (duration_s * rate_hz).round() <= (period_s * rate_hz).ceil() {
-        return Ok(());
-    }
-    let problem =
-        format!("is longer than the hunting period, {period_s:.4} s, which is all that is simulated");
-    Err(TomlError::new("keep.duration_s", duration_s.to_string(), problem)
-        .with_help("shorten it, or leave it out: a record is then a whole hunting period long"))
-}
-
-/// Refuses channels over the angle of an unsteady motion, or of more revolutions than are simulated.
-fn refuse_turns(content: &Content, scenario: &Scenario, angle: OverAngle) -> ReadResult<()> {
-    let operation = &scenario.operation;
-    let is_steady = operation.speed_profile_hz.is_none()
-        && operation.torque_profile_nm.is_none()
-        && operation.speed_fluctuation_hz == 0.0
-        && operation.torque_fluctuation_nm == 0.0;
-    if !is_steady {
+/// Refuses a record that lasts longer than a speed profile, channels over the angle of an unsteady motion, and averages over less than a
+/// revolution.
+fn refuse_length(content: &Content, scenario: &Scenario) -> ReadResult<()> {
+    let Keep { over_angle, duration_s, wheel, .. } = &content.keep;
+    let (operation, gears) = (&scenario.operation, &scenario.gears);
+    if over_angle.is_some() && !operation.is_steady() {
         let problem = "is of a speed and a load that are constant within a record; the scenario's are not";
         let help = "leave it and revolutions out, or the profiles and fluctuations";
         return Err(refused("keep.points_per_revolution", problem, help));
     }
-    let time = scenario.time_grid();
-    let turns = time.kept_samples() / time.samples_per_pinion_revolution.max(1);
-    let gears = &scenario.gears;
-    let simulated = match content.keep.wheel {
-        WheelName::Pinion => turns,
-        WheelName::Gear => turns * gears.pinion_teeth as usize / gears.gear_teeth as usize,
+    let Some(duration_s) = *duration_s else { return Ok(()) };
+    let refuse = |problem: String, help: &str| {
+        Err(TomlError::new("keep.duration_s", duration_s.to_string(), problem).with_help(help))
     };
-    if angle.revolutions <= simulated {
-        return Ok(());
+    let time = scenario.time_grid();
+    let profile_s = time.kept_samples() as f64 * time.step_s();
+    if operation.speed_profile_hz.is_some() && duration_s > profile_s + time.step_s() {
+        let problem = format!("is longer than what settling leaves of the speed profile, {profile_s:.4} s");
+        return refuse(problem, "shorten it, or leave it out: a record is then as long as that");
     }
-    let problem = format!(
-        "is more than the {simulated} revolutions of the {} that are simulated of {}/{} teeth",
-        content.keep.wheel.name(),
-        gears.pinion_teeth,
-        gears.gear_teeth
-    );
-    Err(TomlError::new("keep.revolutions", angle.revolutions.to_string(), problem).with_help("lower it"))
+    let turn_s = f64::from(gears.teeth(*wheel)) / (operation.pinion_speed_hz * f64::from(gears.pinion_teeth));
+    if content.keep.is_analysed() && operation.is_steady() && duration_s < turn_s {
+        let problem =
+            format!("is less than a revolution of the {}, {turn_s:.4} s, for an average", wheel.name());
+        return refuse(problem, "lengthen it, or set average, difference and indicators to false");
+    }
+    Ok(())
 }
 
 /// Refuses a varied key that the model ignores: it would be a label without effect.

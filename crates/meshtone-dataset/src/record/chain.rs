@@ -6,9 +6,9 @@
 use std::error::Error;
 
 use meshtone::Stages;
-use meshtone::batch::ObservedSignals;
+use meshtone::batch::{Observation, SignalRecorder};
 use meshtone::damage::damages_of_fault;
-use meshtone::scenario::{Fault, WheelName};
+use meshtone::scenario::{Fault, Sensor, WheelName};
 use meshtone::sensor::Channel;
 use meshtone::signal::{
     AngularSettings, AntiAliasing, ChainSettings, Edge, MeanPart, Record as Analysis, SeparationSettings,
@@ -16,7 +16,8 @@ use meshtone::signal::{
 };
 use meshtone::tuning::DifferenceChain;
 
-use super::{Record, RecordFault, Start, noise, path};
+use super::window::Window;
+use super::{Record, RecordFault, noise, path};
 use crate::draw::DrawnRecord;
 use crate::plan::{Content, Keep, OverAngle};
 
@@ -28,28 +29,24 @@ pub(super) fn record(
     content: &Content,
     drawn: DrawnRecord,
     stages: &Stages,
-    observed: ObservedSignals,
+    observation: Observation,
+    recorder: SignalRecorder,
 ) -> Result<Record, Box<dyn Error>> {
-    let samples = &observed.signals.channels;
     let keep = &content.keep;
-    let view = View::new(content, &drawn, &stages.scenario.faults, stages);
+    let view = View::new(content, &drawn, &stages.scenario.faults, stages)?;
     let simulated = keep.simulated();
-    if view.offset.is_some() {
-        refuse_growth(&simulated, samples)?;
+    let samples = view.before_linear_sensors(recorder);
+    if view.is_steady() {
+        refuse_growth(&simulated, &samples)?;
     }
-    let mut channels = view.at_rate(samples)?;
+    let mut channels = view.passed(&drawn, &simulated, &samples)?;
     let analysed = simulated.iter().position(|channel| *channel == keep.analysed);
     let mut record = view.empty(drawn);
     let parts = stages.scenario.model.teeth_part();
-    record.slack_fraction = if parts { observed.apart_fraction } else { observed.tension_fraction };
-    for warning in &observed.warnings {
+    record.slack_fraction = if parts { observation.apart_fraction } else { observation.tension_fraction };
+    for warning in &observation.warnings {
         if !record.warnings.contains(&warning.kind) {
             record.warnings.push(warning.kind);
-        }
-    }
-    for (kind, channel) in simulated.iter().zip(&mut channels) {
-        if kind.is_acceleration() {
-            path::pass(&record.drawn, &kind.name(), keep.sampling_rate_hz, channel);
         }
     }
     if let Some(analysed) = analysed {
@@ -95,15 +92,15 @@ pub(super) fn twin(
     drawn: DrawnRecord,
     faults: &[Fault],
     stages: &Stages,
-    samples: &[Vec<f32>],
+    recorder: SignalRecorder,
 ) -> Result<Record, SignalError> {
-    let view = View::new(content, &drawn, faults, stages);
-    let analysed = content.keep.simulated().iter().position(|channel| *channel == content.keep.analysed);
+    let view = View::new(content, &drawn, faults, stages)?;
+    let simulated = content.keep.simulated();
+    let samples = view.before_linear_sensors(recorder);
     let mut record = view.empty(drawn);
-    if let Some(analysed) = analysed {
-        let mut channels = view.at_rate(&samples[analysed..=analysed])?;
-        let name = content.keep.analysed.name();
-        path::pass(&record.drawn, &name, content.keep.sampling_rate_hz, &mut channels[0]);
+    if let Some(analysed) = simulated.iter().position(|channel| *channel == content.keep.analysed) {
+        let only = analysed..analysed + 1;
+        let channels = view.passed(&record.drawn, &simulated[only.clone()], &samples[only])?;
         record.clean_difference = view.clean_difference(&channels[0], content)?;
     }
     Ok(record)
@@ -153,35 +150,24 @@ fn at_points(
 struct View<'a> {
     keep: &'a Keep,
     stages: &'a Stages,
-    start: Start,
-    /// Sample of the simulation at which the recording starts; the kept samples continue periodically.
-    offset: Option<usize>,
+    window: Window,
 }
 
 impl<'a> View<'a> {
-    fn new(content: &'a Content, drawn: &DrawnRecord, faults: &[Fault], stages: &'a Stages) -> Self {
+    fn new(
+        content: &'a Content,
+        drawn: &DrawnRecord,
+        faults: &[Fault],
+        stages: &'a Stages,
+    ) -> Result<Self, SignalError> {
         let keep = &content.keep;
-        let gears = &stages.scenario.gears;
-        let (time, teeth) = (&stages.time, gears.gear_teeth as usize);
-        let per_tooth = time.samples_per_pinion_revolution / gears.pinion_teeth as usize;
-        let per_revolution = per_tooth * teeth;
-        let kept = time.kept_samples();
-        let revolutions = kept / per_revolution.max(1);
-        let start = if keep.aligned {
-            Start::aligned(drawn, gears, revolutions as u32, faults)
-        } else {
-            Start::new(drawn, gears, revolutions as u32)
-        };
-        // Only a steady motion over whole revolutions can start at another revolution.
-        let periodic = stages.is_steady() && kept > 0 && kept.is_multiple_of(per_revolution);
-        let offset = periodic.then(|| {
-            let mark = start.mark_teeth as usize * per_tooth;
-            let wanted = mark + start.revolution as usize * per_revolution;
-            (wanted + kept - time.first_kept_sample % kept) % kept
-        });
-        // Any other motion is counted from the first time that the mark passes.
-        let revolution = if periodic { start.revolution } else { 0 };
-        Self { keep, stages, start: Start { revolution, ..start }, offset }
+        let window = Window::new(keep, drawn, faults, &stages.scenario, &stages.time)?;
+        Ok(Self { keep, stages, window })
+    }
+
+    /// Whether motor and brake are steady: the record then begins at the mark.
+    fn is_steady(&self) -> bool {
+        self.stages.is_steady()
     }
 
     fn empty(&self, drawn: DrawnRecord) -> Record {
@@ -189,7 +175,7 @@ impl<'a> View<'a> {
         let fault = |(number, (fault, severity)): (usize, (&Fault, &f64))| RecordFault {
             kind: fault.damage.kind(),
             wheel: fault.wheel,
-            tooth: self.start.tooth(fault, &scenario.gears),
+            tooth: self.window.start.tooth(fault, &scenario.gears),
             severity: *severity,
             area_percent: damages_of_fault(&self.stages.damaged, number)
                 .into_iter()
@@ -200,42 +186,72 @@ impl<'a> View<'a> {
         Record {
             drawn,
             faults: faults.map(fault).collect(),
-            gear_angle_rev: if self.offset.is_some() { 0.0 } else { self.gear_angles()[0] },
+            gear_angle_rev: if self.is_steady() { 0.0 } else { self.gear_angles()[0] },
             teeth: [scenario.gears.pinion_teeth, scenario.gears.gear_teeth],
             pinion_speed_hz: scenario.operation.pinion_speed_hz,
             brake_torque_nm: scenario.operation.brake_torque_nm,
             sampling_rate_hz: self.keep.sampling_rate_hz,
-            simulated_s: self.stages.time.kept_samples() as f64 * self.stages.time.step_s(),
+            simulated_s: self.span_s(),
             ..Record::default()
         }
     }
 
-    /// Number of samples of a recording of the whole kept time. Of a periodic one so many that the last revolution is
-    /// whole: its last value lies before the period's end.
-    fn samples(&self) -> usize {
+    /// (s) How long the record is.
+    fn span_s(&self) -> f64 {
         let time = &self.stages.time;
-        let span = time.kept_samples() as f64 * time.step_s() * self.keep.sampling_rate_hz;
-        match self.offset {
-            Some(_) => (span - 1e-6).ceil() as usize + 1,
-            None => (span - 1e-6).floor() as usize,
-        }
+        (time.kept_samples() - 2 * self.window.margin) as f64 * time.step_s()
     }
 
-    /// The signals at the data set's rate.
-    fn at_rate(&self, samples: &[Vec<f32>]) -> Result<Vec<Vec<f32>>, SignalError> {
-        let from_hz = self.stages.time.sampling_rate_hz;
-        let step = from_hz / self.keep.sampling_rate_hz;
+    /// Number of samples of the record. Of a steady motion so many that the last revolution is whole: its last value lies before the
+    /// end of the revolution.
+    fn samples(&self) -> usize {
+        let span = self.span_s() * self.keep.sampling_rate_hz;
+        if self.is_steady() { (span - 1e-6).ceil() as usize + 1 } else { (span - 1e-6).floor() as usize }
+    }
+
+    /// What was recorded of each channel: the signals of sensors that are not linear, else the motion of their places.
+    fn before_linear_sensors(&self, recorder: SignalRecorder) -> Vec<Vec<f32>> {
+        let stages = self.stages;
+        recorder.channels_by(|channel, motion| match self.linear_sensor(channel) {
+            Some(_) => motion,
+            None => stages.shown(channel, motion),
+        })
+    }
+
+    /// The sensor of a channel, where its signal is a linear function of its place's motion.
+    fn linear_sensor(&self, channel: &Channel) -> Option<&Sensor> {
+        let is_of = |sensor: &&Sensor| *channel == Channel::Sensor(sensor.name());
+        self.stages.scenario.sensors.iter().find(is_of).filter(|sensor| sensor.is_linear())
+    }
+
+    /// The channels at the data set's rate, behind their sensors and the record's path.
+    ///
+    /// Linear sensors are applied here, together with the path, and not in the simulation: at the data set's rate there are fewer
+    /// samples. Their past is read as well, as far as they remember it.
+    fn passed(
+        &self,
+        drawn: &DrawnRecord,
+        channels: &[Channel],
+        samples: &[Vec<f32>],
+    ) -> Result<Vec<Vec<f32>>, SignalError> {
+        let keep = self.keep;
+        let (from_hz, to_hz) = (self.stages.time.sampling_rate_hz, keep.sampling_rate_hz);
+        let step = from_hz / to_hz;
         // The filter is steep because records begin at any moment: frequencies that fold back would differ between them.
-        let filter = AntiAliasing::steep(from_hz, self.keep.sampling_rate_hz)?;
-        let kept = self.stages.time.kept_samples();
-        let (offset, edge) = match self.offset {
-            Some(offset) => (offset as f64, Edge::Periodic),
-            None => (0.0, Edge::Reflect),
-        };
-        let wrap = |place: f64| if place < kept as f64 { place } else { place - kept as f64 };
-        let places = (0..self.samples()).map(|i| wrap(wrap(offset + i as f64 * step)));
+        let filter = AntiAliasing::steep(from_hz, to_hz)?;
+        let before = (self.window.margin.saturating_sub(filter.reach()) as f64 / step) as usize;
+        let first = self.window.margin as f64 - before as f64 * step;
+        let places = (0..self.samples() + 2 * before).map(|i| first + i as f64 * step);
         let signals: Vec<&[f32]> = samples.iter().map(Vec::as_slice).collect();
-        Ok(filter.read(&signals, places, edge))
+        let mut signals = filter.read(&signals, places, Edge::Reflect);
+        for (channel, signal) in channels.iter().zip(&mut signals) {
+            if channel.is_acceleration() {
+                path::pass(drawn, &channel.name(), self.linear_sensor(channel), to_hz, signal);
+            }
+            signal.drain(..before);
+            signal.truncate(self.samples());
+        }
+        Ok(signals)
     }
 
     /// (rev) Angle of the gear at every kept sample of the simulation, from the mark.
@@ -243,7 +259,7 @@ impl<'a> View<'a> {
         let Stages { time, scenario, .. } = self.stages;
         let gears = &scenario.gears;
         let ratio = f64::from(gears.pinion_teeth) / f64::from(gears.gear_teeth);
-        let mark = f64::from(self.start.mark_teeth) / f64::from(gears.gear_teeth);
+        let mark = f64::from(self.window.start.mark_teeth) / f64::from(gears.gear_teeth);
         let motion = scenario.motion(time).skip(time.first_kept_sample).take(time.kept_samples());
         motion.map(|sample| sample.revolutions * ratio - mark).collect()
     }
@@ -252,7 +268,7 @@ impl<'a> View<'a> {
     fn phase(&self, samples: usize) -> Result<ShaftPhase, SignalError> {
         let rate_hz = self.keep.sampling_rate_hz;
         let gears = &self.stages.scenario.gears;
-        if self.offset.is_some() {
+        if self.is_steady() {
             return ShaftPhase::constant(self.shaft_hz(), rate_hz, samples);
         }
         let angles = self.gear_angles();

@@ -4,8 +4,10 @@ mod chain;
 mod noise;
 mod path;
 mod start;
+mod window;
 
 pub use start::Start;
+pub(crate) use window::simulated_scenario;
 
 use meshtone::batch::{Keep as BatchKeep, KeepObserved, ObservedRecorder, Output};
 use meshtone::operation::TimeGrid;
@@ -116,12 +118,12 @@ impl<F: Fn(usize) -> Option<Role> + Sync> BatchKeep for KeepRecords<'_, F> {
         let record = match (self.role)(index).ok_or("it was not asked for")? {
             Role::Record(drawn) => {
                 // The error is only estimated: simulating doubtful records again would triple the work.
-                let observed = recorder.finish(&stages, StepJudgement::Estimated);
-                chain::record(self.content, drawn, &stages, observed)
+                let observation = recorder.observation(&stages, StepJudgement::Estimated);
+                chain::record(self.content, drawn, &stages, observation, recorder.into_signals())
             }
             Role::HealthyTwin(drawn, faults) => {
-                let samples = recorder.signals(&stages).channels;
-                chain::twin(self.content, drawn, &faults, &stages, &samples).map_err(Into::into)
+                chain::twin(self.content, drawn, &faults, &stages, recorder.into_signals())
+                    .map_err(Into::into)
             }
         };
         record.map(Box::new).map_err(|error| error.to_string())

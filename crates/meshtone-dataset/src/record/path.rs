@@ -1,13 +1,14 @@
 //! The path from the simulated sensor's place to where a rig's is.
 
+use meshtone::scenario::Sensor;
 use meshtone::sensor::PathRipple;
-use meshtone_fourier::{from_real_spectrum, real_spectrum, shared_length};
+use meshtone_fourier::{Complex64, from_real_spectrum, real_spectrum, shared_length};
 use meshtone_io::run_identity::fnv_1a;
 
 use crate::draw::{DrawnRecord, PATH_KEYS};
 
 /// Lets an acceleration channel pass the record's path, as its values say: a gain that is the same at all frequencies, and a
-/// ripple over frequency that is its mounting's own.
+/// ripple over frequency that is its mounting's own. A sensor that is linear makes its signal in the same spectrum.
 ///
 /// The ripple is normal in decibels at half octaves and goes along straight lines over the logarithm of the frequency between them.
 /// It changes magnitudes alone: no vibration comes sooner or later.
@@ -15,32 +16,47 @@ use crate::draw::{DrawnRecord, PATH_KEYS};
 /// # Arguments
 /// * `drawn` - the record
 /// * `channel` - its name: what else is kept changes nothing
+/// * `sensor` - what the channel still has to pass of its sensor
 /// * `rate_hz` - (S/s) its sampling rate
-/// * `signal` - (g) its samples
-pub(super) fn pass(drawn: &DrawnRecord, channel: &str, rate_hz: f64, signal: &mut [f32]) {
+/// * `signal` - (g, or N where the sensor's response is to the mesh force) its samples
+pub(super) fn pass(
+    drawn: &DrawnRecord,
+    channel: &str,
+    sensor: Option<&Sensor>,
+    rate_hz: f64,
+    signal: &mut [f32],
+) {
     let [gain_db, ripple_db] = PATH_KEYS.map(|key| drawn.value(key));
-    match ripple_db {
-        Some(ripple_db) if ripple_db != 0.0 && signal.len() > 1 => {
-            let ripple = PathRipple::new(drawn.mounting_seed, fnv_1a(channel.as_bytes()), ripple_db);
-            filter(signal, rate_hz, &ripple, factor(gain_db.unwrap_or(0.0)));
-        }
-        _ => {
-            if let Some(gain_db) = gain_db {
-                let factor = factor(gain_db);
-                signal.iter_mut().for_each(|sample| *sample = (f64::from(*sample) * factor) as f32);
-            }
-        }
+    let factor = gain_db.map_or(1.0, |gain_db| libm::pow(10.0, gain_db / 20.0));
+    let ripple = ripple_db
+        .filter(|&ripple_db| ripple_db != 0.0)
+        .map(|ripple_db| PathRipple::new(drawn.mounting_seed, fnv_1a(channel.as_bytes()), ripple_db));
+    if (ripple.is_none() && sensor.is_none()) || signal.len() < 2 {
+        signal.iter_mut().for_each(|sample| *sample = (f64::from(*sample) * factor) as f32);
+        return;
     }
-}
-
-fn factor(db: f64) -> f64 {
-    libm::pow(10.0, db / 20.0)
+    filter(signal, |length, count| {
+        let step_hz = rate_hz / length as f64;
+        let mut gains = match sensor {
+            Some(sensor) => sensor.gains(step_hz, count),
+            None => vec![Complex64::ONE; count],
+        };
+        gains.iter_mut().for_each(|gain| *gain *= factor);
+        if let Some(ripple) = &ripple {
+            gains.iter_mut().zip(ripple.gains(step_hz, count)).for_each(|(gain, ripple)| *gain *= ripple);
+        }
+        gains
+    });
 }
 
 /// Multiplies the spectrum of a signal, mirrored at its ends: what the transform takes for periodic has no jump anywhere.
-fn filter(signal: &mut [f32], rate_hz: f64, ripple: &PathRipple, factor: f64) {
+///
+/// # Arguments
+/// * `signal` - its samples
+/// * `gains` - of the length of the transform and the number of its lines
+fn filter(signal: &mut [f32], gains: impl FnOnce(usize, usize) -> Vec<Complex64>) {
     // Behind the mirrored signal so much of its beginning, there and back, as is left of the length: at least an eighth, so that the
-    // ripple does not reach beyond. The length is even.
+    // filter does not reach beyond. The length is even.
     let length = shared_length(2 * signal.len() + signal.len() / 4);
     let (beginning, _) = signal.split_at((length - 2 * signal.len()) / 2);
     let there_and_back =
@@ -48,8 +64,8 @@ fn filter(signal: &mut [f32], rate_hz: f64, ripple: &PathRipple, factor: f64) {
     let mut mirrored = there_and_back(signal);
     mirrored.extend(there_and_back(beginning));
     let mut spectrum = real_spectrum(&mirrored);
-    let gains = ripple.gains(rate_hz / length as f64, spectrum.len());
-    spectrum.iter_mut().zip(gains).for_each(|(value, gain)| *value *= factor * gain);
+    let gains = gains(length, spectrum.len());
+    spectrum.iter_mut().zip(gains).for_each(|(value, gain)| *value *= gain);
     let filtered = from_real_spectrum(spectrum, length);
     signal.iter_mut().zip(filtered).for_each(|(sample, value)| *sample = value as f32);
 }
@@ -87,7 +103,7 @@ mod tests {
     #[test]
     fn a_gain_is_the_same_everywhere() {
         let mut signal = tone(1000.0);
-        pass(&drawn(&[("path.gain_db", 6.0)], 1), "vertical_g", 1e4, &mut signal);
+        pass(&drawn(&[("path.gain_db", 6.0)], 1), "vertical_g", None, 1e4, &mut signal);
         assert!((rms(&signal) / rms(&tone(1000.0)) - 1.995).abs() < 1e-3);
     }
 
@@ -97,7 +113,7 @@ mod tests {
         for len in [2, 3, 10_000, 12_500, 16_000] {
             let there: Vec<f32> = tone(613.0).into_iter().chain(tone(91.0)).take(len).collect();
             let pass = |mut signal: Vec<f32>| {
-                pass(&drawn(&[("path.ripple_db", 3.0)], 5), "vertical_g", 1e4, &mut signal);
+                pass(&drawn(&[("path.ripple_db", 3.0)], 5), "vertical_g", None, 1e4, &mut signal);
                 signal
             };
             let (forwards, mut back) = (pass(there.clone()), pass(there.iter().rev().copied().collect()));
@@ -117,7 +133,7 @@ mod tests {
             let mut signal = tone(1024.0);
             let record =
                 DrawnRecord { seed: record_seed, ..drawn(&[("path.ripple_db", 3.0)], mounting_seed) };
-            pass(&record, "vertical_g", 1e4, &mut signal);
+            pass(&record, "vertical_g", None, 1e4, &mut signal);
             20.0 * (rms(&signal) / rms(&tone(1024.0))).log10()
         };
         assert_eq!(gain_db(5, 1), gain_db(5, 2));

@@ -58,10 +58,15 @@ const SHORT_TOLERANCE: f64 = 1e-3;
 /// speed varies, or the published model simulates all of it, nothing is gained and the scenario stays as it is.
 fn shortened(scenario: &Scenario) -> Scenario {
     let mut short = scenario.clone();
-    if scenario.model.has_meshes() && scenario.operation.speed_profile_hz.is_none() {
-        // 2 z_g revolutions of the pinion are 2 z_p of the gear.
-        let kept = SHORT_REVOLUTIONS / f64::from(2 * scenario.gears.pinion_teeth);
-        short.solver.settle_fraction = scenario.solver.settle_fraction.max(1.0 - kept);
+    let gears = &scenario.gears;
+    let revolutions = SHORT_REVOLUTIONS * f64::from(gears.gear_teeth) / f64::from(gears.pinion_teeth);
+    let kept_s = revolutions / scenario.operation.pinion_speed_hz;
+    let time = scenario.time_grid();
+    if scenario.model.has_meshes()
+        && scenario.operation.speed_profile_hz.is_none()
+        && kept_s < time.kept_samples() as f64 * time.step_s()
+    {
+        short.solver.discard_and_keep(time.first_kept_sample as f64 * time.step_s(), kept_s);
         short.solver.settle_tolerance = scenario.solver.settle_tolerance.max(SHORT_TOLERANCE);
     }
     short

@@ -8,7 +8,7 @@ const SECTIONS = [
   { name: "fault", title: "Damage", open: true },
   { name: "rig", title: "Structure", first: ["damping_ratio", "mesh_damping_ratio", "bearing_stiffness_n_per_m", "brake_inertia_kgm2", "misalignment_um"] },
   { name: "sensor", title: "Sensors" },
-  { name: "solver", title: "Solver", first: ["sampling_rate_hz", "settle_fraction"] },
+  { name: "solver", title: "Solver", first: ["sampling_rate_hz", "pinion_revolutions", "settle_fraction"] },
   { name: "", title: "Model", first: ["model", "seed"] },
 ];
 const UNIT_ENDING = /_(mm|um|deg|rad|hz|nm|g|s|n_per_m|nm_per_rad|kgm2|kg|per_cent)$/;

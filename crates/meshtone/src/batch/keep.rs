@@ -135,16 +135,26 @@ impl SignalRecorder {
     /// # Arguments
     /// * `stages` - as of [`Keep::recorder`]
     pub fn finish(self, stages: &Stages) -> Signals {
-        let single = |(channel, recorded): (Channel, Recorded)| match recorded {
-            Recorded::Final(values) => values,
-            Recorded::Raw(raw) => stages.shown(&channel, raw).into_iter().map(|value| value as f32).collect(),
-        };
         let time = &stages.time;
         Signals {
             sampling_rate_hz: time.sampling_rate_hz,
             start_s: time.first_kept_sample as f64 * time.step_s(),
-            channels: self.channels.into_iter().map(single).collect(),
+            channels: self.channels_by(|channel, motion| stages.shown(channel, motion)),
         }
+    }
+
+    /// The channels, once all samples are recorded.
+    ///
+    /// # Arguments
+    /// * `of_sensor` - what is made of the motion of a sensor's place
+    pub fn channels_by(self, of_sensor: impl Fn(&Channel, Vec<f64>) -> Vec<f64>) -> Vec<Vec<f32>> {
+        let single = |(channel, recorded): (Channel, Recorded)| match recorded {
+            Recorded::Final(values) => values,
+            Recorded::Raw(motion) => {
+                of_sensor(&channel, motion).into_iter().map(|value| value as f32).collect()
+            }
+        };
+        self.channels.into_iter().map(single).collect()
     }
 }
 

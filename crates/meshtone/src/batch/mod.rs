@@ -14,5 +14,5 @@ mod run;
 pub use crate::machine::Axis;
 pub use crate::solver::{Block, Output, Recorder};
 pub use keep::{Keep, KeepChannels, KeepSimulation, SignalRecorder, Signals};
-pub use observed::{KeepObserved, ObservedRecorder, ObservedSignals};
+pub use observed::{KeepObserved, Observation, ObservedRecorder, ObservedSignals};
 pub use run::{Control, simulate_many};

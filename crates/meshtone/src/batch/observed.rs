@@ -41,6 +41,14 @@ impl KeepObserved {
 pub struct ObservedSignals {
     /// The kept signals.
     pub signals: Signals,
+    /// What was seen in them and in others.
+    pub observation: Observation,
+}
+
+/// What is seen in the signals of one simulation.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Observation {
     /// What deserves attention: of the scenario and its stages, then of the signals.
     pub warnings: Vec<ScenarioWarning>,
     /// (-) Part of the kept time in which no teeth touch.
@@ -57,26 +65,22 @@ pub struct ObservedRecorder {
 }
 
 impl ObservedRecorder {
-    /// The signals alone, once all samples are recorded.
-    ///
-    /// # Arguments
-    /// * `stages` - as of [`Keep::recorder`]
-    pub fn signals(self, stages: &Stages) -> Signals {
-        self.signals.finish(stages)
+    /// The recorder of the signals alone, once all samples are recorded.
+    pub fn into_signals(self) -> SignalRecorder {
+        self.signals
     }
 
-    /// Everything, once all samples are recorded.
+    /// What is doubtful, once all samples are recorded.
     ///
     /// # Arguments
     /// * `stages` - as of [`Keep::recorder`]
     /// * `judgement` - how the step is judged where a resonance is suspected
-    pub fn finish(self, stages: &Stages, judgement: StepJudgement) -> ObservedSignals {
+    pub fn observation(&self, stages: &Stages, judgement: StepJudgement) -> Observation {
         let observer = &self.observer;
-        ObservedSignals {
+        Observation {
             warnings: [stages.warnings(), stages.warnings_of_signals(observer, judgement)].concat(),
             apart_fraction: observer.apart_fraction(),
             tension_fraction: observer.tension_fraction(),
-            signals: self.signals.finish(stages),
         }
     }
 }
@@ -113,6 +117,7 @@ impl Keep for KeepObserved {
     }
 
     fn keep(&self, _: usize, stages: Stages, recorder: ObservedRecorder) -> ObservedSignals {
-        recorder.finish(&stages, StepJudgement::Repeated)
+        let observation = recorder.observation(&stages, StepJudgement::Repeated);
+        ObservedSignals { signals: recorder.into_signals().finish(&stages), observation }
     }
 }

@@ -11,7 +11,7 @@ pub use settings::Solver;
 
 use crate::wheel::Gears;
 
-/// Pinion revolutions that are simulated, settling included: `2 z_g`.
+/// Pinion revolutions that are simulated, settling included, where no length is given: `2 z_g`.
 pub(crate) fn nominal_revolutions(gear_teeth: u32) -> u32 {
     2 * gear_teeth
 }
@@ -34,12 +34,13 @@ pub struct TimeGrid {
 impl TimeGrid {
     /// The division of time for a pair in operation; all values are valid.
     ///
-    /// Without a speed profile `2 z_g` pinion revolutions are simulated; with one, the time that it spans.
+    /// Where the length of the kept signal is not given, `2 z_g` pinion revolutions are simulated; with a speed profile, the time
+    /// that it spans.
     ///
     /// # Arguments
     /// * `gears` - for the tooth counts
     /// * `operation` - nominal speed, and the profile that may replace it
-    /// * `solver` - settling
+    /// * `solver` - length and settling
     /// * `samples_per_pitch` - number of samples from one pair of teeth to the next at the nominal speed
     pub(crate) fn new(
         gears: &Gears,
@@ -50,22 +51,32 @@ impl TimeGrid {
         let speed = operation.pinion_speed_hz;
         let samples_per_pinion_revolution = samples_per_pitch.saturating_mul(gears.pinion_teeth as usize);
         let sampling_rate_hz = samples_per_pinion_revolution as f64 * speed;
-        let revolutions = nominal_revolutions(gears.gear_teeth) as usize;
-        // Saturating: a scenario may ask for more than any machine holds, and is then refused.
-        let nominal_samples = revolutions.saturating_mul(samples_per_pinion_revolution);
-        let samples = match &operation.speed_profile_hz {
-            Some(profile) => {
-                let duration_s = profile.time_s.last().copied().unwrap_or(0.0);
-                (duration_s * sampling_rate_hz).round() as usize
+        let asked = (solver.duration_s.map(|duration_s| duration_s * sampling_rate_hz)).or(solver
+            .pinion_revolutions
+            .map(|revolutions| revolutions * samples_per_pinion_revolution as f64));
+        // As floats, and saturating: a scenario may ask for more than any machine holds, and is then refused.
+        let (settling, kept) = match asked {
+            Some(kept) => {
+                (kept.round() * solver.settle_fraction / (1.0 - solver.settle_fraction), kept.round())
             }
-            None => nominal_samples,
+            None => {
+                let samples = match &operation.speed_profile_hz {
+                    Some(profile) => profile.time_s.last().copied().unwrap_or(0.0) * sampling_rate_hz,
+                    None => {
+                        f64::from(nominal_revolutions(gears.gear_teeth))
+                            * samples_per_pinion_revolution as f64
+                    }
+                };
+                let settling = (solver.settle_fraction * samples).round();
+                (settling, samples.round() - settling)
+            }
         };
-        let settling = (solver.settle_fraction * nominal_samples as f64).round() as usize;
+        let first_kept_sample = settling.round() as usize;
         Self {
             sampling_rate_hz,
-            samples,
+            samples: first_kept_sample.saturating_add(kept as usize),
             first_simulated_sample: 0,
-            first_kept_sample: settling.min(samples),
+            first_kept_sample,
             samples_per_pinion_revolution,
         }
     }
@@ -73,6 +84,31 @@ impl TimeGrid {
     /// Number of samples that are kept.
     pub fn kept_samples(&self) -> usize {
         self.samples - self.first_kept_sample
+    }
+
+    /// Number of samples from one pair of teeth to the next at the nominal speed.
+    ///
+    /// # Arguments
+    /// * `gears` - that the time was divided for
+    pub fn samples_per_pitch(&self, gears: &Gears) -> usize {
+        self.samples_per_pinion_revolution / gears.pinion_teeth as usize
+    }
+
+    /// Number of samples in a hunting-tooth period, after which the same teeth meet again, at the nominal speed.
+    ///
+    /// # Arguments
+    /// * `gears` - that the time was divided for
+    ///
+    /// ```
+    /// use meshtone::scenario::{GearPair, Scenario};
+    ///
+    /// let scenario = Scenario::new(GearPair { pinion_teeth: 20, gear_teeth: 40, ..GearPair::example() });
+    /// let time = scenario.time_grid();
+    /// assert_eq!(time.hunting_period_samples(&scenario.gears), 2 * time.samples_per_pinion_revolution);
+    /// ```
+    pub fn hunting_period_samples(&self, gears: &Gears) -> usize {
+        let pitches = least_common_multiple(gears.pinion_teeth, gears.gear_teeth) as usize;
+        self.samples_per_pitch(gears).saturating_mul(pitches)
     }
 
     /// (s) Time between two samples.

@@ -40,6 +40,18 @@ impl Operation {
             torque_profile_nm: None,
         }
     }
+
+    /// Whether speed and torque are constant: neither follows a profile nor fluctuates.
+    ///
+    /// ```
+    /// assert!(meshtone::operation::Operation::new(40.0, 10.0).is_steady());
+    /// ```
+    pub fn is_steady(&self) -> bool {
+        self.speed_profile_hz.is_none()
+            && self.torque_profile_nm.is_none()
+            && self.speed_fluctuation_hz == 0.0
+            && self.torque_fluctuation_nm == 0.0
+    }
 }
 
 impl Keys for Operation {

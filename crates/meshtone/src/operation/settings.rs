@@ -10,7 +10,12 @@ pub struct Solver {
     /// Default 1e5: the acceleration below 10 kHz of the healthy pair and of damaged ones whose teeth do not bounce is then within 1 % of
     /// that at 2 MS/s.
     pub sampling_rate_hz: f64,
-    /// (-) Part of `2 z_g` pinion revolutions that is simulated first and discarded. Default 0.5.
+    /// (s) How long the kept signal is. Default as long as [`Self::pinion_revolutions`] says.
+    pub duration_s: Option<f64>,
+    /// (-) Revolutions of the pinion, at its nominal speed, that are kept. Without this and [`Self::duration_s`], `2 z_g` revolutions
+    /// are simulated, or the time that a speed profile spans, and what settling leaves of them is kept.
+    pub pinion_revolutions: Option<f64>,
+    /// (-) Part of the simulated time that is discarded: the vibration settles before the kept signal starts. Default 0.5.
     pub settle_fraction: f64,
     /// (-) How far the transient of the slowest mode must have decayed where the kept signal starts: `linear` starts
     /// in the static equilibrium of the loaded mesh, and leaves out what is not needed for that. 0 for
@@ -27,11 +32,34 @@ impl Default for Solver {
     fn default() -> Self {
         Self {
             sampling_rate_hz: 1e5,
+            duration_s: None,
+            pinion_revolutions: None,
             settle_fraction: 0.5,
             settle_tolerance: 1e-6,
             initial_displacement: None,
             initial_velocity: None,
         }
+    }
+}
+
+impl Solver {
+    /// Sets what is discarded, and what is kept after it.
+    ///
+    /// # Arguments
+    /// * `discarded_s` - (s) not negative
+    /// * `kept_s` - (s) more than 0
+    ///
+    /// ```
+    /// use meshtone::scenario::{GearPair, Scenario};
+    ///
+    /// let mut scenario = Scenario::new(GearPair::example());
+    /// scenario.solver.discard_and_keep(3.0, 1.0);
+    /// assert_eq!((scenario.solver.settle_fraction, scenario.solver.duration_s), (0.75, Some(1.0)));
+    /// ```
+    pub fn discard_and_keep(&mut self, discarded_s: f64, kept_s: f64) {
+        self.duration_s = Some(kept_s);
+        self.pinion_revolutions = None;
+        self.settle_fraction = discarded_s / (discarded_s + kept_s);
     }
 }
 
@@ -52,10 +80,25 @@ impl Keys for Solver {
                 field!(sampling_rate_hz),
             )
             .range(Range::positive()),
+            row("duration_s", "s", "how long the kept signal is; settling comes before it", field!(duration_s))
+                .otherwise("see pinion_revolutions")
+                .range(Range::positive())
+                .rule("not beside pinion_revolutions")
+                .example("1.0"),
+            row(
+                "pinion_revolutions",
+                "rev",
+                "the same as a number of revolutions of the pinion; settling comes before them",
+                field!(pinion_revolutions),
+            )
+            .otherwise("what settling leaves of 2 z_g revolutions, or of the time that a speed profile spans")
+            .range(Range::positive())
+            .rule("not beside duration_s, not with a speed profile")
+            .example("20.0"),
             row(
                 "settle_fraction",
                 "-",
-                "the part of the time that is discarded from the start, while the vibration settles",
+                "the part of the simulated time that is discarded from the start, while the vibration settles",
                 field!(settle_fraction),
             )
             .range(Range::below_one().message(

@@ -2,10 +2,12 @@
 //!
 //! In this order: the path and the mounted resonance, noise, range, resolution.
 
-use meshtone_fourier::{Complex64, convenient_length, from_real_spectrum, real_spectrum};
+use std::f64::consts::TAU;
 
-use super::GRAVITY_M_PER_S2;
+use meshtone_fourier::{Complex64, from_real_spectrum, real_spectrum, shared_length};
+
 use super::parameters::{ResponseInput, Sensor};
+use super::{FrequencyResponse, GRAVITY_M_PER_S2};
 use crate::random::{Draws, Purpose};
 
 /// The conditions on which the signal of a sensor depends, besides the sensor and the motion of its place.
@@ -56,7 +58,7 @@ pub fn measure(raw: Vec<f64>, sensor: &Sensor, measurement: &Measurement) -> Vec
 
 /// (g) The signal behind the path and the mounted resonance: one product in the spectrum.
 fn passed(raw: Vec<f64>, sensor: &Sensor, measurement: &Measurement) -> Vec<f64> {
-    if (sensor.frequency_response.is_none() && sensor.resonance_hz.is_none()) || raw.is_empty() {
+    if !sensor.filters() || raw.is_empty() {
         return raw;
     }
     let samples = raw.len();
@@ -64,29 +66,85 @@ fn passed(raw: Vec<f64>, sensor: &Sensor, measurement: &Measurement) -> Vec<f64>
     if !measurement.is_periodic {
         // Twice as long: neither what a filter leaves of the end comes back at the start, nor what a measured phase makes
         // of the start at the end.
-        padded.resize(convenient_length(2 * samples), 0.0);
+        padded.resize(shared_length(2 * samples), 0.0);
     }
     let length = padded.len();
     let mut spectrum = real_spectrum(&padded);
     let step_hz = measurement.sampling_rate_hz / length as f64;
-    let frequencies_hz = || (0..=length / 2).map(|line| line as f64 * step_hz);
-    if let Some(response) = &sensor.frequency_response {
-        let unit = match sensor.response_input {
-            ResponseInput::Acceleration => 1.0,
-            ResponseInput::Force => 1.0 / GRAVITY_M_PER_S2,
-        };
-        let path = response.at(frequencies_hz());
-        spectrum.iter_mut().zip(path).for_each(|(line, path)| *line *= path * unit);
-    }
-    if let Some(resonance_hz) = sensor.resonance_hz {
-        let damping_ratio = sensor.resonance_damping_ratio;
-        let lines = spectrum.iter_mut().zip(frequencies_hz());
-        lines.for_each(|(line, hz)| *line *= mounted_resonance(hz / resonance_hz, damping_ratio));
-    }
+    let gains = sensor.gains(step_hz, spectrum.len());
+    spectrum.iter_mut().zip(gains).for_each(|(line, gain)| *line *= gain);
     let mut signal = from_real_spectrum(spectrum, length);
     signal.truncate(samples);
     signal.shrink_to_fit();
     signal
+}
+
+/// (-) What a sensor may remember of its past: a filter's answer to what was before has fallen to this.
+const REMEMBERED: f64 = 1e-6;
+
+impl Sensor {
+    /// Whether the path to the sensor or its mounted resonance changes the motion of its place.
+    pub(crate) fn filters(&self) -> bool {
+        self.frequency_response.is_some() || self.resonance_hz.is_some()
+    }
+
+    /// Whether what the sensor shows is a linear function of the motion of its place: it has neither noise nor a range.
+    ///
+    /// ```
+    /// assert!(meshtone::scenario::Sensor::default().is_linear());
+    /// ```
+    pub fn is_linear(&self) -> bool {
+        self.noise_density_g_per_rthz == 0.0 && self.range_g.is_none()
+    }
+
+    /// Complex gains of the path to the sensor and of its mounted resonance, at equally spaced frequencies from 0 on.
+    ///
+    /// # Arguments
+    /// * `step_hz` - (Hz) from one frequency to the next
+    /// * `count` - how many
+    ///
+    /// # Returns
+    /// (-, or g/N where the response is to the mesh force) As many gains.
+    ///
+    /// ```
+    /// let mut sensor = meshtone::scenario::Sensor::default();
+    /// sensor.resonance_hz = Some(100.0);
+    /// sensor.resonance_damping_ratio = 0.05;
+    /// let gains = sensor.gains(50.0, 3);
+    /// assert!((gains[0].norm() - 1.0).abs() < 1e-12 && (gains[2].norm() - 10.0).abs() < 1e-12);
+    /// ```
+    pub fn gains(&self, step_hz: f64, count: usize) -> Vec<Complex64> {
+        let frequencies_hz = || (0..count).map(|line| line as f64 * step_hz);
+        let mut gains = match &self.frequency_response {
+            Some(response) => response.at(frequencies_hz()),
+            None => vec![Complex64::ONE; count],
+        };
+        if self.frequency_response.is_some() && self.response_input == ResponseInput::Force {
+            gains.iter_mut().for_each(|gain| *gain /= GRAVITY_M_PER_S2);
+        }
+        if let Some(resonance_hz) = self.resonance_hz {
+            let damping_ratio = self.resonance_damping_ratio;
+            let lines = gains.iter_mut().zip(frequencies_hz());
+            lines.for_each(|(gain, hz)| *gain *= mounted_resonance(hz / resonance_hz, damping_ratio));
+        }
+        gains
+    }
+
+    /// (s) How long what the sensor shows depends on what was before: until 1e-6 is left of an oscillation at its resonance, and as
+    /// long as the finest step of its frequency response resolves.
+    pub fn memory_s(&self) -> f64 {
+        let decay_s = |resonance_hz: f64| {
+            // An overdamped resonance has a slower part.
+            let damping_ratio = self.resonance_damping_ratio;
+            let slow = damping_ratio - (damping_ratio * damping_ratio - 1.0).max(0.0).sqrt();
+            -REMEMBERED.ln() / (TAU * resonance_hz * slow)
+        };
+        let resolved_s = |response: &FrequencyResponse| {
+            let steps = response.frequency_hz.windows(2).map(|pair| pair[1] - pair[0]);
+            1.0 / steps.fold(f64::INFINITY, f64::min)
+        };
+        self.resonance_hz.map_or(0.0, decay_s).max(self.frequency_response.as_ref().map_or(0.0, resolved_s))
+    }
 }
 
 /// Complex gain of a sensor on its mount for a sine: `H = ω₀²/(ω₀² − ω² + 2iζω₀ω)`.
@@ -114,10 +172,7 @@ fn add_noise(signal: &mut [f64], sensor: &Sensor, measurement: &Measurement) {
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::TAU;
-
     use super::*;
-    use crate::sensor::FrequencyResponse;
 
     const MEASUREMENT: Measurement =
         Measurement { sampling_rate_hz: 1000.0, is_periodic: true, seed: 3, index: 0 };

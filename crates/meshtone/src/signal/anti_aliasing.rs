@@ -81,6 +81,11 @@ impl AntiAliasing {
         Ok(Self::of_curve(&STEEP_CURVE, rate_of(from_hz, to_hz)? / STEEP_CUTOFF))
     }
 
+    /// Samples of the signal on each side of a place that its value depends on.
+    pub fn reach(&self) -> usize {
+        self.reach
+    }
+
     /// # Arguments
     /// * `curve` - the filter
     /// * `rate` - (-) samples of the signal from one of its zero crossings to the next

@@ -207,6 +207,9 @@ impl Stages {
                 self.meshes.iter().map(|mesh| (mesh, deviations())),
             ),
             is_steady: self.is_steady(),
+            hunting_period_samples: self
+                .is_steady()
+                .then(|| self.time.hunting_period_samples(&self.scenario.gears)),
             outputs,
             first_sample,
         }

@@ -1,7 +1,6 @@
 //! Stage 8: the channels, with what sensors make of them.
 
 use super::Stages;
-use crate::operation::greatest_common_divisor;
 use crate::sensor::{Channel, Channels, Measurement, measure, outputs_of_all};
 use crate::solver::Output;
 
@@ -24,20 +23,19 @@ impl Stages {
         channels
     }
 
-    /// What a channel is, of what was read off the solution for it: a sensor's is what the sensor shows.
+    /// The signal of a channel, of what was read off the solution for it: a sensor's is what the sensor shows.
     ///
     /// # Arguments
     /// * `channel` - which
-    /// * `raw` - all kept samples
-    pub(crate) fn shown(&self, channel: &Channel, raw: Vec<f64>) -> Vec<f64> {
-        let sensors = &self.scenario.sensors;
+    /// * `motion` - (g, or N where the sensor's response is to the mesh force) all kept samples
+    pub fn shown(&self, channel: &Channel, motion: Vec<f64>) -> Vec<f64> {
         let index = match channel {
             Channel::Fixed(_) => None,
-            Channel::Sensor(name) => sensors.iter().position(|sensor| sensor.name() == *name),
+            Channel::Sensor(name) => self.scenario.sensors.iter().position(|sensor| sensor.name() == *name),
         };
         match index {
-            Some(index) => self.shown_by(index, raw),
-            None => raw,
+            Some(index) => self.shown_by(index, motion),
+            None => motion,
         }
     }
 
@@ -56,13 +54,7 @@ impl Stages {
 
     /// Whether what is kept is a steady motion over whole turns after which the same teeth meet again.
     fn is_periodic(&self) -> bool {
-        let sequence = self.sequence_revolutions() * self.time.samples_per_pinion_revolution;
-        self.is_steady() && self.time.kept_samples().is_multiple_of(sequence)
-    }
-
-    /// (rev) Revolutions of the pinion after which the same teeth meet again.
-    fn sequence_revolutions(&self) -> usize {
-        let [pinion, gear] = [self.teeth.pinion.teeth, self.teeth.gear.teeth];
-        (gear / greatest_common_divisor(pinion, gear)) as usize
+        let period = self.time.hunting_period_samples(&self.scenario.gears);
+        self.is_steady() && self.time.kept_samples().is_multiple_of(period)
     }
 }

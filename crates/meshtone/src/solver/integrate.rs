@@ -6,6 +6,7 @@ use super::lane_outputs::LaneOutputs;
 use super::modal::ModalMachine;
 use super::outputs::{EXTERNALS, Output};
 use super::prepare::Prepared;
+use super::repetition::Repeating;
 use super::step::{Coefficients, MOST_MODES, Size, State, StepBlock, law_lanes};
 use crate::mesh::{Forcing, ForcingBlock, MeshLaw, PairsSample};
 use crate::operation::TimeGrid;
@@ -24,6 +25,11 @@ pub struct Block<'a> {
 impl<'a> Block<'a> {
     pub(crate) fn new(first_sample: usize, outputs: &'a [Vec<f64>]) -> Self {
         Self { first_sample, outputs }
+    }
+
+    /// The samples of all outputs.
+    pub(super) fn outputs(&self) -> &[Vec<f64>] {
+        self.outputs
     }
 
     /// The samples of output `index`, in the order in which the outputs were asked for.
@@ -69,6 +75,8 @@ pub struct Problem<'a> {
     pub forcing: Forcing<'a>,
     /// Whether motor and brake are steady.
     pub is_steady: bool,
+    /// Samples after which the same teeth meet again, where motor and brake are steady.
+    pub hunting_period_samples: Option<usize>,
     /// What is read off the solution.
     pub outputs: &'a [Output],
     /// Samples before it are computed, but not recorded.
@@ -109,6 +117,7 @@ pub fn integrate(
     instructions: InstructionSet,
     recorder: &mut dyn Recorder,
 ) -> Result<(), Diverged> {
+    let recorder = &mut Repeating::new(&problem, recorder);
     if !problem.fits_a_lane() {
         return coupled::integrate(problem, recorder);
     }
@@ -131,6 +140,9 @@ pub fn integrate_side_by_side(
     recorders: Vec<&mut dyn Recorder>,
 ) -> [Result<(), Diverged>; LANES] {
     let size = problems.each_ref().map(Size::of).into_iter().max().unwrap_or(Size::General);
+    let mut repeating: Vec<Repeating> =
+        problems.iter().zip(recorders).map(|(problem, recorder)| Repeating::new(problem, recorder)).collect();
+    let recorders = repeating.iter_mut().map(|recorder| recorder as &mut dyn Recorder).collect();
     of_size(size, problems, instructions, recorders)
 }
 

@@ -15,6 +15,7 @@ mod modal;
 mod mode_step;
 mod outputs;
 mod prepare;
+mod repetition;
 mod steady_sine;
 mod step;
 

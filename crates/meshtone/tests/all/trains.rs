@@ -35,6 +35,7 @@ fn solve(
         laws: meshes.iter().map(Mesh::law).collect(),
         forcing,
         is_steady,
+        hunting_period_samples: None,
         outputs: &outputs,
         first_sample: 0,
     };

@@ -1,19 +1,35 @@
 //! Limits of the duration of a simulation.
 
-use super::super::{Scenario, ScenarioError};
-use crate::keys::{Check, require};
+use super::super::{Scenario, ScenarioError, Solver};
+use crate::keys::Check;
 
-/// A speed profile sets the duration, which must outlast what is discarded.
+/// The kept signal has one length, and it has samples.
 pub(super) fn check(scenario: &Scenario) -> Check {
-    let operation = &scenario.operation;
-    let Some(end) = operation.speed_profile_hz.as_ref().and_then(|profile| profile.time_s.last()) else {
+    let Solver { duration_s, pinion_revolutions, .. } = &scenario.solver;
+    if let Some(revolutions) = pinion_revolutions {
+        let refuse = |problem: &str, help: &str| {
+            Err(ScenarioError::new("solver.pinion_revolutions", revolutions, problem).with_help(help))
+        };
+        if duration_s.is_some() {
+            return refuse(
+                "given beside solver.duration_s; the kept signal has one length",
+                "remove one of the two",
+            );
+        }
+        if scenario.operation.speed_profile_hz.is_some() {
+            return refuse(
+                "given with operation.speed_profile_hz, whose speeds vary",
+                "give solver.duration_s instead",
+            );
+        }
+    }
+    if scenario.time_grid().kept_samples() > 0 {
         return Ok(());
+    }
+    let length = ["duration_s", "pinion_revolutions"].into_iter().zip([duration_s, pinion_revolutions]);
+    let (key, value, help) = match length.into_iter().find_map(|(key, value)| Some((key, (*value)?))) {
+        Some((key, value)) => (key, value, "raise it, or solver.sampling_rate_hz"),
+        None => ("settle_fraction", scenario.solver.settle_fraction, "lower it"),
     };
-    let revolutions = f64::from(crate::operation::nominal_revolutions(scenario.gears.gear_teeth));
-    let settling = scenario.solver.settle_fraction * revolutions / operation.pinion_speed_hz;
-    let problem =
-        format!("the profile ends at {end:?} s, within the first {settling:.4} s, which are discarded");
-    require("operation.speed_profile_hz", *end, *end > settling, problem).map_err(|error: ScenarioError| {
-        error.with_help("lengthen the profile, or lower solver.settle_fraction")
-    })
+    Err(ScenarioError::new(format!("solver.{key}"), value, "leaves no sample to keep").with_help(help))
 }

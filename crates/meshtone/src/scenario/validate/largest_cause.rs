@@ -16,8 +16,10 @@ const ORDINARY_SPEED_HZ: f64 = 40.0;
 pub(super) fn refuse(scenario: &Scenario, problem: &str) -> ScenarioError {
     let candidates = [
         sampling_rate(scenario),
+        length(scenario, "solver.duration_s", |solver| &mut solver.duration_s),
+        length(scenario, "solver.pinion_revolutions", |solver| &mut solver.pinion_revolutions),
         speed_profile(scenario),
-        Some(speed(scenario)),
+        speed(scenario),
         Some(teeth(scenario)),
         drawn(scenario),
     ];
@@ -62,6 +64,18 @@ fn sampling_rate(scenario: &Scenario) -> Option<Candidate> {
     })
 }
 
+fn length(
+    scenario: &Scenario,
+    key: &'static str,
+    of: fn(&mut Solver) -> &mut Option<f64>,
+) -> Option<Candidate> {
+    let value = (*of(&mut scenario.solver.clone()))?;
+    let help = "lower it: every sample is kept in memory".to_owned();
+    Some(Candidate::new(scenario, key, format!("{value:?}"), help, |ordinary| {
+        *of(&mut ordinary.solver) = None;
+    }))
+}
+
 fn speed_profile(scenario: &Scenario) -> Option<Candidate> {
     let end_s = *scenario.operation.speed_profile_hz.as_ref()?.time_s.last()?;
     let help = format!("shorten the profile: all its time is simulated, here {end_s:?} s");
@@ -70,16 +84,18 @@ fn speed_profile(scenario: &Scenario) -> Option<Candidate> {
     }))
 }
 
-fn speed(scenario: &Scenario) -> Candidate {
+/// Where no length is given, which then takes longer the slower the pinion is.
+fn speed(scenario: &Scenario) -> Option<Candidate> {
+    let Solver { duration_s: None, pinion_revolutions: None, .. } = scenario.solver else { return None };
     let speed_hz = scenario.operation.pinion_speed_hz;
     let revolutions = crate::operation::nominal_revolutions(scenario.gears.gear_teeth);
     let seconds = f64::from(revolutions) / speed_hz;
     let help = format!(
         "raise it: {revolutions} revolutions of the pinion are simulated, which take {seconds:.4e} s at this speed"
     );
-    Candidate::new(scenario, "operation.pinion_speed_hz", format!("{speed_hz:?}"), help, |ordinary| {
+    Some(Candidate::new(scenario, "operation.pinion_speed_hz", format!("{speed_hz:?}"), help, |ordinary| {
         ordinary.operation.pinion_speed_hz = ORDINARY_SPEED_HZ;
-    })
+    }))
 }
 
 fn teeth(scenario: &Scenario) -> Candidate {
@@ -87,7 +103,7 @@ fn teeth(scenario: &Scenario) -> Candidate {
     let multiple = least_common_multiple(gears.pinion_teeth, gears.gear_teeth);
     let help = format!(
         "use tooth counts with a common factor, or fewer teeth: the cycle is divided by the counts' least common multiple, here \
-         {multiple}, and twice as many revolutions as the gear has teeth are simulated"
+         {multiple}, and without solver.duration_s twice as many revolutions as the gear has teeth are simulated"
     );
     Candidate::new(scenario, "gears.gear_teeth", gears.gear_teeth.to_string(), help, |ordinary| {
         ordinary.gears.pinion_teeth = gears.gear_teeth;
