@@ -179,6 +179,8 @@ SECTION_OF_KEY: dict[str, str] = {
     "support": "rig",
     "mesh_damping_ratio": "rig",
     "sampling_rate_hz": "solver",
+    "duration_s": "solver",
+    "pinion_revolutions": "solver",
     "settle_fraction": "solver",
     "settle_tolerance": "solver",
     "initial_displacement": "solver",
@@ -263,6 +265,8 @@ class ScenarioChanges(TypedDict, total=False):
     support: Any
     mesh_damping_ratio: Any
     sampling_rate_hz: Any
+    duration_s: Any
+    pinion_revolutions: Any
     settle_fraction: Any
     settle_tolerance: Any
     initial_displacement: Any
@@ -329,6 +333,8 @@ class ScenarioKeys:
     support: Support
     mesh_damping_ratio: float
     sampling_rate_hz: float
+    duration_s: float | None
+    pinion_revolutions: float | None
     settle_fraction: float
     settle_tolerance: float
     initial_displacement: list[float] | None
@@ -397,6 +403,8 @@ class ScenarioKeys:
         support: Support | None = None,
         mesh_damping_ratio: float | None = None,
         sampling_rate_hz: float | None = None,
+        duration_s: float | None = None,
+        pinion_revolutions: float | None = None,
         settle_fraction: float | None = None,
         settle_tolerance: float | None = None,
         initial_displacement: Sequence[float] | None = None,
@@ -548,9 +556,16 @@ class ScenarioKeys:
         sampling_rate_hz : float, optional
             (S/s) The nominal sampling rate; the actual one is the next at which a whole number of samples passes from
             one pair of teeth to the next. Allowed: > 0. Default: 1e5.
+        duration_s : float, optional
+            (s) How long the kept signal is; settling comes before it. Allowed: > 0; not beside pinion_revolutions.
+            Default: see pinion_revolutions.
+        pinion_revolutions : float, optional
+            (rev) The same as a number of revolutions of the pinion; settling comes before them. Allowed: > 0; not
+            beside duration_s, not with a speed profile. Default: what settling leaves of 2 z_g revolutions, or of the
+            time that a speed profile spans.
         settle_fraction : float, optional
-            (-) The part of the time that is discarded from the start, while the vibration settles. Allowed: ≥ 0, < 1.
-            Default: 0.5.
+            (-) The part of the simulated time that is discarded from the start, while the vibration settles. Allowed: ≥
+            0, < 1. Default: 0.5.
         settle_tolerance : float, optional
             (-) What must be left of the slowest mode's transient where the kept signal starts: a steady simulation
             starts in equilibrium and simulates only as much of the discarded part as this needs; 0: all of it, as

@@ -26,6 +26,7 @@ impl From<ChannelKind> for Channel {
 /// A text that names no channel.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("there is no channel `{name}`; there are {}", known.join(", "))]
+#[non_exhaustive]
 pub struct UnknownChannel {
     /// The text.
     pub name: String,

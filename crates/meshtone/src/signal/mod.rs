@@ -38,7 +38,9 @@ mod warning;
 
 pub use angular::{AngularSettings, AngularSignal, Interpolation, angular_resample, points_per_revolution};
 pub use anti_aliasing::AntiAliasing;
-pub use average::{SynchronousAverage, revolution_average, segmented_averages, synchronous_average};
+pub use average::{
+    FEWEST_REVOLUTIONS, SynchronousAverage, revolution_average, segmented_averages, synchronous_average,
+};
 pub use check::check_channel;
 pub use edge::Edge;
 pub use envelope::{analytic_signal, envelope, envelope_spectrum};

@@ -8,7 +8,7 @@
 use meshtone_fourier::Complex64;
 
 use super::ModalMachine;
-use super::mode_step::StepOfMode;
+use super::mode_step::{SampledSine, StepOfMode};
 use crate::machine::{Axis, SENSOR};
 use crate::mesh::MeshLaw;
 
@@ -49,8 +49,9 @@ impl<'a> MeanMachine<'a> {
             let velocity = displacement * Complex64::I * angular_frequency;
             [displacement, velocity, velocity * Complex64::I * angular_frequency]
         });
+        let sampled = SampledSine::new(angular_frequency * self.step_s);
         let of_steps = self.squared_gains(&|n| {
-            let [displacement, velocity, acceleration] = self.steps[n].answer(angular_frequency * self.step_s);
+            let [displacement, velocity, acceleration] = self.steps[n].answer(&sampled);
             [displacement * (self.step_s * self.step_s), velocity * self.step_s, acceleration]
         });
         [own[0] / of_steps[0], own[1] / of_steps[1]]

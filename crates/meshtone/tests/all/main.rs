@@ -29,6 +29,7 @@ mod published;
 mod published_model;
 mod published_pitch;
 mod refused_shapes;
+mod repetition;
 mod root_crack;
 mod scenario_faults;
 mod scenario_from_toml;

@@ -57,6 +57,7 @@ fn keys_that_are_commented_out_show_their_defaults() {
         assert!(scenario.operation.speed_profile_hz.take().is_some());
         assert!(scenario.operation.torque_profile_nm.take().is_some());
         assert_eq!(scenario.solver.initial_displacement.take(), Some([0.0; 13]));
+        assert_eq!(scenario.solver.duration_s.take(), Some(1.0));
         assert_eq!(scenario, Scenario::from_toml(&text).unwrap(), "{kind}");
     }
 }
