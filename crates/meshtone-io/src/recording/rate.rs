@@ -7,6 +7,9 @@ use super::time::Timing;
 /// Two statements of one rate may differ by this part, for instance by the digits that were written.
 const AGREEMENT: f64 = 1e-6;
 
+/// (S/s) Least number under a short name that is a sampling rate.
+const LEAST_OF_SHORT_NAME: f64 = 1000.0;
+
 /// A sampling rate, and where the file states it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct StatedRate {
@@ -24,10 +27,18 @@ impl StatedRate {
             None => (word.strip_suffix("hz").unwrap_or(&word), 1.0),
         };
         let rate_hz = match word {
-            "fs" | "samplingrate" | "samplerate" | "samplingfrequency" | "samplefrequency"
-            | "samplingfreq" | "samplefreq" | "abtastrate" | "abtastfrequenz" => value * scale,
+            "fs" | "fsamp" | "fsample" | "fsampling" | "samplingrate" | "samplerate" | "samprate"
+            | "smprate" | "samplingfrequency" | "samplefrequency" | "sampfrequency" | "samplingfreq"
+            | "samplefreq" | "sampfreq" | "sfreq" | "freqsampling" | "acquisitionrate" | "acqrate"
+            | "scanrate" | "daqrate" | "samplespersecond" | "sps" | "abtastrate" | "abtastfrequenz" => {
+                value * scale
+            }
+            // Some mean the rate of the shaft by it.
+            "sr" | "srate" if value >= LEAST_OF_SHORT_NAME => value * scale,
             "dt" | "dts" | "samplinginterval" | "samplingintervals" | "sampleinterval"
-            | "sampleintervals" | "samplingperiod" | "samplingperiods" => 1.0 / value,
+            | "sampleintervals" | "samplingperiod" | "samplingperiods" | "timestep" | "deltat"
+            | "xincrement" | "wfincrement" => 1.0 / value,
+            "increment" if name.ends_with("x_values.increment") => 1.0 / value,
             _ => return None,
         };
         Some(StatedRate { by: name.to_string(), rate_hz })
@@ -85,5 +96,5 @@ fn no_rate(present: &[String]) -> Problem {
             names(present)
         ),
     };
-    Problem::Refused(format!("does not say its sampling rate{rest}"))
+    Problem::NoRate(format!("does not say its sampling rate{rest}"))
 }
