@@ -98,3 +98,23 @@ fn no_rate(present: &[String]) -> Problem {
     };
     Problem::NoRate(format!("does not say its sampling rate{rest}"))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::StatedRate;
+
+    #[test]
+    fn rates_are_known_by_the_names_that_files_give_them() {
+        let rate = |name: &str, value: f64| StatedRate::from_named(name, value).map(|stated| stated.rate_hz);
+        for name in
+            ["Head_1.SampFreq", "Fs", "bearing.sr", "SampleRate_Hz", "Header.Sampling_Frequency", "acq_rate"]
+        {
+            assert_eq!(rate(name, 20_000.0), Some(20_000.0), "{name}");
+        }
+        assert_eq!(rate("Signal_1.x_values.increment", 5e-5), Some(20_000.0));
+        assert_eq!(rate("dt", 5e-5), Some(20_000.0));
+        // The speed of the shaft, and the step of something else.
+        assert_eq!(rate("shaft.sr", 25.0), None);
+        assert_eq!(rate("load.increment", 0.5), None);
+    }
+}
