@@ -46,6 +46,7 @@ mod signal_indicators;
 mod signal_mismatch;
 mod signal_phase;
 mod signal_published;
+mod signal_recordings;
 mod signal_refused;
 mod signal_scipy;
 mod signal_simulated;
