@@ -98,7 +98,8 @@ fn machine(seed: u64) -> Machine {
             draws.in_octaves(3.0, 200.0),
             draws.one(&[0, 5, 6, 7, 7, 8, 9]),
         );
-        let Ok(scenario) = Scenario::from_toml(&text) else { continue };
+        let Ok(mut scenario) = Scenario::from_toml(&text) else { continue };
+        crate::physics::with_own_structure(&mut scenario);
         let Ok(simulation) = simulate(&scenario) else { continue };
         let channels = simulation.channels;
         let rate_hz = channels.sampling_rate_hz;
