@@ -253,6 +253,7 @@ warning_kinds! {
     Undercut "undercut" "teeth are undercut, which their profile does not show";
     ThinTips "thin-tips" "tips are so thin that they could break off";
     IgnoredKey "ignored-key" "a key has no effect";
+    FormerDefaults "former-defaults" "keys that are left out have the defaults of former files";
     FastTeeth "fast-teeth" "the pitch line is faster than spur gears run";
     SpeedProfileOff "speed-profile-off" "a speed profile never comes near the nominal speed";
     EqualWheels "equal-wheels" "both wheels move in opposition, and the supports' accelerations cancel";

@@ -70,6 +70,8 @@ pub enum Purpose {
     DiagnosisNoise = 28,
     /// Random Fourier features of a diagnosis; index: feature.
     DiagnosisFeature = 29,
+    /// Modes of the housing that a sensor sits on: frequencies and shares; index: 0.
+    HousingModes = 30,
 }
 
 /// A sequence of random numbers.

@@ -599,11 +599,11 @@ fn sensors_are_what_is_kept() {
     let plan = plan(&text);
     let keep = &plan.content.keep;
     let names: Vec<_> = keep.channels.iter().map(|channel| channel.name()).collect();
-    assert_eq!(names, ["casing_g", "support_vertical_g"]);
+    assert_eq!(names, ["casing_g", "pinion_support_vertical_g"]);
     assert_eq!(keep.analysed.name(), "casing_g");
     let made = made(&plan);
     for row in 0..16 {
-        let [casing, ranged] = ["casing_g", "support_vertical_g"].map(|name| made.signal(name, row));
+        let [casing, ranged] = ["casing_g", "pinion_support_vertical_g"].map(|name| made.signal(name, row));
         assert_eq!((casing.len(), ranged.len()), (1200, 1200));
         // A signal that is cut to the range jumps between its ends, and the filter of the data set's rate rings beyond them.
         let largest = |signal: &[f64]| signal.iter().fold(0.0, |most: f64, value| most.max(value.abs()));

@@ -18,10 +18,10 @@ pub use crate::damage::kinds::*;
 pub use crate::damage::{Damage, DamageKind, DestructionLine, Fault, FaultyTeeth, PitCircle, damage_kinds};
 pub use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 pub use crate::keys::{FileProblem, KeyDescription, KeyKind};
-pub use crate::machine::{DampingRatio, Rig, Shaft, Support, WheelInertia};
+pub use crate::machine::{DampingRatio, Rig, Shaft, Support, SupportSprings, WheelInertia};
 pub use crate::model::Model;
 pub use crate::operation::{Operation, Profile, Solver};
-pub use crate::sensor::{FrequencyResponse, ResponseInput, Sensor, SensorDirection, SensorPlace};
+pub use crate::sensor::{FrequencyResponse, ResponseInput, Sensor, SensorDirection, SensorPath, SensorPlace};
 pub use crate::wheel::{
     ERROR_POINTS, FlankRelief, FoundationCoefficients, Gears, Material, ProfileErrors, Quality, ReliefShape,
     WheelDeviations, WheelName,

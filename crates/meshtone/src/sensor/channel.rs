@@ -52,7 +52,7 @@ impl Channel {
     /// use meshtone::sensor::Channel;
     ///
     /// let names: Vec<_> = Channel::all(&[Sensor::default()]).iter().map(|channel| channel.name().into_owned()).collect();
-    /// assert_eq!(names[..2], ["support_vertical_g", "horizontal_g"]);
+    /// assert_eq!(names[..2], ["pinion_support_vertical_g", "horizontal_g"]);
     /// ```
     pub fn all(sensors: &[Sensor]) -> Vec<Self> {
         let sensors = sensors.iter().map(|sensor| Self::Sensor(sensor.name()));

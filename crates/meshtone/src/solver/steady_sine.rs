@@ -9,7 +9,7 @@ use meshtone_fourier::Complex64;
 
 use super::ModalMachine;
 use super::mode_step::{SampledSine, StepOfMode};
-use crate::machine::{Axis, SENSOR};
+use crate::machine::{Axis, PINION_SUPPORT};
 use crate::mesh::MeshLaw;
 
 /// A machine with its mean mesh, as a deviation of the flanks drives it.
@@ -31,7 +31,7 @@ impl<'a> MeanMachine<'a> {
     /// * `law` - that of its mesh
     /// * `step_s` - (s) time between two samples
     pub(crate) fn new(model: &'a ModalMachine, law: MeshLaw, step_s: f64) -> Self {
-        let (sensor, _) = model.of_coordinates(&model.machine.weights(SENSOR, Axis::Y));
+        let (sensor, _) = model.of_coordinates(&model.machine.weights(PINION_SUPPORT, Axis::Y));
         let steps = model.steps(&[law], step_s);
         Self { model, law, step_s, steps, sensor }
     }

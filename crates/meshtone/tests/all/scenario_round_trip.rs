@@ -3,8 +3,8 @@
 use meshtone::scenario::{
     Damage, DampingRatio, DestructionLine, Fault, FaultyTeeth, FlankRelief, FoundationCoefficients, GearPair,
     Gears, Material, MissingTooth, Model, Operation, PartialFace, PitCircle, Pits, Profile, ProfileErrors,
-    Quality, ReliefShape, Rig, RootCrack, Scenario, Shaft, Solver, Support, ThroughFace, ToothBreakage,
-    ToothDestruction, Wear, WheelInertia, WheelName,
+    Quality, ReliefShape, Rig, RootCrack, Scenario, Shaft, Solver, Support, SupportSprings, ThroughFace,
+    ToothBreakage, ToothDestruction, Wear, WheelInertia, WheelName,
 };
 use meshtone::wheel::{ErrorTable, WheelDeviations};
 use proptest::array::{uniform4, uniform6, uniform13};
@@ -237,14 +237,15 @@ fn rig() -> impl Strategy<Value = Rig> {
             },
         )
     };
-    let support = (1e-6..1e3, 1e3..1e12, 0.0..1e12, 0.0..0.9).prop_map(
-        |(mass_kg, stiffness_n_per_m, coupling_n_per_m, damping_ratio)| Support {
-            mass_kg,
-            stiffness_n_per_m,
-            coupling_n_per_m,
-            damping_ratio,
-        },
-    );
+    let stiffnesses = (1e3..1e12, 0.0..1e12).prop_map(|(stiffness_n_per_m, coupling_n_per_m)| {
+        SupportSprings::Stiffnesses { stiffness_n_per_m, coupling_n_per_m }
+    });
+    let frequencies = (1.0..1e4, 1.1..9.0).prop_map(|(base_hz, ratio)| SupportSprings::Frequencies {
+        base_hz,
+        differential_hz: base_hz * ratio,
+    });
+    let support = (1e-6..1e3, prop_oneof![stiffnesses, frequencies], 0.0..0.9)
+        .prop_map(|(mass_kg, springs, damping_ratio)| Support { mass_kg, springs, damping_ratio });
     let numbers = (1e3..1e12, 1e3..1e12, 1e-6..1e3, 0.0..0.9, 0.0..0.9);
     (numbers, damping, shaft(), shaft(), inertia(), inertia(), support).prop_map(
         |(

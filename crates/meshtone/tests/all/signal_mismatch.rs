@@ -98,7 +98,8 @@ pub fn machine_of(seed: u64, teeth: [u32; 2], least_torque_nm: f64, draws: &mut 
         draws.in_octaves(least_torque_nm, 200.0),
         draws.one(&[0, 5, 6, 7, 7, 8, 9]),
     );
-    let scenario = Scenario::from_toml(&text).ok()?;
+    let mut scenario = Scenario::from_toml(&text).ok()?;
+    crate::physics::with_own_structure(&mut scenario);
     let simulation = simulate(&scenario).ok()?;
     let channels = simulation.channels;
     let rate_hz = channels.sampling_rate_hz;
