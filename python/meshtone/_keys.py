@@ -144,7 +144,7 @@ SECTION_OF_KEY: dict[str, str] = {
     "flank_relief": "gears",
     "tip_chamfer_mm": "gears",
     "backlash_mm": "gears",
-    "crowning_mm": "gears",
+    "uniform_flank_reduction_mm": "gears",
     "points_per_tooth": "gears",
     "foundation": "gears",
     "speed_fluctuation_hz": "operation",
@@ -226,7 +226,7 @@ class ScenarioChanges(TypedDict, total=False):
     flank_relief: Any
     tip_chamfer_mm: Any
     backlash_mm: Any
-    crowning_mm: Any
+    uniform_flank_reduction_mm: Any
     points_per_tooth: Any
     foundation: Any
     speed_fluctuation_hz: Any
@@ -294,7 +294,7 @@ class ScenarioKeys:
     flank_relief: FlankRelief
     tip_chamfer_mm: float | None
     backlash_mm: float | None
-    crowning_mm: float
+    uniform_flank_reduction_mm: float
     points_per_tooth: int
     foundation: Foundation
     speed_fluctuation_hz: float
@@ -360,7 +360,7 @@ class ScenarioKeys:
         flank_relief: FlankRelief | None = None,
         tip_chamfer_mm: float | None = None,
         backlash_mm: float | None = None,
-        crowning_mm: float | None = None,
+        uniform_flank_reduction_mm: float | None = None,
         points_per_tooth: int | None = None,
         foundation: Foundation | None = None,
         speed_fluctuation_hz: float | None = None,
@@ -457,7 +457,7 @@ class ScenarioKeys:
             (mm) The backlash along the line of action. Allowed: ≥ 0; less than 1 module; at least what a given centre
             distance opens. Default: ⅔ (0.06 + 0.0005 a + 0.03 m), a the centre distance, and what a given one opens.
             Ignored by linear, published.
-        crowning_mm : float, optional
+        uniform_flank_reduction_mm : float, optional
             (mm) A constant reduction of the working flank. Allowed: ≥ 0; less than π/4 modules, half the tooth's
             thickness. Default: 0.0.
         points_per_tooth : int, optional

@@ -41,7 +41,7 @@ pub struct Gears {
     /// distance opens.
     pub backlash_mm: Option<f64>,
     /// (mm) Constant reduction of the working flank. Default 0.
-    pub crowning_mm: f64,
+    pub uniform_flank_reduction_mm: f64,
     /// Number of points along a tooth's profile. Default 10 000.
     pub points_per_tooth: usize,
     /// Coefficients of the fillet foundation's compliance. Default: Sainsot et al. 2004.
@@ -77,7 +77,7 @@ impl Gears {
             flank_relief: FlankRelief::default(),
             tip_chamfer_mm: None,
             backlash_mm: None,
-            crowning_mm: 0.0,
+            uniform_flank_reduction_mm: 0.0,
             points_per_tooth: 10_000,
             foundation: FoundationCoefficients::default(),
         }
@@ -168,9 +168,14 @@ impl Keys for Gears {
                 .range(Range::not_negative())
                 .rule("less than 1 module; at least what a given centre distance opens")
                 .alternative("0.1275"),
-            row("crowning_mm", "mm", "a constant reduction of the working flank", field!(crowning_mm))
-                .range(Range::not_negative())
-                .rule("less than π/4 modules, half the tooth's thickness"),
+            row(
+                "uniform_flank_reduction_mm",
+                "mm",
+                "a constant reduction of the working flank",
+                field!(uniform_flank_reduction_mm),
+            )
+            .range(Range::not_negative())
+            .rule("less than π/4 modules, half the tooth's thickness"),
             row(
                 "points_per_tooth",
                 "",
