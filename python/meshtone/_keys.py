@@ -152,7 +152,7 @@ SECTION_OF_KEY: dict[str, str] = {
     "tip_chamfer_mm": "gears",
     "active_profile_shortening": "gears",
     "backlash_mm": "gears",
-    "crowning_mm": "gears",
+    "uniform_flank_reduction_mm": "gears",
     "points_per_tooth": "gears",
     "foundation": "gears",
     "speed_fluctuation_hz": "operation",
@@ -237,7 +237,7 @@ class ScenarioChanges(TypedDict, total=False):
     tip_chamfer_mm: Any
     active_profile_shortening: Any
     backlash_mm: Any
-    crowning_mm: Any
+    uniform_flank_reduction_mm: Any
     points_per_tooth: Any
     foundation: Any
     speed_fluctuation_hz: Any
@@ -308,7 +308,7 @@ class ScenarioKeys:
     tip_chamfer_mm: float | None
     active_profile_shortening: float
     backlash_mm: float | None
-    crowning_mm: float
+    uniform_flank_reduction_mm: float
     points_per_tooth: int
     foundation: Foundation
     speed_fluctuation_hz: float
@@ -377,7 +377,7 @@ class ScenarioKeys:
         tip_chamfer_mm: float | None = None,
         active_profile_shortening: float | None = None,
         backlash_mm: float | None = None,
-        crowning_mm: float | None = None,
+        uniform_flank_reduction_mm: float | None = None,
         points_per_tooth: int | None = None,
         foundation: Foundation | None = None,
         speed_fluctuation_hz: float | None = None,
@@ -479,7 +479,7 @@ class ScenarioKeys:
             (mm) The backlash along the line of action. Allowed: ≥ 0; less than 1 module; at least what a given centre
             distance opens. Default: ⅔ (0.06 + 0.0005 a + 0.03 m), a the centre distance, and what a given one opens.
             Ignored by linear, published.
-        crowning_mm : float, optional
+        uniform_flank_reduction_mm : float, optional
             (mm) A constant reduction of the working flank. Allowed: ≥ 0; less than π/4 modules, half the tooth's
             thickness. Default: 0.0.
         points_per_tooth : int, optional

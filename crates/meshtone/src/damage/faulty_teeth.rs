@@ -99,19 +99,6 @@ impl FaultyTeeth {
         }
     }
 
-    /// A tooth that is among these and among others of the same wheel.
-    pub(super) fn shared(&self, other: &Self) -> Option<u32> {
-        let named = match (self, other) {
-            (Self::All, named) | (named, _) => named,
-        };
-        match named {
-            Self::All => Some(1),
-            Self::One(_) | Self::These(_) => {
-                named.numbers(0).into_iter().find(|&tooth| self.contains(tooth) && other.contains(tooth))
-            }
-        }
-    }
-
     /// What they are called: `tooth 5`, `teeth 1 and 2`, `all teeth`.
     pub fn in_words(&self) -> String {
         match self {

@@ -44,7 +44,7 @@ pub struct Gears {
     /// distance opens.
     pub backlash_mm: Option<f64>,
     /// (mm) Constant reduction of the working flank. Default 0.
-    pub crowning_mm: f64,
+    pub uniform_flank_reduction_mm: f64,
     /// Number of points along a tooth's profile. Default 10 000.
     pub points_per_tooth: usize,
     /// Coefficients of the fillet foundation's compliance. Default: Sainsot et al. 2004.
@@ -81,7 +81,7 @@ impl Gears {
             tip_chamfer_mm: None,
             active_profile_shortening: 0.1,
             backlash_mm: None,
-            crowning_mm: 0.0,
+            uniform_flank_reduction_mm: 0.0,
             points_per_tooth: 10_000,
             foundation: FoundationCoefficients::default(),
         }
@@ -180,9 +180,14 @@ impl Keys for Gears {
                 .range(Range::not_negative())
                 .rule("less than 1 module; at least what a given centre distance opens")
                 .alternative("0.1275"),
-            row("crowning_mm", "mm", "a constant reduction of the working flank", field!(crowning_mm))
-                .range(Range::not_negative())
-                .rule("less than π/4 modules, half the tooth's thickness"),
+            row(
+                "uniform_flank_reduction_mm",
+                "mm",
+                "a constant reduction of the working flank",
+                field!(uniform_flank_reduction_mm),
+            )
+            .range(Range::not_negative())
+            .rule("less than π/4 modules, half the tooth's thickness"),
             row(
                 "points_per_tooth",
                 "",

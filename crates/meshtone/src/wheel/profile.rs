@@ -1,4 +1,4 @@
-//! The profile of a healthy tooth: fillet, involute, crowning, tip relief.
+//! The profile of a healthy tooth: fillet, involute, uniform reduction, tip relief.
 
 use super::radii::Wheel;
 use crate::interpolation::NaturalSpline;
@@ -11,7 +11,7 @@ pub struct ToothProfile {
     pub x_mm: Vec<f64>,
     /// (mm) Half thickness of the tooth.
     pub y_mm: Vec<f64>,
-    /// (mm) Distance of the points from the wheel's centre before crowning and relief: how far the wheel has rolled when its
+    /// (mm) Distance of the points from the wheel's centre before the uniform reduction and relief: how far the wheel has rolled when its
     /// mate is there.
     pub involute_radius_mm: Vec<f64>,
     /// Index of the point where the tip relief starts, in the wheel's own sampling (the pinion's before it is resampled).
@@ -70,13 +70,13 @@ pub(crate) fn first_minimum(values: impl Iterator<Item = f64>) -> usize {
 /// # Arguments
 /// * `wheel` - the tooth's wheel
 /// * `points` - (≥ 2) number of points, uniform in x
-/// * `crowning_mm` - (mm) constant reduction of y
+/// * `uniform_flank_reduction_mm` - (mm) constant reduction of y
 /// * `relief` - tip relief, or none
 /// * `root` - what the flank has below the involute
 pub fn tooth_profile(
     wheel: &Wheel,
     points: usize,
-    crowning_mm: f64,
+    uniform_flank_reduction_mm: f64,
     relief: Option<TipRelief>,
     root: Root,
 ) -> ToothProfile {
@@ -89,7 +89,7 @@ pub fn tooth_profile(
     let mut y_mm: Vec<f64> = x_mm.iter().map(|&x| flank.half_thickness_mm(x, &mut roll)).collect();
     let involute_radius_mm = x_mm.iter().zip(&y_mm).map(|(x, y)| (x * x + y * y).sqrt()).collect();
     for y in &mut y_mm {
-        *y -= crowning_mm;
+        *y -= uniform_flank_reduction_mm;
     }
     let mut profile = ToothProfile { x_mm, y_mm, involute_radius_mm, tip_relief_index: None };
     if let Some(relief) = relief {

@@ -40,6 +40,25 @@ fn a_speed_in_revolutions_per_minute_is_refused_with_what_it_would_be() {
     assert!(pair().validate().unwrap().is_empty());
 }
 
+/// The damping of the published model brakes the rotation of the whole machine, that of the others does not.
+#[test]
+fn a_braked_rotation_is_reported_under_the_published_model_alone() {
+    let reported = |model: Model| {
+        let mut scenario = pair();
+        scenario.model = model;
+        let simulation = simulate(&scenario).unwrap();
+        let warnings = simulation.warnings_of_signals();
+        let braked = warnings.into_iter().find(|warning| warning.kind == WarningKind::BrakedRotation);
+        (braked.map(|warning| warning.message), simulation.stages.static_force_n())
+    };
+    let (published, static_n) = reported(Model::Published);
+    let published = published.unwrap();
+    assert!(published.contains(&format!("but the load's is {static_n:.0} N")), "{published}");
+    for model in [Model::Linear, Model::Contact] {
+        assert_eq!(reported(model).0, None, "{model:?}");
+    }
+}
+
 #[test]
 fn a_profile_counts_as_the_nominal_speed_does() {
     let mut scenario = pair();

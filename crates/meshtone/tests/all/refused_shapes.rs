@@ -27,8 +27,8 @@ fn relief_leaves_some_of_the_tip() {
     }
     let mut crowned = Scenario::new(GearPair::example());
     crowned.model = Model::Linear;
-    crowned.gears.crowning_mm = 1.3;
-    assert_eq!(crowned.validate().unwrap_err().key, "gears.crowning_mm");
+    crowned.gears.uniform_flank_reduction_mm = 1.3;
+    assert_eq!(crowned.validate().unwrap_err().key, "gears.uniform_flank_reduction_mm");
 }
 
 /// The settling is a fraction of the simulated time, also where a speed profile or a stated length sets it.

@@ -18,13 +18,13 @@ fn gears() -> impl Strategy<Value = Gears> {
     let rest = (0usize..6, 0.0..0.05, 500usize..100_000, foundation);
     let contact = (any::<bool>(), 0.01..1.9, 0.0..50.0, option::of(0.0..0.3), option::of(0.0..0.5));
     (wheels, rest, contact).prop_map(
-        |(wheels, (material, crowning_mm, points_per_tooth, foundation), contact)| {
+        |(wheels, (material, uniform_flank_reduction_mm, points_per_tooth, foundation), contact)| {
             let (parabolic, length, amount_um, chamfer, backlash) = contact;
             let (module_mm, pinion_teeth, gear_teeth, face_width_mm, pressure_angle_deg) = wheels;
             let mut gears = Gears::new(module_mm, pinion_teeth, gear_teeth, face_width_mm);
             gears.pressure_angle_deg = pressure_angle_deg;
             gears.material = Material::ALL[material];
-            gears.crowning_mm = crowning_mm;
+            gears.uniform_flank_reduction_mm = uniform_flank_reduction_mm;
             gears.points_per_tooth = points_per_tooth;
             gears.foundation = foundation;
             gears.flank_relief = FlankRelief {

@@ -186,12 +186,18 @@ impl Hypothesis {
         }
     }
 
-    /// Returns whether it is of a mate with half as many teeth as another, whose orders are then hunting-tooth orders of this pair.
+    /// Returns whether it is of a mate with half as many teeth as another, nearer to the stated one, whose orders are then hunting-tooth orders
+    /// of this pair.
     pub(super) fn explains_mate_of(&self, other: &Self, stated: &StatedFacts) -> bool {
         match (self.alternative, other.alternative) {
-            (Alternative::MateTeeth { teeth: own, .. }, Alternative::MateTeeth { teeth: other, .. }) => {
+            (
+                Alternative::MateTeeth { teeth: own, stated: said },
+                Alternative::MateTeeth { teeth: other, .. },
+            ) => {
                 let period = own / greatest_common_divisor(stated.teeth, own).max(1);
-                other == 2 * own && (stated.teeth * period).is_multiple_of(other)
+                // In ratio: of 80 and 160 the former is nearer to 81.
+                let is_nearer = u64::from(own) * u64::from(other) > u64::from(said).pow(2);
+                other == 2 * own && is_nearer && (stated.teeth * period).is_multiple_of(other)
             }
             _ => false,
         }
