@@ -254,6 +254,7 @@ warning_kinds! {
     ThinTips "thin-tips" "tips are so thin that they could break off";
     IgnoredKey "ignored-key" "a key has no effect";
     FastTeeth "fast-teeth" "the pitch line is faster than spur gears run";
+    LongCycle "long-cycle" "the machine repeats itself only after a very long time";
     SpeedProfileOff "speed-profile-off" "a speed profile never comes near the nominal speed";
     EqualWheels "equal-wheels" "both wheels move in opposition, and the supports' accelerations cancel";
     Unsettled "unsettled" "the start-up transient has not decayed where the kept signal starts";

@@ -70,6 +70,8 @@ pub enum Purpose {
     DiagnosisNoise = 28,
     /// Random Fourier features of a diagnosis; index: feature.
     DiagnosisFeature = 29,
+    /// Seed of the deviations of a gearbox's wheel; index: wheel.
+    GearboxWheel = 30,
 }
 
 /// A sequence of random numbers.

@@ -19,10 +19,11 @@ mod repetition;
 mod steady_sine;
 mod step;
 
+pub(crate) use coupled::MOST_MESHES;
 pub use integrate::{Block, Diverged, Problem, Recorder, integrate};
 pub(crate) use integrate::{LANES, integrate_side_by_side};
 #[cfg(feature = "internals")]
 pub use modal::ModalLine;
-pub use modal::{InitialMotion, ModalMachine};
+pub use modal::{InitialMotion, ModalMachine, Residual};
 pub use outputs::Output;
 pub(crate) use steady_sine::MeanMachine;

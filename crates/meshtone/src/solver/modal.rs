@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::outputs::{EXTERNALS, external_forces};
 use crate::machine::{Drive, Machine, Modes};
 
 /// A machine without its meshes, in the modes that take part in the motion.
@@ -29,8 +30,22 @@ pub struct ModalMachine {
     pub static_displacement: Vec<f64>,
     /// Modal velocity at the start, relative to the rigid rotation.
     pub initial_velocity: Vec<f64>,
+    /// What modes that are not stepped add to the deflections of the meshes.
+    pub residual: Residual,
     /// The machine's own description, of which outputs need the places.
     pub machine: Machine,
+}
+
+/// The flexibility of modes that are so high that they deform at every instant as at rest. The columns of all lines of action are counted
+/// through, mesh by mesh; without such modes all lists are empty.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Residual {
+    /// (m/N) `Σ B Bᵀ/ω²`, a row for each column.
+    pub compliance: Vec<Vec<f64>>,
+    /// (m) Deflection in each column under the constant loads.
+    pub static_deflection: Vec<f64>,
+    /// Deflection in each column per unit of each external.
+    pub of_external: Vec<[f64; EXTERNALS]>,
 }
 
 /// The line of action of a mesh in the modes.
@@ -83,10 +98,9 @@ impl ModalMachine {
     /// * `start` - how the simulation starts
     pub fn new(machine: &Machine, modes: &Modes, face_reach_m: &[f64], start: InitialMotion) -> Self {
         let shapes = modes.shapes.transpose();
-        let mass = DVector::from_column_slice(&machine.mass);
         let modal = |turned: &DVector<f64>| clean(&shapes * turned);
         let modal_motion =
-            |motion: &DVector<f64>| modal(&(machine.turn.transpose() * motion).component_mul(&mass));
+            |motion: &DVector<f64>| modal(&(&machine.mass * (machine.turn.transpose() * motion)));
         let [motor, brake] = drives(machine).map(|force| modal(&force));
         let rigid = modal_motion(&machine.rigid_rotation);
         let velocity = match start.velocity {
@@ -123,10 +137,53 @@ impl ModalMachine {
             rotation_rad_per_s: start.nominal_rad_per_s,
             static_displacement: Vec::new(),
             initial_velocity: pick(&velocity),
+            residual: Residual::default(),
             machine: machine.clone(),
         };
         this.balance(start.brake_torque_nm);
         this
+    }
+
+    /// The machine with the modes up to a frequency; those above stay as flexibility.
+    ///
+    /// # Arguments
+    /// * `angular_frequency` - (rad/s) of the highest mode that is stepped
+    pub fn up_to(mut self, angular_frequency: f64) -> Self {
+        let omitted: Vec<usize> =
+            (0..self.modes()).filter(|&n| self.stiffness[n].sqrt() > angular_frequency).collect();
+        if omitted.is_empty() {
+            return self;
+        }
+        let columns: Vec<&Vec<f64>> = self.lines.iter().flat_map(|line| &line.columns).collect();
+        let yielding = |a: &[f64], b: &[f64]| omitted.iter().map(|&n| a[n] * b[n] / self.stiffness[n]).sum::<f64>();
+        let externals = external_forces(&self);
+        let static_deflection =
+            |column: &&Vec<f64>| omitted.iter().map(|&n| column[n] * self.static_displacement[n]).sum();
+        self.residual = Residual {
+            compliance: columns.iter().map(|a| columns.iter().map(|b| yielding(a, b)).collect()).collect(),
+            static_deflection: columns.iter().map(static_deflection).collect(),
+            of_external: columns.iter().map(|a| externals.each_ref().map(|force| yielding(a, force))).collect(),
+        };
+        let is_kept = |n: usize| !omitted.contains(&n);
+        let keep = |values: &mut Vec<f64>| {
+            let kept = values.iter().enumerate().filter(|(n, _)| is_kept(*n)).map(|(_, value)| *value);
+            *values = kept.collect();
+        };
+        let shapes = std::mem::take(&mut self.shapes).into_iter().enumerate();
+        self.shapes = shapes.filter(|(n, _)| is_kept(*n)).map(|(_, shape)| shape).collect();
+        for values in [
+            &mut self.stiffness,
+            &mut self.damping,
+            &mut self.motor,
+            &mut self.brake,
+            &mut self.rigid_velocity,
+            &mut self.static_displacement,
+            &mut self.initial_velocity,
+        ] {
+            keep(values);
+        }
+        self.lines.iter_mut().flat_map(|line| &mut line.columns).for_each(keep);
+        self
     }
 
     /// Finds the static forces of the meshes that hold the shafts that turn freely, and the displacement under these and the torque.

@@ -11,6 +11,7 @@ mod drive;
 mod fault_limits;
 mod faults_anywhere;
 mod generated;
+mod gearbox_machine;
 mod hybrid;
 mod hybrid_experiment;
 mod hybrid_rig;

@@ -6,7 +6,7 @@ use meshtone_toml::{ReadResult, TomlDocument, TomlTable};
 
 pub use self::files::ScenarioFiles;
 
-use self::files::Numbers;
+pub(super) use self::files::Numbers;
 use super::{Fault, MemoryLimit, Scenario, ScenarioError, Sensor};
 use crate::keys::{Keys, NoFiles, NumberFiles, read_keys};
 use crate::wheel::WheelDeviations;
