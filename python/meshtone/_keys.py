@@ -179,6 +179,8 @@ SECTION_OF_KEY: dict[str, str] = {
     "support": "rig",
     "mesh_damping_ratio": "rig",
     "sampling_rate_hz": "solver",
+    "duration_s": "solver",
+    "pinion_revolutions": "solver",
     "settle_fraction": "solver",
     "settle_tolerance": "solver",
     "initial_displacement": "solver",
@@ -263,6 +265,8 @@ class ScenarioChanges(TypedDict, total=False):
     support: Any
     mesh_damping_ratio: Any
     sampling_rate_hz: Any
+    duration_s: Any
+    pinion_revolutions: Any
     settle_fraction: Any
     settle_tolerance: Any
     initial_displacement: Any
@@ -290,7 +294,7 @@ class ScenarioKeys:
     pinion_dedendum: float
     gear_dedendum: float
     centre_distance_mm: float | None
-    material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"]
+    material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | Mapping[str, float]
     flank_relief: FlankRelief
     tip_chamfer_mm: float | None
     backlash_mm: float | None
@@ -329,6 +333,8 @@ class ScenarioKeys:
     support: Support
     mesh_damping_ratio: float
     sampling_rate_hz: float
+    duration_s: float | None
+    pinion_revolutions: float | None
     settle_fraction: float
     settle_tolerance: float
     initial_displacement: list[float] | None
@@ -356,7 +362,7 @@ class ScenarioKeys:
         pinion_dedendum: float | None = None,
         gear_dedendum: float | None = None,
         centre_distance_mm: float | None = None,
-        material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | None = None,
+        material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | Mapping[str, float] | None = None,
         flank_relief: FlankRelief | None = None,
         tip_chamfer_mm: float | None = None,
         backlash_mm: float | None = None,
@@ -397,6 +403,8 @@ class ScenarioKeys:
         support: Support | None = None,
         mesh_damping_ratio: float | None = None,
         sampling_rate_hz: float | None = None,
+        duration_s: float | None = None,
+        pinion_revolutions: float | None = None,
         settle_fraction: float | None = None,
         settle_tolerance: float | None = None,
         initial_displacement: Sequence[float] | None = None,
@@ -445,7 +453,7 @@ class ScenarioKeys:
         centre_distance_mm : float, optional
             (mm) The distance between the axes. Allowed: > 0; at least the default; contact ratio at least 1. Default:
             that without backlash.
-        material : {'steel', 'copper', 'aluminium', 'brass', 'cast-iron', 'bronze'}, optional
+        material : {'steel', 'copper', 'aluminium', 'brass', 'cast-iron', 'bronze'} or dict, optional
             The material of wheels and shafts. Default: "steel".
         flank_relief : FlankRelief, optional
             The relief of the flanks near the tips, as a gap in µm. Default: { shape = "parabolic", length_mm = 1.0,
@@ -548,9 +556,16 @@ class ScenarioKeys:
         sampling_rate_hz : float, optional
             (S/s) The nominal sampling rate; the actual one is the next at which a whole number of samples passes from
             one pair of teeth to the next. Allowed: > 0. Default: 1e5.
+        duration_s : float, optional
+            (s) How long the kept signal is; settling comes before it. Allowed: > 0; not beside pinion_revolutions.
+            Default: see pinion_revolutions.
+        pinion_revolutions : float, optional
+            (rev) The same as a number of revolutions of the pinion; settling comes before them. Allowed: > 0; not
+            beside duration_s, not with a speed profile. Default: what settling leaves of 2 z_g revolutions, or of the
+            time that a speed profile spans.
         settle_fraction : float, optional
-            (-) The part of the time that is discarded from the start, while the vibration settles. Allowed: ≥ 0, < 1.
-            Default: 0.5.
+            (-) The part of the simulated time that is discarded from the start, while the vibration settles. Allowed: ≥
+            0, < 1. Default: 0.5.
         settle_tolerance : float, optional
             (-) What must be left of the slowest mode's transient where the kept signal starts: a steady simulation
             starts in equilibrium and simulates only as much of the discarded part as this needs; 0: all of it, as

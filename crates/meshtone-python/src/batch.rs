@@ -75,7 +75,7 @@ fn signals<'py>(
     result: Result<ObservedSignals, meshtone::Error>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let (signals, warnings) = match result {
-        Ok(observed) => (observed.signals, observed.warnings),
+        Ok(observed) => (observed.signals, observed.observation.warnings),
         Err(error) => return Ok(simulation_error(&error).into_value(py).into_bound(py).into_any()),
     };
     let all = PyDict::new(py);

@@ -15,7 +15,8 @@ use web_time::Instant;
 
 pub use equations::Equations;
 pub use gearbox::{
-    GearboxChannels, GearboxSignal, GearboxSimulation, GearboxStages, MeshedPair, gearbox_stages, simulate_gearbox,
+    GearboxChannels, GearboxSignal, GearboxSimulation, GearboxStages, MeshedPair, gearbox_stages,
+    simulate_gearbox, simulate_gearboxes,
 };
 use options::MachineOptions;
 

@@ -10,7 +10,7 @@ mod read;
 mod write;
 
 pub use read::{Recorded, read_signals};
-pub use write::write_signals;
+pub use write::{write_gearbox_signals, write_signals};
 
 /// The first column: (s) time since the start of the simulation. The others are the [channels](meshtone::sensor::Channel), listed sensors
 /// first.

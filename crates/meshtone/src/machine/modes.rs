@@ -46,6 +46,9 @@ impl Modes {
     ///
     /// Source: C. D. Johnson, D. A. Kienholz, AIAA Journal 20 (1982).
     pub fn damped_by_springs(machine: &Machine) -> Self {
+        if let [spring] = &machine.springs[..] {
+            return Self::damped_alike(machine, spring.damping_ratio);
+        }
         let mut modes = Self::undamped(machine);
         modes.damping_ratio = (0..modes.damping_ratio.len())
             .map(|n| {

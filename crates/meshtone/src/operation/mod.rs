@@ -91,7 +91,8 @@ impl TimeGrid {
         let speed_hz = operation.pinion_speed_hz;
         let samples_per_pinion_revolution = samples_per_pitch(solver.sampling_rate_hz, 1, speed_hz);
         let sampling_rate_hz = samples_per_pinion_revolution as f64 * speed_hz;
-        let profile_s = operation.speed_profile_hz.as_ref().and_then(|profile| profile.time_s.last().copied());
+        let profile_s =
+            operation.speed_profile_hz.as_ref().and_then(|profile| profile.time_s.last().copied());
         let usual = (USUAL_S * speed_hz).ceil() * samples_per_pinion_revolution as f64;
         let kept = match (solver.duration_s, solver.pinion_revolutions, profile_s) {
             (Some(duration_s), ..) => duration_s * sampling_rate_hz,
@@ -99,7 +100,8 @@ impl TimeGrid {
             (None, None, Some(profile_s)) => profile_s * sampling_rate_hz,
             (None, None, None) => usual,
         };
-        let first_kept_sample = (kept * solver.settle_fraction / (1.0 - solver.settle_fraction)).round() as usize;
+        let first_kept_sample =
+            (kept * solver.settle_fraction / (1.0 - solver.settle_fraction)).round() as usize;
         Self {
             sampling_rate_hz,
             samples: first_kept_sample.saturating_add(kept.round() as usize),

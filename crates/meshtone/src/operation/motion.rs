@@ -82,7 +82,8 @@ impl<'a> Motion<'a> {
         let operation = self.operation;
         let nominal = self.at_sample(operation.torque_profile_nm.as_ref(), operation.brake_torque_nm);
         let torque_nm = nominal + fluctuation(&mut self.torque_draws, operation.torque_fluctuation_nm);
-        let wave = |of: &TorqueHarmonic| of.amplitude * (TAU * of.order * self.revolutions + of.phase_rad).cos();
+        let wave =
+            |of: &TorqueHarmonic| of.amplitude * (TAU * of.order * self.revolutions + of.phase_rad).cos();
         // A factor of exactly 1 without harmonics.
         torque_nm * (1.0 + self.ripple.iter().map(wave).sum::<f64>())
     }

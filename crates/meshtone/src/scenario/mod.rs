@@ -20,20 +20,21 @@ pub use crate::damage::{Damage, DamageKind, DestructionLine, Fault, FaultyTeeth,
 pub use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 pub use crate::keys::{FileProblem, KeyDescription, KeyKind};
 pub use crate::machine::{
-    Bearing, BearingKind, Coupled, DampingRatio, Foot, GearboxShaft, Housing, Rig, Seat, Shaft, Support, WheelInertia,
+    Bearing, BearingKind, Coupled, DampingRatio, Foot, GearboxShaft, Housing, Rig, Seat, Shaft, Support,
+    WheelInertia,
 };
 pub use crate::model::Model;
 pub use crate::operation::{Operation, Profile, Solver};
 pub use crate::sensor::{FrequencyResponse, ResponseInput, Sensor, SensorDirection, SensorPlace};
 pub use crate::wheel::{
-    ERROR_POINTS, FlankRelief, FoundationCoefficients, Gears, Material, MaterialConstants, ProfileErrors, Quality, ReliefShape,
-    WheelDeviations, WheelName,
+    ERROR_POINTS, FlankRelief, FoundationCoefficients, Gears, Material, MaterialConstants, ProfileErrors,
+    Quality, ReliefShape, WheelDeviations, WheelName,
 };
 pub use edit::ScenarioNumber;
 pub use from_toml::{ScenarioFiles, line_of_key};
 pub use gearbox::{
-    Gearbox, GearboxFault, GearboxLayout, GearboxMesh, GearboxOperation, GearboxRig, GearboxSensor, GearboxSolver, GearboxWheel, Ratio,
-    Ripple, ScenarioForm, gearbox_template,
+    Gearbox, GearboxFault, GearboxLayout, GearboxMesh, GearboxOperation, GearboxRig, GearboxSensor,
+    GearboxSolver, GearboxWheel, Ratio, Ripple, ScenarioForm, gearbox_sections, gearbox_template,
 };
 pub use meshtone_toml::ErrorKind;
 pub use sections::{SectionDescription, sections};

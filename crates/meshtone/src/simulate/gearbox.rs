@@ -6,9 +6,7 @@ use std::num::NonZeroUsize;
 use super::{Clock, StageTime, check_mesh};
 use crate::damage::{DamagedTooth, Fault, damaged_teeth};
 use crate::error::{Error, ScenarioError, ScenarioWarning};
-use crate::machine::{
-    Axis, DecayingMode, Disc, GearboxMachine, GearboxParts, MeshLine, Modes, WheelBody,
-};
+use crate::machine::{Axis, Disc, GearboxMachine, GearboxParts, MeshLine, Modes, WheelBody};
 use crate::mesh::{
     Contact, FaceSlope, Forcing, Mesh, MeshParameters, PairDeviations, PairSequence, Pairs, TipShape, Turning,
 };
@@ -17,9 +15,11 @@ use crate::random::{Draws, Purpose};
 use crate::scenario::{Gearbox, GearboxLayout, GearboxSensor};
 use crate::sensor::{GRAVITY_M_PER_S2, Measurement, SensorDirection, measure};
 use crate::simd::InstructionSet;
-use crate::solver::{Block, InitialMotion, ModalMachine, Output, Problem, Recorder, integrate};
+use crate::solver::{Block, InitialMotion, ModalMachine, Output, Problem, Recorder, StepCounts, integrate};
+use crate::threads;
+use crate::trace_fields::Trace;
 use crate::wheel::quality::deviations;
-use crate::wheel::{Deviations, ProfileErrors, RunOut, Teeth, WheelName, teeth};
+use crate::wheel::{Deviations, Gears, ProfileErrors, RunOut, Teeth, WheelName, teeth};
 
 /// Two wheels of a gearbox in mesh: what the stages before the mesh make of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,6 +88,8 @@ pub struct GearboxChannels {
     pub start_s: f64,
     /// The signals, equally long.
     pub signals: Vec<GearboxSignal>,
+    /// Steps, iterations of Newton's method, most of them in a step, and steps in which a search along the line was needed.
+    pub step_counts: [u64; 4],
 }
 
 impl GearboxChannels {
@@ -116,6 +118,11 @@ impl Recorder for GearboxChannels {
             signal.values.extend_from_slice(block.output(index));
         }
     }
+
+    fn count(&mut self, counts: StepCounts) {
+        let StepCounts { steps, iterations, most_iterations, searched } = counts;
+        self.step_counts = [steps, iterations, most_iterations, searched];
+    }
 }
 
 /// A simulation of a gearbox.
@@ -143,8 +150,9 @@ pub fn gearbox_stages(gearbox: &Gearbox) -> Result<GearboxStages, ScenarioError>
     let layout = GearboxLayout::new(gearbox)?;
     let time = gearbox.time_grid();
     clock.lap("scenario");
-    let mut pairs: Vec<MeshedPair> =
-        (0..gearbox.meshes.len()).map(|mesh| meshed_pair(gearbox, &layout, mesh)).collect::<Result<_, _>>()?;
+    let mut pairs: Vec<MeshedPair> = (0..gearbox.meshes.len())
+        .map(|mesh| meshed_pair(gearbox, &layout, mesh))
+        .collect::<Result<_, _>>()?;
     clock.lap("teeth and faults");
     let (mut machine, mesh_mass_kg) = machine_of(gearbox, &layout, &pairs);
     let sensors = gearbox.all_sensors();
@@ -216,12 +224,22 @@ pub fn simulate_gearbox(gearbox: &Gearbox) -> Result<GearboxSimulation, Error> {
     gearbox_stages(gearbox)?.simulate()
 }
 
+/// Simulates gearboxes, in the threads of the current rayon pool.
+///
+/// # Arguments
+/// * `gearboxes` - what is simulated
+///
+/// # Returns
+/// For each in its place the simulation, or the error of [`simulate_gearbox`]; results do not depend on the number of threads.
+pub fn simulate_gearboxes(gearboxes: &[Gearbox]) -> Vec<Result<GearboxSimulation, Error>> {
+    threads::map(gearboxes, simulate_gearbox)
+}
+
 /// The wheels of a mesh: teeth, deviations of each drawn with a seed of its own, damage.
 fn meshed_pair(gearbox: &Gearbox, layout: &GearboxLayout, mesh: usize) -> Result<MeshedPair, ScenarioError> {
     let numbers = layout.wheels_of_mesh[mesh];
-    let bores_mm = numbers.map(|wheel| {
-        gearbox.shafts[layout.shaft_of_wheel[wheel]].radius_at_mm(gearbox.wheels[wheel].at)
-    });
+    let bores_mm = numbers
+        .map(|wheel| gearbox.shafts[layout.shaft_of_wheel[wheel]].radius_at_mm(gearbox.wheels[wheel].at));
     let teeth = teeth(&layout.gears[mesh], bores_mm);
     let [of_pinion, of_gear] = WheelName::BOTH.map(|side| {
         let seed = Draws::new(gearbox.seed, Purpose::GearboxWheel, numbers[side as usize] as u64).bits();
@@ -230,7 +248,8 @@ fn meshed_pair(gearbox: &Gearbox, layout: &GearboxLayout, mesh: usize) -> Result
     let profile_errors = joined(of_pinion.flanks.clone(), of_gear.flanks.clone(), &teeth);
     let Deviations { run_out: [pinion_run_out, _], helix_slope_um: [pinion_um, _], .. } = of_pinion;
     let Deviations { run_out: [_, gear_run_out], helix_slope_um: [_, gear_um], .. } = of_gear;
-    let (numbers, faults): (Vec<usize>, Vec<Fault>) = layout.faults_of_mesh(gearbox, mesh).into_iter().unzip();
+    let (numbers, faults): (Vec<usize>, Vec<Fault>) =
+        layout.faults_of_mesh(gearbox, mesh).into_iter().unzip();
     let damaged =
         damaged_teeth(&faults, &teeth, gearbox.seed).map_err(|error| gearbox.in_fault(error, &numbers))?;
     let faults = faults.iter().map(|fault| fault.with_sizes(&teeth));
@@ -246,7 +265,11 @@ fn meshed_pair(gearbox: &Gearbox, layout: &GearboxLayout, mesh: usize) -> Result
 }
 
 /// The pinion's errors of one draw and the gear's of another; ideal where one has none.
-fn joined(pinion: Option<ProfileErrors>, gear: Option<ProfileErrors>, teeth: &Teeth) -> Option<ProfileErrors> {
+fn joined(
+    pinion: Option<ProfileErrors>,
+    gear: Option<ProfileErrors>,
+    teeth: &Teeth,
+) -> Option<ProfileErrors> {
     if pinion.is_none() && gear.is_none() {
         return None;
     }
@@ -254,8 +277,10 @@ fn joined(pinion: Option<ProfileErrors>, gear: Option<ProfileErrors>, teeth: &Te
         crate::wheel::ErrorTable::filled(crate::wheel::ERROR_POINTS, teeth.wheel(wheel).teeth as usize, 0.0)
     };
     Some(ProfileErrors {
-        pinion_profile_errors_mm: pinion.map_or_else(|| ideal(WheelName::Pinion), |errors| errors.pinion_profile_errors_mm),
-        gear_profile_errors_mm: gear.map_or_else(|| ideal(WheelName::Gear), |errors| errors.gear_profile_errors_mm),
+        pinion_profile_errors_mm: pinion
+            .map_or_else(|| ideal(WheelName::Pinion), |errors| errors.pinion_profile_errors_mm),
+        gear_profile_errors_mm: gear
+            .map_or_else(|| ideal(WheelName::Gear), |errors| errors.gear_profile_errors_mm),
     })
 }
 
@@ -323,10 +348,14 @@ fn transmission_error_name(mesh: &str) -> String {
 impl GearboxStages {
     /// A mesh with its tables, at the points of the cycle's coarse grid.
     fn mesh(&self, mesh: usize, mesh_mass_kg: f64) -> Result<Mesh, ScenarioError> {
-        let Self { gearbox, layout, time, modes, machine, .. } = self;
+        let Self { gearbox, layout, modes, machine, .. } = self;
         let (pair, gears, of_file) = (&self.pairs[mesh], &layout.gears[mesh], &gearbox.meshes[mesh]);
-        let cycle = CycleGrid::new(gears.pinion_teeth, gears.gear_teeth, time.sampling_rate_hz);
-        let points = NonZeroUsize::new(cycle.points_per_pitch).unwrap_or(NonZeroUsize::MIN);
+        let driving = layout.shaft_of_wheel[layout.wheels_of_mesh[mesh][0]];
+        let turning = Turning {
+            pitches_per_revolution: f64::from(gears.pinion_teeth) * layout.ratios[driving].value().abs(),
+            first_pitch: layout.phases[mesh],
+        };
+        let points = NonZeroUsize::new(self.points_per_pitch(&turning, gears)).unwrap_or(NonZeroUsize::MIN);
         let sequence = PairSequence::new(gears.pinion_teeth, gears.gear_teeth, &pair.damaged)?;
         let closer_um = pair.helix_slope_um.iter().sum::<f64>();
         if closer_um != 0.0 && pair.static_force_n <= 0.0 {
@@ -338,13 +367,9 @@ impl GearboxStages {
             width_m,
             tilt_rad_per_m: modes.tilt_rad_per_nm(&machine.machine, mesh) * pair.static_force_n,
         };
-        let driving = layout.shaft_of_wheel[layout.wheels_of_mesh[mesh][0]];
         let parameters = MeshParameters {
             contact: Contact::Unilateral,
-            turning: Turning {
-                pitches_per_revolution: f64::from(gears.pinion_teeth) * layout.ratios[driving].value().abs(),
-                first_pitch: layout.phases[mesh],
-            },
+            turning,
             damping_ratio: of_file.damping_ratio,
             mesh_mass_kg,
             backlash_m: gears.normal_backlash_mm() * 1e-3,
@@ -354,6 +379,17 @@ impl GearboxStages {
         let shape = TipShape { chamfer_mm: gears.chamfer_mm(), relief: gears.flank_relief };
         let pairs = Pairs::new(&pair.teeth, &pair.damaged, gears.material, &gears.foundation);
         Ok(Mesh::new(&pairs, shape, sequence, points, parameters))
+    }
+
+    /// Points from one pair to the next: where a whole number of samples passes between them every sample is one, else the coarse points of
+    /// the cycle, between which the tables are read.
+    fn points_per_pitch(&self, turning: &Turning, gears: &Gears) -> usize {
+        let samples = self.time.samples_per_pinion_revolution as f64 / turning.pitches_per_revolution;
+        let is_whole = (samples.round() / samples - 1.0).abs() < 1e-12;
+        if is_whole && turning.first_pitch == 0.0 && self.is_steady() {
+            return samples.round() as usize;
+        }
+        CycleGrid::new(gears.pinion_teeth, gears.gear_teeth, self.time.sampling_rate_hz).points_per_pitch
     }
 
     /// (Hz) Natural frequencies of the machine with its meshes closed at their mean stiffness, rising; 0 of the whole train's free rotation,
@@ -393,12 +429,6 @@ impl GearboxStages {
         self.is_steady().then_some(samples)
     }
 
-    /// The slowest mode in motion, with the mean meshes closed.
-    fn slowest_mode(&self) -> DecayingMode {
-        let closed: Vec<_> = self.meshes.iter().map(Mesh::closed).collect();
-        self.modes.slowest_closed(&self.machine.machine, &closed)
-    }
-
     /// First sample that must be simulated, so that the slowest mode's transient has decayed to the settling tolerance where the kept
     /// signal starts.
     fn start_of_settling(&self) -> usize {
@@ -406,20 +436,49 @@ impl GearboxStages {
         if settle_tolerance == 0.0 || !self.is_steady() || self.time.first_kept_sample == 0 {
             return 0;
         }
-        let decay_s = -settle_tolerance.ln() / self.slowest_mode().decay_per_s;
+        let closed: Vec<_> = self.meshes.iter().map(Mesh::closed).collect();
+        // Higher modes decay faster.
+        const HIGHEST_HZ: f64 = 2e3;
+        let decay_s =
+            -settle_tolerance.ln() / self.modal_machine().slowest_decay_per_s(&closed, TAU * HIGHEST_HZ);
         let settling = (decay_s * self.time.sampling_rate_hz).ceil();
         self.time.first_kept_sample.saturating_sub(settling as usize)
+    }
+
+    /// The machine around the meshes, and its modes without them.
+    #[cfg(feature = "internals")]
+    #[doc(hidden)]
+    pub fn machine_and_modes(&self) -> (&crate::machine::Machine, &Modes) {
+        (&self.machine.machine, &self.modes)
+    }
+
+    /// Traces the machine and its modes.
+    pub(crate) fn trace_machine(&self, trace: &mut Trace) {
+        let machine = &self.machine.machine;
+        let size = machine.coordinates();
+        trace.vector("open_frequencies_hz", self.modes.angular_frequencies.iter().map(|omega| omega / TAU));
+        trace.vector("damping_ratio", self.modes.damping_ratio.iter().copied());
+        trace.scalar("stepped_modes", self.modal_machine().modes() as f64);
+        let mean = machine.closed_stiffness(&self.mean_stiffness_n_per_m());
+        for (name, matrix) in [
+            ("mass_matrix", &machine.mass),
+            ("stiffness_matrix_open", &machine.stiffness()),
+            ("stiffness_matrix_mean", &mean),
+        ] {
+            trace.matrix(name, size, size, |r, c| matrix[(r, c)]);
+        }
     }
 
     /// The machine in the modes that are stepped.
     pub(crate) fn modal_machine(&self) -> ModalMachine {
         let face_reach_m: Vec<f64> = self.meshes.iter().map(Mesh::face_reach_m).collect();
         let highest_hz = self.gearbox.solver.highest_mode_hz(self.time.sampling_rate_hz);
-        ModalMachine::new(&self.machine.machine, &self.modes, &face_reach_m, start(&self.gearbox)).up_to(TAU * highest_hz)
+        ModalMachine::new(&self.machine.machine, &self.modes, &face_reach_m, start(&self.gearbox))
+            .up_to(TAU * highest_hz)
     }
 
-    /// Motor and brake from the start.
-    fn motion(&self) -> Motion<'_> {
+    /// Motion of motor and brake, sample by sample from the start of the simulation.
+    pub fn motion(&self) -> Motion<'_> {
         let brake = self.machine.machine.rigid_rotation[self.machine.machine.coordinates() - 1].abs();
         let harmonic = |ripple: &crate::scenario::Ripple| TorqueHarmonic {
             order: ripple.order * brake,
@@ -440,7 +499,8 @@ impl GearboxStages {
                 SensorDirection::Axial => Axis::Z,
             };
             let name = sensor.name();
-            let output = Output::Acceleration { place: name.clone().into(), axis, factor: 1.0 / GRAVITY_M_PER_S2 };
+            let output =
+                Output::Acceleration { place: name.clone().into(), axis, factor: 1.0 / GRAVITY_M_PER_S2 };
             (format!("{name}_g"), "g", output)
         });
         let meshes = self.gearbox.meshes.iter().enumerate().flat_map(|(number, mesh)| {
@@ -467,11 +527,13 @@ impl GearboxStages {
         let mut clock = Clock::default();
         let (named, outputs): (Vec<(String, &str)>, Vec<Output>) =
             self.outputs().into_iter().map(|(name, unit, output)| ((name, unit), output)).unzip();
-        let signal = |(name, unit)| GearboxSignal { name, unit, values: Vec::with_capacity(self.time.kept_samples()) };
+        let signal =
+            |(name, unit)| GearboxSignal { name, unit, values: Vec::with_capacity(self.time.kept_samples()) };
         let mut channels = GearboxChannels {
             sampling_rate_hz: self.time.sampling_rate_hz,
             start_s: self.time.first_kept_sample as f64 * self.time.step_s(),
             signals: named.into_iter().map(signal).collect(),
+            step_counts: [0; 4],
         };
         integrate(self.problem(&outputs), InstructionSet::fastest(), &mut channels).map_err(|diverged| {
             Error::Diverged {
@@ -484,7 +546,9 @@ impl GearboxStages {
         for (index, (sensor, signal)) in self.sensors.iter().zip(&mut channels.signals).enumerate() {
             let measurement = Measurement {
                 sampling_rate_hz: self.time.sampling_rate_hz,
-                is_periodic: self.cycle_samples().is_some_and(|cycle| self.time.kept_samples().is_multiple_of(cycle)),
+                is_periodic: self
+                    .cycle_samples()
+                    .is_some_and(|cycle| self.time.kept_samples().is_multiple_of(cycle)),
                 seed: self.gearbox.seed,
                 index,
             };

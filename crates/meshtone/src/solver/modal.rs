@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::outputs::{EXTERNALS, external_forces};
-use crate::machine::{Drive, Machine, Modes};
+use crate::machine::{ClosedMesh, Drive, Machine, Modes};
 
 /// A machine without its meshes, in the modes that take part in the motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -203,6 +203,27 @@ impl ModalMachine {
                 if self.stiffness[n] == 0.0 { 0.0 } else { load / self.stiffness[n] }
             })
             .collect();
+    }
+
+    /// (1/s) Rate at which the slowest mode decays with the meshes closed, of the modes up to a frequency.
+    ///
+    /// # Arguments
+    /// * `meshes` - closed
+    /// * `highest_rad_per_s` - (rad/s) natural frequency of the highest mode that counts
+    pub fn slowest_decay_per_s(&self, meshes: &[ClosedMesh], highest_rad_per_s: f64) -> f64 {
+        let low: Vec<usize> =
+            (0..self.modes()).filter(|&n| self.stiffness[n].sqrt() <= highest_rad_per_s).collect();
+        let mut closed = DMatrix::from_diagonal(&DVector::from_iterator(low.len(), low.iter().map(|&n| self.stiffness[n])));
+        let mut damping = DMatrix::from_diagonal(&DVector::from_iterator(low.len(), low.iter().map(|&n| self.damping[n])));
+        for (line, mesh) in self.lines.iter().zip(meshes) {
+            let column = DVector::from_iterator(low.len(), low.iter().map(|&n| line.columns[0][n]));
+            let stiffness = &column * column.transpose() * mesh.stiffness_n_per_m;
+            damping += &stiffness * mesh.damping_time_s;
+            closed += stiffness;
+        }
+        let shapes = closed.symmetric_eigen().eigenvectors;
+        let decay_per_s = |shape: nalgebra::DVectorView<f64>| (&damping * shape).dot(&shape) / 2.0;
+        shapes.column_iter().map(decay_per_s).filter(|decay| *decay > 0.0).fold(f64::INFINITY, f64::min)
     }
 
     /// Modal displacement of the shafts that turn freely by which the meshes deflect as asked.

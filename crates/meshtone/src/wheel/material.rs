@@ -4,7 +4,10 @@ use std::ops::Bound::Excluded;
 
 use meshtone_toml::{ReadResult, TomlValue};
 
-use crate::keys::{Check, KeyDescription, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, Written, check_keys, describe, field, row};
+use crate::keys::{
+    Check, KeyDescription, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, Written, check_keys,
+    describe, field, row,
+};
 
 /// An isotropic elastic material, by name or by its constants.
 ///
@@ -50,9 +53,10 @@ impl Keys for MaterialConstants {
             row("youngs_modulus_gpa", "GPa", "Young's modulus", field!(youngs_modulus_gpa))
                 .required()
                 .range(Range::positive().implausible_above(2e3)),
-            row("poisson_ratio", "-", "Poisson's ratio", field!(poisson_ratio))
-                .required()
-                .range(Range::between(Excluded(-1.0), Excluded(0.5)).message("must be more than −1 and less than 0.5")),
+            row("poisson_ratio", "-", "Poisson's ratio", field!(poisson_ratio)).required().range(
+                Range::between(Excluded(-1.0), Excluded(0.5))
+                    .message("must be more than −1 and less than 0.5"),
+            ),
             row("density_kg_per_m3", "kg/m³", "the density", field!(density_kg_per_m3))
                 .required()
                 .range(Range::positive().implausible_above(1e5)),

@@ -349,8 +349,7 @@ impl<'a> Dense<'a> {
         let mut a = steps.mass.clone().lu().solve(&force).unwrap();
         // What is stepped is an acceleration of the changed mass: the machine's own has the same force.
         let own_mass = machine.mass.clone().cholesky().unwrap();
-        let own =
-            |a: &DVector<f64>| own_mass.solve(&(&steps.mass * a));
+        let own = |a: &DVector<f64>| own_mass.solve(&(&steps.mass * a));
         let mut accelerations = vec![own(&a)];
         for sample in 1..self.motion.len() {
             let loads = loads_at(sample);

@@ -122,7 +122,9 @@ fn held(machine: &Machine, n: usize) -> Machine {
     let mut held = machine.clone();
     held.mass = held.mass.view((0, 0), (n, n)).into_owned();
     held.turn = held.turn.view((0, 0), (n, n)).into_owned();
-    held.springs.iter_mut().for_each(|spring| spring.stiffness = spring.stiffness.view((0, 0), (n, n)).into_owned());
+    held.springs
+        .iter_mut()
+        .for_each(|spring| spring.stiffness = spring.stiffness.view((0, 0), (n, n)).into_owned());
     for line in &mut held.lines {
         line.at_middle = line.at_middle.rows(0, n).into_owned();
         line.per_m = line.per_m.rows(0, n).into_owned();
@@ -173,7 +175,8 @@ fn beams_and_meshes_have_the_frequencies_and_responses_of_ross() {
             let moved = solved.solve(&force.map(Complex::from)).unwrap();
             for (place, &coordinate) in places.iter().enumerate() {
                 let column = [row, 2 * mesh + place];
-                let expected = Complex::new(reference["response_real"][column], reference["response_imaginary"][column]);
+                let expected =
+                    Complex::new(reference["response_real"][column], reference["response_imaginary"][column]);
                 largest = largest.max((moved[coordinate].norm() / expected.norm() - 1.0).abs());
             }
         }
@@ -184,10 +187,9 @@ fn beams_and_meshes_have_the_frequencies_and_responses_of_ross() {
 
 #[test]
 fn gearboxes_in_a_housing_have_the_frequencies_of_the_independent_model() {
-    for (name, teeth, module_mm, face_width_mm) in [
-        ("phm09_spur", [32, 96, 48, 80], 1.5875, 19.05),
-        ("spectraquest_like", [29, 100, 36, 90], 1.5, 15.0),
-    ] {
+    for (name, teeth, module_mm, face_width_mm) in
+        [("phm09_spur", [32, 96, 48, 80], 1.5875, 19.05), ("spectraquest_like", [29, 100, 36, 90], 1.5, 15.0)]
+    {
         let reference = arrays(name);
         let stages = TwoStages {
             teeth,

@@ -97,7 +97,8 @@ fn exact(stages: &Stages, swing: f64) -> [Vec<DVector<f64>>; 3] {
     let velocity = DVector::from_row_slice(&stages.scenario.solver.initial_velocity.unwrap())
         - &machine.rigid_rotation * (TAU * PINION_SPEED_HZ);
     // Displacements times 1e5/s, and both times √m, so that all are about as large.
-    let (rate, root) = (1e5, DVector::from_iterator(n, machine.mass.diagonal().iter().map(|mass| mass.sqrt())));
+    let (rate, root) =
+        (1e5, DVector::from_iterator(n, machine.mass.diagonal().iter().map(|mass| mass.sqrt())));
     let by_roots =
         |matrix: &DMatrix<f64>| DMatrix::from_fn(n, n, |r, c| matrix[(r, c)] / (root[r] * root[c]));
     // Beside them 1, cos Ωt and sin Ωt.

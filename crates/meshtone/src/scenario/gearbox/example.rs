@@ -143,8 +143,15 @@ pub fn gearbox_template(rig: Option<GearboxRig>) -> String {
         sampling_rate_hz: 100_000.0,
         fault: EXAMPLE_FAULT,
     };
-    let RigData { head, teeth: [z1, z2, z3, z4], module_mm, face_width_mm, input_speed_hz, sampling_rate_hz, fault } =
-        rig.map_or(example, GearboxRig::data);
+    let RigData {
+        head,
+        teeth: [z1, z2, z3, z4],
+        module_mm,
+        face_width_mm,
+        input_speed_hz,
+        sampling_rate_hz,
+        fault,
+    } = rig.map_or(example, GearboxRig::data);
     let assumed = if rig.is_some() { "  # assumed" } else { "" };
     let wheel = |name: &str, shaft: &str, at: f64, teeth: u32| {
         format!(
@@ -170,9 +177,9 @@ pub fn gearbox_template(rig: Option<GearboxRig>) -> String {
         .collect();
     [
         head.to_owned(),
-        "\nseed = 1\nmaterial = \"steel\"\n".to_owned(),
+        "seed = 1\nmaterial = \"steel\"\n".to_owned(),
         format!(
-            "\n# Shafts run along z, from 0 to their length. Without position_mm they stand side by side.\n{}",
+            "# Shafts run along z, from 0 to their length. Without position_mm they stand side by side.\n{}",
             shaft("input", "The motor turns it.", "couples_to = \"motor\"\n")
         ),
         shaft("middle", "It carries the second wheel of the first stage and the first one of the second.", ""),

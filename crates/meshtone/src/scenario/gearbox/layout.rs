@@ -21,7 +21,10 @@ impl Ratio {
     const ONE: Self = Self { numerator: 1, denominator: 1 };
 
     fn times(self, numerator: i64, denominator: i64) -> Self {
-        let (n, d) = (i128::from(self.numerator) * i128::from(numerator), i128::from(self.denominator) * i128::from(denominator));
+        let (n, d) = (
+            i128::from(self.numerator) * i128::from(numerator),
+            i128::from(self.denominator) * i128::from(denominator),
+        );
         let (mut a, mut b) = (n.abs(), d.abs());
         while b != 0 {
             (a, b) = (b, a % b);
@@ -81,7 +84,8 @@ impl GearboxLayout {
         unique("shaft", &shafts)?;
         unique("wheel", &wheels)?;
         let shaft_of = |list: &str, index: usize, entries: usize, name: &str| {
-            find(&shafts, name, "shaft").map_err(|error| error.with_key(entry_key(list, index, entries, "shaft")))
+            find(&shafts, name, "shaft")
+                .map_err(|error| error.with_key(entry_key(list, index, entries, "shaft")))
         };
         let shaft_of_wheel: Vec<usize> = (gearbox.wheels.iter().enumerate())
             .map(|(index, wheel)| shaft_of("wheel", index, wheels.len(), &wheel.shaft))
@@ -127,8 +131,12 @@ impl GearboxLayout {
                 (0..gearbox.shafts.len()).filter(|&n| gearbox.shafts[n].couples_to == coupled).collect();
             match ends[..] {
                 [end] => Ok(end),
-                [] => Err(ScenarioError::new("shaft.couples_to", "", format!("no shaft couples to the {name}; one must"))
-                    .with_help(format!("write couples_to = \"{name}\" in one [[shaft]]"))),
+                [] => Err(ScenarioError::new(
+                    "shaft.couples_to",
+                    "",
+                    format!("no shaft couples to the {name}; one must"),
+                )
+                .with_help(format!("write couples_to = \"{name}\" in one [[shaft]]"))),
                 [_, second, ..] => {
                     let key = entry_key("shaft", second, gearbox.shafts.len(), "couples_to");
                     let problem = format!("is the second shaft that couples to the {name}; one must");
@@ -148,7 +156,9 @@ impl GearboxLayout {
         let shafts_of = |mesh: usize| self.wheels_of_mesh[mesh].map(|wheel| self.shaft_of_wheel[wheel]);
         let meshes = gearbox.meshes.len();
         let mut reached = vec![false; meshes];
-        while let Some(mesh) = (0..meshes).find(|&mesh| !reached[mesh] && shafts_of(mesh).iter().any(|&shaft| ratios[shaft].is_some())) {
+        while let Some(mesh) = (0..meshes)
+            .find(|&mesh| !reached[mesh] && shafts_of(mesh).iter().any(|&shaft| ratios[shaft].is_some()))
+        {
             reached[mesh] = true;
             let [driving, driven] = shafts_of(mesh);
             let Gears { pinion_teeth, gear_teeth, .. } = self.gears[mesh];
@@ -167,8 +177,9 @@ impl GearboxLayout {
                              way it turns {known} times",
                             name(driven)
                         );
-                        return Err(ScenarioError::new(key, written, problem)
-                            .with_help("change the tooth counts so that both ways have the same ratio, or remove a mesh"));
+                        return Err(ScenarioError::new(key, written, problem).with_help(
+                            "change the tooth counts so that both ways have the same ratio, or remove a mesh",
+                        ));
                     }
                 }
                 _ => {
@@ -186,20 +197,26 @@ impl GearboxLayout {
             let name = &gearbox.shafts[shaft].name;
             let to = if shaft == brake { "the motor" } else { "motor or brake" };
             let problem = format!("has no path of meshes to {to}");
-            return Err(ScenarioError::new(entry_key("shaft", shaft, gearbox.shafts.len(), "name"), format!("{name:?}"), problem)
-                .with_help("add a [[mesh]] of a wheel on it, or remove the shaft"));
+            return Err(ScenarioError::new(
+                entry_key("shaft", shaft, gearbox.shafts.len(), "name"),
+                format!("{name:?}"),
+                problem,
+            )
+            .with_help("add a [[mesh]] of a wheel on it, or remove the shaft"));
         }
         Ok(ratios.into_iter().flatten().collect())
     }
 
     /// (m) Where the shafts stand: as given, or beside the shaft that they mesh with.
     fn place(&self, gearbox: &Gearbox) -> Result<Vec<[f64; 2]>, ScenarioError> {
-        let mut places: Vec<Option<[f64; 2]>> = gearbox.shafts.iter().map(|shaft| shaft.position_mm).collect();
+        let mut places: Vec<Option<[f64; 2]>> =
+            gearbox.shafts.iter().map(|shaft| shaft.position_mm).collect();
         if places.iter().all(Option::is_none) {
             let motor = gearbox.shafts.iter().position(|shaft| shaft.couples_to == Coupled::Motor);
             places[motor.unwrap_or(0)] = Some([0.0; 2]);
         }
-        let distances_mm: Vec<f64> = self.gears.iter().map(|gears| Mounting::new(gears).centre_distance_mm).collect();
+        let distances_mm: Vec<f64> =
+            self.gears.iter().map(|gears| Mounting::new(gears).centre_distance_mm).collect();
         let shafts_of = |mesh: usize| self.wheels_of_mesh[mesh].map(|wheel| self.shaft_of_wheel[wheel]);
         let known_on_one_side = |mesh: usize, places: &[Option<[f64; 2]>]| {
             let [driving, driven] = shafts_of(mesh);
@@ -227,8 +244,9 @@ impl GearboxLayout {
                     "is {apart_mm:.4} mm from its mate's axis, but the wheels of mesh {mesh} mesh at {distance_mm:.4} mm; must be the \
                      same within {CENTRE_TOLERANCE_MM} mm"
                 );
-                return Err(ScenarioError::new(key, format!("[{x:?}, {y:?}]"), problem)
-                    .with_help("move the shaft, or give the mesh that centre_distance_mm or its wheels profile shifts"));
+                return Err(ScenarioError::new(key, format!("[{x:?}, {y:?}]"), problem).with_help(
+                    "move the shaft, or give the mesh that centre_distance_mm or its wheels profile shifts",
+                ));
             }
         }
         Ok(places.into_iter().map(|place| place.map(|mm| mm * 1e-3)).collect())
@@ -245,7 +263,10 @@ impl GearboxLayout {
         };
         let shafts = numbers.map(|wheel| self.shaft_of_wheel[wheel]);
         if shafts[0] == shafts[1] {
-            return refuse(format!("both wheels sit on shaft {:?}; must be two shafts", pinion.shaft), "name wheels of two shafts");
+            return refuse(
+                format!("both wheels sit on shaft {:?}; must be two shafts", pinion.shaft),
+                "name wheels of two shafts",
+            );
         }
         let mates = [
             ("tip_chamfer_mm", pinion.tip_chamfer_mm == gear.tip_chamfer_mm),
@@ -253,9 +274,17 @@ impl GearboxLayout {
             ("material", self.material(gearbox, pinion) == self.material(gearbox, gear)),
         ];
         if let Some((key, _)) = mates.iter().find(|(_, same)| !same) {
-            return refuse(format!("the wheels differ in {key}; must be the same of both"), "give both wheels the same");
+            return refuse(
+                format!("the wheels differ in {key}; must be the same of both"),
+                "give both wheels the same",
+            );
         }
-        let mut gears = Gears::new(mesh.module_mm, pinion.teeth, gear.teeth, pinion.face_width_mm.min(gear.face_width_mm));
+        let mut gears = Gears::new(
+            mesh.module_mm,
+            pinion.teeth,
+            gear.teeth,
+            pinion.face_width_mm.min(gear.face_width_mm),
+        );
         gears.pressure_angle_deg = mesh.pressure_angle_deg;
         (gears.pinion_profile_shift, gears.gear_profile_shift) = (pinion.profile_shift, gear.profile_shift);
         (gears.pinion_addendum, gears.gear_addendum) = (pinion.addendum, gear.addendum);
@@ -296,9 +325,16 @@ impl GearboxLayout {
                 .collect();
             let spread = supports.iter().any(|at| (at - supports[0]).abs() > 1e-6);
             if !spread {
-                let problem = format!("has {} bearings at different places; must have at least two", if supports.is_empty() { 0 } else { 1 });
-                return Err(ScenarioError::new(entry_key("shaft", number, entries, "name"), format!("{:?}", shaft.name), problem)
-                    .with_help("add a [[bearing]] with this shaft and another at"));
+                let problem = format!(
+                    "has {} bearings at different places; must have at least two",
+                    if supports.is_empty() { 0 } else { 1 }
+                );
+                return Err(ScenarioError::new(
+                    entry_key("shaft", number, entries, "name"),
+                    format!("{:?}", shaft.name),
+                    problem,
+                )
+                .with_help("add a [[bearing]] with this shaft and another at"));
             }
         }
         for (index, wheel) in gearbox.wheels.iter().enumerate() {
@@ -306,11 +342,16 @@ impl GearboxLayout {
             let bore_mm = shaft.radius_at_mm(wheel.at);
             let Some((mesh, side)) = self.mesh_of(index) else {
                 let problem = "is in no mesh; every wheel must be";
-                return Err(ScenarioError::new(entry_key("wheel", index, gearbox.wheels.len(), "name"), format!("{:?}", wheel.name), problem)
-                    .with_help("add a [[mesh]] that names it, or remove the wheel"));
+                return Err(ScenarioError::new(
+                    entry_key("wheel", index, gearbox.wheels.len(), "name"),
+                    format!("{:?}", wheel.name),
+                    problem,
+                )
+                .with_help("add a [[mesh]] that names it, or remove the wheel"));
             };
             let gears = &self.gears[mesh];
-            let root_mm = gears.module_mm * (f64::from(wheel.teeth) / 2.0 + wheel.profile_shift - wheel.dedendum);
+            let root_mm =
+                gears.module_mm * (f64::from(wheel.teeth) / 2.0 + wheel.profile_shift - wheel.dedendum);
             if bore_mm >= root_mm {
                 let key = entry_key("wheel", index, gearbox.wheels.len(), "shaft");
                 let problem = format!(
@@ -326,10 +367,17 @@ impl GearboxLayout {
     }
 
     /// A wheel must not reach into a shaft that it does not sit on.
-    fn check_clear_of_shafts(&self, gearbox: &Gearbox, index: usize, mesh: usize, side: WheelName) -> Result<(), ScenarioError> {
+    fn check_clear_of_shafts(
+        &self,
+        gearbox: &Gearbox,
+        index: usize,
+        mesh: usize,
+        side: WheelName,
+    ) -> Result<(), ScenarioError> {
         let (wheel, own) = (&gearbox.wheels[index], self.shaft_of_wheel[index]);
         let gears = &self.gears[mesh];
-        let tip_mm = gears.module_mm * (f64::from(wheel.teeth) / 2.0 + wheel.profile_shift + gears.addendum(side));
+        let tip_mm =
+            gears.module_mm * (f64::from(wheel.teeth) / 2.0 + wheel.profile_shift + gears.addendum(side));
         let z_mm = self.z_mm(gearbox, index);
         for (number, other) in gearbox.shafts.iter().enumerate().filter(|(number, _)| *number != own) {
             let passes = z_mm <= other.length_mm;
@@ -376,10 +424,13 @@ impl GearboxLayout {
                 continue;
             }
             let before = (0..mesh).find_map(|other| {
-                let shared = self.wheels_of_mesh[other].iter().find(|wheel| self.wheels_of_mesh[mesh].contains(wheel))?;
+                let shared = self.wheels_of_mesh[other]
+                    .iter()
+                    .find(|wheel| self.wheels_of_mesh[mesh].contains(wheel))?;
                 Some((other, *shared))
             });
-            let shifted = before.and_then(|(other, wheel)| Some(phases[other]? + self.shift_of_phase(wheel, other, mesh)));
+            let shifted = before
+                .and_then(|(other, wheel)| Some(phases[other]? + self.shift_of_phase(wheel, other, mesh)));
             phases[mesh] = Some(shifted.unwrap_or(0.0));
         }
         phases.into_iter().map(Option::unwrap_or_default).collect()
@@ -493,14 +544,17 @@ fn in_mesh(error: ScenarioError, mesh: usize, meshes: usize, wheels: &[usize; 2]
 fn unique(list: &str, names: &[&str]) -> Result<(), ScenarioError> {
     for (index, name) in names.iter().enumerate() {
         let key = entry_key(list, index, names.len(), "name");
-        let valid = !name.is_empty() && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
+        let valid =
+            !name.is_empty() && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
         if !valid {
             let problem = "must be letters without accents, digits and `_`";
             return Err(ScenarioError::new(key, format!("{name:?}"), problem));
         }
         if let Some(other) = names[..index].iter().position(|other| other == name) {
             let problem = format!("is the name of {list}[{other}] already; each must have its own");
-            return Err(ScenarioError::new(key, format!("{name:?}"), problem).with_help("give it another name"));
+            return Err(
+                ScenarioError::new(key, format!("{name:?}"), problem).with_help("give it another name")
+            );
         }
     }
     Ok(())

@@ -14,9 +14,11 @@ pub use parts::{
 use meshtone_toml::{ReadResult, TomlDocument, TomlTable};
 
 use super::from_toml::{Numbers, ScenarioFiles};
-use super::{Scenario, ScenarioError, ScenarioWarning, WarningKind};
+use super::{Scenario, ScenarioError, ScenarioWarning, SectionDescription, WarningKind};
 use crate::damage::{Fault, check_faults};
-use crate::keys::{KeyRow, Keys, NoFiles, NumberFiles, check_keys, field, read_keys, row, write_keys};
+use crate::keys::{
+    KeyRow, Keys, NoFiles, NumberFiles, check_keys, describe, field, read_keys, row, write_keys,
+};
 use crate::machine::{Bearing, GearboxShaft, Housing};
 use crate::operation::TimeGrid;
 use crate::wheel::{Material, WheelName};
@@ -80,7 +82,12 @@ impl Keys for Gearbox {
 
     fn rows() -> Vec<KeyRow<Self>> {
         vec![
-            row("seed", "", "the seed of every random draw: deviations, fluctuations, sensors' noise", field!(seed)),
+            row(
+                "seed",
+                "",
+                "the seed of every random draw: deviations, fluctuations, sensors' noise",
+                field!(seed),
+            ),
             row("material", "", "the material of shafts and wheels", field!(material)),
         ]
     }
@@ -127,17 +134,28 @@ impl Gearbox {
     /// Text that is not TOML; sections of both forms.
     pub fn is_written_in(text: &str) -> Result<bool, ScenarioError> {
         let document = TomlDocument::parse(text)?;
-        let has = |names: &[&'static str]| {
-            names.iter().find(|name| document.line_of_key(name).is_some() && document.value_as_written(name).is_some()).copied()
-        };
+        let has =
+            |names: &[&'static str]| names.iter().find(|name| document.line_of_key(name).is_some()).copied();
         match (has(&OF_GEARBOX), has(&OF_PAIR)) {
             (Some(gearbox), Some(pair)) => {
-                let problem = format!("given beside {gearbox}: one pair has [gears] and [rig], a gearbox [[shaft]], [[wheel]] and [[mesh]]");
-                let error = ScenarioError::new(pair, "", problem).with_help("remove the sections of one of the two forms");
+                let problem = format!(
+                    "given beside {gearbox}: one pair has [gears] and [rig], a gearbox [[shaft]], [[wheel]] and [[mesh]]"
+                );
+                let error = ScenarioError::new(pair, "", problem)
+                    .with_help("remove the sections of one of the two forms");
                 Err(document.locate(error).into())
             }
             (gearbox, _) => Ok(gearbox.is_some()),
         }
+    }
+
+    /// The error of a gearbox where one pair of gears is expected.
+    pub(crate) fn refused_as_pair() -> ScenarioError {
+        let problem = "is of a gearbox, and one pair of gears, [gears], is expected here";
+        ScenarioError::new("mesh", "", problem).with_help(
+            "`meshtone simulate` and `meshtone.simulate_gearbox` take gearboxes; the models published and linear, tuning, data sets, \
+             diagnosis and the page know one pair",
+        )
     }
 
     /// Reads and validates a gearbox that names no other file.
@@ -213,7 +231,8 @@ impl Gearbox {
         sections.extend(entries("bearing", self.bearings.iter().map(write_keys).collect()));
         sections.extend(self.housing.iter().map(|housing| format!("[housing]\n{}", write_keys(housing))));
         sections.push(format!("[operation]\n{}", write_keys(&self.operation)));
-        sections.extend(entries("fault", self.faults.iter().map(|of| of.fault.write_on(&of.wheel)).collect()));
+        sections
+            .extend(entries("fault", self.faults.iter().map(|of| of.fault.write_on(&of.wheel)).collect()));
         sections.extend(entries("sensor", self.sensors.iter().map(write_keys).collect()));
         sections.push(format!("[solver]\n{}", write_keys(&self.solver)));
         sections.join("\n")
@@ -249,7 +268,11 @@ impl Gearbox {
     }
 
     fn check_counts(&self) -> Result<(), ScenarioError> {
-        let counts = [("shaft", self.shafts.len(), 2), ("wheel", self.wheels.len(), 2), ("mesh", self.meshes.len(), 1)];
+        let counts = [
+            ("shaft", self.shafts.len(), 2),
+            ("wheel", self.wheels.len(), 2),
+            ("mesh", self.meshes.len(), 1),
+        ];
         if let Some((name, count, least)) = counts.into_iter().find(|(_, count, least)| count < least) {
             let problem = format!("there are {count} [[{name}]]; a gearbox has at least {least}");
             return Err(ScenarioError::new(name, "", problem).with_help("see `meshtone init gearbox`"));
@@ -257,7 +280,9 @@ impl Gearbox {
         let most = crate::solver::MOST_MESHES;
         if self.meshes.len() > most {
             let problem = format!("there are {} meshes; must be at most {most}", self.meshes.len());
-            return Err(ScenarioError::new("mesh", "", problem).with_help("leave out meshes that carry no load"));
+            return Err(
+                ScenarioError::new("mesh", "", problem).with_help("leave out meshes that carry no load")
+            );
         }
         Ok(())
     }
@@ -273,16 +298,19 @@ impl Gearbox {
                 }
                 (Some(radius_mm), false) => {
                     let problem = "given beside segments, which have radii of their own";
-                    return Err(ScenarioError::new(key("radius_mm"), radius_mm, problem).with_help("remove one of the two"));
+                    return Err(ScenarioError::new(key("radius_mm"), radius_mm, problem)
+                        .with_help("remove one of the two"));
                 }
                 _ => {}
             }
             let whole_mm: f64 = shaft.pieces_mm().iter().map(|[length_mm, _]| length_mm).sum();
             if (whole_mm / shaft.length_mm - 1.0).abs() > 1e-6 {
-                let problem = format!("add up to {whole_mm:?} mm; must be length_mm, {:?} mm", shaft.length_mm);
+                let problem =
+                    format!("add up to {whole_mm:?} mm; must be length_mm, {:?} mm", shaft.length_mm);
                 return Err(ScenarioError::new(key("segments"), "", problem));
             }
-            let thinnest_mm = shaft.pieces_mm().iter().map(|[_, radius_mm]| *radius_mm).fold(f64::INFINITY, f64::min);
+            let thinnest_mm =
+                shaft.pieces_mm().iter().map(|[_, radius_mm]| *radius_mm).fold(f64::INFINITY, f64::min);
             if shaft.bore_radius_mm >= thinnest_mm {
                 let problem = format!("must be less than {thinnest_mm:?} mm, the shaft's least radius");
                 return Err(ScenarioError::new(key("bore_radius_mm"), shaft.bore_radius_mm, problem));
@@ -305,19 +333,25 @@ impl Gearbox {
         let settings = &self.solver.settings;
         if let (Some(duration_s), Some(_)) = (settings.duration_s, settings.pinion_revolutions) {
             let problem = "given beside solver.input_revolutions; the length has only one source";
-            return Err(ScenarioError::new("solver.duration_s", duration_s, problem).with_help("remove one of the two"));
+            return Err(ScenarioError::new("solver.duration_s", duration_s, problem)
+                .with_help("remove one of the two"));
         }
         let time = self.time_grid();
         // Time, force of each mesh, speed of each shaft and a sensor's signal, with what is made of them.
-        let signals = 4 * self.meshes.len() + 2 * self.shafts.len() + 2 * self.sensors.len().max(self.bearings.len());
+        let signals =
+            4 * self.meshes.len() + 2 * self.shafts.len() + 2 * self.sensors.len().max(self.bearings.len());
         let bytes = (time.samples as u64).saturating_mul(8 * signals as u64);
         if let Some(objection) = super::MemoryLimit::default().objection(bytes) {
-            let key = if settings.duration_s.is_some() { "solver.duration_s" } else { "solver.sampling_rate_hz" };
-            return Err(ScenarioError::new(key, "", objection).with_help("simulate a shorter time, or at a lower rate"));
+            let key =
+                if settings.duration_s.is_some() { "solver.duration_s" } else { "solver.sampling_rate_hz" };
+            return Err(ScenarioError::new(key, "", objection)
+                .with_help("simulate a shorter time, or at a lower rate"));
         }
         if time.kept_samples() < 2 {
             let problem = "keeps less than two samples";
-            return Err(ScenarioError::new("solver.duration_s", "", problem).with_help("keep a longer signal"));
+            return Err(
+                ScenarioError::new("solver.duration_s", "", problem).with_help("keep a longer signal")
+            );
         }
         Ok(())
     }
@@ -325,13 +359,19 @@ impl Gearbox {
     fn check_faults(&self, layout: &GearboxLayout) -> Result<(), ScenarioError> {
         for (index, GearboxFault { wheel, .. }) in self.faults.iter().enumerate() {
             if !self.wheels.iter().any(|of| of.name == *wheel) {
-                let known: Vec<String> = self.wheels.iter().map(|wheel| format!("\"{}\"", wheel.name)).collect();
+                let known: Vec<String> =
+                    self.wheels.iter().map(|wheel| format!("\"{}\"", wheel.name)).collect();
                 let problem = format!("is no wheel's name; there are {}", known.join(", "));
-                return Err(ScenarioError::new(entry_key("fault", index, self.faults.len(), "wheel"), format!("{wheel:?}"), problem));
+                return Err(ScenarioError::new(
+                    entry_key("fault", index, self.faults.len(), "wheel"),
+                    format!("{wheel:?}"),
+                    problem,
+                ));
             }
         }
         for mesh in 0..self.meshes.len() {
-            let (numbers, faults): (Vec<usize>, Vec<Fault>) = layout.faults_of_mesh(self, mesh).into_iter().unzip();
+            let (numbers, faults): (Vec<usize>, Vec<Fault>) =
+                layout.faults_of_mesh(self, mesh).into_iter().unzip();
             check_faults(&faults, &layout.gears[mesh]).map_err(|error| self.in_fault(error, &numbers))?;
         }
         Ok(())
@@ -349,7 +389,8 @@ impl Gearbox {
                 None => (0, rest),
             };
             let number: usize = numbers.get(number).copied().unwrap_or(0);
-            error.key = if self.faults.len() > 1 { format!("fault[{number}]{rest}") } else { format!("fault{rest}") };
+            error.key =
+                if self.faults.len() > 1 { format!("fault[{number}]{rest}") } else { format!("fault{rest}") };
         }
         error
     }
@@ -400,6 +441,27 @@ impl Gearbox {
     pub fn time_grid(&self) -> TimeGrid {
         TimeGrid::of_input(&self.operation.drive, &self.solver.settings)
     }
+}
+
+/// The sections of a gearbox's scenario file, in order; of `fault` see [`super::sections`].
+///
+/// ```
+/// let sections = meshtone::scenario::gearbox_sections();
+/// assert!(sections.iter().any(|section| section.name == "mesh"));
+/// ```
+pub fn gearbox_sections() -> Vec<SectionDescription> {
+    let section = |name, keys| SectionDescription { name, keys };
+    vec![
+        section("", describe::<Gearbox>()),
+        section("shaft", describe::<GearboxShaft>()),
+        section("wheel", describe::<GearboxWheel>()),
+        section("mesh", describe::<GearboxMesh>()),
+        section("bearing", describe::<Bearing>()),
+        section("housing", describe::<Housing>()),
+        section("operation", describe::<GearboxOperation>()),
+        section("sensor", describe::<GearboxSensor>()),
+        section("solver", describe::<GearboxSolver>()),
+    ]
 }
 
 /// Each key alone, of every entry of a list.

@@ -14,7 +14,9 @@ impl Gearbox {
         if !self.sensors.is_empty() {
             return self.sensors.clone();
         }
-        let on_seat = |bearing: &crate::machine::Bearing| GearboxSensor::new(&format!("{}:{}", bearing.shaft, bearing.at));
+        let on_seat = |bearing: &crate::machine::Bearing| {
+            GearboxSensor::new(&format!("{}:{}", bearing.shaft, bearing.at))
+        };
         self.bearings.iter().map(on_seat).collect()
     }
 
@@ -33,8 +35,12 @@ impl Gearbox {
             let name = sensor.name();
             if let Some(other) = sensors[..index].iter().position(|other| other.name() == name) {
                 let problem = format!("is the name of sensor[{other}] already; no two have the same channel");
-                return Err(ScenarioError::new(entry_key("sensor", index, entries, "name"), format!("{name:?}"), problem)
-                    .with_help("give it a name of its own"));
+                return Err(ScenarioError::new(
+                    entry_key("sensor", index, entries, "name"),
+                    format!("{name:?}"),
+                    problem,
+                )
+                .with_help("give it a name of its own"));
             }
             let place = self.place(&sensor.at, layout);
             places.push(place.map_err(|problem| {
@@ -56,8 +62,8 @@ impl Gearbox {
         match parts[..] {
             ["housing", point] => {
                 let inside = point.trim().strip_prefix('[').and_then(|point| point.strip_suffix(']'));
-                let numbers: Option<Vec<f64>> =
-                    inside.and_then(|inside| inside.split(',').map(|number| number.trim().parse().ok()).collect());
+                let numbers: Option<Vec<f64>> = inside
+                    .and_then(|inside| inside.split(',').map(|number| number.trim().parse().ok()).collect());
                 match (numbers.as_deref(), &self.housing) {
                     (Some(&[x, y, z]), Some(_)) => Ok(GearboxPlace::Housing([x * 1e-3, y * 1e-3, z * 1e-3])),
                     (Some([_, _, _]), None) => Err("is on the housing, but there is no [housing]".to_owned()),
@@ -66,13 +72,16 @@ impl Gearbox {
             }
             ["shaft", text] => match along(text) {
                 Some((shaft, place)) => Ok(GearboxPlace::Shaft(shaft, place)),
-                None => Err("must be \"shaft:SHAFT:AT\" with a shaft's name and a place from 0 to 1".to_owned()),
+                None => {
+                    Err("must be \"shaft:SHAFT:AT\" with a shaft's name and a place from 0 to 1".to_owned())
+                }
             },
             _ => {
-                let (shaft, place) =
-                    along(at).ok_or("must be \"SHAFT:AT\", \"shaft:SHAFT:AT\" or \"housing:[x, y, z]\"".to_owned())?;
+                let (shaft, place) = along(at)
+                    .ok_or("must be \"SHAFT:AT\", \"shaft:SHAFT:AT\" or \"housing:[x, y, z]\"".to_owned())?;
                 let mut bearings = self.bearings.iter().zip(&layout.shaft_of_bearing);
-                let seat = bearings.position(|(bearing, of)| *of == shaft && (bearing.at - place).abs() < SAME_PLACE);
+                let seat = bearings
+                    .position(|(bearing, of)| *of == shaft && (bearing.at - place).abs() < SAME_PLACE);
                 seat.map(GearboxPlace::Seat).ok_or_else(|| "names no bearing's place".to_owned())
             }
         }
