@@ -97,10 +97,7 @@ pub fn write_gearbox(
     let trace = trace.map(traced).transpose()?;
     let staged_summary = StagedFile::write(&directory.join(SUMMARY), |file| summary.write_json(file))?;
     let panel = match with_panel {
-        true => {
-            let figure = panel::draw_gearbox(simulation).map_err(cannot_draw);
-            figure.and_then(|figure| stage_figure(directory, PANEL, &figure.of_run(&summary.run.to_string())))
-        }
+        true => stage_gearbox_panel(directory, summary.run, simulation),
         false => Ok(Vec::new()),
     };
     let (mut staged, drawn) = match panel {
@@ -111,6 +108,17 @@ pub fn write_gearbox(
     trace.map(StagedFile::commit).transpose()?;
     undisturbed(|| replace_earlier(directory, staged, staged_summary))?;
     drawn
+}
+
+/// Draws the panel of a gearbox and writes its files, to be committed.
+pub fn stage_gearbox_panel(
+    directory: &Path,
+    run: RunIdentity,
+    simulation: &GearboxSimulation,
+) -> Result<Vec<StagedFile>, Failure> {
+    let figure = panel::draw_gearbox(simulation).map_err(cannot_draw);
+    let staged = figure.and_then(|figure| stage_figure(directory, PANEL, &figure.of_run(&run.to_string())));
+    staged.map_err(|failure| Failure { help: None, ..failure })
 }
 
 /// Draws the panel and writes its files, to be committed.

@@ -226,7 +226,7 @@ impl Simulate {
             );
             return Failure::refuse(
                 problem,
-                &format!("leave {option} out, or simulate a scenario of one pair"),
+                format!("leave {option} out, or simulate a scenario of one pair"),
             );
         }
         match meshtone::gearbox_stages(&file.scenario) {

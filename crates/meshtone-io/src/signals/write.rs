@@ -12,7 +12,7 @@ use parquet::schema::types::ColumnPath;
 use crate::run_identity::RunIdentity;
 use crate::table::{CellType, Cells, TableColumn, TableWriter};
 
-use super::{RATE_KEY, RUN_KEY, SCENARIO_KEY, TIME, VERSION_KEY};
+use super::{GEARBOX_KEY, RATE_KEY, RUN_KEY, SCENARIO_KEY, TIME, VERSION_KEY};
 
 /// Rows of a group; a reader takes a group's column at once.
 const GROUP_ROWS: usize = 1 << 20;
@@ -38,7 +38,12 @@ pub fn write_signals(to: impl Write + Send, scenario: &Scenario, channels: &Chan
         })
     };
     let columns: Vec<SignalColumn> = listed.iter().filter_map(column).collect();
-    write_columns(to, &scenario.to_toml(), [channels.sampling_rate_hz, channels.start_s], &columns)
+    write_columns(
+        to,
+        [SCENARIO_KEY, &scenario.to_toml()],
+        [channels.sampling_rate_hz, channels.start_s],
+        &columns,
+    )
 }
 
 /// Writes the signals of a gearbox as Parquet, in the same form.
@@ -72,7 +77,12 @@ pub fn write_gearbox_signals(
             SignalColumn { name, unit, meaning, values: &signal.values }
         })
         .collect();
-    write_columns(to, &gearbox.to_toml(), [channels.sampling_rate_hz, channels.start_s], &columns)
+    write_columns(
+        to,
+        [GEARBOX_KEY, &gearbox.to_toml()],
+        [channels.sampling_rate_hz, channels.start_s],
+        &columns,
+    )
 }
 
 /// A column of signals.
@@ -86,7 +96,7 @@ struct SignalColumn<'a> {
 /// Writes columns behind the time, with what was simulated in the metadata.
 fn write_columns(
     to: impl Write + Send,
-    scenario_toml: &str,
+    [key, toml]: [&str; 2],
     [sampling_rate_hz, start_s]: [f64; 2],
     columns: &[SignalColumn],
 ) -> io::Result<()> {
@@ -94,9 +104,9 @@ fn write_columns(
     let signals = columns.iter().map(|column| table_column(&column.name, column.unit, column.meaning));
     let mut table = TableWriter::new(to, std::iter::once(time).chain(signals).collect(), properties())?;
     table.add_metadata([
-        (SCENARIO_KEY, scenario_toml.to_owned()),
+        (key, toml.to_owned()),
         (VERSION_KEY, env!("CARGO_PKG_VERSION").to_string()),
-        (RUN_KEY, RunIdentity::of_toml(scenario_toml).to_string()),
+        (RUN_KEY, RunIdentity::of_toml(toml).to_string()),
         (RATE_KEY, format!("{sampling_rate_hz:?}")),
     ]);
     let samples = columns.first().map_or(0, |column| column.values.len());

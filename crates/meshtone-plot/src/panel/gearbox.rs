@@ -43,12 +43,12 @@ pub fn draw_gearbox(simulation: &GearboxSimulation) -> Result<Figure, PlotError>
     canvas.heading(edge, f64::from(WIDTH) - 2.0 * edge, (36.0, &title), (61.0, &facts.join(BETWEEN_FACTS)));
     let half = (FULL_WIDTH - COLUMN_GAP) / 2.0;
     let train = Train::new(stages);
-    train.from_the_front(&mut canvas, Area::new(LEFT, TRAIN_TOP, half, TRAIN_HEIGHT));
-    train.from_above(&mut canvas, Area::new(LEFT + half + COLUMN_GAP, TRAIN_TOP, half, TRAIN_HEIGHT));
-    wheels(&mut canvas, Area::new(LEFT, WHEELS_TOP, FULL_WIDTH, WHEELS_HEIGHT), stages);
+    train.draw_front(&mut canvas, Area::new(LEFT, TRAIN_TOP, half, TRAIN_HEIGHT));
+    train.draw_above(&mut canvas, Area::new(LEFT + half + COLUMN_GAP, TRAIN_TOP, half, TRAIN_HEIGHT));
+    wheels(&mut canvas, Area::new(LEFT, WHEELS_TOP, FULL_WIDTH, WHEELS_HEIGHT), simulation);
     spectrum(&mut canvas, Area::new(LEFT, SPECTRUM_TOP, FULL_WIDTH, SPECTRUM_HEIGHT), simulation);
     let description = format!(
-        "Results panel of a simulated gearbox: the train from the front and from above, the mesh stiffness of its wheels, and the \
+        "Results panel of a simulated gearbox: the train from the front and from above, the mesh stiffness and the average of its wheels, and the \
          spectrum of a sensor in orders of the input. {}.",
         facts.join(", ")
     );
@@ -129,7 +129,7 @@ impl<'a> Train<'a> {
     }
 
     /// Pitch circles and shafts across the axes.
-    fn from_the_front(&self, canvas: &mut Canvas, area: Area) {
+    fn draw_front(&self, canvas: &mut Canvas, area: Area) {
         let wheels = self.wheels();
         let extent = |of: &dyn Fn(&DrawnWheel) -> f64| {
             let low = wheels.iter().map(|wheel| of(wheel) - wheel.radius).fold(f64::INFINITY, f64::min);
@@ -159,7 +159,7 @@ impl<'a> Train<'a> {
     }
 
     /// Shafts, wheels and bearings along the axes.
-    fn from_above(&self, canvas: &mut Canvas, area: Area) {
+    fn draw_above(&self, canvas: &mut Canvas, area: Area) {
         let (gearbox, layout) = (&self.stages.gearbox, &self.stages.layout);
         let wheels = self.wheels();
         let longest = gearbox.shafts.iter().map(|shaft| shaft.length_mm).fold(0.0, f64::max);
@@ -240,42 +240,91 @@ fn circle(axes: &Axes, x: f64, y: f64, radius: f64) -> Vec<Pixel> {
     (0..CORNERS).map(|n| axes.at(x + radius * angle(n).cos(), y + radius * angle(n).sin())).collect()
 }
 
-/// A column for each damaged wheel, or for each driven wheel where none is damaged: the stiffness of its mesh over a revolution of it.
-fn wheels(canvas: &mut Canvas, area: Area, stages: &GearboxStages) {
-    const MOST: usize = 4;
-    let (gearbox, layout) = (&stages.gearbox, &stages.layout);
+/// Most wheels that have room.
+const MOST_WHEELS: usize = 4;
+/// Most wheels beside whose averages the stiffness has room.
+const MOST_WITH_STIFFNESS: usize = 2;
+
+/// A column for each damaged wheel, or for the first wheels where none is damaged: the stiffness of its mesh and the average of the first
+/// sensor's signal, both over a revolution of it.
+fn wheels(canvas: &mut Canvas, area: Area, simulation: &GearboxSimulation) {
+    let stages = &simulation.stages;
+    let gearbox = &stages.gearbox;
     let is_damaged =
         |number: &usize| gearbox.faults.iter().any(|fault| fault.wheel == gearbox.wheels[*number].name);
     let damaged: Vec<usize> = (0..gearbox.wheels.len()).filter(is_damaged).collect();
-    let shown = if damaged.is_empty() {
-        layout.wheels_of_mesh.iter().map(|wheels| wheels[1]).collect()
-    } else {
-        damaged
+    let shown = match damaged.len() {
+        0 => stages.layout.wheels_of_mesh.iter().map(|wheels| wheels[1]).take(MOST_WITH_STIFFNESS).collect(),
+        _ => damaged,
     };
-    let columns = shown.len().clamp(1, MOST);
-    for (wheel, area) in shown.iter().zip(area.grid([columns, 1], [COLUMN_GAP, 0.0], area.height)) {
-        let Some((mesh, _)) = layout.mesh_of(*wheel) else { continue };
-        let (tables, teeth) = (&stages.meshes[mesh], gearbox.wheels[*wheel].teeth as usize);
-        let stiffness = tables.stiffness_n_per_mm(0..teeth);
-        let y = axes::range(stiffness.iter().copied(), 0.08);
-        let name = &gearbox.wheels[*wheel].name;
-        let title = format!("Stiffness of mesh {} over a revolution of {name}", gearbox.meshes[mesh].name());
-        let axes = Axes::titled(canvas, area, [0.0, teeth as f64], y, &title);
-        for fault in gearbox.faults.iter().filter(|fault| fault.wheel == *name) {
-            for tooth in fault.fault.tooth.numbers(teeth as u32) {
-                let from = f64::from(tooth.saturating_sub(1));
-                axes.band(canvas, from, from + tables.contact_ratio, crate::damaged_tooth::TINT);
-            }
+    let each = if shown.len() <= MOST_WITH_STIFFNESS { 2 } else { 1 };
+    let columns = each * shown.len().clamp(1, MOST_WHEELS);
+    let mut areas = area.grid([columns, 1], [COLUMN_GAP, 0.0], area.height);
+    for wheel in shown.iter().take(MOST_WHEELS) {
+        let parts: Vec<Area> = areas.by_ref().take(each).collect();
+        if let [stiffness_area, average_area] = parts[..] {
+            stiffness(canvas, stiffness_area, stages, *wheel);
+            average(canvas, average_area, simulation, *wheel);
+        } else if let [average_area] = parts[..] {
+            average(canvas, average_area, simulation, *wheel);
         }
-        axes.x_axis(canvas, &Ticks::whole(0.0, teeth as f64, 16), "Pitches");
-        axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), "Stiffness (N/mm)", NAME_LEFT);
-        axes.line(canvas, over(axes.x, &stiffness), CURVE);
-        axes.frame(canvas);
     }
-    if shown.len() > MOST {
-        let text = format!("{} more damaged wheels are in the summary", shown.len() - MOST);
+    if shown.len() > MOST_WHEELS {
+        let text = format!("{} more damaged wheels are in the summary", shown.len() - MOST_WHEELS);
         canvas.text((area.right(), area.top - 24.0), &text, TextStyle::NOTE.anchored(Anchor::End));
     }
+}
+
+/// Tints the turns of a wheel's damaged teeth, from where each enters contact.
+fn tint(canvas: &mut Canvas, axes: &Axes, stages: &GearboxStages, wheel: usize, pitch: f64) {
+    let gearbox = &stages.gearbox;
+    let wheel_of_file = &gearbox.wheels[wheel];
+    let Some((mesh, _)) = stages.layout.mesh_of(wheel) else { return };
+    for fault in gearbox.faults.iter().filter(|fault| fault.wheel == wheel_of_file.name) {
+        for tooth in fault.fault.tooth.numbers(wheel_of_file.teeth) {
+            let from = f64::from(tooth.saturating_sub(1));
+            let until = from + stages.meshes[mesh].contact_ratio;
+            axes.band(canvas, from * pitch, until * pitch, crate::damaged_tooth::TINT);
+        }
+    }
+}
+
+fn stiffness(canvas: &mut Canvas, area: Area, stages: &GearboxStages, wheel: usize) {
+    let (gearbox, layout) = (&stages.gearbox, &stages.layout);
+    let Some((mesh, _)) = layout.mesh_of(wheel) else { return };
+    let (tables, teeth) = (&stages.meshes[mesh], gearbox.wheels[wheel].teeth as usize);
+    let stiffness = tables.stiffness_n_per_mm(0..teeth);
+    let y = axes::range(stiffness.iter().copied(), 0.08);
+    let title =
+        format!("Stiffness of {} over a turn of {}", gearbox.meshes[mesh].name(), gearbox.wheels[wheel].name);
+    let axes = Axes::titled(canvas, area, [0.0, teeth as f64], y, &title);
+    tint(canvas, &axes, stages, wheel, 1.0);
+    axes.x_axis(canvas, &Ticks::whole(0.0, teeth as f64, 8), "Pitches");
+    axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), "Stiffness (N/mm)", NAME_LEFT);
+    axes.line(canvas, over(axes.x, &stiffness), CURVE);
+    axes.frame(canvas);
+}
+
+fn average(canvas: &mut Canvas, area: Area, simulation: &GearboxSimulation, wheel: usize) {
+    let (stages, name) = (&simulation.stages, &simulation.stages.gearbox.wheels[wheel].name);
+    let signal = simulation.channels.signals.first().map_or(&[][..], |signal| &signal.values);
+    let average = simulation.wheel_average(signal, wheel);
+    let values = average.as_ref().map_or(&[][..], |(values, _)| values);
+    let y = axes::range(values.iter().copied(), 0.06);
+    let title = match &average {
+        Some((_, 1)) => format!("One revolution of {name}"),
+        Some((_, revolutions)) => format!("Average of {revolutions} revolutions of {name}"),
+        None => format!("Average over the revolutions of {name}"),
+    };
+    let axes = Axes::titled(canvas, area, [0.0, 360.0], y, &title);
+    tint(canvas, &axes, stages, wheel, 360.0 / f64::from(stages.gearbox.wheels[wheel].teeth));
+    axes.x_axis(canvas, &Ticks::every(90.0, 0.0, 360.0), "Angle since its first tooth enters contact (°)");
+    axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), "Acceleration (g)", NAME_LEFT);
+    match average {
+        Some((values, _)) => axes.line(canvas, over(axes.x, &values), CURVE),
+        None => axes.note(canvas, "no whole revolution at a constant speed"),
+    }
+    axes.frame(canvas);
 }
 
 /// Amplitudes over orders of the input, of the first sensor, with the orders of all meshes and shafts.

@@ -137,6 +137,49 @@ pub struct GearboxSimulation {
     pub timings: Vec<StageTime>,
 }
 
+impl GearboxSimulation {
+    /// The average of a signal over the revolutions of a wheel, from the angle at which its first tooth enters contact, read straight
+    /// between the samples.
+    ///
+    /// # Arguments
+    /// * `signal` - all kept samples
+    /// * `wheel` - number of the wheel
+    ///
+    /// # Returns
+    /// As many values as whole samples pass in a revolution, and the number of revolutions; none where the speed changes or the signal is
+    /// shorter than a revolution.
+    pub fn wheel_average(&self, signal: &[f64], wheel: usize) -> Option<(Vec<f64>, usize)> {
+        let GearboxStages { time, layout, meshes, gearbox, .. } = &self.stages;
+        let (mesh, _) = layout.mesh_of(wheel)?;
+        let per_input = time.samples_per_pinion_revolution as f64;
+        let turning = meshes[mesh].turning;
+        let teeth = f64::from(gearbox.wheels[wheel].teeth);
+        let per_revolution = per_input * teeth / turning.pitches_per_revolution;
+        let passed =
+            turning.first_pitch + time.first_kept_sample as f64 / per_input * turning.pitches_per_revolution;
+        // Samples until the first tooth enters contact.
+        let first = (1.0 - (passed / teeth).rem_euclid(1.0)) * per_revolution;
+        let last = signal.len().checked_sub(1)? as f64;
+        let revolutions = ((last - first) / per_revolution).floor();
+        if !self.stages.is_steady() || revolutions < 1.0 {
+            return None;
+        }
+        let points = per_revolution.floor() as usize;
+        let at = |sample: f64| {
+            let (index, part) = (sample as usize, sample - sample.floor());
+            let next = signal[(index + 1).min(signal.len() - 1)];
+            signal[index] + part * (next - signal[index])
+        };
+        let mean = |point: usize| {
+            let turn = |revolution: usize| revolution as f64 + point as f64 / points as f64;
+            let values =
+                (0..revolutions as usize).map(|revolution| at(first + turn(revolution) * per_revolution));
+            values.sum::<f64>() / revolutions
+        };
+        Some(((0..points).map(mean).collect(), revolutions as usize))
+    }
+}
+
 /// Runs every stage of a gearbox before the time loop.
 ///
 /// # Arguments
@@ -291,7 +334,7 @@ fn machine_of(gearbox: &Gearbox, layout: &GearboxLayout, pairs: &[MeshedPair]) -
         .map(|(number, wheel)| {
             // Every wheel is in a mesh, as the layout has checked.
             let (mesh, side) = layout.mesh_of(number).unwrap_or((0, WheelName::Pinion));
-            let mut tooth = pairs[mesh].teeth.wheel(side).clone();
+            let mut tooth = *pairs[mesh].teeth.wheel(side);
             tooth.face_width_mm = wheel.face_width_mm;
             let body = WheelBody::new(&tooth, layout.gears[mesh].material, &wheel.inertia);
             Disc { shaft: layout.shaft_of_wheel[number], at: wheel.at, body }
@@ -519,22 +562,37 @@ impl GearboxStages {
         sensors.chain(meshes).chain(shafts).collect()
     }
 
+    /// The signals that a simulation has, without their samples.
+    pub fn channels(&self) -> GearboxChannels {
+        let signal = |(name, unit, _)| GearboxSignal {
+            name,
+            unit,
+            values: Vec::with_capacity(self.time.kept_samples()),
+        };
+        GearboxChannels {
+            sampling_rate_hz: self.time.sampling_rate_hz,
+            start_s: self.time.first_kept_sample as f64 * self.time.step_s(),
+            signals: self.outputs().into_iter().map(signal).collect(),
+            step_counts: [0; 4],
+        }
+    }
+
+    /// The simulation that signals are of, such as those read from its file.
+    ///
+    /// # Arguments
+    /// * `channels` - [`Self::channels`] with their samples
+    pub fn with_channels(self, channels: GearboxChannels) -> GearboxSimulation {
+        GearboxSimulation { channels, timings: self.timings.clone(), stages: self }
+    }
+
     /// Solves the equations of motion, and makes the signals of the sensors.
     ///
     /// # Errors
     /// A motion that grows without bound.
     pub fn simulate(self) -> Result<GearboxSimulation, Error> {
         let mut clock = Clock::default();
-        let (named, outputs): (Vec<(String, &str)>, Vec<Output>) =
-            self.outputs().into_iter().map(|(name, unit, output)| ((name, unit), output)).unzip();
-        let signal =
-            |(name, unit)| GearboxSignal { name, unit, values: Vec::with_capacity(self.time.kept_samples()) };
-        let mut channels = GearboxChannels {
-            sampling_rate_hz: self.time.sampling_rate_hz,
-            start_s: self.time.first_kept_sample as f64 * self.time.step_s(),
-            signals: named.into_iter().map(signal).collect(),
-            step_counts: [0; 4],
-        };
+        let outputs: Vec<Output> = self.outputs().into_iter().map(|(.., output)| output).collect();
+        let mut channels = self.channels();
         integrate(self.problem(&outputs), InstructionSet::fastest(), &mut channels).map_err(|diverged| {
             Error::Diverged {
                 time_s: diverged.sample as f64 * self.time.step_s(),

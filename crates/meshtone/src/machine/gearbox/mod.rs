@@ -361,16 +361,21 @@ impl GearboxMachine {
 
     /// The motor turns its shaft at z = 0; the brake's torque acts against its rotation.
     fn drives(&self, parts: &GearboxParts, brake: usize) -> Vec<Drive> {
-        let drive = |(nodes, ((shaft, _), ratio)): (&Vec<(f64, usize)>, (&(&GearboxShaft, _), &f64))| match shaft.couples_to {
-            Coupled::Motor => Some(Drive::Motor {
-                coordinate: nodes[0].1 + ABOUT_Z,
-                stiffness_nm_per_rad: shaft.coupling_nm_per_rad(),
-                speed_ratio: *ratio,
-            }),
-            Coupled::Brake => Some(Drive::Brake { coordinate: brake, torque_share: -ratio.signum() }),
-            Coupled::Nothing => None,
-        };
-        self.nodes.iter().zip(parts.shafts.iter().zip(parts.speed_ratios)).filter_map(drive).collect()
+        let mut drives = Vec::new();
+        for ((nodes, (shaft, _)), ratio) in self.nodes.iter().zip(parts.shafts).zip(parts.speed_ratios) {
+            match shaft.couples_to {
+                Coupled::Motor => drives.push(Drive::Motor {
+                    coordinate: nodes[0].1 + ABOUT_Z,
+                    stiffness_nm_per_rad: shaft.coupling_nm_per_rad(),
+                    speed_ratio: *ratio,
+                }),
+                Coupled::Brake => {
+                    drives.push(Drive::Brake { coordinate: brake, torque_share: -ratio.signum() });
+                }
+                Coupled::Nothing => {}
+            }
+        }
+        drives
     }
 
     /// Names a place where the motion can be measured, along x, y and z.
