@@ -20,6 +20,7 @@ from ._diagnose import Diagnosis, diagnose
 from ._explore import Explorer, explore
 from ._warnings import MeshtoneWarning
 from .datasets import Dataset, generate_dataset, load_dataset, verify_dataset
+from .gearbox import Gearbox, GearboxSimulation, gearbox_template, simulate_gearbox, simulate_gearboxes
 from .hybrid import enhance, tune
 from .memory import set_memory_limit
 from .recording import Recording, read_recording
@@ -34,6 +35,8 @@ __all__ = [
     "Dataset",
     "Diagnosis",
     "Explorer",
+    "Gearbox",
+    "GearboxSimulation",
     "MeshtoneWarning",
     "Record",
     "Recording",
@@ -49,6 +52,7 @@ __all__ = [
     "enhance",
     "examples",
     "explore",
+    "gearbox_template",
     "generate_dataset",
     "hybrid",
     "load_dataset",
@@ -58,6 +62,8 @@ __all__ = [
     "set_memory_limit",
     "signal",
     "simulate",
+    "simulate_gearbox",
+    "simulate_gearboxes",
     "simulate_many",
     "template",
     "trace",

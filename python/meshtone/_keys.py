@@ -303,7 +303,7 @@ class ScenarioKeys:
     pinion_dedendum: float
     gear_dedendum: float
     centre_distance_mm: float | None
-    material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"]
+    material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | Mapping[str, float]
     flank_relief: FlankRelief
     tip_chamfer_mm: float | None
     active_profile_shortening: float
@@ -372,7 +372,7 @@ class ScenarioKeys:
         pinion_dedendum: float | None = None,
         gear_dedendum: float | None = None,
         centre_distance_mm: float | None = None,
-        material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | None = None,
+        material: Literal["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"] | Mapping[str, float] | None = None,
         flank_relief: FlankRelief | None = None,
         tip_chamfer_mm: float | None = None,
         active_profile_shortening: float | None = None,
@@ -464,7 +464,7 @@ class ScenarioKeys:
         centre_distance_mm : float, optional
             (mm) The distance between the axes. Allowed: > 0; at least the default; contact ratio at least 1. Default:
             that without backlash.
-        material : {'steel', 'copper', 'aluminium', 'brass', 'cast-iron', 'bronze'}, optional
+        material : {'steel', 'copper', 'aluminium', 'brass', 'cast-iron', 'bronze'} or dict, optional
             The material of wheels and shafts. Default: "steel".
         flank_relief : FlankRelief, optional
             The relief of the flanks near the tips, as a gap in µm. Default: { shape = "parabolic", length_mm = 1.0,

@@ -5,12 +5,12 @@ use std::thread;
 
 use meshtone::scenario::Scenario;
 use meshtone::sensor::Channels;
-use meshtone::{Simulation, Stages, Trace};
+use meshtone::{GearboxSimulation, Simulation, Stages, Trace};
 use meshtone_io::atomic_file::{StagedFile, WriteFileError};
 use meshtone_io::own_file::undisturbed;
 use meshtone_io::run_identity::RunIdentity;
-use meshtone_io::signals::write_signals;
-use meshtone_io::summary::Summary;
+use meshtone_io::signals::{write_gearbox_signals, write_signals};
+use meshtone_io::summary::{GearboxSummary, Summary};
 use meshtone_io::trace_npz::write_trace;
 use meshtone_plot::panel;
 
@@ -73,6 +73,54 @@ pub fn write(
     undisturbed(|| replace_earlier(directory, staged, staged_summary))?;
     drawn
 }
+
+/// Writes all files of a gearbox's simulation, as [`write()`] does of a pair's.
+///
+/// # Arguments
+/// * `directory` - where to
+/// * `simulation`, `summary` - its results, and their main numbers
+/// * `trace` - where every stage's output goes, if anywhere
+/// * `with_panel` - whether to draw the panel
+pub fn write_gearbox(
+    directory: &Path,
+    simulation: &GearboxSimulation,
+    summary: &GearboxSummary,
+    trace: Option<&Path>,
+    with_panel: bool,
+) -> Result<(), Failure> {
+    let signals = StagedFile::write(&directory.join(SIGNALS), |file| {
+        write_gearbox_signals(file, &simulation.stages.gearbox, &simulation.channels)
+    })?;
+    let traced = |path| {
+        StagedFile::write(path, |file| write_trace(file, summary.run, &meshtone::gearbox_trace(simulation)))
+    };
+    let trace = trace.map(traced).transpose()?;
+    let staged_summary = StagedFile::write(&directory.join(SUMMARY), |file| summary.write_json(file))?;
+    let panel = match with_panel {
+        true => stage_gearbox_panel(directory, summary.run, simulation),
+        false => Ok(Vec::new()),
+    };
+    let (mut staged, drawn) = match panel {
+        Ok(panel) => (panel, Ok(())),
+        Err(failure) => (Vec::new(), Err(failure.with_help("the other results are written; see --no-panel"))),
+    };
+    staged.push(signals);
+    trace.map(StagedFile::commit).transpose()?;
+    undisturbed(|| replace_earlier(directory, staged, staged_summary))?;
+    drawn
+}
+
+/// Draws the panel of a gearbox and writes its files, to be committed.
+pub fn stage_gearbox_panel(
+    directory: &Path,
+    run: RunIdentity,
+    simulation: &GearboxSimulation,
+) -> Result<Vec<StagedFile>, Failure> {
+    let figure = panel::draw_gearbox(simulation).map_err(cannot_draw);
+    let staged = figure.and_then(|figure| stage_figure(directory, PANEL, &figure.of_run(&run.to_string())));
+    staged.map_err(|failure| Failure { help: None, ..failure })
+}
+
 /// Draws the panel and writes its files, to be committed.
 pub fn stage_panel(
     directory: &Path,

@@ -1,17 +1,85 @@
 //! The main numbers of a run, for reading.
 
-use meshtone_io::summary::{ChannelSummary, FaultSummary, MeshForce, Summary};
+use meshtone_io::summary::{ChannelSummary, FaultSummary, GearboxSummary, MeshForce, Summary};
 
 /// The table of one run.
 pub fn table(summary: &Summary) -> String {
-    let rows = rows(summary).map(|(name, value)| format!("  {name:<24}{value}\n"));
+    let rows = rows(summary).into_iter().map(|(name, value)| format!("  {name:<24}{value}\n"));
+    rows.chain(signals(&summary.channels, label)).collect()
+}
+
+/// The main numbers of each signal, below their heads.
+fn signals(
+    channels: &[ChannelSummary],
+    label: fn(&ChannelSummary) -> String,
+) -> impl Iterator<Item = String> {
     let heads = format!("\n  {:<28}{:>12}{:>12}{:>12}\n", "signal", "rms", "peak", "kurtosis");
-    let channels = summary.channels.iter().map(|channel| {
+    let channels = channels.iter().map(move |channel| {
         let kurtosis = channel.kurtosis.map_or_else(|| "-".to_string(), short);
         let (rms, peak) = (short(channel.rms), short(channel.peak));
         format!("  {:<28}{rms:>12}{peak:>12}{kurtosis:>12}\n", label(channel))
     });
-    rows.into_iter().chain([heads]).chain(channels).collect()
+    std::iter::once(heads).chain(channels)
+}
+
+/// The table of a gearbox's run: a few rows for the whole, then some for each mesh.
+pub fn gearbox_table(summary: &GearboxSummary) -> String {
+    let frequencies: Vec<_> = summary.natural_frequencies_hz.iter().take(12).map(|f| frequency(*f)).collect();
+    let shafts = summary.shafts.iter().map(|shaft| format!("{} {}", shaft.name, short(shaft.speed_hz)));
+    let faults = summary.faults.iter().map(|fault| {
+        format!(
+            "{} (severity {:.3}) on {} of {}",
+            fault.kind,
+            fault.severity,
+            fault.tooth.in_words(),
+            fault.wheel
+        )
+    });
+    let faults: Vec<_> = faults.collect();
+    let duration_s = summary.samples as f64 / summary.sampling_rate_hz;
+    let whole = [
+        ("model", format!("{}, seed {}", summary.model, summary.seed)),
+        ("fault", if faults.is_empty() { "none".to_owned() } else { faults.join(", ") }),
+        (
+            "sampling",
+            format!(
+                "{} samples, {duration_s:.3} s at {} S/s",
+                summary.samples,
+                short(summary.sampling_rate_hz)
+            ),
+        ),
+        ("shaft speeds, rev/s", shafts.collect::<Vec<_>>().join(", ")),
+        ("repeats after", format!("{} revolutions of the input", summary.cycle_input_revolutions)),
+        ("natural frequencies, Hz", format!("{} …", frequencies.join(" "))),
+        ("computing time", format!("{} ms", short(summary.total_time().as_secs_f64() * 1e3))),
+    ];
+    let of_meshes = summary.meshes.iter().flat_map(|mesh| {
+        let (stiffness, force, error) = (&mesh.mesh_stiffness, &mesh.mesh_force, &mesh.transmission_error_um);
+        [
+            (String::new(), String::new()),
+            (
+                format!("mesh {}", mesh.wheels.join("-")),
+                format!("{} Hz, contact ratio {:.4}", short(mesh.mesh_frequency_hz), mesh.contact_ratio),
+            ),
+            (
+                "mesh stiffness, N/mm".to_owned(),
+                range([stiffness.min_n_per_mm, stiffness.mean_n_per_mm, stiffness.max_n_per_mm]),
+            ),
+            ("mesh force, N".to_owned(), range([force.min_n, force.mean_n, force.max_n]) + &touching(force)),
+            ("transmission error, µm".to_owned(), range([error.min, error.mean, error.max])),
+        ]
+    });
+    let rows = whole.into_iter().map(|(name, value)| (name.to_owned(), value)).chain(of_meshes);
+    let rows =
+        rows.map(|(name, value)| format!("  {name:<24}{value}\n").replace(&format!("{:26}\n", ""), "\n"));
+    let named = |channel: &ChannelSummary| channel.name.clone();
+    rows.chain(signals(&summary.channels, named)).collect()
+}
+
+/// `min 1, mean 2, max 3`.
+fn range(values: [f64; 3]) -> String {
+    let [min, mean, max] = values.map(short);
+    format!("min {min}, mean {mean}, max {max}")
 }
 
 fn rows(summary: &Summary) -> [(&'static str, String); 8] {
@@ -19,10 +87,6 @@ fn rows(summary: &Summary) -> [(&'static str, String); 8] {
     let frequencies: Vec<_> = summary.natural_frequencies_hz.iter().map(|f| frequency(*f)).collect();
     let duration_s = summary.samples as f64 / summary.sampling_rate_hz;
     let rate = short(summary.sampling_rate_hz);
-    let range = |values: [f64; 3]| {
-        let [min, mean, max] = values.map(short);
-        format!("min {min}, mean {mean}, max {max}")
-    };
     let stiffness = range([stiffness.min_n_per_mm, stiffness.mean_n_per_mm, stiffness.max_n_per_mm]);
     let forces = range([force.min_n, force.mean_n, force.max_n]);
     [

@@ -27,7 +27,7 @@ fn key_json(key: &KeyDescription) -> Value {
         KeyKind::Number => ("number", Vec::new()),
         KeyKind::Whole => ("whole", Vec::new()),
         KeyKind::Teeth => ("teeth", Vec::new()),
-        KeyKind::Name(names) => ("name", names.clone()),
+        KeyKind::Name(names) | KeyKind::NameOrTable(names) => ("name", names.clone()),
         KeyKind::Numbers(_) | KeyKind::List | KeyKind::NumberOrNumbers(_) => ("numbers", Vec::new()),
         KeyKind::Table => ("table", Vec::new()),
         KeyKind::Text => ("text", Vec::new()),

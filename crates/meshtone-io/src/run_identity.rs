@@ -38,9 +38,17 @@ impl RunIdentity {
     /// # Arguments
     /// * `scenario` - what is simulated, as the user asked for it
     pub fn of(scenario: &Scenario) -> Self {
+        Self::of_toml(&scenario.to_toml())
+    }
+
+    /// The identity of the run of a scenario or a gearbox that is given as a text.
+    ///
+    /// # Arguments
+    /// * `toml` - what is simulated, with everything that it takes from other files
+    pub fn of_toml(toml: &str) -> Self {
         // No text of a scenario contains the byte 0, which keeps them apart.
         let physics = meshtone::PHYSICS_VERSION.to_string();
-        let text = [env!("CARGO_PKG_VERSION"), &physics, &scenario.to_toml()].join("\0");
+        let text = [env!("CARGO_PKG_VERSION"), &physics, toml].join("\0");
         Self(fnv_1a(text.as_bytes()))
     }
 

@@ -12,6 +12,7 @@ mod dataset;
 mod diagnose;
 mod error;
 mod explore;
+mod gearbox;
 mod hybrid;
 mod interrupt;
 mod memory;
@@ -33,6 +34,7 @@ mod _core {
         dataset::{check_plan, dataset_template, generate_dataset, merge_datasets, verify_dataset},
         diagnose::{Observation, diagnose},
         explore::ExploreServer,
+        gearbox::{Gearbox, GearboxSimulation, gearbox_template, simulate_gearboxes},
         hybrid::{add_noise, change_duration, change_fault_to_harmonics_ratio, enhance, tune},
         memory::set_memory_limit,
         phase::{ShaftPhase, repair_pulses, tachometer_pulses},

@@ -255,6 +255,7 @@ warning_kinds! {
     IgnoredKey "ignored-key" "a key has no effect";
     FormerDefaults "former-defaults" "keys that are left out have the defaults of former files";
     FastTeeth "fast-teeth" "the pitch line is faster than spur gears run";
+    LongCycle "long-cycle" "the machine repeats itself only after a very long time";
     SpeedProfileOff "speed-profile-off" "a speed profile never comes near the nominal speed";
     EqualWheels "equal-wheels" "both wheels move in opposition, and the supports' accelerations cancel";
     Unsettled "unsettled" "the start-up transient has not decayed where the kept signal starts";

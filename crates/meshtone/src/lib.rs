@@ -66,6 +66,10 @@ pub use error::Error;
 pub use simd::InstructionSet;
 #[cfg(feature = "internals")]
 pub use simulate::Equations;
+pub use simulate::{
+    GearboxChannels, GearboxSignal, GearboxSimulation, GearboxStages, MeshedPair, gearbox_stages,
+    simulate_gearbox, simulate_gearboxes,
+};
 pub use simulate::{Simulation, StageTime, Stages, simulate, stages, stages_within};
-pub use trace::{Trace, TraceField, stage_trace, trace, trace_at};
+pub use trace::{Trace, TraceField, gearbox_trace, stage_trace, trace, trace_at};
 pub use warnings::{Observer, StepJudgement, stages_and_warnings};

@@ -72,6 +72,8 @@ pub enum Purpose {
     DiagnosisFeature = 29,
     /// Modes of the housing that a sensor sits on: frequencies and shares; index: 0.
     HousingModes = 30,
+    /// Seed of the deviations of a gearbox's wheel; index: wheel.
+    GearboxWheel = 31,
 }
 
 /// A sequence of random numbers.

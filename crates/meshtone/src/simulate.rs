@@ -2,6 +2,7 @@
 
 mod curves;
 mod equations;
+mod gearbox;
 mod measured;
 mod options;
 mod severities;
@@ -13,6 +14,10 @@ use std::time::Duration;
 use web_time::Instant;
 
 pub use equations::Equations;
+pub use gearbox::{
+    GearboxChannels, GearboxSignal, GearboxSimulation, GearboxStages, MeshedPair, gearbox_stages,
+    simulate_gearbox, simulate_gearboxes,
+};
 use options::MachineOptions;
 
 use crate::damage::{DamagedTooth, ToothPart, damaged_teeth};

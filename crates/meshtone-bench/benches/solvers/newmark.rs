@@ -83,7 +83,7 @@ impl<'a> Newmark<'a> {
                 at_rest
             });
             let mut effective = stiffness + &damping * (2.0 / step_s);
-            for (n, mass) in machine.mass.iter().enumerate() {
+            for (n, mass) in machine.mass.diagonal().iter().enumerate() {
                 effective[(n, n)] += mass * 4.0 / (step_s * step_s);
             }
             let inverse = columns(&effective.try_inverse().expect("definite"));
@@ -101,7 +101,7 @@ impl<'a> Newmark<'a> {
             machine,
             samples,
             states,
-            mass: std::array::from_fn(|n| machine.mass.get(n).copied().unwrap_or(0.0)),
+            mass: std::array::from_fn(|n| machine.mass.get((n, n)).copied().unwrap_or(0.0)),
             brake,
             sensors: [Axis::X, Axis::Y, Axis::Z].map(|axis| padded(&machine.weights(PINION_SUPPORT, axis))),
             at_rest: at_rest.expect("a sample"),

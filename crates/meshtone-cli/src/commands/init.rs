@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use meshtone::scenario::{template, template_kinds};
+use meshtone::scenario::{GearboxRig, gearbox_template, template, template_kinds};
 use meshtone_dataset::plan;
 use meshtone_io::experiment;
 
@@ -15,16 +15,21 @@ use crate::terminal;
 
 /// The kind that is a data set's plan and no scenario.
 const DATASET: &str = "dataset";
+/// The kind that is a gearbox.
+const GEARBOX: &str = "gearbox";
 /// The kind that is an experiment.
 const EXPERIMENT: &str = "experiment";
 
-/// Print a commented scenario file to start from, a data set's plan, or an experiment to tune by
+/// Print a commented scenario file to start from, a gearbox, a data set's plan, or an experiment to tune by
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Init {
-    /// A healthy pair, or what is broken, to begin with on the gear's first tooth; or the plan of a data set, or an experiment
-    #[arg(value_parser = PossibleValuesParser::new(template_kinds().into_iter().chain([DATASET, EXPERIMENT])))]
+    /// A healthy pair, or what is broken, to begin with on the gear's first tooth; a gearbox; the plan of a data set; or an experiment
+    #[arg(value_parser = PossibleValuesParser::new(template_kinds().into_iter().chain([GEARBOX, DATASET, EXPERIMENT])))]
     kind: String,
+    /// Of a gearbox: what is published of a rig, with what has to be assumed marked so
+    #[arg(long, value_name = "RIG", value_parser = PossibleValuesParser::new(GearboxRig::ALL.map(GearboxRig::name)))]
+    rig: Option<String>,
     /// File to write, instead of standard output
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -37,13 +42,21 @@ const EXAMPLES: &str = "\
 Examples:
   meshtone init healthy
   meshtone init tooth-breakage -o broken.toml
+  meshtone init gearbox -o gearbox.toml
+  meshtone init gearbox --rig phm2009-spur
   meshtone init dataset -o plan.toml
   meshtone init experiment -o experiment.toml";
 
 impl Init {
     pub fn run(&self) -> Result<(), Failure> {
         let unknown = || Failure::bad_input(format!("there is no template {}", self.kind));
+        if self.rig.is_some() && self.kind != GEARBOX {
+            let problem = format!("--rig: given with {}; only a gearbox has published rigs", self.kind);
+            return Failure::refuse(problem, "write `meshtone init gearbox --rig RIG`");
+        }
+        let rig = GearboxRig::ALL.into_iter().find(|rig| self.rig.as_deref() == Some(rig.name()));
         let text = match self.kind.as_str() {
+            GEARBOX => gearbox_template(rig),
             DATASET => plan::template().to_owned(),
             EXPERIMENT => experiment::template().to_owned(),
             kind => template(kind).ok_or_else(unknown)?,

@@ -1,21 +1,21 @@
 //! `meshtone panel`
 
 use std::io::ErrorKind;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use meshtone_io::ReadResultsError;
 use meshtone_io::atomic_file::StagedFile;
 use meshtone_io::own_file::undisturbed;
 use meshtone_io::run_identity::RunIdentity;
-use meshtone_io::signals::{Recorded, read_signals};
+use meshtone_io::signals::{RecordedGearbox, read_gearbox_signals, read_signals};
 use meshtone_io::summary::read_run;
 
 use crate::earlier_results;
 use crate::failure::Failure;
 use crate::other_kind::or_other_kind;
 use crate::output_directory::claim;
-use crate::results::{PANEL, SIGNALS, SUMMARY, stage_panel};
+use crate::results::{PANEL, SIGNALS, SUMMARY, stage_gearbox_panel, stage_panel};
 use crate::terminal::{print_unless, warn};
 
 /// Description of the input of the panel.
@@ -48,23 +48,51 @@ impl Panel {
             ));
         }
         let path = self.directory.join(SIGNALS);
-        let recorded = read_signals(&path).map_err(|error| {
+        let of_gearbox = read_gearbox_signals(&path).ok().flatten();
+        let files = match of_gearbox {
+            Some(recorded) => self.panel_of_gearbox(recorded)?,
+            None => self.panel_of_pair(&path)?,
+        };
+        undisturbed(|| files.into_iter().try_for_each(StagedFile::commit))?;
+        let [svg, png] = PANEL.map(|name| self.directory.join(name));
+        print_unless(self.quiet, &format!("{}\n{}\n", svg.display(), png.display()))
+    }
+
+    fn panel_of_gearbox(&self, recorded: RecordedGearbox) -> Result<Vec<StagedFile>, Failure> {
+        let path = self.directory.join(SIGNALS);
+        self.check_summary(recorded.run)?;
+        let stages = meshtone::gearbox_stages(&recorded.gearbox)
+            .map_err(|error| ReadResultsError::scenario(&path, &error))?;
+        let mut channels = stages.channels();
+        let names = channels.signals.iter().map(|signal| &signal.name);
+        if recorded.sampling_rate_hz != channels.sampling_rate_hz
+            || !names.eq(recorded.signals.iter().map(|(name, _)| name))
+        {
+            let problem = "has another rate or other signals than its gearbox".to_owned();
+            return Err(ReadResultsError::foreign(&path, problem).into());
+        }
+        self.warn_of_version(&recorded.version);
+        for (signal, (_, values)) in channels.signals.iter_mut().zip(recorded.signals) {
+            signal.values = values;
+        }
+        stage_gearbox_panel(&self.directory, recorded.run, &stages.with_channels(channels))
+    }
+
+    fn panel_of_pair(&self, path: &Path) -> Result<Vec<StagedFile>, Failure> {
+        let recorded = read_signals(path).map_err(|error| {
             let is_there = path.try_exists().unwrap_or(false);
             if is_there { error.into() } else { or_other_kind(&self.directory, WRITTEN, error.into()) }
         })?;
         self.check_summary(recorded.run)?;
-        let stages = meshtone::stages(&recorded.scenario)
-            .map_err(|error| ReadResultsError::scenario(&path, &error))?;
+        let stages =
+            meshtone::stages(&recorded.scenario).map_err(|error| ReadResultsError::scenario(path, &error))?;
         let (rate, expected) = (recorded.channels.sampling_rate_hz, stages.time.sampling_rate_hz);
         if rate != expected {
             let problem = format!("is sampled at {rate} S/s, but its scenario at {expected} S/s");
-            return Err(ReadResultsError::foreign(&path, problem).into());
+            return Err(ReadResultsError::foreign(path, problem).into());
         }
-        self.warn_of_version(&recorded);
-        let files = stage_panel(&self.directory, recorded.run, &stages, &recorded.channels)?;
-        undisturbed(|| files.into_iter().try_for_each(StagedFile::commit))?;
-        let [svg, png] = PANEL.map(|name| self.directory.join(name));
-        print_unless(self.quiet, &format!("{}\n{}\n", svg.display(), png.display()))
+        self.warn_of_version(&recorded.version);
+        stage_panel(&self.directory, recorded.run, &stages, &recorded.channels)
     }
 
     /// Signals without a summary can be drawn all the same; but a panel is not to make the files of two runs look like
@@ -94,14 +122,13 @@ impl Panel {
         }
     }
 
-    fn warn_of_version(&self, recorded: &Recorded) {
+    fn warn_of_version(&self, version: &str) {
         const THIS: &str = env!("CARGO_PKG_VERSION");
-        if recorded.version != THIS {
+        if version != THIS {
             warn(format_args!(
-                "{} was written by version {}; what the panel shows beside the signals is computed \
+                "{} was written by version {version}; what the panel shows beside the signals is computed \
                  by version {THIS}",
                 self.directory.join(SIGNALS).display(),
-                recorded.version,
             ));
         }
     }

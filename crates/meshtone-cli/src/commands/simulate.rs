@@ -4,13 +4,15 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
-use meshtone::scenario::{Model, Quality, Scenario, ScenarioError, ScenarioFiles, ScenarioWarning};
-use meshtone::{Simulation, StageTime, Stages, Trace};
+use meshtone::scenario::{
+    Gearbox, Model, Quality, Scenario, ScenarioError, ScenarioFiles, ScenarioForm, ScenarioWarning,
+};
+use meshtone::{GearboxStages, Simulation, StageTime, Stages, Trace};
 use meshtone_io::atomic_file::check_target;
 use meshtone_io::experiment::{Tuned, read_tuned};
 use meshtone_io::run_identity::RunIdentity;
 use meshtone_io::scenario_file::{FileKind, FilesBeside, ScenarioFile};
-use meshtone_io::summary::Summary;
+use meshtone_io::summary::{GearboxSummary, Summary};
 
 use crate::check::check;
 use crate::choice::{Choice, one_of};
@@ -19,7 +21,7 @@ use crate::output_directory::{OutputDirectory, named_after};
 use crate::progress::with_spinner;
 use crate::results::{self, RESULTS};
 use crate::same_file::is_same_file;
-use crate::table::table;
+use crate::table::{gearbox_table, table};
 use crate::terminal::{print_unless, warn};
 use crate::warnings;
 
@@ -77,8 +79,31 @@ const MODELS: [Choice<Model>; 3] = [
     ("published", "The published code, its known errors included", Model::Published),
 ];
 
+/// What a scenario file asks for, and where its results go.
+enum Run {
+    Pair(Box<PairRun>),
+    Gearbox(Box<GearboxRun>),
+}
+
+impl Run {
+    /// The directory of its results, and the files that were read for it.
+    fn files(&self) -> (&Path, Vec<&Path>) {
+        match self {
+            Self::Pair(run) => (&run.directory, run.file.sources().collect()),
+            Self::Gearbox(run) => (&run.directory, run.file.sources().collect()),
+        }
+    }
+}
+
+/// A gearbox that can be simulated, and where its results go.
+struct GearboxRun {
+    file: ScenarioFile<Gearbox>,
+    stages: GearboxStages,
+    directory: PathBuf,
+}
+
 /// A scenario that can be simulated, and where its results go.
-struct Run {
+struct PairRun {
     file: ScenarioFile,
     /// The file's scenario with what the command line changes.
     scenario: Scenario,
@@ -104,16 +129,19 @@ impl Simulate {
         let runs =
             runs.map(|(path, directory)| self.prepare(path, directory, errors.as_ref(), tuned.as_ref()));
         let runs = runs.collect::<Result<Vec<_>, _>>()?;
-        let read = runs.iter().flat_map(|run| run.file.sources());
+        let read = runs.iter().flat_map(|run| run.files().1);
         let named = self.errors_file.as_deref().into_iter().chain(self.tuned.as_deref());
         let read: Vec<&Path> = read.chain(named).collect();
-        let directories = runs.iter().map(|run| OutputDirectory::prepare(&run.directory, &read));
+        let directories = runs.iter().map(|run| OutputDirectory::prepare(run.files().0, &read));
         let directories = directories.collect::<Result<Vec<_>, _>>()?;
         if let Some(trace) = &self.trace {
-            check_trace(trace, &runs[0].directory, &read)?;
+            check_trace(trace, runs[0].files().0, &read)?;
         }
         for (number, (run, directory)) in runs.into_iter().zip(directories).enumerate() {
-            self.simulate(run, &directory, number)?;
+            match run {
+                Run::Pair(run) => self.simulate(*run, &directory, number)?,
+                Run::Gearbox(run) => self.simulate_gearbox(*run, &directory, number)?,
+            }
         }
         Ok(())
     }
@@ -152,8 +180,18 @@ impl Simulate {
         errors: Option<&Quality>,
         tuned: Option<&Tuned>,
     ) -> Result<Run, Failure> {
-        let file = ScenarioFile::read(path)?;
-        let mut scenario = file.scenario.clone();
+        let file = ScenarioFile::read_form(path)?;
+        let mut scenario = match file.scenario.clone() {
+            ScenarioForm::Pair(scenario) => scenario,
+            ScenarioForm::Gearbox(gearbox) => return self.prepare_gearbox(file.with(gearbox), directory),
+            _ => {
+                return Failure::refuse(
+                    format!("{} is of a form that is not known here", path.display()),
+                    TRACE_HELP,
+                );
+            }
+        };
+        let file = file.with(scenario.clone());
         if let (Some(tuned), Some(tuned_path)) = (tuned, &self.tuned) {
             if let Some(warning) = tuned.warning_for(&scenario) {
                 warn(format_args!("{}: {warning}", tuned_path.display()));
@@ -171,7 +209,50 @@ impl Simulate {
         }
         let (warnings, stages) = check(&scenario).map_err(|error| self.refuse(&file, error))?;
         let stages = (self.scenarios.len() == 1 && self.trace.is_none()).then_some(stages);
-        Ok(Run { file, scenario, warnings, stages, directory })
+        Ok(Run::Pair(Box::new(PairRun { file, scenario, warnings, stages, directory })))
+    }
+
+    /// A gearbox knows one model and no files of a pair.
+    fn prepare_gearbox(&self, file: ScenarioFile<Gearbox>, directory: PathBuf) -> Result<Run, Failure> {
+        let of_pair = [
+            ("--model", self.model.is_some_and(|model| model != Model::Contact)),
+            ("--errors-file", self.errors_file.is_some()),
+            ("--tuned", self.tuned.is_some()),
+        ];
+        if let Some((option, _)) = of_pair.iter().find(|(_, given)| *given) {
+            let problem = format!(
+                "{option}: {} is of a gearbox, and this is known of one pair only",
+                file.path.display()
+            );
+            return Failure::refuse(
+                problem,
+                format!("leave {option} out, or simulate a scenario of one pair"),
+            );
+        }
+        match meshtone::gearbox_stages(&file.scenario) {
+            Ok(stages) => Ok(Run::Gearbox(Box::new(GearboxRun { file, stages, directory }))),
+            Err(error) => Err(file.refuse(error).into()),
+        }
+    }
+
+    fn simulate_gearbox(
+        &self,
+        run: GearboxRun,
+        directory: &OutputDirectory,
+        number: usize,
+    ) -> Result<(), Failure> {
+        let GearboxRun { file, stages, .. } = run;
+        warnings::print(&file, stages.warnings());
+        let message = format!("{} ({} of {})", file.path.display(), number + 1, self.scenarios.len());
+        let summary = with_spinner(message, !self.quiet, || {
+            let simulation = stages.simulate().map_err(|error| not_simulated(&file, error))?;
+            let summary = GearboxSummary::new(&simulation, RunIdentity::of_toml(&file.scenario.to_toml()));
+            let trace = self.trace.as_deref();
+            results::write_gearbox(&directory.path, &simulation, &summary, trace, !self.no_panel)?;
+            Ok::<_, Failure>(summary)
+        })?;
+        let (from, to) = (file.path.display(), directory.path.display());
+        print_unless(self.quiet, &format!("{from} -> {to}\n{}\n", gearbox_table(&summary)))
     }
 
     /// An error about a scenario, or about the errors file that the command line put in its place.
@@ -187,7 +268,7 @@ impl Simulate {
         }
     }
 
-    fn simulate(&self, run: Run, directory: &OutputDirectory, number: usize) -> Result<(), Failure> {
+    fn simulate(&self, run: PairRun, directory: &OutputDirectory, number: usize) -> Result<(), Failure> {
         warnings::print(&run.file, &run.warnings);
         let of = format!("({} of {})", number + 1, self.scenarios.len());
         let message = format!("{} {of}", run.file.path.display());
@@ -247,7 +328,7 @@ fn read_errors(path: &Path) -> Result<Quality, Failure> {
 }
 
 /// A scenario that gave no simulation, named by its file.
-fn not_simulated(file: &ScenarioFile, error: meshtone::Error) -> Failure {
+fn not_simulated<S>(file: &ScenarioFile<S>, error: meshtone::Error) -> Failure {
     let help = error.help().map(str::to_owned);
     match error {
         meshtone::Error::Scenario(error) => file.refuse(error).into(),

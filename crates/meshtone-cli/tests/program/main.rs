@@ -7,6 +7,7 @@ mod diagnose;
 mod examples;
 #[cfg(feature = "explore")]
 mod explore;
+mod gearbox;
 mod indicators;
 mod indicators_refused;
 mod init;

@@ -35,6 +35,7 @@ impl FileKind {
         let document = TomlDocument::parse(text).ok()?;
         let own = [
             ("gears", Self::Scenario),
+            ("mesh", Self::Scenario),
             ("class", Self::Plan),
             ("case", Self::Experiment),
             ("enhancement", Self::Tuned),

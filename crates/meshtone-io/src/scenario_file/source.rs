@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use meshtone::scenario::{Scenario, ScenarioError};
+use meshtone::scenario::{Gearbox, Scenario, ScenarioError, ScenarioForm};
 use meshtone_toml::TomlDocument;
 
 use super::{FileKind, FilesBeside, ReadScenarioError};
@@ -11,15 +11,36 @@ use crate::memory;
 
 /// A scenario file that has been read.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ScenarioFile {
+pub struct ScenarioFile<S = Scenario> {
     /// Where it was read from.
     pub path: PathBuf,
     /// Its text.
     pub text: String,
     /// What it says.
-    pub scenario: Scenario,
+    pub scenario: S,
     /// The files that it names.
     pub named_files: Vec<PathBuf>,
+}
+
+impl ScenarioFile<ScenarioForm> {
+    /// Reads and validates a scenario file of either form: one pair, or a gearbox.
+    ///
+    /// # Arguments
+    /// * `path` - the scenario file; names of other files in it are relative to its directory
+    ///
+    /// # Errors
+    /// As [`super::read_scenario`].
+    pub fn read_form(path: &Path) -> Result<Self, ReadScenarioError> {
+        let text = read_text(path)?;
+        match Gearbox::is_written_in(&text) {
+            Ok(true) => Self::read_as(path, text, |text, files| {
+                Gearbox::from_toml_with_files(text, files).map(ScenarioForm::Gearbox)
+            }),
+            _ => Self::read_as(path, text, |text, files| {
+                Scenario::from_toml_within(text, files, memory::limit()).map(ScenarioForm::Pair)
+            }),
+        }
+    }
 }
 
 impl ScenarioFile {
@@ -31,13 +52,34 @@ impl ScenarioFile {
     /// # Errors
     /// As [`super::read_scenario`].
     pub fn read(path: &Path) -> Result<Self, ReadScenarioError> {
-        let text = read_text(path)?;
+        Self::read_as(path, read_text(path)?, |text, files| {
+            Scenario::from_toml_within(text, files, memory::limit())
+        })
+    }
+}
+
+impl<S> ScenarioFile<S> {
+    /// Reads the text of a file with one of the readers of scenarios.
+    fn read_as(
+        path: &Path,
+        text: String,
+        read: impl FnOnce(&str, &FilesBeside) -> Result<S, ScenarioError>,
+    ) -> Result<Self, ReadScenarioError> {
         let files = FilesBeside::new(path.parent().unwrap_or(Path::new("")));
         let path = path.to_path_buf();
-        match Scenario::from_toml_within(&text, &files, memory::limit()) {
+        match read(&text, &files) {
             Ok(scenario) => Ok(Self { path, text, scenario, named_files: files.named.into_inner() }),
             Err(error) => Err(ReadScenarioError::invalid(FileKind::Scenario, path, text, error.into())),
         }
+    }
+
+    /// The same file with something else in place of what it says.
+    ///
+    /// # Arguments
+    /// * `scenario` - what stands in its place
+    pub fn with<T>(self, scenario: T) -> ScenarioFile<T> {
+        let Self { path, text, named_files, .. } = self;
+        ScenarioFile { path, text, scenario, named_files }
     }
 
     /// The scenario file and the files that it names.

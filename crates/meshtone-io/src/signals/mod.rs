@@ -9,14 +9,16 @@
 mod read;
 mod write;
 
-pub use read::{Recorded, read_signals};
-pub use write::write_signals;
+pub use read::{Recorded, RecordedGearbox, read_gearbox_signals, read_signals};
+pub use write::{write_gearbox_signals, write_signals};
 
 /// The first column: (s) time since the start of the simulation. The others are the [channels](meshtone::sensor::Channel), listed sensors
 /// first.
 pub const TIME: &str = "time_s";
 /// Metadata key of the scenario, as TOML.
 pub const SCENARIO_KEY: &str = "meshtone.scenario";
+/// Metadata key of a gearbox, as TOML, in place of [`SCENARIO_KEY`].
+pub const GEARBOX_KEY: &str = "meshtone.gearbox";
 /// Metadata key of the version of Meshtone that wrote the file.
 pub const VERSION_KEY: &str = "meshtone.version";
 /// Metadata key of the run's [identity](crate::run_identity::RunIdentity).

@@ -3,7 +3,10 @@
 //! Every key of a number ends in its unit. A number that does not exist, such as the kurtosis of a constant
 //! channel, is `null`.
 
+mod gearbox;
 mod json;
+
+pub use gearbox::{GearboxSummary, MeshSummary, ShaftSummary, TransmissionError, WheelFault};
 
 use std::path::Path;
 use std::time::Duration;
@@ -164,6 +167,13 @@ pub struct ChannelSummary {
     pub kurtosis: Option<f64>,
 }
 
+impl ChannelSummary {
+    /// The main numbers of a signal.
+    pub(crate) fn new(name: String, unit: &'static str, signal: &[f64]) -> Self {
+        Self { name, unit, rms: rms(signal), peak: peak(signal), kurtosis: kurtosis(signal) }
+    }
+}
+
 impl Summary {
     /// Sums up a simulation.
     ///
@@ -186,15 +196,7 @@ impl Summary {
         let (leading, signal) = channels.leading();
         let listed = channels.list();
         let channel_summary = |channel: &Channel| {
-            let signal = channels.signal(channel)?;
-            let (rms, peak, kurtosis) = (rms(signal), peak(signal), kurtosis(signal));
-            Some(ChannelSummary {
-                name: channel.name().into_owned(),
-                unit: channel.unit(),
-                rms,
-                peak,
-                kurtosis,
-            })
+            Some(ChannelSummary::new(channel.name().into_owned(), channel.unit(), channels.signal(channel)?))
         };
         let stage_times = simulation.timings.iter().map(|time| (time.stage.to_string(), time.elapsed));
         Self {

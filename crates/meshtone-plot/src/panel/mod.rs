@@ -8,10 +8,13 @@ mod average;
 mod damage;
 mod errors;
 mod face;
+mod gearbox;
 mod heading;
 mod side;
 mod stiffness;
 mod tooth;
+
+pub use gearbox::draw_gearbox;
 
 use meshtone::Stages;
 use meshtone::sensor::Channels;

@@ -9,7 +9,7 @@ use super::{Damage, FaultyTeeth, MissingTooth};
 use crate::error::ScenarioError;
 use crate::keys::{
     Check, KeyDescription, KeyRow, Keys, NoFiles, Range, check_keys, commented_rows, describe, describe_from,
-    field, read_keys, require, row, write_keys,
+    field, read_keys, require, row, rows_but, write_keys, write_rows,
 };
 use crate::wheel::{Gears, Teeth, WheelName};
 
@@ -163,12 +163,36 @@ impl Fault {
         table.tables("fault")?.into_iter().map(|table| table.read(Self::from_table)).collect()
     }
 
+    /// The same of wheels that have names of their own, each with the name.
+    ///
+    /// # Arguments
+    /// * `table` - what the sections are in
+    ///
+    /// # Errors
+    /// As [`Self::list_from_table`]; a fault that names no wheel.
+    pub(crate) fn list_on_named_wheels(table: &TomlTable<'_>) -> ReadResult<Vec<(String, Self)>> {
+        let read = |table: &TomlTable<'_>| {
+            let wheel = table.required("wheel", "the name of the damaged wheel")?.string()?.to_owned();
+            let mut fault = Self::at_usual_place(Damage::start_of(table)?);
+            let rows = rows_but::<Self>(&["wheel"]);
+            rows.iter().try_for_each(|row| row.read(&mut fault, table, &NoFiles))?;
+            fault.read_damage(table).map(|fault| (wheel, fault))
+        };
+        table.tables("fault")?.into_iter().map(|table| table.read(read)).collect()
+    }
+
     fn from_table(table: &TomlTable<'_>) -> ReadResult<Self> {
         let mut fault = Self::at_usual_place(Damage::start_of(table)?);
         read_keys(&mut fault, table, &NoFiles)?;
+        fault.read_damage(table)
+    }
+
+    /// Reads the sizes, or what may stand beside a severity.
+    fn read_damage(mut self, table: &TomlTable<'_>) -> ReadResult<Self> {
+        let fault = &mut self;
         let Some(severity) = fault.severity else {
             fault.damage.read(table)?;
-            return Ok(fault);
+            return Ok(self);
         };
         let sizes = fault.damage.sizes();
         if let Some(size) = sizes.iter().find(|size| table.optional(size).is_some()) {
@@ -177,7 +201,7 @@ impl Fault {
             return Err(table.error(size, problem).with_help(format!("remove severity, or all of {keys}")));
         }
         fault.damage.read_but_sizes(table)?;
-        Ok(fault.with_severity(severity))
+        Ok(self.with_severity(severity))
     }
 
     /// Names of the damage's keys that are not written: those that a severity stands in place of.
@@ -189,6 +213,16 @@ impl Fault {
     pub(crate) fn write(&self) -> String {
         let keys = self.damage.write(self.left_out());
         format!("{}kind = \"{}\"\n{keys}", write_keys(self), self.damage.kind())
+    }
+
+    /// The same of a wheel that has a name of its own.
+    ///
+    /// # Arguments
+    /// * `wheel` - the wheel's name
+    pub(crate) fn write_on(&self, wheel: &str) -> String {
+        let place = write_rows(&rows_but(&["wheel"]), self);
+        let keys = self.damage.write(self.left_out());
+        format!("wheel = {}\n{place}kind = \"{}\"\n{keys}", toml::Value::from(wheel), self.damage.kind())
     }
 
     /// The lines of its section with a comment for every key, without the header.

@@ -53,6 +53,8 @@ pub enum KeyKind {
     Teeth,
     /// One of some names, in double quotes.
     Name(Vec<&'static str>),
+    /// One of some names, in double quotes, or a table, whose keys are described too.
+    NameOrTable(Vec<&'static str>),
     /// An array of that many numbers.
     Numbers(usize),
     /// An array of numbers, as many as other keys say.
@@ -61,6 +63,8 @@ pub enum KeyKind {
     NumberOrNumbers(usize),
     /// A table, whose keys are described too.
     Table,
+    /// An array of such tables.
+    Tables,
     /// A table of the arrays `time_s` and `value`, or of a `file`.
     Profile,
     /// A table of the arrays `frequency_hz`, `magnitude` and `phase_deg`, or of a `file`.
@@ -69,6 +73,8 @@ pub enum KeyKind {
     Matrix,
     /// A text.
     Text,
+    /// An array of two texts.
+    Texts,
     /// The name of a file.
     File,
 }

@@ -216,7 +216,7 @@ impl<S> KeyRow<S> {
         let kind = self.cell.kind();
         let path = dotted(section, self.name);
         let numbers = match &kind {
-            KeyKind::Name(names) => quoted(names),
+            KeyKind::Name(names) | KeyKind::NameOrTable(names) => quoted(names),
             KeyKind::Whole | KeyKind::Teeth => format!("whole number {}", self.range.in_short()),
             _ => self.range.in_short(),
         };
@@ -295,7 +295,7 @@ impl<S> KeyRow<S> {
         let mut letters = self.meaning.chars();
         let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
         let names = match self.cell.kind() {
-            KeyKind::Name(names) => format!(": {}", quoted(&names)),
+            KeyKind::Name(names) | KeyKind::NameOrTable(names) => format!(": {}", quoted(&names)),
             _ => String::new(),
         };
         let absent = match self.absent {

@@ -153,7 +153,98 @@ macro_rules! optional {
         }
     )+};
 }
-optional!(f64, 0.0; u32, 0; u64, 0; [f64; 13], [0.0; 13]; Vec<f64>, Vec::new());
+optional!(f64, 0.0; u32, 0; u64, 0; [f64; 2], [0.0; 2]; [f64; 13], [0.0; 13]; Vec<f64>, Vec::new());
+
+/// A text.
+impl KeyValue for String {
+    fn read(&mut self, value: &TomlValue<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
+        *self = value.string()?.to_string();
+        Ok(())
+    }
+
+    fn write(&self) -> Written {
+        Written::Value(toml::Value::from(self.as_str()).to_string())
+    }
+
+    fn kind() -> KeyKind {
+        KeyKind::Text
+    }
+}
+
+/// Two texts.
+impl KeyValue for [String; 2] {
+    fn read(&mut self, value: &TomlValue<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
+        let entries = value.array()?;
+        let texts: Vec<&str> = entries.iter().map(TomlValue::string).collect::<ReadResult<_>>()?;
+        let [first, second] = texts[..] else {
+            return Err(value.error(format!("has {} texts; must have two", texts.len())));
+        };
+        *self = [first, second].map(str::to_owned);
+        Ok(())
+    }
+
+    fn write(&self) -> Written {
+        let [first, second] = self.each_ref().map(|text| toml::Value::from(text.as_str()).to_string());
+        Written::Value(format!("[{first}, {second}]"))
+    }
+
+    fn kind() -> KeyKind {
+        KeyKind::Texts
+    }
+}
+
+/// Rows of two numbers, as many as there are.
+impl KeyValue for Vec<[f64; 2]> {
+    fn read(&mut self, value: &TomlValue<'_>, _files: &dyn NumberFiles) -> ReadResult<()> {
+        *self = value.array()?.iter().map(TomlValue::exactly).collect::<ReadResult<_>>()?;
+        Ok(())
+    }
+
+    fn write(&self) -> Written {
+        let rows: Vec<String> = self.iter().map(|row| array(*row)).collect();
+        if rows.is_empty() { Written::Nothing } else { Written::Value(format!("[{}]", rows.join(", "))) }
+    }
+
+    fn check(&self, key: &str, range: &Range, unit: &str) -> Check {
+        let mut rows = self.iter().enumerate();
+        rows.try_for_each(|(index, row)| check_entries(row, &format!("{key}[{index}]"), range, unit))
+    }
+
+    fn kind() -> KeyKind {
+        KeyKind::Matrix
+    }
+}
+
+/// Tables of keys of their own, as many as there are.
+impl<S: Keys> KeyValue for Vec<S> {
+    fn read(&mut self, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
+        let read = |entry: &TomlValue<'_>| {
+            let mut section = S::start();
+            entry.table()?.read(|table| read_keys(&mut section, table, files)).map(|()| section)
+        };
+        *self = value.array()?.iter().map(read).collect::<ReadResult<_>>()?;
+        Ok(())
+    }
+
+    fn write(&self) -> Written {
+        let tables: Vec<String> =
+            self.iter().map(|section| inline_table(&written_pairs(&S::rows(), section))).collect();
+        if tables.is_empty() { Written::Nothing } else { Written::Value(format!("[{}]", tables.join(", "))) }
+    }
+
+    fn check(&self, key: &str, _range: &Range, _unit: &str) -> Check {
+        let mut sections = self.iter().enumerate();
+        sections.try_for_each(|(index, section)| check_keys(section, &format!("{key}[{index}]")))
+    }
+
+    fn kind() -> KeyKind {
+        KeyKind::Tables
+    }
+
+    fn inside(&self) -> Vec<KeyDescription> {
+        describe_from(&S::start())
+    }
+}
 
 /// A text that may be left out.
 impl KeyValue for Option<String> {

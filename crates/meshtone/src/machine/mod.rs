@@ -4,6 +4,7 @@
 //! and the solver closes or opens them. Only `train` names the coordinates of a rig.
 
 mod body;
+mod gearbox;
 mod modes;
 mod parts;
 mod rig;
@@ -12,6 +13,9 @@ mod support;
 mod train;
 
 pub use body::WheelBody;
+pub use gearbox::{
+    Bearing, BearingKind, Coupled, Disc, Foot, GearboxMachine, GearboxParts, GearboxPlace, GearboxShaft, Housing, MeshLine, Seat,
+};
 pub(crate) use modes::connected_groups;
 pub use modes::{ClosedMesh, DecayingMode, Modes};
 pub use parts::{Axis, Drive, Machine};

@@ -46,6 +46,9 @@ impl Modes {
     ///
     /// Source: C. D. Johnson, D. A. Kienholz, AIAA Journal 20 (1982).
     pub fn damped_by_springs(machine: &Machine) -> Self {
+        if let [spring] = &machine.springs[..] {
+            return Self::damped_alike(machine, spring.damping_ratio);
+        }
         let mut modes = Self::undamped(machine);
         modes.damping_ratio = (0..modes.damping_ratio.len())
             .map(|n| {
@@ -89,8 +92,7 @@ impl Modes {
     /// # Arguments
     /// * `machine` - the machine whose modes these are
     pub fn damping_matrix(&self, machine: &Machine) -> DMatrix<f64> {
-        let mass = DMatrix::from_diagonal(&DVector::from_column_slice(&machine.mass));
-        let mass_shapes = &machine.turn * mass * &self.shapes;
+        let mass_shapes = &machine.turn * &machine.mass * &self.shapes;
         let modal = DVector::from_fn(self.angular_frequencies.len(), |n, _| self.damping_per_s(n));
         &mass_shapes * DMatrix::from_diagonal(&modal) * mass_shapes.transpose()
     }
@@ -114,10 +116,9 @@ impl Modes {
     /// * `meshes` - its meshes, closed
     pub fn slowest_closed(&self, machine: &Machine, meshes: &[ClosedMesh]) -> DecayingMode {
         let stiffness: Vec<f64> = meshes.iter().map(|mesh| mesh.stiffness_n_per_m).collect();
-        let mass = DVector::from_column_slice(&machine.mass);
         let modes = mass_normalised_modes(&machine.mass, &machine.closed_stiffness(&stiffness));
         let decay_per_s = |shape: &DVector<f64>| {
-            let own = self.shapes.transpose() * shape.component_mul(&mass);
+            let own = self.shapes.transpose() * (&machine.mass * shape);
             let structural: f64 = (0..own.len()).map(|n| self.damping_per_s(n) * own[n] * own[n]).sum();
             let of_mesh = machine.lines.iter().zip(meshes).map(|(line, mesh)| {
                 let deflection = line.at_middle.dot(shape);
@@ -155,35 +156,63 @@ impl Machine {
     }
 }
 
-/// (rad/s) Natural angular frequencies and mass-normalised shapes of `K φ = ω² M φ` with a diagonal mass matrix, in rising
-/// order.
+/// (rad/s) Natural angular frequencies and mass-normalised shapes of `K φ = ω² M φ`, in rising order.
 ///
-/// Coordinates that no chain of stiffnesses connects are solved apart, so that their modes do not mix
-/// where frequencies coincide.
+/// Coordinates that no chain of stiffnesses and masses connects are solved apart, so that their modes do not mix
+/// where frequencies coincide. With `M = L Lᵀ` it is a symmetric problem of `L⁻¹ K L⁻ᵀ`; a diagonal M needs no factors.
 ///
 /// # Arguments
-/// * `mass` - the mass matrix's diagonal
+/// * `mass` - symmetric, positive definite mass matrix
 /// * `stiffness` - symmetric stiffness matrix
-fn mass_normalised_modes(mass: &[f64], stiffness: &DMatrix<f64>) -> Vec<(f64, DVector<f64>)> {
-    let scale: Vec<f64> = mass.iter().map(|m| 1.0 / m.sqrt()).collect();
-    let mut modes: Vec<(f64, DVector<f64>)> = Vec::with_capacity(mass.len());
-    for group in connected_groups(mass.len(), |row, column| stiffness[(row, column)] != 0.0) {
+fn mass_normalised_modes(mass: &DMatrix<f64>, stiffness: &DMatrix<f64>) -> Vec<(f64, DVector<f64>)> {
+    let coordinates = mass.nrows();
+    let mut modes: Vec<(f64, DVector<f64>)> = Vec::with_capacity(coordinates);
+    let connects = |row, column| stiffness[(row, column)] != 0.0 || mass[(row, column)] != 0.0;
+    for group in connected_groups(coordinates, connects) {
         let n = group.len();
-        let scaled = DMatrix::from_fn(n, n, |r, c| {
-            stiffness[(group[r], group[c])] * scale[group[r]] * scale[group[c]]
-        });
+        let of_group = |of: &DMatrix<f64>| DMatrix::from_fn(n, n, |r, c| of[(group[r], group[c])]);
+        let (own_mass, own_stiffness) = (of_group(mass), of_group(stiffness));
+        let factor = (!is_diagonal(&own_mass)).then(|| own_mass.clone().cholesky()).flatten();
+        let scale: Vec<f64> = own_mass.diagonal().iter().map(|m| 1.0 / m.sqrt()).collect();
+        let scaled = match &factor {
+            None => DMatrix::from_fn(n, n, |r, c| own_stiffness[(r, c)] * scale[r] * scale[c]),
+            Some(factor) => {
+                let lower = factor.l_dirty();
+                let mut half = own_stiffness;
+                lower.solve_lower_triangular_mut(&mut half);
+                half.transpose_mut();
+                lower.solve_lower_triangular_mut(&mut half);
+                (&half + half.transpose()) / 2.0
+            }
+        };
         let eigen = SymmetricEigen::new(scaled);
         let rounding = ROUNDING_OF_EIGENVALUES * eigen.eigenvalues.amax();
-        for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
-            let mut shape = DVector::zeros(mass.len());
+        let mut shapes = eigen.eigenvectors;
+        match &factor {
+            None => {
+                for (mut row, scale) in shapes.row_iter_mut().zip(&scale) {
+                    row *= *scale;
+                }
+            }
+            Some(factor) => {
+                factor.l_dirty().tr_solve_lower_triangular_mut(&mut shapes);
+            }
+        }
+        for (value, vector) in eigen.eigenvalues.iter().zip(shapes.column_iter()) {
+            let mut shape = DVector::zeros(coordinates);
             for (&coordinate, entry) in group.iter().zip(vector.iter()) {
-                shape[coordinate] = entry * scale[coordinate];
+                shape[coordinate] = *entry;
             }
             modes.push((if *value > rounding { value.sqrt() } else { 0.0 }, shape));
         }
     }
     modes.sort_by(|a, b| a.0.total_cmp(&b.0));
     modes
+}
+
+/// Whether a matrix has nothing beside its diagonal.
+fn is_diagonal(matrix: &DMatrix<f64>) -> bool {
+    (0..matrix.ncols()).all(|c| (0..matrix.nrows()).all(|r| r == c || matrix[(r, c)] == 0.0))
 }
 
 /// Groups of coordinates that chains of stiffnesses connect.

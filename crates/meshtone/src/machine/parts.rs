@@ -1,5 +1,7 @@
 //! A machine as a list of parts: bodies, springs with their damping, lines of action, drives, and places where a sensor can sit.
 
+use std::borrow::Cow;
+
 use nalgebra::{DMatrix, DVector};
 
 /// A machine without its meshes, in n coordinates.
@@ -10,9 +12,9 @@ use nalgebra::{DMatrix, DVector};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Machine {
     /// Names of the coordinates.
-    pub names: Vec<&'static str>,
-    /// (kg, kg m²) Mass or moment of inertia that moves with each coordinate; the same in turned coordinates.
-    pub mass: Vec<f64>,
+    pub names: Vec<Cow<'static, str>>,
+    /// (kg, kg m, kg m²) Mass matrix; the same in turned coordinates. It is diagonal where all masses are rigid bodies.
+    pub mass: DMatrix<f64>,
     /// Columns: unit vectors of the turned coordinates.
     pub turn: DMatrix<f64>,
     /// The elastic parts.
@@ -83,7 +85,7 @@ pub enum Axis {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Place {
     /// Its name.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// Number and weight of the coordinates that move it along an axis.
     pub motion: Vec<(Axis, Vec<(usize, f64)>)>,
 }
@@ -142,7 +144,7 @@ const ROUNDING: f64 = 1e-12;
 impl Machine {
     /// Number of coordinates.
     pub fn coordinates(&self) -> usize {
-        self.mass.len()
+        self.mass.nrows()
     }
 
     /// Stiffness matrix of all springs, in turned coordinates.

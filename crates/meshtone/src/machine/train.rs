@@ -110,8 +110,8 @@ impl Train {
             wheels: [pinion, gear],
             shaft_stiffness_nm_per_rad: torsion,
             machine: Machine {
-                names: NAMES[..coordinates].to_vec(),
-                mass: masses(&pinion, &gear, rig, coordinates),
+                names: NAMES[..coordinates].iter().map(|&name| name.into()).collect(),
+                mass: DMatrix::from_diagonal(&DVector::from_vec(masses(&pinion, &gear, rig, coordinates))),
                 springs: springs(gears, rig, torsion, supports, coordinates)
                     .iter()
                     .map(|spring| spring.turned(&turn))
@@ -235,13 +235,13 @@ fn places(supports: Supports) -> Vec<Place> {
         ],
     };
     vec![
-        Place { name: SUPPORTS, motion: both_supports },
-        Place { name: PINION_SUPPORT, motion: pinion_support },
-        Place { name: GEAR_SUPPORT, motion: gear_support },
-        Place { name: WHEELS, motion: of_wheels() },
-        Place { name: PINION, motion: vec![(Axis::Rotation, vec![(THETA_PINION, 1.0)])] },
+        Place { name: SUPPORTS.into(), motion: both_supports },
+        Place { name: PINION_SUPPORT.into(), motion: pinion_support },
+        Place { name: GEAR_SUPPORT.into(), motion: gear_support },
+        Place { name: WHEELS.into(), motion: of_wheels() },
+        Place { name: PINION.into(), motion: vec![(Axis::Rotation, vec![(THETA_PINION, 1.0)])] },
         // The gear turns backwards.
-        Place { name: GEAR, motion: vec![(Axis::Rotation, vec![(THETA_GEAR, -1.0)])] },
+        Place { name: GEAR.into(), motion: vec![(Axis::Rotation, vec![(THETA_GEAR, -1.0)])] },
     ]
 }
 
@@ -387,7 +387,7 @@ mod tests {
             pinion_shaft: Shaft { wheel_at: 0.3, ..Shaft::new(200.0, 10.0) },
             ..Rig::default()
         });
-        let mass = DMatrix::from_diagonal(&DVector::from_column_slice(&machine.mass));
+        let mass = &machine.mass;
         let shapes = Modes::damped_by_springs(&machine).shapes;
         let unit = shapes.transpose() * mass * &shapes;
         assert!((unit - DMatrix::identity(17, 17)).amax() < 1e-9);

@@ -104,8 +104,13 @@ impl<'a> Forcing<'a> {
             // The ratio of a wheel's speed to the motor's is rarely an exact number.
             let points_per_sample = per_revolution / time.samples_per_pinion_revolution as f64;
             let every_sample_is_a_point =
-                is_steady && turning.first_pitch == 0.0 && (points_per_sample - 1.0).abs() < ROUNDING;
-            MeshForcing::new(mesh, &deviations, time.step_s(), every_sample_is_a_point)
+                turning.first_pitch == 0.0 && (points_per_sample - 1.0).abs() < ROUNDING;
+            let reading = match (is_steady, every_sample_is_a_point) {
+                (true, true) => Reading::EveryPoint,
+                (true, false) => Reading::BetweenPoints { points_per_sample },
+                (false, _) => Reading::AnyMotion,
+            };
+            MeshForcing::new(mesh, &deviations, time.step_s(), reading)
         });
         Self {
             motion,
@@ -129,7 +134,7 @@ impl<'a> Forcing<'a> {
         self.revolutions.clear();
         if !self.is_steady {
             self.follow_motion(samples, &mut block.external);
-        } else if self.meshes.iter().any(|mesh| mesh.tables.is_none()) {
+        } else if self.meshes.iter().any(|mesh| mesh.reading != Reading::EveryPoint) {
             let turned = |k: usize| (self.sample + k) as f64 / self.samples_per_revolution;
             self.revolutions.extend((0..samples).map(turned));
         }
@@ -166,6 +171,20 @@ pub struct Turning {
     pub first_pitch: f64,
 }
 
+/// How the tables of a mesh are read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Reading {
+    /// Every sample is a point of the tables.
+    EveryPoint,
+    /// Samples lie evenly between the points.
+    BetweenPoints {
+        /// (-) Points from one sample to the next.
+        points_per_sample: f64,
+    },
+    /// Samples lie wherever motor and brake bring the mesh.
+    AnyMotion,
+}
+
 /// Forcing of one mesh.
 struct MeshForcing<'a> {
     mesh: &'a Mesh,
@@ -176,7 +195,8 @@ struct MeshForcing<'a> {
     tilts: bool,
     /// (-) τ over the time step.
     lead: f64,
-    /// The pairs at every point, where every sample is a point of the mesh's tables.
+    reading: Reading,
+    /// The pairs at every point, while motor and brake are steady.
     tables: Option<TabulatedPairs>,
     /// (m) Offset of each place's pair at the two samples before, with the pair's number, where it is not.
     before: [(i64, [f64; 2]); PAIRS],
@@ -276,20 +296,21 @@ impl TabulatedPairs {
 }
 
 impl<'a> MeshForcing<'a> {
-    fn new(
-        mesh: &'a Mesh,
-        deviations: &PairDeviations<'a>,
-        step_s: f64,
-        every_sample_is_a_point: bool,
-    ) -> Self {
+    fn new(mesh: &'a Mesh, deviations: &PairDeviations<'a>, step_s: f64, reading: Reading) -> Self {
         let [pinion, gear] = FlankErrors::of_both(deviations);
         let lead = mesh.damping_time_s / step_s;
         let eccentricity = Eccentricity::of(deviations);
         let tilts = mesh.face_reach_m() > 0.0;
-        let tables = every_sample_is_a_point
-            .then(|| TabulatedPairs::new(mesh, [&pinion, &gear], eccentricity.as_ref(), tilts, lead));
+        // (-) τ over the time from one point to the next.
+        let lead_of_points = match reading {
+            Reading::EveryPoint => Some(lead),
+            Reading::BetweenPoints { points_per_sample } => Some(lead * points_per_sample),
+            Reading::AnyMotion => None,
+        };
+        let tables = lead_of_points
+            .map(|lead| TabulatedPairs::new(mesh, [&pinion, &gear], eccentricity.as_ref(), tilts, lead));
         let before = [(i64::MIN, [0.0; 2]); PAIRS];
-        Self { mesh, pinion, gear, eccentricity, tilts, lead, tables, before }
+        Self { mesh, pinion, gear, eccentricity, tilts, lead, reading, tables, before }
     }
 
     /// Sets a block to `samples` samples from `first` on.
@@ -298,9 +319,13 @@ impl<'a> MeshForcing<'a> {
     /// * `revolutions` - (rev) rotation of the motor at each, where the samples are not points of the tables
     fn next_block(&mut self, first: usize, samples: usize, revolutions: &[f64], block: &mut PairsBlock) {
         match &self.tables {
-            Some(tables) => {
+            Some(tables) if self.reading == Reading::EveryPoint => {
                 block.resize(samples, self.tilts);
                 self.copy_from(tables, first, block);
+            }
+            Some(tables) => {
+                block.clear(samples, self.tilts);
+                self.read_tables_between_points(tables, revolutions, block);
             }
             None => {
                 block.clear(samples, self.tilts);
@@ -404,6 +429,62 @@ impl<'a> MeshForcing<'a> {
             }
         }
         if whole > 0.0 { moment / whole } else { of_nearest }
+    }
+
+    /// Reads the tables between their points while the mesh turns evenly, pair by pair: straight from one point to the next.
+    ///
+    /// # Arguments
+    /// * `tables` - the pairs at every point
+    /// * `revolutions` - (rev) rotation of the motor at each sample of the block
+    /// * `block` - holds zeros
+    fn read_tables_between_points(
+        &self,
+        tables: &TabulatedPairs,
+        revolutions: &[f64],
+        block: &mut PairsBlock,
+    ) {
+        let (mesh, per_pitch) = (self.mesh, self.mesh.points_per_pitch as f64);
+        let turning = mesh.turning;
+        // Points of pair 0.
+        let point_at = |revolutions: f64| {
+            (turning.first_pitch + revolutions * turning.pitches_per_revolution) * per_pitch
+                + mesh.points_before as f64
+        };
+        let (Some(&first), Some(&last)) = (revolutions.first(), revolutions.last()) else { return };
+        let [first, last] = [first, last].map(point_at);
+        let step = (last - first) / (revolutions.len() - 1).max(1) as f64;
+        let reach = mesh.points() as f64 - 1.0;
+        for pair in ((first - reach) / per_pitch).floor() as i64..=(last / per_pitch).floor() as i64 {
+            let begins = pair as f64 * per_pitch;
+            let place = pair.rem_euclid(PAIRS as i64) as usize;
+            let class = mesh.sequence.class(pair);
+            let (pinion_tooth, gear_tooth) = mesh.sequence.teeth(pair);
+            let (pinion, gear) = (&tables.pinion_m[pinion_tooth], &tables.gear_m[gear_tooth]);
+            let (stiffness, further) = (&tables.stiffness[class], &tables.further_apart_m[class]);
+            // As many as are certainly in it; each is checked again.
+            let from = if step > 0.0 { ((begins - first) / step - 1.0).max(0.0) as usize } else { 0 };
+            let until = if step > 0.0 {
+                ((begins + reach - first) / step + 2.0).max(0.0) as usize
+            } else {
+                usize::MAX
+            };
+            for (k, revolutions) in revolutions.iter().enumerate().take(until).skip(from) {
+                let point = point_at(*revolutions) - begins;
+                if point < 0.0 || point >= reach {
+                    continue;
+                }
+                let (index, part) = (point as usize, point - point.floor());
+                let between = |table: &[f64]| table[index] + part * (table[index + 1] - table[index]);
+                block.stiffness[place][k] = between(stiffness);
+                block.offset[place][k] = between(pinion) + between(gear) + between(further);
+            }
+        }
+        if self.tilts {
+            for (centre, revolutions) in block.face_centre.iter_mut().zip(revolutions) {
+                let pitches = turning.first_pitch + revolutions * turning.pitches_per_revolution;
+                *centre = self.face_centre_m((pitches * per_pitch).round().max(0.0) as usize);
+            }
+        }
     }
 
     /// Reads the tables between their points, at any rotation of the motor.

@@ -5,7 +5,7 @@ mod parameters;
 mod rules;
 mod settings;
 
-pub use motion::{Motion, MotionSample};
+pub use motion::{Motion, MotionSample, TorqueHarmonic};
 pub use parameters::{Operation, Profile};
 pub use settings::Solver;
 
@@ -75,6 +75,36 @@ impl TimeGrid {
         Self {
             sampling_rate_hz,
             samples: first_kept_sample.saturating_add(kept as usize),
+            first_simulated_sample: 0,
+            first_kept_sample,
+            samples_per_pinion_revolution,
+        }
+    }
+
+    /// The division of time of a gearbox: a whole number of samples per revolution of the input, a whole number of revolutions kept.
+    ///
+    /// # Arguments
+    /// * `operation` - nominal speed of the input, and the profile that may replace it
+    /// * `solver` - rate, length and settling
+    pub(crate) fn of_input(operation: &Operation, solver: &Solver) -> Self {
+        const USUAL_S: f64 = 1.0;
+        let speed_hz = operation.pinion_speed_hz;
+        let samples_per_pinion_revolution = samples_per_pitch(solver.sampling_rate_hz, 1, speed_hz);
+        let sampling_rate_hz = samples_per_pinion_revolution as f64 * speed_hz;
+        let profile_s =
+            operation.speed_profile_hz.as_ref().and_then(|profile| profile.time_s.last().copied());
+        let usual = (USUAL_S * speed_hz).ceil() * samples_per_pinion_revolution as f64;
+        let kept = match (solver.duration_s, solver.pinion_revolutions, profile_s) {
+            (Some(duration_s), ..) => duration_s * sampling_rate_hz,
+            (None, Some(revolutions), _) => revolutions * samples_per_pinion_revolution as f64,
+            (None, None, Some(profile_s)) => profile_s * sampling_rate_hz,
+            (None, None, None) => usual,
+        };
+        let first_kept_sample =
+            (kept * solver.settle_fraction / (1.0 - solver.settle_fraction)).round() as usize;
+        Self {
+            sampling_rate_hz,
+            samples: first_kept_sample.saturating_add(kept.round() as usize),
             first_simulated_sample: 0,
             first_kept_sample,
             samples_per_pinion_revolution,

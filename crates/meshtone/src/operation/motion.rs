@@ -1,5 +1,7 @@
 //! The motion of motor and brake, sample by sample.
 
+use std::f64::consts::TAU;
+
 use super::{Operation, Profile, TimeGrid};
 use crate::random::{Draws, Purpose};
 
@@ -13,6 +15,18 @@ pub struct Motion<'a> {
     speed_hz: f64,
     speed_draws: Option<Draws>,
     torque_draws: Option<Draws>,
+    ripple: Vec<TorqueHarmonic>,
+}
+
+/// A harmonic of the brake's torque.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TorqueHarmonic {
+    /// (-) How often it comes in a revolution of the motor.
+    pub order: f64,
+    /// (-) Its amplitude as a part of the torque.
+    pub amplitude: f64,
+    /// (rad) Its phase at the start.
+    pub phase_rad: f64,
 }
 
 /// Motor and brake at one sample.
@@ -44,9 +58,18 @@ impl<'a> Motion<'a> {
             speed_hz: 0.0,
             speed_draws: draws(operation.speed_fluctuation_hz, Purpose::SpeedFluctuation),
             torque_draws: draws(operation.torque_fluctuation_nm, Purpose::TorqueFluctuation),
+            ripple: Vec::new(),
         };
         motion.speed_hz = motion.draw_speed();
         motion
+    }
+
+    /// The motion with harmonics of the torque.
+    ///
+    /// # Arguments
+    /// * `ripple` - the harmonics
+    pub fn with_ripple(self, ripple: Vec<TorqueHarmonic>) -> Self {
+        Self { ripple, ..self }
     }
 
     fn draw_speed(&mut self) -> f64 {
@@ -58,7 +81,11 @@ impl<'a> Motion<'a> {
     fn draw_torque(&mut self) -> f64 {
         let operation = self.operation;
         let nominal = self.at_sample(operation.torque_profile_nm.as_ref(), operation.brake_torque_nm);
-        nominal + fluctuation(&mut self.torque_draws, operation.torque_fluctuation_nm)
+        let torque_nm = nominal + fluctuation(&mut self.torque_draws, operation.torque_fluctuation_nm);
+        let wave =
+            |of: &TorqueHarmonic| of.amplitude * (TAU * of.order * self.revolutions + of.phase_rad).cos();
+        // A factor of exactly 1 without harmonics.
+        torque_nm * (1.0 + self.ripple.iter().map(wave).sum::<f64>())
     }
 
     /// The profile at the present sample, or the constant where there is none.
@@ -73,7 +100,7 @@ impl<'a> Motion<'a> {
 
     /// Returns whether the brake's torque is constant.
     pub(crate) fn has_constant_torque(&self) -> bool {
-        self.torque_draws.is_none() && self.operation.torque_profile_nm.is_none()
+        self.torque_draws.is_none() && self.operation.torque_profile_nm.is_none() && self.ripple.is_empty()
     }
 }
 

@@ -360,20 +360,22 @@ fn row<const N: usize>(published: &Published, output: &Output, coordinates: &[us
         let rigid = machine.rigid_rotation().dot(&weights);
         OutputRow::Motion { derivative, weights: coordinates.map(|n| turned[n]), rigid }
     };
-    match *output {
-        Output::Acceleration { axis, factor, .. } => {
-            let wheels = match axis {
-                Axis::X => [X_GEAR, X_PINION],
-                Axis::Y => [Y_GEAR, Y_PINION],
-                Axis::Z => [Z_GEAR, Z_PINION],
-                Axis::Rotation => [THETA_GEAR, THETA_PINION],
-            };
-            motion(2, &wheels.map(|wheel| (wheel, factor)))
-        }
+    let of_both = |derivative: usize, axis: Axis, factor: f64| {
+        let wheels = match axis {
+            Axis::X => [X_GEAR, X_PINION],
+            Axis::Y => [Y_GEAR, Y_PINION],
+            Axis::Z => [Z_GEAR, Z_PINION],
+            Axis::Rotation => [THETA_GEAR, THETA_PINION],
+        };
+        motion(derivative, &wheels.map(|wheel| (wheel, factor)))
+    };
+    match output {
+        &Output::Acceleration { axis, factor, .. } => of_both(2, axis, factor),
+        &Output::Displacement { axis, factor, .. } => of_both(0, axis, factor),
         // The gear turns backwards.
-        Output::Velocity { place: GEAR, factor, .. } => motion(1, &[(THETA_GEAR, -factor)]),
-        Output::Velocity { factor, .. } => motion(1, &[(THETA_PINION, factor)]),
-        Output::Coordinate { number, derivative } => motion(derivative, &[(number, 1.0)]),
+        Output::Velocity { place, factor, .. } if place == GEAR => motion(1, &[(THETA_GEAR, -factor)]),
+        Output::Velocity { factor, .. } => motion(1, &[(THETA_PINION, *factor)]),
+        &Output::Coordinate { number, derivative } => motion(derivative, &[(number, 1.0)]),
         Output::MeshForce { .. } => OutputRow::MeshForce,
     }
 }

@@ -7,6 +7,7 @@
 
 mod edit;
 mod from_toml;
+mod gearbox;
 mod ignored_keys;
 mod sections;
 mod serialise;
@@ -18,16 +19,23 @@ pub use crate::damage::kinds::*;
 pub use crate::damage::{Damage, DamageKind, DestructionLine, Fault, FaultyTeeth, PitCircle, damage_kinds};
 pub use crate::error::{ScenarioError, ScenarioWarning, WarningKind};
 pub use crate::keys::{FileProblem, KeyDescription, KeyKind};
-pub use crate::machine::{DampingRatio, Rig, Shaft, Support, SupportSprings, WheelInertia};
+pub use crate::machine::{
+    Bearing, BearingKind, Coupled, DampingRatio, Foot, GearboxShaft, Housing, Rig, Seat, Shaft, Support,
+    SupportSprings, WheelInertia,
+};
 pub use crate::model::Model;
 pub use crate::operation::{Operation, Profile, Solver};
 pub use crate::sensor::{FrequencyResponse, ResponseInput, Sensor, SensorDirection, SensorPath, SensorPlace};
 pub use crate::wheel::{
-    ERROR_POINTS, FlankRelief, FoundationCoefficients, Gears, Material, ProfileErrors, Quality, ReliefShape,
-    WheelDeviations, WheelName,
+    ERROR_POINTS, FlankRelief, FoundationCoefficients, Gears, Material, MaterialConstants, ProfileErrors,
+    Quality, ReliefShape, WheelDeviations, WheelName,
 };
 pub use edit::ScenarioNumber;
 pub use from_toml::{ScenarioFiles, line_of_key};
+pub use gearbox::{
+    Gearbox, GearboxFault, GearboxLayout, GearboxMesh, GearboxOperation, GearboxRig, GearboxSensor,
+    GearboxSolver, GearboxWheel, Ratio, Ripple, ScenarioForm, gearbox_sections, gearbox_template,
+};
 pub use meshtone_toml::ErrorKind;
 pub use sections::{SectionDescription, sections};
 pub use template::{template, template_kinds};

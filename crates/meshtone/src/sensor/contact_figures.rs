@@ -35,7 +35,14 @@ impl ContactFigures {
     /// assert_eq!((figures.back_flank_hits, figures.largest_force_n), (2, 210.0));
     /// ```
     pub fn of(channels: &Channels) -> Self {
-        let force = &channels.mesh_force_n;
+        Self::of_force(&channels.mesh_force_n)
+    }
+
+    /// The figures of one mesh.
+    ///
+    /// # Arguments
+    /// * `force` - (N) along its line of action, 0 where no teeth touch, negative where back flanks do
+    pub fn of_force(force: &[f64]) -> Self {
         let part = |is: fn(f64) -> bool| {
             force.iter().filter(|&&force| is(force)).count() as f64 / force.len().max(1) as f64
         };

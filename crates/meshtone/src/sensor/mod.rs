@@ -113,12 +113,12 @@ const PER_G: f64 = 1.0 / GRAVITY_M_PER_S2;
 
 /// The acceleration of a place, in g.
 fn acceleration_g(place: &'static str, axis: Axis) -> Output {
-    Output::Acceleration { place, axis, factor: PER_G }
+    Output::Acceleration { place: place.into(), axis, factor: PER_G }
 }
 
 /// The rotational speed of a wheel, in Hz.
 fn speed_hz(wheel: &'static str) -> Output {
-    Output::Velocity { place: wheel, axis: Axis::Rotation, factor: 1.0 / TAU }
+    Output::Velocity { place: wheel.into(), axis: Axis::Rotation, factor: 1.0 / TAU }
 }
 
 impl ChannelKind {

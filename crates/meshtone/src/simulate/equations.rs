@@ -119,7 +119,7 @@ impl Stages {
         let Some((train, modes)) = self.train() else { return };
         let machine = &train.machine;
         let size = machine.coordinates();
-        trace.vector("mass_diagonal", machine.mass.iter().copied());
+        trace.vector("mass_diagonal", machine.mass.diagonal().iter().copied());
         let mean = machine.closed_stiffness(&self.mean_stiffness_n_per_m());
         for (name, matrix) in [
             ("damping_matrix", modes.damping_matrix(machine)),

@@ -56,11 +56,32 @@ pub trait Recorder {
     /// * `block` - the outputs
     fn record(&mut self, block: &Block);
 
+    /// Called once at the end of a machine of several meshes, with what its steps took. By default that is not kept.
+    ///
+    /// # Arguments
+    /// * `counts` - of all steps
+    fn count(&mut self, counts: StepCounts) {
+        let _ = counts;
+    }
+
     /// Whether the samples that follow are still wanted: asked after every block. Where they are not, the solution ends there,
     /// without an error. By default they always are.
     fn goes_on(&self) -> bool {
         true
     }
+}
+
+/// What the steps of a machine of several meshes took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct StepCounts {
+    /// Steps.
+    pub steps: u64,
+    /// Iterations of Newton's method, the last check of each step included.
+    pub iterations: u64,
+    /// Most iterations of a step.
+    pub most_iterations: u64,
+    /// Steps in which a search along the line was needed.
+    pub searched: u64,
 }
 
 /// One simulation to integrate.
@@ -119,7 +140,7 @@ pub fn integrate(
 ) -> Result<(), Diverged> {
     let recorder = &mut Repeating::new(&problem, recorder);
     if !problem.fits_a_lane() {
-        return coupled::integrate(problem, recorder);
+        return coupled::integrate(problem, instructions, recorder);
     }
     let size = Size::of(&problem);
     let [result] = of_size(size, [problem], instructions, vec![recorder]);

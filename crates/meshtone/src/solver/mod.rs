@@ -19,10 +19,13 @@ mod repetition;
 mod steady_sine;
 mod step;
 
-pub use integrate::{Block, Diverged, Problem, Recorder, integrate};
+pub(crate) use coupled::MOST_MESHES;
+pub use integrate::{Block, Diverged, Problem, Recorder, StepCounts, integrate};
 pub(crate) use integrate::{LANES, integrate_side_by_side};
 #[cfg(feature = "internals")]
 pub use modal::ModalLine;
+#[cfg(feature = "internals")]
+pub use modal::Residual;
 pub use modal::{InitialMotion, ModalMachine};
 pub use outputs::Output;
 pub(crate) use steady_sine::MeanMachine;

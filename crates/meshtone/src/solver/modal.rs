@@ -2,7 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::machine::{Drive, Machine, Modes};
+use super::outputs::{EXTERNALS, external_forces};
+use crate::machine::{ClosedMesh, Drive, Machine, Modes};
 
 /// A machine without its meshes, in the modes that take part in the motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,8 +30,22 @@ pub struct ModalMachine {
     pub static_displacement: Vec<f64>,
     /// Modal velocity at the start, relative to the rigid rotation.
     pub initial_velocity: Vec<f64>,
+    /// What modes that are not stepped add to the deflections of the meshes.
+    pub residual: Residual,
     /// The machine's own description, of which outputs need the places.
     pub machine: Machine,
+}
+
+/// The flexibility of modes that are so high that they deform at every instant as at rest. The columns of all lines of action are counted
+/// through, mesh by mesh; without such modes all lists are empty.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Residual {
+    /// (m/N) `Σ B Bᵀ/ω²`, a row for each column.
+    pub compliance: Vec<Vec<f64>>,
+    /// (m) Deflection in each column under the constant loads.
+    pub static_deflection: Vec<f64>,
+    /// Deflection in each column per unit of each external.
+    pub of_external: Vec<[f64; EXTERNALS]>,
 }
 
 /// The line of action of a mesh in the modes.
@@ -83,10 +98,9 @@ impl ModalMachine {
     /// * `start` - how the simulation starts
     pub fn new(machine: &Machine, modes: &Modes, face_reach_m: &[f64], start: InitialMotion) -> Self {
         let shapes = modes.shapes.transpose();
-        let mass = DVector::from_column_slice(&machine.mass);
         let modal = |turned: &DVector<f64>| clean(&shapes * turned);
         let modal_motion =
-            |motion: &DVector<f64>| modal(&(machine.turn.transpose() * motion).component_mul(&mass));
+            |motion: &DVector<f64>| modal(&(&machine.mass * (machine.turn.transpose() * motion)));
         let [motor, brake] = drives(machine).map(|force| modal(&force));
         let rigid = modal_motion(&machine.rigid_rotation);
         let velocity = match start.velocity {
@@ -123,10 +137,53 @@ impl ModalMachine {
             rotation_rad_per_s: start.nominal_rad_per_s,
             static_displacement: Vec::new(),
             initial_velocity: pick(&velocity),
+            residual: Residual::default(),
             machine: machine.clone(),
         };
         this.balance(start.brake_torque_nm);
         this
+    }
+
+    /// The machine with the modes up to a frequency; those above stay as flexibility.
+    ///
+    /// # Arguments
+    /// * `angular_frequency` - (rad/s) of the highest mode that is stepped
+    pub fn up_to(mut self, angular_frequency: f64) -> Self {
+        let omitted: Vec<usize> =
+            (0..self.modes()).filter(|&n| self.stiffness[n].sqrt() > angular_frequency).collect();
+        if omitted.is_empty() {
+            return self;
+        }
+        let columns: Vec<&Vec<f64>> = self.lines.iter().flat_map(|line| &line.columns).collect();
+        let yielding = |a: &[f64], b: &[f64]| omitted.iter().map(|&n| a[n] * b[n] / self.stiffness[n]).sum::<f64>();
+        let externals = external_forces(&self);
+        let static_deflection =
+            |column: &&Vec<f64>| omitted.iter().map(|&n| column[n] * self.static_displacement[n]).sum();
+        self.residual = Residual {
+            compliance: columns.iter().map(|a| columns.iter().map(|b| yielding(a, b)).collect()).collect(),
+            static_deflection: columns.iter().map(static_deflection).collect(),
+            of_external: columns.iter().map(|a| externals.each_ref().map(|force| yielding(a, force))).collect(),
+        };
+        let is_kept = |n: usize| !omitted.contains(&n);
+        let keep = |values: &mut Vec<f64>| {
+            let kept = values.iter().enumerate().filter(|(n, _)| is_kept(*n)).map(|(_, value)| *value);
+            *values = kept.collect();
+        };
+        let shapes = std::mem::take(&mut self.shapes).into_iter().enumerate();
+        self.shapes = shapes.filter(|(n, _)| is_kept(*n)).map(|(_, shape)| shape).collect();
+        for values in [
+            &mut self.stiffness,
+            &mut self.damping,
+            &mut self.motor,
+            &mut self.brake,
+            &mut self.rigid_velocity,
+            &mut self.static_displacement,
+            &mut self.initial_velocity,
+        ] {
+            keep(values);
+        }
+        self.lines.iter_mut().flat_map(|line| &mut line.columns).for_each(keep);
+        self
     }
 
     /// Finds the static forces of the meshes that hold the shafts that turn freely, and the displacement under these and the torque.
@@ -146,6 +203,27 @@ impl ModalMachine {
                 if self.stiffness[n] == 0.0 { 0.0 } else { load / self.stiffness[n] }
             })
             .collect();
+    }
+
+    /// (1/s) Rate at which the slowest mode decays with the meshes closed, of the modes up to a frequency.
+    ///
+    /// # Arguments
+    /// * `meshes` - closed
+    /// * `highest_rad_per_s` - (rad/s) natural frequency of the highest mode that counts
+    pub fn slowest_decay_per_s(&self, meshes: &[ClosedMesh], highest_rad_per_s: f64) -> f64 {
+        let low: Vec<usize> =
+            (0..self.modes()).filter(|&n| self.stiffness[n].sqrt() <= highest_rad_per_s).collect();
+        let mut closed = DMatrix::from_diagonal(&DVector::from_iterator(low.len(), low.iter().map(|&n| self.stiffness[n])));
+        let mut damping = DMatrix::from_diagonal(&DVector::from_iterator(low.len(), low.iter().map(|&n| self.damping[n])));
+        for (line, mesh) in self.lines.iter().zip(meshes) {
+            let column = DVector::from_iterator(low.len(), low.iter().map(|&n| line.columns[0][n]));
+            let stiffness = &column * column.transpose() * mesh.stiffness_n_per_m;
+            damping += &stiffness * mesh.damping_time_s;
+            closed += stiffness;
+        }
+        let shapes = closed.symmetric_eigen().eigenvectors;
+        let decay_per_s = |shape: nalgebra::DVectorView<f64>| (&damping * shape).dot(&shape) / 2.0;
+        shapes.column_iter().map(decay_per_s).filter(|decay| *decay > 0.0).fold(f64::INFINITY, f64::min)
     }
 
     /// Modal displacement of the shafts that turn freely by which the meshes deflect as asked.

@@ -1,5 +1,7 @@
 //! What is read off the solution.
 
+use std::borrow::Cow;
+
 use nalgebra::DVector;
 
 use super::modal::ModalMachine;
@@ -13,7 +15,7 @@ pub enum Output {
     /// (m/s²) Acceleration of a named place along an axis, times a factor.
     Acceleration {
         /// The place's name.
-        place: &'static str,
+        place: Cow<'static, str>,
         /// The axis.
         axis: Axis,
         /// The factor.
@@ -22,7 +24,16 @@ pub enum Output {
     /// (m/s, rad/s) Velocity of a named place along or about an axis, times a factor.
     Velocity {
         /// The place's name.
-        place: &'static str,
+        place: Cow<'static, str>,
+        /// The axis.
+        axis: Axis,
+        /// The factor.
+        factor: f64,
+    },
+    /// (m, rad) Displacement of a named place along or about an axis, times a factor.
+    Displacement {
+        /// The place's name.
+        place: Cow<'static, str>,
         /// The axis.
         axis: Axis,
         /// The factor.
@@ -75,15 +86,16 @@ impl Output {
     /// * `steps` - how each of its modes is stepped
     /// * `step_s` - (s) Δt
     pub(super) fn weights(&self, model: &ModalMachine, steps: &[StepOfMode], step_s: f64) -> OutputWeights {
-        let of_place = |place, axis, factor: f64| model.machine.weights(place, axis) * factor;
-        let (weights, derivative) = match *self {
-            Self::Acceleration { place, axis, factor } => (of_place(place, axis, factor), 2),
-            Self::Velocity { place, axis, factor } => (of_place(place, axis, factor), 1),
-            Self::Coordinate { number, derivative } => {
+        let of_place = |place: &str, axis, factor: f64| model.machine.weights(place, axis) * factor;
+        let (weights, derivative) = match self {
+            Self::Acceleration { place, axis, factor } => (of_place(place, *axis, *factor), 2),
+            Self::Velocity { place, axis, factor } => (of_place(place, *axis, *factor), 1),
+            Self::Displacement { place, axis, factor } => (of_place(place, *axis, *factor), 0),
+            &Self::Coordinate { number, derivative } => {
                 let unit = |n: usize, _| f64::from(n == number);
                 (DVector::from_fn(model.machine.coordinates(), unit), derivative)
             }
-            Self::MeshForce { mesh } => return mesh_force(model, mesh),
+            Self::MeshForce { mesh } => return mesh_force(model, *mesh),
         };
         let (weights, rigid) = model.of_coordinates(&weights);
         let scaled = |of: &dyn Fn(&StepOfMode) -> f64| -> Vec<f64> {

@@ -106,7 +106,18 @@ impl Prepared {
             };
             (column, compliance)
         };
-        let (columns, compliance) = lines.iter().zip(&pushes).map(column).unzip();
+        let (mut columns, mut compliance): (Vec<Column>, Vec<Vec<f64>>) =
+            lines.iter().zip(&pushes).map(column).unzip();
+        let residual = &model.residual;
+        for (row, residual) in compliance.iter_mut().zip(&residual.compliance) {
+            row.iter_mut().zip(residual).for_each(|(compliance, residual)| *compliance += residual);
+        }
+        for (column, deflection) in columns.iter_mut().zip(&residual.static_deflection) {
+            column.static_deflection += deflection;
+        }
+        for (column, residual) in columns.iter_mut().zip(&residual.of_external) {
+            column.of_external.iter_mut().zip(residual).for_each(|(external, residual)| *external += residual);
+        }
         let mut next = 0;
         let columns_of_mesh = (model.lines.iter())
             .map(|line| {

@@ -1,6 +1,6 @@
 //! A steady motion that repeats itself is not simulated to its end.
 
-use super::integrate::{Block, Problem, Recorder};
+use super::integrate::{Block, Problem, Recorder, StepCounts};
 
 /// (-) Rms of the difference of two hunting-tooth periods, relative to the rms, up to which they are the same.
 const SAME: f64 = 1e-6;
@@ -102,6 +102,10 @@ impl Recorder for Repeating<'_> {
         {
             self.repeat(block.first_sample + block.len(), period);
         }
+    }
+
+    fn count(&mut self, counts: StepCounts) {
+        self.recorder.count(counts);
     }
 
     fn goes_on(&self) -> bool {

@@ -1,10 +1,12 @@
 //! Every stage's output under one name each, for checking number by number.
 
 mod average;
+mod gearbox;
 mod run;
 mod stages;
 
 pub(crate) use average::wheel_record;
+pub use gearbox::gearbox_trace;
 pub use run::{trace, trace_at};
 use stages::static_stages;
 

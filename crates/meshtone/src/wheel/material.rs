@@ -1,11 +1,18 @@
 //! Materials of the wheels and shafts.
 
-use crate::keys::by_name;
+use std::ops::Bound::Excluded;
 
-/// An isotropic elastic material, by name.
+use meshtone_toml::{ReadResult, TomlValue};
+
+use crate::keys::{
+    Check, KeyDescription, KeyKind, KeyRow, KeyValue, Keys, NumberFiles, Range, Written, check_keys,
+    describe, field, row,
+};
+
+/// An isotropic elastic material, by name or by its constants.
 ///
 /// Values as in the published model's manual (`docs`: theory, compliance).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Material {
     /// E 210 GPa, ν 0.30, 7840 kg/m³. The default.
@@ -21,21 +28,110 @@ pub enum Material {
     CastIron,
     /// E 110 GPa, ν 0.35, 8300 kg/m³.
     Bronze,
+    /// Any other.
+    Given(MaterialConstants),
 }
 
-by_name!(Material, [
-    "steel" => Material::Steel,
-    "copper" => Material::Copper,
-    "aluminium" => Material::Aluminium,
-    "brass" => Material::Brass,
-    "cast-iron" => Material::CastIron,
-    "bronze" => Material::Bronze,
-]);
+/// The constants of an isotropic elastic material.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MaterialConstants {
+    /// (GPa) Young's modulus.
+    pub youngs_modulus_gpa: f64,
+    /// (-) Poisson's ratio.
+    pub poisson_ratio: f64,
+    /// (kg/m³) Density.
+    pub density_kg_per_m3: f64,
+}
+
+impl Keys for MaterialConstants {
+    fn start() -> Self {
+        Self { youngs_modulus_gpa: f64::NAN, poisson_ratio: f64::NAN, density_kg_per_m3: f64::NAN }
+    }
+
+    fn rows() -> Vec<KeyRow<Self>> {
+        vec![
+            row("youngs_modulus_gpa", "GPa", "Young's modulus", field!(youngs_modulus_gpa))
+                .required()
+                .range(Range::positive().implausible_above(2e3)),
+            row("poisson_ratio", "-", "Poisson's ratio", field!(poisson_ratio)).required().range(
+                Range::between(Excluded(-1.0), Excluded(0.5))
+                    .message("must be more than −1 and less than 0.5"),
+            ),
+            row("density_kg_per_m3", "kg/m³", "the density", field!(density_kg_per_m3))
+                .required()
+                .range(Range::positive().implausible_above(1e5)),
+        ]
+    }
+}
+
+/// Names of the materials in the scenario file, in the order of [`Material::ALL`].
+const NAMES: [&str; 6] = ["steel", "copper", "aluminium", "brass", "cast-iron", "bronze"];
+
+/// One of the names, or a table of constants.
+impl KeyValue for Material {
+    fn read(&mut self, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
+        if value.is_table() {
+            let mut constants = MaterialConstants::start();
+            constants.read(value, files)?;
+            *self = Self::Given(constants);
+        } else {
+            let choices: Vec<(&str, Self)> = NAMES.into_iter().zip(Self::ALL).collect();
+            *self = value.choice(&choices)?;
+        }
+        Ok(())
+    }
+
+    fn write(&self) -> Written {
+        match self {
+            Self::Given(constants) => constants.write(),
+            named => Written::Value(format!("\"{}\"", named.name())),
+        }
+    }
+
+    fn check(&self, key: &str, _range: &Range, _unit: &str) -> Check {
+        match self {
+            Self::Given(constants) => check_keys(constants, key),
+            _ => Ok(()),
+        }
+    }
+
+    fn kind() -> KeyKind {
+        KeyKind::NameOrTable(NAMES.to_vec())
+    }
+
+    fn inside(&self) -> Vec<KeyDescription> {
+        describe::<MaterialConstants>()
+    }
+}
+
+/// One that may be left out.
+impl KeyValue for Option<Material> {
+    fn read(&mut self, value: &TomlValue<'_>, files: &dyn NumberFiles) -> ReadResult<()> {
+        self.insert(Material::default()).read(value, files)
+    }
+
+    fn write(&self) -> Written {
+        self.as_ref().map_or(Written::Nothing, KeyValue::write)
+    }
+
+    fn check(&self, key: &str, range: &Range, unit: &str) -> Check {
+        self.as_ref().map_or(Ok(()), |material| material.check(key, range, unit))
+    }
+
+    fn kind() -> KeyKind {
+        Material::kind()
+    }
+}
 
 impl Material {
     /// Every material, in the order of the documentation.
     pub const ALL: [Self; 6] =
         [Self::Steel, Self::Copper, Self::Aluminium, Self::Brass, Self::CastIron, Self::Bronze];
+
+    /// The name in the scenario file; `given` of one that has its constants in place of a name.
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().zip(NAMES).find(|(named, _)| **named == self).map_or("given", |(_, name)| name)
+    }
 
     /// (MPa = N/mm²) Young's modulus.
     pub fn youngs_modulus_mpa(self) -> f64 {
@@ -45,6 +141,7 @@ impl Material {
             Self::Aluminium => 70e3,
             Self::Brass | Self::Bronze => 110e3,
             Self::CastIron => 140e3,
+            Self::Given(constants) => constants.youngs_modulus_gpa * 1e3,
         }
     }
 
@@ -56,6 +153,7 @@ impl Material {
             Self::Brass => 0.36,
             Self::CastIron => 0.25,
             Self::Bronze => 0.35,
+            Self::Given(constants) => constants.poisson_ratio,
         }
     }
 
@@ -68,6 +166,7 @@ impl Material {
             Self::Brass => 8700.0,
             Self::CastIron => 7800.0,
             Self::Bronze => 8300.0,
+            Self::Given(constants) => constants.density_kg_per_m3,
         }
     }
 

@@ -19,7 +19,7 @@ pub use contact::{ContactLine, contact_line, contact_ratio};
 pub use flank::{Flank, FlankPoint};
 pub use flank_relief::FlankRelief;
 pub use gears::{FoundationCoefficients, Gears, ReliefShape};
-pub use material::Material;
+pub use material::{Material, MaterialConstants};
 pub use mounting::Mounting;
 pub use name::WheelName;
 pub use path::PathOfContact;

@@ -127,7 +127,7 @@ fn motor_and_brake_put_in_what_damping_takes() {
     let state = |first: usize, k: usize| DVector::from_fn(n, |row, _| kept[first + row][k]);
     let way = |k: usize| state(0, k) - &rigid * (k as f64 * step_s);
     let line = &machine.turn * &machine.lines[0].at_middle;
-    let mass = DVector::from_column_slice(&machine.mass);
+    let mass = machine.mass.diagonal();
     let (damping, springs) = (modes.damping_matrix(machine), machine.turn_back(&machine.stiffness()));
     let energy = |k: usize| {
         let (u, v) = (way(k), state(n, k) - &rigid);

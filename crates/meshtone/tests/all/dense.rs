@@ -348,8 +348,8 @@ impl<'a> Dense<'a> {
         }
         let mut a = steps.mass.clone().lu().solve(&force).unwrap();
         // What is stepped is an acceleration of the changed mass: the machine's own has the same force.
-        let own =
-            |a: &DVector<f64>| (&steps.mass * a).component_div(&DVector::from_column_slice(&machine.mass));
+        let own_mass = machine.mass.clone().cholesky().unwrap();
+        let own = |a: &DVector<f64>| own_mass.solve(&(&steps.mass * a));
         let mut accelerations = vec![own(&a)];
         for sample in 1..self.motion.len() {
             let loads = loads_at(sample);
@@ -431,7 +431,7 @@ impl<'a> Dense<'a> {
                 (0..n).filter(|&mode| reached(mode)).for_each(|mode| betas[mode] = 0.25);
             }
         }
-        let mass = DMatrix::from_diagonal(&DVector::from_column_slice(&machine.mass));
+        let mass = machine.mass.clone();
         let to_modes = shapes.transpose() * &mass;
         let matrix = |of_mode: &dyn Fn(usize) -> f64| {
             let diagonal = DMatrix::from_diagonal(&DVector::from_fn(n, |mode, _| of_mode(mode)));

@@ -97,7 +97,8 @@ fn exact(stages: &Stages, swing: f64) -> [Vec<DVector<f64>>; 3] {
     let velocity = DVector::from_row_slice(&stages.scenario.solver.initial_velocity.unwrap())
         - &machine.rigid_rotation * (TAU * PINION_SPEED_HZ);
     // Displacements times 1e5/s, and both times √m, so that all are about as large.
-    let (rate, root) = (1e5, DVector::from_iterator(n, machine.mass.iter().map(|mass| mass.sqrt())));
+    let (rate, root) =
+        (1e5, DVector::from_iterator(n, machine.mass.diagonal().iter().map(|mass| mass.sqrt())));
     let by_roots =
         |matrix: &DMatrix<f64>| DMatrix::from_fn(n, n, |r, c| matrix[(r, c)] / (root[r] * root[c]));
     // Beside them 1, cos Ωt and sin Ωt.
@@ -241,7 +242,7 @@ fn energy_is_kept_without_damping_and_forcing() {
     let stages = of_constant_stiffness(&scenario, 1.0);
     let machine = &machine_of(&stages).0.machine;
     let stiffness = machine.turn_back(&machine.closed_stiffness(&[mesh(&stages).mean_stiffness_n_per_m]));
-    let own_mass = DVector::from_column_slice(&machine.mass);
+    let own_mass = machine.mass.diagonal();
     let steps = Dense::of(&stages, 1).steps();
     let n = machine.coordinates();
     let of_acceleration =

@@ -10,6 +10,8 @@ mod dense_oracle;
 mod drive;
 mod fault_limits;
 mod faults_anywhere;
+mod gearbox;
+mod gearbox_machine;
 mod generated;
 mod hybrid;
 mod hybrid_experiment;

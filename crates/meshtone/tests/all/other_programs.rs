@@ -485,8 +485,12 @@ fn natural_frequencies_of_a_pair_with_8_coordinates() {
     let base_radius_m = [0.028_19, 0.056_38];
     let at_middle = vec![1.0, 0.0, -1.0, 0.0, base_radius_m[0], base_radius_m[1], 0.0, 0.0];
     let machine = Machine {
-        names: vec!["x_p", "y_p", "x_g", "y_g", "theta_p", "theta_g", "theta_m", "theta_b"],
-        mass: vec![0.6, 0.6, 1.5, 1.5, 0.000_27, 0.0027, 0.0043, 0.0045],
+        names: ["x_p", "y_p", "x_g", "y_g", "theta_p", "theta_g", "theta_m", "theta_b"]
+            .map(Into::into)
+            .to_vec(),
+        mass: DMatrix::from_diagonal(&DVector::from_vec(vec![
+            0.6, 0.6, 1.5, 1.5, 0.000_27, 0.0027, 0.0043, 0.0045,
+        ])),
         turn: DMatrix::identity(8, 8),
         springs: vec![spring],
         lines: vec![LineOfAction { at_middle: at_middle.into(), per_m: DVector::zeros(8) }],

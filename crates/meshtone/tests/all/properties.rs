@@ -280,7 +280,7 @@ impl<'a> Matrices<'a> {
                 let machine = &train.machine;
                 let cycle_n_per_mm = mesh(stages).stiffness_n_per_mm(0..mesh(stages).sequence.cycle());
                 Self {
-                    mass_diagonal: DVector::from_column_slice(&machine.mass),
+                    mass_diagonal: machine.mass.diagonal(),
                     damping: modes.damping_matrix(machine),
                     stiffness: machine.turn_back(&machine.stiffness()),
                     shapes: &machine.turn * &modes.shapes,

@@ -110,7 +110,7 @@ fn side_by_side(machines: [&Machine; 2]) -> Machine {
     let n: usize = machines.iter().map(|machine| machine.coordinates()).sum();
     let mut whole = Machine {
         names: Vec::new(),
-        mass: Vec::new(),
+        mass: DMatrix::zeros(n, n),
         turn: DMatrix::zeros(n, n),
         springs: Vec::new(),
         lines: Vec::new(),
@@ -118,8 +118,9 @@ fn side_by_side(machines: [&Machine; 2]) -> Machine {
         places: Vec::new(),
         rigid_rotation: DVector::zeros(n),
     };
+    let mut end = 0;
     for (machine, [speed, torque]) in machines.into_iter().zip([[1.0; 2], [SPEED_RATIO, TORQUE_RATIO]]) {
-        let (from, own) = (whole.mass.len(), machine.coordinates());
+        let (from, own) = (end, machine.coordinates());
         let vector = |of: &DVector<f64>| {
             let mut vector = DVector::zeros(n);
             vector.rows_mut(from, own).copy_from(of);
@@ -130,8 +131,9 @@ fn side_by_side(machines: [&Machine; 2]) -> Machine {
             matrix.view_mut((from, from), (own, own)).copy_from(of);
             matrix
         };
-        whole.names.extend(&machine.names);
-        whole.mass.extend(&machine.mass);
+        whole.names.extend(machine.names.iter().cloned());
+        whole.mass += matrix(&machine.mass);
+        end += own;
         whole.turn += matrix(&machine.turn);
         whole.rigid_rotation += vector(&machine.rigid_rotation) * speed;
         whole.springs.extend(
@@ -290,8 +292,8 @@ fn torsional_train(
         LineOfAction { at_middle, per_m: DVector::zeros(n) }
     };
     Machine {
-        names: vec!["rotation"; n],
-        mass: inertia_kgm2.to_vec(),
+        names: vec!["rotation".into(); n],
+        mass: DMatrix::from_diagonal(&DVector::from_column_slice(inertia_kgm2)),
         turn: DMatrix::identity(n, n),
         springs: shafts.iter().map(spring).collect(),
         lines: meshes.iter().map(line).collect(),

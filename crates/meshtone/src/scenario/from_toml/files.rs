@@ -56,7 +56,7 @@ pub trait ScenarioFiles {
 }
 
 /// The numbers in the files that a scenario names.
-pub(super) struct Numbers<'f>(pub(super) &'f dyn ScenarioFiles);
+pub(in crate::scenario) struct Numbers<'f>(pub(in crate::scenario) &'f dyn ScenarioFiles);
 
 impl NumberFiles for Numbers<'_> {
     fn times_and_values(&self, name: &str) -> Result<[Vec<f64>; 2], FileProblem> {

@@ -6,8 +6,8 @@ use meshtone_toml::{ErrorKind, ReadResult, TomlDocument, TomlTable};
 
 pub use self::files::ScenarioFiles;
 
-use self::files::Numbers;
-use super::{Fault, MemoryLimit, Scenario, ScenarioError, Sensor};
+pub(super) use self::files::Numbers;
+use super::{Fault, Gearbox, MemoryLimit, Scenario, ScenarioError, Sensor};
 use crate::keys::{Keys, NoFiles, NumberFiles, read_keys};
 use crate::wheel::WheelDeviations;
 
@@ -114,6 +114,9 @@ fn read_and_validate(
     limit: MemoryLimit,
 ) -> Result<Scenario, ScenarioError> {
     let document = TomlDocument::parse(text)?;
+    if Gearbox::is_written_in(text)? {
+        return Err(document.locate(Gearbox::refused_as_pair()).into());
+    }
     let scenario = document.root().read(|root| read_scenario(root, files))?;
     match scenario.validate_within(limit) {
         Ok(_) => Ok(scenario),

@@ -3,12 +3,12 @@
 use std::fmt::Write;
 
 use meshtone::damage::{damage_kinds, keys_of_every_fault};
-use meshtone::scenario::{KeyDescription, sections};
+use meshtone::scenario::{KeyDescription, gearbox_sections, sections};
 
 use super::both_wheels::of_both_wheels;
 
 /// The pages that have such tables.
-pub const PAGES: [&str; 1] = ["docs/src/guide/scenario-file.md"];
+pub const PAGES: [&str; 2] = ["docs/src/guide/scenario-file.md", "docs/src/guide/gearboxes.md"];
 
 const START: &str = "<!-- keys of ";
 const END: &str = "<!-- end -->";
@@ -37,7 +37,11 @@ fn table(name: &str) -> String {
     if let Some(kind) = damage_kinds().into_iter().find(|kind| kind.name == own) {
         return rows(&kind.keys, "");
     }
-    let sections = sections();
+    let (sections, own) = match own.strip_prefix("gearbox:") {
+        Some("top") => (gearbox_sections(), ""),
+        Some(of_gearbox) => (gearbox_sections(), of_gearbox),
+        None => (sections(), own),
+    };
     let section = sections.iter().find(|section| section.name == own).unwrap_or_else(|| panic!("{name}"));
     rows(&section.keys, "")
 }

@@ -63,6 +63,7 @@ pub fn argument_type(key: &KeyDescription) -> String {
         KeyKind::Whole => "int".into(),
         KeyKind::Teeth => "int | Sequence[int] | Literal[\"all\"]".into(),
         KeyKind::Name(names) => literal(names),
+        KeyKind::NameOrTable(names) => format!("{} | Mapping[str, float]", literal(names)),
         KeyKind::Numbers(_) | KeyKind::List => "Sequence[float]".into(),
         KeyKind::NumberOrNumbers(_) => "float | Sequence[float]".into(),
         KeyKind::Table => class_name(&key.key),
@@ -96,8 +97,12 @@ pub fn has_default_value(key: &KeyDescription) -> bool {
 /// An entry of a numpydoc list, `    name : type` and its description.
 pub fn parameter(indent: &str, key: &KeyDescription, name: &str, optional: bool) -> String {
     let words = match &key.kind {
-        KeyKind::Name(names) => {
-            format!("{{{}}}", names.iter().map(|name| format!("'{name}'")).collect::<Vec<_>>().join(", "))
+        KeyKind::Name(names) | KeyKind::NameOrTable(names) => {
+            let table = if matches!(key.kind, KeyKind::Name(_)) { "" } else { " or dict" };
+            format!(
+                "{{{}}}{table}",
+                names.iter().map(|name| format!("'{name}'")).collect::<Vec<_>>().join(", ")
+            )
         }
         KeyKind::Numbers(count) => format!("sequence of {count} floats"),
         KeyKind::List => "sequence of floats".into(),
@@ -118,7 +123,7 @@ pub fn sentences(key: &KeyDescription) -> String {
     let mut letters = key.meaning.chars();
     let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
     let meaning = format!("{unit}{first}{}.", letters.as_str()).replace('`', "``");
-    let is_plain = matches!(key.kind, KeyKind::Name(_)) || key.allowed.is_empty();
+    let is_plain = matches!(key.kind, KeyKind::Name(_) | KeyKind::NameOrTable(_)) || key.allowed.is_empty();
     let allowed =
         if is_plain { String::new() } else { format!(" Allowed: {}.", key.allowed.replace('`', "``")) };
     let default = if key.default.is_empty() || key.default == "as below" {

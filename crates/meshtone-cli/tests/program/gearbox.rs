@@ -1,0 +1,80 @@
+//! Gearboxes: `meshtone init gearbox`, `simulate`, `panel`, and the commands that know one pair only.
+
+use crate::support::{Workplace, stdout};
+use meshtone_io::signals::{read_gearbox_signals, read_signals};
+use serde_json::Value;
+
+/// An example of 0.1 s with a broken tooth.
+fn broken(workplace: &Workplace) {
+    workplace.succeeds(&["init", "gearbox", "-o", "gearbox.toml"]);
+    let text = String::from_utf8(workplace.read("gearbox.toml")).unwrap();
+    let fault =
+        "\n[[fault]]\nwheel = \"z3\"\ntooth = 2\nkind = \"tooth-breakage\"\nseverity = 0.5\n\n[[sensor]]";
+    let text = text.replacen("\n[[sensor]]", fault, 1).replace("duration_s = 1.0", "duration_s = 0.1");
+    workplace.write("gearbox.toml", text);
+}
+
+#[test]
+fn every_mesh_is_in_every_result() {
+    let workplace = Workplace::new();
+    broken(&workplace);
+    let output = workplace.succeeds(&["simulate", "gearbox.toml", "-o", "out", "--trace", "trace.npz"]);
+    for mesh in ["mesh z1-z2", "mesh z3-z4", "tooth-breakage (severity 0.500) on tooth 2 of z3"] {
+        assert!(stdout(&output).contains(mesh), "{}", stdout(&output));
+    }
+    let summary: Value = serde_json::from_slice(&workplace.read("out/summary.json")).unwrap();
+    let meshes = summary["meshes"].as_array().unwrap();
+    assert_eq!(meshes.len(), 2);
+    assert_eq!(meshes[1]["wheels"], serde_json::json!(["z3", "z4"]));
+    for (mesh, expected_n) in meshes.iter().zip([167.587_050_78, 335.174_101_56]) {
+        let mean_n = mesh["mesh_force"]["mean_n"].as_f64().unwrap();
+        assert!((mean_n / expected_n - 1.0).abs() < 0.02, "{mean_n} N");
+        let static_n = mesh["static_force_n"].as_f64().unwrap();
+        assert!((static_n / expected_n - 1.0).abs() < 1e-9, "{static_n} N");
+        assert!(mesh["mesh_stiffness"]["mean_n_per_mm"].as_f64().unwrap() > 1e5);
+        assert!(mesh["transmission_error_um"]["static_peak_to_peak"].as_f64().unwrap() > 0.0);
+    }
+    assert_eq!(summary["faults"][0]["wheel"], "z3");
+    let path = workplace.path("out/signals.parquet");
+    let recorded = read_gearbox_signals(&path).unwrap().unwrap();
+    let names: Vec<&str> = recorded.signals.iter().map(|(name, _)| name.as_str()).collect();
+    assert!(names.contains(&"force_n.z3-z4") && names.contains(&"speed_hz.output"), "{names:?}");
+    let simulation = meshtone::simulate_gearbox(&recorded.gearbox).unwrap();
+    for ((name, values), signal) in recorded.signals.iter().zip(&simulation.channels.signals) {
+        assert_eq!((name, values), (&signal.name, &signal.values));
+    }
+    let panel = String::from_utf8(workplace.read("out/panel.svg")).unwrap();
+    for words in ["z1-z2", "z3-z4", "Tooth breakage on tooth 2 of z3"] {
+        assert!(panel.contains(words), "{words}");
+    }
+    workplace.succeeds(&["panel", "out"]);
+    assert_eq!(String::from_utf8(workplace.read("out/panel.svg")).unwrap(), panel);
+    assert!(read_signals(&path).unwrap_err().to_string().contains("is of a gearbox"));
+}
+
+#[test]
+fn published_rigs_are_printed_and_simulate() {
+    let workplace = Workplace::new();
+    for rig in ["phm2009-spur", "uconn", "tecnalia"] {
+        let output = workplace.succeeds(&["init", "gearbox", "--rig", rig]);
+        let text = stdout(&output);
+        assert!(text.contains("# assumed") && text.contains("# Published:"), "{text}");
+        workplace.write("rig.toml", text.replace("duration_s = 1.0", "duration_s = 0.05"));
+        workplace.succeeds(&["simulate", "rig.toml", "-o", rig, "--no-panel"]);
+    }
+    workplace.fails(2, &["init", "healthy", "--rig", "uconn"], &["only a gearbox has published rigs"]);
+}
+
+#[test]
+fn what_knows_one_pair_says_so() {
+    let workplace = Workplace::new();
+    broken(&workplace);
+    for arguments in [
+        &["simulate", "gearbox.toml", "--model", "published"][..],
+        &["simulate", "gearbox.toml", "--model", "linear"],
+        &["wheels", "gearbox.toml", "-o", "wheels.npz"],
+        &["diagnose", "recording.csv", "--scenario", "gearbox.toml"],
+    ] {
+        workplace.fails(2, arguments, &["of a gearbox"]);
+    }
+}

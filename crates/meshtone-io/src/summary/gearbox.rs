@@ -1,0 +1,222 @@
+//! The summary of a gearbox's simulation.
+
+use std::io::{self, Write};
+use std::time::Duration;
+
+use meshtone::GearboxSimulation;
+use meshtone::scenario::{FaultyTeeth, ScenarioWarning};
+use meshtone::sensor::ContactFigures;
+use serde::Serialize;
+use serde_json::json;
+
+use super::{ChannelSummary, FORMAT_VERSION, MeshForce, MeshStiffness, extremes, json};
+use crate::run_identity::RunIdentity;
+
+/// The main numbers of a gearbox's simulation; what a pair's summary has too has the same name there.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct GearboxSummary {
+    /// Version of the format, as of a pair's summary.
+    pub format_version: u32,
+    /// Version of Meshtone.
+    pub meshtone_version: &'static str,
+    /// Identity of the run, which all its files carry.
+    #[serde(serialize_with = "json::run")]
+    pub run: RunIdentity,
+    /// Model of the meshes.
+    pub model: &'static str,
+    /// Seed of the random draws.
+    pub seed: u64,
+    /// The faults.
+    pub faults: Vec<WheelFault>,
+    /// (S/s) Actual sampling rate.
+    pub sampling_rate_hz: f64,
+    /// Number of samples kept.
+    pub samples: usize,
+    /// (s) Time of the first sample kept, since the start of the simulation.
+    pub start_s: f64,
+    /// Samples per revolution of the input, at the nominal speed.
+    pub samples_per_input_revolution: usize,
+    /// Revolutions of the input after which all teeth and shafts stand as at the start.
+    pub cycle_input_revolutions: i64,
+    /// The shafts, in the order of the file.
+    pub shafts: Vec<ShaftSummary>,
+    /// The meshes, in the order of the file.
+    pub meshes: Vec<MeshSummary>,
+    /// (Hz) The natural frequencies with the meshes closed at their mean stiffness, rising.
+    pub natural_frequencies_hz: Vec<f64>,
+    /// Main numbers of each signal, by the name of its column.
+    #[serde(serialize_with = "json::channels")]
+    pub channels: Vec<ChannelSummary>,
+    /// Time that each stage took.
+    #[serde(rename = "computing_time_ms", serialize_with = "json::times")]
+    pub computing_time: Vec<(String, Duration)>,
+    /// What deserves attention.
+    #[serde(serialize_with = "json::warnings")]
+    pub warnings: Vec<ScenarioWarning>,
+}
+
+/// A fault of a gearbox: kind and place, each as in the scenario file, and how severe it is.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct WheelFault {
+    /// Kind of damage.
+    pub kind: &'static str,
+    /// Name of the damaged wheel.
+    pub wheel: String,
+    /// Which of its teeth, by their numbers from 1.
+    #[serde(serialize_with = "json::tooth")]
+    pub tooth: FaultyTeeth,
+    /// (-) How severe it is, from 0 to 1.
+    pub severity: f64,
+}
+
+/// A shaft of a gearbox.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct ShaftSummary {
+    /// Its name.
+    pub name: String,
+    /// (rev/s) Its nominal speed.
+    pub speed_hz: f64,
+    /// Its speed over that of the input as a fraction; negative where it turns against the input.
+    pub speed_ratio: String,
+}
+
+/// A mesh of a gearbox.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct MeshSummary {
+    /// Names of the driving and of the driven wheel.
+    pub wheels: [String; 2],
+    /// (Hz) Nominal mesh frequency.
+    pub mesh_frequency_hz: f64,
+    /// (-) Contact ratio.
+    pub contact_ratio: f64,
+    /// (-) Face load factor K_Hβ of sound teeth under the nominal load.
+    pub face_load_factor: f64,
+    /// (N) Force that holds the nominal torque.
+    pub static_force_n: f64,
+    /// Over a revolution of the driven wheel.
+    pub mesh_stiffness: MeshStiffness,
+    /// Along the line of action, over the samples kept.
+    pub mesh_force: MeshForce,
+    /// Along the line of action, over the samples kept.
+    pub transmission_error_um: TransmissionError,
+}
+
+/// How far the wheels of a mesh turn against one another, along the line of action.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct TransmissionError {
+    /// (µm) Least.
+    pub min: f64,
+    /// (µm) Mean.
+    pub mean: f64,
+    /// (µm) Largest.
+    pub max: f64,
+    /// (µm) Largest less least.
+    pub peak_to_peak: f64,
+    /// (µm) Largest less least at rest under the nominal load, of the teeth without their deviations, over a revolution of the driven wheel.
+    pub static_peak_to_peak: f64,
+}
+
+impl GearboxSummary {
+    /// Sums up a simulation.
+    ///
+    /// # Arguments
+    /// * `simulation` - its stages and signals
+    /// * `run` - the run's identity
+    pub fn new(simulation: &GearboxSimulation, run: RunIdentity) -> Self {
+        let (stages, channels) = (&simulation.stages, &simulation.channels);
+        let gearbox = &stages.gearbox;
+        let signal =
+            |quantity: &str, name: &str| channels.signal(&format!("{quantity}.{name}")).unwrap_or(&[]);
+        let meshes = gearbox.meshes.iter().enumerate().map(|(number, mesh)| {
+            let tables = &stages.meshes[number];
+            let revolution = 0..tables.sequence.gear_teeth();
+            let [min_n_per_mm, mean_n_per_mm, max_n_per_mm] =
+                extremes(&tables.stiffness_n_per_mm(revolution.clone()));
+            let force = signal("force_n", &mesh.name());
+            let [min_n, mean_n, max_n] = extremes(force);
+            let [min, mean, max] = extremes(signal("transmission_error_um", &mesh.name()));
+            let static_force_n = stages.pairs[number].static_force_n;
+            MeshSummary {
+                wheels: mesh.wheels.clone(),
+                mesh_frequency_hz: tables.turning.pitches_per_revolution
+                    * gearbox.operation.drive.pinion_speed_hz,
+                contact_ratio: stages.pairs[number].teeth.contact.contact_ratio,
+                face_load_factor: tables.face_load_factor,
+                static_force_n,
+                mesh_stiffness: MeshStiffness { min_n_per_mm, mean_n_per_mm, max_n_per_mm },
+                mesh_force: MeshForce {
+                    min_n,
+                    mean_n,
+                    max_n,
+                    tension_fraction: None,
+                    contact: Some(ContactFigures::of_force(force)),
+                },
+                transmission_error_um: TransmissionError {
+                    min,
+                    mean,
+                    max,
+                    peak_to_peak: max - min,
+                    static_peak_to_peak: tables.at_rest(static_force_n, revolution).peak_to_peak_m() * 1e6,
+                },
+            }
+        });
+        let shafts = gearbox.shafts.iter().zip(&stages.layout.ratios).map(|(shaft, ratio)| ShaftSummary {
+            name: shaft.name.clone(),
+            speed_hz: ratio.value().abs() * gearbox.operation.drive.pinion_speed_hz,
+            speed_ratio: ratio.to_string(),
+        });
+        let faults = gearbox.faults.iter().zip(&stages.fault_severities).map(|(of, &severity)| WheelFault {
+            kind: of.fault.damage.kind(),
+            wheel: of.wheel.clone(),
+            tooth: of.fault.tooth.clone(),
+            severity,
+        });
+        let listed = channels.signals.iter();
+        Self {
+            format_version: FORMAT_VERSION,
+            meshtone_version: env!("CARGO_PKG_VERSION"),
+            run,
+            model: "contact",
+            seed: gearbox.seed,
+            faults: faults.collect(),
+            sampling_rate_hz: channels.sampling_rate_hz,
+            samples: channels.len(),
+            start_s: channels.start_s,
+            samples_per_input_revolution: stages.time.samples_per_pinion_revolution,
+            cycle_input_revolutions: stages.layout.cycle_revolutions(),
+            shafts: shafts.collect(),
+            meshes: meshes.collect(),
+            natural_frequencies_hz: stages.natural_frequencies_hz(),
+            channels: listed
+                .map(|signal| ChannelSummary::new(signal.name.clone(), signal.unit, &signal.values))
+                .collect(),
+            computing_time: simulation
+                .timings
+                .iter()
+                .map(|time| (time.stage.to_owned(), time.elapsed))
+                .collect(),
+            warnings: stages.warnings().to_vec(),
+        }
+    }
+
+    /// (s) Time that all stages took.
+    pub fn total_time(&self) -> Duration {
+        self.computing_time.iter().map(|(_, elapsed)| *elapsed).sum()
+    }
+
+    /// Writes the summary as indented JSON.
+    ///
+    /// # Arguments
+    /// * `to` - where it is written to
+    ///
+    /// # Errors
+    /// Those of `to`.
+    pub fn write_json(&self, mut to: impl Write) -> io::Result<()> {
+        to.write_all(format!("{:#}\n", json!(self)).as_bytes())
+    }
+}

@@ -1,0 +1,379 @@
+//! The panel of a gearbox: the train from the front and from above, damaged wheels, the spectrum in orders of the input.
+
+use std::f64::consts::TAU;
+
+use meshtone::signal::order_spectrum;
+use meshtone::{GearboxSimulation, GearboxStages};
+
+use super::{COLUMN_GAP, FULL_WIDTH, HEIGHT, LEFT, NAME_LEFT, WIDTH};
+use crate::drawing::{
+    Anchor, Area, Axes, BETWEEN_FACTS, Canvas, Fill, Pixel, Sample, Stroke, TextStyle, Ticks, axes, colour,
+    number, over,
+};
+use crate::{Figure, PlotError};
+
+const TRAIN_TOP: f64 = 118.0;
+const TRAIN_HEIGHT: f64 = 300.0;
+const WHEELS_TOP: f64 = 500.0;
+const WHEELS_HEIGHT: f64 = 150.0;
+const SPECTRUM_TOP: f64 = 740.0;
+const SPECTRUM_HEIGHT: f64 = 200.0;
+
+const OUTLINE: Stroke = Stroke::solid(colour::INK, 1.2);
+const SHAFT: Stroke = Stroke::solid(colour::MUTED, 1.0);
+const CURVE: Stroke = Stroke::solid(colour::BLUE, 1.1);
+const MESH_LINE: Stroke = Stroke::dashed(colour::VERMILLION, 1.0, &[4.0, 3.0]);
+const SHAFT_LINE: Stroke = Stroke::dashed(colour::GREEN, 1.0, &[2.0, 3.0]);
+const DAMAGED: Fill = Fill::tint(colour::VERMILLION, 0.3);
+const WHEEL: Fill = Fill::solid(colour::STEEL);
+
+/// Draws the results panel of a gearbox's simulation.
+///
+/// # Arguments
+/// * `simulation` - what was simulated, with its signals
+///
+/// # Errors
+/// Signals without a spectrum.
+pub fn draw_gearbox(simulation: &GearboxSimulation) -> Result<Figure, PlotError> {
+    let stages = &simulation.stages;
+    let mut canvas = Canvas::new(WIDTH, HEIGHT);
+    let title = title(stages);
+    let facts = facts(stages);
+    let edge = LEFT - NAME_LEFT - 11.0;
+    canvas.heading(edge, f64::from(WIDTH) - 2.0 * edge, (36.0, &title), (61.0, &facts.join(BETWEEN_FACTS)));
+    let half = (FULL_WIDTH - COLUMN_GAP) / 2.0;
+    let train = Train::new(stages);
+    train.draw_front(&mut canvas, Area::new(LEFT, TRAIN_TOP, half, TRAIN_HEIGHT));
+    train.draw_above(&mut canvas, Area::new(LEFT + half + COLUMN_GAP, TRAIN_TOP, half, TRAIN_HEIGHT));
+    wheels(&mut canvas, Area::new(LEFT, WHEELS_TOP, FULL_WIDTH, WHEELS_HEIGHT), simulation);
+    spectrum(&mut canvas, Area::new(LEFT, SPECTRUM_TOP, FULL_WIDTH, SPECTRUM_HEIGHT), simulation);
+    let description = format!(
+        "Results panel of a simulated gearbox: the train from the front and from above, the mesh stiffness and the average of its wheels, and the \
+         spectrum of a sensor in orders of the input. {}.",
+        facts.join(", ")
+    );
+    Ok(canvas.finish(&title, &description))
+}
+
+fn title(stages: &GearboxStages) -> String {
+    let faults = stages.gearbox.faults.iter().map(|of| {
+        let kind = crate::drawing::capitalised(&of.fault.damage.kind().replace('-', " "));
+        format!("{kind} on {} of {}", of.fault.tooth.in_words(), of.wheel)
+    });
+    let faults: Vec<String> = faults.collect();
+    if faults.is_empty() { "Healthy gearbox".to_owned() } else { faults.join(", ") }
+}
+
+fn facts(stages: &GearboxStages) -> Vec<String> {
+    let gearbox = &stages.gearbox;
+    let stage = |mesh: usize| {
+        let gears = &stages.layout.gears[mesh];
+        format!(
+            "{}: {}/{} teeth, module {} mm",
+            gearbox.meshes[mesh].name(),
+            gears.pinion_teeth,
+            gears.gear_teeth,
+            number(gears.module_mm)
+        )
+    };
+    let drive = &gearbox.operation.drive;
+    (0..gearbox.meshes.len())
+        .map(stage)
+        .chain([
+            format!("input {} Hz", number(drive.pinion_speed_hz)),
+            format!("brake torque {} N·m", number(drive.brake_torque_nm)),
+            format!("repeats after {} revolutions of the input", stages.layout.cycle_revolutions()),
+        ])
+        .collect()
+}
+
+/// The train as it is drawn.
+struct Train<'a> {
+    stages: &'a GearboxStages,
+}
+
+/// A wheel on the drawing.
+struct DrawnWheel<'a> {
+    name: &'a str,
+    /// (mm) Axis, and middle of the face.
+    x: f64,
+    y: f64,
+    z: f64,
+    radius: f64,
+    width: f64,
+    is_damaged: bool,
+}
+
+impl<'a> Train<'a> {
+    fn new(stages: &'a GearboxStages) -> Self {
+        Self { stages }
+    }
+
+    fn wheels(&self) -> Vec<DrawnWheel<'a>> {
+        let (gearbox, layout) = (&self.stages.gearbox, &self.stages.layout);
+        let wheel = |(number, wheel): (usize, &'a meshtone::scenario::GearboxWheel)| {
+            let (mesh, _) = layout.mesh_of(number)?;
+            let shaft = layout.shaft_of_wheel[number];
+            let [x, y] = layout.positions_m[shaft];
+            Some(DrawnWheel {
+                name: &wheel.name,
+                x: x * 1e3,
+                y: y * 1e3,
+                z: wheel.at * gearbox.shafts[shaft].length_mm,
+                radius: layout.gears[mesh].module_mm * f64::from(wheel.teeth) / 2.0,
+                width: wheel.face_width_mm,
+                is_damaged: gearbox.faults.iter().any(|fault| fault.wheel == wheel.name),
+            })
+        };
+        gearbox.wheels.iter().enumerate().filter_map(wheel).collect()
+    }
+
+    /// Pitch circles and shafts across the axes.
+    fn draw_front(&self, canvas: &mut Canvas, area: Area) {
+        let wheels = self.wheels();
+        let extent = |of: &dyn Fn(&DrawnWheel) -> f64| {
+            let low = wheels.iter().map(|wheel| of(wheel) - wheel.radius).fold(f64::INFINITY, f64::min);
+            let high = wheels.iter().map(|wheel| of(wheel) + wheel.radius).fold(f64::NEG_INFINITY, f64::max);
+            [low, high]
+        };
+        let (x, y) = equal_scales(area, extent(&|wheel| wheel.x), extent(&|wheel| wheel.y));
+        let axes = Axes::titled(canvas, area, x, y, "Train from the front, pitch circles");
+        axes.x_axis(canvas, &Ticks::nice(x[0], x[1], 10), "x (mm)");
+        axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 6), "y (mm)", NAME_LEFT);
+        // The farther ones first.
+        let mut order: Vec<&DrawnWheel> = wheels.iter().collect();
+        order.sort_by(|a, b| b.radius.total_cmp(&a.radius));
+        for wheel in order {
+            let fill = if wheel.is_damaged { DAMAGED } else { Fill::tint(colour::STEEL, 0.7) };
+            canvas.outlined(&circle(&axes, wheel.x, wheel.y, wheel.radius), OUTLINE, fill);
+        }
+        for (shaft, [x_m, y_m]) in self.stages.gearbox.shafts.iter().zip(&self.stages.layout.positions_m) {
+            let radius = shaft.radius_at_mm(0.5);
+            canvas.outlined(&circle(&axes, x_m * 1e3, y_m * 1e3, radius), SHAFT, Fill::solid(colour::WHITE));
+        }
+        for wheel in &wheels {
+            let at = axes.at(wheel.x, wheel.y + 0.72 * wheel.radius);
+            canvas.text(at, wheel.name, TextStyle::NOTE.anchored(Anchor::Middle).with_halo());
+        }
+        axes.frame(canvas);
+    }
+
+    /// Shafts, wheels and bearings along the axes.
+    fn draw_above(&self, canvas: &mut Canvas, area: Area) {
+        let (gearbox, layout) = (&self.stages.gearbox, &self.stages.layout);
+        let wheels = self.wheels();
+        let longest = gearbox.shafts.iter().map(|shaft| shaft.length_mm).fold(0.0, f64::max);
+        let low = wheels.iter().map(|wheel| wheel.x - wheel.radius).fold(f64::INFINITY, f64::min);
+        let high = wheels.iter().map(|wheel| wheel.x + wheel.radius).fold(f64::NEG_INFINITY, f64::max);
+        let margin = 0.05 * (high - low);
+        let axes = Axes::titled(
+            canvas,
+            area,
+            [-0.12 * longest, 1.12 * longest],
+            [low - margin, high + margin],
+            "From above",
+        );
+        axes.x_axis(canvas, &Ticks::nice(axes.x[0], axes.x[1], 10), "z (mm)");
+        axes.y_axis(canvas, &Ticks::nice(axes.y[0], axes.y[1], 6), "x (mm)", NAME_LEFT);
+        for (shaft, [x_m, _]) in gearbox.shafts.iter().zip(&layout.positions_m) {
+            let (x, radius) = (x_m * 1e3, shaft.radius_at_mm(0.5));
+            let corners = [
+                (0.0, x - radius),
+                (shaft.length_mm, x - radius),
+                (shaft.length_mm, x + radius),
+                (0.0, x + radius),
+            ];
+            canvas.outlined(&corners.map(|(z, x)| axes.at(z, x)), SHAFT, Fill::solid(colour::WHITE));
+            let coupled = match shaft.couples_to.name() {
+                "nothing" => String::new(),
+                to => format!(", {to}"),
+            };
+            let style = TextStyle::NOTE.coloured(colour::MUTED).with_halo();
+            canvas.text(
+                axes.at(-0.11 * longest, x + 1.6 * radius),
+                &format!("{}{coupled}", shaft.name),
+                style,
+            );
+        }
+        for wheel in &wheels {
+            let (from, to) = (wheel.z - wheel.width / 2.0, wheel.z + wheel.width / 2.0);
+            let (low, high) = (wheel.x - wheel.radius, wheel.x + wheel.radius);
+            let fill = if wheel.is_damaged { DAMAGED } else { WHEEL };
+            canvas.outlined(
+                &[(from, low), (to, low), (to, high), (from, high)].map(|(z, x)| axes.at(z, x)),
+                OUTLINE,
+                fill,
+            );
+            canvas.text(
+                axes.at(wheel.z, wheel.x),
+                wheel.name,
+                TextStyle::NOTE.anchored(Anchor::Middle).with_halo(),
+            );
+        }
+        for (bearing, shaft) in gearbox.bearings.iter().zip(&layout.shaft_of_bearing) {
+            let (shaft, [x_m, _]) = (&gearbox.shafts[*shaft], layout.positions_m[*shaft]);
+            let (x, y) = axes.at(bearing.at * shaft.length_mm, x_m * 1e3);
+            canvas.outlined(
+                &[(x - 5.0, y - 9.0), (x + 5.0, y - 9.0), (x + 5.0, y + 9.0), (x - 5.0, y + 9.0)],
+                OUTLINE,
+                Fill::hatch(colour::INK),
+            );
+        }
+        axes.frame(canvas);
+    }
+}
+
+/// Ranges that show both extents at the same scale.
+fn equal_scales(area: Area, x: [f64; 2], y: [f64; 2]) -> ([f64; 2], [f64; 2]) {
+    let size = |range: [f64; 2]| (range[1] - range[0]) * 1.08;
+    let mm_per_px = (size(x) / area.width).max(size(y) / area.height);
+    let about = |range: [f64; 2], px: f64| {
+        let middle = (range[0] + range[1]) / 2.0;
+        [middle - mm_per_px * px / 2.0, middle + mm_per_px * px / 2.0]
+    };
+    (about(x, area.width), about(y, area.height))
+}
+
+fn circle(axes: &Axes, x: f64, y: f64, radius: f64) -> Vec<Pixel> {
+    const CORNERS: usize = 90;
+    let angle = |n: usize| TAU * n as f64 / CORNERS as f64;
+    (0..CORNERS).map(|n| axes.at(x + radius * angle(n).cos(), y + radius * angle(n).sin())).collect()
+}
+
+/// Most wheels that have room.
+const MOST_WHEELS: usize = 4;
+/// Most wheels beside whose averages the stiffness has room.
+const MOST_WITH_STIFFNESS: usize = 2;
+
+/// A column for each damaged wheel, or for the first wheels where none is damaged: the stiffness of its mesh and the average of the first
+/// sensor's signal, both over a revolution of it.
+fn wheels(canvas: &mut Canvas, area: Area, simulation: &GearboxSimulation) {
+    let stages = &simulation.stages;
+    let gearbox = &stages.gearbox;
+    let is_damaged =
+        |number: &usize| gearbox.faults.iter().any(|fault| fault.wheel == gearbox.wheels[*number].name);
+    let damaged: Vec<usize> = (0..gearbox.wheels.len()).filter(is_damaged).collect();
+    let shown = match damaged.len() {
+        0 => stages.layout.wheels_of_mesh.iter().map(|wheels| wheels[1]).take(MOST_WITH_STIFFNESS).collect(),
+        _ => damaged,
+    };
+    let each = if shown.len() <= MOST_WITH_STIFFNESS { 2 } else { 1 };
+    let columns = each * shown.len().clamp(1, MOST_WHEELS);
+    let mut areas = area.grid([columns, 1], [COLUMN_GAP, 0.0], area.height);
+    for wheel in shown.iter().take(MOST_WHEELS) {
+        let parts: Vec<Area> = areas.by_ref().take(each).collect();
+        if let [stiffness_area, average_area] = parts[..] {
+            stiffness(canvas, stiffness_area, stages, *wheel);
+            average(canvas, average_area, simulation, *wheel);
+        } else if let [average_area] = parts[..] {
+            average(canvas, average_area, simulation, *wheel);
+        }
+    }
+    if shown.len() > MOST_WHEELS {
+        let text = format!("{} more damaged wheels are in the summary", shown.len() - MOST_WHEELS);
+        canvas.text((area.right(), area.top - 24.0), &text, TextStyle::NOTE.anchored(Anchor::End));
+    }
+}
+
+/// Tints the turns of a wheel's damaged teeth, from where each enters contact.
+fn tint(canvas: &mut Canvas, axes: &Axes, stages: &GearboxStages, wheel: usize, pitch: f64) {
+    let gearbox = &stages.gearbox;
+    let wheel_of_file = &gearbox.wheels[wheel];
+    let Some((mesh, _)) = stages.layout.mesh_of(wheel) else { return };
+    for fault in gearbox.faults.iter().filter(|fault| fault.wheel == wheel_of_file.name) {
+        for tooth in fault.fault.tooth.numbers(wheel_of_file.teeth) {
+            let from = f64::from(tooth.saturating_sub(1));
+            let until = from + stages.meshes[mesh].contact_ratio;
+            axes.band(canvas, from * pitch, until * pitch, crate::damaged_tooth::TINT);
+        }
+    }
+}
+
+fn stiffness(canvas: &mut Canvas, area: Area, stages: &GearboxStages, wheel: usize) {
+    let (gearbox, layout) = (&stages.gearbox, &stages.layout);
+    let Some((mesh, _)) = layout.mesh_of(wheel) else { return };
+    let (tables, teeth) = (&stages.meshes[mesh], gearbox.wheels[wheel].teeth as usize);
+    let stiffness = tables.stiffness_n_per_mm(0..teeth);
+    let y = axes::range(stiffness.iter().copied(), 0.08);
+    let title =
+        format!("Stiffness of {} over a turn of {}", gearbox.meshes[mesh].name(), gearbox.wheels[wheel].name);
+    let axes = Axes::titled(canvas, area, [0.0, teeth as f64], y, &title);
+    tint(canvas, &axes, stages, wheel, 1.0);
+    axes.x_axis(canvas, &Ticks::whole(0.0, teeth as f64, 8), "Pitches");
+    axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), "Stiffness (N/mm)", NAME_LEFT);
+    axes.line(canvas, over(axes.x, &stiffness), CURVE);
+    axes.frame(canvas);
+}
+
+fn average(canvas: &mut Canvas, area: Area, simulation: &GearboxSimulation, wheel: usize) {
+    let (stages, name) = (&simulation.stages, &simulation.stages.gearbox.wheels[wheel].name);
+    let signal = simulation.channels.signals.first().map_or(&[][..], |signal| &signal.values);
+    let average = simulation.wheel_average(signal, wheel);
+    let values = average.as_ref().map_or(&[][..], |(values, _)| values);
+    let y = axes::range(values.iter().copied(), 0.06);
+    let title = match &average {
+        Some((_, 1)) => format!("One revolution of {name}"),
+        Some((_, revolutions)) => format!("Average of {revolutions} revolutions of {name}"),
+        None => format!("Average over the revolutions of {name}"),
+    };
+    let axes = Axes::titled(canvas, area, [0.0, 360.0], y, &title);
+    tint(canvas, &axes, stages, wheel, 360.0 / f64::from(stages.gearbox.wheels[wheel].teeth));
+    axes.x_axis(canvas, &Ticks::every(90.0, 0.0, 360.0), "Angle since its first tooth enters contact (°)");
+    axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), "Acceleration (g)", NAME_LEFT);
+    match average {
+        Some((values, _)) => axes.line(canvas, over(axes.x, &values), CURVE),
+        None => axes.note(canvas, "no whole revolution at a constant speed"),
+    }
+    axes.frame(canvas);
+}
+
+/// Amplitudes over orders of the input, of the first sensor, with the orders of all meshes and shafts.
+fn spectrum(canvas: &mut Canvas, area: Area, simulation: &GearboxSimulation) {
+    let (stages, channels) = (&simulation.stages, &simulation.channels);
+    let Some(signal) = channels.signals.first() else { return };
+    let per_revolution = stages.time.samples_per_pinion_revolution;
+    let revolutions = signal.values.len() / per_revolution;
+    let orders_of_meshes: Vec<(String, f64)> = (stages.gearbox.meshes.iter().zip(&stages.meshes))
+        .map(|(mesh, tables)| (mesh.name(), tables.turning.pitches_per_revolution))
+        .collect();
+    let highest = 4.5 * orders_of_meshes.iter().map(|(_, order)| *order).fold(0.0, f64::max);
+    let highest = highest.min(per_revolution as f64 / 2.0);
+    let amplitudes = order_spectrum(&signal.values[..revolutions * per_revolution]).unwrap_or_default();
+    let step = 1.0 / revolutions.max(1) as f64;
+    let shown: Vec<f64> = amplitudes.iter().take((highest / step) as usize + 1).copied().collect();
+    let most = axes::largest(&shown).max(1e-9);
+    let y = [0.0, 1.1 * most];
+    let sensor = signal.name.trim_end_matches("_g").replace('_', " ");
+    let title = format!("Order spectrum of {sensor}, {revolutions} revolutions of the input");
+    let axes = Axes::titled(canvas, area, [0.0, highest], y, &title);
+    axes.x_axis(canvas, &Ticks::nice(0.0, highest, 16), "Order of the input");
+    axes.y_axis(canvas, &Ticks::nice(y[0], y[1], 5), "Amplitude (g)", NAME_LEFT);
+    for ratio in &stages.layout.ratios {
+        let x = axes.px(ratio.value().abs());
+        canvas.line((x, area.top), (x, area.bottom()), SHAFT_LINE);
+    }
+    for (name, order) in &orders_of_meshes {
+        for harmonic in (1..).take_while(|harmonic| f64::from(*harmonic) * order <= highest) {
+            let x = axes.px(f64::from(harmonic) * order);
+            canvas.line((x, area.top), (x, area.bottom()), MESH_LINE);
+            if harmonic == 1 {
+                canvas.text(
+                    (x + 4.0, area.top + 14.0),
+                    name,
+                    TextStyle::NOTE.coloured(colour::VERMILLION).with_halo(),
+                );
+            }
+        }
+    }
+    if revolutions == 0 {
+        axes.note(canvas, "the kept signal is shorter than a revolution of the input");
+    } else {
+        let points = shown.iter().enumerate().map(|(line, amplitude)| (line as f64 * step, *amplitude));
+        axes.line(canvas, points, CURVE);
+    }
+    axes.legend(
+        canvas,
+        &[(Sample::Line(MESH_LINE), "mesh and its harmonics"), (Sample::Line(SHAFT_LINE), "shafts")],
+    );
+    axes.frame(canvas);
+}

@@ -1,0 +1,171 @@
+//! Gearboxes.
+
+use std::path::PathBuf;
+
+use meshtone::scenario::{self, GearboxRig, ScenarioForm};
+use meshtone_io::run_identity::RunIdentity;
+use meshtone_io::scenario_file::ScenarioFile;
+use meshtone_io::summary::GearboxSummary;
+use pyo3::prelude::*;
+use pyo3::types::{IntoPyDict, PyDict};
+
+use crate::array::{array, field};
+use crate::error::{read_error, scenario_error, simulation_error, value_error};
+use crate::value::table;
+
+/// A gearbox as the library has it.
+#[pyclass(frozen, eq, module = "meshtone._core")]
+#[derive(Clone, PartialEq)]
+pub struct Gearbox(pub scenario::Gearbox);
+
+#[pymethods]
+impl Gearbox {
+    /// From the sections of a scenario file.
+    #[new]
+    fn new(sections: &Bound<'_, PyDict>) -> PyResult<Self> {
+        let text = table(sections)?.to_string();
+        let read = scenario::Gearbox::from_toml(&text);
+        read.map(Self).map_err(|error| scenario_error(&error.at_line(None)))
+    }
+
+    /// From the text of a scenario file.
+    #[staticmethod]
+    fn from_toml(text: &str) -> PyResult<Self> {
+        scenario::Gearbox::from_toml(text).map(Self).map_err(|error| scenario_error(&error))
+    }
+
+    /// From a scenario file, and the files that it names.
+    #[staticmethod]
+    fn from_file(path: PathBuf) -> PyResult<Self> {
+        let file = ScenarioFile::read_form(&path).map_err(|error| read_error(&path, &error))?;
+        match file.scenario {
+            ScenarioForm::Gearbox(gearbox) => Ok(Self(gearbox)),
+            _ => Err(value_error(format!(
+                "{}: is of one pair of gears; Scenario.from_file reads it",
+                path.display()
+            ))),
+        }
+    }
+
+    /// The text of a scenario file.
+    fn to_toml(&self) -> String {
+        self.0.to_toml()
+    }
+
+    /// The sections with all their keys, defaults included.
+    fn sections<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let sections: toml::Table = self.0.to_toml().parse().map_err(value_error)?;
+        let json = serde_json::to_string(&sections).map_err(value_error)?;
+        Ok(py.import("json")?.call_method1("loads", (json,))?.cast_into()?)
+    }
+
+    /// Warnings about it, as far as they can be known before the time loop.
+    fn warnings(&self) -> PyResult<Vec<String>> {
+        let warnings = self.0.validate().map_err(|error| scenario_error(&error))?;
+        Ok(warnings.iter().map(ToString::to_string).collect())
+    }
+}
+
+/// A simulation of a gearbox.
+#[pyclass(frozen, module = "meshtone._core")]
+pub struct GearboxSimulation {
+    simulation: meshtone::GearboxSimulation,
+    /// The signals by their names.
+    #[pyo3(get)]
+    channels: Py<PyDict>,
+    /// (S/s)
+    #[pyo3(get)]
+    sampling_rate_hz: f64,
+    /// (s) Of the first kept sample.
+    #[pyo3(get)]
+    start_s: f64,
+    /// Its warnings.
+    #[pyo3(get)]
+    warnings: Vec<String>,
+    /// Subject of each warning.
+    #[pyo3(get)]
+    warning_codes: Vec<&'static str>,
+}
+
+impl GearboxSimulation {
+    fn new(py: Python<'_>, mut simulation: meshtone::GearboxSimulation) -> PyResult<Self> {
+        let signals = simulation.channels.signals.iter();
+        let named = signals.map(|signal| (signal.name.clone(), array(py, signal.values.clone())));
+        let channels = named.collect::<Vec<_>>().into_py_dict(py)?.unbind();
+        let warnings = simulation.stages.warnings();
+        let (words, codes) =
+            (warnings.iter().map(ToString::to_string), warnings.iter().map(|warning| warning.kind.code()));
+        let (warnings, warning_codes) = (words.collect(), codes.collect());
+        simulation.timings.shrink_to_fit();
+        Ok(Self {
+            sampling_rate_hz: simulation.channels.sampling_rate_hz,
+            start_s: simulation.channels.start_s,
+            channels,
+            warnings,
+            warning_codes,
+            simulation,
+        })
+    }
+}
+
+#[pymethods]
+impl GearboxSimulation {
+    /// The content of summary.json.
+    fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let toml = self.simulation.stages.gearbox.to_toml();
+        let summary = py.detach(|| GearboxSummary::new(&self.simulation, RunIdentity::of_toml(&toml)));
+        let json = serde_json::to_string(&summary).map_err(value_error)?;
+        Ok(py.import("json")?.call_method1("loads", (json,))?.cast_into()?)
+    }
+
+    /// Every stage's output by name.
+    fn trace<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let trace = py.detach(|| meshtone::gearbox_trace(&self.simulation));
+        let named = trace.fields.into_iter().map(|entry| Ok((entry.name.clone(), field(py, entry)?)));
+        named.collect::<PyResult<Vec<_>>>()?.into_py_dict(py)
+    }
+
+    /// (Hz) Natural frequencies with other mesh stiffnesses in N/m.
+    fn natural_frequencies_hz(
+        &self,
+        py: Python<'_>,
+        mesh_stiffness_n_per_m: Option<Vec<f64>>,
+    ) -> PyResult<Vec<f64>> {
+        let stages = &self.simulation.stages;
+        let stiffness = mesh_stiffness_n_per_m.unwrap_or_else(|| stages.mean_stiffness_n_per_m());
+        let meshes = stages.meshes.len();
+        if stiffness.len() != meshes {
+            let given = stiffness.len();
+            return Err(value_error(format!(
+                "mesh_stiffness_n_per_m: has {given} numbers; must have {meshes}, one a mesh"
+            )));
+        }
+        Ok(py.detach(|| stages.natural_frequencies_with_hz(&stiffness)))
+    }
+}
+
+/// Simulates gearboxes, in all threads; the error of one stands in its place.
+#[pyfunction]
+pub fn simulate_gearboxes<'py>(
+    py: Python<'py>,
+    gearboxes: Vec<PyRef<'py, Gearbox>>,
+) -> PyResult<Vec<Py<PyAny>>> {
+    let gearboxes: Vec<scenario::Gearbox> = gearboxes.iter().map(|gearbox| gearbox.0.clone()).collect();
+    let results = py.detach(|| meshtone::simulate_gearboxes(&gearboxes));
+    let made = results.into_iter().map(|result| match result {
+        Ok(simulation) => Ok(Py::new(py, GearboxSimulation::new(py, simulation)?)?.into_any()),
+        Err(error) => Ok(simulation_error(&error).into_value(py).into_any()),
+    });
+    made.collect()
+}
+
+/// A commented gearbox, or what is published of a rig.
+#[pyfunction]
+#[pyo3(signature = (rig=None))]
+pub fn gearbox_template(rig: Option<&str>) -> PyResult<String> {
+    let Some(name) = rig else { return Ok(scenario::gearbox_template(None)) };
+    let known = GearboxRig::ALL.into_iter().find(|rig| rig.name() == name);
+    let names = GearboxRig::ALL.map(GearboxRig::name).join(", ");
+    let known = known.ok_or_else(|| value_error(format!("rig = {name}: must be one of {names}")))?;
+    Ok(scenario::gearbox_template(Some(known)))
+}

@@ -1,0 +1,466 @@
+//! A gearbox as a machine: shafts of beams, wheels on them as rigid discs, bearings in seats, a housing on feet, motor and brake.
+//!
+//! x and y lie across the shafts, y is up, z runs along the shafts. Every node has the coordinates x, y, z and the rotations φx, φy, φz
+//! about them. No coordinate is turned: with several meshes there is no common line of action.
+
+mod beam;
+mod parts;
+
+use std::borrow::Cow;
+
+use nalgebra::{DMatrix, DVector, Vector3};
+
+use super::body::WheelBody;
+use super::parts::{Axis, Drive, LineOfAction, Machine, Place, Spring};
+use crate::wheel::Material;
+use beam::{Beam, PER_NODE};
+pub use parts::{Bearing, BearingKind, Coupled, Foot, GearboxShaft, Housing, Seat};
+
+/// What the machine is made of.
+#[derive(Debug, Clone, Copy)]
+pub struct GearboxParts<'a> {
+    /// The shafts, each with x and y of its axis in m.
+    pub shafts: &'a [(&'a GearboxShaft, [f64; 2])],
+    /// Rotation of each shaft over that of the input, positive about z.
+    pub speed_ratios: &'a [f64],
+    /// The wheels.
+    pub discs: &'a [Disc],
+    /// The meshes.
+    pub meshes: &'a [MeshLine],
+    /// The bearings, with the number of the shaft of each.
+    pub bearings: &'a [(usize, &'a Bearing)],
+    /// The housing; none where the seats stand on the ground.
+    pub housing: Option<&'a Housing>,
+    /// Material of the shafts.
+    pub material: Material,
+    /// (kg m²) Inertia of the brake.
+    pub brake_inertia_kgm2: f64,
+}
+
+/// A wheel on a shaft.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Disc {
+    /// Number of the shaft.
+    pub shaft: usize,
+    /// (-) Where along it.
+    pub at: f64,
+    /// Mass and inertias.
+    pub body: WheelBody,
+}
+
+/// Where two wheels push one another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeshLine {
+    /// Number of the driving and of the driven wheel.
+    pub wheels: [usize; 2],
+    /// (m) Their base radii.
+    pub base_radii_m: [f64; 2],
+    /// (rad) Working pressure angle.
+    pub working_pressure_angle_rad: f64,
+}
+
+/// A place at which the motion can be measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum GearboxPlace {
+    /// The seat of a bearing, by its number.
+    Seat(usize),
+    /// A shaft, by its number, at a part of its length.
+    Shaft(usize, f64),
+    /// A point of the housing, or of the ground where there is none.
+    Housing([f64; 3]),
+}
+
+/// A gearbox in coordinates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GearboxMachine {
+    /// Its parts.
+    pub machine: Machine,
+    /// (m) For each shaft, z of its nodes, with the first coordinate of each.
+    nodes: Vec<Vec<(f64, usize)>>,
+    /// First coordinate of the housing and (m) its centre; none without one.
+    housing: Option<(usize, Vector3<f64>)>,
+    /// First coordinate of each bearing's seat.
+    seats: Vec<usize>,
+    /// Rotation of each shaft over that of the input.
+    pub speed_ratios: Vec<f64>,
+}
+
+/// Least distance of two nodes, as a part of the shaft's length: what is closer is one node.
+const SAME_NODE: f64 = 1e-9;
+
+/// Where the nodes of a shaft lie, as parts of its length: at its ends, at every wheel and bearing and where the radius changes, and
+/// between these as evenly as the number of elements allows.
+///
+/// # Arguments
+/// * `shaft` - the shaft
+/// * `places` - (-) of its wheels and bearings
+fn node_places(shaft: &GearboxShaft, places: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut until_mm = 0.0;
+    let ends_of_pieces: Vec<f64> = (shaft.segments.iter())
+        .map(|[length_mm, _]| {
+            until_mm += length_mm;
+            until_mm / shaft.length_mm
+        })
+        .filter(|place| *place < 1.0)
+        .collect();
+    let mut fixed: Vec<f64> = [0.0, 1.0].into_iter().chain(places).chain(ends_of_pieces).collect();
+    fixed.sort_by(f64::total_cmp);
+    fixed.dedup_by(|a, b| (*a - *b).abs() < SAME_NODE);
+    let mut nodes = vec![fixed[0]];
+    for ends in fixed.windows(2) {
+        let part = ends[1] - ends[0];
+        let pieces = ((part * f64::from(shaft.elements)).round() as usize).max(1);
+        nodes.extend((1..=pieces).map(|piece| ends[0] + part * piece as f64 / pieces as f64));
+    }
+    nodes
+}
+
+/// The machine while it is put together.
+struct Assembly {
+    names: Vec<Cow<'static, str>>,
+    mass: DMatrix<f64>,
+    /// One of each damping ratio.
+    springs: Vec<Spring>,
+}
+
+impl Assembly {
+    /// The spring of a damping ratio, to which a part is added.
+    fn spring(&mut self, damping_ratio: f64) -> &mut Spring {
+        let known = self.springs.iter().position(|spring| spring.damping_ratio == damping_ratio);
+        let number = known.unwrap_or_else(|| {
+            self.springs.push(Spring::new(self.mass.nrows(), damping_ratio));
+            self.springs.len() - 1
+        });
+        &mut self.springs[number]
+    }
+
+    /// Adds a rigid body at a node.
+    fn add_body(&mut self, node: usize, mass_kg: f64, [about_x, about_y, about_z]: [f64; 3]) {
+        let values = [mass_kg, mass_kg, mass_kg, about_x, about_y, about_z];
+        for (coordinate, value) in values.into_iter().enumerate() {
+            self.mass[(node + coordinate, node + coordinate)] += value;
+        }
+    }
+
+    fn add_beam(&mut self, nodes: [usize; 2], beam: &Beam, damping_ratio: f64) {
+        let (mass, stiffness) = (beam.mass(), beam.stiffness());
+        let coordinate = |local: usize| nodes[local / PER_NODE] + local % PER_NODE;
+        for row in 0..2 * PER_NODE {
+            for column in 0..2 * PER_NODE {
+                self.mass[(coordinate(row), coordinate(column))] += mass[(row, column)];
+            }
+        }
+        let spring = self.spring(damping_ratio);
+        for row in 0..2 * PER_NODE {
+            for column in 0..2 * PER_NODE {
+                spring.stiffness[(coordinate(row), coordinate(column))] += stiffness[(row, column)];
+            }
+        }
+    }
+}
+
+/// Motion of a point of a rigid body along each axis, by the body's coordinates: `u + φ × r`.
+///
+/// # Arguments
+/// * `body` - the body's first coordinate
+/// * `r` - (m) from its centre to the point
+fn point_of_body(body: usize, r: Vector3<f64>) -> [Vec<(usize, f64)>; 3] {
+    let [x, y, z] = [0, 1, 2].map(|axis| body + axis);
+    let [about_x, about_y, about_z] = [3, 4, 5].map(|axis| body + axis);
+    [
+        vec![(x, 1.0), (about_y, r.z), (about_z, -r.y)],
+        vec![(y, 1.0), (about_z, r.x), (about_x, -r.z)],
+        vec![(z, 1.0), (about_x, r.y), (about_y, -r.x)],
+    ]
+}
+
+impl GearboxMachine {
+    /// Puts the machine together.
+    ///
+    /// Coordinates are counted shaft by shaft, node by node from z = 0 on; then come the housing, the seats in the order of the bearings,
+    /// and the brake's rotation. The parts are then added one after the other.
+    ///
+    /// # Arguments
+    /// * `parts` - what it is made of
+    pub fn new(parts: &GearboxParts) -> Self {
+        let mut next = 0;
+        let mut names: Vec<Cow<'static, str>> = Vec::new();
+        let mut add_node = |of: &str| {
+            next += PER_NODE;
+            let axes = ["x", "y", "z", "phi_x", "phi_y", "phi_z"];
+            names.extend(axes.map(|axis| Cow::from(format!("{axis}_{of}"))));
+            next - PER_NODE
+        };
+        let nodes: Vec<Vec<(f64, usize)>> = (parts.shafts.iter().enumerate())
+            .map(|(number, (shaft, _))| {
+                let discs = parts.discs.iter().filter(|disc| disc.shaft == number).map(|disc| disc.at);
+                let bearings = parts.bearings.iter().filter(|(of, _)| *of == number).map(|(_, bearing)| bearing.at);
+                let places = node_places(shaft, discs.chain(bearings));
+                let node = |(n, place): (usize, &f64)| {
+                    (place * shaft.length_mm * 1e-3, add_node(&format!("{}_{n}", shaft.name)))
+                };
+                places.iter().enumerate().map(node).collect()
+            })
+            .collect();
+        let housing = parts.housing.map(|_| (add_node("housing"), centre_m(parts.shafts)));
+        let seats: Vec<usize> = (parts.bearings.iter())
+            .map(|(shaft, bearing)| add_node(&format!("seat_{}_{}", parts.shafts[*shaft].0.name, bearing.at)))
+            .collect();
+        let brake = next;
+        names.push("phi_z_brake".into());
+        let coordinates = names.len();
+        let mut assembly =
+            Assembly { names, mass: DMatrix::zeros(coordinates, coordinates), springs: Vec::new() };
+        assembly.mass[(brake, brake)] = parts.brake_inertia_kgm2;
+        let this = Self {
+            machine: Machine {
+                names: Vec::new(),
+                mass: DMatrix::zeros(0, 0),
+                turn: DMatrix::identity(coordinates, coordinates),
+                springs: Vec::new(),
+                lines: Vec::new(),
+                drives: Vec::new(),
+                places: Vec::new(),
+                rigid_rotation: DVector::zeros(coordinates),
+            },
+            nodes,
+            housing,
+            seats,
+            speed_ratios: parts.speed_ratios.to_vec(),
+        };
+        this.add_shafts(parts, brake, &mut assembly);
+        this.add_supports(parts, &mut assembly);
+        let Assembly { names, mass, springs } = assembly;
+        let mut machine = Machine {
+            names,
+            mass,
+            springs,
+            lines: parts.meshes.iter().map(|mesh| this.line_of_action(parts, mesh, coordinates)).collect(),
+            drives: this.drives(parts, brake),
+            ..this.machine
+        };
+        for (nodes, ratio) in this.nodes.iter().zip(parts.speed_ratios) {
+            nodes.iter().for_each(|(_, node)| machine.rigid_rotation[node + ABOUT_Z] = *ratio);
+        }
+        let brakes = parts.shafts.iter().zip(parts.speed_ratios);
+        let ratio_of_brake = brakes.filter(|((shaft, _), _)| shaft.couples_to == Coupled::Brake).map(|(_, ratio)| *ratio);
+        machine.rigid_rotation[brake] = ratio_of_brake.sum();
+        Self { machine, ..this }
+    }
+
+    /// First coordinate of the node of a shaft nearest to a place.
+    fn node(&self, shaft: usize, z_m: f64) -> usize {
+        let nodes = self.nodes[shaft].iter();
+        nodes.min_by(|a, b| (a.0 - z_m).abs().total_cmp(&(b.0 - z_m).abs())).map_or(0, |(_, node)| *node)
+    }
+
+    /// First coordinate of a wheel's node.
+    fn node_of_disc(&self, parts: &GearboxParts, disc: usize) -> usize {
+        let Disc { shaft, at, .. } = parts.discs[disc];
+        self.node(shaft, at * parts.shafts[shaft].0.length_mm * 1e-3)
+    }
+
+    /// Adds beams, wheels and couplings.
+    fn add_shafts(&self, parts: &GearboxParts, brake: usize, assembly: &mut Assembly) {
+        for (nodes, (shaft, _)) in self.nodes.iter().zip(parts.shafts) {
+            for ends in nodes.windows(2) {
+                let middle_m = (ends[0].0 + ends[1].0) / 2.0;
+                let beam = Beam {
+                    length_m: ends[1].0 - ends[0].0,
+                    radius_m: shaft.radius_at_mm(middle_m * 1e3 / shaft.length_mm) * 1e-3,
+                    bore_radius_m: shaft.bore_radius_mm * 1e-3,
+                    material: parts.material,
+                };
+                assembly.add_beam([ends[0].1, ends[1].1], &beam, shaft.damping_ratio);
+            }
+            let stiffness = shaft.coupling_nm_per_rad();
+            let (first, last) = (nodes[0].1 + ABOUT_Z, nodes[nodes.len() - 1].1 + ABOUT_Z);
+            let spring = assembly.spring(shaft.damping_ratio);
+            match shaft.couples_to {
+                Coupled::Motor => spring.resist(&[(first, 1.0)], stiffness),
+                Coupled::Brake => spring.resist(&[(last, 1.0), (brake, -1.0)], stiffness),
+                Coupled::Nothing => {}
+            }
+        }
+        for (number, disc) in parts.discs.iter().enumerate() {
+            let WheelBody { mass_kg, polar_kgm2, transverse_kgm2 } = disc.body;
+            let node = self.node_of_disc(parts, number);
+            assembly.add_body(node, mass_kg, [transverse_kgm2, transverse_kgm2, polar_kgm2]);
+        }
+    }
+
+    /// Adds bearings, seats and the housing with its feet.
+    fn add_supports(&self, parts: &GearboxParts, assembly: &mut Assembly) {
+        for ((shaft, bearing), &seat) in parts.bearings.iter().zip(&self.seats) {
+            let (of_shaft, [x_m, y_m]) = parts.shafts[*shaft];
+            let z_m = bearing.at * of_shaft.length_mm * 1e-3;
+            let node = self.node(*shaft, z_m);
+            let Seat { mass_kg, inertia_kgm2, stiffness_n_per_m, tilt_stiffness_nm_per_rad } = bearing.seat;
+            assembly.add_body(seat, mass_kg, [inertia_kgm2; 3]);
+            let spring = assembly.spring(bearing.damping_ratio);
+            let (radial, tilt) = (bearing.stiffness_n_per_m, bearing.tilt_stiffness_nm_per_rad);
+            let inner = [radial, radial, bearing.axial_stiffness_n_per_m, tilt, tilt];
+            for (coordinate, stiffness) in inner.into_iter().enumerate() {
+                spring.resist(&[(node + coordinate, 1.0), (seat + coordinate, -1.0)], stiffness);
+            }
+            let held = match self.housing {
+                Some((housing, centre)) => point_of_body(housing, Vector3::new(x_m, y_m, z_m) - centre),
+                None => [Vec::new(), Vec::new(), Vec::new()],
+            };
+            for (axis, held) in held.into_iter().enumerate() {
+                let mut stretch = vec![(seat + axis, 1.0)];
+                stretch.extend(held.into_iter().map(|(coordinate, weight)| (coordinate, -weight)));
+                spring.resist(&stretch, stiffness_n_per_m);
+                let mut twist = vec![(seat + 3 + axis, 1.0)];
+                twist.extend(self.housing.map(|(housing, _)| (housing + 3 + axis, -1.0)));
+                spring.resist(&twist, tilt_stiffness_nm_per_rad);
+            }
+        }
+        if let (Some(housing), Some((body, centre))) = (parts.housing, self.housing) {
+            assembly.add_body(body, housing.mass_kg, [housing.moment_of_inertia_kgm2(); 3]);
+            for foot in feet(housing, parts.shafts) {
+                let place = Vector3::from(foot.at_mm) * 1e-3;
+                let spring = assembly.spring(housing.damping_ratio);
+                for stretch in point_of_body(body, place - centre) {
+                    spring.resist(&stretch, foot.stiffness_n_per_m);
+                }
+            }
+        }
+    }
+
+    /// The line of action of a mesh: the driving wheel, which turns in the sense s about z, pushes the other one along
+    /// `n = s cos α t + sin α c`, c the direction from centre to centre and `t = z × c`. With the arm r from each centre to the pitch point
+    /// it is `[n; r × n]` of the driving wheel, less the same of the driven one.
+    fn line_of_action(&self, parts: &GearboxParts, mesh: &MeshLine, coordinates: usize) -> LineOfAction {
+        let [driving, driven] = mesh.wheels;
+        let centre = |disc: usize| {
+            let [x, y] = parts.shafts[parts.discs[disc].shaft].1;
+            Vector3::new(x, y, 0.0)
+        };
+        let c = (centre(driven) - centre(driving)).normalize();
+        let along = Vector3::z();
+        let sense = parts.speed_ratios[parts.discs[driving].shaft].signum();
+        let (sin, cos) = mesh.working_pressure_angle_rad.sin_cos();
+        let n = along.cross(&c) * (sense * cos) + c * sin;
+        let mut line =
+            LineOfAction { at_middle: DVector::zeros(coordinates), per_m: DVector::zeros(coordinates) };
+        for (disc, base_radius_m, side) in
+            [(driving, mesh.base_radii_m[0], 1.0), (driven, mesh.base_radii_m[1], -1.0)]
+        {
+            let node = self.node_of_disc(parts, disc);
+            let arm = c * (side * base_radius_m / cos);
+            let (moment, per_m) = (arm.cross(&n), along.cross(&n));
+            for axis in 0..3 {
+                line.at_middle[node + axis] = side * n[axis];
+                line.at_middle[node + 3 + axis] = side * moment[axis];
+                line.per_m[node + 3 + axis] = side * per_m[axis];
+            }
+        }
+        line
+    }
+
+    /// The motor turns its shaft at z = 0; the brake's torque acts against its rotation.
+    fn drives(&self, parts: &GearboxParts, brake: usize) -> Vec<Drive> {
+        let mut drives = Vec::new();
+        for ((nodes, (shaft, _)), ratio) in self.nodes.iter().zip(parts.shafts).zip(parts.speed_ratios) {
+            match shaft.couples_to {
+                Coupled::Motor => drives.push(Drive::Motor {
+                    coordinate: nodes[0].1 + ABOUT_Z,
+                    stiffness_nm_per_rad: shaft.coupling_nm_per_rad(),
+                    speed_ratio: *ratio,
+                }),
+                Coupled::Brake => {
+                    drives.push(Drive::Brake { coordinate: brake, torque_share: -ratio.signum() });
+                }
+                Coupled::Nothing => {}
+            }
+        }
+        drives
+    }
+
+    /// Names a place where the motion can be measured, along x, y and z.
+    ///
+    /// # Arguments
+    /// * `name` - the name that an output has for it
+    /// * `place` - where it is
+    pub fn add_place(&mut self, name: String, place: GearboxPlace) {
+        let along = |node: usize| [0, 1, 2].map(|axis| vec![(node + axis, 1.0)]);
+        let motion = match place {
+            GearboxPlace::Seat(bearing) => along(self.seats[bearing]),
+            GearboxPlace::Shaft(shaft, at) => self.between_nodes(shaft, at),
+            GearboxPlace::Housing(at_m) => match self.housing {
+                Some((housing, centre)) => point_of_body(housing, Vector3::from(at_m) - centre),
+                None => [Vec::new(), Vec::new(), Vec::new()],
+            },
+        };
+        let motion = [Axis::X, Axis::Y, Axis::Z].into_iter().zip(motion).collect();
+        self.machine.places.push(Place { name: name.into(), motion });
+    }
+
+    /// The motion of a shaft at a place, straight between the nodes.
+    fn between_nodes(&self, shaft: usize, at: f64) -> [Vec<(usize, f64)>; 3] {
+        let nodes = &self.nodes[shaft];
+        let z_m = at * nodes[nodes.len() - 1].0;
+        let after = nodes.iter().position(|(node_m, _)| *node_m >= z_m).unwrap_or(nodes.len() - 1).max(1);
+        let ((before_m, before), (after_m, after)) = (nodes[after - 1], nodes[after]);
+        let part = (z_m - before_m) / (after_m - before_m);
+        [0, 1, 2].map(|axis| vec![(before + axis, 1.0 - part), (after + axis, part)])
+    }
+
+    /// Names the rotation of a shaft at z = 0, positive as it turns.
+    ///
+    /// # Arguments
+    /// * `name` - the name that an output has for it
+    /// * `shaft` - its number
+    pub fn add_rotation(&mut self, name: String, shaft: usize) {
+        let motion = vec![(self.nodes[shaft][0].1 + ABOUT_Z, self.speed_ratios[shaft].signum())];
+        self.machine.places.push(Place { name: name.into(), motion: vec![(Axis::Rotation, motion)] });
+    }
+
+    /// Names how far the wheels of a mesh have turned against one another, along the line of action: the transmission error with the sign
+    /// by which the mesh is pressed.
+    ///
+    /// # Arguments
+    /// * `name` - the name that an output has for it
+    /// * `mesh` - its number
+    pub fn add_transmission_error(&mut self, name: String, mesh: usize) {
+        let line = &self.machine.lines[mesh].at_middle;
+        let nodes = self.nodes.iter().flatten();
+        let turned = nodes.map(|(_, node)| (node + ABOUT_Z, line[node + ABOUT_Z]));
+        let motion = turned.filter(|(_, weight)| *weight != 0.0).collect();
+        self.machine.places.push(Place { name: name.into(), motion: vec![(Axis::Rotation, motion)] });
+    }
+}
+
+/// Coordinate of a node: the rotation about the shaft.
+const ABOUT_Z: usize = 5;
+
+/// (m) Centre of the housing: the mean of the shafts' axes, at half the length of the longest.
+fn centre_m(shafts: &[(&GearboxShaft, [f64; 2])]) -> Vector3<f64> {
+    let mean = |axis: usize| shafts.iter().map(|(_, position_m)| position_m[axis]).sum::<f64>() / shafts.len() as f64;
+    Vector3::new(mean(0), mean(1), longest_m(shafts) / 2.0)
+}
+
+/// (m) Least and largest coordinate of the shafts' axes.
+fn extremes(shafts: &[(&GearboxShaft, [f64; 2])], axis: usize) -> [f64; 2] {
+    let values = || shafts.iter().map(|(_, position_m)| position_m[axis]);
+    [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
+}
+
+fn longest_m(shafts: &[(&GearboxShaft, [f64; 2])]) -> f64 {
+    shafts.iter().map(|(shaft, _)| shaft.length_mm * 1e-3).fold(0.0, f64::max)
+}
+
+/// The housing's feet, given or by default.
+fn feet(housing: &Housing, shafts: &[(&GearboxShaft, [f64; 2])]) -> Vec<Foot> {
+    if !housing.feet.is_empty() {
+        return housing.feet.clone();
+    }
+    const OUTSIDE_MM: f64 = 100.0;
+    let [[left, right], [low, _]] = [0, 1].map(|axis| extremes(shafts, axis).map(|value| value * 1e3));
+    let corners = [left - OUTSIDE_MM, right + OUTSIDE_MM].into_iter();
+    let ends = [0.0, longest_m(shafts) * 1e3];
+    corners
+        .flat_map(|x| ends.map(|z| Foot { at_mm: [x, low - OUTSIDE_MM, z], stiffness_n_per_m: 6e7 }))
+        .collect()
+}

@@ -1,0 +1,209 @@
+//! Commented gearboxes to start from.
+
+/// A public rig of which what is published can be printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum GearboxRig {
+    /// The spur gearbox of the PHM Society's data challenge of 2009.
+    Phm2009Spur,
+    /// The two-stage gearbox of the University of Connecticut's gear data.
+    Uconn,
+    /// The two-stage gearbox of Tecnalia's data of 2025.
+    Tecnalia,
+}
+
+impl GearboxRig {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Phm2009Spur, Self::Uconn, Self::Tecnalia];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Phm2009Spur => "phm2009-spur",
+            Self::Uconn => "uconn",
+            Self::Tecnalia => "tecnalia",
+        }
+    }
+
+    fn data(self) -> RigData {
+        match self {
+            Self::Phm2009Spur => RigData {
+                head: "\
+# The spur gearbox of the PHM Society's data challenge of 2009.
+# Published: 32/96 and 48/80 teeth, bearings MB ER-10K, input speeds of 30 to 50 rev/s, two loads,
+# 66 666.67 samples a second, a tachometer of 10 pulses per revolution of the input.
+# Assumed, and marked so: everything else.
+",
+                teeth: [32, 96, 48, 80],
+                module_mm: 1.5875,
+                face_width_mm: 19.05,
+                input_speed_hz: 30.0,
+                sampling_rate_hz: 66_666.67,
+                fault: "\
+# Faults of the challenge are listed by label only. A chipped tooth of the first stage:
+#
+# [[fault]]
+# wheel = \"z1\"
+# kind = \"tooth-breakage\"
+# severity = 0.4
+",
+            },
+            Self::Uconn => RigData {
+                head: "\
+# The two-stage gearbox of the University of Connecticut's gear fault data.
+# Published: 32/80 and 48/64 teeth, 20 000 samples a second, a tachometer on the input shaft, faults on
+# the pinion of 32 teeth.
+# Assumed, and marked so: everything else, the input's speed included.
+",
+                teeth: [32, 80, 48, 64],
+                module_mm: 1.5875,
+                face_width_mm: 19.05,
+                input_speed_hz: 30.0,
+                sampling_rate_hz: 20_000.0,
+                fault: "\
+# Its faults are on the pinion of 32 teeth: a missing tooth, a cracked root, spalls, chipped tips.
+#
+# [[fault]]
+# wheel = \"z1\"
+# kind = \"missing-tooth\"
+",
+            },
+            Self::Tecnalia => RigData {
+                head: "\
+# The two-stage gearbox of Tecnalia's data of 2025.
+# Published: 29/100 and 36/90 teeth, bearings MB ER-16K, a broken tooth on the wheel of 36, 20 480 samples
+# a second, two encoders, torque, eight accelerometers.
+# Assumed, and marked so: everything else, the input's speed and the load included.
+",
+                teeth: [29, 100, 36, 90],
+                module_mm: 1.5,
+                face_width_mm: 15.0,
+                input_speed_hz: 30.0,
+                sampling_rate_hz: 20_480.0,
+                fault: "\
+# Its fault is a broken tooth on the wheel of 36 teeth:
+#
+# [[fault]]
+# wheel = \"z3\"
+# kind = \"tooth-breakage\"
+# severity = 0.6
+",
+            },
+        }
+    }
+}
+
+/// What tells one rig's file from another's.
+struct RigData {
+    head: &'static str,
+    teeth: [u32; 4],
+    module_mm: f64,
+    face_width_mm: f64,
+    input_speed_hz: f64,
+    sampling_rate_hz: f64,
+    fault: &'static str,
+}
+
+const EXAMPLE_HEAD: &str = "\
+# A Meshtone gearbox: two stages of spur gears on three shafts, in a housing on four feet.
+# What stands behind \"# \" is a comment. Every key is in the guide's chapter on gearboxes; what is left
+# out here is at its default.
+";
+
+const EXAMPLE_FAULT: &str = "\
+# Damage is listed as in a scenario of one pair; wheel is the wheel's name.
+#
+# [[fault]]
+# wheel = \"z3\"
+# tooth = 1
+# kind = \"tooth-breakage\"
+# severity = 0.5
+";
+
+/// A commented two-stage gearbox, or what is published of a rig.
+///
+/// # Arguments
+/// * `rig` - which; none for the example
+///
+/// ```
+/// use meshtone::scenario::{Gearbox, GearboxRig, gearbox_template};
+///
+/// for rig in GearboxRig::ALL {
+///     assert_eq!(Gearbox::from_toml(&gearbox_template(Some(rig)))?.shafts.len(), 3);
+/// }
+/// # Ok::<(), meshtone::scenario::ScenarioError>(())
+/// ```
+pub fn gearbox_template(rig: Option<GearboxRig>) -> String {
+    let example = RigData {
+        head: EXAMPLE_HEAD,
+        teeth: [32, 96, 48, 80],
+        module_mm: 1.5875,
+        face_width_mm: 19.05,
+        input_speed_hz: 30.0,
+        sampling_rate_hz: 100_000.0,
+        fault: EXAMPLE_FAULT,
+    };
+    let RigData {
+        head,
+        teeth: [z1, z2, z3, z4],
+        module_mm,
+        face_width_mm,
+        input_speed_hz,
+        sampling_rate_hz,
+        fault,
+    } = rig.map_or(example, GearboxRig::data);
+    let assumed = if rig.is_some() { "  # assumed" } else { "" };
+    let wheel = |name: &str, shaft: &str, at: f64, teeth: u32| {
+        format!(
+            "[[wheel]]\nname = \"{name}\"\nshaft = \"{shaft}\"\nat = {at:?}{assumed}\nteeth = {teeth}\n\
+             face_width_mm = {face_width_mm:?}{assumed}\niso_class = 6{assumed}\n"
+        )
+    };
+    let shaft = |name: &str, comment: &str, coupled: &str| {
+        format!(
+            "# {comment}\n[[shaft]]\nname = \"{name}\"\nlength_mm = 240.0{assumed}\nradius_mm = 7.9375{assumed}\n{coupled}"
+        )
+    };
+    let mesh = |wheels: [&str; 2]| {
+        format!(
+            "[[mesh]]\nwheels = [\"{}\", \"{}\"]\nmodule_mm = {module_mm:?}{assumed}\n\
+             pressure_angle_deg = 20.0{assumed}\n",
+            wheels[0], wheels[1]
+        )
+    };
+    let bearings: String = ["input", "middle", "output"]
+        .iter()
+        .flat_map(|shaft| ["0.0", "1.0"].map(|at| format!("[[bearing]]\nshaft = \"{shaft}\"\nat = {at}\n")))
+        .collect();
+    [
+        head.to_owned(),
+        "seed = 1\nmaterial = \"steel\"\n".to_owned(),
+        format!(
+            "# Shafts run along z, from 0 to their length. Without position_mm they stand side by side.\n{}",
+            shaft("input", "The motor turns it.", "couples_to = \"motor\"\n")
+        ),
+        shaft("middle", "It carries the second wheel of the first stage and the first one of the second.", ""),
+        shaft("output", "The brake holds it.", "couples_to = \"brake\"\n"),
+        format!("# at is the place along the shaft, as a part of its length.\n{}", wheel("z1", "input", 0.25, z1)),
+        wheel("z2", "middle", 0.25, z2),
+        wheel("z3", "middle", 0.75, z3),
+        wheel("z4", "output", 0.75, z4),
+        format!("# The first wheel of a mesh drives.\n{}", mesh(["z1", "z2"])),
+        mesh(["z3", "z4"]),
+        format!(
+            "# Stiffnesses of bearings, seats, housing and couplings are at their defaults{}.\n{bearings}",
+            if rig.is_some() { ", which are assumed" } else { "" }
+        ),
+        "[housing]\nmass_kg = 30.0\n".to_owned(),
+        format!(
+            "[operation]\ninput_speed_hz = {input_speed_hz:?}{}\nbrake_torque_nm = 20.0{assumed}\n",
+            if matches!(rig, Some(GearboxRig::Uconn | GearboxRig::Tecnalia)) { assumed } else { "" }
+        ),
+        fault.to_owned(),
+        format!(
+            "# Without [[sensor]] a vertical one sits on every bearing's seat.\n[[sensor]]\nat = \"input:0\"\n\n[[sensor]]\nat = \"output:1\"\n\n\
+             [solver]\nsampling_rate_hz = {sampling_rate_hz:?}\nduration_s = 1.0\n"
+        ),
+    ]
+    .join("\n")
+}

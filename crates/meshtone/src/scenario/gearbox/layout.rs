@@ -1,0 +1,574 @@
+//! How the shafts, wheels and meshes of a gearbox stand and turn: what its names refer to, centres, speed ratios, phases.
+
+use std::f64::consts::{PI, TAU};
+
+use super::{Gearbox, GearboxFault, GearboxMesh, GearboxWheel};
+use crate::damage::Fault;
+use crate::error::ScenarioError;
+use crate::machine::Coupled;
+use crate::wheel::{Gears, Mounting, Quality, WheelName};
+
+/// A ratio of two whole numbers, reduced; its sign is the numerator's.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Ratio {
+    /// Numerator.
+    pub numerator: i64,
+    /// Denominator, more than 0.
+    pub denominator: i64,
+}
+
+impl Ratio {
+    const ONE: Self = Self { numerator: 1, denominator: 1 };
+
+    fn times(self, numerator: i64, denominator: i64) -> Self {
+        let (n, d) = (
+            i128::from(self.numerator) * i128::from(numerator),
+            i128::from(self.denominator) * i128::from(denominator),
+        );
+        let (mut a, mut b) = (n.abs(), d.abs());
+        while b != 0 {
+            (a, b) = (b, a % b);
+        }
+        let sign = if d < 0 { -1 } else { 1 };
+        // A train of wheels of 10 000 teeth would need five stages to pass the largest number.
+        let fits = |value: i128| i64::try_from(value).unwrap_or(i64::MAX);
+        Self { numerator: fits(sign * n / a.max(1)), denominator: fits(d.abs() / a.max(1)) }
+    }
+
+    /// As a number.
+    pub fn value(self) -> f64 {
+        self.numerator as f64 / self.denominator as f64
+    }
+}
+
+impl std::fmt::Display for Ratio {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(formatter, "{}/{}", self.numerator, self.denominator)
+    }
+}
+
+/// A gearbox with its names resolved.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct GearboxLayout {
+    /// Number of the shaft of each wheel.
+    pub shaft_of_wheel: Vec<usize>,
+    /// Numbers of the driving and of the driven wheel of each mesh.
+    pub wheels_of_mesh: Vec<[usize; 2]>,
+    /// Number of the shaft of each bearing.
+    pub shaft_of_bearing: Vec<usize>,
+    /// The pair of wheels of each mesh, as of a scenario of one pair.
+    pub gears: Vec<Gears>,
+    /// (m) x and y of each shaft's axis.
+    pub positions_m: Vec<[f64; 2]>,
+    /// Rotation of each shaft over that of the input: positive about z.
+    pub ratios: Vec<Ratio>,
+    /// (base pitches) Position of the first pair of each mesh at the start.
+    pub phases: Vec<f64>,
+}
+
+/// (mm) By how much shafts may stand nearer or farther than the centre distance of their mesh.
+const CENTRE_TOLERANCE_MM: f64 = 0.01;
+
+impl GearboxLayout {
+    /// Resolves the names and finds how everything stands and turns.
+    ///
+    /// # Arguments
+    /// * `gearbox` - whose keys are each in their range
+    ///
+    /// # Errors
+    /// A name that nothing has or that two have, shafts that stand wrong, a train that cannot turn, wheels that do not fit one another.
+    pub fn new(gearbox: &Gearbox) -> Result<Self, ScenarioError> {
+        let shafts: Vec<&str> = gearbox.shafts.iter().map(|shaft| shaft.name.as_str()).collect();
+        let wheels: Vec<&str> = gearbox.wheels.iter().map(|wheel| wheel.name.as_str()).collect();
+        unique("shaft", &shafts)?;
+        unique("wheel", &wheels)?;
+        let shaft_of = |list: &str, index: usize, entries: usize, name: &str| {
+            find(&shafts, name, "shaft")
+                .map_err(|error| error.with_key(entry_key(list, index, entries, "shaft")))
+        };
+        let shaft_of_wheel: Vec<usize> = (gearbox.wheels.iter().enumerate())
+            .map(|(index, wheel)| shaft_of("wheel", index, wheels.len(), &wheel.shaft))
+            .collect::<Result<_, _>>()?;
+        let shaft_of_bearing: Vec<usize> = (gearbox.bearings.iter().enumerate())
+            .map(|(index, bearing)| shaft_of("bearing", index, gearbox.bearings.len(), &bearing.shaft))
+            .collect::<Result<_, _>>()?;
+        let meshes = gearbox.meshes.len();
+        let wheels_of_mesh: Vec<[usize; 2]> = (gearbox.meshes.iter().enumerate())
+            .map(|(index, mesh)| {
+                let number = |side: usize| {
+                    let key = entry_key("mesh", index, meshes, &format!("wheels[{side}]"));
+                    find(&wheels, &mesh.wheels[side], "wheel").map_err(|error| error.with_key(key))
+                };
+                Ok([number(0)?, number(1)?])
+            })
+            .collect::<Result<_, ScenarioError>>()?;
+        let mut this = Self {
+            gears: Vec::new(),
+            positions_m: Vec::new(),
+            ratios: Vec::new(),
+            phases: Vec::new(),
+            shaft_of_wheel,
+            wheels_of_mesh,
+            shaft_of_bearing,
+        };
+        for (index, mesh) in gearbox.meshes.iter().enumerate() {
+            let gears = this.gears_of(gearbox, index, mesh)?;
+            gears.check().map_err(|error| in_mesh(error, index, meshes, &this.wheels_of_mesh[index]))?;
+            this.gears.push(gears);
+        }
+        this.ratios = this.turn(gearbox)?;
+        this.positions_m = this.place(gearbox)?;
+        this.check_room(gearbox)?;
+        this.phases = this.find_phases(gearbox);
+        Ok(this)
+    }
+
+    /// The shaft of the motor, and the one of the brake.
+    fn ends(&self, gearbox: &Gearbox) -> Result<[usize; 2], ScenarioError> {
+        let end = |coupled: Coupled, name: &str| {
+            let ends: Vec<usize> =
+                (0..gearbox.shafts.len()).filter(|&n| gearbox.shafts[n].couples_to == coupled).collect();
+            match ends[..] {
+                [end] => Ok(end),
+                [] => Err(ScenarioError::new(
+                    "shaft.couples_to",
+                    "",
+                    format!("no shaft couples to the {name}; one must"),
+                )
+                .with_help(format!("write couples_to = \"{name}\" in one [[shaft]]"))),
+                [_, second, ..] => {
+                    let key = entry_key("shaft", second, gearbox.shafts.len(), "couples_to");
+                    let problem = format!("is the second shaft that couples to the {name}; one must");
+                    Err(ScenarioError::new(key, format!("\"{name}\""), problem)
+                        .with_help("remove couples_to from all shafts but one"))
+                }
+            }
+        };
+        Ok([end(Coupled::Motor, "motor")?, end(Coupled::Brake, "brake")?])
+    }
+
+    /// Speed ratios: from the motor's shaft, mesh by mesh. What is reached twice must turn the same by both ways.
+    fn turn(&self, gearbox: &Gearbox) -> Result<Vec<Ratio>, ScenarioError> {
+        let [motor, brake] = self.ends(gearbox)?;
+        let mut ratios: Vec<Option<Ratio>> = vec![None; gearbox.shafts.len()];
+        ratios[motor] = Some(Ratio::ONE);
+        let shafts_of = |mesh: usize| self.wheels_of_mesh[mesh].map(|wheel| self.shaft_of_wheel[wheel]);
+        let meshes = gearbox.meshes.len();
+        let mut reached = vec![false; meshes];
+        while let Some(mesh) = (0..meshes)
+            .find(|&mesh| !reached[mesh] && shafts_of(mesh).iter().any(|&shaft| ratios[shaft].is_some()))
+        {
+            reached[mesh] = true;
+            let [driving, driven] = shafts_of(mesh);
+            let Gears { pinion_teeth, gear_teeth, .. } = self.gears[mesh];
+            let key = entry_key("mesh", mesh, meshes, "wheels");
+            let written = format!("{:?}", gearbox.meshes[mesh].wheels);
+            let name = |shaft: usize| gearbox.shafts[shaft].name.as_str();
+            match (ratios[driving], ratios[driven]) {
+                (Some(ratio), None) => {
+                    ratios[driven] = Some(ratio.times(-i64::from(pinion_teeth), i64::from(gear_teeth)));
+                }
+                (Some(ratio), Some(known)) => {
+                    let other = ratio.times(-i64::from(pinion_teeth), i64::from(gear_teeth));
+                    if other != known {
+                        let problem = format!(
+                            "locks the train: through this mesh shaft {:?} would turn {other} times as fast as the input, by the other \
+                             way it turns {known} times",
+                            name(driven)
+                        );
+                        return Err(ScenarioError::new(key, written, problem).with_help(
+                            "change the tooth counts so that both ways have the same ratio, or remove a mesh",
+                        ));
+                    }
+                }
+                _ => {
+                    let problem = format!(
+                        "names the driven wheel first: shaft {:?} is nearer to the motor than shaft {:?}",
+                        name(driven),
+                        name(driving)
+                    );
+                    return Err(ScenarioError::new(key, written, problem).with_help("swap the two names"));
+                }
+            }
+        }
+        let lost = ratios.iter().position(Option::is_none);
+        if let Some(shaft) = lost {
+            let name = &gearbox.shafts[shaft].name;
+            let to = if shaft == brake { "the motor" } else { "motor or brake" };
+            let problem = format!("has no path of meshes to {to}");
+            return Err(ScenarioError::new(
+                entry_key("shaft", shaft, gearbox.shafts.len(), "name"),
+                format!("{name:?}"),
+                problem,
+            )
+            .with_help("add a [[mesh]] of a wheel on it, or remove the shaft"));
+        }
+        Ok(ratios.into_iter().flatten().collect())
+    }
+
+    /// (m) Where the shafts stand: as given, or beside the shaft that they mesh with.
+    fn place(&self, gearbox: &Gearbox) -> Result<Vec<[f64; 2]>, ScenarioError> {
+        let mut places: Vec<Option<[f64; 2]>> =
+            gearbox.shafts.iter().map(|shaft| shaft.position_mm).collect();
+        if places.iter().all(Option::is_none) {
+            let motor = gearbox.shafts.iter().position(|shaft| shaft.couples_to == Coupled::Motor);
+            places[motor.unwrap_or(0)] = Some([0.0; 2]);
+        }
+        let distances_mm: Vec<f64> =
+            self.gears.iter().map(|gears| Mounting::new(gears).centre_distance_mm).collect();
+        let shafts_of = |mesh: usize| self.wheels_of_mesh[mesh].map(|wheel| self.shaft_of_wheel[wheel]);
+        let known_on_one_side = |mesh: usize, places: &[Option<[f64; 2]>]| {
+            let [driving, driven] = shafts_of(mesh);
+            places[driving].is_some() != places[driven].is_some()
+        };
+        while let Some(mesh) = (0..distances_mm.len()).find(|&mesh| known_on_one_side(mesh, &places)) {
+            let [driving, driven] = shafts_of(mesh);
+            if let Some([x, y]) = places[driving] {
+                places[driven] = Some([x + distances_mm[mesh], y]);
+            } else if let Some([x, y]) = places[driven] {
+                places[driving] = Some([x - distances_mm[mesh], y]);
+            }
+        }
+        let places: Vec<[f64; 2]> = places.into_iter().map(Option::unwrap_or_default).collect();
+        for (mesh, &distance_mm) in distances_mm.iter().enumerate() {
+            let [driving, driven] = shafts_of(mesh);
+            let [a, b] = [places[driving], places[driven]];
+            let apart_mm = (a[0] - b[0]).hypot(a[1] - b[1]);
+            if (apart_mm - distance_mm).abs() > CENTRE_TOLERANCE_MM {
+                let shaft = if gearbox.shafts[driven].position_mm.is_some() { driven } else { driving };
+                let key = entry_key("shaft", shaft, gearbox.shafts.len(), "position_mm");
+                let [x, y] = places[shaft];
+                let mesh = gearbox.meshes[mesh].name();
+                let problem = format!(
+                    "is {apart_mm:.4} mm from its mate's axis, but the wheels of mesh {mesh} mesh at {distance_mm:.4} mm; must be the \
+                     same within {CENTRE_TOLERANCE_MM} mm"
+                );
+                return Err(ScenarioError::new(key, format!("[{x:?}, {y:?}]"), problem).with_help(
+                    "move the shaft, or give the mesh that centre_distance_mm or its wheels profile shifts",
+                ));
+            }
+        }
+        Ok(places.into_iter().map(|place| place.map(|mm| mm * 1e-3)).collect())
+    }
+
+    /// The two wheels of a mesh as a pair: what they share must be the same.
+    fn gears_of(&self, gearbox: &Gearbox, index: usize, mesh: &GearboxMesh) -> Result<Gears, ScenarioError> {
+        let numbers = self.wheels_of_mesh[index];
+        let [pinion, gear] = numbers.map(|number| &gearbox.wheels[number]);
+        let meshes = gearbox.meshes.len();
+        let refuse = |problem: String, help: &str| {
+            let key = entry_key("mesh", index, meshes, "wheels");
+            Err(ScenarioError::new(key, format!("{:?}", mesh.wheels), problem).with_help(help))
+        };
+        let shafts = numbers.map(|wheel| self.shaft_of_wheel[wheel]);
+        if shafts[0] == shafts[1] {
+            return refuse(
+                format!("both wheels sit on shaft {:?}; must be two shafts", pinion.shaft),
+                "name wheels of two shafts",
+            );
+        }
+        let mates = [
+            ("tip_chamfer_mm", pinion.tip_chamfer_mm == gear.tip_chamfer_mm),
+            ("flank_relief", pinion.flank_relief == gear.flank_relief),
+            ("material", self.material(gearbox, pinion) == self.material(gearbox, gear)),
+        ];
+        if let Some((key, _)) = mates.iter().find(|(_, same)| !same) {
+            return refuse(
+                format!("the wheels differ in {key}; must be the same of both"),
+                "give both wheels the same",
+            );
+        }
+        let mut gears = Gears::new(
+            mesh.module_mm,
+            pinion.teeth,
+            gear.teeth,
+            pinion.face_width_mm.min(gear.face_width_mm),
+        );
+        gears.pressure_angle_deg = mesh.pressure_angle_deg;
+        (gears.pinion_profile_shift, gears.gear_profile_shift) = (pinion.profile_shift, gear.profile_shift);
+        (gears.pinion_addendum, gears.gear_addendum) = (pinion.addendum, gear.addendum);
+        (gears.pinion_dedendum, gears.gear_dedendum) = (pinion.dedendum, gear.dedendum);
+        gears.centre_distance_mm = mesh.centre_distance_mm;
+        gears.backlash_mm = mesh.backlash_mm;
+        gears.material = self.material(gearbox, pinion);
+        gears.flank_relief = pinion.flank_relief;
+        gears.tip_chamfer_mm = pinion.tip_chamfer_mm;
+        let apart_mm = numbers.map(|wheel| self.z_mm(gearbox, wheel));
+        let apart_mm = (apart_mm[0] - apart_mm[1]).abs();
+        if apart_mm > gears.face_width_mm / 2.0 {
+            let problem = format!(
+                "the wheels' middle planes are {apart_mm:.3} mm apart; must be at most half the narrower face, {:.3} mm",
+                gears.face_width_mm / 2.0
+            );
+            return refuse(problem, "change at of one of the wheels");
+        }
+        Ok(gears)
+    }
+
+    fn material(&self, gearbox: &Gearbox, wheel: &GearboxWheel) -> crate::wheel::Material {
+        wheel.material.unwrap_or(gearbox.material)
+    }
+
+    /// (mm) z of a wheel's middle plane.
+    pub(super) fn z_mm(&self, gearbox: &Gearbox, wheel: usize) -> f64 {
+        gearbox.wheels[wheel].at * gearbox.shafts[self.shaft_of_wheel[wheel]].length_mm
+    }
+
+    /// Bores within roots, supports of every shaft, wheels beside other shafts.
+    fn check_room(&self, gearbox: &Gearbox) -> Result<(), ScenarioError> {
+        let entries = gearbox.shafts.len();
+        for (number, shaft) in gearbox.shafts.iter().enumerate() {
+            let supports: Vec<f64> = (gearbox.bearings.iter().zip(&self.shaft_of_bearing))
+                .filter(|(_, of)| **of == number)
+                .map(|(bearing, _)| bearing.at)
+                .collect();
+            let spread = supports.iter().any(|at| (at - supports[0]).abs() > 1e-6);
+            if !spread {
+                let problem = format!(
+                    "has {} bearings at different places; must have at least two",
+                    if supports.is_empty() { 0 } else { 1 }
+                );
+                return Err(ScenarioError::new(
+                    entry_key("shaft", number, entries, "name"),
+                    format!("{:?}", shaft.name),
+                    problem,
+                )
+                .with_help("add a [[bearing]] with this shaft and another at"));
+            }
+        }
+        for (index, wheel) in gearbox.wheels.iter().enumerate() {
+            let shaft = &gearbox.shafts[self.shaft_of_wheel[index]];
+            let bore_mm = shaft.radius_at_mm(wheel.at);
+            let Some((mesh, side)) = self.mesh_of(index) else {
+                let problem = "is in no mesh; every wheel must be";
+                return Err(ScenarioError::new(
+                    entry_key("wheel", index, gearbox.wheels.len(), "name"),
+                    format!("{:?}", wheel.name),
+                    problem,
+                )
+                .with_help("add a [[mesh]] that names it, or remove the wheel"));
+            };
+            let gears = &self.gears[mesh];
+            let root_mm =
+                gears.module_mm * (f64::from(wheel.teeth) / 2.0 + wheel.profile_shift - wheel.dedendum);
+            if bore_mm >= root_mm {
+                let key = entry_key("wheel", index, gearbox.wheels.len(), "shaft");
+                let problem = format!(
+                    "has a radius of {bore_mm:?} mm there; must be less than {root_mm:.4} mm, the root radius of {:?}",
+                    wheel.name
+                );
+                return Err(ScenarioError::new(key, format!("{:?}", wheel.shaft), problem)
+                    .with_help("make the shaft thinner, or the wheel larger"));
+            }
+            self.check_clear_of_shafts(gearbox, index, mesh, side)?;
+        }
+        Ok(())
+    }
+
+    /// A wheel must not reach into a shaft that it does not sit on.
+    fn check_clear_of_shafts(
+        &self,
+        gearbox: &Gearbox,
+        index: usize,
+        mesh: usize,
+        side: WheelName,
+    ) -> Result<(), ScenarioError> {
+        let (wheel, own) = (&gearbox.wheels[index], self.shaft_of_wheel[index]);
+        let gears = &self.gears[mesh];
+        let tip_mm =
+            gears.module_mm * (f64::from(wheel.teeth) / 2.0 + wheel.profile_shift + gears.addendum(side));
+        let z_mm = self.z_mm(gearbox, index);
+        for (number, other) in gearbox.shafts.iter().enumerate().filter(|(number, _)| *number != own) {
+            let passes = z_mm <= other.length_mm;
+            let [a, b] = [self.positions_m[own], self.positions_m[number]];
+            let apart_mm = (a[0] - b[0]).hypot(a[1] - b[1]) * 1e3;
+            let radius_mm = other.radius_at_mm((z_mm / other.length_mm).min(1.0));
+            if passes && apart_mm < tip_mm + radius_mm {
+                let key = entry_key("wheel", index, gearbox.wheels.len(), "shaft");
+                let problem = format!(
+                    "{:?} reaches {tip_mm:.3} mm from its axis, into shaft {:?}, whose axis is {apart_mm:.3} mm away and whose radius is \
+                     {radius_mm:?} mm",
+                    wheel.name, other.name
+                );
+                return Err(ScenarioError::new(key, format!("{:?}", wheel.shaft), problem)
+                    .with_help("give the shafts a position_mm by which the train bends out of the way, or shorten the shaft"));
+            }
+        }
+        Ok(())
+    }
+
+    /// The first mesh that a wheel is in, and on which side.
+    pub fn mesh_of(&self, wheel: usize) -> Option<(usize, WheelName)> {
+        self.meshes_of(wheel).next()
+    }
+
+    /// All meshes that a wheel is in, and on which side.
+    pub fn meshes_of(&self, wheel: usize) -> impl Iterator<Item = (usize, WheelName)> {
+        let sides = self.wheels_of_mesh.iter().enumerate();
+        sides.filter_map(move |(mesh, wheels)| {
+            let side = wheels.iter().position(|&of| of == wheel)?;
+            Some((mesh, WheelName::BOTH[side]))
+        })
+    }
+
+    /// (base pitches) Where the first pair of each mesh is: as given, or as the teeth of a wheel in two meshes make it.
+    ///
+    /// A tooth of such a wheel goes from the direction ψ_A of one mate to ψ_B of the other, `(ψ_B − ψ_A) z/2π` pitches in its sense of
+    /// rotation. From the position at which it passes one pitch point that makes its position at the other. Where it is driven
+    /// in one mesh and drives in the other, its flanks there are opposite ones, a tooth thickness apart.
+    fn find_phases(&self, gearbox: &Gearbox) -> Vec<f64> {
+        let mut phases: Vec<Option<f64>> = gearbox.meshes.iter().map(|mesh| mesh.phase).collect();
+        for mesh in 0..phases.len() {
+            if phases[mesh].is_some() {
+                continue;
+            }
+            let before = (0..mesh).find_map(|other| {
+                let shared = self.wheels_of_mesh[other]
+                    .iter()
+                    .find(|wheel| self.wheels_of_mesh[mesh].contains(wheel))?;
+                Some((other, *shared))
+            });
+            let shifted = before
+                .and_then(|(other, wheel)| Some(phases[other]? + self.shift_of_phase(wheel, other, mesh)));
+            phases[mesh] = Some(shifted.unwrap_or(0.0));
+        }
+        phases.into_iter().map(Option::unwrap_or_default).collect()
+    }
+
+    /// (base pitches) How much further a pair of the same tooth of a wheel is in one mesh than in another.
+    fn shift_of_phase(&self, wheel: usize, from: usize, to: usize) -> f64 {
+        let shaft = self.shaft_of_wheel[wheel];
+        let side = |mesh: usize| WheelName::BOTH[usize::from(self.wheels_of_mesh[mesh][1] == wheel)];
+        let direction = |mesh: usize| {
+            let mate = self.wheels_of_mesh[mesh][side(mesh).mate() as usize];
+            let [a, b] = [self.positions_m[shaft], self.positions_m[self.shaft_of_wheel[mate]]];
+            (b[1] - a[1]).atan2(b[0] - a[0])
+        };
+        let teeth = f64::from(self.gears[to].teeth(side(to)));
+        let sense = self.ratios[shaft].value().signum();
+        let travelled = (sense * (direction(to) - direction(from))).rem_euclid(TAU) / TAU * teeth;
+        let thickness = if side(from) == side(to) {
+            0.0
+        } else {
+            let gears = &self.gears[to];
+            0.5 + 2.0 * gears.profile_shift(side(to)) * gears.pressure_angle_deg.to_radians().tan() / PI
+        };
+        self.pitch_point(to) - self.pitch_point(from) - travelled + thickness
+    }
+
+    /// (base pitches) Position of the pitch point on the path of contact.
+    fn pitch_point(&self, mesh: usize) -> f64 {
+        let gears = &self.gears[mesh];
+        let wheel = crate::wheel::Wheel::new(gears, WheelName::Gear, 0.0);
+        let base_mm = wheel.base_radius_mm;
+        let from_tip_mm = (wheel.tip_radius_mm.powi(2) - base_mm.powi(2)).sqrt();
+        let at_pitch_mm = base_mm * wheel.working_pressure_angle_rad.tan();
+        (from_tip_mm - at_pitch_mm) * f64::from(gears.gear_teeth) / (TAU * base_mm)
+    }
+
+    /// Revolutions of the input after which all teeth and shafts stand again as at the start.
+    pub fn cycle_revolutions(&self) -> i64 {
+        let gcd = |mut a: i64, mut b: i64| {
+            while b != 0 {
+                (a, b) = (b, a % b);
+            }
+            a
+        };
+        self.ratios.iter().fold(1, |multiple: i64, ratio| {
+            let step = ratio.denominator / gcd(multiple, ratio.denominator);
+            multiple.saturating_mul(step)
+        })
+    }
+
+    /// The faults of a mesh's wheels as of a pair, each with its number in the gearbox.
+    ///
+    /// # Arguments
+    /// * `gearbox` - whose layout this is
+    /// * `mesh` - number of the mesh
+    pub fn faults_of_mesh(&self, gearbox: &Gearbox, mesh: usize) -> Vec<(usize, Fault)> {
+        let names = self.wheels_of_mesh[mesh].map(|wheel| gearbox.wheels[wheel].name.as_str());
+        let of_mesh = |(number, GearboxFault { wheel, fault }): (usize, &GearboxFault)| {
+            let side = names.iter().position(|name| name == wheel)?;
+            Some((number, Fault { wheel: WheelName::BOTH[side], ..fault.clone() }))
+        };
+        gearbox.faults.iter().enumerate().filter_map(of_mesh).collect()
+    }
+
+    /// The quality of a mesh's wheels as of a pair, with the shares of the wheel that is drawn.
+    ///
+    /// # Arguments
+    /// * `gearbox` - whose layout this is
+    /// * `mesh` - number of the mesh
+    /// * `drawn` - the wheel whose deviations are drawn with it
+    pub fn quality_of_mesh(&self, gearbox: &Gearbox, mesh: usize, drawn: WheelName) -> Quality {
+        let [pinion, gear] = self.wheels_of_mesh[mesh].map(|wheel| &gearbox.wheels[wheel]);
+        let of = drawn.choose(pinion, gear);
+        Quality {
+            din_grade: of.din_grade,
+            iso_class: of.iso_class,
+            tooth_share: of.tooth_share,
+            pitch_share: of.pitch_share,
+            run_out_share: of.run_out_share,
+            pinion_deviations: pinion.deviations.clone(),
+            gear_deviations: gear.deviations.clone(),
+            ..Quality::default()
+        }
+    }
+}
+
+/// The key of an entry of a list: without a number where there is one entry only.
+pub(super) fn entry_key(list: &str, index: usize, entries: usize, key: &str) -> String {
+    if entries > 1 { format!("{list}[{index}].{key}") } else { format!("{list}.{key}") }
+}
+
+/// An error of a pair as one of a mesh or of one of its wheels.
+fn in_mesh(error: ScenarioError, mesh: usize, meshes: usize, wheels: &[usize; 2]) -> ScenarioError {
+    let key = error.key.strip_prefix("gears.").unwrap_or(&error.key).to_owned();
+    const OF_MESH: [&str; 4] = ["module_mm", "pressure_angle_deg", "centre_distance_mm", "backlash_mm"];
+    let of_wheel = |wheel: usize, key: &str| format!("wheel[{}].{key}", wheels[wheel]);
+    let named = if OF_MESH.contains(&key.as_str()) {
+        entry_key("mesh", mesh, meshes, &key)
+    } else if let Some(own) = key.strip_prefix("pinion_") {
+        of_wheel(0, own)
+    } else if let Some(own) = key.strip_prefix("gear_") {
+        of_wheel(1, own)
+    } else if key == "gears" {
+        entry_key("mesh", mesh, meshes, "wheels")
+    } else {
+        of_wheel(0, &key)
+    };
+    error.with_key(named)
+}
+
+fn unique(list: &str, names: &[&str]) -> Result<(), ScenarioError> {
+    for (index, name) in names.iter().enumerate() {
+        let key = entry_key(list, index, names.len(), "name");
+        let valid =
+            !name.is_empty() && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
+        if !valid {
+            let problem = "must be letters without accents, digits and `_`";
+            return Err(ScenarioError::new(key, format!("{name:?}"), problem));
+        }
+        if let Some(other) = names[..index].iter().position(|other| other == name) {
+            let problem = format!("is the name of {list}[{other}] already; each must have its own");
+            return Err(
+                ScenarioError::new(key, format!("{name:?}"), problem).with_help("give it another name")
+            );
+        }
+    }
+    Ok(())
+}
+
+/// The number of a name in a list.
+fn find(names: &[&str], name: &str, what: &str) -> Result<usize, ScenarioError> {
+    names.iter().position(|other| *other == name).ok_or_else(|| {
+        let known: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
+        let problem = if known.is_empty() {
+            format!("is no {what}'s name; there is none")
+        } else {
+            format!("is no {what}'s name; there are {}", known.join(", "))
+        };
+        ScenarioError::new(what, format!("{name:?}"), problem)
+    })
+}

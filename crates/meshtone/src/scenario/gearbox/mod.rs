@@ -1,0 +1,491 @@
+//! What the user asks for of a gearbox: the long form of the scenario file, of any number of shafts, wheels and meshes.
+
+mod example;
+mod layout;
+mod parts;
+mod places;
+
+pub use example::{GearboxRig, gearbox_template};
+pub use layout::{GearboxLayout, Ratio};
+pub use parts::{
+    GearboxFault, GearboxMesh, GearboxOperation, GearboxSensor, GearboxSolver, GearboxWheel, Ripple,
+};
+
+use meshtone_toml::{ReadResult, TomlDocument, TomlTable};
+
+use super::from_toml::{Numbers, ScenarioFiles};
+use super::{Scenario, ScenarioError, ScenarioWarning, SectionDescription, WarningKind};
+use crate::damage::{Fault, check_faults};
+use crate::keys::{
+    KeyRow, Keys, NoFiles, NumberFiles, check_keys, describe, field, read_keys, row, write_keys,
+};
+use crate::machine::{Bearing, GearboxShaft, Housing};
+use crate::operation::TimeGrid;
+use crate::wheel::{Material, WheelName};
+use layout::entry_key;
+use parts::list;
+
+/// Everything that a simulation of a gearbox depends on.
+///
+/// ```
+/// use meshtone::scenario::{Gearbox, gearbox_template};
+///
+/// let gearbox = Gearbox::from_toml(&gearbox_template(None))?;
+/// assert_eq!(gearbox.meshes[0].name(), "z1-z2");
+/// assert_eq!(Gearbox::from_toml(&gearbox.to_toml())?, gearbox);
+/// # Ok::<(), meshtone::scenario::ScenarioError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Gearbox {
+    /// Seed of every random draw.
+    pub seed: u64,
+    /// Material of shafts and wheels. Default steel.
+    pub material: Material,
+    /// The shafts.
+    pub shafts: Vec<GearboxShaft>,
+    /// The wheels.
+    pub wheels: Vec<GearboxWheel>,
+    /// Which wheels mesh.
+    pub meshes: Vec<GearboxMesh>,
+    /// The bearings.
+    pub bearings: Vec<Bearing>,
+    /// The housing; none where the bearings' seats stand on the ground.
+    pub housing: Option<Housing>,
+    /// Speed and load.
+    pub operation: GearboxOperation,
+    /// Faults.
+    pub faults: Vec<GearboxFault>,
+    /// Listed sensors; without one, a vertical one sits on every bearing's seat.
+    pub sensors: Vec<GearboxSensor>,
+    /// Sampling and settling.
+    pub solver: GearboxSolver,
+}
+
+/// The keys above the sections.
+impl Keys for Gearbox {
+    fn start() -> Self {
+        Self {
+            seed: 1,
+            material: Material::default(),
+            shafts: Vec::new(),
+            wheels: Vec::new(),
+            meshes: Vec::new(),
+            bearings: Vec::new(),
+            housing: None,
+            operation: GearboxOperation::start(),
+            faults: Vec::new(),
+            sensors: Vec::new(),
+            solver: GearboxSolver::start(),
+        }
+    }
+
+    fn rows() -> Vec<KeyRow<Self>> {
+        vec![
+            row(
+                "seed",
+                "",
+                "the seed of every random draw: deviations, fluctuations, sensors' noise",
+                field!(seed),
+            ),
+            row("material", "", "the material of shafts and wheels", field!(material)),
+        ]
+    }
+}
+
+/// Names of the sections that only a gearbox has.
+const OF_GEARBOX: [&str; 5] = ["shaft", "wheel", "mesh", "bearing", "housing"];
+/// Names of the sections that only a pair has.
+const OF_PAIR: [&str; 3] = ["gears", "rig", "quality"];
+
+/// What a scenario file asks for.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+#[expect(clippy::large_enum_variant, reason = "there is one of a file")]
+pub enum ScenarioForm {
+    /// The short form: one pair of gears.
+    Pair(Scenario),
+    /// The long form: a gearbox.
+    Gearbox(Gearbox),
+}
+
+impl Gearbox {
+    /// A gearbox with every other key at its default.
+    ///
+    /// # Arguments
+    /// * `shafts`, `wheels`, `meshes`, `bearings` - its parts
+    /// * `operation` - speed and load
+    pub fn new(
+        shafts: Vec<GearboxShaft>,
+        wheels: Vec<GearboxWheel>,
+        meshes: Vec<GearboxMesh>,
+        bearings: Vec<Bearing>,
+        operation: GearboxOperation,
+    ) -> Self {
+        Self { shafts, wheels, meshes, bearings, operation, ..Self::start() }
+    }
+
+    /// Whether a text is the long form of a scenario file: it has a section that only a gearbox has, and none that only a pair has.
+    ///
+    /// # Arguments
+    /// * `text` - the scenario file's text
+    ///
+    /// # Errors
+    /// Text that is not TOML; sections of both forms.
+    pub fn is_written_in(text: &str) -> Result<bool, ScenarioError> {
+        let document = TomlDocument::parse(text)?;
+        let has =
+            |names: &[&'static str]| names.iter().find(|name| document.line_of_key(name).is_some()).copied();
+        match (has(&OF_GEARBOX), has(&OF_PAIR)) {
+            (Some(gearbox), Some(pair)) => {
+                let problem = format!(
+                    "given beside {gearbox}: one pair has [gears] and [rig], a gearbox [[shaft]], [[wheel]] and [[mesh]]"
+                );
+                let error = ScenarioError::new(pair, "", problem)
+                    .with_help("remove the sections of one of the two forms");
+                Err(document.locate(error).into())
+            }
+            (gearbox, _) => Ok(gearbox.is_some()),
+        }
+    }
+
+    /// The error of a gearbox where one pair of gears is expected.
+    pub(crate) fn refused_as_pair() -> ScenarioError {
+        let problem = "is of a gearbox, and one pair of gears, [gears], is expected here";
+        ScenarioError::new("mesh", "", problem).with_help(
+            "`meshtone simulate` and `meshtone.simulate_gearbox` take gearboxes; the models published and linear, tuning, data sets, \
+             diagnosis and the page know one pair",
+        )
+    }
+
+    /// Reads and validates a gearbox that names no other file.
+    ///
+    /// # Arguments
+    /// * `text` - the scenario file's text
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with its line.
+    pub fn from_toml(text: &str) -> Result<Self, ScenarioError> {
+        Self::read(text, &NoFiles)
+    }
+
+    /// Reads and validates a gearbox that may name other files.
+    ///
+    /// # Arguments
+    /// * `text` - the scenario file's text
+    /// * `files` - loads the files that the text names
+    ///
+    /// # Errors
+    /// As [`Self::from_toml`], and what `files` reports.
+    pub fn from_toml_with_files(text: &str, files: &dyn ScenarioFiles) -> Result<Self, ScenarioError> {
+        Self::read(text, &Numbers(files))
+    }
+
+    fn read(text: &str, files: &dyn NumberFiles) -> Result<Self, ScenarioError> {
+        Self::is_written_in(text)?;
+        let document = TomlDocument::parse(text)?;
+        let gearbox = document.root().read(|root| Self::from_table(root, files))?;
+        match gearbox.validate() {
+            Ok(_) => Ok(gearbox),
+            Err(error) => Err(document.locate(error).into()),
+        }
+    }
+
+    fn from_table(root: &TomlTable<'_>, files: &dyn NumberFiles) -> ReadResult<Self> {
+        let mut gearbox = Self::start();
+        if let Some(model) = root.optional("model") {
+            let name = model.string()?;
+            if name != "contact" {
+                return Err(model
+                    .error("must be \"contact\" of a gearbox; the other models know one pair")
+                    .with_help("remove model, or write one pair with [gears] and [rig]"));
+            }
+        }
+        read_keys(&mut gearbox, root, files)?;
+        gearbox.shafts = list(root, "shaft", files)?;
+        gearbox.wheels = list(root, "wheel", files)?;
+        gearbox.meshes = list(root, "mesh", files)?;
+        gearbox.bearings = list(root, "bearing", files)?;
+        if root.optional("housing").is_some() {
+            let mut housing = Housing::default();
+            root.table_or_empty("housing")?.read(|table| read_keys(&mut housing, table, files))?;
+            gearbox.housing = Some(housing);
+        }
+        root.table_or_empty("operation")?.read(|table| read_keys(&mut gearbox.operation, table, files))?;
+        let faults = Fault::list_on_named_wheels(root)?;
+        gearbox.faults = faults.into_iter().map(|(wheel, fault)| GearboxFault { wheel, fault }).collect();
+        gearbox.sensors = list(root, "sensor", files)?;
+        root.table_or_empty("solver")?.read(|table| read_keys(&mut gearbox.solver, table, files))?;
+        Ok(gearbox)
+    }
+
+    /// The gearbox as a scenario file that needs no other file, defaults explicitly.
+    pub fn to_toml(&self) -> String {
+        let mut sections = vec![write_keys(self)];
+        let entries = |name: &str, texts: Vec<String>| -> Vec<String> {
+            texts.into_iter().map(|text| format!("[[{name}]]\n{text}")).collect()
+        };
+        sections.extend(entries("shaft", self.shafts.iter().map(write_keys).collect()));
+        sections.extend(entries("wheel", self.wheels.iter().map(write_keys).collect()));
+        sections.extend(entries("mesh", self.meshes.iter().map(write_keys).collect()));
+        sections.extend(entries("bearing", self.bearings.iter().map(write_keys).collect()));
+        sections.extend(self.housing.iter().map(|housing| format!("[housing]\n{}", write_keys(housing))));
+        sections.push(format!("[operation]\n{}", write_keys(&self.operation)));
+        sections
+            .extend(entries("fault", self.faults.iter().map(|of| of.fault.write_on(&of.wheel)).collect()));
+        sections.extend(entries("sensor", self.sensors.iter().map(write_keys).collect()));
+        sections.push(format!("[solver]\n{}", write_keys(&self.solver)));
+        sections.join("\n")
+    }
+
+    /// Checks every value, alone and against the others.
+    ///
+    /// # Returns
+    /// Warnings about a gearbox that can be simulated.
+    ///
+    /// # Errors
+    /// The first value that is impossible, or certainly a mistake.
+    pub fn validate(&self) -> Result<Vec<ScenarioWarning>, ScenarioError> {
+        check_keys(self, "")?;
+        check_list("shaft", &self.shafts)?;
+        check_list("wheel", &self.wheels)?;
+        check_list("mesh", &self.meshes)?;
+        check_list("bearing", &self.bearings)?;
+        check_list("sensor", &self.sensors)?;
+        if let Some(housing) = &self.housing {
+            check_keys(housing, "housing")?;
+        }
+        check_keys(&self.operation, "operation")?;
+        check_keys(&self.solver, "solver")?;
+        self.check_counts()?;
+        self.check_shafts()?;
+        self.check_operation()?;
+        let layout = GearboxLayout::new(self)?;
+        self.check_faults(&layout)?;
+        self.check_quality(&layout)?;
+        self.places(&layout)?;
+        Ok(self.warnings(&layout))
+    }
+
+    fn check_counts(&self) -> Result<(), ScenarioError> {
+        let counts = [
+            ("shaft", self.shafts.len(), 2),
+            ("wheel", self.wheels.len(), 2),
+            ("mesh", self.meshes.len(), 1),
+        ];
+        if let Some((name, count, least)) = counts.into_iter().find(|(_, count, least)| count < least) {
+            let problem = format!("there are {count} [[{name}]]; a gearbox has at least {least}");
+            return Err(ScenarioError::new(name, "", problem).with_help("see `meshtone init gearbox`"));
+        }
+        let most = crate::solver::MOST_MESHES;
+        if self.meshes.len() > most {
+            let problem = format!("there are {} meshes; must be at most {most}", self.meshes.len());
+            return Err(
+                ScenarioError::new("mesh", "", problem).with_help("leave out meshes that carry no load")
+            );
+        }
+        Ok(())
+    }
+
+    fn check_shafts(&self) -> Result<(), ScenarioError> {
+        let entries = self.shafts.len();
+        for (index, shaft) in self.shafts.iter().enumerate() {
+            let key = |name: &str| entry_key("shaft", index, entries, name);
+            match (shaft.radius_mm, shaft.segments.is_empty()) {
+                (None, true) => {
+                    let problem = "missing, and it has no default; it is (mm) the shaft's radius, unless segments is given";
+                    return Err(ScenarioError::new(key("radius_mm"), "", problem));
+                }
+                (Some(radius_mm), false) => {
+                    let problem = "given beside segments, which have radii of their own";
+                    return Err(ScenarioError::new(key("radius_mm"), radius_mm, problem)
+                        .with_help("remove one of the two"));
+                }
+                _ => {}
+            }
+            let whole_mm: f64 = shaft.pieces_mm().iter().map(|[length_mm, _]| length_mm).sum();
+            if (whole_mm / shaft.length_mm - 1.0).abs() > 1e-6 {
+                let problem =
+                    format!("add up to {whole_mm:?} mm; must be length_mm, {:?} mm", shaft.length_mm);
+                return Err(ScenarioError::new(key("segments"), "", problem));
+            }
+            let thinnest_mm =
+                shaft.pieces_mm().iter().map(|[_, radius_mm]| *radius_mm).fold(f64::INFINITY, f64::min);
+            if shaft.bore_radius_mm >= thinnest_mm {
+                let problem = format!("must be less than {thinnest_mm:?} mm, the shaft's least radius");
+                return Err(ScenarioError::new(key("bore_radius_mm"), shaft.bore_radius_mm, problem));
+            }
+        }
+        Ok(())
+    }
+
+    fn check_operation(&self) -> Result<(), ScenarioError> {
+        let renamed = |mut error: ScenarioError| {
+            error.key = error.key.replace("pinion_speed_hz", "input_speed_hz");
+            error
+        };
+        self.operation.drive.check().map_err(renamed)?;
+        let amplitudes: f64 = self.operation.torque_ripple.iter().map(|ripple| ripple.amplitude).sum();
+        if amplitudes >= 1.0 {
+            let problem = "amplitudes add up to 1 or more: the brake would drive; must be less";
+            return Err(ScenarioError::new("operation.torque_ripple", amplitudes, problem));
+        }
+        let settings = &self.solver.settings;
+        if let (Some(duration_s), Some(_)) = (settings.duration_s, settings.pinion_revolutions) {
+            let problem = "given beside solver.input_revolutions; the length has only one source";
+            return Err(ScenarioError::new("solver.duration_s", duration_s, problem)
+                .with_help("remove one of the two"));
+        }
+        let time = self.time_grid();
+        // Time, force of each mesh, speed of each shaft and a sensor's signal, with what is made of them.
+        let signals =
+            4 * self.meshes.len() + 2 * self.shafts.len() + 2 * self.sensors.len().max(self.bearings.len());
+        let bytes = (time.samples as u64).saturating_mul(8 * signals as u64);
+        if let Some(objection) = super::MemoryLimit::default().objection(bytes) {
+            let key =
+                if settings.duration_s.is_some() { "solver.duration_s" } else { "solver.sampling_rate_hz" };
+            return Err(ScenarioError::new(key, "", objection)
+                .with_help("simulate a shorter time, or at a lower rate"));
+        }
+        if time.kept_samples() < 2 {
+            let problem = "keeps less than two samples";
+            return Err(
+                ScenarioError::new("solver.duration_s", "", problem).with_help("keep a longer signal")
+            );
+        }
+        Ok(())
+    }
+
+    fn check_faults(&self, layout: &GearboxLayout) -> Result<(), ScenarioError> {
+        for (index, GearboxFault { wheel, .. }) in self.faults.iter().enumerate() {
+            if !self.wheels.iter().any(|of| of.name == *wheel) {
+                let known: Vec<String> =
+                    self.wheels.iter().map(|wheel| format!("\"{}\"", wheel.name)).collect();
+                let problem = format!("is no wheel's name; there are {}", known.join(", "));
+                return Err(ScenarioError::new(
+                    entry_key("fault", index, self.faults.len(), "wheel"),
+                    format!("{wheel:?}"),
+                    problem,
+                ));
+            }
+        }
+        for mesh in 0..self.meshes.len() {
+            let (numbers, faults): (Vec<usize>, Vec<Fault>) =
+                layout.faults_of_mesh(self, mesh).into_iter().unzip();
+            check_faults(&faults, &layout.gears[mesh]).map_err(|error| self.in_fault(error, &numbers))?;
+        }
+        Ok(())
+    }
+
+    /// An error of a pair's fault as one of a gearbox's.
+    ///
+    /// # Arguments
+    /// * `error` - with the number of the pair's fault, where there are several
+    /// * `numbers` - of the pair's faults in the gearbox
+    pub(crate) fn in_fault(&self, mut error: ScenarioError, numbers: &[usize]) -> ScenarioError {
+        if let Some(rest) = error.key.strip_prefix("fault") {
+            let (number, rest) = match rest.strip_prefix('[').and_then(|rest| rest.split_once(']')) {
+                Some((number, rest)) => (number.parse().unwrap_or(0), rest),
+                None => (0, rest),
+            };
+            let number: usize = numbers.get(number).copied().unwrap_or(0);
+            error.key =
+                if self.faults.len() > 1 { format!("fault[{number}]{rest}") } else { format!("fault{rest}") };
+        }
+        error
+    }
+
+    fn check_quality(&self, layout: &GearboxLayout) -> Result<(), ScenarioError> {
+        for mesh in 0..self.meshes.len() {
+            for side in WheelName::BOTH {
+                let wheel = layout.wheels_of_mesh[mesh][side as usize];
+                let checked = layout.quality_of_mesh(self, mesh, side).check(&layout.gears[mesh]);
+                checked.map_err(|mut error| {
+                    let key = error.key.trim_start_matches("quality.").to_owned();
+                    let own = key.trim_start_matches("pinion_").trim_start_matches("gear_").to_owned();
+                    error.problem = error.problem.replace("quality.", "");
+                    error.with_key(entry_key("wheel", wheel, self.wheels.len(), &own))
+                })?;
+            }
+        }
+        Ok(())
+    }
+
+    /// What is doubtful about a gearbox that can be simulated.
+    fn warnings(&self, layout: &GearboxLayout) -> Vec<ScenarioWarning> {
+        const FAST_HZ: f64 = 100.0;
+        const LONG_CYCLE: i64 = 1000;
+        let speed_hz = self.operation.drive.pinion_speed_hz;
+        let fastest = layout.ratios.iter().map(|ratio| ratio.value().abs()).fold(1.0, f64::max) * speed_hz;
+        let fast = (fastest > FAST_HZ).then(|| {
+            let message = format!(
+                "a shaft turns at {fastest:.1} rev/s: gyroscopic moments, which are left out, shift natural frequencies by up to 2 % at \
+                 100 rev/s"
+            );
+            ScenarioWarning::new(WarningKind::FastTeeth, "operation.input_speed_hz", message)
+        });
+        let cycle = layout.cycle_revolutions();
+        let long = (cycle > LONG_CYCLE).then(|| {
+            let time = self.time_grid();
+            let kept = time.kept_samples() as f64 / time.samples_per_pinion_revolution as f64;
+            let message = format!(
+                "the machine repeats after {cycle} revolutions of the input only; the kept signal covers {:.1} % of them",
+                100.0 * kept / cycle as f64
+            );
+            ScenarioWarning::new(WarningKind::LongCycle, "solver.duration_s", message)
+        });
+        fast.into_iter().chain(long).collect()
+    }
+
+    /// Division of time: a whole number of samples per revolution of the input.
+    pub fn time_grid(&self) -> TimeGrid {
+        TimeGrid::of_input(&self.operation.drive, &self.solver.settings)
+    }
+}
+
+/// The sections of a gearbox's scenario file, in order; of `fault` see [`super::sections`].
+///
+/// ```
+/// let sections = meshtone::scenario::gearbox_sections();
+/// assert!(sections.iter().any(|section| section.name == "mesh"));
+/// ```
+pub fn gearbox_sections() -> Vec<SectionDescription> {
+    let section = |name, keys| SectionDescription { name, keys };
+    vec![
+        section("", describe::<Gearbox>()),
+        section("shaft", describe::<GearboxShaft>()),
+        section("wheel", describe::<GearboxWheel>()),
+        section("mesh", describe::<GearboxMesh>()),
+        section("bearing", describe::<Bearing>()),
+        section("housing", describe::<Housing>()),
+        section("operation", describe::<GearboxOperation>()),
+        section("sensor", describe::<GearboxSensor>()),
+        section("solver", describe::<GearboxSolver>()),
+    ]
+}
+
+/// Each key alone, of every entry of a list.
+fn check_list<S: Keys>(name: &str, entries: &[S]) -> Result<(), ScenarioError> {
+    let check = |(index, entry): (usize, &S)| {
+        check_keys(entry, name).map_err(|error| error.in_entry(name, index, entries.len()))
+    };
+    entries.iter().enumerate().try_for_each(check)
+}
+
+impl ScenarioForm {
+    /// Reads and validates either form.
+    ///
+    /// # Arguments
+    /// * `text` - the scenario file's text
+    /// * `files` - loads the files that the text names
+    ///
+    /// # Errors
+    /// As [`Scenario::from_toml_with_files`] and [`Gearbox::from_toml_with_files`]; sections of both forms.
+    pub fn from_toml_with_files(text: &str, files: &dyn ScenarioFiles) -> Result<Self, ScenarioError> {
+        if Gearbox::is_written_in(text)? {
+            Gearbox::from_toml_with_files(text, files).map(Self::Gearbox)
+        } else {
+            Scenario::from_toml_with_files(text, files).map(Self::Pair)
+        }
+    }
+}

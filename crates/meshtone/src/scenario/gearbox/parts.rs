@@ -1,0 +1,482 @@
+//! The keys of a gearbox that its machine does not have: wheels, meshes, drive, sensors, solver.
+
+use std::ops::Bound::{Excluded, Included};
+
+use meshtone_toml::{ReadResult, TomlTable};
+
+use crate::damage::Fault;
+use crate::keys::{KeyRow, Keys, NumberFiles, Range, field, flatten, read_keys, row};
+use crate::machine::WheelInertia;
+use crate::operation::{Operation, Solver};
+use crate::sensor::Sensor;
+use crate::wheel::{FlankRelief, Material, WheelDeviations};
+
+/// A wheel on a shaft of a gearbox.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct GearboxWheel {
+    /// Its name.
+    pub name: String,
+    /// Name of its shaft.
+    pub shaft: String,
+    /// (-) Where along the shaft, as a part of its length.
+    pub at: f64,
+    /// Tooth count.
+    pub teeth: u32,
+    /// (mm) Face width.
+    pub face_width_mm: f64,
+    /// (-) Profile shift coefficient, in modules. Default 0.
+    pub profile_shift: f64,
+    /// (-) Addendum coefficient of the basic rack. Default 1.
+    pub addendum: f64,
+    /// (-) Dedendum coefficient of the basic rack. Default 1.25.
+    pub dedendum: f64,
+    /// (mm) Height of the tips' chamfer; none for 0.2 modules. Mates have the same.
+    pub tip_chamfer_mm: Option<f64>,
+    /// Relief of the flank near the tip, as a gap. Default none. Mates have the same.
+    pub flank_relief: FlankRelief,
+    /// Material; none for the gearbox's. Mates have the same.
+    pub material: Option<Material>,
+    /// Mass and inertias, instead of those of a solid disc.
+    pub inertia: WheelInertia,
+    /// Grade of DIN 3962 of its deviations, 1 (best) to 12; 0 for ideal teeth. Default 0.
+    pub din_grade: u8,
+    /// Class of ISO 1328-1:2013 instead, 1 (best) to 11; 0 for none. Default 0.
+    pub iso_class: u8,
+    /// (-) Part of the tolerances of slope and form that a tooth has of its own. Default 0.4.
+    pub tooth_share: f64,
+    /// (-) Largest single pitch deviation as a part of its tolerance. Default 0.15.
+    pub pitch_share: f64,
+    /// (-) Run-out as a part of its tolerance. Default 0.3.
+    pub run_out_share: f64,
+    /// Deviations that are given instead of drawn.
+    pub deviations: WheelDeviations,
+}
+
+impl GearboxWheel {
+    /// A wheel with the rest at its default.
+    ///
+    /// # Arguments
+    /// They are the fields of the same names.
+    pub fn new(name: &str, shaft: &str, at: f64, teeth: u32, face_width_mm: f64) -> Self {
+        Self { name: name.to_owned(), shaft: shaft.to_owned(), at, teeth, face_width_mm, ..Self::start() }
+    }
+}
+
+/// (-) A place along a shaft.
+const ALONG: Range = Range::between(Included(0.0), Included(1.0))
+    .message("must be from 0 to 1, the part of the shaft's length from the end at z = 0");
+
+impl Keys for GearboxWheel {
+    const SECTION: &str = "wheel";
+
+    fn start() -> Self {
+        Self {
+            name: String::new(),
+            shaft: String::new(),
+            at: f64::NAN,
+            teeth: 0,
+            face_width_mm: f64::NAN,
+            profile_shift: 0.0,
+            addendum: 1.0,
+            dedendum: 1.25,
+            tip_chamfer_mm: None,
+            flank_relief: FlankRelief::default(),
+            material: None,
+            inertia: WheelInertia::default(),
+            din_grade: 0,
+            iso_class: 0,
+            tooth_share: 0.4,
+            pitch_share: 0.15,
+            run_out_share: 0.3,
+            deviations: WheelDeviations::default(),
+        }
+    }
+
+    fn rows() -> Vec<KeyRow<Self>> {
+        const SHARE: Range = Range::from_to(0.0, 1.0);
+        const MATES: &str = "the same of both wheels of a mesh";
+        vec![
+            row("name", "", "the wheel's name", field!(name)).required().rule("no other wheel's"),
+            row("shaft", "", "the name of its shaft", field!(shaft)).required(),
+            row("at", "-", "where along the shaft, as a part of its length from z = 0", field!(at))
+                .required()
+                .range(ALONG)
+                .rule("within half a face width of its mates"),
+            row("teeth", "", "the tooth count", field!(teeth))
+                .required()
+                .range(Range::from_to(6.0, 10_000.0).message("must be from 6 to 10000 teeth"))
+                .rule("contact ratio at least 1"),
+            row("face_width_mm", "mm", "the face width; a mesh has the narrower one", field!(face_width_mm))
+                .required()
+                .range(Range::positive().implausible_above(10_000.0)),
+            row("profile_shift", "-", "the profile shift coefficient x, in modules", field!(profile_shift))
+                .range(Range::from_to(-2.0, 2.0))
+                .rule("no undercut, no pointed tip"),
+            row("addendum", "-", "the addendum coefficient of the basic rack, in modules", field!(addendum))
+                .range(Range::from_to(0.3, 2.0)),
+            row("dedendum", "-", "the dedendum coefficient of the basic rack, in modules", field!(dedendum))
+                .range(Range::from_to(0.5, 2.5)),
+            row("tip_chamfer_mm", "mm", "the height of the chamfer or rounding of the tips", field!(tip_chamfer_mm))
+                .otherwise("0.2 modules")
+                .range(Range::not_negative())
+                .rule(MATES)
+                .alternative("0.3"),
+            row("flank_relief", "", "the relief of the flanks near the tips, as a gap in µm", field!(flank_relief))
+                .rule(MATES),
+            row("material", "", "its material", field!(material))
+                .otherwise("that of the gearbox")
+                .rule(MATES)
+                .alternative("\"steel\""),
+            row("inertia", "", "its mass and inertias, any of the three", field!(inertia))
+                .otherwise("those of a solid disc of pitch radius")
+                .alternative("{ mass_kg = 0.24, polar_inertia_kgm2 = 7.8e-5, transverse_inertia_kgm2 = 4.4e-5 }"),
+            row("din_grade", "", "the grade of DIN 3962 of its deviations, 1 (best) to 12; 0: ideal teeth", field!(din_grade))
+                .range(Range::from_to(0.0, 12.0)),
+            row("iso_class", "", "the class of ISO 1328-1:2013 instead, 1 (best) to 11; 0: none", field!(iso_class))
+                .range(Range::from_to(0.0, 11.0))
+                .rule("not beside din_grade"),
+            row(
+                "tooth_share",
+                "-",
+                "the part of the tolerances of profile slope and form that each tooth has of its own",
+                field!(tooth_share),
+            )
+            .range(SHARE),
+            row("pitch_share", "-", "its largest single pitch deviation over its tolerance f_p", field!(pitch_share))
+                .range(SHARE),
+            row("run_out_share", "-", "its run-out over its tolerance F_r", field!(run_out_share)).range(SHARE),
+            row(
+                "cumulative_pitch_um",
+                "µm",
+                "the working flanks' cumulative pitch deviations along the pitch circle, positive where metal is added",
+                field!(deviations.cumulative_pitch_um),
+            )
+            .otherwise("drawn")
+            .rule("one a tooth, each below the module")
+            .alternative("[ one number a tooth ]"),
+            row("run_out_um", "µm", "the run-out F_r, of which the deviation is F_r/2 sin(θ + φ)", field!(deviations.run_out_um))
+                .otherwise("drawn")
+                .range(Range::not_negative().implausible_above(1e4))
+                .alternative("0.0"),
+            row("run_out_phase_rad", "rad", "its phase φ", field!(deviations.run_out_phase_rad))
+                .otherwise("drawn")
+                .alternative("0.0"),
+            row(
+                "helix_slope_um",
+                "µm",
+                "the helix slope deviation over the face width, positive where metal is added towards positive z",
+                field!(deviations.helix_slope_um),
+            )
+            .otherwise("none")
+            .range(Range::from_to(-1e3, 1e3))
+            .alternative("0.0"),
+        ]
+    }
+}
+
+/// Two wheels in mesh.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct GearboxMesh {
+    /// Names of the driving and of the driven wheel.
+    pub wheels: [String; 2],
+    /// (mm) Module.
+    pub module_mm: f64,
+    /// (°) Pressure angle at the pitch circle. Default 20.
+    pub pressure_angle_deg: f64,
+    /// (mm) Distance between the axes; none for the one at which the teeth have no backlash.
+    pub centre_distance_mm: Option<f64>,
+    /// (mm) Normal backlash; none for two thirds of `0.06 + 0.0005 a + 0.03 m`.
+    pub backlash_mm: Option<f64>,
+    /// (base pitches) Position of the first pair at the start; none for 0, and for what the teeth of an idler make it.
+    pub phase: Option<f64>,
+    /// (-) Damping of the contact over the critical one of the wheels' rotation on the mean mesh. Default 0.08.
+    pub damping_ratio: f64,
+}
+
+impl GearboxMesh {
+    /// A mesh with the rest at its default.
+    ///
+    /// # Arguments
+    /// They are the fields of the same names.
+    pub fn new(wheels: [&str; 2], module_mm: f64) -> Self {
+        Self { wheels: wheels.map(str::to_owned), module_mm, ..Self::start() }
+    }
+
+    /// Name of the mesh, of which those of its channels are made: `z1-z2`.
+    pub fn name(&self) -> String {
+        self.wheels.join("-")
+    }
+}
+
+impl Keys for GearboxMesh {
+    const SECTION: &str = "mesh";
+
+    fn start() -> Self {
+        Self {
+            wheels: [String::new(), String::new()],
+            module_mm: f64::NAN,
+            pressure_angle_deg: 20.0,
+            centre_distance_mm: None,
+            backlash_mm: None,
+            phase: None,
+            damping_ratio: 0.08,
+        }
+    }
+
+    fn rows() -> Vec<KeyRow<Self>> {
+        vec![
+            row("wheels", "", "the names of the driving and of the driven wheel", field!(wheels)).required(),
+            row("module_mm", "mm", "the module of both wheels", field!(module_mm))
+                .required()
+                .range(Range::positive().implausible_above(100.0)),
+            row("pressure_angle_deg", "°", "the pressure angle at the pitch circle", field!(pressure_angle_deg))
+                .range(Range::from_to(10.0, 35.0).help("usual pressure angles are 14.5°, 20° and 25°")),
+            row("centre_distance_mm", "mm", "the distance between the axes", field!(centre_distance_mm))
+                .otherwise("that without backlash")
+                .range(Range::positive())
+                .rule("at least the default; contact ratio at least 1")
+                .alternative("101.6"),
+            row("backlash_mm", "mm", "the backlash along the line of action", field!(backlash_mm))
+                .otherwise("⅔ (0.06 + 0.0005 a + 0.03 m), a the centre distance, and what a given one opens")
+                .range(Range::not_negative())
+                .rule("less than 1 module")
+                .alternative("0.1"),
+            row(
+                "phase",
+                "base pitches",
+                "where on its path of contact the first pair of teeth is at the start",
+                field!(phase),
+            )
+            .otherwise("0; of a wheel in two meshes, what its teeth make of the other mesh's")
+            .alternative("0.0"),
+            row(
+                "damping_ratio",
+                "-",
+                "the damping of teeth in contact over the critical one of the wheels' rotation on the mean mesh stiffness",
+                field!(damping_ratio),
+            )
+            .range(Range::below_one().help("measured ratios are 0.03 to 0.17")),
+        ]
+    }
+}
+
+/// Drive and load of a gearbox.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct GearboxOperation {
+    /// Speed of the input, as [`Operation::pinion_speed_hz`], and torque of the brake, with what varies them.
+    pub drive: Operation,
+    /// (kg m²) Inertia of the brake. Default 0.02.
+    pub brake_inertia_kgm2: f64,
+    /// Harmonics of the brake's torque over the rotation of its shaft. Default none.
+    pub torque_ripple: Vec<Ripple>,
+}
+
+impl GearboxOperation {
+    /// Constant speed and load.
+    ///
+    /// # Arguments
+    /// * `input_speed_hz` - (rev/s) speed of the motor and of the shaft that is coupled to it
+    /// * `brake_torque_nm` - (N m) torque of the brake
+    pub fn new(input_speed_hz: f64, brake_torque_nm: f64) -> Self {
+        Self { drive: Operation::new(input_speed_hz, brake_torque_nm), ..Self::start() }
+    }
+}
+
+impl Keys for GearboxOperation {
+    const SECTION: &str = "operation";
+
+    fn start() -> Self {
+        Self { drive: Operation::start(), brake_inertia_kgm2: 0.02, torque_ripple: Vec::new() }
+    }
+
+    fn rows() -> Vec<KeyRow<Self>> {
+        let input = row(
+            "input_speed_hz",
+            "rev/s",
+            "the nominal speed of the motor and of the shaft that is coupled to it; the sampling rate is chosen for it",
+            field!(drive.pinion_speed_hz),
+        )
+        .required()
+        .range(Range::positive().implausible_above(1e5));
+        let others = flatten(field!(drive)).filter(|row| row.name != "pinion_speed_hz");
+        let own = [
+            row("brake_inertia_kgm2", "kg m²", "the inertia of the brake", field!(brake_inertia_kgm2))
+                .range(Range::positive().implausible_above(1e9)),
+            row(
+                "torque_ripple",
+                "",
+                "harmonics of the brake's torque over the rotation θ of its shaft, T (1 + Σ a cos(hθ + ψ))",
+                field!(torque_ripple),
+            )
+            .otherwise("none")
+            .rule("amplitudes add up to less than 1")
+            .alternative("[{ order = 2.0, amplitude = 0.05 }]"),
+        ];
+        std::iter::once(input).chain(others).chain(own).collect()
+    }
+}
+
+/// A harmonic of the brake's torque.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ripple {
+    /// (-) h: how often it comes in a revolution of the brake's shaft.
+    pub order: f64,
+    /// (-) a: its amplitude as a part of the torque.
+    pub amplitude: f64,
+    /// (°) ψ: its phase at the start. Default 0.
+    pub phase_deg: f64,
+}
+
+impl Keys for Ripple {
+    fn start() -> Self {
+        Self { order: f64::NAN, amplitude: f64::NAN, phase_deg: 0.0 }
+    }
+
+    fn rows() -> Vec<KeyRow<Self>> {
+        vec![
+            row("order", "-", "how often it comes in a revolution of the brake's shaft", field!(order))
+                .required()
+                .range(Range::positive().implausible_above(1e4)),
+            row("amplitude", "-", "its amplitude as a part of the torque", field!(amplitude))
+                .required()
+                .range(Range::below_one()),
+            row("phase_deg", "°", "its phase at the start", field!(phase_deg)),
+        ]
+    }
+}
+
+/// A fault on a wheel of a gearbox.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GearboxFault {
+    /// Name of the damaged wheel.
+    pub wheel: String,
+    /// What is wrong with which of its teeth; the wheel that it names itself does not count.
+    pub fault: Fault,
+}
+
+/// An accelerometer on a gearbox.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GearboxSensor {
+    /// Where it sits: `SHAFT:AT` for the seat of the bearing there, `shaft:SHAFT:AT` for the shaft itself, `housing:[x, y, z]` in mm for a
+    /// point of the housing.
+    pub at: String,
+    /// What it makes of the motion there; its own place does not count.
+    pub sensor: Sensor,
+}
+
+impl GearboxSensor {
+    /// A vertical sensor at a place.
+    ///
+    /// # Arguments
+    /// * `at` - where it sits
+    pub fn new(at: &str) -> Self {
+        Self { at: at.to_owned(), ..Self::start() }
+    }
+
+    /// Its name, given or by place and direction.
+    pub fn name(&self) -> String {
+        let place: String =
+            self.at.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '_' }).collect();
+        let place = place.trim_matches('_').replace("__", "_");
+        self.sensor.name.clone().unwrap_or_else(|| format!("{place}_{}", self.sensor.direction.name()))
+    }
+}
+
+impl Keys for GearboxSensor {
+    const SECTION: &str = "sensor";
+
+    fn start() -> Self {
+        Self { at: String::new(), sensor: Sensor::default() }
+    }
+
+    fn rows() -> Vec<KeyRow<Self>> {
+        let at = row(
+            "at",
+            "",
+            "where it sits: \"SHAFT:AT\" on the seat of the bearing there, \"shaft:SHAFT:AT\" on the shaft itself, \
+             \"housing:[x, y, z]\" in mm on the housing",
+            field!(at),
+        )
+        .required();
+        let others = flatten(field!(sensor)).filter(|row| !["at", "response_input"].contains(&row.name));
+        std::iter::once(at).chain(others).collect()
+    }
+}
+
+/// Settings of the solver of a gearbox.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct GearboxSolver {
+    /// Sampling, length and settling; [`Solver::pinion_revolutions`] are those of the input.
+    pub settings: Solver,
+    /// (Hz) Natural frequency up to which the modes of the machine without meshes are stepped; those above deform at rest with their
+    /// forces. None for 20 kHz, or 0.4 of the sampling rate where that is less.
+    pub highest_mode_hz: Option<f64>,
+}
+
+impl GearboxSolver {
+    /// (Hz) Natural frequency up to which modes are stepped, given or by default.
+    ///
+    /// # Arguments
+    /// * `sampling_rate_hz` - (S/s) the actual rate
+    pub fn highest_mode_hz(&self, sampling_rate_hz: f64) -> f64 {
+        self.highest_mode_hz.unwrap_or(20e3f64.min(0.4 * sampling_rate_hz))
+    }
+}
+
+impl Keys for GearboxSolver {
+    const SECTION: &str = "solver";
+
+    fn start() -> Self {
+        Self { settings: Solver::default(), highest_mode_hz: None }
+    }
+
+    fn rows() -> Vec<KeyRow<Self>> {
+        const OF_PAIR: [&str; 4] =
+            ["sampling_rate_hz", "pinion_revolutions", "initial_displacement", "initial_velocity"];
+        let rate = row(
+            "sampling_rate_hz",
+            "S/s",
+            "the nominal sampling rate; the actual one is the next with a whole number of samples per revolution of the input",
+            field!(settings.sampling_rate_hz),
+        )
+        .range(Range::positive());
+        let revolutions = row(
+            "input_revolutions",
+            "rev",
+            "how many revolutions of the input are kept; settling comes before them",
+            field!(settings.pinion_revolutions),
+        )
+        .otherwise("those of 1 s, or the time that a speed profile spans")
+        .range(Range::positive())
+        .rule("not beside duration_s, not with a speed profile")
+        .example("30.0");
+        let highest = row(
+            "highest_mode_hz",
+            "Hz",
+            "the natural frequency up to which modes are stepped; those above deform as at rest",
+            field!(highest_mode_hz),
+        )
+        .otherwise("20 kHz, or 0.4 of the sampling rate where that is less")
+        .range(Range::between(Excluded(0.0), Included(1e9)))
+        .alternative("20000.0");
+        let others = flatten(field!(settings)).filter(|row| !OF_PAIR.contains(&row.name));
+        [rate, revolutions].into_iter().chain(others).chain([highest]).collect()
+    }
+}
+
+/// Reads a list of sections of a name.
+pub(super) fn list<S: Keys>(
+    table: &TomlTable<'_>,
+    name: &'static str,
+    files: &dyn NumberFiles,
+) -> ReadResult<Vec<S>> {
+    let read = |table: &TomlTable<'_>| {
+        let mut section = S::start();
+        read_keys(&mut section, table, files).map(|()| section)
+    };
+    table.tables(name)?.into_iter().map(|table| table.read(read)).collect()
+}

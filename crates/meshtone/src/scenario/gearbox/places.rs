@@ -1,0 +1,95 @@
+//! Where the sensors of a gearbox sit.
+
+use super::layout::entry_key;
+use super::{Gearbox, GearboxLayout, GearboxSensor};
+use crate::error::ScenarioError;
+use crate::machine::GearboxPlace;
+
+/// (-) How far from a bearing's place, as a part of the shaft's length, a sensor that names it may be.
+const SAME_PLACE: f64 = 1e-6;
+
+impl Gearbox {
+    /// The sensors: the listed ones, or a vertical one on every bearing's seat.
+    pub fn all_sensors(&self) -> Vec<GearboxSensor> {
+        if !self.sensors.is_empty() {
+            return self.sensors.clone();
+        }
+        let on_seat = |bearing: &crate::machine::Bearing| {
+            GearboxSensor::new(&format!("{}:{}", bearing.shaft, bearing.at))
+        };
+        self.bearings.iter().map(on_seat).collect()
+    }
+
+    /// Where each of [`Self::all_sensors`] sits.
+    ///
+    /// # Arguments
+    /// * `layout` - of this gearbox
+    ///
+    /// # Errors
+    /// A place that there is not; a name that two sensors have.
+    pub fn places(&self, layout: &GearboxLayout) -> Result<Vec<GearboxPlace>, ScenarioError> {
+        let sensors = self.all_sensors();
+        let entries = sensors.len();
+        let mut places = Vec::with_capacity(entries);
+        for (index, sensor) in sensors.iter().enumerate() {
+            let name = sensor.name();
+            if let Some(other) = sensors[..index].iter().position(|other| other.name() == name) {
+                let problem = format!("is the name of sensor[{other}] already; no two have the same channel");
+                return Err(ScenarioError::new(
+                    entry_key("sensor", index, entries, "name"),
+                    format!("{name:?}"),
+                    problem,
+                )
+                .with_help("give it a name of its own"));
+            }
+            let place = self.place(&sensor.at, layout);
+            places.push(place.map_err(|problem| {
+                let at = entry_key("sensor", index, entries, "at");
+                ScenarioError::new(at, format!("{:?}", sensor.at), problem).with_help(self.known_places())
+            })?);
+        }
+        Ok(places)
+    }
+
+    fn place(&self, at: &str, layout: &GearboxLayout) -> Result<GearboxPlace, String> {
+        let parts: Vec<&str> = at.splitn(2, ':').collect();
+        let along = |text: &str| {
+            let (shaft, place) = text.split_once(':')?;
+            let number = self.shafts.iter().position(|known| known.name == shaft)?;
+            let place: f64 = place.trim().parse().ok()?;
+            (0.0..=1.0).contains(&place).then_some((number, place))
+        };
+        match parts[..] {
+            ["housing", point] => {
+                let inside = point.trim().strip_prefix('[').and_then(|point| point.strip_suffix(']'));
+                let numbers: Option<Vec<f64>> = inside
+                    .and_then(|inside| inside.split(',').map(|number| number.trim().parse().ok()).collect());
+                match (numbers.as_deref(), &self.housing) {
+                    (Some(&[x, y, z]), Some(_)) => Ok(GearboxPlace::Housing([x * 1e-3, y * 1e-3, z * 1e-3])),
+                    (Some([_, _, _]), None) => Err("is on the housing, but there is no [housing]".to_owned()),
+                    _ => Err("must be \"housing:[x, y, z]\", three numbers in mm".to_owned()),
+                }
+            }
+            ["shaft", text] => match along(text) {
+                Some((shaft, place)) => Ok(GearboxPlace::Shaft(shaft, place)),
+                None => {
+                    Err("must be \"shaft:SHAFT:AT\" with a shaft's name and a place from 0 to 1".to_owned())
+                }
+            },
+            _ => {
+                let (shaft, place) = along(at)
+                    .ok_or("must be \"SHAFT:AT\", \"shaft:SHAFT:AT\" or \"housing:[x, y, z]\"".to_owned())?;
+                let mut bearings = self.bearings.iter().zip(&layout.shaft_of_bearing);
+                let seat = bearings
+                    .position(|(bearing, of)| *of == shaft && (bearing.at - place).abs() < SAME_PLACE);
+                seat.map(GearboxPlace::Seat).ok_or_else(|| "names no bearing's place".to_owned())
+            }
+        }
+    }
+
+    fn known_places(&self) -> String {
+        let seats: Vec<String> =
+            self.bearings.iter().map(|bearing| format!("\"{}:{}\"", bearing.shaft, bearing.at)).collect();
+        format!("the bearings' seats are {}", seats.join(", "))
+    }
+}

@@ -1,0 +1,646 @@
+//! The stages of a gearbox: those of a pair for each mesh, one machine around all of them, one integration.
+
+use std::f64::consts::TAU;
+use std::num::NonZeroUsize;
+
+use super::{Clock, StageTime, check_mesh};
+use crate::damage::{DamagedTooth, Fault, damaged_teeth};
+use crate::error::{Error, ScenarioError, ScenarioWarning};
+use crate::machine::{Axis, Disc, GearboxMachine, GearboxParts, MeshLine, Modes, WheelBody};
+use crate::mesh::{
+    Contact, FaceSlope, Forcing, Mesh, MeshParameters, PairDeviations, PairSequence, Pairs, TipShape, Turning,
+};
+use crate::operation::{CycleGrid, Motion, TimeGrid, TorqueHarmonic};
+use crate::random::{Draws, Purpose};
+use crate::scenario::{Gearbox, GearboxLayout, GearboxSensor};
+use crate::sensor::{GRAVITY_M_PER_S2, Measurement, SensorDirection, measure};
+use crate::simd::InstructionSet;
+use crate::solver::{Block, InitialMotion, ModalMachine, Output, Problem, Recorder, StepCounts, integrate};
+use crate::threads;
+use crate::trace_fields::Trace;
+use crate::wheel::quality::deviations;
+use crate::wheel::{Deviations, Gears, ProfileErrors, RunOut, Teeth, WheelName, teeth};
+
+/// Two wheels of a gearbox in mesh: what the stages before the mesh make of them.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct MeshedPair {
+    /// Both healthy wheels and their contact.
+    pub teeth: Teeth,
+    /// Profile errors; none for ideal teeth.
+    pub profile_errors: Option<ProfileErrors>,
+    /// Run-out of the driving and of the driven wheel.
+    pub run_out: [RunOut; 2],
+    /// (µm) Helix slope deviation of both over the face width.
+    pub helix_slope_um: [f64; 2],
+    /// The damaged teeth.
+    pub damaged: Vec<DamagedTooth>,
+    /// The faults on both wheels with their sizes, each with its number in the gearbox.
+    pub faults: Vec<(usize, Fault)>,
+    /// (N) Force along the line of action that holds the brake's nominal torque.
+    pub static_force_n: f64,
+}
+
+/// Results of every stage of a gearbox before the time loop.
+#[derive(Clone, PartialEq)]
+#[non_exhaustive]
+pub struct GearboxStages {
+    /// What is simulated.
+    pub gearbox: Gearbox,
+    /// How its parts stand and turn.
+    pub layout: GearboxLayout,
+    /// Division of time; a pinion revolution is one of the input.
+    pub time: TimeGrid,
+    /// What the stages before the mesh make of each mesh's wheels.
+    pub pairs: Vec<MeshedPair>,
+    /// The meshes, in the order of the file.
+    pub meshes: Vec<Mesh>,
+    /// The sensors, listed or by default.
+    pub sensors: Vec<GearboxSensor>,
+    /// (-) How severe each fault is, from 0 to 1.
+    pub fault_severities: Vec<f64>,
+    /// Time that each stage took.
+    pub timings: Vec<StageTime>,
+    machine: GearboxMachine,
+    modes: Modes,
+    warnings: Vec<ScenarioWarning>,
+}
+
+/// A signal of a gearbox.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct GearboxSignal {
+    /// Its name: `force_n.z1-z2`, `transmission_error_um.z1-z2`, `speed_hz.input`, or a sensor's with `_g`.
+    pub name: String,
+    /// Unit of its values.
+    pub unit: &'static str,
+    /// The kept samples.
+    pub values: Vec<f64>,
+}
+
+/// The kept signals of a gearbox: sensors first, then for each mesh force and transmission error, then the speed of each shaft.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[non_exhaustive]
+pub struct GearboxChannels {
+    /// (S/s) Sampling rate.
+    pub sampling_rate_hz: f64,
+    /// (s) Time of the first kept sample since the start of the simulation.
+    pub start_s: f64,
+    /// The signals, equally long.
+    pub signals: Vec<GearboxSignal>,
+    /// Steps, iterations of Newton's method, most of them in a step, and steps in which a search along the line was needed.
+    pub step_counts: [u64; 4],
+}
+
+impl GearboxChannels {
+    /// The signal of a name.
+    ///
+    /// # Arguments
+    /// * `name` - with the unit in it
+    pub fn signal(&self, name: &str) -> Option<&[f64]> {
+        self.signals.iter().find(|signal| signal.name == name).map(|signal| signal.values.as_slice())
+    }
+
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.signals.first().map_or(0, |signal| signal.values.len())
+    }
+
+    /// Whether there are no samples.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+impl Recorder for GearboxChannels {
+    fn record(&mut self, block: &Block) {
+        for (index, signal) in self.signals.iter_mut().enumerate() {
+            signal.values.extend_from_slice(block.output(index));
+        }
+    }
+
+    fn count(&mut self, counts: StepCounts) {
+        let StepCounts { steps, iterations, most_iterations, searched } = counts;
+        self.step_counts = [steps, iterations, most_iterations, searched];
+    }
+}
+
+/// A simulation of a gearbox.
+#[derive(Clone, PartialEq)]
+#[non_exhaustive]
+pub struct GearboxSimulation {
+    /// Results of the stages.
+    pub stages: GearboxStages,
+    /// The kept signals.
+    pub channels: GearboxChannels,
+    /// Time that each stage took, the time loop included.
+    pub timings: Vec<StageTime>,
+}
+
+impl GearboxSimulation {
+    /// The average of a signal over the revolutions of a wheel, from the angle at which its first tooth enters contact, read straight
+    /// between the samples.
+    ///
+    /// # Arguments
+    /// * `signal` - all kept samples
+    /// * `wheel` - number of the wheel
+    ///
+    /// # Returns
+    /// As many values as whole samples pass in a revolution, and the number of revolutions; none where the speed changes or the signal is
+    /// shorter than a revolution.
+    pub fn wheel_average(&self, signal: &[f64], wheel: usize) -> Option<(Vec<f64>, usize)> {
+        let GearboxStages { time, layout, meshes, gearbox, .. } = &self.stages;
+        let (mesh, _) = layout.mesh_of(wheel)?;
+        let per_input = time.samples_per_pinion_revolution as f64;
+        let turning = meshes[mesh].turning;
+        let teeth = f64::from(gearbox.wheels[wheel].teeth);
+        let per_revolution = per_input * teeth / turning.pitches_per_revolution;
+        let passed =
+            turning.first_pitch + time.first_kept_sample as f64 / per_input * turning.pitches_per_revolution;
+        // Samples until the first tooth enters contact.
+        let first = (1.0 - (passed / teeth).rem_euclid(1.0)) * per_revolution;
+        let last = signal.len().checked_sub(1)? as f64;
+        let revolutions = ((last - first) / per_revolution).floor();
+        if !self.stages.is_steady() || revolutions < 1.0 {
+            return None;
+        }
+        let points = per_revolution.floor() as usize;
+        let at = |sample: f64| {
+            let (index, part) = (sample as usize, sample - sample.floor());
+            let next = signal[(index + 1).min(signal.len() - 1)];
+            signal[index] + part * (next - signal[index])
+        };
+        let mean = |point: usize| {
+            let turn = |revolution: usize| revolution as f64 + point as f64 / points as f64;
+            let values =
+                (0..revolutions as usize).map(|revolution| at(first + turn(revolution) * per_revolution));
+            values.sum::<f64>() / revolutions
+        };
+        Some(((0..points).map(mean).collect(), revolutions as usize))
+    }
+}
+
+/// Runs every stage of a gearbox before the time loop.
+///
+/// # Arguments
+/// * `gearbox` - what is simulated
+///
+/// # Errors
+/// A gearbox that is not valid, or a fault that does not fit the tooth.
+pub fn gearbox_stages(gearbox: &Gearbox) -> Result<GearboxStages, ScenarioError> {
+    let mut clock = Clock::default();
+    let warnings = gearbox.validate()?;
+    let layout = GearboxLayout::new(gearbox)?;
+    let time = gearbox.time_grid();
+    clock.lap("scenario");
+    let mut pairs: Vec<MeshedPair> = (0..gearbox.meshes.len())
+        .map(|mesh| meshed_pair(gearbox, &layout, mesh))
+        .collect::<Result<_, _>>()?;
+    clock.lap("teeth and faults");
+    let (mut machine, mesh_mass_kg) = machine_of(gearbox, &layout, &pairs);
+    let sensors = gearbox.all_sensors();
+    for (sensor, place) in sensors.iter().zip(gearbox.places(&layout)?) {
+        machine.add_place(sensor.name(), place);
+    }
+    for (number, shaft) in gearbox.shafts.iter().enumerate() {
+        machine.add_rotation(speed_name(&shaft.name), number);
+    }
+    for (number, mesh) in gearbox.meshes.iter().enumerate() {
+        machine.add_transmission_error(transmission_error_name(&mesh.name()), number);
+    }
+    let modes = Modes::damped_by_springs(&machine.machine);
+    let balanced = ModalMachine::new(&machine.machine, &modes, &vec![0.0; pairs.len()], start(gearbox));
+    for (pair, line) in pairs.iter_mut().zip(&balanced.lines) {
+        pair.static_force_n = line.static_force_n;
+    }
+    clock.lap("equations of motion");
+    let mut fault_severities = vec![0.0; gearbox.faults.len()];
+    for pair in &pairs {
+        for (number, fault) in &pair.faults {
+            fault_severities[*number] = fault.severity_on(&pair.teeth);
+        }
+    }
+    let mut stages = GearboxStages {
+        gearbox: gearbox.clone(),
+        layout,
+        time,
+        pairs,
+        meshes: Vec::new(),
+        sensors,
+        fault_severities,
+        timings: Vec::new(),
+        machine,
+        modes,
+        warnings,
+    };
+    stages.meshes = (mesh_mass_kg.iter().enumerate())
+        .map(|(mesh, &mass_kg)| stages.mesh(mesh, mass_kg))
+        .collect::<Result<_, _>>()?;
+    stages.meshes.iter().try_for_each(check_mesh)?;
+    clock.lap("mesh stiffness");
+    stages.time.first_simulated_sample = stages.start_of_settling();
+    clock.lap("settling");
+    stages.timings = clock.laps;
+    Ok(stages)
+}
+
+/// Simulates a gearbox.
+///
+/// # Arguments
+/// * `gearbox` - what is simulated
+///
+/// # Errors
+/// As [`gearbox_stages`], and a motion that grows without bound.
+///
+/// ```
+/// use meshtone::scenario::{Gearbox, gearbox_template};
+///
+/// let mut gearbox = Gearbox::from_toml(&gearbox_template(None))?;
+/// gearbox.solver.settings.duration_s = Some(0.1);
+/// let simulation = meshtone::simulate_gearbox(&gearbox)?;
+/// let force = simulation.channels.signal("force_n.z3-z4").unwrap();
+/// let mean = force.iter().sum::<f64>() / force.len() as f64;
+/// assert!((mean / simulation.stages.pairs[1].static_force_n - 1.0).abs() < 0.05);
+/// # Ok::<(), meshtone::Error>(())
+/// ```
+pub fn simulate_gearbox(gearbox: &Gearbox) -> Result<GearboxSimulation, Error> {
+    gearbox_stages(gearbox)?.simulate()
+}
+
+/// Simulates gearboxes, in the threads of the current rayon pool.
+///
+/// # Arguments
+/// * `gearboxes` - what is simulated
+///
+/// # Returns
+/// For each in its place the simulation, or the error of [`simulate_gearbox`]; results do not depend on the number of threads.
+pub fn simulate_gearboxes(gearboxes: &[Gearbox]) -> Vec<Result<GearboxSimulation, Error>> {
+    threads::map(gearboxes, simulate_gearbox)
+}
+
+/// The wheels of a mesh: teeth, deviations of each drawn with a seed of its own, damage.
+fn meshed_pair(gearbox: &Gearbox, layout: &GearboxLayout, mesh: usize) -> Result<MeshedPair, ScenarioError> {
+    let numbers = layout.wheels_of_mesh[mesh];
+    let bores_mm = numbers
+        .map(|wheel| gearbox.shafts[layout.shaft_of_wheel[wheel]].radius_at_mm(gearbox.wheels[wheel].at));
+    let teeth = teeth(&layout.gears[mesh], bores_mm);
+    let [of_pinion, of_gear] = WheelName::BOTH.map(|side| {
+        let seed = Draws::new(gearbox.seed, Purpose::GearboxWheel, numbers[side as usize] as u64).bits();
+        deviations(&layout.quality_of_mesh(gearbox, mesh, side), &teeth, seed)
+    });
+    let profile_errors = joined(of_pinion.flanks.clone(), of_gear.flanks.clone(), &teeth);
+    let Deviations { run_out: [pinion_run_out, _], helix_slope_um: [pinion_um, _], .. } = of_pinion;
+    let Deviations { run_out: [_, gear_run_out], helix_slope_um: [_, gear_um], .. } = of_gear;
+    let (numbers, faults): (Vec<usize>, Vec<Fault>) =
+        layout.faults_of_mesh(gearbox, mesh).into_iter().unzip();
+    let damaged =
+        damaged_teeth(&faults, &teeth, gearbox.seed).map_err(|error| gearbox.in_fault(error, &numbers))?;
+    let faults = faults.iter().map(|fault| fault.with_sizes(&teeth));
+    Ok(MeshedPair {
+        profile_errors,
+        run_out: [pinion_run_out, gear_run_out],
+        helix_slope_um: [pinion_um, gear_um],
+        damaged,
+        faults: numbers.into_iter().zip(faults).collect(),
+        static_force_n: 0.0,
+        teeth,
+    })
+}
+
+/// The pinion's errors of one draw and the gear's of another; ideal where one has none.
+fn joined(
+    pinion: Option<ProfileErrors>,
+    gear: Option<ProfileErrors>,
+    teeth: &Teeth,
+) -> Option<ProfileErrors> {
+    if pinion.is_none() && gear.is_none() {
+        return None;
+    }
+    let ideal = |wheel: WheelName| {
+        crate::wheel::ErrorTable::filled(crate::wheel::ERROR_POINTS, teeth.wheel(wheel).teeth as usize, 0.0)
+    };
+    Some(ProfileErrors {
+        pinion_profile_errors_mm: pinion
+            .map_or_else(|| ideal(WheelName::Pinion), |errors| errors.pinion_profile_errors_mm),
+        gear_profile_errors_mm: gear
+            .map_or_else(|| ideal(WheelName::Gear), |errors| errors.gear_profile_errors_mm),
+    })
+}
+
+/// The machine, and (kg) the mass that the wheels' rotation has along each line of action.
+fn machine_of(gearbox: &Gearbox, layout: &GearboxLayout, pairs: &[MeshedPair]) -> (GearboxMachine, Vec<f64>) {
+    let shafts: Vec<_> = gearbox.shafts.iter().zip(layout.positions_m.iter().copied()).collect();
+    let discs: Vec<Disc> = (gearbox.wheels.iter().enumerate())
+        .map(|(number, wheel)| {
+            // Every wheel is in a mesh, as the layout has checked.
+            let (mesh, side) = layout.mesh_of(number).unwrap_or((0, WheelName::Pinion));
+            let mut tooth = *pairs[mesh].teeth.wheel(side);
+            tooth.face_width_mm = wheel.face_width_mm;
+            let body = WheelBody::new(&tooth, layout.gears[mesh].material, &wheel.inertia);
+            Disc { shaft: layout.shaft_of_wheel[number], at: wheel.at, body }
+        })
+        .collect();
+    let lines: Vec<MeshLine> = (pairs.iter().zip(&layout.wheels_of_mesh))
+        .map(|(pair, &wheels)| MeshLine {
+            wheels,
+            base_radii_m: WheelName::BOTH.map(|side| pair.teeth.wheel(side).base_radius_mm * 1e-3),
+            working_pressure_angle_rad: pair.teeth.gear.working_pressure_angle_rad,
+        })
+        .collect();
+    let mass_kg = lines.iter().map(|line| {
+        let both = line.wheels.iter().zip(line.base_radii_m);
+        1.0 / both.map(|(&disc, radius_m)| radius_m * radius_m / discs[disc].body.polar_kgm2).sum::<f64>()
+    });
+    let mass_kg: Vec<f64> = mass_kg.collect();
+    let bearings: Vec<_> = layout.shaft_of_bearing.iter().copied().zip(&gearbox.bearings).collect();
+    let ratios: Vec<f64> = layout.ratios.iter().map(|ratio| ratio.value()).collect();
+    let machine = GearboxMachine::new(&GearboxParts {
+        shafts: &shafts,
+        speed_ratios: &ratios,
+        discs: &discs,
+        meshes: &lines,
+        bearings: &bearings,
+        housing: gearbox.housing.as_ref(),
+        material: gearbox.material,
+        brake_inertia_kgm2: gearbox.operation.brake_inertia_kgm2,
+    });
+    (machine, mass_kg)
+}
+
+fn start(gearbox: &Gearbox) -> InitialMotion<'static> {
+    let drive = &gearbox.operation.drive;
+    let first_hz = drive.speed_profile_hz.as_ref().map_or(drive.pinion_speed_hz, |profile| profile.value[0]);
+    InitialMotion {
+        nominal_rad_per_s: TAU * drive.pinion_speed_hz,
+        brake_torque_nm: drive.brake_torque_nm,
+        motor_rad_per_s: TAU * first_hz,
+        velocity: None,
+    }
+}
+
+/// Name of the speed of a shaft.
+fn speed_name(shaft: &str) -> String {
+    format!("speed_hz.{shaft}")
+}
+
+/// Name of the transmission error of a mesh.
+fn transmission_error_name(mesh: &str) -> String {
+    format!("transmission_error_um.{mesh}")
+}
+
+impl GearboxStages {
+    /// A mesh with its tables, at the points of the cycle's coarse grid.
+    fn mesh(&self, mesh: usize, mesh_mass_kg: f64) -> Result<Mesh, ScenarioError> {
+        let Self { gearbox, layout, modes, machine, .. } = self;
+        let (pair, gears, of_file) = (&self.pairs[mesh], &layout.gears[mesh], &gearbox.meshes[mesh]);
+        let driving = layout.shaft_of_wheel[layout.wheels_of_mesh[mesh][0]];
+        let turning = Turning {
+            pitches_per_revolution: f64::from(gears.pinion_teeth) * layout.ratios[driving].value().abs(),
+            first_pitch: layout.phases[mesh],
+        };
+        let points = NonZeroUsize::new(self.points_per_pitch(&turning, gears)).unwrap_or(NonZeroUsize::MIN);
+        let sequence = PairSequence::new(gears.pinion_teeth, gears.gear_teeth, &pair.damaged)?;
+        let closer_um = pair.helix_slope_um.iter().sum::<f64>();
+        if closer_um != 0.0 && pair.static_force_n <= 0.0 {
+            return Err(ScenarioError::no_load_along_the_face());
+        }
+        let width_m = gears.face_width_mm * 1e-3;
+        let face = FaceSlope {
+            slope: closer_um * 1e-6 / width_m,
+            width_m,
+            tilt_rad_per_m: modes.tilt_rad_per_nm(&machine.machine, mesh) * pair.static_force_n,
+        };
+        let parameters = MeshParameters {
+            contact: Contact::Unilateral,
+            turning,
+            damping_ratio: of_file.damping_ratio,
+            mesh_mass_kg,
+            backlash_m: gears.normal_backlash_mm() * 1e-3,
+            static_force_n: pair.static_force_n,
+            face: (closer_um != 0.0).then_some(face),
+        };
+        let shape = TipShape { chamfer_mm: gears.chamfer_mm(), relief: gears.flank_relief };
+        let pairs = Pairs::new(&pair.teeth, &pair.damaged, gears.material, &gears.foundation);
+        Ok(Mesh::new(&pairs, shape, sequence, points, parameters))
+    }
+
+    /// Points from one pair to the next: where a whole number of samples passes between them every sample is one, else the coarse points of
+    /// the cycle, between which the tables are read.
+    fn points_per_pitch(&self, turning: &Turning, gears: &Gears) -> usize {
+        let samples = self.time.samples_per_pinion_revolution as f64 / turning.pitches_per_revolution;
+        let is_whole = (samples.round() / samples - 1.0).abs() < 1e-12;
+        if is_whole && turning.first_pitch == 0.0 && self.is_steady() {
+            return samples.round() as usize;
+        }
+        CycleGrid::new(gears.pinion_teeth, gears.gear_teeth, self.time.sampling_rate_hz).points_per_pitch
+    }
+
+    /// (Hz) Natural frequencies of the machine with its meshes closed at their mean stiffness, rising; 0 of the whole train's free rotation,
+    /// where nothing holds it.
+    pub fn natural_frequencies_hz(&self) -> Vec<f64> {
+        self.natural_frequencies_with_hz(&self.mean_stiffness_n_per_m())
+    }
+
+    /// (Hz) The same with other mesh stiffnesses.
+    ///
+    /// # Arguments
+    /// * `mesh_stiffness_n_per_m` - (N/m) of each mesh
+    pub fn natural_frequencies_with_hz(&self, mesh_stiffness_n_per_m: &[f64]) -> Vec<f64> {
+        self.machine.machine.closed_modes(mesh_stiffness_n_per_m).0
+    }
+
+    /// (N/m) Mean stiffness of each mesh.
+    pub fn mean_stiffness_n_per_m(&self) -> Vec<f64> {
+        self.meshes.iter().map(|mesh| mesh.mean_stiffness_n_per_m).collect()
+    }
+
+    /// What is doubtful about the gearbox.
+    pub fn warnings(&self) -> &[ScenarioWarning] {
+        &self.warnings
+    }
+
+    /// Whether motor and brake are steady.
+    pub fn is_steady(&self) -> bool {
+        let operation = &self.gearbox.operation;
+        operation.drive.is_steady() && operation.torque_ripple.is_empty()
+    }
+
+    /// Samples after which all teeth and shafts stand again as at the start, where motor and brake are steady.
+    fn cycle_samples(&self) -> Option<usize> {
+        let revolutions = usize::try_from(self.layout.cycle_revolutions()).ok()?;
+        let samples = revolutions.checked_mul(self.time.samples_per_pinion_revolution)?;
+        self.is_steady().then_some(samples)
+    }
+
+    /// First sample that must be simulated, so that the slowest mode's transient has decayed to the settling tolerance where the kept
+    /// signal starts.
+    fn start_of_settling(&self) -> usize {
+        let settle_tolerance = self.gearbox.solver.settings.settle_tolerance;
+        if settle_tolerance == 0.0 || !self.is_steady() || self.time.first_kept_sample == 0 {
+            return 0;
+        }
+        let closed: Vec<_> = self.meshes.iter().map(Mesh::closed).collect();
+        // Higher modes decay faster.
+        const HIGHEST_HZ: f64 = 2e3;
+        let decay_s =
+            -settle_tolerance.ln() / self.modal_machine().slowest_decay_per_s(&closed, TAU * HIGHEST_HZ);
+        let settling = (decay_s * self.time.sampling_rate_hz).ceil();
+        self.time.first_kept_sample.saturating_sub(settling as usize)
+    }
+
+    /// The machine around the meshes, and its modes without them.
+    #[cfg(feature = "internals")]
+    #[doc(hidden)]
+    pub fn machine_and_modes(&self) -> (&crate::machine::Machine, &Modes) {
+        (&self.machine.machine, &self.modes)
+    }
+
+    /// Traces the machine and its modes.
+    pub(crate) fn trace_machine(&self, trace: &mut Trace) {
+        let machine = &self.machine.machine;
+        let size = machine.coordinates();
+        trace.vector("open_frequencies_hz", self.modes.angular_frequencies.iter().map(|omega| omega / TAU));
+        trace.vector("damping_ratio", self.modes.damping_ratio.iter().copied());
+        trace.scalar("stepped_modes", self.modal_machine().modes() as f64);
+        let mean = machine.closed_stiffness(&self.mean_stiffness_n_per_m());
+        for (name, matrix) in [
+            ("mass_matrix", &machine.mass),
+            ("stiffness_matrix_open", &machine.stiffness()),
+            ("stiffness_matrix_mean", &mean),
+        ] {
+            trace.matrix(name, size, size, |r, c| matrix[(r, c)]);
+        }
+    }
+
+    /// The machine in the modes that are stepped.
+    pub(crate) fn modal_machine(&self) -> ModalMachine {
+        let face_reach_m: Vec<f64> = self.meshes.iter().map(Mesh::face_reach_m).collect();
+        let highest_hz = self.gearbox.solver.highest_mode_hz(self.time.sampling_rate_hz);
+        ModalMachine::new(&self.machine.machine, &self.modes, &face_reach_m, start(&self.gearbox))
+            .up_to(TAU * highest_hz)
+    }
+
+    /// Motion of motor and brake, sample by sample from the start of the simulation.
+    pub fn motion(&self) -> Motion<'_> {
+        let brake = self.machine.machine.rigid_rotation[self.machine.machine.coordinates() - 1].abs();
+        let harmonic = |ripple: &crate::scenario::Ripple| TorqueHarmonic {
+            order: ripple.order * brake,
+            amplitude: ripple.amplitude,
+            phase_rad: ripple.phase_deg.to_radians(),
+        };
+        let operation = &self.gearbox.operation;
+        Motion::new(&operation.drive, self.gearbox.seed, &self.time)
+            .with_ripple(operation.torque_ripple.iter().map(harmonic).collect())
+    }
+
+    /// What the channels are made of.
+    fn outputs(&self) -> Vec<(String, &'static str, Output)> {
+        let sensors = self.sensors.iter().map(|sensor| {
+            let axis = match sensor.sensor.direction {
+                SensorDirection::Horizontal => Axis::X,
+                SensorDirection::Vertical => Axis::Y,
+                SensorDirection::Axial => Axis::Z,
+            };
+            let name = sensor.name();
+            let output =
+                Output::Acceleration { place: name.clone().into(), axis, factor: 1.0 / GRAVITY_M_PER_S2 };
+            (format!("{name}_g"), "g", output)
+        });
+        let meshes = self.gearbox.meshes.iter().enumerate().flat_map(|(number, mesh)| {
+            let name = transmission_error_name(&mesh.name());
+            let place = name.clone().into();
+            [
+                (format!("force_n.{}", mesh.name()), "N", Output::MeshForce { mesh: number }),
+                (name, "µm", Output::Displacement { place, axis: Axis::Rotation, factor: 1e6 }),
+            ]
+        });
+        let shafts = self.gearbox.shafts.iter().map(|shaft| {
+            let name = speed_name(&shaft.name);
+            let place = name.clone().into();
+            (name, "Hz", Output::Velocity { place, axis: Axis::Rotation, factor: 1.0 / TAU })
+        });
+        sensors.chain(meshes).chain(shafts).collect()
+    }
+
+    /// The signals that a simulation has, without their samples.
+    pub fn channels(&self) -> GearboxChannels {
+        let signal = |(name, unit, _)| GearboxSignal {
+            name,
+            unit,
+            values: Vec::with_capacity(self.time.kept_samples()),
+        };
+        GearboxChannels {
+            sampling_rate_hz: self.time.sampling_rate_hz,
+            start_s: self.time.first_kept_sample as f64 * self.time.step_s(),
+            signals: self.outputs().into_iter().map(signal).collect(),
+            step_counts: [0; 4],
+        }
+    }
+
+    /// The simulation that signals are of, such as those read from its file.
+    ///
+    /// # Arguments
+    /// * `channels` - [`Self::channels`] with their samples
+    pub fn with_channels(self, channels: GearboxChannels) -> GearboxSimulation {
+        GearboxSimulation { channels, timings: self.timings.clone(), stages: self }
+    }
+
+    /// Solves the equations of motion, and makes the signals of the sensors.
+    ///
+    /// # Errors
+    /// A motion that grows without bound.
+    pub fn simulate(self) -> Result<GearboxSimulation, Error> {
+        let mut clock = Clock::default();
+        let outputs: Vec<Output> = self.outputs().into_iter().map(|(.., output)| output).collect();
+        let mut channels = self.channels();
+        integrate(self.problem(&outputs), InstructionSet::fastest(), &mut channels).map_err(|diverged| {
+            Error::Diverged {
+                time_s: diverged.sample as f64 * self.time.step_s(),
+                key: "bearing.damping_ratio",
+                damping_ratios: self.modes.damping_ratio.clone(),
+            }
+        })?;
+        clock.lap("time integration");
+        for (index, (sensor, signal)) in self.sensors.iter().zip(&mut channels.signals).enumerate() {
+            let measurement = Measurement {
+                sampling_rate_hz: self.time.sampling_rate_hz,
+                is_periodic: self
+                    .cycle_samples()
+                    .is_some_and(|cycle| self.time.kept_samples().is_multiple_of(cycle)),
+                seed: self.gearbox.seed,
+                index,
+            };
+            signal.values = measure(std::mem::take(&mut signal.values), &sensor.sensor, &measurement);
+        }
+        clock.lap("sensors");
+        let timings = self.timings.iter().copied().chain(clock.laps).collect();
+        Ok(GearboxSimulation { channels, timings, stages: self })
+    }
+
+    /// The simulation as the solver sees it.
+    fn problem<'a>(&'a self, outputs: &'a [Output]) -> Problem<'a> {
+        let drive = &self.gearbox.operation.drive;
+        let deviations = |pair: &'a MeshedPair| PairDeviations {
+            teeth: &pair.teeth,
+            errors: pair.profile_errors.as_ref(),
+            eccentricity_m: 0.0,
+            run_out: pair.run_out,
+        };
+        Problem {
+            time: &self.time,
+            machine: self.modal_machine(),
+            laws: self.meshes.iter().map(Mesh::law).collect(),
+            forcing: Forcing::new(
+                self.motion(),
+                &self.time,
+                [drive.pinion_speed_hz, drive.brake_torque_nm],
+                self.time.first_simulated_sample,
+                self.meshes.iter().zip(self.pairs.iter().map(deviations)),
+            ),
+            is_steady: self.is_steady(),
+            hunting_period_samples: self.cycle_samples(),
+            outputs,
+            first_sample: self.time.first_kept_sample,
+        }
+    }
+}

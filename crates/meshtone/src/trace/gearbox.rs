@@ -1,0 +1,61 @@
+//! Every stage's output of a gearbox.
+
+use crate::simulate::GearboxSimulation;
+use crate::trace_fields::Trace;
+use crate::wheel::WheelName;
+
+/// The fields of a gearbox's trace: those of the train, of each mesh under its name, of the machine, of the steps, and all signals.
+///
+/// # Arguments
+/// * `simulation` - of a gearbox
+pub fn gearbox_trace(simulation: &GearboxSimulation) -> Trace {
+    let mut trace = Trace::default();
+    let (stages, channels) = (&simulation.stages, &simulation.channels);
+    let layout = &stages.layout;
+    trace.scalar("sampling_rate_hz", stages.time.sampling_rate_hz);
+    trace.scalar("samples_per_input_revolution", stages.time.samples_per_pinion_revolution as f64);
+    trace.scalar("first_simulated_sample", stages.time.first_simulated_sample as f64);
+    trace.scalar("first_kept_sample", stages.time.first_kept_sample as f64);
+    trace.scalar("cycle_input_revolutions", layout.cycle_revolutions() as f64);
+    trace.vector("speed_ratio", layout.ratios.iter().map(|ratio| ratio.value()));
+    let positions = &layout.positions_m;
+    trace.matrix("shaft_position_mm", positions.len(), 2, |shaft, axis| positions[shaft][axis] * 1e3);
+    trace.vector("phase", layout.phases.iter().copied());
+    trace.vector("static_force_n", stages.pairs.iter().map(|pair| pair.static_force_n));
+    for ((mesh, pair), of_file) in stages.meshes.iter().zip(&stages.pairs).zip(&stages.gearbox.meshes) {
+        let named = |quantity: &str| format!("{quantity}.{}", of_file.name());
+        trace.vector(
+            &named("radii_mm"),
+            WheelName::BOTH.into_iter().flat_map(|side| {
+                let wheel = pair.teeth.wheel(side);
+                [wheel.base_radius_mm, wheel.tip_radius_mm]
+            }),
+        );
+        trace.scalar(&named("mean_stiffness_n_per_m"), mesh.mean_stiffness_n_per_m);
+        trace.scalar(&named("damping_time_s"), mesh.damping_time_s);
+        trace.vector(
+            &named("mesh_stiffness_n_per_mm"),
+            mesh.stiffness_n_per_mm(0..mesh.sequence.gear_teeth()),
+        );
+        for (wheel, errors) in of_file.wheels.iter().zip(
+            pair.profile_errors
+                .iter()
+                .flat_map(|errors| [&errors.pinion_profile_errors_mm, &errors.gear_profile_errors_mm]),
+        ) {
+            let name = format!("profile_errors_mm.{wheel}.{}", of_file.name());
+            trace.matrix(&name, errors.points(), errors.teeth(), |point, tooth| errors[(point, tooth)]);
+        }
+    }
+    stages.trace_machine(&mut trace);
+    trace.vector("natural_frequencies_hz", stages.natural_frequencies_hz());
+    for (name, count) in ["steps", "newton_iterations", "most_newton_iterations", "line_searches"]
+        .into_iter()
+        .zip(channels.step_counts)
+    {
+        trace.scalar(name, count as f64);
+    }
+    for signal in &channels.signals {
+        trace.vector(&signal.name, signal.values.iter().copied());
+    }
+    trace
+}

@@ -1,0 +1,408 @@
+//! Gearboxes from their keys to their signals.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use std::f64::consts::TAU;
+
+use crate::dense::{Dense, DenseMesh};
+use meshtone::mesh::PairDeviations;
+use meshtone::scenario::*;
+use meshtone::solver::InitialMotion;
+use meshtone::{GearboxSimulation, GearboxStages, gearbox_stages, simulate_gearbox};
+
+fn gearbox(rig: Option<GearboxRig>) -> Gearbox {
+    Gearbox::from_toml(&gearbox_template(rig)).unwrap()
+}
+
+/// Two stages with teeth that have pitch deviations and run-out and no chamfer, of the references' steel.
+fn two_stages() -> Gearbox {
+    let mut gearbox = gearbox(None);
+    gearbox.material = Material::Given(MaterialConstants {
+        youngs_modulus_gpa: 206.0,
+        poisson_ratio: 0.3,
+        density_kg_per_m3: 7850.0,
+    });
+    gearbox.sensors.clear();
+    for (number, wheel) in gearbox.wheels.iter_mut().enumerate() {
+        (wheel.iso_class, wheel.tip_chamfer_mm) = (0, Some(0.0));
+        let wave =
+            |tooth: u32| 1.5 * (TAU * f64::from(3 * tooth) / f64::from(wheel.teeth) + number as f64).sin();
+        wheel.deviations.cumulative_pitch_um = Some((0..wheel.teeth).map(wave).collect());
+        wheel.deviations.run_out_um = Some(6.0);
+    }
+    gearbox
+}
+
+fn simulate(gearbox: &Gearbox) -> GearboxSimulation {
+    simulate_gearbox(gearbox).unwrap()
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+#[test]
+fn files_are_read_back() {
+    let mut broken = gearbox(None);
+    broken.faults =
+        vec![GearboxFault { wheel: "z3".to_owned(), fault: Fault::new(WheelName::Gear, 7, MissingTooth) }];
+    broken.operation.torque_ripple = vec![Ripple { order: 2.0, amplitude: 0.1, phase_deg: 30.0 }];
+    let feet = vec![Foot { at_mm: [0.0, -100.0, 0.0], stiffness_n_per_m: 5e7 }];
+    broken.housing.as_mut().unwrap().feet = feet;
+    broken.shafts[1].radius_mm = None;
+    broken.shafts[1].segments = vec![[100.0, 8.0], [140.0, 10.0]];
+    for gearbox in [broken, two_stages(), gearbox(Some(GearboxRig::Tecnalia))] {
+        assert_eq!(Gearbox::from_toml(&gearbox.to_toml()).unwrap(), gearbox);
+    }
+}
+
+// T/r_b through the ratios; the mean of the motion is the same.
+#[test]
+fn published_rigs_carry_their_torque() {
+    for rig in GearboxRig::ALL {
+        let mut gearbox = gearbox(Some(rig));
+        gearbox.solver.settings.duration_s = Some(0.5);
+        let simulation = simulate(&gearbox);
+        let stages = &simulation.stages;
+        let base_m =
+            |mesh: usize, wheel: WheelName| stages.pairs[mesh].teeth.wheel(wheel).base_radius_mm * 1e-3;
+        let second_n = 20.0 / base_m(1, WheelName::Gear);
+        let first_n = second_n * base_m(1, WheelName::Pinion) / base_m(0, WheelName::Gear);
+        for (mesh, expected_n) in [first_n, second_n].into_iter().enumerate() {
+            let found_n = stages.pairs[mesh].static_force_n;
+            assert!((found_n / expected_n - 1.0).abs() < 1e-9, "{}: {found_n} N", rig.name());
+            let name = format!("force_n.{}", gearbox.meshes[mesh].name());
+            let mean_n = mean(simulation.channels.signal(&name).unwrap());
+            assert!((mean_n / expected_n - 1.0).abs() < 1e-3, "{}: {mean_n} N", rig.name());
+        }
+    }
+}
+
+// The rms of the reference are of another draw of deviations, so that they tell a size only.
+#[test]
+fn stiffness_and_vibration_have_the_size_of_the_reference() {
+    let simulation = simulate(&two_stages());
+    let stages = &simulation.stages;
+    for (mesh, [least, mean_k, most]) in
+        stages.meshes.iter().zip([[121.4, 203.1, 231.8], [128.9, 215.5, 242.1]])
+    {
+        let sound = mesh.healthy_stiffness_n_per_mm();
+        let extreme = |of: fn(f64, f64) -> f64, from: f64| sound.iter().copied().fold(from, of) * 1e-3;
+        for (found, expected) in [
+            (extreme(f64::min, f64::INFINITY), least),
+            (mesh.mean_stiffness_n_per_m * 1e-6, mean_k),
+            (extreme(f64::max, 0.0), most),
+        ] {
+            assert!((found / expected - 1.0).abs() < 0.02, "{found}, not {expected} kN/mm");
+        }
+    }
+    for (signal, expected) in simulation.channels.signals.iter().zip([13.56, 14.23, 3.84, 8.62, 5.17, 7.00]) {
+        let found = 9.81 * rms(&signal.values);
+        println!("{}: {found:.2} m/s², reference {expected}", signal.name);
+        assert!(found > 0.2 * expected && found < 5.0 * expected);
+    }
+    let [steps, iterations, most, searched] = simulation.channels.step_counts;
+    assert!(
+        steps >= 100_000 && iterations < 3 * steps && most <= 6 && searched == 0,
+        "{iterations} {most} {searched}"
+    );
+}
+
+// All modes, the same integrator and inputs, with dense matrices. Few elements keep these small.
+#[test]
+fn gearbox_moves_as_with_dense_matrices() {
+    let mut gearbox = two_stages();
+    gearbox.shafts.iter_mut().for_each(|shaft| shaft.elements = 4);
+    // 105 samples for a pitch of the first mesh, 210 for one of the second.
+    gearbox.solver.settings.sampling_rate_hz = 105.0 * 32.0 * 30.0;
+    gearbox.housing = None;
+    gearbox.solver.highest_mode_hz = Some(1e9);
+    gearbox.solver.settings.settle_fraction = 0.0;
+    gearbox.solver.settings.duration_s = Some(0.003);
+    let simulation = simulate(&gearbox);
+    let stages = &simulation.stages;
+    let (machine, modes) = stages.machine_and_modes();
+    let time = &stages.time;
+    let nominal_rad_per_s = TAU * gearbox.operation.drive.pinion_speed_hz;
+    let deviations = |mesh: usize| PairDeviations {
+        teeth: &stages.pairs[mesh].teeth,
+        errors: stages.pairs[mesh].profile_errors.as_ref(),
+        eccentricity_m: 0.0,
+        run_out: stages.pairs[mesh].run_out,
+    };
+    let dense = Dense {
+        machine,
+        modes,
+        meshes: stages
+            .meshes
+            .iter()
+            .enumerate()
+            .map(|(n, mesh)| DenseMesh::new(mesh, deviations(n)))
+            .collect(),
+        time,
+        motion: stages.motion().take(time.samples).collect(),
+        is_steady: true,
+        start: InitialMotion {
+            nominal_rad_per_s,
+            brake_torque_nm: gearbox.operation.drive.brake_torque_nm,
+            motor_rad_per_s: nominal_rad_per_s,
+            velocity: None,
+        },
+    };
+    let accelerations = dense.accelerations();
+    for (sensor, signal) in stages.sensors.iter().zip(&simulation.channels.signals) {
+        let weights = machine.weights(&sensor.name(), meshtone::machine::Axis::Y);
+        let theirs: Vec<f64> = accelerations.iter().map(|sample| sample.dot(&weights) / 9.81).collect();
+        let error: Vec<f64> = theirs.iter().zip(&signal.values).map(|(a, b)| a - b).collect();
+        println!("{}: {:.1e} of {:.3} g", signal.name, rms(&error) / rms(&theirs), rms(&theirs));
+        assert!(rms(&error) < 1e-6 * rms(&theirs));
+    }
+}
+
+#[test]
+fn high_modes_are_flexibility_enough() {
+    let mut gearbox = two_stages();
+    gearbox.shafts.iter_mut().for_each(|shaft| shaft.elements = 6);
+    gearbox.solver.settings.duration_s = Some(0.3);
+    let truncated = simulate(&gearbox);
+    gearbox.solver.highest_mode_hz = Some(1e9);
+    let whole = simulate(&gearbox);
+    for (few, all) in truncated.channels.signals.iter().zip(&whole.channels.signals).take(6) {
+        let difference = rms(&few.values) / rms(&all.values) - 1.0;
+        println!("{}: {:.2} %", few.name, 100.0 * difference);
+        assert!(difference.abs() < 0.01);
+    }
+}
+
+#[test]
+fn half_the_step_changes_little() {
+    let mut gearbox = two_stages();
+    gearbox.solver.settings.duration_s = Some(0.3);
+    let [coarse, fine] = [1e5, 2e5].map(|rate_hz| {
+        gearbox.solver.settings.sampling_rate_hz = rate_hz;
+        simulate(&gearbox)
+    });
+    for (coarse, fine) in coarse.channels.signals.iter().zip(&fine.channels.signals).take(6) {
+        let difference = rms(&coarse.values) / rms(&fine.values) - 1.0;
+        println!("{}: {:.2} %", coarse.name, 100.0 * difference);
+        assert!(difference.abs() < 0.02);
+    }
+}
+
+// The train repeats after 15 revolutions of the input: lines lie at multiples of 1/15 of its order only.
+#[test]
+fn motion_repeats_after_a_cycle() {
+    let mut gearbox = two_stages();
+    gearbox.solver.settings.discard_and_keep(2.0, 1.0);
+    gearbox.solver.settings.settle_tolerance = 0.0;
+    let simulation = simulate(&gearbox);
+    assert_eq!(simulation.stages.layout.cycle_revolutions(), 15);
+    let cycle = 15 * simulation.stages.time.samples_per_pinion_revolution;
+    for signal in &simulation.channels.signals[..6] {
+        let difference: Vec<f64> =
+            signal.values[..cycle].iter().zip(&signal.values[cycle..2 * cycle]).map(|(a, b)| a - b).collect();
+        // Half of the difference is what lies between the lines.
+        let part = (rms(&difference) / 2.0 / rms(&signal.values)).powi(2);
+        println!("{}: {part:.1e} of the energy", signal.name);
+        assert!(part < 1e-4);
+    }
+}
+
+/// The phase of the second mesh of an idler less that of the first, with its mates in given directions.
+fn idler_phase(teeth: [u32; 3], [first_deg, second_deg]: [f64; 2]) -> f64 {
+    let radius_mm = |wheel: usize| f64::from(teeth[wheel]);
+    let at = |direction_deg: f64, distance_mm: f64| {
+        let (sin, cos) = direction_deg.to_radians().sin_cos();
+        [distance_mm * cos, distance_mm * sin]
+    };
+    let positions =
+        [at(first_deg, radius_mm(0) + radius_mm(1)), [0.0; 2], at(second_deg, radius_mm(1) + radius_mm(2))];
+    let names = ["a", "b", "c"];
+    let coupled = [Coupled::Motor, Coupled::Nothing, Coupled::Brake];
+    let shafts = (0..3).map(|n| {
+        let mut shaft = GearboxShaft::new(names[n], 100.0, 5.0);
+        (shaft.position_mm, shaft.couples_to) = (Some(positions[n]), coupled[n]);
+        shaft
+    });
+    let wheels = (0..3).map(|n| GearboxWheel::new(["z1", "z2", "z3"][n], names[n], 0.5, teeth[n], 20.0));
+    let bearings = names.iter().flat_map(|name| [Bearing::new(name, 0.0), Bearing::new(name, 1.0)]);
+    let gearbox = Gearbox::new(
+        shafts.collect(),
+        wheels.collect(),
+        vec![GearboxMesh::new(["z1", "z2"], 2.0), GearboxMesh::new(["z2", "z3"], 2.0)],
+        bearings.collect(),
+        GearboxOperation::new(30.0, 10.0),
+    );
+    let layout = GearboxLayout::new(&gearbox).unwrap();
+    (layout.phases[1] - layout.phases[0]).rem_euclid(1.0)
+}
+
+// Numbers of involute flanks intersected with the lines of action. The idler turns against the input, and so in the negative sense: the
+// mirror image of a train that turns in the positive one.
+#[test]
+fn idler_phases_are_those_of_its_flanks() {
+    for (teeth, [first_deg, second_deg], expected) in [
+        ([24, 36, 30], [180.0, 0.0], 0.480534),
+        ([24, 35, 30], [180.0, 0.0], 0.983442),
+        ([20, 40, 25], [180.0, 70.0], 0.671281),
+        ([20, 40, 25], [180.0, -70.0], 0.226837),
+        ([23, 41, 57], [200.0, -33.0], 0.065243),
+    ] {
+        let found = idler_phase(teeth, [-first_deg, -second_deg]);
+        println!("{teeth:?}: {found:.6}, not {expected}");
+        assert!((found - expected).abs() < 1e-6, "{teeth:?}: {found:.6}, not {expected}");
+    }
+}
+
+/// A gearbox of the one pair of the short form's example.
+fn one_pair() -> Gearbox {
+    let names = ["input", "output"];
+    let coupled = [Coupled::Motor, Coupled::Brake];
+    let shafts = (0..2).map(|n| {
+        let mut shaft = GearboxShaft::new(names[n], 200.0, 10.0);
+        shaft.couples_to = coupled[n];
+        shaft
+    });
+    let bearings = names.iter().flat_map(|name| [Bearing::new(name, 0.0), Bearing::new(name, 1.0)]);
+    Gearbox::new(
+        shafts.collect(),
+        vec![
+            GearboxWheel::new("z1", "input", 0.5, 17, 15.0),
+            GearboxWheel::new("z2", "output", 0.5, 38, 15.0),
+        ],
+        vec![GearboxMesh::new(["z1", "z2"], 3.0)],
+        bearings.collect(),
+        GearboxOperation::new(40.0, 10.0),
+    )
+}
+
+#[test]
+fn one_pair_has_the_forces_and_stiffness_of_the_short_form() {
+    let long: GearboxStages = gearbox_stages(&one_pair()).unwrap();
+    let scenario = Scenario::new(GearPair::example());
+    let short = meshtone::stages(&scenario).unwrap();
+    assert!((long.pairs[0].static_force_n / short.static_force_n() - 1.0).abs() < 1e-9);
+    // The tables of both have other points.
+    let points = long.meshes[0].points_per_pitch.try_into().unwrap();
+    let mesh = &short.meshes_at(points).unwrap()[0];
+    assert!((long.meshes[0].mean_stiffness_n_per_m / mesh.mean_stiffness_n_per_m - 1.0).abs() < 1e-9);
+    let error = |mesh: &meshtone::mesh::Mesh| mesh.at_rest(short.static_force_n(), 0..38).peak_to_peak_m();
+    assert!((error(&long.meshes[0]) / error(mesh) - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_ripple_of_the_torque_comes_with_the_brakes_shaft() {
+    let mut gearbox = one_pair();
+    gearbox.operation.torque_ripple = vec![Ripple { order: 1.0, amplitude: 0.2, phase_deg: 0.0 }];
+    gearbox.solver.settings.discard_and_keep(1.0, 0.95);
+    let simulation = simulate(&gearbox);
+    let force = simulation.channels.signal("force_n.z1-z2").unwrap();
+    // 38 revolutions of the input are 17 of the brake.
+    let samples = force.len() as f64;
+    let line = |turns: f64| {
+        let angle = |n: usize| TAU * turns * n as f64 / samples;
+        let [cos, sin] = [f64::cos, f64::sin].map(|of| {
+            force.iter().enumerate().map(|(n, value)| value * of(angle(n))).sum::<f64>() * 2.0 / samples
+        });
+        cos.hypot(sin)
+    };
+    let static_force_n = simulation.stages.pairs[0].static_force_n;
+    println!("{} {}", line(17.0) / static_force_n, line(19.0) / static_force_n);
+    // The first torsional mode, at 48 Hz, makes 1.16 times as much of the ripple's 18 Hz.
+    assert!((line(17.0) / static_force_n / 0.2 - 1.16).abs() < 0.05);
+    assert!(line(19.0) < 0.02 * static_force_n);
+}
+
+#[test]
+fn a_missing_tooth_of_any_wheel_is_felt_once_a_revolution() {
+    let mut gearbox = two_stages();
+    // Without chamfers the tip corners of the neighbours hold the wheels.
+    gearbox.wheels.iter_mut().for_each(|wheel| wheel.tip_chamfer_mm = None);
+    gearbox.solver.settings.duration_s = Some(0.5);
+    gearbox.faults =
+        vec![GearboxFault { wheel: "z3".to_owned(), fault: Fault::new(WheelName::Gear, 5, MissingTooth) }];
+    let simulation = simulate(&gearbox);
+    assert_eq!(simulation.stages.fault_severities, [1.0]);
+    let mesh = &simulation.stages.meshes[1];
+    let stiffness = mesh.stiffness_n_per_mm(0..2 * 48);
+    let sound = mesh.healthy_stiffness_n_per_mm();
+    let differs =
+        |point: &usize| (stiffness[*point] / sound[point % mesh.points_per_pitch] - 1.0).abs() > 1e-9;
+    let mut pitches: Vec<usize> =
+        (0..stiffness.len()).filter(differs).map(|point| point / mesh.points_per_pitch).collect();
+    pitches.dedup();
+    // The fifth tooth enters contact after four pitches, and would leave it less than two later.
+    println!("{pitches:?}");
+    assert_eq!(pitches, [4, 5, 52, 53]);
+    gearbox.faults.clear();
+    let sound = simulate(&gearbox);
+    let force = |of: &GearboxSimulation| of.channels.signal("force_n.z3-z4").unwrap().to_vec();
+    let (broken_n, sound_n) = (force(&simulation), force(&sound));
+    // The pairs beside the gap catch the wheels: flanks part, and meet again.
+    assert!(broken_n.contains(&0.0) && !sound_n.contains(&0.0));
+    let differs: Vec<f64> = broken_n.iter().zip(&sound_n).map(|(a, b)| (a - b).abs()).collect();
+    let hits = differs.chunks(simulation.stages.time.samples_per_pinion_revolution * 3);
+    assert!(
+        hits.map(|revolution| revolution.iter().copied().fold(0.0, f64::max)).all(|largest| largest > 100.0)
+    );
+}
+
+#[test]
+fn mistakes_are_named_with_their_key_and_line() {
+    let text = gearbox_template(None);
+    let change = |from: &str, to: &str| {
+        assert!(text.contains(from), "{from}");
+        Gearbox::from_toml(&text.replacen(from, to, 1)).unwrap_err()
+    };
+    for (from, to, key, problem) in [
+        ("shaft = \"input\"", "shaft = \"inptu\"", "wheel[0].shaft", "is no shaft's name"),
+        (
+            "wheels = [\"z1\", \"z2\"]",
+            "wheels = [\"z2\", \"z1\"]",
+            "mesh[0].wheels",
+            "names the driven wheel first",
+        ),
+        ("wheels = [\"z3\", \"z4\"]", "wheels = [\"z3\", \"z5\"]", "mesh[1].wheels[1]", "is no wheel's name"),
+        ("couples_to = \"brake\"\n", "", "shaft.couples_to", "no shaft couples to the brake"),
+        ("at = 0.25", "at = 0.5", "mesh[0].wheels", "middle planes"),
+        ("name = \"z2\"", "name = \"z1\"", "wheel[1].name", "is the name of wheel[0] already"),
+        ("seed = 1", "seed = 1\n[gears]\nmodule_mm = 3.0\n[other]", "gears", "given beside shaft"),
+        ("seed = 1", "model = \"published\"", "model", "must be \"contact\""),
+        ("at = \"input:0\"", "at = \"input:0.5\"", "sensor[0].at", "names no bearing's place"),
+        ("teeth = 96", "teeth = 96\nprofile_shift = 3.0", "wheel[1].profile_shift", "must be from"),
+    ] {
+        let error = change(from, to);
+        assert_eq!(error.key, key, "{error}");
+        assert!(error.problem.contains(problem), "{error}");
+        let missing = from.starts_with("couples_to");
+        assert!(error.line.is_some() || missing, "{error}");
+    }
+    let placed =
+        text.replacen("couples_to = \"motor\"", "couples_to = \"motor\"\nposition_mm = [0.0, 0.0]", 1);
+    let placed = placed.replacen("name = \"middle\"", "name = \"middle\"\nposition_mm = [90.0, 0.0]", 1);
+    let error = Gearbox::from_toml(&placed).unwrap_err();
+    assert_eq!(error.key, "shaft[1].position_mm");
+    assert!(
+        error
+            .problem
+            .contains("is 90.0000 mm from its mate's axis, but the wheels of mesh z1-z2 mesh at 101.6000 mm"),
+        "{error}"
+    );
+    let pair = Scenario::from_toml(&text).unwrap_err();
+    assert!(pair.problem.contains("is of a gearbox"), "{pair}");
+}
+
+// A second mesh between two shafts that are geared already locks them unless its ratio is the same.
+#[test]
+fn a_locked_train_names_both_ratios() {
+    let mut gearbox = one_pair();
+    gearbox.wheels.push(GearboxWheel::new("z3", "input", 0.2, 18, 15.0));
+    gearbox.wheels.push(GearboxWheel::new("z4", "output", 0.2, 37, 15.0));
+    gearbox.meshes.push(GearboxMesh::new(["z3", "z4"], 3.0));
+    let error = gearbox.validate().unwrap_err();
+    assert_eq!(error.key, "mesh[1].wheels");
+    assert!(error.problem.contains("-18/37") && error.problem.contains("-17/38"), "{error}");
+}
