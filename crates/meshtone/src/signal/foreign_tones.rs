@@ -113,7 +113,7 @@ impl LinesOffShafts {
             })
             .collect();
         let part = in_tones.iter().copied().map(square).sum::<f64>() / energy;
-        if !(part > COUNTS) {
+        if part.is_nan() || part <= COUNTS {
             return None;
         }
         // Lines beside each other are one tone.

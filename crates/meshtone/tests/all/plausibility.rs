@@ -44,7 +44,9 @@ fn a_speed_in_revolutions_per_minute_is_refused_with_what_it_would_be() {
 #[test]
 fn a_braked_rotation_is_reported_under_the_published_model_alone() {
     let told = |model: Model| {
-        let simulation = simulate(&Scenario { model, ..pair() }).unwrap();
+        let mut scenario = pair();
+        scenario.model = model;
+        let simulation = simulate(&scenario).unwrap();
         let warnings = simulation.warnings_of_signals();
         let braked = warnings.into_iter().find(|warning| warning.kind == WarningKind::BrakedRotation);
         (braked.map(|warning| warning.message), simulation.stages.static_force_n())
