@@ -191,13 +191,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_shared_tooth_is_found() {
-        let [one, some, all] = [FaultyTeeth::One(5), vec![2, 5, 7].into(), FaultyTeeth::All];
-        assert_eq!([one.shared(&some), some.shared(&all), all.shared(&some)], [Some(5), Some(2), Some(2)]);
-        assert_eq!([all.shared(&all), one.shared(&FaultyTeeth::One(6))], [Some(1), None]);
-    }
-
-    #[test]
     fn what_a_wheel_has_not_is_named() {
         let refused = |teeth: FaultyTeeth| teeth.check(17, "pinion").unwrap_err().to_string();
         assert_eq!(refused(18.into()), "fault.tooth = 18: must be at most 17, the pinion's teeth");

@@ -106,7 +106,7 @@ fn recording(machine: &Machine, index: u64, run_up: f64, foreign: f64, draws: &m
     let mut signal = resample(&signal, 1, every, Edge::Reflect).unwrap();
     let turned: Vec<f64> = turned.into_iter().step_by(every).collect();
     let rate_hz = machine.rate_hz / every as f64;
-    let (own, mate) = if index % 2 == 0 { (0, 1) } else { (1, 0) };
+    let (own, mate) = if index.is_multiple_of(2) { (0, 1) } else { (1, 0) };
     let [teeth, mate_teeth] = [machine.teeth[own], machine.teeth[mate]];
     let turned: Vec<f64> = turned.iter().map(|angle| pinion / f64::from(teeth) * angle).collect();
     let ratio = f64::from(teeth) / f64::from(mate_teeth);
@@ -119,7 +119,7 @@ fn recording(machine: &Machine, index: u64, run_up: f64, foreign: f64, draws: &m
             add(f64::from(order) * shaft, level * draws.between(0.0, 0.15), draws.part());
         }
     }
-    if index % 3 == 0 {
+    if index.is_multiple_of(3) {
         let second = f64::from(draws.count(13, 90));
         let (shaft, third) = (draws.one(&[1.0, ratio]), draws.between(0.2, 0.8));
         for harmonic in 1..=4 {
