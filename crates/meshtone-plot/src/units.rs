@@ -1,11 +1,12 @@
 //! The units that names of keys and columns end with.
 
 /// Endings of names, and their units; the longer ones first.
-const UNITS: [(&str, &str); 20] = [
+const UNITS: [(&str, &str); 21] = [
     ("_g_per_rthz", "g/√Hz"),
     ("_nm_per_rad", "N m/rad"),
     ("_n_per_m", "N/m"),
     ("_per_cm2", "1/cm²"),
+    ("_per_khz", "1/kHz"),
     ("_kgm2", "kg m²"),
     ("_mpa", "MPa"),
     ("_deg", "°"),
